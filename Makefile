@@ -1,0 +1,53 @@
+# The two commands of the README, and what developers need. `make help` lists them.
+.DEFAULT_GOAL := help
+.PHONY: help run test bench build build-tests web format check-format layers tidy asan clean
+
+help:              ## this list
+	@grep -E '^[a-z-]+: .*##|^[a-z-]+:  *##' Makefile | sed -E 's/^([a-z-]+):.*## */  make \1\t/' | expand -t 22
+
+run: build         ## install what is missing, build, run the paper's oscillator with every method, say where the report is
+	build/release/uplift compare examples/01_oscillator/case.toml
+
+test: build-tests  ## the same set-up, then build and run every test
+	ctest --test-dir build/release --output-on-failure -j 2
+
+build:
+	@scripts/setup.sh run
+	@test -f build/release/build.ninja || cmake --preset release
+	cmake --build build/release
+
+build-tests:
+	@scripts/setup.sh test
+	cmake --preset release -DUPLIFT_TESTS=ON
+	cmake --build build/release
+
+bench:             ## benchmarks: kernels, steps, whole process; figures and limits in docs/performance.md
+	@scripts/setup.sh develop
+	cmake --preset release -DUPLIFT_BENCH=ON
+	cmake --build build/release
+	build/release/bench/bench_kernels
+	bench/whole_process.py build/release/uplift
+
+web:               ## rebuild the report page (developers of the page only)
+	cd web && npm ci && npm run check && npm run build
+
+format:            ## clang-format all sources
+	git ls-files 'src/*.h' 'src/*.cpp' 'tests/*.cpp' 'tests/*.h' 'bench/*.cpp' | tr '\n' '\0' | xargs -0 clang-format-14 -i
+
+check-format:
+	git ls-files 'src/*.h' 'src/*.cpp' 'tests/*.cpp' 'tests/*.h' 'bench/*.cpp' | tr '\n' '\0' | xargs -0 clang-format-14 --dry-run --Werror
+
+layers:            ## the order of the layers
+	python3 scripts/check_layers.py
+
+tidy:              ## clang-tidy on the library
+	cmake --preset dev
+	git ls-files 'src/*.cpp' | tr '\n' '\0' | xargs -0 -n 4 -P 2 clang-tidy-14 -p build/dev --quiet
+
+asan:              ## the tests under AddressSanitizer and UndefinedBehaviorSanitizer
+	cmake --preset asan
+	cmake --build build/asan
+	ctest --test-dir build/asan --output-on-failure -j 2 -LE long
+
+clean:             ## remove build and out
+	rm -rf build out

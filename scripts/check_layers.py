@@ -1,0 +1,31 @@
+#!/usr/bin/env python3
+"""A file may include only its own layer and layers to its left; Eigen is named in src/uplift/math only; nobody prints or exits but the command line."""
+import pathlib
+import re
+import sys
+
+ORDER = "base math mesh laws elements interface model linear contact dynamics motion analysis study io cli".split()
+ROOT = pathlib.Path(__file__).resolve().parent.parent / "src" / "uplift"
+
+mistakes = []
+for path in sorted(ROOT.rglob("*")):
+    if path.suffix not in (".h", ".cpp"):
+        continue
+    layer = path.relative_to(ROOT).parts[0]
+    if layer not in ORDER:
+        mistakes.append(f"{path.relative_to(ROOT)}: \"{layer}\" is not a layer ({' '.join(ORDER)})")
+        continue
+    for number, line in enumerate(path.read_text().splitlines(), 1):
+        place = f"src/uplift/{path.relative_to(ROOT)}:{number}"
+        include = re.match(r'\s*#include "uplift/([a-z]+)/', line)
+        if include and ORDER.index(include.group(1)) > ORDER.index(layer):
+            mistakes.append(f"{place}: layer {layer} includes {include.group(1)}, which is to its right")
+        if re.match(r"\s*#include <(Eigen|unsupported/Eigen)", line) and layer != "math":
+            mistakes.append(f"{place}: Eigen is included outside math")
+        if layer not in ("cli",) and re.search(r"std::(cout|cerr|exit|abort)\b|\bprintf\(|fmt::print\(", line):
+            mistakes.append(f"{place}: the library prints or exits")
+        if re.match(r"\s*template\b", line) and layer not in ("math", "base"):
+            mistakes.append(f"{place}: a template outside math and base")
+
+print("\n".join(mistakes) if mistakes else f"layers: {' <- '.join(ORDER)}: in order")
+sys.exit(1 if mistakes else 0)

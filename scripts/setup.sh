@@ -1,0 +1,44 @@
+#!/usr/bin/env bash
+# Installs the Debian packages that are missing and nothing else: no network when all are there. Usage: scripts/setup.sh [run|test|develop]
+set -euo pipefail
+
+run="g++ cmake ninja-build pkg-config libeigen3-dev libsuitesparse-dev libopenblas-dev libspectra-dev libtomlplusplus-dev
+  nlohmann-json3-dev libudunits2-dev libcli11-dev libspdlog-dev libfmt-dev"
+test="libgtest-dev librapidcheck-dev python3"
+develop="libbenchmark-dev clang-format-14 clang-tidy-14 nodejs npm chromium ca-certificates"
+
+case "${1:-run}" in
+  run) wanted="$run" ;;
+  test) wanted="$run $test" ;;
+  develop) wanted="$run $test $develop" ;;
+  *) echo "setup.sh: wanted run, test or develop, found \"$1\"" >&2; exit 2 ;;
+esac
+
+if ! command -v dpkg-query >/dev/null; then
+  echo "setup.sh: this is not a Debian system; needed: $wanted" >&2
+  exit 0
+fi
+
+# A tool that is already here by other means (another node, another g++) counts as installed.
+have() {
+  dpkg-query -W -f '${Status}' "$1" 2>/dev/null | grep -q 'ok installed' && return 0
+  case "$1" in
+    nodejs) command -v node >/dev/null ;;
+    npm) command -v npm >/dev/null ;;
+    python3) command -v python3 >/dev/null ;;
+    *) return 1 ;;
+  esac
+}
+
+missing=()
+for package in $wanted; do have "$package" || missing+=("$package"); done
+[ ${#missing[@]} -eq 0 ] && exit 0
+
+echo "Installing: ${missing[*]}"
+as_root=()
+if [ "$(id -u)" -ne 0 ]; then
+  command -v sudo >/dev/null || { echo "setup.sh: not root and no sudo; please install: ${missing[*]}" >&2; exit 1; }
+  as_root=(sudo)
+fi
+"${as_root[@]}" apt-get update -q
+"${as_root[@]}" env DEBIAN_FRONTEND=noninteractive apt-get install -y -q --no-install-recommends "${missing[@]}"

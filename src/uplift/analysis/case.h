@@ -1,0 +1,90 @@
+#pragma once
+#include <memory>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "uplift/analysis/run.h"
+#include "uplift/base/declare.h"
+
+// From the checked case file to something that can be run.
+namespace uplift {
+
+/// A checked case file.
+struct Case {
+  Values values;     // of case_section()
+  std::string file;  // as the user gave it
+};
+
+/// Checks a case file that was read. Throws InputError.
+Case check_case(const Raw& raw, const std::string& file);
+
+/// Other files that the case reads (tables of functions), as paths that can be opened from here.
+std::vector<std::string> input_files(const Case&);
+
+/// One run of a case: what differs from the case as it stands. Null and empty: as in the case. Points into the case's values.
+struct RunSpec {
+  std::string name, label, group;
+  const Values* law = nullptr;      // law or cone of the interface ...
+  std::string interface;            // ... of this name; empty: of all
+  const Values* method = nullptr;
+  const Values* impact = nullptr;
+  const Values* scheme = nullptr;
+  const Values* damping = nullptr;
+  std::optional<bool> path_average;
+  std::optional<double> step, duration;  // s, of the dynamic stages
+  std::optional<double> stiffness_ratio;  // the law's stiffness is chosen so that the largest k F_ii is this
+  std::string stiffness_parameter;        // parameter of the law that is the stiffness
+  bool bonded = false;                    // elastic interfaces that never open, as stiff as the closed joint
+  bool expected_to_fail = false;
+  bool pictures = true;  // keep frames for the animation
+};
+
+/// What `uplift run` does: the case itself, then (unless it says bonded = false) the bonded model.
+std::vector<RunSpec> runs_of_case(const Case&);
+
+/// What `uplift compare` does: every variant and the bonded model with every damping, and the runs of the stiffness sweep.
+struct Comparison {
+  std::vector<RunSpec> runs;
+  std::vector<RunSpec> sweep;  // pairs: path average, end of step; in the order of the ratios
+};
+Comparison comparison_of_case(const Case&);
+
+/// What the report and the verdict want to know of an interface beyond the model.
+struct InterfaceFacts {
+  std::string name, body;   // body: node that carries the upper side; empty when there is none
+  double half_width = 0;    // m, from the reference point to the farther edge
+  double friction = -1;     // coefficient; negative: none stated
+  double area = 0;          // m2
+  double tension = 0;       // Pa: tensile strength of the law, 0 without
+};
+
+/// A case made ready to run.
+struct Built {
+  Model model;
+  RunPlan plan;
+  std::vector<const Values*> behaviours;               // one per interface: law or cone as in the case file
+  std::vector<std::unique_ptr<const Values>> derived;  // behaviours made here (bonded, swept)
+  std::vector<InterfaceFacts> facts;                   // one per interface
+  std::vector<std::string> notes;                      // what was chosen automatically (tuned mass, scaled penalty)
+  double weight = 0;                                   // N: resultant of the dead loads against the first interface's normal
+  int top = -1, base = -1;                             // nodes whose motion is shown: the highest mass, the first interface's body
+};
+
+/// Makes the model and the plan of one run. Throws InputError (dangling or duplicate names, mechanisms, contradictions).
+Built build(const Case&, const RunSpec&);
+
+/// The solver named by the case.
+std::shared_ptr<const LinearSolver> bulk_solver(const Case&);
+
+/// The first dynamic stage of a plan, or null.
+const Stage* dynamic_stage(const RunPlan&);
+
+/// Natural modes with every interface closed and bonded: laws with their closed stiffness, cones held. Shapes on the free unknowns.
+std::vector<Mode> bonded_modes(const Model&, int count);
+
+/// What an engineer should know before believing the results: closure stress too large, step too coarse, suspicious magnitudes, unsound
+/// combinations of method, impact rule and traction. One sentence each.
+std::vector<std::string> warnings(const Case&, const RunSpec&, const Built&);
+
+}  // namespace uplift

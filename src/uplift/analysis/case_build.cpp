@@ -1,0 +1,285 @@
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+#include <filesystem>
+#include <limits>
+
+#include "uplift/analysis/case_model.h"
+#include "uplift/analysis/case_output.h"
+#include "uplift/analysis/case_sections.h"
+#include "uplift/model/check.h"
+#include "uplift/model/tuned_mass.h"
+
+namespace uplift {
+namespace {
+
+[[noreturn]] void fail(const Values& table, std::string_view key, std::string wanted, std::string found) {
+  throw InputError(table.where(key), table.path(key), std::move(wanted), std::move(found));
+}
+
+/// Values as they would be read from a file again, with one number replaced.
+Values with_number(const Values& part, std::string_view key, double number) {
+  auto table = std::make_shared<RawTable>();
+  const auto add = [&](std::string_view name, auto data) { table->entries.emplace_back(std::string(name), Raw{std::move(data), part.where(name), part.path(name)}); };
+  add("type", part.type());
+  for (const auto& [name, item] : part.items()) {
+    if (name == key) continue;
+    if (const auto* flag = std::get_if<bool>(&item.data)) add(name, *flag);
+    if (const auto* whole = std::get_if<std::int64_t>(&item.data)) add(name, *whole);
+    if (const auto* real = std::get_if<double>(&item.data)) add(name, *real);
+    if (const auto* text = std::get_if<std::string>(&item.data)) add(name, *text);
+  }
+  add(key, number);
+  return check_part(Raw{table, part.where(), part.path()}, interface_behaviours());
+}
+
+/// An elastic joint that never opens.
+Values bonded_behaviour(const Values& like, const std::vector<double>& stiffness) {
+  auto table = std::make_shared<RawTable>();
+  const auto add = [&](const char* name, auto data) { table->entries.emplace_back(name, Raw{std::move(data), like.where(), like.path()}); };
+  add("type", std::string("elastic"));
+  add("K_n", stiffness.back());
+  if (stiffness.size() > 1) add("K_t", stiffness.front());
+  return check_part(Raw{table, like.where(), like.path()}, interface_behaviours());
+}
+
+/// The law or cone of an interface in this run.
+const Values& behaviour_of(const Values& interface, const RunSpec& spec) {
+  const bool replaced = spec.law && (spec.interface.empty() || spec.interface == interface.text("name"));
+  return replaced ? *spec.law : interface.part("law");
+}
+
+void add_interfaces(const Case& read, const RunSpec& spec, ModelBuilder& builder, CaseNames& names, Built& built) {
+  if (read.values.tables("interface").empty()) fail(read.values, "", "at least one [[interface]]", "none");
+  for (const Values& interface : read.values.tables("interface")) {
+    names.interfaces.add(interface, "name");
+    Joint joint = make_joint(interface, builder, names);
+    const Values& behaviour = behaviour_of(interface, spec);
+    InterfaceSpec made;
+    made.name = interface.text("name");
+    made.components = components_of(behaviour);
+    made.points = std::move(joint.points);
+    made.reference = joint.reference;
+    made.behaviour = behaviour.type();
+    made.law = make_part(law_catalog(), behaviour);
+    if (!made.law) made.cone = make_part(cone_catalog(), behaviour);
+    if (behaviour.items().contains("friction") && behaviour.has("friction")) joint.facts.friction = behaviour.number("friction");
+    if (behaviour.items().contains("F_u") && behaviour.has("F_u")) joint.facts.tension = behaviour.number("F_u");
+    built.facts.push_back(std::move(joint.facts));
+    built.behaviours.push_back(&behaviour);
+    builder.add_interface(std::move(made), interface.where());
+  }
+  if (spec.law && !spec.interface.empty()) names.interfaces.find(spec.interface, spec.law->where(), spec.law->path());
+}
+
+Stage stage_of(const Values& table, const RunSpec& spec) {
+  Stage stage;
+  stage.type = table.text("type") == "static" ? Stage::Type::statics : Stage::Type::dynamics;
+  stage.steps = table.integer("steps");
+  stage.halvings = table.integer("halvings");
+  stage.p_delta = table.flag("p_delta");
+  if (stage.type == Stage::Type::statics) return stage;
+  for (const char* key : {"duration", "step"})
+    if (!table.has(key)) fail(table, "", fmt::format("{} of a dynamic stage", key), "none");
+  stage.duration = spec.duration.value_or(table.number("duration"));
+  stage.step = spec.step.value_or(table.number("step"));
+  if (stage.step > stage.duration) fail(table, "step", fmt::format("a step shorter than the duration of {:g} s", stage.duration), fmt::format("{:g} s", stage.step));
+  const Values& scheme = spec.scheme ? *spec.scheme : table.part("scheme");
+  stage.scheme = *make_part(scheme_catalog(), scheme);
+  // The path average closes the energy balance with the trapezoidal rule only: other schemes take the end of the step unless told otherwise.
+  const bool wanted = spec.path_average.value_or(table.text("traction") == "path");
+  const bool stated = spec.path_average.has_value() || table.given("traction");
+  if (wanted && stated && !stage.scheme.average_acceleration())
+    fail(table, "traction", "traction = \"end\" with this scheme (the path average belongs to the average acceleration)", "\"path\"");
+  stage.path_average = wanted && stage.scheme.average_acceleration();
+  return stage;
+}
+
+void add_stages(const Case& read, const RunSpec& spec, RunPlan& plan) {
+  for (const Values& table : read.values.tables("stage")) plan.stages.push_back(stage_of(table, spec));
+  if (plan.stages.empty()) fail(read.values, "", "at least one [[stage]]", "none");
+}
+
+/// Method and rule; the method must suit the behaviours.
+void add_method(const Case& read, const RunSpec& spec, Built& built) {
+  const Values& root = read.values;
+  const Values* method = spec.method ? spec.method : root.has("method") ? &root.part("method") : nullptr;
+  bool cone = false;
+  for (const Interface& interface : built.model.interfaces) cone = cone || interface.cone != nullptr;
+  if (spec.bonded) method = nullptr;
+  if (method && cone && method->type() == "newton")
+    fail(*method, "", "a method for cones (penalty, augmented_lagrangian, lagrange), or a traction law", "\"newton\" with a cone");
+  if (method && !cone && !spec.law && method->type() == "penalty")
+    fail(*method, "", "a cone (law = \"unilateral\" or \"coulomb\"), or method = \"newton\"", "\"penalty\" with a traction law");
+  const Values automatic = check_part(Raw{std::string(cone ? "lagrange" : "newton"), root.where(), "method"}, contact_methods());
+  built.plan.method = make_part(method_catalog(), method ? *method : automatic);
+  built.plan.impact = make_part(impact_catalog(), spec.impact ? *spec.impact : root.part("impact"));
+}
+
+/// Initial displacements and velocities of the free unknowns.
+void add_initial(const Case& read, const CaseNames& names, Built& built) {
+  std::vector<std::pair<int, double>> displacement, velocity;
+  Where where;
+  for (const Values& initial : read.values.tables("initial")) {
+    where = initial.where();
+    const int node = names.node(initial, "node");
+    const auto put = [&](std::vector<std::pair<int, double>>& wanted, const char* vector, const char* scalar) {
+      if (initial.has(vector))
+        for (const int dof : {ux, uy}) wanted.emplace_back(3 * node + dof, initial.numbers(vector)[static_cast<std::size_t>(dof)]);
+      if (initial.has(scalar)) wanted.emplace_back(3 * node + rz, initial.number(scalar));
+    };
+    put(displacement, "displacement", "rotation");
+    put(velocity, "velocity", "angular_velocity");
+  }
+  if (!displacement.empty()) built.plan.initial_displacement = free_values(built.model, displacement, where);
+  if (!velocity.empty()) built.plan.initial_velocity = free_values(built.model, velocity, where);
+}
+
+/// The node of the highest mass (the largest of equally high ones), and the body of the first interface.
+void find_shown_nodes(const Case& read, const CaseNames& names, Built& built) {
+  double height = -std::numeric_limits<double>::infinity(), largest = 0;
+  const auto look = [&](int node, double mass) {
+    const double y = names.positions[static_cast<std::size_t>(node)].y();
+    if (y > height || (y == height && mass > largest)) {
+      height = y;
+      largest = mass;
+      built.top = node;
+    }
+  };
+  for (const Values& mass : read.values.tables("mass")) look(names.node(mass, "node"), mass.has("mass") ? mass.number("mass") : 0);
+  for (const Values& body : read.values.tables("rigid"))
+    if (body.number("mass") > 0) look(names.node(body, "node"), body.number("mass"));
+  if (built.top < 0)
+    for (const Values& node : read.values.tables("nodes")) look(names.nodes.find(node.key(), node.where(), node.path()), 0);
+  if (!built.facts.empty() && !built.facts[0].body.empty()) built.base = built.model.find_node(built.facts[0].body);
+}
+
+/// Dead loads and weight against the normal of the first interface.
+double weight_of(const Case& read, const Model& model) {
+  const Vec2 normal = model.interfaces.front().normal.front();
+  double weight = 0;
+  for (const Values& load : read.values.tables("load"))
+    if (load.has("force") && !load.has("function")) weight -= vec2(load.numbers("force")).dot(normal);
+  if (const Values* gravity = table_if(read.values, "gravity"); gravity && gravity->has("acceleration")) {
+    // Mass of everything that moves along the normal: r^T M r with the full mass matrix.
+    Vector direction = Vector::Zero(model.full_unknowns());
+    for (int node = 0; node < static_cast<int>(model.nodes.size()); ++node) direction.segment(3 * node, 2) = normal;
+    weight -= vec2(gravity->numbers("acceleration")).dot(normal) * direction.dot(model.assembly.mass * direction);
+  }
+  return weight;
+}
+
+/// The mass that a tuned point mass gets: that of the structure without it, see tuned_mass.
+std::vector<double> tuned_masses(const Case& read, const RunSpec& spec) {
+  const Values* tuned = nullptr;
+  for (const Values& mass : read.values.tables("mass")) {
+    if (!mass.has("tuned_frequency") || mass.has("mass")) continue;
+    if (tuned) fail(mass, "tuned_frequency", "at most one tuned mass", "a second one");
+    tuned = &mass;
+  }
+  if (!tuned) return {};
+  Built without;
+  CaseNames names;
+  ModelBuilder builder;
+  add_nodes(read.values, builder, names);
+  add_functions(read.values, names);
+  add_structure(read.values, builder, names, {0.0});
+  add_interfaces(read, spec, builder, names, without);
+  return {tuned_mass(builder.finish(), names.node(*tuned, "node"), tuned->number("tuned_frequency"), tuned->where("tuned_frequency"))};
+}
+
+/// Replaces laws that depend on the compliance of the model: the swept stiffness, the bonded joint.
+void adapt_laws(const Case& read, const RunSpec& spec, Built& built) {
+  if (!spec.stiffness_ratio && !spec.bonded) return;
+  const Stage* stage = dynamic_stage(built.plan);
+  if (!stage) return;
+  const std::vector<StiffnessRatio> ratios = stiffness_ratios(built.model, *stage, *bulk_solver(read));
+  for (std::size_t k = 0; k < built.model.interfaces.size(); ++k) {
+    Interface& interface = built.model.interfaces[k];
+    const Values& behaviour = *built.behaviours[k];
+    std::unique_ptr<const Values> derived;
+    if (spec.bonded) {
+      std::vector<double> stiffness(static_cast<std::size_t>(interface.batch.components));
+      if (interface.law)
+        interface.law->closed_stiffness(interface.batch.components, stiffness.data());
+      else  // a constraint: stiff beside the structure
+        std::fill(stiffness.begin(), stiffness.end(), 1e3 / (ratios[k].compliance * interface.area.mean()));
+      derived = std::make_unique<const Values>(bonded_behaviour(behaviour, stiffness));
+    } else if (&behaviour == spec.law) {
+      const std::string& key = spec.stiffness_parameter;
+      if (!behaviour.items().contains(key) || !behaviour.has(key)) fail(behaviour, "", "a law with the parameter \"" + key + "\"", "\"" + behaviour.type() + "\"");
+      derived = std::make_unique<const Values>(with_number(behaviour, key, behaviour.number(key) * *spec.stiffness_ratio / ratios[k].most));
+    } else {
+      continue;
+    }
+    interface.law = make_part(law_catalog(), *derived);
+    interface.cone.reset();
+    interface.behaviour = derived->type();
+    built.behaviours[k] = derived.get();
+    built.derived.push_back(std::move(derived));
+  }
+}
+
+}  // namespace
+
+Case check_case(const Raw& raw, const std::string& file) { return Case{check(raw, case_section()), file}; }
+
+std::vector<std::string> input_files(const Case& read) {
+  std::vector<std::string> files;
+  for (const Values& function : read.values.tables("function")) {
+    const Values& shape = function.part("shape");
+    if (shape.items().contains("file") && shape.has("file"))
+      files.push_back((std::filesystem::path(read.file).parent_path() / shape.text("file")).lexically_normal().string());
+  }
+  return files;
+}
+
+std::shared_ptr<const LinearSolver> bulk_solver(const Case& read) { return make_part(solver_catalog(), read.values.part("solver")); }
+
+const Stage* dynamic_stage(const RunPlan& plan) {
+  for (const Stage& stage : plan.stages)
+    if (stage.type == Stage::Type::dynamics) return &stage;
+  return nullptr;
+}
+
+Built build(const Case& read, const RunSpec& spec) {
+  const Values& root = read.values;
+  Built built;
+  CaseNames names;
+  ModelBuilder builder;
+  add_nodes(root, builder, names);
+  add_functions(root, names);
+  const std::vector<double> tuned = tuned_masses(read, spec);
+  for (const double mass : tuned) built.notes.push_back(fmt::format("the tuned mass is {:.10g} kg", mass));
+  add_structure(root, builder, names, tuned);
+  add_interfaces(read, spec, builder, names, built);
+  add_loads(root, builder, names);
+  if (spec.damping) builder.set_damping(bulk_damping(*spec.damping));
+  built.model = builder.finish();
+  check_static(built.model);
+  check_dynamic(built.model);
+
+  RunPlan& plan = built.plan;
+  plan.name = spec.name;
+  plan.label = spec.label;
+  plan.group = spec.group;
+  plan.expected_to_fail = spec.expected_to_fail;
+  plan.solver = bulk_solver(read);
+  add_stages(read, spec, plan);
+  adapt_laws(read, spec, built);
+  add_method(read, spec, built);
+  add_initial(read, names, built);
+  find_shown_nodes(read, names, built);
+  built.weight = weight_of(read, built.model);
+  plan.created_limit = root.table("energy").number("created_limit");
+  plan.stop_at_limit = root.table("energy").flag("stop_at_limit");
+  plan.rotation_limit = root.table("limits").number("rotation");
+  plan.gap_tolerance = root.table("limits").number("gap_tolerance");
+  plan.every = root.table("output").integer("every");
+  plan.frames = spec.pictures ? root.table("output").integer("frames") : 0;
+  add_requests(read, built);
+  return built;
+}
+
+}  // namespace uplift

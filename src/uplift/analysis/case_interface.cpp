@@ -1,0 +1,106 @@
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+
+#include "uplift/analysis/case_model.h"
+#include "uplift/elements/discrete.h"
+#include "uplift/interface/joint.h"
+
+// Where the joints of an interface stand, and the elastic bed under a footing.
+namespace uplift {
+namespace {
+
+std::vector<SideNode> side(const Values& table, std::string_view key, const CaseNames& names) {
+  std::vector<SideNode> nodes;
+  for (const int node : names.nodes_of(table, key)) nodes.push_back({node, names.positions[node]});
+  return nodes;
+}
+
+Vec2 normal_of(const Values& table) {
+  if (!table.has("normal")) return Vec2::UnitY();
+  const Vec2 normal = vec2(table.numbers("normal"));
+  if (normal.norm() == 0) throw InputError(table.where("normal"), table.path("normal"), "a direction", "[0, 0]");
+  return normal.normalized();
+}
+
+/// Under each point a node on a spring (and dashpot, and mass) of its own along the normal; it moves in this direction only.
+void add_bed(const Values& bed, const std::string& interface, std::vector<JointPoint>& points, ModelBuilder& builder, CaseNames& names) {
+  for (std::size_t i = 0; i < points.size(); ++i) {
+    JointPoint& point = points[i];
+    const std::string name = fmt::format("{}.{}", interface, i + 1);
+    const int node = builder.add_node(name, point.position, bed.where());
+    names.nodes.add(name, bed.where(), bed.path());
+    names.positions.push_back(point.position);
+    const bool vertical = std::abs(point.normal.x()) < 1e-12, horizontal = std::abs(point.normal.y()) < 1e-12;
+    if (!vertical && !horizontal) throw InputError(bed.where(), bed.path(), "a footing with a vertical or horizontal normal on a bed", "an inclined one");
+    builder.fix(node, vertical ? ux : uy, bed.where());
+    builder.fix(node, rz, bed.where());
+    const Connection along{{node}, point.normal};
+    builder.add_element(std::make_unique<Spring>(along, bed.number("stiffness") * point.area), bed.where("stiffness"));
+    if (bed.number("damping") > 0) builder.add_element(std::make_unique<Dashpot>(along, bed.number("damping") * point.area), bed.where("damping"));
+    if (bed.number("mass") > 0) builder.add_element(std::make_unique<PointMass>(node, bed.number("mass") * point.area), bed.where("mass"));
+    point.lower = {{node, 1.0}};
+  }
+}
+
+Joint footing_joint(const Values& interface, const Values& table, ModelBuilder& builder, CaseNames& names) {
+  Footing footing;
+  footing.body = names.node(table, "body");
+  footing.centre = names.positions[footing.body];
+  if (table.has("offset")) footing.centre += vec2(table.numbers("offset"));
+  footing.normal = normal_of(table);
+  footing.width = table.number("width");
+  footing.thickness = table.number("thickness");
+  footing.points = table.integer("points");
+  footing.gap = interface.number("gap");
+  const std::string& rule = table.text("rule");
+  footing.rule = rule == "nodal" ? FootingRule::nodal : rule == "midpoint" ? FootingRule::midpoint : FootingRule::gauss;
+  Joint joint;
+  joint.points = footing_points(footing, table.where("points"));
+  joint.facts.body = names.nodes[footing.body];
+  joint.facts.half_width = footing.width / 2;
+  joint.reference = footing.centre;
+  if (const Values* bed = table_if(table, "bed")) add_bed(*bed, interface.text("name"), joint.points, builder, names);
+  return joint;
+}
+
+/// Middle of the points, and their farthest distance from it.
+void measure(Joint& joint) {
+  Vec2 sum = Vec2::Zero();
+  for (const JointPoint& point : joint.points) sum += point.area * point.position;
+  joint.reference = sum / joint.facts.area;
+  for (const JointPoint& point : joint.points)
+    joint.facts.half_width = std::max(joint.facts.half_width, std::abs(tangent(point.normal).dot(point.position - joint.reference)));
+}
+
+}  // namespace
+
+Joint make_joint(const Values& interface, ModelBuilder& builder, CaseNames& names) {
+  const Values* footing = table_if(interface, "footing");
+  const Values* pairs = table_if(interface, "pairs");
+  const Values* line = table_if(interface, "line");
+  const int kinds = (footing != nullptr) + (pairs != nullptr) + (line != nullptr);
+  if (kinds != 1) throw InputError(interface.where(), interface.path(), "exactly one of footing, pairs and line", kinds == 0 ? "none" : fmt::format("{}", kinds));
+  Joint joint;
+  if (footing) joint = footing_joint(interface, *footing, builder, names);
+  if (pairs)
+    joint.points = pair_points(side(*pairs, "upper", names), side(*pairs, "lower", names), normal_of(*pairs), pairs->number("area"), interface.number("gap"),
+                               pairs->where());
+  if (line) {
+    LineJoint made{side(*line, "upper", names), side(*line, "lower", names), line->integer("nodes_per_element"),
+                   line->text("quadrature") == "nodal" ? LineQuadrature::nodal : LineQuadrature::gauss, line->number("thickness"), interface.number("gap")};
+    joint.points = line_points(made, line->where());
+  }
+  for (const JointPoint& point : joint.points) joint.facts.area += point.area;
+  if (!footing) measure(joint);
+  joint.facts.name = interface.text("name");
+  return joint;
+}
+
+int components_of(const Values& behaviour) {
+  if (behaviour.items().contains("tangential")) return behaviour.text("tangential") == "none" ? 1 : 2;
+  return behaviour.type() == "unilateral" ? 1 : 2;
+}
+
+}  // namespace uplift

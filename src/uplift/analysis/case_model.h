@@ -1,0 +1,46 @@
+#pragma once
+#include <map>
+#include <memory>
+#include <string>
+#include <vector>
+
+#include "uplift/analysis/case.h"
+#include "uplift/analysis/case_names.h"
+#include "uplift/model/builder.h"
+
+// The steps by which a case becomes a model; used by build() alone.
+namespace uplift {
+
+/// Names and places met so far.
+struct CaseNames {
+  Names nodes{"node"}, functions{"function"}, interfaces{"interface"};
+  std::vector<Vec2> positions;                                  // of the nodes
+  std::vector<std::shared_ptr<const TimeFunction>> functions_made;
+  int node(const Values& table, std::string_view key) const { return nodes.find(table, key); }
+  std::vector<int> nodes_of(const Values& table, std::string_view key) const;
+  std::shared_ptr<const TimeFunction> function(const Values& table) const;  // absent: constant 1
+};
+
+Vec2 vec2(const std::vector<double>& numbers);
+/// A table that may be absent: null then.
+const Values* table_if(const Values& values, std::string_view key);
+
+/// Nodes, functions, elements, supports, motions, loads and damping. `tuned` is the mass of the tuned point masses [kg], one per such mass.
+void add_nodes(const Values& root, ModelBuilder& builder, CaseNames& names);
+void add_functions(const Values& root, CaseNames& names);
+void add_structure(const Values& root, ModelBuilder& builder, CaseNames& names, const std::vector<double>& tuned);
+void add_loads(const Values& root, ModelBuilder& builder, const CaseNames& names);
+BulkDamping bulk_damping(const Values& damping);
+
+/// Joint points of an interface with its lower nodes; with an elastic bed these are made here.
+struct Joint {
+  std::vector<JointPoint> points;
+  InterfaceFacts facts;
+  Vec2 reference = Vec2::Zero();
+};
+Joint make_joint(const Values& interface, ModelBuilder& builder, CaseNames& names);
+
+/// Number of local components that a law or cone needs: 1 when it has no tangential part, else 2.
+int components_of(const Values& behaviour);
+
+}  // namespace uplift

@@ -1,0 +1,31 @@
+#pragma once
+#include <string>
+#include <string_view>
+#include <utility>
+#include <vector>
+
+#include "uplift/base/declare.h"
+
+namespace uplift {
+
+/// Names of one kind, given in the case file and referred to from elsewhere in it.
+class Names {
+ public:
+  /// `what`: "node"; used in messages.
+  explicit Names(std::string what) : what_(std::move(what)) {}
+  /// Adds the name under a key of a table, or `automatic` when the key is absent. Returns its index. Throws InputError when it is used already.
+  int add(const Values& table, std::string_view key, std::string automatic = {});
+  /// Adds a name that the program made at this place.
+  int add(std::string name, const Where& where, const std::string& path);
+  /// Index of a name used at this place; InputError with the nearest name when it does not exist.
+  int find(const std::string& name, const Where& where, const std::string& path) const;
+  int find(const Values& table, std::string_view key) const { return find(table.text(key), table.where(key), table.path(key)); }
+  const std::string& operator[](int index) const { return names_[index].first; }
+  int size() const { return static_cast<int>(names_.size()); }
+
+ private:
+  std::string what_;
+  std::vector<std::pair<std::string, Where>> names_;
+};
+
+}  // namespace uplift

@@ -1,0 +1,128 @@
+#include <fmt/format.h>
+
+#include <cctype>
+
+#include "uplift/analysis/case.h"
+#include "uplift/analysis/case_names.h"
+
+// Which runs a case stands for: itself, its variants, its dampings, its stiffness sweep.
+namespace uplift {
+namespace {
+
+const Values* part_if(const Values& table, std::string_view key) { return table.given(key) ? &table.part(key) : nullptr; }
+
+RunSpec base_run(const Case& read) {
+  RunSpec spec;
+  if (read.values.has("damping")) spec.damping = &read.values.table("damping");
+  return spec;
+}
+
+RunSpec variant_run(const Case& read, const Values& variant) {
+  RunSpec spec = base_run(read);
+  spec.name = variant.text("name");
+  spec.label = variant.has("label") ? variant.text("label") : spec.name;
+  spec.law = part_if(variant, "law");
+  if (variant.has("interface")) spec.interface = variant.text("interface");
+  spec.method = part_if(variant, "method");
+  spec.impact = part_if(variant, "impact");
+  spec.scheme = part_if(variant, "scheme");
+  if (variant.has("traction")) spec.path_average = variant.text("traction") == "path";
+  if (variant.has("step")) spec.step = variant.number("step");
+  spec.expected_to_fail = variant.text("expected") == "fails";
+  return spec;
+}
+
+RunSpec bonded_run(const Case& read) {
+  RunSpec spec = base_run(read);
+  spec.name = spec.label = "bonded";
+  spec.bonded = true;
+  return spec;
+}
+
+/// Names become file names: nothing that a shell or a file system would take amiss.
+void check_file_name(const Values& table) {
+  for (const char c : table.text("name"))
+    if (!std::isalnum(static_cast<unsigned char>(c)) && c != '_' && c != '-' && c != '.')
+      throw InputError(table.where("name"), table.path("name"), "letters, digits, '_', '-' and '.' (it names files; `label` may be anything)",
+                       "\"" + table.text("name") + "\"");
+}
+
+std::vector<RunSpec> sweep_runs(const Case& read, const Values& sweep, const Values* damping) {
+  std::vector<RunSpec> runs;
+  for (const double ratio : sweep.numbers("ratios")) {
+    if (!(ratio > 0)) throw InputError(sweep.where("ratios"), sweep.path("ratios"), "ratios > 0", fmt::format("{}", ratio));
+    for (const bool path : {true, false}) {
+      RunSpec spec = base_run(read);
+      if (damping) spec.damping = damping;
+      spec.name = fmt::format("sweep-{:g}-{}", ratio, path ? "path" : "end");
+      spec.label = fmt::format("k F = {:g}, {}", ratio, path ? "path average" : "end of step");
+      spec.law = &sweep.part("law");
+      spec.stiffness_ratio = ratio;
+      spec.stiffness_parameter = sweep.text("parameter");
+      spec.path_average = path;
+      spec.expected_to_fail = !path;
+      spec.pictures = false;
+      if (sweep.has("duration")) spec.duration = sweep.number("duration");
+      runs.push_back(std::move(spec));
+    }
+  }
+  return runs;
+}
+
+bool undamped(const Values& damping) {
+  return damping.number("alpha") == 0 && damping.number("beta") == 0 && damping.numbers("modal").empty() && damping.tables("rayleigh").empty();
+}
+
+}  // namespace
+
+std::vector<RunSpec> runs_of_case(const Case& read) {
+  RunSpec spec = base_run(read);
+  spec.name = "run";
+  spec.label = "as in the case";
+  std::vector<RunSpec> runs{spec};
+  if (read.values.flag("bonded")) runs.push_back(bonded_run(read));
+  return runs;
+}
+
+Comparison comparison_of_case(const Case& read) {
+  const Values& root = read.values;
+  if (root.tables("variant").empty()) throw InputError(root.where(), "variant", "at least one [[variant]] to compare", "none");
+  std::vector<RunSpec> plain;
+  Names names("variant");
+  for (const Values& variant : root.tables("variant")) {
+    check_file_name(variant);
+    names.add(variant, "name");
+    plain.push_back(variant_run(read, variant));
+  }
+  if (root.flag("bonded")) {
+    names.add("bonded", root.where("bonded"), "variant.name");
+    plain.push_back(bonded_run(read));
+  }
+  Comparison made;
+  const Values* compare = root.has("compare") ? &root.table("compare") : nullptr;
+  if (!compare || compare->tables("damping").empty()) {
+    made.runs = plain;
+  } else {
+    Names cases("damping case");
+    for (const Values& damping : compare->tables("damping")) {
+      check_file_name(damping);
+      cases.add(damping, "name");
+      for (RunSpec spec : plain) {
+        spec.name += "-" + damping.text("name");
+        spec.group = damping.has("label") ? damping.text("label") : damping.text("name");
+        spec.damping = &damping;
+        made.runs.push_back(std::move(spec));
+      }
+    }
+  }
+  if (compare && compare->has("stiffness_sweep")) {
+    // Without damping the error cannot hide; the first undamped case is taken when there is one.
+    const Values* damping = nullptr;
+    for (const Values& each : compare->tables("damping"))
+      if (!damping && undamped(each)) damping = &each;
+    made.sweep = sweep_runs(read, compare->table("stiffness_sweep"), damping);
+  }
+  return made;
+}
+
+}  // namespace uplift

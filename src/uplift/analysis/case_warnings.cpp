@@ -1,0 +1,106 @@
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+
+#include "uplift/analysis/case.h"
+#include "uplift/analysis/wording.h"
+#include "uplift/model/damping.h"
+
+namespace uplift {
+namespace {
+
+struct Magnitude {
+  const char *table, *key, *unit;
+  double least, most;
+  const char* hint;
+};
+/// What civil structures have; outside, a unit is probably missing.
+constexpr std::array<Magnitude, 9> usual{{{"beam", "E", "Pa", 1e8, 1e12, "concrete is about 3e10 Pa, steel 2.1e11 Pa"},
+                                          {"beam", "I", "m4", 1e-9, 1e5, "1 cm4 is 1e-8 m4"},
+                                          {"beam", "A", "m2", 1e-6, 1e4, "1 cm2 is 1e-4 m2"},
+                                          {"beam", "density", "kg/m3", 100, 30000, "concrete is about 2500 kg/m3"},
+                                          {"mass", "mass", "kg", 1e-1, 1e10, "1 t is 1000 kg"},
+                                          {"mass", "tuned_frequency", "Hz", 1e-2, 1e3, "in Hz, not in rad/s"},
+                                          {"rigid", "mass", "kg", 1e-1, 1e10, "1 t is 1000 kg"},
+                                          {"stage", "step", "s", 1e-7, 0.5, "1 ms is 0.001 s"},
+                                          {"stage", "duration", "s", 1e-4, 1e5, "in seconds"}}};
+
+void warn_magnitudes(const Case& read, std::vector<std::string>& said) {
+  for (const Magnitude& each : usual)
+    for (const Values& table : read.values.tables(each.table)) {
+      if (!table.given(each.key)) continue;
+      const double value = table.number(each.key);
+      if (value != 0 && (value < each.least || value > each.most))
+        said.push_back(fmt::format("{}:{}: {} = {:g} {} is unusual for a structure ({}); is the unit right?", table.where(each.key).file, table.where(each.key).line,
+                                   table.path(each.key), value, each.unit, each.hint));
+    }
+}
+
+/// THEORY section 3: a closure stress above 1 % of the bearing pressure resists the closing of gaps noticeably.
+void warn_closure(const Built& built, std::vector<std::string>& said) {
+  double area = 0;
+  for (const InterfaceFacts& facts : built.facts) area += facts.area;
+  const double mean = area > 0 ? built.weight / area : 0;
+  for (std::size_t k = 0; k < built.behaviours.size(); ++k) {
+    const Values& law = *built.behaviours[k];
+    if (!law.items().contains("F_c") || !law.has("F_c")) continue;
+    const double closure = std::abs(law.number("F_c"));
+    if (mean > 0 && closure > 0.01 * mean)
+      said.push_back(fmt::format("{}:{}: |F_c| = {} is {} of the mean bearing pressure {}: the joint pushes before its gap is closed; keep it below 1 %",
+                                 law.where("F_c").file, law.where("F_c").line, spoken(closure, "Pa"), percent(closure / mean), spoken(mean, "Pa")));
+    if (!(mean > 0)) said.push_back(fmt::format("{}: nothing presses the structure down: the interface opens under any load", built.facts[k].name));
+  }
+}
+
+/// Twenty steps per period of the fastest of the first three modes below 100 Hz.
+void warn_step(const Built& built, std::vector<std::string>& said) {
+  const Stage* stage = dynamic_stage(built.plan);
+  if (!stage) return;
+  double fastest = 0;
+  for (const Mode& mode : bonded_modes(built.model, 3))
+    if (mode.frequency < 100) fastest = std::max(fastest, mode.frequency);
+  if (fastest > 0 && stage->step > 1 / (20 * fastest))
+    said.push_back(fmt::format("the step of {} is coarse for the mode at {:.3g} Hz (bonded base): take at most {} for twenty steps a period", spoken(stage->step, "s"),
+                               fastest, spoken(1 / (20 * fastest), "s")));
+}
+
+void warn_method(const Case& read, const RunSpec& spec, const Built& built, std::vector<std::string>& said) {
+  const Stage* stage = dynamic_stage(built.plan);
+  if (!stage || spec.bonded) return;
+  const Values& impact = spec.impact ? *spec.impact : read.values.part("impact");
+  if (built.plan.method->constrains()) {
+    if (impact.type() == "none")
+      said.push_back("constraints without a velocity correction (impact = \"none\") create energy without bound; take \"project_hold\"");
+    if (impact.type() == "reflect" || impact.type() == "propagate")
+      said.push_back(fmt::format("impact = \"{}\" corrects the velocity at every step: the multipliers alone are not the contact force", impact.type()));
+    if (spec.path_average.value_or(false)) said.push_back("traction = \"path\" has no effect with a constraint method: it takes the force at the end of the step");
+  } else if (!stage->path_average) {
+    double largest = 0;
+    for (const StiffnessRatio& ratio : stiffness_ratios(built.model, *stage, *built.plan.solver)) largest = std::max(largest, ratio.most);
+    if (largest > 0.05)
+      said.push_back(fmt::format("traction at the end of the step with a stiff joint (k F_ii = {:.3g}): this creates energy; take traction = \"path\"", largest));
+  }
+}
+
+}  // namespace
+
+std::vector<Mode> bonded_modes(const Model& model, int count) {
+  const Sparse held = cones_held(model);
+  const Sparse to_held = held.transpose();
+  std::vector<Mode> found = modes(to_held * bonded_stiffness(model) * held, to_held * model.mass * held, count);
+  for (Mode& mode : found) mode.shape = held * mode.shape;
+  return found;
+}
+
+std::vector<std::string> warnings(const Case& read, const RunSpec& spec, const Built& built) {
+  std::vector<std::string> said;
+  warn_magnitudes(read, said);
+  warn_closure(built, said);
+  warn_step(built, said);
+  warn_method(read, spec, built, said);
+  return said;
+}
+
+}  // namespace uplift

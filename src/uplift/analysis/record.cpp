@@ -1,0 +1,170 @@
+#include "uplift/analysis/record.h"
+
+#include <algorithm>
+#include <cmath>
+
+namespace uplift {
+
+InterfaceViewer::InterfaceViewer(const Model& model, double gap_tolerance) : tolerance_(gap_tolerance) {
+  int first = 0;
+  for (const Interface& interface : model.interfaces) {
+    Layout layout;
+    layout.first = first;
+    layout.points = interface.batch.points;
+    layout.components = interface.batch.components;
+    double mean = 0;
+    for (int i = 0; i < layout.points; ++i) {
+      const std::size_t p = static_cast<std::size_t>(i);
+      const Vec2 normal = interface.normal[p], tangent(normal.y(), -normal.x()), arm = interface.position[p] - interface.reference;
+      layout.area.push_back(interface.area[i]);
+      layout.inverse_area.push_back(1 / interface.area[i]);
+      layout.along.push_back(arm.dot(tangent));
+      layout.across.push_back(arm.dot(normal));
+      layout.total += interface.area[i];
+      mean += interface.area[i] * layout.along.back();
+    }
+    mean /= layout.total;
+    double inertia = 0;
+    for (std::size_t i = 0; i < layout.area.size(); ++i) inertia += layout.area[i] * std::pow(layout.along[i] - mean, 2);
+    for (std::size_t i = 0; i < layout.area.size(); ++i)
+      layout.slope_weight.push_back(inertia > 0 ? layout.area[i] * (layout.along[i] - mean) / inertia : 0);
+    layouts_.push_back(std::move(layout));
+    first += interface.rows();
+  }
+}
+
+void InterfaceViewer::look(const Vector& opening, const Vector& force, std::vector<InterfaceView>& views) const {
+  views.resize(layouts_.size());
+  for (std::size_t k = 0; k < layouts_.size(); ++k) {
+    const Layout& layout = layouts_[k];
+    const int n = layout.points, normal = layout.first + (layout.components - 1) * n;
+    const double *gap = opening.data() + normal, *p = force.data() + normal;
+    const double *area = layout.area.data(), *inverse = layout.inverse_area.data(), *along = layout.along.data();
+    double axial = 0, moment = 0, open = 0, widest = -1e300, least = 1e300, pressure = 0;
+    const double tolerance = tolerance_;
+#pragma omp simd reduction(+ : axial, moment, open) reduction(max : widest, pressure) reduction(min : least)
+    for (int i = 0; i < n; ++i) {
+      axial += p[i];
+      moment += along[i] * p[i];
+      open += gap[i] > tolerance ? area[i] : 0.0;
+      widest = widest > gap[i] ? widest : gap[i];
+      least = least < gap[i] ? least : gap[i];
+      const double here = -p[i] * inverse[i];
+      pressure = pressure > here ? pressure : here;
+    }
+    double shear = 0;
+    if (layout.components > 1) {
+      const double* t = force.data() + layout.first;
+      for (int i = 0; i < n; ++i) shear += t[i], moment -= layout.across[static_cast<std::size_t>(i)] * t[i];
+    }
+    views[k] = {axial, shear, moment, open / layout.total, std::max(widest, 0.0), least, std::max(pressure, 0.0)};
+  }
+}
+
+double InterfaceViewer::rotation(int interface, const Vector& opening) const {
+  const Layout& layout = layouts_[static_cast<std::size_t>(interface)];
+  const double* gap = opening.data() + layout.first + (layout.components - 1) * layout.points;
+  double slope = 0;
+  for (int i = 0; i < layout.points; ++i) slope += layout.slope_weight[static_cast<std::size_t>(i)] * gap[i];
+  return slope;
+}
+
+Recorder::Recorder(const Model& model, const RunPlan& plan, const InterfaceViewer& viewer, std::size_t expected_rows, RunResult& result)
+    : model_(model), plan_(plan), viewer_(viewer), result_(result) {
+  result_.columns = plan.requests;
+  result_.table.assign(plan.requests.size() + 1, {});
+  for (std::vector<double>& column : result_.table) column.reserve(expected_rows + 2);
+  const SparseRows rows(model.reduction);
+  for (const Request& request : plan.requests) {
+    Source source;
+    using What = Request::Kind;
+    if (request.kind == What::displacement || request.kind == What::velocity || request.kind == What::acceleration) {
+      for (SparseRows::InnerIterator entry(rows, request.unknown); entry; ++entry)
+        source.terms.emplace_back(static_cast<int>(entry.col()), entry.value());
+      for (const PrescribedMotion& motion : model.motions) source.moved = source.moved || motion.shape[request.unknown] != 0;
+      wants_acceleration_ = wants_acceleration_ || request.kind == What::acceleration;
+    }
+    if (request.kind == What::opening || request.kind == What::traction || request.kind == What::mean_traction) {
+      int first = 0;
+      for (int i = 0; i < request.interface; ++i) first += model.interfaces[static_cast<std::size_t>(i)].rows();
+      const Interface& interface = model.interfaces[static_cast<std::size_t>(request.interface)];
+      if (request.component < interface.batch.components) source.row = first + request.component * interface.batch.points + request.point;
+      source.inverse_area = 1 / interface.area[request.point];
+    }
+    sources_.push_back(std::move(source));
+    result_.peaks.push_back({request.name, request.unit, 0, 0});
+  }
+}
+
+double Recorder::value(std::size_t column, const Stepper& stepper, const std::vector<InterfaceView>& views) {
+  using What = Request::Kind;
+  const Request& request = plan_.requests[column];
+  const Source& source = sources_[column];
+  const State& state = stepper.state();
+  const auto sum = [&](const Vector& q, int derivative) {
+    if (source.moved) return model_.full(request.unknown, q, derivative, state.time);
+    double total = 0;
+    for (const auto& [unknown, factor] : source.terms) total += factor * q[unknown];
+    return total;
+  };
+  const auto view = [&]() -> const InterfaceView& { return views[static_cast<std::size_t>(request.interface)]; };
+  const Energies& energies = stepper.energies();
+  switch (request.kind) {
+    case What::displacement: return sum(state.displacement, 0);
+    case What::velocity: return sum(state.velocity, 1);
+    case What::acceleration: return sum(acceleration_, 2);
+    case What::opening: return source.row >= 0 ? state.opening[source.row] : 0;
+    case What::traction: return source.row >= 0 ? state.force[source.row] * source.inverse_area : 0;
+    case What::mean_traction: return source.row >= 0 ? state.mean_force[source.row] * source.inverse_area : 0;
+    case What::axial: return view().axial;
+    case What::shear: return view().shear;
+    case What::moment: return view().moment;
+    case What::rotation: return viewer_.rotation(request.interface, state.opening);
+    case What::uplifted_ratio: return view().open_area;
+    case What::max_opening: return view().max_opening;
+    case What::max_pressure: return view().max_pressure;
+    case What::kinetic: return energies.kinetic;
+    case What::strain: return energies.strain;
+    case What::stored: return energies.stored;
+    case What::interface_dissipated: return energies.interface_dissipated;
+    case What::damping: return energies.damping;
+    case What::impact: return energies.impact;
+    case What::external: return energies.external;
+    case What::residual: return energies.residual;
+  }
+  return 0;
+}
+
+void Recorder::record(const Stepper& stepper, const std::vector<InterfaceView>& views, bool row) {
+  if (wants_acceleration_) stepper.acceleration(acceleration_);
+  const double time = stepper.state().time;
+  if (row) result_.table[0].push_back(time);
+  for (std::size_t k = 0; k < sources_.size(); ++k) {
+    const double now = value(k, stepper, views);
+    if (row) result_.table[k + 1].push_back(now);
+    Peak& peak = result_.peaks[k];
+    if (std::abs(now) > std::abs(peak.value)) peak.value = now, peak.time = time;
+  }
+}
+
+void Recorder::picture(const State& state) {
+  Frame frame;
+  frame.time = state.time;
+  frame.displacement = model_.reduction * state.displacement;
+  for (const PrescribedMotion& motion : model_.motions) frame.displacement += motion.shape * motion.function->value(state.time);
+  int points = 0;
+  for (const Interface& interface : model_.interfaces) points += interface.batch.points;
+  frame.opening.resize(points);
+  frame.pressure.resize(points);
+  int first = 0, point = 0;
+  for (const Interface& interface : model_.interfaces) {
+    for (int i = 0; i < interface.batch.points; ++i, ++point) {
+      frame.opening[point] = state.opening[first + interface.batch.normal() + i];
+      frame.pressure[point] = std::max(0.0, -state.force[first + interface.batch.normal() + i] / interface.area[i]);
+    }
+    first += interface.rows();
+  }
+  result_.frames.push_back(std::move(frame));
+}
+
+}  // namespace uplift

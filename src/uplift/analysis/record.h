@@ -1,0 +1,66 @@
+#pragma once
+#include <utility>
+#include <vector>
+
+#include "uplift/analysis/run.h"
+#include "uplift/dynamics/step.h"
+
+namespace uplift {
+
+/// What one interface looks like at one instant, from one pass over its points.
+struct InterfaceView {
+  double axial = 0, shear = 0, moment = 0;  // N, N, N m: work-conjugate to opening, sliding and rotation of the upper side (tension, +t, counter-clockwise > 0)
+  double open_area = 0;                     // share of the area
+  double max_opening = 0, least_opening = 0;  // m
+  double max_pressure = 0;                  // Pa
+};
+
+/// Looks at all interfaces of a model quickly: arms and areas are laid out once.
+class InterfaceViewer {
+ public:
+  InterfaceViewer(const Model& model, double gap_tolerance);
+  /// `force` is the end-of-step force per row [N].
+  void look(const Vector& opening, const Vector& force, std::vector<InterfaceView>& views) const;
+  /// Slope of the plane that fits the normal opening best (area-weighted): relative rotation of the upper side [rad], counter-clockwise > 0.
+  double rotation(int interface, const Vector& opening) const;
+
+ private:
+  struct Layout {
+    int first = 0, points = 0, components = 0;
+    std::vector<double> area, inverse_area, along, across;  // along t and along n from the reference point [m]
+    std::vector<double> slope_weight;
+    double total = 0;
+  };
+  std::vector<Layout> layouts_;
+  double tolerance_;
+};
+
+/// Fills the columns of the output table and their peaks.
+class Recorder {
+ public:
+  Recorder(const Model& model, const RunPlan& plan, const InterfaceViewer& viewer, std::size_t expected_rows, RunResult& result);
+  /// Notes peaks every time; writes a row when `row` is set.
+  void record(const Stepper& stepper, const std::vector<InterfaceView>& views, bool row);
+  /// Keeps a picture for the animation.
+  void picture(const State& state);
+
+ private:
+  double value(std::size_t column, const Stepper& stepper, const std::vector<InterfaceView>& views);
+
+  const Model& model_;
+  const RunPlan& plan_;
+  const InterfaceViewer& viewer_;
+  RunResult& result_;
+  struct Source {
+    std::vector<std::pair<int, double>> terms;  // of the free unknowns
+    bool moved = false;                         // a prescribed motion takes part
+    int row = -1;                               // interface row
+    double inverse_area = 0;
+  };
+  std::vector<Source> sources_;
+  std::vector<std::vector<double>*> columns_;
+  bool wants_acceleration_ = false;
+  Vector acceleration_;
+};
+
+}  // namespace uplift

@@ -1,0 +1,29 @@
+#pragma once
+#include <string>
+#include <vector>
+
+#include "uplift/analysis/case.h"
+
+namespace uplift {
+
+/// What a run says, in words: does it uplift, how much, when, for how long, and what that does beside the bonded base.
+struct Verdict {
+  enum class Level { none, uplift, overturned, failed } level = Level::none;
+  std::string headline;
+  struct Fact {
+    std::string label, value, detail;
+  };
+  std::vector<Fact> facts;
+  std::vector<std::string> paragraphs;
+};
+std::string_view to_string(Verdict::Level);
+
+/// `bonded`: the same model with interfaces that never open, or null. Codes' thresholds are not applied: the numbers are given.
+Verdict judge(const Built& built, const RunResult& run, const RunResult* bonded);
+
+/// Column of a result: by kind and by unknown or interface. Null when it was not recorded.
+const std::vector<double>* find_column(const RunResult& result, Request::Kind kind, int unknown_or_interface);
+/// The same for its peak.
+const Peak* find_peak(const RunResult& result, Request::Kind kind, int unknown_or_interface);
+
+}  // namespace uplift

@@ -1,0 +1,100 @@
+#include "uplift/base/file.h"
+
+#include <fcntl.h>
+#include <unistd.h>
+
+#include <cerrno>
+#include <cstdio>
+#include <fstream>
+#include <string>
+#include <system_error>
+#include <vector>
+
+#include "uplift/base/error.h"
+#include "uplift/base/text.h"
+
+namespace uplift {
+namespace {
+
+namespace fs = std::filesystem;
+
+[[noreturn]] void missing(const fs::path& path) {
+  const Where where{path.string(), 0};
+  std::error_code error;
+  const fs::path folder = path.has_parent_path() ? path.parent_path() : fs::path(".");
+  if (!fs::is_directory(folder, error)) throw InputError(where, "", "a file", "no folder " + in_quotes(folder.string()));
+  std::vector<std::string> names;
+  for (fs::directory_iterator entry(folder, error), end; !error && entry != end; entry.increment(error))
+    if (!entry->is_directory(error)) names.push_back(entry->path().filename().string());
+  const std::string nearest = nearest_name(path.filename().string(), names);
+  throw InputError(where, "", "a file", "no file of this name", nearest.empty() ? "" : (path.parent_path() / nearest).string());
+}
+
+/// A new file beside the target, removed unless it is published.
+class Draft {
+ public:
+  explicit Draft(const fs::path& target) {
+    // Another process may write the same file: each takes a name of its own, and the last rename wins.
+    const std::string stem = target.string() + "." + std::to_string(::getpid()) + "-";
+    for (int i = 0; descriptor_ < 0 && i < 1000; ++i) {
+      name_ = stem + std::to_string(i);
+      descriptor_ = ::open(name_.c_str(), O_WRONLY | O_CREAT | O_EXCL | O_CLOEXEC, 0666);
+      if (descriptor_ < 0 && errno != EEXIST) break;
+    }
+    if (descriptor_ < 0) fail(target);
+  }
+  ~Draft() {
+    if (descriptor_ < 0) return;
+    ::close(descriptor_);
+    ::unlink(name_.c_str());
+  }
+  Draft(const Draft&) = delete;
+  Draft& operator=(const Draft&) = delete;
+
+  void write(std::string_view text, const fs::path& target) const {
+    while (!text.empty()) {
+      const ssize_t written = ::write(descriptor_, text.data(), text.size());
+      if (written < 0 && errno == EINTR) continue;
+      if (written < 0) fail(target);
+      text.remove_prefix(static_cast<std::size_t>(written));
+    }
+  }
+  void publish(const fs::path& target) {
+    const int closed = ::close(descriptor_);
+    descriptor_ = -1;
+    if (closed == 0 && std::rename(name_.c_str(), target.c_str()) == 0) return;
+    const int reason = errno;
+    ::unlink(name_.c_str());
+    errno = reason;
+    fail(target);
+  }
+
+ private:
+  [[noreturn]] static void fail(const fs::path& target) {
+    throw fs::filesystem_error("cannot write the file", target, std::error_code(errno, std::generic_category()));
+  }
+  std::string name_;
+  int descriptor_ = -1;
+};
+
+}  // namespace
+
+std::string read_file(const fs::path& path) {
+  std::error_code error;
+  const fs::file_status status = fs::status(path, error);
+  if (status.type() == fs::file_type::not_found) missing(path);
+  if (fs::is_directory(status)) throw InputError({path.string(), 0}, "", "a file", "a folder");
+  std::ifstream in(path, std::ios::binary);
+  if (!in) throw InputError({path.string(), 0}, "", "a file that may be read", std::error_code(errno, std::generic_category()).message());
+  std::string text{std::istreambuf_iterator<char>(in), std::istreambuf_iterator<char>()};
+  if (in.bad()) throw InputError({path.string(), 0}, "", "a file that can be read to its end", "an error of the disk");
+  return text;
+}
+
+void write_file_atomically(const fs::path& path, std::string_view text) {
+  Draft draft(path);
+  draft.write(text, path);
+  draft.publish(path);
+}
+
+}  // namespace uplift

@@ -1,0 +1,92 @@
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+
+#include "uplift/contact/method.h"
+#include "uplift/contact/newton.h"
+
+// Augmented Lagrangian (paper, eq 1 with alpha > 0): p = P(m + e g), solved by Newton; then m <- p, until the multipliers stand still. Each update
+// contracts the error by 1/(1 + e F): with e F_ii = factor a handful of updates reaches round-off. From m = 0 the pressures of redundant points come
+// out as those of a bed of equal springs, the least-norm ones, up to 1/factor.
+namespace uplift {
+namespace {
+
+class AugmentedLagrangian final : public ContactMethod {
+ public:
+  AugmentedLagrangian(double factor, double tolerance, int most_updates, NewtonOptions newton)
+      : factor_(factor), tolerance_(tolerance), most_updates_(most_updates), newton_(newton) {}
+
+  Outcome solve(const InterfaceProblem& problem, InterfaceSolution& solution) const override {
+    AugmentedScratch& scratch = solution.augmented;
+    prepare(problem, scratch);
+    const AugmentedForce augmented{&scratch.multiplier, &scratch.stiffness};
+    Outcome total;
+    for (int update = 0; update < most_updates_; ++update) {
+      const Outcome inner = solve_by_newton(problem, augmented, newton_, solution);
+      total.iterations += inner.iterations + 1;
+      total.residual = inner.residual;
+      if (!inner.converged) {
+        total.why = fmt::format("augmented Lagrangian, update {}: {}", update + 1, inner.why);
+        return total;
+      }
+      double change = 0, largest = 0;
+      for (const Block& block : problem.blocks) {
+        if (block.cone == nullptr) continue;
+        for (int i = block.first; i < block.first + block.rows(); ++i) {
+          change = std::max(change, std::abs(solution.force[i] - scratch.multiplier[i]));
+          largest = std::max(largest, std::abs(solution.force[i]));
+          scratch.multiplier[i] = solution.force[i];
+        }
+      }
+      if (change <= tolerance_ * largest) {
+        total.converged = true;
+        return total;
+      }
+    }
+    total.why = fmt::format("the multipliers did not settle in {} updates of the augmented Lagrangian", most_updates_);
+    return total;
+  }
+
+  bool constrains() const override { return true; }
+
+ private:
+  /// Multipliers start at zero, so that the answer depends on the problem alone; e = factor / F_ii, of the whole interface where a row has no compliance.
+  void prepare(const InterfaceProblem& problem, AugmentedScratch& scratch) const {
+    const Eigen::Index rows = problem.rows();
+    if (scratch.multiplier.size() != rows) scratch.multiplier.resize(rows);
+    scratch.multiplier.setZero();
+    if (scratch.stiffness.size() == rows) return;
+    scratch.stiffness.resize(rows);
+    double largest = 0;
+    for (Eigen::Index i = 0; i < rows; ++i) largest = std::max(largest, scratch.stiffness[i] = problem.factor.row(i).squaredNorm());
+    for (Eigen::Index i = 0; i < rows; ++i)
+      scratch.stiffness[i] = factor_ / (scratch.stiffness[i] > 1e-12 * largest ? scratch.stiffness[i] : std::max(largest, 1e-300));
+  }
+
+  double factor_, tolerance_;
+  int most_updates_;
+  NewtonOptions newton_;
+};
+
+}  // namespace
+
+const Entry<ContactMethod>& entry_method_augmented_lagrangian() {
+  static const Entry<ContactMethod> entry{
+      {.name = "augmented_lagrangian",
+       .summary = "penalty with multiplier updates until the constraints hold to round-off",
+       .equations = "p = P(m + e g), m <- p, repeat while max|p - m| > tolerance max|p|\n"
+                    "e = factor / F_ii; the error contracts by 1/(1 + e F) per update",
+       .source = "Cherubini, Richard & Frau, eq 1",
+       .params = {number("factor", "1", "penalty stiffness times compliance, e F_ii").positive().standard(1000.0),
+                  number("tolerance", "1", "largest change of a contact force in the last update, relative to the largest force").positive().standard(1e-11),
+                  integer("most_updates", "multiplier updates before the step is cut").between(1, 10000).standard(60.0),
+                  integer("most_iterations", "Newton iterations per update").between(1, 10000).standard(60.0)}},
+      [](const Values& values) -> std::unique_ptr<const ContactMethod> {
+        return std::make_unique<AugmentedLagrangian>(values.number("factor"), values.number("tolerance"), values.integer("most_updates"),
+                                                     NewtonOptions{1e-12, values.integer("most_iterations")});
+      }};
+  return entry;
+}
+
+}  // namespace uplift

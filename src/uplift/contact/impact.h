@@ -1,0 +1,45 @@
+#pragma once
+#include <memory>
+#include <span>
+#include <vector>
+
+#include "uplift/base/catalog.h"
+#include "uplift/contact/compliance.h"
+#include "uplift/contact/problem.h"
+
+namespace uplift {
+
+/// What an impact rule may know of the step just solved. Rows are interface rows; compression is negative.
+struct Impact {
+  const Spread* mass = nullptr;     // of M (massless unknowns left out)
+  const Spread* dynamic = nullptr;  // of K + 4M/dt^2 (eq 5); only for rules that ask for it
+  const Matrix* b = nullptr;        // dense B, rows x free (null when large), or
+  const Sparse* sparse_b = nullptr;
+  std::vector<int> normals;         // active normal rows (compressed)
+  std::vector<int> tangents;        // sticking tangential rows: equalities
+  const Vector* force = nullptr;    // all rows: force of the displacement solve that is contained in the acceleration [N], tension > 0
+  double velocity_weight = 0;       // gamma * dt [s]: a force p at the end of the step put -velocity_weight * M^-1 B^T p into the velocity
+};
+
+/// Work space of a rule, kept between steps.
+struct ImpactScratch {
+  Vector target, impulse, y, trial;
+  std::vector<int> rows;
+  Matrix normal_matrix;
+};
+
+class ImpactRule {
+ public:
+  virtual ~ImpactRule() = default;
+  virtual bool acts() const { return true; }
+  virtual bool needs_dynamic() const { return false; }
+  /// True when the force of the displacement solve alone is not the contact force: the correction's impulse / dt is added to it (reflect, propagate).
+  virtual bool force_includes_impulse() const { return false; }
+  /// Corrects velocity and acceleration of the free unknowns in place. `impulse` (rows, N s, compression negative) receives what the correction put in.
+  virtual void apply(const Impact&, Vector& velocity, Vector& acceleration, Vector& impulse, ImpactScratch&) const = 0;
+};
+
+std::span<const Entry<ImpactRule>* const> impact_catalog();  // none, project, project_hold, reflect, propagate
+std::span<const PartInfo* const> impact_rules();
+
+}  // namespace uplift

@@ -1,0 +1,263 @@
+#include <algorithm>
+#include <cmath>
+
+#include "uplift/contact/kernel.h"
+
+// The active set for at most three coordinates, as under a rigid footing in the plane. With A the closed rows and W their weights
+//     G = C_A^T W C_A     z = -G^+ C_A^T W target     y = -G^+ z     p = W C_A y
+// so that one pass over the rows forms G and the right-hand side, and one evaluates openings and pressures; both are vector code.
+namespace uplift {
+
+bool Visited::note(std::ptrdiff_t rows, const double* held) {
+  std::uint64_t value = 14695981039346656037ull;  // FNV-1a over the flags
+  for (std::ptrdiff_t i = 0; i < rows; ++i) value = (value ^ (held[i] > 0 ? 2u : 1u)) * 1099511628211ull;
+  const auto end = hash.begin() + count;
+  if (count == static_cast<int>(hash.size()) || std::find(hash.begin(), end, value) != end) return false;
+  hash[static_cast<std::size_t>(count++)] = value;
+  return true;
+}
+
+namespace {
+
+constexpr double rank_threshold = 1e-13;  // pivot relative to the largest: round-off of a sum of squares is 1e-16 of it
+constexpr int most_iterations = 60;
+
+template <int R>
+inline constexpr int packed = R * (R + 1) / 2;
+
+/// v = S x, S packed
+template <int R>
+void apply(const double* s, const double* x, double* v) {
+  if constexpr (R == 1) {
+    v[0] = s[0] * x[0];
+  } else if constexpr (R == 2) {
+    const double a = x[0], b = x[1];
+    v[0] = s[0] * a + s[1] * b;
+    v[1] = s[1] * a + s[2] * b;
+  } else {
+    const double a = x[0], b = x[1], c = x[2];
+    v[0] = s[0] * a + s[1] * b + s[2] * c;
+    v[1] = s[1] * a + s[3] * b + s[4] * c;
+    v[2] = s[2] * a + s[4] * b + s[5] * c;
+  }
+}
+
+/// right -= sum held c value
+template <int R>
+void gather(std::ptrdiff_t n, const double* c, std::ptrdiff_t stride, const double* held, const double* value, double* right) {
+  for (int r = 0; r < R; ++r) {
+    const double* column = c + r * stride;
+    double sum = 0;
+#pragma omp simd reduction(+ : sum)
+    for (std::ptrdiff_t i = 0; i < n; ++i) sum += held[i] * column[i] * value[i];
+    right[r] -= sum;
+  }
+}
+
+/// G = sum held c c^T, right = -sum held c target
+template <int R>
+void gather_gram(std::ptrdiff_t n, const double* c, std::ptrdiff_t stride, const double* held, const double* target, double* gram,
+                 double* right) {
+  const double *c0 = c, *c1 = R > 1 ? c + stride : c, *c2 = R > 2 ? c + 2 * stride : c;
+  double s0 = 0, s1 = 0, s2 = 0, a0 = 0, a1 = 0, a2 = 0, a3 = 0, a4 = 0, a5 = 0;
+  if constexpr (R == 1) {
+#pragma omp simd reduction(+ : s0, a0)
+    for (std::ptrdiff_t i = 0; i < n; ++i) {
+      const double h = held[i] * c0[i];
+      s0 += h * target[i], a0 += h * c0[i];
+    }
+    gram[0] = a0, right[0] = -s0;
+  } else if constexpr (R == 2) {
+#pragma omp simd reduction(+ : s0, s1, a0, a1, a2)
+    for (std::ptrdiff_t i = 0; i < n; ++i) {
+      const double x = c0[i], y = c1[i], hx = held[i] * x, hy = held[i] * y, t = target[i];
+      s0 += hx * t, s1 += hy * t;
+      a0 += hx * x, a1 += hx * y, a2 += hy * y;
+    }
+    gram[0] = a0, gram[1] = a1, gram[2] = a2, right[0] = -s0, right[1] = -s1;
+  } else {
+#pragma omp simd reduction(+ : s0, s1, s2, a0, a1, a2, a3, a4, a5)
+    for (std::ptrdiff_t i = 0; i < n; ++i) {
+      const double x = c0[i], y = c1[i], w = c2[i], hx = held[i] * x, hy = held[i] * y, hw = held[i] * w, t = target[i];
+      s0 += hx * t, s1 += hy * t, s2 += hw * t;
+      a0 += hx * x, a1 += hx * y, a2 += hx * w, a3 += hy * y, a4 += hy * w, a5 += hw * w;
+    }
+    gram[0] = a0, gram[1] = a1, gram[2] = a2, gram[3] = a3, gram[4] = a4, gram[5] = a5;
+    right[0] = -s0, right[1] = -s1, right[2] = -s2;
+  }
+}
+
+struct Extremes {
+  double closed = 0;   // largest |opening| of a held row
+  double pressure = 0;  // largest |C y| of a held row
+  double target = 0;   // largest |target| of a row that is or may be held
+  double sum = 0;      // not finite when any opening is not
+};
+
+/// opening = target + C z, field = C y
+template <int R>
+Extremes evaluate_rows(std::ptrdiff_t n, const double* c, std::ptrdiff_t stride, const double* held, const double* target, const double* z,
+                       const double* y, double* opening, double* field) {
+  const double *c0 = c, *c1 = R > 1 ? c + stride : c, *c2 = R > 2 ? c + 2 * stride : c;
+  const double z0 = z[0], z1 = R > 1 ? z[R > 1 ? 1 : 0] : 0, z2 = R > 2 ? z[R > 2 ? 2 : 0] : 0;
+  const double y0 = y[0], y1 = R > 1 ? y[R > 1 ? 1 : 0] : 0, y2 = R > 2 ? y[R > 2 ? 2 : 0] : 0;
+  double closed = 0, pressure = 0, largest = 0, sum = 0;
+#pragma omp simd reduction(max : closed, pressure, largest) reduction(+ : sum)
+  for (std::ptrdiff_t i = 0; i < n; ++i) {
+    double o = target[i] + c0[i] * z0, f = c0[i] * y0;
+    if constexpr (R > 1) o += c1[i] * z1, f += c1[i] * y1;
+    if constexpr (R > 2) o += c2[i] * z2, f += c2[i] * y2;
+    opening[i] = o;
+    field[i] = f;
+    sum += o;
+    const double size = std::abs(target[i]), here = held[i] > 0 ? std::abs(o) : 0.0, push = held[i] > 0 ? std::abs(f) : 0.0;
+    largest = largest > size ? largest : size;
+    closed = closed > here ? closed : here;
+    pressure = pressure > push ? pressure : push;
+  }
+  return {closed, pressure, largest, sum};
+}
+
+/// The next set: a closed row opens when its pressure is tensile; an open one closes when it penetrates, or when it touches and the pressure field
+/// of the closed rows is compressive there (this makes the redundant pressures the least-norm ones). Returns the number of changes.
+double next_set(std::ptrdiff_t n, const double* limit, const double* opening, const double* field, double gap, double pressure,
+                double* held) {
+  double changes = 0;
+#pragma omp simd reduction(+ : changes)
+  for (std::ptrdiff_t i = 0; i < n; ++i) {
+    const bool was = held[i] > 0, may = limit[i] > 0;
+    const bool stays = field[i] <= pressure;
+    const bool closes = (opening[i] < -gap) | ((opening[i] <= gap) & (field[i] < -pressure));
+    const bool now = was ? stays : closes;
+    const double value = may ? (now ? limit[i] : 0.0) : held[i];
+    changes += value != held[i] ? 1.0 : 0.0;
+    held[i] = value;
+  }
+  return changes;
+}
+
+template <int R>
+KernelReply active_set(const Rows& rows, double* held, double* z, double* opening, double* force, KernelScratch& scratch) {
+  const std::ptrdiff_t n = rows.count;
+  double* field = scratch.field.data();
+  KernelReply reply;
+  double gram[packed<R>], inverse[packed<R>], right[R], y[R], step[R];
+  for (reply.iterations = 1; reply.iterations <= most_iterations; ++reply.iterations) {
+    gather_gram<R>(n, rows.factor, rows.stride, held, rows.target, gram, right);
+    pseudo_inverse<R>(gram, inverse);
+    apply<R>(inverse, right, z);
+    Extremes extremes;
+    double gap = rows.tolerance;
+    for (int refinement = 0;; ++refinement) {
+      apply<R>(inverse, z, y);
+      apply<R>(gram, y, step);
+      for (int r = 0; r < R; ++r) step[r] = z[r] - step[r];
+      apply<R>(inverse, step, step);
+      for (int r = 0; r < R; ++r) y[r] = -(y[r] + step[r]);
+      extremes = evaluate_rows<R>(n, rows.factor, rows.stride, held, rows.target, z, y, opening, field);
+      if (!std::isfinite(extremes.sum)) {
+        reply.end = KernelEnd::not_finite;
+        return reply;
+      }
+      gap = std::max(rows.tolerance, 1e-14 * extremes.target);
+      if (extremes.closed <= gap) break;
+      if (refinement == 2) return reply;  // the closed rows contradict each other
+      for (int r = 0; r < R; ++r) right[r] = 0;
+      gather<R>(n, rows.factor, rows.stride, held, opening, right);
+      apply<R>(inverse, right, step);
+      for (int r = 0; r < R; ++r) z[r] += step[r];
+    }
+    // the force first: the set that it belongs to is about to be replaced
+#pragma omp simd
+    for (std::ptrdiff_t i = 0; i < n; ++i) force[i] = held[i] * (field[i] < 0 || !(rows.limit[i] > 0) ? field[i] : 0.0);
+    if (reply.iterations == 1) scratch.visited.count = 0;
+    if (next_set(n, rows.limit, opening, field, gap, 1e-12 * extremes.pressure, held) == 0) {
+      reply.end = KernelEnd::solved;
+      return reply;
+    }
+    if (!scratch.visited.note(n, held)) {
+      reply.cycles = 1;
+      return reply;
+    }
+  }
+  return reply;
+}
+
+}  // namespace
+
+template <int R>
+int pseudo_inverse(const double* g, double* inverse) {
+  for (int i = 0; i < packed<R>; ++i) inverse[i] = 0;
+  if constexpr (R == 1) {
+    if (!(g[0] > 0)) return 0;
+    inverse[0] = 1 / g[0];
+    return 1;
+  } else if constexpr (R == 2) {
+    const double a = std::max(g[0], g[2]), determinant = g[0] * g[2] - g[1] * g[1];
+    if (!(a > 0)) return 0;
+    if (determinant > rank_threshold * a * a) {
+      const double scale = 1 / determinant;
+      inverse[0] = g[2] * scale, inverse[1] = -g[1] * scale, inverse[2] = g[0] * scale;
+      return 2;
+    }
+    const double trace = g[0] + g[2], scale = 1 / (trace * trace);
+    for (int i = 0; i < 3; ++i) inverse[i] = g[i] * scale;
+    return 1;
+  } else {
+    // G = a u u^T + b v v^T + d w w^T by elimination with pivots i, j, k; u = (1, l1, l2), v = (0, 1, m), w = (0, 0, 1) in that order
+    constexpr int at[3][3] = {{0, 1, 2}, {1, 3, 4}, {2, 4, 5}};
+    int i = g[3] > g[0] ? 1 : 0;
+    if (g[5] > g[at[i][i]]) i = 2;
+    int j = i == 0 ? 1 : 0, k = i == 2 ? 1 : 2;
+    const double a = g[at[i][i]];
+    if (!(a > 0)) return 0;
+    double l1 = g[at[j][i]] / a, l2 = g[at[k][i]] / a;
+    double b = g[at[j][j]] - l1 * g[at[j][i]], c = g[at[k][k]] - l2 * g[at[k][i]];
+    const double e = g[at[k][j]] - l2 * g[at[j][i]];
+    if (c > b) std::swap(j, k), std::swap(l1, l2), std::swap(b, c);
+    double n1[3], n2[3];
+    const double u2 = 1 + l1 * l1 + l2 * l2;
+    if (!(b > rank_threshold * a)) {
+      const double scale = 1 / (a * u2 * u2);
+      n1[i] = 1, n1[j] = l1, n1[k] = l2;
+      for (int s = 0; s < 3; ++s)
+        for (int r = s; r < 3; ++r) inverse[at[r][s]] = scale * n1[r] * n1[s];
+      return 1;
+    }
+    const double m = e / b, d = c - m * e;
+    if (d > rank_threshold * a) {
+      const double ra = 1 / a, rb = 1 / b, rd = 1 / d, q = l1 * m - l2;
+      inverse[at[i][i]] = ra + rb * l1 * l1 + rd * q * q;
+      inverse[at[j][i]] = -rb * l1 - rd * m * q;
+      inverse[at[k][i]] = rd * q;
+      inverse[at[j][j]] = rb + rd * m * m;
+      inverse[at[k][j]] = -rd * m;
+      inverse[at[k][k]] = rd;
+      return 3;
+    }
+    // rank 2: with an orthonormal basis N of the range, G^+ = N (N^T G N)^-1 N^T
+    const double alpha = std::sqrt(u2);
+    n1[i] = 1 / alpha, n1[j] = l1 / alpha, n1[k] = l2 / alpha;
+    const double beta = n1[j] + m * n1[k];
+    n2[i] = -beta * n1[i], n2[j] = 1 - beta * n1[j], n2[k] = m - beta * n1[k];
+    const double gamma = std::sqrt(n2[0] * n2[0] + n2[1] * n2[1] + n2[2] * n2[2]);
+    for (double& value : n2) value /= gamma;
+    const double t11 = a * u2 + b * beta * beta, t12 = b * beta * gamma, t22 = b * gamma * gamma, scale = 1 / (a * u2 * t22);
+    for (int s = 0; s < 3; ++s)
+      for (int r = s; r < 3; ++r)
+        inverse[at[r][s]] = scale * (t22 * n1[r] * n1[s] - t12 * (n1[r] * n2[s] + n2[r] * n1[s]) + t11 * n2[r] * n2[s]);
+    return 2;
+  }
+}
+template int pseudo_inverse<1>(const double*, double*);
+template int pseudo_inverse<2>(const double*, double*);
+template int pseudo_inverse<3>(const double*, double*);
+
+KernelReply small_active_set(const Rows& rows, double* held, double* z, double* opening, double* force, KernelScratch& scratch) {
+  if (scratch.field.size() < rows.count) scratch.field.setZero(rows.count);
+  if (rows.columns == 1) return active_set<1>(rows, held, z, opening, force, scratch);
+  if (rows.columns == 2) return active_set<2>(rows, held, z, opening, force, scratch);
+  return active_set<3>(rows, held, z, opening, force, scratch);
+}
+
+}  // namespace uplift

@@ -1,0 +1,311 @@
+#include "uplift/contact/newton.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+
+#include "uplift/contact/method.h"
+#include "uplift/math/dense.h"
+#include "uplift/math/small.h"
+
+namespace uplift {
+namespace {
+
+void size_scratch(const InterfaceProblem& problem, InterfaceSolution& solution) {
+  NewtonScratch& scratch = solution.newton;
+  const Eigen::Index rows = problem.rows(), r = problem.factor.cols();
+  if (scratch.first_slope.size() == problem.blocks.size() && solution.opening.size() == rows && scratch.gradient.size() == r &&
+      solution.now.size() == problem.old.size())
+    return;
+  scratch.first_slope.clear();
+  int slopes = 0;
+  for (const Block& block : problem.blocks) {
+    scratch.first_slope.push_back(slopes);
+    slopes += block.batch.points * block.batch.components * block.batch.components;
+  }
+  scratch.slope.setZero(slopes);
+  scratch.gradient.setZero(r);
+  scratch.direction.setZero(r);
+  scratch.origin.setZero(r);
+  scratch.hessian.setZero(r, r);
+  scratch.end.setZero(rows);
+  solution.opening.setZero(rows);
+  solution.force.setZero(rows);
+  if (solution.z.size() != r) solution.z.setZero(r);
+  solution.now.assign(problem.old.size(), 0.0);
+}
+
+/// Tractions become forces on the rows: times scale * area.
+void to_force(const InterfaceProblem& problem, const Block& block, double* force, double* slope) {
+  const int n = block.batch.points, components = block.batch.components;
+  const double* area = block.area.data();
+  for (int c = 0; c < components; ++c)
+#pragma omp simd
+    for (int i = 0; i < n; ++i) force[c * n + i] *= problem.scale * area[i];
+  if (slope != nullptr)
+    for (int c = 0; c < components * components; ++c)
+#pragma omp simd
+      for (int i = 0; i < n; ++i) slope[c * n + i] *= problem.scale * area[i];
+}
+
+void law_force(const InterfaceProblem& problem, const Block& block, double* slope, InterfaceSolution& solution) {
+  Batch batch = block.batch;
+  batch.step = problem.step;
+  const double* from = problem.from.data() + block.first;
+  const double* to = solution.opening.data() + block.first;
+  const double* old = problem.old.data() + block.first_history;
+  Reply reply;
+  reply.traction = solution.force.data() + block.first;
+  reply.slope = slope;
+  reply.now = solution.now.data() + block.first_history;
+  if (problem.average) {
+    reply.end = solution.newton.end.data() + block.first;
+    block.law->mean(batch, from, to, old, reply);
+  } else {
+    block.law->respond(batch, from, to, old, reply);
+  }
+  to_force(problem, block, reply.traction, slope);
+}
+
+/// P(multiplier + stiffness * opening) of a cone block.
+void cone_force(const InterfaceProblem& problem, const Block& block, const AugmentedForce& augmented, double* slope,
+                InterfaceSolution& solution) {
+  const int n = block.batch.points, components = block.batch.components, normal = block.batch.normal();
+  double* force = solution.force.data() + block.first;
+  const double* multiplier = augmented.multiplier->data() + block.first;
+  const double* stiffness = augmented.stiffness->data() + block.first;
+  const double* opening = solution.opening.data() + block.first;
+  const double* from = problem.from.data() + block.first;
+  for (int i = 0; i < n * components; ++i)
+    force[i] = multiplier[i] + stiffness[i] * (i >= normal ? opening[i] : opening[i] - from[i]);
+  block.cone->project(block.batch, force, force, slope);
+  if (slope == nullptr) return;
+  for (int r = 0; r < components; ++r)
+    for (int c = 0; c < components; ++c)
+      for (int i = 0; i < n; ++i) slope[(r * components + c) * n + i] *= stiffness[c * n + i];
+}
+
+/// H += C_block^T k C_block for a block whose slope couples its components, and G += C_block^T p.
+void add_general(const InterfaceProblem& problem, const Block& block, const double* slope, InterfaceSolution& solution) {
+  NewtonScratch& scratch = solution.newton;
+  const int n = block.batch.points, components = block.batch.components;
+  const Eigen::Index r = problem.factor.cols(), rows = problem.factor.rows();
+  for (Eigen::Index j = 0; j < r; ++j) {
+    const double* column_j = problem.factor.data() + j * rows + block.first;
+    scratch.gradient[j] += small::dot(block.rows(), column_j, solution.force.data() + block.first);
+    for (Eigen::Index i = 0; i < r; ++i) {
+      const double* column_i = problem.factor.data() + i * rows + block.first;
+      double sum = 0;
+      for (int a = 0; a < components; ++a)
+        for (int b = 0; b < components; ++b) {
+          const double* k = slope + (a * components + b) * n;
+          const double *left = column_i + a * n, *right = column_j + b * n;
+#pragma omp simd reduction(+ : sum)
+          for (int p = 0; p < n; ++p) sum += left[p] * k[p] * right[p];
+        }
+      scratch.hessian(i, j) += sum;
+    }
+  }
+}
+
+void add_block(const InterfaceProblem& problem, const Block& block, const double* slope, InterfaceSolution& solution) {
+  NewtonScratch& scratch = solution.newton;
+  const Eigen::Index r = problem.factor.cols(), rows = problem.factor.rows();
+  const double* c = problem.factor.data() + block.first;
+  const double* p = solution.force.data() + block.first;
+  double *g = scratch.gradient.data(), *h = scratch.hessian.data();
+  if (block.batch.components == 1 && r == 1)
+    small::gradient_and_gram<1>(block.batch.points, c, rows, p, slope, g, h);
+  else if (block.batch.components == 1 && r == 2)
+    small::gradient_and_gram<2>(block.batch.points, c, rows, p, slope, g, h);
+  else if (block.batch.components == 1 && r == 3)
+    small::gradient_and_gram<3>(block.batch.points, c, rows, p, slope, g, h);
+  else
+    add_general(problem, block, slope, solution);
+}
+
+/// G (and H) at solution.z, the force having been evaluated.
+void form_gradient(const InterfaceProblem& problem, bool with_hessian, InterfaceSolution& solution) {
+  NewtonScratch& scratch = solution.newton;
+  const Eigen::Index r = problem.factor.cols(), rows = problem.rows();
+  for (Eigen::Index i = 0; i < r; ++i) scratch.gradient[i] = solution.z[i];
+  if (!with_hessian) {
+    small::multiply_transposed_add(problem.factor, solution.force.data(), scratch.gradient.data());
+  } else {
+    std::fill_n(scratch.hessian.data(), r * r, 0.0);
+    for (Eigen::Index i = 0; i < r; ++i) scratch.hessian(i, i) = 1;
+    for (std::size_t b = 0; b < problem.blocks.size(); ++b)
+      add_block(problem, problem.blocks[b], scratch.slope.data() + scratch.first_slope[b], solution);
+  }
+  if (problem.shift.size() == 0) return;
+  for (Eigen::Index j = 0; j < r; ++j) {  // statics: the closed joint of the factored matrix is taken back
+    const double* column = problem.factor.data() + j * rows;
+    for (Eigen::Index i = 0; i < rows; ++i) scratch.gradient[j] -= column[i] * problem.shift[i] * solution.opening[i];
+    if (!with_hessian) continue;
+    for (Eigen::Index k = 0; k < r; ++k) {
+      const double* other = problem.factor.data() + k * rows;
+      for (Eigen::Index i = 0; i < rows; ++i) scratch.hessian(k, j) -= other[i] * problem.shift[i] * column[i];
+    }
+  }
+}
+
+/// The direction -H^-1 G; false when H is singular. A softening or friction slope may make H indefinite or unsymmetric: Gauss elimination takes both.
+bool newton_direction(InterfaceSolution& solution, Matrix& copy) {
+  NewtonScratch& scratch = solution.newton;
+  const Eigen::Index r = scratch.gradient.size();
+  for (Eigen::Index i = 0; i < r; ++i) scratch.direction[i] = -scratch.gradient[i];
+  if (r <= 12) {
+    return small::gauss_solve(r, scratch.hessian.data(), scratch.direction.data());
+  }
+  copy = scratch.hessian;
+  scratch.direction = copy.partialPivLu().solve(scratch.direction).eval();
+  return scratch.direction.allFinite();
+}
+
+double norm(const Vector& v) { return std::sqrt(small::sum_of_squares(v.size(), v.data())); }
+
+/// Follows z = origin + alpha * direction by bisection on the directional derivative until it has fallen enough; the last point is left evaluated.
+void line_search(const InterfaceProblem& problem, const AugmentedForce& augmented, double start_slope, double end_slope,
+                 InterfaceSolution& solution) {
+  NewtonScratch& scratch = solution.newton;
+  double low = 0, high = 1, low_slope = start_slope, high_slope = end_slope;
+  for (int trial = 0; trial < 30; ++trial) {
+    double alpha = 0.5 * (low + high);
+    if (high_slope > 0 && low_slope < 0) {  // regula falsi, kept away from the ends
+      const double secant = low - low_slope * (high - low) / (high_slope - low_slope);
+      alpha = std::clamp(secant, low + 0.1 * (high - low), high - 0.1 * (high - low));
+    }
+    for (Eigen::Index i = 0; i < solution.z.size(); ++i) solution.z[i] = scratch.origin[i] + alpha * scratch.direction[i];
+    evaluate(problem, augmented, true, solution);
+    form_gradient(problem, false, solution);
+    const double slope = small::dot(scratch.gradient.size(), scratch.gradient.data(), scratch.direction.data());
+    if (std::abs(slope) <= 0.5 * std::abs(start_slope)) return;
+    (slope < 0 ? low : high) = alpha;
+    (slope < 0 ? low_slope : high_slope) = slope;
+  }
+}
+
+}  // namespace
+
+void evaluate(const InterfaceProblem& problem, const AugmentedForce& augmented, bool with_slope, InterfaceSolution& solution) {
+  size_scratch(problem, solution);
+  std::copy_n(problem.free_opening.data(), problem.rows(), solution.opening.data());
+  small::multiply_add(problem.factor, solution.z.data(), solution.opening.data());
+  for (std::size_t b = 0; b < problem.blocks.size(); ++b) {
+    const Block& block = problem.blocks[b];
+    double* slope = with_slope ? solution.newton.slope.data() + solution.newton.first_slope[b] : nullptr;
+    if (block.law != nullptr)
+      law_force(problem, block, slope, solution);
+    else
+      cone_force(problem, block, augmented, slope, solution);
+  }
+}
+
+Outcome solve_by_newton(const InterfaceProblem& problem, const AugmentedForce& augmented, const NewtonOptions& options,
+                        InterfaceSolution& solution) {
+  size_scratch(problem, solution);
+  NewtonScratch& scratch = solution.newton;
+  Outcome outcome;
+  Matrix copy;
+  const Eigen::Index r = problem.factor.cols();
+  evaluate(problem, augmented, true, solution);
+  form_gradient(problem, true, solution);
+  double size = norm(scratch.gradient);
+  for (outcome.iterations = 0; outcome.iterations < options.most_iterations; ++outcome.iterations) {
+    if (!std::isfinite(size)) {
+      outcome.why = "the interface forces are not finite";
+      return outcome;
+    }
+    // |C^T p| = |G - z| up to the statics' shift
+    double reference = 0;
+    for (Eigen::Index i = 0; i < r; ++i)
+      reference = std::max(reference, std::max(std::abs(solution.z[i]), std::abs(scratch.gradient[i] - solution.z[i])));
+    outcome.residual = size / std::max(reference, 1e-300);
+    if (size <= options.tolerance * reference || size == 0) {
+      outcome.converged = true;
+      return outcome;
+    }
+    const double before = size;
+    std::copy_n(solution.z.data(), r, scratch.origin.data());
+    // the gradient is needed again by the line search
+    if (!newton_direction(solution, copy)) {
+      outcome.why = "the Newton matrix of the interface is singular";
+      return outcome;
+    }
+    const double start_slope = small::dot(r, scratch.gradient.data(), scratch.direction.data());
+    for (Eigen::Index i = 0; i < r; ++i) solution.z[i] = scratch.origin[i] + scratch.direction[i];
+    evaluate(problem, augmented, true, solution);
+    form_gradient(problem, true, solution);
+    size = norm(scratch.gradient);
+    if (size > 0.5 * before && size > options.tolerance * reference) {
+      const double end_slope = small::dot(r, scratch.gradient.data(), scratch.direction.data());
+      if (start_slope < 0 && end_slope > 0.5 * std::abs(start_slope)) {
+        line_search(problem, augmented, start_slope, end_slope, solution);
+        form_gradient(problem, true, solution);
+        size = norm(scratch.gradient);
+      }
+    }
+  }
+  outcome.why = fmt::format("Newton's method did not converge in {} iterations (residual {:.2e} of the interface force)",
+                            options.most_iterations, outcome.residual);
+  return outcome;
+}
+
+void end_forces(const InterfaceProblem& problem, const InterfaceSolution& solution, Vector& force, std::vector<double>& scratch_history) {
+  for (const Block& block : problem.blocks) {
+    if (block.law == nullptr) {
+      for (int i = 0; i < block.rows(); ++i) force[block.first + i] = solution.force[block.first + i] / problem.scale;
+      continue;
+    }
+    Batch batch = block.batch;
+    batch.step = problem.step;
+    Reply reply;
+    reply.traction = force.data() + block.first;
+    reply.now = scratch_history.data() + block.first_history;
+    block.law->respond(batch, problem.from.data() + block.first, solution.opening.data() + block.first,
+                       problem.old.data() + block.first_history, reply);
+    for (int c = 0; c < batch.components; ++c)
+      for (int i = 0; i < batch.points; ++i) force[block.first + c * batch.points + i] *= block.area[static_cast<std::size_t>(i)];
+  }
+}
+
+namespace {
+
+class NewtonMethod final : public ContactMethod {
+ public:
+  explicit NewtonMethod(NewtonOptions options) : options_(options) {}
+  Outcome solve(const InterfaceProblem& problem, InterfaceSolution& solution) const override {
+    for (const Block& block : problem.blocks)
+      if (block.law == nullptr) {
+        Outcome outcome;
+        outcome.why = fmt::format("method \"newton\" needs a traction law, interface \"{}\" has a constraint", block.name);
+        return outcome;
+      }
+    return solve_by_newton(problem, {}, options_, solution);
+  }
+  bool constrains() const override { return false; }
+
+ private:
+  NewtonOptions options_;
+};
+
+}  // namespace
+
+const Entry<ContactMethod>& entry_method_newton() {
+  static const Entry<ContactMethod> entry{
+      {.name = "newton",
+       .summary = "Newton's method with line search on traction laws (SDM, springs, cohesive, elastic)",
+       .equations = "G(z) = z + C^T p(opening) = 0, opening = free opening + C z\n"
+                    "H = I + C^T (dp/d opening) C, symmetric positive definite when the law does not soften\n"
+                    "line search on the directional derivative of the incremental potential",
+       .source = "THEORY section 6",
+       .params = {number("tolerance", "1", "residual of the interface balance, relative to the interface force").positive().standard(1e-12),
+                  integer("most_iterations", "iterations before the step is cut").between(1, 10000).standard(60.0)}},
+      [](const Values& values) -> std::unique_ptr<const ContactMethod> {
+        return std::make_unique<NewtonMethod>(NewtonOptions{values.number("tolerance"), values.integer("most_iterations")});
+      }};
+  return entry;
+}
+
+}  // namespace uplift

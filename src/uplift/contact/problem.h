@@ -1,0 +1,93 @@
+#pragma once
+#include <string>
+#include <vector>
+
+#include "uplift/interface/interface.h"
+#include "uplift/math/linalg.h"
+
+// The interface problem of one step. With the linear bulk condensed, the step is
+//     opening = free_opening + C z        z + C^T (p - D opening) = 0        p in law(opening)
+// where F = C C^T = B K_eff^-1 B^T is the compliance [m/N] and z [sqrt(J)] are coordinates in which the energy of K_eff is |z|^2/2.
+// C has as many columns as the smaller of the two exact forms needs (DESIGN section 4): the interface rows m, or the independent
+// unknowns that the interface touches (three for a rigid footing in 2D). F itself is never inverted; it is singular under a rigid footing.
+// D [N/m] is zero in dynamics; in statics it takes back the closed joint that was put into the factored matrix (THEORY section 6).
+namespace uplift {
+
+/// One interface inside the problem.
+struct Block {
+  std::string name;
+  int first = 0;          // first row
+  int first_history = 0;  // first memory value
+  Batch batch;
+  const InterfaceLaw* law = nullptr;  // one of the two
+  const Cone* cone = nullptr;
+  std::vector<double> area;  // m2 per point
+  int rows() const { return batch.points * batch.components; }
+};
+
+/// Frozen: everything that a method may know about one step. It can be written to a file and solved again by any method.
+struct InterfaceProblem {
+  std::vector<Block> blocks;
+  Matrix factor;            // C: rows x r [m/sqrt(J)]
+  Vector shift;             // D: rows [N/m]; empty in dynamics
+  bool average = false;     // path-averaged traction: p = scale * area * mean(from -> opening)
+  double scale = 1;         // weight of the interface force in the scheme's balance: 2 with the path average, else 1
+  double step = 0;          // s; 0 in statics
+  // what changes from step to step
+  Vector free_opening;      // m, initial gap included
+  Vector from;              // opening at the beginning of the step [m]
+  std::vector<double> old;  // memory at the beginning of the step
+  int rows() const { return static_cast<int>(factor.rows()); }
+};
+
+enum class Status : signed char { open, stick, slip };
+
+/// Work space of Newton's method, sized once.
+struct NewtonScratch {
+  Vector slope;       // per block (components x components x points), blocks one after another [N/m]
+  std::vector<int> first_slope;
+  Vector gradient, direction, origin, end;
+  Matrix hessian;
+};
+
+/// Work space of the augmented Lagrangian, sized once.
+struct AugmentedScratch {
+  Vector multiplier, stiffness;  // rows [N], [N/m]
+};
+
+/// The unknowns of a step, and the work space of the methods (kept from step to step, so that nothing is allocated after the first).
+struct InterfaceSolution {
+  Vector z;                   // on entry the first guess
+  Vector opening;             // rows, end of step [m]
+  Vector force;               // rows, p as it enters the balance [N]: scale * area * traction, tension > 0
+  std::vector<double> now;    // memory at the end of the step
+  std::vector<Status> status;  // per point, all blocks one after another (cones)
+  NewtonScratch newton;
+  AugmentedScratch augmented;
+};
+
+struct Outcome {
+  bool converged = false;
+  int iterations = 0;
+  double residual = 0;  // the common yardstick (see below)
+  int cycles = 0;       // times that a repeated contact status was met and treated
+  std::string why;      // when not converged; names the points
+};
+
+/// The one residual that judges every method, outside the methods: the largest of
+///  - the balance |z + C^T (p - D opening)| / (|z| + |C^T p| + tiny)
+///  - law blocks: |p - scale * area * t(opening)| / (max |p|)
+///  - cone blocks: penetration, tension, friction bound and complementarity, each made dimensionless with max |p| and max |opening - free_opening|.
+double yardstick(const InterfaceProblem&, const InterfaceSolution&);
+
+/// JSON text of a problem with its laws (names and parameters) and back. Throws InputError with the position on bad files.
+std::string save_problem(const InterfaceProblem&, const std::vector<const Values*>& behaviours, const std::string& reason);
+struct StoredProblem {
+  InterfaceProblem problem;
+  std::vector<std::unique_ptr<const InterfaceLaw>> laws;
+  std::vector<std::unique_ptr<const Cone>> cones;
+  std::string reason;
+};
+StoredProblem load_problem(const std::string& text, const std::string& file);
+
+}  // namespace uplift

@@ -1,0 +1,97 @@
+#include "uplift/dynamics/condensed.h"
+
+#include <algorithm>
+
+#include "uplift/math/small.h"
+
+namespace uplift {
+
+Behaviours::Behaviours(const Model& model, const ContactMethod& method, const InterfaceProblem* probe) {
+  for (std::size_t i = 0; i < model.interfaces.size(); ++i) {
+    const Interface& interface = model.interfaces[i];
+    One one{interface.law.get(), interface.cone.get()};
+    if (one.cone != nullptr && probe != nullptr) {
+      if (auto law = method.substitute(*one.cone, flexibility(*probe, probe->blocks[i])); law != nullptr) {
+        owned.push_back(std::move(law));
+        one = {owned.back().get(), nullptr};
+      }
+    }
+    interfaces.push_back(one);
+    first_history.push_back(history);
+    if (one.law != nullptr) history += one.law->num_history(interface.batch.components) * interface.batch.points;
+  }
+}
+
+InterfaceProblem blocks_of(const Model& model, const Behaviours& behaviours) {
+  InterfaceProblem problem;
+  int first = 0;
+  for (std::size_t i = 0; i < model.interfaces.size(); ++i) {
+    const Interface& interface = model.interfaces[i];
+    Block block;
+    block.name = interface.name;
+    block.first = first;
+    block.first_history = behaviours.first_history[i];
+    block.batch = interface.batch;
+    block.law = behaviours.interfaces[i].law;
+    block.cone = behaviours.interfaces[i].cone;
+    block.area.assign(interface.area.data(), interface.area.data() + interface.area.size());
+    first += block.rows();
+    problem.blocks.push_back(std::move(block));
+  }
+  problem.free_opening.setZero(first);
+  problem.from.setZero(first);
+  problem.old.assign(static_cast<std::size_t>(behaviours.history), 0.0);
+  return problem;
+}
+
+Condensed::Condensed(const Model& model, const Sparse& b, const Vector& gap, BulkFactor factor, InterfaceProblem frame,
+                     const ContactMethod& method)
+    : b_(b), gap_(gap), factor_(std::move(factor)), problem_(std::move(frame)), method_(method) {
+  Spread spread = factor_.spread(b);
+  problem_.factor = std::move(spread.factor);
+  spread_ = std::move(spread.spread);
+  free_.setZero(model.free());
+  for (int column = 0; column < b.outerSize(); ++column)
+    if (Sparse::InnerIterator(b, column)) touched_.push_back(column);
+  if (touched_.size() > 64) {
+    touched_.clear();
+    return;
+  }
+  touched_b_.setZero(b.rows(), static_cast<Eigen::Index>(touched_.size()));
+  for (std::size_t j = 0; j < touched_.size(); ++j)
+    for (Sparse::InnerIterator entry(b, touched_[j]); entry; ++entry) touched_b_(entry.row(), static_cast<Eigen::Index>(j)) = entry.value();
+  touched_value_.setZero(static_cast<Eigen::Index>(touched_.size()));
+}
+
+void Condensed::free_opening(const Vector& displacement) {
+  if (touched_.empty()) {
+    problem_.free_opening.noalias() = b_ * (displacement + free_);
+    problem_.free_opening += gap_;
+    return;
+  }
+  for (std::size_t j = 0; j < touched_.size(); ++j)
+    touched_value_[static_cast<Eigen::Index>(j)] = displacement[touched_[j]] + free_[touched_[j]];
+  std::copy_n(gap_.data(), gap_.size(), problem_.free_opening.data());
+  small::multiply_add(touched_b_, touched_value_.data(), problem_.free_opening.data());
+}
+
+Outcome Condensed::solve(const Vector& right, const Vector& displacement, const Vector& opening, const std::vector<double>& history,
+                         Vector& increment) {
+  factor_.solve(right, free_);
+  if (problem_.rows() == 0) {
+    increment = free_;
+    Outcome outcome;
+    outcome.converged = true;
+    return outcome;
+  }
+  free_opening(displacement);
+  std::copy_n(opening.data(), opening.size(), problem_.from.data());
+  std::copy_n(history.data(), history.size(), problem_.old.data());
+  Outcome outcome = method_.solve(problem_, solution_);
+  if (!outcome.converged) return outcome;
+  std::copy_n(free_.data(), free_.size(), increment.data());
+  small::multiply_add(spread_, solution_.z.data(), increment.data());
+  return outcome;
+}
+
+}  // namespace uplift

@@ -1,0 +1,66 @@
+#pragma once
+#include <memory>
+#include <vector>
+
+#include "uplift/contact/method.h"
+#include "uplift/dynamics/bulk.h"
+
+// One step of the discrete system in the displacement increment:
+//     K_eff du + B^T P = R       opening = gap + B (u0 + du)       P in law(opening)
+namespace uplift {
+
+/// What each interface does in a run: its own law or cone, or the law that the method puts in the cone's place (penalty).
+struct Behaviours {
+  struct One {
+    const InterfaceLaw* law = nullptr;
+    const Cone* cone = nullptr;
+  };
+  std::vector<One> interfaces;
+  std::vector<std::unique_ptr<const InterfaceLaw>> owned;
+  std::vector<int> first_history;
+  int history = 0;  // memory values of all interfaces
+
+  /// `probe`: a problem with the compliance of the dynamic step, from which automatic stiffnesses are scaled; may be null when no method substitutes.
+  Behaviours(const Model& model, const ContactMethod& method, const InterfaceProblem* probe);
+};
+
+/// The blocks of an interface problem (no compliance yet).
+InterfaceProblem blocks_of(const Model& model, const Behaviours& behaviours);
+
+/// Solves one step for the displacement increment. Owned by a run; its problem and solution hold the last step.
+class StepSolver {
+ public:
+  virtual ~StepSolver() = default;
+  /// `displacement`, `opening`, `history` are those of the beginning of the step; `increment` receives du.
+  virtual Outcome solve(const Vector& right, const Vector& displacement, const Vector& opening, const std::vector<double>& history,
+                        Vector& increment) = 0;
+  virtual const InterfaceProblem& problem() const = 0;
+  virtual const InterfaceSolution& solution() const = 0;
+};
+
+/// The condensed step: one back-solve, the small interface problem, and the rest of u from the kept spread (or one more back-solve).
+class Condensed final : public StepSolver {
+ public:
+  /// `factor` is that of K_eff (with B^T D B in statics); `frame` has blocks, average, scale, step and shift set.
+  Condensed(const Model& model, const Sparse& b, const Vector& gap, BulkFactor factor, InterfaceProblem frame, const ContactMethod& method);
+  Outcome solve(const Vector& right, const Vector& displacement, const Vector& opening, const std::vector<double>& history,
+                Vector& increment) override;
+  const InterfaceProblem& problem() const override { return problem_; }
+  const InterfaceSolution& solution() const override { return solution_; }
+
+ private:
+  void free_opening(const Vector& displacement);
+
+  const Sparse& b_;
+  const Vector& gap_;
+  BulkFactor factor_;
+  Matrix dense_b_, touched_b_;     // small bulks; columns of B that are not empty
+  std::vector<int> touched_;
+  Matrix spread_;                  // X: du = du_free + X z
+  InterfaceProblem problem_;
+  InterfaceSolution solution_;
+  const ContactMethod& method_;
+  Vector free_, touched_value_;
+};
+
+}  // namespace uplift

@@ -1,0 +1,27 @@
+#include "uplift/dynamics/energy.h"
+
+#include <cstring>
+
+#include "uplift/math/small.h"
+
+namespace uplift {
+
+void InterfaceEnergy::update(const InterfaceProblem& problem, const Vector& opening, const std::vector<double>& history) {
+  const bool changed =
+      last_.size() != history.size() || (!history.empty() && std::memcmp(last_.data(), history.data(), history.size() * sizeof(double)) != 0);
+  if (changed) last_ = history;
+  stored = 0;
+  double lost = 0;
+  for (const Block& block : problem.blocks) {
+    if (block.law == nullptr) continue;
+    const std::size_t points = static_cast<std::size_t>(block.batch.points);
+    if (density_.size() < points) density_.resize(points), lost_.resize(points);
+    block.law->energy(block.batch, opening.data() + block.first, history.data() + block.first_history, density_.data(),
+                      changed ? lost_.data() : nullptr);
+    stored += small::dot(block.batch.points, density_.data(), block.area.data());
+    if (changed) lost += small::dot(block.batch.points, lost_.data(), block.area.data());
+  }
+  if (changed) dissipated = lost;
+}
+
+}  // namespace uplift

@@ -1,0 +1,26 @@
+#pragma once
+#include <vector>
+
+#include "uplift/contact/problem.h"
+
+namespace uplift {
+
+/// Energies [J] since the beginning of the first dynamic stage:
+///   residual = kinetic + strain + stored + interface_dissipated + damping + impact - external - (mechanical energy at the beginning)
+/// which is zero to round-off for the average acceleration rule with path-averaged tractions. A positive residual is energy that the method created.
+struct Energies {
+  double kinetic = 0, strain = 0, stored = 0, interface_dissipated = 0, damping = 0, impact = 0, external = 0, residual = 0;
+};
+
+/// What the interfaces' laws hold and have dissipated [J]; cones hold nothing.
+class InterfaceEnergy {
+ public:
+  /// Dissipation is summed again only when the memory has changed (for the SDM it costs an exponential per point).
+  void update(const InterfaceProblem& problem, const Vector& opening, const std::vector<double>& history);
+  double stored = 0, dissipated = 0;
+
+ private:
+  std::vector<double> last_, density_, lost_;
+};
+
+}  // namespace uplift

@@ -1,0 +1,235 @@
+#include "uplift/dynamics/monolithic.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+#include <functional>
+#include <set>
+
+#include "uplift/math/dense.h"
+
+namespace uplift {
+namespace {
+
+/// Contact state of a cone point in the active set.
+enum class Contact : signed char { open, stick, slip_forward, slip_backward };
+
+class Monolithic final : public StepSolver {
+ public:
+  Monolithic(const Sparse& matrix, const Sparse& b, const Vector& gap, InterfaceProblem frame)
+      : matrix_(matrix), b_(b), gap_(gap), problem_(std::move(frame)) {
+    problem_.factor.setZero(b.rows(), 0);
+    solution_.force.setZero(b.rows());
+    solution_.opening.setZero(b.rows());
+    solution_.newton.end.setZero(b.rows());
+    for (const Block& block : problem_.blocks) points_ += static_cast<std::size_t>(block.batch.points);
+  }
+
+  Outcome solve(const Vector& right, const Vector& displacement, const Vector& opening, const std::vector<double>& history,
+                Vector& increment) override {
+    problem_.from = opening;
+    problem_.old = history;
+    solution_.now = history;
+    origin_ = gap_ + b_ * displacement;
+    contact_.assign(points_, Contact::open);
+    std::set<std::vector<Contact>> seen;
+    Outcome outcome;
+    increment.setZero();
+    for (int round = 0; round < 200; ++round) {
+      if (!equilibrium(right, increment, outcome)) return outcome;
+      std::vector<Contact> before = contact_;
+      update_contact();
+      if (contact_ == before) {
+        outcome.converged = true;
+        return outcome;
+      }
+      if (!seen.insert(contact_).second) ++outcome.cycles;
+    }
+    outcome.why = "the oracle's active set did not settle";
+    return outcome;
+  }
+
+  const InterfaceProblem& problem() const override { return problem_; }
+  const InterfaceSolution& solution() const override { return solution_; }
+
+ private:
+  /// Law forces and their full slope matrix dP/d opening (rows x rows) at the present opening.
+  void law_forces(Matrix& slope) {
+    slope.setZero(b_.rows(), b_.rows());
+    for (const Block& block : problem_.blocks) {
+      if (block.law == nullptr) continue;
+      const int n = block.batch.points, components = block.batch.components;
+      std::vector<double> k(static_cast<std::size_t>(n * components * components));
+      Batch batch = block.batch;
+      batch.step = problem_.step;
+      Reply reply;
+      reply.traction = solution_.force.data() + block.first;
+      reply.slope = k.data();
+      reply.now = solution_.now.data() + block.first_history;
+      const double *from = problem_.from.data() + block.first, *to = solution_.opening.data() + block.first;
+      const double* old = problem_.old.data() + block.first_history;
+      if (problem_.average) {
+        reply.end = solution_.newton.end.data() + block.first;
+        block.law->mean(batch, from, to, old, reply);
+      } else {
+        block.law->respond(batch, from, to, old, reply);
+      }
+      for (int i = 0; i < n; ++i) {
+        const double weight = problem_.scale * block.area[static_cast<std::size_t>(i)];
+        for (int r = 0; r < components; ++r) {
+          solution_.force[block.first + r * n + i] *= weight;
+          for (int c = 0; c < components; ++c)
+            slope(block.first + r * n + i, block.first + c * n + i) = weight * k[static_cast<std::size_t>((r * components + c) * n + i)];
+        }
+      }
+    }
+  }
+
+  /// Newton on displacement and multipliers for the present contact state.
+  bool equilibrium(const Vector& right, Vector& increment, Outcome& outcome) {
+    const Matrix bulk = Matrix(matrix_), b = Matrix(b_);
+    const Eigen::Index n = bulk.rows();
+    Matrix slope;
+    for (int iteration = 0; iteration < 80; ++iteration) {
+      solution_.opening = origin_ + b * increment;
+      law_forces(slope);
+      Vector law_force = Vector::Zero(b_.rows());
+      for (const Block& block : problem_.blocks)
+        if (block.law != nullptr) law_force.segment(block.first, block.rows()) = solution_.force.segment(block.first, block.rows());
+      const std::vector<std::pair<int, double>> rows = constraint_rows();  // row, opening that it must have
+      const Eigen::Index m = static_cast<Eigen::Index>(rows.size());
+      Matrix system = Matrix::Zero(n + m, n + m);
+      Vector load(n + m);
+      system.topLeftCorner(n, n) = bulk + b.transpose() * slope * b;
+      load.head(n) = right - bulk * increment - b.transpose() * law_force;
+      for (Eigen::Index k = 0; k < m; ++k) {
+        system.block(n + k, 0, 1, n) = b.row(rows[static_cast<std::size_t>(k)].first);
+        system.block(0, n + k, n, 1) = force_pattern(b, rows[static_cast<std::size_t>(k)].first);
+        load[n + k] = rows[static_cast<std::size_t>(k)].second - solution_.opening[rows[static_cast<std::size_t>(k)].first];
+      }
+      const double scale = bulk.diagonal().maxCoeff();  // the saddle point's two blocks made comparable
+      system.bottomLeftCorner(m, n) *= scale;
+      system.topRightCorner(n, m) *= scale;
+      load.tail(m) *= scale;
+      const Vector step = CompleteQr(system).solve(load);  // least norm: redundant constraints leave the displacement unique
+      if (!step.allFinite()) {
+        outcome.why = "the oracle's matrix is singular";
+        return false;
+      }
+      const double factor = damped(right, bulk, b, increment, step.head(n), m > 0);
+      increment += factor * step.head(n);
+      ++outcome.iterations;
+      for (const Block& block : problem_.blocks)
+        if (block.cone != nullptr) solution_.force.segment(block.first, block.rows()).setZero();
+      for (Eigen::Index k = 0; k < m; ++k) add_multiplier(rows[static_cast<std::size_t>(k)].first, scale * step[n + k]);
+      outcome.residual = step.head(n).norm() / std::max(increment.norm(), 1e-300);
+      if (factor == 1 && outcome.residual <= 1e-14) return true;
+      if (factor == 1 && iteration > 20 && outcome.residual <= 1e-12) return true;
+    }
+    outcome.why = fmt::format("the oracle's Newton did not converge (last step {:.2e} of the increment)", outcome.residual);
+    return false;
+  }
+
+  /// Halves a Newton step until the residual of the traction laws does not grow (constraints are linear and keep the full step).
+  double damped(const Vector& right, const Matrix& bulk, const Matrix& b, const Vector& increment, const Vector& step, bool constrained) {
+    if (constrained) return 1;
+    Matrix slope;
+    const auto residual = [&](const Vector& u) {
+      solution_.opening = origin_ + b * u;
+      law_forces(slope);
+      return (right - bulk * u - b.transpose() * solution_.force).norm();
+    };
+    const double before = residual(increment);
+    for (double factor = 1; factor > 1e-4; factor *= 0.5)
+      if (residual(increment + factor * step) <= before * (1 - 0.1 * factor) + 1e-13 * right.norm()) return factor;
+    return 1;
+  }
+
+  /// Rows that are held: closed normals at zero, sticking tangents where they were.
+  std::vector<std::pair<int, double>> constraint_rows() const {
+    std::vector<std::pair<int, double>> rows;
+    each_point([&](const Block& block, int i, Contact contact) {
+      if (contact == Contact::open) return;
+      rows.emplace_back(block.first + block.batch.normal() + i, 0.0);
+      if (contact == Contact::stick && block.cone->friction() > 0 && block.batch.components == 2)
+        rows.emplace_back(block.first + i, problem_.from[block.first + i]);
+    });
+    return rows;
+  }
+
+  /// How the multiplier of a row acts on the unknowns: a slipping point's normal force brings its friction along.
+  Vector force_pattern(const Matrix& b, int row) const {
+    Vector pattern = b.row(row).transpose();
+    each_point([&](const Block& block, int i, Contact contact) {
+      if (row != block.first + block.batch.normal() + i) return;
+      const double friction = block.cone->friction();  // p_t = +-mu |p_n| = -+mu p_n
+      if (contact == Contact::slip_forward) pattern -= friction * b.row(block.first + i).transpose();
+      if (contact == Contact::slip_backward) pattern += friction * b.row(block.first + i).transpose();
+    });
+    return pattern;
+  }
+
+  void add_multiplier(int row, double value) {
+    solution_.force[row] += value;
+    each_point([&](const Block& block, int i, Contact contact) {
+      if (row != block.first + block.batch.normal() + i) return;
+      const double friction = block.cone->friction();
+      if (contact == Contact::slip_forward) solution_.force[block.first + i] -= friction * value;
+      if (contact == Contact::slip_backward) solution_.force[block.first + i] += friction * value;
+    });
+  }
+
+  void update_contact() {
+    double largest = 1e-300;
+    for (Eigen::Index i = 0; i < solution_.force.size(); ++i) largest = std::max(largest, std::abs(solution_.force[i]));
+    std::size_t point = 0;
+    for (const Block& block : problem_.blocks) {
+      const int n = block.batch.points;
+      for (int i = 0; i < n; ++i, ++point) {
+        if (block.cone == nullptr) continue;
+        Contact& contact = contact_[point];
+        const int normal = block.first + block.batch.normal() + i, tangent = block.first + i;
+        const double gap = solution_.opening[normal], pressure = -solution_.force[normal], friction = block.cone->friction();
+        if (contact == Contact::open) {
+          if (gap < -1e-12) contact = Contact::stick;
+          continue;
+        }
+        if (pressure < -1e-12 * largest) {
+          contact = Contact::open;
+          continue;
+        }
+        if (friction <= 0 || block.batch.components != 2) continue;
+        const double slip = solution_.opening[tangent] - problem_.from[tangent], force = solution_.force[tangent];
+        if (contact == Contact::stick && std::abs(force) > friction * pressure * (1 + 1e-9))
+          contact = force > 0 ? Contact::slip_forward : Contact::slip_backward;
+        else if ((contact == Contact::slip_forward && slip < -1e-14) || (contact == Contact::slip_backward && slip > 1e-14))
+          contact = Contact::stick;
+      }
+    }
+  }
+
+  void each_point(const std::function<void(const Block&, int, Contact)>& visit) const {
+    std::size_t point = 0;
+    for (const Block& block : problem_.blocks)
+      for (int i = 0; i < block.batch.points; ++i, ++point)
+        if (block.cone != nullptr) visit(block, i, contact_[point]);
+  }
+
+  const Sparse matrix_;
+  const Sparse& b_;
+  const Vector& gap_;
+  InterfaceProblem problem_;
+  InterfaceSolution solution_;
+  std::size_t points_ = 0;
+  std::vector<Contact> contact_;
+  Vector origin_;
+};
+
+}  // namespace
+
+std::unique_ptr<StepSolver> make_monolithic(const Sparse& matrix, const Sparse& b, const Vector& gap, InterfaceProblem frame) {
+  return std::make_unique<Monolithic>(matrix, b, gap, std::move(frame));
+}
+
+}  // namespace uplift

@@ -1,0 +1,22 @@
+#pragma once
+#include <memory>
+#include <span>
+
+#include "uplift/base/catalog.h"
+
+namespace uplift {
+
+/// One-step implicit schemes of the Newmark family; the displacement is the unknown, velocity and acceleration are affine in it:
+///   a1 = (u1 - u0 - dt v0)/(beta dt^2) - (1/(2 beta) - 1) a0        v1 = v0 + dt ((1 - gamma) a0 + gamma a1)
+///   M [(1-am) a1 + am a0] + C [(1-af) v1 + af v0] + K [(1-af) u1 + af u0] + B^T [(1-af) p1 + af p0] = (1-af) f1 + af f0
+/// (Chung & Hulbert 1993; HHT-alpha: am = 0, af = -alpha; Newmark: am = af = 0). A scheme is coefficients.
+struct Scheme {
+  double beta = 0.25, gamma = 0.5, alpha_m = 0, alpha_f = 0;
+  /// The trapezoidal rule: the path-averaged traction closes the energy balance exactly with it and only with it.
+  bool average_acceleration() const { return beta == 0.25 && gamma == 0.5 && alpha_m == 0 && alpha_f == 0; }
+};
+
+std::span<const Entry<Scheme>* const> scheme_catalog();
+std::span<const PartInfo* const> schemes();
+
+}  // namespace uplift

@@ -1,0 +1,319 @@
+#include "uplift/dynamics/step.h"
+
+#include <algorithm>
+#include <cmath>
+#include <utility>
+
+#include "uplift/dynamics/monolithic.h"
+#include "uplift/math/small.h"
+
+namespace uplift {
+
+/// Everything that depends on the size of the step. The right-hand side of the displacement increment is
+///   R = f1 + f0 af/w - K u0/w - B^T p0 af/w + M (mass_velocity v0 + mass_acceleration a0) - C (damping_velocity v0 + damping_acceleration a0)
+/// with w = 1 - af, and for the path average, in the midpoint form,   R = f0 + f1 - 2 K u0 + (4/dt) M v0.
+struct Stepper::Level {
+  double step = 0;
+  double mass = 0, damping = 0;  // K_eff = K + damping C + mass M
+  double mass_velocity = 0, mass_acceleration = 0, damping_velocity = 0, damping_acceleration = 0;
+  std::unique_ptr<StepSolver> solver;
+  std::unique_ptr<Spread> dynamic;  // of K + 4M/dt^2, for `propagate`
+  std::string why;                  // when the matrix could not be factorised
+};
+
+Stepper::Stepper(const Model& model, const Bulk& bulk, const Sparse& b, const Vector& gap, const Behaviours& behaviours,
+                 const ContactMethod& method, const ImpactRule& impact, const LinearSolver& solver, const StepOptions& options,
+                 LinearCounts& counts)
+    : model_(model), bulk_(bulk), b_(b), still_gap_(gap), gap_(gap), gap_step_(Vector::Zero(gap.size())), behaviours_(behaviours), method_(method), impact_(impact), solver_(solver),
+      options_(options), linear_(counts), path_(options.path_average && options.scheme.average_acceleration() && !method.constrains()),
+      impacts_(impact.acts() && !path_ && b.rows() > 0), accelerator_(model, bulk, solver, counts) {
+  if (impacts_) {
+    mass_spread_ = std::make_unique<Spread>(accelerator_.spread(b));
+    if (bulk.small) dense_b_ = Matrix(b);
+  }
+  for (const PrescribedMotion& motion : model.motions) gap_moves_ = gap_moves_ || (motion.opening.size() > 0 && !motion.opening.isZero(0));
+  levels_.resize(static_cast<std::size_t>(options.halvings) + 1);
+}
+
+Stepper::~Stepper() = default;
+
+Stepper::Level& Stepper::level(int halving) {
+  auto& slot = levels_[static_cast<std::size_t>(halving)];
+  if (slot != nullptr) return *slot;
+  slot = std::make_unique<Level>();
+  Level& made = *slot;
+  const Scheme& s = options_.scheme;
+  const double dt = made.step = options_.step / std::pow(2.0, halving), w = 1 - s.alpha_f;
+  made.damping = s.gamma / (s.beta * dt);
+  made.mass = (1 - s.alpha_m) / (w * s.beta * dt * dt);
+  made.mass_velocity = (1 - s.alpha_m) / (w * s.beta * dt);
+  made.mass_acceleration = ((1 - s.alpha_m) * (1 / (2 * s.beta) - 1) - s.alpha_m) / w;
+  made.damping_velocity = 1 - s.gamma / s.beta + s.alpha_f / w;
+  made.damping_acceleration = dt * (1 - s.gamma / (2 * s.beta));
+
+  const Sparse matrix = bulk_.stiffness_matrix + made.damping * bulk_.damping_matrix + made.mass * bulk_.mass_matrix;
+  InterfaceProblem frame = blocks_of(model_, behaviours_);
+  frame.average = path_;
+  frame.scale = path_ ? 2 : 1;
+  frame.step = dt;
+  if (options_.monolithic) {
+    made.solver = make_monolithic(matrix, b_, gap_, std::move(frame));
+    ++linear_.factorisations;
+  } else {
+    BulkFactor factor(matrix, bulk_.small, solver_, model_, linear_);
+    if (!factor.ok()) {
+      made.why = factor.why();
+      return made;
+    }
+    made.solver = std::make_unique<Condensed>(model_, b_, gap_, std::move(factor), std::move(frame), method_);
+  }
+  if (impacts_ && impact_.needs_dynamic()) {
+    const Sparse dynamic = bulk_.stiffness_matrix + (4 / (dt * dt)) * bulk_.mass_matrix;
+    BulkFactor factor(dynamic, bulk_.small, solver_, model_, linear_);
+    if (factor.ok()) made.dynamic = std::make_unique<Spread>(factor.spread(b_));
+    if (!factor.ok()) made.why = factor.why();
+  }
+  return made;
+}
+
+void Stepper::forces_at(const State& state, Vector& result) const {  // f - C v - K u - B^T p
+  result.setZero();
+  model_.add_force(state.time, result);
+  Vector product(bulk_.unknowns);
+  bulk_.damping.multiply(state.velocity, product);
+  result -= product;
+  bulk_.stiffness.multiply(state.displacement, product);
+  result -= product;
+  if (b_.rows() > 0) result -= b_.transpose() * state.force;
+}
+
+void Stepper::acceleration(Vector& result) const {
+  if (!path_) {
+    result = now_.acceleration;
+    return;
+  }
+  Vector force(bulk_.unknowns);
+  forces_at(now_, force);
+  result.resize(bulk_.unknowns);
+  accelerator_.solve(force, result);
+}
+
+void Stepper::start(State state) {
+  now_ = std::move(state);
+  const Eigen::Index n = bulk_.unknowns;
+  for (Vector* v : {&force_now_, &force_next_, &stiff_now_, &stiff_next_, &momentum_now_, &momentum_next_, &right_, &increment_, &work_,
+                    &work2_, &damped_})
+    v->setZero(n);
+  contact_.setZero(b_.rows());
+  impulse_.setZero(b_.rows());
+  forces_at(now_, work_);
+  now_.acceleration.setZero(n);
+  accelerator_.solve(work_, now_.acceleration);
+  next_ = now_;
+  model_.add_force(now_.time, force_now_);
+  bulk_.stiffness.multiply(now_.displacement, stiff_now_);
+  bulk_.mass.multiply(now_.velocity, momentum_now_);
+  const InterfaceProblem blocks = blocks_of(model_, behaviours_);
+  interface_energy_.update(blocks, now_.opening, now_.history);
+  energies_ = {};
+  energies_.kinetic = 0.5 * now_.velocity.dot(momentum_now_);
+  energies_.strain = 0.5 * now_.displacement.dot(stiff_now_);
+  energies_.stored = interface_energy_.stored;
+  energies_.interface_dissipated = interface_energy_.dissipated;
+  initial_energy_ = energies_.kinetic + energies_.strain + energies_.stored + energies_.interface_dissipated;
+}
+
+/// Openings that prescribed motions make by themselves, at the end of a step.
+void Stepper::move_gap(double from, double to) {
+  gap_ = still_gap_;
+  gap_step_.setZero();
+  for (const PrescribedMotion& motion : model_.motions) {
+    const double now = motion.function->value(to);
+    gap_ += motion.opening * now;
+    gap_step_ += motion.opening * (now - motion.function->value(from));
+  }
+}
+
+void Stepper::right_hand_side(const Level& level) {
+  const double dt = level.step;
+  const double* f0 = force_now_.data();
+  const double* f1 = force_next_.data();
+  const double* ku = stiff_now_.data();
+  const Eigen::Index n = bulk_.unknowns;
+  if (path_) {
+    const double* mv = momentum_now_.data();
+    for (Eigen::Index i = 0; i < n; ++i) right_[i] = f0[i] + f1[i] - 2 * ku[i] + (4 / dt) * mv[i];
+    return;
+  }
+  const double w = 1 - options_.scheme.alpha_f, ratio = options_.scheme.alpha_f / w;
+  for (Eigen::Index i = 0; i < n; ++i) {
+    right_[i] = f1[i] + ratio * f0[i] - ku[i] / w;
+    work_[i] = level.mass_velocity * now_.velocity[i] + level.mass_acceleration * now_.acceleration[i];
+  }
+  bulk_.mass.multiply(work_, work2_);
+  right_ += work2_;
+  if (!bulk_.damping.zero()) {
+    for (Eigen::Index i = 0; i < n; ++i)
+      work_[i] = level.damping_velocity * now_.velocity[i] + level.damping_acceleration * now_.acceleration[i];
+    bulk_.damping.multiply(work_, work2_);
+    right_ -= work2_;
+  }
+  if (ratio != 0 && b_.rows() > 0) right_ -= ratio * (b_.transpose() * now_.force);
+}
+
+void Stepper::kinematics(const Level& level) {
+  const double dt = level.step;
+  const Scheme& s = options_.scheme;
+  const Eigen::Index n = bulk_.unknowns;
+  const double* du = increment_.data();
+  const double *u0 = now_.displacement.data(), *v0 = now_.velocity.data(), *a0 = now_.acceleration.data();
+  double *u1 = next_.displacement.data(), *v1 = next_.velocity.data(), *a1 = next_.acceleration.data();
+  if (path_) {
+    for (Eigen::Index i = 0; i < n; ++i) u1[i] = u0[i] + du[i], v1[i] = (2 / dt) * du[i] - v0[i];
+    return;
+  }
+  for (Eigen::Index i = 0; i < n; ++i) {
+    u1[i] = u0[i] + du[i];
+    a1[i] = (du[i] - dt * v0[i]) / (s.beta * dt * dt) - (1 / (2 * s.beta) - 1) * a0[i];
+    v1[i] = v0[i] + dt * ((1 - s.gamma) * a0[i] + s.gamma * a1[i]);
+  }
+}
+
+void Stepper::apply_impact(Level& level) {
+  const InterfaceProblem& problem = level.solver->problem();
+  normals_.clear();
+  tangents_.clear();
+  double largest = 0;
+  for (Eigen::Index i = 0; i < contact_.size(); ++i) largest = std::max(largest, std::abs(contact_[i]));
+  for (const Block& block : problem.blocks) {
+    const int n = block.batch.points, normal = block.first + block.batch.normal();
+    const double friction = block.cone != nullptr ? block.cone->friction() : 0;
+    for (int i = 0; i < n; ++i) {
+      const double pressure = -contact_[normal + i];
+      if (!(pressure > 1e-12 * largest)) continue;
+      normals_.push_back(normal + i);
+      for (int c = 0; friction > 0 && c < block.batch.components - 1; ++c)
+        if (std::abs(contact_[block.first + c * n + i]) < friction * pressure * (1 - 1e-9)) tangents_.push_back(block.first + c * n + i);
+    }
+  }
+  if (normals_.empty()) return;
+  const double weight = (1 - options_.scheme.alpha_f) / (1 - options_.scheme.alpha_m);
+  Impact data;
+  data.mass = mass_spread_.get();
+  data.dynamic = level.dynamic.get();
+  data.b = bulk_.small ? &dense_b_ : nullptr;
+  data.sparse_b = &b_;
+  std::swap(data.normals, normals_);
+  std::swap(data.tangents, tangents_);
+  data.force = &contact_;
+  data.velocity_weight = options_.scheme.gamma * level.step * weight;
+  const double before = 0.5 * small::dot(next_.velocity.size(), next_.velocity.data(), momentum_next_.data());
+  impulse_.setZero();
+  impact_.apply(data, next_.velocity, next_.acceleration, impulse_, impact_scratch_);
+  std::swap(data.normals, normals_);
+  std::swap(data.tangents, tangents_);
+  bulk_.mass.multiply(next_.velocity, momentum_next_);
+  impact_loss_ += before - 0.5 * small::dot(next_.velocity.size(), next_.velocity.data(), momentum_next_.data());
+  if (impact_.force_includes_impulse())
+    for (Eigen::Index i = 0; i < contact_.size(); ++i) contact_[i] += impulse_[i] / level.step;
+}
+
+bool Stepper::try_step(Level& level) {
+  if (level.solver == nullptr) {
+    why_ = level.why;
+    return false;
+  }
+  next_.time = now_.time + level.step;
+  std::fill_n(force_next_.data(), force_next_.size(), 0.0);
+  model_.add_force(next_.time, force_next_);
+  if (gap_moves_) move_gap(now_.time, next_.time);
+  right_hand_side(level);
+  last_ = &level.solver->problem();
+  const Outcome outcome = level.solver->solve(right_, now_.displacement, now_.opening, now_.history, increment_);
+  counts_.iterations += outcome.iterations;
+  counts_.cycles += outcome.cycles;
+  if (!outcome.converged) {
+    why_ = outcome.why;
+    return false;
+  }
+  const InterfaceSolution& solution = level.solver->solution();
+  kinematics(level);
+  const double probe = small::dot(increment_.size(), increment_.data(), increment_.data());
+  if (!std::isfinite(probe)) {
+    why_ = "the displacement is not finite";
+    return false;
+  }
+  std::copy_n(solution.opening.data(), solution.opening.size(), next_.opening.data());
+  std::copy_n(solution.now.data(), solution.now.size(), next_.history.data());
+  bulk_.stiffness.multiply(next_.displacement, stiff_next_);
+  bulk_.mass.multiply(next_.velocity, momentum_next_);
+  if (path_) {
+    for (const Block& block : last_->blocks)  // end-of-step tractions are what is reported
+      for (int c = 0; c < block.batch.components; ++c)
+        for (int i = 0, row = block.first + c * block.batch.points; i < block.batch.points; ++i, ++row) {
+          next_.force[row] = solution.newton.end[row] * block.area[static_cast<std::size_t>(i)];
+          next_.mean_force[row] = 0.5 * solution.force[row];
+        }
+  } else {
+    std::copy_n(solution.force.data(), contact_.size(), contact_.data());
+    if (impacts_) apply_impact(level);
+    std::copy_n(contact_.data(), contact_.size(), next_.force.data());
+    std::copy_n(contact_.data(), contact_.size(), next_.mean_force.data());
+  }
+  return true;
+}
+
+void Stepper::book_energies(const Level& level) {
+  const Eigen::Index n = bulk_.unknowns;
+  const double* du = increment_.data();
+  double external = 0;
+  for (Eigen::Index i = 0; i < n; ++i) external += (force_now_[i] + force_next_[i]) * du[i];
+  energies_.external += 0.5 * external;
+  if (gap_moves_)  // what moving supports put in through the interfaces
+    for (Eigen::Index i = 0; i < gap_step_.size(); ++i)
+      energies_.external += (path_ ? next_.mean_force[i] : 0.5 * (now_.force[i] + next_.force[i])) * gap_step_[i];
+  if (!bulk_.damping.zero()) {  // work of the damping force, mean of both ends (average acceleration: C du/dt . du)
+    for (Eigen::Index i = 0; i < n; ++i) work_[i] = 0.5 * (now_.velocity[i] + next_.velocity[i]);
+    if (path_)
+      for (Eigen::Index i = 0; i < n; ++i) work_[i] = du[i] / level.step;
+    bulk_.damping.multiply(work_, damped_);
+    energies_.damping += small::dot(n, damped_.data(), du);
+  }
+  energies_.kinetic = 0.5 * small::dot(n, next_.velocity.data(), momentum_next_.data());
+  energies_.strain = 0.5 * small::dot(n, next_.displacement.data(), stiff_next_.data());
+  interface_energy_.update(*last_, next_.opening, next_.history);
+  energies_.stored = interface_energy_.stored;
+  energies_.interface_dissipated = interface_energy_.dissipated;
+  energies_.impact = impact_loss_;
+  energies_.residual = energies_.kinetic + energies_.strain + energies_.stored + energies_.interface_dissipated + energies_.damping +
+                       energies_.impact - energies_.external - initial_energy_;
+  largest_external_ = std::max(largest_external_, std::abs(energies_.external));
+}
+
+bool Stepper::substep(int halving) {
+  Level& now = level(halving);
+  const double impact_before = impact_loss_;
+  if (try_step(now)) {
+    book_energies(now);
+    std::swap(now_, next_);
+    std::swap(force_now_, force_next_);
+    std::swap(stiff_now_, stiff_next_);
+    std::swap(momentum_now_, momentum_next_);
+    counts_.deepest = std::max(counts_.deepest, halving);
+    return true;
+  }
+  impact_loss_ = impact_before;
+  if (halving >= options_.halvings) return false;
+  ++counts_.retries;
+  return substep(halving + 1) && substep(halving + 1);
+}
+
+bool Stepper::advance() {
+  const double end = now_.time + options_.step;
+  if (!substep(0)) return false;
+  now_.time = end;
+  ++counts_.steps;
+  return true;
+}
+
+}  // namespace uplift

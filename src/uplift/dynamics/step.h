@@ -1,0 +1,95 @@
+#pragma once
+#include <functional>
+#include <memory>
+#include <string>
+#include <vector>
+
+#include "uplift/contact/impact.h"
+#include "uplift/dynamics/condensed.h"
+#include "uplift/dynamics/energy.h"
+#include "uplift/dynamics/scheme.h"
+
+namespace uplift {
+
+/// How a dynamic stage marches.
+struct StepOptions {
+  Scheme scheme;
+  double step = 0;           // s
+  bool path_average = true;  // only with the average acceleration rule and a method that does not constrain
+  int halvings = 8;
+  bool monolithic = false;   // the oracle: Newton on all unknowns instead of the condensed step
+};
+
+struct StepCounts {
+  long steps = 0, retries = 0, iterations = 0, cycles = 0;
+  int deepest = 0;  // largest number of halvings that was needed
+};
+
+/// Marches a state in time. Everything that depends on the step is made once per halving level and kept.
+class Stepper {
+ public:
+  Stepper(const Model& model, const Bulk& bulk, const Sparse& b, const Vector& gap, const Behaviours& behaviours,
+          const ContactMethod& method, const ImpactRule& impact, const LinearSolver& solver, const StepOptions& options,
+          LinearCounts& counts);
+  ~Stepper();
+  /// Takes over displacement, velocity, opening and history; the initial acceleration follows from the balance.
+  void start(State state);
+  /// One step of the nominal size. A part that fails is halved and tried again; false when the smallest part fails too: the state stays that of
+  /// the last success and `why`, `failed` tell.
+  bool advance();
+  const State& state() const { return now_; }
+  const Energies& energies() const { return energies_; }
+  const StepCounts& counts() const { return counts_; }
+  const std::string& why() const { return why_; }
+  /// The interface problem of the last try.
+  const InterfaceProblem* problem() const { return last_; }
+  /// Acceleration from the balance at the end of the step, with end-of-step tractions [m/s2].
+  void acceleration(Vector& result) const;
+  bool path_averaged() const { return path_; }
+  /// Largest external work met [J], for the scale of the energy error.
+  double largest_external() const { return largest_external_; }
+  double initial_energy() const { return initial_energy_; }
+
+ private:
+  struct Level;
+  Level& level(int halving);
+  bool try_step(Level& level);
+  bool substep(int halving);
+  void move_gap(double from, double to);
+  void right_hand_side(const Level& level);
+  void kinematics(const Level& level);
+  void apply_impact(Level& level);
+  void book_energies(const Level& level);
+  void forces_at(const State& state, Vector& result) const;
+
+  const Model& model_;
+  const Bulk& bulk_;
+  const Sparse& b_;
+  const Vector& still_gap_;   // initial gaps
+  Vector gap_, gap_step_;     // with the prescribed motions at the end of the step, and their change in the step
+  const Behaviours& behaviours_;
+  const ContactMethod& method_;
+  const ImpactRule& impact_;
+  const LinearSolver& solver_;
+  StepOptions options_;
+  LinearCounts& linear_;
+  bool path_ = false, impacts_ = false, gap_moves_ = false;
+  Accelerator accelerator_;
+  std::unique_ptr<Spread> mass_spread_;
+  Matrix dense_b_;
+  std::vector<std::unique_ptr<Level>> levels_;
+
+  State now_, next_;
+  Vector force_now_, force_next_, stiff_now_, stiff_next_, momentum_now_, momentum_next_;  // f, K u, M v
+  Vector right_, increment_, work_, work2_, damped_, contact_, impulse_;
+  ImpactScratch impact_scratch_;
+  std::vector<int> normals_, tangents_;
+  Energies energies_;
+  InterfaceEnergy interface_energy_;
+  double impact_loss_ = 0, initial_energy_ = 0, largest_external_ = 0;
+  StepCounts counts_;
+  std::string why_;
+  const InterfaceProblem* last_ = nullptr;
+};
+
+}  // namespace uplift

@@ -1,0 +1,95 @@
+#include "uplift/elements/beam.h"
+
+#include <cassert>
+
+#include "uplift/math/quadrature.h"
+#include "uplift/math/shapes.h"
+
+namespace uplift {
+
+namespace {
+
+constexpr std::array<int, 4> bending_rows{1, 2, 4, 5};  // (w1, r1, w2, r2) inside (u1, w1, r1, u2, w2, r2)
+
+void add_bending(const Mat4& bending, Matrix& local) {
+  for (int i = 0; i < 4; ++i)
+    for (int j = 0; j < 4; ++j) local(bending_rows[i], bending_rows[j]) += bending(i, j);
+}
+
+}  // namespace
+
+Beam::Beam(int a, int b, Vec2 position_a, Vec2 position_b, BeamSection section)
+    : nodes_{a, b}, section_(section), length_((position_b - position_a).norm()), axes_(Matrix::Zero(6, 6)) {
+  assert(length_ > 0 && section.bending > 0);
+  const Vec2 x = (position_b - position_a) / length_;
+  for (int end = 0; end < 6; end += 3) {
+    axes_.block<2, 2>(end, end) << x.x(), x.y(), -x.y(), x.x();
+    axes_(end + 2, end + 2) = 1;
+  }
+}
+
+Matrix Beam::to_global(const Matrix& local) const { return axes_.transpose() * local * axes_; }
+
+Matrix Beam::local_stiffness() const {
+  const double l = length_, phi = section_.shear_ratio(l), c = section_.bending / (1 + phi) / (l * l * l);
+  Mat4 bending;
+  bending << 12, 6 * l, -12, 6 * l,                                   //
+      6 * l, (4 + phi) * l * l, -6 * l, (2 - phi) * l * l,            //
+      -12, -6 * l, 12, -6 * l,                                        //
+      6 * l, (2 - phi) * l * l, -6 * l, (4 + phi) * l * l;
+  Matrix local = Matrix::Zero(6, 6);
+  add_bending(c * bending, local);
+  if (section_.axial) {
+    const double k = *section_.axial / l;
+    local(0, 0) = local(3, 3) = k;
+    local(0, 3) = local(3, 0) = -k;
+  }
+  return local;
+}
+
+Matrix Beam::local_mass() const {
+  Matrix local = Matrix::Zero(6, 6);
+  const double l = length_, m = section_.mass_per_length * l, rotary = section_.rotary_per_length * l;
+  if (section_.mass == BeamSection::Mass::lumped) local.diagonal() << m / 2, m / 2, rotary / 2, m / 2, m / 2, rotary / 2;
+  if (section_.mass == BeamSection::Mass::consistent) {
+    Mat4 bending = Mat4::Zero();
+    const Quadrature gauss = gauss_legendre(4);  // exact: the integrand has degree 6
+    for (int i = 0; i < gauss.point.size(); ++i) {
+      const BeamShape shape = beam_shape((1 + gauss.point[i]) / 2, l, section_.shear_ratio(l));
+      bending += gauss.weight[i] / 2 *
+                 (m * shape.deflection * shape.deflection.transpose() + rotary * shape.rotation * shape.rotation.transpose());
+    }
+    add_bending(bending, local);
+    local(0, 0) = local(3, 3) = m / 3;
+    local(0, 3) = local(3, 0) = m / 6;
+  }
+  return local;
+}
+
+void Beam::form(Local local) const {
+  if (local.stiffness) *local.stiffness = to_global(local_stiffness());
+  if (local.mass) *local.mass = to_global(local_mass());
+  if (local.damping) local.damping->setZero(6, 6);
+}
+
+double Beam::axial_force(const Vector& displacement) const {
+  if (!section_.axial) return 0;
+  const Vector local = axes_ * displacement;
+  return *section_.axial / length_ * (local[3] - local[0]);
+}
+
+Vector Beam::end_forces(const Vector& displacement) const { return local_stiffness() * (axes_ * displacement); }
+
+void Beam::geometric(double axial, Matrix& stiffness) const {
+  Mat4 bending = Mat4::Zero();
+  const Quadrature gauss = gauss_legendre(3);  // exact: the integrand has degree 4
+  for (int i = 0; i < gauss.point.size(); ++i) {
+    const BeamShape shape = beam_shape((1 + gauss.point[i]) / 2, length_, section_.shear_ratio(length_));
+    bending += axial * length_ * gauss.weight[i] / 2 * shape.slope * shape.slope.transpose();
+  }
+  Matrix local = Matrix::Zero(6, 6);
+  add_bending(bending, local);
+  stiffness = to_global(local);
+}
+
+}  // namespace uplift

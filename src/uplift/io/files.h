@@ -1,0 +1,32 @@
+#pragma once
+#include <string>
+#include <string_view>
+
+namespace uplift {
+
+/// The whole file. Throws InputError when it cannot be read.
+std::string read_file(const std::string& path);
+
+/// A folder of results that appears complete or not at all: files are collected beside it, then it is moved into place. What stood there before is
+/// moved to NAME.1, NAME.2, ...: results are never overwritten or mixed.
+class ResultFolder {
+ public:
+  /// Makes the working folder beside `path`. Throws InputError when that is impossible.
+  explicit ResultFolder(std::string path);
+  ResultFolder(const ResultFolder&) = delete;
+  ResultFolder& operator=(const ResultFolder&) = delete;
+  /// Removes the working folder when finish() was not reached.
+  ~ResultFolder();
+
+  /// Writes a file, `name` may hold a subfolder. Throws InputError when the disk refuses.
+  void write(const std::string& name, std::string_view text);
+  /// Moves everything into place. Returns where earlier results went; empty when there were none.
+  std::string finish();
+  const std::string& path() const { return path_; }
+
+ private:
+  std::string path_, work_;
+  bool finished_ = false;
+};
+
+}  // namespace uplift

@@ -1,0 +1,32 @@
+#include "uplift/io/histories.h"
+
+#include <cmath>
+
+#include "uplift/io/numbers.h"
+
+namespace uplift {
+
+bool finite_row(const RunResult& result, std::size_t row) {
+  for (const std::vector<double>& column : result.table)
+    if (!std::isfinite(column[row])) return false;
+  return true;
+}
+
+std::string histories_csv(const RunResult& result) {
+  std::string text = "time [s]";
+  for (const Request& column : result.columns) text += "," + column.name + " [" + column.unit + "]";
+  text += '\n';
+  const std::size_t rows = result.table.empty() ? 0 : result.table[0].size();
+  text.reserve(text.size() + rows * result.table.size() * 13);
+  for (std::size_t row = 0; row < rows; ++row) {
+    if (!finite_row(result, row)) continue;
+    for (std::size_t k = 0; k < result.table.size(); ++k) {
+      if (k > 0) text += ',';
+      append_number(text, result.table[k][row]);
+    }
+    text += '\n';
+  }
+  return text;
+}
+
+}  // namespace uplift

@@ -1,0 +1,76 @@
+#include "uplift/io/summary.h"
+
+#include "uplift/io/json_writer.h"
+
+namespace uplift {
+namespace {
+
+void write_peak(JsonWriter& json, std::string_view name, double value, double time, std::string_view unit) {
+  json.key(name).begin_object().member("value", value).member("time", time).member("unit", unit).end_object();
+}
+
+void write_peak(JsonWriter& json, std::string_view name, const Peak& peak) { write_peak(json, name, peak.value, peak.time, peak.unit); }
+
+void write_run(JsonWriter& json, const RunResult& run, const Agreement* agreement) {
+  json.begin_object();
+  json.member("name", run.name).member("label", run.label).member("group", run.group);
+  json.member("status", to_string(run.status)).member("reason", run.reason);
+  json.member("expected", run.expected_to_fail ? "fails" : "completes");
+  json.member("steps", run.counts.steps).member("retries", run.counts.retries).member("iterations", run.counts.iterations);
+  json.member("cycles", run.counts.cycles).member("factorisations", run.counts.factorisations).member("back_solves", run.counts.back_solves);
+  json.member("wall_seconds", run.wall).member("end_time", run.end_time);
+  write_peak(json, "max_uplifted_ratio", run.max_uplifted_ratio);
+  write_peak(json, "max_opening", run.max_opening);
+  write_peak(json, "max_base_moment", run.max_base_moment);
+  write_peak(json, "max_base_shear", run.max_base_shear);
+  write_peak(json, "max_pressure", run.max_pressure);
+  json.member("first_uplift", run.first_uplift).member("time_uplifted", run.time_uplifted).member("full_loss_of_contact", run.full_loss);
+  json.member("max_penetration", run.max_penetration);
+  write_peak(json, "energy_created", run.energy_created, run.energy_created_time, "J");
+  write_peak(json, "energy_lost", run.energy_lost, run.energy_lost_time, "J");
+  json.member("energy_scale", run.energy_scale).member("energy_created_share", created_share(run));
+  const Energies& end = run.final_energy;
+  json.key("final_energy").begin_object().member("unit", "J");
+  json.member("kinetic", end.kinetic).member("strain", end.strain).member("stored", end.stored).member("interface_dissipated", end.interface_dissipated);
+  json.member("damping", end.damping).member("impact", end.impact).member("external", end.external).member("residual", end.residual).end_object();
+  json.key("peaks").begin_object();
+  for (const Peak& peak : run.peaks) write_peak(json, peak.name, peak);
+  json.end_object();
+  if (agreement)
+    json.key("agreement").begin_object().member("result", to_string(agreement->word)).member("deviation", agreement->deviation).member("column", agreement->column).end_object();
+  json.key("notes").texts(run.notes);
+  json.end_object();
+}
+
+}  // namespace
+
+std::string summary_json(const Provenance& from, const std::vector<RunResult>& runs, const ComparisonSummary* compared) {
+  JsonWriter json(0, 2);
+  json.begin_object();
+  json.member("format", "uplift-summary-1").member("version", from.version).member("title", from.title).member("command", from.command);
+  json.member("created", from.created);
+  json.key("case").begin_object().member("file", from.case_file).member("sha256", from.case_hash).end_object();
+  json.key("inputs").begin_array();
+  for (const auto& [file, hash] : from.inputs) json.begin_object().member("file", file).member("sha256", hash).end_object();
+  json.end_array();
+  json.key("runs").begin_array();
+  for (std::size_t i = 0; i < runs.size(); ++i) write_run(json, runs[i], compared ? &compared->agreement[i] : nullptr);
+  json.end_array();
+  if (compared) {
+    json.member("band", compared->band);
+    json.key("stiffness_sweep").begin_array();
+    for (const SweepRow& row : compared->sweep)
+      json.begin_object()
+          .member("k_F", row.ratio)
+          .member("created_share_path", row.path)
+          .member("status_path", row.path_status)
+          .member("created_share_end", row.end)
+          .member("status_end", row.end_status)
+          .end_object();
+    json.end_array();
+  }
+  json.end_object();
+  return json.take() + "\n";
+}
+
+}  // namespace uplift

@@ -1,0 +1,58 @@
+#pragma once
+#include <memory>
+#include <span>
+
+#include "uplift/base/catalog.h"
+
+// Interface laws. Axes of a point: (t, n) in 2D, (t1, t2, n) in 3D; opening [m] > 0 apart, traction [Pa] > 0 tension.
+// A call takes all points of one interface, as a structure of arrays: component c of point i stands at [c * points + i], the normal
+// component is the last one. Memory of a law: variable h of point i stands at [h * points + i]. Laws are const; memory is passed in and out.
+namespace uplift {
+
+/// The batch that one call handles.
+struct Batch {
+  int points = 0;
+  int components = 2;  // 1: normal only, 2: (t, n), 3: (t1, t2, n)
+  double step = 0;     // s; 0 in statics (rates are zero then)
+  int normal() const { return (components - 1) * points; }  // offset of the normal component
+};
+
+/// What a law returns for a batch. Null is not wanted. `slope` is d traction_r / d opening_c at [(r * components + c) * points + i] [Pa/m].
+struct Reply {
+  double* traction = nullptr;  // Pa
+  double* slope = nullptr;     // Pa/m
+  double* now = nullptr;       // memory at the end of the step
+  double* end = nullptr;       // `mean` only: traction at the end of the step [Pa]
+};
+
+/// A traction law: traction from opening, with memory.
+class InterfaceLaw {
+ public:
+  virtual ~InterfaceLaw() = default;
+  /// Number of memory variables of a point; all start at zero.
+  virtual int num_history(int components) const = 0;
+  /// Traction at the end of a step that goes from opening `from` to `to`. In statics and dynamics (`traction = "end"`).
+  virtual void respond(const Batch&, const double* from, const double* to, const double* old, Reply) const = 0;
+  /// Path-averaged traction of the step, 1/(to - from) * integral of t d(opening) along the law's own path (THEORY section 4), and its slope with respect to `to`.
+  virtual void mean(const Batch&, const double* from, const double* to, const double* old, Reply) const = 0;
+  /// Energy per area [J/m2] that is stored at this opening and memory, and that was dissipated since the beginning. Either may be null.
+  virtual void energy(const Batch&, const double* opening, const double* history, double* stored, double* dissipated) const = 0;
+  /// Stiffness of a closed joint in compression [Pa/m], per component (normal last): for k*F_ii, the static base and suggestions.
+  virtual void closed_stiffness(int components, double* stiffness) const = 0;
+};
+
+/// A set that only bounds the contact force (p per point, N or Pa): the unilateral ray, the Coulomb cone. `force` and `trial` use the tension-positive
+/// sign: compression is negative. The same batch layout.
+class Cone {
+ public:
+  virtual ~Cone() = default;
+  /// Friction coefficient; 0 for a frictionless contact.
+  virtual double friction() const = 0;
+};
+
+std::span<const Entry<InterfaceLaw>* const> law_catalog();
+std::span<const Entry<Cone>* const> cone_catalog();
+/// Laws and cones together, as the case file sees them (`[interface.law]`).
+std::span<const PartInfo* const> interface_behaviours();
+
+}  // namespace uplift

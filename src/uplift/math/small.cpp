@@ -1,0 +1,60 @@
+#include "uplift/math/small.h"
+
+#include <cmath>
+#include <utility>
+
+namespace uplift::small {
+
+bool cholesky(std::ptrdiff_t n, double* a) {
+  for (std::ptrdiff_t j = 0; j < n; ++j) {
+    double pivot = a[j * n + j];
+    const double scale = pivot;
+    for (std::ptrdiff_t k = 0; k < j; ++k) pivot -= a[k * n + j] * a[k * n + j];
+    if (!(pivot > 1e-14 * scale) || !(scale > 0)) return false;
+    const double root = std::sqrt(pivot);
+    a[j * n + j] = root;
+    for (std::ptrdiff_t i = j + 1; i < n; ++i) {
+      double value = a[j * n + i];
+      for (std::ptrdiff_t k = 0; k < j; ++k) value -= a[k * n + i] * a[k * n + j];
+      a[j * n + i] = value / root;
+    }
+  }
+  return true;
+}
+
+void cholesky_solve(std::ptrdiff_t n, const double* l, double* b) {
+  for (std::ptrdiff_t j = 0; j < n; ++j) {
+    b[j] /= l[j * n + j];
+    for (std::ptrdiff_t i = j + 1; i < n; ++i) b[i] -= l[j * n + i] * b[j];
+  }
+  for (std::ptrdiff_t j = n; j-- > 0;) {
+    for (std::ptrdiff_t i = j + 1; i < n; ++i) b[j] -= l[j * n + i] * b[i];
+    b[j] /= l[j * n + j];
+  }
+}
+
+bool gauss_solve(std::ptrdiff_t n, double* a, double* b) {
+  for (std::ptrdiff_t j = 0; j < n; ++j) {
+    std::ptrdiff_t best = j;
+    for (std::ptrdiff_t i = j + 1; i < n; ++i)
+      if (std::abs(a[j * n + i]) > std::abs(a[j * n + best])) best = i;
+    if (!(std::abs(a[j * n + best]) > 0)) return false;
+    if (best != j) {
+      for (std::ptrdiff_t k = j; k < n; ++k) std::swap(a[k * n + j], a[k * n + best]);
+      std::swap(b[j], b[best]);
+    }
+    for (std::ptrdiff_t i = j + 1; i < n; ++i) {
+      const double factor = a[j * n + i] / a[j * n + j];
+      if (factor == 0) continue;
+      for (std::ptrdiff_t k = j + 1; k < n; ++k) a[k * n + i] -= factor * a[k * n + j];
+      b[i] -= factor * b[j];
+    }
+  }
+  for (std::ptrdiff_t j = n; j-- > 0;) {
+    b[j] /= a[j * n + j];
+    for (std::ptrdiff_t i = 0; i < j; ++i) b[i] -= a[j * n + i] * b[j];
+  }
+  return true;
+}
+
+}  // namespace uplift::small

@@ -1,0 +1,94 @@
+#pragma once
+#include <cstddef>
+
+#include "uplift/math/linalg.h"
+
+// Kernels for the few unknowns of an interface under a rigid body and for small bulks: plain loops over contiguous columns that the compiler
+// turns into vector code; Eigen's general products cost more than the arithmetic at these sizes.
+namespace uplift::small {
+
+inline double dot(std::ptrdiff_t n, const double* a, const double* b) {
+  double sum = 0;
+#pragma omp simd reduction(+ : sum)
+  for (std::ptrdiff_t i = 0; i < n; ++i) sum += a[i] * b[i];
+  return sum;
+}
+
+inline double sum_of_squares(std::ptrdiff_t n, const double* a) { return dot(n, a, a); }
+
+/// y += factor * x
+inline void add(std::ptrdiff_t n, double factor, const double* x, double* y) {
+#pragma omp simd
+  for (std::ptrdiff_t i = 0; i < n; ++i) y[i] += factor * x[i];
+}
+
+/// y = A x, A column-major n x m
+inline void multiply(const Matrix& a, const double* x, double* y) {
+  const std::ptrdiff_t n = a.rows(), m = a.cols();
+  const double* column = a.data();
+  for (std::ptrdiff_t i = 0; i < n; ++i) y[i] = 0;
+  for (std::ptrdiff_t j = 0; j < m; ++j, column += n) add(n, x[j], column, y);
+}
+
+/// y += A x
+inline void multiply_add(const Matrix& a, const double* x, double* y) {
+  const std::ptrdiff_t n = a.rows(), m = a.cols();
+  const double* column = a.data();
+  for (std::ptrdiff_t j = 0; j < m; ++j, column += n) add(n, x[j], column, y);
+}
+
+/// y += A^T x
+inline void multiply_transposed_add(const Matrix& a, const double* x, double* y) {
+  const std::ptrdiff_t n = a.rows(), m = a.cols();
+  const double* column = a.data();
+  for (std::ptrdiff_t j = 0; j < m; ++j, column += n) y[j] += dot(n, column, x);
+}
+
+/// In-place Cholesky factor (lower, column-major) of a small symmetric matrix; false when it is not positive definite.
+bool cholesky(std::ptrdiff_t n, double* a);
+/// Solves L L^T x = b in place.
+void cholesky_solve(std::ptrdiff_t n, const double* l, double* b);
+/// Solves A x = b in place by Gauss elimination with row pivoting; A is destroyed; false when singular.
+bool gauss_solve(std::ptrdiff_t n, double* a, double* b);
+
+/// One pass over the points: gradient g[r] += sum C[:,r] p and H[r,s] += sum C[:,r] k C[:,s] (full symmetric, column-major R x R), R columns with stride `rows`.
+template <int R>
+void gradient_and_gram(std::ptrdiff_t n, const double* c, std::ptrdiff_t rows, const double* p, const double* k, double* g, double* h) {
+  double sum[R] = {}, gram[R * (R + 1) / 2] = {};
+  const double* column[R];
+  for (int r = 0; r < R; ++r) column[r] = c + r * rows;
+  if constexpr (R == 1) {
+    double s0 = 0, a0 = 0;
+#pragma omp simd reduction(+ : s0, a0)
+    for (std::ptrdiff_t i = 0; i < n; ++i) s0 += column[0][i] * p[i], a0 += column[0][i] * k[i] * column[0][i];
+    sum[0] = s0, gram[0] = a0;
+  } else if constexpr (R == 2) {
+    double s0 = 0, s1 = 0, a0 = 0, a1 = 0, a2 = 0;
+#pragma omp simd reduction(+ : s0, s1, a0, a1, a2)
+    for (std::ptrdiff_t i = 0; i < n; ++i) {
+      const double x = column[0][i], y = column[1][i], kx = k[i] * x, ky = k[i] * y;
+      s0 += x * p[i], s1 += y * p[i];
+      a0 += x * kx, a1 += y * kx, a2 += y * ky;
+    }
+    sum[0] = s0, sum[1] = s1, gram[0] = a0, gram[1] = a1, gram[2] = a2;
+  } else {
+    double s0 = 0, s1 = 0, s2 = 0, a0 = 0, a1 = 0, a2 = 0, a3 = 0, a4 = 0, a5 = 0;
+#pragma omp simd reduction(+ : s0, s1, s2, a0, a1, a2, a3, a4, a5)
+    for (std::ptrdiff_t i = 0; i < n; ++i) {
+      const double x = column[0][i], y = column[1][i], w = column[2][i], kx = k[i] * x, ky = k[i] * y, kw = k[i] * w;
+      s0 += x * p[i], s1 += y * p[i], s2 += w * p[i];
+      a0 += x * kx, a1 += y * kx, a2 += w * kx, a3 += y * ky, a4 += w * ky, a5 += w * kw;
+    }
+    sum[0] = s0, sum[1] = s1, sum[2] = s2;
+    gram[0] = a0, gram[1] = a1, gram[2] = a2, gram[3] = a3, gram[4] = a4, gram[5] = a5;
+  }
+  for (int s = 0, entry = 0; s < R; ++s) {
+    g[s] += sum[s];
+    for (int r = s; r < R; ++r, ++entry) {
+      h[s * R + r] += gram[entry];
+      if (r != s) h[r * R + s] += gram[entry];
+    }
+  }
+}
+
+}  // namespace uplift::small

@@ -1,0 +1,108 @@
+#pragma once
+#include <memory>
+#include <string>
+#include <string_view>
+#include <utility>
+#include <vector>
+
+#include "uplift/interface/joint.h"
+#include "uplift/model/model.h"
+
+namespace uplift {
+
+enum Dof { ux = 0, uy = 1, rz = 2 };
+std::string_view to_string(Dof dof);
+
+/// Damping of the bulk. Stiffness damping never acts across an interface: the interface's stiffness has no part in it.
+struct BulkDamping {
+  double alpha = 0;              // 1/s, mass-proportional
+  double beta = 0;               // s, stiffness-proportional (all parts)
+  std::vector<double> modal;     // damping ratios of the first modes of the bonded model (last one repeated if `modal_count` is larger)
+  int modal_count = 0;
+};
+/// Alpha and beta with the given damping ratios at two frequencies [Hz]: ratio = alpha/(2 w) + beta w/2.
+BulkDamping rayleigh(double frequency_1, double ratio_1, double frequency_2, double ratio_2);
+
+struct InterfaceSpec {
+  std::string name;
+  int components = 2;
+  std::vector<JointPoint> points;
+  Vec2 reference = Vec2::Zero();
+  std::unique_ptr<const InterfaceLaw> law;  // one of the two
+  std::unique_ptr<const Cone> cone;
+  std::string behaviour;
+};
+
+/// Collects the parts of a model, then eliminates supports, rigid bodies and inextensible beams and assembles. Mistakes that only show here
+/// (repeated or contradicting constraints, an interface inside out) are thrown as InputError with the place given at add time.
+class ModelBuilder {
+ public:
+  int add_node(std::string name, Vec2 position, Where where);
+  void add_element(std::unique_ptr<const Element> element, Where where);
+  void fix(int node, Dof dof, Where where);
+  void prescribe(int node, Dof dof, std::shared_ptr<const TimeFunction> motion, std::string name, Where where);
+  /// slave's ux, uy, rz follow the master rigidly (small displacements); chains are allowed.
+  void tie_rigid(int master, int slave, Where where);
+  /// The distance of the two nodes does not change (beam without axial flexibility).
+  void inextensible(int a, int b, Where where);
+  void add_interface(InterfaceSpec spec, Where where);
+  /// force pattern: (full unknown, value) pairs; without a function the load is constant
+  void add_load(std::string name, std::vector<std::pair<int, double>> pattern, std::shared_ptr<const TimeFunction> function, bool dead, Where where);
+  /// Gravity [m/s2] on all masses: a dead load.
+  void set_gravity(Vec2 acceleration, Where where);
+  /// Relative-frame ground acceleration: inertia forces -M r a(t).
+  void add_ground_acceleration(Vec2 direction, std::shared_ptr<const TimeFunction> acceleration, std::string name, Where where);
+  void set_damping(BulkDamping damping);
+  /// The finished model; the builder is empty afterwards.
+  Model finish();
+
+ private:
+  struct Support {
+    int node;
+    Dof dof;
+    int motion;  // -1: fixed
+    Where where;
+  };
+  struct Pair {
+    int first, second;  // master, slave or ends of a link
+    Where where;
+  };
+  struct Motion {
+    std::string name;
+    std::shared_ptr<const TimeFunction> function;
+  };
+  struct Load {
+    std::string name;
+    std::vector<std::pair<int, double>> pattern;  // full unknowns
+    std::shared_ptr<const TimeFunction> function;
+    bool dead;
+    Where where;
+  };
+  struct Ground {
+    std::string name;
+    Vec2 direction;
+    std::shared_ptr<const TimeFunction> function;
+  };
+
+  std::string name_of(int full_unknown) const;
+  void eliminate(Model& model, Matrix& motion_shapes) const;
+  void assemble(Assembly& assembly) const;
+  void place_interfaces(Model& model);
+  void refuse_inside_out(const InterfaceSpec& spec, const Where& where) const;
+  std::vector<Vec2> structure_of(const InterfaceSpec& spec, bool upper, std::vector<int>& nodes) const;
+  void make_drives(Model& model, const Matrix& motion_shapes) const;
+
+  std::vector<Node> nodes_;
+  std::vector<std::unique_ptr<const Element>> elements_;
+  std::vector<Support> supports_;
+  std::vector<Pair> ties_, links_;
+  std::vector<Motion> motions_;
+  std::vector<InterfaceSpec> interfaces_;
+  std::vector<Where> interface_where_;
+  std::vector<Load> loads_;
+  std::vector<Ground> grounds_;
+  Vec2 gravity_ = Vec2::Zero();
+  BulkDamping damping_;
+};
+
+}  // namespace uplift

@@ -1,0 +1,101 @@
+// Supports, rigid bodies and inextensible beams as linear constraints on the full unknowns, eliminated exactly:
+//   support       u = prescribed
+//   rigid tie     u_s = u_m + r (-ry, rx),  rotation_s = rotation_m,   (rx, ry) = slave - master     (small displacements)
+//   inextensible  e . (u_b - u_a) = 0,   e the unit vector from a to b
+#include <fmt/format.h>
+
+#include "uplift/model/builder.h"
+#include "uplift/model/eliminate.h"
+
+namespace uplift {
+
+namespace {
+
+constexpr std::string_view repeated =
+    "{}, which follows from the other supports, rigid bodies and inextensible beams: its force would be undetermined; remove it{}";
+
+/// Collects the accepted rows, and turns refusals into messages.
+class ConstraintList {
+ public:
+  explicit ConstraintList(Elimination& elimination) : elimination_(elimination) {}
+
+  /// Returns the number of the row.
+  int add(const Elimination::Row& row, int preferred, const std::string& what, const std::string& advice, const std::vector<std::string>& motions,
+          const Where& where) {
+    switch (elimination_.add(row, preferred)) {
+      case Elimination::Result::independent: break;
+      case Elimination::Result::redundant:
+        throw InputError(where, "", "constraints that do not repeat each other", fmt::format(fmt::runtime(repeated), what, advice));
+      case Elimination::Result::contradictory:
+        throw InputError(where, "", "constraints that agree",
+                         fmt::format("{}, which contradicts the prescribed motion of another constraint (prescribed: {})", what, fmt::join(motions, ", ")));
+    }
+    for (const auto& [unknown, value] : row.unknowns) entries_.emplace_back(rows_, unknown, value);
+    return rows_++;
+  }
+
+  Sparse matrix(int unknowns) const {
+    Sparse matrix(rows_, unknowns);
+    matrix.setFromTriplets(entries_.begin(), entries_.end());
+    return matrix;
+  }
+
+ private:
+  Elimination& elimination_;
+  std::vector<Triplet> entries_;
+  int rows_ = 0;
+};
+
+double size_of(const std::vector<Node>& nodes) {
+  if (nodes.empty()) return 1;
+  Vec2 low = nodes.front().position, high = low;
+  for (const Node& node : nodes) {
+    low = low.cwiseMin(node.position);
+    high = high.cwiseMax(node.position);
+  }
+  const double size = (high - low).norm();
+  return size > 0 ? size : 1;
+}
+
+}  // namespace
+
+void ModelBuilder::eliminate(Model& model, Matrix& motion_shapes) const {
+  const int unknowns = dofs_per_node * static_cast<int>(nodes_.size());
+  std::vector<double> scale(unknowns, 1.0);
+  for (int i = rz; i < unknowns; i += dofs_per_node) scale[i] = 1 / size_of(nodes_);
+  Elimination elimination(scale, static_cast<int>(motions_.size()));
+  ConstraintList list(elimination);
+  std::vector<std::string> names;
+  for (const Motion& motion : motions_) names.push_back(motion.name);
+  const auto at = [](int node, Dof dof) { return dofs_per_node * node + dof; };
+
+  for (const Pair& tie : ties_) {
+    const int m = tie.first, s = tie.second;
+    const Vec2 r = nodes_[s].position - nodes_[m].position;
+    const std::string what = fmt::format("a rigid body that ties \"{}\" to \"{}\"", nodes_[s].name, nodes_[m].name);
+    if (m == s) throw InputError(tie.where, "", "a rigid body of different nodes", what);
+    const int row = list.add({{{at(s, ux), 1}, {at(m, ux), -1}, {at(m, rz), r.y()}}, {}}, at(s, ux), what, "", names, tie.where);
+    list.add({{{at(s, uy), 1}, {at(m, uy), -1}, {at(m, rz), -r.x()}}, {}}, at(s, uy), what, "", names, tie.where);
+    list.add({{{at(s, rz), 1}, {at(m, rz), -1}}, {}}, at(s, rz), what, "", names, tie.where);
+    model.assembly.ties.push_back({s, row, r});
+  }
+  for (const Support& support : supports_) {
+    const int unknown = at(support.node, support.dof);
+    Elimination::Row row{{{unknown, 1}}, {}};
+    if (support.motion >= 0) row.motions[support.motion] = 1;
+    list.add(row, unknown, fmt::format("a {} of {}", support.motion < 0 ? "support" : "prescribed motion", name_of(unknown)), "", names, support.where);
+  }
+  for (const Pair& link : links_) {
+    const int a = link.first, b = link.second;
+    const Vec2 e = (nodes_[b].position - nodes_[a].position).normalized();
+    const Elimination::Row row{{{at(a, ux), -e.x()}, {at(a, uy), -e.y()}, {at(b, ux), e.x()}, {at(b, uy), e.y()}}, {}};
+    const std::string what = fmt::format("an inextensible beam from \"{}\" to \"{}\"", nodes_[a].name, nodes_[b].name);
+    model.assembly.links.push_back({a, b, list.add(row, -1, what, ", or give the beam its area A", names, link.where)});
+  }
+  model.assembly.constraints = list.matrix(unknowns);
+  model.reduction = elimination.reduction();
+  model.kept = elimination.kept();
+  motion_shapes = elimination.motions();
+}
+
+}  // namespace uplift

@@ -1,0 +1,121 @@
+#include <fmt/format.h>
+
+#include <algorithm>
+
+#include "uplift/model/builder.h"
+
+namespace uplift {
+
+namespace {
+
+/// One side of one joint: its displacement in the direction d, as entries of a row of B.
+void add_side(const std::vector<Node>& nodes, const JointPoint& point, bool upper, const Vec2& d, int row, std::vector<Triplet>& entries) {
+  const double sign = upper ? 1 : -1;
+  for (const auto& [node, shape] : upper ? point.upper : point.lower) {
+    for (int k = 0; k < 2; ++k)
+      if (d[k] != 0) entries.emplace_back(row, dofs_per_node * node + k, sign * shape * d[k]);
+    if (!(upper ? point.rigid_upper : point.rigid_lower)) continue;
+    const Vec2 r = point.position - nodes[node].position;
+    const double arm = r.x() * d.y() - r.y() * d.x();  // d . (rotation x r)
+    if (arm != 0) entries.emplace_back(row, dofs_per_node * node + rz, sign * shape * arm);
+  }
+}
+
+}  // namespace
+
+void ModelBuilder::place_interfaces(Model& model) {
+  std::vector<Triplet> entries;
+  int first = 0;
+  for (std::size_t k = 0; k < interfaces_.size(); ++k) {
+    InterfaceSpec& spec = interfaces_[k];
+    refuse_inside_out(spec, interface_where_[k]);
+    Interface face;
+    const int points = static_cast<int>(spec.points.size());
+    face.name = spec.name;
+    face.batch.points = points;
+    face.batch.components = spec.components;
+    face.reference = spec.reference;
+    face.area.resize(points);
+    face.gap = Vector::Zero(face.rows());
+    for (int i = 0; i < points; ++i) {
+      const JointPoint& point = spec.points[i];
+      face.position.push_back(point.position);
+      face.normal.push_back(point.normal.normalized());
+      face.area[i] = point.area;
+      face.gap[face.batch.normal() + i] = point.gap;
+      for (const bool upper : {true, false}) {
+        add_side(nodes_, point, upper, face.normal[i], first + face.batch.normal() + i, entries);
+        if (spec.components == 2) add_side(nodes_, point, upper, tangent(face.normal[i]), first + i, entries);
+        if (!(upper ? point.rigid_upper : point.rigid_lower)) continue;
+        for (const auto& [node, shape] : upper ? point.upper : point.lower)
+          model.assembly.arms.push_back({node, static_cast<int>(k), i, shape, upper ? -1.0 : 1.0, point.position - nodes_[node].position});
+      }
+    }
+    face.law = std::move(spec.law);
+    face.cone = std::move(spec.cone);
+    face.behaviour = spec.behaviour;
+    first += face.rows();
+    model.interfaces.push_back(std::move(face));
+  }
+  model.assembly.b.resize(first, dofs_per_node * static_cast<Index>(nodes_.size()));
+  model.assembly.b.setFromTriplets(entries.begin(), entries.end());
+  model.assembly.interface_where = interface_where_;
+}
+
+/// Places of what hangs together with one side, through elements and rigid bodies: nodes and centres of masses.
+std::vector<Vec2> ModelBuilder::structure_of(const InterfaceSpec& spec, bool upper, std::vector<int>& nodes) const {
+  std::vector<std::vector<int>> neighbours(nodes_.size());
+  const auto connect = [&](int a, int b) {
+    neighbours[a].push_back(b);
+    neighbours[b].push_back(a);
+  };
+  for (const auto& element : elements_)
+    for (const int node : element->nodes()) connect(element->nodes()[0], node);
+  for (const Pair& tie : ties_) connect(tie.first, tie.second);
+  std::vector<char> seen(nodes_.size(), 0);
+  for (const JointPoint& point : spec.points)
+    for (const auto& [node, shape] : upper ? point.upper : point.lower)
+      if (!seen[node]) seen[node] = 1, nodes.push_back(node);
+  for (std::size_t next = 0; next < nodes.size(); ++next)
+    for (const int node : neighbours[nodes[next]])
+      if (!seen[node]) seen[node] = 1, nodes.push_back(node);
+  std::vector<Vec2> places;
+  for (const int node : nodes) places.push_back(nodes_[node].position);
+  for (const auto& element : elements_) {
+    const int node = element->nodes()[0];
+    if (!seen[node] || element->first_moment().isZero()) continue;
+    Matrix mass;
+    element->form({.mass = &mass});
+    places.push_back(nodes_[node].position + element->first_moment() / mass(0, 0));
+  }
+  return places;
+}
+
+/// The structure on the upper side must not lie altogether below a plane interface, nor the lower side above it.
+void ModelBuilder::refuse_inside_out(const InterfaceSpec& spec, const Where& where) const {
+  const Vec2 n = spec.points.front().normal.normalized();
+  Vec2 middle = Vec2::Zero();
+  for (const JointPoint& point : spec.points) {
+    if ((point.normal.normalized() - n).norm() > 1e-9) return;  // not plane: the sides are not that easily told
+    middle += point.position / static_cast<double>(spec.points.size());
+  }
+  std::vector<int> upper_nodes, lower_nodes;
+  const std::vector<Vec2> upper = structure_of(spec, true, upper_nodes), lower = structure_of(spec, false, lower_nodes);
+  std::ranges::sort(upper_nodes);
+  for (const int node : lower_nodes)
+    if (std::ranges::binary_search(upper_nodes, node)) return;  // both sides hang together
+  for (const bool is_upper : {true, false}) {
+    double least = 0, most = 0;
+    for (const Vec2& place : is_upper ? upper : lower) {
+      const double height = (is_upper ? 1 : -1) * (place - middle).dot(n);
+      least = std::min(least, height);
+      most = std::max(most, height);
+    }
+    if (most <= 1e-6 * -least && least < 0)
+      throw InputError(where, "interface." + spec.name, "a normal from the lower side (soil) to the upper side (structure)",
+                       fmt::format("an interface inside out: with the normal ({:g}, {:g}) the whole {} side, which holds \"{}\", lies on the wrong side of it",
+                                   n.x(), n.y(), is_upper ? "upper" : "lower", nodes_[(is_upper ? upper_nodes : lower_nodes).front()].name));
+  }
+}
+
+}  // namespace uplift

@@ -1,0 +1,167 @@
+#include "uplift/model/check.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <numeric>
+
+#include "uplift/math/sparse_solvers.h"
+
+namespace uplift {
+
+namespace {
+
+/// K + closed joints. Only the rank matters: a cone's stiffness is any number that fits the matrix.
+Sparse closed_stiffness(const Model& model) {
+  Sparse sum = model.stiffness;
+  const double typical = std::max(model.stiffness.nonZeros() > 0 ? Vector(model.stiffness.diagonal()).maxCoeff() : 0.0, 1.0);
+  for (const Interface& face : model.interfaces) {
+    const int components = face.batch.components, points = face.batch.points;
+    std::vector<double> closed(components, 0.0);
+    if (face.law) {
+      face.law->closed_stiffness(components, closed.data());
+    } else {
+      closed.back() = typical / face.area.sum();
+      if (face.cone->friction() > 0) std::fill(closed.begin(), closed.end(), closed.back());
+    }
+    Vector stiffness(face.rows());
+    for (int c = 0; c < components; ++c) stiffness.segment(c * points, points) = closed[c] * face.area;
+    sum += Sparse(face.b.transpose() * stiffness.asDiagonal() * face.b);
+  }
+  return sum;
+}
+
+/// Diagonal scaling to ones, so that pivots can be compared; unknowns without stiffness get a one that never couples.
+Sparse unit_diagonal(const Sparse& a, Vector& scale, std::vector<int>& empty) {
+  scale = Vector(a.diagonal());
+  Sparse result = a;
+  for (Index i = 0; i < scale.size(); ++i) {
+    if (!(scale[i] > 0)) {
+      empty.push_back(static_cast<int>(i));
+      result.coeffRef(i, i) = 1;
+      scale[i] = 1;
+    } else {
+      scale[i] = 1 / std::sqrt(scale[i]);
+    }
+  }
+  return scale.asDiagonal() * result * scale.asDiagonal();
+}
+
+/// A motion without resistance, in the free unknowns; empty when there is none: inverse iteration on the singular matrix.
+Vector null_motion(const Sparse& a) {
+  Vector scale;
+  std::vector<int> empty;
+  const Sparse scaled = unit_diagonal(a, scale, empty);
+  if (!empty.empty()) return Vector::Unit(a.rows(), empty.front());
+  Sparse shifted = scaled;
+  constexpr double shift = 1e-13;
+  for (Index i = 0; i < shifted.rows(); ++i) shifted.coeffRef(i, i) += shift;
+  const SparseLdlt ldlt(shifted);
+  if (ldlt.info() == Success && ldlt.vectorD().minCoeff() > 1e-10) return {};
+  Vector x = Vector::LinSpaced(a.rows(), 1, 2);
+  for (int pass = 0; pass < 4; ++pass) x = ldlt.solve(x.eval()).normalized();
+  if (x.dot(scaled * x) > 1e-12) return {};  // a soft structure, not a loose one
+  return scale.cwiseProduct(x);
+}
+
+std::string describe(const Model& model, const Vector& motion) {
+  const Vector full = model.reduction * motion;
+  double size = 0, translation = 0, rotation = 0;
+  for (const Node& node : model.nodes) size = std::max(size, (node.position - model.nodes.front().position).norm());
+  size = std::max(size, 1e-3);
+  const int count = static_cast<int>(model.nodes.size());
+  for (int i = 0; i < count; ++i) {
+    translation = std::max(translation, full.segment<2>(3 * i).norm());
+    rotation = std::max(rotation, std::abs(full[3 * i + 2]));
+  }
+  const double largest = std::max(translation, rotation * size);
+  std::vector<std::string> names;
+  std::vector<int> moving;
+  for (int i = 0; i < count; ++i)
+    if (std::max(full.segment<2>(3 * i).norm(), std::abs(full[3 * i + 2]) * size) > 1e-6 * largest) {
+      moving.push_back(i);
+      if (names.size() < 5) names.push_back("\"" + model.nodes[i].name + "\"");
+    }
+  if (moving.size() > names.size()) names.push_back(fmt::format("{} more nodes", moving.size() - names.size()));
+  const std::string who = fmt::format("{}", fmt::join(names, ", "));
+  const auto tidy = [](double value) { return std::abs(value) < 1e-6 ? 0.0 : value; };
+
+  const int first = moving.front();
+  const Vec2 u = full.segment<2>(3 * first);
+  const double theta = full[3 * first + 2];
+  const bool together = std::ranges::all_of(moving, [&](int i) {
+    const Vec2 r = model.nodes[i].position - model.nodes[first].position;
+    return (full.segment<2>(3 * i) - u - theta * Vec2(-r.y(), r.x())).norm() < 1e-5 * largest && std::abs(full[3 * i + 2] - theta) * size < 1e-5 * largest;
+  });
+  if (together && std::abs(theta) * size < 1e-6 * largest) {
+    Vec2 direction = u.normalized();
+    if (direction.x() < -1e-9 || (std::abs(direction.x()) <= 1e-9 && direction.y() < 0)) direction = -direction;
+    return fmt::format("{} can move along ({:.3g}, {:.3g})", who, tidy(direction.x()), tidy(direction.y()));
+  }
+  if (together) {
+    const Vec2 centre = model.nodes[first].position + Vec2(-u.y(), u.x()) / theta;  // where u + theta x r vanishes
+    return fmt::format("{} can turn about the point ({:.3g}, {:.3g}) m", who, tidy(centre.x()), tidy(centre.y()));
+  }
+  Index most = 0;
+  motion.cwiseAbs().maxCoeff(&most);
+  return fmt::format("{} can move, most of all {}", who, model.unknown_names[most]);
+}
+
+Where place_of(const Model& model) { return model.assembly.interface_where.empty() ? Where{} : model.assembly.interface_where.front(); }
+
+/// Groups of unknowns that the matrix couples.
+std::vector<int> blocks(const Sparse& a) {
+  std::vector<int> parent(a.rows());
+  std::iota(parent.begin(), parent.end(), 0);
+  const auto root = [&](int i) {
+    while (parent[i] != i) i = parent[i] = parent[parent[i]];
+    return i;
+  };
+  for (Index j = 0; j < a.outerSize(); ++j)
+    for (Sparse::InnerIterator entry(a, j); entry; ++entry) parent[root(static_cast<int>(entry.row()))] = root(static_cast<int>(j));
+  for (int i = 0; i < static_cast<int>(parent.size()); ++i) parent[i] = root(i);
+  return parent;
+}
+
+}  // namespace
+
+std::string loose_part(const Model& model) {
+  if (model.free() == 0) return {};
+  const Vector motion = null_motion(closed_stiffness(model));
+  return motion.size() == 0 ? std::string() : describe(model, motion);
+}
+
+void check_static(const Model& model) {
+  const std::string loose = loose_part(model);
+  if (!loose.empty())
+    throw InputError(place_of(model), "", "a structure that stands when all its interfaces are closed", fmt::format("a mechanism: {} without resistance", loose));
+}
+
+void check_dynamic(const Model& model) {
+  for (std::size_t k = 0; k < model.interfaces.size(); ++k) {
+    const Sparse& b = model.interfaces[k].b;
+    for (int i = 0; i < model.free(); ++i)
+      for (Sparse::InnerIterator entry(b, i); entry; ++entry)
+        if (entry.value() != 0 && !(model.mass.coeff(i, i) > 0))
+          throw InputError(model.assembly.interface_where[k], "interface." + model.interfaces[k].name, "a mass on everything that the interface touches",
+                           fmt::format("zero mass where mass is needed: {} has none", model.unknown_names[i]));
+  }
+  if (model.free() == 0) return;
+  Vector scale;
+  std::vector<int> massless;
+  const Sparse scaled = unit_diagonal(model.mass, scale, massless);
+  const SparseLdlt ldlt(scaled);
+  for (Index k = 0; k < model.free(); ++k) {
+    if (ldlt.vectorD()[k] > 1e-12) continue;
+    const int broken = ldlt.permutationPinv().indices()[k];
+    const std::vector<int> block = blocks(scaled);
+    std::vector<std::string> members;
+    for (int i = 0; i < model.free(); ++i)
+      if (block[i] == block[broken] && members.size() < 6) members.push_back(model.unknown_names[i]);
+    throw InputError(place_of(model), "mass", "a mass matrix that is regular where it is not zero",
+                     fmt::format("zero mass where mass is needed: a motion of {} without kinetic energy (a point mass off its node needs an inertia > 0)",
+                                 fmt::join(members, ", ")));
+  }
+}
+
+}  // namespace uplift

@@ -1,0 +1,21 @@
+#pragma once
+#include <memory>
+#include <span>
+
+#include "uplift/base/catalog.h"
+
+namespace uplift {
+
+/// A scalar function of time. Its unit is that of what it multiplies; derivatives per s and s2 (prescribed motion needs them).
+class TimeFunction {
+ public:
+  virtual ~TimeFunction() = default;
+  virtual double value(double time) const = 0;
+  virtual double rate(double time) const = 0;
+  virtual double acceleration(double time) const = 0;
+};
+
+std::span<const Entry<TimeFunction>* const> function_catalog();
+std::span<const PartInfo* const> time_functions();
+
+}  // namespace uplift

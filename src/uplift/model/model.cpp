@@ -1,0 +1,74 @@
+#include "uplift/model/model.h"
+
+#include <fmt/format.h>
+
+#include "uplift/math/dense.h"
+
+namespace uplift {
+
+namespace {
+
+double derivative_of(const TimeFunction& function, int derivative, double time) {
+  return derivative == 0 ? function.value(time) : derivative == 1 ? function.rate(time) : function.acceleration(time);
+}
+
+}  // namespace
+
+double Drive::factor(double time) const { return derivative_of(*function, static_cast<int>(order), time); }
+
+int Model::rows() const {
+  int rows_of_all = 0;
+  for (const Interface& face : interfaces) rows_of_all += face.rows();
+  return rows_of_all;
+}
+
+int Model::find_node(std::string_view name) const {
+  for (std::size_t i = 0; i < nodes.size(); ++i)
+    if (nodes[i].name == name) return static_cast<int>(i);
+  return -1;
+}
+
+double Model::full(int full_unknown, const Vector& q, int derivative, double time) const {
+  double value = 0;
+  for (Sparse::InnerIterator entry(expansion, full_unknown); entry; ++entry) value += entry.value() * q[entry.row()];
+  for (const PrescribedMotion& motion : motions)
+    if (motion.shape[full_unknown] != 0) value += motion.shape[full_unknown] * derivative_of(*motion.function, derivative, time);
+  return value;
+}
+
+Vector Model::full(const Vector& q, int derivative, double time) const {
+  Vector value = reduction * q;
+  for (const PrescribedMotion& motion : motions) value += motion.shape * derivative_of(*motion.function, derivative, time);
+  return value;
+}
+
+void Model::add_force(double time, Vector& force) const {
+  for (const Drive& drive : drives) force += drive.factor(time) * drive.shape;
+}
+
+void Model::add_prescribed_opening(double time, Vector& opening) const {
+  for (const PrescribedMotion& motion : motions) opening += motion.function->value(time) * motion.opening;
+}
+
+Vector free_values(const Model& model, const std::vector<std::pair<int, double>>& wanted, const Where& where) {
+  Matrix rows = Matrix::Zero(static_cast<Index>(wanted.size()), model.free());
+  Vector values(static_cast<Index>(wanted.size()));
+  for (Index i = 0; i < values.size(); ++i) {
+    values[i] = wanted[i].second;
+    for (Sparse::InnerIterator entry(model.expansion, wanted[i].first); entry; ++entry) rows(i, entry.row()) = entry.value();
+  }
+  if (wanted.empty()) return Vector::Zero(model.free());
+  const Vector q = CompleteQr(rows).solve(values);
+  const Vector error = rows * q - values;
+  Index worst = 0;
+  if (error.cwiseAbs().maxCoeff(&worst) > 1e-9 * values.cwiseAbs().maxCoeff()) {
+    const int unknown = wanted[worst].first;
+    constexpr const char* dofs[] = {"ux", "uy", "rz"};
+    throw InputError(where, "initial", "values that supports, rigid bodies and inextensible beams allow",
+                     fmt::format("{} = {:g} at {}.{}, where only {:g} is possible together with the other values", "value", values[worst],
+                                 model.nodes[unknown / dofs_per_node].name, dofs[unknown % dofs_per_node], values[worst] + error[worst]));
+  }
+  return q;
+}
+
+}  // namespace uplift

@@ -1,0 +1,109 @@
+#pragma once
+#include <memory>
+#include <string>
+#include <string_view>
+#include <utility>
+#include <vector>
+
+#include "uplift/elements/element.h"
+#include "uplift/interface/interface.h"
+#include "uplift/model/function.h"
+
+namespace uplift {
+
+struct Node {
+  std::string name;
+  Vec2 position;  // m
+};
+
+/// A force pattern on the free unknowns times a function of time.
+struct Drive {
+  std::string name;
+  Vector shape;                                   // free unknowns
+  std::shared_ptr<const TimeFunction> function;
+  enum class Order { value, rate, acceleration } order = Order::value;  // which derivative multiplies the shape
+  bool dead = false;                              // gravity and constant loads: applied (in steps) by static stages
+  double factor(double time) const;               // the function's derivative of this order
+};
+
+/// Motion of supported unknowns: full displacement += shape * function(t).
+struct PrescribedMotion {
+  std::string name;
+  Vector shape;    // full unknowns
+  Vector opening;  // interface rows, all interfaces: opening += opening * function(t)
+  std::shared_ptr<const TimeFunction> function;
+};
+
+/// What the elimination hides but reactions and the P-Delta effect need: everything on the full unknowns.
+struct Assembly {
+  Sparse stiffness, mass, damping;  // full x full, before elimination, without modal damping
+  Sparse b;                         // interface rows x full unknowns
+  Sparse constraints;               // independent rows g with g . u = prescribed: supports, rigid ties, inextensible beams
+  std::vector<Vector> loads;        // full pattern of drive i; empty for the drives that prescribed motions make
+  Vec2 gravity = Vec2::Zero();      // m/s2
+  /// slave's three constraint rows start at `row`; offset = slave - master [m]
+  struct Tie {
+    int slave = 0, row = 0;
+    Vec2 offset = Vec2::Zero();
+  };
+  std::vector<Tie> ties;
+  struct Link {
+    int a = 0, b = 0, row = 0;
+  };
+  std::vector<Link> links;  // inextensible beams
+  /// An interface point that is rigidly offset from a node; sign -1: upper side, +1: lower side.
+  struct Arm {
+    int node = 0, interface = 0, point = 0;
+    double weight = 1, sign = -1;
+    Vec2 offset = Vec2::Zero();
+  };
+  std::vector<Arm> arms;
+  std::vector<Where> interface_where;
+};
+
+/// What is built once, checked once and never changes; shared by every thread.
+/// Full unknowns: 3 per node (ux, uy, rz). Free unknowns q: what is left after supports, rigid bodies and inextensible beams are
+/// eliminated exactly: full = T q + sum of prescribed motions.
+struct Model {
+  std::vector<Node> nodes;
+  std::vector<std::unique_ptr<const Element>> elements;
+  std::vector<Interface> interfaces;
+  std::vector<Drive> drives;
+  std::vector<PrescribedMotion> motions;
+
+  Sparse reduction;                 // T: full x free
+  Sparse expansion;                 // T^T: column i is the row of T for full unknown i
+  Sparse stiffness, mass, damping;  // free x free; damping: Rayleigh, dashpots, modal
+  std::vector<int> kept;                   // full unknown that each free unknown is
+  std::vector<std::string> unknown_names;  // of the free unknowns, "top.ux"
+  Assembly assembly;
+
+  int free() const { return static_cast<int>(reduction.cols()); }
+  int full_unknowns() const { return static_cast<int>(reduction.rows()); }
+  int rows() const;                            // interface rows, of all interfaces
+  int find_node(std::string_view name) const;  // -1 when absent
+  /// Full displacement (derivative 0), velocity (1) or acceleration (2) of one full unknown from the free ones.
+  double full(int full_unknown, const Vector& q, int derivative, double time) const;
+  /// All full unknowns at once.
+  Vector full(const Vector& q, int derivative, double time) const;
+  /// Adds the force of all drives at a time to `force` (free unknowns).
+  void add_force(double time, Vector& force) const;
+  /// Adds what the prescribed motions do to the openings (rows of all interfaces).
+  void add_prescribed_opening(double time, Vector& opening) const;
+};
+
+/// Free unknowns (values or rates) with the smallest weighted norm that give the wanted values of some full unknowns, zero prescribed motion; for
+/// initial conditions. Throws InputError when supports, rigid bodies or inextensible beams make the wanted values impossible.
+Vector free_values(const Model& model, const std::vector<std::pair<int, double>>& wanted, const Where& where);
+
+/// Everything that changes: a value. Copy to go back, move to accept.
+struct State {
+  double time = 0;                             // s
+  Vector displacement, velocity, acceleration;  // free unknowns; m, m/s, m/s2
+  Vector opening;                               // interface rows, all interfaces one after another [m], initial gap included
+  Vector force;                                 // interface rows, end of step [N], tension > 0
+  Vector mean_force;                            // the same, mean over the last step
+  std::vector<double> history;                  // memory of all laws, one flat array
+};
+
+}  // namespace uplift

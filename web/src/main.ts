@@ -1,0 +1,153 @@
+// Puts the page together: head, verdict, tables, model and motion, figures by section, choices, case.
+import { AnimationCard } from "./animation";
+import { ChartCard } from "./chart";
+import { read_report } from "./data";
+import { h } from "./dom";
+import { inspection } from "./inspect";
+import { model_card } from "./model";
+import { case_card, choices_card, empty_page, page_head, verdict_card } from "./page";
+import { install_palette, run_names } from "./palette";
+import { run_bar } from "./runbar";
+import { Runs } from "./runs";
+import { TableCard } from "./table";
+import { ThemeSwitch } from "./theme";
+import type { Chart, Report, Section } from "./types";
+
+// Charts are drawn when they come this near to the screen.
+const NEAR = "500px";
+
+interface Part {
+  id: string;
+  title: string;
+  element: HTMLElement;
+}
+
+function failed_runs(report: Report): Set<string> {
+  const failed = new Set<string>();
+  for (const chart of report.charts) {
+    for (const series of chart.series) if (series.failed && series.run) failed.add(series.run);
+  }
+  return failed;
+}
+
+function part(id: string, title: string, ...children: (Node | null)[]): Part {
+  return { id, title, element: h("section", { class: "part", id }, h("h2", {}, title), ...children) };
+}
+
+/** Charts in the order in which the page shows them, so that figures are numbered from top to bottom. */
+function in_page_order(report: Report): Chart[] {
+  const rank = new Map(report.sections.map((section, i) => [section.id, i]));
+  const of = (chart: Chart): number => rank.get(chart.section) ?? report.sections.length;
+  return [...report.charts].sort((a, b) => of(a) - of(b));
+}
+
+/** Charts by section; those of no known section come last so that none is lost. */
+function chart_parts(report: Report, cards: ChartCard[]): Part[] {
+  const known = new Set(report.sections.map((section) => section.id));
+  const rest: Section = { id: "", title: "Further figures" };
+  return [...report.sections, rest].flatMap((section) => {
+    const mine = cards.filter(({ model }) => (section.id === "" ? !known.has(model.chart.section) : model.chart.section === section.id));
+    if (mine.length === 0 && !section.text) return [];
+    const text = section.text ? h("p", { class: "section-text" }, section.text) : null;
+    return [part(`section-${section.id || "rest"}`, section.title, text, h("div", { class: "grid" }, ...mine.map((c) => c.element)))];
+  });
+}
+
+function contents(parts: Part[]): HTMLElement {
+  const links = parts.map((p) => h("li", {}, h("a", { href: `#${p.id}` }, p.title)));
+  // Open beside the page on wide screens, a closed box on narrow ones.
+  return h("nav", { class: "toc", "aria-label": "Contents" }, h("details", { open: matchMedia("(min-width: 1180px)").matches }, h("summary", {}, "Contents"), h("ol", {}, ...links)));
+}
+
+function draw_when_near(cards: ChartCard[]): void {
+  const observer = new IntersectionObserver(
+    (entries) => {
+      for (const entry of entries) {
+        if (!entry.isIntersecting) continue;
+        cards.find((card) => card.element === entry.target)?.render();
+        observer.unobserve(entry.target);
+      }
+    },
+    { rootMargin: NEAR },
+  );
+  cards.forEach((card) => observer.observe(card.element));
+}
+
+/** Print shows drawings instead of canvases: sharp at any resolution, always in light colours. */
+function follow_print(cards: ChartCard[]): void {
+  let printing = false;
+  const set = (on: boolean): void => {
+    if (on === printing) return;
+    printing = on;
+    cards.forEach((card) => (on ? card.prepare_print() : card.end_print()));
+  };
+  addEventListener("beforeprint", () => set(true));
+  addEventListener("afterprint", () => set(false));
+  matchMedia("print").addEventListener("change", (event) => set(event.matches));
+}
+
+/** The link of the part in view is marked. */
+function follow_scroll(toc: HTMLElement, parts: Part[]): void {
+  const links = new Map(parts.map((p) => [p.element, toc.querySelector(`a[href="#${CSS.escape(p.id)}"]`)]));
+  const observer = new IntersectionObserver(
+    (entries) => {
+      for (const entry of entries) {
+        if (!entry.isIntersecting) continue;
+        links.forEach((link, element) => link?.classList.toggle("is-here", element === entry.target));
+      }
+    },
+    { rootMargin: "-15% 0px -75% 0px" },
+  );
+  parts.forEach((p) => observer.observe(p.element));
+}
+
+function show_report(host: HTMLElement, report: Report): void {
+  document.title = `${report.title} – uplift`;
+  const themes = new ThemeSwitch();
+  const runs = new Runs(run_names(report), failed_runs(report));
+  const charts = in_page_order(report).map((chart, i) => new ChartCard(chart, runs, i + 1));
+  const tables = report.tables.map((table) => new TableCard(table, runs));
+  const { model, animations, choices } = report;
+  const animation = model && animations.length > 0 ? new AnimationCard(model, animations, runs) : null;
+
+  const figures = chart_parts(report, charts);
+  const parts: Part[] = [
+    { id: "verdict", title: "Verdict", element: verdict_card(report.verdict) },
+    ...(tables.length > 0 ? [part("tables", tables.length > 1 ? "Tables" : "Comparison", ...tables.map((t) => t.element))] : []),
+    ...(model ? [part("model", animation ? "Model and motion" : "Model", h("div", { class: "grid" }, model_card(model), animation?.element ?? null))] : []),
+    ...figures,
+    ...(choices.length > 0 ? [part("choices", "Choices", choices_card(choices))] : []),
+    part("case", "Case", case_card(report)),
+  ];
+  const toc = contents(parts);
+  // The bar of runs sticks to the top while the figures pass, so both share one box.
+  const bar = runs.names.length > 1 && figures.length > 0 ? run_bar(runs) : null;
+  const drawn = figures.map((p) => p.element);
+  const before = parts.slice(0, parts.indexOf(figures[0] ?? (parts[parts.length - 1] as Part))).map((p) => p.element);
+  const after = parts.map((p) => p.element).filter((e) => !before.includes(e) && !drawn.includes(e));
+  host.append(
+    h("div", { class: "page" }, toc, h("main", {}, page_head(report, themes), ...before, h("div", { class: "figures" }, bar, ...drawn), ...after)),
+  );
+
+  themes.on_change(() => charts.forEach((card) => card.repaint()));
+  draw_when_near(charts);
+  follow_print(charts);
+  follow_scroll(toc, parts);
+  window.upliftReport = inspection(report, "", charts, tables, animation);
+}
+
+function start(): void {
+  install_palette();
+  const host = document.getElementById("report") as HTMLElement;
+  const result = read_report();
+  if (result.kind === "report") {
+    show_report(host, result.report);
+    return;
+  }
+  new ThemeSwitch();
+  const message = result.kind === "empty" ? "This page holds no data. The program fills it when a case is run: uplift compare CASE." : result.message;
+  host.append(empty_page(message));
+  window.upliftReport = inspection(null, message);
+}
+
+start();
