@@ -82,6 +82,9 @@ const Stage* dynamic_stage(const RunPlan&);
 
 /// Natural modes with every interface closed and bonded: laws with their closed stiffness, cones held. Shapes on the free unknowns.
 std::vector<Mode> bonded_modes(const Model&, int count);
+/// Natural modes with every opening and sliding of the interfaces held to zero against rigid ground: the fixed-base frequencies. Nodes of an
+/// elastic bed are held too.
+std::vector<Mode> fixed_base_modes(const Model&, int count);
 
 /// What an engineer should know before believing the results: closure stress too large, step too coarse, suspicious magnitudes, unsound
 /// combinations of method, impact rule and traction. One sentence each.

@@ -40,7 +40,10 @@ Values bonded_behaviour(const Values& like, const std::vector<double>& stiffness
   const auto add = [&](const char* name, auto data) { table->entries.emplace_back(name, Raw{std::move(data), like.where(), like.path()}); };
   add("type", std::string("elastic"));
   add("K_n", stiffness.back());
-  if (stiffness.size() > 1) add("K_t", stiffness.front());
+  if (stiffness.size() > 1)
+    add("K_t", stiffness.front());
+  else
+    add("tangential", std::string("none"));
   return check_part(Raw{table, like.where(), like.path()}, interface_behaviours());
 }
 

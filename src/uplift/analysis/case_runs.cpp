@@ -111,6 +111,7 @@ Comparison comparison_of_case(const Case& read) {
         spec.name += "-" + damping.text("name");
         spec.group = damping.has("label") ? damping.text("label") : damping.text("name");
         spec.damping = &damping;
+        spec.pictures = &damping == &compare->tables("damping").front();
         made.runs.push_back(std::move(spec));
       }
     }

@@ -7,6 +7,7 @@
 #include "uplift/analysis/case.h"
 #include "uplift/analysis/wording.h"
 #include "uplift/model/damping.h"
+#include "uplift/model/tuned_mass.h"
 
 namespace uplift {
 namespace {
@@ -86,13 +87,22 @@ void warn_method(const Case& read, const RunSpec& spec, const Built& built, std:
 
 }  // namespace
 
-std::vector<Mode> bonded_modes(const Model& model, int count) {
-  const Sparse held = cones_held(model);
+namespace {
+
+/// Modes of the motions that the columns of `held` span.
+std::vector<Mode> modes_within(const Sparse& held, const Sparse& stiffness, const Sparse& mass, int count) {
+  if (held.cols() == 0) return {};
   const Sparse to_held = held.transpose();
-  std::vector<Mode> found = modes(to_held * bonded_stiffness(model) * held, to_held * model.mass * held, count);
+  std::vector<Mode> found = modes(to_held * stiffness * held, to_held * mass * held, count);
   for (Mode& mode : found) mode.shape = held * mode.shape;
   return found;
 }
+
+}  // namespace
+
+std::vector<Mode> bonded_modes(const Model& model, int count) { return modes_within(cones_held(model), bonded_stiffness(model), model.mass, count); }
+
+std::vector<Mode> fixed_base_modes(const Model& model, int count) { return modes_within(base_held(model), model.stiffness, model.mass, count); }
 
 std::vector<std::string> warnings(const Case& read, const RunSpec& spec, const Built& built) {
   std::vector<std::string> said;

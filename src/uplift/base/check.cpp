@@ -12,7 +12,9 @@ namespace {
 
 constexpr std::string_view only_value = "value";  // the key of a section whose entries may be written without it
 
-std::string joined(const std::string& path, std::string_view key) { return path.empty() ? std::string(key) : path + "." + std::string(key); }
+std::string joined(const std::string& path, std::string_view key) {
+  return path.empty() ? std::string(key) : path + "." + std::string(key);
+}
 
 const RawTable* table_of(const Raw& raw) {
   const auto* table = std::get_if<std::shared_ptr<RawTable>>(&raw.data);
@@ -102,7 +104,9 @@ const RawList& list_of(const Raw& raw, const Field& field) {
   return *list;
 }
 
-bool bare_value(const Section& section) { return section.fields.size() == 1 && section.fields.front().name == only_value; }
+bool bare_value(const Section& section) {
+  return section.fields.size() == 1 && section.fields.front().name == only_value;
+}
 
 }  // namespace
 
@@ -153,14 +157,17 @@ class Checker {
     return values;
   }
 
-  /// Checks the entries of a table against the fields and fills in the defaults. `what` names the table in messages.
+  /// Checks the entries of a table against the fields and fills in the defaults. `what` names the table in messages. What is written
+  /// wrongly is reported before what is missing: a misspelled key first, as it explains the missing one.
   static void fill(Values& values, const Raw& raw, const RawTable& table, const std::vector<Field>& fields, std::string_view what) {
+    const auto type_of_part = [&values](const std::string& key) { return values.part_ && key == "type"; };
     for (const auto& [key, entry] : table.entries)
-      if (!(values.part_ && key == "type")) refuse_unknown(key, entry, fields, what);
-    for (const Field& field : fields) {
-      const Raw* entry = table.find(field.name);
-      values.items_.emplace(field.name, entry ? given(*entry, field) : absent(raw, field));
-    }
+      if (!type_of_part(key)) refuse_unknown(key, entry, fields, what);
+    for (const auto& [key, entry] : table.entries)
+      for (const Field& field : fields)
+        if (field.name == key && !type_of_part(key)) values.items_.emplace(key, given(entry, field));
+    for (const Field& field : fields)
+      if (!table.find(field.name)) values.items_.emplace(field.name, absent(raw, field));
   }
 
   static void refuse_unknown(const std::string& key, const Raw& entry, const std::vector<Field>& fields, std::string_view what) {
@@ -188,26 +195,41 @@ class Checker {
         else
           item.data = number_of(raw, field);
         break;
-      case Kind::integer: item.data = integer_of(raw, field); break;
+      case Kind::integer:
+        item.data = integer_of(raw, field);
+        break;
       case Kind::flag:
         if (!std::holds_alternative<bool>(raw.data)) refuse(raw, field, found_text(raw));
         item.data = std::get<bool>(raw.data);
         break;
-      case Kind::text: item.data = text_of(raw, field); break;
+      case Kind::text:
+        item.data = text_of(raw, field);
+        break;
       case Kind::choice:
-        if (const std::string& word = text_of(raw, field); std::find(field.choices.begin(), field.choices.end(), word) == field.choices.end())
+        if (const std::string& word = text_of(raw, field);
+            std::find(field.choices.begin(), field.choices.end(), word) == field.choices.end())
           refuse(raw, field, in_quotes(word), nearest_name(word, strings(field.choices)));
         item.data = *text;
         break;
-      case Kind::numbers: item.data = numbers_of(raw, field); break;
-      case Kind::texts: item.data = texts_of(raw, field); break;
+      case Kind::numbers:
+        item.data = numbers_of(raw, field);
+        break;
+      case Kind::texts:
+        item.data = texts_of(raw, field);
+        break;
       case Kind::table:
         if (!table_of(raw)) refuse(raw, field, found_text(raw));
         item.data = std::vector<Values>{section(raw, *field.section)};
         break;
-      case Kind::tables: item.data = tables_of(raw, field); break;
-      case Kind::named: item.data = named_of(raw, field); break;
-      case Kind::part: item.data = std::vector<Values>{part(raw, field.parts())}; break;
+      case Kind::tables:
+        item.data = tables_of(raw, field);
+        break;
+      case Kind::named:
+        item.data = named_of(raw, field);
+        break;
+      case Kind::part:
+        item.data = std::vector<Values>{part(raw, field.parts())};
+        break;
     }
     return item;
   }
@@ -244,7 +266,8 @@ class Checker {
 
   static std::vector<double> numbers_of(const Raw& raw, const Field& field) {
     const RawList& list = list_of(raw, field);
-    if (field.size > 0 && static_cast<int>(list.size()) != field.size) refuse(raw, field, list.empty() ? "an empty list" : std::to_string(list.size()));
+    if (field.size > 0 && static_cast<int>(list.size()) != field.size)
+      refuse(raw, field, list.empty() ? "an empty list" : std::to_string(list.size()) + (list.size() == 1 ? " number" : " numbers"));
     Field one = field;
     one.kind = Kind::number;
     std::vector<double> out;
@@ -288,7 +311,11 @@ class Checker {
   }
 };
 
-Values check(const Raw& raw, const Section& section) { return Checker::section(raw, section); }
-Values check_part(const Raw& raw, std::span<const PartInfo* const> catalog) { return Checker::part(raw, catalog); }
+Values check(const Raw& raw, const Section& section) {
+  return Checker::section(raw, section);
+}
+Values check_part(const Raw& raw, std::span<const PartInfo* const> catalog) {
+  return Checker::part(raw, catalog);
+}
 
 }  // namespace uplift

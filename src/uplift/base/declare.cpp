@@ -19,7 +19,9 @@ Field make(std::string_view name, Kind kind, std::string_view meaning) {
   return field;
 }
 
-bool takes_numbers(const Field& field) { return field.kind == Kind::number || field.kind == Kind::integer || field.kind == Kind::numbers; }
+bool takes_numbers(const Field& field) {
+  return field.kind == Kind::number || field.kind == Kind::integer || field.kind == Kind::numbers;
+}
 
 template <class Names>
 std::string one_of(const Names& names) {
@@ -79,7 +81,9 @@ Field Field::standard(double value) const {
   return field;
 }
 
-Field Field::standard(int value) const { return standard(static_cast<double>(value)); }
+Field Field::standard(int value) const {
+  return standard(static_cast<double>(value));
+}
 
 Field Field::standard(bool value) const {
   assert(kind == Kind::flag);
@@ -124,9 +128,13 @@ Field integer(std::string_view name, std::string_view meaning) {
   return field;
 }
 
-Field flag(std::string_view name, std::string_view meaning) { return make(name, Kind::flag, meaning); }
+Field flag(std::string_view name, std::string_view meaning) {
+  return make(name, Kind::flag, meaning);
+}
 
-Field text(std::string_view name, std::string_view meaning) { return make(name, Kind::text, meaning); }
+Field text(std::string_view name, std::string_view meaning) {
+  return make(name, Kind::text, meaning);
+}
 
 Field choice(std::string_view name, std::vector<std::string_view> choices, std::string_view meaning) {
   assert(!choices.empty());
@@ -142,7 +150,9 @@ Field numbers(std::string_view name, std::string_view unit, std::string_view mea
   return field;
 }
 
-Field texts(std::string_view name, std::string_view meaning) { return make(name, Kind::texts, meaning); }
+Field texts(std::string_view name, std::string_view meaning) {
+  return make(name, Kind::texts, meaning);
+}
 
 Field table(std::string_view name, const Section& section, std::string_view meaning) {
   Field field = make(name, Kind::table, meaning);
@@ -190,19 +200,27 @@ std::string wanted_text(const Field& field) {
       const std::string what = bounds.empty() ? quantity_name(field.unit) : std::string(dimension_name(field.unit)) + bounded;
       return field.words.empty() ? what : what + " or " + one_of(field.words);
     }
-    case Kind::integer: return "an integer" + bounded;
-    case Kind::flag: return "true or false";
-    case Kind::text: return "a text";
-    case Kind::choice: return one_of(field.choices);
+    case Kind::integer:
+      return "an integer" + bounded;
+    case Kind::flag:
+      return "true or false";
+    case Kind::text:
+      return "a text";
+    case Kind::choice:
+      return one_of(field.choices);
     case Kind::numbers: {
       const std::string count = field.size > 0 ? std::to_string(field.size) + (field.size == 1 ? " number" : " numbers") : "numbers";
       const std::string unit = field.unit.empty() || field.unit == "1" || !bounds.empty() ? "" : " [" + std::string(field.unit) + "]";
       return "a list of " + count + unit + (bounds.empty() ? "" : ", each" + bounded);
     }
-    case Kind::texts: return "a list of texts";
-    case Kind::table: return "a table [" + std::string(field.name) + "]";
-    case Kind::tables: return "tables [[" + std::string(field.name) + "]]";
-    case Kind::named: return "a table [" + std::string(field.name) + "] of names";
+    case Kind::texts:
+      return "a list of texts";
+    case Kind::table:
+      return "a table [" + std::string(field.name) + "]";
+    case Kind::tables:
+      return "tables [[" + std::string(field.name) + "]]";
+    case Kind::named:
+      return "a table [" + std::string(field.name) + "] of names";
     case Kind::part: {
       std::vector<std::string_view> names;
       for (const PartInfo* info : field.parts()) names.push_back(info->name);

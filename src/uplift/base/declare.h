@@ -53,24 +53,24 @@ struct Field {
   std::optional<std::string_view> standard_text;
   double least = -std::numeric_limits<double>::infinity();
   double most = std::numeric_limits<double>::infinity();
-  bool least_excluded = false;                // least < value instead of least <= value
-  bool most_excluded = false;                 // value < most instead of value <= most
-  std::vector<std::string_view> choices;      // Kind::choice
-  const Section* section = nullptr;           // Kind::table, tables, named
+  bool least_excluded = false;                            // least < value instead of least <= value
+  bool most_excluded = false;                             // value < most instead of value <= most
+  std::vector<std::string_view> choices;                  // Kind::choice
+  const Section* section = nullptr;                       // Kind::table, tables, named
   std::span<const PartInfo* const> (*parts)() = nullptr;  // Kind::part: the catalog
-  int size = 0;                               // Kind::numbers: exact length, 0 = any
-  std::vector<std::string_view> words = {};   // Kind::number: words taken instead of a number (e.g. "rigid")
+  int size = 0;                                           // Kind::numbers: exact length, 0 = any
+  std::vector<std::string_view> words = {};               // Kind::number: words taken instead of a number (e.g. "rigid")
 
   // Modifiers, so that a declaration reads as one line: number("K_n", "Pa/m", "normal stiffness").positive()
-  Field positive() const;                     // > 0
-  Field nonnegative() const;                  // >= 0
-  Field negative() const;                     // < 0
-  Field between(double a, double b) const;    // a <= value <= b
-  Field standard(double value) const;         // default; makes the key optional
+  Field positive() const;                   // > 0
+  Field nonnegative() const;                // >= 0
+  Field negative() const;                   // < 0
+  Field between(double a, double b) const;  // a <= value <= b
+  Field standard(double value) const;       // default; makes the key optional
   Field standard(int value) const;
   Field standard(bool value) const;
   Field standard(const char* value) const;
-  Field optional() const;                     // may be absent, no default
+  Field optional() const;                      // may be absent, no default
   Field or_word(std::string_view word) const;  // Kind::number that may also be this word
 };
 
@@ -84,7 +84,8 @@ Field texts(std::string_view name, std::string_view meaning);
 // [name]. An absent table takes the defaults of its keys, and is missing when one of them has none; with optional() it stays absent.
 Field table(std::string_view name, const Section& section, std::string_view meaning);
 Field tables(std::string_view name, const Section& section, std::string_view meaning);  // [[name]]; may be absent
-// [name.KEY] tables under free keys; may be absent. When the section has one key only, "value", an entry may be that value: [nodes] top = [0, 5].
+// [name.KEY] tables under free keys; may be absent. When the section has one key only, "value", an entry may be that value: [nodes] top =
+// [0, 5].
 Field named(std::string_view name, const Section& section, std::string_view meaning);
 Field part(std::string_view name, std::span<const PartInfo* const> (*parts)(), std::string_view meaning);  // { type = "...", ... }
 
@@ -110,15 +111,15 @@ class Values {
   double number(std::string_view key) const;  // SI
   int integer(std::string_view key) const;
   bool flag(std::string_view key) const;
-  const std::string& text(std::string_view key) const;            // text and choice
+  const std::string& text(std::string_view key) const;             // text and choice
   const std::vector<double>& numbers(std::string_view key) const;  // SI; empty when absent
   const std::vector<std::string>& texts(std::string_view key) const;
   const Values& table(std::string_view key) const;
   const std::vector<Values>& tables(std::string_view key) const;  // tables and named (key() gives the free key)
   const Values& part(std::string_view key) const;                 // type() gives the part's name
 
-  bool has(std::string_view key) const;    // given by the user or by a default
-  bool given(std::string_view key) const;  // written in the file
+  bool has(std::string_view key) const;      // given by the user or by a default
+  bool given(std::string_view key) const;    // written in the file
   bool is_word(std::string_view key) const;  // a number given as one of its words
   const std::string& type() const { return type_; }
   const std::string& key() const { return key_; }

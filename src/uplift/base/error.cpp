@@ -28,7 +28,9 @@ std::string message(const Where& where, const std::string& path, const std::stri
 // Distances are counted in half edits, so that a wrong case or separator is nearer than a wrong letter.
 constexpr int edit = 2, slip = 1;
 
-char folded(char c) { return c == '-' || c == ' ' ? '_' : static_cast<char>(std::tolower(static_cast<unsigned char>(c))); }
+char folded(char c) {
+  return c == '-' || c == ' ' ? '_' : static_cast<char>(std::tolower(static_cast<unsigned char>(c)));
+}
 
 /// Optimal string alignment distance (Damerau-Levenshtein without edits of a transposed pair): insert, delete, replace, swap neighbours.
 int distance(std::string_view a, std::string_view b) {

@@ -1,6 +1,5 @@
-#include <nlohmann/json.hpp>
-
 #include <cmath>
+#include <nlohmann/json.hpp>
 
 #include "uplift/base/declare.h"
 #include "uplift/base/text.h"
@@ -63,21 +62,31 @@ Json named_of(const Section& section) {
 
 Json shape_of(const Field& field) {
   switch (field.kind) {
-    case Kind::number: return number_of(field);
+    case Kind::number:
+      return number_of(field);
     case Kind::integer: {
       Json schema{{"type", "integer"}};
       add_bounds(schema, field);
       return schema;
     }
-    case Kind::flag: return {{"type", "boolean"}};
-    case Kind::text: return {{"type", "string"}};
-    case Kind::choice: return {{"enum", field.choices}};
-    case Kind::numbers: return entries_of(field);
-    case Kind::texts: return {{"type", "array"}, {"items", {{"type", "string"}}}};
-    case Kind::table: return object_of(field.section->fields);
-    case Kind::tables: return {{"type", "array"}, {"items", object_of(field.section->fields)}};
-    case Kind::named: return named_of(*field.section);
-    case Kind::part: return part_of(field);
+    case Kind::flag:
+      return {{"type", "boolean"}};
+    case Kind::text:
+      return {{"type", "string"}};
+    case Kind::choice:
+      return {{"enum", field.choices}};
+    case Kind::numbers:
+      return entries_of(field);
+    case Kind::texts:
+      return {{"type", "array"}, {"items", {{"type", "string"}}}};
+    case Kind::table:
+      return object_of(field.section->fields);
+    case Kind::tables:
+      return {{"type", "array"}, {"items", object_of(field.section->fields)}};
+    case Kind::named:
+      return named_of(*field.section);
+    case Kind::part:
+      return part_of(field);
   }
   return {};
 }

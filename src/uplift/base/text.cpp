@@ -9,13 +9,19 @@
 namespace uplift {
 namespace {
 
-bool is_space(char c) { return c == ' ' || c == '\t' || c == '\n' || c == '\r' || c == '\f' || c == '\v'; }
-bool is_digit(char c) { return c >= '0' && c <= '9'; }
+bool is_space(char c) {
+  return c == ' ' || c == '\t' || c == '\n' || c == '\r' || c == '\f' || c == '\v';
+}
+bool is_digit(char c) {
+  return c >= '0' && c <= '9';
+}
 
 /// Length of the UTF-8 character at the beginning of `text`, 0 when it is not valid (RFC 3629, table of section 4).
 std::size_t utf8_length(std::string_view text) {
   const auto byte = [&](std::size_t i) { return static_cast<std::uint8_t>(text[i]); };
-  const auto follows = [&](std::size_t i, int least = 0x80, int most = 0xBF) { return i < text.size() && byte(i) >= least && byte(i) <= most; };
+  const auto follows = [&](std::size_t i, int least = 0x80, int most = 0xBF) {
+    return i < text.size() && byte(i) >= least && byte(i) <= most;
+  };
   const int first = byte(0);
   if (first < 0x80) return 1;
   if (first >= 0xC2 && first <= 0xDF) return follows(1) ? 2 : 0;
@@ -36,13 +42,27 @@ std::string_view trim(std::string_view text) {
 std::string escaped(std::string_view text) {
   std::string out = "\"";
   for (const char c : text) switch (c) {
-      case '"': out += "\\\""; break;
-      case '\\': out += "\\\\"; break;
-      case '\b': out += "\\b"; break;
-      case '\t': out += "\\t"; break;
-      case '\n': out += "\\n"; break;
-      case '\f': out += "\\f"; break;
-      case '\r': out += "\\r"; break;
+      case '"':
+        out += "\\\"";
+        break;
+      case '\\':
+        out += "\\\\";
+        break;
+      case '\b':
+        out += "\\b";
+        break;
+      case '\t':
+        out += "\\t";
+        break;
+      case '\n':
+        out += "\\n";
+        break;
+      case '\f':
+        out += "\\f";
+        break;
+      case '\r':
+        out += "\\r";
+        break;
       default:
         if (static_cast<std::uint8_t>(c) < 0x20 || c == 0x7f)
           out += fmt::format("\\u{:04x}", static_cast<int>(c));
@@ -67,7 +87,9 @@ std::string in_quotes(std::string_view text) {
   return escaped(shown);
 }
 
-std::string shortest(double value) { return fmt::format("{}", value); }
+std::string shortest(double value) {
+  return fmt::format("{}", value);
+}
 
 std::string listed(const std::vector<std::string>& items) {
   std::string out;

@@ -10,7 +10,9 @@ namespace uplift {
 namespace {
 
 std::string key_text(std::string_view key) {
-  const auto bare = [](char c) { return (c >= 'a' && c <= 'z') || (c >= 'A' && c <= 'Z') || (c >= '0' && c <= '9') || c == '_' || c == '-'; };
+  const auto bare = [](char c) {
+    return (c >= 'a' && c <= 'z') || (c >= 'A' && c <= 'Z') || (c >= '0' && c <= '9') || c == '_' || c == '-';
+  };
   bool all = !key.empty();
   for (const char c : key) all = all && bare(c);
   return all ? std::string(key) : escaped(key);
@@ -65,17 +67,26 @@ class Writer {
   /// Text of what fits on one line; empty for tables.
   static std::string plain(const Values& values, const Field& field) {
     switch (field.kind) {
-      case Kind::number: return values.is_word(field.name) ? escaped(values.text(field.name)) : real_text(values.number(field.name));
-      case Kind::integer: return std::to_string(values.integer(field.name));
-      case Kind::flag: return values.flag(field.name) ? "true" : "false";
+      case Kind::number:
+        return values.is_word(field.name) ? escaped(values.text(field.name)) : real_text(values.number(field.name));
+      case Kind::integer:
+        return std::to_string(values.integer(field.name));
+      case Kind::flag:
+        return values.flag(field.name) ? "true" : "false";
       case Kind::text:
-      case Kind::choice: return escaped(values.text(field.name));
-      case Kind::numbers: return list_text(values.numbers(field.name), real_text);
-      case Kind::texts: return list_text(values.texts(field.name), [](const std::string& entry) { return escaped(entry); });
-      case Kind::part: return bare_part(values.part(field.name)) ? escaped(values.part(field.name).type()) : "";
-      case Kind::tables: return values.tables(field.name).empty() ? "[]" : "";
+      case Kind::choice:
+        return escaped(values.text(field.name));
+      case Kind::numbers:
+        return list_text(values.numbers(field.name), real_text);
+      case Kind::texts:
+        return list_text(values.texts(field.name), [](const std::string& entry) { return escaped(entry); });
+      case Kind::part:
+        return bare_part(values.part(field.name)) ? escaped(values.part(field.name).type()) : "";
+      case Kind::tables:
+        return values.tables(field.name).empty() ? "[]" : "";
       case Kind::table:
-      case Kind::named: return "";
+      case Kind::named:
+        return "";
     }
     return "";
   }

@@ -20,18 +20,75 @@ namespace {
 constexpr double pi = std::numbers::pi;
 
 constexpr CommonUnit table[] = {
-    {"m", "m", 1},          {"cm", "m", 1e-2},        {"mm", "m", 1e-3},       {"um", "m", 1e-6},    {"km", "m", 1e3},
-    {"m2", "m2", 1},        {"cm2", "m2", 1e-4},      {"mm2", "m2", 1e-6},     {"m3", "m3", 1},      {"m4", "m4", 1},
-    {"cm4", "m4", 1e-8},    {"mm4", "m4", 1e-12},     {"s", "s", 1},           {"ms", "s", 1e-3},    {"min", "s", 60},
-    {"Hz", "Hz", 1},        {"kHz", "Hz", 1e3},       {"1/s", "1/s", 1},       {"N", "N", 1},        {"kN", "N", 1e3},
-    {"MN", "N", 1e6},       {"Pa", "Pa", 1},          {"kPa", "Pa", 1e3},      {"MPa", "Pa", 1e6},   {"GPa", "Pa", 1e9},
-    {"kN/m2", "Pa", 1e3},   {"MN/m2", "Pa", 1e6},     {"N/mm2", "Pa", 1e6},    {"Pa/m", "Pa/m", 1},  {"kPa/m", "Pa/m", 1e3},
-    {"MPa/m", "Pa/m", 1e6}, {"GPa/m", "Pa/m", 1e9},   {"N/m3", "Pa/m", 1},     {"kN/m3", "Pa/m", 1e3}, {"MN/m3", "Pa/m", 1e6},
-    {"N/m", "N/m", 1},      {"kN/m", "N/m", 1e3},     {"MN/m", "N/m", 1e6},    {"N/m", "J/m2", 1},   {"J/m2", "J/m2", 1},
-    {"N m", "N m", 1},      {"kN m", "N m", 1e3},     {"MN m", "N m", 1e6},    {"kg", "kg", 1},      {"t", "kg", 1e3},
-    {"kg/m3", "kg/m3", 1},  {"t/m3", "kg/m3", 1e3},   {"kg m2", "kg m2", 1},   {"t m2", "kg m2", 1e3}, {"m/s", "m/s", 1},
-    {"cm/s", "m/s", 1e-2},  {"mm/s", "m/s", 1e-3},    {"m/s2", "m/s2", 1},     {"cm/s2", "m/s2", 1e-2}, {"g_n", "m/s2", 9.80665},
-    {"rad", "rad", 1},      {"mrad", "rad", 1e-3},    {"deg", "rad", pi / 180}, {"rad/s", "rad/s", 1}, {"%", "1", 1e-2},
+    {"m", "m", 1},
+    {"cm", "m", 1e-2},
+    {"mm", "m", 1e-3},
+    {"um", "m", 1e-6},
+    {"km", "m", 1e3},
+    {"m2", "m2", 1},
+    {"cm2", "m2", 1e-4},
+    {"mm2", "m2", 1e-6},
+    {"m3", "m3", 1},
+    {"m4", "m4", 1},
+    {"cm4", "m4", 1e-8},
+    {"mm4", "m4", 1e-12},
+    {"s", "s", 1},
+    {"ms", "s", 1e-3},
+    {"min", "s", 60},
+    {"Hz", "Hz", 1},
+    {"kHz", "Hz", 1e3},
+    {"1/s", "1/s", 1},
+    {"N", "N", 1},
+    {"kN", "N", 1e3},
+    {"MN", "N", 1e6},
+    {"Pa", "Pa", 1},
+    {"kPa", "Pa", 1e3},
+    {"MPa", "Pa", 1e6},
+    {"GPa", "Pa", 1e9},
+    {"kN/m2", "Pa", 1e3},
+    {"MN/m2", "Pa", 1e6},
+    {"N/mm2", "Pa", 1e6},
+    {"Pa/m", "Pa/m", 1},
+    {"kPa/m", "Pa/m", 1e3},
+    {"MPa/m", "Pa/m", 1e6},
+    {"GPa/m", "Pa/m", 1e9},
+    {"N/m3", "Pa/m", 1},
+    {"kN/m3", "Pa/m", 1e3},
+    {"MN/m3", "Pa/m", 1e6},
+    {"N/m", "N/m", 1},
+    {"kN/m", "N/m", 1e3},
+    {"MN/m", "N/m", 1e6},
+    {"N/m", "J/m2", 1},
+    {"J/m2", "J/m2", 1},
+    {"N m", "N m", 1},
+    {"kN m", "N m", 1e3},
+    {"MN m", "N m", 1e6},
+    {"kg", "kg", 1},
+    {"t", "kg", 1e3},
+    {"kg/m3", "kg/m3", 1},
+    {"t/m3", "kg/m3", 1e3},
+    {"kg m2", "kg m2", 1},
+    {"t m2", "kg m2", 1e3},
+    {"m/s", "m/s", 1},
+    {"cm/s", "m/s", 1e-2},
+    {"mm/s", "m/s", 1e-3},
+    {"m/s2", "m/s2", 1},
+    {"cm/s2", "m/s2", 1e-2},
+    {"g_n", "m/s2", 9.80665},
+    {"rad", "rad", 1},
+    {"mrad", "rad", 1e-3},
+    {"deg", "rad", pi / 180},
+    {"rad/s", "rad/s", 1},
+    {"Pa s/m", "Pa s/m", 1},
+    {"kPa s/m", "Pa s/m", 1e3},
+    {"N s/m", "N s/m", 1},
+    {"kN s/m", "N s/m", 1e3},
+    {"kg/m2", "kg/m2", 1},
+    {"t/m2", "kg/m2", 1e3},
+    {"N m/rad", "N m/rad", 1},
+    {"kN m/rad", "N m/rad", 1e3},
+    {"MN m/rad", "N m/rad", 1e6},
+    {"%", "1", 1e-2},
 };
 
 // Names of what units measure, for messages. Of units with the same dimension the first names what was found.
@@ -165,20 +222,26 @@ const UnitSystem& unit_system() {
   return system;
 }
 
+/// NaN when there is none. UDUNITS converts reciprocals too (10 s is 0.1 Hz to it), which is no factor.
 double factor_between(const Unit& from, const Unit& to) {
   const std::unique_ptr<cv_converter, Free> converter(ut_get_converter(from.get(), to.get()));
-  return converter ? cv_convert_double(converter.get(), 1) : std::numeric_limits<double>::quiet_NaN();
+  if (!converter) return std::numeric_limits<double>::quiet_NaN();
+  const double one = cv_convert_double(converter.get(), 1), two = cv_convert_double(converter.get(), 2);
+  return std::abs(two - 2 * one) <= 1e-12 * std::abs(one) ? one : std::numeric_limits<double>::quiet_NaN();
+}
+bool convertible(const Unit& from, const Unit& to) {
+  return from && to && std::isfinite(factor_between(from, to));
 }
 
-/// UDUNITS takes radians as plain numbers. Here "30 deg" is no ratio and "10 Hz" no angular velocity (a silent factor 2 pi), while a ratio may be
-/// an angle ("2 mm/m") and the radian of a rotational stiffness may be left out ("5 kN m" for N m/rad).
+/// UDUNITS takes radians as plain numbers. Here "30 deg" is no ratio and "10 Hz" no angular velocity (a silent factor 2 pi), while a ratio
+/// may be an angle ("2 mm/m") and the radian of a rotational stiffness may be left out ("5 kN m" for N m/rad).
 bool same_dimension(const UnitSystem& system, const Unit& found, const Unit& wanted) {
-  if (!ut_are_convertible(found.get(), wanted.get())) return false;
+  if (!convertible(found, wanted)) return false;
   const int had = system.facts(found).radians, want = system.facts(wanted).radians;
   if (had == want) return true;
   if (had != 0) return false;
   for (const char* rate : {"1/s", "1/s2"})
-    if (ut_are_convertible(wanted.get(), system.parse(rate).get())) return false;
+    if (convertible(wanted, system.parse(rate))) return false;
   return true;
 }
 
@@ -186,7 +249,7 @@ std::string dimension_of(const UnitSystem& system, const Unit& unit) {
   const int radians = system.facts(unit).radians;
   for (const Named& known : names) {
     const Unit other = system.parse(known.unit);
-    if (other && ut_are_convertible(unit.get(), other.get()) && system.facts(other).radians == radians) return std::string(known.name);
+    if (convertible(unit, other) && system.facts(other).radians == radians) return std::string(known.name);
   }
   std::array<char, 200> definition{};
   const int length = ut_format(unit.get(), definition.data(), definition.size(), UT_ASCII | UT_DEFINITION);
@@ -195,14 +258,22 @@ std::string dimension_of(const UnitSystem& system, const Unit& unit) {
 
 // ---- the unit as it is written ----
 
-bool is_digit(char c) { return c >= '0' && c <= '9'; }
-bool is_letter(char c) { return (c >= 'a' && c <= 'z') || (c >= 'A' && c <= 'Z') || static_cast<unsigned char>(c) >= 0x80; }
+bool is_digit(char c) {
+  return c >= '0' && c <= '9';
+}
+bool is_letter(char c) {
+  return (c >= 'a' && c <= 'z') || (c >= 'A' && c <= 'Z') || static_cast<unsigned char>(c) >= 0x80;
+}
 
 /// Numbers in a unit that UDUNITS would read as factors or as power 0: "m 3" = 3 m, "m^0.5" = 5, "g0" = 1. Only whole exponents stand in a
 /// unit here, and a leading "1/". Returns what is wrong, or nothing.
 std::string fault_of(std::string_view unit) {
   if (unit.size() > 80) return "a unit that is too long";
   if (unit.find('@') != unit.npos) return "a unit with an origin";
+  if (unit[0] == ',') return "a decimal point is wanted, not a comma";
+  for (const char c : unit)  // UDUNITS prints some of the others
+    if (!is_letter(c) && !is_digit(c) && std::string_view(" .*/^-+()%_'").find(c) == std::string_view::npos)
+      return "no unit has the character " + in_quotes({&c, 1});
   for (std::size_t i = 0; i < unit.size(); ++i) {
     if (!is_digit(unit[i])) continue;
     std::size_t end = i;
@@ -215,10 +286,9 @@ std::string fault_of(std::string_view unit) {
     const bool one_over = i == 0 && end == 1 && unit[0] == '1' && !rest.empty() && rest[0] == '/';
     if (exponent && unit.substr(i, end - i).find_first_not_of('0') == std::string_view::npos)
       return unit.starts_with("g0") ? "g0 is the gram to the power 0; standard gravity is g_n" : "a unit to the power 0";
-    if (!exponent && !one_over) return unit[0] == ',' ? "a decimal point is wanted, not a comma" : "a number inside the unit";
+    if (!exponent && !one_over) return "a number inside the unit";
     i = end - 1;
   }
-  if (unit[0] == ',') return "a decimal point is wanted, not a comma";
   if (!is_letter(unit[0]) && unit[0] != '%' && unit[0] != '(' && unit[0] != '1') return "not a unit after the number";
   return {};
 }
@@ -263,7 +333,9 @@ std::string quantity_name(std::string_view unit) {
   return unit.empty() || unit == "1" ? name : name + " [" + std::string(unit) + "]";
 }
 
-std::span<const CommonUnit> common_units() { return table; }
+std::span<const CommonUnit> common_units() {
+  return table;
+}
 
 double udunits_factor(std::string_view from, std::string_view to) {
   const UnitSystem& system = unit_system();

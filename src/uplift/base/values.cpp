@@ -13,10 +13,18 @@ const Values::Item& Values::item(std::string_view key) const {
   return found == items_.end() ? nothing : found->second;
 }
 
-double Values::number(std::string_view key) const { return std::get<double>(item(key).data); }
-int Values::integer(std::string_view key) const { return static_cast<int>(std::get<std::int64_t>(item(key).data)); }
-bool Values::flag(std::string_view key) const { return std::get<bool>(item(key).data); }
-const std::string& Values::text(std::string_view key) const { return std::get<std::string>(item(key).data); }
+double Values::number(std::string_view key) const {
+  return std::get<double>(item(key).data);
+}
+int Values::integer(std::string_view key) const {
+  return static_cast<int>(std::get<std::int64_t>(item(key).data));
+}
+bool Values::flag(std::string_view key) const {
+  return std::get<bool>(item(key).data);
+}
+const std::string& Values::text(std::string_view key) const {
+  return std::get<std::string>(item(key).data);
+}
 
 const std::vector<double>& Values::numbers(std::string_view key) const {
   static const std::vector<double> none;
@@ -42,11 +50,19 @@ const Values& Values::table(std::string_view key) const {
   return one.front();
 }
 
-const Values& Values::part(std::string_view key) const { return table(key); }
+const Values& Values::part(std::string_view key) const {
+  return table(key);
+}
 
-bool Values::has(std::string_view key) const { return !std::holds_alternative<std::monostate>(item(key).data); }
-bool Values::given(std::string_view key) const { return item(key).given; }
-bool Values::is_word(std::string_view key) const { return std::holds_alternative<std::string>(item(key).data); }
+bool Values::has(std::string_view key) const {
+  return !std::holds_alternative<std::monostate>(item(key).data);
+}
+bool Values::given(std::string_view key) const {
+  return item(key).given;
+}
+bool Values::is_word(std::string_view key) const {
+  return std::holds_alternative<std::string>(item(key).data);
+}
 
 Where Values::where(std::string_view key) const {
   const auto found = items_.find(key);

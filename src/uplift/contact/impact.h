@@ -5,6 +5,7 @@
 
 #include "uplift/base/catalog.h"
 #include "uplift/contact/compliance.h"
+#include "uplift/contact/kernel.h"
 #include "uplift/contact/problem.h"
 
 namespace uplift {
@@ -17,15 +18,18 @@ struct Impact {
   const Sparse* sparse_b = nullptr;
   std::vector<int> normals;         // active normal rows (compressed)
   std::vector<int> tangents;        // sticking tangential rows: equalities
-  const Vector* force = nullptr;    // all rows: force of the displacement solve that is contained in the acceleration [N], tension > 0
+  const Vector* force = nullptr;    // all rows: contact force at the end of the step [N], tension > 0
+  const Vector* area = nullptr;     // all rows: area of the row's point [m2], by which redundant impulses are shared; null: equal shares
   double velocity_weight = 0;       // gamma * dt [s]: a force p at the end of the step put -velocity_weight * M^-1 B^T p into the velocity
+  double acceleration_weight = 1;   // and -acceleration_weight * M^-1 B^T p into the acceleration
 };
 
-/// Work space of a rule, kept between steps.
+/// Work space of a rule, sized at the first call and kept between steps.
 struct ImpactScratch {
-  Vector target, impulse, y, trial;
-  std::vector<int> rows;
-  Matrix normal_matrix;
+  KernelScratch kernel;
+  Vector target, limit, fixed, held;  // rows: B v without the contact force, weights of the rows (kernel.h)
+  Vector rate, taken, impulse;        // rows: B v corrected, force that was taken out, total impulse
+  Vector y, push;                     // r
 };
 
 class ImpactRule {

@@ -50,6 +50,7 @@ struct KernelReply {
   int iterations = 0;
   int cycles = 0;     // repeated sets met
   bool exact = false;  // the answer comes from the dual active-set fallback
+  double residual = 0;  // balance |z + C^T p| / |z| and openings of the closed rows / largest target
   std::ptrdiff_t worst = -1;
   bool solved() const { return end == KernelEnd::solved; }
 };

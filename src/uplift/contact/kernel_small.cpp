@@ -118,6 +118,16 @@ Extremes evaluate_rows(std::ptrdiff_t n, const double* c, std::ptrdiff_t stride,
   return {closed, pressure, largest, sum};
 }
 
+/// Balance |z + G y| / |z|, and openings of the closed rows relative to the largest target.
+template <int R>
+double residual(const double* gram, const double* z, const double* y, const Extremes& extremes) {
+  double product[R], error = 0, size = 0;
+  apply<R>(gram, y, product);
+  for (int r = 0; r < R; ++r) error += (product[r] + z[r]) * (product[r] + z[r]), size += z[r] * z[r];
+  const double balance = size > 0 ? std::sqrt(error / size) : 0;
+  return extremes.target > 0 ? std::max(balance, extremes.closed / extremes.target) : balance;
+}
+
 /// The next set: a closed row opens when its pressure is tensile; an open one closes when it penetrates, or when it touches and the pressure field
 /// of the closed rows is compressive there (this makes the redundant pressures the least-norm ones). Returns the number of changes.
 double next_set(std::ptrdiff_t n, const double* limit, const double* opening, const double* field, double gap, double pressure,
@@ -173,6 +183,7 @@ KernelReply active_set(const Rows& rows, double* held, double* z, double* openin
     if (reply.iterations == 1) scratch.visited.count = 0;
     if (next_set(n, rows.limit, opening, field, gap, 1e-12 * extremes.pressure, held) == 0) {
       reply.end = KernelEnd::solved;
+      reply.residual = residual<R>(gram, z, y, extremes);
       return reply;
     }
     if (!scratch.visited.note(n, held)) {

@@ -40,13 +40,23 @@ void size_scratch(const InterfaceProblem& problem, InterfaceSolution& solution) 
 void to_force(const InterfaceProblem& problem, const Block& block, double* force, double* slope) {
   const int n = block.batch.points, components = block.batch.components;
   const double* area = block.area.data();
+  const double scale = problem.scale;
+  if (components == 1 && slope != nullptr) {
+#pragma omp simd
+    for (int i = 0; i < n; ++i) {
+      const double weight = scale * area[i];
+      force[i] *= weight;
+      slope[i] *= weight;
+    }
+    return;
+  }
   for (int c = 0; c < components; ++c)
 #pragma omp simd
-    for (int i = 0; i < n; ++i) force[c * n + i] *= problem.scale * area[i];
+    for (int i = 0; i < n; ++i) force[c * n + i] *= scale * area[i];
   if (slope != nullptr)
     for (int c = 0; c < components * components; ++c)
 #pragma omp simd
-      for (int i = 0; i < n; ++i) slope[c * n + i] *= problem.scale * area[i];
+      for (int i = 0; i < n; ++i) slope[c * n + i] *= scale * area[i];
 }
 
 void law_force(const InterfaceProblem& problem, const Block& block, double* slope, InterfaceSolution& solution) {
@@ -186,12 +196,28 @@ void line_search(const InterfaceProblem& problem, const AugmentedForce& augmente
   }
 }
 
+/// What the balance is measured against: the largest of |z| and |C^T p|. In dynamics C^T p = G - z; in statics the closed joint is taken back in G.
+double balance_scale(const InterfaceProblem& problem, InterfaceSolution& solution) {
+  NewtonScratch& scratch = solution.newton;
+  const Eigen::Index r = scratch.gradient.size();
+  double scale = 0;
+  if (problem.shift.size() > 0) {
+    scratch.direction.setZero();
+    small::multiply_transposed_add(problem.factor, solution.force.data(), scratch.direction.data());
+    for (Eigen::Index i = 0; i < r; ++i) scale = std::max(scale, std::abs(scratch.direction[i]));
+  }
+  for (Eigen::Index i = 0; i < r; ++i) {
+    scale = std::max(scale, std::abs(solution.z[i]));
+    if (problem.shift.size() == 0) scale = std::max(scale, std::abs(scratch.gradient[i] - solution.z[i]));
+  }
+  return scale;
+}
+
 }  // namespace
 
 void evaluate(const InterfaceProblem& problem, const AugmentedForce& augmented, bool with_slope, InterfaceSolution& solution) {
   size_scratch(problem, solution);
-  std::copy_n(problem.free_opening.data(), problem.rows(), solution.opening.data());
-  small::multiply_add(problem.factor, solution.z.data(), solution.opening.data());
+  small::affine(problem.factor, problem.free_opening.data(), solution.z.data(), solution.opening.data());
   for (std::size_t b = 0; b < problem.blocks.size(); ++b) {
     const Block& block = problem.blocks[b];
     double* slope = with_slope ? solution.newton.slope.data() + solution.newton.first_slope[b] : nullptr;
@@ -217,10 +243,7 @@ Outcome solve_by_newton(const InterfaceProblem& problem, const AugmentedForce& a
       outcome.why = "the interface forces are not finite";
       return outcome;
     }
-    // |C^T p| = |G - z| up to the statics' shift
-    double reference = 0;
-    for (Eigen::Index i = 0; i < r; ++i)
-      reference = std::max(reference, std::max(std::abs(solution.z[i]), std::abs(scratch.gradient[i] - solution.z[i])));
+    const double reference = balance_scale(problem, solution);
     outcome.residual = size / std::max(reference, 1e-300);
     if (size <= options.tolerance * reference || size == 0) {
       outcome.converged = true;

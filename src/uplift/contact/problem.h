@@ -2,6 +2,7 @@
 #include <string>
 #include <vector>
 
+#include "uplift/contact/kernel.h"
 #include "uplift/interface/interface.h"
 #include "uplift/math/linalg.h"
 
@@ -40,6 +41,7 @@ struct InterfaceProblem {
   int rows() const { return static_cast<int>(factor.rows()); }
 };
 
+/// Contact status of a point. A closed point without friction slips.
 enum class Status : signed char { open, stick, slip };
 
 /// Work space of Newton's method, sized once.
@@ -55,6 +57,12 @@ struct AugmentedScratch {
   Vector multiplier, stiffness;  // rows [N], [N/m]
 };
 
+/// Work space of the Lagrange method, sized once.
+struct LagrangeScratch {
+  KernelScratch kernel;
+  Vector limit, held;  // rows: area of the normal rows of cones, and the same where they are closed
+};
+
 /// The unknowns of a step, and the work space of the methods (kept from step to step, so that nothing is allocated after the first).
 struct InterfaceSolution {
   Vector z;                   // on entry the first guess
@@ -64,6 +72,7 @@ struct InterfaceSolution {
   std::vector<Status> status;  // per point, all blocks one after another (cones)
   NewtonScratch newton;
   AugmentedScratch augmented;
+  LagrangeScratch lagrange;
 };
 
 struct Outcome {

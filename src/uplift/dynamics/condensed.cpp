@@ -71,8 +71,7 @@ void Condensed::free_opening(const Vector& displacement) {
   }
   for (std::size_t j = 0; j < touched_.size(); ++j)
     touched_value_[static_cast<Eigen::Index>(j)] = displacement[touched_[j]] + free_[touched_[j]];
-  std::copy_n(gap_.data(), gap_.size(), problem_.free_opening.data());
-  small::multiply_add(touched_b_, touched_value_.data(), problem_.free_opening.data());
+  small::affine(touched_b_, gap_.data(), touched_value_.data(), problem_.free_opening.data());
 }
 
 Outcome Condensed::solve(const Vector& right, const Vector& displacement, const Vector& opening, const std::vector<double>& history,
@@ -89,8 +88,7 @@ Outcome Condensed::solve(const Vector& right, const Vector& displacement, const 
   std::copy_n(history.data(), history.size(), problem_.old.data());
   Outcome outcome = method_.solve(problem_, solution_);
   if (!outcome.converged) return outcome;
-  std::copy_n(free_.data(), free_.size(), increment.data());
-  small::multiply_add(spread_, solution_.z.data(), increment.data());
+  small::affine(spread_, free_.data(), solution_.z.data(), increment.data());
   return outcome;
 }
 

@@ -25,6 +25,7 @@ struct BeamSection {
 ///   shear row     EI'/L^3 [12, 6L, -12, 6L],   moment row   EI'/L^3 [6L, (4 + phi) L^2, -6L, (2 - phi) L^2]
 ///   axial         EA/L [1, -1]
 /// Consistent mass: integral of rho A N^T N + rho I P^T P with the exact static shapes (N deflection, P rotation), linear along the axis.
+/// Frequencies converge with h^4 from above without shear flexibility, with h^2 where it counts (the shear force is constant in an element).
 /// Lumped mass: half of rho A L at each end, half of rho I L as rotary inertia.
 /// Geometric stiffness, consistent: N integral of (dN/dx)^T (dN/dx); for phi = 0 it is N/(30L) [36, 3L, -36, 3L; 3L, 4L^2, -3L, -L^2; ...].
 class Beam : public Element {

@@ -17,7 +17,7 @@ struct Batch {
   int normal() const { return (components - 1) * points; }  // offset of the normal component
 };
 
-/// What a law returns for a batch. Null is not wanted. `slope` is d traction_r / d opening_c at [(r * components + c) * points + i] [Pa/m].
+/// What a law returns for a batch. Null is not wanted; the traction always is. `slope` is d traction_r / d opening_c at [(r * components + c) * points + i] [Pa/m].
 struct Reply {
   double* traction = nullptr;  // Pa
   double* slope = nullptr;     // Pa/m
@@ -42,12 +42,15 @@ class InterfaceLaw {
 };
 
 /// A set that only bounds the contact force (p per point, N or Pa): the unilateral ray, the Coulomb cone. `force` and `trial` use the tension-positive
-/// sign: compression is negative. The same batch layout.
+/// sign: compression is negative. The same batch layout. With P the projection and g the opening, penalty is p = P(e g) and the augmented
+/// Lagrangian p = P(m + e g), m <- p.
 class Cone {
  public:
   virtual ~Cone() = default;
   /// Friction coefficient; 0 for a frictionless contact.
   virtual double friction() const = 0;
+  /// force = P(trial), and `slope` = d force_r / d trial_c in the layout of Reply::slope, or null. `force` may be `trial`.
+  virtual void project(const Batch&, const double* trial, double* force, double* slope) const = 0;
 };
 
 std::span<const Entry<InterfaceLaw>* const> law_catalog();

@@ -13,6 +13,8 @@ namespace uplift {
 using Cholesky = Eigen::LLT<Matrix>;
 using SymmetricEigen = Eigen::SelfAdjointEigenSolver<Matrix>;
 using GeneralisedEigen = Eigen::GeneralizedSelfAdjointEigenSolver<Matrix>;
+using PartialLu = Eigen::PartialPivLU<Matrix>;
+using FullLu = Eigen::FullPivLU<Matrix>;
 using PivotedQr = Eigen::ColPivHouseholderQR<Matrix>;
 using CompleteQr = Eigen::CompleteOrthogonalDecomposition<Matrix>;
 using PivotedLdlt = Eigen::LDLT<Matrix>;

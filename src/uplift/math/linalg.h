@@ -16,6 +16,8 @@ using Vec4 = Eigen::Vector4d;
 using Mat4 = Eigen::Matrix4d;
 using Map = Eigen::Map<Vector>;  // someone else's numbers as a vector
 using ConstMap = Eigen::Map<const Vector>;
+using ColumnStride = Eigen::OuterStride<>;
+using ConstMatrixMap = Eigen::Map<const Matrix, 0, ColumnStride>;  // columns of someone else's matrix, apart by a stride
 using Index = Eigen::Index;
 inline constexpr unsigned lower_triangle = Eigen::Lower, upper_triangle = Eigen::Upper;
 

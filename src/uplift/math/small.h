@@ -22,9 +22,29 @@ inline void add(std::ptrdiff_t n, double factor, const double* x, double* y) {
   for (std::ptrdiff_t i = 0; i < n; ++i) y[i] += factor * x[i];
 }
 
+/// y = A x for a square matrix whose size the compiler knows.
+template <int N>
+inline void multiply_fixed(const double* a, const double* x, double* y) {
+  double sum[N] = {};
+  for (int j = 0; j < N; ++j)
+    for (int i = 0; i < N; ++i) sum[i] += a[j * N + i] * x[j];
+  for (int i = 0; i < N; ++i) y[i] = sum[i];
+}
+
 /// y = A x, A column-major n x m
 inline void multiply(const Matrix& a, const double* x, double* y) {
   const std::ptrdiff_t n = a.rows(), m = a.cols();
+  if (n == m) switch (n) {
+      case 1: return multiply_fixed<1>(a.data(), x, y);
+      case 2: return multiply_fixed<2>(a.data(), x, y);
+      case 3: return multiply_fixed<3>(a.data(), x, y);
+      case 4: return multiply_fixed<4>(a.data(), x, y);
+      case 5: return multiply_fixed<5>(a.data(), x, y);
+      case 6: return multiply_fixed<6>(a.data(), x, y);
+      case 7: return multiply_fixed<7>(a.data(), x, y);
+      case 8: return multiply_fixed<8>(a.data(), x, y);
+      default: break;
+    }
   const double* column = a.data();
   for (std::ptrdiff_t i = 0; i < n; ++i) y[i] = 0;
   for (std::ptrdiff_t j = 0; j < m; ++j, column += n) add(n, x[j], column, y);
@@ -35,6 +55,35 @@ inline void multiply_add(const Matrix& a, const double* x, double* y) {
   const std::ptrdiff_t n = a.rows(), m = a.cols();
   const double* column = a.data();
   for (std::ptrdiff_t j = 0; j < m; ++j, column += n) add(n, x[j], column, y);
+}
+
+/// y = b + A x in one pass where A has few columns.
+inline void affine(const Matrix& a, const double* b, const double* x, double* y) {
+  const std::ptrdiff_t n = a.rows(), m = a.cols();
+  const double* c = a.data();
+  switch (m) {
+    case 1: {
+      const double x0 = x[0];
+#pragma omp simd
+      for (std::ptrdiff_t i = 0; i < n; ++i) y[i] = b[i] + c[i] * x0;
+      return;
+    }
+    case 2: {
+      const double x0 = x[0], x1 = x[1];
+#pragma omp simd
+      for (std::ptrdiff_t i = 0; i < n; ++i) y[i] = b[i] + c[i] * x0 + c[n + i] * x1;
+      return;
+    }
+    case 3: {
+      const double x0 = x[0], x1 = x[1], x2 = x[2];
+#pragma omp simd
+      for (std::ptrdiff_t i = 0; i < n; ++i) y[i] = b[i] + c[i] * x0 + c[n + i] * x1 + c[2 * n + i] * x2;
+      return;
+    }
+    default:
+      for (std::ptrdiff_t i = 0; i < n; ++i) y[i] = b[i];
+      multiply_add(a, x, y);
+  }
 }
 
 /// y += A^T x

@@ -87,6 +87,7 @@ class ModelBuilder {
   std::string name_of(int full_unknown) const;
   void eliminate(Model& model, Matrix& motion_shapes) const;
   void assemble(Assembly& assembly) const;
+  void drop_dead_tangents(const Model& model, const Matrix& motion_shapes);
   void place_interfaces(Model& model);
   void refuse_inside_out(const InterfaceSpec& spec, const Where& where) const;
   std::vector<Vec2> structure_of(const InterfaceSpec& spec, bool upper, std::vector<int>& nodes) const;

@@ -113,6 +113,7 @@ Model ModelBuilder::finish() {
   Matrix motion_shapes;
   assemble(model.assembly);
   eliminate(model, motion_shapes);
+  drop_dead_tangents(model, motion_shapes);
   place_interfaces(model);
 
   const Assembly& full = model.assembly;

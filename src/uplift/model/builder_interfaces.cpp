@@ -23,6 +23,26 @@ void add_side(const std::vector<Node>& nodes, const JointPoint& point, bool uppe
 
 }  // namespace
 
+/// Where supports and constraints leave no tangential motion at any point, the interface is reduced to its normal components: nothing can slide there,
+/// and the laws then skip the tangential part.
+void ModelBuilder::drop_dead_tangents(const Model& model, const Matrix& motion_shapes) {
+  for (InterfaceSpec& spec : interfaces_) {
+    if (spec.components != 2) continue;
+    std::vector<Triplet> entries;
+    int row = 0;
+    for (const JointPoint& point : spec.points) {
+      for (const bool upper : {true, false}) add_side(nodes_, point, upper, tangent(point.normal.normalized()), row, entries);
+      ++row;
+    }
+    Sparse rows(row, model.reduction.rows());
+    rows.setFromTriplets(entries.begin(), entries.end());
+    const Sparse free_rows = rows * model.reduction;
+    const Matrix moved = rows * motion_shapes;
+    const bool alive = (free_rows.nonZeros() > 0 && free_rows.coeffs().abs().maxCoeff() > 1e-14) || (moved.size() > 0 && moved.cwiseAbs().maxCoeff() > 1e-14);
+    if (!alive) spec.components = 1;
+  }
+}
+
 void ModelBuilder::place_interfaces(Model& model) {
   std::vector<Triplet> entries;
   int first = 0;
@@ -105,16 +125,17 @@ void ModelBuilder::refuse_inside_out(const InterfaceSpec& spec, const Where& whe
   for (const int node : lower_nodes)
     if (std::ranges::binary_search(upper_nodes, node)) return;  // both sides hang together
   for (const bool is_upper : {true, false}) {
-    double least = 0, most = 0;
+    double least = 0, most = 0, size = 0;
     for (const Vec2& place : is_upper ? upper : lower) {
+      size = std::max(size, (place - middle).norm());
       const double height = (is_upper ? 1 : -1) * (place - middle).dot(n);
       least = std::min(least, height);
       most = std::max(most, height);
     }
-    if (most <= 1e-6 * -least && least < 0)
+    if (least < -1e-6 * size && most <= 1e-6 * size)
       throw InputError(where, "interface." + spec.name, "a normal from the lower side (soil) to the upper side (structure)",
                        fmt::format("an interface inside out: with the normal ({:g}, {:g}) the whole {} side, which holds \"{}\", lies on the wrong side of it",
-                                   n.x(), n.y(), is_upper ? "upper" : "lower", nodes_[(is_upper ? upper_nodes : lower_nodes).front()].name));
+                                   n.x(), n.y(), is_upper ? "upper" : "lower", nodes_[(is_upper ? spec.points.front().upper : spec.points.front().lower).front().first].name));
   }
 }
 

@@ -86,7 +86,7 @@ double unit_factor(const Values& v, std::string_view key, const std::vector<std:
     if (one.ok) return one.value;
     if (nearest.empty()) nearest = one.nearest;
   }
-  throw InputError(v.where(key), v.path(key), "a unit that converts to " + listed(wanted), uplift::quoted(v.text(key)), nearest);
+  throw InputError(v.where(key), v.path(key), "a unit that converts to " + listed(wanted), in_quotes(v.text(key)), nearest);
 }
 
 /// Which column a key means: a number from 1, or a word of the head line.
@@ -98,13 +98,13 @@ std::size_t column_of(const Values& v, std::string_view key, const std::vector<s
   throw InputError(v.where(key), v.path(key),
                    head.empty() ? "the number of a column, from 1 (the file has no head line)"
                                 : fmt::format("a column of {}:{}: {}", head_place.file, head_place.line, listed(head)),
-                   uplift::quoted(word), nearest_name(word, head));
+                   in_quotes(word), nearest_name(word, head));
 }
 
 std::unique_ptr<const TimeFunction> make_csv(const Values& v) {
   const std::filesystem::path given = v.text("file");
   const std::filesystem::path path = given.is_absolute() ? given : std::filesystem::path(v.where("file").file).parent_path() / given;
-  if (!std::filesystem::is_regular_file(path)) throw InputError(v.where("file"), v.path("file"), "a file", uplift::quoted(path.string()));
+  if (!std::filesystem::is_regular_file(path)) throw InputError(v.where("file"), v.path("file"), "a file", in_quotes(path.string()));
 
   const double time_factor = unit_factor(v, "time_unit", {"s"});
   const double factor = v.number("scale") * unit_factor(v, "unit", {"1", "m/s2", "m/s", "m", "N", "N m", "Pa", "rad"});
@@ -132,7 +132,7 @@ std::unique_ptr<const TimeFunction> make_csv(const Values& v) {
     const auto cell = [&](std::size_t column) {
       if (column >= cells.size()) throw InputError(place, "", fmt::format("at least {} columns", column + 1), fmt::format("{}", cells.size()));
       const std::optional<double> number = number_of(cells[column]);
-      if (!number) throw InputError(place, "", fmt::format("a number in column {}", column + 1), uplift::quoted(cells[column]));
+      if (!number) throw InputError(place, "", fmt::format("a number in column {}", column + 1), in_quotes(cells[column]));
       return *number;
     };
     times.push_back(time_factor * cell(time_column));

@@ -12,9 +12,6 @@
 
 namespace uplift {
 
-namespace {
-
-/// Columns span the motions in which every node that an interface touches stands still.
 Sparse base_held(const Model& model) {
   std::set<int> held;
   for (Index unknown = 0; unknown < model.assembly.b.cols(); ++unknown)
@@ -35,8 +32,6 @@ Sparse base_held(const Model& model) {
     }
   return elimination.reduction();
 }
-
-}  // namespace
 
 double tuned_mass(const Model& model, int node, double frequency, const Where& where) {
   const Sparse held = base_held(model);

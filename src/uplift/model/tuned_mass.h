@@ -12,4 +12,7 @@ namespace uplift {
 /// Throws InputError (at `where`) when the other masses alone already bring the structure below the frequency, or when the node cannot move.
 double tuned_mass(const Model& model, int node, double frequency, const Where& where);
 
+/// Columns span the motions (free unknowns) in which every node that an interface touches stands still: the fixed-base model.
+Sparse base_held(const Model& model);
+
 }  // namespace uplift

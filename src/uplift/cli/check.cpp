@@ -1,0 +1,149 @@
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+
+#include "uplift/analysis/wording.h"
+#include "uplift/cli/console.h"
+#include "uplift/cli/load.h"
+#include "uplift/io/json_writer.h"
+
+namespace uplift::cli {
+namespace {
+
+/// What is known of a case without running it to the end.
+struct Findings {
+  std::vector<double> fixed, bonded, base_free;  // Hz
+  std::vector<StiffnessRatio> ratios;
+  double suggested_step = 0;       // s
+  double seconds_per_step = 0;     // measured over a few steps
+  long steps = 0;                  // of one run
+  std::string trial_failure;       // why the first steps failed; empty when they did not
+  std::vector<std::string> warnings;
+};
+
+/// Frequencies with the nodes of every interface held: what a fixed-base model has.
+std::vector<double> frequencies(const std::vector<Mode>& found) {
+  std::vector<double> values;
+  for (const Mode& mode : found) values.push_back(mode.frequency);
+  return values;
+}
+
+/// One, two or five times a power of ten, not above the value.
+double round_down(double value) {
+  const double power = std::pow(10, std::floor(std::log10(value)));
+  for (const double factor : {5.0, 2.0})
+    if (factor * power <= value * (1 + 1e-12)) return factor * power;
+  return power;
+}
+
+/// The first steps of the run: do the static stages converge, and what does a step cost?
+void try_steps(Findings& found, const Built& built) {
+  RunPlan plan = built.plan;
+  plan.frames = 0;
+  for (Stage& stage : plan.stages)
+    if (stage.type == Stage::Type::dynamics) {
+      found.steps += std::lround(stage.duration / stage.step);
+      stage.duration = std::min(stage.duration, 200 * stage.step);
+    }
+  const RunResult trial = uplift::run(built.model, plan, built.behaviours);
+  if (trial.status == RunStatus::failed && trial.counts.steps < 200) found.trial_failure = trial.reason;
+  if (trial.counts.steps > 0) found.seconds_per_step = trial.wall / static_cast<double>(trial.counts.steps);
+}
+
+Findings find(const Case& read, const RunSpec& spec, const Built& built) {
+  Findings found;
+  found.fixed = frequencies(fixed_base_modes(built.model, 3));
+  found.bonded = frequencies(bonded_modes(built.model, 5));
+  found.base_free = frequencies(uplift::modes(built.model.stiffness, built.model.mass, 5));
+  if (const Stage* stage = dynamic_stage(built.plan)) found.ratios = stiffness_ratios(built.model, *stage, *built.plan.solver);
+  double fastest = 0;
+  for (const double frequency : found.bonded)
+    if (frequency < 100) fastest = std::max(fastest, frequency);
+  if (fastest > 0) found.suggested_step = round_down(1 / (20 * fastest));
+  try_steps(found, built);
+  found.warnings = warnings(read, spec, built);
+  return found;
+}
+
+std::string list_hz(const std::vector<double>& values) {
+  std::string text;
+  for (const double value : values) text += (text.empty() ? "" : ", ") + fmt::format("{:.4g}", value);
+  return text.empty() ? "none" : text + " Hz";
+}
+
+void print(const Loaded& loaded, const Built& built, const Findings& found, const std::vector<std::string>& runs) {
+  const Model& model = built.model;
+  const auto line = [](std::string_view what, const std::string& value) { say(fmt::format("  {:<28} {}", what, value)); };
+  say(loaded.from.title);
+  line("unknowns", fmt::format("{} free of {} ({} nodes)", model.free(), model.full_unknowns(), model.nodes.size()));
+  for (std::size_t k = 0; k < model.interfaces.size(); ++k) {
+    const Interface& interface = model.interfaces[k];
+    line("interface " + interface.name, fmt::format("{} points, {}, area {:.4g} m2{}", interface.batch.points, interface.behaviour, interface.area.sum(),
+                                                    interface.batch.components == 1 ? ", normal only" : ""));
+    if (k < found.ratios.size() && found.ratios[k].most > 0)
+      line("  k F_ii at the time step", fmt::format("{:.3g} to {:.3g}", found.ratios[k].least, found.ratios[k].most));
+    if (k < found.ratios.size()) line("  compliance F_ii", fmt::format("up to {:.3g} m/N", found.ratios[k].compliance));
+  }
+  line("dead load on the base", spoken(built.weight, "N"));
+  line("frequencies, fixed base", list_hz(found.fixed));
+  line("frequencies, bonded base", list_hz(found.bonded));
+  line("frequencies, base free", list_hz(found.base_free));
+  for (const std::string& note : built.notes) line("chosen", note);
+  const Stage* stage = dynamic_stage(built.plan);
+  if (stage) {
+    line("time step", fmt::format("{} ({} steps)", spoken(stage->step, "s"), found.steps));
+    if (found.suggested_step > 0) line("suggested step, at most", fmt::format("{} (twenty a period of the bonded modes below 100 Hz)", spoken(found.suggested_step, "s")));
+  }
+  if (found.seconds_per_step > 0)
+    line("cost", fmt::format("about {:.2f} microseconds a step, {} a run", 1e6 * found.seconds_per_step, spoken(found.seconds_per_step * static_cast<double>(found.steps), "s")));
+  say("what is computed");
+  for (const std::string& run : runs) say("  " + run);
+  for (const std::string& warning : found.warnings) say("warning: " + warning);
+  if (!found.trial_failure.empty()) say("warning: the first steps fail: " + found.trial_failure);
+  say(found.warnings.empty() && found.trial_failure.empty() ? "the case is in order" : "the case can be run; mind the warnings");
+}
+
+void write(const Loaded& loaded, const Built& built, const Findings& found, const std::vector<std::string>& runs) {
+  JsonWriter json(0, 2);
+  json.begin_object().member("case", loaded.from.case_file).member("title", loaded.from.title).member("unknowns", built.model.free()).member("full_unknowns", built.model.full_unknowns());
+  json.key("interfaces").begin_array();
+  for (std::size_t k = 0; k < built.model.interfaces.size(); ++k) {
+    const Interface& interface = built.model.interfaces[k];
+    json.begin_object().member("name", interface.name).member("behaviour", interface.behaviour).member("points", interface.batch.points).member("area", interface.area.sum());
+    if (k < found.ratios.size()) json.member("k_F_least", found.ratios[k].least).member("k_F_most", found.ratios[k].most).member("compliance", found.ratios[k].compliance);
+    json.end_object();
+  }
+  json.end_array();
+  json.member("weight", built.weight).key("frequencies_fixed_base").numbers(found.fixed).key("frequencies_bonded").numbers(found.bonded).key("frequencies_base_free").numbers(found.base_free);
+  json.member("steps", found.steps).member("suggested_step", found.suggested_step).member("seconds_per_step", found.seconds_per_step);
+  json.key("runs").texts(runs).key("notes").texts(built.notes).key("warnings").texts(found.warnings).member("trial_failure", found.trial_failure).end_object();
+  say(json.take());
+}
+
+}  // namespace
+
+int check(const Options& options) {
+  const Loaded loaded = load(options);
+  const std::vector<RunSpec> own = runs_of_case(loaded.read);
+  std::vector<std::string> runs;
+  for (const RunSpec& spec : own) runs.push_back("uplift run: " + spec.label);
+  const Built built = build(loaded.read, own.front());
+  if (!loaded.read.values.tables("variant").empty()) {
+    const Comparison comparison = comparison_of_case(loaded.read);
+    for (const RunSpec& spec : comparison.runs) {
+      build(loaded.read, spec);  // every variant is checked too
+      runs.push_back(fmt::format("uplift compare: {}{}", spec.label, spec.group.empty() ? "" : ", " + spec.group));
+    }
+    for (const RunSpec& spec : comparison.sweep) build(loaded.read, spec);
+    if (!comparison.sweep.empty()) runs.push_back(fmt::format("uplift compare: stiffness sweep, {} runs", comparison.sweep.size()));
+  }
+  const Findings found = find(loaded.read, own.front(), built);
+  if (options.json)
+    write(loaded, built, found, runs);
+  else if (!options.quiet)
+    print(loaded, built, found, runs);
+  return Exit::done;
+}
+
+}  // namespace uplift::cli

@@ -1,0 +1,38 @@
+#pragma once
+#include <string>
+#include <vector>
+
+// The commands of the program: one function and one file each. main.cpp declares their options and calls them.
+namespace uplift::cli {
+
+/// Exit codes, as documented by `uplift --help`.
+enum Exit { done = 0, internal_error = 1, bad_input = 2, numerical_failure = 3, interrupted = 130 };
+
+struct Options {
+  std::string file;    // case file, or stored problem
+  std::string out;     // folder of the results; empty: out/NAME
+  bool json = false;   // for machines
+  bool quiet = false;  // nothing but errors
+  std::string command;  // the command line, for the report
+};
+
+int new_case(const std::string& name);
+int check(const Options& options);
+int run(const Options& options);
+int compare(const Options& options);
+int modes(const Options& options, int count);
+/// `family` and `name` may be empty: lists.
+int describe(const std::string& family, const std::string& name);
+int schema();
+int replay(const Options& options, const std::string& method, bool all);
+
+/// A command as it was declared, for completion.
+struct Declared {
+  std::string name, summary;
+  std::vector<std::pair<std::string, std::string>> options;  // "--json", what it does
+  bool takes_file = false;
+};
+/// Prints a completion script for `shell` ("bash" or "zsh").
+int completion(const std::string& shell, const std::vector<Declared>& commands);
+
+}  // namespace uplift::cli

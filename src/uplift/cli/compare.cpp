@@ -1,0 +1,104 @@
+#include "uplift/analysis/compare.h"
+
+#include <fmt/format.h>
+
+#include "uplift/analysis/wording.h"
+#include "uplift/cli/console.h"
+#include "uplift/cli/load.h"
+#include "uplift/io/files.h"
+#include "uplift/model/builder.h"
+
+namespace uplift::cli {
+namespace {
+
+void print_runs(const Results& results, const ComparisonSummary& compared) {
+  std::string group = "\n";
+  std::vector<std::vector<std::string>> rows;
+  const std::vector<std::string> head{"run", "status", "top motion", "uplifted", "gap", "base moment", "energy created", "agreement", "deviation"};
+  const auto flush = [&] {
+    if (rows.size() > 1) print_table(rows);
+    rows = {head};
+  };
+  for (std::size_t i = 0; i < results.runs.size(); ++i) {
+    const RunResult& run = results.runs[i];
+    if (run.group != group) {
+      flush();
+      group = run.group;
+      if (!group.empty()) say((i > 0 ? "\n" : "") + group);
+    }
+    const int top = results.built[i].top;
+    const Peak* motion = top >= 0 ? find_peak(run, Request::Kind::displacement, 3 * top + ux) : nullptr;
+    const Agreement& agreement = compared.agreement[i];
+    const bool counted = agreement.word == Agreement::Word::agrees || agreement.word == Agreement::Word::differs;
+    rows.push_back({run.label, status_text(run), motion ? spoken(std::abs(motion->value), "m") : "-", percent(run.max_uplifted_ratio.value), spoken(run.max_opening.value, "m"),
+                    spoken(std::abs(run.max_base_moment.value), "N m"), percent(created_share(run)), std::string(to_string(agreement.word)),
+                    counted ? percent(agreement.deviation) : "-"});
+  }
+  flush();
+}
+
+void print_sweep(const ComparisonSummary& compared) {
+  if (compared.sweep.empty()) return;
+  say("\nenergy created against the stiffness of the joint");
+  std::vector<std::vector<std::string>> rows{{"k F", "path average", "end of step"}};
+  for (const SweepRow& row : compared.sweep) rows.push_back({fmt::format("{:g}", row.ratio), fmt::format("{:.2e}", row.path), fmt::format("{:.2e}", row.end)});
+  print_table(rows);
+}
+
+/// Builds and runs one list of specs; stops after an interrupted run.
+void run_all(const Loaded& loaded, const Options& options, const std::vector<RunSpec>& specs, std::size_t before, std::size_t total, Results& results) {
+  for (const RunSpec& spec : specs) {
+    if (interrupt_asked()) return;
+    results.specs.push_back(spec);
+    results.built.push_back(build(loaded.read, spec));
+    results.runs.push_back(run_one(results.built.back(), fmt::format("[{}/{}] {}", before + results.runs.size() + 1, total, spec.name), options));
+  }
+}
+
+}  // namespace
+
+int compare(const Options& options) {
+  const Loaded loaded = load(options);
+  const Comparison comparison = comparison_of_case(loaded.read);
+  const std::size_t total = comparison.runs.size() + comparison.sweep.size();
+  Results results, swept;
+  catch_interrupts();
+  run_all(loaded, options, comparison.runs, 0, total, results);
+  run_all(loaded, options, comparison.sweep, comparison.runs.size(), total, swept);
+
+  const Values* compare = loaded.read.values.has("compare") ? &loaded.read.values.table("compare") : nullptr;
+  ComparisonSummary compared;
+  compared.band = compare ? compare->number("band") : 0.02;
+  compared.agreement = agreement(results.runs, results.specs, compare ? compare->texts("agree_on") : std::vector<std::string>{}, compared.band, results.built.front().top);
+  compared.sweep = sweep_table(swept.specs, swept.runs);
+  const RunResult* bonded = nullptr;
+  for (std::size_t i = 0; i < results.runs.size(); ++i)
+    if (results.specs[i].bonded && results.runs[i].group == results.runs.front().group) bonded = &results.runs[i];
+  results.verdict = judge(results.built.front(), results.runs.front(), bonded);
+  results.warnings = warnings(loaded.read, results.specs.front(), results.built.front());
+  const std::string folder = write_results(options, loaded, results, &compared);
+
+  if (options.json) {
+    fmt::print("{}", read_file(folder + "/summary.json"));
+  } else if (!options.quiet) {
+    for (const std::string& warning : results.warnings) complain("warning: " + warning);
+    print_runs(results, compared);
+    print_sweep(compared);
+    say(fmt::format("\nsound runs agree when their peaks lie within {} of the median of their group", percent(compared.band)));
+    say(fmt::format("verdict ({}): {}", results.runs.front().label, results.verdict.headline));
+    say(fmt::format("results: {}/report.html", folder));
+  }
+  if (interrupt_asked()) {
+    if (!options.quiet) complain(fmt::format("interrupted: the files hold the {} runs that were begun", results.runs.size() + swept.runs.size()));
+    return Exit::interrupted;
+  }
+  bool failed = false;
+  for (const RunResult& run : results.runs)
+    if (run.status == RunStatus::failed && !run.expected_to_fail) {
+      complain(fmt::format("failed: {}: {}", run.name, run.reason));
+      failed = true;
+    }
+  return failed ? Exit::numerical_failure : Exit::done;
+}
+
+}  // namespace uplift::cli

@@ -1,0 +1,188 @@
+#include <fmt/format.h>
+
+#include <algorithm>
+
+#include "uplift/analysis/case_sections.h"
+#include "uplift/cli/commands.h"
+#include "uplift/cli/console.h"
+#include "uplift/contact/impact.h"
+#include "uplift/contact/method.h"
+#include "uplift/dynamics/scheme.h"
+#include "uplift/laws/law.h"
+#include "uplift/linear/solver.h"
+#include "uplift/model/function.h"
+
+namespace uplift::cli {
+namespace {
+
+struct Family {
+  const char *name, *meaning;
+  std::span<const PartInfo* const> parts;
+};
+
+std::vector<Family> families() {
+  return {{"law", "what an interface does: traction laws, and cones (contact by constraint)", interface_behaviours()},
+          {"method", "how the interface problem of a step is solved", contact_methods()},
+          {"impact", "velocity corrections on impact, for constraints", impact_rules()},
+          {"scheme", "time integration", schemes()},
+          {"function", "functions of time", time_functions()},
+          {"solver", "factorisation of the structure's matrices", linear_solvers()}};
+}
+
+/// A table of the case file with its path: "interface.footing.bed".
+struct Place {
+  std::string path;
+  const Section* section;
+  Kind kind;
+};
+
+void collect(const Section& section, const std::string& path, std::vector<Place>& places) {
+  for (const Field& field : section.fields) {
+    if (!field.section) continue;
+    const std::string inner = path.empty() ? std::string(field.name) : path + "." + std::string(field.name);
+    places.push_back({inner, field.section, field.kind});
+    collect(*field.section, inner, places);
+  }
+}
+
+std::vector<Place> places() {
+  std::vector<Place> all{{"case", &case_section(), Kind::table}};
+  collect(case_section(), "", all);
+  return all;
+}
+
+std::string unit_of(const Field& field) { return field.unit.empty() || field.unit == "1" ? "-" : std::string(field.unit); }
+
+std::string default_of(const Field& field) {
+  const std::string text = standard_text(field);
+  if (!text.empty()) return text;
+  return field.required && field.kind != Kind::tables && field.kind != Kind::table ? "needed" : "-";
+}
+
+std::string range_of(const Field& field) {
+  switch (field.kind) {
+    case Kind::choice: {
+      std::string text;
+      for (const std::string_view word : field.choices) text += (text.empty() ? "" : " | ") + std::string(word);
+      return text;
+    }
+    case Kind::flag: return "true | false";
+    case Kind::text: return "text";
+    case Kind::texts: return "list of texts";
+    case Kind::numbers: return field.size > 0 ? fmt::format("list of {}", field.size) : "list";
+    case Kind::table: return "[table]";
+    case Kind::tables: return "[[table]], any number";
+    case Kind::named: return "[table] of names";
+    case Kind::part: return "part, see below";
+    default: break;
+  }
+  const std::string bounds = bounds_text(field);
+  return bounds.empty() ? "any" : bounds;
+}
+
+void print_fields(const std::vector<Field>& fields) {
+  if (fields.empty()) {
+    say("  no parameters");
+    return;
+  }
+  std::vector<std::vector<std::string>> rows{{"  key", "unit", "default", "range", "meaning"}};
+  for (const Field& field : fields) rows.push_back({"  " + std::string(field.name), unit_of(field), default_of(field), range_of(field), std::string(field.meaning)});
+  print_table(rows);
+}
+
+void print_indented(std::string_view text) {
+  while (!text.empty()) {
+    const std::size_t end = text.find('\n');
+    say("  " + std::string(text.substr(0, end)));
+    text = end == text.npos ? std::string_view() : text.substr(end + 1);
+  }
+}
+
+void print_part(const Family& family, const PartInfo& part) {
+  say(fmt::format("{} {}: {}", family.name, part.name, part.summary));
+  say("\nequations");
+  print_indented(part.equations);
+  say("\nparameters");
+  print_fields(part.params);
+  say("\nsource\n  " + std::string(part.source));
+}
+
+void print_family(const Family& family) {
+  std::vector<std::vector<std::string>> rows;
+  for (const PartInfo* part : family.parts) rows.push_back({"  " + std::string(part->name), std::string(part->summary)});
+  say(fmt::format("{}: {}", family.name, family.meaning));
+  print_table(rows);
+}
+
+void print_sections() {
+  std::vector<std::vector<std::string>> rows;
+  for (const Place& place : places()) rows.push_back({"  " + place.path, std::string(place.section->meaning)});
+  say("section: tables of the case file");
+  print_table(rows);
+}
+
+std::string head_of(const Place& place) {
+  if (place.path == "case") return "the keys at the top of a case file";
+  return place.kind == Kind::tables ? "[[" + place.path + "]]" : "[" + place.path + "]";
+}
+
+int describe_section(const std::string& name) {
+  std::vector<std::string> known;
+  for (const Place& place : places()) {
+    known.push_back(place.path);
+    const std::string last = place.path.substr(place.path.rfind('.') + 1);
+    if (place.path != name && last != name) continue;
+    say(fmt::format("section {}: {}\n{}\n", place.path, place.section->meaning, head_of(place)));
+    print_fields(place.section->fields);
+    for (const Field& field : place.section->fields) {
+      if (!field.parts) continue;
+      std::string names;
+      for (const PartInfo* part : field.parts()) names += (names.empty() ? "" : ", ") + std::string(part->name);
+      say(fmt::format("\n{}: one of {}", field.name, names));
+    }
+    return Exit::done;
+  }
+  throw InputError({"uplift describe section", 0}, "", "a table of the case file", "\"" + name + "\"", nearest_name(name, known));
+}
+
+}  // namespace
+
+int describe(const std::string& family, const std::string& name) {
+  const std::vector<Family> all = families();
+  if (family.empty()) {
+    for (const Family& each : all) {
+      print_family(each);
+      say("");
+    }
+    print_sections();
+    say("\nmore: uplift describe law sdm; uplift describe section beam");
+    return Exit::done;
+  }
+  if (family == "section") {
+    if (name.empty())
+      print_sections();
+    else
+      return describe_section(name);
+    return Exit::done;
+  }
+  std::vector<std::string> known{"section"};
+  for (const Family& each : all) {
+    known.emplace_back(each.name);
+    if (each.name != family) continue;
+    if (name.empty()) {
+      print_family(each);
+      return Exit::done;
+    }
+    std::vector<std::string> parts;
+    for (const PartInfo* part : each.parts) {
+      parts.emplace_back(part->name);
+      if (part->name != name) continue;
+      print_part(each, *part);
+      return Exit::done;
+    }
+    throw InputError({"uplift describe " + family, 0}, "", "the name of a " + family, "\"" + name + "\"", nearest_name(name, parts));
+  }
+  throw InputError({"uplift describe", 0}, "", fmt::format("one of {}", fmt::join(known, ", ")), "\"" + family + "\"", nearest_name(family, known));
+}
+
+}  // namespace uplift::cli

@@ -1,0 +1,78 @@
+#include "uplift/cli/load.h"
+
+#include <fmt/chrono.h>
+#include <fmt/format.h>
+
+#include <ctime>
+#include <filesystem>
+
+#include "uplift/cli/console.h"
+#include "uplift/io/files.h"
+#include "uplift/io/hash.h"
+#include "uplift/io/histories.h"
+#include "uplift/io/toml.h"
+
+namespace uplift::cli {
+namespace fs = std::filesystem;
+
+Loaded load(const Options& options) {
+  std::string file = options.file;
+  std::error_code error;
+  if (fs::is_directory(file, error) && fs::exists(fs::path(file) / "case.toml", error)) file = (fs::path(file) / "case.toml").string();
+  Loaded loaded{check_case(read_toml_file(file), file), {}};
+  Provenance& from = loaded.from;
+  from.title = loaded.read.values.text("title");
+  if (loaded.read.values.has("description")) from.subtitle = loaded.read.values.text("description");
+  from.command = options.command;
+  from.version = UPLIFT_VERSION;
+  from.created = fmt::format("{:%Y-%m-%dT%H:%M:%SZ}", fmt::gmtime(std::time(nullptr)));
+  from.case_file = file;
+  from.case_hash = sha256(read_file(file));
+  for (const std::string& input : input_files(loaded.read)) from.inputs.emplace_back(input, sha256(read_file(input)));
+  from.resolved = to_toml(loaded.read.values);
+  return loaded;
+}
+
+std::string result_path(const Options& options, const Case& read) {
+  if (!options.out.empty()) return options.out;
+  const fs::path file = fs::absolute(read.file).lexically_normal();
+  const std::string name = file.filename() == "case.toml" ? file.parent_path().filename().string() : file.stem().string();
+  return (fs::path("out") / name).string();
+}
+
+std::string status_text(const RunResult& result) {
+  std::string text(to_string(result.status));
+  if (result.expected_to_fail) text += result.status == RunStatus::failed ? " (expected)" : " (was expected to fail)";
+  return text;
+}
+
+RunResult run_one(const Built& built, const std::string& label, const Options& options) {
+  ProgressLine line(label, options.quiet || options.json);
+  return uplift::run(built.model, built.plan, built.behaviours, [&line](const Progress& progress) { return line(progress); });
+}
+
+std::string write_results(const Options& options, const Loaded& loaded, const Results& results, const ComparisonSummary* compared) {
+  ResultFolder folder(result_path(options, loaded.read));
+  ReportInput input{&loaded.read, &loaded.from, &results.verdict, {}, compared, results.warnings};
+  for (std::size_t i = 0; i < results.runs.size(); ++i) {
+    const RunResult& run = results.runs[i];
+    input.runs.push_back({&results.specs[i], &results.built[i], &run});
+    if (compared)
+      folder.write("histories/" + run.name + ".csv", histories_csv(run));
+    else if (i == 0)
+      folder.write("histories.csv", histories_csv(run));
+    if (!run.problem.empty()) folder.write("problem_" + run.name + ".json", run.problem);
+  }
+  folder.write("summary.json", summary_json(loaded.from, results.runs, compared));
+  folder.write("case.resolved.toml", loaded.from.resolved);
+  const std::string page = report_page(report_json(input));
+  if (!page.empty())
+    folder.write("report.html", page);
+  else if (!options.quiet)
+    complain("note: this program was built without the report's page (web/dist/report.html): no report.html is written");
+  const std::string moved = folder.finish();
+  if (!moved.empty() && !options.quiet && !options.json) say("earlier results moved to " + moved + "/");
+  return folder.path();
+}
+
+}  // namespace uplift::cli

@@ -1,0 +1,133 @@
+#include <CLI/CLI.hpp>
+#include <fmt/format.h>
+
+#include "uplift/base/error.h"
+#include "uplift/cli/commands.h"
+#include "uplift/cli/console.h"
+
+// The one file that knows CLI11: declares the commands and turns errors into exit codes.
+namespace {
+
+using uplift::cli::Declared;
+using uplift::cli::Options;
+
+constexpr const char* exit_codes =
+    "Exit codes: 0 done, 2 bad input, 3 numerical failure (a run failed, or created energy beyond its limit; results are kept and marked),\n"
+    "130 interrupted by Ctrl-C (files hold what was computed), 1 a bug.";
+
+struct Choices {
+  Options options;
+  std::string name, family, method = "lagrange", shell = "bash";
+  int modes = 6;
+  bool all = false;
+};
+
+CLI::App* add(CLI::App& app, const char* name, const char* summary, const char* examples) {
+  CLI::App* command = app.add_subcommand(name, summary);
+  command->footer(fmt::format("Examples:\n{}\n\n{}", examples, exit_codes));
+  return command;
+}
+
+void take_case(CLI::App* command, Options& options) {
+  command->add_option("case", options.file, "case file (TOML), or a folder with a case.toml")->required();
+}
+void take_output(CLI::App* command, Options& options) {
+  command->add_option("-o,--out", options.out, "folder of the results; default out/NAME. Earlier results there move to NAME.1, NAME.2, ...");
+  command->add_flag("-q,--quiet", options.quiet, "print errors only");
+}
+void take_json(CLI::App* command, Options& options) { command->add_flag("--json", options.json, "print JSON for machines"); }
+
+void declare(CLI::App& app, Choices& given) {
+  Options& options = given.options;
+  CLI::App* command = add(app, "new", "write a commented case to start from", "  uplift new tower          writes tower/case.toml");
+  command->add_option("name", given.name, "folder to make")->required();
+
+  command = add(app, "check", "validate a case and say what will be computed, without running it",
+                "  uplift check tower/case.toml\n  uplift check examples/01_oscillator --json");
+  take_case(command, options);
+  take_json(command, options);
+
+  command = add(app, "run", "run a case: its model, and the same model with a bonded base beside it",
+                "  uplift run tower/case.toml\n  uplift run tower --out results/tower --quiet\n  uplift run tower --json | python3 -m json.tool");
+  take_case(command, options);
+  take_output(command, options);
+  take_json(command, options);
+
+  command = add(app, "compare", "run all variants of a case side by side", "  uplift compare examples/01_oscillator/case.toml");
+  take_case(command, options);
+  take_output(command, options);
+  take_json(command, options);
+
+  command = add(app, "modes", "natural frequencies and shapes, bonded and with the base free", "  uplift modes tower\n  uplift modes tower --count 10 --json");
+  take_case(command, options);
+  command->add_option("-n,--count", given.modes, "number of modes")->check(CLI::Range(1, 1000));
+  take_json(command, options);
+
+  command = add(app, "describe", "equations, parameters, units and sources of every part, and the tables of a case file",
+                "  uplift describe\n  uplift describe law\n  uplift describe law sdm\n  uplift describe section interface.footing");
+  command->add_option("family", given.family, "law, method, impact, scheme, function, solver or section");
+  command->add_option("name", given.name, "name of the part or table");
+
+  add(app, "schema", "print the JSON Schema of the case file", "  uplift schema > case.schema.json");
+
+  command = add(app, "replay", "solve a stored interface problem alone, with any method",
+                "  uplift replay out/tower/problem_run.json --method lagrange\n  uplift replay out/tower/problem_run.json --all");
+  command->add_option("file", options.file, "problem_*.json, written when a step failed")->required();
+  command->add_option("-m,--method", given.method, "contact method (see uplift describe method)");
+  command->add_flag("--all", given.all, "compare all methods");
+  take_json(command, options);
+
+  command = add(app, "completion", "print a completion script for the shell", "  source <(uplift completion bash)\n  source <(uplift completion zsh)");
+  command->add_option("shell", given.shell, "bash or zsh");
+}
+
+std::vector<Declared> declared(const CLI::App& app) {
+  std::vector<Declared> all;
+  for (const CLI::App* command : app.get_subcommands({})) {
+    Declared one{command->get_name(), command->get_description(), {}, false};
+    for (const CLI::Option* option : command->get_options()) {
+      for (const std::string& name : option->get_lnames()) one.options.emplace_back("--" + name, option->get_description());
+      one.takes_file = one.takes_file || option->get_positional();
+    }
+    all.push_back(std::move(one));
+  }
+  return all;
+}
+
+int dispatch(const CLI::App& app, const Choices& given) {
+  using namespace uplift;
+  const std::string name = app.get_subcommands().front()->get_name();
+  if (name == "new") return cli::new_case(given.name);
+  if (name == "check") return cli::check(given.options);
+  if (name == "run") return cli::run(given.options);
+  if (name == "compare") return cli::compare(given.options);
+  if (name == "modes") return cli::modes(given.options, given.modes);
+  if (name == "describe") return cli::describe(given.family, given.name);
+  if (name == "schema") return cli::schema();
+  if (name == "replay") return cli::replay(given.options, given.method, given.all);
+  return cli::completion(given.shell, declared(app));
+}
+
+}  // namespace
+
+int main(int count, char** words) {
+  CLI::App app{"uplift: does a structure lift off its base in an earthquake, and what does that do to it?", "uplift"};
+  app.require_subcommand(1);
+  app.set_version_flag("--version", UPLIFT_VERSION);
+  app.footer(fmt::format("Examples:\n  uplift new tower; uplift check tower; uplift run tower\n  uplift compare examples/01_oscillator/case.toml\n  uplift run --help\n\n{}", exit_codes));
+  Choices given;
+  declare(app, given);
+  for (int i = 0; i < count; ++i) given.options.command += (i > 0 ? " " : "") + std::string(i > 0 ? words[i] : "uplift");
+  try {
+    app.parse(count, words);
+    return dispatch(app, given);
+  } catch (const CLI::ParseError& error) {
+    return app.exit(error) == 0 ? uplift::cli::Exit::done : uplift::cli::Exit::bad_input;
+  } catch (const uplift::InputError& error) {
+    uplift::cli::complain(fmt::format("error: {}", error.what()));
+    return uplift::cli::Exit::bad_input;
+  } catch (const std::exception& error) {
+    uplift::cli::complain(fmt::format("internal error: {}", error.what()));
+    return uplift::cli::Exit::internal_error;
+  }
+}

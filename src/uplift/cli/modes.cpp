@@ -1,0 +1,70 @@
+#include <fmt/format.h>
+
+#include <cmath>
+
+#include "uplift/cli/console.h"
+#include "uplift/cli/load.h"
+#include "uplift/io/json_writer.h"
+#include "uplift/model/builder.h"
+
+namespace uplift::cli {
+namespace {
+
+/// Share of the model's mass that moves with a mode in a direction: (phi^T M r)^2 / (r^T M r), phi^T M phi = 1.
+double share(const Model& model, const Vector& full_shape, Dof direction) {
+  Vector along = Vector::Zero(model.full_unknowns());
+  for (Index node = 0; node < static_cast<Index>(model.nodes.size()); ++node) along[3 * node + direction] = 1;
+  const Vector inertia = model.assembly.mass * along;
+  const double total = along.dot(inertia), taken = full_shape.dot(inertia);
+  return total > 0 ? taken * taken / total : 0;
+}
+
+void print_modes(const Model& model, const std::vector<Mode>& found, std::string_view title) {
+  say(title);
+  if (found.empty()) say("  none: a massless unknown has no stiffness");
+  std::vector<std::vector<std::string>> rows{{"mode", "frequency [Hz]", "period [s]", "mass in x [%]", "mass in y [%]"}};
+  for (std::size_t i = 0; i < found.size(); ++i) {
+    const Vector shape = model.reduction * found[i].shape;
+    const double frequency = found[i].frequency;
+    rows.push_back({fmt::format("{}", i + 1), fmt::format("{:.6g}", frequency), frequency > 0 ? fmt::format("{:.6g}", 1 / frequency) : "rigid motion",
+                    fmt::format("{:.1f}", 100 * share(model, shape, ux)), fmt::format("{:.1f}", 100 * share(model, shape, uy))});
+  }
+  if (rows.size() > 1) print_table(rows);
+}
+
+void write_modes(JsonWriter& json, const Model& model, const std::vector<Mode>& found) {
+  json.begin_array();
+  for (const Mode& mode : found) {
+    const Vector shape = model.reduction * mode.shape;
+    json.begin_object().member("frequency", mode.frequency).member("mass_share_x", share(model, shape, ux)).member("mass_share_y", share(model, shape, uy));
+    json.key("shape").begin_object();
+    for (std::size_t node = 0; node < model.nodes.size(); ++node)
+      json.key(model.nodes[node].name).numbers(std::span<const double>(shape.data() + 3 * node, 3));
+    json.end_object().end_object();
+  }
+  json.end_array();
+}
+
+}  // namespace
+
+int modes(const Options& options, int count) {
+  const Loaded loaded = load(options);
+  const Built built = build(loaded.read, runs_of_case(loaded.read).front());
+  const std::vector<Mode> bonded = bonded_modes(built.model, count), base_free = uplift::modes(built.model.stiffness, built.model.mass, count);
+  if (options.json) {
+    JsonWriter json(0, 2);
+    json.begin_object().member("case", loaded.from.case_file).key("bonded");
+    write_modes(json, built.model, bonded);
+    json.key("base_free");
+    write_modes(json, built.model, base_free);
+    json.end_object();
+    say(json.take());
+    return Exit::done;
+  }
+  print_modes(built.model, bonded, "interfaces closed and bonded");
+  print_modes(built.model, base_free, "\nbase free (interfaces open)");
+  say("\nmode shapes: uplift modes --json");
+  return Exit::done;
+}
+
+}  // namespace uplift::cli

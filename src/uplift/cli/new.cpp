@@ -1,0 +1,135 @@
+#include <fmt/format.h>
+
+#include <cstdio>
+#include <filesystem>
+
+#include "uplift/base/error.h"
+#include "uplift/cli/commands.h"
+#include "uplift/cli/console.h"
+
+namespace uplift::cli {
+namespace {
+
+constexpr const char* template_text = R"TOML(# A case for uplift. Numbers may carry units ("5 m", "20000 MPa"); a bare number is SI (m, kg, s, N, Pa, rad).
+# x points right, y points up, rotations are counter-clockwise. An opening is positive, a tension is positive.
+# What every key means: `uplift describe section beam`, `uplift describe law sdm`, ...
+title = "{0}"
+description = "A slender tower on a footing that may lift off."
+
+# ---- the structure ----
+
+[nodes]                               # name = [x, y]
+top = ["0 m", "10 m"]
+base = ["0 m", "0 m"]
+
+[[beam]]
+name = "shaft"
+nodes = ["base", "top"]
+E = "30 GPa"
+I = "0.5 m4"                          # no A: the beam does not change its length
+
+[[mass]]
+node = "top"
+mass = "40 t"
+
+[[rigid]]                             # the footing: a rigid body on the node "base"
+name = "footing"
+node = "base"
+mass = "60 t"
+inertia = "80 t m2"
+
+[[support]]                           # the footing does not slide
+node = "base"
+fixed = ["ux"]
+
+[gravity]
+acceleration = [0, "-9.81 m/s2"]      # weight of all masses
+
+# ---- the interface ----
+
+[[interface]]
+name = "soil"
+
+[interface.footing]                   # joint points under a rigid footing
+body = "base"
+width = "4 m"
+thickness = "4 m"                     # out of the plane
+points = 21
+
+[interface.law]                       # other laws: `uplift describe law`
+type = "sdm"                          # strong discontinuity: opens, and closes again
+K_n = "50 MPa/m"                      # stiffness of the closed joint per area (subgrade modulus)
+F_u = "1 kPa"                         # tensile strength
+G_f = "0.1 J/m2"                      # energy to open a unit area
+F_c = "-0.5 kPa"                      # closure stress: small beside the bearing pressure
+tangential = "none"
+
+# ---- the loads ----
+
+[[function]]
+name = "pulse"
+shape = {{ type = "half_sine", duration = "0.3 s" }}
+
+[[load]]
+name = "wind gust"
+node = "top"
+force = ["300 kN", 0]
+function = "pulse"                    # without a function a load is constant and part of the static stage
+
+# ---- the analysis ----
+
+[damping]                             # of the structure; it never acts across an open interface
+rayleigh = [{{ frequency = "1 Hz", ratio = 0.02 }}, {{ frequency = "10 Hz", ratio = 0.02 }}]
+
+[[stage]]                             # first the weight ...
+type = "static"
+
+[[stage]]                             # ... then the gust
+type = "dynamic"
+duration = "5 s"
+step = "2 ms"
+
+[output]
+every = 1                             # record every step; motion of top and base, forces and energies come by themselves
+
+[[output.history]]                    # and what else is wanted
+interface = "soil"
+point = 1
+quantity = "opening"
+
+# ---- variants, for `uplift compare` ----
+
+[[variant]]
+name = "sdm"
+label = "SDM"
+
+[[variant]]
+name = "springs"
+label = "tensionless springs"
+law = {{ type = "springs", K_n = "50 MPa/m" }}
+
+[compare]
+band = 0.02                           # runs agree when their peaks lie within 2 % of the median
+)TOML";
+
+}  // namespace
+
+int new_case(const std::string& name) {
+  namespace fs = std::filesystem;
+  const fs::path folder(name), file = folder / "case.toml";
+  std::error_code error;
+  if (fs::exists(file, error)) throw InputError({file.string(), 0}, "", "the name of a new case", "a case that exists already");
+  fs::create_directories(folder, error);
+  if (error) throw InputError({folder.string(), 0}, "", "a folder that can be made", error.message());
+  std::string title = folder.filename().empty() ? folder.parent_path().filename().string() : folder.filename().string();
+  for (char& c : title)
+    if (c == '"' || c == '\\') c = '_';
+  std::FILE* out = std::fopen(file.c_str(), "wb");
+  if (!out) throw InputError({file.string(), 0}, "", "a file that can be written", "none");
+  fmt::print(out, template_text, title);
+  std::fclose(out);
+  say(fmt::format("{} written; next: uplift check {}", file.string(), folder.string()));
+  return Exit::done;
+}
+
+}  // namespace uplift::cli

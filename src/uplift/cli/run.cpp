@@ -1,0 +1,47 @@
+#include <fmt/format.h>
+
+#include "uplift/analysis/wording.h"
+#include "uplift/cli/console.h"
+#include "uplift/cli/load.h"
+#include "uplift/io/files.h"
+
+namespace uplift::cli {
+
+int run(const Options& options) {
+  const Loaded loaded = load(options);
+  Results results;
+  catch_interrupts();
+  for (const RunSpec& spec : runs_of_case(loaded.read)) {
+    if (interrupt_asked() && !results.runs.empty()) break;
+    results.specs.push_back(spec);
+    results.built.push_back(build(loaded.read, spec));
+    if (results.runs.empty()) results.warnings = warnings(loaded.read, spec, results.built.front());
+    results.runs.push_back(run_one(results.built.back(), spec.label, options));
+  }
+  const RunResult& main = results.runs.front();
+  results.verdict = judge(results.built.front(), main, results.runs.size() > 1 ? &results.runs[1] : nullptr);
+  const std::string folder = write_results(options, loaded, results, nullptr);
+
+  if (options.json) {
+    fmt::print("{}", read_file(folder + "/summary.json"));
+  } else if (!options.quiet) {
+    for (const std::string& warning : results.warnings) complain("warning: " + warning);
+    say(results.verdict.headline);
+    for (const Verdict::Fact& fact : results.verdict.facts) say(fmt::format("  {:<34} {:<14} {}", fact.label, fact.value, fact.detail));
+    const double per_step = main.counts.steps > 0 ? 1e6 * main.wall / static_cast<double>(main.counts.steps) : 0;
+    say(fmt::format("{}: {} steps in {} ({:.2f} microseconds a step), {} retries", status_text(main), main.counts.steps, spoken(main.wall, "s"), per_step, main.counts.retries));
+    say(fmt::format("results: {}/report.html", folder));
+  }
+  if (main.status == RunStatus::interrupted) {
+    if (!options.quiet) complain(fmt::format("interrupted at t = {:g} s: the files hold everything up to there", main.end_time));
+    return Exit::interrupted;
+  }
+  if (main.status == RunStatus::failed) {
+    complain("failed: " + main.reason);
+    if (!main.problem.empty()) complain(fmt::format("the interface problem of the failed step: {}/problem_{}.json (see `uplift replay --help`)", folder, main.name));
+    return Exit::numerical_failure;
+  }
+  return Exit::done;
+}
+
+}  // namespace uplift::cli

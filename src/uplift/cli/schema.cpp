@@ -1,0 +1,12 @@
+#include "uplift/analysis/case_sections.h"
+#include "uplift/cli/commands.h"
+#include "uplift/cli/console.h"
+
+namespace uplift::cli {
+
+int schema() {
+  say(to_json_schema(case_section()));
+  return Exit::done;
+}
+
+}  // namespace uplift::cli

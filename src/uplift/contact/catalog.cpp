@@ -1,0 +1,38 @@
+#include <array>
+
+#include "uplift/contact/impact.h"
+#include "uplift/contact/method.h"
+
+namespace uplift {
+
+#define METHOD(name) const Entry<ContactMethod>& entry_method_##name();
+#define IMPACT(name) const Entry<ImpactRule>& entry_impact_##name();
+#include "uplift/parts.def"
+
+std::span<const Entry<ContactMethod>* const> method_catalog() {
+  static const std::array entries{
+#define METHOD(name) &entry_method_##name(),
+#include "uplift/parts.def"
+  };
+  return entries;
+}
+
+std::span<const PartInfo* const> contact_methods() {
+  static const std::vector<const PartInfo*> infos(method_catalog().begin(), method_catalog().end());
+  return infos;
+}
+
+std::span<const Entry<ImpactRule>* const> impact_catalog() {
+  static const std::array entries{
+#define IMPACT(name) &entry_impact_##name(),
+#include "uplift/parts.def"
+  };
+  return entries;
+}
+
+std::span<const PartInfo* const> impact_rules() {
+  static const std::vector<const PartInfo*> infos(impact_catalog().begin(), impact_catalog().end());
+  return infos;
+}
+
+}  // namespace uplift

@@ -1,0 +1,106 @@
+#include "uplift/contact/kernel.h"
+
+#include <algorithm>
+#include <cmath>
+#include <vector>
+
+#include "uplift/contact/kernel_dense.h"
+
+namespace uplift {
+namespace {
+
+constexpr int most_iterations = 60;
+
+/// One pass of the general active set: the closed rows solved, openings, pressures C y and forces evaluated. False when the closed rows contradict
+/// each other beyond `gap`.
+bool solve_closed(const Rows& rows, const ConstMatrixMap& c, const std::vector<std::ptrdiff_t>& closed,
+                  double gap, const double* held, Vector& z, Vector& opening, Vector& field) {
+  const Index n = rows.count;
+  const ConstMap target(rows.target, n);
+  const Index count = static_cast<Index>(closed.size());
+  Matrix a(count, rows.columns);
+  Vector right(count), root(count);
+  for (Index k = 0; k < count; ++k) {
+    root[k] = std::sqrt(held[closed[static_cast<std::size_t>(k)]]);
+    a.row(k) = root[k] * c.row(closed[static_cast<std::size_t>(k)]);
+    right[k] = -root[k] * target[closed[static_cast<std::size_t>(k)]];
+  }
+  const HeldRows solver(a);
+  z = solver.least_norm(right);
+  for (int refinement = 0;; ++refinement) {
+    opening.noalias() = c * z + target;
+    double worst = 0;
+    for (Index k = 0; k < count; ++k) {
+      const double value = opening[closed[static_cast<std::size_t>(k)]];
+      worst = std::max(worst, std::abs(value));
+      right[k] = -root[k] * value;
+    }
+    if (!(worst > gap)) break;
+    if (refinement == 3) return false;
+    z += solver.least_norm(right);
+  }
+  field.noalias() = c * solver.dual(z);
+  return true;
+}
+
+}  // namespace
+
+KernelReply general_active_set(const Rows& rows, double* held, double* z_out, double* opening_out, double* force, KernelScratch& scratch) {
+  const Index n = rows.count, r = rows.columns;
+  const ConstMatrixMap c(rows.factor, n, r, ColumnStride(rows.stride));
+  const ConstMap target(rows.target, n);
+  KernelReply reply;
+  if (!target.allFinite() || !c.allFinite()) {
+    reply.end = KernelEnd::not_finite;
+    return reply;
+  }
+  const double gap = std::max(rows.tolerance, 1e-14 * target.cwiseAbs().maxCoeff());
+  scratch.visited.count = 0;
+  scratch.visited.note(n, held);
+  std::vector<std::ptrdiff_t> closed;
+  Vector z(r), opening(n), field(n);
+  for (reply.iterations = 1; reply.iterations <= most_iterations; ++reply.iterations) {
+    closed.clear();
+    for (Index i = 0; i < n; ++i)
+      if (held[i] > 0) closed.push_back(i);
+    if (!solve_closed(rows, c, closed, gap, held, z, opening, field)) return reply;
+    double largest = 0;
+    for (const std::ptrdiff_t i : closed) largest = std::max(largest, std::abs(field[i]));
+    const double pressure = 1e-12 * largest;
+    for (Index i = 0; i < n; ++i) force[i] = held[i] * (rows.limit[i] > 0 ? std::min(0.0, field[i]) : field[i]);
+    bool changed = false;
+    for (Index i = 0; i < n; ++i) {
+      if (!(rows.limit[i] > 0)) continue;
+      const bool now = held[i] > 0 ? field[i] <= pressure : opening[i] < -gap || (opening[i] <= gap && field[i] < -pressure);
+      changed = changed || now != (held[i] > 0);
+      held[i] = now ? rows.limit[i] : 0;
+    }
+    if (!changed) {
+      reply.residual = kernel_residual(c, z, force, held, opening, rows.target);
+      std::copy_n(z.data(), r, z_out);
+      std::copy_n(opening.data(), n, opening_out);
+      reply.end = KernelEnd::solved;
+      return reply;
+    }
+    if (!scratch.visited.note(n, held)) {
+      reply.cycles = 1;
+      return reply;
+    }
+  }
+  return reply;
+}
+
+KernelReply solve_rows(const Rows& rows, double* held, double* z, double* opening, double* force, KernelScratch& scratch) {
+  if (rows.fixed != nullptr)
+    for (std::ptrdiff_t i = 0; i < rows.count; ++i)
+      if (!(rows.limit[i] > 0)) held[i] = rows.fixed[i];
+  const KernelReply first = rows.columns >= 1 && rows.columns <= 3 ? small_active_set(rows, held, z, opening, force, scratch)
+                                                                  : general_active_set(rows, held, z, opening, force, scratch);
+  if (first.end != KernelEnd::stuck) return first;
+  KernelReply second = dual_active_set(rows, held, z, opening, force, scratch);
+  second.iterations += first.iterations;
+  second.cycles += first.cycles;
+  return second;
+}
+
+}  // namespace uplift

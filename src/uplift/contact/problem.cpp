@@ -1,0 +1,89 @@
+#include "uplift/contact/problem.h"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+
+namespace uplift {
+namespace {
+
+double largest(const Vector& v) { return v.size() > 0 ? v.cwiseAbs().maxCoeff() : 0; }
+
+double balance(const InterfaceProblem& problem, const InterfaceSolution& solution) {
+  Vector force = solution.force;
+  const double size = solution.z.norm() + (problem.factor.transpose() * force).norm();
+  if (problem.shift.size() > 0) force -= problem.shift.cwiseProduct(solution.opening);
+  const double error = (solution.z + problem.factor.transpose() * force).norm();
+  return error / (size + std::numeric_limits<double>::min());
+}
+
+/// Largest difference between the force and that of the law, N.
+double law_error(const InterfaceProblem& problem, const Block& block, const InterfaceSolution& solution) {
+  Batch batch = block.batch;
+  batch.step = problem.step;
+  const std::size_t values = static_cast<std::size_t>(block.law->num_history(batch.components) * batch.points);
+  std::vector<double> now(values);
+  Vector traction = Vector::Zero(block.rows()), end = Vector::Zero(block.rows());
+  Vector slope = Vector::Zero(block.rows() * batch.components);
+  const Reply reply{traction.data(), slope.data(), now.data(), end.data()};
+  const double *from = problem.from.data() + block.first, *to = solution.opening.data() + block.first;
+  const double* old = problem.old.data() + block.first_history;
+  if (problem.average)
+    block.law->mean(batch, from, to, old, reply);
+  else
+    block.law->respond(batch, from, to, old, reply);
+  double worst = 0;
+  for (int i = 0; i < block.rows(); ++i) {
+    const double force = problem.scale * block.area[static_cast<std::size_t>(i % batch.points)] * traction[i];
+    worst = std::max(worst, std::abs(solution.force[block.first + i] - force));
+  }
+  return worst;
+}
+
+/// Distance of (p / P, opening / L) of each point from its own projection: q = p/P, s = opening/L (normal), slip/L (tangential);
+///   normal     |q_n - min(0, q_n + s_n)|       penetration, tension and complementarity in one
+///   tangential |q_t - P_ball(q_t + s_t)|       radius mu |q_n|: bound, direction and complementarity in one
+double cone_error(const InterfaceProblem& problem, const Block& block, const InterfaceSolution& solution, double force_scale,
+                  double length_scale) {
+  const int n = block.batch.points, tangents = block.batch.components - 1;
+  const double friction = block.cone->friction();
+  double worst = 0;
+  for (int i = 0; i < n; ++i) {
+    const int row = block.first + block.batch.normal() + i;
+    const double q = solution.force[row] / force_scale, s = solution.opening[row] / length_scale;
+    worst = std::max(worst, std::abs(q - std::min(0.0, q + s)));
+    const double radius = friction * std::max(0.0, -q);
+    double size = 0, pushed[2] = {}, force[2] = {};
+    for (int c = 0; c < tangents; ++c) {
+      const int tangential = block.first + c * n + i;
+      force[c] = solution.force[tangential] / force_scale;
+      pushed[c] = force[c] + (solution.opening[tangential] - problem.from[tangential]) / length_scale;
+      size = std::hypot(size, pushed[c]);
+    }
+    const double shrink = size > radius ? radius / size : 1;
+    double error = 0;
+    for (int c = 0; c < tangents; ++c) error = std::hypot(error, force[c] - shrink * pushed[c]);
+    worst = std::max(worst, error);
+  }
+  return worst;
+}
+
+}  // namespace
+
+double yardstick(const InterfaceProblem& problem, const InterfaceSolution& solution) {
+  if (!solution.z.allFinite() || !solution.force.allFinite() || !solution.opening.allFinite())
+    return std::numeric_limits<double>::infinity();
+  // the solution's own opening is not trusted
+  const Vector opening = problem.free_opening + problem.factor * solution.z;
+  const double force = largest(solution.force), moved = largest(problem.factor * solution.z);
+  const double force_scale = force > 0 ? force : 1;
+  double length_scale = moved > 0 ? moved : largest(problem.free_opening);
+  if (!(length_scale > 0)) length_scale = 1;
+  double worst = std::max(balance(problem, solution), largest(opening - solution.opening) / length_scale);
+  for (const Block& block : problem.blocks)
+    worst = std::max(worst, block.law != nullptr ? law_error(problem, block, solution) / force_scale
+                                                 : cone_error(problem, block, solution, force_scale, length_scale));
+  return worst;
+}
+
+}  // namespace uplift

@@ -1,0 +1,230 @@
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <nlohmann/json.hpp>
+
+#include "uplift/contact/problem.h"
+
+// A stored interface problem is one JSON object:
+//   format "uplift interface problem 1", reason, average, scale, step [s], factor (rows of C), shift, free_opening, from, old, and blocks: name, points,
+//   components, area, behaviour {type, parameters}. Doubles are written so that they read back to the same bits; numbers that are not finite (a failed
+//   step may hold some) are the words "nan", "inf", "-inf".
+namespace uplift {
+namespace {
+
+using Json = nlohmann::ordered_json;
+
+constexpr const char* format_name = "uplift interface problem 1";
+
+Json to_json(double value) {
+  if (std::isfinite(value)) return value;
+  return std::isnan(value) ? "nan" : value > 0 ? "inf" : "-inf";
+}
+Json to_json(const double* values, std::size_t n) {
+  Json list = Json::array();
+  for (std::size_t i = 0; i < n; ++i) list.push_back(to_json(values[i]));
+  return list;
+}
+Json to_json(const Vector& v) { return to_json(v.data(), static_cast<std::size_t>(v.size())); }
+
+Json to_json(const Values& behaviour) {
+  Json object = Json::object();
+  object["type"] = behaviour.type();
+  for (const auto& [key, item] : behaviour.items()) {
+    if (const auto* value = std::get_if<bool>(&item.data)) object[key] = *value;
+    if (const auto* value = std::get_if<std::int64_t>(&item.data)) object[key] = *value;
+    if (const auto* value = std::get_if<double>(&item.data)) object[key] = to_json(*value);
+    if (const auto* value = std::get_if<std::string>(&item.data)) object[key] = *value;
+    if (const auto* value = std::get_if<std::vector<double>>(&item.data)) object[key] = to_json(value->data(), value->size());
+    if (const auto* value = std::get_if<std::vector<std::string>>(&item.data)) object[key] = *value;
+  }
+  return object;
+}
+
+bool is_cone(const std::string& name) {
+  const auto catalog = cone_catalog();
+  return std::any_of(catalog.begin(), catalog.end(), [&](const Entry<Cone>* entry) { return entry->name == name; });
+}
+
+/// Reads one file: every accessor knows the path for its complaint.
+class Reader {
+ public:
+  Reader(const std::string& file, const Json& json) : file_(file), json_(json) {}
+
+  [[noreturn]] void refuse(const std::string& path, const std::string& wanted, const std::string& found) const {
+    throw InputError({file_, 0}, path, wanted, found);
+  }
+  const Json& at(const Json& object, const std::string& path, const char* key) const {
+    const auto found = object.find(key);
+    if (found == object.end()) refuse(path.empty() ? key : path + "." + key, "a value", "nothing");
+    return *found;
+  }
+  double number(const Json& value, const std::string& path) const {
+    if (value.is_number()) return value.get<double>();
+    if (value == "nan") return std::numeric_limits<double>::quiet_NaN();
+    if (value == "inf") return std::numeric_limits<double>::infinity();
+    if (value == "-inf") return -std::numeric_limits<double>::infinity();
+    refuse(path, "a number", value.dump());
+  }
+  int integer(const Json& value, const std::string& path, int least, int most) const {
+    if (!value.is_number_integer() || value.get<double>() < least || value.get<double>() > most)
+      refuse(path, "an integer from " + std::to_string(least) + " to " + std::to_string(most), value.dump());
+    return value.get<int>();
+  }
+  std::vector<double> numbers(const Json& value, const std::string& path) const {
+    if (!value.is_array()) refuse(path, "a list of numbers", value.dump());
+    std::vector<double> result;
+    for (std::size_t i = 0; i < value.size(); ++i) result.push_back(number(value[i], path + "[" + std::to_string(i) + "]"));
+    return result;
+  }
+  Vector vector(const char* key, std::size_t size) const {
+    const std::vector<double> list = numbers(at(json_, "", key), key);
+    if (list.size() != size) refuse(key, std::to_string(size) + " numbers", std::to_string(list.size()));
+    return ConstMap(list.data(), static_cast<Index>(list.size()));
+  }
+  std::string text(const Json& value, const std::string& path) const {
+    if (!value.is_string()) refuse(path, "a text", value.dump());
+    return value.get<std::string>();
+  }
+
+  /// A parameter table as the checker of case files wants it.
+  Raw raw(const Json& value, const std::string& path) const {
+    Raw result{{}, {file_, 0}, path};
+    if (value.is_boolean()) result.data = value.get<bool>();
+    if (value.is_number_integer()) result.data = value.get<std::int64_t>();
+    if (value.is_number_float()) result.data = value.get<double>();
+    if (value.is_string()) result.data = value.get<std::string>();
+    if (value.is_array()) {
+      RawList list;
+      for (std::size_t i = 0; i < value.size(); ++i) list.push_back(raw(value[i], path + "[" + std::to_string(i) + "]"));
+      result.data = std::move(list);
+    }
+    if (value.is_object()) {
+      auto table = std::make_shared<RawTable>();
+      for (const auto& [key, entry] : value.items()) table->entries.emplace_back(key, raw(entry, path + "." + key));
+      result.data = std::move(table);
+    }
+    return result;
+  }
+
+  void block(const Json& object, const std::string& path, StoredProblem& stored) const {
+    Block block;
+    block.name = text(at(object, path, "name"), path + ".name");
+    block.batch.points = integer(at(object, path, "points"), path + ".points", 1, 10000000);
+    block.batch.components = integer(at(object, path, "components"), path + ".components", 1, 3);
+    block.area = numbers(at(object, path, "area"), path + ".area");
+    if (block.area.size() != static_cast<std::size_t>(block.batch.points))
+      refuse(path + ".area", std::to_string(block.batch.points) + " numbers", std::to_string(block.area.size()));
+    for (const double area : block.area)
+      if (!(area > 0)) refuse(path + ".area", "areas > 0", std::to_string(area));
+    const Values values = check_part(raw(at(object, path, "behaviour"), path + ".behaviour"), interface_behaviours());
+    InterfaceProblem& problem = stored.problem;
+    for (const Block& other : problem.blocks) block.first = other.first + other.rows();
+    block.first_history = static_cast<int>(problem.old.size());
+    if (is_cone(values.type())) {
+      stored.cones.push_back(make_part(cone_catalog(), values));
+      block.cone = stored.cones.back().get();
+    } else {
+      stored.laws.push_back(make_part(law_catalog(), values));
+      block.law = stored.laws.back().get();
+      problem.old.resize(problem.old.size() + static_cast<std::size_t>(block.law->num_history(block.batch.components) * block.batch.points));
+    }
+    problem.blocks.push_back(std::move(block));
+  }
+
+  StoredProblem problem() const {
+    if (!json_.is_object()) refuse("", "a JSON object", json_.type_name());
+    if (const std::string found = text(at(json_, "", "format"), "format"); found != format_name) refuse("format", format_name, found);
+    StoredProblem stored;
+    stored.reason = text(at(json_, "", "reason"), "reason");
+    const Json& blocks = at(json_, "", "blocks");
+    if (!blocks.is_array() || blocks.empty()) refuse("blocks", "a list of blocks", blocks.dump().substr(0, 40));
+    for (std::size_t b = 0; b < blocks.size(); ++b) block(blocks[b], "blocks[" + std::to_string(b) + "]", stored);
+    InterfaceProblem& problem = stored.problem;
+    const std::size_t rows = static_cast<std::size_t>(problem.blocks.back().first + problem.blocks.back().rows());
+    const Json& average = at(json_, "", "average");
+    if (!average.is_boolean()) refuse("average", "true or false", average.dump());
+    problem.average = average.get<bool>();
+    problem.scale = number(at(json_, "", "scale"), "scale");
+    problem.step = number(at(json_, "", "step"), "step");
+    const Json& factor = at(json_, "", "factor");
+    if (!factor.is_array() || factor.size() != rows) refuse("factor", "a list of " + std::to_string(rows) + " rows", factor.is_array() ? std::to_string(factor.size()) : factor.dump());
+    for (std::size_t i = 0; i < rows; ++i) {
+      const std::string path = "factor[" + std::to_string(i) + "]";
+      const std::vector<double> row = numbers(factor[i], path);
+      if (i == 0) problem.factor.resize(static_cast<Index>(rows), static_cast<Index>(row.size()));
+      if (row.size() != static_cast<std::size_t>(problem.factor.cols()))
+        refuse(path, std::to_string(problem.factor.cols()) + " numbers", std::to_string(row.size()));
+      problem.factor.row(static_cast<Index>(i)) = ConstMap(row.data(), static_cast<Index>(row.size())).transpose();
+    }
+    const Json& shift = at(json_, "", "shift");
+    if (!shift.is_array() || !shift.empty()) problem.shift = vector("shift", rows);
+    problem.free_opening = vector("free_opening", rows);
+    problem.from = vector("from", rows);
+    const Vector old = vector("old", problem.old.size());
+    problem.old.assign(old.data(), old.data() + old.size());
+    return stored;
+  }
+
+ private:
+  const std::string& file_;
+  const Json& json_;
+};
+
+}  // namespace
+
+std::string save_problem(const InterfaceProblem& problem, const std::vector<const Values*>& behaviours, const std::string& reason) {
+  Json json = Json::object();
+  json["format"] = format_name;
+  json["reason"] = reason;
+  json["average"] = problem.average;
+  json["scale"] = to_json(problem.scale);
+  json["step"] = to_json(problem.step);
+  json["blocks"] = Json::array();
+  std::vector<double> old;
+  for (std::size_t b = 0; b < problem.blocks.size(); ++b) {
+    const Block& block = problem.blocks[b];
+    Json object = Json::object();
+    object["name"] = block.name;
+    object["points"] = block.batch.points;
+    object["components"] = block.batch.components;
+    object["behaviour"] = to_json(*behaviours[b]);
+    object["area"] = to_json(block.area.data(), block.area.size());
+    json["blocks"].push_back(std::move(object));
+    if (block.law == nullptr || is_cone(behaviours[b]->type())) continue;  // a law in a cone's place (penalty) starts afresh in a replay
+    const auto first = problem.old.begin() + block.first_history;
+    old.insert(old.end(), first, first + block.law->num_history(block.batch.components) * block.batch.points);
+  }
+  json["factor"] = Json::array();
+  for (Index i = 0; i < problem.factor.rows(); ++i) json["factor"].push_back(to_json(Vector(problem.factor.row(i).transpose())));
+  json["shift"] = to_json(problem.shift);
+  json["free_opening"] = to_json(problem.free_opening);
+  json["from"] = to_json(problem.from);
+  json["old"] = to_json(old.data(), old.size());
+  // one key a line, one row of the factor a line: readable, and it can be compared
+  std::string text = "{";
+  for (const auto& [key, value] : json.items()) {
+    text += (text.size() > 1 ? ",\n  " : "\n  ") + Json(key).dump() + ": ";
+    if ((key != "factor" && key != "blocks") || value.empty()) {
+      text += value.dump();
+      continue;
+    }
+    for (std::size_t i = 0; i < value.size(); ++i) text += (i == 0 ? "[\n    " : ",\n    ") + value[i].dump();
+    text += "]";
+  }
+  return text + "\n}\n";
+}
+
+StoredProblem load_problem(const std::string& text, const std::string& file) {
+  Json json;
+  try {
+    json = Json::parse(text);
+  } catch (const Json::parse_error& error) {
+    const std::size_t end = std::min(error.byte, text.size());
+    const int line = 1 + static_cast<int>(std::count(text.begin(), text.begin() + static_cast<std::ptrdiff_t>(end), '\n'));
+    throw InputError({file, line}, "", "a JSON file of an interface problem", "a syntax error at byte " + std::to_string(error.byte));
+  }
+  return Reader(file, json).problem();
+}
+
+}  // namespace uplift

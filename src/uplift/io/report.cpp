@@ -1,0 +1,83 @@
+#include "uplift/io/report.h"
+
+#include "uplift/io/report_parts.h"
+
+namespace uplift {
+namespace {
+
+constexpr std::string_view placeholder = "/*UPLIFT_DATA*/";
+
+void write_verdict(JsonWriter& json, const Verdict& verdict, const std::vector<std::string>& warnings) {
+  json.begin_object().member("level", to_string(verdict.level)).member("headline", verdict.headline);
+  json.key("facts").begin_array();
+  for (const Verdict::Fact& fact : verdict.facts)
+    json.begin_object().member("label", fact.label).member("value", fact.value).member("detail", fact.detail).end_object();
+  json.end_array();
+  std::vector<std::string> paragraphs = verdict.paragraphs;
+  for (const std::string& warning : warnings) paragraphs.push_back("Warning: " + warning + ".");
+  json.key("paragraphs").texts(paragraphs);
+  json.end_object();
+}
+
+void write_section(JsonWriter& json, const char* id, std::string_view title, std::string_view text) {
+  json.begin_object().member("id", id).member("title", title).member("text", text).end_object();
+}
+
+void write_sections(JsonWriter& json, const ReportInput& input) {
+  json.begin_array();
+  write_section(json, "loads", "Loads", "What acts on the structure.");
+  write_section(json, "response", "Response", "Motion of the top and of the base.");
+  write_section(json, "interface", "Interface", "What the interface carries and how far it opens. Uplifted area is counted by gap, never by zero pressure.");
+  if (input.compared && input.runs.size() > 1 && input.runs.back().result->group != input.runs.front().result->group)
+    write_section(json, "others", "Other dampings", "The same variants with the other dampings of the case; without damping nothing hides an error of the velocity.");
+  write_section(json, "energy", "Energy", "Every step keeps a balance of energy. What it does not explain was created (or lost) by the computation.");
+  write_section(json, "law", "Interface law", "The law of the interface, driven through openings and closings.");
+  json.end_array();
+}
+
+}  // namespace
+
+std::string report_json(const ReportInput& input) {
+  const Provenance& from = *input.from;
+  JsonWriter json(6);
+  json.begin_object();
+  json.member("format", "uplift-report-1").member("title", from.title).member("subtitle", from.subtitle).member("version", from.version);
+  json.member("created", from.created).member("command", from.command);
+  json.key("case").begin_object().member("file", from.case_file).member("sha256", from.case_hash).member("resolved", from.resolved).end_object();
+  json.key("verdict");
+  write_verdict(json, *input.verdict, input.warnings);
+  json.key("choices");
+  write_choices(json, *input.read, *input.runs.front().built);
+  json.key("tables");
+  write_tables(json, input);
+  json.key("sections");
+  write_sections(json, input);
+  json.key("charts");
+  write_charts(json, input);
+  json.key("model");
+  write_model(json, *input.read, *input.runs.front().built);
+  json.key("animations");
+  write_animations(json, input);
+  json.end_object();
+  return json.take();
+}
+
+std::string report_page(const std::string& json) {
+  const std::string_view page = report_template();
+  const std::size_t at = page.find(placeholder);
+  if (page.empty() || at == page.npos) return {};
+  std::string out;
+  out.reserve(page.size() + json.size() + 1024);
+  out += page.substr(0, at);
+  // "</" inside the data would end the script element that holds them.
+  std::size_t from = 0;
+  for (std::size_t slash; (slash = json.find("</", from)) != json.npos; from = slash + 2) {
+    out.append(json, from, slash - from);
+    out += "<\\/";
+  }
+  out.append(json, from);
+  out += page.substr(at + placeholder.size());
+  return out;
+}
+
+}  // namespace uplift

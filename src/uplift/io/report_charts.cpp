@@ -1,0 +1,276 @@
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+
+#include "uplift/analysis/case_model.h"
+#include "uplift/io/histories.h"
+#include "uplift/io/report_parts.h"
+
+// The figures: histories of all runs, side by side; hysteresis; energy.
+namespace uplift {
+namespace {
+
+using Column = Request::Kind;
+constexpr std::size_t points_per_curve = 1500;
+
+/// What a figure shows of every run: a column over time, or two columns against each other.
+struct View {
+  const char *id, *section, *title, *caption;
+  const char *label, *unit;
+  Column kind;
+  int of;         // full unknown or interface
+  double factor;  // multiplies the column
+};
+
+Curve curve_of(const ReportRun& run) {
+  Curve curve;
+  curve.label = run.result->label;
+  curve.run = run.result->name;
+  curve.dash = run.spec->bonded;
+  curve.failed = run.result->status == RunStatus::failed;
+  return curve;
+}
+
+void keep_finite(Curve& curve) {
+  std::size_t kept = 0;
+  for (std::size_t i = 0; i < curve.x.size(); ++i)
+    if (std::isfinite(curve.x[i]) && std::isfinite(curve.y[i])) {
+      curve.x[kept] = curve.x[i];
+      curve.y[kept++] = curve.y[i];
+    }
+  curve.x.resize(kept);
+  curve.y.resize(kept);
+}
+
+/// Appends the history of a column when the run recorded it.
+void add_history(Chart& chart, const ReportRun& run, Column kind, int of, double factor) {
+  const std::vector<double>* column = find_column(*run.result, kind, of);
+  if (!column) return;
+  Curve curve = curve_of(run);
+  curve.x = run.result->table.front();
+  curve.y = *column;
+  for (double& value : curve.y) value *= factor;
+  keep_finite(curve);
+  thin_history(curve.x, curve.y, points_per_curve);
+  if (!curve.x.empty()) chart.curves.push_back(std::move(curve));
+}
+
+Chart history_chart(const View& view, const std::vector<ReportRun>& runs) {
+  Chart chart{view.id, view.section, view.title, view.caption, {"Time", "s"}, {view.label, view.unit}, {}};
+  for (const ReportRun& run : runs) add_history(chart, run, view.kind, view.of, view.factor);
+  return chart;
+}
+
+/// Two columns against each other; every n-th point.
+Chart loop_chart(Chart chart, const std::vector<ReportRun>& runs, std::pair<Column, int> x, std::pair<Column, int> y, double factor) {
+  for (const ReportRun& run : runs) {
+    const std::vector<double>* along = find_column(*run.result, x.first, x.second);
+    const std::vector<double>* up = find_column(*run.result, y.first, y.second);
+    if (!along || !up) continue;
+    Curve curve = curve_of(run);
+    const std::size_t stride = std::max<std::size_t>(1, along->size() / (2 * points_per_curve));
+    for (std::size_t i = 0; i < along->size(); i += stride) {
+      curve.x.push_back((*along)[i]);
+      curve.y.push_back(factor * (*up)[i]);
+    }
+    keep_finite(curve);
+    if (!curve.x.empty()) chart.curves.push_back(std::move(curve));
+  }
+  return chart;
+}
+
+/// What the computation created (positive) or lost, relative to the energy put in.
+Chart energy_error_chart(const char* id, const char* section, const std::string& title, const std::vector<ReportRun>& runs) {
+  Chart chart{id, section, title, "Residual of the energy balance over the largest external work. Zero is right; above zero the computation created energy.", {"Time", "s"}, {"Energy error", "1"}, {}};
+  for (const ReportRun& run : runs)
+    if (run.result->energy_scale > 0) add_history(chart, run, Column::residual, 0, 1 / run.result->energy_scale);
+  return chart;
+}
+
+Chart ledger_chart(const ReportRun& run) {
+  Chart chart{"energy_ledger", "energy", "Energy ledger: " + run.result->label, "Where the energy is. The residual must be zero.", {"Time", "s"}, {"Energy", "J"}, {}};
+  struct Term {
+    Column kind;
+    const char* label;
+  };
+  for (const Term& term : {Term{Column::external, "external work"}, Term{Column::kinetic, "kinetic"}, Term{Column::strain, "strain"}, Term{Column::stored, "stored in the interface"},
+                           Term{Column::interface_dissipated, "dissipated by the interface"}, Term{Column::damping, "damping"}, Term{Column::impact, "impacts"},
+                           Term{Column::residual, "residual"}}) {
+    add_history(chart, run, term.kind, 0, 1);
+    if (!chart.curves.empty() && chart.curves.back().label == run.result->label) {
+      chart.curves.back().label = term.label;
+      chart.curves.back().run.clear();
+      chart.curves.back().dash = term.kind == Column::residual;
+    }
+  }
+  return chart;
+}
+
+/// The loads of the case over time, as far as they are shown: forces and moments times their functions.
+Chart load_chart(const Case& read, const ReportRun& run) {
+  Chart chart{"loads", "loads", "Loads", "Forces on the nodes.", {"Time", "s"}, {"Force", "N"}, {}};
+  const double end = std::max(run.result->end_time, 1e-9);
+  const auto sample = [&](const std::string& label, double amplitude, const TimeFunction& function) {
+    Curve curve;
+    curve.label = label;
+    for (int i = 0; i <= 6000; ++i) {
+      curve.x.push_back(end * i / 6000);
+      curve.y.push_back(amplitude * function.value(curve.x.back()));
+    }
+    thin_history(curve.x, curve.y, points_per_curve);
+    chart.curves.push_back(std::move(curve));
+  };
+  for (const Values& load : read.values.tables("load")) {
+    const std::string name = load.has("name") ? load.text("name") : "load on " + load.text("node");
+    for (const Drive& drive : run.built->model.drives) {
+      if (drive.name != name || !load.has("force") || !drive.function) continue;
+      const std::vector<double>& force = load.numbers("force");
+      if (force[0] != 0) sample(name + ", horizontal", force[0], *drive.function);
+      if (force[1] != 0) sample(name + ", vertical", force[1], *drive.function);
+      break;
+    }
+  }
+  return chart;
+}
+
+Chart sweep_chart(const ComparisonSummary& compared) {
+  Chart chart{"stiffness_sweep", "energy", "Energy created against the stiffness of the joint",
+              "Largest energy created over the energy put in, for the traction at the end of the step and the path-averaged traction; values below 1e-16 are drawn there.",
+              {"Stiffness ratio k F", "1", true}, {"Energy created", "1", true}, {}};
+  Curve path{"path average", "", {}, {}, false, false}, end{"end of step", "", {}, {}, true, false};
+  for (const SweepRow& row : compared.sweep) {
+    path.x.push_back(row.ratio);
+    path.y.push_back(std::max(row.path, 1e-16));
+    end.x.push_back(row.ratio);
+    end.y.push_back(std::max(row.end, 1e-16));
+  }
+  if (!path.x.empty()) chart.curves = {path, end};
+  return chart;
+}
+
+/// Origin and caption of a figure as the case states them.
+void write_chart(JsonWriter& json, const Case& read, const Chart& chart) {
+  if (chart.curves.empty()) return;
+  std::string origin = "added by uplift", caption = chart.caption;
+  for (const Values& figure : read.values.tables("figure"))
+    if (figure.text("chart") == chart.id) {
+      origin = figure.text("origin");
+      if (figure.has("caption")) caption = figure.text("caption");
+    }
+  const auto axis = [&](const char* key, const Axis& each) {
+    json.key(key).begin_object().member("label", each.label).member("unit", each.unit).member("log", each.log).end_object();
+  };
+  json.begin_object().member("id", chart.id).member("section", chart.section).member("title", chart.title).member("caption", caption).member("origin", origin);
+  axis("x", chart.x);
+  axis("y", chart.y);
+  json.key("series").begin_array();
+  for (const Curve& curve : chart.curves) {
+    json.begin_object().member("label", curve.label);
+    if (!curve.run.empty()) json.member("run", curve.run);
+    json.key("x").numbers(curve.x).key("y").numbers(curve.y);
+    if (curve.dash) json.member("dash", true);
+    if (curve.failed) json.member("failed", true);
+    json.end_object();
+  }
+  json.end_array().end_object();
+}
+
+/// Motion of the top and of the base for some runs, in the order of the paper's figures 5 and 6.
+std::vector<View> motion_views(const Built& built) {
+  std::vector<View> views;
+  if (built.top >= 0) {
+    views.push_back({"top_displacement", "response", "Displacement of the top", "Horizontal displacement of the highest mass.", "Displacement", "m", Column::displacement, 3 * built.top + ux, 1});
+    views.push_back({"top_velocity", "response", "Velocity of the top", "Horizontal velocity of the highest mass.", "Velocity", "m/s", Column::velocity, 3 * built.top + ux, 1});
+  }
+  if (built.base >= 0) {
+    views.push_back({"base_displacement", "response", "Displacement of the base", "Vertical displacement of the base.", "Displacement", "m", Column::displacement, 3 * built.base + uy, 1});
+    views.push_back({"base_velocity", "response", "Velocity of the base", "Vertical velocity of the base.", "Velocity", "m/s", Column::velocity, 3 * built.base + uy, 1});
+    views.push_back({"base_rotation", "response", "Rotation of the base", "Counter-clockwise positive.", "Rotation", "rad", Column::displacement, 3 * built.base + rz, 1});
+  }
+  return views;
+}
+
+std::vector<View> interface_views() {
+  return {{"base_moment", "interface", "Base moment", "Moment of the interface about its middle, counter-clockwise positive.", "Moment", "N m", Column::moment, 0, 1},
+          {"base_axial", "interface", "Vertical force of the base", "Compression is negative.", "Force", "N", Column::axial, 0, 1},
+          {"base_shear", "interface", "Base shear", "Shear of the interface.", "Force", "N", Column::shear, 0, 1},
+          {"uplifted_ratio", "interface", "Uplifted share of the base", "Share of the area with an open gap.", "Uplifted share", "1", Column::uplifted_ratio, 0, 1},
+          {"max_opening", "interface", "Largest gap", "Largest opening of all points.", "Gap", "m", Column::max_opening, 0, 1},
+          {"max_pressure", "interface", "Largest pressure", "Largest pressure of all points, at the end of each step.", "Pressure", "Pa", Column::max_pressure, 0, 1}};
+}
+
+void write_loops(JsonWriter& json, const ReportInput& input, const std::vector<ReportRun>& runs) {
+  const Built& built = *input.runs.front().built;
+  if (built.top >= 0 && built.base >= 0) {
+    const Vec2 reference = built.model.interfaces.front().reference;
+    const double height = built.model.nodes[static_cast<std::size_t>(built.top)].position.y() - reference.y();
+    if (height > 0)
+      write_chart(json, *input.read,
+                  loop_chart({"force_displacement", "response", "Force and displacement",
+                              fmt::format("Base moment over the height of {:g} m (the horizontal force at the top that it amounts to) against the displacement of the top.", height),
+                              {"Displacement of the top", "m"}, {"Moment / height", "N"}, {}},
+                             runs, {Column::displacement, 3 * built.top + ux}, {Column::moment, 0}, 1 / height));
+  }
+  write_chart(json, *input.read,
+              loop_chart({"moment_rotation", "interface", "Moment and rotation", "Base moment against the rotation of the interface.", {"Rotation", "rad"}, {"Moment", "N m"}, {}}, runs,
+                         {Column::rotation, 0}, {Column::moment, 0}, 1));
+}
+
+}  // namespace
+
+void thin_history(std::vector<double>& x, std::vector<double>& y, std::size_t most) {
+  const std::size_t count = y.size();
+  if (count <= most || most < 4) return;
+  const std::size_t buckets = most / 2;
+  std::vector<double> thin_x, thin_y;
+  thin_x.reserve(2 * buckets);
+  thin_y.reserve(2 * buckets);
+  const auto keep = [&](std::size_t i) {
+    thin_x.push_back(x[i]);
+    thin_y.push_back(y[i]);
+  };
+  for (std::size_t b = 0; b < buckets; ++b) {
+    const std::size_t first = b * count / buckets, last = (b + 1) * count / buckets;
+    std::size_t least = first, largest = first;
+    for (std::size_t i = first; i < last; ++i) {
+      if (y[i] < y[least]) least = i;
+      if (y[i] > y[largest]) largest = i;
+    }
+    keep(std::min(least, largest));
+    if (least != largest) keep(std::max(least, largest));
+  }
+  x = std::move(thin_x);
+  y = std::move(thin_y);
+}
+
+void write_charts(JsonWriter& json, const ReportInput& input) {
+  const Built& built = *input.runs.front().built;
+  std::vector<ReportRun> runs, others;  // the group of the first run, and the rest
+  for (const ReportRun& run : input.runs) (run.result->group == input.runs.front().result->group ? runs : others).push_back(run);
+  json.begin_array();
+  write_chart(json, *input.read, load_chart(*input.read, input.runs.front()));
+  for (const View& view : motion_views(built)) write_chart(json, *input.read, history_chart(view, runs));
+  for (const View& view : interface_views()) write_chart(json, *input.read, history_chart(view, runs));
+  write_loops(json, input, runs);
+  if (!others.empty()) {
+    std::vector<View> views = motion_views(built);
+    for (View& view : views) {
+      const std::string id = std::string("other_") + view.id, title = fmt::format("{}, {}", view.title, others.front().result->group);
+      if (view.kind == Column::velocity && view.of != 3 * built.top + ux) continue;
+      view.section = "others";
+      Chart chart = history_chart(view, others);
+      chart.id = id;
+      chart.title = title;
+      write_chart(json, *input.read, chart);
+    }
+    write_chart(json, *input.read, energy_error_chart("other_energy_error", "others", "Energy error, " + others.front().result->group, others));
+  }
+  write_chart(json, *input.read, energy_error_chart("energy_error", "energy", "Energy error", runs));
+  write_chart(json, *input.read, ledger_chart(input.runs.front()));
+  if (input.compared) write_chart(json, *input.read, sweep_chart(*input.compared));
+  write_chart(json, *input.read, law_chart(input.runs.front()));
+  json.end_array();
+}
+
+}  // namespace uplift

@@ -1,0 +1,39 @@
+#pragma once
+#include <span>
+#include <string>
+#include <vector>
+
+#include "uplift/io/json_writer.h"
+#include "uplift/io/report.h"
+
+// The parts of the report's document; used by report.cpp alone.
+namespace uplift {
+
+void write_choices(JsonWriter& json, const Case& read, const Built& built);
+void write_tables(JsonWriter& json, const ReportInput& input);
+void write_charts(JsonWriter& json, const ReportInput& input);
+void write_model(JsonWriter& json, const Case& read, const Built& built);
+void write_animations(JsonWriter& json, const ReportInput& input);
+
+struct Axis {
+  std::string label, unit;
+  bool log = false;
+};
+struct Curve {
+  std::string label, run;  // run: name of the run, decides the colour; empty: none
+  std::vector<double> x, y;
+  bool dash = false, failed = false;
+};
+struct Chart {
+  std::string id, section, title, caption;
+  Axis x, y;
+  std::vector<Curve> curves;
+};
+/// The traction law of the first interface driven through openings and closings, with its largest opening so far (figure 3 of the paper); without curves
+/// for a cone.
+Chart law_chart(const ReportRun& run);
+
+/// At most about `most` of the points of a history y over x: the least and the largest of each bucket, so that no peak is lost.
+void thin_history(std::vector<double>& x, std::vector<double>& y, std::size_t most);
+
+}  // namespace uplift

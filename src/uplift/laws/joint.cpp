@@ -1,0 +1,81 @@
+#include "uplift/laws/joint.h"
+
+#include <algorithm>
+#include <utility>
+
+#include "uplift/laws/tangential.h"
+
+namespace uplift {
+namespace {
+
+class JointLaw final : public InterfaceLaw {
+ public:
+  JointLaw(std::unique_ptr<const NormalLaw> normal, std::unique_ptr<const TangentialPart> tangential)
+      : normal_(std::move(normal)), tangential_(std::move(tangential)) {}
+
+  int num_history(int components) const override {
+    return normal_->num_history() + (components > 1 ? tangential_->num_history(components - 1) : 0);
+  }
+
+  void respond(const Batch& batch, const double* from, const double* to, const double* old, Reply reply) const override {
+    if (batch.components == 1) return normal_->respond(batch, from, to, old, reply);
+    const int normal = batch.normal();
+    normal_->respond(one_component(batch), from + normal, to + normal, old, normal_reply(batch, reply));
+    tangential_->respond(call(batch, from, to, old, reply));
+  }
+
+  void mean(const Batch& batch, const double* from, const double* to, const double* old, Reply reply) const override {
+    if (batch.components == 1) return normal_->mean(batch, from, to, old, reply);
+    const int normal = batch.normal();
+    normal_->mean(one_component(batch), from + normal, to + normal, old, normal_reply(batch, reply));
+    tangential_->mean(call(batch, from, to, old, reply));
+  }
+
+  void energy(const Batch& batch, const double* opening, const double* history, double* stored, double* dissipated) const override {
+    normal_->energy(one_component(batch), opening + batch.normal(), history, stored, dissipated);
+    if (batch.components > 1)
+      tangential_->add_energy(batch, *normal_, opening, history, history + normal_->num_history() * batch.points, stored, dissipated);
+  }
+
+  void closed_stiffness(int components, double* stiffness) const override {
+    std::fill_n(stiffness, components - 1, tangential_->stiffness());
+    stiffness[components - 1] = normal_->stiffness();
+  }
+
+ private:
+  static Batch one_component(const Batch& batch) { return {batch.points, 1, batch.step}; }
+
+  /// The normal part of the reply; the rest of the slope becomes zero.
+  static Reply normal_reply(const Batch& batch, const Reply& reply) {
+    Reply part = reply;
+    part.traction += batch.normal();
+    if (reply.end != nullptr) part.end += batch.normal();
+    if (reply.slope != nullptr) {
+      const int last = (batch.components * batch.components - 1) * batch.points;
+      std::fill_n(reply.slope, last, 0.0);
+      part.slope += last;
+    }
+    return part;
+  }
+
+  TangentialCall call(const Batch& batch, const double* from, const double* to, const double* old, const Reply& reply) const {
+    const int first = normal_->num_history() * batch.points;
+    return {batch, *normal_, from, to, old, old + first, reply, reply.now != nullptr ? reply.now + first : nullptr};
+  }
+
+  std::unique_ptr<const NormalLaw> normal_;
+  std::unique_ptr<const TangentialPart> tangential_;
+};
+
+}  // namespace
+
+Entry<InterfaceLaw> joint_entry(PartInfo info, const char* tangential, std::unique_ptr<const NormalLaw> (*make)(const Values&)) {
+  for (Field& field : tangential_fields(tangential)) info.params.push_back(std::move(field));
+  return {std::move(info), [make](const Values& values) -> std::unique_ptr<const InterfaceLaw> {
+            auto normal = make(values);
+            const double stiffness = normal->stiffness();
+            return std::make_unique<JointLaw>(std::move(normal), make_tangential(values, stiffness));
+          }};
+}
+
+}  // namespace uplift

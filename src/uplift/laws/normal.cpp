@@ -1,0 +1,48 @@
+#include "uplift/laws/normal.h"
+
+namespace uplift {
+namespace {
+
+void keep(const double* now, int count, int i, int points, double* history) {
+  if (history != nullptr)
+    for (int h = 0; h < count; ++h) history[h * points + i] = now[h];
+}
+
+}  // namespace
+
+void PointLaw::respond(const Batch& batch, const double* from, const double* to, const double* old, const Reply& reply) const {
+  double now[most_history];
+  for (int i = 0; i < batch.points; ++i) {
+    const Point point = advance(batch.step, from[i], to[i], {old + i, batch.points}, now);
+    reply.traction[i] = point.end;
+    if (reply.slope != nullptr) reply.slope[i] = point.end_slope;
+    keep(now, num_history(), i, batch.points, reply.now);
+  }
+}
+
+void PointLaw::mean(const Batch& batch, const double* from, const double* to, const double* old, const Reply& reply) const {
+  double now[most_history];
+  for (int i = 0; i < batch.points; ++i) {
+    const Point point = advance(batch.step, from[i], to[i], {old + i, batch.points}, now);
+    reply.traction[i] = point.mean;
+    if (reply.slope != nullptr) reply.slope[i] = point.mean_slope;
+    if (reply.end != nullptr) reply.end[i] = point.end;
+    keep(now, num_history(), i, batch.points, reply.now);
+  }
+}
+
+void PointLaw::energy(const Batch& batch, const double* opening, const double* history, double* stored, double* dissipated) const {
+  for (int i = 0; i < batch.points; ++i) {
+    const PointEnergy energy = energy_at(opening[i], {history + i, batch.points});
+    if (stored != nullptr) stored[i] = energy.stored;
+    if (dissipated != nullptr) dissipated[i] = energy.dissipated;
+  }
+}
+
+Surface PointLaw::surface(double step, double from, double to, Memory old) const {
+  double now[most_history];
+  const Point point = advance(step, from, to, old, now);
+  return {point.end, point.openness, point.damage};
+}
+
+}  // namespace uplift

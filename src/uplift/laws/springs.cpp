@@ -1,0 +1,121 @@
+#include "uplift/laws/joint.h"
+#include "uplift/laws/path.h"
+
+// Tensionless springs, the classic no-tension base: K the stiffness [Pa/m], c the damping in contact [Pa s/m], d the opening, r = (to - from)/step.
+//     c = 0:  t = K min(d, 0)
+//     c > 0:  t = min(0, K d + c r) for d < 0, else 0       (a Kelvin-Voigt base that never pulls)
+// Path average: the path is straight and r constant, so t is linear up to the place k = min(0, -c r/K) where it ends (by zero force when the faces
+// part, r > 0; by a jump to c r when they meet, r < 0), and mean = share * (K middle + c r) with the part of the path below k.
+// Energy: K min(d, 0)^2/2 is stored; the dashpot takes c|r| per metre of path below k, and -K d per metre between k and 0, where the parting
+// faces no longer push although the spring is still short. Memory (c > 0 only): the energy taken by the dashpot [J/m2].
+namespace uplift {
+namespace {
+
+class Springs final : public NormalLaw {
+ public:
+  Springs(double stiffness, double damping) : stiffness_(stiffness), damping_(damping) {}
+  int num_history() const override { return damping_ > 0 ? 1 : 0; }
+  double stiffness() const override { return stiffness_; }
+
+  void respond(const Batch& batch, const double* from, const double* to, const double* old, const Reply& reply) const override {
+    if (damping_ > 0) return viscous(batch, from, to, old, reply, false);
+    const double stiffness = stiffness_;
+    double* traction = reply.traction;
+#pragma omp simd
+    for (int i = 0; i < batch.points; ++i) traction[i] = stiffness * smaller(to[i], 0.0);
+    if (double* slope = reply.slope; slope != nullptr)
+#pragma omp simd
+      for (int i = 0; i < batch.points; ++i) slope[i] = to[i] < 0 ? stiffness : 0.0;
+  }
+
+  void mean(const Batch& batch, const double* from, const double* to, const double* old, const Reply& reply) const override {
+    if (damping_ > 0) return viscous(batch, from, to, old, reply, true);
+    for (int first = 0; first < batch.points; first += block) {
+      const int count = batch.points - first < block ? batch.points - first : block;
+      double spare[2][block];
+      average(count, from + first, to + first, reply.traction + first, reply.slope != nullptr ? reply.slope + first : spare[0],
+              reply.end != nullptr ? reply.end + first : spare[1]);
+    }
+  }
+
+  void energy(const Batch& batch, const double* opening, const double* history, double* stored, double* dissipated) const override {
+    const double half = 0.5 * stiffness_;
+    if (stored != nullptr)
+#pragma omp simd
+      for (int i = 0; i < batch.points; ++i) stored[i] = half * smaller(opening[i], 0.0) * smaller(opening[i], 0.0);
+    if (dissipated != nullptr)
+      for (int i = 0; i < batch.points; ++i) dissipated[i] = damping_ > 0 ? history[i] : 0.0;
+  }
+
+  Surface surface(double step, double from, double to, Memory old) const override {
+    double traction, taken;
+    viscous(Batch{1, 1, step}, &from, &to, damping_ > 0 ? old.first : &from, {.traction = &traction, .now = &taken}, false);
+    Along open{from > 0 ? 1.0 : 0.0, to > 0 ? 1.0 : 0.0, 0, 0, 0};
+    const Path path(from, to);
+    open.mean = path.moves() ? path.above(0).share : open.end;
+    open.mean_slope = path.moves() ? (open.end - open.mean) / (to - from) : 0;
+    return {traction, open, open};
+  }
+
+ private:
+  static constexpr int block = 64;
+
+  void average(int count, const double* from, const double* to, double* mean, double* slope, double* end) const {
+    const double stiffness = stiffness_;
+#pragma omp simd
+    for (int i = 0; i < count; ++i) {
+      const double way = to[i] - from[i], low = smaller(way, 0.0), high = larger(way, 0.0), length = std::abs(way);
+      const double a = smaller(low, -from[i]), b = smaller(high, -from[i]), inverse = 1 / length;
+      const double weight = 0.5 * stiffness * (b - a) * inverse, at_end = stiffness * smaller(to[i], 0.0);
+      mean[i] = length > shortest_path ? weight * (2 * from[i] + (a + b)) : at_end;
+      slope[i] = length > shortest_path ? weight * std::abs(a + b) * inverse : (to[i] < 0 ? 0.5 * stiffness : 0.0);
+      end[i] = at_end;
+    }
+  }
+
+  /// With the dashpot, or one point without; `average`: the path average, else the traction at the end.
+  void viscous(const Batch& batch, const double* from, const double* to, const double* old, const Reply& reply, bool average) const {
+    const double per_step = batch.step > 0 ? damping_ / batch.step : 0;  // c/step [Pa/m]
+    for (int i = 0; i < batch.points; ++i) {
+      const Path path(from[i], to[i]);
+      const double dashpot = per_step * (to[i] - from[i]);  // c r [Pa]
+      const double knee = smaller(0, -dashpot / stiffness_);
+      const Piece pushing = path.below(knee), parting = path.within(knee, 0);
+      const double end = to[i] < 0 ? smaller(0, stiffness_ * to[i] + dashpot) : 0;
+      const double end_slope = to[i] < knee ? stiffness_ + per_step : 0;
+      if (average) {
+        reply.traction[i] = pushing.share * (stiffness_ * pushing.middle + dashpot);
+        // a path that crosses 0 inwards meets the jump from 0 to c r, with lever |from|/length
+        const double jump = from[i] > 0 && to[i] < 0 ? per_step * from[i] / path.length() : 0;
+        if (reply.slope != nullptr) reply.slope[i] = pushing.share * (stiffness_ * pushing.lever + per_step) + jump;
+        if (reply.end != nullptr) reply.end[i] = end;
+      } else {
+        reply.traction[i] = end;
+        if (reply.slope != nullptr) reply.slope[i] = end_slope;
+      }
+      if (reply.now != nullptr && damping_ > 0)
+        reply.now[i] = old[i] + path.length() * (pushing.share * std::abs(dashpot) - parting.share * stiffness_ * parting.middle);
+    }
+  }
+
+  double stiffness_, damping_;  // Pa/m, Pa s/m
+};
+
+}  // namespace
+
+const Entry<InterfaceLaw>& entry_law_springs() {
+  static const Entry<InterfaceLaw> entry = joint_entry(
+      {.name = "springs",
+       .summary = "tensionless springs (Winkler base without tension), with a dashpot in contact if wanted",
+       .equations = "t_n = K_n min(d_n, 0)\n"
+                    "with damping: t_n = min(0, K_n d_n + c d'_n) while d_n < 0, else 0: it never pulls",
+       .source = "Winkler (1867); the dashpot as in Kelvin-Voigt contact, cut off at zero force",
+       .params = {number("K_n", "Pa/m", "normal stiffness in compression").positive(),
+                  number("c", "Pa s/m", "damping while in contact").nonnegative().standard(0.0)}},
+      "none", [](const Values& values) -> std::unique_ptr<const NormalLaw> {
+        return std::make_unique<Springs>(values.number("K_n"), values.number("c"));
+      });
+  return entry;
+}
+
+}  // namespace uplift

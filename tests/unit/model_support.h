@@ -1,0 +1,90 @@
+#pragma once
+#include <algorithm>
+#include <cmath>
+#include <memory>
+#include <numbers>
+#include <random>
+
+#include "uplift/base/error.h"
+#include "uplift/elements/beam.h"
+#include "uplift/elements/discrete.h"
+#include "uplift/model/builder.h"
+
+// What several tests of elements, interfaces and models share.
+namespace uplift::support {
+
+inline const Where here{"case.toml", 7};
+
+/// A linear joint: traction = stiffness * opening per component.
+class LinearLaw : public InterfaceLaw {
+ public:
+  explicit LinearLaw(std::vector<double> stiffness) : stiffness_(std::move(stiffness)) {}
+  int num_history(int) const override { return 0; }
+  void respond(const Batch& batch, const double*, const double* to, const double*, Reply reply) const override {
+    for (int c = 0; c < batch.components; ++c)
+      for (int i = 0; i < batch.points; ++i) reply.traction[c * batch.points + i] = stiffness_[c] * to[c * batch.points + i];
+  }
+  void mean(const Batch& batch, const double* from, const double* to, const double* old, Reply reply) const override {
+    respond(batch, from, to, old, reply);
+  }
+  void energy(const Batch&, const double*, const double*, double*, double*) const override {}
+  void closed_stiffness(int components, double* stiffness) const override { std::copy_n(stiffness_.begin(), components, stiffness); }
+
+ private:
+  std::vector<double> stiffness_;
+};
+
+class HardCone : public Cone {
+ public:
+  explicit HardCone(double friction) : friction_(friction) {}
+  double friction() const override { return friction_; }
+  void project(const Batch& batch, const double* trial, double* force, double*) const override {
+    for (int i = 0; i < batch.points; ++i) force[batch.normal() + i] = std::min(trial[batch.normal() + i], 0.0);
+  }
+
+ private:
+  double friction_;
+};
+
+/// f(t) = 1 + 2 t + 3 t^2.
+class Parabola : public TimeFunction {
+ public:
+  double value(double t) const override { return 1 + 2 * t + 3 * t * t; }
+  double rate(double t) const override { return 2 + 6 * t; }
+  double acceleration(double) const override { return 6; }
+};
+
+/// f(t) = 1.
+class Steady : public TimeFunction {
+ public:
+  double value(double) const override { return 1; }
+  double rate(double) const override { return 0; }
+  double acceleration(double) const override { return 0; }
+};
+
+inline InterfaceSpec linear_interface(std::string name, std::vector<JointPoint> points, std::vector<double> stiffness) {
+  InterfaceSpec spec;
+  spec.name = std::move(name);
+  spec.components = static_cast<int>(stiffness.size());
+  spec.points = std::move(points);
+  spec.law = std::make_unique<LinearLaw>(std::move(stiffness));
+  return spec;
+}
+
+inline void add_beam(ModelBuilder& builder, int a, int b, Vec2 xa, Vec2 xb, const BeamSection& section) {
+  builder.add_element(std::make_unique<Beam>(a, b, xa, xb, section), here);
+  if (!section.axial) builder.inextensible(a, b, here);
+}
+
+/// Message of the InputError that a call throws; empty when it throws none.
+template <class Call>
+std::string refusal(Call call) {
+  try {
+    call();
+  } catch (const InputError& error) {
+    return error.what();
+  }
+  return {};
+}
+
+}  // namespace uplift::support
