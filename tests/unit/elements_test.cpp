@@ -32,7 +32,9 @@ std::vector<Case> all_cases() {
   for (const bool shear : {false, true})
     for (const auto mass : {BeamSection::Mass::none, BeamSection::Mass::consistent, BeamSection::Mass::lumped})
       for (const double rotary : {0.0, rho_i})
-        cases.push_back({"beam", std::make_unique<Beam>(0, 1, a, b, section(shear, mass, rotary)), {a, b},
+        cases.push_back({"beam",
+                         std::make_unique<Beam>(0, 1, a, b, section(shear, mass, rotary)),
+                         {a, b},
                          mass == BeamSection::Mass::none ? 0 : rho_a * length});
   BeamSection stiff = section(false, BeamSection::Mass::consistent, 0);
   stiff.axial.reset();
@@ -119,14 +121,16 @@ TEST(Elements, GeometricStiffnessOfHermiteBeamIsTheClassicalMatrix) {
   beam.geometric(n, g);
   Matrix expected = Matrix::Zero(6, 6);  // Przemieniecki 1968, eq 15.34 without the axial terms
   const int rows[] = {1, 2, 4, 5};
-  const double e[4][4] = {{36, 3 * l, -36, 3 * l}, {3 * l, 4 * l * l, -3 * l, -l * l}, {-36, -3 * l, 36, -3 * l}, {3 * l, -l * l, -3 * l, 4 * l * l}};
+  const double e[4][4] = {
+      {36, 3 * l, -36, 3 * l}, {3 * l, 4 * l * l, -3 * l, -l * l}, {-36, -3 * l, 36, -3 * l}, {3 * l, -l * l, -3 * l, 4 * l * l}};
   for (int i = 0; i < 4; ++i)
     for (int j = 0; j < 4; ++j) expected(rows[i], rows[j]) = n / (30 * l) * e[i][j];
   EXPECT_LE((g - expected).norm(), 1e-13 * expected.norm());
 }
 
 TEST(Elements, GeometricStiffnessWithShearIsKosmatkas) {
-  // Kosmatka, Computers & Structures 57 (1995): N/(L (1 + phi)^2) [6/5 + 2 phi + phi^2, L/10; ., L^2 (2/15 + phi/6 + phi^2/12)], coupling -L^2 (1/30 + phi/6 + phi^2/12)
+  // Kosmatka, Computers & Structures 57 (1995): N/(L (1 + phi)^2) [6/5 + 2 phi + phi^2, L/10; ., L^2 (2/15 + phi/6 + phi^2/12)], coupling
+  // -L^2 (1/30 + phi/6 + phi^2/12)
   const double l = 1.7, phi = 12 * EI / (GA * l * l), f = 1 / (l * (1 + phi) * (1 + phi));
   const Beam beam(0, 1, {0, 0}, {l, 0}, section(true, BeamSection::Mass::none, 0));
   Matrix g;

@@ -17,9 +17,11 @@ TEST(Quadrature, IsExactForPolynomials) {
   };
   const auto exact = [](int degree) { return degree % 2 ? 0.0 : 2.0 / (degree + 1); };
   for (int n = 1; n <= 30; ++n)
-    for (int degree = 0; degree < 2 * n; ++degree) EXPECT_NEAR(integral(gauss_legendre(n), degree), exact(degree), 2e-15 * (n + 4)) << n << " " << degree;
+    for (int degree = 0; degree < 2 * n; ++degree)
+      EXPECT_NEAR(integral(gauss_legendre(n), degree), exact(degree), 2e-15 * (n + 4)) << n << " " << degree;
   for (int n = 2; n <= 20; ++n)
-    for (int degree = 0; degree < 2 * n - 2; ++degree) EXPECT_NEAR(integral(gauss_lobatto(n), degree), exact(degree), 2e-15 * (n + 4)) << n << " " << degree;
+    for (int degree = 0; degree < 2 * n - 2; ++degree)
+      EXPECT_NEAR(integral(gauss_lobatto(n), degree), exact(degree), 2e-15 * (n + 4)) << n << " " << degree;
   EXPECT_GT(std::abs(integral(gauss_legendre(3), 6) - exact(6)), 1e-3);
   EXPECT_NEAR(gauss_lobatto(3).weight[1], 4.0 / 3, 1e-15);  // Simpson
   for (int n = 2; n <= 9; ++n) {
@@ -62,7 +64,8 @@ TEST(Joint, TangentAndNormalAreRightHanded) {
 TEST(Joint, FootingRules) {
   const Vec2 n = Vec2(1, 2).normalized(), centre(0.5, -1);
   for (const FootingRule rule : {FootingRule::nodal, FootingRule::midpoint, FootingRule::gauss}) {
-    const auto points = footing_points({.body = 3, .centre = centre, .normal = 7 * n, .width = 3, .thickness = 0.5, .points = 6, .rule = rule, .gap = 0.01}, here);
+    const auto points = footing_points(
+        {.body = 3, .centre = centre, .normal = 7 * n, .width = 3, .thickness = 0.5, .points = 6, .rule = rule, .gap = 0.01}, here);
     ASSERT_EQ(points.size(), 6u);
     double area = 0, inertia = 0, last = -2;
     for (const JointPoint& p : points) {
@@ -89,20 +92,30 @@ TEST(Joint, FootingRules) {
 TEST(Joint, RefusesWhatMakesNoSense) {
   const auto message = [](auto call) { return support::refusal(call); };
   EXPECT_EQ(message([] { footing_points({.width = 3, .points = 1}, here); }), "case.toml:7: interface.points: wanted at least 2, found 1");
-  EXPECT_EQ(message([] { footing_points({.width = -3, .points = 4}, here); }), "case.toml:7: interface.width: wanted a width > 0 m, found -3");
+  EXPECT_EQ(message([] { footing_points({.width = -3, .points = 4}, here); }),
+            "case.toml:7: interface.width: wanted a width > 0 m, found -3");
   const SideNode a{0, {0, 0}}, b{1, {0, 1}}, c{2, {1, 0}}, d{3, {1, 1}};
-  EXPECT_EQ(message([&] { pair_points({b}, {a, c}, {0, 1}, 1, 0, here); }),
+  EXPECT_EQ(message([&] {
+              pair_points({b}, {a, c}, {0, 1}, 1, 0, here);
+            }),
             "case.toml:7: interface.lower: wanted as many nodes as the upper side (1), found 2");
-  EXPECT_EQ(message([&] { pair_points({b}, {a}, {0, -1}, 1, 0, here); }),
-            "case.toml:7: interface.normal: wanted a normal from the lower to the upper side, found an interface inside out: the upper node at (0, 1) m lies on "
+  EXPECT_EQ(message([&] {
+              pair_points({b}, {a}, {0, -1}, 1, 0, here);
+            }),
+            "case.toml:7: interface.normal: wanted a normal from the lower to the upper side, found an interface inside out: the upper "
+            "node at (0, 1) m lies on "
             "the lower side of its partner at (0, 0) m");
   EXPECT_EQ(message([&] { pair_points({b}, {a}, {0, 1}, 1, 0, here); }), "");
   EXPECT_EQ(message([&] { pair_points({b}, {a}, {0, 1}, 0, 0, here); }), "case.toml:7: interface.area: wanted an area > 0 m2, found 0");
   EXPECT_EQ(message([&] { line_points({.upper = {b, d}, .lower = {a, c}}, here); }), "");
   EXPECT_NE(message([&] { line_points({.upper = {d, b}, .lower = {c, a}}, here); }).find("inside out"), std::string::npos);
-  EXPECT_EQ(message([&] { line_points({.upper = {a, c, d, b}, .lower = {}, .nodes_per_element = 3}, here); }),
+  EXPECT_EQ(message([&] {
+              line_points({.upper = {a, c, d, b}, .lower = {}, .nodes_per_element = 3}, here);
+            }),
             "case.toml:7: interface.upper: wanted 3 nodes for the first joint element and 2 more for each further one, found 4 nodes");
-  EXPECT_EQ(message([&] { line_points({.upper = {a, a}, .lower = {}}, here); }),
+  EXPECT_EQ(message([&] {
+              line_points({.upper = {a, a}, .lower = {}}, here);
+            }),
             "case.toml:7: interface.upper: wanted nodes in order along a line, found neighbours that coincide");
 }
 

@@ -8,6 +8,7 @@
 #include "uplift/base/error.h"
 #include "uplift/elements/beam.h"
 #include "uplift/elements/discrete.h"
+#include "uplift/math/dense.h"
 #include "uplift/model/builder.h"
 
 // What several tests of elements, interfaces and models share.
@@ -74,6 +75,41 @@ inline InterfaceSpec linear_interface(std::string name, std::vector<JointPoint> 
 inline void add_beam(ModelBuilder& builder, int a, int b, Vec2 xa, Vec2 xb, const BeamSection& section) {
   builder.add_element(std::make_unique<Beam>(a, b, xa, xb, section), here);
   if (!section.axial) builder.inextensible(a, b, here);
+}
+
+/// An inextensible massless beam.
+inline BeamSection bending_only(double EI) {
+  BeamSection section;
+  section.bending = EI;
+  return section;
+}
+
+/// A beam with area and mass (200 kg/m).
+inline BeamSection general(double EI, double EA) {
+  BeamSection section;
+  section.bending = EI;
+  section.axial = EA;
+  section.mass = BeamSection::Mass::consistent;
+  section.mass_per_length = 200;
+  return section;
+}
+
+/// Displacement under all drives at a time.
+inline Vector static_solution(const Model& model, double time = 0) {
+  Vector force = Vector::Zero(model.free());
+  model.add_force(time, force);
+  return Matrix(model.stiffness).ldlt().solve(force);
+}
+
+/// A rigid block (2000 kg) on a footing 3 m wide with 7 joints, its centre above.
+inline std::unique_ptr<ModelBuilder> block_on_ground(double height, Vec2 normal, bool with_gravity) {
+  auto builder = std::make_unique<ModelBuilder>();
+  builder->add_node("block", {0, height}, here);
+  builder->add_element(std::make_unique<PointMass>(0, 2000.0, 700.0), here);
+  builder->add_interface(linear_interface("base", footing_points({.body = 0, .normal = normal, .width = 3, .points = 7}, here), {4e6, 1e7}),
+                         here);
+  if (with_gravity) builder->set_gravity({0, -10}, here);
+  return builder;
 }
 
 /// Message of the InputError that a call throws; empty when it throws none.

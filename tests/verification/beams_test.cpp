@@ -4,8 +4,8 @@
 #include <functional>
 
 #include "../unit/model_support.h"
-#include "uplift/math/dense.h"
 #include "uplift/linear/solver.h"
+#include "uplift/math/dense.h"
 #include "uplift/model/geometric.h"
 
 namespace uplift {
@@ -41,7 +41,8 @@ Model cantilever(const Frame& frame) {
   section.mass = frame.mass;
   section.mass_per_length = frame.rho_a;
   for (int i = 0; i < frame.elements; ++i)
-    support::add_beam(builder, i, i + 1, frame.length * i / frame.elements * along, frame.length * (i + 1) / frame.elements * along, section);
+    support::add_beam(builder, i, i + 1, frame.length * i / frame.elements * along, frame.length * (i + 1) / frame.elements * along,
+                      section);
   for (const Dof dof : {ux, uy, rz}) builder.fix(0, dof, here);
   if (frame.tip_mass > 0) builder.add_element(std::make_unique<PointMass>(frame.elements, frame.tip_mass), here);
   return builder.finish();
@@ -77,7 +78,9 @@ TEST(Cantilever, FrequenciesAndTheirOrder) {
 }
 
 TEST(Cantilever, TipMass) {
-  const auto equation = [](double x) { return 1 + std::cos(x) * std::cosh(x) + x * (std::cos(x) * std::sinh(x) - std::sin(x) * std::cosh(x)); };
+  const auto equation = [](double x) {
+    return 1 + std::cos(x) * std::cosh(x) + x * (std::cos(x) * std::sinh(x) - std::sin(x) * std::cosh(x));
+  };
   const double exact[] = {root(equation, 1, 1.5), root(equation, 3.5, 4.5)};
   EXPECT_NEAR(exact[0], 1.2479174096, 1e-10);
   EXPECT_NEAR(exact[1], 4.0311394367, 1e-10);
@@ -133,7 +136,8 @@ TEST(Timoshenko, TipDisplacementsOfACantilever) {
 }
 
 TEST(Timoshenko, FrequencyOfASimplySupportedBeam) {
-  // w^2 of the mode sin(pi x/L) with shear and rotary inertia: roots of rho A w^2 = ... (Timoshenko 1921), from the 2 x 2 problem in (w, rotation)
+  // w^2 of the mode sin(pi x/L) with shear and rotary inertia: roots of rho A w^2 = ... (Timoshenko 1921), from the 2 x 2 problem in (w,
+  // rotation)
   const double EI = 2.5e7, GA = 6e7, l = 3, rho_a = 240, rho_i = 12, q = pi / l;
   // [GA q^2 - rho_a w^2, -GA q; -GA q, EI q^2 + GA - rho_i w^2]
   const double a = rho_a * rho_i, b = -(rho_a * (EI * q * q + GA) + rho_i * GA * q * q), c = GA * q * q * (EI * q * q);
@@ -177,7 +181,8 @@ TEST(PDelta, EulerLoadOfACantilever) {
         section.bending = EI;
         if (extensible) section.axial = 1e12;
         for (int i = 0; i <= elements; ++i) builder.add_node("n" + std::to_string(i), l * i / elements * along, here);
-        for (int i = 0; i < elements; ++i) support::add_beam(builder, i, i + 1, l * i / elements * along, l * (i + 1) / elements * along, section);
+        for (int i = 0; i < elements; ++i)
+          support::add_beam(builder, i, i + 1, l * i / elements * along, l * (i + 1) / elements * along, section);
         for (const Dof dof : {ux, uy, rz}) builder.fix(0, dof, here);
         builder.add_load("weight", {{3 * elements, -p * along.x()}, {3 * elements + 1, -p * along.y()}}, nullptr, true, here);
         const Model model = builder.finish();

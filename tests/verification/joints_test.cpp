@@ -118,7 +118,8 @@ TEST(JointElement, PatchAndShear) {
 }
 
 TEST(JointElement, InclinedInterfaceSplitsAUniaxialStress) {
-  // a column of stress sigma along y, cut at the angle theta: traction sigma n_y, so t_n = sigma cos^2, t_t = +- sigma sin cos of the interface's inclination
+  // a column of stress sigma along y, cut at the angle theta: traction sigma n_y, so t_n = sigma cos^2, t_t = +- sigma sin cos of the
+  // interface's inclination
   const double k = 1e9, sigma = 1e6, theta = 0.4, length = 2;
   const Vec2 e(std::cos(theta), std::sin(theta));
   ModelBuilder builder;
@@ -160,7 +161,8 @@ TEST(JointElement, RigidMotionsOpenNothing) {
 }
 
 TEST(Footing, QuadratureErrorOfTheUpliftMoment) {
-  // Rigid strip on tensionless Winkler springs at theta = 2.6 theta_u: M/M_u = 3 - 2 sqrt(theta_u/theta). The number of joints is the number of cells.
+  // Rigid strip on tensionless Winkler springs at theta = 2.6 theta_u: M/M_u = 3 - 2 sqrt(theta_u/theta). The number of joints is the
+  // number of cells.
   const double k = 2e8, half = 1.5, weight = 1e6, mu = weight * half / 3, theta_u = weight / (2 * k * half * half), theta = 2.6 * theta_u;
   const double exact = (3 - 2 / std::sqrt(2.6)) * mu;
   const double stated[] = {2.7e-2, 6.4e-3, 1.4e-3, 3.0e-4};
@@ -225,10 +227,12 @@ TEST(ReferenceOscillator, FixedBaseAndBondedFrequencies) {
     const GeneralisedEigen eigen(stiff, inertia);
     const auto found = modes(bonded_stiffness(model), model.mass, 9);
     ASSERT_EQ(found.size(), 3u);  // the rotation of the top has no mass
-    std::vector<double> expected{std::sqrt(eigen.eigenvalues()[0]), std::sqrt(eigen.eigenvalues()[1]), std::sqrt(k_vertical / (mass + 1e4))};
+    std::vector<double> expected{std::sqrt(eigen.eigenvalues()[0]), std::sqrt(eigen.eigenvalues()[1]),
+                                 std::sqrt(k_vertical / (mass + 1e4))};
     std::sort(expected.begin(), expected.end());
     for (int i = 0; i < 3; ++i) EXPECT_NEAR(2 * pi * found[i].frequency, expected[i], 1e-10 * expected[i]);
-    // the closed form neglects the rotary inertia of the base, 1.2 % of M h^2; with it the frequency is lower by half of its share in the kinetic energy
+    // the closed form neglects the rotary inertia of the base, 1.2 % of M h^2; with it the frequency is lower by half of its share in the
+    // kinetic energy
     const double closed = 10 / std::sqrt(1 + w0 * w0 * mass * h * h / k_theta);
     EXPECT_LT(found[0].frequency, closed);
     EXPECT_NEAR(found[0].frequency, closed, 0.5 * 7500 / (mass * h * h) * closed);

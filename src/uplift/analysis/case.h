@@ -36,6 +36,7 @@ struct RunSpec {
   std::optional<double> stiffness_ratio;  // the law's stiffness is chosen so that the largest k F_ii is this
   std::string stiffness_parameter;        // parameter of the law that is the stiffness
   bool bonded = false;                    // elastic interfaces that never open, as stiff as the closed joint
+  bool rigid_ground = false;              // elastic beds are left out
   bool expected_to_fail = false;
   bool pictures = true;  // keep frames for the animation
 };

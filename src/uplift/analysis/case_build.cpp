@@ -57,7 +57,7 @@ void add_interfaces(const Case& read, const RunSpec& spec, ModelBuilder& builder
   if (read.values.tables("interface").empty()) fail(read.values, "", "at least one [[interface]]", "none");
   for (const Values& interface : read.values.tables("interface")) {
     names.interfaces.add(interface, "name");
-    Joint joint = make_joint(interface, builder, names);
+    Joint joint = make_joint(interface, spec.rigid_ground, builder, names);
     const Values& behaviour = behaviour_of(interface, spec);
     InterfaceSpec made;
     made.name = interface.text("name");

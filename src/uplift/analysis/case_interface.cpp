@@ -44,7 +44,7 @@ void add_bed(const Values& bed, const std::string& interface, std::vector<JointP
   }
 }
 
-Joint footing_joint(const Values& interface, const Values& table, ModelBuilder& builder, CaseNames& names) {
+Joint footing_joint(const Values& interface, const Values& table, bool rigid_ground, ModelBuilder& builder, CaseNames& names) {
   Footing footing;
   footing.body = names.node(table, "body");
   footing.centre = names.positions[footing.body];
@@ -61,7 +61,7 @@ Joint footing_joint(const Values& interface, const Values& table, ModelBuilder& 
   joint.facts.body = names.nodes[footing.body];
   joint.facts.half_width = footing.width / 2;
   joint.reference = footing.centre;
-  if (const Values* bed = table_if(table, "bed")) add_bed(*bed, interface.text("name"), joint.points, builder, names);
+  if (const Values* bed = table_if(table, "bed"); bed && !rigid_ground) add_bed(*bed, interface.text("name"), joint.points, builder, names);
   return joint;
 }
 
@@ -76,14 +76,14 @@ void measure(Joint& joint) {
 
 }  // namespace
 
-Joint make_joint(const Values& interface, ModelBuilder& builder, CaseNames& names) {
+Joint make_joint(const Values& interface, bool rigid_ground, ModelBuilder& builder, CaseNames& names) {
   const Values* footing = table_if(interface, "footing");
   const Values* pairs = table_if(interface, "pairs");
   const Values* line = table_if(interface, "line");
   const int kinds = (footing != nullptr) + (pairs != nullptr) + (line != nullptr);
   if (kinds != 1) throw InputError(interface.where(), interface.path(), "exactly one of footing, pairs and line", kinds == 0 ? "none" : fmt::format("{}", kinds));
   Joint joint;
-  if (footing) joint = footing_joint(interface, *footing, builder, names);
+  if (footing) joint = footing_joint(interface, *footing, rigid_ground, builder, names);
   if (pairs)
     joint.points = pair_points(side(*pairs, "upper", names), side(*pairs, "lower", names), normal_of(*pairs), pairs->number("area"), interface.number("gap"),
                                pairs->where());

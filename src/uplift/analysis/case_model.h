@@ -32,13 +32,13 @@ void add_structure(const Values& root, ModelBuilder& builder, CaseNames& names, 
 void add_loads(const Values& root, ModelBuilder& builder, const CaseNames& names);
 BulkDamping bulk_damping(const Values& damping);
 
-/// Joint points of an interface with its lower nodes; with an elastic bed these are made here.
+/// Joint points of an interface with its lower nodes; with an elastic bed (unless `rigid_ground`) these are made here.
 struct Joint {
   std::vector<JointPoint> points;
   InterfaceFacts facts;
   Vec2 reference = Vec2::Zero();
 };
-Joint make_joint(const Values& interface, ModelBuilder& builder, CaseNames& names);
+Joint make_joint(const Values& interface, bool rigid_ground, ModelBuilder& builder, CaseNames& names);
 
 /// Number of local components that a law or cone needs: 1 when it has no tangential part, else 2.
 int components_of(const Values& behaviour);

@@ -60,6 +60,8 @@ std::vector<RunSpec> sweep_runs(const Case& read, const Values& sweep, const Val
       spec.stiffness_ratio = ratio;
       spec.stiffness_parameter = sweep.text("parameter");
       spec.path_average = path;
+      spec.impact = &sweep.part("impact");
+      spec.rigid_ground = sweep.flag("rigid_ground");
       spec.expected_to_fail = !path;
       spec.pictures = false;
       if (sweep.has("duration")) spec.duration = sweep.number("duration");

@@ -281,6 +281,8 @@ const Section& sweep_section() {
                          Fields{part("law", interface_behaviours, "the law; its stiffness is replaced"),
                                 text("parameter", "parameter of the law that is the stiffness").standard("K_n"),
                                 numbers("ratios", "1", "stiffness ratios k F_ii (largest of the points)"),
+                                flag("rigid_ground", "leave out the elastic bed: the swept joint is the only flexibility of the ground").standard(false),
+                                part("impact", impact_rules, "velocity correction with the traction at the end of the step").standard("none"),
                                 number("duration", "s", "duration of the dynamic stage; absent: that of the case").positive().optional()}};
   return s;
 }

@@ -77,11 +77,11 @@ void warn_method(const Case& read, const RunSpec& spec, const Built& built, std:
     if (impact.type() == "reflect" || impact.type() == "propagate")
       said.push_back(fmt::format("impact = \"{}\" corrects the velocity at every step: the multipliers alone are not the contact force", impact.type()));
     if (spec.path_average.value_or(false)) said.push_back("traction = \"path\" has no effect with a constraint method: it takes the force at the end of the step");
-  } else if (!stage->path_average) {
+  } else if (!stage->path_average && impact.type() == "none") {
     double largest = 0;
     for (const StiffnessRatio& ratio : stiffness_ratios(built.model, *stage, *built.plan.solver)) largest = std::max(largest, ratio.most);
     if (largest > 0.05)
-      said.push_back(fmt::format("traction at the end of the step with a stiff joint (k F_ii = {:.3g}): this creates energy; take traction = \"path\"", largest));
+      said.push_back(fmt::format("traction at the end of the step with a stiff joint (k F_ii = {:.3g}): this creates energy; take traction = \"path\", or an impact rule", largest));
   }
 }
 

@@ -20,13 +20,13 @@ double median(std::vector<double> values) {
   return values.size() % 2 == 1 ? values[half] : (values[half - 1] + values[half]) / 2;
 }
 
-std::vector<std::size_t> compared_columns(const RunResult& result, const std::vector<std::string>& names, int top) {
+std::vector<std::size_t> compared_columns(const RunResult& result, const std::vector<std::string>& names, int top, int base) {
   std::vector<std::size_t> chosen;
   for (std::size_t k = 0; k < result.columns.size(); ++k) {
     const Request& column = result.columns[k];
     const bool named = std::find(names.begin(), names.end(), column.name) != names.end();
-    const bool standard = (column.kind == Request::Kind::displacement && column.unknown == 3 * top + ux) ||
-                          (column.interface == 0 && (column.kind == Request::Kind::rotation || column.kind == Request::Kind::max_opening));
+    const bool motion = column.kind == Request::Kind::displacement && (column.unknown == 3 * top + ux || column.unknown == 3 * base + rz);
+    const bool standard = motion || (column.kind == Request::Kind::max_opening && column.interface == 0);
     if (names.empty() ? standard : named) chosen.push_back(k);
   }
   return chosen;
@@ -45,11 +45,11 @@ std::string_view to_string(Agreement::Word word) {
 }
 
 std::vector<Agreement> agreement(const std::vector<RunResult>& results, const std::vector<RunSpec>& specs, const std::vector<std::string>& columns,
-                                 double band, int top) {
+                                 double band, int top, int base) {
   std::map<std::string, std::map<std::size_t, std::vector<double>>> peaks;  // group, column: magnitudes
   for (std::size_t i = 0; i < results.size(); ++i)
     if (sound(results[i], specs[i]))
-      for (const std::size_t k : compared_columns(results[i], columns, top)) peaks[results[i].group][k].push_back(std::abs(results[i].peaks[k].value));
+      for (const std::size_t k : compared_columns(results[i], columns, top, base)) peaks[results[i].group][k].push_back(std::abs(results[i].peaks[k].value));
   std::vector<Agreement> made(results.size());
   for (std::size_t i = 0; i < results.size(); ++i) {
     if (specs[i].bonded) continue;
@@ -57,7 +57,7 @@ std::vector<Agreement> agreement(const std::vector<RunResult>& results, const st
       made[i].word = Agreement::Word::failed;
       continue;
     }
-    for (const std::size_t k : compared_columns(results[i], columns, top)) {
+    for (const std::size_t k : compared_columns(results[i], columns, top, base)) {
       const std::vector<double>& sound_peaks = peaks[results[i].group][k];
       if (sound_peaks.empty()) continue;
       const double middle = median(sound_peaks);

@@ -15,9 +15,10 @@ struct Agreement {
 std::string_view to_string(Agreement::Word);
 
 /// Compares the peaks of all sound runs of each group with their median. Sound: completed, not expected to fail, not the bonded model.
-/// `columns`: names of the compared columns; empty: motion of the top, rotation and largest opening of the first interface.
+/// `columns`: names of the compared columns; empty: motion of the top, rotation of the base and largest
+/// opening of the first interface.
 std::vector<Agreement> agreement(const std::vector<RunResult>& results, const std::vector<RunSpec>& specs, const std::vector<std::string>& columns,
-                                 double band, int top);
+                                 double band, int top, int base);
 
 /// One row of the stiffness sweep: energy created relative to the energy put in.
 struct SweepRow {

@@ -69,7 +69,8 @@ int compare(const Options& options) {
   const Values* compare = loaded.read.values.has("compare") ? &loaded.read.values.table("compare") : nullptr;
   ComparisonSummary compared;
   compared.band = compare ? compare->number("band") : 0.02;
-  compared.agreement = agreement(results.runs, results.specs, compare ? compare->texts("agree_on") : std::vector<std::string>{}, compared.band, results.built.front().top);
+  compared.agreement = agreement(results.runs, results.specs, compare ? compare->texts("agree_on") : std::vector<std::string>{}, compared.band,
+                                 results.built.front().top, results.built.front().base);
   compared.sweep = sweep_table(swept.specs, swept.runs);
   const RunResult* bonded = nullptr;
   for (std::size_t i = 0; i < results.runs.size(); ++i)

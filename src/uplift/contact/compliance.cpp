@@ -14,16 +14,30 @@ struct RankFactors {
   Matrix v;  // touched unknowns x r
 };
 
-/// B = W V^T. Columns and rows are scaled to length one for the decision about the rank, so that units play no part.
+/// Clearly regular: no pivot of the Gram matrix, scaled to a unit diagonal, is small.
+bool independent(Matrix gram) {
+  const Vector scale = gram.diagonal().cwiseSqrt().cwiseInverse();
+  if (!scale.allFinite()) return false;
+  gram = (scale.asDiagonal() * gram * scale.asDiagonal()).eval();
+  const Cholesky cholesky(gram);
+  return cholesky.info() == Success && cholesky.matrixLLT().diagonal().minCoeff() > 1e-4;
+}
+
+/// B = W V^T. The two common cases are tried first; else a QR decides about the rank, on columns scaled to length one, so that units play
+/// no part.
 RankFactors rank_factors(const Matrix& b) {
   const Index rows = b.rows(), columns = b.cols();
+  const RankFactors by_columns{b, Matrix::Identity(columns, columns)}, by_rows{Matrix::Identity(rows, rows), b.transpose()};
+  const Sparse sparse = b.sparseView();
+  if (columns <= rows ? independent(Sparse(sparse.transpose() * sparse)) : independent(Sparse(sparse * sparse.transpose())))
+    return columns <= rows ? by_columns : by_rows;
   const Vector scale = b.colwise().norm().cwiseInverse();
   const PivotedQr qr(b * scale.asDiagonal());
   const double largest = qr.maxPivot();
   Index rank = 0;
   while (rank < std::min(rows, columns) && std::abs(qr.matrixR()(rank, rank)) > 1e-11 * largest) ++rank;
-  if (rank == columns) return {b, Matrix::Identity(columns, columns)};
-  if (rank == rows) return {Matrix::Identity(rows, rows), b.transpose()};
+  if (rank == columns) return by_columns;
+  if (rank == rows) return by_rows;
   Matrix q = Matrix::Identity(rows, rank);
   q.applyOnTheLeft(qr.householderQ());
   Matrix r = qr.matrixR().topRows(rank).triangularView<upper_triangle>();
@@ -51,8 +65,9 @@ Spread spread_through(const Factor& a, const Sparse& b) {
   for (Index k = 0; k < dense.cols(); ++k) unit.row(touched[k]) = parts.v.row(k);
   Matrix answer;
   a.solve(unit, answer);
-  Matrix flexibility = Matrix::Zero(rank, rank);
-  for (Index k = 0; k < dense.cols(); ++k) flexibility += parts.v.row(k).transpose() * answer.row(touched[k]);
+  Matrix at_touched(dense.cols(), rank);
+  for (Index k = 0; k < dense.cols(); ++k) at_touched.row(k) = answer.row(touched[k]);
+  Matrix flexibility = parts.v.transpose() * at_touched;
   flexibility = ((flexibility + flexibility.transpose()) / 2).eval();
   const Cholesky cholesky(flexibility);
   assert(cholesky.info() == Success);  // A is positive definite and V has full rank

@@ -14,9 +14,9 @@ struct Spread {
 
 /// One block of r right-hand sides through the factor; `b` is rows x free.
 ///
-/// B = W V^T with r columns each, in the cheaper of three exact ways: V = the touched unknowns (a footing with many joints), W = the identity
-/// (independent rows), or both from a rank-revealing QR. Then with G = V^T A^-1 V = L L^T, positive definite even where the compliance
-/// is singular,  factor = W L  and  spread = A^-1 V L^-T.
+/// B = W V^T with r columns each, in the cheaper of three exact ways: V = the touched unknowns (a footing with many joints), W = the
+/// identity (independent rows), or both from a rank-revealing QR. Then with G = V^T A^-1 V = L L^T, positive definite even where the
+/// compliance is singular,  factor = W L  and  spread = A^-1 V L^-T.
 Spread spread_through(const Factor& a, const Sparse& b);
 
 }  // namespace uplift

@@ -30,6 +30,7 @@ struct ImpactScratch {
   Vector target, limit, fixed, held;  // rows: B v without the contact force, weights of the rows (kernel.h)
   Vector rate, taken, impulse;        // rows: B v corrected, force that was taken out, total impulse
   Vector y, push;                     // r
+  bool any_fixed = false;             // rows held both ways
 };
 
 class ImpactRule {

@@ -36,14 +36,19 @@ void row_rates(const Impact& impact, const Vector& v, Vector& result) {
     result.noalias() = *impact.sparse_b * v;
 }
 
-bool select_rows(const Impact& impact, ImpactScratch& scratch) {
+bool select_rows(const Impact& impact, Hold hold, ImpactScratch& scratch) {
   const Index rows = impact.mass->factor.rows();
   size_scratch(rows, impact.mass->factor.cols(), scratch);
   if (impact.normals.empty()) return false;
   const auto share = [&](int row) { return impact.area != nullptr ? (*impact.area)[row] : 1.0; };
   for (Vector* vector : {&scratch.limit, &scratch.fixed, &scratch.taken, &scratch.impulse}) std::fill_n(vector->data(), rows, 0.0);
-  for (const int row : impact.normals) scratch.limit[row] = share(row), scratch.taken[row] = (*impact.force)[row];
-  for (const int row : impact.tangents) scratch.fixed[row] = share(row), scratch.taken[row] = (*impact.force)[row];
+  Vector& normal = hold == Hold::inequality ? scratch.limit : scratch.fixed;
+  for (const int row : impact.normals) normal[row] = share(row);
+  for (const int row : impact.tangents) scratch.fixed[row] = share(row);
+  scratch.any_fixed = hold == Hold::equality || !impact.tangents.empty();
+  if (hold == Hold::equality) return true;
+  for (const std::vector<int>* list : {&impact.normals, &impact.tangents})
+    for (const int row : *list) scratch.taken[row] = (*impact.force)[row];
   return true;
 }
 
@@ -66,7 +71,7 @@ void project_rate(const Impact& impact, const Vector& rate, double weight, Selec
     if (scratch.limit[i] > 0 || scratch.fixed[i] > 0) largest = std::max(largest, std::abs(scratch.target[i]));
   std::copy_n(scratch.limit.data() + first, n, scratch.held.data() + first);
   Rows rows{n, c.cols(), c.rows(), c.data() + first, scratch.target.data() + first, scratch.limit.data() + first,
-            impact.tangents.empty() ? nullptr : scratch.fixed.data() + first, 1e-12 * largest};
+            scratch.any_fixed ? scratch.fixed.data() + first : nullptr, 1e-12 * largest};
   for (;;) {
     const KernelReply reply = solve_rows(rows, scratch.held.data() + first, scratch.y.data(), scratch.rate.data() + first,
                                          scratch.impulse.data() + first, scratch.kernel);

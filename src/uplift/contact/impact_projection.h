@@ -15,10 +15,16 @@ enum class Select {
   held  // those that the last projection left at rest: the rows of a second projection, of the acceleration
 };
 
+/// How the active normal rows are held.
+enum class Hold {
+  inequality,  // as above
+  equality     // eq 4 as printed: B_A v' = 0, whatever the sign of the impulses; what reflections are made of
+};
+
 /// Prepares the rows of A in the scratch; false when there are none.
-bool select_rows(const Impact&, ImpactScratch&);
+bool select_rows(const Impact&, Hold, ImpactScratch&);
 /// Projects a rate (velocity or acceleration) of the free unknowns in the metric of M, without changing it: the correction is X (push + y).
-/// scratch.rate holds B v', scratch.impulse the total impulse, scratch.target B w.
+/// scratch.rate holds B v', scratch.impulse the total impulse (of an equality: the correction's), scratch.target B w.
 void project_rate(const Impact&, const Vector& rate, double weight, Select, ImpactScratch&);
 /// rate += factor * X (push + y)
 void correct(const Impact&, double factor, Vector& rate, const ImpactScratch&);

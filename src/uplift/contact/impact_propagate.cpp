@@ -3,9 +3,9 @@
 #include "uplift/contact/impact_projection.h"
 #include "uplift/math/small.h"
 
-// v_c = v + v''      [K + 4M/dt^2, C^T; C, 0] [v''; mu] = [0; f C (v' - v)]      C the active rows, v' the velocity of `project`
+// v_c = v + v''      [K + 4M/dt^2, C^T; C, 0] [v''; mu] = [0; f C (v' - v)]      C the active rows, v' the projection of eq 4, C v' = 0
 // As printed f = 2, which is a reflection, C v_c = -C v, spread by the dynamic stiffness. With A = K + 4M/dt^2 and A^-1 B^T = X C^T (rows C of the
-// spread, not of the paper) v'' = X y, where y is the shortest vector with C_A y = f B_A (v' - v). The impulse reported is f times that of the
+// spread, not of the paper) v'' = X y, where y is the shortest vector with C_A y = -f B_A v. The impulse reported is f times that of the
 // projection: what M (v_c - v) does to the closed rows.
 namespace uplift {
 namespace {
@@ -17,19 +17,15 @@ class Propagate final : public ImpactRule {
   bool force_includes_impulse() const override { return true; }
 
   void apply(const Impact& impact, Vector& velocity, Vector&, Vector& impulse, ImpactScratch& scratch) const override {
-    if (!select_rows(impact, scratch)) return;
-    project_rate(impact, velocity, impact.velocity_weight, Select::all, scratch);
+    if (!select_rows(impact, Hold::equality, scratch)) return;
+    project_rate(impact, velocity, 0, Select::all, scratch);  // leaves B v in the target
     add_impulse(impact, factor_, impulse, scratch);
     const Matrix &c = impact.dynamic->factor, &x = impact.dynamic->spread;
     const Index rows = c.rows();
-    row_rates(impact, velocity, scratch.taken);  // the force is not needed any more
     double largest = 0;
     for (Index i = 0; i < rows; ++i) {
-      const double weight = std::max(scratch.limit[i], scratch.fixed[i]);
-      scratch.target[i] = weight > 0 ? -factor_ * (scratch.rate[i] - scratch.taken[i]) : 0;
+      scratch.target[i] *= scratch.fixed[i] > 0 ? factor_ : 0;
       largest = std::max(largest, std::abs(scratch.target[i]));
-      scratch.fixed[i] = weight;
-      scratch.limit[i] = 0;
     }
     scratch.y.resize(c.cols());
     const Rows view{rows, c.cols(), rows, c.data(), scratch.target.data(), scratch.limit.data(), scratch.fixed.data(), 1e-12 * largest};
@@ -49,7 +45,7 @@ const Entry<ImpactRule>& entry_impact_propagate() {
       {.name = "propagate",
        .summary = "the paper's correction: the velocity change of the closed rows spread by the dynamic stiffness",
        .equations = "v_c = v + v''\n"
-                    "[K + 4M/dt^2, C^T; C, 0] [v''; mu] = [0; f C (v' - v)]",
+                    "[K + 4M/dt^2, C^T; C, 0] [v''; mu] = [0; f C (v' - v)],  C v' = 0",
        .source = "Cherubini, Richard & Frau, eqs 4-6",
        .params = {number("factor", "1", "f; 2 as printed: a reflection").positive().standard(2.0)}},
       [](const Values& values) { return std::make_unique<const Propagate>(values.number("factor")); }};

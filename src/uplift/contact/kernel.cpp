@@ -35,11 +35,13 @@ bool solve_closed(const Rows& rows, const ConstMatrixMap& c, const std::vector<s
       worst = std::max(worst, std::abs(value));
       right[k] = -root[k] * value;
     }
-    if (!(worst > gap)) break;
+    if (worst <= 1e-13 * target.cwiseAbs().maxCoeff() || (refinement == 3 && worst <= gap)) break;
     if (refinement == 3) return false;
     z += solver.least_norm(right);
   }
-  field.noalias() = c * solver.dual(z);
+  const Vector q = solver.multipliers(z);
+  field.noalias() = c * solver.least_norm(q);
+  for (Index k = 0; k < count; ++k) field[closed[static_cast<std::size_t>(k)]] = q[k] / root[k];
   return true;
 }
 

@@ -19,8 +19,8 @@ inline double kernel_residual(const ConstMatrixMap& c, const Vector& z, const do
 }
 
 /// Solves with closed rows A (count x r; rows scaled by the root of their weight), redundant rows allowed:
-///   least_norm(b): the shortest z with A z = b (in the least-squares sense when the rows contradict each other)
-///   dual(z):       y with A^T A y = -z, so that the shortest q with A^T q = -z is A y; z must be a combination of the rows
+///   least_norm(b):  the shortest z with A z = b (in the least-squares sense when the rows contradict each other)
+///   multipliers(z): the shortest q with A^T q = -z, z being a combination of the rows; refined, so that the balance holds to round-off
 /// Cholesky of the smaller of A A^T and A^T A when that is well conditioned, else a complete orthogonal decomposition.
 /// Included by sources only.
 class HeldRows {
@@ -45,15 +45,21 @@ class HeldRows {
     return gram_.solve(a_.transpose() * b);
   }
 
-  Vector dual(const Vector& z) const {
-    if (a_.rows() == 0) return Vector::Zero(a_.cols());
-    if (!cholesky_) return -decomposition_.solve(Vector(decomposition_.transpose().solve(z)));
-    if (!wide_) return -gram_.solve(z);
-    const Vector q = gram_.solve(a_ * z);  // A A^T q = A z
-    return -(a_.transpose() * gram_.solve(q));
+  Vector multipliers(const Vector& z) const {
+    Vector q = Vector::Zero(a_.rows());
+    if (a_.rows() == 0) return q;
+    for (int pass = 0; pass < 3; ++pass) q -= transposed(z + a_.transpose() * q);
+    return q;
   }
 
  private:
+  /// The shortest q with A^T q = z.
+  Vector transposed(const Vector& z) const {
+    if (!cholesky_) return decomposition_.transpose().solve(z);
+    if (wide_) return gram_.solve(a_ * z);
+    return a_ * gram_.solve(z);
+  }
+
   const Matrix& a_;
   bool wide_ = false, cholesky_ = false;
   Cholesky gram_;

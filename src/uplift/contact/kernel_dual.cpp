@@ -153,13 +153,15 @@ bool least_norm_forces(const Rows& rows, const ConstMatrixMap& c, const Vector& 
     for (std::size_t k = 0; k < closed.size(); ++k)
       if (pressed[k] != 0) a.row(static_cast<Index>(k)) = std::sqrt(weight[k]) * c.row(closed[k]);
     const HeldRows solver(a);
-    const Vector y = solver.dual(z);
-    const double error = (a.transpose() * (a * y) + z).norm();
+    const Vector q = solver.multipliers(z);
+    const double error = (a.transpose() * q + z).norm();
+    const Vector y = solver.least_norm(q);
     double largest = 0;
     Vector field(static_cast<Index>(closed.size()));
     for (std::size_t k = 0; k < closed.size(); ++k) {
-      field[static_cast<Index>(k)] = c.row(closed[k]).dot(y);
-      if (pressed[k] != 0) largest = std::max(largest, std::abs(field[static_cast<Index>(k)]));
+      const Index s = static_cast<Index>(k);
+      field[s] = pressed[k] != 0 ? q[s] / std::sqrt(weight[k]) : c.row(closed[k]).dot(y);
+      if (pressed[k] != 0) largest = std::max(largest, std::abs(field[s]));
     }
     bool changed = false;
     for (std::size_t k = 0; k < closed.size(); ++k) {

@@ -20,6 +20,7 @@ bool Visited::note(std::ptrdiff_t rows, const double* held) {
 namespace {
 
 constexpr double rank_threshold = 1e-13;  // pivot relative to the largest: round-off of a sum of squares is 1e-16 of it
+constexpr double column_threshold = 1e-24;  // square of a column that is nothing but round-off of the others
 constexpr int most_iterations = 60;
 
 template <int R>
@@ -118,14 +119,21 @@ Extremes evaluate_rows(std::ptrdiff_t n, const double* c, std::ptrdiff_t stride,
   return {closed, pressure, largest, sum};
 }
 
-/// Balance |z + G y| / |z|, and openings of the closed rows relative to the largest target.
+/// y = -G^+ z, refined until |z + G y| / |z|, which is returned, is round-off.
 template <int R>
-double residual(const double* gram, const double* z, const double* y, const Extremes& extremes) {
-  double product[R], error = 0, size = 0;
-  apply<R>(gram, y, product);
-  for (int r = 0; r < R; ++r) error += (product[r] + z[r]) * (product[r] + z[r]), size += z[r] * z[r];
-  const double balance = size > 0 ? std::sqrt(error / size) : 0;
-  return extremes.target > 0 ? std::max(balance, extremes.closed / extremes.target) : balance;
+double solve_dual(const double* gram, const double* inverse, const double* z, double* y) {
+  double step[R], size = 0, error = 0;
+  for (int r = 0; r < R; ++r) y[r] = 0, step[r] = z[r], size += z[r] * z[r];
+  if (!(size > 0)) return 0;
+  for (int pass = 0; pass < 5; ++pass) {
+    apply<R>(inverse, step, step);
+    for (int r = 0; r < R; ++r) y[r] -= step[r];
+    apply<R>(gram, y, step);
+    error = 0;
+    for (int r = 0; r < R; ++r) step[r] += z[r], error += step[r] * step[r];
+    if (error <= 1e-26 * size) break;
+  }
+  return std::sqrt(error / size);
 }
 
 /// The next set: a closed row opens when its pressure is tensile; an open one closes when it penetrates, or when it touches and the pressure field
@@ -159,18 +167,14 @@ KernelReply active_set(const Rows& rows, double* held, double* z, double* openin
     Extremes extremes;
     double gap = rows.tolerance;
     for (int refinement = 0;; ++refinement) {
-      apply<R>(inverse, z, y);
-      apply<R>(gram, y, step);
-      for (int r = 0; r < R; ++r) step[r] = z[r] - step[r];
-      apply<R>(inverse, step, step);
-      for (int r = 0; r < R; ++r) y[r] = -(y[r] + step[r]);
+      reply.residual = solve_dual<R>(gram, inverse, z, y);
       extremes = evaluate_rows<R>(n, rows.factor, rows.stride, held, rows.target, z, y, opening, field);
       if (!std::isfinite(extremes.sum)) {
         reply.end = KernelEnd::not_finite;
         return reply;
       }
       gap = std::max(rows.tolerance, 1e-14 * extremes.target);
-      if (extremes.closed <= gap) break;
+      if (extremes.closed <= 1e-13 * extremes.target || (refinement == 2 && extremes.closed <= gap)) break;
       if (refinement == 2) return reply;  // the closed rows contradict each other
       for (int r = 0; r < R; ++r) right[r] = 0;
       gather<R>(n, rows.factor, rows.stride, held, opening, right);
@@ -183,7 +187,8 @@ KernelReply active_set(const Rows& rows, double* held, double* z, double* openin
     if (reply.iterations == 1) scratch.visited.count = 0;
     if (next_set(n, rows.limit, opening, field, gap, 1e-12 * extremes.pressure, held) == 0) {
       reply.end = KernelEnd::solved;
-      reply.residual = residual<R>(gram, z, y, extremes);
+      if (reply.residual > 1e-11) reply.end = KernelEnd::stuck;  // the rank was misjudged
+      if (extremes.target > 0) reply.residual = std::max(reply.residual, extremes.closed / extremes.target);
       return reply;
     }
     if (!scratch.visited.note(n, held)) {
@@ -206,7 +211,7 @@ int pseudo_inverse(const double* g, double* inverse) {
   } else if constexpr (R == 2) {
     const double a = std::max(g[0], g[2]), determinant = g[0] * g[2] - g[1] * g[1];
     if (!(a > 0)) return 0;
-    if (determinant > rank_threshold * a * a) {
+    if (determinant > rank_threshold * g[0] * g[2] && std::min(g[0], g[2]) > column_threshold * a) {
       const double scale = 1 / determinant;
       inverse[0] = g[2] * scale, inverse[1] = -g[1] * scale, inverse[2] = g[0] * scale;
       return 2;

@@ -30,6 +30,8 @@ class Frictional {
     step_.guess_from_free_opening();
     if (settle(50 + 8 * static_cast<int>(step_.points().size()), true)) return finish();
     ++outcome_.cycles;
+    if (raise_friction()) return finish();
+    ++outcome_.cycles;
     return by_augmentation();
   }
 
@@ -63,6 +65,19 @@ class Frictional {
       before = residual;
     }
     return false;
+  }
+
+  /// From no friction to the full coefficient in steps, the status of one being the guess for the next.
+  bool raise_friction() {
+    constexpr int steps = 20;
+    step_.guess_from_free_opening();
+    for (int k = 0; k <= steps; ++k) {
+      step_.scale_friction(static_cast<double>(k) / steps);
+      if (settle(options_.most_iterations, false)) continue;
+      step_.scale_friction(1);
+      return false;
+    }
+    return true;
   }
 
   /// Updates of the augmented Lagrangian on the same problem, the exact solve being tried from the status that they show after every few of them.

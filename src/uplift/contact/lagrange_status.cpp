@@ -27,7 +27,7 @@ StatusStep::StatusStep(const InterfaceProblem& problem, double gap_tolerance, In
       point.stride = block.batch.points;
       point.index = index;
       point.area = block.area[static_cast<std::size_t>(i)];
-      point.friction = point.tangents() > 0 ? block.cone->friction() : 0;
+      point.friction = point.full_friction = point.tangents() > 0 ? block.cone->friction() : 0;
       point.rho_normal = rho(point.normal());
       for (int c = 0; c < point.tangents(); ++c) point.rho_tangent = std::max(point.rho_tangent, rho(point.row(c)));
       points_.push_back(point);
@@ -57,6 +57,13 @@ void StatusStep::guess_from_free_opening() {
     point.status = any && !penetrates(point) ? Status::open : point.friction > 0 ? Status::stick : Status::slip;
   solution_.z.setZero();
   solution_.opening = problem_.free_opening;
+}
+
+void StatusStep::scale_friction(double share) {
+  for (FrictionPoint& point : points_) {
+    point.friction = share * point.full_friction;
+    if (!(point.friction > 0) && point.status == Status::stick) point.status = Status::slip;
+  }
 }
 
 void StatusStep::list_held() {

@@ -12,7 +12,8 @@ struct FrictionPoint {
   int block = 0, components = 1;
   Index first = 0, stride = 0;  // row of component c: first + c * stride
   Index index = 0;              // among all points of the problem, for its status
-  double area = 0, friction = 0;
+  double area = 0, friction = 0;  // the coefficient in force
+  double full_friction = 0;       // the cone's
   double rho_normal = 0, rho_tangent = 0;  // N/m: 1 / F_ii
   Status status = Status::open;
   std::array<double, 2> direction{};  // of the slip
@@ -35,6 +36,8 @@ class StatusStep {
   void guess_from_solution();
   /// Closed and sticking where the free opening penetrates; everywhere when no point does.
   void guess_from_free_opening();
+  /// Takes a share of the cones' friction coefficients.
+  void scale_friction(double share);
   /// Moves z, opening and force to the solution for the status; false when the held rows contradict each other or H is singular.
   bool solve();
   /// Looks at the trial of every point; true when a status changed. `single`: only the first that wants to.

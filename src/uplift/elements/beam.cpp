@@ -28,14 +28,16 @@ Beam::Beam(int a, int b, Vec2 position_a, Vec2 position_b, BeamSection section)
   }
 }
 
-Matrix Beam::to_global(const Matrix& local) const { return axes_.transpose() * local * axes_; }
+Matrix Beam::to_global(const Matrix& local) const {
+  return axes_.transpose() * local * axes_;
+}
 
 Matrix Beam::local_stiffness() const {
   const double l = length_, phi = section_.shear_ratio(l), c = section_.bending / (1 + phi) / (l * l * l);
   Mat4 bending;
-  bending << 12, 6 * l, -12, 6 * l,                                   //
-      6 * l, (4 + phi) * l * l, -6 * l, (2 - phi) * l * l,            //
-      -12, -6 * l, 12, -6 * l,                                        //
+  bending << 12, 6 * l, -12, 6 * l,                         //
+      6 * l, (4 + phi) * l * l, -6 * l, (2 - phi) * l * l,  //
+      -12, -6 * l, 12, -6 * l,                              //
       6 * l, (2 - phi) * l * l, -6 * l, (4 + phi) * l * l;
   Matrix local = Matrix::Zero(6, 6);
   add_bending(c * bending, local);
@@ -78,7 +80,9 @@ double Beam::axial_force(const Vector& displacement) const {
   return *section_.axial / length_ * (local[3] - local[0]);
 }
 
-Vector Beam::end_forces(const Vector& displacement) const { return local_stiffness() * (axes_ * displacement); }
+Vector Beam::end_forces(const Vector& displacement) const {
+  return local_stiffness() * (axes_ * displacement);
+}
 
 void Beam::geometric(double axial, Matrix& stiffness) const {
   Mat4 bending = Mat4::Zero();

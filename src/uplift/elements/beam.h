@@ -9,11 +9,11 @@ namespace uplift {
 
 /// Section of a plane beam, constant over its length.
 struct BeamSection {
-  double bending = 0;             // E I [N m2], > 0
-  std::optional<double> axial;    // E A [N]; absent: inextensible, the axial stiffness is zero and the model builder gets inextensible(a, b)
+  double bending = 0;           // E I [N m2], > 0
+  std::optional<double> axial;  // E A [N]; absent: inextensible, the axial stiffness is zero and the model builder gets inextensible(a, b)
   double shear = std::numeric_limits<double>::infinity();  // G A_s [N]; infinite: Euler-Bernoulli
-  double mass_per_length = 0;     // rho A [kg/m]
-  double rotary_per_length = 0;   // rho I [kg m]: rotary inertia; 0 leaves it out
+  double mass_per_length = 0;                              // rho A [kg/m]
+  double rotary_per_length = 0;                            // rho I [kg m]: rotary inertia; 0 leaves it out
   enum class Mass { none, consistent, lumped } mass = Mass::none;
   /// phi = 12 E I / (G A_s L^2): ratio of shear to bending flexibility; 0 for Euler-Bernoulli.
   double shear_ratio(double length) const { return 12 * bending / (shear * length * length); }
@@ -25,9 +25,9 @@ struct BeamSection {
 ///   shear row     EI'/L^3 [12, 6L, -12, 6L],   moment row   EI'/L^3 [6L, (4 + phi) L^2, -6L, (2 - phi) L^2]
 ///   axial         EA/L [1, -1]
 /// Consistent mass: integral of rho A N^T N + rho I P^T P with the exact static shapes (N deflection, P rotation), linear along the axis.
-/// Frequencies converge with h^4 from above without shear flexibility, with h^2 where it counts (the shear force is constant in an element).
-/// Lumped mass: half of rho A L at each end, half of rho I L as rotary inertia.
-/// Geometric stiffness, consistent: N integral of (dN/dx)^T (dN/dx); for phi = 0 it is N/(30L) [36, 3L, -36, 3L; 3L, 4L^2, -3L, -L^2; ...].
+/// Frequencies converge with h^4 from above without shear flexibility, with h^2 where it counts (the shear force is constant in an
+/// element). Lumped mass: half of rho A L at each end, half of rho I L as rotary inertia. Geometric stiffness, consistent: N integral of
+/// (dN/dx)^T (dN/dx); for phi = 0 it is N/(30L) [36, 3L, -36, 3L; 3L, 4L^2, -3L, -L^2; ...].
 class Beam : public Element {
  public:
   /// Positions in m; they must not coincide.

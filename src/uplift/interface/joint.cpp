@@ -14,9 +14,10 @@ void refuse_exchanged_sides(const Vec2& upper, const Vec2& lower, const Vec2& no
   const Vec2 apart = upper - lower;
   // the initial gap is never taken from the coordinates, so only a clear distance counts
   if (apart.dot(normal) < -1e-9 * (1 + upper.norm() + lower.norm()))
-    throw InputError(where, "interface.normal", "a normal from the lower to the upper side",
-                     fmt::format("an interface inside out: the upper node at ({:g}, {:g}) m lies on the lower side of its partner at ({:g}, {:g}) m",
-                                 upper.x(), upper.y(), lower.x(), lower.y()));
+    throw InputError(
+        where, "interface.normal", "a normal from the lower to the upper side",
+        fmt::format("an interface inside out: the upper node at ({:g}, {:g}) m lies on the lower side of its partner at ({:g}, {:g}) m",
+                    upper.x(), upper.y(), lower.x(), lower.y()));
 }
 
 Vec2 unit(const Vec2& v, const Where& where) {
@@ -32,9 +33,12 @@ void check_partners(std::size_t upper, std::size_t lower, const Where& where) {
 
 Quadrature footing_rule(const Footing& footing) {
   switch (footing.rule) {
-    case FootingRule::nodal: return trapezoid(footing.points);
-    case FootingRule::midpoint: return midpoint(footing.points);
-    case FootingRule::gauss: break;
+    case FootingRule::nodal:
+      return trapezoid(footing.points);
+    case FootingRule::midpoint:
+      return midpoint(footing.points);
+    case FootingRule::gauss:
+      break;
   }
   return gauss_legendre(footing.points);
 }
@@ -83,8 +87,8 @@ std::vector<JointPoint> footing_points(const Footing& footing, const Where& wher
   return points;
 }
 
-std::vector<JointPoint> pair_points(const std::vector<SideNode>& upper, const std::vector<SideNode>& lower, Vec2 normal, double area, double gap,
-                                    const Where& where) {
+std::vector<JointPoint> pair_points(const std::vector<SideNode>& upper, const std::vector<SideNode>& lower, Vec2 normal, double area,
+                                    double gap, const Where& where) {
   check_partners(upper.size(), lower.size(), where);
   if (!(area > 0)) throw InputError(where, "interface.area", "an area > 0 m2", fmt::format("{:g}", area));
   const Vec2 n = unit(normal, where);
@@ -110,7 +114,8 @@ std::vector<JointPoint> line_points(const LineJoint& joint, const Where& where) 
   check_partners(joint.upper.size(), joint.lower.size(), where);
   if (per != 2 && per != 3) throw InputError(where, "interface.nodes_per_element", "2 or 3", fmt::format("{}", per));
   if (joint.upper.size() < per || (joint.upper.size() - 1) % (per - 1) != 0)
-    throw InputError(where, "interface.upper", fmt::format("{} nodes for the first joint element and {} more for each further one", per, per - 1),
+    throw InputError(where, "interface.upper",
+                     fmt::format("{} nodes for the first joint element and {} more for each further one", per, per - 1),
                      fmt::format("{} nodes", joint.upper.size()));
   if (!(joint.thickness > 0)) throw InputError(where, "interface.thickness", "a thickness > 0 m", fmt::format("{:g}", joint.thickness));
   const bool nodal = joint.quadrature == LineQuadrature::nodal;
@@ -119,7 +124,8 @@ std::vector<JointPoint> line_points(const LineJoint& joint, const Where& where) 
   for (std::size_t first = 0; first + per <= joint.upper.size(); first += per - 1) {
     for (std::size_t k = 0; k < per; ++k) {
       JointPoint point = element_point(joint, first, rule.point[static_cast<Index>(k)], rule.weight[static_cast<Index>(k)], where);
-      if (!joint.lower.empty()) refuse_exchanged_sides(joint.upper[first + k].position, joint.lower[first + k].position, point.normal, where);
+      if (!joint.lower.empty())
+        refuse_exchanged_sides(joint.upper[first + k].position, joint.lower[first + k].position, point.normal, where);
       const bool shared = nodal && k == 0 && !points.empty() && (points.back().normal - point.normal).norm() < 1e-9;
       if (shared)
         points.back().area += point.area;

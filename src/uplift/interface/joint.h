@@ -11,12 +11,12 @@ namespace uplift {
 
 /// One joint of an interface before the unknowns are numbered: either side follows nodes by shape functions.
 struct JointPoint {
-  Vec2 position = Vec2::Zero();                  // m
-  Vec2 normal = Vec2::UnitY();                   // from lower to upper
-  double area = 0;                               // m2, > 0
-  double gap = 0;                                // m, initial
-  std::vector<std::pair<int, double>> upper;     // node, shape function
-  std::vector<std::pair<int, double>> lower;     // empty: fixed ground
+  Vec2 position = Vec2::Zero();                   // m
+  Vec2 normal = Vec2::UnitY();                    // from lower to upper
+  double area = 0;                                // m2, > 0
+  double gap = 0;                                 // m, initial
+  std::vector<std::pair<int, double>> upper;      // node, shape function
+  std::vector<std::pair<int, double>> lower;      // empty: fixed ground
   bool rigid_upper = false, rigid_lower = false;  // the node's rotation acts too, through the offset position - node
 };
 
@@ -28,14 +28,14 @@ enum class FootingRule {
 
 /// A rigid footing on fixed ground: points spread over its width, all on the motion of one body.
 struct Footing {
-  int body = 0;                       // node
-  Vec2 centre = Vec2::Zero();         // m: middle of the base
-  Vec2 normal = Vec2::UnitY();        // out of the ground
-  double width = 0;                   // m, along t
-  double thickness = 1;               // m out of the plane
-  int points = 0;                     // nodal: at least 2
+  int body = 0;                 // node
+  Vec2 centre = Vec2::Zero();   // m: middle of the base
+  Vec2 normal = Vec2::UnitY();  // out of the ground
+  double width = 0;             // m, along t
+  double thickness = 1;         // m out of the plane
+  int points = 0;               // nodal: at least 2
   FootingRule rule = FootingRule::nodal;
-  double gap = 0;                     // m
+  double gap = 0;  // m
 };
 /// Points in the order of t. Throws InputError (at `where`) when the width or the number of points makes no sense.
 std::vector<JointPoint> footing_points(const Footing& footing, const Where& where);
@@ -48,22 +48,22 @@ struct SideNode {
 
 /// Isolated node pairs (eq 13, point joints), each with the same tributary area; `lower` empty: fixed ground below each node.
 /// Throws InputError when the sides have different numbers of nodes or an upper node lies on the wrong side of its lower one.
-std::vector<JointPoint> pair_points(const std::vector<SideNode>& upper, const std::vector<SideNode>& lower, Vec2 normal, double area, double gap,
-                                    const Where& where);
+std::vector<JointPoint> pair_points(const std::vector<SideNode>& upper, const std::vector<SideNode>& lower, Vec2 normal, double area,
+                                    double gap, const Where& where);
 
 enum class LineQuadrature {
   nodal,  // Lobatto: points at the node pairs, diagonal matrices, no traction oscillation for stiff joints
   gauss   // as many Gauss points as node pairs
 };
 
-/// Line joint elements through node pairs that are listed in order along the line: the upper side lies to the left of the walking direction,
-/// so that n is the direction turned by +90 degrees. Neighbouring elements share their end pair.
+/// Line joint elements through node pairs that are listed in order along the line: the upper side lies to the left of the walking
+/// direction, so that n is the direction turned by +90 degrees. Neighbouring elements share their end pair.
 struct LineJoint {
   std::vector<SideNode> upper, lower;  // lower empty: fixed ground
   int nodes_per_element = 2;           // or 3 (end, middle, end)
   LineQuadrature quadrature = LineQuadrature::nodal;
-  double thickness = 1;                // m
-  double gap = 0;                      // m
+  double thickness = 1;  // m
+  double gap = 0;        // m
 };
 /// With the nodal rule the shares of neighbouring elements in a common pair are added to one point, unless their normals differ.
 /// Throws InputError on wrong numbers of nodes, coincident nodes, and sides that are exchanged.

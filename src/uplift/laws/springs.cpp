@@ -22,7 +22,7 @@ class Springs final : public NormalLaw {
     const double stiffness = stiffness_;
     double* traction = reply.traction;
 #pragma omp simd
-    for (int i = 0; i < batch.points; ++i) traction[i] = stiffness * smaller(to[i], 0.0);
+    for (int i = 0; i < batch.points; ++i) traction[i] = force(stiffness, to[i]);
     if (double* slope = reply.slope; slope != nullptr)
 #pragma omp simd
       for (int i = 0; i < batch.points; ++i) slope[i] = to[i] < 0 ? stiffness : 0.0;
@@ -60,13 +60,16 @@ class Springs final : public NormalLaw {
  private:
   static constexpr int block = 64;
 
+  /// K min(d, 0); an opening that is no number gives no number, which stops Newton's method.
+  static double force(double stiffness, double d) { return d > 0 ? 0.0 : stiffness * d; }
+
   void average(int count, const double* from, const double* to, double* mean, double* slope, double* end) const {
     const double stiffness = stiffness_;
 #pragma omp simd
     for (int i = 0; i < count; ++i) {
       const double way = to[i] - from[i], low = smaller(way, 0.0), high = larger(way, 0.0), length = std::abs(way);
       const double a = smaller(low, -from[i]), b = smaller(high, -from[i]), inverse = 1 / length;
-      const double weight = 0.5 * stiffness * (b - a) * inverse, at_end = stiffness * smaller(to[i], 0.0);
+      const double weight = 0.5 * stiffness * (b - a) * inverse, at_end = force(stiffness, to[i]);
       mean[i] = length > shortest_path ? weight * (2 * from[i] + (a + b)) : at_end;
       slope[i] = length > shortest_path ? weight * std::abs(a + b) * inverse : (to[i] < 0 ? 0.5 * stiffness : 0.0);
       end[i] = at_end;
@@ -81,7 +84,7 @@ class Springs final : public NormalLaw {
       const double dashpot = per_step * (to[i] - from[i]);  // c r [Pa]
       const double knee = smaller(0, -dashpot / stiffness_);
       const Piece pushing = path.below(knee), parting = path.within(knee, 0);
-      const double end = to[i] < 0 ? smaller(0, stiffness_ * to[i] + dashpot) : 0;
+      const double end = to[i] < knee ? stiffness_ * to[i] + dashpot : force(0, to[i]);
       const double end_slope = to[i] < knee ? stiffness_ + per_step : 0;
       if (average) {
         reply.traction[i] = pushing.share * (stiffness_ * pushing.middle + dashpot);

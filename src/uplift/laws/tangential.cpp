@@ -1,8 +1,10 @@
 #include "uplift/laws/tangential.h"
 
+#include <fmt/format.h>
+
 #include <algorithm>
 #include <cmath>
-#include <string>
+#include <string_view>
 
 namespace uplift {
 namespace {
@@ -287,8 +289,8 @@ class CoulombShear final : public WithSlip {
 /// A parameter that the chosen part would not use is an error: it was meant to do something.
 void refuse(const Values& values, std::string_view key, std::string_view owner) {
   if (values.given(key))
-    throw InputError(values.where(key), values.path(key), "no " + std::string(key) + " here: it belongs to tangential = " + std::string(owner),
-                     "tangential = \"" + values.text("tangential") + "\"");
+    throw InputError(values.where(key), values.path(key), fmt::format("no {} here: it belongs to tangential = {}", key, owner),
+                     fmt::format("tangential = \"{}\"", values.text("tangential")));
 }
 
 }  // namespace

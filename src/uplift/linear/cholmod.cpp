@@ -89,7 +89,8 @@ Vector pivots(const cholmod_factor& factor) {
   Vector values(static_cast<Index>(factor.n));
   const auto* x = static_cast<const double*>(factor.x);
   if (factor.is_super) {
-    const auto *super = static_cast<const int*>(factor.super), *pi = static_cast<const int*>(factor.pi), *px = static_cast<const int*>(factor.px);
+    const auto *super = static_cast<const int*>(factor.super), *pi = static_cast<const int*>(factor.pi),
+               *px = static_cast<const int*>(factor.px);
     for (std::size_t s = 0; s < factor.nsuper; ++s)
       for (int k = super[s]; k < super[s + 1]; ++k) values[k] = x[px[s] + (k - super[s]) * static_cast<Index>(pi[s + 1] - pi[s] + 1)];
   } else {

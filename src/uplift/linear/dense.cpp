@@ -51,12 +51,13 @@ class Dense : public LinearSolver {
 }  // namespace
 
 const Entry<LinearSolver>& entry_solver_dense() {
-  static const Entry<LinearSolver> entry{{.name = "dense",
-                                          .summary = "dense Cholesky: the fastest for a few hundred unknowns, and the oracle of the sparse solvers",
-                                          .equations = "A = L L^T",
-                                          .source = "Eigen 3.4, LLT",
-                                          .params = {}},
-                                         [](const Values&) { return std::make_unique<Dense>(); }};
+  static const Entry<LinearSolver> entry{
+      {.name = "dense",
+       .summary = "dense Cholesky: the fastest for a few hundred unknowns, and the oracle of the sparse solvers",
+       .equations = "A = L L^T",
+       .source = "Eigen 3.4, LLT",
+       .params = {}},
+      [](const Values&) { return std::make_unique<Dense>(); }};
   return entry;
 }
 

@@ -9,7 +9,7 @@ class EigenFactor : public Factor {
  public:
   explicit EigenFactor(std::unique_ptr<const SparseLdlt> ldlt) : ldlt_(std::move(ldlt)) {}
   void solve(const Matrix& b, Matrix& x) const override { x = ldlt_->solve(b).eval(); }
-  double nonzeros() const override { return static_cast<double>(ldlt_->matrixL().nestedExpression().nonZeros()); }
+  double nonzeros() const override { return static_cast<double>(ldlt_->matrixL().nestedExpression().nonZeros() + ldlt_->rows()); }  // and D
 
  private:
   std::unique_ptr<const SparseLdlt> ldlt_;

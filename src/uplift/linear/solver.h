@@ -26,8 +26,8 @@ struct Factorisation {
   std::string why;
 };
 
-/// Factorises symmetric positive definite matrices (both triangles stored). A pivot that is only round-off (smaller than `least_pivot` times the
-/// diagonal entry it came from) is a failure: the matrix is singular to working precision.
+/// Factorises symmetric positive definite matrices (both triangles stored). A pivot that is only round-off (smaller than `least_pivot`
+/// times the diagonal entry it came from) is a failure: the matrix is singular to working precision.
 class LinearSolver {
  public:
   virtual ~LinearSolver() = default;
@@ -55,9 +55,9 @@ struct Mode {
   double frequency = 0;  // Hz
   Vector shape;          // free unknowns, mass-normalised
 };
-/// The lowest `count` modes of K x = (2 pi f)^2 M x; massless unknowns are allowed (condensed exactly). Fewer are returned when there are fewer.
-/// Rigid-body modes come out with frequency 0. Dense up to about 500 massive unknowns, beyond that Lanczos (Spectra) on the flexibility seen
-/// by the masses, with our CHOLMOD. Empty when a massless unknown has no stiffness either.
+/// The lowest `count` modes of K x = (2 pi f)^2 M x; massless unknowns are allowed (condensed exactly). Fewer are returned when there are
+/// fewer. Rigid-body modes come out with frequency 0. Dense up to about 500 massive unknowns, beyond that Lanczos (Spectra) on the
+/// flexibility seen by the masses, with our CHOLMOD. Empty when a massless unknown has no stiffness either.
 std::vector<Mode> modes(const Sparse& stiffness, const Sparse& mass, int count);
 
 }  // namespace uplift

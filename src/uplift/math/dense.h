@@ -19,7 +19,7 @@ using PivotedQr = Eigen::ColPivHouseholderQR<Matrix>;
 using CompleteQr = Eigen::CompleteOrthogonalDecomposition<Matrix>;
 using PivotedLdlt = Eigen::LDLT<Matrix>;
 using Svd = Eigen::JacobiSVD<Matrix>;
-using Eigen::Success;
 using Eigen::OnTheRight;
+using Eigen::Success;
 
 }  // namespace uplift

@@ -61,6 +61,7 @@ Matrix semidefinite_root(const Matrix& a) {
 
 Vibration vibration(const Matrix& stiffness, const Matrix& mass, int count) {
   const Matrix root = semidefinite_root(mass);
+  if (root.cols() == 0) return {};
   const ScaledCholesky unshifted(stiffness);
   if (unshifted.regular) return with_shift(unshifted, root, 0, count);
 

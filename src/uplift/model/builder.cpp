@@ -22,8 +22,8 @@ BulkDamping rayleigh(double frequency_1, double ratio_1, double frequency_2, dou
 }
 
 int ModelBuilder::add_node(std::string name, Vec2 position, Where where) {
-  for (const Node& node : nodes_)
-    if (node.name == name) throw InputError(std::move(where), "nodes." + name, "a name that no other node has", fmt::format("\"{}\" twice", name));
+  if (!node_names_.insert(name).second)
+    throw InputError(std::move(where), "nodes." + name, "a name that no other node has", fmt::format("\"{}\" twice", name));
   nodes_.push_back({std::move(name), position});
   return static_cast<int>(nodes_.size()) - 1;
 }
@@ -33,14 +33,18 @@ void ModelBuilder::add_element(std::unique_ptr<const Element> element, Where) {
   elements_.push_back(std::move(element));
 }
 
-void ModelBuilder::fix(int node, Dof dof, Where where) { supports_.push_back({node, dof, -1, std::move(where)}); }
+void ModelBuilder::fix(int node, Dof dof, Where where) {
+  supports_.push_back({node, dof, -1, std::move(where)});
+}
 
 void ModelBuilder::prescribe(int node, Dof dof, std::shared_ptr<const TimeFunction> motion, std::string name, Where where) {
   supports_.push_back({node, dof, static_cast<int>(motions_.size()), std::move(where)});
   motions_.push_back({std::move(name), std::move(motion)});
 }
 
-void ModelBuilder::tie_rigid(int master, int slave, Where where) { ties_.push_back({master, slave, std::move(where)}); }
+void ModelBuilder::tie_rigid(int master, int slave, Where where) {
+  ties_.push_back({master, slave, std::move(where)});
+}
 
 void ModelBuilder::inextensible(int a, int b, Where where) {
   if (!((nodes_[b].position - nodes_[a].position).norm() > 0))
@@ -54,23 +58,28 @@ void ModelBuilder::add_interface(InterfaceSpec spec, Where where) {
   assert(!spec.law != !spec.cone);
   if (spec.points.empty()) throw InputError(std::move(where), "interface." + spec.name, "at least one point", "none");
   for (const JointPoint& point : spec.points)
-    if (!(point.area > 0)) throw InputError(std::move(where), "interface." + spec.name, "points with an area > 0 m2", fmt::format("{:g}", point.area));
+    if (!(point.area > 0))
+      throw InputError(std::move(where), "interface." + spec.name, "points with an area > 0 m2", fmt::format("{:g}", point.area));
   interfaces_.push_back(std::move(spec));
   interface_where_.push_back(std::move(where));
 }
 
-void ModelBuilder::add_load(std::string name, std::vector<std::pair<int, double>> pattern, std::shared_ptr<const TimeFunction> function, bool dead,
-                            Where where) {
+void ModelBuilder::add_load(std::string name, std::vector<std::pair<int, double>> pattern, std::shared_ptr<const TimeFunction> function,
+                            bool dead, Where where) {
   loads_.push_back({std::move(name), std::move(pattern), std::move(function), dead, std::move(where)});
 }
 
-void ModelBuilder::set_gravity(Vec2 acceleration, Where) { gravity_ = acceleration; }
+void ModelBuilder::set_gravity(Vec2 acceleration, Where) {
+  gravity_ = acceleration;
+}
 
 void ModelBuilder::add_ground_acceleration(Vec2 direction, std::shared_ptr<const TimeFunction> acceleration, std::string name, Where) {
   grounds_.push_back({std::move(name), direction, std::move(acceleration)});
 }
 
-void ModelBuilder::set_damping(BulkDamping damping) { damping_ = std::move(damping); }
+void ModelBuilder::set_damping(BulkDamping damping) {
+  damping_ = std::move(damping);
+}
 
 std::string ModelBuilder::name_of(int full_unknown) const {
   return fmt::format("{}.{}", nodes_[full_unknown / dofs_per_node].name, to_string(static_cast<Dof>(full_unknown % dofs_per_node)));

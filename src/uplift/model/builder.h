@@ -2,6 +2,7 @@
 #include <memory>
 #include <string>
 #include <string_view>
+#include <unordered_set>
 #include <utility>
 #include <vector>
 
@@ -15,9 +16,9 @@ std::string_view to_string(Dof dof);
 
 /// Damping of the bulk. Stiffness damping never acts across an interface: the interface's stiffness has no part in it.
 struct BulkDamping {
-  double alpha = 0;              // 1/s, mass-proportional
-  double beta = 0;               // s, stiffness-proportional (all parts)
-  std::vector<double> modal;     // damping ratios of the first modes of the bonded model (last one repeated if `modal_count` is larger)
+  double alpha = 0;           // 1/s, mass-proportional
+  double beta = 0;            // s, stiffness-proportional (all parts)
+  std::vector<double> modal;  // damping ratios of the first modes of the bonded model (last one repeated if `modal_count` is larger)
   int modal_count = 0;
 };
 /// Alpha and beta with the given damping ratios at two frequencies [Hz]: ratio = alpha/(2 w) + beta w/2.
@@ -47,7 +48,8 @@ class ModelBuilder {
   void inextensible(int a, int b, Where where);
   void add_interface(InterfaceSpec spec, Where where);
   /// force pattern: (full unknown, value) pairs; without a function the load is constant
-  void add_load(std::string name, std::vector<std::pair<int, double>> pattern, std::shared_ptr<const TimeFunction> function, bool dead, Where where);
+  void add_load(std::string name, std::vector<std::pair<int, double>> pattern, std::shared_ptr<const TimeFunction> function, bool dead,
+                Where where);
   /// Gravity [m/s2] on all masses: a dead load.
   void set_gravity(Vec2 acceleration, Where where);
   /// Relative-frame ground acceleration: inertia forces -M r a(t).
@@ -94,6 +96,7 @@ class ModelBuilder {
   void make_drives(Model& model, const Matrix& motion_shapes) const;
 
   std::vector<Node> nodes_;
+  std::unordered_set<std::string> node_names_;
   std::vector<std::unique_ptr<const Element>> elements_;
   std::vector<Support> supports_;
   std::vector<Pair> ties_, links_;

@@ -20,15 +20,17 @@ class ConstraintList {
   explicit ConstraintList(Elimination& elimination) : elimination_(elimination) {}
 
   /// Returns the number of the row.
-  int add(const Elimination::Row& row, int preferred, const std::string& what, const std::string& advice, const std::vector<std::string>& motions,
-          const Where& where) {
+  int add(const Elimination::Row& row, int preferred, const std::string& what, const std::string& advice,
+          const std::vector<std::string>& motions, const Where& where) {
     switch (elimination_.add(row, preferred)) {
-      case Elimination::Result::independent: break;
+      case Elimination::Result::independent:
+        break;
       case Elimination::Result::redundant:
         throw InputError(where, "", "constraints that do not repeat each other", fmt::format(fmt::runtime(repeated), what, advice));
       case Elimination::Result::contradictory:
         throw InputError(where, "", "constraints that agree",
-                         fmt::format("{}, which contradicts the prescribed motion of another constraint (prescribed: {})", what, fmt::join(motions, ", ")));
+                         fmt::format("{}, which contradicts the prescribed motion of another constraint (prescribed: {})", what,
+                                     fmt::join(motions, ", ")));
     }
     for (const auto& [unknown, value] : row.unknowns) entries_.emplace_back(rows_, unknown, value);
     return rows_++;
@@ -83,7 +85,8 @@ void ModelBuilder::eliminate(Model& model, Matrix& motion_shapes) const {
     const int unknown = at(support.node, support.dof);
     Elimination::Row row{{{unknown, 1}}, {}};
     if (support.motion >= 0) row.motions[support.motion] = 1;
-    list.add(row, unknown, fmt::format("a {} of {}", support.motion < 0 ? "support" : "prescribed motion", name_of(unknown)), "", names, support.where);
+    list.add(row, unknown, fmt::format("a {} of {}", support.motion < 0 ? "support" : "prescribed motion", name_of(unknown)), "", names,
+             support.where);
   }
   for (const Pair& link : links_) {
     const int a = link.first, b = link.second;

@@ -133,7 +133,8 @@ Model ModelBuilder::finish() {
     for (const Load& load : loads_)
       for (const auto& [unknown, value] : load.pattern)
         if (value != 0 && model.reduction.coeff(unknown, i) != 0)
-          throw InputError(load.where, load.name, "a load on something that resists", fmt::format("a load on {}, which nothing holds", name_of(unknown)));
+          throw InputError(load.where, load.name, "a load on something that resists",
+                           fmt::format("a load on {}, which nothing holds", name_of(unknown)));
   }
   Sparse select(model.free(), static_cast<Index>(columns.size()));
   for (Index c = 0; c < select.cols(); ++c) select.insert(columns[c], c) = 1;

@@ -23,8 +23,8 @@ void add_side(const std::vector<Node>& nodes, const JointPoint& point, bool uppe
 
 }  // namespace
 
-/// Where supports and constraints leave no tangential motion at any point, the interface is reduced to its normal components: nothing can slide there,
-/// and the laws then skip the tangential part.
+/// Where supports and constraints leave no tangential motion at any point, the interface is reduced to its normal components: nothing can
+/// slide there, and the laws then skip the tangential part.
 void ModelBuilder::drop_dead_tangents(const Model& model, const Matrix& motion_shapes) {
   for (InterfaceSpec& spec : interfaces_) {
     if (spec.components != 2) continue;
@@ -38,7 +38,8 @@ void ModelBuilder::drop_dead_tangents(const Model& model, const Matrix& motion_s
     rows.setFromTriplets(entries.begin(), entries.end());
     const Sparse free_rows = rows * model.reduction;
     const Matrix moved = rows * motion_shapes;
-    const bool alive = (free_rows.nonZeros() > 0 && free_rows.coeffs().abs().maxCoeff() > 1e-14) || (moved.size() > 0 && moved.cwiseAbs().maxCoeff() > 1e-14);
+    const bool alive = (free_rows.nonZeros() > 0 && free_rows.coeffs().abs().maxCoeff() > 1e-14) ||
+                       (moved.size() > 0 && moved.cwiseAbs().maxCoeff() > 1e-14);
     if (!alive) spec.components = 1;
   }
 }
@@ -133,9 +134,12 @@ void ModelBuilder::refuse_inside_out(const InterfaceSpec& spec, const Where& whe
       most = std::max(most, height);
     }
     if (least < -1e-6 * size && most <= 1e-6 * size)
-      throw InputError(where, "interface." + spec.name, "a normal from the lower side (soil) to the upper side (structure)",
-                       fmt::format("an interface inside out: with the normal ({:g}, {:g}) the whole {} side, which holds \"{}\", lies on the wrong side of it",
-                                   n.x(), n.y(), is_upper ? "upper" : "lower", nodes_[(is_upper ? spec.points.front().upper : spec.points.front().lower).front().first].name));
+      throw InputError(
+          where, "interface." + spec.name, "a normal from the lower side (soil) to the upper side (structure)",
+          fmt::format(
+              "an interface inside out: with the normal ({:g}, {:g}) the whole {} side, which holds \"{}\", lies on the wrong side of it",
+              n.x(), n.y(), is_upper ? "upper" : "lower",
+              nodes_[(is_upper ? spec.points.front().upper : spec.points.front().lower).front().first].name));
   }
 }
 

@@ -91,7 +91,8 @@ std::string describe(const Model& model, const Vector& motion) {
   const double theta = full[3 * first + 2];
   const bool together = std::ranges::all_of(moving, [&](int i) {
     const Vec2 r = model.nodes[i].position - model.nodes[first].position;
-    return (full.segment<2>(3 * i) - u - theta * Vec2(-r.y(), r.x())).norm() < 1e-5 * largest && std::abs(full[3 * i + 2] - theta) * size < 1e-5 * largest;
+    return (full.segment<2>(3 * i) - u - theta * Vec2(-r.y(), r.x())).norm() < 1e-5 * largest &&
+           std::abs(full[3 * i + 2] - theta) * size < 1e-5 * largest;
   });
   if (together && std::abs(theta) * size < 1e-6 * largest) {
     Vec2 direction = u.normalized();
@@ -107,7 +108,9 @@ std::string describe(const Model& model, const Vector& motion) {
   return fmt::format("{} can move, most of all {}", who, model.unknown_names[most]);
 }
 
-Where place_of(const Model& model) { return model.assembly.interface_where.empty() ? Where{} : model.assembly.interface_where.front(); }
+Where place_of(const Model& model) {
+  return model.assembly.interface_where.empty() ? Where{} : model.assembly.interface_where.front();
+}
 
 /// Groups of unknowns that the matrix couples.
 std::vector<int> blocks(const Sparse& a) {
@@ -134,7 +137,8 @@ std::string loose_part(const Model& model) {
 void check_static(const Model& model) {
   const std::string loose = loose_part(model);
   if (!loose.empty())
-    throw InputError(place_of(model), "", "a structure that stands when all its interfaces are closed", fmt::format("a mechanism: {} without resistance", loose));
+    throw InputError(place_of(model), "", "a structure that stands when all its interfaces are closed",
+                     fmt::format("a mechanism: {} without resistance", loose));
 }
 
 void check_dynamic(const Model& model) {
@@ -143,7 +147,8 @@ void check_dynamic(const Model& model) {
     for (int i = 0; i < model.free(); ++i)
       for (Sparse::InnerIterator entry(b, i); entry; ++entry)
         if (entry.value() != 0 && !(model.mass.coeff(i, i) > 0))
-          throw InputError(model.assembly.interface_where[k], "interface." + model.interfaces[k].name, "a mass on everything that the interface touches",
+          throw InputError(model.assembly.interface_where[k], "interface." + model.interfaces[k].name,
+                           "a mass on everything that the interface touches",
                            fmt::format("zero mass where mass is needed: {} has none", model.unknown_names[i]));
   }
   if (model.free() == 0) return;
@@ -158,9 +163,11 @@ void check_dynamic(const Model& model) {
     std::vector<std::string> members;
     for (int i = 0; i < model.free(); ++i)
       if (block[i] == block[broken] && members.size() < 6) members.push_back(model.unknown_names[i]);
-    throw InputError(place_of(model), "mass", "a mass matrix that is regular where it is not zero",
-                     fmt::format("zero mass where mass is needed: a motion of {} without kinetic energy (a point mass off its node needs an inertia > 0)",
-                                 fmt::join(members, ", ")));
+    throw InputError(
+        place_of(model), "mass", "a mass matrix that is regular where it is not zero",
+        fmt::format(
+            "zero mass where mass is needed: a motion of {} without kinetic energy (a point mass off its node needs an inertia > 0)",
+            fmt::join(members, ", ")));
   }
 }
 

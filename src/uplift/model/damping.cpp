@@ -44,7 +44,8 @@ Sparse cones_held(const Model& model) {
 Sparse modal_damping(const Model& model, const std::vector<double>& ratios, int count, const Where& where) {
   constexpr int largest = 2000;
   if (model.free() > largest)
-    throw InputError(where, "damping.modal", fmt::format("at most {} unknowns: modal damping makes a full matrix (use Rayleigh damping)", largest),
+    throw InputError(where, "damping.modal",
+                     fmt::format("at most {} unknowns: modal damping makes a full matrix (use Rayleigh damping)", largest),
                      fmt::format("{}", model.free()));
   const Sparse held = cones_held(model);
   const Matrix stiffness = Sparse(held.transpose() * bonded_stiffness(model) * held), mass = Sparse(held.transpose() * model.mass * held);

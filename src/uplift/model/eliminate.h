@@ -7,8 +7,8 @@
 
 namespace uplift {
 
-/// Exact elimination of linear constraints  sum a_j x_j = sum b_m d_m  (d: prescribed motions): Gauss-Jordan with sparse rows, so that every
-/// eliminated unknown is an expression in the kept unknowns and the motions at any time.
+/// Exact elimination of linear constraints  sum a_j x_j = sum b_m d_m  (d: prescribed motions): Gauss-Jordan with sparse rows, so that
+/// every eliminated unknown is an expression in the kept unknowns and the motions at any time.
 class Elimination {
  public:
   /// `scale`: typical size of each unknown (1 for a displacement, 1/length for a rotation), to compare coefficients of different units.
@@ -38,7 +38,7 @@ class Elimination {
 
   std::vector<double> scale_;
   int motions_;
-  std::map<int, Row> expression_;    // eliminated unknown -> kept unknowns and motions
+  std::map<int, Row> expression_;      // eliminated unknown -> kept unknowns and motions
   std::map<int, std::set<int>> used_;  // kept unknown -> eliminated ones that contain it
 };
 

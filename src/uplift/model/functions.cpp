@@ -1,4 +1,5 @@
-// Functions of time in closed form. All are shapes without unit that multiply an amplitude; rate and acceleration are their derivatives [1/s, 1/s2].
+// Functions of time in closed form. All are shapes without unit that multiply an amplitude; rate and acceleration are their derivatives
+// [1/s, 1/s2].
 #include <cmath>
 #include <numbers>
 
@@ -73,8 +74,12 @@ class Ricker : public TimeFunction {
   double amplitude_, scale_, delay_;
 };
 
-Field amplitude() { return number("amplitude", "1", "largest value").standard(1.0); }
-Field start() { return number("start", "s", "time at which it begins").standard(0.0); }
+Field amplitude() {
+  return number("amplitude", "1", "largest value").standard(1.0);
+}
+Field start() {
+  return number("start", "s", "time at which it begins").standard(0.0);
+}
 
 }  // namespace
 
@@ -89,29 +94,28 @@ const Entry<TimeFunction>& entry_function_constant() {
 }
 
 const Entry<TimeFunction>& entry_function_half_sine() {
-  static const Entry<TimeFunction> entry{
-      {.name = "half_sine",
-       .summary = "one half wave of a sine, zero before and after: a soft shock",
-       .equations = "f(t) = amplitude sin(pi (t - start)/duration)   for start <= t <= start + duration",
-       .source = "",
-       .params = {amplitude(), number("duration", "s", "length of the half wave").positive(), start()}},
-      [](const Values& v) {
-        const double duration = v.number("duration"), begin = v.number("start");
-        return std::make_unique<Sine>(v.number("amplitude"), pi / duration, 0.0, begin, begin + duration);
-      }};
+  static const Entry<TimeFunction> entry{{.name = "half_sine",
+                                          .summary = "one half wave of a sine, zero before and after: a soft shock",
+                                          .equations = "f(t) = amplitude sin(pi (t - start)/duration)   for start <= t <= start + duration",
+                                          .source = "",
+                                          .params = {amplitude(), number("duration", "s", "length of the half wave").positive(), start()}},
+                                         [](const Values& v) {
+                                           const double duration = v.number("duration"), begin = v.number("start");
+                                           return std::make_unique<Sine>(v.number("amplitude"), pi / duration, 0.0, begin,
+                                                                         begin + duration);
+                                         }};
   return entry;
 }
 
 const Entry<TimeFunction>& entry_function_ramp() {
-  static const Entry<TimeFunction> entry{{.name = "ramp",
-                                          .summary = "from one value to another along a straight line, constant before and after",
-                                          .equations = "f(t) = from + (to - from)(t - start)/duration",
-                                          .source = "",
-                                          .params = {number("from", "1", "value before").standard(0.0), number("to", "1", "value after").standard(1.0),
-                                                     start(), number("duration", "s", "length of the ramp").positive()}},
-                                         [](const Values& v) {
-                                           return std::make_unique<Ramp>(v.number("from"), v.number("to"), v.number("start"), v.number("duration"));
-                                         }};
+  static const Entry<TimeFunction> entry{
+      {.name = "ramp",
+       .summary = "from one value to another along a straight line, constant before and after",
+       .equations = "f(t) = from + (to - from)(t - start)/duration",
+       .source = "",
+       .params = {number("from", "1", "value before").standard(0.0), number("to", "1", "value after").standard(1.0), start(),
+                  number("duration", "s", "length of the ramp").positive()}},
+      [](const Values& v) { return std::make_unique<Ramp>(v.number("from"), v.number("to"), v.number("start"), v.number("duration")); }};
   return entry;
 }
 
@@ -131,17 +135,18 @@ const Entry<TimeFunction>& entry_function_ricker() {
 }
 
 const Entry<TimeFunction>& entry_function_harmonic() {
-  static const Entry<TimeFunction> entry{
-      {.name = "harmonic",
-       .summary = "a sine wave from a start to an end",
-       .equations = "f(t) = amplitude sin(2 pi frequency (t - start) + phase)   for start <= t <= end",
-       .source = "",
-       .params = {amplitude(), number("frequency", "Hz", "frequency").positive(), number("phase", "rad", "phase at the start").standard(0.0), start(),
-                  number("end", "s", "time at which it ends; absent: never").optional()}},
-      [](const Values& v) {
-        const double end = v.has("end") ? v.number("end") : std::numeric_limits<double>::infinity();
-        return std::make_unique<Sine>(v.number("amplitude"), 2 * pi * v.number("frequency"), v.number("phase"), v.number("start"), end);
-      }};
+  static const Entry<TimeFunction> entry{{.name = "harmonic",
+                                          .summary = "a sine wave from a start to an end",
+                                          .equations = "f(t) = amplitude sin(2 pi frequency (t - start) + phase)   for start <= t <= end",
+                                          .source = "",
+                                          .params = {amplitude(), number("frequency", "Hz", "frequency").positive(),
+                                                     number("phase", "rad", "phase at the start").standard(0.0), start(),
+                                                     number("end", "s", "time at which it ends; absent: never").optional()}},
+                                         [](const Values& v) {
+                                           const double end = v.has("end") ? v.number("end") : std::numeric_limits<double>::infinity();
+                                           return std::make_unique<Sine>(v.number("amplitude"), 2 * pi * v.number("frequency"),
+                                                                         v.number("phase"), v.number("start"), end);
+                                         }};
   return entry;
 }
 

@@ -18,7 +18,8 @@ namespace {
 /// Piecewise linear; the rate is that of the present piece (right-continuous), the acceleration is zero.
 class Table : public TimeFunction {
  public:
-  Table(std::vector<double> times, std::vector<double> values, bool hold) : times_(std::move(times)), values_(std::move(values)), hold_(hold) {}
+  Table(std::vector<double> times, std::vector<double> values, bool hold)
+      : times_(std::move(times)), values_(std::move(values)), hold_(hold) {}
 
   double value(double t) const override {
     if (t < times_.front()) return hold_ ? values_.front() : 0;
@@ -49,10 +50,12 @@ std::unique_ptr<const TimeFunction> make_table(const Values& v) {
   const std::vector<double>&times = v.numbers("times"), &values = v.numbers("values");
   if (times.size() < 2) throw InputError(v.where("times"), v.path("times"), "at least two times", fmt::format("{}", times.size()));
   if (values.size() != times.size())
-    throw InputError(v.where("values"), v.path("values"), fmt::format("as many values as times ({})", times.size()), fmt::format("{}", values.size()));
+    throw InputError(v.where("values"), v.path("values"), fmt::format("as many values as times ({})", times.size()),
+                     fmt::format("{}", values.size()));
   for (std::size_t i = 1; i < times.size(); ++i)
     if (!(times[i] > times[i - 1]))
-      throw InputError(v.where("times"), v.path("times"), "times in ascending order", fmt::format("{:g} s after {:g} s", times[i], times[i - 1]));
+      throw InputError(v.where("times"), v.path("times"), "times in ascending order",
+                       fmt::format("{:g} s after {:g} s", times[i], times[i - 1]));
   return std::make_unique<Table>(times, values, v.text("outside") == "hold");
 }
 
@@ -130,7 +133,8 @@ std::unique_ptr<const TimeFunction> make_csv(const Values& v) {
       if (is_head) continue;
     }
     const auto cell = [&](std::size_t column) {
-      if (column >= cells.size()) throw InputError(place, "", fmt::format("at least {} columns", column + 1), fmt::format("{}", cells.size()));
+      if (column >= cells.size())
+        throw InputError(place, "", fmt::format("at least {} columns", column + 1), fmt::format("{}", cells.size()));
       const std::optional<double> number = number_of(cells[column]);
       if (!number) throw InputError(place, "", fmt::format("a number in column {}", column + 1), in_quotes(cells[column]));
       return *number;
@@ -147,13 +151,13 @@ std::unique_ptr<const TimeFunction> make_csv(const Values& v) {
 }  // namespace
 
 const Entry<TimeFunction>& entry_function_table() {
-  static const Entry<TimeFunction> entry{{.name = "table",
-                                          .summary = "points given in the case file, straight lines between them",
-                                          .equations = "f(t) = linear interpolation; as a prescribed motion it has jumps of the velocity at its points",
-                                          .source = "",
-                                          .params = {numbers("times", "s", "times, ascending"), numbers("values", "1", "values at these times"),
-                                                     outside("hold")}},
-                                         make_table};
+  static const Entry<TimeFunction> entry{
+      {.name = "table",
+       .summary = "points given in the case file, straight lines between them",
+       .equations = "f(t) = linear interpolation; as a prescribed motion it has jumps of the velocity at its points",
+       .source = "",
+       .params = {numbers("times", "s", "times, ascending"), numbers("values", "1", "values at these times"), outside("hold")}},
+      make_table};
   return entry;
 }
 

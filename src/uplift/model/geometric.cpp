@@ -19,7 +19,9 @@ Vector unbalanced(const Model& model, const State& state) {
   return force;
 }
 
-std::pair<int, int> ordered(int a, int b) { return std::minmax(a, b); }
+std::pair<int, int> ordered(int a, int b) {
+  return std::minmax(a, b);
+}
 
 class GeometricEntries {
  public:

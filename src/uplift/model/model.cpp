@@ -14,7 +14,9 @@ double derivative_of(const TimeFunction& function, int derivative, double time) 
 
 }  // namespace
 
-double Drive::factor(double time) const { return derivative_of(*function, static_cast<int>(order), time); }
+double Drive::factor(double time) const {
+  return derivative_of(*function, static_cast<int>(order), time);
+}
 
 int Model::rows() const {
   int rows_of_all = 0;

@@ -19,11 +19,11 @@ struct Node {
 /// A force pattern on the free unknowns times a function of time.
 struct Drive {
   std::string name;
-  Vector shape;                                   // free unknowns
+  Vector shape;  // free unknowns
   std::shared_ptr<const TimeFunction> function;
   enum class Order { value, rate, acceleration } order = Order::value;  // which derivative multiplies the shape
-  bool dead = false;                              // gravity and constant loads: applied (in steps) by static stages
-  double factor(double time) const;               // the function's derivative of this order
+  bool dead = false;                                                    // gravity and constant loads: applied (in steps) by static stages
+  double factor(double time) const;                                     // the function's derivative of this order
 };
 
 /// Motion of supported unknowns: full displacement += shape * function(t).
@@ -71,9 +71,9 @@ struct Model {
   std::vector<Drive> drives;
   std::vector<PrescribedMotion> motions;
 
-  Sparse reduction;                 // T: full x free
-  Sparse expansion;                 // T^T: column i is the row of T for full unknown i
-  Sparse stiffness, mass, damping;  // free x free; damping: Rayleigh, dashpots, modal
+  Sparse reduction;                        // T: full x free
+  Sparse expansion;                        // T^T: column i is the row of T for full unknown i
+  Sparse stiffness, mass, damping;         // free x free; damping: Rayleigh, dashpots, modal
   std::vector<int> kept;                   // full unknown that each free unknown is
   std::vector<std::string> unknown_names;  // of the free unknowns, "top.ux"
   Assembly assembly;
@@ -92,13 +92,13 @@ struct Model {
   void add_prescribed_opening(double time, Vector& opening) const;
 };
 
-/// Free unknowns (values or rates) with the smallest weighted norm that give the wanted values of some full unknowns, zero prescribed motion; for
-/// initial conditions. Throws InputError when supports, rigid bodies or inextensible beams make the wanted values impossible.
+/// Free unknowns (values or rates) with the smallest weighted norm that give the wanted values of some full unknowns, zero prescribed
+/// motion; for initial conditions. Throws InputError when supports, rigid bodies or inextensible beams make the wanted values impossible.
 Vector free_values(const Model& model, const std::vector<std::pair<int, double>>& wanted, const Where& where);
 
 /// Everything that changes: a value. Copy to go back, move to accept.
 struct State {
-  double time = 0;                             // s
+  double time = 0;                              // s
   Vector displacement, velocity, acceleration;  // free unknowns; m, m/s, m/s2
   Vector opening;                               // interface rows, all interfaces one after another [m], initial gap included
   Vector force;                                 // interface rows, end of step [N], tension > 0

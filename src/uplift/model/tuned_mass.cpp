@@ -40,7 +40,9 @@ double tuned_mass(const Model& model, int node, double frequency, const Where& w
   const Matrix at_node = Matrix(model.expansion.middleCols(dofs_per_node * node, 2));
   const Matrix direction = held.transpose() * at_node;
   const auto refuse = [&](const std::string& found) {
-    throw InputError(where, "mass.tuned_frequency", fmt::format("a first fixed-base frequency of {:g} Hz by the mass on \"{}\"", frequency, model.nodes[node].name), found);
+    throw InputError(where, "mass.tuned_frequency",
+                     fmt::format("a first fixed-base frequency of {:g} Hz by the mass on \"{}\"", frequency, model.nodes[node].name),
+                     found);
   };
   if (direction.isZero(1e-12)) refuse("a node that cannot move when the base is held");
   // unknowns that only the missing mass would resist, or nothing at all, play no part

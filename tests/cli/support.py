@@ -1,0 +1,122 @@
+"""Runs the program as a user does. The path of the binary is the first argument of the test program."""
+
+import json
+import os
+import pathlib
+import re
+import subprocess
+import sys
+import tempfile
+import unittest
+
+_program = ""
+
+
+def program():
+    """Path of the program under test."""
+    return _program
+
+
+# A case that is in order: a mass on an inextensible cantilever whose footing may lift off. Tests change single lines of it.
+BASE = """\
+title = "test"
+bonded = false
+[nodes]
+top = [0, 5]
+base = [0, 0]
+[[beam]]
+name = "column"
+nodes = ["base", "top"]
+E = 2e10
+I = 0.2
+[[mass]]
+node = "top"
+mass = 24317
+[[rigid]]
+name = "footing"
+node = "base"
+mass = 1e4
+inertia = 7500
+[[support]]
+node = "base"
+fixed = ["ux"]
+[[interface]]
+name = "soil"
+[interface.footing]
+body = "base"
+width = 3
+points = 11
+[interface.law]
+type = "springs"
+K_n = 2e8
+[[load]]
+name = "dead"
+node = "top"
+force = [0, -1e6]
+[[function]]
+name = "pulse"
+shape = { type = "half_sine", duration = 0.1 }
+[[load]]
+name = "pulse"
+node = "top"
+force = [3e5, 0]
+function = "pulse"
+[[stage]]
+type = "static"
+[[stage]]
+type = "dynamic"
+duration = 0.5
+step = 1e-3
+"""
+
+
+def line_of(text, part):
+    """Number of the line that holds `part`."""
+    for number, line in enumerate(text.splitlines(), 1):
+        if part in line:
+            return number
+    raise AssertionError(f"{part!r} is not in the case")
+
+
+class CliTest(unittest.TestCase):
+    """A folder of its own for every test."""
+
+    def setUp(self):
+        self.folder_ = tempfile.TemporaryDirectory(prefix="uplift test ")  # with a space on purpose
+        self.folder = pathlib.Path(self.folder_.name)
+        self.addCleanup(self.folder_.cleanup)
+
+    def write(self, text, name="case.toml"):
+        path = self.folder / name
+        path.parent.mkdir(parents=True, exist_ok=True)
+        path.write_text(text)
+        return path
+
+    def uplift(self, *words, expect=0, **options):
+        done = subprocess.run([program(), *map(str, words)], cwd=self.folder, capture_output=True, text=True, timeout=300, **options)
+        if expect is not None:
+            self.assertEqual(done.returncode, expect, f"{words}\n--- output\n{done.stdout}\n--- errors\n{done.stderr}")
+        return done
+
+    def refused(self, text, message, *, command="check"):
+        """The case is refused with exit code 2 and exactly this message ("{file}" stands for the path of the case)."""
+        path = self.write(text)
+        done = self.uplift(command, path.name, expect=2)
+        self.assertEqual(done.stderr.strip(), "error: " + message.replace("{file}", path.name))
+        self.assertEqual(done.stdout, "")
+
+    def summary(self, folder):
+        text = (self.folder / folder / "summary.json").read_text()
+        self.assertNotRegex(text, r"\b(nan|inf)\b")
+        return json.loads(text)
+
+
+def main():
+    global _program
+    if len(sys.argv) < 2 or not os.access(sys.argv[1], os.X_OK):
+        sys.exit("usage: TEST PROGRAM [unittest arguments]")
+    _program = os.path.abspath(sys.argv.pop(1))
+    unittest.main(module="__main__", verbosity=2)
+
+
+__all__ = ["BASE", "program", "CliTest", "json", "line_of", "main", "pathlib", "re", "subprocess", "os"]

@@ -1,0 +1,175 @@
+"""The other commands: new, check, modes, describe, schema, replay, completion, help."""
+
+import math
+
+from support import *
+
+
+class New(CliTest):
+    def test_a_new_case_passes_check_and_runs(self):
+        done = self.uplift("new", "my tower")
+        self.assertIn("my tower/case.toml", done.stdout)
+        text = (self.folder / "my tower" / "case.toml").read_text()
+        self.assertGreater(sum("#" in line for line in text.splitlines()), 15)
+        self.assertIn("in order", self.uplift("check", "my tower").stdout)
+        done = self.uplift("run", "my tower")
+        self.assertIn("The base uplifts", done.stdout)
+        self.uplift("compare", "my tower/case.toml", "-o", "c")
+        results = {run["name"]: run["agreement"]["result"] for run in self.summary("c")["runs"] if run["name"] != "bonded"}
+        self.assertEqual(results, {"sdm": "agrees", "springs": "agrees"})
+
+    def test_an_existing_case_is_not_overwritten(self):
+        self.write("# mine\n", "tower/case.toml")
+        done = self.uplift("new", "tower", expect=2)
+        self.assertIn("exists already", done.stderr)
+        self.assertEqual((self.folder / "tower/case.toml").read_text(), "# mine\n")
+
+
+class Check(CliTest):
+    def test_says_what_will_be_computed(self):
+        self.write(BASE)
+        text = self.uplift("check", "case.toml").stdout
+        for part in ("unknowns", "11 points, springs", "k F_ii", "frequencies, bonded base", "suggested step", "what is computed"):
+            self.assertIn(part, text)
+        self.assertFalse((self.folder / "out").exists())
+
+    def test_frequencies_and_ratio_are_right(self):
+        # Fixed base: f = sqrt(3 E I/(M h^3))/(2 pi). Bonded on springs K_n: one stiff and one slow mode of [k, -k h; -k h, k h^2 + k_theta].
+        self.write(BASE)
+        found = json.loads(self.uplift("check", "case.toml", "--json").stdout)
+        mass, stiffness, height = 24317.0, 3 * 2e10 * 0.2 / 125, 5.0
+        self.assertAlmostEqual(found["frequencies_fixed_base"][0], math.sqrt(stiffness / mass) / (2 * math.pi), places=6)
+        # Composite trapezoid of k x^2 over 3 m with 11 points: b = 1.5, spacing 0.3
+        points = [-1.5 + 0.3 * i for i in range(11)]
+        area = [0.15 if i in (0, 10) else 0.3 for i in range(11)]
+        k_theta = sum(2e8 * a * x * x for a, x in zip(area, points))
+        inertia = 7500.0
+        a, b, c = mass * inertia, -(stiffness * inertia + mass * (stiffness * height**2 + k_theta)), stiffness * k_theta
+        slow = math.sqrt((-b - math.sqrt(b * b - 4 * a * c)) / (2 * a)) / (2 * math.pi)
+        self.assertAlmostEqual(found["frequencies_bonded"][0], slow, places=6)
+        self.assertAlmostEqual(found["weight"], 1e6, places=3)
+
+    def test_warns(self):
+        law = 'type = "sdm"\nK_n = 2e8\nF_u = 1e3\nG_f = 0.1\nF_c = -1e4\ntangential = "none"\n'
+        text = BASE.replace('type = "springs"\nK_n = 2e8\n', law).replace("step = 1e-3", "step = 0.02").replace("E = 2e10", "E = 2e4")
+        done = self.uplift("check", self.write(text).name)
+        self.assertRegex(done.stdout, r"warning: case\.toml:\d+: \|F_c\| = 10\.0 kPa is 3\.0 % of the mean bearing pressure 333 kPa")
+        self.assertRegex(done.stdout, r"warning: the step of 20\.0 ms is coarse")
+        self.assertRegex(done.stdout, r"beam\[0\]\.E = 20000 Pa is unusual")
+
+    def test_warns_of_constraints_without_velocity_correction(self):
+        text = BASE.replace('[interface.law]\ntype = "springs"\nK_n = 2e8\n', "").replace('name = "soil"\n', 'name = "soil"\nlaw = "unilateral"\n')
+        text = text.replace('title = "test"\n', 'title = "test"\nimpact = "none"\n')
+        self.assertIn("create energy without bound", self.uplift("check", self.write(text).name).stdout)
+
+
+class Modes(CliTest):
+    def test_table_and_shapes(self):
+        self.write(BASE)
+        text = self.uplift("modes", "case.toml").stdout
+        self.assertIn("interfaces closed and bonded", text)
+        self.assertIn("rigid motion", text)  # base free: nothing holds it
+        modes = json.loads(self.uplift("modes", "case.toml", "--json", "-n", "2").stdout)
+        self.assertEqual(len(modes["bonded"]), 2)
+        shape = modes["bonded"][0]["shape"]
+        self.assertEqual(set(shape), {"top", "base"})
+        self.assertGreater(abs(shape["top"][0]), 10 * abs(shape["base"][0]))
+        self.assertTrue(all(mode["frequency"] == 0 for mode in modes["base_free"][:1]))
+
+
+class Describe(CliTest):
+    def test_every_listed_part_can_be_described(self):
+        text = self.uplift("describe").stdout
+        family, described = None, 0
+        for line in text.splitlines():
+            head = re.match(r"(\w+): ", line)
+            if head and not line.startswith(" "):
+                family = head.group(1)
+            part = re.match(r"  ([\w.]+)", line)
+            if part and family and family != "more":
+                described += 1
+                done = self.uplift("describe", family, part.group(1))
+                self.assertIn("parameters" if family != "section" else "meaning", done.stdout)
+        self.assertGreater(described, 40)
+
+    def test_law_with_units_defaults_and_source(self):
+        text = self.uplift("describe", "law", "sdm").stdout
+        for part in ("equations", "K_n", "Pa/m", "F_u", "G_f", "J/m2", "source", "eqs"):
+            self.assertIn(part, text)
+
+    def test_nearest_name(self):
+        done = self.uplift("describe", "law", "sdn", expect=2)
+        self.assertIn('(did you mean "sdm"?)', done.stderr)
+
+
+class Schema(CliTest):
+    def test_is_a_schema_of_the_case_file(self):
+        schema = json.loads(self.uplift("schema").stdout)
+        self.assertIn("2020-12", schema["$schema"])
+        self.assertTrue({"title", "nodes", "beam", "interface", "stage", "variant"} <= set(schema["properties"]))
+        self.assertIn("title", schema["required"])
+        self.assertFalse(schema["additionalProperties"])
+
+
+class Replay(CliTest):
+    def test_missing_file(self):
+        done = self.uplift("replay", "problem.json", expect=2)
+        self.assertIn("problem.json", done.stderr)
+
+    def test_unknown_method(self):
+        problem = self.stored()
+        done = self.uplift("replay", problem, "--method", "lagrnge", expect=2)
+        self.assertIn('(did you mean "lagrange"?)', done.stderr)
+
+    def test_all_methods_solve_a_stored_problem(self):
+        problem = self.stored()
+        found = json.loads(self.uplift("replay", problem, "--all", "--json").stdout)["methods"]
+        solved = {answer["method"]: answer for answer in found if answer["converged"]}
+        self.assertIn("lagrange", solved)
+        self.assertIn("augmented_lagrangian", solved)
+        for name in ("lagrange", "augmented_lagrangian"):
+            self.assertLess(solved[name]["residual"], 1e-8)
+            # p = free opening / F on the closed point: 1e-3 m / 1e-8 m/N = 1e5 N in compression; the other point stays open by 1 mm
+            self.assertAlmostEqual(solved[name]["force"][0], -1e5, delta=1e-4)
+            self.assertAlmostEqual(solved[name]["force"][1], 0, delta=1e-4)
+            self.assertAlmostEqual(solved[name]["opening"][1], 1e-3, delta=1e-12)
+        text = self.uplift("replay", problem, "--method", "lagrange").stdout
+        self.assertRegex(text, r"soil +1 +\S+ +2\.0+e\+05")  # 1e5 N on 0.5 m2
+
+    def stored(self):
+        return pathlib.Path(__file__).with_name("stored_problem.json")
+
+
+class Shell(CliTest):
+    def test_help_has_examples_and_exit_codes(self):
+        for command in ("new", "check", "run", "compare", "modes", "describe", "schema", "replay", "completion"):
+            text = self.uplift(command, "--help").stdout
+            self.assertIn("Examples:", text)
+            self.assertIn(f"uplift {command}", text)
+            self.assertIn("3 numerical failure", text)
+
+    def test_unknown_command_and_option(self):
+        self.uplift("rum", "case.toml", expect=2)
+        self.uplift("run", "case.toml", "--jsn", expect=2)
+        self.uplift(expect=2)
+
+    def test_version(self):
+        self.assertRegex(self.uplift("--version").stdout, r"\d+\.\d+\.\d+")
+
+    def test_bash_completion_is_valid_and_complete(self):
+        script = self.uplift("completion", "bash").stdout
+        path = self.write(script, "complete.bash")
+        subprocess.run(["bash", "-n", path], check=True)
+        ask = f'source "{path}"; COMP_WORDS=(uplift co); COMP_CWORD=1; _uplift; echo "${{COMPREPLY[@]}}"; COMP_WORDS=(uplift run --j); COMP_CWORD=2; _uplift; echo "${{COMPREPLY[@]}}"'
+        done = subprocess.run(["bash", "-c", ask], capture_output=True, text=True, check=True)
+        self.assertEqual(done.stdout.split(), ["compare", "completion", "--json"])
+
+    def test_zsh_completion(self):
+        script = self.uplift("completion", "zsh").stdout
+        self.assertIn("compdef _uplift uplift", script)
+        self.assertIn("--json", script)
+        self.uplift("completion", "fish", expect=2)
+
+
+if __name__ == "__main__":
+    main()

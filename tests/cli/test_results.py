@@ -1,0 +1,152 @@
+"""What a run leaves behind: complete files, never mixed with those of an earlier run, and the exit codes."""
+
+import csv
+import hashlib
+import signal
+import time
+
+from support import *
+
+
+class Results(CliTest):
+    def test_run_writes_every_file(self):
+        case = self.write(BASE, "tower/case.toml")
+        done = self.uplift("run", "tower")  # a folder stands for its case.toml
+        folder = self.folder / "out" / "tower"
+        self.assertIn("out/tower/report.html", done.stdout)
+        self.assertEqual({p.name for p in folder.iterdir()} - {"report.html"}, {"histories.csv", "summary.json", "case.resolved.toml"})
+        summary = self.summary("out/tower")
+        self.assertEqual(summary["case"]["sha256"], hashlib.sha256(case.read_bytes()).hexdigest())
+        (run,) = summary["runs"]
+        self.assertEqual(run["status"], "completed")
+        self.assertEqual(run["steps"], 500)
+        for key in ("name", "retries", "wall_seconds", "factorisations", "back_solves"):
+            self.assertIn(key, run)
+        for key in ("max_uplifted_ratio", "max_opening", "max_base_moment", "max_base_shear", "max_pressure", "energy_created", "energy_lost"):
+            self.assertEqual(set(run[key]), {"value", "time", "unit"}, key)
+        self.assertLess(run["energy_created"]["value"], 1e-9 * run["energy_scale"])
+
+    def test_histories_have_units_and_agree_with_the_peaks(self):
+        self.write(BASE)
+        self.uplift("run", "case.toml", "-o", "r")
+        with open(self.folder / "r" / "histories.csv", newline="") as file:
+            rows = list(csv.reader(file))
+        head, values = rows[0], [[float(cell) for cell in row] for row in rows[1:]]
+        self.assertEqual(head[0], "time [s]")
+        self.assertTrue(all(re.fullmatch(r"[^\[\]]+ \[[^\[\]]+\]", cell) for cell in head))
+        self.assertIn("top.ux [m]", head)
+        self.assertEqual(len(values), 501)
+        self.assertAlmostEqual(values[-1][0], 0.5, places=12)
+        for name, peak in self.summary("r")["runs"][0]["peaks"].items():
+            column = head.index(f"{name} [{peak['unit']}]")
+            largest = max(abs(row[column]) for row in values)
+            self.assertLessEqual(abs(abs(peak["value"]) - largest), 1e-9 * largest + 1e-300, name)
+
+    def test_resolved_case_gives_the_same_results(self):
+        self.write(BASE)
+        self.uplift("run", "case.toml", "-o", "first")
+        self.uplift("run", "first/case.resolved.toml", "-o", "second")
+        self.assertEqual((self.folder / "first/histories.csv").read_text(), (self.folder / "second/histories.csv").read_text())
+        self.assertEqual((self.folder / "first/case.resolved.toml").read_text(), (self.folder / "second/case.resolved.toml").read_text())
+
+    def test_earlier_results_are_moved_aside(self):
+        self.write(BASE)
+        self.uplift("run", "case.toml", "-o", "r")
+        (self.folder / "r" / "mine.txt").write_text("kept")
+        done = self.uplift("run", "case.toml", "-o", "r")
+        self.assertIn("earlier results moved to r.1", done.stdout)
+        self.assertEqual((self.folder / "r.1" / "mine.txt").read_text(), "kept")
+        self.assertFalse((self.folder / "r" / "mine.txt").exists())
+        self.uplift("run", "case.toml", "-o", "r", "--quiet")
+        self.assertTrue((self.folder / "r.2").is_dir())
+        self.assertEqual([p.name for p in self.folder.iterdir() if ".part" in p.name], [])
+
+    def test_report_is_one_page_with_data(self):
+        self.write(BASE.replace("bonded = false\n", "") + "# </script> must not end the page's data\n")
+        self.uplift("run", "case.toml", "-o", "r")
+        page = self.folder / "r" / "report.html"
+        if not page.exists():
+            self.skipTest("the program was built without web/dist/report.html")
+        data = re.search(r'<script id="uplift-data" type="application/json">(.*?)</script>', page.read_text(), re.S).group(1)
+        report = json.loads(data)
+        self.assertEqual(report["format"], "uplift-report-1")
+        charts = {chart["id"]: chart for chart in report["charts"]}
+        for name in ("loads", "top_displacement", "top_velocity", "base_moment", "moment_rotation", "energy_error", "energy_ledger", "law"):
+            self.assertIn(name, charts)
+        for chart in charts.values():
+            for series in chart["series"]:
+                self.assertEqual(len(series["x"]), len(series["y"]))
+                self.assertGreater(len(series["x"]), 1)
+                self.assertLess(len(series["x"]), 4000)
+        self.assertEqual([row["name"] for row in report["tables"][0]["rows"]], ["run", "bonded"])
+        self.assertEqual(len(report["model"]["interfaces"][0]["points"]), 11)
+
+    def test_json_on_standard_output_is_the_summary(self):
+        self.write(BASE)
+        done = self.uplift("run", "case.toml", "-o", "r", "--json")
+        self.assertEqual(json.loads(done.stdout), self.summary("r"))
+        self.assertEqual(done.stderr, "")
+
+    def test_quiet_says_nothing(self):
+        self.write(BASE)
+        done = self.uplift("run", "case.toml", "--quiet")
+        self.assertEqual((done.stdout, done.stderr), ("", ""))
+
+    def test_no_control_characters_in_a_pipe(self):
+        self.write(BASE)
+        done = self.uplift("run", "case.toml")
+        self.assertNotRegex(done.stdout + done.stderr, r"[\x1b\r]")
+
+
+class Failures(CliTest):
+    def created(self):
+        """A stiff joint with the traction at the end of the step and no velocity correction creates energy (THEORY section 4: k F = 13 makes 5e4)."""
+        return (BASE.replace("K_n = 2e8", "K_n = 2e11").replace("step = 1e-3", 'step = 1e-3\ntraction = "end"').replace("duration = 0.5", "duration = 2")
+                .replace('title = "test"\n', 'title = "test"\nimpact = "none"\n'))
+
+    def test_created_energy_fails_the_run_and_keeps_its_results(self):
+        self.write(self.created())
+        done = self.uplift("run", "case.toml", "-o", "r", expect=3)
+        self.assertIn("energy", done.stderr)
+        (run,) = self.summary("r")["runs"]
+        self.assertEqual(run["status"], "failed")
+        self.assertGreater(run["energy_created"]["value"], 0.01 * run["energy_scale"])
+        self.assertTrue((self.folder / "r" / "histories.csv").exists())
+        self.assertNotRegex((self.folder / "r" / "histories.csv").read_text(), r"nan|inf")
+
+    def test_a_failure_that_is_expected_does_not_fail_the_comparison(self):
+        text = self.created() + '[[variant]]\nname = "path"\ntraction = "path"\n[[variant]]\nname = "end"\n'
+        self.write(text)
+        self.uplift("compare", "case.toml", "-o", "a", expect=3)
+        self.write(text + 'expected = "fails"\n')
+        self.uplift("compare", "case.toml", "-o", "b")
+        runs = {run["name"]: run for run in self.summary("b")["runs"]}
+        self.assertEqual((runs["path"]["status"], runs["end"]["status"]), ("completed", "failed"))
+        self.assertEqual((runs["path"]["agreement"]["result"], runs["end"]["agreement"]["result"]), ("agrees", "failed"))
+
+    def test_overturning_is_an_outcome_not_a_failure(self):
+        self.write(BASE.replace("force = [3e5, 0]", "force = [9e6, 0]").replace("duration = 0.5", "duration = 3"))
+        done = self.uplift("run", "case.toml", "-o", "r")
+        self.assertEqual(self.summary("r")["runs"][0]["status"], "overturned")
+        self.assertIn("overturns", done.stdout)
+
+
+class Interrupt(CliTest):
+    def test_ctrl_c_leaves_complete_files(self):
+        self.write(BASE.replace("duration = 0.5", "duration = 20000") + "[output]\nevery = 1000\n")
+        process = subprocess.Popen([program(), "run", "case.toml", "-o", "r"], cwd=self.folder, stdout=subprocess.PIPE, stderr=subprocess.PIPE, text=True)
+        time.sleep(1.0)
+        process.send_signal(signal.SIGINT)
+        out, err = process.communicate(timeout=120)
+        self.assertEqual(process.returncode, 130, out + err)
+        self.assertIn("interrupted at t =", err)
+        (run,) = self.summary("r")["runs"]
+        self.assertEqual(run["status"], "interrupted")
+        self.assertGreater(run["end_time"], 0)
+        last = (self.folder / "r" / "histories.csv").read_text().splitlines()[-1]
+        self.assertGreater(float(last.split(",")[0]), 0)
+        self.assertEqual(sorted(p.name for p in self.folder.iterdir()), ["case.toml", "r"])
+
+
+if __name__ == "__main__":
+    main()
