@@ -7,8 +7,9 @@
 
 #include "uplift/laws/law.h"
 
-// Time of one batch call of every interface law: a rocking footing (normal component only, heel open, toe pressed) that moves a little within what it has
-// already seen, so that no point passes its threshold; and, for the laws with a memory, a heel that opens further than ever before.
+// Time of one batch call of every interface law: a rocking footing (normal component only, heel open, toe pressed) that moves a little
+// within what it has already seen, so that no point passes its threshold; and, for the laws with a memory, a heel that opens further than
+// ever before.
 namespace {
 
 using namespace uplift;
@@ -18,7 +19,8 @@ std::unique_ptr<const InterfaceLaw> law_with_usual_parameters(const Entry<Interf
   auto table = std::make_shared<RawTable>();
   table->entries.emplace_back("type", Raw{std::string(entry.name), {}, {}});
   for (const Field& field : entry.params)
-    if (const auto value = usual.find(field.name); value != usual.end()) table->entries.emplace_back(field.name, Raw{value->second, {}, {}});
+    if (const auto value = usual.find(field.name); value != usual.end())
+      table->entries.emplace_back(field.name, Raw{value->second, {}, {}});
   return make_part(law_catalog(), check_part(Raw{table, {}, "law"}, interface_behaviours()));
 }
 
@@ -72,11 +74,21 @@ void every_law(benchmark::internal::Benchmark* bench) {
     for (const int points : {40, 4000}) bench->Args({static_cast<long>(law), points});
 }
 
-void law_mean(benchmark::State& state) { time_law(state, path_average, 2); }
-void law_respond(benchmark::State& state) { time_law(state, end_of_step, 2); }
-void law_energy(benchmark::State& state) { time_law(state, energies, 2); }
-void law_mean_softening(benchmark::State& state) { time_law(state, path_average, 1); }
-void law_respond_softening(benchmark::State& state) { time_law(state, end_of_step, 1); }
+void law_mean(benchmark::State& state) {
+  time_law(state, path_average, 2);
+}
+void law_respond(benchmark::State& state) {
+  time_law(state, end_of_step, 2);
+}
+void law_energy(benchmark::State& state) {
+  time_law(state, energies, 2);
+}
+void law_mean_softening(benchmark::State& state) {
+  time_law(state, path_average, 1);
+}
+void law_respond_softening(benchmark::State& state) {
+  time_law(state, end_of_step, 1);
+}
 
 BENCHMARK(law_mean)->Apply(every_law);
 BENCHMARK(law_respond)->Apply(every_law);

@@ -19,15 +19,15 @@ class BadInput(CliTest):
     def test_missing_file(self):
         self.write(BASE)
         done = self.uplift("check", "cast.toml", expect=2)
-        self.assertEqual(done.stderr.strip(), 'error: cast.toml: wanted a file that can be read, found nothing at this path (did you mean "case.toml"?)')
+        self.assertEqual(done.stderr.strip(), 'error: cast.toml: wanted a file, found no file of this name (did you mean "case.toml"?)')
 
     def test_wrong_dimension(self):
         text = self.replace("E = 2e10", 'E = "20000 kN"')
-        self.refused(text, f'{{file}}:{line_of(text, "E = ")}: beam[0].E: wanted a pressure > 0 Pa, found "20000 kN", a force [N]')
+        self.refused(text, f'{{file}}:{line_of(text, "E = ")}: beam[0].E: wanted a pressure > 0 Pa, found "20000 kN" (a force)')
 
     def test_unknown_unit(self):
         text = self.replace("E = 2e10", 'E = "20000 MPaa"')
-        self.refused(text, f'{{file}}:{line_of(text, "E = ")}: beam[0].E: wanted a pressure > 0 Pa, found the unknown unit "MPaa" (did you mean "MPa"?)')
+        self.refused(text, f'{{file}}:{line_of(text, "E = ")}: beam[0].E: wanted a pressure > 0 Pa, found "20000 MPaa" (unknown unit "MPaa") (did you mean "MPa"?)')
 
     def test_wrong_type(self):
         text = self.replace("points = 11", 'points = "many"')
@@ -60,7 +60,7 @@ class BadInput(CliTest):
 
     def test_dangling_interface_of_a_history(self):
         text = BASE + '[[output.history]]\ninterface = "sol"\nquantity = "moment"\n'
-        self.refused(text, f'{{file}}:{line_of(text, "sol" + chr(34))}: output.history[0].interface: wanted the name of a interface, found "sol" (did you mean "soil"?)')
+        self.refused(text, f'{{file}}:{line_of(text, "sol" + chr(34))}: output.history[0].interface: wanted the name of an interface, found "sol" (did you mean "soil"?)')
 
     def test_unknown_history_quantity(self):
         text = BASE + '[[output.history]]\ninterface = "soil"\nquantity = "momnt"\n'
@@ -77,9 +77,8 @@ class BadInput(CliTest):
 
     def test_massless_footing(self):
         text = self.replace("mass = 1e4\ninertia = 7500\n", "")
-        done = self.uplift("check", self.write(text).name, expect=2)
-        self.assertIn('"base"', done.stderr)
-        self.assertRegex(done.stderr, r"mass")
+        self.refused(text, f'{{file}}:{line_of(text, "[[interface]]")}: interface.soil: wanted a mass on everything that the interface touches, '
+                           'found zero mass where mass is needed: base.rz has none')
 
     def test_snap_back(self):
         text = self.replace('type = "springs"\nK_n = 2e8\n', 'type = "sdm"\nK_n = 1e6\nF_u = 1e5\nG_f = 100\nF_c = -1e3\n')
@@ -125,7 +124,7 @@ class BadInput(CliTest):
 
     def test_mass_and_tuned_frequency(self):
         text = self.replace("mass = 24317\n", 'mass = 24317\ntuned_frequency = "10 Hz"\n')
-        self.refused(text, f'{{file}}:{line_of(text, "24317")}: mass[0].mass: wanted either mass or tuned_frequency, found both')
+        self.refused(text, f'{{file}}:{line_of(text, "tuned")}: mass[0].tuned_frequency: wanted either mass or tuned_frequency, found both')
 
     def test_every_variant_is_checked(self):
         text = BASE + '[[variant]]\nname = "a"\n[[variant]]\nname = "b"\nlaw = "unilateral"\nmethod = "newton"\n'

@@ -7,19 +7,29 @@
 
 #include "unit/laws_support.h"
 
-// Properties of every law in the catalog. Parameters are drawn from the law's own declaration, so that a new law is tested before its author
-// writes a test.
+// Properties of every law in the catalog. Parameters are drawn from the law's own declaration, so that a new law is tested before its
+// author writes a test.
 namespace uplift {
 using namespace law_test;
 namespace {
 
-/// An integer from a to b - 1, evenly spread whatever rapidcheck's size is (it would begin with small ones), and not shrunk: a failure prints the law
-/// and the seed, and a path of many numbers takes minutes to shrink.
-int integer_in(int a, int b) { return *rc::gen::noShrink(rc::gen::resize(rc::kNominalSize, rc::gen::inRange(a, b))); }
-double unit() { return integer_in(0, 1000001) / 1e6; }
-double between(double a, double b) { return a + (b - a) * unit(); }
-double magnitude(double a, double b) { return std::exp(between(std::log(a), std::log(b))); }
-bool one_in(int n) { return integer_in(0, n) == 0; }
+/// An integer from a to b - 1, evenly spread whatever rapidcheck's size is (it would begin with small ones), and not shrunk: a failure
+/// prints the law and the seed, and a path of many numbers takes minutes to shrink.
+int integer_in(int a, int b) {
+  return *rc::gen::noShrink(rc::gen::resize(rc::kNominalSize, rc::gen::inRange(a, b)));
+}
+double unit() {
+  return integer_in(0, 1000001) / 1e6;
+}
+double between(double a, double b) {
+  return a + (b - a) * unit();
+}
+double magnitude(double a, double b) {
+  return std::exp(between(std::log(a), std::log(b)));
+}
+bool one_in(int n) {
+  return integer_in(0, n) == 0;
+}
 
 /// A usual size of a quantity, by its unit.
 double usual(std::string_view unit_name) {
@@ -50,7 +60,9 @@ Law random_law(const Entry<InterfaceLaw>& entry) {
     for (const Field& field : entry.params) {
       if (!field.required && one_in(2)) continue;
       if (field.kind == Kind::choice)
-        made.parameters.emplace_back(std::string(field.name), std::string(field.choices[static_cast<std::size_t>(integer_in(0, static_cast<int>(field.choices.size())))]));
+        made.parameters.emplace_back(
+            std::string(field.name),
+            std::string(field.choices[static_cast<std::size_t>(integer_in(0, static_cast<int>(field.choices.size())))]));
       else if (field.kind == Kind::number)
         made.parameters.emplace_back(std::string(field.name), random_number(field));
     }
@@ -68,7 +80,8 @@ Law random_law(const Entry<InterfaceLaw>& entry) {
 std::string shown(const Entry<InterfaceLaw>& entry, const Law& law) {
   std::string text(entry.name);
   for (const auto& [key, value] : law.parameters)
-    text += " " + key + "=" + (std::holds_alternative<double>(value) ? std::to_string(std::get<double>(value)) : std::get<std::string>(value));
+    text +=
+        " " + key + "=" + (std::holds_alternative<double>(value) ? std::to_string(std::get<double>(value)) : std::get<std::string>(value));
   return text;
 }
 
@@ -103,19 +116,21 @@ double largest_stiffness(const InterfaceLaw& law) {
   return std::max({stiffness[0], stiffness[1], stiffness[2]});
 }
 
-/// Runs a property for every law.
-void for_each_law(const std::function<void(const Entry<InterfaceLaw>&, const Law&)>& property) {
-  for (const Entry<InterfaceLaw>* entry : law_catalog()) {
-    const Law law = random_law(*entry);
-    property(*entry, law);
-  }
+/// Runs a property for every law, with several sets of parameters.
+void for_each_law(const std::function<void(const Entry<InterfaceLaw>&, const Law&)>& property, int sets = 1) {
+  for (const Entry<InterfaceLaw>* entry : law_catalog())
+    for (int i = 0; i < sets; ++i) {
+      const Law law = random_law(*entry);
+      property(*entry, law);
+    }
 }
 
 using Question = const std::vector<double>& (Probe::*)(const std::vector<double>&, const std::vector<double>&);
 
-/// d traction[row]/d opening[column] by differences of fourth order, with its own check of smoothness: nothing where two steps disagree (a kink is near).
-std::optional<double> difference(Probe& probe, Question question, const std::vector<double>& from, std::vector<double> to, int row, int column, double h,
-                                 double size) {
+/// d traction[row]/d opening[column] by differences of fourth order, with its own check of smoothness: nothing where two steps disagree (a
+/// kink is near).
+std::optional<double> difference(Probe& probe, Question question, const std::vector<double>& from, std::vector<double> to, int row,
+                                 int column, double h, double size) {
   const auto quotient = [&](double step) {
     const auto at = [&](double shift) {
       std::vector<double> moved = to;
@@ -130,30 +145,38 @@ std::optional<double> difference(Probe& probe, Question question, const std::vec
 }
 
 void slope_is_derivative(Question question) {
-  for_each_law([&](const Entry<InterfaceLaw>& entry, const Law& law) {
-    const int components = integer_in(1, 4);
-    Situation s = random_situation(law, components);
-    const auto to = random_opening(components, s.size);
-    const double size = largest_stiffness(*law.law);
-    int smooth = 0;
-    for (int row = 0; row < components; ++row)
-      for (int column = 0; column < components; ++column) {
-        const auto expected = difference(s.probe, question, s.opening, to, row, column, 1e-4 * s.size, size);
-        if (!expected) continue;
-        ++smooth;
-        (s.probe.*question)(s.opening, to);
-        const double found = s.probe.slope_at(row, column);
-        if (std::abs(found - *expected) > 1e-6 * (size + std::abs(*expected)))
-          RC_FAIL(shown(entry, law) + ": slope " + std::to_string(row) + std::to_string(column) + " is " + std::to_string(found) + ", differences give " +
-                  std::to_string(*expected));
-      }
-    RC_CLASSIFY(smooth == components * components, std::string(entry.name) + " smooth");
-    RC_CLASSIFY(smooth == 0, std::string(entry.name) + " at a kink");
-  });
+  int every = 0, checked_entries = 0;
+  for_each_law(
+      [&](const Entry<InterfaceLaw>& entry, const Law& law) {
+        const int components = integer_in(1, 4);
+        Situation s = random_situation(law, components);
+        const auto to = random_opening(components, s.size);
+        const double size = largest_stiffness(*law.law);
+        int smooth = 0;
+        for (int row = 0; row < components; ++row)
+          for (int column = 0; column < components; ++column) {
+            const auto expected = difference(s.probe, question, s.opening, to, row, column, 1e-4 * s.size, size);
+            if (!expected) continue;
+            ++smooth;
+            (s.probe.*question)(s.opening, to);
+            const double found = s.probe.slope_at(row, column);
+            if (std::abs(found - *expected) > 1e-6 * (size + std::abs(*expected)))
+              RC_FAIL(shown(entry, law) + ": slope " + std::to_string(row) + std::to_string(column) + " is " + std::to_string(found) +
+                      ", differences give " + std::to_string(*expected));
+          }
+        every += components * components;
+        checked_entries += smooth;
+      },
+      10);
+  RC_ASSERT(checked_entries > 0.9 * every);
 }
 
-RC_GTEST_PROP(LawProperties, SlopeAtTheEndOfAStepIsTheDerivative, ()) { slope_is_derivative(&Probe::respond); }
-RC_GTEST_PROP(LawProperties, SlopeOfThePathAverageIsTheDerivative, ()) { slope_is_derivative(&Probe::mean); }
+RC_GTEST_PROP(LawProperties, SlopeAtTheEndOfAStepIsTheDerivative, ()) {
+  slope_is_derivative(&Probe::respond);
+}
+RC_GTEST_PROP(LawProperties, SlopeOfThePathAverageIsTheDerivative, ()) {
+  slope_is_derivative(&Probe::mean);
+}
 
 RC_GTEST_PROP(LawProperties, PathAverageIsTheQuadratureOfTheResponse, ()) {
   for_each_law([](const Entry<InterfaceLaw>& entry, const Law& law) {
@@ -169,7 +192,8 @@ RC_GTEST_PROP(LawProperties, PathAverageIsTheQuadratureOfTheResponse, ()) {
     };
     for (int i = 1; i <= 64; ++i) along(from + (to - from) * i / 64);
     // no finer than the rounding of the openings, or the recursion would chase noise
-    const double rounding = 1e-14 * largest_stiffness(*law.law) * s.size, tolerance = (1e-12 * size + 0.1 * rounding) * std::abs(to - from) / 64;
+    const double rounding = 1e-14 * largest_stiffness(*law.law) * s.size,
+                 tolerance = (1e-12 * size + 0.1 * rounding) * std::abs(to - from) / 64;
     double sum = 0;
     for (int i = 0; i < 64; ++i) sum += integral(along, from + (to - from) * i / 64, from + (to - from) * (i + 1) / 64, tolerance, 40);
     s.probe.batch.step = step;
@@ -193,7 +217,8 @@ RC_GTEST_PROP(LawProperties, WorkIsTheChangeOfStoredPlusDissipatedEnergy, ()) {
       s.opening = to;
       const double miss = work - (stored_now - stored) - (dissipated_now - dissipated), size = stored + stored_now + dissipated_now;
       const double rounding = 1e-15 * largest_stiffness(*law.law) * s.size * s.size;  // of the openings themselves
-      if (!(std::abs(miss) <= 1e-12 * size + rounding)) RC_FAIL(shown(entry, law) + ": work " + std::to_string(work) + " misses " + std::to_string(miss / size));
+      if (!(std::abs(miss) <= 1e-12 * size + rounding))
+        RC_FAIL(shown(entry, law) + ": work " + std::to_string(work) + " misses " + std::to_string(miss / size));
       if (!(dissipated_now - dissipated >= -1e-14 * size - rounding)) RC_FAIL(shown(entry, law) + ": dissipated energy came back");
       RC_ASSERT(stored_now >= 0);
     }
@@ -220,7 +245,8 @@ RC_GTEST_PROP(LawProperties, NoClosedLoopGivesEnergy, ()) {
       }
     // The energy that was stored at the start may come out once; no more.
     const double after = s.probe.stored(start, s.probe.memory);
-    if (!(work - (after - before) >= -1e-12 * gross)) RC_FAIL(shown(entry, law) + ": a closed loop gave " + std::to_string(after - before - work));
+    if (!(work - (after - before) >= -1e-12 * gross))
+      RC_FAIL(shown(entry, law) + ": a closed loop gave " + std::to_string(after - before - work));
   });
 }
 
@@ -232,11 +258,16 @@ RC_GTEST_PROP(LawProperties, UnitsScale, ()) {
       double* number = std::get_if<double>(&value);
       if (number == nullptr) continue;
       const auto field = std::find_if(entry.params.begin(), entry.params.end(), [&key = key](const Field& f) { return f.name == key; });
-      if (field->unit == "Pa") *number *= pressure;
-      else if (field->unit == "Pa/m" || field->unit == "Pa s/m") *number *= pressure / length;
-      else if (field->unit == "J/m2") *number *= pressure * length;
-      else if (field->unit == "m") *number *= length;
-      else RC_ASSERT(field->unit == std::string_view("1"));
+      if (field->unit == "Pa")
+        *number *= pressure;
+      else if (field->unit == "Pa/m" || field->unit == "Pa s/m")
+        *number *= pressure / length;
+      else if (field->unit == "J/m2")
+        *number *= pressure * length;
+      else if (field->unit == "m")
+        *number *= length;
+      else
+        RC_ASSERT(field->unit == std::string_view("1"));
     }
     const auto other_law = make_law(std::string(entry.name), scaled);
     const int components = integer_in(1, 4);
@@ -266,7 +297,8 @@ RC_GTEST_PROP(LawProperties, UnitsScale, ()) {
 
 RC_GTEST_PROP(LawProperties, ComponentsAgree, ()) {
   for_each_law([](const Entry<InterfaceLaw>& entry, const Law& law) {
-    const double size = magnitude(1e-5, 3e-3), step = magnitude(1e-4, 1e-2), angle = between(0, 6.3), c = std::cos(angle), s = std::sin(angle);
+    const double size = magnitude(1e-5, 3e-3), step = magnitude(1e-4, 1e-2), angle = between(0, 6.3), c = std::cos(angle),
+                 s = std::sin(angle);
     Probe normal(law.law, 1, 1, step), plane(law.law, 2, 1, step), space(law.law, 3, 1, step);
     const double tolerance = 1e-11 * largest_stiffness(*law.law) * size;
     std::vector<double> from{0, 0};
@@ -279,7 +311,8 @@ RC_GTEST_PROP(LawProperties, ComponentsAgree, ()) {
         RC_ASSERT(std::abs(normal.traction[0] - plane.traction[1]) <= tolerance);
         RC_ASSERT(std::abs(normal.traction[0] - space.traction[2]) <= tolerance);
         RC_ASSERT(std::abs(normal.slope_at(0, 0) - plane.slope_at(1, 1)) <= tolerance / size);
-        if (std::abs(c * plane.traction[0] - space.traction[0]) > tolerance || std::abs(s * plane.traction[0] - space.traction[1]) > tolerance)
+        if (std::abs(c * plane.traction[0] - space.traction[0]) > tolerance ||
+            std::abs(s * plane.traction[0] - space.traction[1]) > tolerance)
           RC_FAIL(shown(entry, law) + ": the plane's answer depends on the axes");
       }
       normal.accept(), plane.accept(), space.accept();
@@ -337,7 +370,8 @@ RC_GTEST_PROP(LawProperties, WhatIsNotWantedChangesNothing, ()) {
     s.probe.mean(s.opening, to);
     behaviour.mean(s.probe.batch, s.opening.data(), to.data(), s.probe.memory.data(), {.traction = bare.data()});
     RC_ASSERT(bare == s.probe.traction);
-    behaviour.mean(s.probe.batch, s.opening.data(), to.data(), s.probe.memory.data(), {.traction = bare.data(), .now = now.data(), .end = end.data()});
+    behaviour.mean(s.probe.batch, s.opening.data(), to.data(), s.probe.memory.data(),
+                   {.traction = bare.data(), .now = now.data(), .end = end.data()});
     RC_ASSERT(bare == s.probe.traction);
     RC_ASSERT(now == s.probe.now);
     RC_ASSERT(end == s.probe.end);
@@ -361,8 +395,8 @@ RC_GTEST_PROP(LawProperties, AStepThatDoesNotMoveGivesTheTractionThere, ()) {
     s.probe.mean(s.opening, s.opening);
     for (std::size_t r = 0; r < there.size(); ++r) {
       if (std::abs(s.probe.traction[r] - there[r]) > tolerance || std::abs(s.probe.end[r] - there[r]) > tolerance)
-        RC_FAIL(shown(entry, law) + ": average " + std::to_string(s.probe.traction[r]) + ", end " + std::to_string(s.probe.end[r]) + ", response " +
-                std::to_string(there[r]));
+        RC_FAIL(shown(entry, law) + ": average " + std::to_string(s.probe.traction[r]) + ", end " + std::to_string(s.probe.end[r]) +
+                ", response " + std::to_string(there[r]));
     }
   });
 }

@@ -52,10 +52,12 @@ class Probe {
 
   /// Path average; memory is left alone, what it becomes is in `now`.
   const std::vector<double>& mean(const Opening& from, const Opening& to) {
+    soil();
     law_->mean(batch, from.data(), to.data(), memory.data(), {traction.data(), slope.data(), now.data(), end.data()});
     return traction;
   }
   const std::vector<double>& respond(const Opening& from, const Opening& to) {
+    soil();
     law_->respond(batch, from.data(), to.data(), memory.data(), {traction.data(), slope.data(), now.data(), nullptr});
     return traction;
   }
@@ -92,6 +94,13 @@ class Probe {
   Batch batch;
 
  private:
+  /// A law must write every entry.
+  void soil() {
+    std::fill(traction.begin(), traction.end(), 1e99);
+    std::fill(slope.begin(), slope.end(), 1e99);
+    std::fill(now.begin(), now.end(), 1e99);
+    std::fill(end.begin(), end.end(), 1e99);
+  }
   std::shared_ptr<const InterfaceLaw> law_;
 
  public:

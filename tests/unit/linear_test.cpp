@@ -209,6 +209,25 @@ TEST(Modes, SemidefiniteRoot) {
   EXPECT_LE((root * root.transpose() - a).norm(), 1e-13 * a.norm());
 }
 
+TEST(Modes, FreeFreeBeamOfManyElements) {
+  // slender and floating: three rigid motions, then beta L of cos x cosh x = 1; the stiffest unknown is 1e14 times stiffer than the first
+  // mode
+  const double EI = 1e6, rho_a = 200, length = 50;
+  const int n = 300;
+  ModelBuilder builder;
+  for (int i = 0; i <= n; ++i) builder.add_node("n" + std::to_string(i), {length * i / n, 0}, support::here);
+  for (int i = 0; i < n; ++i)
+    support::add_beam(builder, i, i + 1, {length * i / n, 0}, {length * (i + 1) / n, 0}, support::general(EI, 1e9));
+  const Model model = builder.finish();
+  const auto found = modes(model.stiffness, model.mass, 6);
+  ASSERT_EQ(found.size(), 6u);
+  const double exact[] = {0, 0, 0, 4.730040744862704, 7.853204624095838, 10.995607838001671};
+  for (int i = 0; i < 6; ++i) {
+    const double w = exact[i] * exact[i] / (length * length) * std::sqrt(EI / rho_a);
+    EXPECT_NEAR(2 * pi * found[i].frequency, w, 2e-6 * w) << i;
+  }
+}
+
 // ---- spread ----
 
 TEST(Spread, IdentitiesWithRedundantRows) {

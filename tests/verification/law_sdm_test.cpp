@@ -8,8 +8,8 @@
 
 #include "unit/laws_support.h"
 
-// VERIFICATION section 1 and THEORY section 3: the SDM interface law. Reference values are computed here by bisection and quadrature in extended
-// precision, beside the figures of the document.
+// VERIFICATION section 1 and THEORY section 3: the SDM interface law. Reference values are computed here by bisection and quadrature in
+// extended precision, beside the figures of the document.
 namespace uplift {
 using namespace law_test;
 namespace {
@@ -30,7 +30,9 @@ long double jump_at(long double d) {
   }
   return (low + high) / 2;
 }
-long double envelope(long double d) { return K * (d - jump_at(d)); }
+long double envelope(long double d) {
+  return K * (d - jump_at(d));
+}
 
 double respond(const std::shared_ptr<const InterfaceLaw>& law, double to, double jump) {
   Probe one(law, 1);
@@ -39,7 +41,8 @@ double respond(const std::shared_ptr<const InterfaceLaw>& law, double to, double
 }
 
 TEST(SdmVerification, EnvelopeMatchesTheRootFoundByBisection) {
-  const std::vector<std::pair<double, double>> document{{5e-4, 64707.539543672}, {1e-3, 38221.2417467994}, {2e-3, 13720.494730453}, {3e-3, 5003.68112781450}};
+  const std::vector<std::pair<double, double>> document{
+      {5e-4, 64707.539543672}, {1e-3, 38221.2417467994}, {2e-3, 13720.494730453}, {3e-3, 5003.68112781450}};
   for (const auto& [d, t] : document) {
     EXPECT_NEAR(respond(sdm(), d, 0), static_cast<double>(envelope(d)), 1e-12 * t);
     EXPECT_NEAR(respond(sdm(), d, 0), t, 1e-11 * t) << "figure of VERIFICATION section 1, given to 15 digits";
@@ -75,7 +78,8 @@ TEST(SdmVerification, SlopesAtOnsetAndInTheClosure) {
 
 TEST(SdmVerification, DissipationOfAJump) {
   Probe one(sdm(), 1);
-  for (const auto& [j, energy] : std::vector<std::pair<double, double>>{{5e-4, 39.346934028737}, {1e-3, 63.212055882856}, {3e-3, 95.021293163214}}) {
+  for (const auto& [j, energy] :
+       std::vector<std::pair<double, double>>{{5e-4, 39.346934028737}, {1e-3, 63.212055882856}, {3e-3, 95.021293163214}}) {
     EXPECT_NEAR(one.dissipated({0}, {j}), energy, 1e-12 * 100);
     EXPECT_NEAR(one.dissipated({0}, {j}), G_f * (1 - std::exp(-F_u * j / G_f)), 1e-13 * G_f);
   }
@@ -216,7 +220,8 @@ TEST(SdmVerification, PathAverageIsTheQuadratureOfTheLaw) {
 }
 
 TEST(SdmVerification, PathAverageOfTinyStepsLosesNoDigits) {
-  // On the softening branch, in the closure, and across the kink at d = j: the average lies between the end values, the slope is half the tangent.
+  // On the softening branch, in the closure, and across the kink at d = j: the average lies between the end values, the slope is half the
+  // tangent.
   Probe one(sdm(), 1);
   for (const double start : {1.5e-4, 1e-3, 4e-3}) {
     for (double length = 1e-5; length > 1e-17; length /= 7) {

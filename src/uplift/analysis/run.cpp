@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <chrono>
 #include <cmath>
+#include <utility>
 
 #include "uplift/analysis/record.h"
 #include "uplift/dynamics/statics.h"
@@ -85,6 +86,8 @@ class Runner {
 
  private:
   void execute();
+  void remember_gaps();
+  void add_initial_state();
   bool statics(const Stage& stage, const Bulk& bulk);
   bool dynamics(const Stage& stage, const Bulk& bulk);
   void note_views(double step);
@@ -134,20 +137,20 @@ void Runner::execute() {
   laws_ = std::make_unique<Behaviours>(model_, *plan_.method, compliance.rows() > 0 ? &compliance : nullptr);
 
   const Eigen::Index n = model_.free();
-  state_.displacement = plan_.initial_displacement.size() == n ? plan_.initial_displacement : Vector::Zero(n);
-  state_.velocity = plan_.initial_velocity.size() == n ? plan_.initial_velocity : Vector::Zero(n);
-  state_.acceleration = Vector::Zero(n);
+  state_.displacement = state_.velocity = state_.acceleration = Vector::Zero(n);
   start_gap_ = gap_;
   for (const PrescribedMotion& motion : model_.motions)
     if (motion.opening.size() > 0) start_gap_ += motion.opening * motion.function->value(0);
-  state_.opening = start_gap_ + b_ * state_.displacement;
+  state_.opening = start_gap_;
   state_.force = state_.mean_force = Vector::Zero(b_.rows());
   state_.history.assign(static_cast<std::size_t>(laws_->history), 0.0);
+  remember_gaps();
   for (int column = 0; column < b_.outerSize(); ++column) {
     const std::string& name = model_.unknown_names[static_cast<std::size_t>(column)];
     if (Sparse::InnerIterator(b_, column) && name.ends_with(".rz")) rotations_.push_back(column);
   }
 
+  bool moving = false;
   for (const Stage& stage : plan_.stages) {
     if (stage.type == Stage::Type::statics) {
       if (!statics(stage, bulk)) return;
@@ -160,10 +163,56 @@ void Runner::execute() {
       again.type = Stage::Type::statics;
       if (state_.displacement.squaredNorm() > 0 && !statics(again, second_order)) return;
     }
+    if (!std::exchange(moving, true)) add_initial_state();
     const Bulk stage_bulk(model_, geometric_.get());
     if (!dynamics(stage, stage_bulk)) return;
   }
   result_.end_time = state_.time;
+}
+
+/// A joint with an initial gap was broken before the analysis: its law remembers an opening from zero to that gap (the SDM's jump is the gap), or
+/// the first step would take the gap for a stretched joint.
+void Runner::remember_gaps() {
+  const InterfaceProblem blocks = blocks_of(model_, *laws_);
+  for (const Block& block : blocks.blocks) {
+    const Vector gap = gap_.segment(block.first, block.rows()).cwiseMax(0), closed = Vector::Zero(block.rows());
+    if (block.law == nullptr || block.law->num_history(block.batch.components) == 0 || gap.isZero(0)) continue;
+    Vector traction(block.rows());
+    Reply reply;
+    reply.traction = traction.data();
+    reply.now = state_.history.data() + block.first_history;
+    block.law->respond(block.batch, closed.data(), gap.data(), blocks.old.data() + block.first_history, reply);
+  }
+}
+
+/// The initial state of the first dynamic stage comes on top of what the static stages left: laws answer the change of the openings, a constraint
+/// that is opened by it has no force any more.
+void Runner::add_initial_state() {
+  const Eigen::Index n = model_.free();
+  if (plan_.initial_velocity.size() == n) state_.velocity += plan_.initial_velocity;
+  if (plan_.initial_displacement.size() != n || plan_.initial_displacement.isZero(0)) return;
+  state_.displacement += plan_.initial_displacement;
+  const Vector from = state_.opening;
+  state_.opening += b_ * plan_.initial_displacement;
+  const std::vector<double> old = state_.history;
+  for (const Block& block : blocks_of(model_, *laws_).blocks) {
+    const int points = block.batch.points, normal = block.first + block.batch.normal();
+    if (block.law != nullptr) {
+      Reply reply;
+      reply.traction = state_.force.data() + block.first;
+      reply.now = state_.history.data() + block.first_history;
+      block.law->respond(block.batch, from.data() + block.first, state_.opening.data() + block.first, old.data() + block.first_history, reply);
+    }
+    for (int c = 0; c < block.batch.components; ++c)
+      for (int i = 0; i < points; ++i) {
+        double& force = state_.force[block.first + c * points + i];
+        if (block.law != nullptr)
+          force *= block.area[static_cast<std::size_t>(i)];
+        else if (state_.opening[normal + i] > 0)
+          force = 0;
+      }
+  }
+  state_.mean_force = state_.force;
 }
 
 bool Runner::statics(const Stage& stage, const Bulk& bulk) {
@@ -237,6 +286,7 @@ bool Runner::dynamics(const Stage& stage, const Bulk& bulk) {
   options.path_average = stage.path_average;
   options.halvings = stage.halvings;
   options.monolithic = plan_.monolithic;
+  options.oracle_tolerance = plan_.oracle_tolerance;
   Stepper stepper(model_, bulk, b_, gap_, *laws_, *plan_.method, *plan_.impact, *plan_.solver, options, linear_);
   stepper.start(std::move(state_));
   seen_ = &stepper.state();

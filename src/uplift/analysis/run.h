@@ -56,6 +56,7 @@ struct RunPlan {
   bool expected_to_fail = false;
   int frames = 0;                              // pictures kept for the animation (0: none)
   Vector initial_displacement, initial_velocity;  // free unknowns; empty: zero
+  double oracle_tolerance = 0;  // > 0: every condensed step is also taken by the oracle; a larger relative difference fails it
 };
 
 // ---- what came out ----

@@ -30,7 +30,8 @@ struct ImpactScratch {
   Vector target, limit, fixed, held;  // rows: B v without the contact force, weights of the rows (kernel.h)
   Vector rate, taken, impulse;        // rows: B v corrected, force that was taken out, total impulse
   Vector y, push;                     // r
-  bool any_fixed = false;             // rows held both ways
+  Index first = 0, count = 0;         // range of rows that holds the active ones
+  bool any_fixed = false;             // some rows are held both ways
 };
 
 class ImpactRule {

@@ -16,22 +16,28 @@ void size_scratch(Index rows, Index r, ImpactScratch& scratch) {
   scratch.push.setZero(r);
 }
 
-/// The smallest range of rows that holds the active ones.
-struct Range {
-  Index first = 0, count = 0;
-};
-Range range_of(const Impact& impact) {
-  int first = impact.normals.front(), last = first;
-  for (const std::vector<int>* rows : {&impact.normals, &impact.tangents})
-    for (const int row : *rows) first = std::min(first, row), last = std::max(last, row);
-  return {first, last - first + 1};
+/// y = A x over a range of rows, four columns at a time: the pass is bound by its loads and stores.
+void multiply(const Matrix& a, Index first, Index n, const double* x, double* y) {
+  const Index rows = a.rows(), columns = a.cols();
+  const double* column = a.data() + first;
+  std::fill_n(y, n, 0.0);
+  Index k = 0;
+  for (; k + 4 <= columns; k += 4, column += 4 * rows) {
+    const double *c0 = column, *c1 = column + rows, *c2 = c1 + rows, *c3 = c2 + rows;
+    const double x0 = x[k], x1 = x[k + 1], x2 = x[k + 2], x3 = x[k + 3];
+#pragma omp simd
+    for (Index i = 0; i < n; ++i) y[i] += (c0[i] * x0 + c1[i] * x1) + (c2[i] * x2 + c3[i] * x3);
+  }
+  for (; k < columns; ++k, column += rows) small::add(n, x[k], column, y);
 }
+
+constexpr double at_rest = 1e-12;  // rate that counts as zero, relative to the rates of the rows
 
 }  // namespace
 
-void row_rates(const Impact& impact, const Vector& v, Vector& result) {
+void row_rates(const Impact& impact, const Vector& v, Index first, Index n, Vector& result) {
   if (impact.b != nullptr)
-    small::multiply(*impact.b, v.data(), result.data());
+    multiply(*impact.b, first, n, v.data(), result.data() + first);
   else
     result.noalias() = *impact.sparse_b * v;
 }
@@ -40,48 +46,51 @@ bool select_rows(const Impact& impact, Hold hold, ImpactScratch& scratch) {
   const Index rows = impact.mass->factor.rows();
   size_scratch(rows, impact.mass->factor.cols(), scratch);
   if (impact.normals.empty()) return false;
-  const auto share = [&](int row) { return impact.area != nullptr ? (*impact.area)[row] : 1.0; };
-  for (Vector* vector : {&scratch.limit, &scratch.fixed, &scratch.taken, &scratch.impulse}) std::fill_n(vector->data(), rows, 0.0);
-  Vector& normal = hold == Hold::inequality ? scratch.limit : scratch.fixed;
-  for (const int row : impact.normals) normal[row] = share(row);
-  for (const int row : impact.tangents) scratch.fixed[row] = share(row);
-  scratch.any_fixed = hold == Hold::equality || !impact.tangents.empty();
-  if (hold == Hold::equality) return true;
-  for (const std::vector<int>* list : {&impact.normals, &impact.tangents})
-    for (const int row : *list) scratch.taken[row] = (*impact.force)[row];
+  const double* force = impact.force->data();
+  const double* area = impact.area != nullptr ? impact.area->data() : nullptr;
+  for (Vector* vector : {&scratch.limit, &scratch.fixed, &scratch.taken}) std::fill_n(vector->data(), rows, 0.0);
+  int least = impact.normals.front(), most = least;
+  const bool take = hold == Hold::inequality;
+  const auto select = [&](const std::vector<int>& list, double* weight) {
+    for (const int row : list) {
+      least = std::min(least, row), most = std::max(most, row);
+      weight[row] = area != nullptr ? area[row] : 1.0;
+      scratch.taken[row] = take ? force[row] : 0;
+    }
+  };
+  select(impact.normals, take ? scratch.limit.data() : scratch.fixed.data());
+  select(impact.tangents, scratch.fixed.data());
+  scratch.any_fixed = !take || !impact.tangents.empty();
+  scratch.first = least;
+  scratch.count = most - least + 1;
   return true;
 }
 
 void project_rate(const Impact& impact, const Vector& rate, double weight, Select select, ImpactScratch& scratch) {
   const Matrix& c = impact.mass->factor;
-  const Range range = range_of(impact);
-  const Index first = range.first, n = range.count;
+  const Index first = scratch.first, n = scratch.count, r = c.cols();
+  double* limit = scratch.limit.data() + first;
+  double* target = scratch.target.data() + first;
   if (select == Select::held) {
-    double largest = 0;
-    for (Index i = first; i < first + n; ++i) largest = std::max(largest, std::abs(scratch.target[i]));
-    for (Index i = first; i < first + n; ++i)
-      if (scratch.rate[i] > 1e-9 * largest) scratch.limit[i] = 0;
+    const double largest = std::sqrt(small::sum_of_squares(n, target));
+    const double* before = scratch.rate.data() + first;
+#pragma omp simd
+    for (Index i = 0; i < n; ++i) limit[i] = before[i] > 1e3 * at_rest * largest ? 0 : limit[i];
   }
-  row_rates(impact, rate, scratch.target);
-  for (Index k = 0; k < c.cols(); ++k)
-    scratch.push[k] = weight * small::dot(n, c.data() + k * c.rows() + first, scratch.taken.data() + first);
-  double largest = 0;
-  for (Index k = 0; k < c.cols(); ++k) small::add(n, scratch.push[k], c.data() + k * c.rows() + first, scratch.target.data() + first);
-  for (Index i = first; i < first + n; ++i)
-    if (scratch.limit[i] > 0 || scratch.fixed[i] > 0) largest = std::max(largest, std::abs(scratch.target[i]));
-  std::copy_n(scratch.limit.data() + first, n, scratch.held.data() + first);
-  Rows rows{n, c.cols(), c.rows(), c.data() + first, scratch.target.data() + first, scratch.limit.data() + first,
-            scratch.any_fixed ? scratch.fixed.data() + first : nullptr, 1e-12 * largest};
+  row_rates(impact, rate, first, n, scratch.target);
+  for (Index k = 0; k < r; ++k) scratch.push[k] = weight * small::dot(n, c.data() + k * c.rows() + first, scratch.taken.data() + first);
+  for (Index k = 0; k < r; ++k) small::add(n, scratch.push[k], c.data() + k * c.rows() + first, target);
+  Rows rows{n, r, c.rows(), c.data() + first, target, limit, scratch.any_fixed ? scratch.fixed.data() + first : nullptr, 0, at_rest};
   for (;;) {
+    std::copy_n(limit, n, scratch.held.data() + first);
     const KernelReply reply = solve_rows(rows, scratch.held.data() + first, scratch.y.data(), scratch.rate.data() + first,
                                          scratch.impulse.data() + first, scratch.kernel);
     if (reply.solved()) return;
     if (reply.end != KernelEnd::inconsistent) break;
     scratch.limit[first + reply.worst] = scratch.fixed[first + reply.worst] = 0;  // a row that moves no mass has no impulse
-    std::copy_n(scratch.limit.data() + first, n, scratch.held.data() + first);
   }
-  // not finite: the step fails by its energy; nothing is corrected
-  for (Index k = 0; k < c.cols(); ++k) scratch.y[k] = -scratch.push[k];
+  // not finite: nothing is corrected, the step fails by its energy
+  for (Index k = 0; k < r; ++k) scratch.y[k] = -scratch.push[k];
   for (Index i = first; i < first + n; ++i) scratch.impulse[i] = weight * scratch.taken[i];
 }
 
@@ -91,7 +100,10 @@ void correct(const Impact& impact, double factor, Vector& rate, const ImpactScra
 }
 
 void add_impulse(const Impact& impact, double factor, Vector& impulse, const ImpactScratch& scratch) {
-  for (Index i = 0; i < impulse.size(); ++i) impulse[i] += factor * (scratch.impulse[i] - impact.velocity_weight * scratch.taken[i]);
+  const double *total = scratch.impulse.data(), *taken = scratch.taken.data(), weight = impact.velocity_weight;
+  double* sum = impulse.data();
+#pragma omp simd
+  for (Index i = scratch.first; i < scratch.first + scratch.count; ++i) sum[i] += factor * (total[i] - weight * taken[i]);
 }
 
 }  // namespace uplift

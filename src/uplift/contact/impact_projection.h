@@ -30,7 +30,7 @@ void project_rate(const Impact&, const Vector& rate, double weight, Select, Impa
 void correct(const Impact&, double factor, Vector& rate, const ImpactScratch&);
 /// impulse += factor * (total impulse - weight p): what the correction itself put in.
 void add_impulse(const Impact&, double factor, Vector& impulse, const ImpactScratch&);
-/// result = B v
-void row_rates(const Impact&, const Vector& v, Vector& result);
+/// result = B v, on a range of rows at least.
+void row_rates(const Impact&, const Vector& v, Index first, Index count, Vector& result);
 
 }  // namespace uplift

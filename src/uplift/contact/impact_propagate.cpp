@@ -1,5 +1,3 @@
-#include <algorithm>
-
 #include "uplift/contact/impact_projection.h"
 #include "uplift/math/small.h"
 
@@ -22,13 +20,9 @@ class Propagate final : public ImpactRule {
     add_impulse(impact, factor_, impulse, scratch);
     const Matrix &c = impact.dynamic->factor, &x = impact.dynamic->spread;
     const Index rows = c.rows();
-    double largest = 0;
-    for (Index i = 0; i < rows; ++i) {
-      scratch.target[i] *= scratch.fixed[i] > 0 ? factor_ : 0;
-      largest = std::max(largest, std::abs(scratch.target[i]));
-    }
+    for (Index i = 0; i < rows; ++i) scratch.target[i] *= scratch.fixed[i] > 0 ? factor_ : 0;
     scratch.y.resize(c.cols());
-    const Rows view{rows, c.cols(), rows, c.data(), scratch.target.data(), scratch.limit.data(), scratch.fixed.data(), 1e-12 * largest};
+    const Rows view{rows, c.cols(), rows, c.data(), scratch.target.data(), scratch.limit.data(), scratch.fixed.data(), 0, 1e-12};
     if (solve_rows(view, scratch.held.data(), scratch.y.data(), scratch.rate.data(), scratch.impulse.data(), scratch.kernel).solved())
       small::multiply_add(x, scratch.y.data(), velocity.data());
     scratch.y.resize(impact.mass->factor.cols());

@@ -56,7 +56,7 @@ KernelReply general_active_set(const Rows& rows, double* held, double* z_out, do
     reply.end = KernelEnd::not_finite;
     return reply;
   }
-  const double gap = std::max(rows.tolerance, 1e-14 * target.cwiseAbs().maxCoeff());
+  const double gap = std::max(rows.tolerance, rows.relative * target.norm());
   scratch.visited.count = 0;
   scratch.visited.note(n, held);
   std::vector<std::ptrdiff_t> closed;

@@ -22,6 +22,7 @@ struct Rows {
   const double* limit = nullptr;    // weight of the rows that may only open; 0 where a row is not one of them
   const double* fixed = nullptr;    // weight of the rows held both ways, 0 elsewhere; null when there is none
   double tolerance = 1e-12;         // opening that counts as closed, or as not penetrating
+  double relative = 1e-14;          // the same relative to the norm of the targets; the larger of the two counts
 };
 
 /// The sets already tried, so that a repeated one is recognised.
@@ -34,7 +35,7 @@ struct Visited {
 
 /// Work space, sized at the first call.
 struct KernelScratch {
-  Vector field;    // C y: pressure that a row would carry if it were closed
+  Vector next;  // the set of the next iteration
   Visited visited;
 };
 

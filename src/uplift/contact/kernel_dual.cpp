@@ -197,7 +197,7 @@ KernelReply dual_active_set(const Rows& rows, double* held, double* z, double* o
     reply.end = KernelEnd::not_finite;
     return reply;
   }
-  const double gap = n > 0 ? std::max(rows.tolerance, 1e-14 * target.cwiseAbs().maxCoeff()) : rows.tolerance;
+  const double gap = n > 0 ? std::max(rows.tolerance, rows.relative * target.norm()) : rows.tolerance;
   DualSet set(rows, c);
   for (Index i = 0; rows.fixed != nullptr && i < n; ++i) {
     if (rows.limit[i] > 0 || !(rows.fixed[i] > 0) || std::abs(target[i] + c.row(i).dot(set.z())) <= gap) continue;

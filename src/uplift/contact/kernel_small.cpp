@@ -43,80 +43,89 @@ void apply(const double* s, const double* x, double* v) {
   }
 }
 
-/// right -= sum held c value
+/// Sums over the rows of one set.
 template <int R>
-void gather(std::ptrdiff_t n, const double* c, std::ptrdiff_t stride, const double* held, const double* value, double* right) {
-  for (int r = 0; r < R; ++r) {
-    const double* column = c + r * stride;
-    double sum = 0;
-#pragma omp simd reduction(+ : sum)
-    for (std::ptrdiff_t i = 0; i < n; ++i) sum += held[i] * column[i] * value[i];
-    right[r] -= sum;
-  }
-}
+struct Sums {
+  double gram[packed<R>], right[R];  // sum held c c^T, -sum held c target
+  double weight = 0, target = 0;     // sum held, sum target^2
+};
 
-/// G = sum held c c^T, right = -sum held c target
 template <int R>
-void gather_gram(std::ptrdiff_t n, const double* c, std::ptrdiff_t stride, const double* held, const double* target, double* gram,
-                 double* right) {
+void gather(std::ptrdiff_t n, const double* c, std::ptrdiff_t stride, const double* held, const double* target, Sums<R>& sums) {
   const double *c0 = c, *c1 = R > 1 ? c + stride : c, *c2 = R > 2 ? c + 2 * stride : c;
-  double s0 = 0, s1 = 0, s2 = 0, a0 = 0, a1 = 0, a2 = 0, a3 = 0, a4 = 0, a5 = 0;
+  double s0 = 0, s1 = 0, s2 = 0, a0 = 0, a1 = 0, a2 = 0, a3 = 0, a4 = 0, a5 = 0, w = 0, t2 = 0;
   if constexpr (R == 1) {
-#pragma omp simd reduction(+ : s0, a0)
+#pragma omp simd reduction(+ : s0, a0, w, t2)
     for (std::ptrdiff_t i = 0; i < n; ++i) {
-      const double h = held[i] * c0[i];
-      s0 += h * target[i], a0 += h * c0[i];
+      const double h = held[i] * c0[i], t = target[i];
+      s0 += h * t, a0 += h * c0[i], w += held[i], t2 += t * t;
     }
-    gram[0] = a0, right[0] = -s0;
+    sums = {{a0}, {-s0}, w, t2};
   } else if constexpr (R == 2) {
-#pragma omp simd reduction(+ : s0, s1, a0, a1, a2)
+#pragma omp simd reduction(+ : s0, s1, a0, a1, a2, w, t2)
     for (std::ptrdiff_t i = 0; i < n; ++i) {
       const double x = c0[i], y = c1[i], hx = held[i] * x, hy = held[i] * y, t = target[i];
       s0 += hx * t, s1 += hy * t;
       a0 += hx * x, a1 += hx * y, a2 += hy * y;
+      w += held[i], t2 += t * t;
     }
-    gram[0] = a0, gram[1] = a1, gram[2] = a2, right[0] = -s0, right[1] = -s1;
+    sums = {{a0, a1, a2}, {-s0, -s1}, w, t2};
   } else {
-#pragma omp simd reduction(+ : s0, s1, s2, a0, a1, a2, a3, a4, a5)
+#pragma omp simd reduction(+ : s0, s1, s2, a0, a1, a2, a3, a4, a5, w, t2)
     for (std::ptrdiff_t i = 0; i < n; ++i) {
-      const double x = c0[i], y = c1[i], w = c2[i], hx = held[i] * x, hy = held[i] * y, hw = held[i] * w, t = target[i];
-      s0 += hx * t, s1 += hy * t, s2 += hw * t;
-      a0 += hx * x, a1 += hx * y, a2 += hx * w, a3 += hy * y, a4 += hy * w, a5 += hw * w;
+      const double x = c0[i], y = c1[i], v = c2[i], hx = held[i] * x, hy = held[i] * y, hv = held[i] * v, t = target[i];
+      s0 += hx * t, s1 += hy * t, s2 += hv * t;
+      a0 += hx * x, a1 += hx * y, a2 += hx * v, a3 += hy * y, a4 += hy * v, a5 += hv * v;
+      w += held[i], t2 += t * t;
     }
-    gram[0] = a0, gram[1] = a1, gram[2] = a2, gram[3] = a3, gram[4] = a4, gram[5] = a5;
-    right[0] = -s0, right[1] = -s1, right[2] = -s2;
+    sums = {{a0, a1, a2, a3, a4, a5}, {-s0, -s1, -s2}, w, t2};
   }
 }
 
-struct Extremes {
+struct Look {
   double closed = 0;   // largest |opening| of a held row
-  double pressure = 0;  // largest |C y| of a held row
-  double target = 0;   // largest |target| of a row that is or may be held
-  double sum = 0;      // not finite when any opening is not
+  double changes = 0;  // rows that change sides
 };
 
-/// opening = target + C z, field = C y
+/// opening = target + C z, force = held * C y, and the next set: a closed row opens when its pressure C y is tensile; an open one closes when it
+/// penetrates, or when it touches and the pressure field of the closed rows is compressive there (this makes the redundant pressures those of least norm).
 template <int R>
-Extremes evaluate_rows(std::ptrdiff_t n, const double* c, std::ptrdiff_t stride, const double* held, const double* target, const double* z,
-                       const double* y, double* opening, double* field) {
+Look look(std::ptrdiff_t n, const double* c, std::ptrdiff_t stride, const double* held, const double* limit, const double* target,
+          const double* z, const double* y, double gap, double weight, double work, double* opening, double* force, double* next) {
   const double *c0 = c, *c1 = R > 1 ? c + stride : c, *c2 = R > 2 ? c + 2 * stride : c;
   const double z0 = z[0], z1 = R > 1 ? z[R > 1 ? 1 : 0] : 0, z2 = R > 2 ? z[R > 2 ? 2 : 0] : 0;
   const double y0 = y[0], y1 = R > 1 ? y[R > 1 ? 1 : 0] : 0, y2 = R > 2 ? y[R > 2 ? 2 : 0] : 0;
-  double closed = 0, pressure = 0, largest = 0, sum = 0;
-#pragma omp simd reduction(max : closed, pressure, largest) reduction(+ : sum)
+  double closed = 0, changes = 0;
+#pragma omp simd reduction(max : closed) reduction(+ : changes)
   for (std::ptrdiff_t i = 0; i < n; ++i) {
     double o = target[i] + c0[i] * z0, f = c0[i] * y0;
     if constexpr (R > 1) o += c1[i] * z1, f += c1[i] * y1;
     if constexpr (R > 2) o += c2[i] * z2, f += c2[i] * y2;
-    opening[i] = o;
-    field[i] = f;
-    sum += o;
-    const double size = std::abs(target[i]), here = held[i] > 0 ? std::abs(o) : 0.0, push = held[i] > 0 ? std::abs(f) : 0.0;
-    largest = largest > size ? largest : size;
+    const double h = held[i], most = limit[i];
+    const bool was = h > 0, may = most > 0;
+    const double here = was ? std::abs(o) : 0.0;
     closed = closed > here ? closed : here;
-    pressure = pressure > push ? pressure : push;
+    opening[i] = o;
+    force[i] = h * (may && f > 0 ? 0.0 : f);
+    const bool noticed = weight * f * f > 1e-24 * work;  // beyond 1e-12 of the mean pressure
+    const bool now = was ? !((f > 0) & noticed) : (o < -gap) | ((o <= gap) & (f < 0) & noticed);
+    const double value = may ? (now ? most : 0.0) : h;
+    next[i] = value;
+    changes += value != h ? 1.0 : 0.0;
   }
-  return {closed, pressure, largest, sum};
+  return {closed, changes};
+}
+
+/// right = -sum held c opening: what is left to correct.
+template <int R>
+void remainder(std::ptrdiff_t n, const double* c, std::ptrdiff_t stride, const double* held, const double* opening, double* right) {
+  for (int r = 0; r < R; ++r) {
+    const double* column = c + r * stride;
+    double sum = 0;
+#pragma omp simd reduction(+ : sum)
+    for (std::ptrdiff_t i = 0; i < n; ++i) sum += held[i] * column[i] * opening[i];
+    right[r] = -sum;
+  }
 }
 
 /// y = -G^+ z, refined until |z + G y| / |z|, which is returned, is round-off.
@@ -136,61 +145,42 @@ double solve_dual(const double* gram, const double* inverse, const double* z, do
   return std::sqrt(error / size);
 }
 
-/// The next set: a closed row opens when its pressure is tensile; an open one closes when it penetrates, or when it touches and the pressure field
-/// of the closed rows is compressive there (this makes the redundant pressures the least-norm ones). Returns the number of changes.
-double next_set(std::ptrdiff_t n, const double* limit, const double* opening, const double* field, double gap, double pressure,
-                double* held) {
-  double changes = 0;
-#pragma omp simd reduction(+ : changes)
-  for (std::ptrdiff_t i = 0; i < n; ++i) {
-    const bool was = held[i] > 0, may = limit[i] > 0;
-    const bool stays = field[i] <= pressure;
-    const bool closes = (opening[i] < -gap) | ((opening[i] <= gap) & (field[i] < -pressure));
-    const bool now = was ? stays : closes;
-    const double value = may ? (now ? limit[i] : 0.0) : held[i];
-    changes += value != held[i] ? 1.0 : 0.0;
-    held[i] = value;
-  }
-  return changes;
-}
-
 template <int R>
 KernelReply active_set(const Rows& rows, double* held, double* z, double* opening, double* force, KernelScratch& scratch) {
   const std::ptrdiff_t n = rows.count;
-  double* field = scratch.field.data();
+  double* next = scratch.next.data();
   KernelReply reply;
-  double gram[packed<R>], inverse[packed<R>], right[R], y[R], step[R];
+  Sums<R> sums;
+  double inverse[packed<R>], y[R], step[R];
+  scratch.visited.count = 0;
   for (reply.iterations = 1; reply.iterations <= most_iterations; ++reply.iterations) {
-    gather_gram<R>(n, rows.factor, rows.stride, held, rows.target, gram, right);
-    pseudo_inverse<R>(gram, inverse);
-    apply<R>(inverse, right, z);
-    Extremes extremes;
-    double gap = rows.tolerance;
-    for (int refinement = 0;; ++refinement) {
-      reply.residual = solve_dual<R>(gram, inverse, z, y);
-      extremes = evaluate_rows<R>(n, rows.factor, rows.stride, held, rows.target, z, y, opening, field);
-      if (!std::isfinite(extremes.sum)) {
-        reply.end = KernelEnd::not_finite;
-        return reply;
-      }
-      gap = std::max(rows.tolerance, 1e-14 * extremes.target);
-      if (extremes.closed <= 1e-13 * extremes.target || (refinement == 2 && extremes.closed <= gap)) break;
-      if (refinement == 2) return reply;  // the closed rows contradict each other
-      for (int r = 0; r < R; ++r) right[r] = 0;
-      gather<R>(n, rows.factor, rows.stride, held, opening, right);
-      apply<R>(inverse, right, step);
-      for (int r = 0; r < R; ++r) z[r] += step[r];
-    }
-    // the force first: the set that it belongs to is about to be replaced
-#pragma omp simd
-    for (std::ptrdiff_t i = 0; i < n; ++i) force[i] = held[i] * (field[i] < 0 || !(rows.limit[i] > 0) ? field[i] : 0.0);
-    if (reply.iterations == 1) scratch.visited.count = 0;
-    if (next_set(n, rows.limit, opening, field, gap, 1e-12 * extremes.pressure, held) == 0) {
-      reply.end = KernelEnd::solved;
-      if (reply.residual > 1e-11) reply.end = KernelEnd::stuck;  // the rank was misjudged
-      if (extremes.target > 0) reply.residual = std::max(reply.residual, extremes.closed / extremes.target);
+    gather<R>(n, rows.factor, rows.stride, held, rows.target, sums);
+    if (!std::isfinite(sums.target)) {
+      reply.end = KernelEnd::not_finite;
       return reply;
     }
+    pseudo_inverse<R>(sums.gram, inverse);
+    apply<R>(inverse, sums.right, z);
+    const double size = std::sqrt(sums.target), gap = std::max(rows.tolerance, rows.relative * size);
+    Look seen;
+    for (int refinement = 0;; ++refinement) {
+      reply.residual = solve_dual<R>(sums.gram, inverse, z, y);
+      double work = 0;  // -y z = sum held (C y)^2 = sum held * mean square of the pressure
+      for (int r = 0; r < R; ++r) work -= y[r] * z[r];
+      seen = look<R>(n, rows.factor, rows.stride, held, rows.limit, rows.target, z, y, gap, sums.weight, work, opening, force, next);
+      if (seen.closed <= 1e-13 * size || (refinement == 2 && seen.closed <= gap)) break;
+      if (refinement == 2) return reply;  // the closed rows contradict each other, or something is not finite
+      remainder<R>(n, rows.factor, rows.stride, held, opening, step);
+      apply<R>(inverse, step, step);
+      for (int r = 0; r < R; ++r) z[r] += step[r];
+    }
+    if (seen.changes == 0) {
+      if (reply.residual > 1e-11) return reply;  // the rank was misjudged
+      reply.end = KernelEnd::solved;
+      if (size > 0) reply.residual = std::max(reply.residual, seen.closed / size);
+      return reply;
+    }
+    std::copy_n(next, n, held);
     if (!scratch.visited.note(n, held)) {
       reply.cycles = 1;
       return reply;
@@ -270,7 +260,7 @@ template int pseudo_inverse<2>(const double*, double*);
 template int pseudo_inverse<3>(const double*, double*);
 
 KernelReply small_active_set(const Rows& rows, double* held, double* z, double* opening, double* force, KernelScratch& scratch) {
-  if (scratch.field.size() < rows.count) scratch.field.setZero(rows.count);
+  if (scratch.next.size() < rows.count) scratch.next.setZero(rows.count);
   if (rows.columns == 1) return active_set<1>(rows, held, z, opening, force, scratch);
   if (rows.columns == 2) return active_set<2>(rows, held, z, opening, force, scratch);
   return active_set<3>(rows, held, z, opening, force, scratch);

@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 
 #include "uplift/contact/method.h"
 #include "uplift/math/dense.h"
@@ -196,6 +197,43 @@ void line_search(const InterfaceProblem& problem, const AugmentedForce& augmente
   }
 }
 
+/// Where friction or softening leave no potential: the step is shortened until the residual |G| falls; the last point is left evaluated, with its Hessian.
+double shorten(const InterfaceProblem& problem, const AugmentedForce& augmented, double before, InterfaceSolution& solution) {
+  NewtonScratch& scratch = solution.newton;
+  double alpha = 1, size = before;
+  for (int trial = 0; trial < 12; ++trial) {
+    alpha *= 0.5;
+    for (Eigen::Index i = 0; i < solution.z.size(); ++i) solution.z[i] = scratch.origin[i] + alpha * scratch.direction[i];
+    evaluate(problem, augmented, true, solution);
+    form_gradient(problem, true, solution);
+    size = norm(scratch.gradient);
+    if (size <= (1 - 1e-3 * alpha) * before) break;
+  }
+  return size;
+}
+
+/// Size of G that round-off in the openings alone makes: stiff joints magnify it.
+double round_off(const InterfaceProblem& problem, const InterfaceSolution& solution) {
+  const NewtonScratch& scratch = solution.newton;
+  double sum = 0;
+  for (Eigen::Index j = 0; j < problem.factor.cols(); ++j) {
+    double component = std::abs(solution.z[j]);
+    for (std::size_t b = 0; b < problem.blocks.size(); ++b) {
+      const Block& block = problem.blocks[b];
+      const int n = block.batch.points, components = block.batch.components;
+      for (int c = 0; c < components; ++c)
+        for (int i = 0; i < n; ++i) {
+          const Eigen::Index row = block.first + c * n + i;
+          const double slope = std::abs(scratch.slope[scratch.first_slope[b] + (c * components + c) * n + i]);
+          const double moved = std::abs(problem.free_opening[row]) + std::abs(solution.opening[row] - problem.free_opening[row]);
+          component += std::abs(problem.factor(row, j)) * (slope * moved + std::abs(solution.force[row]));
+        }
+    }
+    sum += component * component;
+  }
+  return std::numeric_limits<double>::epsilon() * std::sqrt(sum);
+}
+
 /// What the balance is measured against: the largest of |z| and |C^T p|. In dynamics C^T p = G - z; in statics the closed joint is taken back in G.
 double balance_scale(const InterfaceProblem& problem, InterfaceSolution& solution) {
   NewtonScratch& scratch = solution.newton;
@@ -234,6 +272,7 @@ Outcome solve_by_newton(const InterfaceProblem& problem, const AugmentedForce& a
   NewtonScratch& scratch = solution.newton;
   Outcome outcome;
   Matrix copy;
+  constexpr int patience = 12;  // iterations after which the search turns from the potential to the residual
   const Eigen::Index r = problem.factor.cols();
   evaluate(problem, augmented, true, solution);
   form_gradient(problem, true, solution);
@@ -246,6 +285,10 @@ Outcome solve_by_newton(const InterfaceProblem& problem, const AugmentedForce& a
     const double reference = balance_scale(problem, solution);
     outcome.residual = size / std::max(reference, 1e-300);
     if (size <= options.tolerance * reference || size == 0) {
+      outcome.converged = true;
+      return outcome;
+    }
+    if (outcome.iterations >= patience && size <= 8 * round_off(problem, solution)) {
       outcome.converged = true;
       return outcome;
     }
@@ -263,7 +306,9 @@ Outcome solve_by_newton(const InterfaceProblem& problem, const AugmentedForce& a
     size = norm(scratch.gradient);
     if (size > 0.5 * before && size > options.tolerance * reference) {
       const double end_slope = small::dot(r, scratch.gradient.data(), scratch.direction.data());
-      if (start_slope < 0 && end_slope > 0.5 * std::abs(start_slope)) {
+      if (outcome.iterations >= patience) {
+        if (size > before) size = shorten(problem, augmented, before, solution);
+      } else if (start_slope < 0 && end_slope > 0.5 * std::abs(start_slope)) {
         line_search(problem, augmented, start_slope, end_slope, solution);
         form_gradient(problem, true, solution);
         size = norm(scratch.gradient);

@@ -33,18 +33,22 @@ class Monolithic final : public StepSolver {
     solution_.now = history;
     origin_ = gap_ + b_ * displacement;
     contact_.assign(points_, Contact::open);
+    solution_.force.setZero();
     std::set<std::vector<Contact>> seen;
     Outcome outcome;
+    bool single = false;
     increment.setZero();
-    for (int round = 0; round < 200; ++round) {
+    for (int round = 0; round < 500; ++round) {
       if (!equilibrium(right, increment, outcome)) return outcome;
       std::vector<Contact> before = contact_;
       update_contact();
       if (contact_ == before) {
+        share_pressures();
         outcome.converged = true;
         return outcome;
       }
-      if (!seen.insert(contact_).second) ++outcome.cycles;
+      if (!single && !seen.insert(contact_).second) ++outcome.cycles, single = true;
+      if (single) keep_first_change(before);
     }
     outcome.why = "the oracle's active set did not settle";
     return outcome;
@@ -209,6 +213,54 @@ class Monolithic final : public StepSolver {
     }
   }
 
+  /// Least-index rule: of all changes only that of the first point is made.
+  void keep_first_change(const std::vector<Contact>& before) {
+    std::size_t first = 0;
+    while (contact_[first] == before[first]) ++first;
+    for (std::size_t i = first + 1; i < contact_.size(); ++i) contact_[i] = before[i];
+  }
+
+  /// Redundant frictionless points: of all admissible pressures with the same effect on the structure those of least sum p^2/area, as the methods
+  /// promise. Their dual is p = area * min(0, B y) on the touching points; the set where it is negative is found by repetition.
+  void share_pressures() {
+    std::vector<int> touching;
+    std::vector<double> area;
+    each_point([&](const Block& block, int i, Contact) {
+      const int row = block.first + block.batch.normal() + i;
+      if (block.cone->friction() > 0 || solution_.opening[row] > 1e-11) return;
+      touching.push_back(row);
+      area.push_back(block.area[static_cast<std::size_t>(i)]);
+    });
+    const Matrix b = Matrix(b_);
+    const Eigen::Index count = static_cast<Eigen::Index>(touching.size());
+    Vector push = Vector::Zero(b.cols());  // B^T p
+    for (const int row : touching) push += b.row(row).transpose() * solution_.force[row];
+    std::vector<char> pressed(touching.size(), 1);
+    for (int round = 0; round < 100 && count > 0; ++round) {
+      Matrix gram = Matrix::Zero(b.cols(), b.cols());
+      for (Eigen::Index k = 0; k < count; ++k)
+        if (pressed[static_cast<std::size_t>(k)] != 0)
+          gram += area[static_cast<std::size_t>(k)] * b.row(touching[static_cast<std::size_t>(k)]).transpose() * b.row(touching[static_cast<std::size_t>(k)]);
+      CompleteQr decomposition;
+      decomposition.setThreshold(1e-11);
+      decomposition.compute(gram);
+      const Vector y = decomposition.solve(push);
+      if ((gram * y - push).norm() > 1e-9 * push.norm()) return;  // the first answer stays
+      bool changed = false;
+      for (Eigen::Index k = 0; k < count; ++k) {
+        char& now = pressed[static_cast<std::size_t>(k)];
+        const double pull = b.row(touching[static_cast<std::size_t>(k)]).dot(y);
+        changed = changed || (now != 0) != (pull < 0);
+        now = pull < 0 ? 1 : 0;
+      }
+      if (changed) continue;
+      for (Eigen::Index k = 0; k < count; ++k)
+        solution_.force[touching[static_cast<std::size_t>(k)]] =
+            pressed[static_cast<std::size_t>(k)] != 0 ? area[static_cast<std::size_t>(k)] * b.row(touching[static_cast<std::size_t>(k)]).dot(y) : 0;
+      return;
+    }
+  }
+
   void each_point(const std::function<void(const Block&, int, Contact)>& visit) const {
     std::size_t point = 0;
     for (const Block& block : problem_.blocks)
@@ -226,10 +278,47 @@ class Monolithic final : public StepSolver {
   Vector origin_;
 };
 
+/// Solves every step twice from the same beginning and refuses it when the answers differ.
+class Compared final : public StepSolver {
+ public:
+  Compared(const Sparse& matrix, std::unique_ptr<StepSolver> solver, std::unique_ptr<StepSolver> oracle, double tolerance)
+      : matrix_(matrix), solver_(std::move(solver)), oracle_(std::move(oracle)), tolerance_(tolerance) {}
+
+  Outcome solve(const Vector& right, const Vector& displacement, const Vector& opening, const std::vector<double>& history,
+                Vector& increment) override {
+    Outcome outcome = solver_->solve(right, displacement, opening, history, increment);
+    if (!outcome.converged) return outcome;
+    other_.resize(increment.size());
+    const Outcome check = oracle_->solve(right, displacement, opening, history, other_);
+    if (!check.converged) outcome.why = check.why;
+    const double difference = energy_norm(other_ - increment), size = std::max(energy_norm(displacement + increment), energy_norm(increment));
+    if (check.converged && difference > tolerance_ * size)
+      outcome.why = fmt::format("the oracle's step differs by {:.2e} of the displacement", difference / size);
+    outcome.converged = outcome.why.empty();
+    return outcome;
+  }
+
+  const InterfaceProblem& problem() const override { return solver_->problem(); }
+  const InterfaceSolution& solution() const override { return solver_->solution(); }
+
+ private:
+  double energy_norm(const Vector& u) const { return std::sqrt(std::max(0.0, u.dot(matrix_ * u))); }
+
+  const Sparse matrix_;
+  std::unique_ptr<StepSolver> solver_, oracle_;
+  double tolerance_;
+  Vector other_;
+};
+
 }  // namespace
 
 std::unique_ptr<StepSolver> make_monolithic(const Sparse& matrix, const Sparse& b, const Vector& gap, InterfaceProblem frame) {
   return std::make_unique<Monolithic>(matrix, b, gap, std::move(frame));
+}
+
+std::unique_ptr<StepSolver> make_compared(const Sparse& matrix, std::unique_ptr<StepSolver> solver, std::unique_ptr<StepSolver> oracle,
+                                          double tolerance) {
+  return std::make_unique<Compared>(matrix, std::move(solver), std::move(oracle), tolerance);
 }
 
 }  // namespace uplift

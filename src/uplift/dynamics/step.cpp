@@ -65,7 +65,10 @@ Stepper::Level& Stepper::level(int halving) {
       made.why = factor.why();
       return made;
     }
+    std::unique_ptr<StepSolver> oracle;
+    if (options_.oracle_tolerance > 0) oracle = make_monolithic(matrix, b_, gap_, frame);
     made.solver = std::make_unique<Condensed>(model_, b_, gap_, std::move(factor), std::move(frame), method_);
+    if (oracle != nullptr) made.solver = make_compared(matrix, std::move(made.solver), std::move(oracle), options_.oracle_tolerance);
   }
   if (impacts_ && impact_.needs_dynamic()) {
     const Sparse dynamic = bulk_.stiffness_matrix + (4 / (dt * dt)) * bulk_.mass_matrix;

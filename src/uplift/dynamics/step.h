@@ -18,6 +18,7 @@ struct StepOptions {
   bool path_average = true;  // only with the average acceleration rule and a method that does not constrain
   int halvings = 8;
   bool monolithic = false;   // the oracle: Newton on all unknowns instead of the condensed step
+  double oracle_tolerance = 0;  // > 0: every condensed step is also taken by the oracle; a larger relative difference fails it
 };
 
 struct StepCounts {

@@ -40,7 +40,8 @@ Point CohesiveLaw::advance(double, double from, double to, Memory old, double* n
 
   const double mean = average(start, to);
   point.mean += broken.share * mean;
-  // 1/length^2 * integral of (x - from) t'(x); for a short piece t' counts as constant, as the difference of its end values is lost in round-off
+  // 1/length^2 * integral of (x - from) t'(x); for a short piece t' counts as constant, as the difference of its end values is lost in
+  // round-off
   if (first - last < 1e-5 * first)
     point.mean_slope += broken.share * broken.lever * slope(0.5 * (start + to));
   else
@@ -59,7 +60,8 @@ double checked_fracture_energy(const Values& values) {
   const double least = strength * strength / (2 * stiffness);
   if (!(energy > least))
     throw InputError(values.where("G_f"), values.path("G_f"),
-                     fmt::format("G_f > F_u^2/(2 K_n) = {:.6g} J/m2, the energy stored when the strength is reached", least), fmt::format("{:.6g} J/m2", energy));
+                     fmt::format("G_f > F_u^2/(2 K_n) = {:.6g} J/m2, the energy stored when the strength is reached", least),
+                     fmt::format("{:.6g} J/m2", energy));
   return energy;
 }
 

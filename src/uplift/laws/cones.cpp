@@ -3,7 +3,8 @@
 #include "uplift/laws/law.h"
 
 // Cones: what a contact constraint allows. In the tension-positive sign p_n <= 0, and |p_t| <= -mu p_n with friction mu.
-// The projection is that of the augmented Lagrangian of Alart & Curnier (Comput. Methods Appl. Mech. Eng. 92, 1991): first the normal force,
+// The projection is that of the augmented Lagrangian of Alart & Curnier (Comput. Methods Appl. Mech. Eng. 92, 1991): first the normal
+// force,
 //     p_n = min(q_n, 0),        p_t = q_t when |q_t| <= b = -mu p_n, else b q_t/|q_t|,
 // so that slip does not lift the faces (an orthogonal projection on the cone would).
 namespace uplift {
@@ -75,15 +76,14 @@ const Entry<Cone>& entry_cone_unilateral() {
 }
 
 const Entry<Cone>& entry_cone_coulomb() {
-  static const Entry<Cone> entry{{.name = "coulomb",
-                                  .summary = "rigid contact without tension, with Coulomb friction, by constraint",
-                                  .equations = "g >= 0, p_n <= 0, p_n g = 0\n"
-                                               "|p_t| <= -friction p_n; where it slips, p_t reaches the bound and points along the slip (conjugate to the opening)",
-                                  .source = "Coulomb; projection of Alart & Curnier (1991)",
-                                  .params = {number("friction", "1", "coefficient of friction").nonnegative()}},
-                                 [](const Values& values) -> std::unique_ptr<const Cone> {
-                                   return std::make_unique<Coulomb>(values.number("friction"));
-                                 }};
+  static const Entry<Cone> entry{
+      {.name = "coulomb",
+       .summary = "rigid contact without tension, with Coulomb friction, by constraint",
+       .equations = "g >= 0, p_n <= 0, p_n g = 0\n"
+                    "|p_t| <= -friction p_n; where it slips, p_t reaches the bound and points along the slip (conjugate to the opening)",
+       .source = "Coulomb; projection of Alart & Curnier (1991)",
+       .params = {number("friction", "1", "coefficient of friction").nonnegative()}},
+      [](const Values& values) -> std::unique_ptr<const Cone> { return std::make_unique<Coulomb>(values.number("friction")); }};
   return entry;
 }
 

@@ -23,13 +23,14 @@ class ElasticLaw final : public PointLaw {
 }  // namespace
 
 const Entry<InterfaceLaw>& entry_law_elastic() {
-  static const Entry<InterfaceLaw> entry =
-      joint_entry({.name = "elastic",
-                   .summary = "bonded elastic joint that holds tension: what a linear analysis assumes",
-                   .equations = "t_n = K_n d_n",
-                   .source = "Cherubini, Richard & Frau, eq 14 with a constant stiffness",
-                   .params = {number("K_n", "Pa/m", "normal stiffness").positive()}},
-                  "bonded", [](const Values& values) -> std::unique_ptr<const NormalLaw> { return std::make_unique<ElasticLaw>(values.number("K_n")); });
+  static const Entry<InterfaceLaw> entry = joint_entry(
+      {.name = "elastic",
+       .summary = "bonded elastic joint that holds tension: what a linear analysis assumes",
+       .equations = "t_n = K_n d_n",
+       .source = "Cherubini, Richard & Frau, eq 14 with a constant stiffness",
+       .params = {number("K_n", "Pa/m", "normal stiffness").positive()}},
+      "bonded",
+      [](const Values& values) -> std::unique_ptr<const NormalLaw> { return std::make_unique<ElasticLaw>(values.number("K_n")); });
   return entry;
 }
 

@@ -6,18 +6,20 @@
 
 // Interface laws. Axes of a point: (t, n) in 2D, (t1, t2, n) in 3D; opening [m] > 0 apart, traction [Pa] > 0 tension.
 // A call takes all points of one interface, as a structure of arrays: component c of point i stands at [c * points + i], the normal
-// component is the last one. Memory of a law: variable h of point i stands at [h * points + i]. Laws are const; memory is passed in and out.
+// component is the last one. Memory of a law: variable h of point i stands at [h * points + i]. Laws are const; memory is passed in and
+// out.
 namespace uplift {
 
 /// The batch that one call handles.
 struct Batch {
   int points = 0;
-  int components = 2;  // 1: normal only, 2: (t, n), 3: (t1, t2, n)
-  double step = 0;     // s; 0 in statics (rates are zero then)
+  int components = 2;                                       // 1: normal only, 2: (t, n), 3: (t1, t2, n)
+  double step = 0;                                          // s; 0 in statics (rates are zero then)
   int normal() const { return (components - 1) * points; }  // offset of the normal component
 };
 
-/// What a law returns for a batch. Null is not wanted; the traction always is. `slope` is d traction_r / d opening_c at [(r * components + c) * points + i] [Pa/m].
+/// What a law returns for a batch. Null is not wanted; the traction always is. `slope` is d traction_r / d opening_c at [(r * components +
+/// c) * points + i] [Pa/m].
 struct Reply {
   double* traction = nullptr;  // Pa
   double* slope = nullptr;     // Pa/m
@@ -33,7 +35,8 @@ class InterfaceLaw {
   virtual int num_history(int components) const = 0;
   /// Traction at the end of a step that goes from opening `from` to `to`. In statics and dynamics (`traction = "end"`).
   virtual void respond(const Batch&, const double* from, const double* to, const double* old, Reply) const = 0;
-  /// Path-averaged traction of the step, 1/(to - from) * integral of t d(opening) along the law's own path (THEORY section 4), and its slope with respect to `to`.
+  /// Path-averaged traction of the step, 1/(to - from) * integral of t d(opening) along the law's own path (THEORY section 4), and its
+  /// slope with respect to `to`.
   virtual void mean(const Batch&, const double* from, const double* to, const double* old, Reply) const = 0;
   /// Energy per area [J/m2] that is stored at this opening and memory, and that was dissipated since the beginning. Either may be null.
   virtual void energy(const Batch&, const double* opening, const double* history, double* stored, double* dissipated) const = 0;
@@ -41,9 +44,9 @@ class InterfaceLaw {
   virtual void closed_stiffness(int components, double* stiffness) const = 0;
 };
 
-/// A set that only bounds the contact force (p per point, N or Pa): the unilateral ray, the Coulomb cone. `force` and `trial` use the tension-positive
-/// sign: compression is negative. The same batch layout. With P the projection and g the opening, penalty is p = P(e g) and the augmented
-/// Lagrangian p = P(m + e g), m <- p.
+/// A set that only bounds the contact force (p per point, N or Pa): the unilateral ray, the Coulomb cone. `force` and `trial` use the
+/// tension-positive sign: compression is negative. The same batch layout. With P the projection and g the opening, penalty is p = P(e g)
+/// and the augmented Lagrangian p = P(m + e g), m <- p.
 class Cone {
  public:
   virtual ~Cone() = default;

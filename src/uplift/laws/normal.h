@@ -22,7 +22,9 @@ struct Along {
 };
 
 /// A quantity that varies smoothly: its path average is the mean of its end values.
-inline Along smoothly(double begin, double end, double end_slope) { return {begin, end, end_slope, 0.5 * (begin + end), 0.5 * end_slope}; }
+inline Along smoothly(double begin, double end, double end_slope) {
+  return {begin, end, end_slope, 0.5 * (begin + end), 0.5 * end_slope};
+}
 
 /// What a tangential part must know of the surface: both quantities are monotone along a path.
 struct Surface {

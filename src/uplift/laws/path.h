@@ -5,16 +5,20 @@
 // Averages along the straight path of one opening, without cancellation: a piecewise linear function f is integrated piece by piece,
 //     1/(to - from) * integral of f = sum over pieces of share * f(middle)
 //     d/d to of it                  = sum over pieces of share * lever * f'(piece)      [= 1/(to - from)^2 * integral of (x - from) f'(x)]
-// where share is the piece's part of the length and lever the mean of (x - from)/(to - from) over it. Places are measured from `from`, so that
-// both factors are good to round-off however small the step is.
+// where share is the piece's part of the length and lever the mean of (x - from)/(to - from) over it. Places are measured from `from`, so
+// that both factors are good to round-off however small the step is.
 namespace uplift {
 
 /// A path shorter than this [m] counts as the point `to`: averages are values, and d/d to is half the slope.
 constexpr double shortest_path = 1e-200;
 
 /// As std::min and std::max for numbers by value: these become one vector instruction in loops.
-inline double smaller(double a, double b) { return a < b ? a : b; }
-inline double larger(double a, double b) { return a > b ? a : b; }
+inline double smaller(double a, double b) {
+  return a < b ? a : b;
+}
+inline double larger(double a, double b) {
+  return a > b ? a : b;
+}
 
 /// The part of a path that lies on one piece of the axis.
 struct Piece {

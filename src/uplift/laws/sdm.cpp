@@ -7,16 +7,17 @@
 #include "uplift/math/exponential.h"
 #include "uplift/math/lambert.h"
 
-// The SDM law (strong discontinuity method): Cherubini, Richard & Frau, eqs 15 to 21, in the reading and the closed forms of THEORY sections 3 and 4.
-// Opening d [m], memory j [m] (the jump [u]_max, never decreasing), K [Pa/m], F_u, F_c [Pa], G_f [J/m2], a = F_u/G_f, d_c = F_c/K < 0:
+// The SDM law (strong discontinuity method): Cherubini, Richard & Frau, eqs 15 to 21, in the reading and the closed forms of THEORY
+// sections 3 and 4. Opening d [m], memory j [m] (the jump [u]_max, never decreasing), K [Pa/m], F_u, F_c [Pa], G_f [J/m2], a = F_u/G_f, d_c
+// = F_c/K < 0:
 //     d >= j         t = K (d - j)             up to the threshold F_u exp(-a j)
 //     beyond it      t = K y, j = d - y, y = w/a with w exp(-w) = (a F_u/K) exp(-a d)       softening; one root because K > F_u^2/G_f
 //     d_c <= d < j   t = k_c (d - j)           closure, k_c = K/(1 + K j/|F_c|)
 //     d < d_c        t = K d
 // Path average: pieces of straight lines at fixed j (path.h), and on the softening part, where t falls from F_y = F_u exp(-a j_0) to t_1,
 //     integral t dd = G_f (exp(-a j_0) - exp(-a j_1)) + (t_1^2 - F_y^2)/(2K) = r (1/a - (2 F_y - r)/(2K)),     r = F_y - t_1,
-// with r from q = a (j_1 - j_0), the root of q - (a F_y/K)(1 - exp(-q)) = a (length of the softening part): nothing cancels in a short step.
-// Loops run over all points without a branch; points beyond the threshold are rare, are gathered, and have their own loops.
+// with r from q = a (j_1 - j_0), the root of q - (a F_y/K)(1 - exp(-q)) = a (length of the softening part): nothing cancels in a short
+// step. Loops run over all points without a branch; points beyond the threshold are rare, are gathered, and have their own loops.
 namespace uplift {
 namespace {
 
@@ -67,7 +68,8 @@ struct Sdm {
     return {d < knot ? k * d : slope * (d - j), slope};
   }
 
-  /// Average at fixed jump, which is that of the three straight pieces below `knot`, from there to j, and above. Places are measured from `from`.
+  /// Average at fixed jump, which is that of the three straight pieces below `knot`, from there to j, and above. Places are measured from
+  /// `from`.
   Average average(double from, double to, double j) const {
     const double way = to - from, low = smaller(way, 0.0), high = larger(way, 0.0), length = std::abs(way);
     const double held = larger(length, shortest_path), soft = closure + k * j;
@@ -91,7 +93,8 @@ struct Sdm {
 
   double dissipated(double j) const { return -energy * exponential(-rate * j).minus_one; }
 
-  /// Where softening begins, and the jump and the traction at `to`; `limit` is the threshold at j. Also right for a path that does not get there.
+  /// Where softening begins, and the jump and the traction at `to`; `limit` is the threshold at j. Also right for a path that does not get
+  /// there.
   Softening soften(double from, double to, double j, double limit) const {
     const double yield = j + limit * flexibility, elastic_end = smaller(to, larger(from, yield));
     const double y = inverse_rate * lambert_root(brittleness * exponential(-rate * to).value);
@@ -109,7 +112,7 @@ struct Step {
   int count;
 };
 
-constexpr int lanes = 8;   // of the widest vector registers
+constexpr int lanes = 8;  // of the widest vector registers
 
 /// Points of a block whose path touches the threshold, side by side.
 struct Gathered {
@@ -305,7 +308,8 @@ Surface SdmLaw::surface(double, double from, double to, Memory old) const {
   Surface surface;
   surface.traction = softens ? s.traction : law_.at(to, j).value;
   surface.damage = {.begin = begin, .end = end, .end_slope = growth};
-  surface.openness = {.begin = eta_at(from) * begin, .end = softens ? end : eta_at(to) * begin, .end_slope = softens ? growth : eta_slope * begin};
+  surface.openness = {
+      .begin = eta_at(from) * begin, .end = softens ? end : eta_at(to) * begin, .end_slope = softens ? growth : eta_slope * begin};
   // Along the softening part the damage counts by the mean of its ends, or is complete without strength.
   const double average_damage = strong ? 0.5 * (begin + end) : end, average_growth = strong ? 0.5 * growth : 0;
   const Path path(from, to), elastic(from, s.elastic_end);
@@ -324,9 +328,10 @@ std::unique_ptr<const NormalLaw> make_sdm(const Values& values) {
   const Sdm law(values.number("K_n"), values.number("F_u"), values.number("G_f"), values.number("F_c"));
   const double least = law.strength * law.strength / law.energy;
   if (!(law.k > least))
-    throw InputError(values.where("K_n"), values.path("K_n"),
-                     fmt::format("K_n > F_u^2/G_f = {:.6g} Pa/m, else the law snaps back (a softer joint releases more energy than G_f takes)", least),
-                     fmt::format("{:.6g} Pa/m", law.k));
+    throw InputError(
+        values.where("K_n"), values.path("K_n"),
+        fmt::format("K_n > F_u^2/G_f = {:.6g} Pa/m, else the law snaps back (a softer joint releases more energy than G_f takes)", least),
+        fmt::format("{:.6g} Pa/m", law.k));
   return std::make_unique<SdmLaw>(law);
 }
 

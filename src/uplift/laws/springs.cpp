@@ -1,13 +1,14 @@
 #include "uplift/laws/joint.h"
 #include "uplift/laws/path.h"
 
-// Tensionless springs, the classic no-tension base: K the stiffness [Pa/m], c the damping in contact [Pa s/m], d the opening, r = (to - from)/step.
+// Tensionless springs, the classic no-tension base: K the stiffness [Pa/m], c the damping in contact [Pa s/m], d the opening, r = (to -
+// from)/step.
 //     c = 0:  t = K min(d, 0)
 //     c > 0:  t = min(0, K d + c r) for d < 0, else 0       (a Kelvin-Voigt base that never pulls)
-// Path average: the path is straight and r constant, so t is linear up to the place k = min(0, -c r/K) where it ends (by zero force when the faces
-// part, r > 0; by a jump to c r when they meet, r < 0), and mean = share * (K middle + c r) with the part of the path below k.
-// Energy: K min(d, 0)^2/2 is stored; the dashpot takes c|r| per metre of path below k, and -K d per metre between k and 0, where the parting
-// faces no longer push although the spring is still short. Memory (c > 0 only): the energy taken by the dashpot [J/m2].
+// Path average: the path is straight and r constant, so t is linear up to the place k = min(0, -c r/K) where it ends (by zero force when
+// the faces part, r > 0; by a jump to c r when they meet, r < 0), and mean = share * (K middle + c r) with the part of the path below k.
+// Energy: K min(d, 0)^2/2 is stored; the dashpot takes c|r| per metre of path below k, and -K d per metre between k and 0, where the
+// parting faces no longer push although the spring is still short. Memory (c > 0 only): the energy taken by the dashpot [J/m2].
 namespace uplift {
 namespace {
 
@@ -61,7 +62,9 @@ class Springs final : public NormalLaw {
   static constexpr int block = 64;
 
   /// K min(d, 0); an opening that is no number gives no number, which stops Newton's method.
-  static double force(double stiffness, double d) { return d > 0 ? 0.0 : stiffness * d; }
+  static double force(double stiffness, double d) {
+    return d > 0 ? 0.0 : stiffness * d;
+  }
 
   void average(int count, const double* from, const double* to, double* mean, double* slope, double* end) const {
     const double stiffness = stiffness_;
@@ -107,17 +110,17 @@ class Springs final : public NormalLaw {
 }  // namespace
 
 const Entry<InterfaceLaw>& entry_law_springs() {
-  static const Entry<InterfaceLaw> entry = joint_entry(
-      {.name = "springs",
-       .summary = "tensionless springs (Winkler base without tension), with a dashpot in contact if wanted",
-       .equations = "t_n = K_n min(d_n, 0)\n"
-                    "with damping: t_n = min(0, K_n d_n + c d'_n) while d_n < 0, else 0: it never pulls",
-       .source = "Winkler (1867); the dashpot as in Kelvin-Voigt contact, cut off at zero force",
-       .params = {number("K_n", "Pa/m", "normal stiffness in compression").positive(),
-                  number("c", "Pa s/m", "damping while in contact").nonnegative().standard(0.0)}},
-      "none", [](const Values& values) -> std::unique_ptr<const NormalLaw> {
-        return std::make_unique<Springs>(values.number("K_n"), values.number("c"));
-      });
+  static const Entry<InterfaceLaw> entry =
+      joint_entry({.name = "springs",
+                   .summary = "tensionless springs (Winkler base without tension), with a dashpot in contact if wanted",
+                   .equations = "t_n = K_n min(d_n, 0)\n"
+                                "with damping: t_n = min(0, K_n d_n + c d'_n) while d_n < 0, else 0: it never pulls",
+                   .source = "Winkler (1867); the dashpot as in Kelvin-Voigt contact, cut off at zero force",
+                   .params = {number("K_n", "Pa/m", "normal stiffness in compression").positive(),
+                              number("c", "Pa s/m", "damping while in contact").nonnegative().standard(0.0)}},
+                  "none", [](const Values& values) -> std::unique_ptr<const NormalLaw> {
+                    return std::make_unique<Springs>(values.number("K_n"), values.number("c"));
+                  });
   return entry;
 }
 

@@ -15,11 +15,19 @@ struct Plane {
   Plane operator+(const Plane& o) const { return {x + o.x, y + o.y}; }
   Plane operator-(const Plane& o) const { return {x - o.x, y - o.y}; }
 };
-Plane operator*(double factor, const Plane& v) { return {factor * v.x, factor * v.y}; }
-double dot(const Plane& a, const Plane& b) { return a.x * b.x + a.y * b.y; }
-double size(const Plane& v) { return std::hypot(v.x, v.y); }
+Plane operator*(double factor, const Plane& v) {
+  return {factor * v.x, factor * v.y};
+}
+double dot(const Plane& a, const Plane& b) {
+  return a.x * b.x + a.y * b.y;
+}
+double size(const Plane& v) {
+  return std::hypot(v.x, v.y);
+}
 
-Plane plane(const double* values, int tangents, int points, int i) { return {values[i], tangents > 1 ? values[points + i] : 0.0}; }
+Plane plane(const double* values, int tangents, int points, int i) {
+  return {values[i], tangents > 1 ? values[points + i] : 0.0};
+}
 
 void put(const Plane& v, int tangents, int points, int i, double* values) {
   values[i] = v.x;
@@ -76,7 +84,8 @@ class Bonded final : public TangentialPart {
       for (int i = 0; i < call.batch.normal(); ++i) call.reply.end[i] = stiffness_ * call.to[i];
   }
 
-  void add_energy(const Batch& batch, const NormalLaw&, const double* opening, const double*, const double*, double* stored, double*) const override {
+  void add_energy(const Batch& batch, const NormalLaw&, const double* opening, const double*, const double*, double* stored,
+                  double*) const override {
     if (stored == nullptr) return;
     for (int c = 0; c < batch.components - 1; ++c)
       for (int i = 0; i < batch.points; ++i) {
@@ -103,8 +112,8 @@ class WithSlip : public TangentialPart {
   void respond(const TangentialCall& call) const final { advance(call, false); }
   void mean(const TangentialCall& call) const final { advance(call, true); }
 
-  void add_energy(const Batch& batch, const NormalLaw& normal, const double* opening, const double* normal_history, const double* history, double* stored,
-                  double* dissipated) const final {
+  void add_energy(const Batch& batch, const NormalLaw& normal, const double* opening, const double* normal_history, const double* history,
+                  double* stored, double* dissipated) const final {
     const int n = batch.points, tangents = batch.components - 1;
     for (int i = 0; i < n; ++i) {
       const Plane e = plane(opening, tangents, n, i) - plane(history, tangents, n, i);
@@ -122,7 +131,8 @@ class WithSlip : public TangentialPart {
   };
   /// Share of K e that is transferred at normal opening d.
   virtual double transfer(const NormalLaw& normal, double d, Memory normal_history) const = 0;
-  virtual State one(const TangentialCall& call, int i, const Plane& from, const Plane& to, const Plane& slip, bool average, Answer& answer) const = 0;
+  virtual State one(const TangentialCall& call, int i, const Plane& from, const Plane& to, const Plane& slip, bool average,
+                    Answer& answer) const = 0;
 
   double stiffness_;  // Pa/m
 
@@ -131,7 +141,8 @@ class WithSlip : public TangentialPart {
     const int n = call.batch.points, tangents = call.batch.components - 1;
     for (int i = 0; i < n; ++i) {
       Answer answer;
-      const State state = one(call, i, plane(call.from, tangents, n, i), plane(call.to, tangents, n, i), plane(call.old, tangents, n, i), average, answer);
+      const State state =
+          one(call, i, plane(call.from, tangents, n, i), plane(call.to, tangents, n, i), plane(call.old, tangents, n, i), average, answer);
       put(answer, call, i);
       if (average && call.reply.end != nullptr) put(state.end, tangents, n, i, call.reply.end);
       if (call.now == nullptr) continue;
@@ -142,7 +153,8 @@ class WithSlip : public TangentialPart {
 };
 
 /// The step is done in two parts that the normal part's path gives: a fraction f of it at the old openness, the rest at the new one, with
-/// f from the path average of the openness. Work of the two elastic parts = change of stored energy; the change of openness between them only dissipates.
+/// f from the path average of the openness. Work of the two elastic parts = change of stored energy; the change of openness between them
+/// only dissipates.
 class OpenFree final : public WithSlip {
  public:
   using WithSlip::WithSlip;
@@ -152,9 +164,11 @@ class OpenFree final : public WithSlip {
     return 1 - normal.surface(0, d, d, normal_history).openness.end;
   }
 
-  State one(const TangentialCall& call, int i, const Plane& from, const Plane& to, const Plane& slip, bool average, Answer& answer) const override {
+  State one(const TangentialCall& call, int i, const Plane& from, const Plane& to, const Plane& slip, bool average,
+            Answer& answer) const override {
     const int normal = call.batch.normal();
-    const Along o = call.normal.surface(call.batch.step, call.from[normal + i], call.to[normal + i], {call.normal_old + i, call.batch.points}).openness;
+    const Along o =
+        call.normal.surface(call.batch.step, call.from[normal + i], call.to[normal + i], {call.normal_old + i, call.batch.points}).openness;
     const double w0 = 1 - o.begin, w1 = 1 - o.end, gap = o.end - o.begin;
     const double f = gap != 0 ? std::clamp((o.end - o.mean) / gap, 0.0, 1.0) : 1, rest = 1 - f;
     const double f_slope = gap != 0 ? (rest * o.end_slope - o.mean_slope) / gap : 0;
@@ -187,9 +201,10 @@ class OpenFree final : public WithSlip {
 /// Elastic-plastic slip.
 /// End of the step: return mapping of the trial K (to - slip) on the bound at the end; the slip's work is t . slip.
 /// Path average: the bound is that of the path-averaged normal traction, constant in the step, and the path under it is followed exactly:
-/// elastic up to the place f where it meets the bound, then slip, whose traction goes from t_a to t_b on the bound and counts by its mean (exact for one
-/// component). A traction that is above the bound at the beginning first drops onto it, at the end it drops onto the bound there. So
-/// mean . (to - from) = change of stored energy + drops + (t_a + t_b)/2 . slip, of which the drops and the slip's work are never negative.
+/// elastic up to the place f where it meets the bound, then slip, whose traction goes from t_a to t_b on the bound and counts by its mean
+/// (exact for one component). A traction that is above the bound at the beginning first drops onto it, at the end it drops onto the bound
+/// there. So mean . (to - from) = change of stored energy + drops + (t_a + t_b)/2 . slip, of which the drops and the slip's work are never
+/// negative.
 class CoulombShear final : public WithSlip {
  public:
   CoulombShear(double stiffness, double friction, double cohesion) : WithSlip(stiffness), friction_(friction), cohesion_(cohesion) {}
@@ -197,7 +212,8 @@ class CoulombShear final : public WithSlip {
  protected:
   double transfer(const NormalLaw&, double, Memory) const override { return 1; }
 
-  State one(const TangentialCall& call, int i, const Plane& from, const Plane& to, const Plane& slip, bool average, Answer& answer) const override {
+  State one(const TangentialCall& call, int i, const Plane& from, const Plane& to, const Plane& slip, bool average,
+            Answer& answer) const override {
     const int normal = call.batch.normal(), last = call.batch.components * call.batch.components - 1;
     Surface surface;
     if (cohesion_ > 0 || average)
@@ -309,8 +325,8 @@ std::unique_ptr<const TangentialPart> make_tangential(const Values& values, doub
   if (kind == "bonded") return std::make_unique<Bonded>(stiffness);
   if (kind == "open_free") return std::make_unique<OpenFree>(stiffness);
   if (!values.has("friction"))
-    throw InputError(values.where("friction"), values.path("friction"), "a number (1): tangential = \"coulomb\" needs its coefficient of friction",
-                     "nothing");
+    throw InputError(values.where("friction"), values.path("friction"),
+                     "a number (1): tangential = \"coulomb\" needs its coefficient of friction", "nothing");
   return std::make_unique<CoulombShear>(stiffness, values.number("friction"), values.has("cohesion") ? values.number("cohesion") : 0);
 }
 

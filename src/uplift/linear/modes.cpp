@@ -70,7 +70,7 @@ Vibration lanczos(const Factor& factor, const Sparse& root, double shift, int co
   const Index basis = std::min<Index>(size, std::max<Index>(2 * wanted + 10, 20));
   Spectra::SymEigsSolver<Flexibility> solver(flexibility, wanted, basis);
   solver.init();
-  const Index found = solver.compute(Spectra::SortRule::LargestAlge, 1000, 1e-12);
+  const Index found = solver.compute(Spectra::SortRule::LargestAlge, 300, 1e-12);
   Vibration result{Vector(found), Matrix(root.rows(), found)};
   if (found == 0) return result;
   const Vector mu = solver.eigenvalues();
@@ -91,23 +91,28 @@ Vibration sparse_vibration(const Sparse& stiffness, const Sparse& mass, const st
   const Sparse root = sparse_root(mass, massive);
   Factorisation plain = solver->factorise(stiffness);
   if (plain.factor) return lanczos(*plain.factor, root, 0, count);
-  // rigid motions: as in math/vibration, the shift is lowered to the first elastic frequency
+  // Rigid motions: K + shift M. The shift is placed near the first elastic w^2, so that rigid motions are told from slow ones and Lanczos
+  // finds the slow ones quickly. The first guess lies far below the smallest Rayleigh quotient of a single unknown.
   double shift = 0;
   for (const int i : massive) {
     const double quotient = stiffness.coeff(i, i) / mass.coeff(i, i);
     if (quotient > 0 && (shift == 0 || quotient < shift)) shift = quotient;
   }
+  shift *= 1e-9;
   constexpr double rigid = 1e-7;
   constexpr int extra = 6;  // enough elastic modes beside the rigid ones to place the shift
   Vibration result;
   for (int pass = 0; pass < 8 && shift > 0; ++pass) {
     const Factorisation shifted = solver->factorise(stiffness + shift * mass);
-    if (!shifted.factor) return {};
+    if (!shifted.factor) {
+      shift *= 1e3;  // lost in the round-off of K, or a massless mechanism that no shift helps
+      continue;
+    }
     result = lanczos(*shifted.factor, root, shift, count + extra);
     double first = 0;
     for (Index i = 0; i < result.omega_squared.size() && first == 0; ++i)
       if (result.omega_squared[i] > rigid * shift) first = result.omega_squared[i];
-    if (first == 0 || first > 1e-3 * shift) break;
+    if (first == 0 || (first > 1e-3 * shift && first < 1e5 * shift)) break;
     shift = first;
   }
   for (double& value : result.omega_squared)

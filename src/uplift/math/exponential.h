@@ -3,7 +3,8 @@
 #include <bit>
 #include <cstdint>
 
-// Exponential functions without a branch and without a call, so that a loop over points becomes vector code (the C library's functions do not).
+// Exponential functions without a branch and without a call, so that a loop over points becomes vector code (the C library's functions do
+// not).
 namespace uplift {
 
 /// exp(x) - 1 and exp(x), both to about 1 ulp; x is held within +-708, where exp(x) neither underflows nor overflows.
@@ -12,8 +13,8 @@ struct Exponential {
   double minus_one;  // exp(x) - 1, without cancellation near x = 0
 };
 
-/// x = n ln 2 + r with |r| <= ln 2 / 2 (Cody & Waite: ln 2 in two parts, n times the first one is exact); exp(r) - 1 by its Taylor polynomial of
-/// degree 13, whose remainder is below 1e-17 of r; 2^n by its bits.
+/// x = n ln 2 + r with |r| <= ln 2 / 2 (Cody & Waite: ln 2 in two parts, n times the first one is exact); exp(r) - 1 by its Taylor
+/// polynomial of degree 13, whose remainder is below 1e-17 of r; 2^n by its bits.
 inline Exponential exponential(double x) {
   constexpr double round_to_integer = 0x1.8p52, log2_e = 0x1.71547652b82fep0;
   constexpr double ln2_high = 0x1.62e42feep-1, ln2_low = 0x1.a39ef35793c76p-33;

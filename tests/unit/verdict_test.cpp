@@ -1,0 +1,133 @@
+#include <gtest/gtest.h>
+
+#include "uplift/analysis/compare.h"
+#include "uplift/analysis/verdict.h"
+#include "uplift/analysis/wording.h"
+#include "uplift/model/builder.h"
+
+namespace uplift {
+namespace {
+
+TEST(Wording, SaysNumbersAsEngineersDo) {
+  EXPECT_EQ(spoken(0.0358759, "m"), "35.9 mm");
+  EXPECT_EQ(spoken(0.5, "s"), "0.500 s");
+  EXPECT_EQ(spoken(1.368543e6, "N m"), "1.37 MN m");
+  EXPECT_EQ(spoken(-2.5e3, "N"), "-2.50 kN");
+  EXPECT_EQ(spoken(0, "m"), "0 m");
+  EXPECT_EQ(spoken(3.2e-5, "m"), "0.0320 mm");
+  EXPECT_EQ(percent(0.686923), "69 %");
+  EXPECT_EQ(percent(0.0123), "1.2 %");
+  EXPECT_EQ(percent(1.5e-6), "0.00015 %");
+  EXPECT_EQ(beside(1.5, 1), "50 % more");
+  EXPECT_EQ(beside(0.63, -1), "37 % less");
+  EXPECT_EQ(beside(2.4, 1), "2.40 times as large");
+  EXPECT_EQ(beside(1.001, 1), "the same");
+}
+
+Request request(Request::Kind kind, const char* name, const char* unit, int unknown = 0) {
+  Request made;
+  made.kind = kind;
+  made.name = name;
+  made.unit = unit;
+  made.unknown = unknown;
+  return made;
+}
+
+/// A footing of half width 1.5 m under 1 MN that carries up to `moment`.
+RunResult result_with(double moment, double ratio) {
+  RunResult run;
+  run.columns = {request(Request::Kind::axial, "soil.axial", "N"), request(Request::Kind::moment, "soil.moment", "N m"), request(Request::Kind::displacement, "top.ux", "m", ux)};
+  run.table = {{0, 1}, {-1e6, -1e6}, {0, moment}, {0, 0.02}};
+  run.peaks = {{"soil.axial", "N", -1e6, 0}, {"soil.moment", "N m", moment, 1}, {"top.ux", "m", 0.02, 1}};
+  run.max_base_moment = {"", "N m", moment, 1};
+  run.max_uplifted_ratio = {"", "1", ratio, 0.7};
+  run.max_opening = {"", "m", ratio > 0 ? 0.013 : 0, 0.7};
+  run.energy_scale = 1e4;
+  run.end_time = 1;
+  return run;
+}
+
+Built footing() {
+  Built built;
+  built.model.nodes = {{"top", Vec2(0, 5)}};
+  built.top = 0;
+  built.facts = {{"soil", "base", 1.5, 0.5, 3, 0}};
+  built.weight = 1e6;
+  return built;
+}
+
+const Verdict::Fact* fact(const Verdict& verdict, const std::string& label) {
+  for (const Verdict::Fact& each : verdict.facts)
+    if (each.label == label) return &each;
+  return nullptr;
+}
+
+TEST(VerdictTest, SaysWhetherItUplifts) {
+  const Built built = footing();
+  EXPECT_EQ(judge(built, result_with(3e5, 0), nullptr).level, Verdict::Level::none);
+  const Verdict uplifts = judge(built, result_with(1.2e6, 0.6), nullptr);
+  EXPECT_EQ(uplifts.level, Verdict::Level::uplift);
+  EXPECT_EQ(uplifts.headline, "The base uplifts: up to 60 % of its area, by up to 13.0 mm");
+}
+
+TEST(VerdictTest, SafetyAgainstOverturning) {
+  // W b/M = 1e6 * 1.5/1.2e6 = 1.25
+  const Verdict verdict = judge(footing(), result_with(1.2e6, 0.6), nullptr);
+  ASSERT_NE(fact(verdict, "Safety against overturning"), nullptr);
+  EXPECT_EQ(fact(verdict, "Safety against overturning")->value, "1.25");
+}
+
+TEST(VerdictTest, ComparesWithTheBondedBase) {
+  RunResult bonded = result_with(2.4e6, 0);
+  bonded.peaks[2].value = 0.01;
+  const Verdict verdict = judge(footing(), result_with(1.2e6, 0.6), &bonded);
+  std::string all;
+  for (const std::string& paragraph : verdict.paragraphs) all += paragraph + "\n";
+  EXPECT_NE(all.find("the largest base moment is 50 % less (1.20 MN m instead of 2.40 MN m), and the largest motion of top is 2.00 times as large"), std::string::npos) << all;
+  EXPECT_NE(all.find("1.6 times the moment W b"), std::string::npos) << all;
+}
+
+TEST(VerdictTest, ARunThatCreatesEnergyIsNotToBeUsed) {
+  RunResult run = result_with(1.2e6, 0.6);
+  run.status = RunStatus::failed;
+  run.reason = "energy was created";
+  run.energy_created = 8e4;
+  const Verdict verdict = judge(footing(), run, nullptr);
+  EXPECT_EQ(verdict.level, Verdict::Level::failed);
+  EXPECT_NE(verdict.paragraphs.back().find("not to be used"), std::string::npos);
+}
+
+TEST(AgreementTest, ComparesSoundRunsWithTheirMedian) {
+  std::vector<RunResult> results;
+  std::vector<RunSpec> specs;
+  for (const double peak : {1.00, 1.01, 0.99, 1.10}) {
+    RunResult run = result_with(1e6, 0.5);
+    run.peaks[2].value = peak;
+    results.push_back(run);
+    specs.emplace_back();
+  }
+  results[0].peaks[2].value = -1.00;  // the sign does not matter
+  const auto found = agreement(results, specs, {"top.ux"}, 0.02, 0, -1);
+  // median of 0.99, 1.00, 1.01, 1.10 is 1.005
+  EXPECT_EQ(found[0].word, Agreement::Word::agrees);
+  EXPECT_EQ(found[3].word, Agreement::Word::differs);
+  EXPECT_NEAR(found[3].deviation, (1.10 - 1.005) / 1.005, 1e-12);
+  EXPECT_EQ(found[3].column, "top.ux");
+}
+
+TEST(AgreementTest, FailedAndBondedRunsDoNotCount) {
+  std::vector<RunResult> results(3, result_with(1e6, 0.5));
+  std::vector<RunSpec> specs(3);
+  results[1].status = RunStatus::failed;
+  results[1].peaks[2].value = 1e9;
+  specs[2].bonded = true;
+  results[2].peaks[2].value = 5;
+  const auto found = agreement(results, specs, {}, 0.02, 0, -1);
+  EXPECT_EQ(found[0].word, Agreement::Word::agrees);
+  EXPECT_EQ(found[0].deviation, 0);
+  EXPECT_EQ(found[1].word, Agreement::Word::failed);
+  EXPECT_EQ(found[2].word, Agreement::Word::not_counted);
+}
+
+}  // namespace
+}  // namespace uplift
