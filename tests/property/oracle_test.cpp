@@ -61,16 +61,18 @@ void check(Whole& whole, const std::string& name, bool must_lift = true) {
 }
 
 /// Every step from the same beginning: for marches that amplify round-off (an impact rule that pumps energy, hard contact of a rocking body).
-void check_steps(Whole& whole, const std::string& name) {
+/// `retries`: so many steps may be halved, where the step itself may have no solution (or more than one).
+void check_steps(Whole& whole, const std::string& name, long retries = 0) {
   SCOPED_TRACE(name);
   whole.plan.created_limit = 1e30;
   whole.plan.rotation_limit = 1e30;
   whole.plan.oracle_tolerance = 1e-8;
-  for (Stage& stage : whole.plan.stages) stage.halvings = 0;
+  for (Stage& stage : whole.plan.stages) stage.halvings = retries > 0 ? 8 : 0;
   const RunResult result = whole.run();
   EXPECT_EQ(result.status, RunStatus::completed) << result.reason;
+  EXPECT_LE(result.counts.retries, retries);
   EXPECT_GT(result.max_opening.value, 1e-6);
-  std::printf("%-70s each step    lifted %.3f  %s\n", name.c_str(), result.max_uplifted_ratio.value, result.reason.c_str());
+  std::printf("%-70s each step    lifted %.3f  retries %ld %s\n", name.c_str(), result.max_uplifted_ratio.value, result.counts.retries, result.reason.c_str());
 }
 
 std::vector<Part> traction_laws(double k, const std::string& tangential) {
@@ -170,7 +172,7 @@ TEST(Oracle, SlidingFootingOnConstraints) {
         Whole whole = make(data);
         choose(whole, {method}, impact);
         whole.plan.stages = {settle(), march(1e-3, 1000, true, rule)};
-        check_steps(whole, "footing, coulomb, " + method + ", " + impact.type + ", " + rule.type);
+        check_steps(whole, "footing, coulomb, " + method + ", " + impact.type + ", " + rule.type, 5);
       }
 }
 
@@ -188,10 +190,11 @@ TEST(Oracle, BeamOnTwoInterfaces) {
           Whole whole = make(data);
           choose(whole, {method}, impact);
           whole.plan.stages = {settle(), march(1e-3, 1000, true, rule)};
-          check_steps(whole, "bridge, " + cone + ", " + method + ", " + impact.type + ", " + rule.type);
+          check_steps(whole, "bridge, " + cone + ", " + method + ", " + impact.type + ", " + rule.type, cone == "coulomb" ? 5 : 0);
         }
 }
 
+/// The dashpot of the viscous springs sets in with a jump: at the end of a step in which contact begins there may be no solution until it is halved.
 TEST(Oracle, LeavesOnEveryLaw) {
   for (const std::string tangential : {"none", "bonded", "open_free", "coulomb"})
     for (const Part& law : traction_laws(3e8, tangential))
@@ -201,7 +204,7 @@ TEST(Oracle, LeavesOnEveryLaw) {
         Whole whole = make(data);
         choose(whole, {"newton"}, {"none"});
         whole.plan.stages = {settle(), march(1e-3, 1000, path)};
-        check_steps(whole, "leaves, " + name_of(law) + (path ? ", path" : ", end"));
+        check_steps(whole, "leaves, " + name_of(law) + (path ? ", path" : ", end"), name_of(law).find("viscous") != std::string::npos ? 5 : 0);
       }
 }
 
@@ -216,7 +219,7 @@ TEST(Oracle, LeavesOnConstraints) {
           Whole whole = make(data);
           choose(whole, {method}, impact);
           whole.plan.stages = {settle(), march(1e-3, 1000, true, rule)};
-          check_steps(whole, "leaves, " + cone + ", " + method + ", " + impact.type + ", " + rule.type);
+          check_steps(whole, "leaves, " + cone + ", " + method + ", " + impact.type + ", " + rule.type, cone == "coulomb" ? 5 : 0);
         }
 }
 

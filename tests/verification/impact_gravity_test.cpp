@@ -1,5 +1,6 @@
-// A bar that bounces on a wall under gravity, and one that rests on it (VERIFICATION section 3): E = 900, rho = 1, A = 1, L = 10, g = 10, so c = 30 and
-// the stress of its own weight is rho g L = 100. Dropped from 5 m it arrives with 10 m/s after 1 s and the motion is exact and periodic, T = 16/3 s.
+// A bar that bounces on a wall under gravity, and one that rests on it (VERIFICATION section 3): E = 900, rho = 1, A = 1, L = 10, g = 10,
+// so c = 30 and the stress of its own weight is rho g L = 100. Dropped from 5 m it arrives with 10 m/s after 1 s and the motion is exact
+// and periodic, T = 16/3 s.
 #include <gtest/gtest.h>
 
 #include <cmath>
@@ -61,9 +62,10 @@ std::vector<Flight> flights(const History& run) {
   return result;
 }
 
-// Claim: instants of contact and mean motion over one period: d'Alembert's solution (the CSV). The first contact is met within two steps; later
-// fronts have gone through the mesh and are as broad as a few elements: six steps. Force: p = 300 + 300 (t - 1) in the first contact (1.5 % of 500), in the second one its
-// mean over the inner part, exact mean of 500 - 300 (t - 11/3) (1.5 %), as the fronts ring; impulse of each contact 800/3 (1 %).
+// Claim: instants of contact and mean motion over one period: d'Alembert's solution (the CSV). The first contact is met within two steps;
+// later fronts have gone through the mesh and are as broad as a few elements: six steps. Force: p = 300 + 300 (t - 1) in the first contact
+// (1.5 % of 500), in the second one its mean over the inner part, exact mean of 500 - 300 (t - 11/3) (1.5 %), as the fronts ring; impulse
+// of each contact 800/3 (1 %).
 TEST(BouncingBar, OnePeriod) {
   const Reference exact = reference("bouncing_bar.csv");
   Bar bar = dropped_bar(200, "project_hold");
@@ -88,8 +90,8 @@ TEST(BouncingBar, OnePeriod) {
     for (std::size_t i = 0; i < exact["t"].size(); ++i) EXPECT_NEAR(exact_mean(exact["t"][i]), exact["u_mean"][i], 1e-8);
 }
 
-// Claim: the mean height over the first period converges to the exact one: below 4 % of 5 m at n = 200 (what is missing went into ringing of the
-// fronts), and with an order of more than 1/2.
+// Claim: the mean height over the first period converges to the exact one: below 4 % of 5 m at n = 200 (what is missing went into ringing
+// of the fronts), and with an order of more than 1/2.
 TEST(BouncingBar, MeanHeightConverges) {
   std::vector<double> size, worst;
   for (const int n : {100, 200, 400}) {
@@ -105,8 +107,8 @@ TEST(BouncingBar, MeanHeightConverges) {
   EXPECT_GT(order(size, worst), 0.5);
 }
 
-// Claim: energy after the first impact converges with h^1 (VERIFICATION section 10). The bar arrives with 10 m/s, its lowest node carries 1/(2n) of
-// the mass: the loss is 1/(2n) (5 % for where in the step it falls, at n >= 100).
+// Claim: energy after the first impact converges with h^1 (VERIFICATION section 10). The bar arrives with 10 m/s, its lowest node carries
+// 1/(2n) of the mass: the loss is 1/(2n) (5 % for where in the step it falls, at n >= 100).
 TEST(BouncingBar, ExitEnergyIsOfFirstOrder) {
   std::vector<double> size, lost;
   for (const int n : {50, 100, 200, 400}) {
@@ -121,10 +123,11 @@ TEST(BouncingBar, ExitEnergyIsOfFirstOrder) {
   EXPECT_NEAR(order(size, lost), 1, 0.1);
 }
 
-// Claim: energy and apex after 10 and 50 impacts, every rule (exact: 500 J and 5 m for ever; the apex falls in every mesh, since the fronts ring and the
-// bar no longer returns undeformed). Path-averaged joints keep the energy to 1e-8 over the whole run. project_hold never exceeds the energy at the
-// start and loses at every closing, those inside a contact included, no more than the lowest node brings: m/(2n) v^2/2 with its own velocity v (twice
-// that where it closes inside a step). The others are reported: `none`, `project` and `reflect` create energy in long runs.
+// Claim: energy and apex after 10 and 50 impacts, every rule (exact: 500 J and 5 m for ever; the apex falls in every mesh, since the fronts
+// ring and the bar no longer returns undeformed). Path-averaged joints keep the energy to 1e-8 over the whole run. project_hold never
+// exceeds the energy at the start and loses at every closing, those inside a contact included, no more than the lowest node brings: m/(2n)
+// v^2/2 with its own velocity v (twice that where it closes inside a step). The others are reported: `none`, `project` and `reflect` create
+// energy in long runs.
 TEST(BouncingBar, FiftyImpacts) {
   struct Run {
     const char *name, *impact, *law, *method;
@@ -132,7 +135,8 @@ TEST(BouncingBar, FiftyImpacts) {
   const int n = 50;
   for (const Run& rule : {Run{"none", "none", "\"unilateral\"", ""}, Run{"project", "project", "\"unilateral\"", ""},
                           Run{"project_hold", "project_hold", "\"unilateral\"", ""}, Run{"reflect", "reflect", "\"unilateral\"", ""},
-                          Run{"propagate", "propagate", "\"unilateral\"", ""}, Run{"penalty", "none", "\"unilateral\"", "{ type = \"penalty\", stiffness = 1e5 }"},
+                          Run{"propagate", "propagate", "\"unilateral\"", ""},
+                          Run{"penalty", "none", "\"unilateral\"", "{ type = \"penalty\", stiffness = 1e5 }"},
                           Run{"sdm", "none", "{ type = \"sdm\", K_n = 1e5, F_u = 0, G_f = 1, F_c = -0.001, tangential = \"none\" }", ""}}) {
     Bar bar = dropped_bar(n, rule.impact);
     bar.law = rule.law;
@@ -171,8 +175,9 @@ TEST(BouncingBar, FiftyImpacts) {
   }
 }
 
-// Claim: gravity applied suddenly to a bar that rests on the wall: the pressure at the foot runs between 0 and 2 rho g L as a triangle of period
-// 4L/c (d'Alembert), never negative. Tolerances at n = 200: 1 % of 2 rho g L for the range, 2 % for the root mean square distance from the triangle.
+// Claim: gravity applied suddenly to a bar that rests on the wall: the pressure at the foot runs between 0 and 2 rho g L as a triangle of
+// period 4L/c (d'Alembert), never negative. Tolerances at n = 200: 1 % of 2 rho g L for the range, 2 % for the root mean square distance
+// from the triangle.
 TEST(RestingBar, GravityAppliedSuddenly) {
   Bar bar = dropped_bar(200, "project_hold");
   bar.gap = 0;

@@ -1,5 +1,6 @@
-// Numerical damping and period error of the time integration (VERIFICATION section 7): a linear oscillator, 50 cycles, against the eigenvalues of the
-// scheme's own amplification matrix, worked out here from the equations of the scheme (not from the program), and against the reference table.
+// Numerical damping and period error of the time integration (VERIFICATION section 7): a linear oscillator, 50 cycles, against the
+// eigenvalues of the scheme's own amplification matrix, worked out here from the equations of the scheme (not from the program), and
+// against the reference table.
 #include <gtest/gtest.h>
 
 #include <array>
@@ -33,9 +34,15 @@ Coefficients generalised(double rho) {
 }
 
 std::vector<Coefficients> all_schemes() {
-  return {newmark("trapezoidal", "\"average_acceleration\"", 0.5), hht(-0.05), hht(-0.1), hht(-0.3),
-          {"newmark_g0.6", "{ type = \"newmark\", gamma = 0.6, beta = 0.3025 }", 0.3025, 0.6, 0, 0}, generalised(0.9), generalised(0.8),
-          generalised(0.5), generalised(0.0)};
+  return {newmark("trapezoidal", "\"average_acceleration\"", 0.5),
+          hht(-0.05),
+          hht(-0.1),
+          hht(-0.3),
+          {"newmark_g0.6", "{ type = \"newmark\", gamma = 0.6, beta = 0.3025 }", 0.3025, 0.6, 0, 0},
+          generalised(0.9),
+          generalised(0.8),
+          generalised(0.5),
+          generalised(0.0)};
 }
 
 /// x1 = A x0 for x = (u, dt v, dt^2 a) and u'' + w^2 u = 0: columns by unit states through the equations of the scheme.
@@ -58,7 +65,8 @@ std::array<std::array<double, 3>, 3> amplification(const Coefficients& s, double
 Complex principal_root(const std::array<std::array<double, 3>, 3>& a, double w_dt) {
   const auto minor = [&](int i, int j) { return a[i][i] * a[j][j] - a[i][j] * a[j][i]; };
   const double trace = a[0][0] + a[1][1] + a[2][2], second = minor(0, 1) + minor(0, 2) + minor(1, 2);
-  const double det = a[0][0] * minor(1, 2) - a[0][1] * (a[1][0] * a[2][2] - a[1][2] * a[2][0]) + a[0][2] * (a[1][0] * a[2][1] - a[1][1] * a[2][0]);
+  const double det =
+      a[0][0] * minor(1, 2) - a[0][1] * (a[1][0] * a[2][2] - a[1][2] * a[2][0]) + a[0][2] * (a[1][0] * a[2][1] - a[1][1] * a[2][0]);
   Complex x = std::exp(Complex(0, w_dt));
   for (int i = 0; i < 100; ++i) x -= (((x - trace) * x + second) * x - det) / ((3.0 * x - 2 * trace) * x + second);
   return x;
@@ -77,20 +85,23 @@ Error error_of(Complex root, double w_dt) {
 std::vector<double> oscillation(const Coefficients& s, double dt, double cycles) {
   char text[1200];
   std::snprintf(text, sizeof text,
-                "title = \"Oscillator\"\n[nodes]\nm = [0, 0]\nidle = [1, 0]\n[[mass]]\nnode = \"m\"\nmass = 2\n[[spring]]\nnodes = [\"m\"]\ndirection = [1, 0]\n"
+                "title = \"Oscillator\"\n[nodes]\nm = [0, 0]\nidle = [1, 0]\n[[mass]]\nnode = \"m\"\nmass = 2\n[[spring]]\nnodes = "
+                "[\"m\"]\ndirection = [1, 0]\n"
                 "stiffness = %.17g\n"
                 // a case has an interface: one that stays open beside the oscillator
                 "[[interface]]\nname = \"far\"\ngap = 10\npairs = { upper = [\"idle\"], area = 1 }\nlaw = \"unilateral\"\n"
                 "[[mass]]\nnode = \"idle\"\nmass = 1\n[[spring]]\nnodes = [\"idle\"]\ndirection = [0, 1]\nstiffness = 1\n"
-                "[[support]]\nnode = \"idle\"\nfixed = [\"ux\", \"rz\"]\n[[support]]\nnode = \"m\"\nfixed = [\"uy\", \"rz\"]\n[[initial]]\nnode = \"m\"\ndisplacement = [1, 0]\n"
+                "[[support]]\nnode = \"idle\"\nfixed = [\"ux\", \"rz\"]\n[[support]]\nnode = \"m\"\nfixed = [\"uy\", "
+                "\"rz\"]\n[[initial]]\nnode = \"m\"\ndisplacement = [1, 0]\n"
                 "[[stage]]\ntype = \"dynamic\"\nduration = %.17g\nstep = %.17g\nscheme = %s\n[energy]\ncreated_limit = 1e9\n"
                 "[output]\nframes = 0\nautomatic = false\nhistory = [{ name = \"u\", node = \"m\", quantity = \"ux\" }]\n",
                 2 * 4 * pi * pi, cycles, dt, s.text.c_str());
   return run_text(text)["u"];
 }
 
-// Claim: after 50 cycles the program's displacement is that of the amplification matrix, u_n = (A^n x0)_0 with the consistent initial acceleration:
-// amplitude and phase, hence period and damping, to 1e-6 (relative to T and to the amplitude); it is far better, so 1e-9 is asked.
+// Claim: after 50 cycles the program's displacement is that of the amplification matrix, u_n = (A^n x0)_0 with the consistent initial
+// acceleration: amplitude and phase, hence period and damping, to 1e-6 (relative to T and to the amplitude); it is far better, so 1e-9 is
+// asked.
 TEST(Integrators, FiftyCyclesFollowTheAmplificationMatrix) {
   for (const Coefficients& scheme : all_schemes())
     for (const double dt : {0.01, 0.02, 0.05, 0.1, 0.2}) {
@@ -131,15 +142,15 @@ TEST(Integrators, DampingAndPeriodMeasured) {
     }
 }
 
-// Claim: the closed form used above is that of the reference table (spectral radius, damping, period error): 1e-9. This is what ties the program to
-// the table.
+// Claim: the closed form used above is that of the reference table (spectral radius, damping, period error): 1e-9. This is what ties the
+// program to the table.
 TEST(Integrators, ReferenceTable) {
   const Reference table = reference("integrators.csv");
   if (table.empty()) GTEST_SKIP() << "no shared/reference/integrators.csv";
-  const std::pair<std::string, Coefficients> rows[] = {{"trapezoidal", all_schemes()[0]}, {"hht-0.05", all_schemes()[1]}, {"hht-0.1", all_schemes()[2]},
-                                                       {"hht-0.3", all_schemes()[3]},     {"newmark_g0.6", all_schemes()[4]},
-                                                       {"genalpha_rho0.9", all_schemes()[5]}, {"genalpha_rho0.8", all_schemes()[6]},
-                                                       {"genalpha_rho0.5", all_schemes()[7]}, {"genalpha_rho0", all_schemes()[8]}};
+  const std::pair<std::string, Coefficients> rows[] = {
+      {"trapezoidal", all_schemes()[0]},     {"hht-0.05", all_schemes()[1]},        {"hht-0.1", all_schemes()[2]},
+      {"hht-0.3", all_schemes()[3]},         {"newmark_g0.6", all_schemes()[4]},    {"genalpha_rho0.9", all_schemes()[5]},
+      {"genalpha_rho0.8", all_schemes()[6]}, {"genalpha_rho0.5", all_schemes()[7]}, {"genalpha_rho0", all_schemes()[8]}};
   int seen = 0;
   for (const auto& [name, scheme] : rows)
     for (std::size_t i = 0; i < table.words.size(); ++i) {
@@ -155,7 +166,8 @@ TEST(Integrators, ReferenceTable) {
   EXPECT_EQ(seen, 45);
 }
 
-// Claim: every scheme but Newmark with gamma > 1/2 is of second order, that one of first order (VERIFICATION section 10: smooth dynamics dt^2).
+// Claim: every scheme but Newmark with gamma > 1/2 is of second order, that one of first order (VERIFICATION section 10: smooth dynamics
+// dt^2).
 TEST(Integrators, Orders) {
   for (const Coefficients& scheme : all_schemes()) {
     std::vector<double> step, error;
@@ -163,7 +175,8 @@ TEST(Integrators, Orders) {
       const std::vector<double> u = oscillation(scheme, 1.0 / per_cycle, 2.25);  // a zero of the cosine: sensitive to the period
       const std::vector<double> whole = oscillation(scheme, 1.0 / per_cycle, 2);
       step.push_back(1.0 / per_cycle);
-      error.push_back(std::abs(u.back() - std::cos(2 * pi * 1.0 / per_cycle * static_cast<double>(u.size() - 1))) + std::abs(whole.back() - 1));
+      error.push_back(std::abs(u.back() - std::cos(2 * pi * 1.0 / per_cycle * static_cast<double>(u.size() - 1))) +
+                      std::abs(whole.back() - 1));
     }
     EXPECT_NEAR(order(step, error), scheme.name == "newmark_g0.6" ? 1 : 2, 0.1) << scheme.text;
   }

@@ -14,7 +14,8 @@
 namespace uplift::verification {
 namespace {
 
-const std::vector<double>& named(const std::vector<std::string>& names, const std::vector<std::vector<double>>& columns, std::string_view name) {
+const std::vector<double>& named(const std::vector<std::string>& names, const std::vector<std::vector<double>>& columns,
+                                 std::string_view name) {
   const auto found = std::find(names.begin(), names.end(), name);
   if (found == names.end()) throw std::out_of_range(fmt::format("no column \"{}\" among: {}", name, fmt::join(names, ", ")));
   return columns[static_cast<std::size_t>(found - names.begin())];
@@ -104,22 +105,23 @@ std::string Bar::text() const {
   for (int i = 0; i <= elements; ++i) out += fmt::format("n{} = [0, {:.17g}]\n", i, length * i / elements);
   for (int i = 0; i < elements; ++i)
     out += fmt::format(
-        "[[beam]]\nname = \"b{}\"\nnodes = [\"n{}\", \"n{}\"]\nE = {:.17g}\nI = 1.0\nA = {:.17g}\nmass = \"lumped\"\ndensity = {:.17g}\n", i, i,
-        i + 1, modulus, area, density);
+        "[[beam]]\nname = \"b{}\"\nnodes = [\"n{}\", \"n{}\"]\nE = {:.17g}\nI = 1.0\nA = {:.17g}\nmass = \"lumped\"\ndensity = {:.17g}\n",
+        i, i, i + 1, modulus, area, density);
   for (int i = 0; i <= elements; ++i) out += fmt::format("[[support]]\nnode = \"n{}\"\nfixed = [\"ux\", \"rz\"]\n", i);
   if (velocity != 0)
     for (int i = 0; i <= elements; ++i) out += fmt::format("[[initial]]\nnode = \"n{}\"\nvelocity = [0, {:.17g}]\n", i, velocity);
   out += fmt::format("[[interface]]\nname = \"foot\"\ngap = {:.17g}\npairs = {{ upper = [\"n0\"], area = 1 }}\nlaw = {}\n", gap, law);
   if (gravity != 0) out += fmt::format("[gravity]\nacceleration = [0, {:.17g}]\n", -gravity);
   out += stages;
-  out += fmt::format("[[stage]]\ntype = \"dynamic\"\nduration = {:.17g}\nstep = {:.17g}\nscheme = {}\ntraction = \"{}\"\n", duration, time_step(),
-                     scheme, traction);
+  out += fmt::format("[[stage]]\ntype = \"dynamic\"\nduration = {:.17g}\nstep = {:.17g}\nscheme = {}\ntraction = \"{}\"\n", duration,
+                     time_step(), scheme, traction);
   out += fmt::format("[energy]\ncreated_limit = 1e9\n[output]\nframes = 0\nautomatic = false\nevery = {}\n", every);
-  out += "history = [{ interface = \"foot\", point = 1, quantity = \"traction\" }, { interface = \"foot\", point = 1, quantity = \"mean_traction\" },\n"
-         "  { interface = \"foot\", point = 1, quantity = \"opening\" },\n"
-         "  { name = \"low\", node = \"n0\", quantity = \"uy\" }, { name = \"low.v\", node = \"n0\", quantity = \"vy\" },\n";
-  for (int i = 0; i <= 10; ++i)
-    out += fmt::format("  {{ name = \"at{}\", node = \"n{}\", quantity = \"uy\" }},\n", i, i * elements / 10);
+  out +=
+      "history = [{ interface = \"foot\", point = 1, quantity = \"traction\" }, { interface = \"foot\", point = 1, quantity = "
+      "\"mean_traction\" },\n"
+      "  { interface = \"foot\", point = 1, quantity = \"opening\" },\n"
+      "  { name = \"low\", node = \"n0\", quantity = \"uy\" }, { name = \"low.v\", node = \"n0\", quantity = \"vy\" },\n";
+  for (int i = 0; i <= 10; ++i) out += fmt::format("  {{ name = \"at{}\", node = \"n{}\", quantity = \"uy\" }},\n", i, i * elements / 10);
   out += fmt::format("  {{ name = \"high\", node = \"n{}\", quantity = \"uy\" }}]\n", elements);
   return out;
 }

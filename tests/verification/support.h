@@ -3,7 +3,8 @@
 #include <string_view>
 #include <vector>
 
-// What the verification cases share: a case file as text is run in the program, from the reader to the output table, and the answer is plain numbers.
+// What the verification cases share: a case file as text is run in the program, from the reader to the output table, and the answer is
+// plain numbers.
 namespace uplift::verification {
 
 /// The output table of a finished run.

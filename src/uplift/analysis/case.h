@@ -68,6 +68,7 @@ struct Built {
   std::vector<std::unique_ptr<const Values>> derived;  // behaviours made here (bonded, swept)
   std::vector<InterfaceFacts> facts;                   // one per interface
   std::vector<std::string> notes;                      // what was chosen automatically (tuned mass, scaled penalty)
+  double tuned_mass = 0;                               // kg: of the tuned point mass, 0 without
   double weight = 0;                                   // N: resultant of the dead loads against the first interface's normal
   int top = -1, base = -1;                             // nodes whose motion is shown: the highest mass, the first interface's body
 };

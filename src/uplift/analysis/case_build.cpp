@@ -254,7 +254,10 @@ Built build(const Case& read, const RunSpec& spec) {
   add_nodes(root, builder, names);
   add_functions(root, names);
   const std::vector<double> tuned = tuned_masses(read, spec);
-  for (const double mass : tuned) built.notes.push_back(fmt::format("the tuned mass is {:.10g} kg", mass));
+  if (!tuned.empty()) {
+    built.tuned_mass = tuned.front();
+    built.notes.push_back(fmt::format("the tuned mass is {:.10g} kg", built.tuned_mass));
+  }
   add_structure(root, builder, names, tuned);
   add_interfaces(read, spec, builder, names, built);
   add_loads(root, builder, names);

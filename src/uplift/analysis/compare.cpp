@@ -79,7 +79,7 @@ std::vector<SweepRow> sweep_table(const std::vector<RunSpec>& specs, const std::
   std::vector<SweepRow> rows;
   for (std::size_t i = 0; i + 1 < results.size(); i += 2)
     rows.push_back({specs[i].stiffness_ratio.value_or(0), created_share(results[i]), created_share(results[i + 1]), std::string(to_string(results[i].status)),
-                    std::string(to_string(results[i + 1].status))});
+                    std::string(to_string(results[i + 1].status)) + (results[i + 1].status == RunStatus::failed ? " (expected)" : "")});
   return rows;
 }
 

@@ -24,7 +24,7 @@ std::vector<Agreement> agreement(const std::vector<RunResult>& results, const st
 struct SweepRow {
   double ratio = 0;                  // k F_ii
   double path = 0, end = 0;          // share created
-  std::string path_status, end_status;
+  std::string path_status, end_status;  // an end-of-step run may fail
 };
 /// `results`: pairs (path, end), as comparison_of_case lists them.
 std::vector<SweepRow> sweep_table(const std::vector<RunSpec>& specs, const std::vector<RunResult>& results);

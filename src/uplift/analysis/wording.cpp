@@ -41,6 +41,7 @@ std::string spoken(double value, std::string_view unit) {
 }
 
 std::string percent(double fraction) {
+  if (std::abs(fraction) >= 10) return fmt::format("{:.3g} times", fraction);
   const double value = 100 * fraction;
   if (std::abs(value) < 0.05 && value != 0) return fmt::format("{:.2g} %", value);
   return fmt::format("{:.{}f} %", value, std::abs(value) < 10 ? 1 : 0);

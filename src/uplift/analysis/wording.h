@@ -7,7 +7,7 @@ namespace uplift {
 
 /// "35.9 mm", "1.37 MN m", "0.5 s": three significant digits, with a prefix where the unit takes one.
 std::string spoken(double value, std::string_view unit);
-/// "68.7 %"; a fraction is given.
+/// "69 %", "1.2 %", and "46 times" from ten on; a fraction is given.
 std::string percent(double fraction);
 /// "2.4 times as large", "37 % less", "the same": of a value beside a reference.
 std::string beside(double value, double reference);

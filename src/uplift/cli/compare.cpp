@@ -30,7 +30,9 @@ void print_runs(const Results& results, const ComparisonSummary& compared) {
     const Peak* motion = top >= 0 ? find_peak(run, Request::Kind::displacement, 3 * top + ux) : nullptr;
     const Agreement& agreement = compared.agreement[i];
     const bool counted = agreement.word == Agreement::Word::agrees || agreement.word == Agreement::Word::differs;
-    rows.push_back({run.label, status_text(run), motion ? spoken(std::abs(motion->value), "m") : "-", percent(run.max_uplifted_ratio.value), spoken(run.max_opening.value, "m"),
+    const bool bonded = results.specs[i].bonded;  // it stretches instead of opening
+    rows.push_back({run.label, status_text(run), motion ? spoken(std::abs(motion->value), "m") : "-", bonded ? "-" : percent(run.max_uplifted_ratio.value),
+                    bonded ? "-" : spoken(run.max_opening.value, "m"),
                     spoken(std::abs(run.max_base_moment.value), "N m"), percent(created_share(run)), std::string(to_string(agreement.word)),
                     counted ? percent(agreement.deviation) : "-"});
   }

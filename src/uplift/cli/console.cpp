@@ -76,7 +76,7 @@ void print_table(const std::vector<std::vector<std::string>>& rows) {
   }
 }
 
-ProgressLine::ProgressLine(std::string label, bool quiet) : label_(std::move(label)), shown_(!quiet && on_terminal()) {}
+ProgressLine::ProgressLine(std::string label, bool quiet) : label_(std::move(label)), quiet_(quiet), terminal_(on_terminal()) {}
 
 ProgressLine::~ProgressLine() {
   if (drawn_) fmt::print(stderr, "\r\033[K");
@@ -84,9 +84,9 @@ ProgressLine::~ProgressLine() {
 
 bool ProgressLine::operator()(const Progress& progress) {
   if (interrupt_asked()) return false;
-  if (!shown_) return true;
+  if (quiet_) return true;
   const Clock::time_point now = Clock::now();
-  if (now - last_ < std::chrono::milliseconds(100)) return true;
+  if (now - last_ < (terminal_ ? std::chrono::milliseconds(100) : std::chrono::milliseconds(10000))) return true;
   last_ = now;
   const double spent = std::chrono::duration<double>(now - start_).count();
   const double left = progress.fraction > 0 ? spent * (1 - progress.fraction) / progress.fraction : 0;
@@ -95,6 +95,10 @@ bool ProgressLine::operator()(const Progress& progress) {
   std::string line = fmt::format("{} [{}{}] {:3.0f} %  {:.0f} s left  t = {:.4g} s  dt = {}  open {:.0f} %  energy error {}", label_, std::string(full, '#'),
                                  std::string(cells - full, '.'), 100 * progress.fraction, left, progress.time, spoken(progress.step, "s"), 100 * progress.open_fraction,
                                  percent(progress.energy_error));
+  if (!terminal_) {
+    complain(line);
+    return true;
+  }
   line.resize(std::min(line.size(), static_cast<std::size_t>(terminal_width() - 1)));
   fmt::print(stderr, "\r\033[K{}", line);
   std::fflush(stderr);

@@ -22,7 +22,8 @@ bool interrupt_asked();
 /// Aligned columns; the first row is the head. Numbers (cells that start with a digit or a sign) stand to the right.
 void print_table(const std::vector<std::vector<std::string>>& rows);
 
-/// The state of a run on one line of the terminal, redrawn ten times a second; says nothing in a pipe. Watches for Ctrl-C in any case.
+/// The state of a run on one line of the terminal, redrawn ten times a second; in a pipe a plain line every ten seconds.
+/// Watches for Ctrl-C in any case.
 class ProgressLine {
  public:
   /// `label` names the run, e.g. "[3/20] sdm".
@@ -37,7 +38,7 @@ class ProgressLine {
  private:
   using Clock = std::chrono::steady_clock;
   std::string label_;
-  bool shown_;
+  bool quiet_, terminal_;
   bool drawn_ = false;
   Clock::time_point start_ = Clock::now(), last_ = start_;
 };

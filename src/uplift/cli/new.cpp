@@ -87,7 +87,7 @@ type = "static"
 [[stage]]                             # ... then the gust
 type = "dynamic"
 duration = "5 s"
-step = "2 ms"
+step = "1 ms"
 
 [output]
 every = 1                             # record every step; motion of top and base, forces and energies come by themselves

@@ -95,6 +95,7 @@ class Frictional {
     for (int update = 1; update <= 200; ++update) {
       const Outcome inner = solve_by_newton(problem_, augmented, newton, solution_);
       outcome_.iterations += inner.iterations;
+      if (ran_away()) return fail(unsettled() + "; nothing holds the structure against sliding or lifting off");
       if (!inner.converged) return fail(unsettled() + "; the augmented Lagrangian: " + inner.why);
       double change = 0, size = 0;
       for (const FrictionPoint& point : step_.points())
@@ -120,6 +121,12 @@ class Frictional {
       return outcome_;
     }
     return fail(unsettled());
+  }
+
+  /// In statics a loose body has no equilibrium: the balance, which is relative, is then met at infinity.
+  bool ran_away() const {
+    const Vector moved = problem_.factor * solution_.z;
+    return !(moved.cwiseAbs().maxCoeff() <= 1e6 * (problem_.free_opening - problem_.from).cwiseAbs().maxCoeff());
   }
 
   std::string unsettled() const {

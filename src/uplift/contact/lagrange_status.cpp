@@ -6,6 +6,9 @@
 namespace uplift {
 namespace {
 
+/// Pivot of H that is taken for zero: H is of order one, the identity less a share of it.
+constexpr double singular = 1e-12;
+
 double length(const std::array<double, 2>& v) { return std::hypot(v[0], v[1]); }
 
 }  // namespace
@@ -139,7 +142,7 @@ bool StatusStep::solve() {
   finite_ = hessian.allFinite() && right.allFinite();
   if (!finite_) return false;
   const PartialLu lu(hessian);
-  if (!(lu.rcond() > 1e-13)) return false;  // nothing holds the body
+  if (!(lu.matrixLU().diagonal().cwiseAbs().minCoeff() > singular)) return false;  // nothing holds the body
   const Index count = static_cast<Index>(held_.size());
   Matrix u(count, problem_.factor.cols()), v(count, problem_.factor.cols());
   for (Index k = 0; k < count; ++k) {

@@ -48,13 +48,16 @@ enum class Status : signed char { open, stick, slip };
 struct NewtonScratch {
   Vector slope;       // per block (components x components x points), blocks one after another [N/m]
   std::vector<int> first_slope;
-  Vector gradient, direction, origin, end;
+  Vector gradient, direction, origin;
+  Vector end;             // traction at the end of the step [Pa], path average only
   Matrix hessian;
+  bool follows = false;   // the next problem may be guessed from this solution: slope, end and hessian are those of a converged step
 };
 
 /// Work space of the augmented Lagrangian, sized once.
 struct AugmentedScratch {
   Vector multiplier, stiffness;  // rows [N], [N/m]
+  double growth = 1;             // of the stiffness in this step
 };
 
 /// Work space of the Lagrange method, sized once.

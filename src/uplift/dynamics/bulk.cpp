@@ -73,9 +73,10 @@ void BulkFactor::solve(const Vector& b, Vector& x) const {
     return;
   }
   ++counts_->back_solves;
-  Matrix column;
-  factor_->solve(b, column);
-  x = column;
+  given_.resize(b.size(), 1);
+  given_.col(0) = b;
+  factor_->solve(given_, solved_);
+  x = solved_.col(0);
 }
 
 Spread BulkFactor::spread(const Sparse& b) const {
@@ -127,13 +128,14 @@ void Accelerator::solve(const Vector& force, Vector& acceleration) const {
   mass_->solve(force, acceleration);
   for (int i : massless_) acceleration[i] = 0;
   if (condensed_ == nullptr) return;
-  Vector pull(bulk_.unknowns);
-  bulk_.stiffness.multiply(acceleration, pull);
+  pull_.resize(bulk_.unknowns);
+  bulk_.stiffness.multiply(acceleration, pull_);
   const Eigen::Index count = static_cast<Eigen::Index>(massless_.size());
-  Vector right(count), solution(count);
-  for (Eigen::Index i = 0; i < count; ++i) right[i] = -pull[massless_[static_cast<std::size_t>(i)]];
-  condensed_->solve(right, solution);
-  for (Eigen::Index i = 0; i < count; ++i) acceleration[massless_[static_cast<std::size_t>(i)]] = solution[i];
+  right_.resize(count);
+  solution_.resize(count);
+  for (Eigen::Index i = 0; i < count; ++i) right_[i] = -pull_[massless_[static_cast<std::size_t>(i)]];
+  condensed_->solve(right_, solution_);
+  for (Eigen::Index i = 0; i < count; ++i) acceleration[massless_[static_cast<std::size_t>(i)]] = solution_[i];
 }
 
 }  // namespace uplift

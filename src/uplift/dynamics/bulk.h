@@ -59,6 +59,7 @@ class BulkFactor {
   Matrix inverse_;
   std::unique_ptr<const Factor> factor_;
   LinearCounts* counts_;
+  mutable Matrix given_, solved_;  // one column each, kept: a factor belongs to one run
 };
 
 /// B of all interfaces, one after another: rows x free.
@@ -77,6 +78,7 @@ class Accelerator {
   const Bulk& bulk_;
   std::vector<int> massless_;
   std::unique_ptr<BulkFactor> mass_, condensed_;
+  mutable Vector pull_, right_, solution_;  // work space
 };
 
 }  // namespace uplift

@@ -65,7 +65,8 @@ Condensed::Condensed(const Model& model, const Sparse& b, const Vector& gap, Bul
 
 void Condensed::free_opening(const Vector& displacement) {
   if (touched_.empty()) {
-    problem_.free_opening.noalias() = b_ * (displacement + free_);
+    touched_value_ = displacement + free_;
+    problem_.free_opening.noalias() = b_ * touched_value_;
     problem_.free_opening += gap_;
     return;
   }

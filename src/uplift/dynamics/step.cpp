@@ -82,12 +82,14 @@ Stepper::Level& Stepper::level(int halving) {
 void Stepper::forces_at(const State& state, Vector& result) const {  // f - C v - K u - B^T p
   result.setZero();
   model_.add_force(state.time, result);
-  Vector product(bulk_.unknowns);
-  bulk_.damping.multiply(state.velocity, product);
-  result -= product;
-  bulk_.stiffness.multiply(state.displacement, product);
-  result -= product;
-  if (b_.rows() > 0) result -= b_.transpose() * state.force;
+  product_.resize(bulk_.unknowns);
+  bulk_.damping.multiply(state.velocity, product_);
+  result -= product_;
+  bulk_.stiffness.multiply(state.displacement, product_);
+  result -= product_;
+  if (b_.rows() == 0) return;
+  product_.noalias() = b_.transpose() * state.force;
+  result -= product_;
 }
 
 void Stepper::acceleration(Vector& result) const {
@@ -95,10 +97,10 @@ void Stepper::acceleration(Vector& result) const {
     result = now_.acceleration;
     return;
   }
-  Vector force(bulk_.unknowns);
-  forces_at(now_, force);
+  balance_.resize(bulk_.unknowns);
+  forces_at(now_, balance_);
   result.resize(bulk_.unknowns);
-  accelerator_.solve(force, result);
+  accelerator_.solve(balance_, result);
 }
 
 void Stepper::start(State state) {
@@ -161,7 +163,9 @@ void Stepper::right_hand_side(const Level& level) {
     bulk_.damping.multiply(work_, work2_);
     right_ -= work2_;
   }
-  if (ratio != 0 && b_.rows() > 0) right_ -= ratio * (b_.transpose() * now_.force);
+  if (ratio == 0 || b_.rows() == 0) return;
+  work_.noalias() = b_.transpose() * now_.force;
+  right_ -= ratio * work_;
 }
 
 void Stepper::kinematics(const Level& level) {

@@ -82,6 +82,7 @@ class Stepper {
 
   State now_, next_;
   Vector force_now_, force_next_, stiff_now_, stiff_next_, momentum_now_, momentum_next_;  // f, K u, M v
+  mutable Vector product_, balance_;  // work space of forces_at and acceleration
   Vector right_, increment_, work_, work2_, damped_, contact_, impulse_;
   ImpactScratch impact_scratch_;
   std::vector<int> normals_, tangents_;

@@ -26,7 +26,7 @@ struct View {
 Curve curve_of(const ReportRun& run) {
   Curve curve;
   curve.label = run.result->label;
-  curve.run = run.result->name;
+  curve.run = run.result->label;  // not the name: a variant has one colour, whatever its damping
   curve.dash = run.spec->bonded;
   curve.failed = run.result->status == RunStatus::failed;
   return curve;
@@ -58,7 +58,9 @@ void add_history(Chart& chart, const ReportRun& run, Column kind, int of, double
 
 Chart history_chart(const View& view, const std::vector<ReportRun>& runs) {
   Chart chart{view.id, view.section, view.title, view.caption, {"Time", "s"}, {view.label, view.unit}, {}};
-  for (const ReportRun& run : runs) add_history(chart, run, view.kind, view.of, view.factor);
+  const bool gap = view.kind == Column::uplifted_ratio || view.kind == Column::max_opening;
+  for (const ReportRun& run : runs)
+    if (!gap || !run.spec->bonded) add_history(chart, run, view.kind, view.of, view.factor);  // a bonded base stretches instead of opening
   return chart;
 }
 

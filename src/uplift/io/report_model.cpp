@@ -54,10 +54,10 @@ void write_bodies(JsonWriter& json, const Case& read, const Built& built) {
   json.end_array();
 }
 
-void write_small_parts(JsonWriter& json, const Case& read) {
+void write_small_parts(JsonWriter& json, const Case& read, const Built& built) {
   json.key("masses").begin_array();
   for (const Values& mass : read.values.tables("mass"))
-    json.begin_object().member("node", mass.text("node")).member("mass", mass.has("mass") ? mass.number("mass") : 0.0).end_object();
+    json.begin_object().member("node", mass.text("node")).member("mass", mass.has("mass") ? mass.number("mass") : built.tuned_mass).end_object();
   json.end_array();
   json.key("supports").begin_array();
   for (const Values& support : read.values.tables("support")) json.begin_object().member("node", support.text("node")).key("dofs").texts(support.texts("fixed")).end_object();
@@ -118,7 +118,7 @@ void write_model(JsonWriter& json, const Case& read, const Built& built) {
   write_beams(json, read);
   json.key("bodies");
   write_bodies(json, read, built);
-  write_small_parts(json, read);
+  write_small_parts(json, read, built);
   json.key("interfaces");
   write_interfaces(json, built);
   json.key("loads").begin_array();
@@ -135,7 +135,7 @@ void write_animations(JsonWriter& json, const ReportInput& input) {
   for (const ReportRun& run : input.runs) {
     const std::vector<Frame>& frames = run.result->frames;
     if (frames.size() < 2) continue;
-    json.begin_object().member("run", run.result->name).key("time").begin_array();
+    json.begin_object().member("run", run.result->label).key("time").begin_array();
     for (const Frame& frame : frames) json.value(frame.time);
     json.end_array().key("nodes").begin_object();
     for (const int i : drawn_nodes(*input.read, *run.built)) {

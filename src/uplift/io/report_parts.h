@@ -20,7 +20,7 @@ struct Axis {
   bool log = false;
 };
 struct Curve {
-  std::string label, run;  // run: name of the run, decides the colour; empty: none
+  std::string label, run;  // run: label of the run, decides the colour; empty: none
   std::vector<double> x, y;
   bool dash = false, failed = false;
 };

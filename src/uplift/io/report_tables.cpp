@@ -27,7 +27,9 @@ void write_run_row(JsonWriter& json, const ReportInput& input, std::size_t i) {
   json.member("status", std::string(to_string(run.status)) + (run.expected_to_fail && run.status == RunStatus::failed ? " (expected)" : ""));
   const Peak* top = built.top >= 0 ? find_peak(run, Request::Kind::displacement, 3 * built.top + ux) : nullptr;
   if (top) json.member("top", std::abs(top->value)).member("top_time", top->time);
-  json.member("ratio", run.max_uplifted_ratio.value).member("opening", run.max_opening.value).member("moment", std::abs(run.max_base_moment.value));
+  if (!input.runs[i].spec->bonded)  // a bonded base stretches instead of opening
+    json.member("ratio", run.max_uplifted_ratio.value).member("opening", run.max_opening.value);
+  json.member("moment", std::abs(run.max_base_moment.value));
   json.member("pressure", run.max_pressure.value).member("created", created_share(run)).member("retries", run.counts.retries);
   json.member("wall", run.wall).member("per_step", run.counts.steps > 0 ? run.wall / static_cast<double>(run.counts.steps) * 1e6 : 0.0);
   if (input.compared) {
@@ -44,14 +46,16 @@ void write_runs(JsonWriter& json, const ReportInput& input) {
   if (input.compared)
     caption += fmt::format(" Sound runs agree when their peaks of motion, rotation and gap lie within {:g} % of the median of their group.", 100 * input.compared->band);
   json.member("caption", caption).key("columns").begin_array();
-  for (const TableColumn& column : {TableColumn{"run", "Run", "", "text", 0}, {"status", "Status", "", "status", 0}, {"top", "Top motion", "m", "number", 4},
-                                    {"top_time", "at", "s", "number", 4}, {"ratio", "Uplifted", "", "percent", 3}, {"opening", "Gap", "m", "number", 4},
-                                    {"moment", "Base moment", "N m", "number", 4}, {"pressure", "Pressure", "Pa", "number", 4}, {"created", "Energy created", "", "percent", 3}})
+  for (const TableColumn& column : {TableColumn{"run", "Run", "", "text", 0}, {"status", "Status", "", "status", 0}})
     write_column(json, column);
   if (input.compared) {
     write_column(json, {"agreement", "Agreement", "", "status", 0});
     write_column(json, {"deviation", "Deviation", "", "percent", 2});
   }
+  for (const TableColumn& column : {TableColumn{"top", "Top motion", "m", "number", 4},
+                                    {"top_time", "at", "s", "number", 4}, {"ratio", "Uplifted", "", "percent", 3}, {"opening", "Gap", "m", "number", 4},
+                                    {"moment", "Base moment", "N m", "number", 4}, {"pressure", "Pressure", "Pa", "number", 4}, {"created", "Energy created", "", "percent", 3}})
+    write_column(json, column);
   write_column(json, {"retries", "Retries", "", "number", 6});
   write_column(json, {"per_step", "Time a step (microseconds)", "", "number", 3});
   json.end_array().key("rows").begin_array();
@@ -74,11 +78,19 @@ void write_sweep(JsonWriter& json, const std::vector<SweepRow>& rows) {
   json.end_array().end_object();
 }
 
-/// One value of the case that the user wrote, with the keys under which an origin may name it.
+/// One value of the case that the user wrote: the key under which an origin may name it, and the value.
 struct Given {
-  std::string shown, value;
-  std::vector<std::string> keys;
+  std::string key, value;
 };
+
+/// ".column": how an entry of a list of tables is told from the others in a key.
+std::string entry_name(const Values& entry, Kind kind, std::size_t index) {
+  if (kind == Kind::named) return "." + entry.key();
+  if (kind != Kind::tables) return "";
+  for (const char* key : {"name", "node"})
+    if (entry.items().contains(key) && entry.has(key)) return "." + entry.text(key);
+  return "." + std::to_string(index + 1);
+}
 
 std::string value_text(const Values::Item& item, const Field& field) {
   const std::string unit = field.unit.empty() || field.unit == "1" ? "" : " " + std::string(field.unit);
@@ -93,6 +105,7 @@ std::string value_text(const Values::Item& item, const Field& field) {
 /// All given numbers of a table and of the tables and parts in it. `path`: by names ("beam.column"), as far as there are names.
 void collect(const Values& values, const std::string& path, std::vector<Given>& given) {
   const std::vector<Field>& fields = values.section() ? values.section()->fields : values.part_info()->params;
+  const bool bare_value = fields.size() == 1 && fields.front().name == "value";  // name = [x, y]
   for (const Field& field : fields) {
     if (!values.given(field.name)) continue;
     const Values::Item& item = values.items().at(std::string(field.name));
@@ -100,18 +113,14 @@ void collect(const Values& values, const std::string& path, std::vector<Given>& 
     if (const auto* tables = std::get_if<std::vector<Values>>(&item.data)) {
       for (std::size_t i = 0; i < tables->size(); ++i) {
         const Values& inner = (*tables)[i];
-        std::string name;
-        if (field.kind == Kind::named) name = "." + inner.key();
-        if (field.kind == Kind::tables)
-          name = "." + (inner.items().contains("name") && inner.has("name") ? inner.text("name")
-                        : inner.items().contains("node") && inner.has("node") ? inner.text("node") : std::to_string(i + 1));
-        if (field.kind == Kind::part) given.push_back({key, inner.type(), {key, path}});
+        const std::string name = entry_name(inner, field.kind, i);
+        if (field.kind == Kind::part) given.push_back({key, inner.type()});
         collect(inner, key + name, given);
       }
       continue;
     }
     if (field.kind == Kind::text || field.kind == Kind::texts) continue;
-    given.push_back({key, value_text(item, field), {}});
+    given.push_back({bare_value ? path : key, value_text(item, field)});
   }
 }
 
@@ -138,12 +147,7 @@ void write_choices(JsonWriter& json, const Case& read, const Built& built) {
     if (!field || !read.values.given(table)) continue;
     for (std::size_t i = 0; i < read.values.tables(table).size(); ++i) {
       const Values& inner = read.values.tables(table)[i];
-      std::string name;
-      if (field->kind == Kind::named) name = "." + inner.key();
-      if (field->kind == Kind::tables)
-        name = "." + (inner.items().contains("name") && inner.has("name") ? inner.text("name")
-                      : inner.items().contains("node") && inner.has("node") ? inner.text("node") : std::to_string(i + 1));
-      collect(inner, table + name, given);
+      collect(inner, table + entry_name(inner, field->kind, i), given);
     }
   }
   json.begin_array();
@@ -151,11 +155,11 @@ void write_choices(JsonWriter& json, const Case& read, const Built& built) {
     std::string origin = "user", note;
     for (const Values& stated : read.values.tables("origin"))
       for (const std::string& key : stated.texts("keys"))
-        if (covers(key, each.shown) || (key == "*" && origin == "user")) {
+        if (covers(key, each.key) || (key == "*" && origin == "user")) {
           origin = stated.text("label");
           note = key != "*" && stated.has("note") ? stated.text("note") : "";
         }
-    json.begin_object().member("what", each.shown).member("value", each.value).member("origin", origin).member("note", note).end_object();
+    json.begin_object().member("what", each.key).member("value", each.value).member("origin", origin).member("note", note).end_object();
   }
   for (const std::string& text : built.notes) json.begin_object().member("what", "automatic").member("value", text).member("origin", "computed").end_object();
   json.end_array();

@@ -1,0 +1,188 @@
+#include <dlfcn.h>
+#include <gtest/gtest.h>
+
+#include <atomic>
+#include <cstdlib>
+
+#include "../property/oracle_models.h"
+#include "uplift/dynamics/bulk.h"
+
+// What a run costs in operations that can be counted: factorisations, back-solves, allocations.
+namespace {
+
+std::atomic<long> allocations{0};
+std::atomic<bool> counting{false};
+
+}  // namespace
+
+// Every allocation of the program passes here: operator new calls malloc, and so does Eigen.
+extern "C" void* malloc(std::size_t size) {
+  using Malloc = void* (*)(std::size_t);
+  static const Malloc next = reinterpret_cast<Malloc>(dlsym(RTLD_NEXT, "malloc"));
+  if (counting.load(std::memory_order_relaxed)) allocations.fetch_add(1, std::memory_order_relaxed);
+  return next(size);
+}
+
+namespace uplift::whole {
+namespace {
+
+struct Work {
+  long allocated = 0;
+  RunResult result;
+};
+
+Work run_counted(const Whole& whole) {
+  Work work;
+  allocations = 0;
+  counting = true;
+  work.result = whole.run();
+  counting = false;
+  work.allocated = allocations;
+  return work;
+}
+
+Part springs(double k) { return {"springs", {{"K_n", k}}}; }
+
+Whole footing(const Part& law, const std::string& method, const std::string& impact, double damping = 0, bool slides = false) {
+  Oscillator data;
+  data.behaviour = law;
+  data.points = 40;
+  data.damping = damping;
+  data.slides = slides;
+  Whole whole = make(data);
+  choose(whole, {method}, {impact});
+  whole.plan.requests = {request(Request::Kind::displacement, 3, "top"), request(Request::Kind::moment, 0, "moment"),
+                         request(Request::Kind::uplifted_ratio, 0, "lifted"), request(Request::Kind::residual, 0, "residual")};
+  whole.plan.created_limit = 1e30;
+  return whole;
+}
+
+/// Twice the number of steps, with the output table of the same size: what is allocated more is allocated by steps.
+long allocated_by_steps(Whole& whole, const Part& rule = {"average_acceleration"}) {
+  const auto run = [&](long steps) {
+    whole.plan.stages = {settle(), march(1e-3, steps, true, rule)};
+    const Work work = run_counted(whole);
+    if (steps < 100) return work.allocated;
+    EXPECT_EQ(work.result.status, RunStatus::completed) << work.result.reason;
+    EXPECT_EQ(work.result.counts.retries, 0);
+    EXPECT_GT(work.result.max_uplifted_ratio.value, 0.2);
+    return work.allocated;
+  };
+  run(10);  // what is allocated once and kept, by the libraries too
+  return run(1000) - run(500);
+}
+
+TEST(Counters, CountingCounts) {
+  counting = true;
+  allocations = 0;
+  std::vector<double>* list = new std::vector<double>(1000);
+  const Vector vector = Vector::Zero(1000);
+  counting = false;
+  EXPECT_EQ(allocations, 3);
+  EXPECT_EQ(vector.size(), static_cast<Eigen::Index>(list->size()));
+  delete list;
+}
+
+TEST(Counters, NoAllocationAfterTheFirstStep) {
+  const Part sdm{"sdm", {{"K_n", 2e8}, {"F_u", 0.0}, {"G_f", 1000.0}, {"F_c", -1e3}, {"tangential", "none"}}};
+  const Part tough{"sdm", {{"K_n", 2e8}, {"F_u", 2e4}, {"G_f", 20.0}, {"F_c", -1e3}, {"tangential", "none"}}};
+  const Part rubbing{"springs", {{"K_n", 2e8}, {"tangential", "coulomb"}, {"friction", 0.3}}};
+  for (const double damping : {0.0, 0.02}) {
+    for (const Part& law : {sdm, tough, springs(2e8)})
+      for (const std::string rule : {"average_acceleration", "hht"}) {
+        Whole whole = footing(law, "newton", "none", damping);
+        EXPECT_EQ(allocated_by_steps(whole, {rule}), 0) << law.type << ", " << rule;
+      }
+    for (const std::string impact : {"none", "project", "project_hold", "reflect", "propagate"}) {
+      Whole whole = footing({"unilateral"}, "lagrange", impact, damping);
+      EXPECT_EQ(allocated_by_steps(whole), 0) << "lagrange, " << impact;
+    }
+    Whole penalty = footing({"unilateral"}, "penalty", "none", damping);
+    EXPECT_EQ(allocated_by_steps(penalty), 0) << "penalty";
+    Whole augmented = footing({"unilateral"}, "augmented_lagrangian", "project_hold", damping);
+    EXPECT_EQ(allocated_by_steps(augmented), 0) << "augmented Lagrangian";
+    Whole friction = footing(rubbing, "newton", "none", damping, true);
+    EXPECT_EQ(allocated_by_steps(friction), 0) << "friction";
+  }
+}
+
+TEST(Counters, SmallBulkNeedsOneFactorisationAndNoBackSolve) {
+  for (const double damping : {0.0, 0.02}) {
+    Whole whole = footing(springs(2e8), "newton", "none", damping);
+    whole.plan.stages = {march(1e-3, 2000)};
+    const RunResult result = whole.run();
+    ASSERT_EQ(result.status, RunStatus::completed) << result.reason;
+    // the matrix of the step; the mass matrix, and the stiffness of what has no mass, for the acceleration at the beginning
+    EXPECT_EQ(result.counts.factorisations, 3);
+    EXPECT_EQ(result.counts.back_solves, 0);
+  }
+}
+
+/// A clamped beam of 40 elements above its footing: 120 unknowns, so that the inverse is not kept.
+Whole tower(int elements, double damping) {
+  Whole whole;
+  ModelBuilder builder;
+  const int base = builder.add_node("base", {0, 0}, here);
+  builder.add_element(std::make_unique<PointMass>(base, 1e4, 7500.0), here);
+  int below = base;
+  for (int i = 1; i <= elements; ++i) {
+    const double y0 = 10.0 * (i - 1) / elements, y1 = 10.0 * i / elements;
+    const int node = builder.add_node("n" + std::to_string(i), {0, y1}, here);
+    builder.add_element(std::make_unique<Beam>(below, node, Vec2{0, y0}, Vec2{0, y1}, concrete_beam()), here);
+    below = node;
+  }
+  builder.fix(base, ux, here);
+  builder.add_load("weight", {{3 * base + 1, -2e5}}, nullptr, true, here);
+  builder.add_load("push", {{3 * below, 1.5e4}}, function({"harmonic", {{"frequency", 0.6}}}), false, here);
+  InterfaceSpec spec;
+  spec.name = "footing";
+  Footing plan;
+  plan.body = base;
+  plan.width = 2;
+  plan.points = 40;
+  spec.points = footing_points(plan, here);
+  behave(springs(1e8), spec, whole);
+  builder.add_interface(std::move(spec), here);
+  if (damping > 0) builder.set_damping(rayleigh(0.5, damping, 10, damping));
+  whole.model = builder.finish();
+  choose(whole, {"newton"}, {"none"});
+  whole.plan.requests = {request(Request::Kind::displacement, 3 * below, "top")};
+  return whole;
+}
+
+TEST(Counters, LargeBulkNeedsOneFactorisationAndTwoBackSolvesAStep) {
+  for (const double damping : {0.0, 0.02}) {
+    Whole whole = tower(40, damping);
+    ASSERT_GT(whole.model.free(), small_bulk);
+    const auto run = [&](long steps) {
+      whole.plan.stages = {march(1e-3, steps)};
+      const Work work = run_counted(whole);
+      EXPECT_EQ(work.result.status, RunStatus::completed) << work.result.reason;
+      EXPECT_EQ(work.result.counts.retries, 0);
+      return work;
+    };
+    run(10);
+    const Work first = run(1000), second = run(2000);
+    EXPECT_GT(first.result.max_uplifted_ratio.value, 0.1);
+    // the matrix of the step; the mass matrix, and the stiffness of what has no mass, for the acceleration at the beginning
+    EXPECT_LE(second.result.counts.factorisations, 3);
+    EXPECT_EQ(second.result.counts.factorisations, first.result.counts.factorisations);
+    EXPECT_LE(second.result.counts.back_solves - first.result.counts.back_solves, 2 * 1000);
+    EXPECT_EQ(second.allocated, first.allocated);
+  }
+}
+
+/// Factors of halved steps are kept: however often a step is halved, each size is factorised once.
+TEST(Counters, OneFactorisationPerStepSize) {
+  Oscillator data;
+  data.behaviour = {"sdm", {{"K_n", 5e9}, {"F_u", 5e4}, {"G_f", 50.0}, {"F_c", -1e3}, {"tangential", "none"}}};
+  Whole whole = make(data);
+  choose(whole, {"newton", {{"most_iterations", 4.0}}}, {"none"});
+  whole.plan.stages = {march(5e-3, 2000)};
+  const RunResult result = whole.run();
+  ASSERT_GT(result.counts.retries, 10);
+  EXPECT_LE(result.counts.factorisations, 2 + whole.plan.stages.front().halvings + 1);
+}
+
+}  // namespace
+}  // namespace uplift::whole

@@ -1,0 +1,195 @@
+// Uplifting footings (VERIFICATION section 5): half width b, vertical load W, rotation imposed on the body in statics, moment at its
+// middle. Two springs k at +-b: M_u = W b, theta_u = W/(2 k b). Winkler strip k_w: M_u = W b/3, theta_u = W/(2 k_w b^2), beyond it M/M_u =
+// 3 - 2 sqrt(theta_u/theta), contact ratio sqrt(theta_u/theta), heel jump 2 b theta (1 - sqrt(theta_u/theta)).
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <numbers>
+
+#include "support.h"
+
+namespace uplift::verification {
+namespace {
+
+using std::numbers::pi;
+
+constexpr double b = 1.5, weight = 1e6, bed = 2e8;
+
+struct Footing {
+  std::string law = "{ type = \"springs\", K_n = 2e8, tangential = \"none\" }", method, rule = "nodal";
+  int points = 101;
+  double thickness = 1, rotation = 0;
+
+  /// The rotation is imposed, the settlement is free; the first row of the dynamic stage is the static answer.
+  std::string text() const {
+    char out[2000];
+    std::snprintf(
+        out, sizeof out,
+        "title = \"Footing\"\n%s\n[nodes]\nbase = [0, 0]\n[[rigid]]\nname = \"footing\"\nnode = \"base\"\nmass = 1e4\ninertia = 7500\n"
+        "[[support]]\nnode = \"base\"\nfixed = [\"ux\"]\n[[function]]\nname = \"held\"\nshape = { type = \"constant\" }\n"
+        "[[motion]]\nnode = \"base\"\ndirection = \"rz\"\namplitude = %.17g\nfunction = \"held\"\n"
+        "[[interface]]\nname = \"soil\"\nlaw = %s\nfooting = { body = \"base\", width = 3, points = %d, rule = \"%s\", thickness = %.17g "
+        "}\n"
+        "[[load]]\nnode = \"base\"\nforce = [0, -1e6]\n[[stage]]\ntype = \"static\"\nsteps = 1\n"
+        "[[stage]]\ntype = \"dynamic\"\nduration = 1e-6\nstep = 1e-6\n[energy]\ncreated_limit = 1e9\n[limits]\nrotation = "
+        "1\n[output]\nframes = 0\n",
+        method.c_str(), rotation, law.c_str(), points, rule.c_str(), thickness);
+    return out;
+  }
+};
+
+struct Answer {
+  double moment = 0, uplifted = 0, jump = 0, toe = 0, axial = 0;
+};
+Answer answer(const Footing& footing) {
+  const History run = run_text(footing.text());
+  return {run["soil.moment"][0], run["soil.uplifted_ratio"][0], run["soil.max_opening"][0], run["soil.max_pressure"][0],
+          run["soil.axial"][0]};
+}
+
+// Claim: two springs: linear up to theta_u = W/(2 k b) and M_u = W b, constant beyond; exact (1e-12).
+TEST(Footing, TwoSprings) {
+  const double k = bed * 1.5, theta_u = weight / (2 * k * b);  // nodal rule: half of the width each
+  for (const double x : {0.25, 0.9, 1.5, 4.0}) {
+    Footing footing;
+    footing.points = 2;
+    footing.rotation = x * theta_u;
+    const Answer a = answer(footing);
+    EXPECT_NEAR(std::abs(a.moment), weight * b * std::min(x, 1.0), 1e-9 * weight) << x;
+    EXPECT_NEAR(a.axial, -weight, 1e-9 * weight);
+    EXPECT_NEAR(a.jump, x > 1 ? 2 * b * (x - 1) * theta_u : 0, 1e-12) << x;
+    EXPECT_NEAR(a.uplifted, x > 1 ? 0.5 : 0, 1e-12);
+  }
+}
+
+// Claim: Winkler strip against the closed forms (and the CSV), moment, contact ratio, heel jump and toe pressure p_toe/p_mean = 2
+// sqrt(theta/theta_u); 1601 nodal points: 1e-5 for the moment, one point for the ratio. The settled footing is first bonded: M = theta 2
+// k_w b^3/3.
+TEST(Footing, WinklerStrip) {
+  const double theta_u = weight / (2 * bed * b * b), m_u = weight * b / 3, mean = weight / (2 * b);
+  const Reference table = reference("winkler_strip.csv");
+  for (const double x : {0.5, 0.99, 1.2, 2.040816326530612, 3.0, 6.0, 10.0}) {
+    Footing footing;
+    footing.points = 1601;
+    footing.rotation = x * theta_u;
+    const Answer a = answer(footing);
+    const double root = x > 1 ? std::sqrt(1 / x) : 1, moment = x > 1 ? 3 - 2 * root : x;
+    EXPECT_NEAR(std::abs(a.moment) / m_u, moment, 1e-5) << x;
+    EXPECT_NEAR(a.axial, -weight, 1e-9 * weight);
+    EXPECT_NEAR(1 - a.uplifted, root, 1.0 / 1600) << x;
+    EXPECT_NEAR(a.jump, x > 1 ? 2 * b * x * theta_u * (1 - root) : 0, 1e-5 * b * x * theta_u) << x;
+    EXPECT_NEAR(a.toe / mean, x > 1 ? 2 / root : 1 + x, 1e-4) << x;
+    if (!table.empty()) {
+      EXPECT_NEAR(interpolate(table["theta/theta_u"], table["M/Mu"], x), moment, 2e-3);
+      EXPECT_NEAR(interpolate(table["theta/theta_u"], table["p_toe/p_mean"], x), x > 1 ? 2 / root : 1 + x, 2e-2);
+    }
+  }
+}
+
+// Claim: nodal joints: error of M at theta = 2.6 theta_u is of order 2, 2.7e-2, 6.4e-3, 1.4e-3, 3.0e-4 of M for 8, 16, 32, 64 joints
+// (VERIFICATION sections 2 and 10; counted as cells of the trapezoidal rule): as printed, 4 %. Midpoints: order 2.
+TEST(Footing, OrderOfTheQuadrature) {
+  const double theta_u = weight / (2 * bed * b * b), m_u = weight * b / 3, exact = m_u * (3 - 2 * std::sqrt(1 / 2.6));
+  for (const char* rule : {"nodal", "midpoint"}) {
+    std::vector<double> size, error;
+    for (const int cells : {8, 16, 32, 64}) {
+      Footing footing;
+      footing.rule = rule;
+      footing.points = cells + (footing.rule == "nodal");
+      footing.rotation = 2.6 * theta_u;
+      size.push_back(1.0 / cells);
+      error.push_back(std::abs(std::abs(answer(footing).moment) / exact - 1));
+    }
+    EXPECT_NEAR(order(size, error), 2, 0.35) << rule;
+    const double stated[] = {2.7e-2, 6.4e-3, 1.4e-3, 3.0e-4};
+    for (int i = 0; i < 4 && std::string(rule) == "nodal"; ++i)
+      EXPECT_NEAR(error[static_cast<std::size_t>(i)], stated[i], 0.04 * stated[i]);
+  }
+}
+
+// Claim: penalty with k_w per area gives the springs' answer (1e-9); so does the SDM with F_u = 0 and a vanishing closure stress, 1e-9 of
+// the mean pressure (1e-6: the rotation is imposed before the load, so the gap closes in part).
+TEST(Footing, LawsAgree) {
+  const double theta_u = weight / (2 * bed * b * b);
+  Footing springs;
+  springs.rotation = 3 * theta_u;
+  const Answer expected = answer(springs);
+  Footing penalty = springs;
+  penalty.law = "\"unilateral\"";
+  penalty.method = "method = { type = \"penalty\", stiffness = 2e8 }";
+  EXPECT_NEAR(answer(penalty).moment, expected.moment, 1e-9 * weight);
+  Footing sdm = springs;
+  sdm.law = "{ type = \"sdm\", K_n = 2e8, F_u = 0, G_f = 1, F_c = -3e-4, tangential = \"none\" }";
+  EXPECT_NEAR(answer(sdm).moment, expected.moment, 1e-6 * weight);
+  EXPECT_NEAR(answer(sdm).jump, expected.jump, 1e-6 * expected.jump);
+}
+
+/// Rows of a run where a column crosses zero, as times by straight lines.
+std::vector<double> crossings(const History& run, const std::string& name) {
+  const std::vector<double>& y = run[name];
+  std::vector<double> times;
+  for (std::size_t i = 1; i < run.rows(); ++i)
+    if (y[i - 1] * y[i] < 0) times.push_back(run.time()[i - 1] + y[i - 1] / (y[i - 1] - y[i]) * (run.time()[i] - run.time()[i - 1]));
+  return times;
+}
+
+// Claim: rocking oscillator on two springs, released at theta0 = x theta_u: T/T0 = (2/pi)(asin(1/sqrt(2x - 1)) + sqrt(2(x - 1))), T0 = 2 pi
+// sqrt(J/(2 k b^2)). The closed form has no vertical inertia: the footing's mass is so small that it bounces 300 times as fast as it rocks.
+// 1e-3 for two quarter and one half periods.
+TEST(Footing, PeriodOfRockingOnTwoSprings) {
+  const double k = bed * 1.5, theta_u = weight / (2 * k * b), inertia = 1e7, w0 = std::sqrt(2 * k * b * b / inertia),
+               mass = 2 * k / std::pow(300 * w0, 2);
+  for (const double x : {2.0, 5.0}) {
+    const double ratio = 2 / pi * (std::asin(1 / std::sqrt(2 * x - 1)) + std::sqrt(2 * (x - 1)));
+    EXPECT_NEAR(ratio, x == 2 ? 1.292142868 : 2.016979528, 1e-9);
+    const double period = ratio * 2 * pi / w0;
+    char text[2500];
+    std::snprintf(
+        text, sizeof text,
+        "title = \"Rocking\"\n[nodes]\nbase = [0, 0]\n[[rigid]]\nname = \"footing\"\nnode = \"base\"\nmass = %.17g\ninertia = %.17g\n"
+        "[[support]]\nnode = \"base\"\nfixed = [\"ux\"]\n[[interface]]\nname = \"soil\"\nlaw = { type = \"springs\", K_n = 2e8, tangential "
+        "= "
+        "\"none\" }\nfooting = { body = \"base\", width = 3, points = 2 }\n[[load]]\nnode = \"base\"\nforce = [0, -1e6]\n"
+        // on one spring the middle of the footing is higher than under the static load
+        "[[initial]]\nnode = \"base\"\nrotation = %.17g\ndisplacement = [0, %.17g]\n[[stage]]\ntype = \"static\"\nsteps = 1\n"
+        "[[stage]]\ntype = \"dynamic\"\nduration = %.17g\nstep = %.17g\n[limits]\nrotation = 1\n[output]\nframes = 0\n",
+        mass, inertia, x * theta_u, (x - 1) * theta_u * b, 1.1 * period, period / 50000);
+    const History run = run_text(text);
+    ASSERT_EQ(run.status, "completed") << run.reason;
+    const std::vector<double> times = crossings(run, "base.rz");
+    ASSERT_EQ(times.size(), 2U);
+    EXPECT_NEAR(times[0] / (period / 4), 1, 1e-3) << x;
+    EXPECT_NEAR((times[1] - times[0]) / (period / 2), 1, 1e-3) << x;
+    RecordProperty("period_ratio_" + std::to_string(x), std::to_string((times[1] - times[0]) * w0 / pi));
+  }
+}
+
+// Claim: frequency of a mass on a column on a bonded footing, f = f0/sqrt(1 + w0^2 m h^2/k_theta), k_theta = 2/3 k_w b^3 (strip) and 2 k
+// b^2 (two springs): 1e-3 (a footing with almost no mass; 20 half periods of a free vibration that never lifts).
+TEST(Footing, BondedFrequency) {
+  const double height = 5, mass = 2e4, f0 = 10, w0 = 2 * pi * f0, EI = mass * w0 * w0 * std::pow(height, 3) / 3;
+  for (const int points : {2, 401}) {
+    const double k_theta = points == 2 ? 2 * (bed * b) * b * b : 2.0 / 3 * bed * b * b * b;
+    const double exact = f0 / std::sqrt(1 + w0 * w0 * mass * height * height / k_theta);
+    char text[2500];
+    std::snprintf(text, sizeof text,
+                  "title = \"Bonded\"\n[nodes]\ntop = [0, 5]\nbase = [0, 0]\n[[beam]]\nname = \"column\"\nnodes = [\"base\", \"top\"]\nE = "
+                  "%.17g\nI = 1\n"
+                  "[[mass]]\nnode = \"top\"\nmass = 2e4\n[[rigid]]\nname = \"footing\"\nnode = \"base\"\nmass = 1\ninertia = 1\n"
+                  "[[support]]\nnode = \"base\"\nfixed = [\"ux\"]\n[[interface]]\nname = \"soil\"\nlaw = { type = \"springs\", K_n = 2e8, "
+                  "tangential = "
+                  "\"none\" }\nfooting = { body = \"base\", width = 3, points = %d }\n[[load]]\nnode = \"base\"\nforce = [0, -1e6]\n"
+                  "[[initial]]\nnode = \"top\"\nvelocity = [1e-3, 0]\n[[stage]]\ntype = \"static\"\nsteps = 1\n"
+                  "[[stage]]\ntype = \"dynamic\"\nduration = %.17g\nstep = %.17g\n[output]\nframes = 0\n",
+                  EI, points, 10.6 / exact, 1 / exact / 2000);
+    const History run = run_text(text);
+    ASSERT_EQ(run.status, "completed") << run.reason;
+    EXPECT_EQ(run.peak("soil.uplifted_ratio"), 0);
+    const std::vector<double> times = crossings(run, "top.ux");
+    ASSERT_GT(times.size(), 20U);
+    EXPECT_NEAR(20 / (2 * (times[20] - times[0])) / exact, 1, 1e-3) << points;
+  }
+}
+
+}  // namespace
+}  // namespace uplift::verification
