@@ -111,7 +111,8 @@ class Runner {
   const State* seen_ = &state_;  // the present one, wherever it lives
   std::vector<InterfaceView> views_;
   std::vector<int> rotations_;  // free unknowns that are rotations of bodies on an interface
-  double initial_scale_ = 0;
+  double initial_scale_ = 0;     // J
+  double round_off_work_ = 0;    // J
 };
 
 void Runner::fail(std::string why, const InterfaceProblem* problem) {
@@ -249,7 +250,8 @@ void Runner::note_views(double step) {
   if (!any_contact) result_.full_loss += step;
 }
 
-/// Energy created and lost so far; the scale is the largest external work, or the energy at the beginning where no load works.
+/// Energy created and lost so far; the scale is the largest external work, or the energy at the beginning where no load works. Work of the dead loads
+/// over 1e-10 m is round-off: a structure that only stands there has created nothing.
 void Runner::finish_energy(const Stepper& stepper) {
   const Energies& energies = stepper.energies();
   const double created = energies.residual + std::max(0.0, -energies.impact);
@@ -257,6 +259,7 @@ void Runner::finish_energy(const Stepper& stepper) {
   if (-energies.residual > result_.energy_lost) result_.energy_lost = -energies.residual, result_.energy_lost_time = seen_->time;
   result_.energy_scale = std::max(stepper.largest_external(), initial_scale_);
   if (result_.energy_scale <= 0) result_.energy_scale = stepper.initial_energy();
+  result_.energy_scale = std::max(result_.energy_scale, round_off_work_);
 }
 
 /// False when the run ends here: not finite, far beyond the energy limit, or rotated beyond the small-displacement model.
@@ -295,6 +298,8 @@ bool Runner::dynamics(const Stage& stage, const Bulk& bulk) {
   Recorder recorder(model_, plan_, viewer_, rows, result_);
   const long picture_every = plan_.frames > 0 ? std::max(1L, steps / plan_.frames) : 0;
   initial_scale_ = stepper.energies().kinetic;
+  for (const Drive& drive : model_.drives)
+    if (drive.dead) round_off_work_ += 1e-10 * drive.shape.lpNorm<1>() * std::abs(drive.function->value(seen_->time));
   const auto observe = [&](long step) {
     viewer_.look(seen_->opening, seen_->force, views_);
     note_views(step == 0 ? 0 : stage.step);

@@ -60,7 +60,7 @@ class AugmentedLagrangian final : public ContactMethod {
         total.converged = true;
         return total;
       }
-      if (update > 0 && change > 0.25 * before && 64 * epsilon * noise < 1e-10 * largest) {
+      if (update >= 4 && change > 0.25 * before && 64 * epsilon * noise < 1e-10 * largest) {
         scratch.growth *= 16;
         scratch.stiffness *= 16;
       }

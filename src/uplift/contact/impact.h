@@ -21,6 +21,7 @@ struct Impact {
   const Vector* force = nullptr;    // all rows: contact force at the end of the step [N], tension > 0
   const Vector* area = nullptr;     // all rows: area of the row's point [m2], by which redundant impulses are shared; null: equal shares
   double velocity_weight = 0;       // gamma * dt [s]: a force p at the end of the step put -velocity_weight * M^-1 B^T p into the velocity
+  double step = 0;                  // s: of the step just solved
   double acceleration_weight = 1;   // and -acceleration_weight * M^-1 B^T p into the acceleration
 };
 

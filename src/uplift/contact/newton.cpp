@@ -189,6 +189,19 @@ void predict(const InterfaceProblem& problem, InterfaceSolution& solution) {
     const double *end = scratch.end.data() + block.first, *area = block.area.data();
     double* force = solution.force.data() + block.first;
     const double scale = problem.scale;
+    if (components == 1 && r == 2) {  // a footing that cannot slide: one pass
+      const double *left = problem.factor.data() + block.first, *right = left + rows;
+      double sum_left = 0, sum_right = 0;
+#pragma omp simd reduction(+ : sum_left, sum_right)
+      for (int i = 0; i < n; ++i) {
+        const double value = scale * area[i] * end[i] + k[i] * (free[i] - from[i]);
+        sum_left += left[i] * value;
+        sum_right += right[i] * value;
+      }
+      scratch.gradient[0] += sum_left;
+      scratch.gradient[1] += sum_right;
+      continue;
+    }
     for (int a = 0; a < components; ++a) {
 #pragma omp simd
       for (int i = 0; i < n; ++i) force[a * n + i] = scale * area[i] * end[a * n + i];
@@ -315,11 +328,7 @@ Outcome solve_by_newton(const InterfaceProblem& problem, const AugmentedForce& a
     }
     const double reference = balance_scale(problem, solution);
     outcome.residual = size / std::max(reference, 1e-300);
-    if (size <= options.tolerance * reference || size == 0) {
-      outcome.converged = true;
-      return outcome;
-    }
-    if (outcome.iterations >= patience && size <= 8 * round_off(problem, solution)) {
+    if (size <= options.tolerance * reference || size == 0 || (outcome.iterations >= patience && size <= 8 * round_off(problem, solution))) {
       outcome.converged = true;
       scratch.follows = predictable;
       return outcome;

@@ -213,6 +213,7 @@ void Stepper::apply_impact(Level& level) {
   std::swap(data.normals, normals_);
   std::swap(data.tangents, tangents_);
   data.force = &contact_;
+  data.step = level.step;
   data.velocity_weight = options_.scheme.gamma * level.step * weight;
   const double before = 0.5 * small::dot(next_.velocity.size(), next_.velocity.data(), momentum_next_.data());
   impulse_.setZero();
