@@ -71,9 +71,12 @@ double InterfaceViewer::rotation(int interface, const Vector& opening) const {
 
 Recorder::Recorder(const Model& model, const RunPlan& plan, const InterfaceViewer& viewer, std::size_t expected_rows, RunResult& result)
     : model_(model), plan_(plan), viewer_(viewer), result_(result) {
-  result_.columns = plan.requests;
-  result_.table.assign(plan.requests.size() + 1, {});
-  for (std::vector<double>& column : result_.table) column.reserve(expected_rows + 2);
+  const bool first = result_.table.empty();  // a later dynamic stage goes on in the same table
+  if (first) {
+    result_.columns = plan.requests;
+    result_.table.assign(plan.requests.size() + 1, {});
+  }
+  for (std::vector<double>& column : result_.table) column.reserve(column.size() + expected_rows + 2);
   const SparseRows rows(model.reduction);
   for (const Request& request : plan.requests) {
     Source source;
@@ -92,7 +95,7 @@ Recorder::Recorder(const Model& model, const RunPlan& plan, const InterfaceViewe
       source.inverse_area = 1 / interface.area[request.point];
     }
     sources_.push_back(std::move(source));
-    result_.peaks.push_back({request.name, request.unit, 0, 0});
+    if (first) result_.peaks.push_back({request.name, request.unit, 0, 0});
   }
 }
 

@@ -73,6 +73,11 @@ class Runner {
     result_.label = plan.label;
     result_.group = plan.group;
     result_.expected_to_fail = plan.expected_to_fail;
+    result_.max_uplifted_ratio = {"max_uplifted_ratio", "1", 0, 0};
+    result_.max_opening = {"max_opening", "m", 0, 0};
+    result_.max_base_moment = {"max_base_moment", "N m", 0, 0};
+    result_.max_base_shear = {"max_base_shear", "N", 0, 0};
+    result_.max_pressure = {"max_pressure", "Pa", 0, 0};
   }
 
   RunResult go() {
@@ -87,6 +92,7 @@ class Runner {
  private:
   void execute();
   void remember_gaps();
+  void initial_forces();
   void add_initial_state();
   bool statics(const Stage& stage, const Bulk& bulk);
   bool dynamics(const Stage& stage, const Bulk& bulk);
@@ -146,6 +152,7 @@ void Runner::execute() {
   state_.force = state_.mean_force = Vector::Zero(b_.rows());
   state_.history.assign(static_cast<std::size_t>(laws_->history), 0.0);
   remember_gaps();
+  initial_forces();
   for (int column = 0; column < b_.outerSize(); ++column) {
     const std::string& name = model_.unknown_names[static_cast<std::size_t>(column)];
     if (Sparse::InnerIterator(b_, column) && name.ends_with(".rz")) rotations_.push_back(column);
@@ -154,6 +161,7 @@ void Runner::execute() {
   bool moving = false;
   for (const Stage& stage : plan_.stages) {
     if (stage.type == Stage::Type::statics) {
+      march_.reset();
       if (!statics(stage, bulk)) return;
       continue;
     }
@@ -212,6 +220,22 @@ void Runner::add_initial_state() {
         else if (state_.opening[normal + i] > 0)
           force = 0;
       }
+  }
+  state_.mean_force = state_.force;
+}
+
+/// Forces and memory of the laws under an initial displacement, reached from rest.
+void Runner::initial_forces() {
+  if (state_.displacement.isZero(0)) return;
+  const InterfaceProblem blocks = blocks_of(model_, *laws_);
+  const std::vector<double> old = state_.history;
+  for (const Block& block : blocks.blocks) {
+    if (block.law == nullptr) continue;
+    Reply reply;
+    reply.traction = state_.force.data() + block.first;
+    reply.now = state_.history.data() + block.first_history;
+    block.law->respond(block.batch, start_gap_.data() + block.first, state_.opening.data() + block.first, old.data() + block.first_history, reply);
+    for (int i = 0; i < block.rows(); ++i) reply.traction[i] *= block.area[static_cast<std::size_t>(i % block.batch.points)];
   }
   state_.mean_force = state_.force;
 }
@@ -290,14 +314,15 @@ bool Runner::dynamics(const Stage& stage, const Bulk& bulk) {
   options.halvings = stage.halvings;
   options.monolithic = plan_.monolithic;
   options.oracle_tolerance = plan_.oracle_tolerance;
+  if (ledger_ && !(march_ && march_->p_delta == stage.p_delta && march_->scheme == stage.scheme)) ledger_->acceleration = false;
   Stepper stepper(model_, bulk, b_, gap_, *laws_, *plan_.method, *plan_.impact, *plan_.solver, options, linear_);
-  stepper.start(std::move(state_));
+  stepper.start(std::move(state_), ledger_ ? &*ledger_ : nullptr);
   seen_ = &stepper.state();
   const long steps = std::max(1L, std::lround(stage.duration / stage.step));
   const std::size_t rows = static_cast<std::size_t>(steps / plan_.every) + 2;
   Recorder recorder(model_, plan_, viewer_, rows, result_);
   const long picture_every = plan_.frames > 0 ? std::max(1L, steps / plan_.frames) : 0;
-  initial_scale_ = stepper.energies().kinetic;
+  if (!ledger_) initial_scale_ = stepper.energies().kinetic;
   for (const Drive& drive : model_.drives)
     if (drive.dead) round_off_work_ += 1e-10 * drive.shape.lpNorm<1>() * std::abs(drive.function->value(seen_->time));
   const auto observe = [&](long step) {
@@ -306,7 +331,7 @@ bool Runner::dynamics(const Stage& stage, const Bulk& bulk) {
     recorder.record(stepper, views_, step % plan_.every == 0 || step == steps);
     if (picture_every > 0 && step % picture_every == 0) recorder.picture(*seen_);
   };
-  observe(0);
+  if (!ledger_) observe(0);  // else the end of the stage before is there already
   bool go_on = true;
   for (long step = 1; step <= steps && go_on; ++step) {
     if (!stepper.advance()) {
@@ -329,6 +354,8 @@ bool Runner::dynamics(const Stage& stage, const Bulk& bulk) {
   }
   state_ = stepper.state();
   seen_ = &state_;
+  ledger_ = stepper.ledger();
+  march_ = stage;
   result_.counts.steps += stepper.counts().steps;
   result_.counts.retries += stepper.counts().retries;
   result_.counts.iterations += stepper.counts().iterations;

@@ -12,6 +12,7 @@ namespace uplift {
 /// (Chung & Hulbert 1993; HHT-alpha: am = 0, af = -alpha; Newmark: am = af = 0). A scheme is coefficients.
 struct Scheme {
   double beta = 0.25, gamma = 0.5, alpha_m = 0, alpha_f = 0;
+  bool operator==(const Scheme&) const = default;
   /// The trapezoidal rule: the path-averaged traction closes the energy balance exactly with it and only with it.
   bool average_acceleration() const { return beta == 0.25 && gamma == 0.5 && alpha_m == 0 && alpha_f == 0; }
 };

@@ -103,7 +103,7 @@ void Stepper::acceleration(Vector& result) const {
   accelerator_.solve(balance_, result);
 }
 
-void Stepper::start(State state) {
+void Stepper::start(State state, const Ledger* before) {
   now_ = std::move(state);
   const Eigen::Index n = bulk_.unknowns;
   for (Vector* v : {&force_now_, &force_next_, &stiff_now_, &stiff_next_, &momentum_now_, &momentum_next_, &right_, &increment_, &work_,
@@ -111,21 +111,27 @@ void Stepper::start(State state) {
     v->setZero(n);
   contact_.setZero(b_.rows());
   impulse_.setZero(b_.rows());
-  forces_at(now_, work_);
-  now_.acceleration.setZero(n);
-  accelerator_.solve(work_, now_.acceleration);
+  if (before == nullptr || !before->acceleration || path_) {
+    forces_at(now_, work_);
+    now_.acceleration.setZero(n);
+    accelerator_.solve(work_, now_.acceleration);
+  }
   next_ = now_;
   model_.add_force(now_.time, force_now_);
   bulk_.stiffness.multiply(now_.displacement, stiff_now_);
   bulk_.mass.multiply(now_.velocity, momentum_now_);
   const InterfaceProblem blocks = blocks_of(model_, behaviours_);
   interface_energy_.update(blocks, now_.opening, now_.history);
-  energies_ = {};
+  energies_ = before != nullptr ? before->energies : Energies{};
   energies_.kinetic = 0.5 * now_.velocity.dot(momentum_now_);
   energies_.strain = 0.5 * now_.displacement.dot(stiff_now_);
   energies_.stored = interface_energy_.stored;
   energies_.interface_dissipated = interface_energy_.dissipated;
-  initial_energy_ = energies_.kinetic + energies_.strain + energies_.stored + energies_.interface_dissipated;
+  impact_loss_ = energies_.impact;
+  const double total = energies_.kinetic + energies_.strain + energies_.stored + energies_.interface_dissipated;
+  origin_ = total + energies_.damping + energies_.impact - energies_.external - energies_.residual;
+  initial_energy_ = before != nullptr ? before->initial_energy : total;
+  largest_external_ = before != nullptr ? before->largest_external : 0;
 }
 
 /// Openings that prescribed motions make by themselves, at the end of a step.
@@ -294,7 +300,7 @@ void Stepper::book_energies(const Level& level) {
   energies_.interface_dissipated = interface_energy_.dissipated;
   energies_.impact = impact_loss_;
   energies_.residual = energies_.kinetic + energies_.strain + energies_.stored + energies_.interface_dissipated + energies_.damping +
-                       energies_.impact - energies_.external - initial_energy_;
+                       energies_.impact - energies_.external - origin_;
   largest_external_ = std::max(largest_external_, std::abs(energies_.external));
 }
 

@@ -26,6 +26,13 @@ struct StepCounts {
   int deepest = 0;  // largest number of halvings that was needed
 };
 
+/// What a stage hands on to the next one beside its state.
+struct Ledger {
+  Energies energies;
+  double initial_energy = 0, largest_external = 0;  // J
+  bool acceleration = false;                        // the state's acceleration is that of the scheme and goes on
+};
+
 /// Marches a state in time. Everything that depends on the step is made once per halving level and kept.
 class Stepper {
  public:
@@ -33,8 +40,10 @@ class Stepper {
           const ContactMethod& method, const ImpactRule& impact, const LinearSolver& solver, const StepOptions& options,
           LinearCounts& counts);
   ~Stepper();
-  /// Takes over displacement, velocity, opening and history; the initial acceleration follows from the balance.
-  void start(State state);
+  /// Takes over displacement, velocity, opening and history; the initial acceleration follows from the balance. With the ledger of a stage before,
+  /// energies go on counting, and so does its acceleration when it is the same scheme's.
+  void start(State state, const Ledger* before = nullptr);
+  Ledger ledger() const { return {energies_, initial_energy_, largest_external_, !path_}; }
   /// One step of the nominal size. A part that fails is halved and tried again; false when the smallest part fails too: the state stays that of
   /// the last success and `why`, `failed` tell.
   bool advance();
@@ -89,6 +98,7 @@ class Stepper {
   Energies energies_;
   InterfaceEnergy interface_energy_;
   double impact_loss_ = 0, initial_energy_ = 0, largest_external_ = 0;
+  double origin_ = 0;  // J: what the balance is measured from; the initial energy unless a static stage came in between
   StepCounts counts_;
   std::string why_;
   const InterfaceProblem* last_ = nullptr;
