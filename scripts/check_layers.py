@@ -15,7 +15,8 @@ for path in sorted(ROOT.rglob("*")):
     if layer not in ORDER:
         mistakes.append(f"{path.relative_to(ROOT)}: \"{layer}\" is not a layer ({' '.join(ORDER)})")
         continue
-    for number, line in enumerate(path.read_text().splitlines(), 1):
+    lines = path.read_text().splitlines()
+    for number, line in enumerate(lines, 1):
         place = f"src/uplift/{path.relative_to(ROOT)}:{number}"
         include = re.match(r'\s*#include "uplift/([a-z]+)/', line)
         if include and ORDER.index(include.group(1)) > ORDER.index(layer):
@@ -24,8 +25,10 @@ for path in sorted(ROOT.rglob("*")):
             mistakes.append(f"{place}: Eigen is included outside math")
         if layer not in ("cli",) and re.search(r"std::(cout|cerr|exit|abort)\b|\bprintf\(|fmt::print\(", line):
             mistakes.append(f"{place}: the library prints or exits")
-        if re.match(r"\s*template\b", line) and layer not in ("math", "base"):
-            mistakes.append(f"{place}: a template outside math and base")
+        following = lines[number] if number < len(lines) else ""
+        if path.suffix == ".h" and re.match(r"\s*template\s*<", line) and re.search(r"\b(class|struct)\s+\w+", line.split(">", 1)[-1] + following):
+            if layer not in ("math", "base"):
+                mistakes.append(f"{place}: a class template in a header outside math and base")
 
 print("\n".join(mistakes) if mistakes else f"layers: {' <- '.join(ORDER)}: in order")
 sys.exit(1 if mistakes else 0)

@@ -118,6 +118,8 @@ class Runner {
   std::vector<InterfaceView> views_;
   std::vector<int> rotations_;  // free unknowns that are rotations of bodies on an interface
   double initial_scale_ = 0;     // J
+  std::optional<Ledger> ledger_;  // of the dynamic stage before
+  std::optional<Stage> march_;    // that stage, as long as nothing came in between
   double round_off_work_ = 0;    // J
 };
 
