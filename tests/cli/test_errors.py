@@ -131,6 +131,10 @@ class BadInput(CliTest):
         done = self.uplift("check", self.write(text).name, expect=2)
         self.assertRegex(done.stderr, r"variant\[1\]\.method")
 
+    def test_compared_columns_must_exist(self):
+        text = BASE + '[compare]\nagree_on = ["top.uxx"]\n'
+        self.refused(text, f'{{file}}:{line_of(text, "agree_on")}: compare.agree_on: wanted the name of a column of the output, found "top.uxx" (did you mean "top.ux"?)')
+
     def test_variant_names_name_files(self):
         text = BASE + '[[variant]]\nname = "../a"\n'
         done = self.uplift("compare", self.write(text).name, expect=2)

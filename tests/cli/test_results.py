@@ -124,11 +124,53 @@ class Failures(CliTest):
         self.assertEqual((runs["path"]["status"], runs["end"]["status"]), ("completed", "failed"))
         self.assertEqual((runs["path"]["agreement"]["result"], runs["end"]["agreement"]["result"]), ("agrees", "failed"))
 
+    def test_a_step_that_fails_leaves_its_problem(self):
+        text = BASE.replace('title = "test"\n', 'title = "test"\nmethod = { type = "newton", most_iterations = 1 }\n').replace("step = 1e-3", "step = 1e-3\nhalvings = 0")
+        self.write(text.replace('type = "springs"\nK_n = 2e8', 'type = "sdm"\nK_n = 2e8\nF_u = 1e4\nG_f = 10\nF_c = -1e3'))
+        done = self.uplift("run", "case.toml", "-o", "r", expect=3)
+        self.assertIn("did not converge in 1 iterations", done.stderr)
+        self.assertIn("r/problem_run.json", done.stderr)
+        done = self.uplift("replay", "r/problem_run.json", "--all", "--json")
+        answers = json.loads(done.stdout)
+        self.assertIn("did not converge in 1 iterations", answers["reason"])
+        self.assertTrue(all(answer["converged"] for answer in answers["methods"]))
+
     def test_overturning_is_an_outcome_not_a_failure(self):
         self.write(BASE.replace("force = [3e5, 0]", "force = [9e6, 0]").replace("duration = 0.5", "duration = 3"))
         done = self.uplift("run", "case.toml", "-o", "r")
         self.assertEqual(self.summary("r")["runs"][0]["status"], "overturned")
         self.assertIn("overturns", done.stdout)
+
+
+class Terminal(CliTest):
+    def test_progress_line(self):
+        """On a terminal: time left and the present state, redrawn on one line, gone at the end."""
+        import fcntl
+        import pty
+        import struct
+        import termios
+
+        self.write(BASE.replace("duration = 0.5", "duration = 600") + "[output]\nevery = 1000\n")
+        ours, theirs = pty.openpty()
+        fcntl.ioctl(theirs, termios.TIOCSWINSZ, struct.pack("HHHH", 24, 120, 0, 0))
+        process = subprocess.Popen([program(), "run", "case.toml", "-o", "r"], cwd=self.folder, stdout=subprocess.PIPE, stderr=theirs, env={**os.environ, "TERM": "xterm"})
+        os.close(theirs)
+        said = b""
+        while True:
+            try:
+                part = os.read(ours, 4096)
+            except OSError:
+                break
+            if not part:
+                break
+            said += part
+        os.close(ours)
+        process.communicate()
+        self.assertEqual(process.returncode, 0)
+        text = said.decode()
+        for part in ("s left", "t = ", "dt = ", "open ", "energy error"):
+            self.assertIn(part, text)
+        self.assertTrue(text.endswith("\r\x1b[K"), repr(text[-40:]))
 
 
 class Interrupt(CliTest):

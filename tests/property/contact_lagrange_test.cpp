@@ -30,7 +30,8 @@ Matrix random_factor(Dice& dice, int rows, int columns, double scale) {
   return c;
 }
 
-/// The unique minimiser of |z|^2/2 with target + C z >= 0, by trying every subset of rows; nothing when the constraints contradict each other.
+/// The unique minimiser of |z|^2/2 with target + C z >= 0, by trying every subset of rows; nothing when the constraints contradict each
+/// other.
 std::optional<Vector> brute_force(const Matrix& c, const Vector& target) {
   const int n = static_cast<int>(c.rows());
   const double size = target.cwiseAbs().maxCoeff();
@@ -65,7 +66,8 @@ void check_frictionless(unsigned seed, bool redundant) {
   const Vector motion = random_factor(dice, r, 1, size / scale).col(0);
   for (int i = 0; i < n; ++i) {
     target[i] = size * dice.normal();
-    if (redundant && i > 0 && dice.chance(0.4)) c.row(i) = dice.chance(0.5) ? c.row(i - 1).eval() : (0.3 * c.row(0) + 0.7 * c.row(i - 1)).eval();
+    if (redundant && i > 0 && dice.chance(0.4))
+      c.row(i) = dice.chance(0.5) ? c.row(i - 1).eval() : (0.3 * c.row(0) + 0.7 * c.row(i - 1)).eval();
     if (redundant) target[i] = c.row(i).dot(motion) + (dice.chance(0.3) ? size * std::abs(dice.normal()) : 0);  // can always be opened
   }
   Own own;
@@ -91,8 +93,12 @@ void check_frictionless(unsigned seed, bool redundant) {
   RC_ASSERT((solution.z - *expected).norm() <= 1e-7 * expected->norm());
 }
 
-RC_GTEST_PROP(Lagrange, frictionless_against_brute_force, ()) { check_frictionless(*rc::gen::arbitrary<unsigned>(), false); }
-RC_GTEST_PROP(Lagrange, redundant_rows_against_brute_force, ()) { check_frictionless(*rc::gen::arbitrary<unsigned>(), true); }
+RC_GTEST_PROP(Lagrange, frictionless_against_brute_force, ()) {
+  check_frictionless(*rc::gen::arbitrary<unsigned>(), false);
+}
+RC_GTEST_PROP(Lagrange, redundant_rows_against_brute_force, ()) {
+  check_frictionless(*rc::gen::arbitrary<unsigned>(), true);
+}
 
 // Of all admissible forces the least-norm one: p/area = min(0, C y) on the closed rows, which no other admissible force beats.
 RC_GTEST_PROP(Lagrange, redundant_forces_are_of_least_norm, ()) {
@@ -212,7 +218,9 @@ void check_friction(unsigned seed) {
   }
 }
 
-RC_GTEST_PROP(Lagrange, friction_against_brute_force, ()) { check_friction(*rc::gen::arbitrary<unsigned>()); }
+RC_GTEST_PROP(Lagrange, friction_against_brute_force, ()) {
+  check_friction(*rc::gen::arbitrary<unsigned>());
+}
 
 }  // namespace
 }  // namespace uplift::contact_test

@@ -4,8 +4,8 @@
 
 #include "oracle_models.h"
 
-// The energy ledger: with the average acceleration rule and path-averaged tractions it closes to round-off at every stiffness and step; with
-// end-of-step tractions it does not (THEORY section 4).
+// The energy ledger: with the average acceleration rule and path-averaged tractions it closes to round-off at every stiffness and step;
+// with end-of-step tractions it does not (THEORY section 4).
 namespace uplift::whole {
 namespace {
 
@@ -19,7 +19,8 @@ Closing run_ledger(Whole& whole) {
   whole.plan.created_limit = 1e30;
   Closing closing;
   closing.result = whole.run();
-  for (const double residual : closing.result.table.at(1)) closing.worst = std::max(closing.worst, std::abs(residual) / closing.result.energy_scale);
+  for (const double residual : closing.result.table.at(1))
+    closing.worst = std::max(closing.worst, std::abs(residual) / closing.result.energy_scale);
   return closing;
 }
 
@@ -32,7 +33,9 @@ double stiffness_for(double ratio, double step, const std::function<Whole(double
   return guess * ratio / ratios.front().most;
 }
 
-Part sdm(double k, double strength = 0) { return {"sdm", {{"K_n", k}, {"F_u", strength}, {"G_f", 50.0}, {"F_c", -1e3}, {"tangential", "none"}}}; }
+Part sdm(double k, double strength = 0) {
+  return {"sdm", {{"K_n", k}, {"F_u", strength}, {"G_f", 50.0}, {"F_c", -1e3}, {"tangential", "none"}}};
+}
 
 Whole oscillator_on(const Part& law, double damping = 0) {
   Oscillator data;
@@ -62,7 +65,8 @@ TEST(EnergyLedger, StaysClosedAtAnyStiffness) {
         const double k = stiffness_for(ratio, step, [](double guess) { return oscillator_on(sdm(guess)); });
         Whole whole = oscillator_on(sdm(k, strength));
         whole.plan.stages = {settle(), march(step, 10000)};
-        closes(whole, "sdm, dt " + std::to_string(step) + ", k F_ii " + std::to_string(ratio) + (strength > 0 ? ", with strength" : ""), 10000);
+        closes(whole, "sdm, dt " + std::to_string(step) + ", k F_ii " + std::to_string(ratio) + (strength > 0 ? ", with strength" : ""),
+               10000);
       }
 }
 
@@ -77,8 +81,11 @@ TEST(EnergyLedger, StaysClosedWithDamping) {
 
 TEST(EnergyLedger, StaysClosedForEveryLaw) {
   const double k = stiffness_for(10, 1e-3, [](double guess) { return oscillator_on(sdm(guess)); });
-  std::vector<Part> laws = {{"springs", {{"K_n", k}}}, {"springs", {{"K_n", k}, {"c", 1e-4 * k}}}, {"exponential", {{"K_n", k}, {"F_u", 2e4}, {"G_f", 20.0}}},
-                            {"bilinear", {{"K_n", k}, {"F_u", 2e4}, {"G_f", 20.0}}}, {"sdm", {{"K_n", k}, {"F_u", 2e4}, {"G_f", 20.0}, {"F_c", -1e3}}}};
+  std::vector<Part> laws = {{"springs", {{"K_n", k}}},
+                            {"springs", {{"K_n", k}, {"c", 1e-4 * k}}},
+                            {"exponential", {{"K_n", k}, {"F_u", 2e4}, {"G_f", 20.0}}},
+                            {"bilinear", {{"K_n", k}, {"F_u", 2e4}, {"G_f", 20.0}}},
+                            {"sdm", {{"K_n", k}, {"F_u", 2e4}, {"G_f", 20.0}, {"F_c", -1e3}}}};
   for (const std::string tangential : {"bonded", "open_free", "coulomb"})
     for (Part law : laws) {
       law.parameters.emplace_back("tangential", tangential);
@@ -121,8 +128,9 @@ TEST(EnergyLedger, StaysClosedOverHalvedSteps) {
   EXPECT_LE(closing.worst, 1e-10);
 }
 
-/// The same model with the traction at the end of the step: nothing is created at k F_ii = 0.013, and energy appears from 0.13 on (THEORY section 4).
-/// Measured by what the push has put in when it ends: the work of the constant load grows with the bouncing that the created energy makes.
+/// The same model with the traction at the end of the step: nothing is created at k F_ii = 0.013, and energy appears from 0.13 on (THEORY
+/// section 4). Measured by what the push has put in when it ends: the work of the constant load grows with the bouncing that the created
+/// energy makes.
 TEST(EnergyLedger, EndOfStepTractionCreatesEnergy) {
   const auto created = [](double ratio, bool path) {
     const double k = stiffness_for(ratio, 1e-3, [](double guess) { return oscillator_on(sdm(guess)); });

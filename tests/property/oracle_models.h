@@ -39,8 +39,12 @@ inline Values checked(const Part& part, std::span<const PartInfo* const> catalog
   return check_part(Raw{table, here, "part"}, catalog);
 }
 
-inline Scheme scheme(const Part& part) { return *make_part(scheme_catalog(), checked(part, schemes())); }
-inline std::shared_ptr<const TimeFunction> function(const Part& part) { return make_part(function_catalog(), checked(part, time_functions())); }
+inline Scheme scheme(const Part& part) {
+  return *make_part(scheme_catalog(), checked(part, schemes()));
+}
+inline std::shared_ptr<const TimeFunction> function(const Part& part) {
+  return make_part(function_catalog(), checked(part, time_functions()));
+}
 
 /// Everything that a run needs, owned.
 struct Whole {
@@ -93,7 +97,8 @@ inline void watch_all(Whole& whole) {
   for (int i = 0; i < static_cast<int>(whole.model.interfaces.size()); ++i)
     for (const Kind kind : {Kind::axial, Kind::shear, Kind::moment, Kind::max_opening, Kind::uplifted_ratio})
       list.push_back(request(kind, i, "resultant"));
-  for (const Kind kind : {Kind::kinetic, Kind::strain, Kind::stored, Kind::interface_dissipated, Kind::damping, Kind::impact, Kind::external, Kind::residual})
+  for (const Kind kind :
+       {Kind::kinetic, Kind::strain, Kind::stored, Kind::interface_dissipated, Kind::damping, Kind::impact, Kind::external, Kind::residual})
     list.push_back(request(kind, 0, "energy"));
 }
 
@@ -120,8 +125,7 @@ inline Whole make(const Oscillator& data) {
   builder.add_element(std::make_unique<PointMass>(base, data.base_mass, data.base_inertia), here);
   if (!data.slides) builder.fix(base, ux, here);
   builder.add_load("weight", {{3 * top + 1, -data.vertical}}, nullptr, true, here);
-  if (data.push != 0)
-    builder.add_load("push", {{3 * top, data.push}}, function({"half_sine", {{"duration", data.duration}}}), false, here);
+  if (data.push != 0) builder.add_load("push", {{3 * top, data.push}}, function({"half_sine", {{"duration", data.duration}}}), false, here);
   InterfaceSpec spec;
   spec.name = "footing";
   Footing footing;
@@ -143,7 +147,9 @@ inline std::vector<int> add_beam_line(ModelBuilder& builder, const std::string& 
   const auto place = [&](int i) { return Vec2{x0 + (x1 - x0) * i / elements, y}; };
   for (int i = 0; i <= elements; ++i) nodes.push_back(builder.add_node(name + std::to_string(i), place(i), here));
   for (int i = 0; i < elements; ++i)
-    builder.add_element(std::make_unique<Beam>(nodes[static_cast<std::size_t>(i)], nodes[static_cast<std::size_t>(i) + 1], place(i), place(i + 1), section), here);
+    builder.add_element(
+        std::make_unique<Beam>(nodes[static_cast<std::size_t>(i)], nodes[static_cast<std::size_t>(i) + 1], place(i), place(i + 1), section),
+        here);
   return nodes;
 }
 
@@ -211,7 +217,8 @@ inline Whole make(const Leaves& data) {
   std::vector<std::pair<int, double>> weight;
   for (const int node : upper) weight.emplace_back(3 * node + 1, -data.weight);
   builder.add_load("weight", weight, nullptr, true, here);
-  builder.add_load("push", {{3 * upper[2] + 1, data.push}, {3 * upper[4], 0.3 * data.push}}, function({"harmonic", {{"frequency", 12.0}, {"end", 0.3}}}), false, here);
+  builder.add_load("push", {{3 * upper[2] + 1, data.push}, {3 * upper[4], 0.3 * data.push}},
+                   function({"harmonic", {{"frequency", 12.0}, {"end", 0.3}}}), false, here);
   builder.add_element(std::make_unique<Spring>(Connection{{upper.front()}, Vec2{1, 0}}, 2e6), here);
   std::vector<SideNode> above, below;
   for (std::size_t i = 0; i < upper.size(); ++i) {

@@ -5,9 +5,9 @@
 
 #include "oracle_models.h"
 
-// The condensed step against Newton on all unknowns at once: the same displacements, resultants and energies to 1e-8 of their largest value over 1000 steps
-// with uplift, for every law, method, impact rule and scheme (issue: "condensed = monolithic"). The pressures of redundant points under a rigid footing are
-// not compared one by one; their resultants are.
+// The condensed step against Newton on all unknowns at once: the same displacements, resultants and energies to 1e-8 of their largest value
+// over 1000 steps with uplift, for every law, method, impact rule and scheme (issue: "condensed = monolithic"). The pressures of redundant
+// points under a rigid footing are not compared one by one; their resultants are.
 namespace uplift::whole {
 namespace {
 
@@ -56,12 +56,12 @@ void check(Whole& whole, const std::string& name, bool must_lift = true) {
   ASSERT_EQ(condensed.table[0].size(), oracle.table[0].size());
   const Difference difference = compare(condensed, oracle);
   EXPECT_LE(difference.worst, 1e-8) << difference.column << " at t = " << difference.time << " s";
-  std::printf("%-70s %9.2e  lifted %.3f  retries %ld/%ld  %.2f s/%.2f s\n", name.c_str(), difference.worst, condensed.max_uplifted_ratio.value,
-              condensed.counts.retries, oracle.counts.retries, condensed.wall, oracle.wall);
+  std::printf("%-70s %9.2e  lifted %.3f  retries %ld/%ld  %.2f s/%.2f s\n", name.c_str(), difference.worst,
+              condensed.max_uplifted_ratio.value, condensed.counts.retries, oracle.counts.retries, condensed.wall, oracle.wall);
 }
 
-/// Every step from the same beginning: for marches that amplify round-off (an impact rule that pumps energy, hard contact of a rocking body).
-/// `retries`: so many steps may be halved, where the step itself may have no solution (or more than one).
+/// Every step from the same beginning: for marches that amplify round-off (an impact rule that pumps energy, hard contact of a rocking
+/// body). `retries`: so many steps may be halved, where the step itself may have no solution (or more than one).
 void check_steps(Whole& whole, const std::string& name, long retries = 0) {
   SCOPED_TRACE(name);
   whole.plan.created_limit = 1e30;
@@ -72,7 +72,8 @@ void check_steps(Whole& whole, const std::string& name, long retries = 0) {
   EXPECT_EQ(result.status, RunStatus::completed) << result.reason;
   EXPECT_LE(result.counts.retries, retries);
   EXPECT_GT(result.max_opening.value, 1e-6);
-  std::printf("%-70s each step    lifted %.3f  retries %ld %s\n", name.c_str(), result.max_uplifted_ratio.value, result.counts.retries, result.reason.c_str());
+  std::printf("%-70s each step    lifted %.3f  retries %ld %s\n", name.c_str(), result.max_uplifted_ratio.value, result.counts.retries,
+              result.reason.c_str());
 }
 
 std::vector<Part> traction_laws(double k, const std::string& tangential) {
@@ -117,8 +118,22 @@ TEST(Oracle, RigidFootingOnTractionLaws) {
       }
 }
 
-const std::vector<Part> schemes_of_newmark = {{"average_acceleration"}, {"newmark", {{"gamma", 0.6}}}, {"hht", {{"alpha", -0.1}}},
-                                              {"generalised_alpha", {{"rho", 0.8}}}};
+/// The comparison is made at all: nothing is equal to 1e-19.
+TEST(Oracle, ComparisonCanFail) {
+  Oscillator data;
+  data.behaviour = {"springs", {{"K_n", 2e8}}};
+  Whole whole = make(data);
+  choose(whole, {"newton"}, {"none"});
+  whole.plan.stages = {settle(), march(1e-3, 200)};
+  whole.plan.stages.back().halvings = 0;
+  whole.plan.oracle_tolerance = 1e-19;
+  const RunResult result = whole.run();
+  EXPECT_EQ(result.status, RunStatus::failed);
+  EXPECT_NE(result.reason.find("the oracle's step differs"), std::string::npos) << result.reason;
+}
+
+const std::vector<Part> schemes_of_newmark = {
+    {"average_acceleration"}, {"newmark", {{"gamma", 0.6}}}, {"hht", {{"alpha", -0.1}}}, {"generalised_alpha", {{"rho", 0.8}}}};
 const std::vector<Part> rules = {{"none"}, {"project"}, {"project_hold"}, {"reflect"}, {"propagate"}};
 
 /// The case a traction law is marched with every scheme: only the first can take the path average.
@@ -194,7 +209,8 @@ TEST(Oracle, BeamOnTwoInterfaces) {
         }
 }
 
-/// The dashpot of the viscous springs sets in with a jump: at the end of a step in which contact begins there may be no solution until it is halved.
+/// The dashpot of the viscous springs sets in with a jump: at the end of a step in which contact begins there may be no solution until it
+/// is halved.
 TEST(Oracle, LeavesOnEveryLaw) {
   for (const std::string tangential : {"none", "bonded", "open_free", "coulomb"})
     for (const Part& law : traction_laws(3e8, tangential))
@@ -204,7 +220,8 @@ TEST(Oracle, LeavesOnEveryLaw) {
         Whole whole = make(data);
         choose(whole, {"newton"}, {"none"});
         whole.plan.stages = {settle(), march(1e-3, 1000, path)};
-        check_steps(whole, "leaves, " + name_of(law) + (path ? ", path" : ", end"), name_of(law).find("viscous") != std::string::npos ? 5 : 0);
+        check_steps(whole, "leaves, " + name_of(law) + (path ? ", path" : ", end"),
+                    name_of(law).find("viscous") != std::string::npos ? 5 : 0);
       }
 }
 

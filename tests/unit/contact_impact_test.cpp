@@ -96,7 +96,8 @@ class Bar {
   Spread contact_, inertia_;
 };
 
-// Requirement: the table of THEORY section 4. The figures there are rounded; those of an independent program for the same scheme are used, 0.5 %.
+// Requirement: the table of THEORY section 4. The figures there are rounded; those of an independent program for the same scheme are used,
+// 0.5 %.
 TEST(Impact, bar_table) {
   const Bar bar(100);
   struct Row {
@@ -139,7 +140,8 @@ struct RockingBlock {
     inertia = spread_of(m, b);
   }
   double energy(const Vector& v) const { return 0.5 * v.dot(m * v); }
-  /// Velocity after the impact; `contained` [N s] is the part of corner A's impulse that the displacement solve has put into the velocity already.
+  /// Velocity after the impact; `contained` [N s] is the part of corner A's impulse that the displacement solve has put into the velocity
+  /// already.
   Vector after(const std::string& name, Vector v, bool friction, double contained, Vector* impulse = nullptr) const {
     Impact impact;
     impact.mass = impact.dynamic = &inertia;
@@ -159,7 +161,8 @@ struct RockingBlock {
   }
 };
 
-// Requirement: restitution r = (1 - 1.5 sin^2 alpha)^2 of the energy when the corners stick; the block must not stop dead (VERIFICATION section 4).
+// Requirement: restitution r = (1 - 1.5 sin^2 alpha)^2 of the energy when the corners stick; the block must not stop dead (VERIFICATION
+// section 4).
 TEST(Impact, rocking_block_housner) {
   const RockingBlock block;
   const double sine = block.half_width / std::hypot(block.half_width, block.half_height), ratio = 1 - 1.5 * sine * sine;
@@ -208,7 +211,8 @@ TEST(Impact, block_that_falls_flat_stops) {
   }
 }
 
-// Redundant contact: 40 points under a rigid footing. The rule must give the velocity of the body (independent of the number of points) and impulses that are never tensile.
+// Redundant contact: 40 points under a rigid footing. The rule must give the velocity of the body (independent of the number of points) and
+// impulses that are never tensile.
 TEST(Impact, redundant_points_under_a_rigid_footing) {
   const double mass = 2e4, moment = 7500;
   Matrix m = Matrix::Zero(2, 2);

@@ -95,7 +95,8 @@ TEST(Kernel, three_solvers_agree_on_redundant_rows) {
 // Rows held both ways beside rows that may open: KKT conditions written out.
 TEST(Kernel, fixed_rows) {
   const Matrix c = (Matrix(3, 3) << 1, 0.2, 0.1, 0.1, 1, 0.3, -0.2, 0.1, 1).finished();
-  const Vector target = (Vector(3) << 0.5, -1.0, 0.4).finished(), limit = (Vector(3) << 0, 1, 1).finished(), fixed = (Vector(3) << 1, 0, 0).finished();
+  const Vector target = (Vector(3) << 0.5, -1.0, 0.4).finished(), limit = (Vector(3) << 0, 1, 1).finished(),
+               fixed = (Vector(3) << 1, 0, 0).finished();
   for (const Solver solver : {&solve_rows, &dual_active_set}) {
     const Solved s = solve(solver, c, target, limit, &fixed);
     ASSERT_TRUE(s.reply.solved());
@@ -127,6 +128,17 @@ TEST(Kernel, contradictions_and_not_finite) {
   // two fixed rows that ask for different things
   const Vector none = Vector::Zero(2);
   EXPECT_EQ(solve(solve_rows, Matrix::Ones(2, 1), (Vector(2) << 1.0, 2.0).finished(), none, &two).reply.end, KernelEnd::inconsistent);
+}
+
+TEST(Kernel, nothing_to_move) {
+  const Vector one = Vector::Ones(1);
+  EXPECT_TRUE(solve(solve_rows, Matrix(1, 0), Vector::Constant(1, 0.2), one).reply.solved());
+  EXPECT_EQ(solve(solve_rows, Matrix(1, 0), Vector::Constant(1, -0.2), one).reply.end, KernelEnd::inconsistent);
+  for (const int columns : {0, 2, 7}) {
+    const Solved empty = solve(solve_rows, Matrix(0, columns), Vector(0), Vector(0));
+    EXPECT_TRUE(empty.reply.solved());
+    EXPECT_EQ(empty.z.norm(), 0);
+  }
 }
 
 // A set that is noted twice is recognised, and no more than 64 are kept.

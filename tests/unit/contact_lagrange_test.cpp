@@ -43,7 +43,8 @@ TEST(Lagrange, a_point_that_just_touches_stays_open) {
 
 // ---- a rigid footing on redundant points ----
 
-/// The footing (u_y, theta) on springs of the bulk under a load W at x = e, or held by its mass: what matters is B^T p = -(W, W e) when it stays flat.
+/// The footing (u_y, theta) on springs of the bulk under a load W at x = e, or held by its mass: what matters is B^T p = -(W, W e) when it
+/// stays flat.
 struct FlatFooting {
   Own own;
   Footing base;
@@ -65,7 +66,8 @@ struct FlatFooting {
   }
 };
 
-// Eccentricity inside the kernel: p/area = -(W/A) (1 + e x / i^2), exactly (Navier); beyond it the tensionless linear distribution, its resultants exact.
+// Eccentricity inside the kernel: p/area = -(W/A) (1 + e x / i^2), exactly (Navier); beyond it the tensionless linear distribution, its
+// resultants exact.
 TEST(Lagrange, eccentric_footing_on_forty_points) {
   const double weight = 1e6;
   const Footing base = footing(40, 1.5);

@@ -27,13 +27,13 @@ double measured(double z, double force, double opening_error = 0) {
 }
 
 TEST(Yardstick, sees_each_kind_of_error) {
-  EXPECT_LE(measured(80, -1.6e5), 1e-15);                               // the solution
-  EXPECT_NEAR(measured(80, -1.6e5 * 1.01), 80 * 0.01 / (80 * 2.01), 1e-12);  // balance
-  EXPECT_NEAR(measured(40, -8e4), 0.02 / 0.02, 1e-12);                  // balanced, but penetrates by as much as it moved
+  EXPECT_LE(measured(80, -1.6e5), 1e-15);                                           // the solution
+  EXPECT_NEAR(measured(80, -1.6e5 * 1.01), 80 * 0.01 / (80 * 2.01), 1e-12);         // balance
+  EXPECT_NEAR(measured(40, -8e4), 0.02 / 0.02, 1e-12);                              // balanced, but penetrates by as much as it moved
   EXPECT_NEAR(measured(80 * 1.001, -1.6e5 * 1.001), 4e-5 / (0.04 * 1.001), 1e-12);  // pushes across a gap
-  EXPECT_NEAR(measured(-20, 4e4), 5, 1e-12);                            // pulls, and penetrates by 0.05 having moved 0.01
-  EXPECT_NEAR(measured(0, 0), 1, 1e-12);                                // nothing done: relative to the free penetration
-  EXPECT_NEAR(measured(80, -1.6e5, 1e-3), 1e-3 / 0.04, 1e-12);          // an opening that does not belong to z
+  EXPECT_NEAR(measured(-20, 4e4), 5, 1e-12);                                        // pulls, and penetrates by 0.05 having moved 0.01
+  EXPECT_NEAR(measured(0, 0), 1, 1e-12);                                            // nothing done: relative to the free penetration
+  EXPECT_NEAR(measured(80, -1.6e5, 1e-3), 1e-3 / 0.04, 1e-12);                      // an opening that does not belong to z
   EXPECT_TRUE(std::isinf(measured(std::numeric_limits<double>::quiet_NaN(), 0)));
 }
 
@@ -49,11 +49,11 @@ TEST(Yardstick, friction_bound_and_direction) {
     solution.opening = own.problem.free_opening + solution.z;
     return yardstick(own.problem, solution);
   };
-  EXPECT_LE(error(0.5, 0.3), 1e-15);         // slips at the bound
-  EXPECT_LE(error(0.2, 0), 1e-15);           // sticks
-  EXPECT_NEAR(error(0.7, 0), 0.2, 1e-12);    // beyond the bound
+  EXPECT_LE(error(0.5, 0.3), 1e-15);          // slips at the bound
+  EXPECT_LE(error(0.2, 0), 1e-15);            // sticks
+  EXPECT_NEAR(error(0.7, 0), 0.2, 1e-12);     // beyond the bound
   EXPECT_NEAR(error(-0.5, 0.3), 0.3, 1e-12);  // pushed along by its own friction
-  EXPECT_NEAR(error(0.2, 0.1), 0.1, 1e-12);  // moves inside the cone
+  EXPECT_NEAR(error(0.2, 0.1), 0.1, 1e-12);   // moves inside the cone
 }
 
 TEST(Yardstick, law_blocks_and_shift) {
@@ -208,7 +208,8 @@ TEST(ProblemFile, bad_files_are_refused_with_position) {
 
 std::vector<std::filesystem::path> stored_problems() {
   std::vector<std::filesystem::path> paths;
-  for (const auto& entry : std::filesystem::directory_iterator(std::string(UPLIFT_SOURCE_DIR) + "/tests/problems")) paths.push_back(entry.path());
+  for (const auto& entry : std::filesystem::directory_iterator(std::string(UPLIFT_SOURCE_DIR) + "/tests/problems"))
+    paths.push_back(entry.path());
   std::sort(paths.begin(), paths.end());
   return paths;
 }

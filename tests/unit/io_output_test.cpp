@@ -63,13 +63,20 @@ TEST(Hash, MatchesTheStandardsExamples) {
   // FIPS 180-4, examples of NIST
   EXPECT_EQ(sha256("abc"), "ba7816bf8f01cfea414140de5dae2223b00361a396177a9cb410ff61f20015ad");
   EXPECT_EQ(sha256(""), "e3b0c44298fc1c149afbf4c8996fb92427ae41e4649b934ca495991b7852b855");
-  EXPECT_EQ(sha256("abcdbcdecdefdefgefghfghighijhijkijkljklmklmnlmnomnopnopq"), "248d6a61d20638b8e5c026930c3e6039a33ce45964ff2167f6ecedd419db06c1");
+  EXPECT_EQ(sha256("abcdbcdecdefdefgefghfghighijhijkijkljklmklmnlmnomnopnopq"),
+            "248d6a61d20638b8e5c026930c3e6039a33ce45964ff2167f6ecedd419db06c1");
 }
 
 TEST(JsonWriterTest, EscapesAndNests) {
   JsonWriter json(0, 2);
   json.begin_object().member("text", "a \"b\"\n\\ \x01").member("truth", true).member("whole", 3).member("real", 0.1);
-  json.member("lost", std::numeric_limits<double>::quiet_NaN()).key("list").numbers(std::vector<double>{1, 2.5, INFINITY}).key("empty").begin_array().end_array().end_object();
+  json.member("lost", std::numeric_limits<double>::quiet_NaN())
+      .key("list")
+      .numbers(std::vector<double>{1, 2.5, INFINITY})
+      .key("empty")
+      .begin_array()
+      .end_array()
+      .end_object();
   const auto read = nlohmann::json::parse(json.take());
   EXPECT_EQ(read["text"], "a \"b\"\n\\ \x01");
   EXPECT_EQ(read["truth"], true);
@@ -91,7 +98,9 @@ RunResult small_result() {
   return result;
 }
 
-TEST(Histories, HaveUnitsAndNoRowThatIsNotFinite) { EXPECT_EQ(histories_csv(small_result()), "time [s],top.ux [m]\n0,0\n0.5,-0.002\n"); }
+TEST(Histories, HaveUnitsAndNoRowThatIsNotFinite) {
+  EXPECT_EQ(histories_csv(small_result()), "time [s],top.ux [m]\n0,0\n0.5,-0.002\n");
+}
 
 TEST(Thinning, KeepsEveryPeak) {
   std::vector<double> x, y;
@@ -143,7 +152,9 @@ TEST_F(Folder, MovesEarlierResultsAside) {
   EXPECT_EQ(read_file(path("r.2/a.txt")), path("r.1"));
 }
 
-TEST_F(Folder, RefusesAPlaceThatCannotBeMade) { EXPECT_THROW(ResultFolder("/proc/uplift/r"), InputError); }
+TEST_F(Folder, RefusesAPlaceThatCannotBeMade) {
+  EXPECT_THROW(ResultFolder("/proc/uplift/r"), InputError);
+}
 
 TEST(ReportPage, PutsTheDataInWhereTheScriptElementCannotEnd) {
   const std::string page = report_page("{\"a\":\"</script>\"}");

@@ -1,7 +1,8 @@
+#include "uplift/analysis/verdict.h"
+
 #include <gtest/gtest.h>
 
 #include "uplift/analysis/compare.h"
-#include "uplift/analysis/verdict.h"
 #include "uplift/analysis/wording.h"
 #include "uplift/model/builder.h"
 
@@ -14,10 +15,12 @@ TEST(Wording, SaysNumbersAsEngineersDo) {
   EXPECT_EQ(spoken(1.368543e6, "N m"), "1.37 MN m");
   EXPECT_EQ(spoken(-2.5e3, "N"), "-2.50 kN");
   EXPECT_EQ(spoken(0, "m"), "0 m");
+  EXPECT_EQ(spoken(999999.9, "N"), "1.00 MN");
   EXPECT_EQ(spoken(3.2e-5, "m"), "0.0320 mm");
   EXPECT_EQ(percent(0.686923), "69 %");
   EXPECT_EQ(percent(0.0123), "1.2 %");
   EXPECT_EQ(percent(1.5e-6), "0.00015 %");
+  EXPECT_EQ(percent(46), "46 times");
   EXPECT_EQ(beside(1.5, 1), "50 % more");
   EXPECT_EQ(beside(0.63, -1), "37 % less");
   EXPECT_EQ(beside(2.4, 1), "2.40 times as large");
@@ -36,13 +39,15 @@ Request request(Request::Kind kind, const char* name, const char* unit, int unkn
 /// A footing of half width 1.5 m under 1 MN that carries up to `moment`.
 RunResult result_with(double moment, double ratio) {
   RunResult run;
-  run.columns = {request(Request::Kind::axial, "soil.axial", "N"), request(Request::Kind::moment, "soil.moment", "N m"), request(Request::Kind::displacement, "top.ux", "m", ux)};
+  run.columns = {request(Request::Kind::axial, "soil.axial", "N"), request(Request::Kind::moment, "soil.moment", "N m"),
+                 request(Request::Kind::displacement, "top.ux", "m", ux)};
   run.table = {{0, 1}, {-1e6, -1e6}, {0, moment}, {0, 0.02}};
   run.peaks = {{"soil.axial", "N", -1e6, 0}, {"soil.moment", "N m", moment, 1}, {"top.ux", "m", 0.02, 1}};
   run.max_base_moment = {"", "N m", moment, 1};
   run.max_uplifted_ratio = {"", "1", ratio, 0.7};
   run.max_opening = {"", "m", ratio > 0 ? 0.013 : 0, 0.7};
   run.energy_scale = 1e4;
+  run.counts.steps = 1;
   run.end_time = 1;
   return run;
 }
@@ -83,7 +88,11 @@ TEST(VerdictTest, ComparesWithTheBondedBase) {
   const Verdict verdict = judge(footing(), result_with(1.2e6, 0.6), &bonded);
   std::string all;
   for (const std::string& paragraph : verdict.paragraphs) all += paragraph + "\n";
-  EXPECT_NE(all.find("the largest base moment is 50 % less (1.20 MN m instead of 2.40 MN m), and the largest motion of top is 2.00 times as large"), std::string::npos) << all;
+  EXPECT_NE(
+      all.find(
+          "the largest base moment is 50 % less (1.20 MN m instead of 2.40 MN m), and the largest motion of top is 2.00 times as large"),
+      std::string::npos)
+      << all;
   EXPECT_NE(all.find("1.6 times the moment W b"), std::string::npos) << all;
 }
 

@@ -25,14 +25,14 @@ std::vector<std::string> input_files(const Case&);
 /// One run of a case: what differs from the case as it stands. Null and empty: as in the case. Points into the case's values.
 struct RunSpec {
   std::string name, label, group;
-  const Values* law = nullptr;      // law or cone of the interface ...
-  std::string interface;            // ... of this name; empty: of all
+  const Values* law = nullptr;  // law or cone of the interface ...
+  std::string interface;        // ... of this name; empty: of all
   const Values* method = nullptr;
   const Values* impact = nullptr;
   const Values* scheme = nullptr;
   const Values* damping = nullptr;
   std::optional<bool> path_average;
-  std::optional<double> step, duration;  // s, of the dynamic stages
+  std::optional<double> step, duration;   // s, of the dynamic stages
   std::optional<double> stiffness_ratio;  // the law's stiffness is chosen so that the largest k F_ii is this
   std::string stiffness_parameter;        // parameter of the law that is the stiffness
   bool bonded = false;                    // elastic interfaces that never open, as stiff as the closed joint
@@ -53,11 +53,11 @@ Comparison comparison_of_case(const Case&);
 
 /// What the report and the verdict want to know of an interface beyond the model.
 struct InterfaceFacts {
-  std::string name, body;   // body: node that carries the upper side; empty when there is none
-  double half_width = 0;    // m, from the reference point to the farther edge
-  double friction = -1;     // coefficient; negative: none stated
-  double area = 0;          // m2
-  double tension = 0;       // Pa: tensile strength of the law, 0 without
+  std::string name, body;  // body: node that carries the upper side; empty when there is none
+  double half_width = 0;   // m, from the reference point to the farther edge
+  double friction = -1;    // coefficient; negative: none stated
+  double area = 0;         // m2
+  double tension = 0;      // Pa: tensile strength of the law, 0 without
 };
 
 /// A case made ready to run.
@@ -84,8 +84,8 @@ const Stage* dynamic_stage(const RunPlan&);
 
 /// Natural modes with every interface closed and bonded: laws with their closed stiffness, cones held. Shapes on the free unknowns.
 std::vector<Mode> bonded_modes(const Model&, int count);
-/// Natural modes with every opening and sliding of the interfaces held to zero against rigid ground: the fixed-base frequencies. Nodes of an
-/// elastic bed are held too.
+/// Natural modes with every opening and sliding of the interfaces held to zero against rigid ground: the fixed-base frequencies. Nodes of
+/// an elastic bed are held too.
 std::vector<Mode> fixed_base_modes(const Model&, int count);
 
 /// What an engineer should know before believing the results: closure stress too large, step too coarse, suspicious magnitudes, unsound

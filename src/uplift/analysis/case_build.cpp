@@ -21,7 +21,9 @@ namespace {
 /// Values as they would be read from a file again, with one number replaced.
 Values with_number(const Values& part, std::string_view key, double number) {
   auto table = std::make_shared<RawTable>();
-  const auto add = [&](std::string_view name, auto data) { table->entries.emplace_back(std::string(name), Raw{std::move(data), part.where(name), part.path(name)}); };
+  const auto add = [&](std::string_view name, auto data) {
+    table->entries.emplace_back(std::string(name), Raw{std::move(data), part.where(name), part.path(name)});
+  };
   add("type", part.type());
   for (const auto& [name, item] : part.items()) {
     if (name == key) continue;
@@ -87,10 +89,12 @@ Stage stage_of(const Values& table, const RunSpec& spec) {
     if (!table.has(key)) fail(table, "", fmt::format("{} of a dynamic stage", key), "none");
   stage.duration = spec.duration.value_or(table.number("duration"));
   stage.step = spec.step.value_or(table.number("step"));
-  if (stage.step > stage.duration) fail(table, "step", fmt::format("a step shorter than the duration of {:g} s", stage.duration), fmt::format("{:g} s", stage.step));
+  if (stage.step > stage.duration)
+    fail(table, "step", fmt::format("a step shorter than the duration of {:g} s", stage.duration), fmt::format("{:g} s", stage.step));
   const Values& scheme = spec.scheme ? *spec.scheme : table.part("scheme");
   stage.scheme = *make_part(scheme_catalog(), scheme);
-  // The path average closes the energy balance with the trapezoidal rule only: other schemes take the end of the step unless told otherwise.
+  // The path average closes the energy balance with the trapezoidal rule only: other schemes take the end of the step unless told
+  // otherwise.
   const bool wanted = spec.path_average.value_or(table.text("traction") == "path");
   const bool stated = spec.path_average.has_value() || table.given("traction");
   if (wanted && stated && !stage.scheme.average_acceleration())
@@ -211,7 +215,8 @@ void adapt_laws(const Case& read, const RunSpec& spec, Built& built) {
       derived = std::make_unique<const Values>(bonded_behaviour(behaviour, stiffness));
     } else if (&behaviour == spec.law) {
       const std::string& key = spec.stiffness_parameter;
-      if (!behaviour.items().contains(key) || !behaviour.has(key)) fail(behaviour, "", "a law with the parameter \"" + key + "\"", "\"" + behaviour.type() + "\"");
+      if (!behaviour.items().contains(key) || !behaviour.has(key))
+        fail(behaviour, "", "a law with the parameter \"" + key + "\"", "\"" + behaviour.type() + "\"");
       derived = std::make_unique<const Values>(with_number(behaviour, key, behaviour.number(key) * *spec.stiffness_ratio / ratios[k].most));
     } else {
       continue;
@@ -226,7 +231,9 @@ void adapt_laws(const Case& read, const RunSpec& spec, Built& built) {
 
 }  // namespace
 
-Case check_case(const Raw& raw, const std::string& file) { return Case{check(raw, case_section()), file}; }
+Case check_case(const Raw& raw, const std::string& file) {
+  return Case{check(raw, case_section()), file};
+}
 
 std::vector<std::string> input_files(const Case& read) {
   std::vector<std::string> files;
@@ -238,7 +245,9 @@ std::vector<std::string> input_files(const Case& read) {
   return files;
 }
 
-std::shared_ptr<const LinearSolver> bulk_solver(const Case& read) { return make_part(solver_catalog(), read.values.part("solver")); }
+std::shared_ptr<const LinearSolver> bulk_solver(const Case& read) {
+  return make_part(solver_catalog(), read.values.part("solver"));
+}
 
 const Stage* dynamic_stage(const RunPlan& plan) {
   for (const Stage& stage : plan.stages)
@@ -285,6 +294,7 @@ Built build(const Case& read, const RunSpec& spec) {
   plan.every = root.table("output").integer("every");
   plan.frames = spec.pictures ? root.table("output").integer("frames") : 0;
   add_requests(read, built);
+  if (const Values* compare = table_if(root, "compare")) check_columns(*compare, "agree_on", plan.requests);
   return built;
 }
 

@@ -33,12 +33,14 @@ void add_bed(const Values& bed, const std::string& interface, std::vector<JointP
     names.nodes.add(name, bed.where(), bed.path());
     names.positions.push_back(point.position);
     const bool vertical = std::abs(point.normal.x()) < 1e-12, horizontal = std::abs(point.normal.y()) < 1e-12;
-    if (!vertical && !horizontal) throw InputError(bed.where(), bed.path(), "a footing with a vertical or horizontal normal on a bed", "an inclined one");
+    if (!vertical && !horizontal)
+      throw InputError(bed.where(), bed.path(), "a footing with a vertical or horizontal normal on a bed", "an inclined one");
     builder.fix(node, vertical ? ux : uy, bed.where());
     builder.fix(node, rz, bed.where());
     const Connection along{{node}, point.normal};
     builder.add_element(std::make_unique<Spring>(along, bed.number("stiffness") * point.area), bed.where("stiffness"));
-    if (bed.number("damping") > 0) builder.add_element(std::make_unique<Dashpot>(along, bed.number("damping") * point.area), bed.where("damping"));
+    if (bed.number("damping") > 0)
+      builder.add_element(std::make_unique<Dashpot>(along, bed.number("damping") * point.area), bed.where("damping"));
     if (bed.number("mass") > 0) builder.add_element(std::make_unique<PointMass>(node, bed.number("mass") * point.area), bed.where("mass"));
     point.lower = {{node, 1.0}};
   }
@@ -81,15 +83,18 @@ Joint make_joint(const Values& interface, bool rigid_ground, ModelBuilder& build
   const Values* pairs = table_if(interface, "pairs");
   const Values* line = table_if(interface, "line");
   const int kinds = (footing != nullptr) + (pairs != nullptr) + (line != nullptr);
-  if (kinds != 1) throw InputError(interface.where(), interface.path(), "exactly one of footing, pairs and line", kinds == 0 ? "none" : fmt::format("{}", kinds));
+  if (kinds != 1)
+    throw InputError(interface.where(), interface.path(), "exactly one of footing, pairs and line",
+                     kinds == 0 ? "none" : fmt::format("{}", kinds));
   Joint joint;
   if (footing) joint = footing_joint(interface, *footing, rigid_ground, builder, names);
   if (pairs)
-    joint.points = pair_points(side(*pairs, "upper", names), side(*pairs, "lower", names), normal_of(*pairs), pairs->number("area"), interface.number("gap"),
-                               pairs->where());
+    joint.points = pair_points(side(*pairs, "upper", names), side(*pairs, "lower", names), normal_of(*pairs), pairs->number("area"),
+                               interface.number("gap"), pairs->where());
   if (line) {
-    LineJoint made{side(*line, "upper", names), side(*line, "lower", names), line->integer("nodes_per_element"),
-                   line->text("quadrature") == "nodal" ? LineQuadrature::nodal : LineQuadrature::gauss, line->number("thickness"), interface.number("gap")};
+    LineJoint made{side(*line, "upper", names),        side(*line, "lower", names),
+                   line->integer("nodes_per_element"), line->text("quadrature") == "nodal" ? LineQuadrature::nodal : LineQuadrature::gauss,
+                   line->number("thickness"),          interface.number("gap")};
     joint.points = line_points(made, line->where());
   }
   for (const JointPoint& point : joint.points) joint.facts.area += point.area;

@@ -11,9 +11,13 @@
 
 namespace uplift {
 
-Vec2 vec2(const std::vector<double>& numbers) { return {numbers[0], numbers[1]}; }
+Vec2 vec2(const std::vector<double>& numbers) {
+  return {numbers[0], numbers[1]};
+}
 
-const Values* table_if(const Values& values, std::string_view key) { return values.has(key) ? &values.table(key) : nullptr; }
+const Values* table_if(const Values& values, std::string_view key) {
+  return values.has(key) ? &values.table(key) : nullptr;
+}
 
 std::vector<int> CaseNames::nodes_of(const Values& table, std::string_view key) const {
   std::vector<int> found;
@@ -77,7 +81,8 @@ void add_beam(const Values& beam, ModelBuilder& builder, CaseNames& names, Names
     section.shear = young / (2 * (1 + beam.number("poisson"))) * beam.number("shear_area");
   }
   if (beam.text("mass") != "none") {
-    if (!beam.has("density") || !beam.has("A")) fail(beam, "mass", "density and A of the beam", !beam.has("density") ? "no density" : "no A");
+    if (!beam.has("density") || !beam.has("A"))
+      fail(beam, "mass", "density and A of the beam", !beam.has("density") ? "no density" : "no A");
     section.mass = beam.text("mass") == "consistent" ? BeamSection::Mass::consistent : BeamSection::Mass::lumped;
     section.mass_per_length = beam.number("density") * beam.number("A");
     if (beam.text("theory") == "timoshenko") section.rotary_per_length = beam.number("density") * beam.number("I");
@@ -106,8 +111,10 @@ void add_beam(const Values& beam, ModelBuilder& builder, CaseNames& names, Names
 Connection connection_of(const Values& table, const CaseNames& names, bool along) {
   Connection connection;
   connection.nodes = names.nodes_of(table, "nodes");
-  if (connection.nodes.empty() || connection.nodes.size() > 2) fail(table, "nodes", "one node or two nodes", fmt::format("{}", connection.nodes.size()));
-  if (along != table.has("direction")) fail(table, along ? "" : "direction", along ? "direction = [x, y]" : "no direction for a rotational one", along ? "none" : "one");
+  if (connection.nodes.empty() || connection.nodes.size() > 2)
+    fail(table, "nodes", "one node or two nodes", fmt::format("{}", connection.nodes.size()));
+  if (along != table.has("direction"))
+    fail(table, along ? "" : "direction", along ? "direction = [x, y]" : "no direction for a rotational one", along ? "none" : "one");
   if (along) {
     connection.direction = vec2(table.numbers("direction"));
     if (connection.direction->norm() == 0) fail(table, "direction", "a direction", "[0, 0]");
@@ -164,14 +171,19 @@ void add_structure(const Values& root, ModelBuilder& builder, CaseNames& names, 
   add_masses(root, builder, names, tuned);
   for (const Values& spring : root.tables("spring")) {
     const bool along = first_of_two(spring, "stiffness", "rotational_stiffness");
-    builder.add_element(std::make_unique<Spring>(connection_of(spring, names, along), spring.number(along ? "stiffness" : "rotational_stiffness")), spring.where());
+    builder.add_element(
+        std::make_unique<Spring>(connection_of(spring, names, along), spring.number(along ? "stiffness" : "rotational_stiffness")),
+        spring.where());
   }
   for (const Values& dashpot : root.tables("dashpot")) {
     const bool along = first_of_two(dashpot, "damping", "rotational_damping");
-    builder.add_element(std::make_unique<Dashpot>(connection_of(dashpot, names, along), dashpot.number(along ? "damping" : "rotational_damping")), dashpot.where());
+    builder.add_element(
+        std::make_unique<Dashpot>(connection_of(dashpot, names, along), dashpot.number(along ? "damping" : "rotational_damping")),
+        dashpot.where());
   }
   for (const Values& support : root.tables("support"))
-    for (const std::string& word : support.texts("fixed")) builder.fix(names.node(support, "node"), dof_of(word, support, "fixed"), support.where("fixed"));
+    for (const std::string& word : support.texts("fixed"))
+      builder.fix(names.node(support, "node"), dof_of(word, support, "fixed"), support.where("fixed"));
   for (const Values& motion : root.tables("motion")) {
     const std::string name = motion.has("name") ? motion.text("name") : "motion of " + motion.text("node");
     builder.prescribe(names.node(motion, "node"), dof_of(motion.text("direction"), motion, "direction"),
@@ -197,8 +209,8 @@ void add_loads(const Values& root, ModelBuilder& builder, const CaseNames& names
     builder.set_gravity(vec2(gravity->numbers("acceleration")), gravity->where());
   for (const Values& ground : root.tables("ground_acceleration")) {
     const std::string name = ground.has("name") ? ground.text("name") : "ground acceleration";
-    builder.add_ground_acceleration(vec2(ground.numbers("direction")), std::make_shared<Scaled>(ground.number("amplitude"), names.function(ground)), name,
-                                    ground.where());
+    builder.add_ground_acceleration(vec2(ground.numbers("direction")),
+                                    std::make_shared<Scaled>(ground.number("amplitude"), names.function(ground)), name, ground.where());
   }
 }
 
@@ -213,11 +225,13 @@ BulkDamping bulk_damping(const Values& damping) {
   if (pairs.size() == 1) made.beta = 2 * pairs[0].number("ratio") / omega(pairs[0]);
   if (pairs.size() == 2) {
     const double w1 = omega(pairs[0]), w2 = omega(pairs[1]), r1 = pairs[0].number("ratio"), r2 = pairs[1].number("ratio");
-    if (w1 == w2) fail(pairs[1], "frequency", "a frequency that differs from the first", fmt::format("{} Hz again", pairs[1].number("frequency")));
+    if (w1 == w2)
+      fail(pairs[1], "frequency", "a frequency that differs from the first", fmt::format("{} Hz again", pairs[1].number("frequency")));
     made.beta = 2 * (r2 * w2 - r1 * w1) / (w2 * w2 - w1 * w1);
     made.alpha = 2 * w1 * r1 - made.beta * w1 * w1;
     if (made.alpha < 0 || made.beta < 0)
-      fail(damping, "rayleigh", "two pairs that give no negative factor", fmt::format("alpha = {:.4g} 1/s, beta = {:.4g} s", made.alpha, made.beta));
+      fail(damping, "rayleigh", "two pairs that give no negative factor",
+           fmt::format("alpha = {:.4g} 1/s, beta = {:.4g} s", made.alpha, made.beta));
   }
   return made;
 }

@@ -14,7 +14,7 @@ namespace uplift {
 /// Names and places met so far.
 struct CaseNames {
   Names nodes{"node"}, functions{"function"}, interfaces{"interface"};
-  std::vector<Vec2> positions;                                  // of the nodes
+  std::vector<Vec2> positions;  // of the nodes
   std::vector<std::shared_ptr<const TimeFunction>> functions_made;
   int node(const Values& table, std::string_view key) const { return nodes.find(table, key); }
   std::vector<int> nodes_of(const Values& table, std::string_view key) const;

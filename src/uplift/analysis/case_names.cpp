@@ -23,7 +23,8 @@ int Names::find(const std::string& name, const Where& where, const std::string& 
     if (names_[i].first == name) return i;
     known.push_back(names_[i].first);
   }
-  throw InputError(where, path, std::string("the name of a") + (what_.front() == 'i' ? "n " : " ") + what_, "\"" + name + "\"", nearest_name(name, known));
+  throw InputError(where, path, std::string("the name of a") + (what_.front() == 'i' ? "n " : " ") + what_, "\"" + name + "\"",
+                   nearest_name(name, known));
 }
 
 }  // namespace uplift

@@ -13,7 +13,8 @@ class Names {
  public:
   /// `what`: "node"; used in messages.
   explicit Names(std::string what) : what_(std::move(what)) {}
-  /// Adds the name under a key of a table, or `automatic` when the key is absent. Returns its index. Throws InputError when it is used already.
+  /// Adds the name under a key of a table, or `automatic` when the key is absent. Returns its index. Throws InputError when it is used
+  /// already.
   int add(const Values& table, std::string_view key, std::string automatic = {});
   /// Adds a name that the program made at this place.
   int add(std::string name, const Where& where, const std::string& path);

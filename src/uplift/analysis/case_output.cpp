@@ -71,8 +71,8 @@ const auto& find_quantity(const Table& table, const Values& history, const char*
     if (entry.word == word) return entry;
     words.emplace_back(entry.word);
   }
-  throw InputError(history.where("quantity"), history.path("quantity"), fmt::format("a quantity of {}: {}", of, fmt::join(words, ", ")), "\"" + word + "\"",
-                   nearest_name(word, words));
+  throw InputError(history.where("quantity"), history.path("quantity"), fmt::format("a quantity of {}: {}", of, fmt::join(words, ", ")),
+                   "\"" + word + "\"", nearest_name(word, words));
 }
 
 Request make(Column kind, std::string name, std::string_view unit) {
@@ -100,12 +100,12 @@ Request point_request(const Values& history, const Model& model, int interface, 
   const Interface& joint = model.interfaces[interface];
   const int point = history.integer("point");
   if (point > joint.batch.points)
-    throw InputError(history.where("point"), history.path("point"), fmt::format("a point of \"{}\", from 1 to {}", joint.name, joint.batch.points),
-                     fmt::format("{}", point));
+    throw InputError(history.where("point"), history.path("point"),
+                     fmt::format("a point of \"{}\", from 1 to {}", joint.name, joint.batch.points), fmt::format("{}", point));
   const PointQuantity& quantity = find_quantity(point_quantities, history, "an interface point");
   if (!quantity.normal && joint.batch.components == 1)
-    throw InputError(history.where("quantity"), history.path("quantity"), fmt::format("a normal quantity: \"{}\" has no tangential part", joint.name),
-                     "\"" + history.text("quantity") + "\"");
+    throw InputError(history.where("quantity"), history.path("quantity"),
+                     fmt::format("a normal quantity: \"{}\" has no tangential part", joint.name), "\"" + history.text("quantity") + "\"");
   if (name.empty()) name = fmt::format("{}.{}.{}", joint.name, point, quantity.word);
   Request request = make(quantity.kind, std::move(name), quantity.unit);
   request.interface = interface;
@@ -125,7 +125,8 @@ Request asked_request(const Values& history, const Built& built, const Names& no
   const int interface = interfaces.find(history, "interface");
   if (history.has("point")) return point_request(history, built.model, interface, name);
   const Quantity& quantity = find_quantity(interface_quantities, history, "an interface");
-  Request request = make(quantity.kind, name.empty() ? fmt::format("{}.{}", built.model.interfaces[interface].name, quantity.word) : name, quantity.unit);
+  Request request =
+      make(quantity.kind, name.empty() ? fmt::format("{}.{}", built.model.interfaces[interface].name, quantity.word) : name, quantity.unit);
   request.interface = interface;
   return request;
 }
@@ -134,7 +135,14 @@ Request asked_request(const Values& history, const Built& built, const Names& no
 
 bool moves(const Model& model, int full_unknown) {
   if (Sparse::InnerIterator(model.expansion, full_unknown)) return true;
-  return std::any_of(model.motions.begin(), model.motions.end(), [&](const PrescribedMotion& motion) { return motion.shape[full_unknown] != 0; });
+  return std::any_of(model.motions.begin(), model.motions.end(),
+                     [&](const PrescribedMotion& motion) { return motion.shape[full_unknown] != 0; });
+}
+
+void check_columns(const Values& table, std::string_view key, const std::vector<Request>& requests) {
+  Names columns("column of the output");
+  for (const Request& request : requests) columns.add(request.name, {}, {});
+  for (const std::string& name : table.texts(key)) columns.find(name, table.where(key), table.path(key));
 }
 
 void add_requests(const Case& read, Built& built) {
@@ -164,7 +172,8 @@ void add_requests(const Case& read, Built& built) {
     requests.push_back(std::move(request));
   }
   if (output.flag("energies"))
-    for (const Quantity& quantity : energy_quantities) requests.push_back(make(quantity.kind, fmt::format("energy.{}", quantity.word), quantity.unit));
+    for (const Quantity& quantity : energy_quantities)
+      requests.push_back(make(quantity.kind, fmt::format("energy.{}", quantity.word), quantity.unit));
 }
 
 }  // namespace uplift

@@ -9,7 +9,9 @@
 namespace uplift {
 namespace {
 
-const Values* part_if(const Values& table, std::string_view key) { return table.given(key) ? &table.part(key) : nullptr; }
+const Values* part_if(const Values& table, std::string_view key) {
+  return table.given(key) ? &table.part(key) : nullptr;
+}
 
 RunSpec base_run(const Case& read) {
   RunSpec spec;
@@ -43,8 +45,8 @@ RunSpec bonded_run(const Case& read) {
 void check_file_name(const Values& table) {
   for (const char c : table.text("name"))
     if (!std::isalnum(static_cast<unsigned char>(c)) && c != '_' && c != '-' && c != '.')
-      throw InputError(table.where("name"), table.path("name"), "letters, digits, '_', '-' and '.' (it names files; `label` may be anything)",
-                       "\"" + table.text("name") + "\"");
+      throw InputError(table.where("name"), table.path("name"),
+                       "letters, digits, '_', '-' and '.' (it names files; `label` may be anything)", "\"" + table.text("name") + "\"");
 }
 
 std::vector<RunSpec> sweep_runs(const Case& read, const Values& sweep, const Values* damping) {
@@ -72,7 +74,8 @@ std::vector<RunSpec> sweep_runs(const Case& read, const Values& sweep, const Val
 }
 
 bool undamped(const Values& damping) {
-  return damping.number("alpha") == 0 && damping.number("beta") == 0 && damping.numbers("modal").empty() && damping.tables("rayleigh").empty();
+  return damping.number("alpha") == 0 && damping.number("beta") == 0 && damping.numbers("modal").empty() &&
+         damping.tables("rayleigh").empty();
 }
 
 }  // namespace

@@ -23,10 +23,8 @@ const Section& node_section() {
 const Section& beam_section() {
   static const Section s{
       "beam", "a straight beam between two nodes, rigidly connected to both",
-      Fields{text("name", "name; inner nodes of a subdivided beam are called NAME.1, NAME.2, ..."),
-             texts("nodes", "the two end nodes"),
-             number("E", "Pa", "Young's modulus").positive(),
-             number("I", "m4", "second moment of area of the cross-section").positive(),
+      Fields{text("name", "name; inner nodes of a subdivided beam are called NAME.1, NAME.2, ..."), texts("nodes", "the two end nodes"),
+             number("E", "Pa", "Young's modulus").positive(), number("I", "m4", "second moment of area of the cross-section").positive(),
              number("A", "m2", "area of the cross-section; absent: the beam is inextensible (eliminated exactly)").positive().optional(),
              choice("theory", {"euler_bernoulli", "timoshenko"}, "bending only, or with shear").standard("euler_bernoulli"),
              number("poisson", "1", "Poisson's ratio (shear modulus of a Timoshenko beam)").between(0, 0.5).standard(0.3),
@@ -84,16 +82,17 @@ const Section& support_section() {
 }
 
 const Section& motion_section() {
-  static const Section s{"motion", "a prescribed motion of one unknown of a node: amplitude x function",
-                         Fields{text("name", "name").optional(), text("node", "node"),
-                                choice("direction", {"ux", "uy", "rz"}, "unknown that is moved"),
-                                number("amplitude", "1", "m (or rad for rz) that the function multiplies").standard(1.0),
-                                text("function", "name of the function of time")}};
+  static const Section s{
+      "motion", "a prescribed motion of one unknown of a node: amplitude x function",
+      Fields{text("name", "name").optional(), text("node", "node"), choice("direction", {"ux", "uy", "rz"}, "unknown that is moved"),
+             number("amplitude", "1", "m (or rad for rz) that the function multiplies").standard(1.0),
+             text("function", "name of the function of time")}};
   return s;
 }
 
 const Section& ground_section() {
-  static const Section s{"ground_acceleration", "acceleration of the whole ground: inertia forces -M r a(t) in the frame that moves with it",
+  static const Section s{"ground_acceleration",
+                         "acceleration of the whole ground: inertia forces -M r a(t) in the frame that moves with it",
                          Fields{text("name", "name").optional(), numbers("direction", "1", "direction [x, y]", 2),
                                 number("amplitude", "m/s2", "acceleration that the function multiplies").standard(1.0),
                                 text("function", "name of the function of time")}};
@@ -107,86 +106,93 @@ const Section& gravity_section() {
 }
 
 const Section& function_section() {
-  static const Section s{"function", "a function of time that loads and motions refer to",
-                         Fields{text("name", "name"), part("shape", time_functions, "what it is; without unit: it multiplies an amplitude")}};
+  static const Section s{
+      "function", "a function of time that loads and motions refer to",
+      Fields{text("name", "name"), part("shape", time_functions, "what it is; without unit: it multiplies an amplitude")}};
   return s;
 }
 
 const Section& load_section() {
-  static const Section s{
-      "load", "a force on a node; without a function it is constant and applied by the static stages",
-      Fields{text("name", "name").optional(), text("node", "node"), numbers("force", "N", "[x, y]", 2).optional(),
-             number("moment", "N m", "moment, counter-clockwise").optional(),
-             text("function", "name of the function of time that multiplies it; absent: constant").optional()}};
+  static const Section s{"load", "a force on a node; without a function it is constant and applied by the static stages",
+                         Fields{text("name", "name").optional(), text("node", "node"), numbers("force", "N", "[x, y]", 2).optional(),
+                                number("moment", "N m", "moment, counter-clockwise").optional(),
+                                text("function", "name of the function of time that multiplies it; absent: constant").optional()}};
   return s;
 }
 
 const Section& initial_section() {
-  static const Section s{"initial", "state of a node at the beginning of the first dynamic stage, added to that of the static stages",
-                         Fields{text("node", "node"), numbers("displacement", "m", "[x, y]", 2).optional(), number("rotation", "rad", "rotation").optional(),
-                                numbers("velocity", "m/s", "[x, y]", 2).optional(), number("angular_velocity", "rad/s", "angular velocity").optional()}};
+  static const Section s{
+      "initial", "state of a node at the beginning of the first dynamic stage, added to that of the static stages",
+      Fields{text("node", "node"), numbers("displacement", "m", "[x, y]", 2).optional(), number("rotation", "rad", "rotation").optional(),
+             numbers("velocity", "m/s", "[x, y]", 2).optional(), number("angular_velocity", "rad/s", "angular velocity").optional()}};
   return s;
 }
 
 // ---- interfaces ----
 
 const Section& bed_section() {
-  static const Section s{"bed",
-                         "elastic ground: under each point of the footing a spring of its own (Winkler), below the joint. It belongs to the model, "
-                         "so that every interface method sees the same ground",
-                         Fields{number("stiffness", "Pa/m", "stiffness of the ground per area (subgrade modulus)").positive(),
-                                number("damping", "Pa s/m", "viscous damping of the ground per area").nonnegative().standard(0.0),
-                                number("mass", "kg/m2", "mass of the moving ground per area").nonnegative().standard(0.0)}};
+  static const Section s{
+      "bed",
+      "elastic ground: under each point of the footing a spring of its own (Winkler), below the joint. It belongs to the model, "
+      "so that every interface method sees the same ground",
+      Fields{number("stiffness", "Pa/m", "stiffness of the ground per area (subgrade modulus)").positive(),
+             number("damping", "Pa s/m", "viscous damping of the ground per area").nonnegative().standard(0.0),
+             number("mass", "kg/m2", "mass of the moving ground per area").nonnegative().standard(0.0)}};
   return s;
 }
 
 const Section& footing_section() {
-  static const Section s{
-      "footing", "points spread over the width of a rigid footing",
-      Fields{text("body", "node (the master of the footing) that carries the upper side"), number("width", "m", "width of the footing").positive(),
-             number("thickness", "m", "length out of the plane").positive().standard(1.0),
-             integer("points", "number of joint points").between(1, 100000),
-             choice("rule", {"nodal", "midpoint", "gauss"}, "where they stand and what they weigh: trapezoidal rule with points on both edges, "
-                                                            "middle of equal strips, Gauss points").standard("nodal"),
-             numbers("offset", "m", "from the node to the middle of the footing's underside [x, y]", 2).optional(),
-             numbers("normal", "1", "from the ground to the structure [x, y]; absent: [0, 1]", 2).optional(),
-             table("bed", bed_section(), "elastic ground under the joint; absent: fixed ground").optional()}};
+  static const Section s{"footing", "points spread over the width of a rigid footing",
+                         Fields{text("body", "node (the master of the footing) that carries the upper side"),
+                                number("width", "m", "width of the footing").positive(),
+                                number("thickness", "m", "length out of the plane").positive().standard(1.0),
+                                integer("points", "number of joint points").between(1, 100000),
+                                choice("rule", {"nodal", "midpoint", "gauss"},
+                                       "where they stand and what they weigh: trapezoidal rule with points on both edges, "
+                                       "middle of equal strips, Gauss points")
+                                    .standard("nodal"),
+                                numbers("offset", "m", "from the node to the middle of the footing's underside [x, y]", 2).optional(),
+                                numbers("normal", "1", "from the ground to the structure [x, y]; absent: [0, 1]", 2).optional(),
+                                table("bed", bed_section(), "elastic ground under the joint; absent: fixed ground").optional()}};
   return s;
 }
 
 const Section& pairs_section() {
   static const Section s{"pairs", "isolated pairs of nodes",
-                         Fields{texts("upper", "nodes of the structure"), texts("lower", "nodes of the ground, in the same order; absent: fixed ground").optional(),
+                         Fields{texts("upper", "nodes of the structure"),
+                                texts("lower", "nodes of the ground, in the same order; absent: fixed ground").optional(),
                                 numbers("normal", "1", "from the ground to the structure [x, y]; absent: [0, 1]", 2).optional(),
                                 number("area", "m2", "area of each pair").positive()}};
   return s;
 }
 
 const Section& line_section() {
-  static const Section s{"line", "joint elements along a line of node pairs",
-                         Fields{texts("upper", "nodes of the structure in order along the line, the structure to the left of the walking direction"),
-                                texts("lower", "nodes of the ground, in the same order; absent: fixed ground").optional(),
-                                integer("nodes_per_element", "2 (linear) or 3 (quadratic)").between(2, 3).standard(2.0),
-                                choice("quadrature", {"nodal", "gauss"}, "integration points of an element").standard("nodal"),
-                                number("thickness", "m", "length out of the plane").positive().standard(1.0)}};
+  static const Section s{
+      "line", "joint elements along a line of node pairs",
+      Fields{texts("upper", "nodes of the structure in order along the line, the structure to the left of the walking direction"),
+             texts("lower", "nodes of the ground, in the same order; absent: fixed ground").optional(),
+             integer("nodes_per_element", "2 (linear) or 3 (quadratic)").between(2, 3).standard(2.0),
+             choice("quadrature", {"nodal", "gauss"}, "integration points of an element").standard("nodal"),
+             number("thickness", "m", "length out of the plane").positive().standard(1.0)}};
   return s;
 }
 
 const Section& interface_section() {
-  static const Section s{"interface", "a surface that may open: exactly one of footing, pairs and line says where",
-                         Fields{text("name", "name"), table("footing", footing_section(), "under a rigid footing").optional(),
-                                table("pairs", pairs_section(), "isolated points").optional(),
-                                table("line", line_section(), "along a line").optional(),
-                                number("gap", "m", "initial gap of every point").standard(0.0),
-                                part("law", interface_behaviours, "what it does: a traction law or a cone (contact by constraint)")}};
+  static const Section s{
+      "interface", "a surface that may open: exactly one of footing, pairs and line says where",
+      Fields{text("name", "name"), table("footing", footing_section(), "under a rigid footing").optional(),
+             table("pairs", pairs_section(), "isolated points").optional(), table("line", line_section(), "along a line").optional(),
+             number("gap", "m", "initial gap of every point").standard(0.0),
+             part("law", interface_behaviours, "what it does: a traction law or a cone (contact by constraint)")}};
   return s;
 }
 
 // ---- what is computed ----
 
 const Section& rayleigh_section() {
-  static const Section s{"rayleigh", "a damping ratio wanted at a frequency",
-                         Fields{number("frequency", "Hz", "frequency").positive(), number("ratio", "1", "ratio to the critical damping").between(0, 1)}};
+  static const Section s{
+      "rayleigh", "a damping ratio wanted at a frequency",
+      Fields{number("frequency", "Hz", "frequency").positive(), number("ratio", "1", "ratio to the critical damping").between(0, 1)}};
   return s;
 }
 
@@ -214,23 +220,25 @@ const Section& damping_case_section() {
 }
 
 const Section& stage_section() {
-  static const Section s{
-      "stage", "a stage of the analysis; displacements and interface states are handed over to the next one",
-      Fields{choice("type", {"static", "dynamic"}, "static: weight and constant loads, in steps; dynamic: everything"),
-             integer("steps", "static: number of equal load steps").between(1, 1000000).standard(10.0),
-             number("duration", "s", "dynamic: duration").positive().optional(),
-             number("step", "s", "dynamic: time step").positive().optional(),
-             part("scheme", schemes, "dynamic: time integration").standard("average_acceleration"),
-             choice("traction", {"path", "end"}, "traction laws: path-averaged traction (closes the energy balance), or that at the end of the step")
-                 .standard("path"),
-             flag("p_delta", "add the constant geometric stiffness of the preceding static state").standard(false),
-             integer("halvings", "a step that fails is halved at most so often").between(0, 30).standard(8.0)}};
+  static const Section s{"stage", "a stage of the analysis; displacements and interface states are handed over to the next one",
+                         Fields{choice("type", {"static", "dynamic"}, "static: weight and constant loads, in steps; dynamic: everything"),
+                                integer("steps", "static: number of equal load steps").between(1, 1000000).standard(10.0),
+                                number("duration", "s", "dynamic: duration").positive().optional(),
+                                number("step", "s", "dynamic: time step").positive().optional(),
+                                part("scheme", schemes, "dynamic: time integration").standard("average_acceleration"),
+                                choice("traction", {"path", "end"},
+                                       "traction laws: path-averaged traction (closes the energy balance), or that at the end of the step")
+                                    .standard("path"),
+                                flag("p_delta", "add the constant geometric stiffness of the preceding static state").standard(false),
+                                integer("halvings", "a step that fails is halved at most so often").between(0, 30).standard(8.0)}};
   return s;
 }
 
 const Section& energy_section() {
   static const Section s{"energy", "the energy balance as a gate",
-                         Fields{number("created_limit", "1", "a run that creates more energy than this share of the external work fails").positive().standard(0.01),
+                         Fields{number("created_limit", "1", "a run that creates more energy than this share of the external work fails")
+                                    .positive()
+                                    .standard(0.01),
                                 flag("stop_at_limit", "stop such a run at once instead of at the end").standard(false)}};
   return s;
 }
@@ -247,18 +255,20 @@ const Section& history_section() {
       "history", "a column of the output: of a node, of an interface, or of one of its points",
       Fields{text("name", "name of the column; absent: made from the rest").optional(), text("node", "node").optional(),
              text("interface", "interface").optional(), integer("point", "point of the interface, from 1").between(1, 1000000).optional(),
-             text("quantity", "node: ux uy rz, vx vy vrz, ax ay arz; interface: axial shear moment rotation uplifted_ratio max_opening max_pressure; "
-                              "point: opening slip traction shear_traction mean_traction mean_shear_traction")}};
+             text("quantity",
+                  "node: ux uy rz, vx vy vrz, ax ay arz; interface: axial shear moment rotation uplifted_ratio max_opening max_pressure; "
+                  "point: opening slip traction shear_traction mean_traction mean_shear_traction")}};
   return s;
 }
 
 const Section& output_section() {
-  static const Section s{"output", "what is written",
-                         Fields{integer("every", "record every n-th step").between(1, 1000000000).standard(1.0),
-                                flag("automatic", "motion of the top and of the base, and the resultants of every interface").standard(true),
-                                flag("energies", "all energies").standard(true),
-                                integer("frames", "pictures of the animation; 0: none").between(0, 5000).standard(240.0),
-                                tables("history", history_section(), "further columns")}};
+  static const Section s{
+      "output", "what is written",
+      Fields{integer("every", "record every n-th step").between(1, 1000000000).standard(1.0),
+             flag("automatic", "motion of the top and of the base, and the resultants of every interface").standard(true),
+             flag("energies", "all energies").standard(true),
+             integer("frames", "pictures of the animation; 0: none").between(0, 5000).standard(240.0),
+             tables("history", history_section(), "further columns")}};
   return s;
 }
 
@@ -272,27 +282,32 @@ const Section& variant_section() {
              part("scheme", schemes, "time integration of the dynamic stages").optional(),
              choice("traction", {"path", "end"}, "traction of the dynamic stages").optional(),
              number("step", "s", "time step of the dynamic stages").positive().optional(),
-             choice("expected", {"completes", "may_fail"}, "may_fail: a failure is shown and marked, but does not fail the command; the run is not counted as sound").standard("completes")}};
+             choice("expected", {"completes", "may_fail"},
+                    "may_fail: a failure is shown and marked, but does not fail the command; the run is not counted as sound")
+                 .standard("completes")}};
   return s;
 }
 
 const Section& sweep_section() {
-  static const Section s{"stiffness_sweep", "energy error of a traction law against its stiffness, for both tractions",
-                         Fields{part("law", interface_behaviours, "the law; its stiffness is replaced"),
-                                text("parameter", "parameter of the law that is the stiffness").standard("K_n"),
-                                numbers("ratios", "1", "stiffness ratios k F_ii (largest of the points)"),
-                                flag("rigid_ground", "leave out the elastic bed: the swept joint is the only flexibility of the ground").standard(false),
-                                part("impact", impact_rules, "velocity correction with the traction at the end of the step").standard("none"),
-                                number("duration", "s", "duration of the dynamic stage; absent: that of the case").positive().optional()}};
+  static const Section s{
+      "stiffness_sweep", "energy error of a traction law against its stiffness, for both tractions",
+      Fields{part("law", interface_behaviours, "the law; its stiffness is replaced"),
+             text("parameter", "parameter of the law that is the stiffness").standard("K_n"),
+             numbers("ratios", "1", "stiffness ratios k F_ii (largest of the points)"),
+             flag("rigid_ground", "leave out the elastic bed: the swept joint is the only flexibility of the ground").standard(false),
+             part("impact", impact_rules, "velocity correction with the traction at the end of the step").standard("none"),
+             number("duration", "s", "duration of the dynamic stage; absent: that of the case").positive().optional()}};
   return s;
 }
 
 const Section& compare_section() {
-  static const Section s{"compare", "how variants are compared",
-                         Fields{number("band", "1", "sound runs agree when their peaks differ from the median by less").positive().standard(0.02),
-                                texts("agree_on", "columns whose peaks are compared; absent: motion of the top, rotation and opening of the interface").optional(),
-                                tables("damping", damping_case_section(), "every variant is run with each of these"),
-                                table("stiffness_sweep", sweep_section(), "a table of energy error against stiffness").optional()}};
+  static const Section s{
+      "compare", "how variants are compared",
+      Fields{number("band", "1", "sound runs agree when their peaks differ from the median by less").positive().standard(0.02),
+             texts("agree_on", "columns whose peaks are compared; absent: motion of the top, rotation and opening of the interface")
+                 .optional(),
+             tables("damping", damping_case_section(), "every variant is run with each of these"),
+             table("stiffness_sweep", sweep_section(), "a table of energy error against stiffness").optional()}};
   return s;
 }
 
@@ -316,22 +331,34 @@ const Section& figure_section() {
 const Section& case_section() {
   static const Section s{
       "case", "a case file",
-      Fields{text("title", "title of the case"), text("description", "what it shows").optional(),
+      Fields{text("title", "title of the case"),
+             text("description", "what it shows").optional(),
              flag("bonded", "run the model with bonded interfaces too, for comparison").standard(true),
-             named("nodes", node_section(), "nodes: name = [x, y]"), tables("beam", beam_section(), "beams"), tables("mass", mass_section(), "point masses"),
-             tables("spring", spring_section(), "springs"), tables("dashpot", dashpot_section(), "dashpots"),
-             tables("rigid", rigid_section(), "rigid bodies"), tables("support", support_section(), "supports"),
-             tables("interface", interface_section(), "interfaces"), table("gravity", gravity_section(), "weight").optional(),
-             tables("function", function_section(), "functions of time"), tables("load", load_section(), "loads"),
-             tables("motion", motion_section(), "prescribed motions"), tables("ground_acceleration", ground_section(), "ground acceleration"),
-             tables("initial", initial_section(), "initial state"), table("damping", damping_section(), "damping").optional(),
+             named("nodes", node_section(), "nodes: name = [x, y]"),
+             tables("beam", beam_section(), "beams"),
+             tables("mass", mass_section(), "point masses"),
+             tables("spring", spring_section(), "springs"),
+             tables("dashpot", dashpot_section(), "dashpots"),
+             tables("rigid", rigid_section(), "rigid bodies"),
+             tables("support", support_section(), "supports"),
+             tables("interface", interface_section(), "interfaces"),
+             table("gravity", gravity_section(), "weight").optional(),
+             tables("function", function_section(), "functions of time"),
+             tables("load", load_section(), "loads"),
+             tables("motion", motion_section(), "prescribed motions"),
+             tables("ground_acceleration", ground_section(), "ground acceleration"),
+             tables("initial", initial_section(), "initial state"),
+             table("damping", damping_section(), "damping").optional(),
              tables("stage", stage_section(), "stages, in order"),
              part("method", contact_methods, "contact method; absent: newton for traction laws, lagrange for cones").optional(),
              part("impact", impact_rules, "velocity correction on impact, for constraints").standard("project_hold"),
              part("solver", linear_solvers, "factorisation of the structure's matrices").standard("cholmod"),
-             table("energy", energy_section(), "energy gate"), table("limits", limits_section(), "limits"),
-             table("output", output_section(), "output"), tables("variant", variant_section(), "variants to compare"),
-             table("compare", compare_section(), "comparison").optional(), tables("origin", origin_section(), "origin of values"),
+             table("energy", energy_section(), "energy gate"),
+             table("limits", limits_section(), "limits"),
+             table("output", output_section(), "output"),
+             tables("variant", variant_section(), "variants to compare"),
+             table("compare", compare_section(), "comparison").optional(),
+             tables("origin", origin_section(), "origin of values"),
              tables("figure", figure_section(), "origin of figures")}};
   return s;
 }

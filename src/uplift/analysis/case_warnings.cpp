@@ -34,8 +34,8 @@ void warn_magnitudes(const Case& read, std::vector<std::string>& said) {
       if (!table.given(each.key)) continue;
       const double value = table.number(each.key);
       if (value != 0 && (value < each.least || value > each.most))
-        said.push_back(fmt::format("{}:{}: {} = {:g} {} is unusual for a structure ({}); is the unit right?", table.where(each.key).file, table.where(each.key).line,
-                                   table.path(each.key), value, each.unit, each.hint));
+        said.push_back(fmt::format("{}:{}: {} = {:g} {} is unusual for a structure ({}); is the unit right?", table.where(each.key).file,
+                                   table.where(each.key).line, table.path(each.key), value, each.unit, each.hint));
     }
 }
 
@@ -49,22 +49,25 @@ void warn_closure(const Built& built, std::vector<std::string>& said) {
     if (!law.items().contains("F_c") || !law.has("F_c")) continue;
     const double closure = std::abs(law.number("F_c"));
     if (mean > 0 && closure > 0.01 * mean)
-      said.push_back(fmt::format("{}:{}: |F_c| = {} is {} of the mean bearing pressure {}: the joint pushes before its gap is closed; keep it below 1 %",
-                                 law.where("F_c").file, law.where("F_c").line, spoken(closure, "Pa"), percent(closure / mean), spoken(mean, "Pa")));
-    if (!(mean > 0)) said.push_back(fmt::format("{}: nothing presses the structure down: the interface opens under any load", built.facts[k].name));
+      said.push_back(fmt::format(
+          "{}:{}: |F_c| = {} is {} of the mean bearing pressure {}: the joint pushes before its gap is closed; keep it below 1 %",
+          law.where("F_c").file, law.where("F_c").line, spoken(closure, "Pa"), percent(closure / mean), spoken(mean, "Pa")));
+    if (!(mean > 0))
+      said.push_back(fmt::format("{}: nothing presses the structure down: the interface opens under any load", built.facts[k].name));
   }
 }
 
-/// Twenty steps per period of the fastest of the first three modes below 100 Hz.
+/// Twenty steps per period of the fastest of the first three modes below 50 Hz (earthquakes hold little above 33 Hz).
 void warn_step(const Built& built, std::vector<std::string>& said) {
   const Stage* stage = dynamic_stage(built.plan);
   if (!stage) return;
   double fastest = 0;
   for (const Mode& mode : bonded_modes(built.model, 3))
-    if (mode.frequency < 100) fastest = std::max(fastest, mode.frequency);
+    if (mode.frequency < 50) fastest = std::max(fastest, mode.frequency);
   if (fastest > 0 && stage->step > 1 / (20 * fastest))
-    said.push_back(fmt::format("the step of {} is coarse for the mode at {:.3g} Hz (bonded base): take at most {} for twenty steps a period", spoken(stage->step, "s"),
-                               fastest, spoken(1 / (20 * fastest), "s")));
+    said.push_back(
+        fmt::format("the step of {} is coarse for the mode at {:.3g} Hz (bonded base): take at most {} for twenty steps a period",
+                    spoken(stage->step, "s"), fastest, spoken(1 / (20 * fastest), "s")));
 }
 
 void warn_method(const Case& read, const RunSpec& spec, const Built& built, std::vector<std::string>& said) {
@@ -75,13 +78,18 @@ void warn_method(const Case& read, const RunSpec& spec, const Built& built, std:
     if (impact.type() == "none")
       said.push_back("constraints without a velocity correction (impact = \"none\") create energy without bound; take \"project_hold\"");
     if (impact.type() == "reflect" || impact.type() == "propagate")
-      said.push_back(fmt::format("impact = \"{}\" corrects the velocity at every step: the multipliers alone are not the contact force", impact.type()));
-    if (spec.path_average.value_or(false)) said.push_back("traction = \"path\" has no effect with a constraint method: it takes the force at the end of the step");
+      said.push_back(fmt::format("impact = \"{}\" corrects the velocity at every step: the multipliers alone are not the contact force",
+                                 impact.type()));
+    if (spec.path_average.value_or(false))
+      said.push_back("traction = \"path\" has no effect with a constraint method: it takes the force at the end of the step");
   } else if (!stage->path_average && impact.type() == "none") {
     double largest = 0;
     for (const StiffnessRatio& ratio : stiffness_ratios(built.model, *stage, *built.plan.solver)) largest = std::max(largest, ratio.most);
     if (largest > 0.05)
-      said.push_back(fmt::format("traction at the end of the step with a stiff joint (k F_ii = {:.3g}): this creates energy; take traction = \"path\", or an impact rule", largest));
+      said.push_back(
+          fmt::format("traction at the end of the step with a stiff joint (k F_ii = {:.3g}): this creates energy; take traction = "
+                      "\"path\", or an impact rule",
+                      largest));
   }
 }
 
@@ -100,9 +108,13 @@ std::vector<Mode> modes_within(const Sparse& held, const Sparse& stiffness, cons
 
 }  // namespace
 
-std::vector<Mode> bonded_modes(const Model& model, int count) { return modes_within(cones_held(model), bonded_stiffness(model), model.mass, count); }
+std::vector<Mode> bonded_modes(const Model& model, int count) {
+  return modes_within(cones_held(model), bonded_stiffness(model), model.mass, count);
+}
 
-std::vector<Mode> fixed_base_modes(const Model& model, int count) { return modes_within(base_held(model), model.stiffness, model.mass, count); }
+std::vector<Mode> fixed_base_modes(const Model& model, int count) {
+  return modes_within(base_held(model), model.stiffness, model.mass, count);
+}
 
 std::vector<std::string> warnings(const Case& read, const RunSpec& spec, const Built& built) {
   std::vector<std::string> said;

@@ -36,20 +36,25 @@ std::vector<std::size_t> compared_columns(const RunResult& result, const std::ve
 
 std::string_view to_string(Agreement::Word word) {
   switch (word) {
-    case Agreement::Word::agrees: return "agrees";
-    case Agreement::Word::differs: return "differs";
-    case Agreement::Word::failed: return "failed";
-    case Agreement::Word::not_counted: return "-";
+    case Agreement::Word::agrees:
+      return "agrees";
+    case Agreement::Word::differs:
+      return "differs";
+    case Agreement::Word::failed:
+      return "failed";
+    case Agreement::Word::not_counted:
+      return "-";
   }
   return "";
 }
 
-std::vector<Agreement> agreement(const std::vector<RunResult>& results, const std::vector<RunSpec>& specs, const std::vector<std::string>& columns,
-                                 double band, int top, int base) {
+std::vector<Agreement> agreement(const std::vector<RunResult>& results, const std::vector<RunSpec>& specs,
+                                 const std::vector<std::string>& columns, double band, int top, int base) {
   std::map<std::string, std::map<std::size_t, std::vector<double>>> peaks;  // group, column: magnitudes
   for (std::size_t i = 0; i < results.size(); ++i)
     if (sound(results[i], specs[i]))
-      for (const std::size_t k : compared_columns(results[i], columns, top, base)) peaks[results[i].group][k].push_back(std::abs(results[i].peaks[k].value));
+      for (const std::size_t k : compared_columns(results[i], columns, top, base))
+        peaks[results[i].group][k].push_back(std::abs(results[i].peaks[k].value));
   std::vector<Agreement> made(results.size());
   for (std::size_t i = 0; i < results.size(); ++i) {
     if (specs[i].bonded) continue;
@@ -73,12 +78,21 @@ std::vector<Agreement> agreement(const std::vector<RunResult>& results, const st
   return made;
 }
 
-double created_share(const RunResult& result) { return result.energy_scale > 0 ? result.energy_created / result.energy_scale : 0; }
+std::vector<std::string> compared_names(const RunResult& result, const std::vector<std::string>& columns, int top, int base) {
+  std::vector<std::string> names;
+  for (const std::size_t k : compared_columns(result, columns, top, base)) names.push_back(result.columns[k].name);
+  return names;
+}
+
+double created_share(const RunResult& result) {
+  return result.energy_scale > 0 ? result.energy_created / result.energy_scale : 0;
+}
 
 std::vector<SweepRow> sweep_table(const std::vector<RunSpec>& specs, const std::vector<RunResult>& results) {
   std::vector<SweepRow> rows;
   for (std::size_t i = 0; i + 1 < results.size(); i += 2)
-    rows.push_back({specs[i].stiffness_ratio.value_or(0), created_share(results[i]), created_share(results[i + 1]), std::string(to_string(results[i].status)),
+    rows.push_back({specs[i].stiffness_ratio.value_or(0), created_share(results[i]), created_share(results[i + 1]),
+                    std::string(to_string(results[i].status)),
                     std::string(to_string(results[i + 1].status)) + (results[i + 1].status == RunStatus::failed ? " (expected)" : "")});
   return rows;
 }

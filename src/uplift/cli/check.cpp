@@ -15,10 +15,10 @@ namespace {
 struct Findings {
   std::vector<double> fixed, bonded, base_free;  // Hz
   std::vector<StiffnessRatio> ratios;
-  double suggested_step = 0;       // s
-  double seconds_per_step = 0;     // measured over a few steps
-  long steps = 0;                  // of one run
-  std::string trial_failure;       // why the first steps failed; empty when they did not
+  double suggested_step = 0;    // s
+  double seconds_per_step = 0;  // measured over a few steps
+  long steps = 0;               // of one run
+  std::string trial_failure;    // why the first steps failed; empty when they did not
   std::vector<std::string> warnings;
 };
 
@@ -59,7 +59,7 @@ Findings find(const Case& read, const RunSpec& spec, const Built& built) {
   if (const Stage* stage = dynamic_stage(built.plan)) found.ratios = stiffness_ratios(built.model, *stage, *built.plan.solver);
   double fastest = 0;
   for (const double frequency : found.bonded)
-    if (frequency < 100) fastest = std::max(fastest, frequency);
+    if (frequency < 50) fastest = std::max(fastest, frequency);
   if (fastest > 0) found.suggested_step = round_down(1 / (20 * fastest));
   try_steps(found, built);
   found.warnings = warnings(read, spec, built);
@@ -79,8 +79,8 @@ void print(const Loaded& loaded, const Built& built, const Findings& found, cons
   line("unknowns", fmt::format("{} free of {} ({} nodes)", model.free(), model.full_unknowns(), model.nodes.size()));
   for (std::size_t k = 0; k < model.interfaces.size(); ++k) {
     const Interface& interface = model.interfaces[k];
-    line("interface " + interface.name, fmt::format("{} points, {}, area {:.4g} m2{}", interface.batch.points, interface.behaviour, interface.area.sum(),
-                                                    interface.batch.components == 1 ? ", normal only" : ""));
+    line("interface " + interface.name, fmt::format("{} points, {}, area {:.4g} m2{}", interface.batch.points, interface.behaviour,
+                                                    interface.area.sum(), interface.batch.components == 1 ? ", normal only" : ""));
     if (k < found.ratios.size() && found.ratios[k].most > 0)
       line("  k F_ii at the time step", fmt::format("{:.3g} to {:.3g}", found.ratios[k].least, found.ratios[k].most));
     if (k < found.ratios.size()) line("  compliance F_ii", fmt::format("up to {:.3g} m/N", found.ratios[k].compliance));
@@ -93,10 +93,13 @@ void print(const Loaded& loaded, const Built& built, const Findings& found, cons
   const Stage* stage = dynamic_stage(built.plan);
   if (stage) {
     line("time step", fmt::format("{} ({} steps)", spoken(stage->step, "s"), found.steps));
-    if (found.suggested_step > 0) line("suggested step, at most", fmt::format("{} (twenty a period of the bonded modes below 100 Hz)", spoken(found.suggested_step, "s")));
+    if (found.suggested_step > 0)
+      line("suggested step, at most",
+           fmt::format("{} (twenty a period of the bonded modes below 50 Hz)", spoken(found.suggested_step, "s")));
   }
   if (found.seconds_per_step > 0)
-    line("cost", fmt::format("about {:.2f} microseconds a step, {} a run", 1e6 * found.seconds_per_step, spoken(found.seconds_per_step * static_cast<double>(found.steps), "s")));
+    line("cost", fmt::format("about {:.2f} microseconds a step, {} a run", 1e6 * found.seconds_per_step,
+                             spoken(found.seconds_per_step * static_cast<double>(found.steps), "s")));
   say("what is computed");
   for (const std::string& run : runs) say("  " + run);
   for (const std::string& warning : found.warnings) say("warning: " + warning);
@@ -106,18 +109,42 @@ void print(const Loaded& loaded, const Built& built, const Findings& found, cons
 
 void write(const Loaded& loaded, const Built& built, const Findings& found, const std::vector<std::string>& runs) {
   JsonWriter json(0, 2);
-  json.begin_object().member("case", loaded.from.case_file).member("title", loaded.from.title).member("unknowns", built.model.free()).member("full_unknowns", built.model.full_unknowns());
+  json.begin_object()
+      .member("case", loaded.from.case_file)
+      .member("title", loaded.from.title)
+      .member("unknowns", built.model.free())
+      .member("full_unknowns", built.model.full_unknowns());
   json.key("interfaces").begin_array();
   for (std::size_t k = 0; k < built.model.interfaces.size(); ++k) {
     const Interface& interface = built.model.interfaces[k];
-    json.begin_object().member("name", interface.name).member("behaviour", interface.behaviour).member("points", interface.batch.points).member("area", interface.area.sum());
-    if (k < found.ratios.size()) json.member("k_F_least", found.ratios[k].least).member("k_F_most", found.ratios[k].most).member("compliance", found.ratios[k].compliance);
+    json.begin_object()
+        .member("name", interface.name)
+        .member("behaviour", interface.behaviour)
+        .member("points", interface.batch.points)
+        .member("area", interface.area.sum());
+    if (k < found.ratios.size())
+      json.member("k_F_least", found.ratios[k].least)
+          .member("k_F_most", found.ratios[k].most)
+          .member("compliance", found.ratios[k].compliance);
     json.end_object();
   }
   json.end_array();
-  json.member("weight", built.weight).key("frequencies_fixed_base").numbers(found.fixed).key("frequencies_bonded").numbers(found.bonded).key("frequencies_base_free").numbers(found.base_free);
+  json.member("weight", built.weight)
+      .key("frequencies_fixed_base")
+      .numbers(found.fixed)
+      .key("frequencies_bonded")
+      .numbers(found.bonded)
+      .key("frequencies_base_free")
+      .numbers(found.base_free);
   json.member("steps", found.steps).member("suggested_step", found.suggested_step).member("seconds_per_step", found.seconds_per_step);
-  json.key("runs").texts(runs).key("notes").texts(built.notes).key("warnings").texts(found.warnings).member("trial_failure", found.trial_failure).end_object();
+  json.key("runs")
+      .texts(runs)
+      .key("notes")
+      .texts(built.notes)
+      .key("warnings")
+      .texts(found.warnings)
+      .member("trial_failure", found.trial_failure)
+      .end_object();
   say(json.take());
 }
 

@@ -9,10 +9,10 @@ namespace uplift::cli {
 enum Exit { done = 0, internal_error = 1, bad_input = 2, numerical_failure = 3, interrupted = 130 };
 
 struct Options {
-  std::string file;    // case file, or stored problem
-  std::string out;     // folder of the results; empty: out/NAME
-  bool json = false;   // for machines
-  bool quiet = false;  // nothing but errors
+  std::string file;     // case file, or stored problem
+  std::string out;      // folder of the results; empty: out/NAME
+  bool json = false;    // for machines
+  bool quiet = false;   // nothing but errors
   std::string command;  // the command line, for the report
 };
 

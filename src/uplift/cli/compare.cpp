@@ -14,7 +14,8 @@ namespace {
 void print_runs(const Results& results, const ComparisonSummary& compared) {
   std::string group = "\n";
   std::vector<std::vector<std::string>> rows;
-  const std::vector<std::string> head{"run", "status", "top motion", "uplifted", "gap", "base moment", "energy created", "agreement", "deviation"};
+  const std::vector<std::string> head{"run",         "status",         "top motion", "uplifted", "gap",
+                                      "base moment", "energy created", "agreement",  "deviation"};
   const auto flush = [&] {
     if (rows.size() > 1) print_table(rows);
     rows = {head};
@@ -31,8 +32,8 @@ void print_runs(const Results& results, const ComparisonSummary& compared) {
     const Agreement& agreement = compared.agreement[i];
     const bool counted = agreement.word == Agreement::Word::agrees || agreement.word == Agreement::Word::differs;
     const bool bonded = results.specs[i].bonded;  // it stretches instead of opening
-    rows.push_back({run.label, status_text(run), motion ? spoken(std::abs(motion->value), "m") : "-", bonded ? "-" : percent(run.max_uplifted_ratio.value),
-                    bonded ? "-" : spoken(run.max_opening.value, "m"),
+    rows.push_back({run.label, status_text(run), motion ? spoken(std::abs(motion->value), "m") : "-",
+                    bonded ? "-" : percent(run.max_uplifted_ratio.value), bonded ? "-" : spoken(run.max_opening.value, "m"),
                     spoken(std::abs(run.max_base_moment.value), "N m"), percent(created_share(run)), std::string(to_string(agreement.word)),
                     counted ? percent(agreement.deviation) : "-"});
   }
@@ -43,17 +44,20 @@ void print_sweep(const ComparisonSummary& compared) {
   if (compared.sweep.empty()) return;
   say("\nenergy created against the stiffness of the joint");
   std::vector<std::vector<std::string>> rows{{"k F", "path average", "end of step"}};
-  for (const SweepRow& row : compared.sweep) rows.push_back({fmt::format("{:g}", row.ratio), fmt::format("{:.2e}", row.path), fmt::format("{:.2e}", row.end)});
+  for (const SweepRow& row : compared.sweep)
+    rows.push_back({fmt::format("{:g}", row.ratio), fmt::format("{:.2e}", row.path), fmt::format("{:.2e}", row.end)});
   print_table(rows);
 }
 
 /// Builds and runs one list of specs; stops after an interrupted run.
-void run_all(const Loaded& loaded, const Options& options, const std::vector<RunSpec>& specs, std::size_t before, std::size_t total, Results& results) {
+void run_all(const Loaded& loaded, const Options& options, const std::vector<RunSpec>& specs, std::size_t before, std::size_t total,
+             Results& results) {
   for (const RunSpec& spec : specs) {
     if (interrupt_asked()) return;
     results.specs.push_back(spec);
     results.built.push_back(build(loaded.read, spec));
-    results.runs.push_back(run_one(results.built.back(), fmt::format("[{}/{}] {}", before + results.runs.size() + 1, total, spec.name), options));
+    results.runs.push_back(
+        run_one(results.built.back(), fmt::format("[{}/{}] {}", before + results.runs.size() + 1, total, spec.name), options));
   }
 }
 
@@ -71,8 +75,10 @@ int compare(const Options& options) {
   const Values* compare = loaded.read.values.has("compare") ? &loaded.read.values.table("compare") : nullptr;
   ComparisonSummary compared;
   compared.band = compare ? compare->number("band") : 0.02;
-  compared.agreement = agreement(results.runs, results.specs, compare ? compare->texts("agree_on") : std::vector<std::string>{}, compared.band,
-                                 results.built.front().top, results.built.front().base);
+  const std::vector<std::string> columns = compare ? compare->texts("agree_on") : std::vector<std::string>{};
+  const Built& first = results.built.front();
+  compared.columns = compared_names(results.runs.front(), columns, first.top, first.base);
+  compared.agreement = agreement(results.runs, results.specs, columns, compared.band, first.top, first.base);
   compared.sweep = sweep_table(swept.specs, swept.runs);
   const RunResult* bonded = nullptr;
   for (std::size_t i = 0; i < results.runs.size(); ++i)
@@ -87,12 +93,14 @@ int compare(const Options& options) {
     for (const std::string& warning : results.warnings) complain("warning: " + warning);
     print_runs(results, compared);
     print_sweep(compared);
-    say(fmt::format("\nsound runs agree when their peaks lie within {} of the median of their group", percent(compared.band)));
+    say(fmt::format("\nsound runs agree when their peaks of {} lie within {} of the median of their group",
+                    fmt::join(compared.columns, ", "), percent(compared.band)));
     say(fmt::format("verdict ({}): {}", results.runs.front().label, results.verdict.headline));
     say(fmt::format("results: {}/report.html", folder));
   }
   if (interrupt_asked()) {
-    if (!options.quiet) complain(fmt::format("interrupted: the files hold the {} runs that were begun", results.runs.size() + swept.runs.size()));
+    if (!options.quiet)
+      complain(fmt::format("interrupted: the files hold the {} runs that were begun", results.runs.size() + swept.runs.size()));
     return Exit::interrupted;
   }
   bool failed = false;

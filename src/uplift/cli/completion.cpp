@@ -14,7 +14,8 @@ void print_bash(const std::vector<Declared>& commands) {
   say("# bash completion of uplift: source <(uplift completion bash)");
   say("_uplift() {");
   say("  local word=\"${COMP_WORDS[COMP_CWORD]}\" options=\"\"");
-  say(fmt::format("  if [ \"$COMP_CWORD\" -eq 1 ]; then COMPREPLY=($(compgen -W \"{} --help --version\" -- \"$word\")); return; fi", names));
+  say(fmt::format("  if [ \"$COMP_CWORD\" -eq 1 ]; then COMPREPLY=($(compgen -W \"{} --help --version\" -- \"$word\")); return; fi",
+                  names));
   say("  case \"${COMP_WORDS[1]}\" in");
   for (const Declared& command : commands) {
     std::string options;
@@ -22,7 +23,8 @@ void print_bash(const std::vector<Declared>& commands) {
     say(fmt::format("    {}) options=\"{}\" ;;", command.name, options));
   }
   say("  esac");
-  say("  if [[ \"$word\" == -* ]]; then COMPREPLY=($(compgen -W \"$options\" -- \"$word\")); else COMPREPLY=($(compgen -f -- \"$word\")); fi");
+  say("  if [[ \"$word\" == -* ]]; then COMPREPLY=($(compgen -W \"$options\" -- \"$word\")); else COMPREPLY=($(compgen -f -- \"$word\")); "
+      "fi");
   say("}");
   say("complete -o filenames -F _uplift uplift");
 }

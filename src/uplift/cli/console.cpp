@@ -29,7 +29,8 @@ extern "C" void on_interrupt(int) {
 
 /// Length of a UTF-8 text in characters.
 std::size_t width_of(const std::string& text) {
-  return static_cast<std::size_t>(std::count_if(text.begin(), text.end(), [](char c) { return (static_cast<unsigned char>(c) & 0xC0) != 0x80; }));
+  return static_cast<std::size_t>(
+      std::count_if(text.begin(), text.end(), [](char c) { return (static_cast<unsigned char>(c) & 0xC0) != 0x80; }));
 }
 
 bool numeric(const std::string& text) {
@@ -43,8 +44,12 @@ int terminal_width() {
 
 }  // namespace
 
-void say(std::string_view line) { fmt::print(stdout, "{}\n", line); }
-void complain(std::string_view line) { fmt::print(stderr, "{}\n", line); }
+void say(std::string_view line) {
+  fmt::print(stdout, "{}\n", line);
+}
+void complain(std::string_view line) {
+  fmt::print(stderr, "{}\n", line);
+}
 
 bool on_terminal() {
   const char* term = std::getenv("TERM");
@@ -56,7 +61,9 @@ void catch_interrupts() {
   std::signal(SIGINT, on_interrupt);
 }
 
-bool interrupt_asked() { return interrupt_flag().load(); }
+bool interrupt_asked() {
+  return interrupt_flag().load();
+}
 
 void print_table(const std::vector<std::vector<std::string>>& rows) {
   std::vector<std::size_t> widths;
@@ -90,11 +97,11 @@ bool ProgressLine::operator()(const Progress& progress) {
   last_ = now;
   const double spent = std::chrono::duration<double>(now - start_).count();
   const double left = progress.fraction > 0 ? spent * (1 - progress.fraction) / progress.fraction : 0;
-  constexpr int cells = 20;
+  constexpr int cells = 10;
   const int full = std::clamp(static_cast<int>(progress.fraction * cells), 0, cells);
-  std::string line = fmt::format("{} [{}{}] {:3.0f} %  {:.0f} s left  t = {:.4g} s  dt = {}  open {:.0f} %  energy error {}", label_, std::string(full, '#'),
-                                 std::string(cells - full, '.'), 100 * progress.fraction, left, progress.time, spoken(progress.step, "s"), 100 * progress.open_fraction,
-                                 percent(progress.energy_error));
+  std::string line = fmt::format("{} [{}{}] {:.0f} %, {:.0f} s left, t = {:.4g} s, dt = {:.3g} s, open {:.0f} %, energy error {}", label_,
+                                 std::string(full, '#'), std::string(cells - full, '.'), 100 * progress.fraction, left, progress.time,
+                                 progress.step, 100 * progress.open_fraction, percent(progress.energy_error));
   if (!terminal_) {
     complain(line);
     return true;

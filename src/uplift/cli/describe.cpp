@@ -51,7 +51,9 @@ std::vector<Place> places() {
   return all;
 }
 
-std::string unit_of(const Field& field) { return field.unit.empty() || field.unit == "1" ? "-" : std::string(field.unit); }
+std::string unit_of(const Field& field) {
+  return field.unit.empty() || field.unit == "1" ? "-" : std::string(field.unit);
+}
 
 std::string default_of(const Field& field) {
   const std::string text = standard_text(field);
@@ -66,15 +68,24 @@ std::string range_of(const Field& field) {
       for (const std::string_view word : field.choices) text += (text.empty() ? "" : " | ") + std::string(word);
       return text;
     }
-    case Kind::flag: return "true | false";
-    case Kind::text: return "text";
-    case Kind::texts: return "list of texts";
-    case Kind::numbers: return field.size > 0 ? fmt::format("list of {}", field.size) : "list";
-    case Kind::table: return "[table]";
-    case Kind::tables: return "[[table]], any number";
-    case Kind::named: return "[table] of names";
-    case Kind::part: return "part, see below";
-    default: break;
+    case Kind::flag:
+      return "true | false";
+    case Kind::text:
+      return "text";
+    case Kind::texts:
+      return "list of texts";
+    case Kind::numbers:
+      return field.size > 0 ? fmt::format("list of {}", field.size) : "list";
+    case Kind::table:
+      return "[table]";
+    case Kind::tables:
+      return "[[table]], any number";
+    case Kind::named:
+      return "[table] of names";
+    case Kind::part:
+      return "part, see below";
+    default:
+      break;
   }
   const std::string bounds = bounds_text(field);
   return bounds.empty() ? "any" : bounds;
@@ -86,7 +97,8 @@ void print_fields(const std::vector<Field>& fields) {
     return;
   }
   std::vector<std::vector<std::string>> rows{{"  key", "unit", "default", "range", "meaning"}};
-  for (const Field& field : fields) rows.push_back({"  " + std::string(field.name), unit_of(field), default_of(field), range_of(field), std::string(field.meaning)});
+  for (const Field& field : fields)
+    rows.push_back({"  " + std::string(field.name), unit_of(field), default_of(field), range_of(field), std::string(field.meaning)});
   print_table(rows);
 }
 
@@ -182,7 +194,8 @@ int describe(const std::string& family, const std::string& name) {
     }
     throw InputError({"uplift describe " + family, 0}, "", "the name of a " + family, "\"" + name + "\"", nearest_name(name, parts));
   }
-  throw InputError({"uplift describe", 0}, "", fmt::format("one of {}", fmt::join(known, ", ")), "\"" + family + "\"", nearest_name(family, known));
+  throw InputError({"uplift describe", 0}, "", fmt::format("one of {}", fmt::join(known, ", ")), "\"" + family + "\"",
+                   nearest_name(family, known));
 }
 
 }  // namespace uplift::cli

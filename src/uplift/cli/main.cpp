@@ -1,5 +1,6 @@
-#include <CLI/CLI.hpp>
 #include <fmt/format.h>
+
+#include <CLI/CLI.hpp>
 
 #include "uplift/base/error.h"
 #include "uplift/cli/commands.h"
@@ -12,7 +13,8 @@ using uplift::cli::Declared;
 using uplift::cli::Options;
 
 constexpr const char* exit_codes =
-    "Exit codes: 0 done, 2 bad input, 3 numerical failure (a run failed, or created energy beyond its limit; results are kept and marked),\n"
+    "Exit codes: 0 done, 2 bad input, 3 numerical failure (a run failed, or created energy beyond its limit; results are kept and "
+    "marked),\n"
     "130 interrupted by Ctrl-C (files hold what was computed), 1 a bug.";
 
 struct Choices {
@@ -32,10 +34,13 @@ void take_case(CLI::App* command, Options& options) {
   command->add_option("case", options.file, "case file (TOML), or a folder with a case.toml")->required();
 }
 void take_output(CLI::App* command, Options& options) {
-  command->add_option("-o,--out", options.out, "folder of the results; default out/NAME. Earlier results there move to NAME.1, NAME.2, ...");
+  command->add_option("-o,--out", options.out,
+                      "folder of the results; default out/NAME. Earlier results there move to NAME.1, NAME.2, ...");
   command->add_flag("-q,--quiet", options.quiet, "print errors only");
 }
-void take_json(CLI::App* command, Options& options) { command->add_flag("--json", options.json, "print JSON for machines"); }
+void take_json(CLI::App* command, Options& options) {
+  command->add_flag("--json", options.json, "print JSON for machines");
+}
 
 void declare(CLI::App& app, Choices& given) {
   Options& options = given.options;
@@ -47,8 +52,9 @@ void declare(CLI::App& app, Choices& given) {
   take_case(command, options);
   take_json(command, options);
 
-  command = add(app, "run", "run a case: its model, and the same model with a bonded base beside it",
-                "  uplift run tower/case.toml\n  uplift run tower --out results/tower --quiet\n  uplift run tower --json | python3 -m json.tool");
+  command =
+      add(app, "run", "run a case: its model, and the same model with a bonded base beside it",
+          "  uplift run tower/case.toml\n  uplift run tower --out results/tower --quiet\n  uplift run tower --json | python3 -m json.tool");
   take_case(command, options);
   take_output(command, options);
   take_json(command, options);
@@ -58,7 +64,8 @@ void declare(CLI::App& app, Choices& given) {
   take_output(command, options);
   take_json(command, options);
 
-  command = add(app, "modes", "natural frequencies and shapes, bonded and with the base free", "  uplift modes tower\n  uplift modes tower --count 10 --json");
+  command = add(app, "modes", "natural frequencies and shapes, bonded and with the base free",
+                "  uplift modes tower\n  uplift modes tower --count 10 --json");
   take_case(command, options);
   command->add_option("-n,--count", given.modes, "number of modes")->check(CLI::Range(1, 1000));
   take_json(command, options);
@@ -77,7 +84,8 @@ void declare(CLI::App& app, Choices& given) {
   command->add_flag("--all", given.all, "compare all methods");
   take_json(command, options);
 
-  command = add(app, "completion", "print a completion script for the shell", "  source <(uplift completion bash)\n  source <(uplift completion zsh)");
+  command = add(app, "completion", "print a completion script for the shell",
+                "  source <(uplift completion bash)\n  source <(uplift completion zsh)");
   command->add_option("shell", given.shell, "bash or zsh");
 }
 
@@ -114,7 +122,10 @@ int main(int count, char** words) {
   CLI::App app{"uplift: does a structure lift off its base in an earthquake, and what does that do to it?", "uplift"};
   app.require_subcommand(1);
   app.set_version_flag("--version", UPLIFT_VERSION);
-  app.footer(fmt::format("Examples:\n  uplift new tower; uplift check tower; uplift run tower\n  uplift compare examples/01_oscillator/case.toml\n  uplift run --help\n\n{}", exit_codes));
+  app.footer(
+      fmt::format("Examples:\n  uplift new tower; uplift check tower; uplift run tower\n  uplift compare "
+                  "examples/01_oscillator/case.toml\n  uplift run --help\n\n{}",
+                  exit_codes));
   Choices given;
   declare(app, given);
   for (int i = 0; i < count; ++i) given.options.command += (i > 0 ? " " : "") + std::string(i > 0 ? words[i] : "uplift");

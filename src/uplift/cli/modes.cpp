@@ -26,7 +26,8 @@ void print_modes(const Model& model, const std::vector<Mode>& found, std::string
   for (std::size_t i = 0; i < found.size(); ++i) {
     const Vector shape = model.reduction * found[i].shape;
     const double frequency = found[i].frequency;
-    rows.push_back({fmt::format("{}", i + 1), fmt::format("{:.6g}", frequency), frequency > 0 ? fmt::format("{:.6g}", 1 / frequency) : "rigid motion",
+    rows.push_back({fmt::format("{}", i + 1), fmt::format("{:.6g}", frequency),
+                    frequency > 0 ? fmt::format("{:.6g}", 1 / frequency) : "rigid motion",
                     fmt::format("{:.1f}", 100 * share(model, shape, ux)), fmt::format("{:.1f}", 100 * share(model, shape, uy))});
   }
   if (rows.size() > 1) print_table(rows);
@@ -36,7 +37,10 @@ void write_modes(JsonWriter& json, const Model& model, const std::vector<Mode>& 
   json.begin_array();
   for (const Mode& mode : found) {
     const Vector shape = model.reduction * mode.shape;
-    json.begin_object().member("frequency", mode.frequency).member("mass_share_x", share(model, shape, ux)).member("mass_share_y", share(model, shape, uy));
+    json.begin_object()
+        .member("frequency", mode.frequency)
+        .member("mass_share_x", share(model, shape, ux))
+        .member("mass_share_y", share(model, shape, uy));
     json.key("shape").begin_object();
     for (std::size_t node = 0; node < model.nodes.size(); ++node)
       json.key(model.nodes[node].name).numbers(std::span<const double>(shape.data() + 3 * node, 3));
@@ -50,7 +54,8 @@ void write_modes(JsonWriter& json, const Model& model, const std::vector<Mode>& 
 int modes(const Options& options, int count) {
   const Loaded loaded = load(options);
   const Built built = build(loaded.read, runs_of_case(loaded.read).front());
-  const std::vector<Mode> bonded = bonded_modes(built.model, count), base_free = uplift::modes(built.model.stiffness, built.model.mass, count);
+  const std::vector<Mode> bonded = bonded_modes(built.model, count),
+                          base_free = uplift::modes(built.model.stiffness, built.model.mass, count);
   if (options.json) {
     JsonWriter json(0, 2);
     json.begin_object().member("case", loaded.from.case_file).key("bonded");

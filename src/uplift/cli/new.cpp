@@ -10,7 +10,8 @@
 namespace uplift::cli {
 namespace {
 
-constexpr const char* template_text = R"TOML(# A case for uplift. Numbers may carry units ("5 m", "20000 MPa"); a bare number is SI (m, kg, s, N, Pa, rad).
+constexpr const char* template_text =
+    R"TOML(# A case for uplift. Numbers may carry units ("5 m", "20000 MPa"); a bare number is SI (m, kg, s, N, Pa, rad).
 # x points right, y points up, rotations are counter-clockwise. An opening is positive, a tension is positive.
 # What every key means: `uplift describe section beam`, `uplift describe law sdm`, ...
 title = "{0}"

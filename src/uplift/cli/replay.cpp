@@ -30,7 +30,9 @@ Answer solve(const InterfaceProblem& problem, const std::string& name) {
   }
   const Values values = check_part(Raw{name, {"uplift replay --method", 0}, ""}, contact_methods());
   answer.outcome = make_part(method_catalog(), values)->solve(problem, answer.solution);
-  answer.residual = answer.solution.opening.size() == problem.rows() && answer.solution.force.size() == problem.rows() ? yardstick(problem, answer.solution) : INFINITY;
+  answer.residual = answer.solution.opening.size() == problem.rows() && answer.solution.force.size() == problem.rows()
+                        ? yardstick(problem, answer.solution)
+                        : INFINITY;
   return answer;
 }
 
@@ -49,10 +51,16 @@ void write_answers(const std::string& reason, const std::vector<Answer>& answers
   JsonWriter json(0, 2);
   json.begin_object().member("reason", reason).key("methods").begin_array();
   for (const Answer& answer : answers) {
-    json.begin_object().member("method", answer.method).member("converged", answer.outcome.converged).member("iterations", answer.outcome.iterations);
+    json.begin_object()
+        .member("method", answer.method)
+        .member("converged", answer.outcome.converged)
+        .member("iterations", answer.outcome.iterations);
     json.member("cycles", answer.outcome.cycles).member("residual", answer.residual).member("why", answer.outcome.why);
-    json.key("opening").numbers(std::span<const double>(answer.solution.opening.data(), static_cast<std::size_t>(answer.solution.opening.size())));
-    json.key("force").numbers(std::span<const double>(answer.solution.force.data(), static_cast<std::size_t>(answer.solution.force.size()))).end_object();
+    json.key("opening").numbers(
+        std::span<const double>(answer.solution.opening.data(), static_cast<std::size_t>(answer.solution.opening.size())));
+    json.key("force")
+        .numbers(std::span<const double>(answer.solution.force.data(), static_cast<std::size_t>(answer.solution.force.size())))
+        .end_object();
   }
   json.end_array().end_object();
   say(json.take());
@@ -77,8 +85,12 @@ int replay(const Options& options, const std::string& method, bool all) {
   say(fmt::format("{} rows, {} coordinates", stored.problem.rows(), stored.problem.factor.cols()));
   std::vector<std::vector<std::string>> rows{{"method", "result", "iterations", "cycles", "residual (yardstick)"}};
   for (const Answer& answer : answers)
-    rows.push_back({answer.method, answer.outcome.converged ? "converged" : answer.suits ? "failed" : "does not apply", fmt::format("{}", answer.outcome.iterations),
-                    fmt::format("{}", answer.outcome.cycles), fmt::format("{:.2e}", answer.residual)});
+    rows.push_back({answer.method,
+                    answer.outcome.converged ? "converged"
+                    : answer.suits           ? "failed"
+                                             : "does not apply",
+                    fmt::format("{}", answer.outcome.iterations), fmt::format("{}", answer.outcome.cycles),
+                    fmt::format("{:.2e}", answer.residual)});
   print_table(rows);
   for (const Answer& answer : answers)
     if (!answer.outcome.why.empty()) say(answer.method + ": " + answer.outcome.why);

@@ -29,7 +29,8 @@ int run(const Options& options) {
     say(results.verdict.headline);
     for (const Verdict::Fact& fact : results.verdict.facts) say(fmt::format("  {:<34} {:<14} {}", fact.label, fact.value, fact.detail));
     const double per_step = main.counts.steps > 0 ? 1e6 * main.wall / static_cast<double>(main.counts.steps) : 0;
-    say(fmt::format("{}: {} steps in {} ({:.2f} microseconds a step), {} retries", status_text(main), main.counts.steps, spoken(main.wall, "s"), per_step, main.counts.retries));
+    say(fmt::format("{}: {} steps in {} ({:.2f} microseconds a step), {} retries", status_text(main), main.counts.steps,
+                    spoken(main.wall, "s"), per_step, main.counts.retries));
     say(fmt::format("results: {}/report.html", folder));
   }
   if (main.status == RunStatus::interrupted) {
@@ -38,7 +39,8 @@ int run(const Options& options) {
   }
   if (main.status == RunStatus::failed) {
     complain("failed: " + main.reason);
-    if (!main.problem.empty()) complain(fmt::format("the interface problem of the failed step: {}/problem_{}.json (see `uplift replay --help`)", folder, main.name));
+    if (!main.problem.empty())
+      complain(fmt::format("the interface problem of the failed step: {}/problem_{}.json (see `uplift replay --help`)", folder, main.name));
     return Exit::numerical_failure;
   }
   return Exit::done;

@@ -7,10 +7,10 @@
 #include "uplift/contact/method.h"
 #include "uplift/contact/newton.h"
 
-// Augmented Lagrangian (paper, eq 1 with alpha > 0): p = P(m + e g), solved by Newton; then m <- p, until the multipliers stand still. Each update
-// contracts the error by 1/(1 + e F): with e F_ii = factor a handful of updates reaches round-off. Where it contracts slowly (neighbouring points of a rigid
-// footing are nearly one row), e grows by 16 until round-off in the openings would show in the forces. From m = 0 the pressures of redundant points come
-// out as those of a bed of equal springs, the least-norm ones, up to 1/factor.
+// Augmented Lagrangian (paper, eq 1 with alpha > 0): p = P(m + e g), solved by Newton; then m <- p, until the multipliers stand still. Each
+// update contracts the error by 1/(1 + e F): with e F_ii = factor a handful of updates reaches round-off. Where it contracts slowly
+// (neighbouring points of a rigid footing are nearly one row), e grows by 16 until round-off in the openings would show in the forces. From
+// m = 0 the pressures of redundant points come out as those of a bed of equal springs, the least-norm ones, up to 1/factor.
 namespace uplift {
 namespace {
 
@@ -44,23 +44,26 @@ class AugmentedLagrangian final : public ContactMethod {
         total.why = fmt::format("augmented Lagrangian, update {}: {}", update + 1, inner.why);
         return total;
       }
+      bool rubs = false;
       double change = 0, largest = 0, noise = 0;  // noise: what round-off in the openings makes of a stiff augmentation
       for (const Block& block : problem.blocks) {
         if (block.cone == nullptr) continue;
+        rubs = rubs || block.cone->friction() > 0;
         for (int i = block.first; i < block.first + block.rows(); ++i) {
           change = std::max(change, std::abs(solution.force[i] - scratch.multiplier[i]));
           largest = std::max(largest, std::abs(solution.force[i]));
-          noise = std::max(noise, scratch.stiffness[i] * (std::abs(problem.free_opening[i]) + std::abs(solution.opening[i] - problem.free_opening[i])));
+          noise = std::max(
+              noise, scratch.stiffness[i] * (std::abs(problem.free_opening[i]) + std::abs(solution.opening[i] - problem.free_opening[i])));
           scratch.multiplier[i] = solution.force[i];
         }
       }
       // under a rigid footing friction can be shared in many ways, between which the multipliers wander while everything else stands still
-      const bool wanders = update >= 8 && change <= 1e-3 * largest && yardstick(problem, solution) <= 10 * tolerance_;
+      const bool wanders = rubs && update >= 8 && change <= 1e-3 * largest && yardstick(problem, solution) <= 10 * tolerance_;
       if (change <= tolerance_ * largest || wanders || change <= 4 * epsilon * noise) {
         total.converged = true;
         return total;
       }
-      if (update >= 4 && change > 0.25 * before && 64 * epsilon * noise < 1e-10 * largest) {
+      if (update >= 4 && change > 0.25 * before && 64 * epsilon * noise < 1e-8 * largest) {
         scratch.growth *= 16;
         scratch.stiffness *= 16;
       }
@@ -70,7 +73,8 @@ class AugmentedLagrangian final : public ContactMethod {
     return total;
   }
 
-  /// Multipliers start at zero, so that the answer depends on the problem alone; e = factor / F_ii, of the whole interface where a row has no compliance.
+  /// Multipliers start at zero, so that the answer depends on the problem alone; e = factor / F_ii, of the whole interface where a row has
+  /// no compliance.
   void prepare(const InterfaceProblem& problem, AugmentedScratch& scratch) const {
     const Eigen::Index rows = problem.rows();
     if (scratch.multiplier.size() != rows) scratch.multiplier.resize(rows);
@@ -99,7 +103,9 @@ const Entry<ContactMethod>& entry_method_augmented_lagrangian() {
                     "e = factor / F_ii; the error contracts by 1/(1 + e F) per update",
        .source = "Cherubini, Richard & Frau, eq 1",
        .params = {number("factor", "1", "penalty stiffness times compliance, e F_ii").positive().standard(1000.0),
-                  number("tolerance", "1", "largest change of a contact force in the last update, relative to the largest force").positive().standard(1e-11),
+                  number("tolerance", "1", "largest change of a contact force in the last update, relative to the largest force")
+                      .positive()
+                      .standard(1e-11),
                   integer("most_updates", "multiplier updates before the step is cut").between(1, 10000).standard(60.0),
                   integer("most_iterations", "Newton iterations per update").between(1, 10000).standard(60.0)}},
       [](const Values& values) -> std::unique_ptr<const ContactMethod> {

@@ -16,13 +16,13 @@ struct Impact {
   const Spread* dynamic = nullptr;  // of K + 4M/dt^2 (eq 5); only for rules that ask for it
   const Matrix* b = nullptr;        // dense B, rows x free (null when large), or
   const Sparse* sparse_b = nullptr;
-  std::vector<int> normals;         // active normal rows (compressed)
-  std::vector<int> tangents;        // sticking tangential rows: equalities
-  const Vector* force = nullptr;    // all rows: contact force at the end of the step [N], tension > 0
-  const Vector* area = nullptr;     // all rows: area of the row's point [m2], by which redundant impulses are shared; null: equal shares
-  double velocity_weight = 0;       // gamma * dt [s]: a force p at the end of the step put -velocity_weight * M^-1 B^T p into the velocity
-  double step = 0;                  // s: of the step just solved
-  double acceleration_weight = 1;   // and -acceleration_weight * M^-1 B^T p into the acceleration
+  std::vector<int> normals;        // active normal rows (compressed)
+  std::vector<int> tangents;       // sticking tangential rows: equalities
+  const Vector* force = nullptr;   // all rows: contact force at the end of the step [N], tension > 0
+  const Vector* area = nullptr;    // all rows: area of the row's point [m2], by which redundant impulses are shared; null: equal shares
+  double velocity_weight = 0;      // gamma * dt [s]: a force p at the end of the step put -velocity_weight * M^-1 B^T p into the velocity
+  double step = 0;                 // s: of the step just solved
+  double acceleration_weight = 1;  // and -acceleration_weight * M^-1 B^T p into the acceleration
 };
 
 /// Work space of a rule, sized at the first call and kept between steps.
@@ -40,9 +40,11 @@ class ImpactRule {
   virtual ~ImpactRule() = default;
   virtual bool acts() const { return true; }
   virtual bool needs_dynamic() const { return false; }
-  /// True when the force of the displacement solve alone is not the contact force: the correction's impulse / dt is added to it (reflect, propagate).
+  /// True when the force of the displacement solve alone is not the contact force: the correction's impulse / dt is added to it (reflect,
+  /// propagate).
   virtual bool force_includes_impulse() const { return false; }
-  /// Corrects velocity and acceleration of the free unknowns in place. `impulse` (rows, N s, compression negative) receives what the correction put in.
+  /// Corrects velocity and acceleration of the free unknowns in place. `impulse` (rows, N s, compression negative) receives what the
+  /// correction put in.
   virtual void apply(const Impact&, Vector& velocity, Vector& acceleration, Vector& impulse, ImpactScratch&) const = 0;
 };
 

@@ -96,7 +96,8 @@ void project_rate(const Impact& impact, const Vector& rate, double weight, Selec
 
 void correct(const Impact& impact, double factor, Vector& rate, const ImpactScratch& scratch) {
   const Matrix& x = impact.mass->spread;
-  for (Index k = 0; k < x.cols(); ++k) small::add(x.rows(), factor * (scratch.push[k] + scratch.y[k]), x.data() + k * x.rows(), rate.data());
+  for (Index k = 0; k < x.cols(); ++k)
+    small::add(x.rows(), factor * (scratch.push[k] + scratch.y[k]), x.data() + k * x.rows(), rate.data());
 }
 
 void add_impulse(const Impact& impact, double factor, Vector& impulse, const ImpactScratch& scratch) {

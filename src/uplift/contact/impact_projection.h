@@ -1,11 +1,12 @@
 #pragma once
 #include "uplift/contact/impact.h"
 
-// The projection that the impact rules share. The velocity v of the displacement solve already contains the push -weight M^-1 B^T p of the contact
-// force p < 0 of the step; it is taken out first, so that the whole impulse of a contact has to be compressive, not its correction alone:
+// The projection that the impact rules share. The velocity v of the displacement solve already contains the push -weight M^-1 B^T p of the
+// contact force p < 0 of the step; it is taken out first, so that the whole impulse of a contact has to be compressive, not its correction
+// alone:
 //     w = v + weight M^-1 B_A^T p     v' = argmin |v' - w|_M^2 / 2     (B v')_i >= 0 on normal rows of A, = 0 on sticking tangential rows
-// Where all total impulses are compressive this is the equality projection of v (eq 4 of the paper). At the two corners of a rocking block it
-// gives Housner's restitution, where the equality would stop the block dead. In the coordinates of the spread, M^-1 B^T = X C^T:
+// Where all total impulses are compressive this is the equality projection of v (eq 4 of the paper). At the two corners of a rocking block
+// it gives Housner's restitution, where the equality would stop the block dead. In the coordinates of the spread, M^-1 B^T = X C^T:
 //     v' = w + X y     minimise |y|^2/2     B w + C y >= 0
 namespace uplift {
 

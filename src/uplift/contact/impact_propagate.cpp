@@ -2,8 +2,8 @@
 #include "uplift/math/small.h"
 
 // v_c = v + v''      [K + 4M/dt^2, C^T; C, 0] [v''; mu] = [0; f C (v' - v)]      C the active rows, v' the projection of eq 4, C v' = 0
-// As printed f = 2, which is a reflection, C v_c = -C v, spread by the dynamic stiffness. With A = K + 4M/dt^2 and A^-1 B^T = X C^T (rows C of the
-// spread, not of the paper) v'' = X y, where y is the shortest vector with C_A y = -f B_A v. M v'' = (dt^2/4)(B^T mu - K v''), and
+// As printed f = 2, which is a reflection, C v_c = -C v, spread by the dynamic stiffness. With A = K + 4M/dt^2 and A^-1 B^T = X C^T (rows C
+// of the spread, not of the paper) v'' = X y, where y is the shortest vector with C_A y = -f B_A v. M v'' = (dt^2/4)(B^T mu - K v''), and
 // K v'' is balanced inside the structure: the impulse of the contact is (dt^2/4) mu, which keeps the momentum balance.
 namespace uplift {
 namespace {

@@ -11,10 +11,10 @@ namespace {
 
 constexpr int most_iterations = 60;
 
-/// One pass of the general active set: the closed rows solved, openings, pressures C y and forces evaluated. False when the closed rows contradict
-/// each other beyond `gap`.
-bool solve_closed(const Rows& rows, const ConstMatrixMap& c, const std::vector<std::ptrdiff_t>& closed,
-                  double gap, const double* held, Vector& z, Vector& opening, Vector& field) {
+/// One pass of the general active set: the closed rows solved, openings, pressures C y and forces evaluated. False when the closed rows
+/// contradict each other beyond `gap`.
+bool solve_closed(const Rows& rows, const ConstMatrixMap& c, const std::vector<std::ptrdiff_t>& closed, double gap, const double* held,
+                  Vector& z, Vector& opening, Vector& field) {
   const Index n = rows.count;
   const ConstMap target(rows.target, n);
   const Index count = static_cast<Index>(closed.size());
@@ -43,6 +43,25 @@ bool solve_closed(const Rows& rows, const ConstMatrixMap& c, const std::vector<s
   field.noalias() = c * solver.least_norm(q);
   for (Index k = 0; k < count; ++k) field[closed[static_cast<std::size_t>(k)]] = q[k] / root[k];
   return true;
+}
+
+/// Without coordinates the openings are what they are.
+KernelReply nothing_moves(const Rows& rows, double* held, double* z, double* opening, double* force) {
+  KernelReply reply;
+  reply.end = KernelEnd::solved;
+  std::fill_n(z, rows.columns, 0.0);
+  for (std::ptrdiff_t i = 0; i < rows.count; ++i) {
+    opening[i] = rows.target[i];
+    force[i] = 0;
+    const bool may = rows.limit[i] > 0, must = !may && rows.fixed != nullptr && rows.fixed[i] > 0;
+    if (may) held[i] = 0;
+    if (!std::isfinite(opening[i])) reply.end = KernelEnd::not_finite;
+    if (reply.solved() && ((may && opening[i] < -rows.tolerance) || (must && std::abs(opening[i]) > rows.tolerance))) {
+      reply.end = KernelEnd::inconsistent;
+      reply.worst = i;
+    }
+  }
+  return reply;
 }
 
 }  // namespace
@@ -96,8 +115,9 @@ KernelReply solve_rows(const Rows& rows, double* held, double* z, double* openin
   if (rows.fixed != nullptr)
     for (std::ptrdiff_t i = 0; i < rows.count; ++i)
       if (!(rows.limit[i] > 0)) held[i] = rows.fixed[i];
-  const KernelReply first = rows.columns >= 1 && rows.columns <= 3 ? small_active_set(rows, held, z, opening, force, scratch)
-                                                                  : general_active_set(rows, held, z, opening, force, scratch);
+  if (rows.count == 0 || rows.columns == 0) return nothing_moves(rows, held, z, opening, force);
+  const KernelReply first = rows.columns <= 3 ? small_active_set(rows, held, z, opening, force, scratch)
+                                              : general_active_set(rows, held, z, opening, force, scratch);
   if (first.end != KernelEnd::stuck) return first;
   KernelReply second = dual_active_set(rows, held, z, opening, force, scratch);
   second.iterations += first.iterations;

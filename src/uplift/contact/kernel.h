@@ -7,22 +7,22 @@
 // The small quadratic problem under constraint contact and impact alike:
 //     minimise |z|^2/2     opening = target + C z     opening_i >= 0 (rows that may open)     opening_i = 0 (fixed rows)
 //     z + C^T p = 0        p_i <= 0 and p_i opening_i = 0 on rows that may open
-// z is unique. p is not when rows are redundant (a rigid footing on many points): of all admissible p the one of least sum p_i^2 / weight_i is
-// returned, which under a rigid footing is the tensionless Navier distribution. Its dual is p = weight * min(0, C y) on the closed rows, y in R^r.
-// Signs: opening > 0 apart, force p > 0 tension. Units: any consistent set (m and N for contact, m/s and N s for impact).
+// z is unique. p is not when rows are redundant (a rigid footing on many points): of all admissible p the one of least sum p_i^2 / weight_i
+// is returned, which under a rigid footing is the tensionless Navier distribution. Its dual is p = weight * min(0, C y) on the closed rows,
+// y in R^r. Signs: opening > 0 apart, force p > 0 tension. Units: any consistent set (m and N for contact, m/s and N s for impact).
 namespace uplift {
 
 /// A view of the problem's data.
 struct Rows {
-  std::ptrdiff_t count = 0;         // rows
-  std::ptrdiff_t columns = 0;       // r
-  std::ptrdiff_t stride = 0;        // between the columns of C
-  const double* factor = nullptr;   // C, column-major
-  const double* target = nullptr;   // opening at z = 0
-  const double* limit = nullptr;    // weight of the rows that may only open; 0 where a row is not one of them
-  const double* fixed = nullptr;    // weight of the rows held both ways, 0 elsewhere; null when there is none
-  double tolerance = 1e-12;         // opening that counts as closed, or as not penetrating
-  double relative = 1e-14;          // the same relative to the norm of the targets; the larger of the two counts
+  std::ptrdiff_t count = 0;        // rows
+  std::ptrdiff_t columns = 0;      // r
+  std::ptrdiff_t stride = 0;       // between the columns of C
+  const double* factor = nullptr;  // C, column-major
+  const double* target = nullptr;  // opening at z = 0
+  const double* limit = nullptr;   // weight of the rows that may only open; 0 where a row is not one of them
+  const double* fixed = nullptr;   // weight of the rows held both ways, 0 elsewhere; null when there is none
+  double tolerance = 1e-12;        // opening that counts as closed, or as not penetrating
+  double relative = 1e-14;         // the same relative to the norm of the targets; the larger of the two counts
 };
 
 /// The sets already tried, so that a repeated one is recognised.
@@ -49,17 +49,17 @@ enum class KernelEnd {
 struct KernelReply {
   KernelEnd end = KernelEnd::stuck;
   int iterations = 0;
-  int cycles = 0;     // repeated sets met
-  bool exact = false;  // the answer comes from the dual active-set fallback
+  int cycles = 0;       // repeated sets met
+  bool exact = false;   // the answer comes from the dual active-set fallback
   double residual = 0;  // balance |z + C^T p| / |z| and openings of the closed rows / largest target
   std::ptrdiff_t worst = -1;
   bool solved() const { return end == KernelEnd::solved; }
 };
 
-/// Solves the problem. `held` (rows) is weight where a row is closed and 0 where it is open: the first guess on entry, the set found on return.
-/// `z` (r), `opening`, `force` (rows) are outputs. Primal-dual active set (Hintermueller, Ito & Kunisch, SIAM J. Optim. 13, 2002); when a set
-/// repeats or contradicts itself, the dual method of Goldfarb & Idnani (Math. Programming 27, 1983), which is finite, takes over.
-/// No allocation after the first call for r <= 3 unless the fallback is needed.
+/// Solves the problem. `held` (rows) is weight where a row is closed and 0 where it is open: the first guess on entry, the set found on
+/// return. `z` (r), `opening`, `force` (rows) are outputs. Primal-dual active set (Hintermueller, Ito & Kunisch, SIAM J. Optim. 13, 2002);
+/// when a set repeats or contradicts itself, the dual method of Goldfarb & Idnani (Math. Programming 27, 1983), which is finite, takes
+/// over. No allocation after the first call for r <= 3 unless the fallback is needed.
 KernelReply solve_rows(const Rows&, double* held, double* z, double* opening, double* force, KernelScratch&);
 
 /// The primal-dual active set for r <= 3 alone; `stuck` when the fallback is needed.

@@ -7,8 +7,8 @@
 namespace uplift {
 
 /// The residual of KernelReply.
-inline double kernel_residual(const ConstMatrixMap& c, const Vector& z, const double* force,
-                              const double* held, const Vector& opening, const double* target) {
+inline double kernel_residual(const ConstMatrixMap& c, const Vector& z, const double* force, const double* held, const Vector& opening,
+                              const double* target) {
   double largest = 0, closed = 0;
   for (Index i = 0; i < c.rows(); ++i) {
     largest = std::max(largest, std::abs(target[i]));

@@ -6,15 +6,16 @@
 #include "uplift/contact/kernel.h"
 #include "uplift/contact/kernel_dense.h"
 
-// The dual active-set method of Goldfarb & Idnani for the identity as Hessian: it starts at z = 0, the minimum without constraints, and adds the
-// most violated row; multipliers stay admissible all along, so that |z| grows strictly and no set can come back: it is finite. The rows of the set are
-// kept independent as C_A^T = Q R with Q orthonormal (Gram-Schmidt, done twice), R upper triangular.
+// The dual active-set method of Goldfarb & Idnani for the identity as Hessian: it starts at z = 0, the minimum without constraints, and
+// adds the most violated row; multipliers stay admissible all along, so that |z| grows strictly and no set can come back: it is finite. The
+// rows of the set are kept independent as C_A^T = Q R with Q orthonormal (Gram-Schmidt, done twice), R upper triangular.
 namespace uplift {
 namespace {
 
 class DualSet {
  public:
-  DualSet(const Rows& rows, const ConstMatrixMap& c) : rows_(rows), c_(c), target_(rows.target, rows.count), q_(c.cols(), 0), z_(Vector::Zero(c.cols())) {
+  DualSet(const Rows& rows, const ConstMatrixMap& c)
+      : rows_(rows), c_(c), target_(rows.target, rows.count), q_(c.cols(), 0), z_(Vector::Zero(c.cols())) {
     in_.assign(static_cast<std::size_t>(rows.count), 0);
   }
 
@@ -134,9 +135,10 @@ class DualSet {
   int steps_ = 0;
 };
 
-/// Least-norm forces on the closed rows for the z that is known: p = weight * min(0, C y), C^T p = -z, by Newton on the dual, a convex piecewise
-/// quadratic function of y. False when it does not settle: the forces that were there remain.
-bool least_norm_forces(const Rows& rows, const ConstMatrixMap& c, const Vector& z, const Vector& opening, double gap, double* held, double* force) {
+/// Least-norm forces on the closed rows for the z that is known: p = weight * min(0, C y), C^T p = -z, by Newton on the dual, a convex
+/// piecewise quadratic function of y. False when it does not settle: the forces that were there remain.
+bool least_norm_forces(const Rows& rows, const ConstMatrixMap& c, const Vector& z, const Vector& opening, double gap, double* held,
+                       double* force) {
   const Index n = rows.count;
   std::vector<Index> closed;
   std::vector<double> weight;

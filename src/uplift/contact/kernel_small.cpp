@@ -19,12 +19,12 @@ bool Visited::note(std::ptrdiff_t rows, const double* held) {
 
 namespace {
 
-constexpr double rank_threshold = 1e-13;  // pivot relative to the largest: round-off of a sum of squares is 1e-16 of it
+constexpr double rank_threshold = 1e-13;    // pivot relative to the largest: round-off of a sum of squares is 1e-16 of it
 constexpr double column_threshold = 1e-24;  // square of a column that is nothing but round-off of the others
 constexpr int most_iterations = 60;
 
 template <int R>
-inline constexpr int packed = R * (R + 1) / 2;
+inline constexpr int packed = R*(R + 1) / 2;
 
 /// v = S x, S packed
 template <int R>
@@ -87,8 +87,9 @@ struct Look {
   double changes = 0;  // rows that change sides
 };
 
-/// opening = target + C z, force = held * C y, and the next set: a closed row opens when its pressure C y is tensile; an open one closes when it
-/// penetrates, or when it touches and the pressure field of the closed rows is compressive there (this makes the redundant pressures those of least norm).
+/// opening = target + C z, force = held * C y, and the next set: a closed row opens when its pressure C y is tensile; an open one closes
+/// when it penetrates, or when it touches and the pressure field of the closed rows is compressive there (this makes the redundant
+/// pressures those of least norm).
 template <int R>
 Look look(std::ptrdiff_t n, const double* c, std::ptrdiff_t stride, const double* held, const double* limit, const double* target,
           const double* z, const double* y, double gap, double weight, double work, double* opening, double* force, double* next) {

@@ -39,18 +39,17 @@ class LagrangeMethod final : public ContactMethod {
     const Status* status = solution.status.data();
 #pragma omp simd
     for (std::ptrdiff_t i = 0; i < n; ++i) held[i] = status[i] != Status::open ? area[i] : 0.0;
-    const Rows view{n, problem.factor.cols(), rows, problem.factor.data() + first, problem.free_opening.data() + first, area, nullptr,
-                    options_.gap_tolerance};
-    const KernelReply reply = solve_rows(view, held, solution.z.data(), solution.opening.data() + first, solution.force.data() + first,
-                                         solution.lagrange.kernel);
+    const Rows view{n,       problem.factor.cols(), rows, problem.factor.data() + first, problem.free_opening.data() + first, area,
+                    nullptr, options_.gap_tolerance};
+    const KernelReply reply =
+        solve_rows(view, held, solution.z.data(), solution.opening.data() + first, solution.force.data() + first, solution.lagrange.kernel);
     if (reply.iterations > 1)
       for (std::ptrdiff_t i = 0; i < n; ++i) solution.status[static_cast<std::size_t>(i)] = held[i] > 0 ? Status::slip : Status::open;
     for (int c = 0; c + 1 < block.batch.components; ++c) {  // tractionless tangentially
       const std::ptrdiff_t row = block.first + c * n;
       double* opening = solution.opening.data() + row;
       std::copy_n(problem.free_opening.data() + row, n, opening);
-      for (Index k = 0; k < problem.factor.cols(); ++k)
-        small::add(n, solution.z[k], problem.factor.data() + k * rows + row, opening);
+      for (Index k = 0; k < problem.factor.cols(); ++k) small::add(n, solution.z[k], problem.factor.data() + k * rows + row, opening);
       std::fill_n(solution.force.data() + row, n, 0.0);
     }
     return outcome(problem, reply, first);
@@ -68,8 +67,9 @@ class LagrangeMethod final : public ContactMethod {
       }
       for (int i = block.first; i < normal; ++i) scratch.held[i] = 0;
     }
-    const Rows view{problem.rows(), problem.factor.cols(), problem.rows(), problem.factor.data(), problem.free_opening.data(),
-                    scratch.limit.data(), nullptr, options_.gap_tolerance};
+    const Rows view{
+        problem.rows(), problem.factor.cols(), problem.rows(), problem.factor.data(), problem.free_opening.data(), scratch.limit.data(),
+        nullptr,        options_.gap_tolerance};
     const KernelReply reply =
         solve_rows(view, scratch.held.data(), solution.z.data(), solution.opening.data(), solution.force.data(), scratch.kernel);
     point = 0;
@@ -139,10 +139,12 @@ const Entry<ContactMethod>& entry_method_lagrange() {
        .equations = "minimise |z|^2/2, opening_n >= 0, p_n <= 0, p_n opening_n = 0\n"
                     "friction: |p_t| <= -mu p_n, p_t along the slip, opening_t - from_t\n"
                     "of all admissible forces the one of least sum p^2 / area",
-       .source = "Cherubini, Richard & Frau, eq 1 with alpha = 0; Hintermueller, Ito & Kunisch (2002); Goldfarb & Idnani (1983); Alart & Curnier (1991)",
-       .params = {number("gap_tolerance", "m", "a point is closed only when it would penetrate by more than this").positive().standard(1e-12),
-                  number("tolerance", "1", "balance residual beside traction laws, relative to the interface force").positive().standard(1e-12),
-                  integer("most_iterations", "iterations before the fallback").between(1, 10000).standard(100.0)}},
+       .source = "Cherubini, Richard & Frau, eq 1 with alpha = 0; Hintermueller, Ito & Kunisch (2002); Goldfarb & Idnani (1983); Alart & "
+                 "Curnier (1991)",
+       .params =
+           {number("gap_tolerance", "m", "a point is closed only when it would penetrate by more than this").positive().standard(1e-12),
+            number("tolerance", "1", "balance residual beside traction laws, relative to the interface force").positive().standard(1e-12),
+            integer("most_iterations", "iterations before the fallback").between(1, 10000).standard(100.0)}},
       [](const Values& values) -> std::unique_ptr<const ContactMethod> {
         return std::make_unique<LagrangeMethod>(
             LagrangeOptions{values.number("gap_tolerance"), values.number("tolerance"), values.integer("most_iterations")});

@@ -21,13 +21,13 @@ struct LagrangeOptions {
 /// by sequential quadratic programming. Globally convergent when the laws do not soften.
 Outcome solve_frictionless(const InterfaceProblem&, const LagrangeOptions&, InterfaceSolution&);
 
-/// Cones with Coulomb friction: p_n <= 0, |p_t| <= -mu p_n, p_t along the slip opening_t - from_t (maximum dissipation), laws and shift beside them.
-/// When the status repeats, one point at a time changes (least index first); when that ends without an answer, augmented Lagrangian updates give the
-/// status, from which the exact solve is tried again.
+/// Cones with Coulomb friction: p_n <= 0, |p_t| <= -mu p_n, p_t along the slip opening_t - from_t (maximum dissipation), laws and shift
+/// beside them. When the status repeats, one point at a time changes (least index first); when that ends without an answer, augmented
+/// Lagrangian updates give the status, from which the exact solve is tried again.
 Outcome solve_frictional(const InterfaceProblem&, const LagrangeOptions&, InterfaceSolution&);
 
-/// Forces of the law blocks at solution.opening, scaled: fills their rows of solution.force and solution.now; `slope` (null: not wanted) gets
-/// d force_r / d opening_c of block b, component-major, at [first_slope[b] + (r * components + c) * points + i] [N/m].
+/// Forces of the law blocks at solution.opening, scaled: fills their rows of solution.force and solution.now; `slope` (null: not wanted)
+/// gets d force_r / d opening_c of block b, component-major, at [first_slope[b] + (r * components + c) * points + i] [N/m].
 void law_forces(const InterfaceProblem&, const std::vector<int>& first_slope, double* slope, InterfaceSolution&);
 /// Where the slopes of each block begin, and (last entry) how many there are.
 std::vector<int> slope_offsets(const InterfaceProblem&);

@@ -7,7 +7,8 @@
 #include "uplift/contact/lagrange_status.h"
 #include "uplift/contact/newton.h"
 
-// Semismooth Newton on the contact status of frictional points. For a status the step is linear (lagrange_status.h). Then each point looks at its trial:
+// Semismooth Newton on the contact status of frictional points. For a status the step is linear (lagrange_status.h). Then each point looks
+// at its trial:
 //   closed  opens when its pressure is tensile; an open one closes when it penetrates, or touches where the closed rows press
 //   stick   slips when |p_t| > -mu p_n, in the direction of p_t
 //   slip    sticks when p_t + rho slip falls inside the bound (in 2D: when it moves against its friction force)
@@ -48,8 +49,8 @@ class Frictional {
     return outcome_;
   }
 
-  /// Newton until status and forces stand still. `single`: one point changes at a time, least index first (Bland's rule). False when a status comes back,
-  /// when the closed points contradict each other or when the iterations are used up.
+  /// Newton until status and forces stand still. `single`: one point changes at a time, least index first (Bland's rule). False when a
+  /// status comes back, when the closed points contradict each other or when the iterations are used up.
   bool settle(int most, bool single) {
     std::set<std::vector<signed char>> visited;
     double before = std::numeric_limits<double>::infinity();
@@ -80,7 +81,8 @@ class Frictional {
     return true;
   }
 
-  /// Updates of the augmented Lagrangian on the same problem, the exact solve being tried from the status that they show after every few of them.
+  /// Updates of the augmented Lagrangian on the same problem, the exact solve being tried from the status that they show after every few of
+  /// them.
   Outcome by_augmentation() {
     Vector multiplier = Vector::Zero(problem_.rows()), stiffness(problem_.rows());
     const double largest = problem_.factor.rowwise().squaredNorm().maxCoeff();
@@ -129,9 +131,7 @@ class Frictional {
     return !(moved.cwiseAbs().maxCoeff() <= 1e6 * (problem_.free_opening - problem_.from).cwiseAbs().maxCoeff());
   }
 
-  std::string unsettled() const {
-    return fmt::format("the contact status did not settle at {}", point_names(problem_, step_.changed()));
-  }
+  std::string unsettled() const { return fmt::format("the contact status did not settle at {}", point_names(problem_, step_.changed())); }
 
   const InterfaceProblem& problem_;
   const LagrangeOptions& options_;

@@ -6,11 +6,12 @@
 #include "uplift/contact/lagrange.h"
 #include "uplift/math/dense.h"
 
-// Sequential quadratic programming in z. At the iterate z_k, with the gradient g of the potential (without multipliers) and a Hessian H = L L^T,
+// Sequential quadratic programming in z. At the iterate z_k, with the gradient g of the potential (without multipliers) and a Hessian H = L
+// L^T,
 //     x = L^T (z - z_n)     z_n = z_k - H^-1 g     opening = opening(z_n) + C L^-T x
-// turns the step into the kernel's problem. The constraints are linear, so that every iterate after the first is feasible, and so is every point of the
-// line search between two of them. In statics H takes back the closed joint D of the open rows only: where a row is closed, its opening is zero and
-// D does not act; this keeps H positive definite for a body that rests on contact alone.
+// turns the step into the kernel's problem. The constraints are linear, so that every iterate after the first is feasible, and so is every
+// point of the line search between two of them. In statics H takes back the closed joint D of the open rows only: where a row is closed,
+// its opening is zero and D does not act; this keeps H positive definite for a body that rests on contact alone.
 namespace uplift {
 
 std::vector<int> slope_offsets(const InterfaceProblem& problem) {
@@ -43,7 +44,8 @@ void law_forces(const InterfaceProblem& problem, const std::vector<int>& first_s
   }
 }
 
-void add_law_slopes(const InterfaceProblem& problem, const std::vector<int>& first_slope, const Vector& slope, bool convex, Matrix& hessian) {
+void add_law_slopes(const InterfaceProblem& problem, const std::vector<int>& first_slope, const Vector& slope, bool convex,
+                    Matrix& hessian) {
   for (std::size_t b = 0; b < problem.blocks.size(); ++b) {
     const Block& block = problem.blocks[b];
     if (block.law == nullptr) continue;
@@ -141,8 +143,8 @@ class Frictionless {
     const Matrix factor = lower_.matrixL().solve(problem_.factor.transpose()).transpose();
     const Vector target = problem_.free_opening + problem_.factor * newton;
     Vector x(factor.cols()), opening(problem_.rows());
-    const Rows rows{problem_.rows(), factor.cols(), problem_.rows(), factor.data(), target.data(), scratch_.limit.data(), nullptr,
-                    options_.gap_tolerance};
+    const Rows rows{problem_.rows(), factor.cols(),         problem_.rows(), factor.data(),
+                    target.data(),   scratch_.limit.data(), nullptr,         options_.gap_tolerance};
     const KernelReply reply = solve_rows(rows, scratch_.held.data(), x.data(), opening.data(), multiplier_.data(), scratch_.kernel);
     outcome_.cycles += reply.cycles;
     if (!reply.solved()) {

@@ -9,7 +9,9 @@ namespace {
 /// Pivot of H that is taken for zero: H is of order one, the identity less a share of it.
 constexpr double singular = 1e-12;
 
-double length(const std::array<double, 2>& v) { return std::hypot(v[0], v[1]); }
+double length(const std::array<double, 2>& v) {
+  return std::hypot(v[0], v[1]);
+}
 
 }  // namespace
 
@@ -81,7 +83,8 @@ void StatusStep::list_held() {
 
 std::array<double, 2> StatusStep::slip(const FrictionPoint& point) const {
   std::array<double, 2> result{};
-  for (int c = 0; c < point.tangents(); ++c) result[static_cast<std::size_t>(c)] = solution_.opening[point.row(c)] - problem_.from[point.row(c)];
+  for (int c = 0; c < point.tangents(); ++c)
+    result[static_cast<std::size_t>(c)] = solution_.opening[point.row(c)] - problem_.from[point.row(c)];
   return result;
 }
 
@@ -116,8 +119,8 @@ void StatusStep::assemble(Matrix& hessian, Vector& right) {
     hessian.noalias() -= c.transpose() * taken.asDiagonal() * c;
     right += c.transpose() * (known + taken.cwiseProduct(problem_.free_opening));
   }
-  // slip in 3D: bound * trial / |trial| with trial = p_t + rho slip; across its direction d the force turns with the slip, p = s (I - d d^T) slip,
-  // s = bound / |slip| at the solution
+  // slip in 3D: bound * trial / |trial| with trial = p_t + rho slip; across its direction d the force turns with the slip, p = s (I - d
+  // d^T) slip, s = bound / |slip| at the solution
   for (FrictionPoint& point : points_) {
     point.turning = 0;
     if (point.status != Status::slip || point.tangents() < 2 || !(point.friction > 0)) continue;
@@ -151,7 +154,8 @@ bool StatusStep::solve() {
     u.row(k) = v.row(k) = root * problem_.factor.row(held.row);
     if (held.slipping == nullptr) continue;
     for (int t = 0; t < held.slipping->tangents(); ++t)
-      v.row(k) -= root * held.slipping->friction * held.slipping->direction[static_cast<std::size_t>(t)] * problem_.factor.row(held.slipping->row(t));
+      v.row(k) -= root * held.slipping->friction * held.slipping->direction[static_cast<std::size_t>(t)] *
+                  problem_.factor.row(held.slipping->row(t));
   }
   Vector z = lu.solve(right), q = Vector::Zero(count);
   field_.resize(0);
@@ -217,8 +221,7 @@ bool StatusStep::hold(const PartialLu& hessian, const Matrix& u, const Matrix& v
 void StatusStep::write_forces(const Vector& q) {
   for (const FrictionPoint& point : points_)
     for (int c = 0; c < point.components; ++c) solution_.force[point.row(c)] = 0;
-  for (std::size_t k = 0; k < held_.size(); ++k)
-    solution_.force[held_[k].row] = q[static_cast<Index>(k)] * std::sqrt(held_[k].area);
+  for (std::size_t k = 0; k < held_.size(); ++k) solution_.force[held_[k].row] = q[static_cast<Index>(k)] * std::sqrt(held_[k].area);
   largest_force_ = 0;
   for (const FrictionPoint& point : points_) {
     largest_force_ = std::max(largest_force_, std::abs(solution_.force[point.normal()]));
@@ -283,7 +286,8 @@ double StatusStep::residual() {
     if (point.status != Status::slip || point.tangents() < 2 || !(largest_force_ > 0)) continue;
     const double bound = -point.friction * solution_.force[point.normal()];  // the direction is the trial's by now
     worst = std::max(worst, std::hypot(solution_.force[point.row(0)] - bound * point.direction[0],
-                                       solution_.force[point.row(1)] - bound * point.direction[1]) / largest_force_);
+                                       solution_.force[point.row(1)] - bound * point.direction[1]) /
+                                largest_force_);
   }
   return worst;
 }

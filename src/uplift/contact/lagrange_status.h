@@ -10,10 +10,10 @@ namespace uplift {
 /// A point of a cone block, with friction or without.
 struct FrictionPoint {
   int block = 0, components = 1;
-  Index first = 0, stride = 0;  // row of component c: first + c * stride
-  Index index = 0;              // among all points of the problem, for its status
-  double area = 0, friction = 0;  // the coefficient in force
-  double full_friction = 0;       // the cone's
+  Index first = 0, stride = 0;             // row of component c: first + c * stride
+  Index index = 0;                         // among all points of the problem, for its status
+  double area = 0, friction = 0;           // the coefficient in force
+  double full_friction = 0;                // the cone's
   double rho_normal = 0, rho_tangent = 0;  // N/m: 1 / F_ii
   Status status = Status::open;
   std::array<double, 2> direction{};  // of the slip
@@ -24,8 +24,8 @@ struct FrictionPoint {
 };
 
 /// The linear problem of one contact status, laws and shift linearised at the present z. E are the held rows: normal rows of closed points
-/// (opening 0), tangential rows of sticking ones (opening as at the beginning of the step). A slipping point has p_t = -mu p_n d, which adds to the
-/// column of its normal row:
+/// (opening 0), tangential rows of sticking ones (opening as at the beginning of the step). A slipping point has p_t = -mu p_n d, which
+/// adds to the column of its normal row:
 ///     H z + V^T p_E = right     C_E z = target     H = I + slopes of laws and of slip - shift of the rows that are not held
 /// H is regular where closed rows hold the body; E may be redundant: p_E of least norm, sum p^2 / area, among those that balance.
 class StatusStep {

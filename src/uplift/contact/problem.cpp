@@ -7,7 +7,9 @@
 namespace uplift {
 namespace {
 
-double largest(const Vector& v) { return v.size() > 0 ? v.cwiseAbs().maxCoeff() : 0; }
+double largest(const Vector& v) {
+  return v.size() > 0 ? v.cwiseAbs().maxCoeff() : 0;
+}
 
 double balance(const InterfaceProblem& problem, const InterfaceSolution& solution) {
   Vector force = solution.force;

@@ -6,9 +6,9 @@
 #include "uplift/contact/problem.h"
 
 // A stored interface problem is one JSON object:
-//   format "uplift interface problem 1", reason, average, scale, step [s], factor (rows of C), shift, free_opening, from, old, and blocks: name, points,
-//   components, area, behaviour {type, parameters}. Doubles are written so that they read back to the same bits; numbers that are not finite (a failed
-//   step may hold some) are the words "nan", "inf", "-inf".
+//   format "uplift interface problem 1", reason, average, scale, step [s], factor (rows of C), shift, free_opening, from, old, and blocks:
+//   name, points, components, area, behaviour {type, parameters}. Doubles are written so that they read back to the same bits; numbers that
+//   are not finite (a failed step may hold some) are the words "nan", "inf", "-inf".
 namespace uplift {
 namespace {
 
@@ -25,7 +25,9 @@ Json to_json(const double* values, std::size_t n) {
   for (std::size_t i = 0; i < n; ++i) list.push_back(to_json(values[i]));
   return list;
 }
-Json to_json(const Vector& v) { return to_json(v.data(), static_cast<std::size_t>(v.size())); }
+Json to_json(const Vector& v) {
+  return to_json(v.data(), static_cast<std::size_t>(v.size()));
+}
 
 Json to_json(const Values& behaviour) {
   Json object = Json::object();
@@ -127,7 +129,8 @@ class Reader {
     } else {
       stored.laws.push_back(make_part(law_catalog(), values));
       block.law = stored.laws.back().get();
-      problem.old.resize(problem.old.size() + static_cast<std::size_t>(block.law->num_history(block.batch.components) * block.batch.points));
+      problem.old.resize(problem.old.size() +
+                         static_cast<std::size_t>(block.law->num_history(block.batch.components) * block.batch.points));
     }
     problem.blocks.push_back(std::move(block));
   }
@@ -148,7 +151,8 @@ class Reader {
     problem.scale = number(at(json_, "", "scale"), "scale");
     problem.step = number(at(json_, "", "step"), "step");
     const Json& factor = at(json_, "", "factor");
-    if (!factor.is_array() || factor.size() != rows) refuse("factor", "a list of " + std::to_string(rows) + " rows", factor.is_array() ? std::to_string(factor.size()) : factor.dump());
+    if (!factor.is_array() || factor.size() != rows)
+      refuse("factor", "a list of " + std::to_string(rows) + " rows", factor.is_array() ? std::to_string(factor.size()) : factor.dump());
     for (std::size_t i = 0; i < rows; ++i) {
       const std::string path = "factor[" + std::to_string(i) + "]";
       const std::vector<double> row = numbers(factor[i], path);

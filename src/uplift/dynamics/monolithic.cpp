@@ -228,8 +228,8 @@ class Monolithic final : public StepSolver {
     for (std::size_t i = first + 1; i < contact_.size(); ++i) contact_[i] = before[i];
   }
 
-  /// Redundant frictionless points: of all admissible pressures with the same effect on the structure those of least sum p^2/area, as the methods
-  /// promise. Their dual is p = area * min(0, B y) on the touching points; the set where it is negative is found by repetition.
+  /// Redundant frictionless points: of all admissible pressures with the same effect on the structure those of least sum p^2/area, as the
+  /// methods promise. Their dual is p = area * min(0, B y) on the touching points; the set where it is negative is found by repetition.
   void share_pressures() {
     std::vector<int> touching;
     std::vector<double> area;
@@ -248,7 +248,8 @@ class Monolithic final : public StepSolver {
       Matrix gram = Matrix::Zero(b.cols(), b.cols());
       for (Eigen::Index k = 0; k < count; ++k)
         if (pressed[static_cast<std::size_t>(k)] != 0)
-          gram += area[static_cast<std::size_t>(k)] * b.row(touching[static_cast<std::size_t>(k)]).transpose() * b.row(touching[static_cast<std::size_t>(k)]);
+          gram += area[static_cast<std::size_t>(k)] * b.row(touching[static_cast<std::size_t>(k)]).transpose() *
+                  b.row(touching[static_cast<std::size_t>(k)]);
       CompleteQr decomposition;
       decomposition.setThreshold(1e-11);
       decomposition.compute(gram);
@@ -264,7 +265,9 @@ class Monolithic final : public StepSolver {
       if (changed) continue;
       for (Eigen::Index k = 0; k < count; ++k)
         solution_.force[touching[static_cast<std::size_t>(k)]] =
-            pressed[static_cast<std::size_t>(k)] != 0 ? area[static_cast<std::size_t>(k)] * b.row(touching[static_cast<std::size_t>(k)]).dot(y) : 0;
+            pressed[static_cast<std::size_t>(k)] != 0
+                ? area[static_cast<std::size_t>(k)] * b.row(touching[static_cast<std::size_t>(k)]).dot(y)
+                : 0;
       return;
     }
   }
@@ -299,7 +302,8 @@ class Compared final : public StepSolver {
     other_.resize(increment.size());
     const Outcome check = oracle_->solve(right, displacement, opening, history, other_);
     if (!check.converged) outcome.why = check.why;
-    const double difference = energy_norm(other_ - increment), size = std::max(energy_norm(displacement + increment), energy_norm(increment));
+    const double difference = energy_norm(other_ - increment),
+                 size = std::max(energy_norm(displacement + increment), energy_norm(increment));
     if (check.converged && difference > tolerance_ * size)
       outcome.why = fmt::format("the oracle's step differs by {:.2e} of the displacement", difference / size);
     outcome.converged = outcome.why.empty();

@@ -21,7 +21,9 @@ struct Closer {
 };
 using File = std::unique_ptr<std::FILE, Closer>;
 
-[[noreturn]] void refuse(const std::string& path, const char* wanted, const std::string& why) { throw InputError({path, 0}, "", wanted, why); }
+[[noreturn]] void refuse(const std::string& path, const char* wanted, const std::string& why) {
+  throw InputError({path, 0}, "", wanted, why);
+}
 
 }  // namespace
 

@@ -17,14 +17,17 @@ std::string histories_csv(const RunResult& result) {
   for (const Request& column : result.columns) text += "," + column.name + " [" + column.unit + "]";
   text += '\n';
   const std::size_t rows = result.table.empty() ? 0 : result.table[0].size();
+  std::vector<char> line(result.table.size() * (number_room + 1));
   text.reserve(text.size() + rows * result.table.size() * 13);
   for (std::size_t row = 0; row < rows; ++row) {
     if (!finite_row(result, row)) continue;
-    for (std::size_t k = 0; k < result.table.size(); ++k) {
-      if (k > 0) text += ',';
-      append_number(text, result.table[k][row]);
+    char* at = line.data();
+    for (const std::vector<double>& column : result.table) {
+      at = write_number(at, column[row]);
+      *at++ = ',';
     }
-    text += '\n';
+    at[-1] = '\n';
+    text.append(line.data(), at);
   }
   return text;
 }

@@ -7,8 +7,8 @@
 // A small writer of JSON text: reports hold some hundred thousand numbers, which a document tree would make slow.
 namespace uplift {
 
-/// Writes JSON from front to back: begin/end of objects and arrays, keys, values. Numbers that are not finite become null. Calls that do not nest
-/// are a bug (assertion).
+/// Writes JSON from front to back: begin/end of objects and arrays, keys, values. Numbers that are not finite become null. Calls that do
+/// not nest are a bug (assertion).
 class JsonWriter {
  public:
   /// `digits`: significant digits of numbers; 0: shortest text that reads back as the same number. `indent`: spaces per level, 0: one line.

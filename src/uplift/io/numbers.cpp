@@ -12,7 +12,7 @@ namespace {
 
 constexpr int power_limit = 340;
 
-/// 10^e as long double. Built once; exact up to 10^27, then within a few units of 1e-19.
+/// 10^e, built once. In long double: with a plain double a scaled value of fifteen digits would already be a unit off.
 const std::array<long double, 2 * power_limit + 1>& powers() {
   static const auto table = [] {
     std::array<long double, 2 * power_limit + 1> made{};
@@ -21,8 +21,6 @@ const std::array<long double, 2 * power_limit + 1>& powers() {
   }();
   return table;
 }
-
-long double power(int e) { return powers()[static_cast<std::size_t>(e + power_limit)]; }
 
 constexpr std::array<std::uint64_t, 17> whole_powers = [] {
   std::array<std::uint64_t, 17> made{};
@@ -34,65 +32,97 @@ constexpr std::array<std::uint64_t, 17> whole_powers = [] {
   return made;
 }();
 
-}  // namespace
-
-void append_number(std::string& text, double value, int digits) {
-  assert(std::isfinite(value) && digits >= 1 && digits <= 15);
-  char out[32];
-  char* at = out;
-  if (std::signbit(value)) *at++ = '-';
-  const double size = std::abs(value);
-  if (size == 0) {
-    text += '0';
-    return;
+/// "00", "01", ... "99"
+constexpr std::array<char, 200> pairs = [] {
+  std::array<char, 200> made{};
+  for (std::size_t i = 0; i < 100; ++i) {
+    made[2 * i] = static_cast<char>('0' + i / 10);
+    made[2 * i + 1] = static_cast<char>('0' + i % 10);
   }
-  if (size < 1e-300) return append_exact(text, value);
-  // size = mantissa * 10^(exponent - digits + 1), 10^(digits - 1) <= mantissa < 10^digits
+  return made;
+}();
+
+struct Decimal {
+  char figures[20];  // without trailing zeros
+  int kept = 0;      // how many
+  int exponent = 0;  // value = f.iguresE+exponent
+};
+
+/// size = mantissa * 10^(exponent - digits + 1) with 10^(digits - 1) <= mantissa < 10^digits, size > 0 and not tiny.
+Decimal decimal(double size, int digits) {
+  Decimal made;
   int binary;
   std::frexp(size, &binary);
-  int exponent = static_cast<int>(std::floor((binary - 1) * 0.30102999566398120));
+  made.exponent = static_cast<int>(std::floor((binary - 1) * 0.30102999566398120));
+  const auto scaled = [&] {
+    return static_cast<std::uint64_t>(size * powers()[static_cast<std::size_t>(digits - 1 - made.exponent + power_limit)] + 0.5L);
+  };
   const std::uint64_t limit = whole_powers[static_cast<std::size_t>(digits)];
-  std::uint64_t mantissa = static_cast<std::uint64_t>(size * power(digits - 1 - exponent) + 0.5L);
+  std::uint64_t mantissa = scaled();
   if (mantissa >= limit) {  // the estimate of the exponent is at most one too small
-    ++exponent;
-    mantissa = static_cast<std::uint64_t>(size * power(digits - 1 - exponent) + 0.5L);
+    ++made.exponent;
+    mantissa = scaled();
     if (mantissa >= limit) {
-      ++exponent;
+      ++made.exponent;
       mantissa /= 10;
     }
   }
-  int kept = digits;
-  while (mantissa % 10 == 0) {
-    mantissa /= 10;
-    --kept;
+  int at = digits;
+  for (; at >= 2; at -= 2) {
+    std::memcpy(made.figures + at - 2, pairs.data() + 2 * (mantissa % 100), 2);
+    mantissa /= 100;
   }
-  char figures[20];
-  for (int i = kept - 1; i >= 0; --i) {
-    figures[i] = static_cast<char>('0' + mantissa % 10);
-    mantissa /= 10;
+  if (at == 1) made.figures[0] = static_cast<char>('0' + mantissa);
+  made.kept = digits;
+  while (made.kept > 1 && made.figures[made.kept - 1] == '0') --made.kept;
+  return made;
+}
+
+char* copy(char* out, const char* from, int count) {
+  std::memcpy(out, from, static_cast<std::size_t>(count));
+  return out + count;
+}
+
+}  // namespace
+
+char* write_number(char* out, double value, int digits) {
+  assert(std::isfinite(value) && digits >= 1 && digits <= 15);
+  const double size = std::abs(value);
+  if (size < 1e-300) {
+    if (size > 0) return std::to_chars(out, out + number_room, value).ptr;
+    *out++ = '0';
+    return out;
   }
+  if (value < 0) *out++ = '-';
+  const Decimal number = decimal(size, digits);
+  const int kept = number.kept, exponent = number.exponent;
   if (exponent >= 0 && exponent < digits) {
-    for (int i = 0; i <= exponent || i < kept; ++i) {
-      if (i == exponent + 1) *at++ = '.';
-      *at++ = i < kept ? figures[i] : '0';
+    const int whole = exponent + 1;
+    if (kept <= whole) {
+      out = copy(out, number.figures, kept);
+      for (int i = kept; i < whole; ++i) *out++ = '0';
+      return out;
     }
-  } else if (exponent < 0 && exponent >= -5) {
-    *at++ = '0';
-    *at++ = '.';
-    for (int i = -1; i > exponent; --i) *at++ = '0';
-    std::memcpy(at, figures, static_cast<std::size_t>(kept));
-    at += kept;
-  } else {
-    *at++ = figures[0];
-    if (kept > 1) {
-      *at++ = '.';
-      std::memcpy(at, figures + 1, static_cast<std::size_t>(kept - 1));
-      at += kept - 1;
-    }
-    *at++ = 'e';
-    at = std::to_chars(at, out + sizeof out, exponent).ptr;
+    out = copy(out, number.figures, whole);
+    *out++ = '.';
+    return copy(out, number.figures + whole, kept - whole);
   }
-  text.append(out, static_cast<std::size_t>(at - out));
+  if (exponent < 0 && exponent >= -5) {
+    out = copy(out, "0.0000", 1 - exponent);
+    return copy(out, number.figures, kept);
+  }
+  *out++ = number.figures[0];
+  if (kept > 1) {
+    *out++ = '.';
+    out = copy(out, number.figures + 1, kept - 1);
+  }
+  *out++ = 'e';
+  return std::to_chars(out, out + 8, exponent).ptr;
+}
+
+void append_number(std::string& text, double value, int digits) {
+  char out[number_room];
+  text.append(out, write_number(out, value, digits));
 }
 
 void append_exact(std::string& text, double value) {

@@ -27,10 +27,13 @@ void write_sections(JsonWriter& json, const ReportInput& input) {
   json.begin_array();
   write_section(json, "loads", "Loads", "What acts on the structure.");
   write_section(json, "response", "Response", "Motion of the top and of the base.");
-  write_section(json, "interface", "Interface", "What the interface carries and how far it opens. Uplifted area is counted by gap, never by zero pressure.");
+  write_section(json, "interface", "Interface",
+                "What the interface carries and how far it opens. Uplifted area is counted by gap, never by zero pressure.");
   if (input.compared && input.runs.size() > 1 && input.runs.back().result->group != input.runs.front().result->group)
-    write_section(json, "others", "Other dampings", "The same variants with the other dampings of the case; without damping nothing hides an error of the velocity.");
-  write_section(json, "energy", "Energy", "Every step keeps a balance of energy. What it does not explain was created (or lost) by the computation.");
+    write_section(json, "others", "Other dampings",
+                  "The same variants with the other dampings of the case; without damping nothing hides an error of the velocity.");
+  write_section(json, "energy", "Energy",
+                "Every step keeps a balance of energy. What it does not explain was created (or lost) by the computation.");
   write_section(json, "law", "Interface law", "The law of the interface, driven through openings and closings.");
   json.end_array();
 }
@@ -43,7 +46,12 @@ std::string report_json(const ReportInput& input) {
   json.begin_object();
   json.member("format", "uplift-report-1").member("title", from.title).member("subtitle", from.subtitle).member("version", from.version);
   json.member("created", from.created).member("command", from.command);
-  json.key("case").begin_object().member("file", from.case_file).member("sha256", from.case_hash).member("resolved", from.resolved).end_object();
+  json.key("case")
+      .begin_object()
+      .member("file", from.case_file)
+      .member("sha256", from.case_hash)
+      .member("resolved", from.resolved)
+      .end_object();
   json.key("verdict");
   write_verdict(json, *input.verdict, input.warnings);
   json.key("choices");

@@ -5,7 +5,8 @@
 #include "uplift/analysis/verdict.h"
 #include "uplift/io/summary.h"
 
-// The report: one self-contained page. The program writes its data (format "uplift-report-1", declared in web/src/types.ts); the page draws them.
+// The report: one self-contained page. The program writes its data (format "uplift-report-1", declared in web/src/types.ts); the page draws
+// them.
 namespace uplift {
 
 /// One run as the report sees it.
@@ -19,7 +20,7 @@ struct ReportInput {
   const Case* read = nullptr;
   const Provenance* from = nullptr;
   const Verdict* verdict = nullptr;
-  std::vector<ReportRun> runs;  // the first one is the one that the verdict is about
+  std::vector<ReportRun> runs;                  // the first one is the one that the verdict is about
   const ComparisonSummary* compared = nullptr;  // null for a single run
   std::vector<std::string> warnings;
 };

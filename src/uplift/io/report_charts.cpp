@@ -84,21 +84,30 @@ Chart loop_chart(Chart chart, const std::vector<ReportRun>& runs, std::pair<Colu
 
 /// What the computation created (positive) or lost, relative to the energy put in.
 Chart energy_error_chart(const char* id, const char* section, const std::string& title, const std::vector<ReportRun>& runs) {
-  Chart chart{id, section, title, "Residual of the energy balance over the largest external work. Zero is right; above zero the computation created energy.", {"Time", "s"}, {"Energy error", "1"}, {}};
+  Chart chart{id,
+              section,
+              title,
+              "Residual of the energy balance over the largest external work. Zero is right; above zero the computation created energy.",
+              {"Time", "s"},
+              {"Energy error", "1"},
+              {}};
   for (const ReportRun& run : runs)
     if (run.result->energy_scale > 0) add_history(chart, run, Column::residual, 0, 1 / run.result->energy_scale);
   return chart;
 }
 
 Chart ledger_chart(const ReportRun& run) {
-  Chart chart{"energy_ledger", "energy", "Energy ledger: " + run.result->label, "Where the energy is. The residual must be zero.", {"Time", "s"}, {"Energy", "J"}, {}};
+  Chart chart{
+      "energy_ledger", "energy", "Energy ledger: " + run.result->label, "Where the energy is. The residual must be zero.", {"Time", "s"},
+      {"Energy", "J"}, {}};
   struct Term {
     Column kind;
     const char* label;
   };
-  for (const Term& term : {Term{Column::external, "external work"}, Term{Column::kinetic, "kinetic"}, Term{Column::strain, "strain"}, Term{Column::stored, "stored in the interface"},
-                           Term{Column::interface_dissipated, "dissipated by the interface"}, Term{Column::damping, "damping"}, Term{Column::impact, "impacts"},
-                           Term{Column::residual, "residual"}}) {
+  for (const Term& term :
+       {Term{Column::external, "external work"}, Term{Column::kinetic, "kinetic"}, Term{Column::strain, "strain"},
+        Term{Column::stored, "stored in the interface"}, Term{Column::interface_dissipated, "dissipated by the interface"},
+        Term{Column::damping, "damping"}, Term{Column::impact, "impacts"}, Term{Column::residual, "residual"}}) {
     add_history(chart, run, term.kind, 0, 1);
     if (!chart.curves.empty() && chart.curves.back().label == run.result->label) {
       chart.curves.back().label = term.label;
@@ -137,9 +146,14 @@ Chart load_chart(const Case& read, const ReportRun& run) {
 }
 
 Chart sweep_chart(const ComparisonSummary& compared) {
-  Chart chart{"stiffness_sweep", "energy", "Energy created against the stiffness of the joint",
-              "Largest energy created over the energy put in, for the traction at the end of the step and the path-averaged traction; values below 1e-16 are drawn there.",
-              {"Stiffness ratio k F", "1", true}, {"Energy created", "1", true}, {}};
+  Chart chart{"stiffness_sweep",
+              "energy",
+              "Energy created against the stiffness of the joint",
+              "Largest energy created over the energy put in, for the traction at the end of the step and the path-averaged traction; "
+              "values below 1e-16 are drawn there.",
+              {"Stiffness ratio k F", "1", true},
+              {"Energy created", "1", true},
+              {}};
   Curve path{"path average", "", {}, {}, false, false}, end{"end of step", "", {}, {}, true, false};
   for (const SweepRow& row : compared.sweep) {
     path.x.push_back(row.ratio);
@@ -163,7 +177,12 @@ void write_chart(JsonWriter& json, const Case& read, const Chart& chart) {
   const auto axis = [&](const char* key, const Axis& each) {
     json.key(key).begin_object().member("label", each.label).member("unit", each.unit).member("log", each.log).end_object();
   };
-  json.begin_object().member("id", chart.id).member("section", chart.section).member("title", chart.title).member("caption", caption).member("origin", origin);
+  json.begin_object()
+      .member("id", chart.id)
+      .member("section", chart.section)
+      .member("title", chart.title)
+      .member("caption", caption)
+      .member("origin", origin);
   axis("x", chart.x);
   axis("y", chart.y);
   json.key("series").begin_array();
@@ -182,24 +201,32 @@ void write_chart(JsonWriter& json, const Case& read, const Chart& chart) {
 std::vector<View> motion_views(const Built& built) {
   std::vector<View> views;
   if (built.top >= 0) {
-    views.push_back({"top_displacement", "response", "Displacement of the top", "Horizontal displacement of the highest mass.", "Displacement", "m", Column::displacement, 3 * built.top + ux, 1});
-    views.push_back({"top_velocity", "response", "Velocity of the top", "Horizontal velocity of the highest mass.", "Velocity", "m/s", Column::velocity, 3 * built.top + ux, 1});
+    views.push_back({"top_displacement", "response", "Displacement of the top", "Horizontal displacement of the highest mass.",
+                     "Displacement", "m", Column::displacement, 3 * built.top + ux, 1});
+    views.push_back({"top_velocity", "response", "Velocity of the top", "Horizontal velocity of the highest mass.", "Velocity", "m/s",
+                     Column::velocity, 3 * built.top + ux, 1});
   }
   if (built.base >= 0) {
-    views.push_back({"base_displacement", "response", "Displacement of the base", "Vertical displacement of the base.", "Displacement", "m", Column::displacement, 3 * built.base + uy, 1});
-    views.push_back({"base_velocity", "response", "Velocity of the base", "Vertical velocity of the base.", "Velocity", "m/s", Column::velocity, 3 * built.base + uy, 1});
-    views.push_back({"base_rotation", "response", "Rotation of the base", "Counter-clockwise positive.", "Rotation", "rad", Column::displacement, 3 * built.base + rz, 1});
+    views.push_back({"base_displacement", "response", "Displacement of the base", "Vertical displacement of the base.", "Displacement", "m",
+                     Column::displacement, 3 * built.base + uy, 1});
+    views.push_back({"base_velocity", "response", "Velocity of the base", "Vertical velocity of the base.", "Velocity", "m/s",
+                     Column::velocity, 3 * built.base + uy, 1});
+    views.push_back({"base_rotation", "response", "Rotation of the base", "Counter-clockwise positive.", "Rotation", "rad",
+                     Column::displacement, 3 * built.base + rz, 1});
   }
   return views;
 }
 
 std::vector<View> interface_views() {
-  return {{"base_moment", "interface", "Base moment", "Moment of the interface about its middle, counter-clockwise positive.", "Moment", "N m", Column::moment, 0, 1},
+  return {{"base_moment", "interface", "Base moment", "Moment of the interface about its middle, counter-clockwise positive.", "Moment",
+           "N m", Column::moment, 0, 1},
           {"base_axial", "interface", "Vertical force of the base", "Compression is negative.", "Force", "N", Column::axial, 0, 1},
           {"base_shear", "interface", "Base shear", "Shear of the interface.", "Force", "N", Column::shear, 0, 1},
-          {"uplifted_ratio", "interface", "Uplifted share of the base", "Share of the area with an open gap.", "Uplifted share", "1", Column::uplifted_ratio, 0, 1},
+          {"uplifted_ratio", "interface", "Uplifted share of the base", "Share of the area with an open gap.", "Uplifted share", "1",
+           Column::uplifted_ratio, 0, 1},
           {"max_opening", "interface", "Largest gap", "Largest opening of all points.", "Gap", "m", Column::max_opening, 0, 1},
-          {"max_pressure", "interface", "Largest pressure", "Largest pressure of all points, at the end of each step.", "Pressure", "Pa", Column::max_pressure, 0, 1}};
+          {"max_pressure", "interface", "Largest pressure", "Largest pressure of all points, at the end of each step.", "Pressure", "Pa",
+           Column::max_pressure, 0, 1}};
 }
 
 void write_loops(JsonWriter& json, const ReportInput& input, const std::vector<ReportRun>& runs) {
@@ -209,14 +236,26 @@ void write_loops(JsonWriter& json, const ReportInput& input, const std::vector<R
     const double height = built.model.nodes[static_cast<std::size_t>(built.top)].position.y() - reference.y();
     if (height > 0)
       write_chart(json, *input.read,
-                  loop_chart({"force_displacement", "response", "Force and displacement",
-                              fmt::format("Base moment over the height of {:g} m (the horizontal force at the top that it amounts to) against the displacement of the top.", height),
-                              {"Displacement of the top", "m"}, {"Moment / height", "N"}, {}},
+                  loop_chart({"force_displacement",
+                              "response",
+                              "Force and displacement",
+                              fmt::format("Base moment over the height of {:g} m (the horizontal force at the top that it amounts to) "
+                                          "against the displacement of the top.",
+                                          height),
+                              {"Displacement of the top", "m"},
+                              {"Moment / height", "N"},
+                              {}},
                              runs, {Column::displacement, 3 * built.top + ux}, {Column::moment, 0}, 1 / height));
   }
   write_chart(json, *input.read,
-              loop_chart({"moment_rotation", "interface", "Moment and rotation", "Base moment against the rotation of the interface.", {"Rotation", "rad"}, {"Moment", "N m"}, {}}, runs,
-                         {Column::rotation, 0}, {Column::moment, 0}, 1));
+              loop_chart({"moment_rotation",
+                          "interface",
+                          "Moment and rotation",
+                          "Base moment against the rotation of the interface.",
+                          {"Rotation", "rad"},
+                          {"Moment", "N m"},
+                          {}},
+                         runs, {Column::rotation, 0}, {Column::moment, 0}, 1));
 }
 
 }  // namespace
@@ -266,7 +305,8 @@ void write_charts(JsonWriter& json, const ReportInput& input) {
       chart.title = title;
       write_chart(json, *input.read, chart);
     }
-    write_chart(json, *input.read, energy_error_chart("other_energy_error", "others", "Energy error, " + others.front().result->group, others));
+    write_chart(json, *input.read,
+                energy_error_chart("other_energy_error", "others", "Energy error, " + others.front().result->group, others));
   }
   write_chart(json, *input.read, energy_error_chart("energy_error", "energy", "Energy error", runs));
   write_chart(json, *input.read, ledger_chart(input.runs.front()));

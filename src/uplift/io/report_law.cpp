@@ -9,7 +9,9 @@ namespace {
 
 /// Opening [m] that shows the law: several softening lengths G_f/F_u where it has them, else what the run reached.
 double shown_opening(const Values& law, double reached) {
-  const auto number = [&](const char* key) { return law.items().contains(key) && law.has(key) && !law.is_word(key) ? law.number(key) : 0.0; };
+  const auto number = [&](const char* key) {
+    return law.items().contains(key) && law.has(key) && !law.is_word(key) ? law.number(key) : 0.0;
+  };
   const double strength = number("F_u"), energy = number("G_f");
   if (strength > 0 && energy > 0) return 2 * energy / strength;
   return reached > 0 ? reached : 1e-3;
@@ -17,7 +19,9 @@ double shown_opening(const Values& law, double reached) {
 
 /// Largest compression [m] that is driven: comparable to the tensile branch, and through the closure branch.
 double shown_closing(const Values& law, const InterfaceLaw& driven, double opening) {
-  const auto number = [&](const char* key) { return law.items().contains(key) && law.has(key) && !law.is_word(key) ? std::abs(law.number(key)) : 0.0; };
+  const auto number = [&](const char* key) {
+    return law.items().contains(key) && law.has(key) && !law.is_word(key) ? std::abs(law.number(key)) : 0.0;
+  };
   double stiffness = 0;
   driven.closed_stiffness(1, &stiffness);
   const double stress = 2 * std::max(number("F_c"), number("F_u"));
@@ -27,8 +31,14 @@ double shown_closing(const Values& law, const InterfaceLaw& driven, double openi
 }  // namespace
 
 Chart law_chart(const ReportRun& run) {
-  Chart chart{"law", "law", "Interface law", "Normal traction while the interface is opened and closed three times, each time farther; dashed: the largest opening so far.",
-              {"Opening", "m"}, {"Traction", "Pa"}, {}};
+  Chart chart{
+      "law",
+      "law",
+      "Interface law",
+      "Normal traction while the interface is opened and closed three times, each time farther; dashed: the largest opening so far.",
+      {"Opening", "m"},
+      {"Traction", "Pa"},
+      {}};
   const Interface& interface = run.built->model.interfaces.front();
   if (!interface.law) return chart;
   const Values& values = *run.built->behaviours.front();
@@ -61,7 +71,12 @@ Chart law_chart(const ReportRun& run) {
   const double bottom = *least, top = *most;
   chart.curves.push_back(std::move(path));
   for (std::size_t i = 0; i < reached.size(); ++i)
-    chart.curves.push_back({"[u]max after opening " + std::to_string(i + 1), "", {reached[i], reached[i]}, {0.25 * bottom, top > 0 ? top : -0.25 * bottom}, true, false});
+    chart.curves.push_back({"[u]max after opening " + std::to_string(i + 1),
+                            "",
+                            {reached[i], reached[i]},
+                            {0.25 * bottom, top > 0 ? top : -0.25 * bottom},
+                            true,
+                            false});
   return chart;
 }
 

@@ -15,7 +15,8 @@ std::vector<int> drawn_nodes(const Case& read, const Built& built) {
   std::vector<int> drawn;
   for (std::size_t i = 0; i < built.model.nodes.size(); ++i) {
     const std::string& name = built.model.nodes[i].name;
-    const bool given = std::any_of(read.values.tables("nodes").begin(), read.values.tables("nodes").end(), [&](const Values& node) { return node.key() == name; });
+    const bool given = std::any_of(read.values.tables("nodes").begin(), read.values.tables("nodes").end(),
+                                   [&](const Values& node) { return node.key() == name; });
     const bool bed = std::any_of(beds.begin(), beds.end(), [&](const std::string& start) { return name.starts_with(start); });
     if (given || !bed) drawn.push_back(static_cast<int>(i));
   }
@@ -57,10 +58,14 @@ void write_bodies(JsonWriter& json, const Case& read, const Built& built) {
 void write_small_parts(JsonWriter& json, const Case& read, const Built& built) {
   json.key("masses").begin_array();
   for (const Values& mass : read.values.tables("mass"))
-    json.begin_object().member("node", mass.text("node")).member("mass", mass.has("mass") ? mass.number("mass") : built.tuned_mass).end_object();
+    json.begin_object()
+        .member("node", mass.text("node"))
+        .member("mass", mass.has("mass") ? mass.number("mass") : built.tuned_mass)
+        .end_object();
   json.end_array();
   json.key("supports").begin_array();
-  for (const Values& support : read.values.tables("support")) json.begin_object().member("node", support.text("node")).key("dofs").texts(support.texts("fixed")).end_object();
+  for (const Values& support : read.values.tables("support"))
+    json.begin_object().member("node", support.text("node")).key("dofs").texts(support.texts("fixed")).end_object();
   json.end_array();
   json.key("springs").begin_array();
   for (const char* kind : {"spring", "dashpot"})
@@ -85,7 +90,13 @@ void write_interfaces(JsonWriter& json, const Built& built) {
     json.key("points").begin_array();
     for (int i = 0; i < interface.batch.points; ++i) {
       const Vec2 &at = interface.position[static_cast<std::size_t>(i)], &n = interface.normal[static_cast<std::size_t>(i)];
-      json.begin_object().member("x", at.x()).member("y", at.y()).member("nx", n.x()).member("ny", n.y()).member("area", interface.area[i]).end_object();
+      json.begin_object()
+          .member("x", at.x())
+          .member("y", at.y())
+          .member("nx", n.x())
+          .member("ny", n.y())
+          .member("area", interface.area[i])
+          .end_object();
     }
     json.end_array().end_object();
   }

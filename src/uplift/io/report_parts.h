@@ -29,8 +29,8 @@ struct Chart {
   Axis x, y;
   std::vector<Curve> curves;
 };
-/// The traction law of the first interface driven through openings and closings, with its largest opening so far (figure 3 of the paper); without curves
-/// for a cone.
+/// The traction law of the first interface driven through openings and closings, with its largest opening so far (figure 3 of the paper);
+/// without curves for a cone.
 Chart law_chart(const ReportRun& run);
 
 /// At most about `most` of the points of a history y over x: the least and the largest of each bucket, so that no peak is lost.

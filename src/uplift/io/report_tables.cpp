@@ -24,7 +24,8 @@ void write_run_row(JsonWriter& json, const ReportInput& input, std::size_t i) {
   const RunResult& run = *input.runs[i].result;
   const Built& built = *input.runs[i].built;
   json.begin_object().member("group", run.group).member("run", run.label).member("name", run.name);
-  json.member("status", std::string(to_string(run.status)) + (run.expected_to_fail && run.status == RunStatus::failed ? " (expected)" : ""));
+  json.member("status",
+              std::string(to_string(run.status)) + (run.expected_to_fail && run.status == RunStatus::failed ? " (expected)" : ""));
   const Peak* top = built.top >= 0 ? find_peak(run, Request::Kind::displacement, 3 * built.top + ux) : nullptr;
   if (top) json.member("top", std::abs(top->value)).member("top_time", top->time);
   if (!input.runs[i].spec->bonded)  // a bonded base stretches instead of opening
@@ -35,7 +36,8 @@ void write_run_row(JsonWriter& json, const ReportInput& input, std::size_t i) {
   if (input.compared) {
     const Agreement& agreement = input.compared->agreement[i];
     json.member("agreement", to_string(agreement.word));
-    if (agreement.word == Agreement::Word::agrees || agreement.word == Agreement::Word::differs) json.member("deviation", agreement.deviation);
+    if (agreement.word == Agreement::Word::agrees || agreement.word == Agreement::Word::differs)
+      json.member("deviation", agreement.deviation);
   }
   json.end_object();
 }
@@ -44,7 +46,8 @@ void write_runs(JsonWriter& json, const ReportInput& input) {
   json.begin_object().member("id", "runs").member("title", input.compared ? "All runs side by side" : "Runs");
   std::string caption = "Largest magnitudes. Energy created: by the computation, over the energy put in.";
   if (input.compared)
-    caption += fmt::format(" Sound runs agree when their peaks of motion, rotation and gap lie within {:g} % of the median of their group.", 100 * input.compared->band);
+    caption += fmt::format(" Sound runs agree when their peaks of {} lie within {:g} % of the median of their group.",
+                           fmt::join(input.compared->columns, ", "), 100 * input.compared->band);
   json.member("caption", caption).key("columns").begin_array();
   for (const TableColumn& column : {TableColumn{"run", "Run", "", "text", 0}, {"status", "Status", "", "status", 0}})
     write_column(json, column);
@@ -53,8 +56,12 @@ void write_runs(JsonWriter& json, const ReportInput& input) {
     write_column(json, {"deviation", "Deviation", "", "percent", 2});
   }
   for (const TableColumn& column : {TableColumn{"top", "Top motion", "m", "number", 4},
-                                    {"top_time", "at", "s", "number", 4}, {"ratio", "Uplifted", "", "percent", 3}, {"opening", "Gap", "m", "number", 4},
-                                    {"moment", "Base moment", "N m", "number", 4}, {"pressure", "Pressure", "Pa", "number", 4}, {"created", "Energy created", "", "percent", 3}})
+                                    {"top_time", "at", "s", "number", 4},
+                                    {"ratio", "Uplifted", "", "percent", 3},
+                                    {"opening", "Gap", "m", "number", 4},
+                                    {"moment", "Base moment", "N m", "number", 4},
+                                    {"pressure", "Pressure", "Pa", "number", 4},
+                                    {"created", "Energy created", "", "percent", 3}})
     write_column(json, column);
   write_column(json, {"retries", "Retries", "", "number", 6});
   write_column(json, {"per_step", "Time a step (microseconds)", "", "number", 3});
@@ -68,13 +75,25 @@ void write_runs(JsonWriter& json, const ReportInput& input) {
 void write_sweep(JsonWriter& json, const std::vector<SweepRow>& rows) {
   if (rows.empty()) return;
   json.begin_object().member("id", "sweep").member("title", "Energy created against the stiffness of the joint");
-  json.member("caption", "Largest energy created over the energy put in; the stiffness ratio is that of the stiffest point at the time step.").key("columns").begin_array();
-  for (const TableColumn& column : {TableColumn{"ratio", "k F", "", "number", 3}, {"path", "Path average", "", "percent", 3}, {"path_status", "", "", "status", 0},
-                                    {"end", "End of step", "", "percent", 3}, {"end_status", "", "", "status", 0}})
+  json.member("caption",
+              "Largest energy created over the energy put in; the stiffness ratio is that of the stiffest point at the time step.")
+      .key("columns")
+      .begin_array();
+  for (const TableColumn& column : {TableColumn{"ratio", "k F", "", "number", 3},
+                                    {"path", "Path average", "", "percent", 3},
+                                    {"path_status", "", "", "status", 0},
+                                    {"end", "End of step", "", "percent", 3},
+                                    {"end_status", "", "", "status", 0}})
     write_column(json, column);
   json.end_array().key("rows").begin_array();
   for (const SweepRow& row : rows)
-    json.begin_object().member("ratio", row.ratio).member("path", row.path).member("path_status", row.path_status).member("end", row.end).member("end_status", row.end_status).end_object();
+    json.begin_object()
+        .member("ratio", row.ratio)
+        .member("path", row.path)
+        .member("path_status", row.path_status)
+        .member("end", row.end)
+        .member("end_status", row.end_status)
+        .end_object();
   json.end_array().end_object();
 }
 
@@ -98,7 +117,8 @@ std::string value_text(const Values::Item& item, const Field& field) {
   if (const auto* whole = std::get_if<std::int64_t>(&item.data)) return fmt::format("{}", *whole);
   if (const auto* real = std::get_if<double>(&item.data)) return fmt::format("{:.10g}{}", *real, unit);
   if (const auto* text = std::get_if<std::string>(&item.data)) return *text;
-  if (const auto* list = std::get_if<std::vector<double>>(&item.data)) return list->empty() ? "" : fmt::format("[{:.10g}]{}", fmt::join(*list, ", "), unit);
+  if (const auto* list = std::get_if<std::vector<double>>(&item.data))
+    return list->empty() ? "" : fmt::format("[{:.10g}]{}", fmt::join(*list, ", "), unit);
   return "";
 }
 
@@ -139,8 +159,8 @@ void write_tables(JsonWriter& json, const ReportInput& input) {
 
 void write_choices(JsonWriter& json, const Case& read, const Built& built) {
   std::vector<Given> given;
-  for (const char* table : {"nodes", "beam", "mass", "spring", "dashpot", "rigid", "interface", "gravity", "function", "load", "motion", "ground_acceleration", "initial",
-                            "damping", "stage", "compare"}) {
+  for (const char* table : {"nodes", "beam", "mass", "spring", "dashpot", "rigid", "interface", "gravity", "function", "load", "motion",
+                            "ground_acceleration", "initial", "damping", "stage", "compare"}) {
     const Field* field = nullptr;
     for (const Field& each : read.values.section()->fields)
       if (each.name == table) field = &each;
@@ -161,7 +181,8 @@ void write_choices(JsonWriter& json, const Case& read, const Built& built) {
         }
     json.begin_object().member("what", each.key).member("value", each.value).member("origin", origin).member("note", note).end_object();
   }
-  for (const std::string& text : built.notes) json.begin_object().member("what", "automatic").member("value", text).member("origin", "computed").end_object();
+  for (const std::string& text : built.notes)
+    json.begin_object().member("what", "automatic").member("value", text).member("origin", "computed").end_object();
   json.end_array();
 }
 

@@ -1,7 +1,7 @@
 #include "uplift/io/report.h"
 
-// The page of the report (web/dist/report.html, built and committed by the web part) is linked into the program as it stands: users need no other file.
-// CMake defines UPLIFT_REPORT_PAGE with its path when it is there.
+// The page of the report (web/dist/report.html, built and committed by the web part) is linked into the program as it stands: users need no
+// other file. CMake defines UPLIFT_REPORT_PAGE with its path when it is there.
 #ifdef UPLIFT_REPORT_PAGE
 asm(".pushsection .rodata\n"
     ".globl uplift_report_page_begin\n"
@@ -9,7 +9,8 @@ asm(".pushsection .rodata\n"
     ".globl uplift_report_page_end\n"
     ".hidden uplift_report_page_end\n"
     "uplift_report_page_begin:\n"
-    ".incbin \"" UPLIFT_REPORT_PAGE "\"\n"
+    ".incbin \"" UPLIFT_REPORT_PAGE
+    "\"\n"
     "uplift_report_page_end:\n"
     ".byte 0\n"
     ".popsection\n");
@@ -20,10 +21,14 @@ extern const char uplift_report_page_end[];
 }
 
 namespace uplift {
-std::string_view report_template() { return {uplift_report_page_begin, static_cast<std::size_t>(uplift_report_page_end - uplift_report_page_begin)}; }
+std::string_view report_template() {
+  return {uplift_report_page_begin, static_cast<std::size_t>(uplift_report_page_end - uplift_report_page_begin)};
+}
 }  // namespace uplift
 #else
 namespace uplift {
-std::string_view report_template() { return {}; }
+std::string_view report_template() {
+  return {};
+}
 }  // namespace uplift
 #endif

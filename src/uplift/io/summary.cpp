@@ -9,7 +9,9 @@ void write_peak(JsonWriter& json, std::string_view name, double value, double ti
   json.key(name).begin_object().member("value", value).member("time", time).member("unit", unit).end_object();
 }
 
-void write_peak(JsonWriter& json, std::string_view name, const Peak& peak) { write_peak(json, name, peak.value, peak.time, peak.unit); }
+void write_peak(JsonWriter& json, std::string_view name, const Peak& peak) {
+  write_peak(json, name, peak.value, peak.time, peak.unit);
+}
 
 void write_run(JsonWriter& json, const RunResult& run, const Agreement* agreement) {
   json.begin_object();
@@ -17,7 +19,9 @@ void write_run(JsonWriter& json, const RunResult& run, const Agreement* agreemen
   json.member("status", to_string(run.status)).member("reason", run.reason);
   json.member("expected", run.expected_to_fail ? "may_fail" : "completes");
   json.member("steps", run.counts.steps).member("retries", run.counts.retries).member("iterations", run.counts.iterations);
-  json.member("cycles", run.counts.cycles).member("factorisations", run.counts.factorisations).member("back_solves", run.counts.back_solves);
+  json.member("cycles", run.counts.cycles)
+      .member("factorisations", run.counts.factorisations)
+      .member("back_solves", run.counts.back_solves);
   json.member("wall_seconds", run.wall).member("end_time", run.end_time);
   write_peak(json, "max_uplifted_ratio", run.max_uplifted_ratio);
   write_peak(json, "max_opening", run.max_opening);
@@ -31,13 +35,25 @@ void write_run(JsonWriter& json, const RunResult& run, const Agreement* agreemen
   json.member("energy_scale", run.energy_scale).member("energy_created_share", created_share(run));
   const Energies& end = run.final_energy;
   json.key("final_energy").begin_object().member("unit", "J");
-  json.member("kinetic", end.kinetic).member("strain", end.strain).member("stored", end.stored).member("interface_dissipated", end.interface_dissipated);
-  json.member("damping", end.damping).member("impact", end.impact).member("external", end.external).member("residual", end.residual).end_object();
+  json.member("kinetic", end.kinetic)
+      .member("strain", end.strain)
+      .member("stored", end.stored)
+      .member("interface_dissipated", end.interface_dissipated);
+  json.member("damping", end.damping)
+      .member("impact", end.impact)
+      .member("external", end.external)
+      .member("residual", end.residual)
+      .end_object();
   json.key("peaks").begin_object();
   for (const Peak& peak : run.peaks) write_peak(json, peak.name, peak);
   json.end_object();
   if (agreement)
-    json.key("agreement").begin_object().member("result", to_string(agreement->word)).member("deviation", agreement->deviation).member("column", agreement->column).end_object();
+    json.key("agreement")
+        .begin_object()
+        .member("result", to_string(agreement->word))
+        .member("deviation", agreement->deviation)
+        .member("column", agreement->column)
+        .end_object();
   json.key("notes").texts(run.notes);
   json.end_object();
 }
@@ -57,7 +73,7 @@ std::string summary_json(const Provenance& from, const std::vector<RunResult>& r
   for (std::size_t i = 0; i < runs.size(); ++i) write_run(json, runs[i], compared ? &compared->agreement[i] : nullptr);
   json.end_array();
   if (compared) {
-    json.member("band", compared->band);
+    json.member("band", compared->band).key("compared_columns").texts(compared->columns);
     json.key("stiffness_sweep").begin_array();
     for (const SweepRow& row : compared->sweep)
       json.begin_object()

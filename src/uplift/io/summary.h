@@ -9,8 +9,8 @@ namespace uplift {
 
 /// Where results come from.
 struct Provenance {
-  std::string title, subtitle, command, version, created;  // created: date and time, ISO 8601
-  std::string case_file, case_hash;                        // SHA-256 of the case file
+  std::string title, subtitle, command, version, created;   // created: date and time, ISO 8601
+  std::string case_file, case_hash;                         // SHA-256 of the case file
   std::vector<std::pair<std::string, std::string>> inputs;  // other input files with their SHA-256
   std::string resolved;                                     // the case with all defaults, TOML
 };
@@ -19,6 +19,7 @@ struct Provenance {
 struct ComparisonSummary {
   std::vector<Agreement> agreement;  // one per run
   double band = 0;
+  std::vector<std::string> columns;  // whose peaks are compared
   std::vector<SweepRow> sweep;
 };
 
