@@ -227,6 +227,17 @@ TEST(Lagrange, body_that_rests_on_contact_alone) {
     }
 }
 
+// Pulled upwards nothing holds it: a reason, not a number.
+TEST(Lagrange, loose_body_is_refused) {
+  for (const double friction : {0.0, 0.5}) {
+    Own own = resting_body(10, -1e5, 0, 0, friction);
+    InterfaceSolution solution;
+    const Outcome outcome = method("lagrange")->solve(own.problem, solution);
+    EXPECT_FALSE(outcome.converged);
+    EXPECT_FALSE(outcome.why.empty());
+  }
+}
+
 TEST(Lagrange, friction_holds_a_resting_body_up_to_the_cone) {
   const double weight = 1e6, friction = 0.5;
   for (const double share : {0.0, 0.5, 0.9, 0.99}) {

@@ -113,27 +113,48 @@ double Recorder::value(std::size_t column, const Stepper& stepper, const std::ve
   const auto view = [&]() -> const InterfaceView& { return views[static_cast<std::size_t>(request.interface)]; };
   const Energies& energies = stepper.energies();
   switch (request.kind) {
-    case What::displacement: return sum(state.displacement, 0);
-    case What::velocity: return sum(state.velocity, 1);
-    case What::acceleration: return sum(acceleration_, 2);
-    case What::opening: return source.row >= 0 ? state.opening[source.row] : 0;
-    case What::traction: return source.row >= 0 ? state.force[source.row] * source.inverse_area : 0;
-    case What::mean_traction: return source.row >= 0 ? state.mean_force[source.row] * source.inverse_area : 0;
-    case What::axial: return view().axial;
-    case What::shear: return view().shear;
-    case What::moment: return view().moment;
-    case What::rotation: return viewer_.rotation(request.interface, state.opening);
-    case What::uplifted_ratio: return view().open_area;
-    case What::max_opening: return view().max_opening;
-    case What::max_pressure: return view().max_pressure;
-    case What::kinetic: return energies.kinetic;
-    case What::strain: return energies.strain;
-    case What::stored: return energies.stored;
-    case What::interface_dissipated: return energies.interface_dissipated;
-    case What::damping: return energies.damping;
-    case What::impact: return energies.impact;
-    case What::external: return energies.external;
-    case What::residual: return energies.residual;
+    case What::displacement:
+      return sum(state.displacement, 0);
+    case What::velocity:
+      return sum(state.velocity, 1);
+    case What::acceleration:
+      return sum(acceleration_, 2);
+    case What::opening:
+      return source.row >= 0 ? state.opening[source.row] : 0;
+    case What::traction:
+      return source.row >= 0 ? state.force[source.row] * source.inverse_area : 0;
+    case What::mean_traction:
+      return source.row >= 0 ? state.mean_force[source.row] * source.inverse_area : 0;
+    case What::axial:
+      return view().axial;
+    case What::shear:
+      return view().shear;
+    case What::moment:
+      return view().moment;
+    case What::rotation:
+      return viewer_.rotation(request.interface, state.opening);
+    case What::uplifted_ratio:
+      return view().open_area;
+    case What::max_opening:
+      return view().max_opening;
+    case What::max_pressure:
+      return view().max_pressure;
+    case What::kinetic:
+      return energies.kinetic;
+    case What::strain:
+      return energies.strain;
+    case What::stored:
+      return energies.stored;
+    case What::interface_dissipated:
+      return energies.interface_dissipated;
+    case What::damping:
+      return energies.damping;
+    case What::impact:
+      return energies.impact;
+    case What::external:
+      return energies.external;
+    case What::residual:
+      return energies.residual;
   }
   return 0;
 }

@@ -9,10 +9,11 @@ namespace uplift {
 
 /// What one interface looks like at one instant, from one pass over its points.
 struct InterfaceView {
-  double axial = 0, shear = 0, moment = 0;  // N, N, N m: work-conjugate to opening, sliding and rotation of the upper side (tension, +t, counter-clockwise > 0)
-  double open_area = 0;                     // share of the area
+  double axial = 0, shear = 0,
+         moment = 0;  // N, N, N m: work-conjugate to opening, sliding and rotation of the upper side (tension, +t, counter-clockwise > 0)
+  double open_area = 0;                       // share of the area
   double max_opening = 0, least_opening = 0;  // m
-  double max_pressure = 0;                  // Pa
+  double max_pressure = 0;                    // Pa
 };
 
 /// Looks at all interfaces of a model quickly: arms and areas are laid out once.
@@ -21,7 +22,8 @@ class InterfaceViewer {
   InterfaceViewer(const Model& model, double gap_tolerance);
   /// `force` is the end-of-step force per row [N].
   void look(const Vector& opening, const Vector& force, std::vector<InterfaceView>& views) const;
-  /// Slope of the plane that fits the normal opening best (area-weighted): relative rotation of the upper side [rad], counter-clockwise > 0.
+  /// Slope of the plane that fits the normal opening best (area-weighted): relative rotation of the upper side [rad], counter-clockwise >
+  /// 0.
   double rotation(int interface, const Vector& opening) const;
 
  private:

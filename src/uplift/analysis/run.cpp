@@ -16,10 +16,14 @@ namespace uplift {
 
 std::string_view to_string(RunStatus status) {
   switch (status) {
-    case RunStatus::completed: return "completed";
-    case RunStatus::overturned: return "overturned";
-    case RunStatus::failed: return "failed";
-    case RunStatus::interrupted: return "interrupted";
+    case RunStatus::completed:
+      return "completed";
+    case RunStatus::overturned:
+      return "overturned";
+    case RunStatus::failed:
+      return "failed";
+    case RunStatus::interrupted:
+      return "interrupted";
   }
   return "";
 }
@@ -45,8 +49,8 @@ InterfaceProblem probe(const Model& model, const Bulk& bulk, const Sparse& b, co
                        LinearCounts& counts, std::string& why) {
   const Scheme& s = stage.scheme;
   const double w = 1 - s.alpha_f, dt = stage.step;
-  const Sparse matrix = bulk.stiffness_matrix + s.gamma / (s.beta * dt) * bulk.damping_matrix +
-                        (1 - s.alpha_m) / (w * s.beta * dt * dt) * bulk.mass_matrix;
+  const Sparse matrix =
+      bulk.stiffness_matrix + s.gamma / (s.beta * dt) * bulk.damping_matrix + (1 - s.alpha_m) / (w * s.beta * dt * dt) * bulk.mass_matrix;
   struct None final : ContactMethod {
     Outcome solve(const InterfaceProblem&, InterfaceSolution&) const override { return {}; }
     bool constrains() const override { return false; }
@@ -67,7 +71,12 @@ InterfaceProblem probe(const Model& model, const Bulk& bulk, const Sparse& b, co
 class Runner {
  public:
   Runner(const Model& model, const RunPlan& plan, const std::vector<const Values*>& behaviours, const Watch& watch)
-      : model_(model), plan_(plan), parameters_(behaviours), watch_(watch), b_(stack_interfaces(model)), gap_(stack_gaps(model)),
+      : model_(model),
+        plan_(plan),
+        parameters_(behaviours),
+        watch_(watch),
+        b_(stack_interfaces(model)),
+        gap_(stack_gaps(model)),
         viewer_(model, plan.gap_tolerance) {
     result_.name = plan.name;
     result_.label = plan.label;
@@ -116,11 +125,11 @@ class Runner {
   State state_;                  // between stages
   const State* seen_ = &state_;  // the present one, wherever it lives
   std::vector<InterfaceView> views_;
-  std::vector<int> rotations_;  // free unknowns that are rotations of bodies on an interface
-  double initial_scale_ = 0;     // J
+  std::vector<int> rotations_;    // free unknowns that are rotations of bodies on an interface
+  double initial_scale_ = 0;      // J
   std::optional<Ledger> ledger_;  // of the dynamic stage before
   std::optional<Stage> march_;    // that stage, as long as nothing came in between
-  double round_off_work_ = 0;    // J
+  double round_off_work_ = 0;     // J
 };
 
 void Runner::fail(std::string why, const InterfaceProblem* problem) {
@@ -181,8 +190,8 @@ void Runner::execute() {
   result_.end_time = state_.time;
 }
 
-/// A joint with an initial gap was broken before the analysis: its law remembers an opening from zero to that gap (the SDM's jump is the gap), or
-/// the first step would take the gap for a stretched joint.
+/// A joint with an initial gap was broken before the analysis: its law remembers an opening from zero to that gap (the SDM's jump is the
+/// gap), or the first step would take the gap for a stretched joint.
 void Runner::remember_gaps() {
   const InterfaceProblem blocks = blocks_of(model_, *laws_);
   for (const Block& block : blocks.blocks) {
@@ -196,8 +205,8 @@ void Runner::remember_gaps() {
   }
 }
 
-/// The initial state of the first dynamic stage comes on top of what the static stages left: laws answer the change of the openings, a constraint
-/// that is opened by it has no force any more.
+/// The initial state of the first dynamic stage comes on top of what the static stages left: laws answer the change of the openings, a
+/// constraint that is opened by it has no force any more.
 void Runner::add_initial_state() {
   const Eigen::Index n = model_.free();
   if (plan_.initial_velocity.size() == n) state_.velocity += plan_.initial_velocity;
@@ -212,7 +221,8 @@ void Runner::add_initial_state() {
       Reply reply;
       reply.traction = state_.force.data() + block.first;
       reply.now = state_.history.data() + block.first_history;
-      block.law->respond(block.batch, from.data() + block.first, state_.opening.data() + block.first, old.data() + block.first_history, reply);
+      block.law->respond(block.batch, from.data() + block.first, state_.opening.data() + block.first, old.data() + block.first_history,
+                         reply);
     }
     for (int c = 0; c < block.batch.components; ++c)
       for (int i = 0; i < points; ++i) {
@@ -236,14 +246,16 @@ void Runner::initial_forces() {
     Reply reply;
     reply.traction = state_.force.data() + block.first;
     reply.now = state_.history.data() + block.first_history;
-    block.law->respond(block.batch, start_gap_.data() + block.first, state_.opening.data() + block.first, old.data() + block.first_history, reply);
+    block.law->respond(block.batch, start_gap_.data() + block.first, state_.opening.data() + block.first, old.data() + block.first_history,
+                       reply);
     for (int i = 0; i < block.rows(); ++i) reply.traction[i] *= block.area[static_cast<std::size_t>(i % block.batch.points)];
   }
   state_.mean_force = state_.force;
 }
 
 bool Runner::statics(const Stage& stage, const Bulk& bulk) {
-  const StaticOutcome outcome = solve_statics(model_, bulk, b_, start_gap_, *laws_, *plan_.method, *plan_.solver, stage.steps, state_, linear_);
+  const StaticOutcome outcome =
+      solve_statics(model_, bulk, b_, start_gap_, *laws_, *plan_.method, *plan_.solver, stage.steps, state_, linear_);
   result_.counts.retries += outcome.retries;
   result_.counts.iterations += outcome.iterations;
   if (!outcome.converged) {
@@ -276,8 +288,8 @@ void Runner::note_views(double step) {
   if (!any_contact) result_.full_loss += step;
 }
 
-/// Energy created and lost so far; the scale is the largest external work, or the energy at the beginning where no load works. Work of the dead loads
-/// over 1e-10 m is round-off: a structure that only stands there has created nothing.
+/// Energy created and lost so far; the scale is the largest external work, or the energy at the beginning where no load works. Work of the
+/// dead loads over 1e-10 m is round-off: a structure that only stands there has created nothing.
 void Runner::finish_energy(const Stepper& stepper) {
   const Energies& energies = stepper.energies();
   const double created = energies.residual + std::max(0.0, -energies.impact);
@@ -337,7 +349,8 @@ bool Runner::dynamics(const Stage& stage, const Bulk& bulk) {
   bool go_on = true;
   for (long step = 1; step <= steps && go_on; ++step) {
     if (!stepper.advance()) {
-      fail(fmt::format("step at t = {:.6g} s failed down to dt = {:.3g} s: {}", seen_->time, stage.step / std::pow(2, stage.halvings), stepper.why()),
+      fail(fmt::format("step at t = {:.6g} s failed down to dt = {:.3g} s: {}", seen_->time, stage.step / std::pow(2, stage.halvings),
+                       stepper.why()),
            stepper.problem());
       break;
     }
@@ -347,7 +360,8 @@ bool Runner::dynamics(const Stage& stage, const Bulk& bulk) {
     if (watch_ && step % 256 == 0 && go_on) {
       const double open = views_.empty() ? 0 : views_.front().open_area;
       const double scale = result_.energy_scale > 0 ? result_.energy_scale : 1;
-      if (!watch_({static_cast<double>(step) / static_cast<double>(steps), seen_->time, stage.step, open, stepper.energies().residual / scale})) {
+      if (!watch_({static_cast<double>(step) / static_cast<double>(steps), seen_->time, stage.step, open,
+                   stepper.energies().residual / scale})) {
         result_.status = RunStatus::interrupted;
         result_.reason = fmt::format("interrupted at t = {:.6g} s", seen_->time);
         go_on = false;
@@ -365,8 +379,10 @@ bool Runner::dynamics(const Stage& stage, const Bulk& bulk) {
   result_.final_energy = stepper.energies();
   result_.end_time = seen_->time;
   if (stepper.counts().deepest > 0)
-    result_.notes.push_back(fmt::format("the step was halved up to {} times ({} retries)", stepper.counts().deepest, stepper.counts().retries));
-  if (stepper.counts().cycles > 0) result_.notes.push_back(fmt::format("{} cycles of the contact status were met and treated", stepper.counts().cycles));
+    result_.notes.push_back(
+        fmt::format("the step was halved up to {} times ({} retries)", stepper.counts().deepest, stepper.counts().retries));
+  if (stepper.counts().cycles > 0)
+    result_.notes.push_back(fmt::format("{} cycles of the contact status were met and treated", stepper.counts().cycles));
   const bool creates = result_.energy_scale > 0 && result_.energy_created > plan_.created_limit * result_.energy_scale;
   if (creates && result_.status != RunStatus::interrupted && result_.status != RunStatus::failed) {
     result_.status = RunStatus::failed;

@@ -18,9 +18,9 @@ namespace uplift {
 
 struct Stage {
   enum class Type { statics, dynamics } type = Type::dynamics;
-  int steps = 1;           // statics: equal load steps of the dead loads
-  double duration = 0;     // s
-  double step = 0;         // s
+  int steps = 1;        // statics: equal load steps of the dead loads
+  double duration = 0;  // s
+  double step = 0;      // s
   Scheme scheme;
   bool path_average = true;  // traction laws; average acceleration only
   bool p_delta = false;      // constant geometric stiffness of the preceding static state
@@ -30,10 +30,27 @@ struct Stage {
 /// One column of the output.
 struct Request {
   enum class Kind {
-    displacement, velocity, acceleration,                       // full unknown
-    opening, traction, mean_traction,                           // interface, point, component (normal last)
-    axial, shear, moment, rotation, uplifted_ratio, max_opening, max_pressure,  // interface
-    kinetic, strain, stored, interface_dissipated, damping, impact, external, residual  // energies [J]
+    displacement,
+    velocity,
+    acceleration,  // full unknown
+    opening,
+    traction,
+    mean_traction,  // interface, point, component (normal last)
+    axial,
+    shear,
+    moment,
+    rotation,
+    uplifted_ratio,
+    max_opening,
+    max_pressure,  // interface
+    kinetic,
+    strain,
+    stored,
+    interface_dissipated,
+    damping,
+    impact,
+    external,
+    residual  // energies [J]
   } kind = Kind::displacement;
   std::string name, unit;
   int unknown = 0;                              // full unknown: 3 * node + dof
@@ -48,13 +65,13 @@ struct RunPlan {
   std::shared_ptr<const LinearSolver> solver;  // of the bulk when it is not small
   bool monolithic = false;                     // the oracle: Newton on all unknowns
   std::vector<Request> requests;
-  int every = 1;                               // record every n-th step
-  double created_limit = 0.01;                 // of the external work; a run that creates more fails
-  bool stop_at_limit = false;                  // else it goes on to the end and is marked
-  double rotation_limit = 0.15;                // rad: beyond the small-displacement model: overturned
-  double gap_tolerance = 1e-9;                 // m: a gap larger than this counts as uplifted
+  int every = 1;                 // record every n-th step
+  double created_limit = 0.01;   // of the external work; a run that creates more fails
+  bool stop_at_limit = false;    // else it goes on to the end and is marked
+  double rotation_limit = 0.15;  // rad: beyond the small-displacement model: overturned
+  double gap_tolerance = 1e-9;   // m: a gap larger than this counts as uplifted
   bool expected_to_fail = false;
-  int frames = 0;                              // pictures kept for the animation (0: none)
+  int frames = 0;                                 // pictures kept for the animation (0: none)
   Vector initial_displacement, initial_velocity;  // free unknowns; empty: zero
   double oracle_tolerance = 0;  // > 0: every condensed step is also taken by the oracle; a larger relative difference fails it
 };
@@ -77,32 +94,32 @@ struct Counts {
 
 struct Frame {
   double time = 0;
-  Vector displacement;      // full unknowns
+  Vector displacement;       // full unknowns
   Vector opening, pressure;  // normal rows of all interfaces [m], [Pa] compression > 0
 };
 
 struct RunResult {
   std::string name, label, group;
   RunStatus status = RunStatus::completed;
-  std::string reason;           // why it failed or stopped
+  std::string reason;  // why it failed or stopped
   bool expected_to_fail = false;
   Counts counts;
-  double wall = 0;              // s
-  double end_time = 0;          // s reached
-  std::vector<Request> columns;  // as requested; the table below has time first
+  double wall = 0;                         // s
+  double end_time = 0;                     // s reached
+  std::vector<Request> columns;            // as requested; the table below has time first
   std::vector<std::vector<double>> table;  // table[0]: time [s], table[1 + k]: column k
-  std::vector<Peak> peaks;       // one per column
+  std::vector<Peak> peaks;                 // one per column
   Peak max_uplifted_ratio, max_opening, max_base_moment, max_base_shear, max_pressure;
-  double time_uplifted = 0;      // s with a gap open anywhere
-  double first_uplift = -1;      // s; -1: never
-  double full_loss = 0;          // s without any contact
+  double time_uplifted = 0;                                                                   // s with a gap open anywhere
+  double first_uplift = -1;                                                                   // s; -1: never
+  double full_loss = 0;                                                                       // s without any contact
   double energy_created = 0, energy_created_time = 0, energy_lost = 0, energy_lost_time = 0;  // J
-  double energy_scale = 0;       // J: largest external work, or the initial energy without any
-  double max_penetration = 0;    // m
+  double energy_scale = 0;     // J: largest external work, or the initial energy without any
+  double max_penetration = 0;  // m
   std::string created_percent() const;
   Energies final_energy;
   std::vector<Frame> frames;
-  std::string problem;           // the interface problem of the failed step, JSON text
+  std::string problem;             // the interface problem of the failed step, JSON text
   std::vector<std::string> notes;  // what the engineer should know: cycles treated, halvings, warnings of laws
 };
 
@@ -112,14 +129,15 @@ struct Progress {
 };
 using Watch = std::function<bool(const Progress&)>;
 
-/// Runs all stages. `behaviours` are the checked parameters of the interfaces' laws (for problem files). Never throws for numerical reasons.
+/// Runs all stages. `behaviours` are the checked parameters of the interfaces' laws (for problem files). Never throws for numerical
+/// reasons.
 RunResult run(const Model& model, const RunPlan& plan, const std::vector<const Values*>& behaviours, const Watch& watch = {});
 
 /// What `uplift check` says of an interface: stiffness of a closed joint times compliance at the dynamic step.
 struct StiffnessRatio {
   std::string interface;
-  double least = 0, most = 0;       // k F_ii over the points
-  double compliance = 0;            // largest normal F_ii [m/N]
+  double least = 0, most = 0;  // k F_ii over the points
+  double compliance = 0;       // largest normal F_ii [m/N]
 };
 std::vector<StiffnessRatio> stiffness_ratios(const Model& model, const Stage& dynamic_stage, const LinearSolver& solver);
 

@@ -131,7 +131,11 @@ class Frictional {
     return !(moved.cwiseAbs().maxCoeff() <= 1e6 * (problem_.free_opening - problem_.from).cwiseAbs().maxCoeff());
   }
 
-  std::string unsettled() const { return fmt::format("the contact status did not settle at {}", point_names(problem_, step_.changed())); }
+  std::string unsettled() const {
+    if (step_.changed().empty())
+      return "no contact status was found: the closed points contradict each other, or nothing holds the structure";
+    return fmt::format("the contact status did not settle at {}", point_names(problem_, step_.changed()));
+  }
 
   const InterfaceProblem& problem_;
   const LagrangeOptions& options_;

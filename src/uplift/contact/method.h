@@ -15,8 +15,8 @@ class ContactMethod {
   virtual Outcome solve(const InterfaceProblem&, InterfaceSolution&) const = 0;
   /// True when contact is enforced exactly (multipliers): the step then takes end-of-step forces and an impact rule.
   virtual bool constrains() const = 0;
-  /// A method that regularises constraints puts a traction law in the place of a cone (penalty); null when it does not. `flexibility` is the
-  /// largest area * F_ii of the interface's normal rows [m3/N], which scales an automatic stiffness.
+  /// A method that regularises constraints puts a traction law in the place of a cone (penalty); null when it does not. `flexibility` is
+  /// the largest area * F_ii of the interface's normal rows [m3/N], which scales an automatic stiffness.
   virtual std::unique_ptr<const InterfaceLaw> substitute(const Cone&, double flexibility) const;
 };
 

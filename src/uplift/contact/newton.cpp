@@ -88,8 +88,7 @@ void cone_force(const InterfaceProblem& problem, const Block& block, const Augme
   const double* stiffness = augmented.stiffness->data() + block.first;
   const double* opening = solution.opening.data() + block.first;
   const double* from = problem.from.data() + block.first;
-  for (int i = 0; i < n * components; ++i)
-    force[i] = multiplier[i] + stiffness[i] * (i >= normal ? opening[i] : opening[i] - from[i]);
+  for (int i = 0; i < n * components; ++i) force[i] = multiplier[i] + stiffness[i] * (i >= normal ? opening[i] : opening[i] - from[i]);
   block.cone->project(block.batch, force, force, slope);
   if (slope == nullptr) return;
   for (int r = 0; r < components; ++r)
@@ -161,7 +160,8 @@ void form_gradient(const InterfaceProblem& problem, bool with_hessian, Interface
   }
 }
 
-/// The direction -H^-1 G; false when H is singular. A softening or friction slope may make H indefinite or unsymmetric: Gauss elimination takes both.
+/// The direction -H^-1 G; false when H is singular. A softening or friction slope may make H indefinite or unsymmetric: Gauss elimination
+/// takes both.
 bool newton_direction(InterfaceSolution& solution, Matrix& copy) {
   NewtonScratch& scratch = solution.newton;
   const Eigen::Index r = scratch.gradient.size();
@@ -209,15 +209,19 @@ void predict(const InterfaceProblem& problem, InterfaceSolution& solution) {
 #pragma omp simd
         for (int i = 0; i < n; ++i) force[a * n + i] += k[(a * components + c) * n + i] * (free[c * n + i] - from[c * n + i]);
     }
-    for (Eigen::Index j = 0; j < r; ++j) scratch.gradient[j] += small::dot(block.rows(), problem.factor.data() + j * rows + block.first, force);
+    for (Eigen::Index j = 0; j < r; ++j)
+      scratch.gradient[j] += small::dot(block.rows(), problem.factor.data() + j * rows + block.first, force);
   }
   for (Eigen::Index i = 0; i < r; ++i) scratch.direction[i] = -scratch.gradient[i];
   if (small::gauss_solve(r, scratch.hessian.data(), scratch.direction.data())) std::copy_n(scratch.direction.data(), r, solution.z.data());
 }
 
-double norm(const Vector& v) { return std::sqrt(small::sum_of_squares(v.size(), v.data())); }
+double norm(const Vector& v) {
+  return std::sqrt(small::sum_of_squares(v.size(), v.data()));
+}
 
-/// Follows z = origin + alpha * direction by bisection on the directional derivative until it has fallen enough; the last point is left evaluated.
+/// Follows z = origin + alpha * direction by bisection on the directional derivative until it has fallen enough; the last point is left
+/// evaluated.
 void line_search(const InterfaceProblem& problem, const AugmentedForce& augmented, double start_slope, double end_slope,
                  InterfaceSolution& solution) {
   NewtonScratch& scratch = solution.newton;
@@ -238,7 +242,8 @@ void line_search(const InterfaceProblem& problem, const AugmentedForce& augmente
   }
 }
 
-/// Where friction or softening leave no potential: the step is shortened until the residual |G| falls; the last point is left evaluated, with its Hessian.
+/// Where friction or softening leave no potential: the step is shortened until the residual |G| falls; the last point is left evaluated,
+/// with its Hessian.
 double shorten(const InterfaceProblem& problem, const AugmentedForce& augmented, double before, InterfaceSolution& solution) {
   NewtonScratch& scratch = solution.newton;
   double alpha = 1, size = before;
@@ -275,7 +280,8 @@ double round_off(const InterfaceProblem& problem, const InterfaceSolution& solut
   return std::numeric_limits<double>::epsilon() * std::sqrt(sum);
 }
 
-/// What the balance is measured against: the largest of |z| and |C^T p|. In dynamics C^T p = G - z; in statics the closed joint is taken back in G.
+/// What the balance is measured against: the largest of |z| and |C^T p|. In dynamics C^T p = G - z; in statics the closed joint is taken
+/// back in G.
 double balance_scale(const InterfaceProblem& problem, InterfaceSolution& solution) {
   NewtonScratch& scratch = solution.newton;
   const Eigen::Index r = scratch.gradient.size();
@@ -328,7 +334,8 @@ Outcome solve_by_newton(const InterfaceProblem& problem, const AugmentedForce& a
     }
     const double reference = balance_scale(problem, solution);
     outcome.residual = size / std::max(reference, 1e-300);
-    if (size <= options.tolerance * reference || size == 0 || (outcome.iterations >= patience && size <= 8 * round_off(problem, solution))) {
+    if (size <= options.tolerance * reference || size == 0 ||
+        (outcome.iterations >= patience && size <= 8 * round_off(problem, solution))) {
       outcome.converged = true;
       scratch.follows = predictable;
       return outcome;

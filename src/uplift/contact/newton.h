@@ -8,8 +8,9 @@
 // direction d on the directional derivative d . G makes it globally convergent (THEORY section 6).
 namespace uplift {
 
-/// Multipliers of the augmented Lagrangian: the force of cone blocks is P(multiplier + stiffness * (opening - origin)), the origin being zero in the normal
-/// and the opening at the beginning of the step in the tangential components. Without it a problem must have law blocks only.
+/// Multipliers of the augmented Lagrangian: the force of cone blocks is P(multiplier + stiffness * (opening - origin)), the origin being
+/// zero in the normal and the opening at the beginning of the step in the tangential components. Without it a problem must have law blocks
+/// only.
 struct AugmentedForce {
   const Vector* multiplier = nullptr;  // rows [N]
   const Vector* stiffness = nullptr;   // rows [N/m]

@@ -4,11 +4,14 @@
 #include "uplift/contact/method.h"
 #include "uplift/contact/newton.h"
 
-// Penalty: the constraint is replaced by a stiff tensionless spring, p = P(stiffness * opening), so that everything else (path average, energy ledger,
-// Newton) is that of a traction law. The stiffness is given [Pa/m], or scaled so that (stiffness * area) * F_ii = factor at the most flexible point.
+// Penalty: the constraint is replaced by a stiff tensionless spring, p = P(stiffness * opening), so that everything else (path average,
+// energy ledger, Newton) is that of a traction law. The stiffness is given [Pa/m], or scaled so that (stiffness * area) * F_ii = factor at
+// the most flexible point.
 namespace uplift {
 
-std::unique_ptr<const InterfaceLaw> ContactMethod::substitute(const Cone&, double) const { return nullptr; }
+std::unique_ptr<const InterfaceLaw> ContactMethod::substitute(const Cone&, double) const {
+  return nullptr;
+}
 
 double flexibility(const InterfaceProblem& problem, const Block& block) {
   double largest = 0;
@@ -21,8 +24,12 @@ double flexibility(const InterfaceProblem& problem, const Block& block) {
 
 namespace {
 
-Raw raw_number(double value) { return Raw{value, {}, {}}; }
-Raw raw_text(std::string value) { return Raw{std::move(value), {}, {}}; }
+Raw raw_number(double value) {
+  return Raw{value, {}, {}};
+}
+Raw raw_text(std::string value) {
+  return Raw{std::move(value), {}, {}};
+}
 
 /// The tensionless springs of the law catalog with this stiffness and the cone's friction.
 std::unique_ptr<const InterfaceLaw> tensionless(double stiffness, double friction) {
@@ -58,7 +65,8 @@ class PenaltyMethod final : public ContactMethod {
       block.law = laws.back().get();
       block.cone = nullptr;
       block.first_history = static_cast<int>(replaced.old.size());
-      replaced.old.resize(replaced.old.size() + static_cast<std::size_t>(block.law->num_history(block.batch.components) * block.batch.points));
+      replaced.old.resize(replaced.old.size() +
+                          static_cast<std::size_t>(block.law->num_history(block.batch.components) * block.batch.points));
     }
     return solve_by_newton(replaced, {}, options_, solution);
   }

@@ -29,11 +29,11 @@ struct Block {
 /// Frozen: everything that a method may know about one step. It can be written to a file and solved again by any method.
 struct InterfaceProblem {
   std::vector<Block> blocks;
-  Matrix factor;            // C: rows x r [m/sqrt(J)]
-  Vector shift;             // D: rows [N/m]; empty in dynamics
-  bool average = false;     // path-averaged traction: p = scale * area * mean(from -> opening)
-  double scale = 1;         // weight of the interface force in the scheme's balance: 2 with the path average, else 1
-  double step = 0;          // s; 0 in statics
+  Matrix factor;         // C: rows x r [m/sqrt(J)]
+  Vector shift;          // D: rows [N/m]; empty in dynamics
+  bool average = false;  // path-averaged traction: p = scale * area * mean(from -> opening)
+  double scale = 1;      // weight of the interface force in the scheme's balance: 2 with the path average, else 1
+  double step = 0;       // s; 0 in statics
   // what changes from step to step
   Vector free_opening;      // m, initial gap included
   Vector from;              // opening at the beginning of the step [m]
@@ -46,12 +46,12 @@ enum class Status : signed char { open, stick, slip };
 
 /// Work space of Newton's method, sized once.
 struct NewtonScratch {
-  Vector slope;       // per block (components x components x points), blocks one after another [N/m]
+  Vector slope;  // per block (components x components x points), blocks one after another [N/m]
   std::vector<int> first_slope;
   Vector gradient, direction, origin;
-  Vector end;             // traction at the end of the step [Pa], path average only
+  Vector end;  // traction at the end of the step [Pa], path average only
   Matrix hessian;
-  bool follows = false;   // the next problem may be guessed from this solution: slope, end and hessian are those of a converged step
+  bool follows = false;  // the next problem may be guessed from this solution: slope, end and hessian are those of a converged step
 };
 
 /// Work space of the augmented Lagrangian, sized once.
@@ -68,10 +68,10 @@ struct LagrangeScratch {
 
 /// The unknowns of a step, and the work space of the methods (kept from step to step, so that nothing is allocated after the first).
 struct InterfaceSolution {
-  Vector z;                   // on entry the first guess
-  Vector opening;             // rows, end of step [m]
-  Vector force;               // rows, p as it enters the balance [N]: scale * area * traction, tension > 0
-  std::vector<double> now;    // memory at the end of the step
+  Vector z;                    // on entry the first guess
+  Vector opening;              // rows, end of step [m]
+  Vector force;                // rows, p as it enters the balance [N]: scale * area * traction, tension > 0
+  std::vector<double> now;     // memory at the end of the step
   std::vector<Status> status;  // per point, all blocks one after another (cones)
   NewtonScratch newton;
   AugmentedScratch augmented;
@@ -89,7 +89,8 @@ struct Outcome {
 /// The one residual that judges every method, outside the methods: the largest of
 ///  - the balance |z + C^T (p - D opening)| / (|z| + |C^T p| + tiny)
 ///  - law blocks: |p - scale * area * t(opening)| / (max |p|)
-///  - cone blocks: penetration, tension, friction bound and complementarity, each made dimensionless with max |p| and max |opening - free_opening|.
+///  - cone blocks: penetration, tension, friction bound and complementarity, each made dimensionless with max |p| and max |opening -
+///  free_opening|.
 double yardstick(const InterfaceProblem&, const InterfaceSolution&);
 
 /// JSON text of a problem with its laws (names and parameters) and back. Throws InputError with the position on bad files.

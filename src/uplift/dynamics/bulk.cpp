@@ -23,7 +23,10 @@ void BulkMatrix::multiply(const Vector& x, Vector& y) const {
 }
 
 Bulk::Bulk(const Model& model, const Sparse* geometric)
-    : unknowns(model.free()), small(model.free() <= small_bulk), stiffness_matrix(model.stiffness), mass_matrix(model.mass),
+    : unknowns(model.free()),
+      small(model.free() <= small_bulk),
+      stiffness_matrix(model.stiffness),
+      mass_matrix(model.mass),
       damping_matrix(model.damping) {
   if (geometric != nullptr) stiffness_matrix += *geometric;
   stiffness = BulkMatrix(stiffness_matrix, small);
@@ -56,7 +59,8 @@ BulkFactor::BulkFactor(const Sparse& matrix, bool small, const LinearSolver& sol
   ++counts.factorisations;
   if (result.factor == nullptr) {
     const bool named = result.failed_unknown >= 0 && result.failed_unknown < static_cast<int>(model.unknown_names.size());
-    why_ = named ? fmt::format("the matrix is not positive definite at {}", model.unknown_names[static_cast<std::size_t>(result.failed_unknown)])
+    why_ = named ? fmt::format("the matrix is not positive definite at {}",
+                               model.unknown_names[static_cast<std::size_t>(result.failed_unknown)])
                  : "the matrix is not positive definite";
     return;
   }

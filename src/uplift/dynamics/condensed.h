@@ -20,7 +20,8 @@ struct Behaviours {
   std::vector<int> first_history;
   int history = 0;  // memory values of all interfaces
 
-  /// `probe`: a problem with the compliance of the dynamic step, from which automatic stiffnesses are scaled; may be null when no method substitutes.
+  /// `probe`: a problem with the compliance of the dynamic step, from which automatic stiffnesses are scaled; may be null when no method
+  /// substitutes.
   Behaviours(const Model& model, const ContactMethod& method, const InterfaceProblem* probe);
 };
 
@@ -54,9 +55,9 @@ class Condensed final : public StepSolver {
   const Sparse& b_;
   const Vector& gap_;
   BulkFactor factor_;
-  Matrix dense_b_, touched_b_;     // small bulks; columns of B that are not empty
+  Matrix dense_b_, touched_b_;  // small bulks; columns of B that are not empty
   std::vector<int> touched_;
-  Matrix spread_;                  // X: du = du_free + X z
+  Matrix spread_;  // X: du = du_free + X z
   InterfaceProblem problem_;
   InterfaceSolution solution_;
   const ContactMethod& method_;

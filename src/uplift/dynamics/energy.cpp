@@ -7,8 +7,8 @@
 namespace uplift {
 
 void InterfaceEnergy::update(const InterfaceProblem& problem, const Vector& opening, const std::vector<double>& history) {
-  const bool changed =
-      last_.size() != history.size() || (!history.empty() && std::memcmp(last_.data(), history.data(), history.size() * sizeof(double)) != 0);
+  const bool changed = last_.size() != history.size() ||
+                       (!history.empty() && std::memcmp(last_.data(), history.data(), history.size() * sizeof(double)) != 0);
   if (changed) last_ = history;
   stored = 0;
   double lost = 0;

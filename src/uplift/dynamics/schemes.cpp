@@ -17,34 +17,36 @@ const Entry<Scheme>& entry_scheme_average_acceleration() {
 }
 
 const Entry<Scheme>& entry_scheme_newmark() {
-  static const Entry<Scheme> entry{{.name = "newmark",
-                                    .summary = "Newmark's family with given coefficients",
-                                    .equations = "u1 = u0 + dt v0 + dt^2 ((1/2 - beta) a0 + beta a1)\nv1 = v0 + dt ((1 - gamma) a0 + gamma a1)",
-                                    .source = "Newmark 1959",
-                                    .params = {number("gamma", "1", "1/2: second order; above: numerical damping").between(0.5, 2).standard(0.5),
-                                               number("beta", "1", "at least gamma/2: unconditionally stable; absent: (gamma + 1/2)^2/4").positive().optional()}},
-                                   [](const Values& values) -> std::unique_ptr<const Scheme> {
-                                     Scheme scheme;
-                                     scheme.gamma = values.number("gamma");
-                                     scheme.beta = values.has("beta") ? values.number("beta") : std::pow(scheme.gamma + 0.5, 2) / 4;
-                                     if (scheme.beta < scheme.gamma / 2)
-                                       throw InputError(values.where("beta"), values.path("beta"), "beta >= gamma/2 (unconditional stability)",
-                                                        std::to_string(scheme.beta));
-                                     return std::make_unique<const Scheme>(scheme);
-                                   }};
+  static const Entry<Scheme> entry{
+      {.name = "newmark",
+       .summary = "Newmark's family with given coefficients",
+       .equations = "u1 = u0 + dt v0 + dt^2 ((1/2 - beta) a0 + beta a1)\nv1 = v0 + dt ((1 - gamma) a0 + gamma a1)",
+       .source = "Newmark 1959",
+       .params = {number("gamma", "1", "1/2: second order; above: numerical damping").between(0.5, 2).standard(0.5),
+                  number("beta", "1", "at least gamma/2: unconditionally stable; absent: (gamma + 1/2)^2/4").positive().optional()}},
+      [](const Values& values) -> std::unique_ptr<const Scheme> {
+        Scheme scheme;
+        scheme.gamma = values.number("gamma");
+        scheme.beta = values.has("beta") ? values.number("beta") : std::pow(scheme.gamma + 0.5, 2) / 4;
+        if (scheme.beta < scheme.gamma / 2)
+          throw InputError(values.where("beta"), values.path("beta"), "beta >= gamma/2 (unconditional stability)",
+                           std::to_string(scheme.beta));
+        return std::make_unique<const Scheme>(scheme);
+      }};
   return entry;
 }
 
 const Entry<Scheme>& entry_scheme_hht() {
-  static const Entry<Scheme> entry{{.name = "hht",
-                                    .summary = "HHT-alpha: numerical damping of high frequencies, second order",
-                                    .equations = "alpha_f = -alpha, beta = (1 - alpha)^2/4, gamma = 1/2 - alpha",
-                                    .source = "Hilber, Hughes & Taylor 1977",
-                                    .params = {number("alpha", "1", "0: trapezoidal rule; -1/3: strongest damping").between(-1.0 / 3, 0).standard(-0.05)}},
-                                   [](const Values& values) -> std::unique_ptr<const Scheme> {
-                                     const double alpha = values.number("alpha");
-                                     return std::make_unique<const Scheme>(Scheme{std::pow(1 - alpha, 2) / 4, 0.5 - alpha, 0, -alpha});
-                                   }};
+  static const Entry<Scheme> entry{
+      {.name = "hht",
+       .summary = "HHT-alpha: numerical damping of high frequencies, second order",
+       .equations = "alpha_f = -alpha, beta = (1 - alpha)^2/4, gamma = 1/2 - alpha",
+       .source = "Hilber, Hughes & Taylor 1977",
+       .params = {number("alpha", "1", "0: trapezoidal rule; -1/3: strongest damping").between(-1.0 / 3, 0).standard(-0.05)}},
+      [](const Values& values) -> std::unique_ptr<const Scheme> {
+        const double alpha = values.number("alpha");
+        return std::make_unique<const Scheme>(Scheme{std::pow(1 - alpha, 2) / 4, 0.5 - alpha, 0, -alpha});
+      }};
   return entry;
 }
 
@@ -54,7 +56,9 @@ const Entry<Scheme>& entry_scheme_generalised_alpha() {
        .summary = "generalised-alpha with the spectral radius at infinite frequency given",
        .equations = "alpha_m = (2 r - 1)/(r + 1), alpha_f = r/(r + 1), gamma = 1/2 - alpha_m + alpha_f, beta = (1 - alpha_m + alpha_f)^2/4",
        .source = "Chung & Hulbert 1993",
-       .params = {number("rho", "1", "spectral radius at infinite frequency: 1 keeps all, 0 annihilates the highest in one step").between(0, 1).standard(0.9)}},
+       .params = {number("rho", "1", "spectral radius at infinite frequency: 1 keeps all, 0 annihilates the highest in one step")
+                      .between(0, 1)
+                      .standard(0.9)}},
       [](const Values& values) -> std::unique_ptr<const Scheme> {
         const double rho = values.number("rho");
         Scheme scheme;

@@ -11,13 +11,14 @@ struct StaticOutcome {
   std::string why;
 };
 
-/// Equilibrium under the dead loads, applied in equal steps from `state` on: K u + B^T p(B u) = f. K alone is singular for a structure that rests on
-/// contact: the factored matrix is K + B^T D B with the closed joint's stiffness D, taken back in the interface problem (THEORY section 6).
-/// A load step that fails is halved. Velocity and acceleration of the state become zero.
+/// Equilibrium under the dead loads, applied in equal steps from `state` on: K u + B^T p(B u) = f. K alone is singular for a structure that
+/// rests on contact: the factored matrix is K + B^T D B with the closed joint's stiffness D, taken back in the interface problem (THEORY
+/// section 6). A load step that fails is halved. Velocity and acceleration of the state become zero.
 StaticOutcome solve_statics(const Model& model, const Bulk& bulk, const Sparse& b, const Vector& gap, const Behaviours& behaviours,
                             const ContactMethod& method, const LinearSolver& solver, int steps, State& state, LinearCounts& counts);
 
-/// Stiffness D of the closed joints [N/m per row]: area * closed stiffness of a law; for a cone the largest diagonal of K (any positive value is exact).
+/// Stiffness D of the closed joints [N/m per row]: area * closed stiffness of a law; for a cone the largest diagonal of K (any positive
+/// value is exact).
 Vector closed_joint(const Model& model, const Behaviours& behaviours);
 
 }  // namespace uplift

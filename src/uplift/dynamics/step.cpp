@@ -10,7 +10,8 @@
 namespace uplift {
 
 /// Everything that depends on the size of the step. The right-hand side of the displacement increment is
-///   R = f1 + f0 af/w - K u0/w - B^T p0 af/w + M (mass_velocity v0 + mass_acceleration a0) - C (damping_velocity v0 + damping_acceleration a0)
+///   R = f1 + f0 af/w - K u0/w - B^T p0 af/w + M (mass_velocity v0 + mass_acceleration a0) - C (damping_velocity v0 + damping_acceleration
+///   a0)
 /// with w = 1 - af, and for the path average, in the midpoint form,   R = f0 + f1 - 2 K u0 + (4/dt) M v0.
 struct Stepper::Level {
   double step = 0;
@@ -24,11 +25,27 @@ struct Stepper::Level {
 Stepper::Stepper(const Model& model, const Bulk& bulk, const Sparse& b, const Vector& gap, const Behaviours& behaviours,
                  const ContactMethod& method, const ImpactRule& impact, const LinearSolver& solver, const StepOptions& options,
                  LinearCounts& counts)
-    : model_(model), bulk_(bulk), b_(b), still_gap_(gap), gap_(gap), gap_step_(Vector::Zero(gap.size())), behaviours_(behaviours), method_(method), impact_(impact), solver_(solver),
-      options_(options), linear_(counts), path_(options.path_average && options.scheme.average_acceleration() && !method.constrains()),
-      impacts_(impact.acts() && !path_ && b.rows() > 0), accelerator_(model, bulk, solver, counts) {
+    : model_(model),
+      bulk_(bulk),
+      b_(b),
+      still_gap_(gap),
+      gap_(gap),
+      gap_step_(Vector::Zero(gap.size())),
+      behaviours_(behaviours),
+      method_(method),
+      impact_(impact),
+      solver_(solver),
+      options_(options),
+      linear_(counts),
+      path_(options.path_average && options.scheme.average_acceleration() && !method.constrains()),
+      impacts_(impact.acts() && !path_ && b.rows() > 0),
+      accelerator_(model, bulk, solver, counts) {
   if (impacts_) {
     mass_spread_ = std::make_unique<Spread>(accelerator_.spread(b));
+    row_area_.resize(b.rows());
+    Eigen::Index row = 0;
+    for (const Interface& interface : model.interfaces)
+      for (int i = 0; i < interface.rows(); ++i) row_area_[row++] = interface.area[i % interface.batch.points];
     if (bulk.small) dense_b_ = Matrix(b);
   }
   for (const PrescribedMotion& motion : model.motions) gap_moves_ = gap_moves_ || (motion.opening.size() > 0 && !motion.opening.isZero(0));
@@ -221,6 +238,8 @@ void Stepper::apply_impact(Level& level) {
   data.force = &contact_;
   data.step = level.step;
   data.velocity_weight = options_.scheme.gamma * level.step * weight;
+  data.acceleration_weight = weight;
+  data.area = &row_area_;
   const double before = 0.5 * small::dot(next_.velocity.size(), next_.velocity.data(), momentum_next_.data());
   impulse_.setZero();
   impact_.apply(data, next_.velocity, next_.acceleration, impulse_, impact_scratch_);

@@ -17,7 +17,7 @@ struct StepOptions {
   double step = 0;           // s
   bool path_average = true;  // only with the average acceleration rule and a method that does not constrain
   int halvings = 8;
-  bool monolithic = false;   // the oracle: Newton on all unknowns instead of the condensed step
+  bool monolithic = false;      // the oracle: Newton on all unknowns instead of the condensed step
   double oracle_tolerance = 0;  // > 0: every condensed step is also taken by the oracle; a larger relative difference fails it
 };
 
@@ -40,12 +40,12 @@ class Stepper {
           const ContactMethod& method, const ImpactRule& impact, const LinearSolver& solver, const StepOptions& options,
           LinearCounts& counts);
   ~Stepper();
-  /// Takes over displacement, velocity, opening and history; the initial acceleration follows from the balance. With the ledger of a stage before,
-  /// energies go on counting, and so does its acceleration when it is the same scheme's.
+  /// Takes over displacement, velocity, opening and history; the initial acceleration follows from the balance. With the ledger of a stage
+  /// before, energies go on counting, and so does its acceleration when it is the same scheme's.
   void start(State state, const Ledger* before = nullptr);
   Ledger ledger() const { return {energies_, initial_energy_, largest_external_, !path_}; }
-  /// One step of the nominal size. A part that fails is halved and tried again; false when the smallest part fails too: the state stays that of
-  /// the last success and `why`, `failed` tell.
+  /// One step of the nominal size. A part that fails is halved and tried again; false when the smallest part fails too: the state stays
+  /// that of the last success and `why`, `failed` tell.
   bool advance();
   const State& state() const { return now_; }
   const Energies& energies() const { return energies_; }
@@ -75,8 +75,8 @@ class Stepper {
   const Model& model_;
   const Bulk& bulk_;
   const Sparse& b_;
-  const Vector& still_gap_;   // initial gaps
-  Vector gap_, gap_step_;     // with the prescribed motions at the end of the step, and their change in the step
+  const Vector& still_gap_;  // initial gaps
+  Vector gap_, gap_step_;    // with the prescribed motions at the end of the step, and their change in the step
   const Behaviours& behaviours_;
   const ContactMethod& method_;
   const ImpactRule& impact_;
@@ -86,12 +86,13 @@ class Stepper {
   bool path_ = false, impacts_ = false, gap_moves_ = false;
   Accelerator accelerator_;
   std::unique_ptr<Spread> mass_spread_;
+  Vector row_area_;  // m2, of the point that a row belongs to
   Matrix dense_b_;
   std::vector<std::unique_ptr<Level>> levels_;
 
   State now_, next_;
   Vector force_now_, force_next_, stiff_now_, stiff_next_, momentum_now_, momentum_next_;  // f, K u, M v
-  mutable Vector product_, balance_;  // work space of forces_at and acceleration
+  mutable Vector product_, balance_;                                                       // work space of forces_at and acceleration
   Vector right_, increment_, work_, work2_, damped_, contact_, impulse_;
   ImpactScratch impact_scratch_;
   std::vector<int> normals_, tangents_;

@@ -45,7 +45,7 @@ constexpr std::array<char, 200> pairs = [] {
 struct Decimal {
   char figures[20];  // without trailing zeros
   int kept = 0;      // how many
-  int exponent = 0;  // value = f.iguresE+exponent
+  int exponent = 0;  // value = d.ddd... * 10^exponent
 };
 
 /// size = mantissa * 10^(exponent - digits + 1) with 10^(digits - 1) <= mantissa < 10^digits, size > 0 and not tiny.

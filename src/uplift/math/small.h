@@ -3,8 +3,8 @@
 
 #include "uplift/math/linalg.h"
 
-// Kernels for the few unknowns of an interface under a rigid body and for small bulks: plain loops over contiguous columns that the compiler
-// turns into vector code; Eigen's general products cost more than the arithmetic at these sizes.
+// Kernels for the few unknowns of an interface under a rigid body and for small bulks: plain loops over contiguous columns that the
+// compiler turns into vector code; Eigen's general products cost more than the arithmetic at these sizes.
 namespace uplift::small {
 
 inline double dot(std::ptrdiff_t n, const double* a, const double* b) {
@@ -14,7 +14,9 @@ inline double dot(std::ptrdiff_t n, const double* a, const double* b) {
   return sum;
 }
 
-inline double sum_of_squares(std::ptrdiff_t n, const double* a) { return dot(n, a, a); }
+inline double sum_of_squares(std::ptrdiff_t n, const double* a) {
+  return dot(n, a, a);
+}
 
 /// y += factor * x
 inline void add(std::ptrdiff_t n, double factor, const double* x, double* y) {
@@ -35,15 +37,24 @@ inline void multiply_fixed(const double* a, const double* x, double* y) {
 inline void multiply(const Matrix& a, const double* x, double* y) {
   const std::ptrdiff_t n = a.rows(), m = a.cols();
   if (n == m) switch (n) {
-      case 1: return multiply_fixed<1>(a.data(), x, y);
-      case 2: return multiply_fixed<2>(a.data(), x, y);
-      case 3: return multiply_fixed<3>(a.data(), x, y);
-      case 4: return multiply_fixed<4>(a.data(), x, y);
-      case 5: return multiply_fixed<5>(a.data(), x, y);
-      case 6: return multiply_fixed<6>(a.data(), x, y);
-      case 7: return multiply_fixed<7>(a.data(), x, y);
-      case 8: return multiply_fixed<8>(a.data(), x, y);
-      default: break;
+      case 1:
+        return multiply_fixed<1>(a.data(), x, y);
+      case 2:
+        return multiply_fixed<2>(a.data(), x, y);
+      case 3:
+        return multiply_fixed<3>(a.data(), x, y);
+      case 4:
+        return multiply_fixed<4>(a.data(), x, y);
+      case 5:
+        return multiply_fixed<5>(a.data(), x, y);
+      case 6:
+        return multiply_fixed<6>(a.data(), x, y);
+      case 7:
+        return multiply_fixed<7>(a.data(), x, y);
+      case 8:
+        return multiply_fixed<8>(a.data(), x, y);
+      default:
+        break;
     }
   const double* column = a.data();
   for (std::ptrdiff_t i = 0; i < n; ++i) y[i] = 0;
@@ -100,7 +111,8 @@ void cholesky_solve(std::ptrdiff_t n, const double* l, double* b);
 /// Solves A x = b in place by Gauss elimination with row pivoting; A is destroyed; false when singular.
 bool gauss_solve(std::ptrdiff_t n, double* a, double* b);
 
-/// One pass over the points: gradient g[r] += sum C[:,r] p and H[r,s] += sum C[:,r] k C[:,s] (full symmetric, column-major R x R), R columns with stride `rows`.
+/// One pass over the points: gradient g[r] += sum C[:,r] p and H[r,s] += sum C[:,r] k C[:,s] (full symmetric, column-major R x R), R
+/// columns with stride `rows`.
 template <int R>
 void gradient_and_gram(std::ptrdiff_t n, const double* c, std::ptrdiff_t rows, const double* p, const double* k, double* g, double* h) {
   double sum[R] = {}, gram[R * (R + 1) / 2] = {};
