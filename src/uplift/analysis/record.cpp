@@ -71,8 +71,8 @@ double InterfaceViewer::rotation(int interface, const Vector& opening) const {
 
 Recorder::Recorder(const Model& model, const RunPlan& plan, const InterfaceViewer& viewer, std::size_t expected_rows, RunResult& result)
     : model_(model), plan_(plan), viewer_(viewer), result_(result) {
-  const bool first = result_.table.empty();  // a later dynamic stage goes on in the same table
-  if (first) {
+  const bool fresh = result_.table.empty();  // a later dynamic stage goes on in the same table
+  if (fresh) {
     result_.columns = plan.requests;
     result_.table.assign(plan.requests.size() + 1, {});
   }
@@ -95,7 +95,7 @@ Recorder::Recorder(const Model& model, const RunPlan& plan, const InterfaceViewe
       source.inverse_area = 1 / interface.area[request.point];
     }
     sources_.push_back(std::move(source));
-    if (first) result_.peaks.push_back({request.name, request.unit, 0, 0});
+    if (fresh) result_.peaks.push_back({request.name, request.unit, 0, 0});
   }
 }
 

@@ -19,7 +19,7 @@ Field make(std::string_view name, Kind kind, std::string_view meaning) {
   return field;
 }
 
-bool takes_numbers(const Field& field) {
+[[maybe_unused]] bool takes_numbers(const Field& field) {
   return field.kind == Kind::number || field.kind == Kind::integer || field.kind == Kind::numbers;
 }
 
