@@ -143,7 +143,7 @@ TEST_F(Folder, LeavesNothingWhenItIsNotFinished) {
 }
 
 TEST_F(Folder, MovesEarlierResultsAside) {
-  for (const std::string expected : {std::string(), path("r.1"), path("r.2")}) {
+  for (const std::string& expected : {std::string(), path("r.1"), path("r.2")}) {
     ResultFolder folder(path("r"));
     folder.write("a.txt", expected);
     EXPECT_EQ(folder.finish(), expected);
