@@ -108,8 +108,6 @@ TEST(Counters, NoAllocationAfterTheFirstStep) {
     }
     Whole penalty = footing({"unilateral"}, "penalty", "none", damping);
     EXPECT_EQ(allocated_by_steps(penalty), 0) << "penalty";
-    Whole augmented = footing({"unilateral"}, "augmented_lagrangian", "project_hold", damping);
-    EXPECT_EQ(allocated_by_steps(augmented), 0) << "augmented Lagrangian";
     Whole friction = footing(rubbing, "newton", "none", damping, true);
     EXPECT_EQ(allocated_by_steps(friction), 0) << "friction";
   }

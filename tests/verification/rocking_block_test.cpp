@@ -63,11 +63,11 @@ struct Passage {
   double time = 0, before = 0, after = 0;
 };
 Passage passage(const History& run) {
-  const std::vector<double>&turn = run["turn"], &rate = run["turn.v"], &time = run.time();
+  const std::vector<double>&turn = run["turn"], &spin = run["turn.v"], &time = run.time();
   for (std::size_t i = 1; i + 3 < run.rows(); ++i)
     if (turn[i - 1] * turn[0] > 0 && turn[i] * turn[0] <= 1e-12) {
       const double part = turn[i - 1] / (turn[i - 1] - turn[i]);
-      return {time[i - 1] + part * (time[i] - time[i - 1]), rate[i - 1], rate[i + 2]};
+      return {time[i - 1] + part * (time[i] - time[i - 1]), spin[i - 1], spin[i + 2]};
     }
   return {};
 }
