@@ -10,8 +10,8 @@
 #include <nlohmann/json.hpp>
 
 #include "uplift/base/error.h"
+#include "uplift/base/file.h"
 #include "uplift/io/files.h"
-#include "uplift/io/hash.h"
 #include "uplift/io/histories.h"
 #include "uplift/io/json_writer.h"
 #include "uplift/io/numbers.h"

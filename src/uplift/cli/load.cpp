@@ -6,9 +6,9 @@
 #include <ctime>
 #include <filesystem>
 
+#include "uplift/base/file.h"
 #include "uplift/cli/console.h"
 #include "uplift/io/files.h"
-#include "uplift/io/hash.h"
 #include "uplift/io/histories.h"
 #include "uplift/io/toml.h"
 
