@@ -14,8 +14,8 @@
 namespace uplift {
 namespace {
 
-[[noreturn]] void fail(const Values& table, std::string_view key, std::string wanted, std::string found) {
-  throw InputError(table.where(key), table.path(key), std::move(wanted), std::move(found));
+[[noreturn]] void fail(const Values& table, std::string_view key, const std::string& wanted, const std::string& found) {
+  throw InputError(table.where(key), table.path(key), wanted, found);
 }
 
 /// Values as they would be read from a file again, with one number replaced.
@@ -193,7 +193,9 @@ std::vector<double> tuned_masses(const Case& read, const RunSpec& spec) {
   add_functions(read.values, names);
   add_structure(read.values, builder, names, {0.0});
   add_interfaces(read, spec, builder, names, without);
-  return {tuned_mass(builder.finish(), names.node(*tuned, "node"), tuned->number("tuned_frequency"), tuned->where("tuned_frequency"))};
+  const Model model = builder.finish();
+  check_static(model);  // a loose body is named as such, not as a mass that cannot be tuned
+  return {tuned_mass(model, names.node(*tuned, "node"), tuned->number("tuned_frequency"), tuned->where("tuned_frequency"))};
 }
 
 /// Replaces laws that depend on the compliance of the model: the swept stiffness, the bonded joint.

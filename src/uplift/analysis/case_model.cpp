@@ -48,8 +48,9 @@ class Scaled final : public TimeFunction {
   std::shared_ptr<const TimeFunction> function_;
 };
 
-[[noreturn]] void fail(const Values& table, std::string_view key, std::string wanted, std::string found, std::string nearest = {}) {
-  throw InputError(table.where(key), table.path(key), std::move(wanted), std::move(found), std::move(nearest));
+[[noreturn]] void fail(const Values& table, std::string_view key, const std::string& wanted, const std::string& found,
+                       const std::string& nearest = {}) {
+  throw InputError(table.where(key), table.path(key), wanted, found, nearest);
 }
 
 Dof dof_of(const std::string& word, const Values& table, std::string_view key) {

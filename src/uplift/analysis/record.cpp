@@ -3,6 +3,8 @@
 #include <algorithm>
 #include <cmath>
 
+#include "uplift/math/small.h"
+
 namespace uplift {
 
 InterfaceViewer::InterfaceViewer(const Model& model, double gap_tolerance) : tolerance_(gap_tolerance) {
@@ -55,7 +57,9 @@ void InterfaceViewer::look(const Vector& opening, const Vector& force, std::vect
     double shear = 0;
     if (layout.components > 1) {
       const double* t = force.data() + layout.first;
-      for (int i = 0; i < n; ++i) shear += t[i], moment -= layout.across[static_cast<std::size_t>(i)] * t[i];
+      const double* across = layout.across.data();
+#pragma omp simd reduction(+ : shear, moment)
+      for (int i = 0; i < n; ++i) shear += t[i], moment -= across[i] * t[i];
     }
     views[k] = {axial, shear, moment, open / layout.total, std::max(widest, 0.0), least, std::max(pressure, 0.0)};
   }
@@ -64,9 +68,7 @@ void InterfaceViewer::look(const Vector& opening, const Vector& force, std::vect
 double InterfaceViewer::rotation(int interface, const Vector& opening) const {
   const Layout& layout = layouts_[static_cast<std::size_t>(interface)];
   const double* gap = opening.data() + layout.first + (layout.components - 1) * layout.points;
-  double slope = 0;
-  for (int i = 0; i < layout.points; ++i) slope += layout.slope_weight[static_cast<std::size_t>(i)] * gap[i];
-  return slope;
+  return small::dot(layout.points, layout.slope_weight.data(), gap);
 }
 
 Recorder::Recorder(const Model& model, const RunPlan& plan, const InterfaceViewer& viewer, std::size_t expected_rows, RunResult& result)

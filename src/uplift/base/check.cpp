@@ -39,8 +39,8 @@ std::string found_text(const Raw& raw) {
   return std::visit(Words{}, raw.data);
 }
 
-[[noreturn]] void refuse(const Raw& raw, const Field& field, std::string found, std::string nearest = {}) {
-  throw InputError(raw.where, raw.path, wanted_text(field), std::move(found), std::move(nearest));
+[[noreturn]] void refuse(const Raw& raw, const Field& field, const std::string& found, const std::string& nearest = {}) {
+  throw InputError(raw.where, raw.path, wanted_text(field), found, nearest);
 }
 
 template <class Names>
@@ -66,7 +66,7 @@ double number_of(const Raw& raw, const Field& field) {
     Quantity quantity = parse_quantity(*text, field.unit);
     if (!quantity.ok) {
       const std::string word = nearest_name(*text, strings(field.words));
-      refuse(raw, field, std::move(quantity.found), word.empty() ? std::move(quantity.nearest) : word);
+      refuse(raw, field, quantity.found, word.empty() ? quantity.nearest : word);
     }
     value = quantity.value;
     found = in_quotes(*text);

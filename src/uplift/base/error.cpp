@@ -52,7 +52,7 @@ int distance(std::string_view a, std::string_view b) {
 
 }  // namespace
 
-InputError::InputError(Where where, std::string path, std::string wanted, std::string found, std::string nearest)
+InputError::InputError(Where where, std::string path, const std::string& wanted, const std::string& found, const std::string& nearest)
     : std::runtime_error(message(where, path, wanted, found, nearest)), where_(std::move(where)), path_(std::move(path)) {}
 
 std::string nearest_name(std::string_view name, const std::vector<std::string>& candidates) {

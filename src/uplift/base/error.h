@@ -17,7 +17,7 @@ struct Where {
 class InputError : public std::runtime_error {
  public:
   /// `path` is the key as the user would write it ("interface[0].law.K_n"); any part may be empty.
-  InputError(Where where, std::string path, std::string wanted, std::string found, std::string nearest = {});
+  InputError(Where where, std::string path, const std::string& wanted, const std::string& found, const std::string& nearest = {});
 
   const Where& where() const { return where_; }
   const std::string& path() const { return path_; }

@@ -56,7 +56,7 @@ std::string unit_of(const Field& field) {
 }
 
 std::string default_of(const Field& field) {
-  const std::string text = standard_text(field);
+  std::string text = standard_text(field);
   if (!text.empty()) return text;
   return field.required && field.kind != Kind::tables && field.kind != Kind::table ? "needed" : "-";
 }

@@ -116,9 +116,8 @@ int dispatch(const CLI::App& app, const Choices& given) {
   return cli::completion(given.shell, declared(app));
 }
 
-}  // namespace
-
-int main(int count, char** words) {
+/// Parses the command line and runs the command; what it throws is told to the user by main.
+int program(int count, char** words) {
   CLI::App app{"uplift: does a structure lift off its base in an earthquake, and what does that do to it?", "uplift"};
   app.require_subcommand(1);
   app.set_version_flag("--version", UPLIFT_VERSION);
@@ -131,9 +130,17 @@ int main(int count, char** words) {
   for (int i = 0; i < count; ++i) given.options.command += (i > 0 ? " " : "") + std::string(i > 0 ? words[i] : "uplift");
   try {
     app.parse(count, words);
-    return dispatch(app, given);
   } catch (const CLI::ParseError& error) {
     return app.exit(error) == 0 ? uplift::cli::Exit::done : uplift::cli::Exit::bad_input;
+  }
+  return dispatch(app, given);
+}
+
+}  // namespace
+
+int main(int count, char** words) {
+  try {
+    return program(count, words);
   } catch (const uplift::InputError& error) {
     uplift::cli::complain(fmt::format("error: {}", error.what()));
     return uplift::cli::Exit::bad_input;

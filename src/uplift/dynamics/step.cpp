@@ -122,6 +122,7 @@ void Stepper::acceleration(Vector& result) const {
 
 void Stepper::start(State state, const Ledger* before) {
   now_ = std::move(state);
+  start_time_ = now_.time;
   const Eigen::Index n = bulk_.unknowns;
   for (Vector* v : {&force_now_, &force_next_, &stiff_now_, &stiff_next_, &momentum_now_, &momentum_next_, &right_, &increment_, &work_,
                     &work2_, &damped_})
@@ -342,10 +343,8 @@ bool Stepper::substep(int halving) {
 }
 
 bool Stepper::advance() {
-  const double end = now_.time + options_.step;
   if (!substep(0)) return false;
-  now_.time = end;
-  ++counts_.steps;
+  now_.time = start_time_ + static_cast<double>(++counts_.steps) * options_.step;  // not summed: no round-off grows in a long run
   return true;
 }
 

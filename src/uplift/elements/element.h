@@ -10,7 +10,7 @@ namespace uplift {
 
 inline constexpr int dofs_per_node = 3;
 
-/// What an element is asked for, in global axes; null is not wanted. Sizes: 3 x number of nodes.
+/// What an element is asked for, in global axes; null is not wanted. Sizes: unknowns per node x number of nodes.
 struct Local {
   Matrix* stiffness = nullptr;  // N/m, N, N m
   Matrix* mass = nullptr;       // kg, kg m, kg m2
@@ -22,6 +22,8 @@ class Element {
   virtual ~Element() = default;
   /// Indices of the element's nodes.
   virtual std::span<const int> nodes() const = 0;
+  /// How many unknowns of each node the element knows: the first ones of (ux, uy, rz). A solid knows the displacements only.
+  virtual int unknowns_per_node() const { return dofs_per_node; }
   /// Fills (overwrites) what is wanted.
   virtual void form(Local local) const = 0;
   /// Axial force [N], tension > 0, of the state with the given end displacements; zero for elements without an axis and for inextensible

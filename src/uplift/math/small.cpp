@@ -33,7 +33,12 @@ void cholesky_solve(std::ptrdiff_t n, const double* l, double* b) {
   }
 }
 
-bool gauss_solve(std::ptrdiff_t n, double* a, double* b) {
+namespace {
+
+/// N > 0: a size that the compiler knows, so that the loops unroll.
+template <int N>
+bool gauss_solve_sized(std::ptrdiff_t size, double* a, double* b) {
+  const std::ptrdiff_t n = N > 0 ? N : size;
   for (std::ptrdiff_t j = 0; j < n; ++j) {
     std::ptrdiff_t best = j;
     for (std::ptrdiff_t i = j + 1; i < n; ++i)
@@ -55,6 +60,21 @@ bool gauss_solve(std::ptrdiff_t n, double* a, double* b) {
     for (std::ptrdiff_t i = 0; i < j; ++i) b[i] -= a[j * n + i] * b[j];
   }
   return true;
+}
+
+}  // namespace
+
+bool gauss_solve(std::ptrdiff_t n, double* a, double* b) {
+  switch (n) {
+    case 1:
+      return gauss_solve_sized<1>(n, a, b);
+    case 2:
+      return gauss_solve_sized<2>(n, a, b);
+    case 3:
+      return gauss_solve_sized<3>(n, a, b);
+    default:
+      return gauss_solve_sized<0>(n, a, b);
+  }
 }
 
 }  // namespace uplift::small
