@@ -11,6 +11,7 @@
 
 #include "uplift/base/error.h"
 #include "uplift/base/file.h"
+#include "uplift/base/file.h"
 #include "uplift/io/files.h"
 #include "uplift/io/histories.h"
 #include "uplift/io/json_writer.h"

@@ -2,10 +2,10 @@
 
 #include <algorithm>
 
+#include "uplift/base/file.h"
 #include "uplift/cli/console.h"
 #include "uplift/cli/load.h"
 #include "uplift/contact/method.h"
-#include "uplift/io/files.h"
 #include "uplift/io/json_writer.h"
 
 namespace uplift::cli {

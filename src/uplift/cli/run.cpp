@@ -1,9 +1,9 @@
 #include <fmt/format.h>
 
 #include "uplift/analysis/wording.h"
+#include "uplift/base/file.h"
 #include "uplift/cli/console.h"
 #include "uplift/cli/load.h"
-#include "uplift/io/files.h"
 
 namespace uplift::cli {
 

@@ -27,18 +27,6 @@ using File = std::unique_ptr<std::FILE, Closer>;
 
 }  // namespace
 
-std::string read_file(const std::string& path) {
-  std::error_code error;
-  if (fs::is_directory(path, error)) refuse(path, "a file", "a folder");
-  const File file(std::fopen(path.c_str(), "rb"));
-  if (!file) refuse(path, "a file that can be read", std::strerror(errno));
-  std::string text;
-  char part[1 << 16];
-  for (std::size_t got; (got = std::fread(part, 1, sizeof part, file.get())) > 0;) text.append(part, got);
-  if (std::ferror(file.get())) refuse(path, "a file that can be read", std::strerror(errno));
-  return text;
-}
-
 ResultFolder::ResultFolder(std::string path) : path_(fs::path(path).lexically_normal().string()) {
   if (path_.size() > 1 && path_.back() == '/') path_.pop_back();
   work_ = fmt::format("{}.part-{}", path_, getpid());

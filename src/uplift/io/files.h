@@ -4,9 +4,6 @@
 
 namespace uplift {
 
-/// The whole file. Throws InputError when it cannot be read.
-std::string read_file(const std::string& path);
-
 /// A folder of results that appears complete or not at all: files are collected beside it, then it is moved into place. What stood there
 /// before is moved to NAME.1, NAME.2, ...: results are never overwritten or mixed.
 class ResultFolder {

@@ -1,3 +1,5 @@
+#include <fmt/format.h>
+
 #include <array>
 
 #include "uplift/linear/solver.h"
@@ -18,6 +20,10 @@ std::span<const Entry<LinearSolver>* const> solver_catalog() {
 std::span<const PartInfo* const> linear_solvers() {
   static const std::vector<const PartInfo*> infos(solver_catalog().begin(), solver_catalog().end());
   return infos;
+}
+
+Factorisation singular_at(int unknown) {
+  return {.factor = nullptr, .failed_unknown = unknown, .why = fmt::format("the matrix is not positive definite at unknown {}", unknown)};
 }
 
 }  // namespace uplift

@@ -1,5 +1,4 @@
 #pragma once
-#include <atomic>
 #include <memory>
 #include <span>
 #include <string>
@@ -40,15 +39,6 @@ std::span<const PartInfo* const> linear_solvers();
 
 /// The failure message of every solver.
 Factorisation singular_at(int unknown);
-
-/// Work done through a counting solver and its factors; may be read from another thread.
-struct SolverCounters {
-  std::atomic<long> factorisations{0};
-  std::atomic<long> back_solves{0};  // calls of Factor::solve
-  std::atomic<long> columns{0};      // right-hand sides of all calls
-};
-/// The same solver, counted. The counters outlive the solver and its factors (shared).
-std::unique_ptr<const LinearSolver> counted(std::shared_ptr<const LinearSolver> solver, std::shared_ptr<SolverCounters> counters);
 
 /// One natural mode.
 struct Mode {
