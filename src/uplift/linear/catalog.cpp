@@ -22,6 +22,10 @@ std::span<const PartInfo* const> linear_solvers() {
   return infos;
 }
 
+SplitFactorisation LinearSolver::factorise_split(const Sparse&, const std::vector<int>&) const {
+  return {};
+}
+
 Factorisation singular_at(int unknown) {
   return {.factor = nullptr, .failed_unknown = unknown, .why = fmt::format("the matrix is not positive definite at unknown {}", unknown)};
 }

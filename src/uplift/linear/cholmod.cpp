@@ -1,40 +1,13 @@
 // CHOLMOD's supernodal Cholesky with nested dissection (Chen, Davis, Hager & Rajamanickam, ACM TOMS 35, 2008): the default for the bulk.
-#include <cholmod.h>
-
 #include <algorithm>
 #include <mutex>
 
-#include "uplift/linear/solver.h"
+#include "uplift/linear/cholmod_common.h"
+#include "uplift/linear/cholmod_split.h"
 
 namespace uplift {
 
 namespace {
-
-/// CHOLMOD's settings and scratch memory: one object per thread that works.
-struct Common {
-  Common() {
-    cholmod_start(&common);
-    common.print = 0;
-    common.nmethods = 1;
-    common.method[0].ordering = CHOLMOD_NESDIS;
-    common.postorder = 1;
-    common.supernodal = CHOLMOD_SUPERNODAL;
-    common.final_ll = 1;
-  }
-  ~Common() { cholmod_finish(&common); }
-  Common(const Common&) = delete;
-  Common& operator=(const Common&) = delete;
-  cholmod_common common;
-};
-
-/// Solution and scratch of one back-solve, kept for the next one of the same size.
-struct Workspace {
-  Common settings;
-  cholmod_dense *x = nullptr, *y = nullptr, *e = nullptr;
-  ~Workspace() {
-    for (cholmod_dense** matrix : {&x, &y, &e}) cholmod_free_dense(matrix, &settings.common);
-  }
-};
 
 class CholmodFactor : public Factor {
  public:
@@ -45,13 +18,7 @@ class CholmodFactor : public Factor {
 
   void solve(const Matrix& b, Matrix& x) const override {
     std::unique_ptr<Workspace> work = take();
-    cholmod_dense right{};
-    right.nrow = right.d = static_cast<std::size_t>(b.rows());
-    right.ncol = static_cast<std::size_t>(b.cols());
-    right.nzmax = right.nrow * right.ncol;
-    right.x = const_cast<double*>(b.data());  // only read
-    right.xtype = CHOLMOD_REAL;
-    right.dtype = CHOLMOD_DOUBLE;
+    cholmod_dense right = dense_view(b.data(), b.rows(), b.cols());
     if (b.size() > 0) {
       cholmod_solve2(CHOLMOD_A, factor_, &right, nullptr, &work->x, nullptr, &work->y, &work->e, &work->settings.common);
       if (&x != &b) x.resize(b.rows(), b.cols());
@@ -84,48 +51,11 @@ class CholmodFactor : public Factor {
   mutable std::vector<std::unique_ptr<Workspace>> idle_;
 };
 
-/// Square roots of the pivots, in the order of the factorisation.
-Vector pivots(const cholmod_factor& factor) {
-  Vector values(static_cast<Index>(factor.n));
-  const auto* x = static_cast<const double*>(factor.x);
-  if (factor.is_super) {
-    const auto *super = static_cast<const int*>(factor.super), *pi = static_cast<const int*>(factor.pi),
-               *px = static_cast<const int*>(factor.px);
-    for (std::size_t s = 0; s < factor.nsuper; ++s)
-      for (int k = super[s]; k < super[s + 1]; ++k) values[k] = x[px[s] + (k - super[s]) * static_cast<Index>(pi[s + 1] - pi[s] + 1)];
-  } else {
-    const auto* p = static_cast<const int*>(factor.p);
-    for (Index k = 0; k < values.size(); ++k) values[k] = x[p[k]];
-  }
-  return values;
-}
-
-/// First unknown whose pivot is not positive beyond round-off; -1 when all are.
-int broken_unknown(const cholmod_factor& factor, const Sparse& a) {
-  const auto* permutation = static_cast<const int*>(factor.Perm);
-  if (factor.minor < factor.n) return permutation[factor.minor];
-  const Vector roots = pivots(factor);
-  for (Index k = 0; k < roots.size(); ++k)
-    if (!(roots[k] * roots[k] > LinearSolver::least_pivot * a.coeff(permutation[k], permutation[k]))) return permutation[k];
-  return -1;
-}
-
 class Cholmod : public LinearSolver {
  public:
   Factorisation factorise(const Sparse& given) const override {
     Sparse lower = given.triangularView<lower_triangle>();
-    lower.makeCompressed();
-    cholmod_sparse a{};
-    a.nrow = a.ncol = static_cast<std::size_t>(lower.rows());
-    a.nzmax = static_cast<std::size_t>(lower.nonZeros());
-    a.p = lower.outerIndexPtr();
-    a.i = lower.innerIndexPtr();
-    a.x = lower.valuePtr();
-    a.stype = -1;  // the lower triangle is stored
-    a.itype = CHOLMOD_INT;
-    a.xtype = CHOLMOD_REAL;
-    a.dtype = CHOLMOD_DOUBLE;
-    a.sorted = a.packed = 1;
+    cholmod_sparse a = sparse_view(lower);
     auto settings = std::make_unique<Common>();
     cholmod_common& common = settings->common;
     cholmod_factor* raw = cholmod_analyze(&a, &common);
@@ -137,6 +67,7 @@ class Cholmod : public LinearSolver {
     if (const int broken = broken_unknown(*raw, given); broken >= 0) return singular_at(broken);
     return {.factor = std::move(factor), .failed_unknown = -1, .why = {}};
   }
+  SplitFactorisation factorise_split(const Sparse& a, const std::vector<int>& last) const override { return cholmod_split(a, last); }
 };
 
 }  // namespace

@@ -5,6 +5,7 @@
 #include <vector>
 
 #include "uplift/base/catalog.h"
+#include "uplift/linear/split.h"
 #include "uplift/math/linalg.h"
 
 namespace uplift {
@@ -31,6 +32,8 @@ class LinearSolver {
  public:
   virtual ~LinearSolver() = default;
   virtual Factorisation factorise(const Sparse& a) const = 0;
+  /// The same with chosen unknowns eliminated last. No factor and an empty reason: this solver cannot.
+  virtual SplitFactorisation factorise_split(const Sparse& a, const std::vector<int>& last) const;
   static constexpr double least_pivot = 1e-14;
 };
 

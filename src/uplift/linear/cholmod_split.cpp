@@ -1,0 +1,191 @@
+// Supernodal Cholesky with chosen unknowns last. CHOLMOD reorders what it is given (its supernodes need a postordered elimination tree),
+// and would scatter the chosen unknowns again. Two kinds of explicit zeros in the pattern keep them together at the end: every component of
+// the other unknowns is tied to the first chosen one, and each chosen one to the next. The tree then is a chain at its root, and every
+// postorder of it ends with that chain.
+#include "uplift/linear/cholmod_split.h"
+
+#include <algorithm>
+#include <mutex>
+#include <numeric>
+
+#include "uplift/linear/cholmod_common.h"
+
+namespace uplift {
+
+namespace {
+
+class CholmodSplit : public SplitFactor {
+ public:
+  CholmodSplit(std::unique_ptr<Common> settings, cholmod_factor* factor, Index chosen)
+      : settings_(std::move(settings)), factor_(factor), chosen_(chosen) {}
+  ~CholmodSplit() override { cholmod_free_factor(&factor_, &settings_->common); }
+  CholmodSplit(const CholmodSplit&) = delete;
+  CholmodSplit& operator=(const CholmodSplit&) = delete;
+
+  void forward(const Vector& b, Vector& y) const override {
+    const auto* order = static_cast<const int*>(factor_->Perm);
+    std::unique_ptr<Half> half = take();
+    half->in.resize(b.size());
+    for (Index k = 0; k < b.size(); ++k) half->in[k] = b[order[k]];
+    const double* solution = half->solve(CHOLMOD_L, factor_);
+    y.resize(b.size());
+    std::copy_n(solution, b.size(), y.data());
+    give_back(std::move(half));
+  }
+
+  void backward(const Vector& y, Vector& x) const override {
+    const auto* order = static_cast<const int*>(factor_->Perm);
+    std::unique_ptr<Half> half = take();
+    half->in = y;
+    const double* solution = half->solve(CHOLMOD_Lt, factor_);
+    x.resize(y.size());
+    for (Index k = 0; k < y.size(); ++k) x[order[k]] = solution[k];
+    give_back(std::move(half));
+  }
+
+  Matrix last() const override {
+    Matrix block = Matrix::Zero(chosen_, chosen_);
+    const Index first = static_cast<Index>(factor_->n) - chosen_;
+    const auto *super = static_cast<const int*>(factor_->super), *pi = static_cast<const int*>(factor_->pi),
+               *px = static_cast<const int*>(factor_->px), *rows = static_cast<const int*>(factor_->s);
+    const auto* values = static_cast<const double*>(factor_->x);
+    for (std::size_t s = 0; s < factor_->nsuper; ++s)
+      for (int column = super[s]; column < super[s + 1]; ++column) {
+        if (column < first) continue;
+        const int height = pi[s + 1] - pi[s], local = column - super[s];
+        for (int k = local; k < height; ++k)
+          block(rows[pi[s] + k] - first, column - first) = values[px[s] + static_cast<Index>(local) * height + k];
+      }
+    return block;
+  }
+
+  double nonzeros() const override { return static_cast<double>(factor_->xsize); }
+
+ private:
+  /// Scratch of half a back-solve, kept for the next one.
+  struct Half {
+    Common settings;
+    Vector in;
+    cholmod_dense *x = nullptr, *y = nullptr, *e = nullptr;
+    ~Half() {
+      for (cholmod_dense** matrix : {&x, &y, &e}) cholmod_free_dense(matrix, &settings.common);
+    }
+    const double* solve(int system, cholmod_factor* factor) {
+      cholmod_dense right = dense_view(in.data(), in.size(), 1);
+      cholmod_solve2(system, factor, &right, nullptr, &x, nullptr, &y, &e, &settings.common);
+      return static_cast<const double*>(x->x);
+    }
+  };
+  std::unique_ptr<Half> take() const {
+    const std::lock_guard lock(mutex_);
+    if (idle_.empty()) return std::make_unique<Half>();
+    std::unique_ptr<Half> half = std::move(idle_.back());
+    idle_.pop_back();
+    return half;
+  }
+  void give_back(std::unique_ptr<Half> half) const {
+    const std::lock_guard lock(mutex_);
+    idle_.push_back(std::move(half));
+  }
+
+  std::unique_ptr<Common> settings_;
+  cholmod_factor* factor_;
+  Index chosen_;
+  mutable std::mutex mutex_;  // guards the idle scratch only; the factor itself is read-only in a solve
+  mutable std::vector<std::unique_ptr<Half>> idle_;
+};
+
+/// Fill-reducing order of the unknowns that are not chosen, then the chosen ones.
+std::vector<int> order_of(const Sparse& a, const std::vector<int>& last, const std::vector<int>& others, Common& settings) {
+  std::vector<int> place(static_cast<std::size_t>(a.rows()), -1);
+  for (std::size_t k = 0; k < others.size(); ++k) place[static_cast<std::size_t>(others[k])] = static_cast<int>(k);
+  std::vector<Triplet> entries;
+  for (const int column : others)
+    for (Sparse::InnerIterator entry(a, column); entry; ++entry) {
+      const int row = place[static_cast<std::size_t>(entry.row())], col = place[static_cast<std::size_t>(column)];
+      if (row >= col) entries.emplace_back(row, col, 1.0);
+    }
+  Sparse lower(static_cast<Index>(others.size()), static_cast<Index>(others.size()));
+  lower.setFromTriplets(entries.begin(), entries.end());
+  cholmod_sparse view = sparse_view(lower);
+  std::vector<int> order;
+  if (!others.empty()) {
+    cholmod_factor* factor = cholmod_analyze(&view, &settings.common);
+    if (factor == nullptr) return {};
+    const auto* permutation = static_cast<const int*>(factor->Perm);
+    for (std::size_t k = 0; k < others.size(); ++k) order.push_back(others[static_cast<std::size_t>(permutation[k])]);
+    cholmod_free_factor(&factor, &settings.common);
+  }
+  order.insert(order.end(), last.begin(), last.end());
+  return order;
+}
+
+/// The last unknown, in the given order, of every connected component of the others.
+std::vector<int> ends_of_components(const Sparse& a, const std::vector<int>& order, std::size_t others) {
+  const auto n = static_cast<std::size_t>(a.rows());
+  std::vector<int> place(n), root(n);
+  for (std::size_t k = 0; k < n; ++k) place[static_cast<std::size_t>(order[k])] = static_cast<int>(k);
+  std::iota(root.begin(), root.end(), 0);  // union-find over places; the root is the largest place
+  const auto find = [&](int k) {
+    while (root[static_cast<std::size_t>(k)] != k)
+      k = root[static_cast<std::size_t>(k)] = root[static_cast<std::size_t>(root[static_cast<std::size_t>(k)])];
+    return k;
+  };
+  for (std::size_t k = 0; k < others; ++k)
+    for (Sparse::InnerIterator entry(a, order[k]); entry; ++entry) {
+      const int other = place[static_cast<std::size_t>(entry.row())];
+      if (other >= static_cast<int>(others)) continue;
+      const int from = find(static_cast<int>(k)), to = find(other);
+      root[static_cast<std::size_t>(std::min(from, to))] = std::max(from, to);
+    }
+  std::vector<int> ends;
+  for (std::size_t k = 0; k < others; ++k)
+    if (root[k] == static_cast<int>(k)) ends.push_back(order[k]);
+  return ends;
+}
+
+/// Lower triangle of `a` with the explicit zeros that hold the chosen unknowns together.
+Sparse with_chain(const Sparse& a, const std::vector<int>& last, const std::vector<int>& ends) {
+  std::vector<Triplet> zeros;
+  const auto add = [&](int i, int j) { zeros.emplace_back(std::max(i, j), std::min(i, j), 0.0); };
+  for (const int end : ends) add(last.front(), end);
+  for (std::size_t k = 1; k < last.size(); ++k) add(last[k - 1], last[k]);
+  Sparse extra(a.rows(), a.cols());
+  extra.setFromTriplets(zeros.begin(), zeros.end());
+  Sparse lower = a.triangularView<lower_triangle>();
+  return lower + extra;
+}
+
+}  // namespace
+
+SplitFactorisation cholmod_split(const Sparse& a, const std::vector<int>& last) {
+  const auto fail = [](const char* why) { return SplitFactorisation{.factor = nullptr, .failed_unknown = -1, .why = why}; };
+  const char* const memory = "the sparse factorisation ran out of memory";
+  std::vector<char> chosen(static_cast<std::size_t>(a.rows()), 0);
+  for (const int unknown : last) chosen[static_cast<std::size_t>(unknown)] = 1;
+  std::vector<int> others;
+  for (int i = 0; i < a.rows(); ++i)
+    if (chosen[static_cast<std::size_t>(i)] == 0) others.push_back(i);
+
+  auto settings = std::make_unique<Common>();
+  std::vector<int> order = order_of(a, last, others, *settings);
+  if (order.empty()) return fail(memory);
+  Sparse lower = with_chain(a, last, ends_of_components(a, order, others.size()));
+  cholmod_sparse view = sparse_view(lower);
+  settings->common.method[0].ordering = CHOLMOD_GIVEN;
+  cholmod_factor* raw = cholmod_analyze_p(&view, order.data(), nullptr, 0, &settings->common);
+  if (raw == nullptr) return fail(memory);
+  cholmod_factorize(&view, raw, &settings->common);
+  const int status = settings->common.status;
+  auto factor = std::make_unique<CholmodSplit>(std::move(settings), raw, static_cast<Index>(last.size()));
+  if (status < 0) return fail(memory);
+  if (const int broken = broken_unknown(*raw, a); broken >= 0) {
+    Factorisation singular = singular_at(broken);
+    return {.factor = nullptr, .failed_unknown = broken, .why = std::move(singular.why)};
+  }
+  const auto* permutation = static_cast<const int*>(raw->Perm);
+  if (!std::equal(last.begin(), last.end(), permutation + others.size())) return fail("the chosen unknowns did not stay last");
+  return {.factor = std::move(factor), .failed_unknown = -1, .why = {}};
+}
+
+}  // namespace uplift

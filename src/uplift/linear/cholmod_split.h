@@ -1,0 +1,9 @@
+#pragma once
+#include "uplift/linear/split.h"
+
+namespace uplift {
+
+/// See SplitFactor. Nested dissection of the other unknowns; `last` must hold distinct unknowns, at least one.
+SplitFactorisation cholmod_split(const Sparse& a, const std::vector<int>& last);
+
+}  // namespace uplift

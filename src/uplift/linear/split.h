@@ -1,0 +1,33 @@
+#pragma once
+#include <memory>
+#include <string>
+#include <vector>
+
+#include "uplift/math/linalg.h"
+
+namespace uplift {
+
+/// Cholesky factor in which chosen unknowns are eliminated last:  P A P^T = L L^T,  P = (the others, the chosen ones in their order).
+/// Then the last rows of a forward solve are all that the chosen unknowns feel of a right-hand side, and with L_bb, the last block of L,
+///   (A^-1)_bb = L_bb^-T L_bb^-1.
+/// A condensed step needs no other product with A^-1 than the two halves of one back-solve. Thread-safe.
+class SplitFactor {
+ public:
+  virtual ~SplitFactor() = default;
+  /// y = L^-1 P b: the chosen unknowns' part stands at the end.
+  virtual void forward(const Vector& b, Vector& y) const = 0;
+  /// x = P^T L^-T y
+  virtual void backward(const Vector& y, Vector& x) const = 0;
+  /// L_bb: lower triangle, as many rows as there are chosen unknowns; zero above.
+  virtual Matrix last() const = 0;
+  virtual double nonzeros() const = 0;  // of the factor, for the physical limit
+};
+
+/// A factor, or the reason and the unknown at which the factorisation broke down.
+struct SplitFactorisation {
+  std::unique_ptr<const SplitFactor> factor;
+  int failed_unknown = -1;
+  std::string why;
+};
+
+}  // namespace uplift

@@ -1,0 +1,64 @@
+#pragma once
+#include <map>
+#include <string>
+#include <vector>
+
+#include "uplift/base/error.h"
+#include "uplift/math/linalg.h"
+#include "uplift/mesh/cells.h"
+
+namespace uplift {
+
+/// One cell of a mesh: its block and its number inside the block.
+struct CellId {
+  int block = 0, index = 0;
+  auto operator<=>(const CellId&) const = default;  // NOLINT(modernize-use-nullptr): false alarm of clang-tidy 14
+};
+
+/// All cells of one type.
+struct CellBlock {
+  Cell cell = Cell::point;
+  std::vector<int> nodes;  // cell after cell
+  int count() const { return static_cast<int>(nodes.size()) / info(cell).nodes; }
+  std::span<const int> operator[](int index) const {
+    const auto n = static_cast<std::size_t>(info(cell).nodes);
+    return {nodes.data() + static_cast<std::size_t>(index) * n, n};
+  }
+};
+
+/// A named set. Cells of one dimension (a physical group of Gmsh, a family's group of MED); nodes only for groups of nodes.
+struct Group {
+  int dimension = 0;          // of its cells; 0 for nodes
+  std::vector<CellId> cells;  // ascending
+  std::vector<int> nodes;     // of a group of nodes, ascending
+};
+
+/// Nodes, cells, named groups. In plane models z = 0. A value: checked by `check_mesh`, never half valid.
+struct Mesh {
+  int dimension = 3;              // 2: all z equal
+  std::vector<Vec3> nodes;        // m
+  std::vector<CellBlock> blocks;  // at most one per type
+  std::map<std::string, Group> groups;
+  CellBlock& block(Cell cell);      // made when it is not there (references to other blocks end then)
+  int find_block(Cell cell) const;  // -1 when absent
+  std::span<const int> cell(CellId id) const { return blocks[static_cast<std::size_t>(id.block)][id.index]; }
+  Cell type(CellId id) const { return blocks[static_cast<std::size_t>(id.block)].cell; }
+  int cells() const;
+};
+
+/// Nodes of a group: of its cells, or its own; ascending, each once.
+std::vector<int> nodes_of(const Mesh& mesh, const Group& group);
+
+/// Length [m], area [m2] or volume [m3] of the cell with straight edges between its corners; 0 for a point. Negative when a volume, or a
+/// surface in a plane mesh, is inside out.
+double signed_size(const Mesh& mesh, CellId id);
+
+/// "cell 12 of group "soil_1" (hex8 at (1, 2, -3))" for messages: counted from 1 in the first group that has it, else in its block.
+std::string describe_cell(const Mesh& mesh, CellId id);
+
+/// Throws InputError unless the mesh is whole: blocks and groups refer to nodes and cells that are there, groups hold cells of one
+/// dimension in ascending order, coordinates are finite (in a plane mesh all z equal), no cell has a node twice, and every cell has a
+/// positive size (see signed_size; less than 1e-12 of longest edge to the power of the dimension counts as zero).
+void check_mesh(const Mesh& mesh, const Where& where);
+
+}  // namespace uplift

@@ -1,0 +1,179 @@
+#include "uplift/mesh/soil_box.h"
+
+#include <algorithm>
+#include <cmath>
+#include <string>
+
+#include "uplift/base/text.h"
+#include "uplift/mesh/box.h"
+
+namespace uplift {
+namespace {
+
+constexpr double round_off = 1e-9;  // of the soil's width or depth: lines nearer to each other are one
+
+std::size_t at(int i) {
+  return static_cast<std::size_t>(i);
+}
+
+class Check {
+ public:
+  Check(const SoilBox& model, const Where& where) : model_(model), where_(where) {}
+  void all() const {
+    const SoilBox& m = model_;
+    if (m.dimension != 2 && m.dimension != 3) refuse("dimension", "2 or 3", std::to_string(m.dimension));
+    if (info(m.cell).dimension != m.dimension)
+      refuse("cell", "a cell of dimension " + std::to_string(m.dimension), std::string(info(m.cell).name));
+    if (!(m.growth >= 1.01 && m.growth <= 2)) refuse("growth", "a factor from 1.01 to 2", shortest(m.growth));
+    if (!(m.raft.height > 0) && !(m.block.height > 0)) refuse("block.height", "a raft or a block", "neither");
+    soil();
+    part("raft", m.raft, m.soil.width, {0, 0}, "the soil");
+    const bool raft = m.raft.height > 0;
+    part("block", m.block, raft ? m.raft.width : m.soil.width, raft ? m.raft.offset : std::array{0.0, 0.0}, raft ? "the raft" : "the soil");
+    depth();
+  }
+
+ private:
+  [[noreturn]] void refuse(const std::string& path, const std::string& wanted, const std::string& found) const {
+    throw InputError(where_, path, wanted, found);
+  }
+  void positive(const std::string& path, double value) const {
+    if (!(value > 0) || !std::isfinite(value)) refuse(path, "a length > 0 m", shortest(value) + " m");
+  }
+  void size(const std::string& path, double value) const {
+    positive(path, value);
+    const double least = model_.soil.width[0] / 1e6;  // before that many lines are made
+    if (value < least)
+      refuse(path, "a length of at least a millionth of the soil's width (" + shortest(least) + " m)", shortest(value) + " m");
+  }
+  void soil() const {
+    for (int a = 0; a < model_.dimension - 1; ++a) positive("soil.width", model_.soil.width[at(a)]);
+    size("soil.size", model_.soil.size);
+    if (model_.soil.layers.empty()) refuse("soil.layers", "at least one layer", "none");
+    for (const SoilBox::Layer& layer : model_.soil.layers) {
+      positive("soil.layers.thickness", layer.thickness);
+      size("soil.layers.size", layer.size);
+    }
+  }
+  [[noreturn]] void beyond(const std::string& name, const std::string& below, double room, double width, double middle) const {
+    refuse(name + ".width", "a " + name + " inside the plan of " + below + ", " + shortest(room) + " m wide",
+           shortest(width) + " m with its middle at " + shortest(middle) + " m");
+  }
+  void part(const std::string& name, const SoilBox::Part& part, std::array<double, 2> room, std::array<double, 2> centre,
+            const std::string& below) const {
+    if (!(part.height >= 0) || !std::isfinite(part.height)) refuse(name + ".height", "a length >= 0 m", shortest(part.height) + " m");
+    if (part.height == 0) return;
+    size(name + ".size", part.size);
+    for (int a = 0; a < model_.dimension - 1; ++a) {
+      const double width = part.width[at(a)], offset = part.offset[at(a)] - centre[at(a)];
+      positive(name + ".width", width);
+      if (name == "raft" && offset != 0) refuse("raft.offset", "0 m: the raft is the middle of the model", shortest(offset) + " m");
+      if (!(std::abs(offset) + width / 2 <= room[at(a)] / 2 + round_off * model_.soil.width[at(a)]))
+        beyond(name, below, room[at(a)], width, part.offset[at(a)]);
+    }
+  }
+  void depth() const {
+    double all = 0;
+    for (const SoilBox::Layer& layer : model_.soil.layers) all += layer.thickness;
+    const double most = std::min(all, model_.raft.height + model_.block.height);
+    if (!(model_.embedment >= 0 && model_.embedment < most))
+      refuse("embedment", "a depth from 0 m to less than that of the soil and the height of the structure (" + shortest(most) + " m)",
+             shortest(model_.embedment) + " m");
+  }
+  const SoilBox& model_;
+  const Where& where_;
+};
+
+/// A stretch of an axis on which a size is wanted.
+struct Wish {
+  double from, to, size;
+};
+
+/// Lines through the ends of all wishes; between two of them the least size wanted there holds.
+std::vector<double> lines_for(const std::vector<Wish>& wishes, double growth) {
+  std::vector<double> ends;
+  for (const Wish& w : wishes) ends.insert(ends.end(), {w.from, w.to});
+  std::sort(ends.begin(), ends.end());
+  const double near = round_off * (ends.back() - ends.front());
+  ends.erase(std::unique(ends.begin(), ends.end(), [near](double a, double b) { return b - a <= near; }), ends.end());
+  std::vector<Stretch> stretches;
+  for (std::size_t i = 1; i < ends.size(); ++i) {
+    const double middle = (ends[i - 1] + ends[i]) / 2;
+    Stretch stretch{ends[i], HUGE_VAL};
+    for (const Wish& w : wishes)
+      if (w.from < middle && middle < w.to) stretch.size = std::min(stretch.size, w.size);
+    stretches.push_back(stretch);
+  }
+  return graded_lines(ends.front(), stretches, growth);
+}
+
+std::vector<double> plan_lines(const SoilBox& m, int axis) {
+  const std::size_t a = at(axis);
+  std::vector<Wish> wishes{{-m.soil.width[a] / 2, m.soil.width[a] / 2, m.soil.size}};
+  for (const SoilBox::Part* part : {&m.raft, &m.block})
+    if (part->height > 0) wishes.push_back({part->offset[a] - part->width[a] / 2, part->offset[a] + part->width[a] / 2, part->size});
+  return lines_for(wishes, m.growth);
+}
+
+std::vector<double> height_lines(const SoilBox& m) {
+  std::vector<Wish> wishes;
+  double depth = 0;
+  for (const SoilBox::Layer& layer : m.soil.layers) {
+    wishes.push_back({-depth - layer.thickness, -depth, layer.size});
+    depth += layer.thickness;
+  }
+  double bottom = -m.embedment;
+  for (const SoilBox::Part* part : {&m.raft, &m.block}) {
+    if (!(part->height > 0)) continue;
+    wishes.push_back({bottom, bottom + part->height, part->size});
+    bottom += part->height;
+  }
+  return lines_for(wishes, m.growth);
+}
+
+/// Parts by number: 0 raft, 1 block, 2 first layer of the soil, ...
+enum : int { raft = 0, block = 1, first_layer = 2 };
+
+int part_at(const SoilBox& m, const Vec3& x) {
+  const double height = x[m.dimension - 1];
+  const auto inside = [&](const SoilBox::Part& part, double bottom) {
+    if (height < bottom || height > bottom + part.height) return false;
+    for (int a = 0; a < m.dimension - 1; ++a)
+      if (std::abs(x[a] - part.offset[at(a)]) > part.width[at(a)] / 2) return false;
+    return true;
+  };
+  if (m.raft.height > 0 && inside(m.raft, -m.embedment)) return raft;
+  if (m.block.height > 0 && inside(m.block, m.raft.height - m.embedment)) return block;
+  double depth = 0;
+  if (height < 0)
+    for (std::size_t i = 0; i < m.soil.layers.size(); ++i)
+      if ((depth += m.soil.layers[i].thickness) > -height || i + 1 == m.soil.layers.size()) return first_layer + static_cast<int>(i);
+  return -1;
+}
+
+std::string face_name(int part, Direction direction, int other) {
+  const bool soil = part >= first_layer, other_soil = other >= first_layer;
+  if (other < 0) return (soil ? "soil_" : part == raft ? "raft_" : "block_") + std::string(name_of(direction));
+  return soil && !other_soil ? "interface" : "";
+}
+
+}  // namespace
+
+Mesh soil_box(const SoilBox& model, const Where& where) {
+  Check(model, where).all();
+  Grid lines{plan_lines(model, 0), {}, {}};
+  lines.y = model.dimension == 2 ? height_lines(model) : plan_lines(model, 1);
+  if (model.dimension == 3) lines.z = height_lines(model);
+  constexpr double most = 5e7;
+  const double cells = static_cast<double>(lines.x.size()) * static_cast<double>(lines.y.size()) *
+                       static_cast<double>(std::max<std::size_t>(1, lines.z.size()));
+  if (cells > most)
+    throw InputError(where, "soil.size", "sizes that make at most 50 million elements", "a grid of " + shortest(std::round(cells)));
+  std::vector<std::string> names{"raft", "block"};
+  for (std::size_t i = 0; i < model.soil.layers.size(); ++i) names.push_back("soil_" + std::to_string(i + 1));
+  const auto middle = [](const std::vector<double>& axis, int i) { return axis.empty() ? 0.0 : (axis[at(i)] + axis[at(i + 1)]) / 2; };
+  const auto part = [&](int i, int j, int k) { return part_at(model, {middle(lines.x, i), middle(lines.y, j), middle(lines.z, k)}); };
+  return with_cells(grid(lines, part, names, face_name), model.cell);
+}
+
+}  // namespace uplift
