@@ -3,9 +3,9 @@
 set -euo pipefail
 
 run="g++ cmake ninja-build pkg-config libeigen3-dev libsuitesparse-dev libopenblas-dev libspectra-dev libtomlplusplus-dev
-  nlohmann-json3-dev libudunits2-dev libcli11-dev libspdlog-dev libfmt-dev"
+  nlohmann-json3-dev libudunits2-dev libhdf5-dev zlib1g-dev libcli11-dev libfmt-dev"
 test="libgtest-dev librapidcheck-dev python3"
-develop="libbenchmark-dev clang-format-14 clang-tidy-14 nodejs npm chromium ca-certificates"
+develop="libbenchmark-dev clang-14 libclang-rt-14-dev clang-format-14 clang-tidy-14 nodejs npm chromium ca-certificates"
 
 case "${1:-run}" in
   run) wanted="$run" ;;

@@ -64,8 +64,30 @@ Whole footing(const Part& law, const std::string& method, const std::string& imp
   return whole;
 }
 
-/// Twice the number of steps, with the output table of the same size: what is allocated more is allocated by steps.
-long allocated_by_steps(Whole& whole, const Part& rule = {"average_acceleration"}) {
+/// Two interfaces of several points and six coordinates, or leaves with many: `left` and `right` are their behaviours.
+Whole beam(const Part& left, const Part& right, const std::string& method, const std::string& impact) {
+  Bridge data;
+  data.left = left;
+  data.right = right;
+  data.damping = 0.02;
+  Whole whole = make(data);
+  choose(whole, {method}, {impact});
+  whole.plan.created_limit = 1e30;
+  whole.plan.rotation_limit = 1e30;
+  return whole;
+}
+Whole leaves(const Part& behaviour, const std::string& method, const std::string& impact) {
+  Leaves data;
+  data.behaviour = behaviour;
+  Whole whole = make(data);
+  choose(whole, {method}, {impact});
+  whole.plan.created_limit = 1e30;
+  whole.plan.rotation_limit = 1e30;
+  return whole;
+}
+
+/// 500 steps more, with the output table of the same size: what is allocated more is allocated by steps.
+long allocated_by_steps(Whole& whole, const Part& rule = {"average_acceleration"}, long steps_before = 500) {
   const auto run = [&](long steps) {
     whole.plan.stages = {settle(), march(1e-3, steps, true, rule)};
     const Work work = run_counted(whole);
@@ -76,7 +98,7 @@ long allocated_by_steps(Whole& whole, const Part& rule = {"average_acceleration"
     return work.allocated;
   };
   run(10);  // what is allocated once and kept, by the libraries too
-  return run(1000) - run(500);
+  return run(steps_before + 500) - run(steps_before);
 }
 
 TEST(Counters, CountingCounts) {
@@ -110,6 +132,39 @@ TEST(Counters, NoAllocationAfterTheFirstStep) {
     EXPECT_EQ(allocated_by_steps(penalty), 0) << "penalty";
     Whole friction = footing(rubbing, "newton", "none", damping, true);
     EXPECT_EQ(allocated_by_steps(friction), 0) << "friction";
+    for (const std::string impact : {"none", "project", "project_hold", "reflect", "propagate"}) {
+      Whole augmented = footing({"unilateral"}, "augmented_lagrangian", impact, damping);
+      EXPECT_EQ(allocated_by_steps(augmented), 0) << "augmented Lagrangian, " << impact;
+    }
+    for (const std::string method : {"lagrange", "augmented_lagrangian", "penalty"}) {
+      Whole sliding = footing({"coulomb", {{"friction", 0.3}}}, method, "project_hold", damping, true);
+      EXPECT_EQ(allocated_by_steps(sliding), 0) << "sliding, " << method;
+    }
+  }
+}
+
+TEST(Counters, NoAllocationOfSeveralInterfaces) {
+  if (!can_count) GTEST_SKIP() << "allocations cannot be counted under the address sanitizer";
+  const Part sdm{"sdm", {{"K_n", 3e8}, {"F_u", 2e4}, {"G_f", 20.0}, {"F_c", -1e3}, {"tangential", "open_free"}}};
+  const Part elastic{"springs", {{"K_n", 3e8}, {"tangential", "none"}}};
+  const Part unilateral{"unilateral"}, coulomb{"coulomb", {{"friction", 0.3}}};
+  // after 1500 steps every point has been closed: the list of active rows has its final length
+  const auto allocated = [](Whole& whole) { return allocated_by_steps(whole, {"average_acceleration"}, 1500); };
+  for (const std::string method : {"lagrange", "augmented_lagrangian", "penalty"}) {
+    for (const Part& cone : {unilateral, coulomb}) {
+      for (const Part& other : {cone, sdm, elastic}) {
+        Whole whole = beam(other, cone, method, "project_hold");
+        EXPECT_EQ(allocated(whole), 0) << method << ", beam on " << other.type << " and " << cone.type;
+      }
+      Whole whole = leaves(cone, method, "project_hold");
+      EXPECT_EQ(allocated(whole), 0) << method << ", leaves, " << cone.type;
+    }
+  }
+  for (const Part& law : {sdm, elastic}) {
+    Whole two = beam(law, law, "newton", "none");
+    EXPECT_EQ(allocated(two), 0) << "newton, beam on " << law.type;
+    Whole many = leaves(law, "newton", "none");
+    EXPECT_EQ(allocated(many), 0) << "newton, leaves on " << law.type;
   }
 }
 

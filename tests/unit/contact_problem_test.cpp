@@ -165,6 +165,46 @@ TEST(ProblemFile, substituted_law_is_stored_as_its_cone) {
   EXPECT_EQ(stored.problem.old[0], 0.1 / 3);
 }
 
+// Claim: a penalty problem from a run (its law, scaled in another step size, and the memory of its friction) gives the same solution when
+// it is read back and solved by the penalty method with its standard parameters.
+TEST(ProblemFile, penalty_problem_replays_to_the_same_solution) {
+  const double mu = 0.4;
+  Own own;
+  own.add_cone("base", 5, 2, mu, {0.5, 1, 1, 1, 0.5});
+  const Footing plan = footing(5, 1.0);
+  Matrix b = Matrix::Zero(10, 3);
+  for (int i = 0; i < 5; ++i) b(i, 0) = 1, b.row(5 + i) << 0, plan.b(i, 0), plan.b(i, 1);
+  own.set(1e-4 * b, Vector::Zero(10));
+  InterfaceProblem& problem = own.problem;
+  const auto law = method("penalty", {{"factor", 3.0}})->substitute(*own.cones[0], 0.7 * flexibility(problem, problem.blocks[0]));
+  problem.blocks[0].law = law.get();
+  problem.blocks[0].cone = nullptr;
+  problem.old.assign(static_cast<std::size_t>(law->num_history(2) * 5), 0.0);
+  InterfaceSolution solution;
+  Outcome outcome;
+  for (const double share : {0.4, 1.0, 0.7}) {  // slides, then comes back: the memory matters
+    problem.free_opening.head(5).setConstant(share * 4e-5);
+    for (int i = 0; i < 5; ++i) problem.free_opening[5 + i] = -6e-5 + 2e-5 * plan.x[static_cast<std::size_t>(i)];
+    if (share != 0.4) {
+      problem.from = solution.opening;
+      problem.old = solution.now;
+    }
+    outcome = method("penalty")->solve(problem, solution);
+    ASSERT_TRUE(outcome.converged) << outcome.why;
+  }
+  const Values cone_values = values_of("coulomb", {{"friction", mu}}, interface_behaviours());
+  const StoredProblem stored = load_problem(save_problem(problem, {&cone_values}, ""), "penalty.json");
+  ASSERT_NE(stored.problem.blocks[0].cone, nullptr);
+  InterfaceSolution replayed;
+  ASSERT_TRUE(method("penalty")->solve(stored.problem, replayed).converged);
+  EXPECT_LE((replayed.z - solution.z).norm(), 1e-12 * solution.z.norm());
+  EXPECT_LE((replayed.force - solution.force).norm(), 1e-12 * solution.force.norm());
+  StoredProblem afresh = load_problem(save_problem(problem, {&cone_values}, ""), "penalty.json");  // the memory is what makes it so
+  afresh.problem.blocks[0].substitute_memory.clear();
+  ASSERT_TRUE(method("penalty")->solve(afresh.problem, replayed).converged);
+  EXPECT_GE((replayed.force - solution.force).norm(), 1e-3 * solution.force.norm());
+}
+
 std::string refusal(const std::string& text) {
   try {
     load_problem(text, "bad.json");

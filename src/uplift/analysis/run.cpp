@@ -8,6 +8,7 @@
 #include <utility>
 
 #include "uplift/analysis/record.h"
+#include "uplift/dynamics/split_response.h"
 #include "uplift/dynamics/statics.h"
 #include "uplift/dynamics/step.h"
 #include "uplift/model/geometric.h"
@@ -58,12 +59,12 @@ InterfaceProblem probe(const Model& model, const Bulk& bulk, const Sparse& b, co
   const None none;
   InterfaceProblem problem = blocks_of(model, Behaviours(model, none, nullptr));
   problem.step = dt;
-  BulkFactor factor(matrix, bulk.small, solver, model, counts);
+  BulkFactor factor(matrix, &b, bulk.small, solver, model, counts);
   if (!factor.ok()) {
     why = factor.why();
     return problem;
   }
-  problem.factor = factor.spread(b).factor;
+  problem.factor = factor.split() != nullptr ? SplitResponse(factor, b).factor() : factor.spread(b).factor;
   return problem;
 }
 

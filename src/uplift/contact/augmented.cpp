@@ -12,6 +12,20 @@
 // (neighbouring points of a rigid footing are nearly one row), e grows by 16 until round-off in the openings would show in the forces. From
 // m = 0 the pressures of redundant points come out as those of a bed of equal springs, the least-norm ones, up to 1/factor.
 namespace uplift {
+
+void augmentation(const InterfaceProblem& problem, double factor, Vector& stiffness) {
+  stiffness.resize(problem.rows());
+  double largest = 0;
+  for (Index i = 0; i < stiffness.size(); ++i) largest = std::max(largest, stiffness[i] = problem.factor.row(i).squaredNorm());
+  for (const Block& block : problem.blocks) {
+    const int n = block.batch.points;
+    for (int i = block.first; block.batch.components == 3 && i < block.first + n; ++i)
+      stiffness[i] = stiffness[i + n] = 0.5 * (stiffness[i] + stiffness[i + n]);
+  }
+  for (Index i = 0; i < stiffness.size(); ++i)
+    stiffness[i] = factor / (stiffness[i] > 1e-12 * largest ? stiffness[i] : std::max(largest, 1e-300));
+}
+
 namespace {
 
 class AugmentedLagrangian final : public ContactMethod {
@@ -58,7 +72,8 @@ class AugmentedLagrangian final : public ContactMethod {
         }
       }
       // under a rigid footing friction can be shared in many ways, between which the multipliers wander while everything else stands still
-      const bool wanders = rubs && update >= 8 && change <= 1e-3 * largest && yardstick(problem, solution) <= 10 * tolerance_;
+      const bool wanders =
+          rubs && update >= 8 && change <= 1e-3 * largest && yardstick(problem, solution, solution.yardstick) <= 10 * tolerance_;
       if (change <= tolerance_ * largest || wanders || change <= 4 * epsilon * noise) {
         total.converged = true;
         return total;
@@ -73,19 +88,13 @@ class AugmentedLagrangian final : public ContactMethod {
     return total;
   }
 
-  /// Multipliers start at zero, so that the answer depends on the problem alone; e = factor / F_ii, of the whole interface where a row has
-  /// no compliance.
+  /// Multipliers start at zero, so that the answer depends on the problem alone.
   void prepare(const InterfaceProblem& problem, AugmentedScratch& scratch) const {
     const Eigen::Index rows = problem.rows();
     if (scratch.multiplier.size() != rows) scratch.multiplier.resize(rows);
     scratch.multiplier.setZero();
     scratch.growth = 1;
-    if (scratch.stiffness.size() == rows) return;
-    scratch.stiffness.resize(rows);
-    double largest = 0;
-    for (Eigen::Index i = 0; i < rows; ++i) largest = std::max(largest, scratch.stiffness[i] = problem.factor.row(i).squaredNorm());
-    for (Eigen::Index i = 0; i < rows; ++i)
-      scratch.stiffness[i] = factor_ / (scratch.stiffness[i] > 1e-12 * largest ? scratch.stiffness[i] : std::max(largest, 1e-300));
+    if (scratch.stiffness.size() != rows) augmentation(problem, factor_, scratch.stiffness);
   }
 
   double factor_, tolerance_;

@@ -61,6 +61,7 @@ bool select_rows(const Impact& impact, Hold hold, ImpactScratch& scratch) {
   select(impact.normals, take ? scratch.limit.data() : scratch.fixed.data());
   select(impact.tangents, scratch.fixed.data());
   scratch.any_fixed = !take || !impact.tangents.empty();
+  if (impact.mass->factor.cols() > 3) least = 0, most = static_cast<int>(rows) - 1;  // the kernel's work space keeps its size
   scratch.first = least;
   scratch.count = most - least + 1;
   return true;

@@ -11,37 +11,46 @@ namespace {
 
 constexpr int most_iterations = 60;
 
+void size_scratch(Index rows, Index columns, KernelScratch& scratch) {
+  scratch.closed_rows.size(rows, columns);
+  if (scratch.opening.size() == rows && scratch.z.size() == columns) return;
+  scratch.closed.reserve(static_cast<std::size_t>(rows));
+  for (Vector* v : {&scratch.opening, &scratch.field, &scratch.right, &scratch.root, &scratch.multiplier}) v->setZero(rows);
+  for (Vector* v : {&scratch.z, &scratch.step}) v->setZero(columns);
+}
+
 /// One pass of the general active set: the closed rows solved, openings, pressures C y and forces evaluated. False when the closed rows
 /// contradict each other beyond `gap`.
-bool solve_closed(const Rows& rows, const ConstMatrixMap& c, const std::vector<std::ptrdiff_t>& closed, double gap, const double* held,
-                  Vector& z, Vector& opening, Vector& field) {
-  const Index n = rows.count;
-  const ConstMap target(rows.target, n);
-  const Index count = static_cast<Index>(closed.size());
-  Matrix a(count, rows.columns);
-  Vector right(count), root(count);
+bool solve_closed(const Rows& rows, const ConstMatrixMap& c, double gap, const double* held, KernelScratch& scratch) {
+  const ConstMap target(rows.target, rows.count);
+  const Index count = static_cast<Index>(scratch.closed.size());
+  const auto row = [&](Index k) { return scratch.closed[static_cast<std::size_t>(k)]; };
+  HeldRows& solver = scratch.closed_rows;
   for (Index k = 0; k < count; ++k) {
-    root[k] = std::sqrt(held[closed[static_cast<std::size_t>(k)]]);
-    a.row(k) = root[k] * c.row(closed[static_cast<std::size_t>(k)]);
-    right[k] = -root[k] * target[closed[static_cast<std::size_t>(k)]];
+    scratch.root[k] = std::sqrt(held[row(k)]);
+    solver.transposed().col(k) = scratch.root[k] * c.row(row(k)).transpose();
+    scratch.right[k] = -scratch.root[k] * target[row(k)];
   }
-  const HeldRows solver(a);
-  z = solver.least_norm(right);
+  solver.compute(count);
+  solver.least_norm(scratch.right, scratch.z);
   for (int refinement = 0;; ++refinement) {
-    opening.noalias() = c * z + target;
+    scratch.opening = target;
+    scratch.opening.noalias() += c * scratch.z;
     double worst = 0;
     for (Index k = 0; k < count; ++k) {
-      const double value = opening[closed[static_cast<std::size_t>(k)]];
+      const double value = scratch.opening[row(k)];
       worst = std::max(worst, std::abs(value));
-      right[k] = -root[k] * value;
+      scratch.right[k] = -scratch.root[k] * value;
     }
     if (worst <= 1e-13 * target.cwiseAbs().maxCoeff() || (refinement == 3 && worst <= gap)) break;
     if (refinement == 3) return false;
-    z += solver.least_norm(right);
+    solver.least_norm(scratch.right, scratch.step);
+    scratch.z += scratch.step;
   }
-  const Vector q = solver.multipliers(z);
-  field.noalias() = c * solver.least_norm(q);
-  for (Index k = 0; k < count; ++k) field[closed[static_cast<std::size_t>(k)]] = q[k] / root[k];
+  solver.multipliers(scratch.z, scratch.multiplier);
+  solver.least_norm(scratch.multiplier, scratch.step);
+  scratch.field.noalias() = c * scratch.step;
+  for (Index k = 0; k < count; ++k) scratch.field[row(k)] = scratch.multiplier[k] / scratch.root[k];
   return true;
 }
 
@@ -78,15 +87,15 @@ KernelReply general_active_set(const Rows& rows, double* held, double* z_out, do
   const double gap = std::max(rows.tolerance, rows.relative * target.norm());
   scratch.visited.count = 0;
   scratch.visited.note(n, held);
-  std::vector<std::ptrdiff_t> closed;
-  Vector z(r), opening(n), field(n);
+  size_scratch(n, r, scratch);
+  const Vector &opening = scratch.opening, &field = scratch.field;
   for (reply.iterations = 1; reply.iterations <= most_iterations; ++reply.iterations) {
-    closed.clear();
+    scratch.closed.clear();
     for (Index i = 0; i < n; ++i)
-      if (held[i] > 0) closed.push_back(i);
-    if (!solve_closed(rows, c, closed, gap, held, z, opening, field)) return reply;
+      if (held[i] > 0) scratch.closed.push_back(i);
+    if (!solve_closed(rows, c, gap, held, scratch)) return reply;
     double largest = 0;
-    for (const std::ptrdiff_t i : closed) largest = std::max(largest, std::abs(field[i]));
+    for (const std::ptrdiff_t i : scratch.closed) largest = std::max(largest, std::abs(field[i]));
     const double pressure = 1e-12 * largest;
     for (Index i = 0; i < n; ++i) force[i] = held[i] * (rows.limit[i] > 0 ? std::min(0.0, field[i]) : field[i]);
     bool changed = false;
@@ -97,8 +106,8 @@ KernelReply general_active_set(const Rows& rows, double* held, double* z_out, do
       held[i] = now ? rows.limit[i] : 0;
     }
     if (!changed) {
-      reply.residual = kernel_residual(c, z, force, held, opening, rows.target);
-      std::copy_n(z.data(), r, z_out);
+      reply.residual = kernel_residual(c, scratch.z, force, held, opening, rows.target, scratch.step);
+      std::copy_n(scratch.z.data(), r, z_out);
       std::copy_n(opening.data(), n, opening_out);
       reply.end = KernelEnd::solved;
       return reply;

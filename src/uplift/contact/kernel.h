@@ -1,7 +1,9 @@
 #pragma once
 #include <array>
 #include <cstdint>
+#include <vector>
 
+#include "uplift/contact/held_rows.h"
 #include "uplift/math/linalg.h"
 
 // The small quadratic problem under constraint contact and impact alike:
@@ -33,10 +35,24 @@ struct Visited {
   bool note(std::ptrdiff_t rows, const double* held);
 };
 
+/// Work space of the dual method.
+struct DualScratch {
+  Matrix q, triangle;  // r x r: rows of the set as C_A^T = Q R
+  Vector z, opening, normal, direction, coefficients, again, change, solution, field, rest, part;
+  std::vector<std::ptrdiff_t> set, behind, closed;
+  std::vector<double> signs, multipliers, behind_signs, behind_multipliers, weight;
+  std::vector<char> in, pressed;
+};
+
 /// Work space, sized at the first call.
 struct KernelScratch {
   Vector next;  // the set of the next iteration
   Visited visited;
+  // more than three columns
+  HeldRows closed_rows;
+  std::vector<std::ptrdiff_t> closed;
+  Vector z, opening, field, right, root, multiplier, step;
+  DualScratch dual;
 };
 
 enum class KernelEnd {
@@ -59,7 +75,7 @@ struct KernelReply {
 /// Solves the problem. `held` (rows) is weight where a row is closed and 0 where it is open: the first guess on entry, the set found on
 /// return. `z` (r), `opening`, `force` (rows) are outputs. Primal-dual active set (Hintermueller, Ito & Kunisch, SIAM J. Optim. 13, 2002);
 /// when a set repeats or contradicts itself, the dual method of Goldfarb & Idnani (Math. Programming 27, 1983), which is finite, takes
-/// over. No allocation after the first call for r <= 3 unless the fallback is needed.
+/// over. No allocation after the first call.
 KernelReply solve_rows(const Rows&, double* held, double* z, double* opening, double* force, KernelScratch&);
 
 /// The primal-dual active set for r <= 3 alone; `stuck` when the fallback is needed.

@@ -14,47 +14,63 @@ namespace {
 
 class DualSet {
  public:
-  DualSet(const Rows& rows, const ConstMatrixMap& c)
-      : rows_(rows), c_(c), target_(rows.target, rows.count), q_(c.cols(), 0), z_(Vector::Zero(c.cols())) {
-    in_.assign(static_cast<std::size_t>(rows.count), 0);
+  DualSet(const Rows& rows, const ConstMatrixMap& c, DualScratch& scratch) : rows_(rows), c_(c), s_(scratch) {
+    const Index r = c.cols();
+    if (s_.q.rows() != r || s_.opening.size() != rows.count) {
+      s_.q.setZero(r, r);
+      s_.triangle.setZero(r, r);
+      for (Vector* v : {&s_.normal, &s_.direction, &s_.coefficients, &s_.again, &s_.change, &s_.solution, &s_.rest, &s_.part})
+        v->setZero(r);
+      s_.opening.setZero(rows.count);
+      s_.field.setZero(rows.count);
+      for (std::vector<std::ptrdiff_t>* v : {&s_.set, &s_.closed, &s_.behind}) v->reserve(static_cast<std::size_t>(rows.count));
+      for (std::vector<double>* v : {&s_.signs, &s_.multipliers, &s_.weight, &s_.behind_signs, &s_.behind_multipliers})
+        v->reserve(static_cast<std::size_t>(rows.count));
+      s_.pressed.reserve(static_cast<std::size_t>(rows.count));
+    }
+    s_.z.setZero(r);
+    s_.set.clear(), s_.signs.clear(), s_.multipliers.clear();
+    s_.in.assign(static_cast<std::size_t>(rows.count), 0);
   }
 
   /// Steps until row i is satisfied. False when it cannot be.
   bool enforce(Index i) {
     const bool free_sign = !(rows_.limit[i] > 0);
-    double gap = target_[i] + c_.row(i).dot(z_);
+    double gap = rows_.target[i] + c_.row(i).dot(s_.z);
     const double sign = free_sign && gap > 0 ? -1 : 1;  // the constraint is sign * opening >= 0
-    const Vector normal = sign * c_.row(i).transpose();
-    const double size = normal.norm();
+    s_.normal = sign * c_.row(i).transpose();
+    const double size = s_.normal.norm();
     gap *= sign;
     double multiplier = 0;
     if (!(size > 0)) return false;
     for (;;) {
-      Vector direction = normal;
-      const Vector coefficients = orthogonalise(direction);
-      const Vector change = triangular(coefficients);  // of the multipliers of the set, per unit of the new one
-      const double slope = direction.squaredNorm();
-      const bool independent = std::sqrt(slope) > 1e-10 * size;
+      s_.direction = s_.normal;
+      orthogonalise();
+      const Index k = count();
+      s_.change.head(k) = s_.coefficients.head(k);  // of the multipliers of the set, per unit of the new one
+      back_substitute(s_.change);
+      const double slope = s_.direction.squaredNorm();
+      const bool independent = std::sqrt(slope) > 1e-10 * size && k < c_.cols();
       double full = std::numeric_limits<double>::infinity(), partial = full;
       if (independent) full = -gap / slope;
-      std::size_t leaving = set_.size();
-      for (std::size_t k = 0; k < set_.size(); ++k) {
-        const double rate = change[static_cast<Index>(k)];
-        if (!(rows_.limit[set_[k]] > 0) || !(rate > 1e-14)) continue;
-        const double length = multipliers_[k] / rate;
-        if (length < partial) partial = length, leaving = k;
+      std::size_t leaving = s_.set.size();
+      for (std::size_t j = 0; j < s_.set.size(); ++j) {
+        const double rate = s_.change[static_cast<Index>(j)];
+        if (!(rows_.limit[s_.set[j]] > 0) || !(rate > 1e-14)) continue;
+        const double length = s_.multipliers[j] / rate;
+        if (length < partial) partial = length, leaving = j;
       }
       const double length = std::min(full, partial);
       if (!std::isfinite(length)) return false;
       if (independent) {
-        z_ += length * direction;
+        s_.z += length * s_.direction;
         gap += length * slope;
       }
-      for (std::size_t k = 0; k < set_.size(); ++k) multipliers_[k] -= length * change[static_cast<Index>(k)];
+      for (std::size_t j = 0; j < s_.set.size(); ++j) s_.multipliers[j] -= length * s_.change[static_cast<Index>(j)];
       multiplier += length;
       ++steps_;
       if (full <= partial) {
-        append(i, sign, direction, coefficients, multiplier);
+        append(i, sign, multiplier);
         return true;
       }
       remove(leaving);
@@ -63,107 +79,111 @@ class DualSet {
 
   /// z and multipliers again from the set alone, free of accumulated round-off. `force` receives the multipliers as p (tension > 0).
   void finish(double* force) {
-    const Index k = static_cast<Index>(set_.size());
+    const Index k = count();
     std::fill_n(force, rows_.count, 0.0);
-    if (k == 0) {
-      z_.setZero();
-      return;
+    s_.z.setZero();
+    for (Index j = 0; j < k; ++j) {  // R^T a = -target
+      const std::size_t s = static_cast<std::size_t>(j);
+      const double known = s_.triangle.col(j).head(j).dot(s_.part.head(j));
+      s_.part[j] = (-s_.signs[s] * rows_.target[s_.set[s]] - known) / s_.triangle(j, j);
+      s_.z += s_.part[j] * s_.q.col(j);
     }
-    Vector right(k);
-    for (Index j = 0; j < k; ++j) right[j] = -signs_[static_cast<std::size_t>(j)] * target_[set_[static_cast<std::size_t>(j)]];
-    const auto upper = r_.topLeftCorner(k, k).triangularView<upper_triangle>();
-    const Vector a = upper.transpose().solve(right);
-    z_ = q_.leftCols(k) * a;
-    const Vector multipliers = upper.solve(a);
+    back_substitute(s_.part);
     for (Index j = 0; j < k; ++j) {
       const std::size_t s = static_cast<std::size_t>(j);
-      force[set_[s]] = rows_.limit[set_[s]] > 0 ? -std::max(0.0, multipliers[j]) : -signs_[s] * multipliers[j];
+      force[s_.set[s]] = rows_.limit[s_.set[s]] > 0 ? -std::max(0.0, s_.part[j]) : -s_.signs[s] * s_.part[j];
     }
   }
 
-  const Vector& z() const { return z_; }
-  bool contains(Index i) const { return in_[static_cast<std::size_t>(i)] != 0; }
+  bool contains(Index i) const { return s_.in[static_cast<std::size_t>(i)] != 0; }
   int steps() const { return steps_; }
 
  private:
-  /// Takes the part in the range of Q out of v, returns the coefficients.
-  Vector orthogonalise(Vector& v) const {
-    const Index k = static_cast<Index>(set_.size());
-    Vector coefficients = q_.leftCols(k).transpose() * v;
-    v -= q_.leftCols(k) * coefficients;
-    const Vector again = q_.leftCols(k).transpose() * v;
-    v -= q_.leftCols(k) * again;
-    return coefficients + again;
+  Index count() const { return static_cast<Index>(s_.set.size()); }
+  /// Takes the part in the range of Q out of the direction and keeps its coefficients.
+  void orthogonalise() {
+    const Index k = count();
+    auto first = s_.coefficients.head(k), second = s_.again.head(k);
+    const auto q = s_.q.leftCols(k);
+    first.noalias() = q.transpose() * s_.direction;
+    s_.direction.noalias() -= q * first;
+    second.noalias() = q.transpose() * s_.direction;
+    s_.direction.noalias() -= q * second;
+    first += second;
   }
-  Vector triangular(const Vector& b) const {
-    if (b.size() == 0) return b;
-    return r_.topLeftCorner(b.size(), b.size()).triangularView<upper_triangle>().solve(b);
+  void back_substitute(Vector& x) const {
+    for (Index j = count(); j-- > 0;) {
+      x[j] /= s_.triangle(j, j);
+      for (Index i = 0; i < j; ++i) x[i] -= s_.triangle(i, j) * x[j];
+    }
   }
-  void append(Index i, double sign, const Vector& direction, const Vector& coefficients, double multiplier) {
-    const Index k = static_cast<Index>(set_.size());
-    const double size = direction.norm();
-    q_.conservativeResize(c_.cols(), k + 1);
-    r_.conservativeResize(k + 1, k + 1);
-    q_.col(k) = direction / size;
-    r_.row(k).setZero();
-    r_.col(k).head(k) = coefficients;
-    r_(k, k) = size;
-    set_.push_back(i), signs_.push_back(sign), multipliers_.push_back(multiplier);
-    in_[static_cast<std::size_t>(i)] = 1;
+  /// The direction and its coefficients become the last column of Q R.
+  void append(Index i, double sign, double multiplier) {
+    const Index k = count();
+    const double size = s_.direction.norm();
+    s_.q.col(k) = s_.direction / size;
+    s_.triangle.col(k).head(k) = s_.coefficients.head(k);
+    s_.triangle(k, k) = size;
+    s_.set.push_back(i), s_.signs.push_back(sign), s_.multipliers.push_back(multiplier);
+    s_.in[static_cast<std::size_t>(i)] = 1;
   }
+  /// Those behind the leaving row are appended again.
   void remove(std::size_t leaving) {
-    const std::vector<Index> set = set_;
-    const std::vector<double> signs = signs_, multipliers = multipliers_;
-    in_[static_cast<std::size_t>(set[leaving])] = 0;
-    set_.clear(), signs_.clear(), multipliers_.clear();
-    for (std::size_t k = 0; k < set.size(); ++k) {
-      if (k == leaving) continue;
-      Vector direction = signs[k] * c_.row(set[k]).transpose();
-      const Vector coefficients = orthogonalise(direction);
-      append(set[k], signs[k], direction, coefficients, multipliers[k]);
+    s_.in[static_cast<std::size_t>(s_.set[leaving])] = 0;
+    s_.behind.assign(s_.set.begin() + static_cast<std::ptrdiff_t>(leaving) + 1, s_.set.end());
+    s_.behind_signs.assign(s_.signs.begin() + static_cast<std::ptrdiff_t>(leaving) + 1, s_.signs.end());
+    s_.behind_multipliers.assign(s_.multipliers.begin() + static_cast<std::ptrdiff_t>(leaving) + 1, s_.multipliers.end());
+    s_.set.resize(leaving), s_.signs.resize(leaving), s_.multipliers.resize(leaving);
+    for (std::size_t k = 0; k < s_.behind.size(); ++k) {
+      s_.direction = s_.behind_signs[k] * c_.row(s_.behind[k]).transpose();
+      orthogonalise();
+      append(s_.behind[k], s_.behind_signs[k], s_.behind_multipliers[k]);
     }
   }
 
   const Rows& rows_;
   const ConstMatrixMap& c_;
-  ConstMap target_;
-  Matrix q_, r_;
-  Vector z_;
-  std::vector<Index> set_;
-  std::vector<double> signs_, multipliers_;
-  std::vector<char> in_;
+  DualScratch& s_;
   int steps_ = 0;
 };
 
 /// Least-norm forces on the closed rows for the z that is known: p = weight * min(0, C y), C^T p = -z, by Newton on the dual, a convex
 /// piecewise quadratic function of y. False when it does not settle: the forces that were there remain.
-bool least_norm_forces(const Rows& rows, const ConstMatrixMap& c, const Vector& z, const Vector& opening, double gap, double* held,
-                       double* force) {
+bool least_norm_forces(const Rows& rows, const ConstMatrixMap& c, double gap, double* held, double* force, KernelScratch& scratch) {
   const Index n = rows.count;
-  std::vector<Index> closed;
-  std::vector<double> weight;
+  DualScratch& s = scratch.dual;
+  const Vector& z = s.z;
+  std::vector<std::ptrdiff_t>& closed = s.closed;
+  std::vector<double>& weight = s.weight;
+  std::vector<char>& pressed = s.pressed;
+  closed.clear(), weight.clear();
   for (Index i = 0; i < n; ++i) {
     const bool fixed = rows.fixed != nullptr && !(rows.limit[i] > 0) && rows.fixed[i] > 0;
-    if (fixed || (rows.limit[i] > 0 && std::abs(opening[i]) <= gap)) {
+    if (fixed || (rows.limit[i] > 0 && std::abs(s.opening[i]) <= gap)) {
       closed.push_back(i);
       weight.push_back(fixed ? rows.fixed[i] : rows.limit[i]);
     }
   }
-  std::vector<char> pressed(closed.size(), 1);
+  pressed.assign(closed.size(), 1);
+  const Index count = static_cast<Index>(closed.size());
+  HeldRows& solver = scratch.closed_rows;
+  solver.size(n, c.cols());
+  if (scratch.multiplier.size() < n) scratch.multiplier.setZero(n);
+  Vector &q = scratch.multiplier, &y = s.solution, &field = s.field, &rest = s.rest;
   for (int iteration = 0; iteration < 60; ++iteration) {
-    Matrix a = Matrix::Zero(static_cast<Index>(closed.size()), c.cols());
     for (std::size_t k = 0; k < closed.size(); ++k)
-      if (pressed[k] != 0) a.row(static_cast<Index>(k)) = std::sqrt(weight[k]) * c.row(closed[k]);
-    const HeldRows solver(a);
-    const Vector q = solver.multipliers(z);
-    const double error = (a.transpose() * q + z).norm();
-    const Vector y = solver.least_norm(q);
+      solver.transposed().col(static_cast<Index>(k)) = (pressed[k] != 0 ? std::sqrt(weight[k]) : 0.0) * c.row(closed[k]).transpose();
+    solver.compute(count);
+    solver.multipliers(z, q);
+    rest = z;
+    rest.noalias() += solver.transposed().leftCols(count) * q.head(count);
+    const double error = rest.norm();
+    solver.least_norm(q, y);
     double largest = 0;
-    Vector field(static_cast<Index>(closed.size()));
     for (std::size_t k = 0; k < closed.size(); ++k) {
-      const Index s = static_cast<Index>(k);
-      field[s] = pressed[k] != 0 ? q[s] / std::sqrt(weight[k]) : c.row(closed[k]).dot(y);
-      if (pressed[k] != 0) largest = std::max(largest, std::abs(field[s]));
+      const Index row = static_cast<Index>(k);
+      field[row] = pressed[k] != 0 ? q[row] / std::sqrt(weight[k]) : c.row(closed[k]).dot(y);
+      if (pressed[k] != 0) largest = std::max(largest, std::abs(field[row]));
     }
     bool changed = false;
     for (std::size_t k = 0; k < closed.size(); ++k) {
@@ -189,7 +209,7 @@ bool least_norm_forces(const Rows& rows, const ConstMatrixMap& c, const Vector& 
 
 }  // namespace
 
-KernelReply dual_active_set(const Rows& rows, double* held, double* z, double* opening_out, double* force, KernelScratch&) {
+KernelReply dual_active_set(const Rows& rows, double* held, double* z, double* opening_out, double* force, KernelScratch& scratch) {
   const Index n = rows.count;
   const ConstMatrixMap c(rows.factor, n, rows.columns, ColumnStride(rows.stride));
   const ConstMap target(rows.target, n);
@@ -200,34 +220,38 @@ KernelReply dual_active_set(const Rows& rows, double* held, double* z, double* o
     return reply;
   }
   const double gap = n > 0 ? std::max(rows.tolerance, rows.relative * target.norm()) : rows.tolerance;
-  DualSet set(rows, c);
+  DualSet set(rows, c, scratch.dual);
+  const Vector& solution = scratch.dual.z;
+  Vector& opening = scratch.dual.opening;
+  if (scratch.step.size() != rows.columns) scratch.step.setZero(rows.columns);
   for (Index i = 0; rows.fixed != nullptr && i < n; ++i) {
-    if (rows.limit[i] > 0 || !(rows.fixed[i] > 0) || std::abs(target[i] + c.row(i).dot(set.z())) <= gap) continue;
+    if (rows.limit[i] > 0 || !(rows.fixed[i] > 0) || std::abs(target[i] + c.row(i).dot(solution)) <= gap) continue;
     if (set.enforce(i)) continue;
     reply.end = KernelEnd::inconsistent;
     reply.worst = i;
     return reply;
   }
   const int most = 100 + 20 * static_cast<int>(n + rows.columns);
-  Vector opening;
   while (set.steps() < most) {
-    opening = target + c * set.z();
+    opening = target;
+    opening.noalias() += c * solution;
     Index worst = -1;
     double depth = gap;
     for (Index i = 0; i < n; ++i)
       if (rows.limit[i] > 0 && -opening[i] > depth && !set.contains(i)) depth = -opening[i], worst = i;
     if (worst < 0) {
       set.finish(force);
-      opening = target + c * set.z();
+      opening = target;
+      opening.noalias() += c * solution;
       for (Index i = 0; i < n; ++i) held[i] = force[i] != 0 ? (rows.limit[i] > 0 ? rows.limit[i] : rows.fixed[i]) : 0;
       if (rows.fixed != nullptr)
         for (Index i = 0; i < n; ++i)
           if (!(rows.limit[i] > 0)) held[i] = rows.fixed[i];
-      least_norm_forces(rows, c, set.z(), opening, gap, held, force);
-      std::copy_n(set.z().data(), rows.columns, z);
+      least_norm_forces(rows, c, gap, held, force, scratch);
+      std::copy_n(solution.data(), rows.columns, z);
       std::copy_n(opening.data(), n, opening_out);
       reply.end = KernelEnd::solved;
-      reply.residual = kernel_residual(c, set.z(), force, held, opening, rows.target);
+      reply.residual = kernel_residual(c, solution, force, held, opening, rows.target, scratch.step);
       reply.iterations = set.steps();
       return reply;
     }

@@ -30,9 +30,15 @@ Outcome solve_frictional(const InterfaceProblem&, const LagrangeOptions&, Interf
 /// gets d force_r / d opening_c of block b, component-major, at [first_slope[b] + (r * components + c) * points + i] [N/m].
 void law_forces(const InterfaceProblem&, const std::vector<int>& first_slope, double* slope, InterfaceSolution&);
 /// Where the slopes of each block begin, and (last entry) how many there are.
-std::vector<int> slope_offsets(const InterfaceProblem&);
-/// H += C^T k C of the law blocks. `convex`: of each slope only the positive diagonal, for a Hessian that must be positive definite.
-void add_law_slopes(const InterfaceProblem&, const std::vector<int>& first_slope, const Vector& slope, bool convex, Matrix& hessian);
+void slope_offsets(const InterfaceProblem&, std::vector<int>& offsets);
+/// H += C^T k C of the law blocks. `convex`: of each slope only the positive diagonal, for a Hessian that must be positive definite; the
+/// slopes are cut in place. `work` has the size of C.
+void add_law_slopes(const InterfaceProblem&, const std::vector<int>& first_slope, Vector& slope, bool convex, Matrix& work,
+                    Matrix& hessian);
+/// H += C_left^T diag(weight) C_right for as many rows as there are weights, from rows `left` and `right` on.
+void add_weighted_gram(const InterfaceProblem&, Index left, Index right, const ConstMap& weight, Matrix& work, Matrix& hessian);
+/// When the iterations may stop: below the tolerance, or where the residual is small and does not fall any more (round-off).
+bool settled(double residual, double before, double tolerance);
 
 /// Why the kernel failed, with the point named; `first` is the problem's row of the kernel's row 0.
 std::string kernel_failure(const InterfaceProblem&, const KernelReply&, std::ptrdiff_t first);

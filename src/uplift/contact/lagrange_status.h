@@ -1,11 +1,16 @@
 #pragma once
 #include <array>
+#include <cstdint>
+#include <memory>
 #include <vector>
 
 #include "uplift/contact/lagrange.h"
+#include "uplift/contact/orthonormal.h"
 #include "uplift/math/dense.h"
 
 namespace uplift {
+
+class StatusRows;
 
 /// A point of a cone block, with friction or without.
 struct FrictionPoint {
@@ -27,10 +32,15 @@ struct FrictionPoint {
 /// (opening 0), tangential rows of sticking ones (opening as at the beginning of the step). A slipping point has p_t = -mu p_n d, which
 /// adds to the column of its normal row:
 ///     H z + V^T p_E = right     C_E z = target     H = I + slopes of laws and of slip - shift of the rows that are not held
-/// H is regular where closed rows hold the body; E may be redundant: p_E of least norm, sum p^2 / area, among those that balance.
+/// H is regular where closed rows hold the body; E may be redundant: p_E of least norm, sum p^2 / area, among those that balance. With N
+/// an orthonormal basis of the range of V^T only the resultant V^T p_E = N s is known: (C_E H^-1 N) s = excess, in the sense of least
+/// squares, then the shortest p_E.
 class StatusStep {
  public:
-  StatusStep(const InterfaceProblem&, double gap_tolerance, InterfaceSolution&);
+  StatusStep();
+  ~StatusStep();
+  /// Takes up a problem; keeps the work space of the one before.
+  void begin(const InterfaceProblem&, double gap_tolerance, InterfaceSolution&);
 
   /// Statuses and slip directions as solution.status and solution.force (or a fresh opening) show them.
   void guess_from_solution();
@@ -47,8 +57,8 @@ class StatusStep {
   void write_status();
 
   const std::vector<FrictionPoint>& points() const { return points_; }
-  /// Statuses and slip senses, to recognise a set.
-  std::vector<signed char> code() const;
+  /// Hash of statuses and slip senses, to recognise a set.
+  std::uint64_t code() const;
   /// Normal rows of the points that changed last.
   const std::vector<std::ptrdiff_t>& changed() const { return changed_; }
   bool finite() const { return finite_; }
@@ -59,26 +69,42 @@ class StatusStep {
     double target = 0, area = 0;
     const FrictionPoint* slipping = nullptr;  // normal row of a slipping point
   };
+  bool solve_by_rows();
+  void size_work();
+  void list_points();
   void list_held();
   void linearise_laws();
-  void assemble(Matrix& hessian, Vector& right);
-  Vector excess(const Vector& z) const;
-  bool hold(const PartialLu& hessian, const Matrix& u, const Matrix& v, Vector& z, Vector& q);
-  void write_forces(const Vector& p);
+  void turn_slip();
+  bool assemble();
+  void list_held_rows();
+  bool hold();
+  void measure_excess();
+  void open_at(const Vector& z);
+  void write_forces();
   std::array<double, 2> slip(const FrictionPoint&) const;
   Status trial(const FrictionPoint&, std::array<double, 2>& direction) const;
 
-  const InterfaceProblem& problem_;
-  double gap_;
-  InterfaceSolution& solution_;
+  const InterfaceProblem* problem_ = nullptr;
+  InterfaceSolution* solution_ = nullptr;
+  double gap_ = 0;
   std::vector<FrictionPoint> points_;
   std::vector<Held> held_;
   std::vector<int> offsets_;
   Vector slope_, linear_force_;  // law forces = linear_force_ + slope C z
-  Vector field_;                 // C y, pressure that an open row would carry; empty when the held rows are independent
+  Vector field_;                 // C y, pressure that an open row would carry
+  bool redundant_ = false;       // the field counts: the held rows are not independent
   double largest_force_ = 0;
   bool finite_ = true;
   std::vector<std::ptrdiff_t> changed_;
+  std::unique_ptr<StatusRows> rows_;  // many independent rows
+  // of the linear problem
+  bool plain_ = true;  // H is the identity
+  Matrix hessian_, work_;
+  PartialLu lu_;
+  Matrix u_, v_;                         // r x rows: U^T and V^T, each held row times the root of its area
+  Orthonormal range_, image_, reduced_;  // of V^T; of V on that range; of U H^-1 on that range
+  Matrix inverse_, product_;             // H^-1 N; V N or U H^-1 N
+  Vector right_, z_, q_, excess_, more_, resultant_, moved_, taken_, known_, force_, reaction_;
 };
 
 }  // namespace uplift

@@ -6,8 +6,7 @@
 #include <cmath>
 #include <limits>
 
-#include "uplift/contact/method.h"
-#include "uplift/math/dense.h"
+#include "uplift/contact/newton_many.h"
 #include "uplift/math/small.h"
 
 namespace uplift {
@@ -29,54 +28,12 @@ void size_scratch(const InterfaceProblem& problem, InterfaceSolution& solution) 
   scratch.gradient.setZero(r);
   scratch.direction.setZero(r);
   scratch.origin.setZero(r);
-  scratch.hessian.setZero(r, r);
+  if (r <= few) scratch.hessian.setZero(r, r);
   scratch.end.setZero(rows);
   solution.opening.setZero(rows);
   solution.force.setZero(rows);
   if (solution.z.size() != r) solution.z.setZero(r);
   solution.now.assign(problem.old.size(), 0.0);
-}
-
-/// Tractions become forces on the rows: times scale * area.
-void to_force(const InterfaceProblem& problem, const Block& block, double* force, double* slope) {
-  const int n = block.batch.points, components = block.batch.components;
-  const double* area = block.area.data();
-  const double scale = problem.scale;
-  if (components == 1 && slope != nullptr) {
-#pragma omp simd
-    for (int i = 0; i < n; ++i) {
-      const double weight = scale * area[i];
-      force[i] *= weight;
-      slope[i] *= weight;
-    }
-    return;
-  }
-  for (int c = 0; c < components; ++c)
-#pragma omp simd
-    for (int i = 0; i < n; ++i) force[c * n + i] *= scale * area[i];
-  if (slope != nullptr)
-    for (int c = 0; c < components * components; ++c)
-#pragma omp simd
-      for (int i = 0; i < n; ++i) slope[c * n + i] *= scale * area[i];
-}
-
-void law_force(const InterfaceProblem& problem, const Block& block, double* slope, InterfaceSolution& solution) {
-  Batch batch = block.batch;
-  batch.step = problem.step;
-  const double* from = problem.from.data() + block.first;
-  const double* to = solution.opening.data() + block.first;
-  const double* old = problem.old.data() + block.first_history;
-  Reply reply;
-  reply.traction = solution.force.data() + block.first;
-  reply.slope = slope;
-  reply.now = solution.now.data() + block.first_history;
-  if (problem.average) {
-    reply.end = solution.newton.end.data() + block.first;
-    block.law->mean(batch, from, to, old, reply);
-  } else {
-    block.law->respond(batch, from, to, old, reply);
-  }
-  to_force(problem, block, reply.traction, slope);
 }
 
 /// P(multiplier + stiffness * opening) of a cone block.
@@ -140,6 +97,7 @@ void form_gradient(const InterfaceProblem& problem, bool with_hessian, Interface
   NewtonScratch& scratch = solution.newton;
   const Eigen::Index r = problem.factor.cols(), rows = problem.rows();
   for (Eigen::Index i = 0; i < r; ++i) scratch.gradient[i] = solution.z[i];
+  if (r > few) with_hessian = false;
   if (!with_hessian) {
     small::multiply_transposed_add(problem.factor, solution.force.data(), scratch.gradient.data());
   } else {
@@ -162,16 +120,12 @@ void form_gradient(const InterfaceProblem& problem, bool with_hessian, Interface
 
 /// The direction -H^-1 G; false when H is singular. A softening or friction slope may make H indefinite or unsymmetric: Gauss elimination
 /// takes both.
-bool newton_direction(InterfaceSolution& solution, Matrix& copy) {
+bool newton_direction(const InterfaceProblem& problem, InterfaceSolution& solution) {
   NewtonScratch& scratch = solution.newton;
   const Eigen::Index r = scratch.gradient.size();
+  if (r > few) return direction_of_many(problem, solution);
   for (Eigen::Index i = 0; i < r; ++i) scratch.direction[i] = -scratch.gradient[i];
-  if (r <= 12) {
-    return small::gauss_solve(r, scratch.hessian.data(), scratch.direction.data());
-  }
-  copy = scratch.hessian;
-  scratch.direction = copy.partialPivLu().solve(scratch.direction).eval();
-  return scratch.direction.allFinite();
+  return small::gauss_solve(r, scratch.hessian.data(), scratch.direction.data());
 }
 
 /// First guess of a step from the last one: the laws go on linearly from their end-of-step force with their last slope,
@@ -307,7 +261,9 @@ void evaluate(const InterfaceProblem& problem, const AugmentedForce& augmented, 
     const Block& block = problem.blocks[b];
     double* slope = with_slope ? solution.newton.slope.data() + solution.newton.first_slope[b] : nullptr;
     if (block.law != nullptr)
-      law_force(problem, block, slope, solution);
+      law_force(problem, block, solution.opening.data(),
+                {solution.force.data() + block.first, slope, solution.now.data() + block.first_history,
+                 problem.average ? solution.newton.end.data() + block.first : nullptr});
     else
       cone_force(problem, block, augmented, slope, solution);
   }
@@ -318,10 +274,9 @@ Outcome solve_by_newton(const InterfaceProblem& problem, const AugmentedForce& a
   size_scratch(problem, solution);
   NewtonScratch& scratch = solution.newton;
   Outcome outcome;
-  Matrix copy;
   constexpr int patience = 12;  // iterations after which the search turns from the potential to the residual
   const Eigen::Index r = problem.factor.cols();
-  const bool predictable = problem.average && r <= 12 && augmented.multiplier == nullptr;
+  const bool predictable = problem.average && r <= few && augmented.multiplier == nullptr;
   if (predictable && scratch.follows) predict(problem, solution);
   scratch.follows = false;
   evaluate(problem, augmented, true, solution);
@@ -343,7 +298,7 @@ Outcome solve_by_newton(const InterfaceProblem& problem, const AugmentedForce& a
     const double before = size;
     std::copy_n(solution.z.data(), r, scratch.origin.data());
     // the gradient is needed again by the line search
-    if (!newton_direction(solution, copy)) {
+    if (!newton_direction(problem, solution)) {
       outcome.why = "the Newton matrix of the interface is singular";
       return outcome;
     }
@@ -366,62 +321,6 @@ Outcome solve_by_newton(const InterfaceProblem& problem, const AugmentedForce& a
   outcome.why = fmt::format("Newton's method did not converge in {} iterations (residual {:.2e} of the interface force)",
                             options.most_iterations, outcome.residual);
   return outcome;
-}
-
-void end_forces(const InterfaceProblem& problem, const InterfaceSolution& solution, Vector& force, std::vector<double>& scratch_history) {
-  for (const Block& block : problem.blocks) {
-    if (block.law == nullptr) {
-      for (int i = 0; i < block.rows(); ++i) force[block.first + i] = solution.force[block.first + i] / problem.scale;
-      continue;
-    }
-    Batch batch = block.batch;
-    batch.step = problem.step;
-    Reply reply;
-    reply.traction = force.data() + block.first;
-    reply.now = scratch_history.data() + block.first_history;
-    block.law->respond(batch, problem.from.data() + block.first, solution.opening.data() + block.first,
-                       problem.old.data() + block.first_history, reply);
-    for (int c = 0; c < batch.components; ++c)
-      for (int i = 0; i < batch.points; ++i) force[block.first + c * batch.points + i] *= block.area[static_cast<std::size_t>(i)];
-  }
-}
-
-namespace {
-
-class NewtonMethod final : public ContactMethod {
- public:
-  explicit NewtonMethod(NewtonOptions options) : options_(options) {}
-  Outcome solve(const InterfaceProblem& problem, InterfaceSolution& solution) const override {
-    for (const Block& block : problem.blocks)
-      if (block.law == nullptr) {
-        Outcome outcome;
-        outcome.why = fmt::format("method \"newton\" needs a traction law, interface \"{}\" has a constraint", block.name);
-        return outcome;
-      }
-    return solve_by_newton(problem, {}, options_, solution);
-  }
-  bool constrains() const override { return false; }
-
- private:
-  NewtonOptions options_;
-};
-
-}  // namespace
-
-const Entry<ContactMethod>& entry_method_newton() {
-  static const Entry<ContactMethod> entry{
-      {.name = "newton",
-       .summary = "Newton's method with line search on traction laws (SDM, springs, cohesive, elastic)",
-       .equations = "G(z) = z + C^T p(opening) = 0, opening = free opening + C z\n"
-                    "H = I + C^T (dp/d opening) C, symmetric positive definite when the law does not soften\n"
-                    "line search on the directional derivative of the incremental potential",
-       .source = "THEORY section 6",
-       .params = {number("tolerance", "1", "residual of the interface balance, relative to the interface force").positive().standard(1e-12),
-                  integer("most_iterations", "iterations before the step is cut").between(1, 10000).standard(60.0)}},
-      [](const Values& values) -> std::unique_ptr<const ContactMethod> {
-        return std::make_unique<NewtonMethod>(NewtonOptions{values.number("tolerance"), values.integer("most_iterations")});
-      }};
-  return entry;
 }
 
 }  // namespace uplift

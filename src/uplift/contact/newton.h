@@ -16,6 +16,10 @@ struct AugmentedForce {
   const Vector* stiffness = nullptr;   // rows [N/m]
 };
 
+/// Stiffness of every row for the augmentation [N/m]: factor / F_ii, of the whole interface where a row has no compliance. The tangential
+/// rows of a point share that of their mean compliance: the trial force must not turn.
+void augmentation(const InterfaceProblem&, double factor, Vector& stiffness);
+
 struct NewtonOptions {
   double tolerance = 1e-12;  // |G| relative to |z| + |C^T p|
   int most_iterations = 60;
@@ -24,10 +28,10 @@ struct NewtonOptions {
 /// Solves in place from the guess in `solution.z`; fills opening, force, now.
 Outcome solve_by_newton(const InterfaceProblem&, const AugmentedForce&, const NewtonOptions&, InterfaceSolution&);
 
+/// Up to so many coordinates the Newton matrix is formed and solved by plain loops; beyond, see newton_many.h.
+inline constexpr int few = 12;
+
 /// Forces, and slopes when wanted, at solution.z: fills opening, force, now and the scratch's slope.
 void evaluate(const InterfaceProblem&, const AugmentedForce&, bool with_slope, InterfaceSolution&);
-
-/// Force on the rows that a law gives at the end of the step [N], not scaled: area * t(opening).
-void end_forces(const InterfaceProblem&, const InterfaceSolution&, Vector& force, std::vector<double>& scratch_history);
 
 }  // namespace uplift

@@ -53,7 +53,8 @@ class PenaltyMethod final : public ContactMethod {
     return tensionless(stiffness_ > 0 ? stiffness_ : factor_ / std::max(flexibility, 1e-300), cone.friction());
   }
 
-  /// A stored problem may still hold cones: they are replaced here, with a fresh memory. In a run they were replaced before the first step.
+  /// A stored problem may still hold cones: they are replaced here, with the stiffness and the memory that were stored with them, or
+  /// afresh. In a run they were replaced before the first step. A stiffness of the method's own goes before the stored one.
   Outcome solve(const InterfaceProblem& problem, InterfaceSolution& solution) const override {
     if (std::none_of(problem.blocks.begin(), problem.blocks.end(), [](const Block& block) { return block.cone != nullptr; }))
       return solve_by_newton(problem, {}, options_, solution);
@@ -61,12 +62,16 @@ class PenaltyMethod final : public ContactMethod {
     std::vector<std::unique_ptr<const InterfaceLaw>> laws;
     for (Block& block : replaced.blocks) {
       if (block.cone == nullptr) continue;
-      laws.push_back(substitute(*block.cone, flexibility(problem, block)));
+      const bool stored = block.substitute_stiffness > 0 && !(stiffness_ > 0);
+      laws.push_back(stored ? tensionless(block.substitute_stiffness, block.cone->friction())
+                            : substitute(*block.cone, flexibility(problem, block)));
       block.law = laws.back().get();
       block.cone = nullptr;
       block.first_history = static_cast<int>(replaced.old.size());
-      replaced.old.resize(replaced.old.size() +
-                          static_cast<std::size_t>(block.law->num_history(block.batch.components) * block.batch.points));
+      const std::size_t values = static_cast<std::size_t>(block.law->num_history(block.batch.components) * block.batch.points);
+      replaced.old.resize(replaced.old.size() + values);
+      if (block.substitute_memory.size() == values)
+        std::copy_n(block.substitute_memory.data(), values, replaced.old.data() + block.first_history);
     }
     return solve_by_newton(replaced, {}, options_, solution);
   }

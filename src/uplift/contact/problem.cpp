@@ -11,34 +11,26 @@ double largest(const Vector& v) {
   return v.size() > 0 ? v.cwiseAbs().maxCoeff() : 0;
 }
 
-double balance(const InterfaceProblem& problem, const InterfaceSolution& solution) {
-  Vector force = solution.force;
-  const double size = solution.z.norm() + (problem.factor.transpose() * force).norm();
-  if (problem.shift.size() > 0) force -= problem.shift.cwiseProduct(solution.opening);
-  const double error = (solution.z + problem.factor.transpose() * force).norm();
-  return error / (size + std::numeric_limits<double>::min());
+double balance(const InterfaceProblem& problem, const InterfaceSolution& solution, YardstickScratch& scratch) {
+  scratch.balance.noalias() = problem.factor.transpose() * solution.force;
+  const double size = solution.z.norm() + scratch.balance.norm();
+  if (problem.shift.size() > 0) {
+    scratch.force = solution.force - problem.shift.cwiseProduct(solution.opening);
+    scratch.balance.noalias() = problem.factor.transpose() * scratch.force;
+  }
+  scratch.balance += solution.z;
+  return scratch.balance.norm() / (size + std::numeric_limits<double>::min());
 }
 
 /// Largest difference between the force and that of the law, N.
-double law_error(const InterfaceProblem& problem, const Block& block, const InterfaceSolution& solution) {
-  Batch batch = block.batch;
-  batch.step = problem.step;
-  const std::size_t values = static_cast<std::size_t>(block.law->num_history(batch.components) * batch.points);
-  std::vector<double> now(values);
-  Vector traction = Vector::Zero(block.rows()), end = Vector::Zero(block.rows());
-  Vector slope = Vector::Zero(block.rows() * batch.components);
-  const Reply reply{traction.data(), slope.data(), now.data(), end.data()};
-  const double *from = problem.from.data() + block.first, *to = solution.opening.data() + block.first;
-  const double* old = problem.old.data() + block.first_history;
-  if (problem.average)
-    block.law->mean(batch, from, to, old, reply);
-  else
-    block.law->respond(batch, from, to, old, reply);
+double law_error(const InterfaceProblem& problem, const Block& block, const InterfaceSolution& solution, YardstickScratch& scratch) {
+  scratch.now.resize(problem.old.size());
+  for (Vector* v : {&scratch.traction, &scratch.end}) v->resize(problem.rows());
+  scratch.slope.resize(3 * problem.rows());
+  law_force(problem, block, solution.opening.data(),
+            {scratch.traction.data(), scratch.slope.data(), scratch.now.data(), scratch.end.data()});
   double worst = 0;
-  for (int i = 0; i < block.rows(); ++i) {
-    const double force = problem.scale * block.area[static_cast<std::size_t>(i % batch.points)] * traction[i];
-    worst = std::max(worst, std::abs(solution.force[block.first + i] - force));
-  }
+  for (int i = 0; i < block.rows(); ++i) worst = std::max(worst, std::abs(solution.force[block.first + i] - scratch.traction[i]));
   return worst;
 }
 
@@ -73,17 +65,24 @@ double cone_error(const InterfaceProblem& problem, const Block& block, const Int
 }  // namespace
 
 double yardstick(const InterfaceProblem& problem, const InterfaceSolution& solution) {
+  YardstickScratch scratch;
+  return yardstick(problem, solution, scratch);
+}
+
+double yardstick(const InterfaceProblem& problem, const InterfaceSolution& solution, YardstickScratch& scratch) {
   if (!solution.z.allFinite() || !solution.force.allFinite() || !solution.opening.allFinite())
     return std::numeric_limits<double>::infinity();
   // the solution's own opening is not trusted
-  const Vector opening = problem.free_opening + problem.factor * solution.z;
-  const double force = largest(solution.force), moved = largest(problem.factor * solution.z);
+  scratch.moved.noalias() = problem.factor * solution.z;
+  scratch.opening = problem.free_opening + scratch.moved;
+  const double force = largest(solution.force), moved = largest(scratch.moved);
   const double force_scale = force > 0 ? force : 1;
   double length_scale = moved > 0 ? moved : largest(problem.free_opening);
   if (!(length_scale > 0)) length_scale = 1;
-  double worst = std::max(balance(problem, solution), largest(opening - solution.opening) / length_scale);
+  scratch.opening -= solution.opening;
+  double worst = std::max(balance(problem, solution, scratch), largest(scratch.opening) / length_scale);
   for (const Block& block : problem.blocks)
-    worst = std::max(worst, block.law != nullptr ? law_error(problem, block, solution) / force_scale
+    worst = std::max(worst, block.law != nullptr ? law_error(problem, block, solution, scratch) / force_scale
                                                  : cone_error(problem, block, solution, force_scale, length_scale));
   return worst;
 }

@@ -1,4 +1,5 @@
 #pragma once
+#include <memory>
 #include <string>
 #include <vector>
 
@@ -23,6 +24,9 @@ struct Block {
   const InterfaceLaw* law = nullptr;  // one of the two
   const Cone* cone = nullptr;
   std::vector<double> area;  // m2 per point
+  // of a stored problem: the law that a method had put in the cone's place (penalty)
+  double substitute_stiffness = 0;        // Pa/m
+  std::vector<double> substitute_memory;  // at the beginning of the step
   int rows() const { return batch.points * batch.components; }
 };
 
@@ -44,6 +48,21 @@ struct InterfaceProblem {
 /// Contact status of a point. A closed point without friction slips.
 enum class Status : signed char { open, stick, slip };
 
+/// Work space that a method keeps behind a class of its own. A copy of it starts empty.
+struct MethodWork {
+  virtual ~MethodWork() = default;
+};
+class KeptWork {
+ public:
+  KeptWork() = default;
+  KeptWork(const KeptWork&) {}
+  KeptWork(KeptWork&&) = default;
+  KeptWork& operator=(const KeptWork&) { return *this; }
+  KeptWork& operator=(KeptWork&&) = default;
+  ~KeptWork() = default;
+  std::unique_ptr<MethodWork> work;
+};
+
 /// Work space of Newton's method, sized once.
 struct NewtonScratch {
   Vector slope;  // per block (components x components x points), blocks one after another [N/m]
@@ -51,7 +70,8 @@ struct NewtonScratch {
   Vector gradient, direction, origin;
   Vector end;  // traction at the end of the step [Pa], path average only
   Matrix hessian;
-  bool follows = false;  // the next problem may be guessed from this solution: slope, end and hessian are those of a converged step
+  bool follows = false;        // the next problem may be guessed from this solution: slope, end and hessian are those of a converged step
+  KeptWork direction_of_many;  // more than twelve coordinates
 };
 
 /// Work space of the augmented Lagrangian, sized once.
@@ -64,6 +84,14 @@ struct AugmentedScratch {
 struct LagrangeScratch {
   KernelScratch kernel;
   Vector limit, held;  // rows: area of the normal rows of cones, and the same where they are closed
+  KeptWork frictionless, frictional;
+};
+
+/// Work space of the yardstick.
+struct YardstickScratch {
+  Vector opening, moved, force, balance;
+  Vector traction, slope, end;
+  std::vector<double> now;
 };
 
 /// The unknowns of a step, and the work space of the methods (kept from step to step, so that nothing is allocated after the first).
@@ -76,6 +104,7 @@ struct InterfaceSolution {
   NewtonScratch newton;
   AugmentedScratch augmented;
   LagrangeScratch lagrange;
+  YardstickScratch yardstick;
 };
 
 struct Outcome {
@@ -92,6 +121,12 @@ struct Outcome {
 ///  - cone blocks: penetration, tension, friction bound and complementarity, each made dimensionless with max |p| and max |opening -
 ///  free_opening|.
 double yardstick(const InterfaceProblem&, const InterfaceSolution&);
+/// The same in the solution's own work space.
+double yardstick(const InterfaceProblem&, const InterfaceSolution&, YardstickScratch&);
+
+/// Force of a law block [N] and its slope [N/m], scale * area times those of the law for the way from problem.from to `opening` (all rows;
+/// path-averaged where the problem says so). `reply` points to the block's own rows, as in InterfaceLaw; `end` stays a traction.
+void law_force(const InterfaceProblem&, const Block&, const double* opening, const Reply& reply);
 
 /// JSON text of a problem with its laws (names and parameters) and back. Throws InputError with the position on bad files.
 std::string save_problem(const InterfaceProblem&, const std::vector<const Values*>& behaviours, const std::string& reason);

@@ -7,7 +7,8 @@
 
 // A stored interface problem is one JSON object:
 //   format "uplift interface problem 1", reason, average, scale, step [s], factor (rows of C), shift, free_opening, from, old, and blocks:
-//   name, points, components, area, behaviour {type, parameters}. Doubles are written so that they read back to the same bits; numbers that
+//   name, points, components, area, behaviour {type, parameters}, and substitute {stiffness [Pa/m], memory} where a method had put a law in
+//   the place of the cone. Doubles are written so that they read back to the same bits; numbers that
 //   are not finite (a failed step may hold some) are the words "nan", "inf", "-inf".
 namespace uplift {
 namespace {
@@ -126,6 +127,14 @@ class Reader {
     if (is_cone(values.type())) {
       stored.cones.push_back(make_part(cone_catalog(), values));
       block.cone = stored.cones.back().get();
+      if (const auto found = object.find("substitute"); found != object.end()) {
+        const std::string inside = path + ".substitute";
+        block.substitute_stiffness = number(at(*found, inside, "stiffness"), inside + ".stiffness");
+        if (!(block.substitute_stiffness > 0)) refuse(inside + ".stiffness", "a stiffness > 0", std::to_string(block.substitute_stiffness));
+        block.substitute_memory = numbers(at(*found, inside, "memory"), inside + ".memory");
+        if (block.substitute_memory.size() % static_cast<std::size_t>(block.batch.points) != 0)
+          refuse(inside + ".memory", "as many numbers for each point", std::to_string(block.substitute_memory.size()));
+      }
     } else {
       stored.laws.push_back(make_part(law_catalog(), values));
       block.law = stored.laws.back().get();
@@ -194,10 +203,18 @@ std::string save_problem(const InterfaceProblem& problem, const std::vector<cons
     object["components"] = block.batch.components;
     object["behaviour"] = to_json(*behaviours[b]);
     object["area"] = to_json(block.area.data(), block.area.size());
+    const double* memory = problem.old.data() + block.first_history;
+    const std::size_t values =
+        block.law != nullptr ? static_cast<std::size_t>(block.law->num_history(block.batch.components) * block.batch.points) : 0;
+    if (block.law != nullptr && is_cone(behaviours[b]->type())) {
+      double stiffness[3] = {};
+      block.law->closed_stiffness(block.batch.components, stiffness);
+      object["substitute"]["stiffness"] = to_json(stiffness[block.batch.components - 1]);
+      object["substitute"]["memory"] = to_json(memory, values);
+    } else {
+      old.insert(old.end(), memory, memory + values);
+    }
     json["blocks"].push_back(std::move(object));
-    if (block.law == nullptr || is_cone(behaviours[b]->type())) continue;  // a law in a cone's place (penalty) starts afresh in a replay
-    const auto first = problem.old.begin() + block.first_history;
-    old.insert(old.end(), first, first + block.law->num_history(block.batch.components) * block.batch.points);
   }
   json["factor"] = Json::array();
   for (Index i = 0; i < problem.factor.rows(); ++i) json["factor"].push_back(to_json(Vector(problem.factor.row(i).transpose())));

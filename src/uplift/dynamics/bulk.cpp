@@ -19,7 +19,7 @@ void BulkMatrix::multiply(const Vector& x, Vector& y) const {
   else if (dense_)
     small::multiply(full_, x.data(), y.data());
   else
-    y.noalias() = sparse_ * x;
+    y.noalias() = sparse_.transpose() * x;  // symmetric: by rows, which gathers instead of scattering
 }
 
 Bulk::Bulk(const Model& model, const Sparse* geometric)
@@ -51,17 +51,49 @@ class InverseFactor final : public Factor {
   const Matrix& inverse_;
 };
 
+/// A factor in two halves as a whole one.
+class WholeOfSplit final : public Factor {
+ public:
+  explicit WholeOfSplit(const SplitFactor& split) : split_(split) {}
+  void solve(const Matrix& b, Matrix& x) const override {
+    Matrix result(b.rows(), b.cols());
+    Vector column, half, solved;
+    for (Index k = 0; k < b.cols(); ++k) {
+      column = b.col(k);
+      split_.forward(column, half);
+      split_.backward(half, solved);
+      result.col(k) = solved;
+    }
+    x = std::move(result);
+  }
+  double nonzeros() const override { return split_.nonzeros(); }
+
+ private:
+  const SplitFactor& split_;
+};
+
 }  // namespace
 
-BulkFactor::BulkFactor(const Sparse& matrix, bool small, const LinearSolver& solver, const Model& model, LinearCounts& counts)
+BulkFactor::BulkFactor(const Sparse& matrix, const Sparse* b, bool small, const LinearSolver& solver, const Model& model,
+                       LinearCounts& counts)
     : small_(small), counts_(&counts) {
-  Factorisation result = solver.factorise(matrix);
   ++counts.factorisations;
+  if (!small && b != nullptr) {
+    for (int column = 0; column < b->outerSize(); ++column)
+      if (Sparse::InnerIterator(*b, column)) last_.push_back(column);
+    if (!last_.empty()) {
+      SplitFactorisation result = solver.factorise_split(matrix, last_);
+      if (!result.why.empty()) {
+        fail(model, result.failed_unknown, result.why);
+        return;
+      }
+      split_ = std::move(result.factor);
+    }
+    if (split_ != nullptr) return;
+  }
+  Factorisation result = solver.factorise(matrix);
   if (result.factor == nullptr) {
-    const bool named = result.failed_unknown >= 0 && result.failed_unknown < static_cast<int>(model.unknown_names.size());
-    why_ = named ? fmt::format("the matrix is not positive definite at {}",
-                               model.unknown_names[static_cast<std::size_t>(result.failed_unknown)])
-                 : "the matrix is not positive definite";
+    fail(model, result.failed_unknown, result.why);
     return;
   }
   factor_ = std::move(result.factor);
@@ -71,12 +103,22 @@ BulkFactor::BulkFactor(const Sparse& matrix, bool small, const LinearSolver& sol
   }
 }
 
+void BulkFactor::fail(const Model& model, int unknown, const std::string& why) {
+  const bool named = unknown >= 0 && unknown < static_cast<int>(model.unknown_names.size());
+  why_ = named ? fmt::format("the matrix is not positive definite at {}", model.unknown_names[static_cast<std::size_t>(unknown)]) : why;
+}
+
 void BulkFactor::solve(const Vector& b, Vector& x) const {
   if (small_) {
     small::multiply(inverse_, b.data(), x.data());
     return;
   }
-  ++counts_->back_solves;
+  count_back_solve();
+  if (split_ != nullptr) {
+    split_->forward(b, half_);
+    split_->backward(half_, x);
+    return;
+  }
   given_.resize(b.size(), 1);
   given_.col(0) = b;
   factor_->solve(given_, solved_);
@@ -85,6 +127,7 @@ void BulkFactor::solve(const Vector& b, Vector& x) const {
 
 Spread BulkFactor::spread(const Sparse& b) const {
   if (small_) return spread_through(InverseFactor(inverse_), b);
+  if (split_ != nullptr) return spread_through(WholeOfSplit(*split_), b);
   return spread_through(*factor_, b);
 }
 
@@ -111,7 +154,7 @@ Accelerator::Accelerator(const Model& model, const Bulk& bulk, const LinearSolve
     }
   Sparse unit(bulk.unknowns, bulk.unknowns);
   unit.setFromTriplets(diagonal.begin(), diagonal.end());
-  mass_ = std::make_unique<BulkFactor>(bulk.mass_matrix + unit, bulk.small, solver, model, counts);
+  mass_ = std::make_unique<BulkFactor>(bulk.mass_matrix + unit, nullptr, bulk.small, solver, model, counts);
   if (massless_.empty()) return;
   const Eigen::Index count = static_cast<Eigen::Index>(massless_.size());
   std::vector<int> place(static_cast<std::size_t>(bulk.unknowns), -1);
@@ -124,7 +167,7 @@ Accelerator::Accelerator(const Model& model, const Bulk& bulk, const LinearSolve
     }
   Sparse stiffness(count, count);
   stiffness.setFromTriplets(block.begin(), block.end());
-  condensed_ = std::make_unique<BulkFactor>(stiffness, count <= small_bulk, solver, model, counts);
+  condensed_ = std::make_unique<BulkFactor>(stiffness, nullptr, count <= small_bulk, solver, model, counts);
   if (!condensed_->ok()) condensed_.reset();
 }
 

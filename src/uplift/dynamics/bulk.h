@@ -41,25 +41,35 @@ struct Bulk {
   std::vector<char> massless;  // per free unknown
 };
 
-/// A factored matrix of the bulk: the inverse itself when small.
+/// A factored matrix of the bulk: the inverse itself when small; with the unknowns that the interfaces touch last when that is asked for
+/// and the solver can.
 class BulkFactor {
  public:
-  /// `why` is set (and ok() false) when the matrix is not positive definite; `unknown` names where.
-  BulkFactor(const Sparse& matrix, bool small, const LinearSolver& solver, const Model& model, LinearCounts& counts);
+  /// `b`: interface rows x free unknowns, whose touched unknowns shall be last; null: in any order. `why` is set (and ok() false) when the
+  /// matrix is not positive definite.
+  BulkFactor(const Sparse& matrix, const Sparse* b, bool small, const LinearSolver& solver, const Model& model, LinearCounts& counts);
   bool ok() const { return why_.empty(); }
   const std::string& why() const { return why_; }
   /// x = A^-1 b
   void solve(const Vector& b, Vector& x) const;
   Spread spread(const Sparse& b) const;
-  bool inverse_kept() const { return small_; }
+  /// The factor in two halves, and its last unknowns in their order; null when there is none.
+  const SplitFactor* split() const { return split_.get(); }
+  const std::vector<int>& last() const { return last_; }
+  void count_back_solve() const { ++counts_->back_solves; }
 
  private:
+  void fail(const Model& model, int unknown, const std::string& why);
+
   bool small_ = false;
   std::string why_;
   Matrix inverse_;
   std::unique_ptr<const Factor> factor_;
+  std::unique_ptr<const SplitFactor> split_;
+  std::vector<int> last_;
   LinearCounts* counts_;
   mutable Matrix given_, solved_;  // one column each, kept: a factor belongs to one run
+  mutable Vector half_;
 };
 
 /// B of all interfaces, one after another: rows x free.

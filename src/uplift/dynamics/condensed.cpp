@@ -47,6 +47,11 @@ InterfaceProblem blocks_of(const Model& model, const Behaviours& behaviours) {
 Condensed::Condensed(const Model& model, const Sparse& b, const Vector& gap, BulkFactor factor, InterfaceProblem frame,
                      const ContactMethod& method)
     : b_(b), gap_(gap), factor_(std::move(factor)), problem_(std::move(frame)), method_(method) {
+  if (factor_.split() != nullptr) {
+    split_ = std::make_unique<SplitResponse>(factor_, b);
+    problem_.factor = split_->factor();
+    return;
+  }
   Spread spread = factor_.spread(b);
   problem_.factor = std::move(spread.factor);
   spread_ = std::move(spread.spread);
@@ -63,7 +68,14 @@ Condensed::Condensed(const Model& model, const Sparse& b, const Vector& gap, Bul
   touched_value_.setZero(static_cast<Eigen::Index>(touched_.size()));
 }
 
-void Condensed::free_opening(const Vector& displacement) {
+void Condensed::free_opening(const Vector& right, const Vector& displacement) {
+  if (split_ != nullptr) {
+    problem_.free_opening.noalias() = b_ * displacement;
+    problem_.free_opening += gap_;
+    split_->forward(right, problem_.free_opening);
+    return;
+  }
+  factor_.solve(right, free_);
   if (touched_.empty()) {
     touched_value_ = displacement + free_;
     problem_.free_opening.noalias() = b_ * touched_value_;
@@ -77,19 +89,21 @@ void Condensed::free_opening(const Vector& displacement) {
 
 Outcome Condensed::solve(const Vector& right, const Vector& displacement, const Vector& opening, const std::vector<double>& history,
                          Vector& increment) {
-  factor_.solve(right, free_);
   if (problem_.rows() == 0) {
-    increment = free_;
+    factor_.solve(right, increment);
     Outcome outcome;
     outcome.converged = true;
     return outcome;
   }
-  free_opening(displacement);
+  free_opening(right, displacement);
   std::copy_n(opening.data(), opening.size(), problem_.from.data());
   std::copy_n(history.data(), history.size(), problem_.old.data());
   Outcome outcome = method_.solve(problem_, solution_);
   if (!outcome.converged) return outcome;
-  small::affine(spread_, free_.data(), solution_.z.data(), increment.data());
+  if (split_ != nullptr)
+    split_->backward(solution_.z, increment);
+  else
+    small::affine(spread_, free_.data(), solution_.z.data(), increment.data());
   return outcome;
 }
 

@@ -4,6 +4,7 @@
 
 #include "uplift/contact/method.h"
 #include "uplift/dynamics/bulk.h"
+#include "uplift/dynamics/split_response.h"
 
 // One step of the discrete system in the displacement increment:
 //     K_eff du + B^T P = R       opening = gap + B (u0 + du)       P in law(opening)
@@ -39,7 +40,8 @@ class StepSolver {
   virtual const InterfaceSolution& solution() const = 0;
 };
 
-/// The condensed step: one back-solve, the small interface problem, and the rest of u from the kept spread (or one more back-solve).
+/// The condensed step: the free response, the small interface problem, and what its forces add. Through a split factor (SplitResponse) that
+/// is one back-solve; through any other one back-solve and the kept spread of the interface forces; with a kept inverse no back-solve.
 class Condensed final : public StepSolver {
  public:
   /// `factor` is that of K_eff (with B^T D B in statics); `frame` has blocks, average, scale, step and shift set.
@@ -50,11 +52,12 @@ class Condensed final : public StepSolver {
   const InterfaceSolution& solution() const override { return solution_; }
 
  private:
-  void free_opening(const Vector& displacement);
+  void free_opening(const Vector& right, const Vector& displacement);
 
   const Sparse& b_;
   const Vector& gap_;
   BulkFactor factor_;
+  std::unique_ptr<SplitResponse> split_;
   Matrix dense_b_, touched_b_;  // small bulks; columns of B that are not empty
   std::vector<int> touched_;
   Matrix spread_;  // X: du = du_free + X z

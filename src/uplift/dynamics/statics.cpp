@@ -1,7 +1,11 @@
 #include "uplift/dynamics/statics.h"
 
+#include <fmt/format.h>
+
 #include <algorithm>
+#include <cmath>
 #include <functional>
+#include <limits>
 
 namespace uplift {
 
@@ -31,6 +35,55 @@ Vector closed_joint(const Model& model, const Behaviours& behaviours) {
   return result;
 }
 
+namespace {
+
+/// A structure that nothing holds has no equilibrium, but the balance of an interface problem is relative to its own forces, the closed
+/// joint that is taken back among them: it is met at infinity by every method. The balance of the whole structure, f - K u - B^T p against
+/// the loads, is not. `unbalanced` is that difference; what round-off makes of K u does not count.
+bool in_balance(const Bulk& bulk, const Vector& load, const Vector& reaction, const Vector& displacement, const Vector& unbalanced) {
+  if (!unbalanced.allFinite()) return false;
+  double size = 0, round_off = 0;
+  for (int i = 0; i < bulk.unknowns; ++i) {
+    size = std::max({size, std::abs(load[i]), std::abs(reaction[i])});
+    round_off = std::max(round_off, std::abs(bulk.stiffness_matrix.coeff(i, i) * displacement[i]));
+  }
+  return unbalanced.cwiseAbs().maxCoeff() <= 1e-6 * size + 64 * std::numeric_limits<double>::epsilon() * round_off;
+}
+
+/// Which way a structure went that nothing held, by the interface whose points moved most. A movement counts when it is more than `far`
+/// times the one that all joints closed would allow.
+std::string way_out(const InterfaceProblem& problem, const InterfaceSolution& solution, double far) {
+  const Vector moved = (solution.opening - problem.from).cwiseAbs();
+  const double least = far * (problem.free_opening - problem.from).cwiseAbs().maxCoeff();
+  double most = 0;
+  std::string text;
+  for (const Block& block : problem.blocks) {
+    const int normal = block.batch.normal();
+    const double along = normal > 0 ? moved.segment(block.first, normal).maxCoeff() : 0;
+    const double apart = moved.segment(block.first + normal, block.batch.points).maxCoeff();
+    const double larger = std::max(along, apart);
+    if (!(larger > most && larger > least)) continue;
+    most = larger;
+    text = apart > least ? fmt::format("overturns: nothing holds the structure down on '{}', it turns over or lifts off", block.name)
+                         : fmt::format("slides: nothing holds the structure along '{}'", block.name);
+  }
+  return text;
+}
+
+/// Why a load step has no solution: a small share of the closed joint is left as springs, with which every load has an equilibrium, and the
+/// movement shows what these springs alone hold. Empty when it is not that.
+std::string diagnose(const InterfaceProblem& problem, const ContactMethod& method) {
+  InterfaceProblem held = problem;
+  for (const double share : {1e-6, 1e-4}) {
+    held.shift = (1 - share) * problem.shift;
+    InterfaceSolution solution;
+    if (method.solve(held, solution).converged) return way_out(held, solution, 5e-3 / share);
+  }
+  return {};
+}
+
+}  // namespace
+
 StaticOutcome solve_statics(const Model& model, const Bulk& bulk, const Sparse& b, const Vector& gap, const Behaviours& behaviours,
                             const ContactMethod& method, const LinearSolver& solver, int steps, State& state, LinearCounts& counts) {
   StaticOutcome outcome;
@@ -40,14 +93,15 @@ StaticOutcome solve_statics(const Model& model, const Bulk& bulk, const Sparse& 
   const Vector shift = frame.shift;
   Sparse matrix = bulk.stiffness_matrix;
   if (b.rows() > 0) matrix += Sparse(b.transpose() * shift.asDiagonal() * b);
-  BulkFactor factor(matrix, bulk.small, solver, model, counts);
+  BulkFactor factor(matrix, &b, bulk.small, solver, model, counts);
   if (!factor.ok()) {
     outcome.why = "static stage: " + factor.why();
     return outcome;
   }
   Condensed condensed(model, b, gap, std::move(factor), std::move(frame), method);
 
-  Vector dead = Vector::Zero(n), increment = Vector::Zero(n), product = Vector::Zero(n);
+  Vector dead = Vector::Zero(n), increment = Vector::Zero(n), product = Vector::Zero(n), moved = Vector::Zero(n),
+         reaction = Vector::Zero(n);
   for (const Drive& drive : model.drives)
     if (drive.dead) dead += drive.shape * drive.function->value(state.time);
 
@@ -58,14 +112,28 @@ StaticOutcome solve_statics(const Model& model, const Bulk& bulk, const Sparse& 
     if (b.rows() > 0) right -= b.transpose() * (shift.cwiseProduct(state.opening)).eval();
     const Outcome step = condensed.solve(right, state.displacement, state.opening, state.history, increment);
     outcome.iterations += step.iterations;
-    if (!step.converged) {
-      outcome.why = "static stage: " + step.why;
+    std::string why = step.why;
+    if (step.converged) {
+      moved = state.displacement + increment;
+      bulk.stiffness.multiply(moved, product);
+      right = to * dead - product;
+      if (b.rows() > 0) reaction.noalias() = b.transpose() * condensed.solution().force;
+      right -= reaction;
+      if (!in_balance(bulk, to * dead, reaction, moved, right)) {
+        why = b.rows() > 0 ? way_out(condensed.problem(), condensed.solution(), 1e3) : "";
+        if (why.empty()) why = "the balance of the structure is not met";
+      }
+    } else if (b.rows() > 0 && depth >= 8) {
+      if (const std::string found = diagnose(condensed.problem(), method); !found.empty()) why = found + "; " + why;
+    }
+    if (!why.empty()) {
+      outcome.why = fmt::format("static stage, {:.3g} % of the load: {}", 100 * to, why);
       if (depth >= 8) return false;
       ++outcome.retries;
       const double middle = 0.5 * (from + to);
       return go(from, middle, depth + 1) && go(middle, to, depth + 1);
     }
-    state.displacement += increment;
+    state.displacement = moved;
     if (b.rows() > 0) {
       state.opening = condensed.solution().opening;
       state.force = condensed.solution().force;

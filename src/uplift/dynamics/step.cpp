@@ -43,6 +43,8 @@ Stepper::Stepper(const Model& model, const Bulk& bulk, const Sparse& b, const Ve
   if (impacts_) {
     mass_spread_ = std::make_unique<Spread>(accelerator_.spread(b));
     row_area_.resize(b.rows());
+    normals_.reserve(static_cast<std::size_t>(b.rows()));
+    tangents_.reserve(static_cast<std::size_t>(b.rows()));
     Eigen::Index row = 0;
     for (const Interface& interface : model.interfaces)
       for (int i = 0; i < interface.rows(); ++i) row_area_[row++] = interface.area[i % interface.batch.points];
@@ -77,7 +79,7 @@ Stepper::Level& Stepper::level(int halving) {
     made.solver = make_monolithic(matrix, b_, gap_, std::move(frame));
     ++linear_.factorisations;
   } else {
-    BulkFactor factor(matrix, bulk_.small, solver_, model_, linear_);
+    BulkFactor factor(matrix, &b_, bulk_.small, solver_, model_, linear_);
     if (!factor.ok()) {
       made.why = factor.why();
       return made;
@@ -89,7 +91,7 @@ Stepper::Level& Stepper::level(int halving) {
   }
   if (impacts_ && impact_.needs_dynamic()) {
     const Sparse dynamic = bulk_.stiffness_matrix + (4 / (dt * dt)) * bulk_.mass_matrix;
-    BulkFactor factor(dynamic, bulk_.small, solver_, model_, linear_);
+    BulkFactor factor(dynamic, nullptr, bulk_.small, solver_, model_, linear_);
     if (factor.ok()) made.dynamic = std::make_unique<Spread>(factor.spread(b_));
     if (!factor.ok()) made.why = factor.why();
   }

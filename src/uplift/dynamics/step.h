@@ -100,7 +100,7 @@ class Stepper {
   InterfaceEnergy interface_energy_;
   double impact_loss_ = 0, initial_energy_ = 0, largest_external_ = 0;
   double start_time_ = 0;  // s
-  double origin_ = 0;  // J: what the balance is measured from; the initial energy unless a static stage came in between
+  double origin_ = 0;      // J: what the balance is measured from; the initial energy unless a static stage came in between
   StepCounts counts_;
   std::string why_;
   const InterfaceProblem* last_ = nullptr;

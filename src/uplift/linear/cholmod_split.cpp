@@ -9,6 +9,7 @@
 #include <numeric>
 
 #include "uplift/linear/cholmod_common.h"
+#include "uplift/linear/supernodal.h"
 
 namespace uplift {
 
@@ -24,23 +25,22 @@ class CholmodSplit : public SplitFactor {
 
   void forward(const Vector& b, Vector& y) const override {
     const auto* order = static_cast<const int*>(factor_->Perm);
-    std::unique_ptr<Half> half = take();
-    half->in.resize(b.size());
-    for (Index k = 0; k < b.size(); ++k) half->in[k] = b[order[k]];
-    const double* solution = half->solve(CHOLMOD_L, factor_);
     y.resize(b.size());
-    std::copy_n(solution, b.size(), y.data());
-    give_back(std::move(half));
+    for (Index k = 0; k < b.size(); ++k) y[k] = b[order[k]];
+    Scratch scratch = take();
+    solve_lower(view(), y.data(), scratch->data());
+    give_back(std::move(scratch));
   }
 
   void backward(const Vector& y, Vector& x) const override {
     const auto* order = static_cast<const int*>(factor_->Perm);
-    std::unique_ptr<Half> half = take();
-    half->in = y;
-    const double* solution = half->solve(CHOLMOD_Lt, factor_);
+    Scratch scratch = take();
+    double* solution = scratch->data() + factor_->maxesize;
+    std::copy_n(y.data(), y.size(), solution);
+    solve_lower_transposed(view(), solution, scratch->data());
     x.resize(y.size());
     for (Index k = 0; k < y.size(); ++k) x[order[k]] = solution[k];
-    give_back(std::move(half));
+    give_back(std::move(scratch));
   }
 
   Matrix last() const override {
@@ -62,37 +62,33 @@ class CholmodSplit : public SplitFactor {
   double nonzeros() const override { return static_cast<double>(factor_->xsize); }
 
  private:
-  /// Scratch of half a back-solve, kept for the next one.
-  struct Half {
-    Common settings;
-    Vector in;
-    cholmod_dense *x = nullptr, *y = nullptr, *e = nullptr;
-    ~Half() {
-      for (cholmod_dense** matrix : {&x, &y, &e}) cholmod_free_dense(matrix, &settings.common);
-    }
-    const double* solve(int system, cholmod_factor* factor) {
-      cholmod_dense right = dense_view(in.data(), in.size(), 1);
-      cholmod_solve2(system, factor, &right, nullptr, &x, nullptr, &y, &e, &settings.common);
-      return static_cast<const double*>(x->x);
-    }
-  };
-  std::unique_ptr<Half> take() const {
+  /// Scratch of half a back-solve, kept for the next one: the highest supernode's rows, and a solution.
+  using Scratch = std::unique_ptr<std::vector<double>>;
+  Scratch take() const {
     const std::lock_guard lock(mutex_);
-    if (idle_.empty()) return std::make_unique<Half>();
-    std::unique_ptr<Half> half = std::move(idle_.back());
+    if (idle_.empty()) return std::make_unique<std::vector<double>>(factor_->maxesize + factor_->n);
+    Scratch scratch = std::move(idle_.back());
     idle_.pop_back();
-    return half;
+    return scratch;
   }
-  void give_back(std::unique_ptr<Half> half) const {
+  void give_back(Scratch scratch) const {
     const std::lock_guard lock(mutex_);
-    idle_.push_back(std::move(half));
+    idle_.push_back(std::move(scratch));
+  }
+  Supernodes view() const {
+    return {factor_->nsuper,
+            static_cast<const int*>(factor_->super),
+            static_cast<const int*>(factor_->pi),
+            static_cast<const int*>(factor_->px),
+            static_cast<const int*>(factor_->s),
+            static_cast<const double*>(factor_->x)};
   }
 
   std::unique_ptr<Common> settings_;
   cholmod_factor* factor_;
   Index chosen_;
   mutable std::mutex mutex_;  // guards the idle scratch only; the factor itself is read-only in a solve
-  mutable std::vector<std::unique_ptr<Half>> idle_;
+  mutable std::vector<Scratch> idle_;
 };
 
 /// Fill-reducing order of the unknowns that are not chosen, then the chosen ones.

@@ -15,6 +15,7 @@ using SymmetricEigen = Eigen::SelfAdjointEigenSolver<Matrix>;
 using GeneralisedEigen = Eigen::GeneralizedSelfAdjointEigenSolver<Matrix>;
 using PartialLu = Eigen::PartialPivLU<Matrix>;
 using FullLu = Eigen::FullPivLU<Matrix>;
+using Qr = Eigen::HouseholderQR<Matrix>;
 using PivotedQr = Eigen::ColPivHouseholderQR<Matrix>;
 using CompleteQr = Eigen::CompleteOrthogonalDecomposition<Matrix>;
 using PivotedLdlt = Eigen::LDLT<Matrix>;

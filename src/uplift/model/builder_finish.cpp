@@ -16,7 +16,8 @@ class One : public TimeFunction {
 
 void add_to(const Element& element, const Matrix& local, double factor, std::vector<Triplet>& entries) {
   const auto nodes = element.nodes();
-  const auto unknown = [&](Index i) { return dofs_per_node * nodes[i / dofs_per_node] + static_cast<int>(i % dofs_per_node); };
+  const int each = element.unknowns_per_node();
+  const auto unknown = [&](Index i) { return dofs_per_node * nodes[i / each] + static_cast<int>(i % each); };
   for (Index j = 0; j < local.cols(); ++j)
     for (Index i = 0; i < local.rows(); ++i)
       if (local(i, j) != 0) entries.emplace_back(unknown(i), unknown(j), factor * local(i, j));

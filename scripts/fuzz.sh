@@ -1,0 +1,51 @@
+#!/usr/bin/env bash
+# Fuzzes the readers of files: scripts/fuzz.sh SECONDS [TARGET...]; see fuzz/README.md. Needs clang with its runtime (Debian: clang, libclang-rt-14-dev).
+set -euo pipefail
+cd "$(dirname "$0")/.."
+seconds="${1:?usage: scripts/fuzz.sh SECONDS [gmsh|med|toml...]}"
+shift
+targets=("$@")
+[ ${#targets[@]} -gt 0 ] || targets=(gmsh med toml)
+clang="${CLANG:-$(command -v clang++-14 || echo clang++)}"
+command -v ccache >/dev/null && clang="ccache $clang"
+
+read -ra hdf5 <<<"$(pkg-config --cflags --libs hdf5-serial)"
+flags=(-std=c++20 -g -O1 -fsanitize=address,undefined -fno-sanitize-recover=all -DUPLIFT_VERSION='"fuzz"' -Isrc -Ifuzz -isystem /usr/include/eigen3)
+base=(src/uplift/base/{error,text,file}.cpp)
+mesh=("${base[@]}" src/uplift/mesh/{cells,mesh}.cpp src/uplift/io/mesh_draft.cpp)
+sources() {
+  case "$1" in
+    gmsh) printf '%s\n' "${mesh[@]}" src/uplift/io/mesh_gmsh*.cpp ;;
+    med) printf '%s\n' "${mesh[@]}" src/uplift/io/hdf5.cpp src/uplift/io/mesh_med.cpp ;;
+    toml) printf '%s\n' "${base[@]}" src/uplift/io/toml.cpp ;;
+    *) echo "fuzz.sh: wanted gmsh, med or toml, found \"$1\"" >&2; exit 2 ;;
+  esac
+}
+
+out=build/fuzz
+mkdir -p "$out/objects"
+for target in "${targets[@]}"; do
+  objects=()
+  while read -r source; do
+    object="$out/objects/$(tr / _ <<<"${source%.cpp}").o"
+    $clang "${flags[@]}" "${hdf5[@]}" -Wno-unused-command-line-argument -fsanitize=fuzzer-no-link -c "$source" -o "$object"
+    objects+=("$object")
+  done < <(sources "$target"; echo "fuzz/${target}_fuzz.cpp")
+  $clang "${flags[@]}" -fsanitize=fuzzer "${objects[@]}" -o "$out/${target}_fuzz" -lfmt "${hdf5[@]}"
+done
+
+for target in "${targets[@]}"; do
+  echo "== $target: $seconds s"
+  work="$out/corpus_$target"
+  mkdir -p "$work"
+  log="$out/$target.log"
+  limit=512
+  [ "$target" = med ] && limit=0  # see the operator new of med_fuzz.cpp
+  if ! "$out/${target}_fuzz" -max_total_time="$seconds" -rss_limit_mb=2048 -malloc_limit_mb="$limit" -timeout=20 -max_len=65536 -print_final_stats=1 \
+    -artifact_prefix="$out/${target}_" "$work" "fuzz/corpus/$target" >"$log" 2>&1; then
+    tail -n 60 "$log" >&2
+    echo "FAILED: $target; the input is in $out" >&2
+    exit 1
+  fi
+  grep -E "^(#[0-9]+.*DONE|stat::number_of_executed_units|stat::average_exec|stat::peak_rss)" "$log"
+done

@@ -1,0 +1,39 @@
+#include "uplift/dynamics/split_response.h"
+
+#include "uplift/math/dense.h"
+
+namespace uplift {
+
+SplitResponse::SplitResponse(const BulkFactor& factor, const Sparse& b) : factor_(factor) {
+  const Index touched = static_cast<Index>(factor.last().size());
+  Matrix at_touched(b.rows(), touched);
+  for (Index j = 0; j < touched; ++j) at_touched.col(j) = b.col(factor.last()[static_cast<std::size_t>(j)]);
+  const Matrix l = factor.split()->last();
+  c_ = l.triangularView<lower_triangle>().solve(at_touched.transpose()).transpose();  // B_t L_tt^-T
+  if (b.rows() >= touched) return;
+  const Qr qr(c_.transpose());  // touched x rows
+  q_ = (qr.householderQ() * Matrix::Identity(touched, b.rows())).transpose();
+  c_ = Matrix(qr.matrixQR().topRows(b.rows()).triangularView<upper_triangle>()).transpose();
+}
+
+void SplitResponse::forward(const Vector& right, Vector& opening) {
+  factor_.split()->forward(right, half_);
+  const auto touched = half_.tail(static_cast<Index>(factor_.last().size()));
+  if (q_.size() > 0)
+    tail_.noalias() = q_ * touched;
+  else
+    tail_ = touched;
+  opening.noalias() += c_ * tail_;
+}
+
+void SplitResponse::backward(const Vector& z, Vector& x) {
+  auto touched = half_.tail(static_cast<Index>(factor_.last().size()));
+  if (q_.size() > 0)
+    touched.noalias() += q_.transpose() * z;
+  else
+    touched += z;
+  factor_.split()->backward(half_, x);
+  factor_.count_back_solve();
+}
+
+}  // namespace uplift

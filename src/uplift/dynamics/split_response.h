@@ -1,0 +1,27 @@
+#pragma once
+#include "uplift/dynamics/bulk.h"
+
+namespace uplift {
+
+/// What the interfaces feel of a bulk whose touched unknowns t were eliminated last, P A P^T = L L^T. With B_t the columns of B for them:
+///   B A^-1 B^T = (B_t L_tt^-T) (B_t L_tt^-T)^T,      B_t L_tt^-T = C Q      (LQ factors; C square when there are fewer rows than unknowns)
+/// The forward half of a back-solve gives y = L^-1 P r, whose tail y_t is all that the interfaces feel of r: opening += C (Q y_t). When the
+/// interface problem is solved, its coordinates go back into the tail, y_t += Q^T z, and the backward half gives the displacement:
+/// a condensed step costs one back-solve and keeps nothing that is larger than the interface.
+class SplitResponse {
+ public:
+  /// `factor` must be split, its last unknowns those that `b` touches, and stay alive.
+  SplitResponse(const BulkFactor& factor, const Sparse& b);
+  const Matrix& factor() const { return c_; }  // C: rows x r
+  /// Forward half for a right-hand side; adds B A^-1 r to `opening`.
+  void forward(const Vector& right, Vector& opening);
+  /// x = A^-1 r + the spread of z, with the r of the last forward half.
+  void backward(const Vector& z, Vector& x);
+
+ private:
+  const BulkFactor& factor_;
+  Matrix c_, q_;  // q_: r x touched unknowns; empty: the identity
+  Vector half_, tail_;
+};
+
+}  // namespace uplift

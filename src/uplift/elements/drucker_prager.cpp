@@ -1,0 +1,152 @@
+#include "uplift/elements/drucker_prager.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cassert>
+#include <cmath>
+#include <limits>
+#include <numbers>
+
+namespace uplift {
+
+namespace {
+
+/// Slope of the cone over p for an angle: friction gives eta, dilation eta_bar (section 6.4).
+double cone_slope(double angle, DruckerPragerParameters::Fit fit) {
+  const double s = std::sin(angle), t = std::tan(angle);
+  switch (fit) {
+    case DruckerPragerParameters::Fit::compression:
+      return 6 * s / (std::numbers::sqrt3 * (3 - s));
+    case DruckerPragerParameters::Fit::extension:
+      return 6 * s / (std::numbers::sqrt3 * (3 + s));
+    default:
+      return 3 * t / std::sqrt(9 + 12 * t * t);
+  }
+}
+
+/// Share of the cohesion in the strength of pure shear.
+double cohesion_factor(double angle, DruckerPragerParameters::Fit fit) {
+  const double s = std::sin(angle), c = std::cos(angle), t = std::tan(angle);
+  switch (fit) {
+    case DruckerPragerParameters::Fit::compression:
+      return 6 * c / (std::numbers::sqrt3 * (3 - s));
+    case DruckerPragerParameters::Fit::extension:
+      return 6 * c / (std::numbers::sqrt3 * (3 + s));
+    default:
+      return 3 / std::sqrt(9 + 12 * t * t);
+  }
+}
+
+double mean(const Stress& stress) {
+  return stress.head<3>().sum() / 3;
+}
+
+Stress deviator(const Stress& stress) {
+  Stress s = stress;
+  s.head<3>().array() -= mean(stress);
+  return s;
+}
+
+double root_j2(const Stress& s) {
+  return std::sqrt(s.head<3>().squaredNorm() / 2 + s.tail<3>().squaredNorm());
+}
+
+/// The unit tensor as a stress; its outer product with itself.
+Stress unit() {
+  Stress one = Stress::Zero();
+  one.head<3>().setOnes();
+  return one;
+}
+
+}  // namespace
+
+/// The elastic answer before the return.
+struct DruckerPrager::Trial {
+  Stress deviator;
+  double root_j2, mean, accumulated;
+};
+
+void check_drucker_prager(const DruckerPragerParameters& p, const Where& where, const std::string& path) {
+  check_material(p.elastic, where, path);
+  const auto require = [&](bool good, const char* name, const char* wanted, double found) {
+    if (!good || !std::isfinite(found)) throw InputError(where, path + "." + name, wanted, fmt::format("{}", found));
+  };
+  require(p.friction >= 0 && p.friction < std::numbers::pi / 2, "friction", "an angle from 0 to below 90 degrees", p.friction);
+  require(p.dilation >= 0 && p.dilation <= p.friction, "dilation", "an angle from 0 to the friction angle", p.dilation);
+  require(p.friction > 0 ? p.cohesion >= 0 : p.cohesion > 0, "cohesion", "at least 0 Pa, and above 0 Pa for a soil without friction",
+          p.cohesion);
+  require(p.hardening >= 0, "hardening", "at least 0 Pa (softening of a continuum depends on the mesh)", p.hardening);
+}
+
+DruckerPrager::DruckerPrager(const DruckerPragerParameters& parameters)
+    : parameters_(parameters),
+      eta_(cone_slope(parameters.friction, parameters.fit)),
+      eta_bar_(cone_slope(parameters.dilation, parameters.fit)),
+      xi_(cohesion_factor(parameters.friction, parameters.fit)) {}
+
+double DruckerPrager::yield(const Stress& stress, double accumulated) const {
+  return root_j2(deviator(stress)) + eta_ * mean(stress) - xi_ * (parameters_.cohesion + parameters_.hardening * accumulated);
+}
+
+double DruckerPrager::apex(double accumulated) const {
+  if (eta_ == 0) return std::numeric_limits<double>::infinity();
+  return xi_ / eta_ * (parameters_.cohesion + parameters_.hardening * accumulated);
+}
+
+Stress DruckerPrager::respond(const Strain& strain, std::span<const double> old, std::span<double> now, Mat6* tangent) const {
+  assert(old.size() >= num_history && now.size() >= num_history);
+  const double shear = parameters_.elastic.shear(), bulk = parameters_.elastic.bulk();
+  const Mat6 elastic = elastic_matrix(parameters_.elastic);
+  Stress stress = elastic * (strain - ConstMap(old.data(), 6));
+  const double over = yield(stress, old[6]);
+  std::copy_n(old.begin(), num_history, now.begin());
+  if (tangent) *tangent = elastic;
+  if (over <= 0) return stress;
+
+  const Stress s = deviator(stress);
+  const Trial trial{s, root_j2(s), mean(stress), old[6]};
+  const double gamma = over / (shear + bulk * eta_ * eta_bar_ + xi_ * xi_ * parameters_.hardening);
+  const bool past_apex = eta_ > 0 && trial.root_j2 < shear * gamma;
+  now[6] = past_apex ? return_to_apex(trial, stress, tangent) : return_to_cone(trial, gamma, stress, tangent);
+
+  const double p = mean(stress);
+  Strain still_elastic = deviator(stress) / (2 * shear);
+  still_elastic.tail<3>() *= 2;
+  still_elastic.head<3>().array() += p / (3 * bulk);
+  Map(now.data(), 6) = strain - still_elastic;
+  return stress;
+}
+
+double DruckerPrager::return_to_cone(const Trial& trial, double gamma, Stress& stress, Mat6* tangent) const {
+  const double shear = parameters_.elastic.shear(), bulk = parameters_.elastic.bulk();
+  const double keep = 1 - shear * gamma / trial.root_j2;
+  stress = keep * trial.deviator + (trial.mean - bulk * eta_bar_ * gamma) * unit();
+  if (tangent) {
+    const double a = 1 / (shear + bulk * eta_ * eta_bar_ + xi_ * xi_ * parameters_.hardening);
+    const Stress n = trial.deviator / (std::numbers::sqrt2 * trial.root_j2), one = unit();
+    Mat6 deviatoric = -one * one.transpose() / 3;
+    deviatoric.diagonal() += Stress(1, 1, 1, 0.5, 0.5, 0.5);
+    *tangent = 2 * shear * keep * deviatoric + 2 * shear * (1 - keep - shear * a) * n * n.transpose() -
+               std::numbers::sqrt2 * shear * a * bulk * (eta_ * n * one.transpose() + eta_bar_ * one * n.transpose()) +
+               bulk * (1 - bulk * eta_ * eta_bar_ * a) * one * one.transpose();
+  }
+  return trial.accumulated + xi_ * gamma;
+}
+
+double DruckerPrager::return_to_apex(const Trial& trial, Stress& stress, Mat6* tangent) const {
+  const double bulk = parameters_.elastic.bulk();
+  const double per_volume = xi_ / (eta_bar_ > 0 ? eta_bar_ : eta_);
+  const double softer = bulk + per_volume * xi_ / eta_ * parameters_.hardening;
+  const double volume = (trial.mean - apex(trial.accumulated)) / softer;
+  stress = (trial.mean - bulk * volume) * unit();
+  if (tangent) *tangent = bulk * (1 - bulk / softer) * unit() * unit().transpose();
+  return trial.accumulated + per_volume * volume;
+}
+
+double DruckerPrager::stored_energy(const Strain& strain, std::span<const double> history) const {
+  const Strain recoverable = strain - ConstMap(history.data(), 6);
+  return recoverable.dot(elastic_matrix(parameters_.elastic) * recoverable) / 2;
+}
+
+}  // namespace uplift

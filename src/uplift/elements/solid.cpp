@@ -1,0 +1,107 @@
+#include "uplift/elements/solid.h"
+
+#include <cassert>
+
+#include "uplift/elements/solid_rules.h"
+#include "uplift/math/dense.h"
+#include "uplift/mesh/cell_shapes.h"
+
+namespace uplift {
+
+Solid::Solid(Cell cell, std::span<const int> nodes, Coordinates coordinates, SolidSection section)
+    : cell_(cell),
+      dimension_(info(cell).dimension),
+      nodes_(nodes.begin(), nodes.end()),
+      coordinates_(std::move(coordinates)),
+      section_(section) {
+  assert(dimension_ >= 2 && static_cast<int>(nodes_.size()) == info(cell).nodes);
+  assert(section_.thickness > 0);
+}
+
+void Solid::form(Local local) const {
+  if (local.stiffness) form_stiffness(*local.stiffness);
+  if (local.mass) form_mass(*local.mass);
+  if (local.damping) local.damping->setZero(unknowns(), unknowns());
+}
+
+int Solid::num_points() const {
+  return solid_tables(cell_).stiffness.points();
+}
+
+int Solid::num_modes() const {
+  return section_.incompatible_modes ? num_bubbles(cell_) : 0;
+}
+
+double Solid::volume() const {
+  double sum = 0;
+  for (const PointGradient& at : gradients()) sum += at.volume;
+  return sum;
+}
+
+std::vector<Vec3> Solid::point_positions() const {
+  std::vector<Vec3> corners, positions;
+  for (const int node : nodes_) corners.push_back((*coordinates_)[static_cast<std::size_t>(node)]);
+  for (const Vec3& local : solid_tables(cell_).stiffness.local) positions.push_back(cell_position(cell_shape(cell_, local), corners));
+  return positions;
+}
+
+Stress Solid::elastic_stress(const Strain& strain) const {
+  const bool flat = dimension_ == 2 && section_.plane == PlaneState::stress;
+  const double mu = section_.material.shear(), lambda = flat ? section_.material.plane_lame(PlaneState::stress) : section_.material.lame();
+  Stress stress;
+  stress.head<3>() = 2 * mu * strain.head<3>();
+  stress.head<3>().array() += lambda * strain.head<3>().sum();
+  stress.tail<3>() = mu * strain.tail<3>();
+  if (flat) stress[2] = 0;
+  return stress;
+}
+
+Vector Solid::mode_amplitudes(const std::vector<PointGradient>& points, const Vector& displacement) const {
+  // no force on the modes: K_aa alpha = -K_au u; the right-hand side is the force of the compatible stress
+  const int nodes = static_cast<int>(nodes_.size()), modes = num_modes(), n = dimension_ * modes;
+  Vector force = Vector::Zero(n);
+  Matrix stiffness = Matrix::Zero(n, n);
+  for (const PointGradient& at : points) {
+    Strain strain = Strain::Zero();
+    add_strain(at, dimension_, 0, nodes, displacement.data(), strain);
+    add_force(at, dimension_, nodes, modes, elastic_stress(strain), force.data());
+    for (int c = 0; c < n; ++c) {
+      const Vec3 unit = Vec3::Unit(c % dimension_);
+      Strain of_mode = Strain::Zero();
+      add_strain(at, dimension_, nodes + c / dimension_, 1, unit.data(), of_mode);
+      add_force(at, dimension_, nodes, modes, elastic_stress(of_mode), stiffness.col(c).data());
+    }
+  }
+  return -Cholesky(stiffness).solve(force);
+}
+
+std::vector<Stress> Solid::point_stress(const Vector& displacement) const {
+  assert(displacement.size() == unknowns());
+  const int nodes = static_cast<int>(nodes_.size()), modes = num_modes();
+  const std::vector<PointGradient> points = gradients();
+  const Vector amplitude = modes > 0 ? mode_amplitudes(points, displacement) : Vector();
+  std::vector<Stress> stress;
+  stress.reserve(points.size());
+  for (const PointGradient& at : points) {
+    Strain strain = Strain::Zero();
+    add_strain(at, dimension_, 0, nodes, displacement.data(), strain);
+    if (modes > 0) add_strain(at, dimension_, nodes, modes, amplitude.data(), strain);
+    stress.push_back(elastic_stress(strain));
+  }
+  return stress;
+}
+
+std::vector<Stress> Solid::extrapolate(const std::vector<Stress>& at_points) const {
+  const Matrix& to_nodes = solid_tables(cell_).to_nodes;
+  std::vector<Stress> at_nodes(nodes_.size(), Stress::Zero());
+  for (Index a = 0; a < to_nodes.rows(); ++a)
+    for (Index p = 0; p < to_nodes.cols(); ++p)
+      at_nodes[static_cast<std::size_t>(a)] += to_nodes(a, p) * at_points[static_cast<std::size_t>(p)];
+  return at_nodes;
+}
+
+std::vector<Stress> Solid::node_stress(const Vector& displacement) const {
+  return extrapolate(point_stress(displacement));
+}
+
+}  // namespace uplift

@@ -1,0 +1,87 @@
+#pragma once
+#include <memory>
+#include <span>
+#include <vector>
+
+#include "uplift/elements/element.h"
+#include "uplift/elements/material.h"
+#include "uplift/mesh/cells.h"
+
+namespace uplift {
+
+/// Positions of all nodes of the model [m]; shared by its elements.
+using Coordinates = std::shared_ptr<const std::vector<Vec3>>;
+
+/// What a solid is made of and how it is formed.
+struct SolidSection {
+  ElasticMaterial material;
+  PlaneState plane = PlaneState::strain;  // surface cells only
+  double thickness = 1;                   // m, surface cells only
+  enum class Mass { none, consistent, lumped } mass = Mass::consistent;
+  bool incompatible_modes = true;  // quad4 and hex8 only
+};
+
+struct PointGradient;  // elements/solid_rules.h
+
+/// Small-strain isoparametric solid on any cell of dimension 2 (in the plane z = 0: plane strain or plane stress) or 3; unknowns (ux, uy)
+/// or (ux, uy, uz) [m] of each node.
+///
+///   K = int B^T D B dV,   M = int rho N^T N dV          (Zienkiewicz & Taylor, The Finite Element Method, vol. 1)
+///
+/// Full integration, exact for cells with straight edges and parallel sides. Points for K (M where it differs): tri3 1 (3), tri6 3 (6),
+/// quad4 2x2, quad8 and quad9 3x3, tet4 1 (4), tet10 4 (14), wedge6 3x2, wedge15 6x3, hex8 2x2x2, hex20 and hex27 3x3x3.
+///
+/// Incompatible modes (default; quad4 and hex8): the bubbles 1 - r^2, 1 - s^2, 1 - t^2 for every displacement component let a single
+/// element bend without shear locking. Their gradients are taken with the Jacobian of the centre and scaled by det J0 / det J, so that
+/// their integral is zero and constant stress is met exactly on every straight-sided shape (Wilson, Taylor, Doherty & Ghaboussi 1973;
+/// Taylor, Beresford & Wilson, IJNME 10 (1976) 1211-1219; an enhanced assumed strain in the sense of Simo & Rifai, IJNME 29 (1990)
+/// 1595-1638). They are condensed inside the element and carry no mass.
+///
+/// Lumped mass: row sums for linear cells, the diagonal of M scaled to the total mass for second-order ones (Hinton, Rock & Zienkiewicz,
+/// EESD 4 (1976) 245-249): all masses are positive.
+class Solid : public Element {
+ public:
+  /// `nodes` as many as the cell has, numbered as in VTK, indices into `coordinates`. The Jacobian must be positive at every integration
+  /// point (checked by assertion; meshes are checked on reading).
+  Solid(Cell cell, std::span<const int> nodes, Coordinates coordinates, SolidSection section);
+  std::span<const int> nodes() const override { return nodes_; }
+  int unknowns_per_node() const override { return dimension_; }
+  void form(Local local) const override;
+
+  Cell cell() const { return cell_; }
+  int dimension() const { return dimension_; }
+  int unknowns() const { return dimension_ * static_cast<int>(nodes_.size()); }
+  const SolidSection& section() const { return section_; }
+  double volume() const;  // m3; area times thickness for surface cells
+
+  /// Integration points of the stiffness: their number, and where they are [m].
+  int num_points() const;
+  std::vector<Vec3> point_positions() const;
+  /// Stress at the integration points, of the element's nodal displacements [m] (size unknowns()); the incompatible modes are included. In
+  /// plane strain zz is the stress that keeps the thickness, in plane stress it is zero.
+  std::vector<Stress> point_stress(const Vector& displacement) const;
+  /// Stress at the nodes: the least-squares fit of the corner shape functions (linear field) to the values at the integration points
+  /// (Hinton & Campbell, IJNME 8 (1974) 461-480). To be averaged between elements of the same material.
+  std::vector<Stress> node_stress(const Vector& displacement) const;
+
+ protected:
+  int num_modes() const;  // incompatible bubbles
+  /// Gradients of the shape functions, then of the bubbles, at the integration points.
+  std::vector<PointGradient> gradients() const;
+  /// Nodal values from values at the integration points, as in node_stress.
+  std::vector<Stress> extrapolate(const std::vector<Stress>& at_points) const;
+
+ private:
+  void form_stiffness(Matrix& stiffness) const;
+  void form_mass(Matrix& mass) const;
+  Vector mode_amplitudes(const std::vector<PointGradient>& points, const Vector& displacement) const;
+  Stress elastic_stress(const Strain& strain) const;
+
+  Cell cell_;
+  int dimension_;
+  std::vector<int> nodes_;
+  Coordinates coordinates_;
+  SolidSection section_;
+};
+
+}  // namespace uplift

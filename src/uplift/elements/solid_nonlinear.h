@@ -1,0 +1,52 @@
+#pragma once
+#include <string_view>
+
+#include "uplift/elements/drucker_prager.h"
+#include "uplift/elements/solid.h"
+
+namespace uplift {
+
+/// How the update of an element ended; not converged: the step is to be cut.
+struct BulkResponse {
+  bool converged = true;
+  std::string_view why;
+};
+
+/// Solid of Drucker-Prager material: plane strain and three dimensions. `form` gives the elastic stiffness (the first tangent), the mass
+/// and so on; the outer Newton calls `respond`. The incompatible modes stay inside the element: their amplitudes are part of the history,
+/// and respond solves for them so that no force works on them: Newton's method with a share of the elastic stiffness that grows when a step
+/// does not help (the kinks between elastic, cone and apex) and fades when it does.
+class NonlinearSolid : public Solid {
+ public:
+  /// section.material is not looked at: the elastic part is law.elastic. Plane stress is not available (assertion).
+  NonlinearSolid(Cell cell, std::span<const int> nodes, Coordinates coordinates, SolidSection section, const DruckerPragerParameters& law);
+
+  /// Numbers that the element remembers; all zero in the natural state: DruckerPrager::num_history of every integration point, then the
+  /// amplitudes of the modes [m].
+  int num_history() const;
+  /// Internal force [N] and consistent tangent [N/m] (null: not wanted) for nodal displacements [m], from the history of the last accepted
+  /// state; fills `now`. The tangent is not symmetric when the flow is not associated.
+  BulkResponse respond(const Vector& displacement, std::span<const double> old, std::span<double> now, Vector& force,
+                       Matrix* tangent) const;
+
+  /// Stress at the integration points and at the nodes of a state.
+  std::vector<Stress> point_stress(const Vector& displacement, std::span<const double> history) const;
+  std::vector<Stress> node_stress(const Vector& displacement, std::span<const double> history) const;
+  /// Recoverable energy [J] of a state.
+  double stored_energy(const Vector& displacement, std::span<const double> history) const;
+  const DruckerPrager& law() const { return law_; }
+
+ private:
+  struct Points;
+  Strain strain(const PointGradient& at, const Vector& displacement, const double* amplitudes) const;
+  void evaluate(const Vector& displacement, std::span<const double> old, std::span<double> now, Points& points) const;
+  Matrix full_tangent(const Points& points, double elastic_share) const;
+  double mode_gradient(const PointGradient& at) const;  // 1/m: size of the bubbles' gradients
+  double node_gradient(const PointGradient& at) const;  // 1/m: largest of the nodes
+  BulkResponse balance_modes(const Vector& displacement, std::span<const double> old, std::span<double> now, Points& points) const;
+  int first_amplitude() const { return DruckerPrager::num_history * num_points(); }
+
+  DruckerPrager law_;
+};
+
+}  // namespace uplift

@@ -1,0 +1,106 @@
+#include "uplift/elements/solid_rules.h"
+
+#include <array>
+#include <cassert>
+
+#include "uplift/math/dense.h"
+#include "uplift/mesh/cell_quadrature.h"
+#include "uplift/mesh/cell_shapes.h"
+
+namespace uplift {
+
+namespace {
+
+SolidRule tabulate(Cell cell, const CellRule& rule) {
+  SolidRule table{rule.point, rule.weight, {}, {}};
+  table.value.assign(rule.point.size() * max_functions, 0.0);
+  table.slope.assign(rule.point.size() * 3 * max_functions, 0.0);
+  for (std::size_t p = 0; p < rule.point.size(); ++p) {
+    const CellShape shape = cell_shape(cell, rule.point[p]);
+    for (std::size_t a = 0; a < static_cast<std::size_t>(shape.nodes); ++a) {
+      table.value[p * max_functions + a] = shape.value[a];
+      for (std::size_t k = 0; k < 3; ++k) table.slope[(3 * p + k) * max_functions + a] = shape.slope[a][k];
+    }
+  }
+  return table;
+}
+
+/// Least-squares fit of the corner functions to the points, seen at the nodes; a constant where the points are fewer than the corners.
+Matrix extrapolation(Cell cell, const SolidRule& rule) {
+  const Cell corners = info(cell).linear;
+  const Index n = info(corners).nodes, points = rule.points(), nodes = info(cell).nodes;
+  if (points < n) return Matrix::Constant(nodes, points, 1.0 / static_cast<double>(points));
+  Matrix at_points(points, n), at_nodes(nodes, n);
+  for (Index p = 0; p < points; ++p)
+    at_points.row(p) = ConstMap(cell_shape(corners, rule.local[static_cast<std::size_t>(p)]).value.data(), n);
+  for (Index a = 0; a < nodes; ++a) {
+    const auto& x = cell_nodes(cell)[static_cast<std::size_t>(a)];
+    at_nodes.row(a) = ConstMap(cell_shape(corners, {x[0], x[1], x[2]}).value.data(), n);
+  }
+  return at_nodes * Cholesky(at_points.transpose() * at_points).solve(at_points.transpose());
+}
+
+/// Degrees of the rules of K and M; see Solid.
+std::array<int, 2> degrees(Cell cell) {
+  switch (cell) {
+    case Cell::tri3:
+    case Cell::tet4:
+      return {1, 2};
+    case Cell::tri6:
+    case Cell::tet10:
+      return {2, 4};
+    case Cell::wedge6:
+      return {2, 2};
+    case Cell::quad4:
+    case Cell::hex8:
+      return {3, 3};
+    case Cell::wedge15:
+      return {4, 4};
+    default:
+      return {5, 5};
+  }
+}
+
+SolidTables make_tables(Cell cell) {
+  if (info(cell).dimension < 2) return {};
+  const auto [stiffness, mass] = degrees(cell);
+  SolidTables tables{
+      tabulate(cell, cell_rule(cell, stiffness)), tabulate(cell, cell_rule(cell, mass)), tabulate(cell, {{cell_centre(cell)}, {1}}), {}};
+  tables.to_nodes = extrapolation(cell, tables.stiffness);
+  return tables;
+}
+
+/// Places of the strains (xx, yy, zz, xy, yz, zx) in a symmetric tensor.
+constexpr int voigt[3][3] = {{0, 3, 5}, {3, 1, 4}, {5, 4, 2}};
+
+}  // namespace
+
+const SolidTables& solid_tables(Cell cell) {
+  static const auto all = [] {
+    std::array<SolidTables, num_cell_types> tables;
+    for (const CellInfo& c : all_cells()) tables[static_cast<std::size_t>(c.cell)] = make_tables(c.cell);
+    return tables;
+  }();
+  return all[static_cast<std::size_t>(cell)];
+}
+
+int num_bubbles(Cell cell) {
+  return cell == Cell::quad4 ? 2 : cell == Cell::hex8 ? 3 : 0;
+}
+
+void add_strain(const PointGradient& at, int dimension, int first, int count, const double* u, Strain& strain) {
+  for (int a = 0; a < count; ++a)
+    for (int i = 0; i < dimension; ++i)
+      for (int j = 0; j < dimension; ++j) strain[voigt[i][j]] += at.g[j][first + a] * u[dimension * a + i];
+}
+
+void add_force(const PointGradient& at, int dimension, int first, int count, const Stress& stress, double* force) {
+  for (int a = 0; a < count; ++a)
+    for (int i = 0; i < dimension; ++i) {
+      double sum = 0;
+      for (int j = 0; j < dimension; ++j) sum += stress[voigt[i][j]] * at.g[j][first + a];
+      force[dimension * a + i] += at.volume * sum;
+    }
+}
+
+}  // namespace uplift

@@ -1,0 +1,77 @@
+#include "uplift/interface/face_joint.h"
+
+#include <cassert>
+#include <map>
+
+#include "uplift/mesh/cell_quadrature.h"
+#include "uplift/mesh/cell_shapes.h"
+
+namespace uplift {
+
+namespace {
+
+constexpr double same_normal = 1 - 1e-9;  // cosine: two and a half seconds of arc
+
+/// Shape functions of one side at a point of its face.
+std::vector<std::pair<int, double>> side(std::span<const int> nodes, const CellShape& shape) {
+  std::vector<std::pair<int, double>> terms;
+  for (std::size_t a = 0; a < nodes.size(); ++a)
+    if (std::abs(shape.value[a]) > 1e-14) terms.emplace_back(nodes[a], shape.value[a]);
+  return terms;
+}
+
+/// Points at node pairs that were met, by pair; several where normals differ.
+class Pairs {
+ public:
+  explicit Pairs(std::vector<JointPoint>& points) : points_(points) {}
+  void add(int lower, int upper, const JointPoint& point) {
+    std::vector<std::size_t>& here = known_[{lower, upper}];
+    for (const std::size_t k : here)
+      if (points_[k].normal.dot(point.normal) > same_normal) {
+        points_[k].area += point.area;
+        return;
+      }
+    here.push_back(points_.size());
+    points_.push_back(point);
+  }
+
+ private:
+  std::vector<JointPoint>& points_;
+  std::map<std::pair<int, int>, std::vector<std::size_t>> known_;
+};
+
+}  // namespace
+
+std::vector<JointPoint> face_points(const Mesh& mesh, const std::vector<FacePair>& faces, FaceQuadrature quadrature, double thickness,
+                                    double gap) {
+  assert(mesh.dimension == 2);
+  std::vector<JointPoint> points;
+  Pairs pairs(points);
+  std::vector<Vec3> positions;
+  for (const FacePair& face : faces) {
+    const Cell cell = mesh.type(face.lower);
+    const std::span<const int> lower = mesh.cell(face.lower), upper = mesh.cell(face.upper);
+    const CellRule rule = quadrature == FaceQuadrature::nodal ? nodal_rule(cell) : cell_rule(cell, cell == Cell::line2 ? 2 : 4);
+    positions.clear();
+    for (const int node : lower) positions.push_back(mesh.nodes[static_cast<std::size_t>(node)]);
+    for (std::size_t i = 0; i < rule.point.size(); ++i) {
+      const CellShape shape = cell_shape(cell, rule.point[i]);
+      const Vec3 area = cell_area_vector(shape, positions, cell);
+      JointPoint point;
+      point.position = cell_position(shape, positions).head<2>();
+      point.normal = area.head<2>().normalized();
+      point.area = rule.weight[i] * area.norm() * thickness;
+      point.gap = gap;
+      point.lower = side(lower, shape);
+      point.upper = side(upper, shape);
+      const bool at_node = quadrature == FaceQuadrature::nodal && i < lower.size();
+      if (!at_node)
+        points.push_back(point);
+      else if (lower[i] != upper[i])
+        pairs.add(lower[i], upper[i], point);
+    }
+  }
+  return points;
+}
+
+}  // namespace uplift
