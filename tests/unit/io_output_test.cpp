@@ -11,7 +11,6 @@
 
 #include "uplift/base/error.h"
 #include "uplift/base/file.h"
-#include "uplift/base/file.h"
 #include "uplift/io/files.h"
 #include "uplift/io/histories.h"
 #include "uplift/io/json_writer.h"
