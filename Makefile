@@ -26,6 +26,7 @@ bench:             ## benchmarks: kernels, steps, whole process; figures and lim
 	cmake --preset release -DUPLIFT_BENCH=ON
 	cmake --build build/release
 	build/release/bench/bench_kernels
+	build/release/bench/bench_soil_block
 	bench/whole_process.py build/release/uplift
 
 web:               ## rebuild the report page (developers of the page only)

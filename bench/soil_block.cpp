@@ -1,0 +1,175 @@
+// A block on soil in plane strain: what a condensed step costs beside one back-solve, and what the factor and the preparation cost.
+// Soil 60 x 20 m, E = 200 MPa, nu = 0.3, rho = 2000 kg/m3; block 10 x 20 m, E = 20 GPa, nu = 0.2, rho = 2500 kg/m3; 4-node quads with
+// incompatible modes; tensionless frictionless base, 2e10 Pa/m; bottom fixed, sides on rollers; gravity, then a half-sine of 3 MN/m and
+// 0.1 s along the block's top; 500 steps of 2 ms.
+// Usage: bench_soil_block [element sizes in m ...]
+#include <fmt/format.h>
+#include <sys/resource.h>
+
+#include <algorithm>
+#include <chrono>
+#include <cmath>
+#include <numbers>
+
+#include "uplift/contact/method.h"
+#include "uplift/dynamics/statics.h"
+#include "uplift/dynamics/step.h"
+#include "uplift/elements/discrete.h"
+#include "uplift/elements/solid.h"
+#include "uplift/interface/face_joint.h"
+#include "uplift/mesh/soil_box.h"
+#include "uplift/model/builder.h"
+
+namespace uplift {
+namespace {
+
+double now() {
+  return std::chrono::duration<double>(std::chrono::steady_clock::now().time_since_epoch()).count();
+}
+
+class HalfSine final : public TimeFunction {
+ public:
+  double value(double t) const override { return t < duration ? std::sin(omega * t) : 0; }
+  double rate(double t) const override { return t < duration ? omega * std::cos(omega * t) : 0; }
+  double acceleration(double t) const override { return -omega * omega * value(t); }
+
+ private:
+  static constexpr double duration = 0.1, omega = std::numbers::pi / duration;
+};
+
+Values part(std::span<const PartInfo* const> catalog, std::string type, const std::vector<std::pair<std::string, double>>& numbers) {
+  auto table = std::make_shared<RawTable>();
+  table->entries.emplace_back("type", Raw{std::move(type), {}, ""});
+  for (const auto& [name, number] : numbers) table->entries.emplace_back(name, Raw{number, {}, ""});
+  return check_part(Raw{table, {}, ""}, catalog);
+}
+
+Model block_on_soil(double size) {
+  SoilBox box;
+  box.soil.layers = {{20, size}};
+  box.soil.size = box.block.size = size;
+  box.block.height = 20;
+  Mesh mesh = soil_box(box, {});
+  const std::vector<OpenedSurface> opened = split(mesh, {"interface"}, {"soil_1"}, {});
+  const auto coordinates = std::make_shared<const std::vector<Vec3>>(mesh.nodes);
+
+  ModelBuilder builder;
+  for (std::size_t i = 0; i < mesh.nodes.size(); ++i) builder.add_node(fmt::format("mesh.{}", i + 1), mesh.nodes[i].head<2>(), {});
+  const auto add_solids = [&](const char* group, const ElasticMaterial& material) {
+    SolidSection section;
+    section.material = material;
+    for (const CellId id : mesh.groups.at(group).cells)
+      builder.add_element(std::make_unique<Solid>(mesh.type(id), mesh.cell(id), coordinates, section), {});
+  };
+  add_solids("soil_1", {200e6, 0.3, 2000});
+  add_solids("block", {20e9, 0.2, 2500});
+  const auto fix = [&](const char* group, std::initializer_list<Dof> dofs) {
+    for (const int node : nodes_of(mesh, mesh.groups.at(group)))
+      for (const Dof dof : dofs) builder.fix(node, dof, {});
+  };
+  fix("soil_bottom", {uy});
+  fix("soil_left", {ux});
+  fix("soil_right", {ux});
+  for (const int node : nodes_of(mesh, mesh.groups.at("soil_bottom"))) {
+    const double x = mesh.nodes[static_cast<std::size_t>(node)].x();
+    if (std::abs(x) < 30 - 1e-6) builder.fix(node, ux, {});
+  }
+  const std::vector<int> top = nodes_of(mesh, mesh.groups.at("block_top"));
+  std::vector<std::pair<int, double>> pattern;
+  for (const int node : top) {
+    const bool end = std::abs(std::abs(mesh.nodes[static_cast<std::size_t>(node)].x()) - 5) < 1e-6;
+    pattern.emplace_back(dofs_per_node * node + ux, 3e6 * (end ? 0.5 : 1) / static_cast<double>(top.size() - 1));
+  }
+  builder.add_load("pulse", pattern, std::make_shared<HalfSine>(), false, {});
+  builder.set_gravity({0, -9.81}, {});
+  // nothing else holds the block sideways under gravity on a frictionless base; 0.02 Hz is far below everything that happens in a second
+  builder.add_element(std::make_unique<Spring>(Connection{{top.front()}, Vec2(1, 0)}, 1e4), {});
+  InterfaceSpec base;
+  base.name = "base";
+  base.components = 1;
+  base.points = face_points(mesh, opened[0].faces, FaceQuadrature::nodal, 1, 0);
+  base.law = make_part(law_catalog(), part(interface_behaviours(), "springs", {{"K_n", 2e10}}));
+  base.behaviour = "springs";
+  builder.add_interface(std::move(base), {});
+  return builder.finish();
+}
+
+void measure(double size) {
+  double start = now();
+  const auto lap = [&start] {
+    const double seconds = now() - start;
+    start = now();
+    return seconds;
+  };
+  const Model model = block_on_soil(size);
+  const double t_model = lap();
+  const Bulk bulk(model, nullptr);
+  const Sparse b = stack_interfaces(model);
+  const Vector gap = Vector::Zero(b.rows());
+  const auto method = make_part(method_catalog(), part(contact_methods(), "newton", {}));
+  const auto impact = make_part(impact_catalog(), part(impact_rules(), "none", {}));
+  const auto solver = make_part(solver_catalog(), part(linear_solvers(), "cholmod", {}));
+  const Behaviours behaviours(model, *method, nullptr);
+  LinearCounts counts;
+  State state;
+  state.displacement = state.velocity = state.acceleration = Vector::Zero(model.free());
+  state.opening = state.force = state.mean_force = Vector::Zero(b.rows());
+  state.history.assign(static_cast<std::size_t>(behaviours.history), 0);
+  const StaticOutcome rest = solve_statics(model, bulk, b, gap, behaviours, *method, *solver, 1, state, counts);
+  if (!rest.converged) {
+    fmt::print("{}\n", rest.why);
+    return;
+  }
+  const double t_static = lap();
+  StepOptions options;
+  options.step = 2e-3;
+  options.scheme = *make_part(scheme_catalog(), part(schemes(), "average_acceleration", {}));
+  Stepper stepper(model, bulk, b, gap, behaviours, *method, *impact, *solver, options, counts);
+  stepper.start(state);
+  stepper.advance();
+  const double t_first = lap();
+  std::vector<double> steps;
+  double open = 0;
+  for (int k = 1; k < 500; ++k) {
+    const double begin = now();
+    if (!stepper.advance()) {
+      fmt::print("step {}: {}\n", k, stepper.why());
+      return;
+    }
+    steps.push_back(now() - begin);
+    open = std::max(open, uplifted_ratio(model.interfaces[0], stepper.state().opening.data(), 1e-9));
+  }
+  std::sort(steps.begin(), steps.end());
+
+  // one back-solve of the same matrix, in the same run
+  const Sparse matrix = bulk.stiffness_matrix + 4 / (options.step * options.step) * bulk.mass_matrix;
+  const BulkFactor factor(matrix, &b, bulk.small, *solver, model, counts);
+  std::vector<double> solves;
+  Vector x = Vector::Zero(model.free());
+  const Vector right = Vector::Ones(model.free());
+  for (int k = 0; k < 50; ++k) {
+    const double begin = now();
+    factor.solve(right, x);
+    solves.push_back(now() - begin);
+  }
+  std::sort(solves.begin(), solves.end());
+  const Energies& e = stepper.energies();
+  rusage usage{};
+  getrusage(RUSAGE_SELF, &usage);
+  const double step = steps[steps.size() / 2], solve = solves[solves.size() / 2];
+  fmt::print(
+      "{:7} nodes {:7} unknowns {:4} points | model {:6.2f} s, gravity {:6.2f} s, factor {:6.2f} s | step {:7.2f} ms (least {:.2f}), "
+      "back-solve {:7.2f} ms, ratio {:.2f} | factor {:.1f} MB, peak {:.0f} MB | iterations/step {:.2f}, uplift {:.0f} %, residual {:.1e}\n",
+      model.nodes.size(), model.free(), b.rows(), t_model, t_static, t_first, 1e3 * step, 1e3 * steps.front(), 1e3 * solve, step / solve,
+      8e-6 * factor.split()->nonzeros(), static_cast<double>(usage.ru_maxrss) / 1024,
+      static_cast<double>(stepper.counts().iterations) / 500, 100 * open, e.residual / std::max(stepper.largest_external(), e.kinetic));
+}
+
+}  // namespace
+}  // namespace uplift
+
+int main(int count, char** words) {
+  if (count < 2)
+    for (const double size : {1.0, 0.39, 0.195}) uplift::measure(size);
+  for (int i = 1; i < count; ++i) uplift::measure(std::atof(words[i]));
+}
