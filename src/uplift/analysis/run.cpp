@@ -348,6 +348,8 @@ bool Runner::dynamics(const Stage& stage, const Bulk& bulk) {
   };
   if (!ledger_) observe(0);  // else the end of the stage before is there already
   bool go_on = true;
+  const long between = bulk.small ? 256 : 8;  // steps from one report of progress to the next
+  auto first_done = std::chrono::steady_clock::now();
   for (long step = 1; step <= steps && go_on; ++step) {
     if (!stepper.advance()) {
       fail(fmt::format("step at t = {:.6g} s failed down to dt = {:.3g} s: {}", seen_->time, stage.step / std::pow(2, stage.halvings),
@@ -358,7 +360,8 @@ bool Runner::dynamics(const Stage& stage, const Bulk& bulk) {
     finish_energy(stepper);
     observe(step);
     go_on = check_limits(stepper);
-    if (watch_ && step % 256 == 0 && go_on) {
+    if (step == 1) first_done = std::chrono::steady_clock::now();
+    if (watch_ && step % between == 0 && go_on) {
       const double open = views_.empty() ? 0 : views_.front().open_area;
       const double scale = result_.energy_scale > 0 ? result_.energy_scale : 1;
       if (!watch_({static_cast<double>(step) / static_cast<double>(steps), seen_->time, stage.step, open,
@@ -369,6 +372,9 @@ bool Runner::dynamics(const Stage& stage, const Bulk& bulk) {
       }
     }
   }
+  if (stepper.counts().steps > 1)
+    result_.step_seconds = std::chrono::duration<double>(std::chrono::steady_clock::now() - first_done).count() /
+                           static_cast<double>(stepper.counts().steps - 1);
   state_ = stepper.state();
   seen_ = &state_;
   ledger_ = stepper.ledger();

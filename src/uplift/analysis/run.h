@@ -104,9 +104,10 @@ struct RunResult {
   std::string reason;  // why it failed or stopped
   bool expected_to_fail = false;
   Counts counts;
-  double wall = 0;                         // s
-  double end_time = 0;                     // s reached
-  std::vector<Request> columns;            // as requested; the table below has time first
+  double wall = 0;               // s
+  double step_seconds = 0;       // s of computing for a step of the last dynamic stage, its first step (which makes the factor) left out
+  double end_time = 0;           // s reached
+  std::vector<Request> columns;  // as requested; the table below has time first
   std::vector<std::vector<double>> table;  // table[0]: time [s], table[1 + k]: column k
   std::vector<Peak> peaks;                 // one per column
   Peak max_uplifted_ratio, max_opening, max_base_moment, max_base_shear, max_pressure;
