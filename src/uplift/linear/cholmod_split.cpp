@@ -35,7 +35,7 @@ class CholmodSplit : public SplitFactor {
   void backward(const Vector& y, Vector& x) const override {
     const auto* order = static_cast<const int*>(factor_->Perm);
     Scratch scratch = take();
-    double* solution = scratch->data() + factor_->maxesize;
+    double* solution = scratch->data() + factor_->n;
     std::copy_n(y.data(), y.size(), solution);
     solve_lower_transposed(view(), solution, scratch->data());
     x.resize(y.size());
@@ -66,7 +66,7 @@ class CholmodSplit : public SplitFactor {
   using Scratch = std::unique_ptr<std::vector<double>>;
   Scratch take() const {
     const std::lock_guard lock(mutex_);
-    if (idle_.empty()) return std::make_unique<std::vector<double>>(factor_->maxesize + factor_->n);
+    if (idle_.empty()) return std::make_unique<std::vector<double>>(2 * factor_->n);
     Scratch scratch = std::move(idle_.back());
     idle_.pop_back();
     return scratch;
