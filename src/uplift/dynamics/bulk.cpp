@@ -32,10 +32,20 @@ Bulk::Bulk(const Model& model, const Sparse* geometric)
   stiffness = BulkMatrix(stiffness_matrix, small);
   mass = BulkMatrix(mass_matrix, small);
   damping = BulkMatrix(damping_matrix, small);
+  if (!small) pair_ = SymmetricPair(stiffness_matrix, mass_matrix);
   massless.assign(static_cast<std::size_t>(unknowns), 1);
   for (int column = 0; column < mass_matrix.outerSize(); ++column)
     for (Sparse::InnerIterator entry(mass_matrix, column); entry; ++entry)
       if (entry.value() != 0) massless[static_cast<std::size_t>(column)] = 0;
+}
+
+void Bulk::products(const Vector& u, const Vector& v, Vector& ku, Vector& mv) const {
+  if (!small) {
+    pair_.multiply(u, v, ku, mv);
+    return;
+  }
+  stiffness.multiply(u, ku);
+  mass.multiply(v, mv);
 }
 
 namespace {

@@ -4,6 +4,7 @@
 
 #include "uplift/contact/compliance.h"
 #include "uplift/dynamics/scheme.h"
+#include "uplift/math/symmetric_pair.h"
 #include "uplift/model/model.h"
 
 // The linear bulk (soil and structure without the interfaces) during one stage: products with K, C and M, and the matrix of a step.
@@ -39,6 +40,11 @@ struct Bulk {
   Sparse stiffness_matrix, mass_matrix, damping_matrix;
   BulkMatrix stiffness, mass, damping;
   std::vector<char> massless;  // per free unknown
+  /// ku = K u and mv = M v, in one pass where the bulk is large.
+  void products(const Vector& u, const Vector& v, Vector& ku, Vector& mv) const;
+
+ private:
+  SymmetricPair pair_;  // large bulks
 };
 
 /// A factored matrix of the bulk: the inverse itself when small; with the unknowns that the interfaces touch last when that is asked for

@@ -138,8 +138,7 @@ void Stepper::start(State state, const Ledger* before) {
   }
   next_ = now_;
   model_.add_force(now_.time, force_now_);
-  bulk_.stiffness.multiply(now_.displacement, stiff_now_);
-  bulk_.mass.multiply(now_.velocity, momentum_now_);
+  bulk_.products(now_.displacement, now_.velocity, stiff_now_, momentum_now_);
   const InterfaceProblem blocks = blocks_of(model_, behaviours_);
   interface_energy_.update(blocks, now_.opening, now_.history);
   energies_ = before != nullptr ? before->energies : Energies{};
@@ -281,8 +280,7 @@ bool Stepper::try_step(Level& level) {
   }
   std::copy_n(solution.opening.data(), solution.opening.size(), next_.opening.data());
   std::copy_n(solution.now.data(), solution.now.size(), next_.history.data());
-  bulk_.stiffness.multiply(next_.displacement, stiff_next_);
-  bulk_.mass.multiply(next_.velocity, momentum_next_);
+  bulk_.products(next_.displacement, next_.velocity, stiff_next_, momentum_next_);
   if (path_) {
     for (const Block& block : last_->blocks)  // end-of-step tractions are what is reported
       for (int c = 0; c < block.batch.components; ++c)

@@ -64,7 +64,8 @@ double size_of(const std::vector<Node>& nodes) {
 void ModelBuilder::eliminate(Model& model, Matrix& motion_shapes) const {
   const int unknowns = dofs_per_node * static_cast<int>(nodes_.size());
   std::vector<double> scale(unknowns, 1.0);
-  for (int i = rz; i < unknowns; i += dofs_per_node) scale[i] = 1 / size_of(nodes_);
+  const double size = size_of(nodes_);
+  for (int i = rz; i < unknowns; i += dofs_per_node) scale[i] = 1 / size;
   Elimination elimination(scale, static_cast<int>(motions_.size()));
   ConstraintList list(elimination);
   std::vector<std::string> names;
