@@ -1,6 +1,7 @@
 #include <algorithm>
 #include <array>
 
+#include "uplift/analysis/case_mesh_outline.h"
 #include "uplift/analysis/case_model.h"
 #include "uplift/io/report_parts.h"
 
@@ -8,19 +9,72 @@
 namespace uplift {
 namespace {
 
-/// Nodes of the case and of its beams; the nodes of an elastic bed are not drawn.
-std::vector<int> drawn_nodes(const Case& read, const Built& built) {
+constexpr int most_outline_nodes = 140, most_drawn_cells = 2000;
+
+/// What is drawn of the model: the outline of the mesh, and which nodes of the model.
+struct Drawn {
+  MeshOutline outline;  // nodes of the mesh
+  int first_of_mesh = 0;
+  std::vector<int> nodes;  // of the model
+};
+
+/// Nodes of the case, of its beams and of the outline of its mesh; the nodes of an elastic bed are not drawn.
+Drawn drawn_of(const Case& read, const Built& built) {
+  Drawn drawn;
+  drawn.first_of_mesh = static_cast<int>(read.values.tables("nodes").size());
+  int end_of_mesh = drawn.first_of_mesh;
+  if (read.mesh) {
+    std::vector<std::string> groups;
+    for (const Values& solid : read.values.tables("solid")) groups.push_back(solid.text("group"));
+    drawn.outline = outline_of(read.mesh->mesh, groups, most_outline_nodes, most_drawn_cells);
+    end_of_mesh += static_cast<int>(read.mesh->mesh.nodes.size());
+  }
   std::vector<std::string> beds;
   for (const Interface& interface : built.model.interfaces) beds.push_back(interface.name + ".");
-  std::vector<int> drawn;
-  for (std::size_t i = 0; i < built.model.nodes.size(); ++i) {
-    const std::string& name = built.model.nodes[i].name;
-    const bool given = std::any_of(read.values.tables("nodes").begin(), read.values.tables("nodes").end(),
-                                   [&](const Values& node) { return node.key() == name; });
+  const auto& on_outline = drawn.outline.nodes;
+  for (int i = 0; i < static_cast<int>(built.model.nodes.size()); ++i) {
+    const std::string& name = built.model.nodes[static_cast<std::size_t>(i)].name;
     const bool bed = std::any_of(beds.begin(), beds.end(), [&](const std::string& start) { return name.starts_with(start); });
-    if (given || !bed) drawn.push_back(static_cast<int>(i));
+    const bool of_mesh = i >= drawn.first_of_mesh && i < end_of_mesh;
+    if (of_mesh ? std::ranges::binary_search(on_outline, i - drawn.first_of_mesh) || i == built.top || i == built.base
+                : i < drawn.first_of_mesh || !bed)
+      drawn.nodes.push_back(i);
   }
   return drawn;
+}
+
+const std::string& name_of_mesh_node(const Drawn& drawn, const Built& built, int of_mesh) {
+  return built.model.nodes[static_cast<std::size_t>(drawn.first_of_mesh + of_mesh)].name;
+}
+
+/// At most about `most` nodes of a group of the mesh that are drawn.
+std::vector<int> drawn_of_group(const Drawn& drawn, const Case& read, const std::string& group, std::size_t most) {
+  std::vector<int> found;
+  for (const int node : nodes_of(read.mesh->mesh, read.mesh->mesh.groups.at(group)))
+    if (std::ranges::binary_search(drawn.outline.nodes, node)) found.push_back(node);
+  const std::size_t every = found.size() / most + 1;
+  std::vector<int> thinned;
+  for (std::size_t i = 0; i < found.size(); i += every) thinned.push_back(found[i]);
+  return thinned;
+}
+
+void write_outline(JsonWriter& json, const Drawn& drawn, const Case& read, const Built& built) {
+  json.key("outlines").begin_array();
+  for (const MeshOutline::Part& part : drawn.outline.parts) {
+    json.begin_object().member("name", part.name).key("lines").begin_array();
+    for (const std::vector<int>& line : part.lines) {
+      std::vector<std::string> names;
+      for (const int node : line) names.push_back(name_of_mesh_node(drawn, built, node));
+      json.texts(names);
+    }
+    json.end_array().end_object();
+  }
+  json.end_array().key("grid").begin_array();
+  for (const auto& [a, b] : drawn.outline.edges) {
+    const Vec3 &from = read.mesh->mesh.nodes[static_cast<std::size_t>(a)], &to = read.mesh->mesh.nodes[static_cast<std::size_t>(b)];
+    json.numbers(std::array<double, 4>{from.x(), from.y(), to.x(), to.y()});
+  }
+  json.end_array();
 }
 
 void write_beams(JsonWriter& json, const Case& read) {
@@ -55,6 +109,34 @@ void write_bodies(JsonWriter& json, const Case& read, const Built& built) {
   json.end_array();
 }
 
+void write_supports(JsonWriter& json, const Drawn& drawn, const Case& read, const Built& built) {
+  const auto write = [&](const std::string& node, const Values& support) {
+    json.begin_object().member("node", node).key("dofs").texts(support.texts("fixed")).end_object();
+  };
+  json.key("supports").begin_array();
+  for (const Values& support : read.values.tables("support")) {
+    if (support.has("node")) write(support.text("node"), support);
+    if (support.has("group"))
+      for (const int node : drawn_of_group(drawn, read, support.text("group"), 8)) write(name_of_mesh_node(drawn, built, node), support);
+  }
+  json.end_array();
+}
+
+void write_loads(JsonWriter& json, const Drawn& drawn, const Case& read, const Built& built) {
+  json.key("loads").begin_array();
+  for (const Values& load : read.values.tables("load")) {
+    const char* key = load.has("force") ? "force" : "traction";
+    if (!load.has(key)) continue;
+    std::string node = load.has("node") ? load.text("node") : "";
+    if (load.has("group"))
+      if (const std::vector<int> nodes = drawn_of_group(drawn, read, load.text("group"), 1000); !nodes.empty())
+        node = name_of_mesh_node(drawn, built, nodes[nodes.size() / 2]);
+    json.begin_object().member("node", node).member("fx", load.numbers(key)[0]).member("fy", load.numbers(key)[1]);
+    json.member("label", load.has("name") ? load.text("name") : "load").end_object();
+  }
+  json.end_array();
+}
+
 void write_small_parts(JsonWriter& json, const Case& read, const Built& built) {
   json.key("masses").begin_array();
   for (const Values& mass : read.values.tables("mass"))
@@ -62,10 +144,6 @@ void write_small_parts(JsonWriter& json, const Case& read, const Built& built) {
         .member("node", mass.text("node"))
         .member("mass", mass.has("mass") ? mass.number("mass") : built.tuned_mass)
         .end_object();
-  json.end_array();
-  json.key("supports").begin_array();
-  for (const Values& support : read.values.tables("support"))
-    json.begin_object().member("node", support.text("node")).key("dofs").texts(support.texts("fixed")).end_object();
   json.end_array();
   json.key("springs").begin_array();
   for (const char* kind : {"spring", "dashpot"})
@@ -81,22 +159,29 @@ void write_small_parts(JsonWriter& json, const Case& read, const Built& built) {
   json.end_array();
 }
 
-void write_interfaces(JsonWriter& json, const Built& built) {
+/// The drawn node of the upper side that is nearest to a point of an opened surface: the point is drawn moving with it.
+std::string carrier(const Drawn& drawn, const Built& built, std::size_t interface, const Vec2& point) {
+  const auto distance = [&](int node) { return (built.model.nodes[static_cast<std::size_t>(node)].position - point).norm(); };
+  int nearest = -1;
+  for (const int node : built.facts[interface].upper)
+    if (std::ranges::binary_search(drawn.nodes, node) && (nearest < 0 || distance(node) < distance(nearest))) nearest = node;
+  return nearest < 0 ? "" : built.model.nodes[static_cast<std::size_t>(nearest)].name;
+}
+
+void write_interfaces(JsonWriter& json, const Drawn& drawn, const Case& read, const Built& built) {
   json.begin_array();
   for (std::size_t k = 0; k < built.model.interfaces.size(); ++k) {
     const Interface& interface = built.model.interfaces[k];
+    const bool surface = read.mesh && !read.mesh->open[k].empty();
     json.begin_object().member("name", interface.name);
+    if (surface) json.member("opened", true);
     if (!built.facts[k].body.empty()) json.member("body", built.facts[k].body);
     json.key("points").begin_array();
     for (int i = 0; i < interface.batch.points; ++i) {
       const Vec2 &at = interface.position[static_cast<std::size_t>(i)], &n = interface.normal[static_cast<std::size_t>(i)];
-      json.begin_object()
-          .member("x", at.x())
-          .member("y", at.y())
-          .member("nx", n.x())
-          .member("ny", n.y())
-          .member("area", interface.area[i])
-          .end_object();
+      json.begin_object().member("x", at.x()).member("y", at.y()).member("nx", n.x()).member("ny", n.y()).member("area", interface.area[i]);
+      if (surface) json.member("node", carrier(drawn, built, k, at));
+      json.end_object();
     }
     json.end_array().end_object();
   }
@@ -120,25 +205,25 @@ void write_points(JsonWriter& json, const Built& built, const RunResult& result,
 }  // namespace
 
 void write_model(JsonWriter& json, const Case& read, const Built& built) {
+  const Drawn drawn = drawn_of(read, built);
   json.begin_object().key("nodes").begin_array();
-  for (const int i : drawn_nodes(read, built)) {
+  for (const int i : drawn.nodes) {
     const Node& node = built.model.nodes[static_cast<std::size_t>(i)];
-    json.begin_object().member("name", node.name).member("x", node.position.x()).member("y", node.position.y()).end_object();
+    json.begin_object().member("name", node.name).member("x", node.position.x()).member("y", node.position.y());
+    if (node.name.starts_with("mesh.")) json.member("hidden", true);
+    json.end_object();
   }
   json.end_array().key("beams");
   write_beams(json, read);
   json.key("bodies");
   write_bodies(json, read, built);
   write_small_parts(json, read, built);
+  write_supports(json, drawn, read, built);
+  if (read.mesh) write_outline(json, drawn, read, built);
   json.key("interfaces");
-  write_interfaces(json, built);
-  json.key("loads").begin_array();
-  for (const Values& load : read.values.tables("load")) {
-    if (!load.has("force")) continue;
-    json.begin_object().member("node", load.text("node")).member("fx", load.numbers("force")[0]).member("fy", load.numbers("force")[1]);
-    json.member("label", load.has("name") ? load.text("name") : "load").end_object();
-  }
-  json.end_array().end_object();
+  write_interfaces(json, drawn, read, built);
+  write_loads(json, drawn, read, built);
+  json.end_object();
 }
 
 void write_animations(JsonWriter& json, const ReportInput& input) {
@@ -149,7 +234,7 @@ void write_animations(JsonWriter& json, const ReportInput& input) {
     json.begin_object().member("run", run.result->label).key("time").begin_array();
     for (const Frame& frame : frames) json.value(frame.time);
     json.end_array().key("nodes").begin_object();
-    for (const int i : drawn_nodes(*input.read, *run.built)) {
+    for (const int i : drawn_of(*input.read, *run.built).nodes) {
       json.key(run.built->model.nodes[static_cast<std::size_t>(i)].name).begin_array();
       for (const Frame& frame : frames) json.numbers(std::span<const double>(frame.displacement.data() + 3 * i, 3));
       json.end_array();

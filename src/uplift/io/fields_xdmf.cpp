@@ -1,0 +1,249 @@
+#include <fmt/format.h>
+
+#include <array>
+#include <utility>
+
+#include "uplift/io/fields.h"
+#include "uplift/io/fields_parts.h"
+#include "uplift/io/numbers.h"
+
+// XDMF (xdmf.org, "XDMF Model and Format"), version 2, which all readers know. Chosen so that the three readers of ParaView 5.11 agree:
+// - a grid for each type of cell: in topologies of mixed types one reader takes 24 nodes for a brick of 27;
+// - tensors are called "Matrix" of 6 columns and arrive as in VTU files: "Tensor6" is xx xy xz yy yz zz for one reader, while the others
+//   keep the columns as they are, which VTK takes for xx yy zz xy yz xz;
+// - the data file is named with "./", else one of them looks for it in the working folder of the process.
+// In the data file: /mesh/<block>/points, /mesh/<block>/<type>/nodes and marks, whose meanings are attributes ("group 0") of
+// /mesh/<block>; /frames/000000/<block>/points/<field> and /frames/000000/<block>/<type>/<field>, with the time [s] as an attribute of the
+// frame and the unit as one of the field.
+namespace uplift {
+namespace {
+
+constexpr std::string_view list_head =
+    "<?xml version=\"1.0\"?>\n<Xdmf Version=\"2.0\">\n<Domain>\n"
+    "<Grid Name=\"frames\" GridType=\"Collection\" CollectionType=\"Temporal\">\n";
+constexpr std::string_view list_tail = "</Grid>\n</Domain>\n</Xdmf>\n";
+
+/// The long names: the only ones that both readers know ("Hex_27" stops one, "Tri_6" the other).
+std::string_view topology_name(Cell cell) {
+  constexpr std::array<std::string_view, num_cell_types> names{
+      "Polyvertex",  "Polyline",       "Edge_3", "Triangle", "Triangle_6", "Quadrilateral", "Quadrilateral_8", "Quadrilateral_9",
+      "Tetrahedron", "Tetrahedron_10", "Wedge",  "Wedge_15", "Hexahedron", "Hexahedron_20", "Hexahedron_27"};
+  return names[static_cast<std::size_t>(cell)];
+}
+
+std::string mesh_path(const std::string& block) {
+  return "/mesh/" + block;
+}
+std::string frame_path(int frame, const std::string& block) {
+  return fmt::format("/frames/{:06}/{}", frame, block);
+}
+
+std::vector<std::string> names_of(const std::vector<Field>& fields) {
+  std::vector<std::string> names;
+  for (const Field& field : fields) names.push_back(field.name);
+  return plain_names(names);
+}
+
+std::vector<std::string> names_of(const std::vector<CellMark>& marks) {
+  std::vector<std::string> names{"nodes"};  // taken
+  for (const CellMark& mark : marks) names.push_back(mark.name);
+  names = plain_names(names);
+  names.erase(names.begin());
+  return names;
+}
+
+/// <DataItem>: a data set of rows.
+std::string data_item(const std::string& file, const std::string& path, std::size_t rows, std::size_t columns, std::string_view type,
+                      int bytes) {
+  return fmt::format(R"(<DataItem Dimensions="{}{}" NumberType="{}" Precision="{}" Format="HDF">{}:{}</DataItem>)", rows,
+                     columns > 1 ? fmt::format(" {}", columns) : "", type, bytes, xml_text(file), path) +
+         '\n';
+}
+
+std::string attribute(std::string_view name, FieldKind kind, bool points, const std::string& item) {
+  const std::string_view type = kind == FieldKind::scalar ? "Scalar" : kind == FieldKind::vector ? "Vector" : "Matrix";
+  return fmt::format(R"(<Attribute Name="{}" AttributeType="{}" Center="{}">)", xml_text(name), type, points ? "Node" : "Cell") + item +
+         "</Attribute>\n";
+}
+
+std::string attributes(const std::string& file, const std::string& folder, const std::vector<Field>& fields, std::size_t rows, bool points,
+                       FieldPrecision precision) {
+  const int bytes = precision == FieldPrecision::float32 ? 4 : 8;
+  const std::vector<std::string> names = names_of(fields);
+  std::string text;
+  for (std::size_t f = 0; f < fields.size(); ++f)
+    text += attribute(title(fields[f]), fields[f].kind, points,
+                      data_item(file, folder + "/" + names[f], rows, components(fields[f].kind), "Float", bytes));
+  return text;
+}
+
+/// Grids of one block at one frame: one for each type of cell, all with the block's points.
+std::string block_text(const std::string& file, const std::string& name, const FieldMesh& block, const BlockFields& fields, int frame,
+                       FieldPrecision precision) {
+  const std::string mesh = mesh_path(name), values = frame_path(frame, name);
+  const std::vector<std::string> marks = names_of(block.marks);
+  std::string text;
+  for (const CellBlock& type : block.blocks) {
+    const std::string_view cell = info(type.cell).name;
+    const auto count = static_cast<std::size_t>(type.count()), width = static_cast<std::size_t>(info(type.cell).nodes);
+    text += fmt::format("<Grid Name=\"{} {}\" GridType=\"Uniform\">\n", xml_text(block.name), cell);
+    text +=
+        fmt::format(R"(<Topology TopologyType="{}" NodesPerElement="{}" NumberOfElements="{}">)", topology_name(type.cell), width, count);
+    text +=
+        data_item(file, fmt::format("{}/{}/nodes", mesh, cell), count, width, "Int", 4) + "</Topology>\n<Geometry GeometryType=\"XYZ\">";
+    text += data_item(file, mesh + "/points", block.points.size(), 3, "Float", 8) + "</Geometry>\n";
+    for (std::size_t m = 0; m < marks.size(); ++m)
+      text += attribute(block.marks[m].name, FieldKind::scalar, false,
+                        data_item(file, fmt::format("{}/{}/{}", mesh, cell, marks[m]), count, 1, "Int", 4));
+    text += attributes(file, values + "/points", fields.points, block.points.size(), true, precision);
+    text += attributes(file, fmt::format("{}/{}", values, cell), fields.cells, count, false, precision) + "</Grid>\n";
+  }
+  return text;
+}
+
+std::string frame_text(const std::string& file, const std::vector<std::string>& names, const std::vector<FieldMesh>& blocks,
+                       const FieldFrame& frame, int number, FieldPrecision precision) {
+  std::string when;
+  append_exact(when, frame.time);
+  std::string text =
+      fmt::format("<Grid Name=\"frame {}\" GridType=\"Collection\" CollectionType=\"Spatial\">\n<Time Value=\"{}\"/>\n", number, when);
+  for (std::size_t b = 0; b < blocks.size(); ++b) text += block_text(file, names[b], blocks[b], frame.blocks[b], number, precision);
+  return text + "</Grid>\n";
+}
+
+std::vector<std::int64_t> shape_of(std::size_t rows, std::size_t columns) {
+  std::vector<std::int64_t> shape{static_cast<std::int64_t>(rows)};
+  if (columns > 1) shape.push_back(static_cast<std::int64_t>(columns));
+  return shape;
+}
+
+void write_mesh(Hdf5Writer& data, const std::string& name, const FieldMesh& block) {
+  const std::string folder = mesh_path(name);
+  data.numbers(folder + "/points", coordinates(block), shape_of(block.points.size(), 3));
+  data.attribute(folder + "/points", "unit", "m");
+  const std::vector<std::string> marks = names_of(block.marks);
+  std::size_t first = 0;
+  for (const CellBlock& type : block.blocks) {
+    const std::string path = fmt::format("{}/{}/", folder, info(type.cell).name);
+    const auto count = static_cast<std::size_t>(type.count());
+    const std::vector<std::int64_t> shape{type.count(), info(type.cell).nodes};
+    data.integers(path + "nodes", vtk_nodes(type), shape);
+    for (std::size_t m = 0; m < marks.size(); ++m)
+      data.integers(path + marks[m], std::span(block.marks[m].values).subspan(first, count), shape_of(count, 1));
+    first += count;
+  }
+  for (const CellMark& mark : block.marks)
+    for (std::size_t i = 0; i < mark.meanings.size(); ++i)
+      data.attribute(folder, fmt::format("{} {}", mark.name, i), std::string_view(mark.meanings[i]));
+}
+
+/// Rows [first, first + rows) of each field, into one folder.
+void write_fields(Hdf5Writer& data, const std::string& folder, const std::vector<Field>& fields, std::size_t first, std::size_t rows,
+                  FieldPrecision precision) {
+  const std::vector<std::string> names = names_of(fields);
+  for (std::size_t f = 0; f < fields.size(); ++f) {
+    const std::size_t width = components(fields[f].kind);
+    const auto values = std::span(fields[f].values).subspan(first * width, rows * width);
+    const std::string path = folder + "/" + names[f];
+    if (precision == FieldPrecision::float32)
+      data.numbers(path, as_float32(values), shape_of(rows, width));
+    else
+      data.numbers(path, as_float64(values), shape_of(rows, width));
+    data.attribute(path, "unit", std::string_view(fields[f].unit));
+  }
+}
+
+void write_block(Hdf5Writer& data, const std::string& folder, const FieldMesh& block, const BlockFields& fields, FieldPrecision precision) {
+  data.group(folder);
+  write_fields(data, folder + "/points", fields.points, 0, block.points.size(), precision);
+  std::size_t first = 0;
+  for (const CellBlock& type : block.blocks) {
+    const auto count = static_cast<std::size_t>(type.count());
+    write_fields(data, fmt::format("{}/{}", folder, info(type.cell).name), fields.cells, first, count, precision);
+    first += count;
+  }
+}
+
+/// "./fields.h5"
+std::string data_name(const std::string& stem) {
+  return "./" + stem.substr(stem.rfind('/') + 1) + ".h5";
+}
+
+// What HDF5 itself takes, from above: a group is an object header, a B-tree node of 544 bytes, a local heap and entries of 40 bytes in
+// nodes of 328 (HDF5 File Format Specification, version 1 groups); a data set is an object header of at least 272 bytes, which its
+// attribute fills; both in blocks of 2048 bytes that are not quite filled.
+constexpr std::int64_t group_bytes = 1300, data_set_bytes = 700, attribute_bytes = 150;
+
+struct Contents {
+  std::int64_t bytes = 0, groups = 0, data_sets = 0;
+  void add(std::size_t rows, std::size_t columns, std::size_t size) {
+    bytes += static_cast<std::int64_t>(rows * columns * size);
+    ++data_sets;
+  }
+  std::int64_t size() const { return bytes + groups * group_bytes + data_sets * data_set_bytes; }
+};
+
+Contents mesh_contents(const FieldMesh& block) {
+  Contents contents;
+  contents.groups = 1 + static_cast<std::int64_t>(block.blocks.size());
+  contents.add(block.points.size(), 3, sizeof(double));
+  for (const CellBlock& type : block.blocks) {
+    contents.add(type.nodes.size(), 1, sizeof(int));
+    for (std::size_t m = 0; m < block.marks.size(); ++m) contents.add(static_cast<std::size_t>(type.count()), 1, sizeof(int));
+  }
+  for (const CellMark& mark : block.marks)
+    for (const std::string& meaning : mark.meanings)
+      contents.bytes += attribute_bytes + static_cast<std::int64_t>(mark.name.size() + meaning.size());
+  return contents;
+}
+
+Contents frame_contents(const FieldMesh& block, const BlockFields& fields, FieldPrecision precision) {
+  const std::size_t size = precision == FieldPrecision::float32 ? sizeof(float) : sizeof(double);
+  Contents contents;
+  contents.groups = 2 + static_cast<std::int64_t>(block.blocks.size());
+  for (const Field& field : fields.points) contents.add(block.points.size(), components(field.kind), size);
+  for (const CellBlock& type : block.blocks)
+    for (const Field& field : fields.cells) contents.add(static_cast<std::size_t>(type.count()), components(field.kind), size);
+  return contents;
+}
+
+}  // namespace
+
+FieldSize xdmf_size(const std::vector<FieldMesh>& blocks, const FieldFrame& frame, FieldPrecision precision) {
+  const std::string text = frame_text("./fields.h5", plain_names(blocks), blocks, frame, 0, precision);
+  constexpr std::int64_t groups_of_file = 3 * group_bytes;  // the root, its two
+  FieldSize size{static_cast<std::int64_t>(list_head.size() + list_tail.size()) + groups_of_file,
+                 static_cast<std::int64_t>(text.size()) + group_bytes};
+  for (std::size_t b = 0; b < blocks.size(); ++b) {
+    size.once += mesh_contents(blocks[b]).size();
+    size.per_frame += frame_contents(blocks[b], frame.blocks[b], precision).size();
+  }
+  return size;
+}
+
+XdmfWriter::XdmfWriter(const std::string& stem, std::vector<FieldMesh> blocks, FieldPrecision precision, Hdf5Writer data)
+    : stem_(stem), blocks_(std::move(blocks)), names_(plain_names(blocks_)), precision_(precision), data_(std::move(data)) {
+  for (std::size_t b = 0; b < blocks_.size(); ++b) write_mesh(data_, names_[b], blocks_[b]);
+}
+
+std::optional<FieldTrouble> XdmfWriter::write(const FieldFrame& frame) {
+  if (auto trouble = find_trouble(blocks_, frame, precision_)) return trouble;
+  for (std::size_t b = 0; b < blocks_.size(); ++b)
+    write_block(data_, frame_path(frames_, names_[b]), blocks_[b], frame.blocks[b], precision_);
+  data_.attribute(fmt::format("/frames/{:06}", frames_), "time [s]", frame.time);
+  list_ += frame_text(data_name(stem_), names_, blocks_, frame, frames_, precision_);
+  ++frames_;
+  return std::nullopt;
+}
+
+void XdmfWriter::finish(const WriteFile& write) {
+  data_.flush();
+  write(stem_ + ".xdmf", std::string(list_head) + list_ + std::string(list_tail));
+}
+
+void XdmfWriter::finish_with_data(const WriteFile& write) {
+  write(stem_ + ".h5", data_.image());
+  finish(write);
+}
+
+}  // namespace uplift
