@@ -17,6 +17,8 @@ function complete_model(model: Partial<Model> | null | undefined): Model | null 
     springs: model.springs ?? [],
     interfaces: model.interfaces ?? [],
     loads: model.loads ?? [],
+    outlines: model.outlines ?? [],
+    grid: model.grid ?? [],
   };
 }
 

@@ -34,6 +34,7 @@ class Drawing {
     this.model_ = model;
     this.nodes_ = node_map(model);
     this.map_ = new Map2(model_box(model), WIDTH, HEIGHT, { left: 78, right: 78, top: 30, bottom: 56 });
+    this.mesh();
     this.ground();
     this.bodies();
     this.beams();
@@ -52,6 +53,20 @@ class Drawing {
     return node ? this.map_.at(node.x, node.y) : null;
   }
 
+  private mesh(): void {
+    const grid = this.model_.grid.map(([x1, y1, x2, y2]) => path_of([this.map_.at(x1, y1), this.map_.at(x2, y2)]));
+    const outlines = this.model_.outlines;
+    const lines = outlines.map((part) => part.lines.map((line) => line.map((name) => this.at(name)).filter((p): p is Point => p !== null)));
+    outlines.forEach((part, i) => this.svg.append(titled(s("path", { class: "solid", d: (lines[i] as Point[][]).map((line) => path_of(line, true)).join("") }), part.name)));
+    if (grid.length > 0) this.svg.append(s("path", { class: "grid-lines", d: grid.join("") }));
+    outlines.forEach((part, i) => {
+      const points = (lines[i] as Point[][]).flat();
+      const [xs, ys] = [points.map((p) => p[0]), points.map((p) => p[1])];
+      const left: Point = [Math.min(...xs) + 4, (Math.min(...ys) + Math.max(...ys)) / 2 + 4];
+      if (points.length > 0) this.text_.append(s("text", { x: px(left[0]), y: px(left[1]), class: "solid-name" }, part.name));
+    });
+  }
+
   private ground(): void {
     for (const face of this.model_.interfaces) {
       const line = contact_line(face);
@@ -61,7 +76,7 @@ class Drawing {
       const by = 0.16 * length;
       const [ux, uy] = [(b[0] - a[0]) / length, (b[1] - a[1]) / length];
       const [p, q]: [Point, Point] = [[a[0] - ux * by, a[1] - uy * by], [b[0] + ux * by, b[1] + uy * by]];
-      this.svg.append(hatched(p, q, 11, "hatch ground"));
+      if (!face.opened) this.svg.append(hatched(p, q, 11, "hatch ground"));
       this.labels_.block_line(p, q);
       this.labels_.block_line([p[0] - uy * 9, p[1] + ux * 9], [q[0] - uy * 9, q[1] + ux * 9]);
       this.ground_ends_.push({ face, end: q });
@@ -163,8 +178,9 @@ class Drawing {
   }
 
   private nodes(): void {
-    const named = this.model_.nodes.length <= MAX_NAMED_NODES;
+    const named = this.model_.nodes.filter((node) => !node.hidden).length <= MAX_NAMED_NODES;
     for (const node of this.model_.nodes) {
+      if (node.hidden) continue;
       const at = this.map_.at(node.x, node.y);
       const mass = this.model_.masses.find((m) => m.node === node.name && m.mass > 0);
       const title = `node ${node.name}: x ${number(node.x)} m, y ${number(node.y)} m`;
@@ -200,6 +216,7 @@ function legend_item(symbol: SVGElement, text: string): HTMLElement {
 /** Only what the model has, and the sign conventions. */
 function legend(model: Model): HTMLElement {
   const items: (HTMLElement | null)[] = [
+    model.outlines.length > 0 ? legend_item(s("path", { class: "solid", d: "M4 5H26V17H4Z" }), "solid (mesh)") : null,
     model.beams.length > 0 ? legend_item(s("path", { class: "beam", d: "M3 11H27" }), "beam") : null,
     model.bodies.length > 0 ? legend_item(s("path", { class: "body", d: "M4 6H26V16H4Z" }), "rigid body") : null,
     model.masses.length > 0 ? legend_item(s("circle", { class: "mass", cx: 15, cy: 11, r: 7 }), "mass") : null,

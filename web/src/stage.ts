@@ -45,6 +45,7 @@ export class Stage {
   private readonly nodes_: Map<string, ModelNode>;
   private readonly map_: Map2;
   private readonly bodies_: { node: string; corners: Point[]; path: SVGPathElement }[] = [];
+  private readonly outlines_: { lines: ModelNode[][]; path: SVGPathElement }[] = [];
   private readonly beams_: { nodes: string[]; path: SVGPathElement }[] = [];
   private readonly masses_: { node: string; circle: SVGCircleElement }[] = [];
   private readonly faces_: FaceParts[] = [];
@@ -73,6 +74,7 @@ export class Stage {
   }
 
   draw(frame: number, factor: number): void {
+    for (const part of this.outlines_) part.path.setAttribute("d", this.outline_path(part.lines, frame, factor));
     for (const body of this.bodies_) {
       body.path.setAttribute("d", path_of(body.corners.map(([x, y]) => this.carried(body.node, x, y, frame, factor)), true));
     }
@@ -96,7 +98,7 @@ export class Stage {
   private still_parts(): void {
     for (const face of this.model_.interfaces) {
       const line = contact_line(face);
-      if (!line) continue;
+      if (!line || face.opened) continue;
       const [a, b] = line.map(([x, y]) => this.map_.at(x, y)) as [Point, Point];
       const length = Math.hypot(b[0] - a[0], b[1] - a[1]) || 1;
       const by = 0.3 * length;
@@ -104,6 +106,10 @@ export class Stage {
       this.svg.append(hatched([a[0] - ux * by, a[1] - uy * by], [b[0] + ux * by, b[1] + uy * by], 10, "hatch ground"));
     }
     const ghost = s("g", { class: "ghost" });
+    for (const part of this.model_.outlines) {
+      const lines = part.lines.map((line) => line.map((n) => this.nodes_.get(n)).filter((n): n is ModelNode => n !== undefined));
+      ghost.append(s("path", { d: lines.map((line) => path_of(line.map((n) => this.map_.at(n.x, n.y)), true)).join("") }));
+    }
     for (const body of this.model_.bodies) {
       ghost.append(s("path", { d: path_of(outline_of(this.model_, body).map(([x, y]) => this.map_.at(x, y)), true) }));
     }
@@ -115,6 +121,12 @@ export class Stage {
   }
 
   private moving_parts(): void {
+    for (const part of this.model_.outlines) {
+      const path = s("path", { class: "solid" });
+      const lines = part.lines.map((line) => line.map((name) => this.nodes_.get(name)).filter((n): n is ModelNode => n !== undefined));
+      this.outlines_.push({ lines, path });
+      this.svg.append(path);
+    }
     for (const face of this.model_.interfaces) {
       const parts: FaceParts = {
         face,
@@ -156,6 +168,10 @@ export class Stage {
     if (!node || name === null) return this.map_.at(x, y);
     const [ux, uy, rz] = this.motion(name, frame);
     return this.map_.at(x + factor * (ux - rz * (y - node.y)), y + factor * (uy + rz * (x - node.x)));
+  }
+
+  private outline_path(lines: ModelNode[][], frame: number, factor: number): string {
+    return lines.map((line) => path_of(line.map((node) => this.carried(node.name, node.x, node.y, frame, factor)), true)).join("");
   }
 
   /** Cubic through the displacements and rotations of the end nodes, straight along the axis. */
@@ -202,7 +218,7 @@ export class Stage {
     for (const i of order) {
       const p = face.points[i] as InterfacePoint;
       const opening = openings[i] ?? 0;
-      const [x, y] = this.carried(parts.owner, p.x, p.y, frame, factor);
+      const [x, y] = this.carried(p.node ?? parts.owner, p.x, p.y, frame, factor);
       const by = factor * Math.max(0, opening) * this.map_.scale;
       upper.push([x, y]);
       lower.push([x - p.nx * by, y + p.ny * by]);

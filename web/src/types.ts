@@ -97,6 +97,14 @@ export interface ModelNode {
   name: string;
   x: number;
   y: number;
+  /** A node of a mesh's outline: it moves, but is not marked. */
+  hidden?: boolean;
+}
+
+/** Boundary of a group of a mesh: closed lines of nodes. */
+export interface Outline {
+  name: string;
+  lines: string[][];
 }
 
 export interface Beam {
@@ -133,12 +141,16 @@ export interface InterfacePoint {
   nx: number;
   ny: number;
   area: number;
+  /** Node that the point is drawn moving with. */
+  node?: string;
 }
 
 export interface Interface {
   name: string;
   /** Node (or name of the body) that carries the upper side. */
   body?: string;
+  /** Opened inside a mesh: the ground below it is drawn as a mesh. */
+  opened?: boolean;
   points: InterfacePoint[];
 }
 
@@ -158,6 +170,10 @@ export interface Model {
   springs: Spring[];
   interfaces: Interface[];
   loads: Load[];
+  /** Of a mesh. */
+  outlines: Outline[];
+  /** Edges of its elements, when they are not too many: [x1, y1, x2, y2]. */
+  grid: [number, number, number, number][];
 }
 
 /** Per frame: [ux, uy, rz]. */

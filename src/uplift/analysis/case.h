@@ -1,4 +1,5 @@
 #pragma once
+#include <functional>
 #include <memory>
 #include <optional>
 #include <string>
@@ -6,20 +7,27 @@
 
 #include "uplift/analysis/run.h"
 #include "uplift/base/declare.h"
+#include "uplift/mesh/mesh.h"
 
 // From the checked case file to something that can be run.
 namespace uplift {
 
+struct CaseMesh;  // analysis/case_mesh.h
+
 /// A checked case file.
 struct Case {
-  Values values;     // of case_section()
-  std::string file;  // as the user gave it
+  Values values;                         // of case_section()
+  std::string file;                      // as the user gave it
+  std::shared_ptr<const CaseMesh> mesh;  // opened along the interfaces; null without
 };
 
-/// Checks a case file that was read. Throws InputError.
-Case check_case(const Raw& raw, const std::string& file);
+/// Reads the mesh of a path; the place names the file, the last text is the mesh to take when there are several.
+using MeshReader = std::function<Mesh(const std::string&, const Where&, const std::string&)>;
 
-/// Other files that the case reads (tables of functions), as paths that can be opened from here.
+/// Checks a case file that was read, and reads or makes its mesh. A case with a mesh file needs a reader. Throws InputError.
+Case check_case(const Raw& raw, const std::string& file, const MeshReader& read_mesh = {});
+
+/// Other files that the case reads (tables of functions, the mesh), as paths that can be opened from here.
 std::vector<std::string> input_files(const Case&);
 
 /// One run of a case: what differs from the case as it stands. Null and empty: as in the case. Points into the case's values.
@@ -53,11 +61,12 @@ Comparison comparison_of_case(const Case&);
 
 /// What the report and the verdict want to know of an interface beyond the model.
 struct InterfaceFacts {
-  std::string name, body;  // body: node that carries the upper side; empty when there is none
-  double half_width = 0;   // m, from the reference point to the farther edge
-  double friction = -1;    // coefficient; negative: none stated
-  double area = 0;         // m2
-  double tension = 0;      // Pa: tensile strength of the law, 0 without
+  std::string name, body;         // body: node that carries the upper side; empty when there is none
+  double half_width = 0;          // m, from the reference point to the farther edge
+  double friction = -1;           // coefficient; negative: none stated
+  double area = 0;                // m2
+  double tension = 0;             // Pa: tensile strength of the law, 0 without
+  std::vector<int> upper, lower;  // nodes of either side, each once
 };
 
 /// A case made ready to run.
@@ -69,8 +78,10 @@ struct Built {
   std::vector<InterfaceFacts> facts;                   // one per interface
   std::vector<std::string> notes;                      // what was chosen automatically (tuned mass, scaled penalty)
   double tuned_mass = 0;                               // kg: of the tuned point mass, 0 without
-  double weight = 0;                                   // N: resultant of the dead loads against the first interface's normal
-  int top = -1, base = -1;                             // nodes whose motion is shown: the highest mass, the first interface's body
+  // N: resultant, against the first interface's normal, of the dead loads on everything that hangs together with its upper side (the soil
+  // too where the surface ends inside it)
+  double weight = 0;
+  int top = -1, base = -1;  // nodes whose motion is shown: the highest mass, the first interface's body
 };
 
 /// Makes the model and the plan of one run. Throws InputError (dangling or duplicate names, mechanisms, contradictions).
@@ -84,8 +95,8 @@ const Stage* dynamic_stage(const RunPlan&);
 
 /// Natural modes with every interface closed and bonded: laws with their closed stiffness, cones held. Shapes on the free unknowns.
 std::vector<Mode> bonded_modes(const Model&, int count);
-/// Natural modes with every opening and sliding of the interfaces held to zero against rigid ground: the fixed-base frequencies. Nodes of
-/// an elastic bed are held too.
+/// Natural modes with every opening and sliding of the interfaces held to zero against rigid ground: the fixed-base frequencies.
+/// What hangs together with lower sides alone (an elastic bed, the soil) is held too.
 std::vector<Mode> fixed_base_modes(const Model&, int count);
 
 /// What an engineer should know before believing the results: closure stress too large, step too coarse, suspicious magnitudes, unsound

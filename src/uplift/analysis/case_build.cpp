@@ -58,8 +58,8 @@ const Values& behaviour_of(const Values& interface, const RunSpec& spec) {
 void add_interfaces(const Case& read, const RunSpec& spec, ModelBuilder& builder, CaseNames& names, Built& built) {
   if (read.values.tables("interface").empty()) fail(read.values, "", "at least one [[interface]]", "none");
   for (const Values& interface : read.values.tables("interface")) {
-    names.interfaces.add(interface, "name");
-    Joint joint = make_joint(interface, spec.rigid_ground, builder, names);
+    const auto number = static_cast<std::size_t>(names.interfaces.add(interface, "name"));
+    Joint joint = make_joint(interface, read.mesh ? read.mesh->open[number] : std::vector<FacePair>(), spec.rigid_ground, builder, names);
     const Values& behaviour = behaviour_of(interface, spec);
     InterfaceSpec made;
     made.name = interface.text("name");
@@ -143,6 +143,32 @@ void add_initial(const Case& read, const CaseNames& names, Built& built) {
   if (!velocity.empty()) built.plan.initial_velocity = free_values(built.model, velocity, where);
 }
 
+/// A node of the mesh that is shown gets a name that can be remembered.
+void rename_shown(int node, const std::string& name, Model& model) {
+  std::string& old = model.nodes[static_cast<std::size_t>(node)].name;
+  if (old.starts_with("mesh.") && model.find_node(name) < 0) old = name;
+}
+
+/// The highest node that hangs together with the upper side of the first interface, and the upper node in its middle; of equally high ones
+/// that nearest to the middle.
+void find_shown_mesh_nodes(const CaseNames& names, Built& built) {
+  const std::vector<int>& upper = built.facts.front().upper;
+  const Vec2 middle = built.model.interfaces.front().reference;
+  const auto position = [&](int node) { return names.positions[static_cast<std::size_t>(node)]; };
+  const auto nearer = [&](int a, int b) { return (position(a) - middle).norm() < (position(b) - middle).norm(); };
+  if (built.base < 0) built.base = *std::ranges::min_element(upper, nearer);
+  if (built.top < 0) {
+    const std::vector<char> carried = part_of(built.model, upper);
+    for (int node = 0; node < static_cast<int>(carried.size()); ++node) {
+      if (!carried[static_cast<std::size_t>(node)]) continue;
+      const double higher = built.top < 0 ? 1 : position(node).y() - position(built.top).y();
+      if (higher > 1e-9 || (higher > -1e-9 && nearer(node, built.top))) built.top = node;
+    }
+  }
+  rename_shown(built.top, "top", built.model);
+  rename_shown(built.base, "base", built.model);
+}
+
 /// The node of the highest mass (the largest of equally high ones), and the body of the first interface.
 void find_shown_nodes(const Case& read, const CaseNames& names, Built& built) {
   double height = -std::numeric_limits<double>::infinity(), largest = 0;
@@ -160,19 +186,19 @@ void find_shown_nodes(const Case& read, const CaseNames& names, Built& built) {
   if (built.top < 0)
     for (const Values& node : read.values.tables("nodes")) look(names.nodes.find(node.key(), node.where(), node.path()), 0);
   if (!built.facts.empty() && !built.facts[0].body.empty()) built.base = built.model.find_node(built.facts[0].body);
+  if (read.mesh) find_shown_mesh_nodes(names, built);
 }
 
-/// Dead loads and weight against the normal of the first interface.
-double weight_of(const Case& read, const Model& model) {
+/// See Built::weight.
+double weight_of(const Built& built) {
+  const Model& model = built.model;
   const Vec2 normal = model.interfaces.front().normal.front();
+  const std::vector<char> carried = part_of(model, built.facts.front().upper);
   double weight = 0;
-  for (const Values& load : read.values.tables("load"))
-    if (load.has("force") && !load.has("function")) weight -= vec2(load.numbers("force")).dot(normal);
-  if (const Values* gravity = table_if(read.values, "gravity"); gravity && gravity->has("acceleration")) {
-    // Mass of everything that moves along the normal: r^T M r with the full mass matrix.
-    Vector direction = Vector::Zero(model.full_unknowns());
-    for (int node = 0; node < static_cast<int>(model.nodes.size()); ++node) direction.segment(3 * node, 2) = normal;
-    weight -= vec2(gravity->numbers("acceleration")).dot(normal) * direction.dot(model.assembly.mass * direction);
+  for (std::size_t i = 0; i < model.drives.size(); ++i) {
+    if (!model.drives[i].dead) continue;
+    for (int node = 0; node < static_cast<int>(carried.size()); ++node)
+      if (carried[static_cast<std::size_t>(node)]) weight -= model.assembly.loads[i].segment<2>(3 * node).dot(normal);
   }
   return weight;
 }
@@ -190,6 +216,7 @@ std::vector<double> tuned_masses(const Case& read, const RunSpec& spec) {
   CaseNames names;
   ModelBuilder builder;
   add_nodes(read.values, builder, names);
+  add_mesh(read, builder, names);
   add_functions(read.values, names);
   add_structure(read.values, builder, names, {0.0});
   add_interfaces(read, spec, builder, names, without);
@@ -233,17 +260,22 @@ void adapt_laws(const Case& read, const RunSpec& spec, Built& built) {
 
 }  // namespace
 
-Case check_case(const Raw& raw, const std::string& file) {
-  return Case{check(raw, case_section()), file};
+Case check_case(const Raw& raw, const std::string& file, const MeshReader& read_mesh) {
+  Case read{check(raw, case_section()), file, nullptr};
+  read.mesh = mesh_of_case(read.values, file, read_mesh);
+  return read;
 }
 
 std::vector<std::string> input_files(const Case& read) {
   std::vector<std::string> files;
+  const auto add = [&](const Values& table) {
+    files.push_back((std::filesystem::path(read.file).parent_path() / table.text("file")).lexically_normal().string());
+  };
   for (const Values& function : read.values.tables("function")) {
     const Values& shape = function.part("shape");
-    if (shape.items().contains("file") && shape.has("file"))
-      files.push_back((std::filesystem::path(read.file).parent_path() / shape.text("file")).lexically_normal().string());
+    if (shape.items().contains("file") && shape.has("file")) add(shape);
   }
+  if (const Values* mesh = table_if(read.values, "mesh"); mesh && mesh->has("file")) add(*mesh);
   return files;
 }
 
@@ -263,6 +295,7 @@ Built build(const Case& read, const RunSpec& spec) {
   CaseNames names;
   ModelBuilder builder;
   add_nodes(root, builder, names);
+  add_mesh(read, builder, names);
   add_functions(root, names);
   const std::vector<double> tuned = tuned_masses(read, spec);
   if (!tuned.empty()) {
@@ -270,6 +303,7 @@ Built build(const Case& read, const RunSpec& spec) {
     built.notes.push_back(fmt::format("the tuned mass is {:.10g} kg", built.tuned_mass));
   }
   add_structure(root, builder, names, tuned);
+  add_absorbing(root, builder, names);
   add_interfaces(read, spec, builder, names, built);
   add_loads(root, builder, names);
   if (spec.damping) builder.set_damping(bulk_damping(*spec.damping));
@@ -288,7 +322,7 @@ Built build(const Case& read, const RunSpec& spec) {
   add_method(read, spec, built);
   add_initial(read, names, built);
   find_shown_nodes(read, names, built);
-  built.weight = weight_of(read, built.model);
+  built.weight = weight_of(built);
   plan.created_limit = root.table("energy").number("created_limit");
   plan.stop_at_limit = root.table("energy").flag("stop_at_limit");
   plan.rotation_limit = root.table("limits").number("rotation");

@@ -5,7 +5,7 @@
 
 #include "uplift/analysis/case_model.h"
 #include "uplift/elements/discrete.h"
-#include "uplift/interface/joint.h"
+#include "uplift/interface/face_joint.h"
 
 // Where the joints of an interface stand, and the elastic bed under a footing.
 namespace uplift {
@@ -76,15 +76,37 @@ void measure(Joint& joint) {
     joint.facts.half_width = std::max(joint.facts.half_width, std::abs(tangent(point.normal).dot(point.position - joint.reference)));
 }
 
+/// Nodes of one side of the points, each once.
+std::vector<int> nodes_of_side(const std::vector<JointPoint>& points, std::vector<std::pair<int, double>> JointPoint::*side) {
+  std::vector<int> nodes;
+  for (const JointPoint& point : points)
+    for (const auto& [node, shape] : point.*side) nodes.push_back(node);
+  std::ranges::sort(nodes);
+  nodes.erase(std::unique(nodes.begin(), nodes.end()), nodes.end());
+  return nodes;
+}
+
+std::vector<JointPoint> surface_points(const Values& interface, const Values& surface, const std::vector<FacePair>& open,
+                                       const CaseNames& names) {
+  const FaceQuadrature quadrature = surface.text("quadrature") == "nodal" ? FaceQuadrature::nodal : FaceQuadrature::gauss;
+  std::vector<JointPoint> points =
+      face_points(names.solids->mesh(), open, quadrature, thickness_of(*names.solids, open, surface), interface.number("gap"));
+  for (JointPoint& point : points)
+    for (auto* side : {&point.upper, &point.lower})
+      for (auto& [node, shape] : *side) node += names.first_of_mesh;
+  return points;
+}
+
 }  // namespace
 
-Joint make_joint(const Values& interface, bool rigid_ground, ModelBuilder& builder, CaseNames& names) {
+Joint make_joint(const Values& interface, const std::vector<FacePair>& open, bool rigid_ground, ModelBuilder& builder, CaseNames& names) {
   const Values* footing = table_if(interface, "footing");
   const Values* pairs = table_if(interface, "pairs");
   const Values* line = table_if(interface, "line");
-  const int kinds = (footing != nullptr) + (pairs != nullptr) + (line != nullptr);
+  const Values* surface = table_if(interface, "surface");
+  const int kinds = (footing != nullptr) + (pairs != nullptr) + (line != nullptr) + (surface != nullptr);
   if (kinds != 1)
-    throw InputError(interface.where(), interface.path(), "exactly one of footing, pairs and line",
+    throw InputError(interface.where(), interface.path(), "exactly one of footing, pairs, line and surface",
                      kinds == 0 ? "none" : fmt::format("{}", kinds));
   Joint joint;
   if (footing) joint = footing_joint(interface, *footing, rigid_ground, builder, names);
@@ -97,6 +119,9 @@ Joint make_joint(const Values& interface, bool rigid_ground, ModelBuilder& build
                    line->number("thickness"),          interface.number("gap")};
     joint.points = line_points(made, line->where());
   }
+  if (surface) joint.points = surface_points(interface, *surface, open, names);
+  joint.facts.upper = nodes_of_side(joint.points, &JointPoint::upper);
+  joint.facts.lower = nodes_of_side(joint.points, &JointPoint::lower);
   for (const JointPoint& point : joint.points) joint.facts.area += point.area;
   if (!footing) measure(joint);
   joint.facts.name = interface.text("name");

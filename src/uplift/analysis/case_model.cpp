@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <cmath>
 #include <numbers>
+#include <set>
 
 #include "uplift/elements/beam.h"
 #include "uplift/elements/discrete.h"
@@ -23,6 +24,22 @@ std::vector<int> CaseNames::nodes_of(const Values& table, std::string_view key) 
   std::vector<int> found;
   if (!table.has(key)) return found;
   for (const std::string& name : table.texts(key)) found.push_back(nodes.find(name, table.where(key), table.path(key)));
+  return found;
+}
+
+const CaseSolids& CaseNames::mesh_for(const Values& table) const {
+  if (!solids) throw InputError(table.where("group"), table.path("group"), "a [mesh] with this group", "none");
+  return *solids;
+}
+
+std::vector<int> CaseNames::node_or_group(const Values& table) const {
+  const bool node_given = table.has("node");
+  if (node_given == table.has("group"))
+    throw InputError(table.where(node_given ? "group" : ""), table.path(node_given ? "group" : ""), "either node or group",
+                     node_given ? "both" : "neither");
+  if (node_given) return {node(table, "node")};
+  std::vector<int> found = mesh_for(table).nodes(table, "group");
+  for (int& each : found) each += first_of_mesh;
   return found;
 }
 
@@ -144,7 +161,66 @@ void add_masses(const Values& root, ModelBuilder& builder, CaseNames& names, con
   }
 }
 
+/// A node of the mesh has no rotation to be held or moved.
+Dof dof_for(const std::string& word, const Values& table, std::string_view key) {
+  const Dof dof = dof_of(word, table, key);
+  if (dof == rz && table.has("group")) fail(table, key, "ux or uy for a group of the mesh", "\"rz\"");
+  return dof;
+}
+
+void add_supports(const Values& root, ModelBuilder& builder, const CaseNames& names) {
+  std::set<std::pair<int, int>> held;  // by groups: those of two sides share the corner
+  for (const Values& support : root.tables("support"))
+    for (const int node : names.node_or_group(support))
+      for (const std::string& word : support.texts("fixed")) {
+        const Dof dof = dof_for(word, support, "fixed");
+        if (!support.has("group") || held.emplace(node, dof).second) builder.fix(node, dof, support.where("fixed"));
+      }
+  for (const Values& motion : root.tables("motion")) {
+    const std::vector<int> nodes = names.node_or_group(motion);
+    const std::string name = motion.has("name") ? motion.text("name") : "motion of " + motion.text(motion.has("node") ? "node" : "group");
+    for (const int node : nodes)
+      builder.prescribe(node, dof_for(motion.text("direction"), motion, "direction"),
+                        std::make_shared<Scaled>(motion.number("amplitude"), names.function(motion)), name, motion.where());
+  }
+}
+
+using Pattern = std::vector<std::pair<int, double>>;
+
+void add_force(int node, const Vec2& force, Pattern& pattern) {
+  if (force.x() != 0) pattern.emplace_back(3 * node + ux, force.x());
+  if (force.y() != 0) pattern.emplace_back(3 * node + uy, force.y());
+}
+
+Pattern node_load(const Values& load, int node) {
+  if (load.has("traction")) fail(load, "traction", "force or moment on a node", "a traction");
+  if (!load.has("force") && !load.has("moment")) fail(load, "", "force or moment", "neither");
+  Pattern pattern;
+  if (load.has("force")) add_force(node, vec2(load.numbers("force")), pattern);
+  if (load.has("moment") && load.number("moment") != 0) pattern.emplace_back(3 * node + rz, load.number("moment"));
+  return pattern;
+}
+
+/// Consistent forces of a uniform traction on edges of the mesh.
+Pattern edge_load(const Values& load, const CaseNames& names) {
+  if (load.has("moment")) fail(load, "moment", "force or traction on a group", "a moment");
+  const bool traction = first_of_two(load, "traction", "force");
+  if (!load.has("name")) fail(load, "", "a name for the load on a group", "none");
+  const CaseSolids& solids = names.mesh_for(load);
+  const std::vector<std::pair<int, double>> areas = tributary_areas(solids, solids.edges(load, "group"));
+  double area = 0;
+  for (const auto& [node, share] : areas) area += share;
+  const Vec2 per_area = traction ? vec2(load.numbers("traction")) : Vec2(vec2(load.numbers("force")) / area);
+  Pattern pattern;
+  for (const auto& [node, share] : areas) add_force(names.first_of_mesh + node, share * per_area, pattern);
+  return pattern;
+}
+
 }  // namespace
+
+std::shared_ptr<const TimeFunction> scaled(double factor, std::shared_ptr<const TimeFunction> function) {
+  return std::make_shared<Scaled>(factor, std::move(function));
+}
 
 std::shared_ptr<const TimeFunction> CaseNames::function(const Values& table) const {
   if (!table.has("function")) return std::make_shared<One>();
@@ -157,6 +233,32 @@ void add_nodes(const Values& root, ModelBuilder& builder, CaseNames& names) {
     names.positions.push_back(vec2(node.numbers("value")));
     builder.add_node(node.key(), names.positions.back(), node.where());
   }
+}
+
+void add_mesh(const Case& read, ModelBuilder& builder, CaseNames& names) {
+  if (!read.mesh) return;
+  const Mesh& mesh = read.mesh->mesh;
+  const Values& table = read.values.table("mesh");
+  names.solids = std::make_shared<const CaseSolids>(read.values, *read.mesh);
+  names.first_of_mesh = names.nodes.size();
+  auto coordinates = std::make_shared<std::vector<Vec3>>(names.positions.size(), Vec3::Zero());
+  for (std::size_t i = 0; i < mesh.nodes.size(); ++i) {
+    const std::string name = fmt::format("mesh.{}", i + 1);
+    coordinates->push_back(mesh.nodes[i]);
+    names.nodes.add(name, table.where(), table.path());
+    names.positions.push_back(mesh.nodes[i].head<2>());
+    builder.add_node(name, names.positions.back(), table.where());
+  }
+  names.coordinates = coordinates;
+  std::vector<int> nodes;
+  for (const CaseSolids::Solid& solid : names.solids->solids())
+    for (const CellId cell : solid.cells) {
+      nodes.clear();
+      for (const int node : mesh.cell(cell)) nodes.push_back(names.first_of_mesh + node);
+      auto element = std::make_unique<Solid>(mesh.type(cell), nodes, coordinates, solid.section);
+      element->beta = solid.table->number("damping_beta");
+      builder.add_element(std::move(element), solid.table->where());
+    }
 }
 
 void add_functions(const Values& root, CaseNames& names) {
@@ -182,27 +284,13 @@ void add_structure(const Values& root, ModelBuilder& builder, CaseNames& names, 
         std::make_unique<Dashpot>(connection_of(dashpot, names, along), dashpot.number(along ? "damping" : "rotational_damping")),
         dashpot.where());
   }
-  for (const Values& support : root.tables("support"))
-    for (const std::string& word : support.texts("fixed"))
-      builder.fix(names.node(support, "node"), dof_of(word, support, "fixed"), support.where("fixed"));
-  for (const Values& motion : root.tables("motion")) {
-    const std::string name = motion.has("name") ? motion.text("name") : "motion of " + motion.text("node");
-    builder.prescribe(names.node(motion, "node"), dof_of(motion.text("direction"), motion, "direction"),
-                      std::make_shared<Scaled>(motion.number("amplitude"), names.function(motion)), name, motion.where());
-  }
+  add_supports(root, builder, names);
 }
 
 void add_loads(const Values& root, ModelBuilder& builder, const CaseNames& names) {
   for (const Values& load : root.tables("load")) {
-    const int node = names.node(load, "node");
-    std::vector<std::pair<int, double>> pattern;
-    if (load.has("force")) {
-      const Vec2 force = vec2(load.numbers("force"));
-      if (force.x() != 0) pattern.emplace_back(3 * node + ux, force.x());
-      if (force.y() != 0) pattern.emplace_back(3 * node + uy, force.y());
-    }
-    if (load.has("moment") && load.number("moment") != 0) pattern.emplace_back(3 * node + rz, load.number("moment"));
-    if (!load.has("force") && !load.has("moment")) fail(load, "", "force or moment", "neither");
+    std::vector<std::pair<int, double>> pattern =
+        first_of_two(load, "node", "group") ? node_load(load, names.node(load, "node")) : edge_load(load, names);
     const std::string name = load.has("name") ? load.text("name") : "load on " + load.text("node");
     builder.add_load(name, std::move(pattern), names.function(load), !load.has("function"), load.where());
   }

@@ -5,6 +5,7 @@
 #include <vector>
 
 #include "uplift/analysis/case.h"
+#include "uplift/analysis/case_mesh.h"
 #include "uplift/analysis/case_names.h"
 #include "uplift/model/builder.h"
 
@@ -16,8 +17,15 @@ struct CaseNames {
   Names nodes{"node"}, functions{"function"}, interfaces{"interface"};
   std::vector<Vec2> positions;  // of the nodes
   std::vector<std::shared_ptr<const TimeFunction>> functions_made;
+  std::shared_ptr<const CaseSolids> solids;  // null without a mesh
+  int first_of_mesh = 0;                     // node of the model that the mesh's first node is
+  Coordinates coordinates;                   // of the nodes up to the mesh's last
   int node(const Values& table, std::string_view key) const { return nodes.find(table, key); }
   std::vector<int> nodes_of(const Values& table, std::string_view key) const;
+  /// The node of "node" or the nodes of "group": exactly one of the keys must be given.
+  std::vector<int> node_or_group(const Values& table) const;
+  /// The mesh that "group" speaks of; InputError without one.
+  const CaseSolids& mesh_for(const Values& table) const;
   std::shared_ptr<const TimeFunction> function(const Values& table) const;  // absent: constant 1
 };
 
@@ -27,6 +35,12 @@ const Values* table_if(const Values& values, std::string_view key);
 
 /// Nodes, functions, elements, supports, motions, loads and damping. `tuned` is the mass of the tuned point masses [kg], one per such mass.
 void add_nodes(const Values& root, ModelBuilder& builder, CaseNames& names);
+/// Nodes and solids of the mesh.
+void add_mesh(const Case& read, ModelBuilder& builder, CaseNames& names);
+/// Absorbing faces and the waves that come in through them; after the functions.
+void add_absorbing(const Values& root, ModelBuilder& builder, const CaseNames& names);
+/// A function times an amplitude.
+std::shared_ptr<const TimeFunction> scaled(double factor, std::shared_ptr<const TimeFunction> function);
 void add_functions(const Values& root, CaseNames& names);
 void add_structure(const Values& root, ModelBuilder& builder, CaseNames& names, const std::vector<double>& tuned);
 void add_loads(const Values& root, ModelBuilder& builder, const CaseNames& names);
@@ -38,7 +52,8 @@ struct Joint {
   InterfaceFacts facts;
   Vec2 reference = Vec2::Zero();
 };
-Joint make_joint(const Values& interface, bool rigid_ground, ModelBuilder& builder, CaseNames& names);
+/// `open`: the faces that the mesh was opened at for it.
+Joint make_joint(const Values& interface, const std::vector<FacePair>& open, bool rigid_ground, ModelBuilder& builder, CaseNames& names);
 
 /// Number of local components that a law or cone needs: 1 when it has no tangential part, else 2.
 int components_of(const Values& behaviour);

@@ -1,6 +1,7 @@
 #pragma once
 #include <string>
 #include <string_view>
+#include <unordered_map>
 #include <utility>
 #include <vector>
 
@@ -27,6 +28,7 @@ class Names {
  private:
   std::string what_;
   std::vector<std::pair<std::string, Where>> names_;
+  std::unordered_map<std::string, int> index_;
 };
 
 }  // namespace uplift

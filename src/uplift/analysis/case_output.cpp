@@ -114,12 +114,27 @@ Request point_request(const Values& history, const Model& model, int interface, 
   return request;
 }
 
-Request asked_request(const Values& history, const Built& built, const Names& nodes, const Names& interfaces) {
+/// The node nearest to a place; of nodes at the same place (the sides of an interface) the first, that of the lower side.
+int nearest_node(const Values& history, Built& built) {
+  const Vec2 place = vec2(history.numbers("at"));
+  int nearest = 0;
+  const auto distance = [&](int node) { return (built.model.nodes[static_cast<std::size_t>(node)].position - place).norm(); };
+  for (int node = 1; node < static_cast<int>(built.model.nodes.size()); ++node)
+    if (distance(node) < distance(nearest) - 1e-9) nearest = node;
+  const Node& found = built.model.nodes[static_cast<std::size_t>(nearest)];
+  built.notes.push_back(fmt::format("{} at ({:g}, {:g}) m: node {} at ({:g}, {:g}) m, {:.3g} m away", history.text("quantity"), place.x(),
+                                    place.y(), found.name, found.position.x() + 0.0, found.position.y() + 0.0, distance(nearest)));
+  return nearest;
+}
+
+Request asked_request(const Values& history, Built& built, const Names& nodes, const Names& interfaces) {
   const std::string name = history.has("name") ? history.text("name") : "";
-  if (history.has("node") == history.has("interface"))
-    throw InputError(history.where(), history.path(), "either node or interface", history.has("node") ? "both" : "neither");
-  if (history.has("node")) {
-    const int node = nodes.find(history, "node");
+  const int given = history.has("node") + history.has("at") + history.has("interface");
+  if (given != 1)
+    throw InputError(history.where(), history.path(), "exactly one of node, at and interface",
+                     given == 0 ? "none" : fmt::format("{}", given));
+  if (!history.has("interface")) {
+    const int node = history.has("node") ? nodes.find(history, "node") : nearest_node(history, built);
     return node_request(built.model, node, find_quantity(node_quantities, history, "a node"), name);
   }
   const int interface = interfaces.find(history, "interface");

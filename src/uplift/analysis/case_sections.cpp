@@ -1,5 +1,6 @@
 #include "uplift/analysis/case_sections.h"
 
+#include "uplift/analysis/case_mesh_sections.h"
 #include "uplift/contact/impact.h"
 #include "uplift/contact/method.h"
 #include "uplift/dynamics/scheme.h"
@@ -77,14 +78,17 @@ const Section& rigid_section() {
 }
 
 const Section& support_section() {
-  static const Section s{"support", "unknowns of a node that are held", Fields{text("node", "node"), texts("fixed", "any of ux, uy, rz")}};
+  static const Section s{"support", "unknowns that are held, of a node or of a group of the mesh",
+                         Fields{text("node", "node; or give group").optional(),
+                                text("group", "group of the mesh: all its nodes").optional(), texts("fixed", "any of ux, uy, rz")}};
   return s;
 }
 
 const Section& motion_section() {
   static const Section s{
-      "motion", "a prescribed motion of one unknown of a node: amplitude x function",
-      Fields{text("name", "name").optional(), text("node", "node"), choice("direction", {"ux", "uy", "rz"}, "unknown that is moved"),
+      "motion", "a prescribed motion of one unknown of a node or of a group of the mesh: amplitude x function",
+      Fields{text("name", "name").optional(), text("node", "node; or give group").optional(),
+             text("group", "group of the mesh: all its nodes").optional(), choice("direction", {"ux", "uy", "rz"}, "unknown that is moved"),
              number("amplitude", "1", "m (or rad for rz) that the function multiplies").standard(1.0),
              text("function", "name of the function of time")}};
   return s;
@@ -113,9 +117,13 @@ const Section& function_section() {
 }
 
 const Section& load_section() {
-  static const Section s{"load", "a force on a node; without a function it is constant and applied by the static stages",
-                         Fields{text("name", "name").optional(), text("node", "node"), numbers("force", "N", "[x, y]", 2).optional(),
-                                number("moment", "N m", "moment, counter-clockwise").optional(),
+  static const Section s{"load",
+                         "a load on a node or on edges of the mesh; without a function it is constant and applied by the static stages",
+                         Fields{text("name", "name; needed for a group").optional(), text("node", "node; or give group").optional(),
+                                text("group", "group of edges of the mesh").optional(),
+                                numbers("force", "N", "[x, y]; on a group: the whole force, spread evenly over its area", 2).optional(),
+                                numbers("traction", "Pa", "force per area of a group [x, y]", 2).optional(),
+                                number("moment", "N m", "moment on a node, counter-clockwise").optional(),
                                 text("function", "name of the function of time that multiplies it; absent: constant").optional()}};
   return s;
 }
@@ -179,9 +187,10 @@ const Section& line_section() {
 
 const Section& interface_section() {
   static const Section s{
-      "interface", "a surface that may open: exactly one of footing, pairs and line says where",
+      "interface", "a surface that may open: exactly one of footing, pairs, line and surface says where",
       Fields{text("name", "name"), table("footing", footing_section(), "under a rigid footing").optional(),
              table("pairs", pairs_section(), "isolated points").optional(), table("line", line_section(), "along a line").optional(),
+             table("surface", surface_section(), "along edges inside the mesh").optional(),
              number("gap", "m", "initial gap of every point").standard(0.0),
              part("law", interface_behaviours, "what it does: a traction law or a cone (contact by constraint)")}};
   return s;
@@ -254,6 +263,7 @@ const Section& history_section() {
   static const Section s{
       "history", "a column of the output: of a node, of an interface, or of one of its points",
       Fields{text("name", "name of the column; absent: made from the rest").optional(), text("node", "node").optional(),
+             numbers("at", "m", "instead of node: the node nearest to this place [x, y]", 2).optional(),
              text("interface", "interface").optional(), integer("point", "point of the interface, from 1").between(1, 1000000).optional(),
              text("quantity",
                   "node: ux uy rz, vx vy vrz, ax ay arz; interface: axial shear moment rotation uplifted_ratio max_opening max_pressure; "
@@ -335,6 +345,9 @@ const Section& case_section() {
              text("description", "what it shows").optional(),
              flag("bonded", "run the model with bonded interfaces too, for comparison").standard(true),
              named("nodes", node_section(), "nodes: name = [x, y]"),
+             table("mesh", mesh_section(), "plane mesh of solids").optional(),
+             tables("solid", solid_section(), "materials of the mesh"),
+             tables("absorbing", absorbing_section(), "absorbing boundaries of the mesh"),
              tables("beam", beam_section(), "beams"),
              tables("mass", mass_section(), "point masses"),
              tables("spring", spring_section(), "springs"),

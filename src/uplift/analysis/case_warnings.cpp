@@ -4,7 +4,7 @@
 #include <array>
 #include <cmath>
 
-#include "uplift/analysis/case.h"
+#include "uplift/analysis/case_mesh.h"
 #include "uplift/analysis/wording.h"
 #include "uplift/model/damping.h"
 #include "uplift/model/tuned_mass.h"
@@ -18,15 +18,18 @@ struct Magnitude {
   const char* hint;
 };
 /// What civil structures have; outside, a unit is probably missing.
-constexpr std::array<Magnitude, 9> usual{{{"beam", "E", "Pa", 1e8, 1e12, "concrete is about 3e10 Pa, steel 2.1e11 Pa"},
-                                          {"beam", "I", "m4", 1e-9, 1e5, "1 cm4 is 1e-8 m4"},
-                                          {"beam", "A", "m2", 1e-6, 1e4, "1 cm2 is 1e-4 m2"},
-                                          {"beam", "density", "kg/m3", 100, 30000, "concrete is about 2500 kg/m3"},
-                                          {"mass", "mass", "kg", 1e-1, 1e10, "1 t is 1000 kg"},
-                                          {"mass", "tuned_frequency", "Hz", 1e-2, 1e3, "in Hz, not in rad/s"},
-                                          {"rigid", "mass", "kg", 1e-1, 1e10, "1 t is 1000 kg"},
-                                          {"stage", "step", "s", 1e-7, 0.5, "1 ms is 0.001 s"},
-                                          {"stage", "duration", "s", 1e-4, 1e5, "in seconds"}}};
+constexpr std::array<Magnitude, 12> usual{{{"beam", "E", "Pa", 1e8, 1e12, "concrete is about 3e10 Pa, steel 2.1e11 Pa"},
+                                           {"beam", "I", "m4", 1e-9, 1e5, "1 cm4 is 1e-8 m4"},
+                                           {"beam", "A", "m2", 1e-6, 1e4, "1 cm2 is 1e-4 m2"},
+                                           {"beam", "density", "kg/m3", 100, 30000, "concrete is about 2500 kg/m3"},
+                                           {"mass", "mass", "kg", 1e-1, 1e10, "1 t is 1000 kg"},
+                                           {"mass", "tuned_frequency", "Hz", 1e-2, 1e3, "in Hz, not in rad/s"},
+                                           {"rigid", "mass", "kg", 1e-1, 1e10, "1 t is 1000 kg"},
+                                           {"solid", "E", "Pa", 1e5, 1e12, "soil has 1e7 to 1e9 Pa, concrete about 3e10 Pa"},
+                                           {"solid", "shear_wave_speed", "m/s", 20, 5000, "soil has 100 to 800 m/s"},
+                                           {"solid", "density", "kg/m3", 10, 30000, "soil is about 1900 kg/m3, concrete 2500 kg/m3"},
+                                           {"stage", "step", "s", 1e-7, 0.5, "1 ms is 0.001 s"},
+                                           {"stage", "duration", "s", 1e-4, 1e5, "in seconds"}}};
 
 void warn_magnitudes(const Case& read, std::vector<std::string>& said) {
   for (const Magnitude& each : usual)
@@ -106,6 +109,43 @@ std::vector<Mode> modes_within(const Sparse& held, const Sparse& stiffness, cons
   return found;
 }
 
+/// Nodes of all interfaces that are on the upper (lower) side: those whose shape functions have a positive (negative) integral in the
+/// normal openings.
+std::vector<int> nodes_of_sides(const Model& model, bool upper) {
+  Vector integral = Vector::Zero(static_cast<Index>(model.nodes.size()));
+  const SparseRows rows = model.assembly.b;
+  Index row = 0;
+  for (const Interface& face : model.interfaces) {
+    row += face.batch.normal();
+    for (int i = 0; i < face.batch.points; ++i, ++row)
+      for (SparseRows::InnerIterator entry(rows, row); entry; ++entry)
+        if (const Index dof = entry.col() % dofs_per_node; dof < 2)
+          integral[entry.col() / dofs_per_node] += face.area[i] * entry.value() * face.normal[static_cast<std::size_t>(i)][dof];
+    row += face.rows() - face.batch.normal() - face.batch.points;
+  }
+  std::vector<int> nodes;
+  for (int node = 0; node < static_cast<int>(integral.size()); ++node)
+    if (upper ? integral[node] > 0 : integral[node] < 0) nodes.push_back(node);
+  return nodes;
+}
+
+/// Only the columns that move something else than ground: what hangs together with lower sides alone stands still.
+Sparse without_ground(const Sparse& held, const Model& model) {
+  const std::vector<char> above = part_of(model, nodes_of_sides(model, true)), below = part_of(model, nodes_of_sides(model, false));
+  std::vector<Triplet> chosen;
+  for (int column = 0, next = 0; column < static_cast<int>(held.cols()); ++column) {
+    bool ground = true;
+    for (Sparse::InnerIterator entry(held, column); entry; ++entry) {
+      const auto node = static_cast<std::size_t>(model.kept[static_cast<std::size_t>(entry.row())] / dofs_per_node);
+      ground = ground && below[node] && !above[node];
+    }
+    if (!ground) chosen.emplace_back(column, next++, 1.0);
+  }
+  Sparse select(held.cols(), static_cast<Index>(chosen.size()));
+  select.setFromTriplets(chosen.begin(), chosen.end());
+  return held * select;
+}
+
 }  // namespace
 
 std::vector<Mode> bonded_modes(const Model& model, int count) {
@@ -113,7 +153,7 @@ std::vector<Mode> bonded_modes(const Model& model, int count) {
 }
 
 std::vector<Mode> fixed_base_modes(const Model& model, int count) {
-  return modes_within(base_held(model), model.stiffness, model.mass, count);
+  return modes_within(without_ground(base_held(model), model), model.stiffness, model.mass, count);
 }
 
 std::vector<std::string> warnings(const Case& read, const RunSpec& spec, const Built& built) {

@@ -3,10 +3,12 @@
 #include <algorithm>
 #include <cmath>
 
+#include "uplift/analysis/case_mesh.h"
 #include "uplift/analysis/wording.h"
 #include "uplift/cli/console.h"
 #include "uplift/cli/load.h"
 #include "uplift/io/json_writer.h"
+#include "uplift/mesh/quality.h"
 
 namespace uplift::cli {
 namespace {
@@ -16,11 +18,67 @@ struct Findings {
   std::vector<double> fixed, bonded, base_free;  // Hz
   std::vector<StiffnessRatio> ratios;
   double suggested_step = 0;    // s
-  double seconds_per_step = 0;  // measured over a few steps
+  double seconds_per_step = 0;  // measured over the first steps
   long steps = 0;               // of one run
   std::string trial_failure;    // why the first steps failed; empty when they did not
   std::vector<std::string> warnings;
+  struct Solid {
+    GroupQuality quality;
+    double speed = 0;              // m/s: of shear waves; 0 without mass
+    double highest_frequency = 0;  // Hz: with ten nodes per wavelength
+  };
+  std::vector<Solid> solids;  // of a mesh
+  int pieces = 0;             // of the opened mesh
 };
+
+constexpr double points_per_wavelength = 10;
+
+/// Quality and resolution of the groups that have a material.
+void look_at_mesh(const Case& read, Findings& found) {
+  if (!read.mesh) return;
+  const CaseSolids materials(read.values, *read.mesh);
+  const std::vector<GroupQuality> qualities = quality_by_group(read.mesh->mesh);
+  for (const CaseSolids::Solid& solid : materials.solids())
+    for (const GroupQuality& quality : qualities) {
+      if (quality.name != solid.table->text("group")) continue;
+      const double speed = solid.section.material.density > 0 ? solid.section.material.s_wave_speed() : 0;
+      found.solids.push_back({quality, speed, speed > 0 ? highest_frequency(quality, speed, points_per_wavelength) : 0});
+    }
+  found.pieces = connected_pieces(read.mesh->mesh).count();
+}
+
+void print_mesh(const Case& read, const Findings& found) {
+  const Mesh& mesh = read.mesh->mesh;
+  const auto line = [](std::string_view what, const std::string& value) { say(fmt::format("  {:<28} {}", what, value)); };
+  int cells = 0;
+  for (const Findings::Solid& solid : found.solids) cells += solid.quality.cells;
+  line("mesh", fmt::format("{} cells, {} nodes, {} {} after opening, from {}", cells, mesh.nodes.size(), found.pieces,
+                           found.pieces == 1 ? "piece" : "pieces", read.mesh->from));
+  for (const Findings::Solid& solid : found.solids) {
+    const GroupQuality& quality = solid.quality;
+    line("  " + quality.name, fmt::format("{} cells, edges {:.3g} to {:.3g} m, aspect up to {:.3g}, scaled Jacobian from {:.3g}",
+                                          quality.cells, quality.shortest, quality.longest, quality.aspect, quality.jacobian));
+    if (solid.speed > 0)
+      line("", fmt::format("shear waves of {:.4g} m/s up to {:.3g} Hz (ten nodes a wavelength)", solid.speed, solid.highest_frequency));
+  }
+}
+
+void write_mesh(JsonWriter& json, const Case& read, const Findings& found) {
+  json.key("mesh").begin_object().member("from", read.mesh->from).member("nodes", static_cast<int>(read.mesh->mesh.nodes.size()));
+  json.member("pieces", found.pieces).key("solids").begin_array();
+  for (const Findings::Solid& solid : found.solids)
+    json.begin_object()
+        .member("group", solid.quality.name)
+        .member("cells", solid.quality.cells)
+        .member("shortest_edge", solid.quality.shortest)
+        .member("longest_edge", solid.quality.longest)
+        .member("aspect", solid.quality.aspect)
+        .member("scaled_jacobian", solid.quality.jacobian)
+        .member("shear_wave_speed", solid.speed)
+        .member("highest_frequency", solid.highest_frequency)
+        .end_object();
+  json.end_array().end_object();
+}
 
 /// Frequencies with the nodes of every interface held: what a fixed-base model has.
 std::vector<double> frequencies(const std::vector<Mode>& found) {
@@ -48,11 +106,12 @@ void try_steps(Findings& found, const Built& built) {
     }
   const RunResult trial = uplift::run(built.model, plan, built.behaviours);
   if (trial.status == RunStatus::failed && trial.counts.steps < 200) found.trial_failure = trial.reason;
-  if (trial.counts.steps > 0) found.seconds_per_step = trial.wall / static_cast<double>(trial.counts.steps);
+  found.seconds_per_step = trial.step_seconds;
 }
 
 Findings find(const Case& read, const RunSpec& spec, const Built& built) {
   Findings found;
+  look_at_mesh(read, found);
   found.fixed = frequencies(fixed_base_modes(built.model, 3));
   found.bonded = frequencies(bonded_modes(built.model, 5));
   found.base_free = frequencies(uplift::modes(built.model.stiffness, built.model.mass, 5));
@@ -77,6 +136,7 @@ void print(const Loaded& loaded, const Built& built, const Findings& found, cons
   const auto line = [](std::string_view what, const std::string& value) { say(fmt::format("  {:<28} {}", what, value)); };
   say(loaded.from.title);
   line("unknowns", fmt::format("{} free of {} ({} nodes)", model.free(), model.full_unknowns(), model.nodes.size()));
+  if (loaded.read.mesh) print_mesh(loaded.read, found);
   for (std::size_t k = 0; k < model.interfaces.size(); ++k) {
     const Interface& interface = model.interfaces[k];
     line("interface " + interface.name, fmt::format("{} points, {}, area {:.4g} m2{}", interface.batch.points, interface.behaviour,
@@ -114,6 +174,7 @@ void write(const Loaded& loaded, const Built& built, const Findings& found, cons
       .member("title", loaded.from.title)
       .member("unknowns", built.model.free())
       .member("full_unknowns", built.model.full_unknowns());
+  if (loaded.read.mesh) write_mesh(json, loaded.read, found);
   json.key("interfaces").begin_array();
   for (std::size_t k = 0; k < built.model.interfaces.size(); ++k) {
     const Interface& interface = built.model.interfaces[k];

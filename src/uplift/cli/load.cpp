@@ -10,6 +10,7 @@
 #include "uplift/cli/console.h"
 #include "uplift/io/files.h"
 #include "uplift/io/histories.h"
+#include "uplift/io/mesh_file.h"
 #include "uplift/io/toml.h"
 
 namespace uplift::cli {
@@ -19,7 +20,8 @@ Loaded load(const Options& options) {
   std::string file = options.file;
   std::error_code error;
   if (fs::is_directory(file, error) && fs::exists(fs::path(file) / "case.toml", error)) file = (fs::path(file) / "case.toml").string();
-  Loaded loaded{check_case(read_toml_file(file), file), {}};
+  const auto mesh = [](const std::string& path, const Where& where, const std::string& name) { return read_mesh(path, where, name); };
+  Loaded loaded{check_case(read_toml_file(file), file, mesh), {}};
   Provenance& from = loaded.from;
   from.title = loaded.read.values.text("title");
   if (loaded.read.values.has("description")) from.subtitle = loaded.read.values.text("description");

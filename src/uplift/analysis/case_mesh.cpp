@@ -1,0 +1,265 @@
+#include "uplift/analysis/case_mesh.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cassert>
+#include <filesystem>
+#include <limits>
+#include <numeric>
+
+#include "uplift/analysis/case_model.h"
+#include "uplift/base/text.h"
+#include "uplift/mesh/cell_quadrature.h"
+#include "uplift/mesh/cell_shapes.h"
+#include "uplift/mesh/soil_box.h"
+
+namespace uplift {
+namespace {
+
+std::size_t at(int i) {
+  return static_cast<std::size_t>(i);
+}
+
+[[noreturn]] void fail(const Values& table, std::string_view key, const std::string& wanted, const std::string& found,
+                       const std::string& nearest = {}) {
+  throw InputError(table.where(key), table.path(key), wanted, found, nearest);
+}
+
+Cell cell_named(const std::string& name) {
+  for (const CellInfo& each : all_cells())
+    if (each.name == name) return each.cell;
+  assert(false);
+  return Cell::quad4;
+}
+
+SoilBox::Part part_from(const Values* table) {
+  SoilBox::Part part;
+  if (!table) return part;
+  part.width = {table->number("width"), table->number("width")};
+  part.height = table->number("height");
+  part.size = table->number("size");
+  if (table->items().contains("offset")) part.offset[0] = table->number("offset");
+  return part;
+}
+
+Mesh make_soil_box(const Values& box) {
+  SoilBox made;
+  const Values& soil = box.table("soil");
+  made.soil.width = {soil.number("width"), soil.number("width")};
+  made.soil.size = soil.number("size");
+  made.soil.layers.clear();
+  for (const Values& layer : soil.tables("layers")) made.soil.layers.push_back({layer.number("thickness"), layer.number("size")});
+  if (made.soil.layers.empty()) fail(soil, "layers", "at least one layer", "none");
+  made.raft = part_from(table_if(box, "raft"));
+  made.block = part_from(table_if(box, "block"));
+  made.embedment = box.number("embedment");
+  made.growth = box.number("growth");
+  made.cell = cell_named(box.text("cell"));
+  return soil_box(made, box.where());
+}
+
+/// Groups of interfaces whose surfaces have the same lower side, in the order of the case.
+std::vector<std::vector<std::size_t>> opened_together(const std::vector<Values>& interfaces) {
+  std::vector<std::vector<std::size_t>> together;
+  std::vector<std::vector<std::string>> sides;
+  for (std::size_t k = 0; k < interfaces.size(); ++k) {
+    const Values* surface = table_if(interfaces[k], "surface");
+    if (!surface) continue;
+    std::vector<std::string> lower = surface->texts("lower");
+    std::ranges::sort(lower);
+    const auto same = std::ranges::find(sides, lower);
+    if (same == sides.end()) {
+      sides.push_back(std::move(lower));
+      together.push_back({k});
+    } else {
+      together[static_cast<std::size_t>(same - sides.begin())].push_back(k);
+    }
+  }
+  return together;
+}
+
+void open_surfaces(const std::vector<Values>& interfaces, CaseMesh& made) {
+  made.open.resize(interfaces.size());
+  for (const std::vector<std::size_t>& together : opened_together(interfaces)) {
+    std::vector<std::string> surfaces;
+    for (const std::size_t k : together) surfaces.push_back(interfaces[k].table("surface").text("group"));
+    const Values& first = interfaces[together.front()].table("surface");
+    std::vector<OpenedSurface> opened = split(made.mesh, surfaces, first.texts("lower"), first.where("group"));
+    for (std::size_t i = 0; i < together.size(); ++i) made.open[together[i]] = std::move(opened[i].faces);
+  }
+}
+
+const Group& group_named(const Mesh& mesh, const Values& table, std::string_view key, const char* what) {
+  const std::string& name = table.text(key);
+  const auto found = mesh.groups.find(name);
+  if (found != mesh.groups.end()) return found->second;
+  std::vector<std::string> names;
+  for (const auto& [other, group] : mesh.groups) names.push_back(other);
+  fail(table, key, what, "no group " + in_quotes(name) + " in the mesh", nearest_name(name, names));
+}
+
+std::string dimension_word(const Group& group) {
+  constexpr const char* words[] = {"nodes", "edges", "cells", "volumes"};
+  return std::string("a group of ") + words[group.dimension];
+}
+
+SolidSection section_from(const Values& solid) {
+  SolidSection section;
+  const bool stiffness = solid.has("E");
+  if (stiffness == solid.has("shear_wave_speed"))
+    fail(solid, stiffness ? "shear_wave_speed" : "", "either E or shear_wave_speed", stiffness ? "both" : "neither");
+  const std::string& mass = solid.text("mass");
+  if ((mass != "none" || !stiffness) && !solid.has("density"))
+    fail(solid, "", mass == "none" ? "density, from which E follows with shear_wave_speed" : "density, or mass = \"none\"", "none");
+  const double density = solid.has("density") ? solid.number("density") : 0, poisson = solid.number("poisson");
+  section.material = stiffness ? ElasticMaterial{solid.number("E"), poisson, density}
+                               : material_of_wave_speed(solid.number("shear_wave_speed"), poisson, density);
+  check_material(section.material, solid.where(), solid.path());
+  section.plane = solid.text("plane") == "strain" ? PlaneState::strain : PlaneState::stress;
+  section.thickness = solid.number("thickness");
+  section.mass = mass == "consistent" ? SolidSection::Mass::consistent
+                 : mass == "lumped"   ? SolidSection::Mass::lumped
+                                      : SolidSection::Mass::none;
+  section.incompatible_modes = solid.flag("incompatible_modes");
+  return section;
+}
+
+/// The first group of cells that holds the cell, or the cell itself, for messages.
+std::string owner_of(const Mesh& mesh, CellId cell) {
+  for (const auto& [name, group] : mesh.groups)
+    if (group.dimension == mesh.dimension && std::ranges::binary_search(group.cells, cell)) return in_quotes(name);
+  return describe_cell(mesh, cell);
+}
+
+}  // namespace
+
+std::shared_ptr<const CaseMesh> mesh_of_case(const Values& root, const std::string& file, const MeshReader& read_mesh) {
+  const Values* mesh = table_if(root, "mesh");
+  if (!mesh) {
+    for (const Values& interface : root.tables("interface"))
+      if (interface.has("surface")) fail(interface, "surface", "a [mesh] for the surface", "none");
+    for (const char* key : {"solid", "absorbing"})
+      if (!root.tables(key).empty()) fail(root.tables(key).front(), "", "a [mesh] with this group", "none");
+    return nullptr;
+  }
+  const bool from_file = mesh->has("file");
+  if (from_file == mesh->has("soil_box")) fail(*mesh, "", "either file or soil_box", from_file ? "both" : "neither");
+  auto made = std::make_shared<CaseMesh>();
+  if (from_file) {
+    assert(read_mesh);
+    const Where where = mesh->where("file");
+    made->from = (std::filesystem::path(file).parent_path() / mesh->text("file")).lexically_normal().string();
+    made->mesh = read_mesh(made->from, where, mesh->has("name") ? mesh->text("name") : "");
+    check_mesh(made->mesh, where);
+    if (made->mesh.dimension != 2) fail(*mesh, "file", "a plane mesh (all z equal)", "a mesh in space");
+  } else {
+    made->from = "soil_box";
+    made->mesh = make_soil_box(mesh->table("soil_box"));
+  }
+  open_surfaces(root.tables("interface"), *made);
+  return made;
+}
+
+CaseSolids::CaseSolids(const Values& root, const CaseMesh& from) : mesh_(&from.mesh), sides_(from.mesh, full_cells(from.mesh)) {
+  const std::vector<CellId>& cells = sides_.cells();
+  solid_of_.assign(cells.size(), -1);
+  for (const Values& solid : root.tables("solid")) {
+    const Group& group = group_named(*mesh_, solid, "group", "a group of cells");
+    if (group.dimension != mesh_->dimension || group.cells.empty()) fail(solid, "group", "a group of cells", dimension_word(group));
+    for (const CellId cell : group.cells) {
+      int& solid_here = solid_of_[static_cast<std::size_t>(std::ranges::lower_bound(cells, cell) - cells.begin())];
+      if (solid_here >= 0)
+        fail(solid, "group", "cells without another solid",
+             fmt::format("{}, which belongs to the solid {} too", describe_cell(*mesh_, cell),
+                         in_quotes(solids_[at(solid_here)].table->text("group"))));
+      solid_here = static_cast<int>(solids_.size());
+    }
+    solids_.push_back({&solid, section_from(solid), group.cells});
+  }
+  const auto bare = std::ranges::find(solid_of_, -1);
+  if (bare != solid_of_.end())
+    throw InputError(root.table("mesh").where(), "solid", "a [[solid]] for every cell of the mesh",
+                     "none for " + owner_of(*mesh_, cells[static_cast<std::size_t>(bare - solid_of_.begin())]));
+}
+
+const CaseSolids::Solid* CaseSolids::beside(CellId edge) const {
+  const int side = sides_.find(mesh_->type(edge), mesh_->cell(edge));
+  return side < 0 ? nullptr : &solids_[at(solid_of_[at(side / Sides::stride)])];
+}
+
+std::vector<int> CaseSolids::nodes(const Values& table, std::string_view key) const {
+  std::vector<int> found = nodes_of(*mesh_, group_named(*mesh_, table, key, "a group of the mesh"));
+  if (found.empty()) fail(table, key, "a group with nodes", "an empty one");
+  return found;
+}
+
+const std::vector<CellId>& CaseSolids::edges(const Values& table, std::string_view key) const {
+  const Group& group = group_named(*mesh_, table, key, "a group of edges");
+  if (group.dimension != mesh_->dimension - 1 || group.cells.empty()) fail(table, key, "a group of edges", dimension_word(group));
+  for (const CellId edge : group.cells)
+    if (!beside(edge)) fail(table, key, "edges of cells", describe_cell(*mesh_, edge) + " beside no cell");
+  return group.cells;
+}
+
+std::vector<std::pair<int, double>> tributary_areas(const CaseSolids& solids, const std::vector<CellId>& edges) {
+  const Mesh& mesh = solids.mesh();
+  std::vector<std::pair<int, double>> areas;
+  std::vector<Vec3> positions;
+  for (const CellId edge : edges) {
+    const Cell cell = mesh.type(edge);
+    const double thickness = solids.beside(edge)->section.thickness;
+    const std::span<const int> nodes = mesh.cell(edge);
+    positions.clear();
+    for (const int node : nodes) positions.push_back(mesh.nodes[at(node)]);
+    const CellRule rule = cell_rule(cell, 4);
+    for (std::size_t a = 0; a < nodes.size(); ++a) {
+      double area = 0;
+      for (std::size_t i = 0; i < rule.point.size(); ++i) {
+        const CellShape shape = cell_shape(cell, rule.point[i]);
+        area += rule.weight[i] * shape.value[a] * cell_area_vector(shape, positions, cell).norm() * thickness;
+      }
+      areas.emplace_back(nodes[a], area);
+    }
+  }
+  return areas;
+}
+
+double thickness_of(const CaseSolids& solids, const std::vector<FacePair>& faces, const Values& surface) {
+  if (surface.has("thickness")) return surface.number("thickness");
+  double least = std::numeric_limits<double>::infinity(), most = 0;
+  for (const FacePair& face : faces) {
+    const double thickness = std::min(solids.beside(face.lower)->section.thickness, solids.beside(face.upper)->section.thickness);
+    least = std::min(least, thickness);
+    most = std::max(most, thickness);
+  }
+  if (most > least) fail(surface, "", "thickness, where that of the solids changes along the surface", "none");
+  return most;
+}
+
+std::vector<char> part_of(const Model& model, const std::vector<int>& nodes) {
+  std::vector<int> parent(model.nodes.size());
+  std::iota(parent.begin(), parent.end(), 0);
+  const auto root = [&](int node) {
+    while (parent[at(node)] != node) node = parent[at(node)] = parent[at(parent[at(node)])];
+    return node;
+  };
+  const auto join = [&](int a, int b) { parent[at(root(a))] = root(b); };
+  for (const auto& element : model.elements)
+    for (const int node : element->nodes()) join(node, element->nodes()[0]);
+  const Sparse rows = model.assembly.constraints.transpose();  // a column for each constraint
+  for (int row = 0; row < static_cast<int>(rows.cols()); ++row) {
+    int first = -1;
+    for (Sparse::InnerIterator entry(rows, row); entry; ++entry) {
+      const int node = static_cast<int>(entry.row()) / dofs_per_node;
+      if (first < 0) first = node;
+      join(node, first);
+    }
+  }
+  std::vector<char> started(model.nodes.size(), 0), part(model.nodes.size(), 0);
+  for (const int node : nodes) started[at(root(node))] = 1;
+  for (int node = 0; node < static_cast<int>(part.size()); ++node) part[at(node)] = started[at(root(node))];
+  return part;
+}
+
+}  // namespace uplift

@@ -1,0 +1,45 @@
+#include "uplift/analysis/case_model.h"
+#include "uplift/base/text.h"
+#include "uplift/elements/absorbing.h"
+
+// Absorbing faces of the mesh and the waves that come in through them.
+namespace uplift {
+namespace {
+
+AbsorbingSection section_of(const Values& absorbing, const CaseSolids::Solid& solid) {
+  const auto refuse = [&](const char* wanted, const char* found) {
+    throw InputError(absorbing.where("group"), absorbing.path("group"), wanted,
+                     "edges of the solid " + in_quotes(solid.table->text("group")) + " " + found);
+  };
+  if (!(solid.section.material.density > 0)) refuse("edges of a solid with a density", "without one");
+  if (solid.section.plane != PlaneState::strain) refuse("edges of a solid in plane strain", "in plane stress");
+  return {solid.section.material, solid.section.thickness, absorbing.flag("lumped")};
+}
+
+}  // namespace
+
+void add_absorbing(const Values& root, ModelBuilder& builder, const CaseNames& names) {
+  for (const Values& absorbing : root.tables("absorbing")) {
+    const CaseSolids& solids = names.mesh_for(absorbing);
+    const Values* incident = table_if(absorbing, "incident");
+    const Vec3 motion = incident ? wave_motion(incident->text("wave") == "P" ? Wave::p : Wave::sv, 2) : Vec3::Zero();
+    std::vector<std::pair<int, double>> pattern;
+    for (const CellId edge : solids.edges(absorbing, "group")) {
+      std::vector<int> nodes;
+      for (const int node : solids.mesh().cell(edge)) nodes.push_back(names.first_of_mesh + node);
+      auto face =
+          std::make_unique<AbsorbingFace>(solids.mesh().type(edge), nodes, names.coordinates, section_of(absorbing, *solids.beside(edge)));
+      const Vector force = incident ? face->incident(motion) : Vector();
+      for (Index i = 0; i < force.size(); ++i)
+        if (force[i] != 0) pattern.emplace_back(3 * nodes[static_cast<std::size_t>(i / 2)] + static_cast<int>(i % 2), force[i]);
+      builder.add_element(std::move(face), absorbing.where());
+    }
+    if (!incident) continue;
+    // The surface of free rock moves twice as much as the wave that comes up.
+    const double incoming = incident->text("kind") == "outcrop" ? 0.5 : 1;
+    builder.add_load(incident->text("name"), std::move(pattern), scaled(incoming * incident->number("velocity"), names.function(*incident)),
+                     false, incident->where());
+  }
+}
+
+}  // namespace uplift

@@ -1,0 +1,122 @@
+#include "uplift/analysis/case_mesh_sections.h"
+
+namespace uplift {
+namespace {
+
+using Fields = std::vector<Field>;
+
+const Section& layer_section() {
+  static const Section s{"layer", "a layer of the soil, from top to bottom; its cells are the group soil_1, soil_2, ...",
+                         Fields{number("thickness", "m", "thickness").positive(),
+                                number("size", "m", "largest height of an element").positive().standard(1.0)}};
+  return s;
+}
+
+const Section& soil_section() {
+  static const Section s{"soil", "the soil, its surface at y = 0",
+                         Fields{number("width", "m", "width").positive(),
+                                number("size", "m", "largest width of an element away from the foundation").positive().standard(4.0),
+                                tables("layers", layer_section(), "layers from top to bottom; at least one")}};
+  return s;
+}
+
+Fields part_fields() {
+  return {number("width", "m", "width").positive(), number("height", "m", "height").positive(),
+          number("size", "m", "largest size of an element").positive().standard(1.0)};
+}
+
+const Section& raft_section() {
+  static const Section s{"raft", "the foundation, in the middle of the soil (x = 0)", part_fields()};
+  return s;
+}
+
+const Section& block_section() {
+  static const Section s = [] {
+    Section made{"block", "the building, on the raft (without one: on the soil)", part_fields()};
+    made.fields.push_back(number("offset", "m", "of its middle from the middle of the soil").standard(0.0));
+    return made;
+  }();
+  return s;
+}
+
+const Section& soil_box_section() {
+  static const Section s{
+      "soil_box",
+      "layered soil with a building on it. Groups of cells: soil_1, soil_2, ..., raft, block; of edges: soil_left, soil_right, "
+      "soil_bottom, "
+      "soil_top, the same of raft_ and block_, and interface (between soil and building)",
+      Fields{table("soil", soil_section(), "the soil"), table("raft", raft_section(), "the foundation; absent: none").optional(),
+             table("block", block_section(), "the building; absent: none").optional(),
+             number("embedment", "m", "depth of the foundation's underside below the soil surface").nonnegative().standard(0.0),
+             number("growth", "1", "growth of the elements away from the foundation, one to the next").between(1.01, 2).standard(1.25),
+             choice("cell", {"quad4", "quad8", "quad9", "tri3", "tri6"}, "type of the elements").standard("quad4")}};
+  return s;
+}
+
+}  // namespace
+
+const Section& mesh_section() {
+  static const Section s{"mesh", "plane mesh of solids: either a file or a soil box. Its nodes are called mesh.1, mesh.2, ...",
+                         Fields{text("file", "mesh of Gmsh (.msh) or MED (.med), in metres, in the plane").optional(),
+                                text("name", "the mesh to take when a MED file holds several").optional(),
+                                table("soil_box", soil_box_section(), "a made mesh").optional()}};
+  return s;
+}
+
+const Section& solid_section() {
+  static const Section s{
+      "solid", "what a group of cells of the mesh is made of; every cell needs one",
+      Fields{text("group", "group of cells"), number("E", "Pa", "Young's modulus; or give shear_wave_speed").positive().optional(),
+             number("shear_wave_speed", "m/s", "speed of shear waves, from which E follows: G = density x speed squared")
+                 .positive()
+                 .optional(),
+             number("poisson", "1", "Poisson's ratio, below 0.5").between(0, 0.4999),
+             number("density", "kg/m3", "density; not needed with mass = \"none\" and E").positive().optional(),
+             choice("plane", {"strain", "stress"}, "what is zero out of the plane").standard("strain"),
+             number("thickness", "m", "length out of the plane").positive().standard(1.0),
+             choice("mass", {"consistent", "lumped", "none"}, "mass matrix").standard("consistent"),
+             flag("incompatible_modes", "quad4: bubbles that let an element bend").standard(true),
+             number("damping_beta", "s", "stiffness-proportional damping factor of this solid alone").nonnegative().standard(0.0)}};
+  return s;
+}
+
+namespace {
+
+const Section& incident_section() {
+  static const Section s{
+      "incident",
+      "a plane wave that comes up through the face; the face then carries 2 rho c times its velocity, and absorbs what comes back",
+      Fields{
+          choice("wave", {"P", "SV"}, "P: the particles move along y; SV: along x"),
+          choice("kind", {"outcrop", "incoming"},
+                 "what the function is: the motion that the free surface of the same rock would have (twice the incoming wave), or that of "
+                 "the incoming wave alone"),
+          number("velocity", "m/s", "velocity that the function multiplies").standard(1.0),
+          text("function", "name of the function of time: a velocity"), text("name", "name").standard("incident wave")}};
+  return s;
+}
+
+}  // namespace
+
+const Section& absorbing_section() {
+  static const Section s{"absorbing",
+                         "a viscous boundary: edges of the mesh through which waves leave (Lysmer & Kuhlemeyer), with the material of the "
+                         "solid beside them. It "
+                         "holds nothing at rest: static stages need supports elsewhere",
+                         Fields{text("group", "group of edges of the mesh"), flag("lumped", "diagonal damping matrix").standard(false),
+                                table("incident", incident_section(), "a wave that comes in; absent: none").optional()}};
+  return s;
+}
+
+const Section& surface_section() {
+  static const Section s{
+      "surface", "edges inside the mesh, which is opened there",
+      Fields{text("group", "group of edges"),
+             texts("lower", "groups of cells of the lower side (soil); all other cells are the upper side"),
+             choice("quadrature", {"nodal", "gauss"}, "where the joint points stand: at the pairs of nodes, or at Gauss points")
+                 .standard("nodal"),
+             number("thickness", "m", "length out of the plane; absent: that of the solids (the smaller one)").positive().optional()}};
+  return s;
+}
+
+}  // namespace uplift
