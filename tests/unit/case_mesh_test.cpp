@@ -21,13 +21,13 @@ constexpr double depth = 6, height = 4;  // m
 /// Soil from -6 m to 0 and a block to 4 m on all of it (width 2 m), the interface between them.
 Mesh column(Cell cell) {
   Grid lines{uniform_lines(-1, 1, 2), uniform_lines(-depth, height, 10), {}};
-  const auto part = [](int, int j, int) { return j < 6 ? 0 : 1; };
+  const auto part_at = [](int, int j, int) { return j < 6 ? 0 : 1; };
   const auto face = [](int part, Direction direction, int other) -> std::string {
     if (part == 0 && other == 1) return "interface";
     if (other >= 0) return "";
     return (part == 0 ? "soil_" : "block_") + std::string(name_of(direction));
   };
-  return with_cells(grid(lines, part, {"soil", "block"}, face), cell);
+  return with_cells(grid(lines, part_at, {"soil", "block"}, face), cell);
 }
 
 constexpr double soil_young = 5e7, soil_density = 1900, block_young = 2e9, block_density = 700, poisson = 0.3, gravity = 10;

@@ -19,7 +19,7 @@ extern "C" const char* __asan_default_options() {
   return "allocator_may_return_null=1";
 }
 extern "C" const char* __lsan_default_suppressions() {
-  return "leak:libhdf5\n";
+  return "leak:libhdf5\nleak:H5\n";  // as a shared library, and linked in
 }
 #endif
 

@@ -56,7 +56,7 @@ Built footing() {
   Built built;
   built.model.nodes = {{"top", Vec2(0, 5)}};
   built.top = 0;
-  built.facts = {{"soil", "base", 1.5, 0.5, 3, 0}};
+  built.facts = {{"soil", "base", 1.5, 0.5, 3, 0, {}, {}}};
   built.weight = 1e6;
   return built;
 }
