@@ -23,8 +23,8 @@ class Oscillator(CliTest):
         # (b) the path-averaged traction creates none, whatever the stiffness; the end of the step does from k F = 0.1 on (THEORY section 4)
         for row in summary["stiffness_sweep"]:
             self.assertLess(row["created_share_path"], 1e-10, row)
-            if row["k_F"] >= 0.1:  # undamped and unstable: how much it is depends on round-off, that it is far above the limit of 1 % does not
-                self.assertGreater(row["created_share_end"], 0.1, row)
+            if row["k_F"] >= 0.1:  # undamped and unstable: how much it is depends on round-off, that it is well above the limit of 1 % does not
+                self.assertGreater(row["created_share_end"], 0.02, row)
                 self.assertEqual(row["status_end"], "failed (expected)", row)
         self.assertEqual([row["k_F"] for row in summary["stiffness_sweep"]], [0.01, 0.1, 1, 10, 100])
 

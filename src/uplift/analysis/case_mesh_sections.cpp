@@ -20,22 +20,25 @@ const Section& soil_section() {
   return s;
 }
 
-Fields part_fields() {
-  return {number("width", "m", "width").positive(), number("height", "m", "height").positive(),
-          number("size", "m", "largest size of an element").positive().standard(1.0)};
+Field part_width() {
+  return number("width", "m", "width").positive();
+}
+Field part_height() {
+  return number("height", "m", "height").positive();
+}
+Field part_size() {
+  return number("size", "m", "largest size of an element").positive().standard(1.0);
 }
 
 const Section& raft_section() {
-  static const Section s{"raft", "the foundation, in the middle of the soil (x = 0)", part_fields()};
+  static const Section s{"raft", "the foundation, in the middle of the soil (x = 0)", Fields{part_width(), part_height(), part_size()}};
   return s;
 }
 
 const Section& block_section() {
-  static const Section s = [] {
-    Section made{"block", "the building, on the raft (without one: on the soil)", part_fields()};
-    made.fields.push_back(number("offset", "m", "of its middle from the middle of the soil").standard(0.0));
-    return made;
-  }();
+  static const Section s{
+      "block", "the building, on the raft (without one: on the soil)",
+      Fields{part_width(), part_height(), part_size(), number("offset", "m", "of its middle from the middle of the soil").standard(0.0)}};
   return s;
 }
 
