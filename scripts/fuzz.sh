@@ -34,18 +34,24 @@ for target in "${targets[@]}"; do
   $clang "${flags[@]}" -fsanitize=fuzzer "${objects[@]}" -o "$out/${target}_fuzz" -lfmt "${hdf5[@]}"
 done
 
-for target in "${targets[@]}"; do
-  echo "== $target: $seconds s"
-  work="$out/corpus_$target"
+fuzz() {
+  local target="$1" work="$out/corpus_$1" log="$out/$1.log" limit=512
   mkdir -p "$work"
-  log="$out/$target.log"
-  limit=512
   [ "$target" = med ] && limit=0  # see the operator new of med_fuzz.cpp
   if ! "$out/${target}_fuzz" -max_total_time="$seconds" -rss_limit_mb=2048 -malloc_limit_mb="$limit" -timeout=20 -max_len=65536 -print_final_stats=1 \
     -artifact_prefix="$out/${target}_" "$work" "fuzz/corpus/$target" >"$log" 2>&1; then
     tail -n 60 "$log" >&2
     echo "FAILED: $target; the input is in $out" >&2
-    exit 1
+    return 1
   fi
+  echo "== $target: $seconds s"
   grep -E "^(#[0-9]+.*DONE|stat::number_of_executed_units|stat::average_exec|stat::peak_rss)" "$log"
+}
+
+# all at the same time: each has its two minutes, whatever the number of cores
+jobs=()
+for target in "${targets[@]}"; do
+  fuzz "$target" &
+  jobs+=($!)
 done
+for job in "${jobs[@]}"; do wait "$job"; done
