@@ -163,7 +163,7 @@ bool StatusRows::iterate(const System& system, Vector& z, Vector& forces) {
   constexpr int most = 12;
   forces.setZero();
   opening_ = system.problem.free_opening;
-  double before = fill_residual(system, forces), now = before;
+  double before = fill_residual(system, forces);
   const double start = before;
   for (int pass = 0; pass < most; ++pass) {
     matrix_.solve(right_);
@@ -171,7 +171,7 @@ bool StatusRows::iterate(const System& system, Vector& z, Vector& forces) {
     z.noalias() = -system.problem.factor.transpose() * forces;
     opening_ = system.problem.free_opening;
     opening_.noalias() += system.problem.factor * z;
-    now = fill_residual(system, forces);
+    const double now = fill_residual(system, forces);
     if (!std::isfinite(now)) return false;
     const double size = std::max(start, forces.cwiseAbs().maxCoeff());
     if (now <= 1e-14 * size) return true;

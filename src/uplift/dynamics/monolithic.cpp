@@ -153,7 +153,8 @@ class Monolithic final : public StepSolver {
       return (right - bulk * u - b.transpose() * solution_.force).norm();
     };
     const double before = residual(increment);
-    for (double factor = 1; factor > 1e-4; factor *= 0.5)
+    double factor = 1;
+    for (int halving = 0; halving < 14; ++halving, factor *= 0.5)
       if (residual(increment + factor * step) <= before * (1 - 0.1 * factor) + 1e-13 * right.norm()) return factor;
     return 1;
   }

@@ -87,7 +87,7 @@ std::vector<JointPoint> footing_points(const Footing& footing, const Where& wher
   return points;
 }
 
-std::vector<JointPoint> pair_points(const std::vector<SideNode>& upper, const std::vector<SideNode>& lower, Vec2 normal, double area,
+std::vector<JointPoint> pair_points(const std::vector<SideNode>& upper, const std::vector<SideNode>& lower, const Vec2& normal, double area,
                                     double gap, const Where& where) {
   check_partners(upper.size(), lower.size(), where);
   if (!(area > 0)) throw InputError(where, "interface.area", "an area > 0 m2", fmt::format("{:g}", area));

@@ -48,7 +48,7 @@ struct SideNode {
 
 /// Isolated node pairs (eq 13, point joints), each with the same tributary area; `lower` empty: fixed ground below each node.
 /// Throws InputError when the sides have different numbers of nodes or an upper node lies on the wrong side of its lower one.
-std::vector<JointPoint> pair_points(const std::vector<SideNode>& upper, const std::vector<SideNode>& lower, Vec2 normal, double area,
+std::vector<JointPoint> pair_points(const std::vector<SideNode>& upper, const std::vector<SideNode>& lower, const Vec2& normal, double area,
                                     double gap, const Where& where);
 
 enum class LineQuadrature {
