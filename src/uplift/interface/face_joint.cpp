@@ -1,6 +1,6 @@
 #include "uplift/interface/face_joint.h"
 
-#include <cassert>
+#include <algorithm>
 #include <map>
 
 #include "uplift/mesh/cell_quadrature.h"
@@ -10,7 +10,7 @@ namespace uplift {
 
 namespace {
 
-constexpr double same_normal = 1 - 1e-9;  // cosine: two and a half seconds of arc
+constexpr double same_normal = 1 - 1e-9;  // cosine: nine seconds of arc
 
 /// Shape functions of one side at a point of its face.
 std::vector<std::pair<int, double>> side(std::span<const int> nodes, const CellShape& shape) {
@@ -44,23 +44,24 @@ class Pairs {
 
 std::vector<JointPoint> face_points(const Mesh& mesh, const std::vector<FacePair>& faces, FaceQuadrature quadrature, double thickness,
                                     double gap) {
-  assert(mesh.dimension == 2);
   std::vector<JointPoint> points;
   Pairs pairs(points);
   std::vector<Vec3> positions;
   for (const FacePair& face : faces) {
     const Cell cell = mesh.type(face.lower);
     const std::span<const int> lower = mesh.cell(face.lower), upper = mesh.cell(face.upper);
-    const CellRule rule = quadrature == FaceQuadrature::nodal ? nodal_rule(cell) : cell_rule(cell, cell == Cell::line2 ? 2 : 4);
+    if (std::ranges::equal(lower, upper)) continue;  // all nodes where the surface ends: nothing can part
+    const int degree = info(cell).linear == cell ? 1 : 2;
+    const CellRule rule = quadrature == FaceQuadrature::nodal ? nodal_rule(cell) : cell_rule(cell, 2 * degree);
     positions.clear();
     for (const int node : lower) positions.push_back(mesh.nodes[static_cast<std::size_t>(node)]);
     for (std::size_t i = 0; i < rule.point.size(); ++i) {
       const CellShape shape = cell_shape(cell, rule.point[i]);
       const Vec3 area = cell_area_vector(shape, positions, cell);
       JointPoint point;
-      point.position = cell_position(shape, positions).head<2>();
-      point.normal = area.head<2>().normalized();
-      point.area = rule.weight[i] * area.norm() * thickness;
+      point.position = cell_position(shape, positions);
+      point.normal = area.normalized();
+      point.area = rule.weight[i] * area.norm() * (mesh.dimension == 2 ? thickness : 1);
       point.gap = gap;
       point.lower = side(lower, shape);
       point.upper = side(upper, shape);
