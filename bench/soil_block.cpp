@@ -78,7 +78,7 @@ Model block_on_soil(double size) {
   std::vector<std::pair<int, double>> pattern;
   for (const int node : top) {
     const bool end = std::abs(std::abs(mesh.nodes[static_cast<std::size_t>(node)].x()) - 5) < 1e-6;
-    pattern.emplace_back(dofs_per_node * node + ux, 3e6 * (end ? 0.5 : 1) / static_cast<double>(top.size() - 1));
+    pattern.emplace_back(builder.space().at(node, ux), 3e6 * (end ? 0.5 : 1) / static_cast<double>(top.size() - 1));
   }
   builder.add_load("pulse", pattern, std::make_shared<HalfSine>(), false, {});
   builder.set_gravity({0, -9.81}, {});

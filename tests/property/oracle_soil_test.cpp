@@ -42,7 +42,7 @@ Whole block_on_soil(const Part& behaviour, const Part& method, const Part& impac
     for (const Dof dof : {ux, uy}) builder.fix(node, dof, here);
   const std::vector<int> top = nodes_of(mesh, mesh.groups.at("block_top"));
   std::vector<std::pair<int, double>> push;
-  for (const int node : top) push.emplace_back(dofs_per_node * node + ux, 1.2e6 / static_cast<double>(top.size()));
+  for (const int node : top) push.emplace_back(builder.space().at(node, ux), 1.2e6 / static_cast<double>(top.size()));
   builder.add_load("push", push, function({"half_sine", {{"duration", 0.2}}}), false, here);
   builder.set_gravity({0, -9.81}, here);
   BulkDamping damping;

@@ -213,7 +213,7 @@ TEST(CaseMesh, LoadsOnEdgesAreConsistent) {
     Vec2 sum = Vec2::Zero();
     double moment = 0;
     for (int node = 0; node < static_cast<int>(built.model.nodes.size()); ++node) {
-      const Vec2 force = pattern->segment<2>(3 * node), at = built.model.nodes[static_cast<std::size_t>(node)].position;
+      const Vec2 force = pattern->segment<2>(3 * node), at = built.model.nodes[static_cast<std::size_t>(node)].position.head<2>();
       sum += force;
       moment += at.x() * force.y() - at.y() * force.x();
       if (cell == Cell::quad9 && at.y() > height - 1e-9 && std::abs(at.x() - 0.5) < 1e-9) EXPECT_NEAR(force.x(), 3 * 4.0 / 6, 1e-12);

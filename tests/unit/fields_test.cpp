@@ -5,7 +5,7 @@
 #include "fields_support.h"
 #include "uplift/base/error.h"
 #include "uplift/io/base64.h"
-#include "uplift/mesh/geometry.h"
+#include "uplift/math/linalg.h"
 
 // Blocks of fields and VTU files: judged by what a reader finds in them, exact numbers and geometry in VTK's own convention.
 namespace uplift {

@@ -1,6 +1,7 @@
 #include <gtest/gtest.h>
 
 #include "model_support.h"
+#include "uplift/math/fixed.h"
 #include "uplift/math/quadrature.h"
 #include "uplift/math/shapes.h"
 
@@ -55,21 +56,29 @@ TEST(Shapes, InterpolateAndDifferentiate) {
 }
 
 TEST(Joint, TangentAndNormalAreRightHanded) {
-  EXPECT_EQ(tangent({0, 1}), Vec2(1, 0));
-  const Vec2 n = Vec2(3, -4) / 5, t = tangent(n);
+  EXPECT_EQ(local_axis({2}, Vec3::UnitY(), 0), Vec3::UnitX());
+  const Vec3 n = Vec3(3, -4, 0) / 5, t = local_axis({2}, n, 0);
   EXPECT_DOUBLE_EQ(t.x() * n.y() - t.y() * n.x(), 1);
   EXPECT_DOUBLE_EQ(t.dot(n), 0);
+  EXPECT_EQ(local_axis({3}, Vec3::UnitZ(), 0), Vec3::UnitX());
+  EXPECT_EQ(local_axis({3}, Vec3::UnitZ(), 1), Vec3::UnitY());
+  for (const Vec3& any : {Vec3(1, 2, -3), Vec3(-1, 0, 0), Vec3(5, 1, 1)}) {
+    Mat3 axes;
+    for (int k = 0; k < 3; ++k) axes.col(k) = local_axis({3}, any.normalized(), k);
+    EXPECT_LE((axes.transpose() * axes - Mat3::Identity()).norm(), 1e-15);
+    EXPECT_NEAR(cross(axes.col(0), axes.col(1)).dot(any.normalized()), 1, 1e-15);
+  }
 }
 
 TEST(Joint, FootingRules) {
-  const Vec2 n = Vec2(1, 2).normalized(), centre(0.5, -1);
+  const Place n = Place(1, 2).normalized(), centre(0.5, -1);
   for (const FootingRule rule : {FootingRule::nodal, FootingRule::midpoint, FootingRule::gauss}) {
     const auto points = footing_points(
         {.body = 3, .centre = centre, .normal = 7 * n, .width = 3, .thickness = 0.5, .points = 6, .rule = rule, .gap = 0.01}, here);
     ASSERT_EQ(points.size(), 6u);
     double area = 0, inertia = 0, last = -2;
     for (const JointPoint& p : points) {
-      const double s = (p.position - centre).dot(tangent(n));
+      const double s = (p.position - centre).dot(local_axis({2}, n, 0));
       EXPECT_NEAR((p.position - centre).dot(n), 0, 1e-15);
       EXPECT_GT(s, last);
       last = s;
@@ -142,7 +151,7 @@ TEST(Interface, ResultantIsWhatTheStructureExertsOnTheGround) {
 TEST(Interface, ResultantOfAnInclinedInterface) {
   Interface face = plane_interface();
   const double c = 0.8, s = 0.6;
-  const auto turn = [&](const Vec2& v) { return Vec2(c * v.x() - s * v.y(), s * v.x() + c * v.y()); };
+  const auto turn = [&](const Vec3& v) { return Place(c * v.x() - s * v.y(), s * v.x() + c * v.y()); };
   for (int i = 0; i < 3; ++i) face.position[i] = turn(face.position[i]), face.normal[i] = turn(face.normal[i]);
   face.reference = turn(face.reference);
   Vector p(6);

@@ -82,6 +82,14 @@ struct Built {
   // too where the surface ends inside it)
   double weight = 0;
   int top = -1, base = -1;  // nodes whose motion is shown: the highest mass, the first interface's body
+  Dof sway = ux;            // horizontal direction that is shown: in space that of the larger loads
+  // Full unknowns that are shown; -1 without the node: sway of the top, vertical motion of the base, its rotation in the plane of the sway
+  int top_sway() const { return top < 0 ? -1 : model.at(top, sway); }
+  int base_lift() const { return base < 0 ? -1 : model.at(base, model.space.dof(model.space.up())); }
+  int base_turn() const { return base < 0 ? -1 : model.at(base, model.space.dimension == 2 ? rz : sway == ux ? ry : rx); }
+  /// The interface's moment and rotation that go with the sway.
+  Request::Kind base_moment() const;
+  Request::Kind base_rotation() const;
 };
 
 /// Makes the model and the plan of one run. Throws InputError (dangling or duplicate names, mechanisms, contradictions).

@@ -63,7 +63,7 @@ void add_interfaces(const Case& read, const RunSpec& spec, ModelBuilder& builder
     const Values& behaviour = behaviour_of(interface, spec);
     InterfaceSpec made;
     made.name = interface.text("name");
-    made.components = components_of(behaviour);
+    made.components = components_of(behaviour, names.space);
     made.points = std::move(joint.points);
     made.reference = joint.reference;
     made.behaviour = behaviour.type();
@@ -131,13 +131,17 @@ void add_initial(const Case& read, const CaseNames& names, Built& built) {
   for (const Values& initial : read.values.tables("initial")) {
     where = initial.where();
     const int node = names.node(initial, "node");
-    const auto put = [&](std::vector<std::pair<int, double>>& wanted, const char* vector, const char* scalar) {
-      if (initial.has(vector))
-        for (const int dof : {ux, uy}) wanted.emplace_back(3 * node + dof, initial.numbers(vector)[static_cast<std::size_t>(dof)]);
-      if (initial.has(scalar)) wanted.emplace_back(3 * node + rz, initial.number(scalar));
+    const Space space = names.space;
+    const auto put = [&](std::vector<std::pair<int, double>>& wanted, const char* vector, const char* scalar, const char* three) {
+      const Vec3 along = initial.has(vector) ? Vec3(vector_of(initial, vector, space)) : Vec3(Vec3::Zero());
+      const Vec3 about = about_axes(initial, scalar, three, false, space);
+      for (int i = 0; i < space.unknowns(); ++i) {
+        const bool turns = space.is_rotation(i), given = turns ? initial.has(scalar) || initial.has(three) : initial.has(vector);
+        if (given) wanted.emplace_back(space.unknowns() * node + i, (turns ? about : along).dot(space.axis(i)));
+      }
     };
-    put(displacement, "displacement", "rotation");
-    put(velocity, "velocity", "angular_velocity");
+    put(displacement, "displacement", "rotation", "rotations");
+    put(velocity, "velocity", "angular_velocity", "angular_velocities");
   }
   if (!displacement.empty()) built.plan.initial_displacement = free_values(built.model, displacement, where);
   if (!velocity.empty()) built.plan.initial_velocity = free_values(built.model, velocity, where);
@@ -153,15 +157,16 @@ void rename_shown(int node, const std::string& name, Model& model) {
 /// that nearest to the middle.
 void find_shown_mesh_nodes(const CaseNames& names, Built& built) {
   const std::vector<int>& upper = built.facts.front().upper;
-  const Vec2 middle = built.model.interfaces.front().reference;
+  const Vec3 middle = built.model.interfaces.front().reference;
   const auto position = [&](int node) { return names.positions[static_cast<std::size_t>(node)]; };
+  const int up = names.space.up();
   const auto nearer = [&](int a, int b) { return (position(a) - middle).norm() < (position(b) - middle).norm(); };
   if (built.base < 0) built.base = *std::ranges::min_element(upper, nearer);
   if (built.top < 0) {
     const std::vector<char> carried = part_of(built.model, upper);
     for (int node = 0; node < static_cast<int>(carried.size()); ++node) {
       if (!carried[static_cast<std::size_t>(node)]) continue;
-      const double higher = built.top < 0 ? 1 : position(node).y() - position(built.top).y();
+      const double higher = built.top < 0 ? 1 : position(node)[up] - position(built.top)[up];
       if (higher > 1e-9 || (higher > -1e-9 && nearer(node, built.top))) built.top = node;
     }
   }
@@ -173,7 +178,7 @@ void find_shown_mesh_nodes(const CaseNames& names, Built& built) {
 void find_shown_nodes(const Case& read, const CaseNames& names, Built& built) {
   double height = -std::numeric_limits<double>::infinity(), largest = 0;
   const auto look = [&](int node, double mass) {
-    const double y = names.positions[static_cast<std::size_t>(node)].y();
+    const double y = names.positions[static_cast<std::size_t>(node)][names.space.up()];
     if (y > height || (y == height && mass > largest)) {
       height = y;
       largest = mass;
@@ -189,16 +194,30 @@ void find_shown_nodes(const Case& read, const CaseNames& names, Built& built) {
   if (read.mesh) find_shown_mesh_nodes(names, built);
 }
 
+/// See Built::sway.
+Dof sway_of(const Model& model) {
+  if (model.space.dimension == 2) return ux;
+  Vec3 size = Vec3::Zero();
+  for (const Drive& drive : model.drives)
+    if (!drive.dead)
+      for (Index i = 0; i < drive.shape.size(); ++i) {
+        const int unknown = model.kept[static_cast<std::size_t>(i)];
+        if (!model.space.is_rotation(unknown)) size[model.space.index_of(unknown)] += std::abs(drive.shape[i]);
+      }
+  return size.y() > size.x() ? uy : ux;
+}
+
 /// See Built::weight.
 double weight_of(const Built& built) {
   const Model& model = built.model;
-  const Vec2 normal = model.interfaces.front().normal.front();
+  const Vec3 normal = model.interfaces.front().normal.front();
   const std::vector<char> carried = part_of(model, built.facts.front().upper);
   double weight = 0;
   for (std::size_t i = 0; i < model.drives.size(); ++i) {
     if (!model.drives[i].dead) continue;
     for (int node = 0; node < static_cast<int>(carried.size()); ++node)
-      if (carried[static_cast<std::size_t>(node)]) weight -= model.assembly.loads[i].segment<2>(3 * node).dot(normal);
+      if (carried[static_cast<std::size_t>(node)]) for (int k = 0; k < model.space.dimension; ++k)
+          weight -= model.assembly.loads[i][model.space.unknowns() * node + k] * normal[k];
   }
   return weight;
 }
@@ -214,7 +233,8 @@ std::vector<double> tuned_masses(const Case& read, const RunSpec& spec) {
   if (!tuned) return {};
   Built without;
   CaseNames names;
-  ModelBuilder builder;
+  names.space = space_of(read);
+  ModelBuilder builder(names.space);
   add_nodes(read.values, builder, names);
   add_mesh(read, builder, names);
   add_functions(read.values, names);
@@ -260,6 +280,16 @@ void adapt_laws(const Case& read, const RunSpec& spec, Built& built) {
 
 }  // namespace
 
+Request::Kind Built::base_moment() const {
+  if (model.space.dimension == 2) return Request::Kind::moment;
+  return sway == ux ? Request::Kind::moment_2 : Request::Kind::moment_1;
+}
+
+Request::Kind Built::base_rotation() const {
+  if (model.space.dimension == 2) return Request::Kind::rotation;
+  return sway == ux ? Request::Kind::rotation_2 : Request::Kind::rotation_1;
+}
+
 Case check_case(const Raw& raw, const std::string& file, const MeshReader& read_mesh) {
   Case read{check(raw, case_section()), file, nullptr};
   read.mesh = mesh_of_case(read.values, file, read_mesh);
@@ -293,7 +323,8 @@ Built build(const Case& read, const RunSpec& spec) {
   const Values& root = read.values;
   Built built;
   CaseNames names;
-  ModelBuilder builder;
+  names.space = space_of(read);
+  ModelBuilder builder(names.space);
   add_nodes(root, builder, names);
   add_mesh(read, builder, names);
   add_functions(root, names);
@@ -322,6 +353,7 @@ Built build(const Case& read, const RunSpec& spec) {
   add_method(read, spec, built);
   add_initial(read, names, built);
   find_shown_nodes(read, names, built);
+  built.sway = sway_of(built.model);
   built.weight = weight_of(built);
   plan.created_limit = root.table("energy").number("created_limit");
   plan.stop_at_limit = root.table("energy").flag("stop_at_limit");

@@ -17,10 +17,10 @@ std::vector<SideNode> side(const Values& table, std::string_view key, const Case
   return nodes;
 }
 
-Vec2 normal_of(const Values& table) {
-  if (!table.has("normal")) return Vec2::UnitY();
-  const Vec2 normal = vec2(table.numbers("normal"));
-  if (normal.norm() == 0) throw InputError(table.where("normal"), table.path("normal"), "a direction", "[0, 0]");
+Place normal_of(const Values& table, Space space) {
+  if (!table.has("normal")) return space.axis(space.up());
+  const Vec3 normal = vector_of(table, "normal", space);
+  if (normal.norm() == 0) throw InputError(table.where("normal"), table.path("normal"), "a direction", "one of length zero");
   return normal.normalized();
 }
 
@@ -32,16 +32,16 @@ void add_bed(const Values& bed, const std::string& interface, std::vector<JointP
     const int node = builder.add_node(name, point.position, bed.where());
     names.nodes.add(name, bed.where(), bed.path());
     names.positions.push_back(point.position);
-    const bool vertical = std::abs(point.normal.x()) < 1e-12, horizontal = std::abs(point.normal.y()) < 1e-12;
-    if (!vertical && !horizontal)
+    if (point.normal.cwiseAbs().maxCoeff() < 1 - 1e-12)
       throw InputError(bed.where(), bed.path(), "a footing with a vertical or horizontal normal on a bed", "an inclined one");
-    builder.fix(node, vertical ? ux : uy, bed.where());
-    builder.fix(node, rz, bed.where());
-    const Connection along{{node}, point.normal};
+    const Space space = names.space;
+    for (int k = 0; k < space.unknowns(); ++k)
+      if (space.is_rotation(k) || std::abs(point.normal.dot(space.axis(k))) < 0.5) builder.fix(node, space.dof(k), bed.where());
+    const Connection along{{node}, point.normal, space};
     builder.add_element(std::make_unique<Spring>(along, bed.number("stiffness") * point.area), bed.where("stiffness"));
     if (bed.number("damping") > 0)
       builder.add_element(std::make_unique<Dashpot>(along, bed.number("damping") * point.area), bed.where("damping"));
-    if (bed.number("mass") > 0) builder.add_element(std::make_unique<PointMass>(node, bed.number("mass") * point.area), bed.where("mass"));
+    if (bed.number("mass") > 0) builder.add_element(std::make_unique<PointMass>(space, node, bed.number("mass") * point.area, Vec3::Zero()), bed.where("mass"));
     point.lower = {{node, 1.0}};
   }
 }
@@ -50,30 +50,42 @@ Joint footing_joint(const Values& interface, const Values& table, bool rigid_gro
   Footing footing;
   footing.body = names.node(table, "body");
   footing.centre = names.positions[footing.body];
-  if (table.has("offset")) footing.centre += vec2(table.numbers("offset"));
-  footing.normal = normal_of(table);
+  if (table.has("offset")) footing.centre += vector_of(table, "offset", names.space);
+  footing.normal = normal_of(table, names.space);
   footing.width = table.number("width");
   footing.thickness = table.number("thickness");
   footing.points = table.integer("points");
+  for (const char* key : {"length", "points_across"})
+    if (table.has(key) != (names.space.dimension == 3))
+      throw InputError(table.where(key), table.path(key), names.space.dimension == 3 ? "length and points_across in space" : "width alone in the plane",
+                       table.has(key) ? "given" : "none");
+  if (names.space.dimension == 3) {
+    footing.length = table.number("length");
+    footing.points_across = table.integer("points_across");
+    footing.azimuth = table.number("azimuth");
+    footing.thickness = 1;
+  }
   footing.gap = interface.number("gap");
   const std::string& rule = table.text("rule");
   footing.rule = rule == "nodal" ? FootingRule::nodal : rule == "midpoint" ? FootingRule::midpoint : FootingRule::gauss;
   Joint joint;
   joint.points = footing_points(footing, table.where("points"));
   joint.facts.body = names.nodes[footing.body];
-  joint.facts.half_width = footing.width / 2;
+  joint.facts.half_width = std::max(footing.width, footing.length) / 2;
   joint.reference = footing.centre;
   if (const Values* bed = table_if(table, "bed"); bed && !rigid_ground) add_bed(*bed, interface.text("name"), joint.points, builder, names);
   return joint;
 }
 
 /// Middle of the points, and their farthest distance from it.
-void measure(Joint& joint) {
-  Vec2 sum = Vec2::Zero();
+void measure(Joint& joint, Space space) {
+  Vec3 sum = Vec3::Zero();
   for (const JointPoint& point : joint.points) sum += point.area * point.position;
   joint.reference = sum / joint.facts.area;
   for (const JointPoint& point : joint.points)
-    joint.facts.half_width = std::max(joint.facts.half_width, std::abs(tangent(point.normal).dot(point.position - joint.reference)));
+    for (int k = 0; k < space.dimension - 1; ++k)
+      joint.facts.half_width =
+          std::max(joint.facts.half_width, std::abs(local_axis(space, point.normal, k).dot(point.position - joint.reference)));
 }
 
 /// Nodes of one side of the points, each once.
@@ -111,9 +123,11 @@ Joint make_joint(const Values& interface, const std::vector<FacePair>& open, boo
   Joint joint;
   if (footing) joint = footing_joint(interface, *footing, rigid_ground, builder, names);
   if (pairs)
-    joint.points = pair_points(side(*pairs, "upper", names), side(*pairs, "lower", names), normal_of(*pairs), pairs->number("area"),
+    joint.points = pair_points(side(*pairs, "upper", names), side(*pairs, "lower", names), normal_of(*pairs, names.space), pairs->number("area"),
                                interface.number("gap"), pairs->where());
   if (line) {
+    if (names.space.dimension == 3)
+      throw InputError(line->where(), line->path(), "footing, pairs or surface in a model in space", "line");
     LineJoint made{side(*line, "upper", names),        side(*line, "lower", names),
                    line->integer("nodes_per_element"), line->text("quadrature") == "nodal" ? LineQuadrature::nodal : LineQuadrature::gauss,
                    line->number("thickness"),          interface.number("gap")};
@@ -123,14 +137,14 @@ Joint make_joint(const Values& interface, const std::vector<FacePair>& open, boo
   joint.facts.upper = nodes_of_side(joint.points, &JointPoint::upper);
   joint.facts.lower = nodes_of_side(joint.points, &JointPoint::lower);
   for (const JointPoint& point : joint.points) joint.facts.area += point.area;
-  if (!footing) measure(joint);
+  if (!footing) measure(joint, names.space);
   joint.facts.name = interface.text("name");
   return joint;
 }
 
-int components_of(const Values& behaviour) {
-  if (behaviour.items().contains("tangential")) return behaviour.text("tangential") == "none" ? 1 : 2;
-  return behaviour.type() == "unilateral" ? 1 : 2;
+int components_of(const Values& behaviour, Space space) {
+  if (behaviour.items().contains("tangential")) return behaviour.text("tangential") == "none" ? 1 : space.dimension;
+  return behaviour.type() == "unilateral" ? 1 : space.dimension;
 }
 
 }  // namespace uplift

@@ -36,17 +36,18 @@ Cell cell_named(const std::string& name) {
 SoilBox::Part part_from(const Values* table) {
   SoilBox::Part part;
   if (!table) return part;
-  part.width = {table->number("width"), table->number("width")};
+  part.width = {table->number("width"), table->number(table->has("length") ? "length" : "width")};
   part.height = table->number("height");
   part.size = table->number("size");
-  if (table->items().contains("offset")) part.offset[0] = table->number("offset");
+  if (table->items().contains("offset")) part.offset = {table->number("offset"), table->number("offset_y")};
   return part;
 }
 
 Mesh make_soil_box(const Values& box) {
   SoilBox made;
   const Values& soil = box.table("soil");
-  made.soil.width = {soil.number("width"), soil.number("width")};
+  made.dimension = soil.has("length") ? 3 : 2;
+  made.soil.width = {soil.number("width"), soil.number(soil.has("length") ? "length" : "width")};
   made.soil.size = soil.number("size");
   made.soil.layers.clear();
   for (const Values& layer : soil.tables("layers")) made.soil.layers.push_back({layer.number("thickness"), layer.number("size")});
@@ -55,7 +56,10 @@ Mesh make_soil_box(const Values& box) {
   made.block = part_from(table_if(box, "block"));
   made.embedment = box.number("embedment");
   made.growth = box.number("growth");
-  made.cell = cell_named(box.text("cell"));
+  made.cell = box.has("cell") ? cell_named(box.text("cell")) : made.dimension == 2 ? Cell::quad4 : Cell::hex8;
+  if (info(made.cell).dimension != made.dimension)
+    fail(box, "cell", made.dimension == 2 ? "a cell of the plane (soil.length makes the mesh one in space)" : "a cell of space, for example hex8",
+         in_quotes(box.text("cell")));
   return soil_box(made, box.where());
 }
 
@@ -100,7 +104,7 @@ const Group& group_named(const Mesh& mesh, const Values& table, std::string_view
 }
 
 std::string dimension_word(const Group& group) {
-  constexpr const char* words[] = {"nodes", "edges", "cells", "volumes"};
+  constexpr const char* words[] = {"nodes", "edges", "surfaces", "volumes"};
   return std::string("a group of ") + words[group.dimension];
 }
 
@@ -152,7 +156,6 @@ std::shared_ptr<const CaseMesh> mesh_of_case(const Values& root, const std::stri
     made->from = (std::filesystem::path(file).parent_path() / mesh->text("file")).lexically_normal().string();
     made->mesh = read_mesh(made->from, where, mesh->has("name") ? mesh->text("name") : "");
     check_mesh(made->mesh, where);
-    if (made->mesh.dimension != 2) fail(*mesh, "file", "a plane mesh (all z equal)", "a mesh in space");
   } else {
     made->from = "soil_box";
     made->mesh = make_soil_box(mesh->table("soil_box"));
@@ -195,8 +198,8 @@ std::vector<int> CaseSolids::nodes(const Values& table, std::string_view key) co
 }
 
 const std::vector<CellId>& CaseSolids::edges(const Values& table, std::string_view key) const {
-  const Group& group = group_named(*mesh_, table, key, "a group of edges");
-  if (group.dimension != mesh_->dimension - 1 || group.cells.empty()) fail(table, key, "a group of edges", dimension_word(group));
+  const Group& group = group_named(*mesh_, table, key, "a group of edges (in space: faces)");
+  if (group.dimension != mesh_->dimension - 1 || group.cells.empty()) fail(table, key, "a group of edges (in space: faces)", dimension_word(group));
   for (const CellId edge : group.cells)
     if (!beside(edge)) fail(table, key, "edges of cells", describe_cell(*mesh_, edge) + " beside no cell");
   return group.cells;
@@ -251,7 +254,7 @@ std::vector<char> part_of(const Model& model, const std::vector<int>& nodes) {
   for (int row = 0; row < static_cast<int>(rows.cols()); ++row) {
     int first = -1;
     for (Sparse::InnerIterator entry(rows, row); entry; ++entry) {
-      const int node = static_cast<int>(entry.row()) / dofs_per_node;
+      const int node = model.space.node_of(entry.row());
       if (first < 0) first = node;
       join(node, first);
     }

@@ -12,7 +12,7 @@
 // The mesh of a case: where it comes from, how its interfaces are opened, what its cells are made of.
 namespace uplift {
 
-/// A plane mesh, opened along the surfaces of the case's interfaces.
+/// A mesh, opened along the surfaces of the case's interfaces.
 struct CaseMesh {
   Mesh mesh;
   std::string from;                         // the file, or "soil_box"
@@ -20,7 +20,7 @@ struct CaseMesh {
 };
 
 /// Reads or makes the mesh, checks it, opens it. Surfaces with the same lower side are opened together, others one after another. Null when
-/// the case has none. Throws InputError: both a file and a soil box or neither, a mesh in space, groups and surfaces that do not fit.
+/// the case has none. Throws InputError: both a file and a soil box or neither, groups and surfaces that do not fit.
 std::shared_ptr<const CaseMesh> mesh_of_case(const Values& root, const std::string& file, const MeshReader& read_mesh);
 
 /// What the solids of a case are made of. Throws InputError unless every cell has exactly one of them.

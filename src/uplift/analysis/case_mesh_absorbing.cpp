@@ -6,14 +6,22 @@
 namespace uplift {
 namespace {
 
-AbsorbingSection section_of(const Values& absorbing, const CaseSolids::Solid& solid) {
+AbsorbingSection section_of(const Values& absorbing, const CaseSolids::Solid& solid, Space space) {
   const auto refuse = [&](const char* wanted, const char* found) {
     throw InputError(absorbing.where("group"), absorbing.path("group"), wanted,
                      "edges of the solid " + in_quotes(solid.table->text("group")) + " " + found);
   };
   if (!(solid.section.material.density > 0)) refuse("edges of a solid with a density", "without one");
-  if (solid.section.plane != PlaneState::strain) refuse("edges of a solid in plane strain", "in plane stress");
+  if (space.dimension == 2 && solid.section.plane != PlaneState::strain) refuse("edges of a solid in plane strain", "in plane stress");
   return {solid.section.material, solid.section.thickness, absorbing.flag("lumped")};
+}
+
+Vec3 motion_of(const Values& incident, Space space) {
+  const std::string& word = incident.text("wave");
+  for (const bool plane_only : {word == "SH", incident.given("azimuth")})
+    if (plane_only && space.dimension == 2)
+      throw InputError(incident.where("wave"), incident.path("wave"), "P or SV without azimuth in a plane model", in_quotes(word));
+  return wave_motion(word == "P" ? Wave::p : word == "SV" ? Wave::sv : Wave::sh, space.dimension, incident.number("azimuth"));
 }
 
 }  // namespace
@@ -22,16 +30,17 @@ void add_absorbing(const Values& root, ModelBuilder& builder, const CaseNames& n
   for (const Values& absorbing : root.tables("absorbing")) {
     const CaseSolids& solids = names.mesh_for(absorbing);
     const Values* incident = table_if(absorbing, "incident");
-    const Vec3 motion = incident ? wave_motion(incident->text("wave") == "P" ? Wave::p : Wave::sv, 2) : Vec3::Zero();
+    const Vec3 motion = incident ? motion_of(*incident, names.space) : Vec3::Zero();
+    const int d = names.space.dimension;
     std::vector<std::pair<int, double>> pattern;
     for (const CellId edge : solids.edges(absorbing, "group")) {
       std::vector<int> nodes;
       for (const int node : solids.mesh().cell(edge)) nodes.push_back(names.first_of_mesh + node);
       auto face =
-          std::make_unique<AbsorbingFace>(solids.mesh().type(edge), nodes, names.coordinates, section_of(absorbing, *solids.beside(edge)));
+          std::make_unique<AbsorbingFace>(solids.mesh().type(edge), nodes, names.coordinates, section_of(absorbing, *solids.beside(edge), names.space));
       const Vector force = incident ? face->incident(motion) : Vector();
       for (Index i = 0; i < force.size(); ++i)
-        if (force[i] != 0) pattern.emplace_back(3 * nodes[static_cast<std::size_t>(i / 2)] + static_cast<int>(i % 2), force[i]);
+        if (force[i] != 0) pattern.emplace_back(names.space.unknowns() * nodes[static_cast<std::size_t>(i / d)] + static_cast<int>(i % d), force[i]);
       builder.add_element(std::move(face), absorbing.where());
     }
     if (!incident) continue;

@@ -13,15 +13,19 @@ const Section& layer_section() {
 }
 
 const Section& soil_section() {
-  static const Section s{"soil", "the soil, its surface at y = 0",
-                         Fields{number("width", "m", "width").positive(),
+  static const Section s{"soil", "the soil, its surface at y = 0 (in space z = 0)",
+                         Fields{number("width", "m", "width along x").positive(),
+                                number("length", "m", "length along y: this makes the mesh one in space").positive().optional(),
                                 number("size", "m", "largest width of an element away from the foundation").positive().standard(4.0),
                                 tables("layers", layer_section(), "layers from top to bottom; at least one")}};
   return s;
 }
 
 Field part_width() {
-  return number("width", "m", "width").positive();
+  return number("width", "m", "width along x").positive();
+}
+Field part_length() {
+  return number("length", "m", "in space: length along y; absent: as the width").positive().optional();
 }
 Field part_height() {
   return number("height", "m", "height").positive();
@@ -31,36 +35,39 @@ Field part_size() {
 }
 
 const Section& raft_section() {
-  static const Section s{"raft", "the foundation, in the middle of the soil (x = 0)", Fields{part_width(), part_height(), part_size()}};
+  static const Section s{"raft", "the foundation, in the middle of the soil (x = 0)", Fields{part_width(), part_length(), part_height(), part_size()}};
   return s;
 }
 
 const Section& block_section() {
   static const Section s{
       "block", "the building, on the raft (without one: on the soil)",
-      Fields{part_width(), part_height(), part_size(), number("offset", "m", "of its middle from the middle of the soil").standard(0.0)}};
+      Fields{part_width(), part_length(), part_height(), part_size(),
+             number("offset", "m", "of its middle from the middle of the soil, along x").standard(0.0),
+             number("offset_y", "m", "in space: the same along y").standard(0.0)}};
   return s;
 }
 
 const Section& soil_box_section() {
   static const Section s{
       "soil_box",
-      "layered soil with a building on it. Groups of cells: soil_1, soil_2, ..., raft, block; of edges: soil_left, soil_right, "
-      "soil_bottom, "
-      "soil_top, the same of raft_ and block_, and interface (between soil and building)",
+      "layered soil with a building on it. Groups of cells: soil_1, soil_2, ..., raft, block; of edges (faces): soil_left, soil_right, "
+      "in space soil_front, soil_back, soil_bottom, soil_top, the same of raft_ and block_, and interface (between soil and building)",
       Fields{table("soil", soil_section(), "the soil"), table("raft", raft_section(), "the foundation; absent: none").optional(),
              table("block", block_section(), "the building; absent: none").optional(),
              number("embedment", "m", "depth of the foundation's underside below the soil surface").nonnegative().standard(0.0),
              number("growth", "1", "growth of the elements away from the foundation, one to the next").between(1.01, 2).standard(1.25),
-             choice("cell", {"quad4", "quad8", "quad9", "tri3", "tri6"}, "type of the elements").standard("quad4")}};
+             choice("cell", {"quad4", "quad8", "quad9", "tri3", "tri6", "hex8", "hex20", "hex27", "tet4", "tet10", "wedge6", "wedge15"},
+                    "type of the elements; absent: quad4, in space hex8")
+                 .optional()}};
   return s;
 }
 
 }  // namespace
 
 const Section& mesh_section() {
-  static const Section s{"mesh", "plane mesh of solids: either a file or a soil box. Its nodes are called mesh.1, mesh.2, ...",
-                         Fields{text("file", "mesh of Gmsh (.msh) or MED (.med), in metres, in the plane").optional(),
+  static const Section s{"mesh", "mesh of solids, in the plane or in space: either a file or a soil box. Its nodes are called mesh.1, mesh.2, ...",
+                         Fields{text("file", "mesh of Gmsh (.msh) or MED (.med), in metres; in the plane where all z are equal").optional(),
                                 text("name", "the mesh to take when a MED file holds several").optional(),
                                 table("soil_box", soil_box_section(), "a made mesh").optional()}};
   return s;
@@ -75,10 +82,10 @@ const Section& solid_section() {
                  .optional(),
              number("poisson", "1", "Poisson's ratio, below 0.5").between(0, 0.4999),
              number("density", "kg/m3", "density; not needed with mass = \"none\" and E").positive().optional(),
-             choice("plane", {"strain", "stress"}, "what is zero out of the plane").standard("strain"),
-             number("thickness", "m", "length out of the plane").positive().standard(1.0),
+             choice("plane", {"strain", "stress"}, "what is zero out of the plane (plane meshes)").standard("strain"),
+             number("thickness", "m", "length out of the plane (plane meshes)").positive().standard(1.0),
              choice("mass", {"consistent", "lumped", "none"}, "mass matrix").standard("consistent"),
-             flag("incompatible_modes", "quad4: bubbles that let an element bend").standard(true),
+             flag("incompatible_modes", "quad4 and hex8: bubbles that let an element bend").standard(true),
              number("damping_beta", "s", "stiffness-proportional damping factor of this solid alone").nonnegative().standard(0.0)}};
   return s;
 }
@@ -90,7 +97,8 @@ const Section& incident_section() {
       "incident",
       "a plane wave that comes up through the face; the face then carries 2 rho c times its velocity, and absorbs what comes back",
       Fields{
-          choice("wave", {"P", "SV"}, "P: the particles move along y; SV: along x"),
+          choice("wave", {"P", "SV", "SH"}, "P: the particles move upwards; SV: along x; SH (in space): along y"),
+          number("azimuth", "rad", "in space: turns the motion of S waves about the vertical, from x to y").standard(0.0),
           choice("kind", {"outcrop", "incoming"},
                  "what the function is: the motion that the free surface of the same rock would have (twice the incoming wave), or that of "
                  "the incoming wave alone"),
@@ -103,22 +111,22 @@ const Section& incident_section() {
 
 const Section& absorbing_section() {
   static const Section s{"absorbing",
-                         "a viscous boundary: edges of the mesh through which waves leave (Lysmer & Kuhlemeyer), with the material of the "
+                         "a viscous boundary: edges (faces) of the mesh through which waves leave (Lysmer & Kuhlemeyer), with the material of the "
                          "solid beside them. It "
                          "holds nothing at rest: static stages need supports elsewhere",
-                         Fields{text("group", "group of edges of the mesh"), flag("lumped", "diagonal damping matrix").standard(false),
+                         Fields{text("group", "group of edges (faces) of the mesh"), flag("lumped", "diagonal damping matrix").standard(false),
                                 table("incident", incident_section(), "a wave that comes in; absent: none").optional()}};
   return s;
 }
 
 const Section& surface_section() {
   static const Section s{
-      "surface", "edges inside the mesh, which is opened there",
-      Fields{text("group", "group of edges"),
+      "surface", "edges (faces) inside the mesh, which is opened there",
+      Fields{text("group", "group of edges (faces)"),
              texts("lower", "groups of cells of the lower side (soil); all other cells are the upper side"),
              choice("quadrature", {"nodal", "gauss"}, "where the joint points stand: at the pairs of nodes, or at Gauss points")
                  .standard("nodal"),
-             number("thickness", "m", "length out of the plane; absent: that of the solids (the smaller one)").positive().optional()}};
+             number("thickness", "m", "length out of the plane (plane meshes); absent: that of the solids (the smaller one)").positive().optional()}};
   return s;
 }
 

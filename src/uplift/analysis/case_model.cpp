@@ -4,16 +4,29 @@
 
 #include <algorithm>
 #include <cmath>
+#include <functional>
 #include <numbers>
 #include <set>
 
 #include "uplift/elements/beam.h"
 #include "uplift/elements/discrete.h"
+#include "uplift/elements/space_beam.h"
 
 namespace uplift {
 
-Vec2 vec2(const std::vector<double>& numbers) {
-  return {numbers[0], numbers[1]};
+Place vector_of(const Values& table, std::string_view key, Space space) {
+  const std::vector<double>& numbers = table.numbers(key);
+  if (static_cast<int>(numbers.size()) != space.dimension)
+    throw InputError(table.where(key), table.path(key),
+                     space.dimension == 2 ? "two numbers [x, y] in a plane model" : "three numbers [x, y, z] in a model in space",
+                     fmt::format("{}", numbers.size()));
+  return {numbers[0], numbers[1], space.dimension == 3 ? numbers[2] : 0};
+}
+
+Space space_of(const Case& read) {
+  if (read.mesh) return {read.mesh->mesh.dimension};
+  const std::vector<Values>& nodes = read.values.tables("nodes");
+  return {nodes.empty() ? 2 : static_cast<int>(nodes.front().numbers("value").size())};
 }
 
 const Values* table_if(const Values& values, std::string_view key) {
@@ -70,11 +83,16 @@ class Scaled final : public TimeFunction {
   throw InputError(table.where(key), table.path(key), wanted, found, nearest);
 }
 
-Dof dof_of(const std::string& word, const Values& table, std::string_view key) {
-  if (word == "ux") return ux;
-  if (word == "uy") return uy;
-  if (word == "rz") return rz;
-  fail(table, key, "ux, uy or rz", "\"" + word + "\"", nearest_name(word, {"ux", "uy", "rz"}));
+/// Some unknowns of a node by name: all, or the translations.
+Dof dof_of(const std::string& word, const Values& table, std::string_view key, Space space, bool rotations) {
+  std::vector<std::string> words;
+  for (int i = 0; i < (rotations ? space.unknowns() : space.dimension); ++i) {
+    words.emplace_back(to_string(space.dof(i)));
+    if (words.back() == word) return space.dof(i);
+  }
+  std::string wanted = fmt::format("{}", fmt::join(words.begin(), words.end() - 1, ", ")) + " or " + words.back();
+  if (!rotations) wanted += " for a group of the mesh";
+  fail(table, key, wanted, "\"" + word + "\"", rotations ? nearest_name(word, words) : "");
 }
 
 /// Exactly one of two keys must be given.
@@ -84,32 +102,91 @@ bool first_of_two(const Values& table, std::string_view first, std::string_view 
   return a;
 }
 
+/// Mass of a beam by its table; density times area.
+template <typename Section>
+void add_beam_mass(const Values& beam, Section& section) {
+  if (beam.text("mass") == "none") return;
+  if (!beam.has("density") || !beam.has("A"))
+    fail(beam, "mass", "density and A of the beam", !beam.has("density") ? "no density" : "no A");
+  section.mass = beam.text("mass") == "consistent" ? BeamSection::Mass::consistent : BeamSection::Mass::lumped;
+  section.mass_per_length = beam.number("density") * beam.number("A");
+}
+
+/// Shear stiffness G A_s [N]; nothing for Euler-Bernoulli beams.
+std::optional<double> shear_of(const Values& beam) {
+  if (beam.text("theory") != "timoshenko") return {};
+  if (!beam.has("shear_area")) fail(beam, "", "shear_area for theory = \"timoshenko\"", "none");
+  return beam.number("E") / (2 * (1 + beam.number("poisson"))) * beam.number("shear_area");
+}
+
+BeamSection plane_section(const Values& beam) {
+  for (const char* key : {"I_y", "I_z", "J", "up"})
+    if (beam.has(key)) fail(beam, key, "I alone in a plane model", fmt::format("{}", key));
+  if (!beam.has("I")) fail(beam, "", "I", "none");
+  BeamSection section;
+  section.bending = beam.number("E") * beam.number("I");
+  if (beam.has("A")) section.axial = beam.number("E") * beam.number("A");
+  add_beam_mass(beam, section);
+  if (const auto shear = shear_of(beam)) {
+    section.shear = *shear;
+    if (section.mass != BeamSection::Mass::none) section.rotary_per_length = beam.number("density") * beam.number("I");
+  }
+  return section;
+}
+
+SpaceBeamSection space_section(const Values& beam) {
+  const bool one = beam.has("I"), two = beam.has("I_y") && beam.has("I_z");
+  if (one == two || (one && (beam.has("I_y") || beam.has("I_z")))) fail(beam, "", "either I, or I_y and I_z", one ? "both" : "neither");
+  if (!beam.has("J")) fail(beam, "", "J, the torsion constant, in a model in space", "none");
+  const double young = beam.number("E"), about_y = beam.number(one ? "I" : "I_y"), about_z = beam.number(one ? "I" : "I_z");
+  SpaceBeamSection section;
+  section.bending_y = young * about_y;
+  section.bending_z = young * about_z;
+  section.torsion = young / (2 * (1 + beam.number("poisson"))) * beam.number("J");
+  if (beam.has("A")) section.axial = young * beam.number("A");
+  add_beam_mass(beam, section);
+  if (section.mass != BeamSection::Mass::none) section.polar = beam.number("density") * (about_y + about_z);
+  if (const auto shear = shear_of(beam)) {
+    section.shear_y = section.shear_z = *shear;
+    if (section.mass != BeamSection::Mass::none) {
+      section.rotary_y = beam.number("density") * about_y;
+      section.rotary_z = beam.number("density") * about_z;
+    }
+  }
+  return section;
+}
+
+/// Makes the elements of a beam, one after another.
+using MakeBeam = std::function<std::unique_ptr<Element>(int a, int b, const Place& from, const Place& to)>;
+
+MakeBeam beam_maker(const Values& beam, const Vec3& along, Space space) {
+  if (space.dimension == 2) {
+    const BeamSection section = plane_section(beam);
+    return [section](int a, int b, const Place& from, const Place& to) {
+      return std::make_unique<Beam>(a, b, from.head<2>(), to.head<2>(), section);
+    };
+  }
+  const SpaceBeamSection section = space_section(beam);
+  std::optional<Vec3> up;
+  if (beam.has("up")) up = vector_of(beam, "up", space);
+  if (!beam_axes(along, up)) fail(beam, "up", "a direction that is not along the beam", "one along it");
+  return [section, up](int a, int b, const Place& from, const Place& to) {
+    return std::make_unique<SpaceBeam>(a, b, from, to, section, up);
+  };
+}
+
 void add_beam(const Values& beam, ModelBuilder& builder, CaseNames& names, Names& beams) {
   beams.add(beam, "name");
   const std::vector<int> ends = names.nodes_of(beam, "nodes");
   if (ends.size() != 2) fail(beam, "nodes", "two nodes", fmt::format("{}", ends.size()));
-  const Vec2 a = names.positions[ends[0]], b = names.positions[ends[1]];
+  const Place a = names.positions[ends[0]], b = names.positions[ends[1]];
   if ((b - a).norm() == 0) fail(beam, "nodes", "two nodes at different places", "two nodes at the same place");
-  const double young = beam.number("E");
-  BeamSection section;
-  section.bending = young * beam.number("I");
-  if (beam.has("A")) section.axial = young * beam.number("A");
-  if (beam.text("theory") == "timoshenko") {
-    if (!beam.has("shear_area")) fail(beam, "", "shear_area for theory = \"timoshenko\"", "none");
-    section.shear = young / (2 * (1 + beam.number("poisson"))) * beam.number("shear_area");
-  }
-  if (beam.text("mass") != "none") {
-    if (!beam.has("density") || !beam.has("A"))
-      fail(beam, "mass", "density and A of the beam", !beam.has("density") ? "no density" : "no A");
-    section.mass = beam.text("mass") == "consistent" ? BeamSection::Mass::consistent : BeamSection::Mass::lumped;
-    section.mass_per_length = beam.number("density") * beam.number("A");
-    if (beam.text("theory") == "timoshenko") section.rotary_per_length = beam.number("density") * beam.number("I");
-  }
+  const MakeBeam make = beam_maker(beam, b - a, names.space);
   const int pieces = beam.integer("elements");
   int last = ends[0];
-  Vec2 from = a;
+  Place from = a;
   for (int k = 1; k <= pieces; ++k) {
-    const Vec2 to = k == pieces ? b : Vec2(a + (b - a) * (static_cast<double>(k) / pieces));
+    const Place to = k == pieces ? b : Place(a + (b - a) * (static_cast<double>(k) / pieces));
     int next = ends[1];
     if (k < pieces) {
       const std::string name = fmt::format("{}.{}", beam.text("name"), k);
@@ -117,9 +194,9 @@ void add_beam(const Values& beam, ModelBuilder& builder, CaseNames& names, Names
       names.nodes.add(name, beam.where("name"), beam.path("name"));
       names.positions.push_back(to);
     }
-    auto element = std::make_unique<Beam>(last, next, from, to, section);
+    auto element = make(last, next, from, to);
     element->beta = beam.number("damping_beta");
-    if (!section.axial) builder.inextensible(last, next, beam.where());
+    if (!beam.has("A")) builder.inextensible(last, next, beam.where());
     builder.add_element(std::move(element), beam.where());
     last = next;
     from = to;
@@ -127,15 +204,19 @@ void add_beam(const Values& beam, ModelBuilder& builder, CaseNames& names, Names
 }
 
 Connection connection_of(const Values& table, const CaseNames& names, bool along) {
+  const bool plane = names.space.dimension == 2;
   Connection connection;
+  connection.space = names.space;
+  connection.rotational = !along;
   connection.nodes = names.nodes_of(table, "nodes");
   if (connection.nodes.empty() || connection.nodes.size() > 2)
     fail(table, "nodes", "one node or two nodes", fmt::format("{}", connection.nodes.size()));
-  if (along != table.has("direction"))
-    fail(table, along ? "" : "direction", along ? "direction = [x, y]" : "no direction for a rotational one", along ? "none" : "one");
-  if (along) {
-    connection.direction = vec2(table.numbers("direction"));
-    if (connection.direction->norm() == 0) fail(table, "direction", "a direction", "[0, 0]");
+  const bool needed = along || !plane;
+  if (needed != table.has("direction"))
+    fail(table, needed ? "" : "direction", needed ? "a direction" : "no direction for a rotational one", needed ? "none" : "one");
+  if (needed) {
+    connection.direction = vector_of(table, "direction", names.space);
+    if (connection.direction->norm() == 0) fail(table, "direction", "a direction", "one of length zero");
   }
   return connection;
 }
@@ -145,7 +226,7 @@ void add_masses(const Values& root, ModelBuilder& builder, CaseNames& names, con
   for (const Values& mass : root.tables("mass")) {
     const int node = names.node(mass, "node");
     const double value = first_of_two(mass, "mass", "tuned_frequency") ? mass.number("mass") : tuned.at(next++);
-    builder.add_element(std::make_unique<PointMass>(node, value, mass.number("inertia")), mass.where());
+    builder.add_element(std::make_unique<PointMass>(names.space, node, value, about_axes(mass, "inertia", "inertias", true, names.space)), mass.where());
   }
   Names bodies("rigid body");
   for (const Values& body : root.tables("rigid")) {
@@ -155,68 +236,77 @@ void add_masses(const Values& root, ModelBuilder& builder, CaseNames& names, con
       if (slave == master) fail(body, "slaves", "nodes other than the master", "\"" + names.nodes[master] + "\"");
       builder.tie_rigid(master, slave, body.where("slaves"));
     }
-    const Vec2 offset = body.has("centre") ? Vec2(vec2(body.numbers("centre")) - names.positions[master]) : Vec2::Zero();
-    if (body.number("mass") > 0 || body.number("inertia") > 0)
-      builder.add_element(std::make_unique<PointMass>(master, body.number("mass"), body.number("inertia"), offset), body.where());
+    Place offset;
+    if (body.has("centre")) offset = vector_of(body, "centre", names.space) - names.positions[master];
+    const Vec3 inertia = about_axes(body, "inertia", "inertias", true, names.space);
+    if (body.number("mass") > 0 || !inertia.isZero(0))
+      builder.add_element(std::make_unique<PointMass>(names.space, master, body.number("mass"), inertia, offset), body.where());
   }
 }
 
-/// A node of the mesh has no rotation to be held or moved.
-Dof dof_for(const std::string& word, const Values& table, std::string_view key) {
-  const Dof dof = dof_of(word, table, key);
-  if (dof == rz && table.has("group")) fail(table, key, "ux or uy for a group of the mesh", "\"rz\"");
-  return dof;
-}
-
 void add_supports(const Values& root, ModelBuilder& builder, const CaseNames& names) {
-  std::set<std::pair<int, int>> held;  // by groups: those of two sides share the corner
+  std::set<std::pair<int, Dof>> held;  // by groups: those of two sides share the corner
   for (const Values& support : root.tables("support"))
     for (const int node : names.node_or_group(support))
       for (const std::string& word : support.texts("fixed")) {
-        const Dof dof = dof_for(word, support, "fixed");
+        const Dof dof = dof_of(word, support, "fixed", names.space, support.has("node"));
         if (!support.has("group") || held.emplace(node, dof).second) builder.fix(node, dof, support.where("fixed"));
       }
   for (const Values& motion : root.tables("motion")) {
     const std::vector<int> nodes = names.node_or_group(motion);
     const std::string name = motion.has("name") ? motion.text("name") : "motion of " + motion.text(motion.has("node") ? "node" : "group");
     for (const int node : nodes)
-      builder.prescribe(node, dof_for(motion.text("direction"), motion, "direction"),
+      builder.prescribe(node, dof_of(motion.text("direction"), motion, "direction", names.space, motion.has("node")),
                         std::make_shared<Scaled>(motion.number("amplitude"), names.function(motion)), name, motion.where());
   }
 }
 
 using Pattern = std::vector<std::pair<int, double>>;
 
-void add_force(int node, const Vec2& force, Pattern& pattern) {
-  if (force.x() != 0) pattern.emplace_back(3 * node + ux, force.x());
-  if (force.y() != 0) pattern.emplace_back(3 * node + uy, force.y());
+/// Along the translations, or about the rotations.
+void add_force(int node, const Vec3& force, bool moment, Space space, Pattern& pattern) {
+  for (int i = 0; i < space.unknowns(); ++i)
+    if (const double value = force.dot(space.axis(i)); space.is_rotation(i) == moment && value != 0)
+      pattern.emplace_back(space.unknowns() * node + i, value);
 }
 
-Pattern node_load(const Values& load, int node) {
+Pattern node_load(const Values& load, int node, Space space) {
   if (load.has("traction")) fail(load, "traction", "force or moment on a node", "a traction");
-  if (!load.has("force") && !load.has("moment")) fail(load, "", "force or moment", "neither");
+  if (!load.has("force") && !load.has("moment") && !load.has("moments")) fail(load, "", "force or moment", "neither");
   Pattern pattern;
-  if (load.has("force")) add_force(node, vec2(load.numbers("force")), pattern);
-  if (load.has("moment") && load.number("moment") != 0) pattern.emplace_back(3 * node + rz, load.number("moment"));
+  if (load.has("force")) add_force(node, vector_of(load, "force", space), false, space, pattern);
+  add_force(node, about_axes(load, "moment", "moments", false, space), true, space, pattern);
   return pattern;
 }
 
-/// Consistent forces of a uniform traction on edges of the mesh.
+/// Consistent forces of a uniform traction on edges or faces of the mesh.
 Pattern edge_load(const Values& load, const CaseNames& names) {
-  if (load.has("moment")) fail(load, "moment", "force or traction on a group", "a moment");
+  for (const char* key : {"moment", "moments"})
+    if (load.has(key)) fail(load, key, "force or traction on a group", "a moment");
   const bool traction = first_of_two(load, "traction", "force");
   if (!load.has("name")) fail(load, "", "a name for the load on a group", "none");
   const CaseSolids& solids = names.mesh_for(load);
   const std::vector<std::pair<int, double>> areas = tributary_areas(solids, solids.edges(load, "group"));
   double area = 0;
   for (const auto& [node, share] : areas) area += share;
-  const Vec2 per_area = traction ? vec2(load.numbers("traction")) : Vec2(vec2(load.numbers("force")) / area);
+  const Vec3 per_area = vector_of(load, traction ? "traction" : "force", names.space) / (traction ? 1 : area);
   Pattern pattern;
-  for (const auto& [node, share] : areas) add_force(names.first_of_mesh + node, share * per_area, pattern);
+  for (const auto& [node, share] : areas) add_force(names.first_of_mesh + node, share * per_area, false, names.space, pattern);
   return pattern;
 }
 
 }  // namespace
+
+Vec3 about_axes(const Values& table, std::string_view single, std::string_view plural, bool everywhere, Space space) {
+  if (table.has(plural)) {
+    if (space.dimension == 2) fail(table, plural, fmt::format("{} in a plane model", single), "three numbers");
+    if (table.given(single)) fail(table, single, fmt::format("either {} or {}", single, plural), "both");
+    const std::vector<double>& numbers = table.numbers(plural);
+    return {numbers[0], numbers[1], numbers[2]};
+  }
+  const double value = table.has(single) ? table.number(single) : 0;
+  return everywhere && space.dimension == 3 ? Vec3(value, value, value) : Vec3(0, 0, value);
+}
 
 std::shared_ptr<const TimeFunction> scaled(double factor, std::shared_ptr<const TimeFunction> function) {
   return std::make_shared<Scaled>(factor, std::move(function));
@@ -230,7 +320,7 @@ std::shared_ptr<const TimeFunction> CaseNames::function(const Values& table) con
 void add_nodes(const Values& root, ModelBuilder& builder, CaseNames& names) {
   for (const Values& node : root.tables("nodes")) {
     names.nodes.add(node.key(), node.where(), node.path());
-    names.positions.push_back(vec2(node.numbers("value")));
+    names.positions.push_back(vector_of(node, "value", names.space));
     builder.add_node(node.key(), names.positions.back(), node.where());
   }
 }
@@ -246,7 +336,7 @@ void add_mesh(const Case& read, ModelBuilder& builder, CaseNames& names) {
     const std::string name = fmt::format("mesh.{}", i + 1);
     coordinates->push_back(mesh.nodes[i]);
     names.nodes.add(name, table.where(), table.path());
-    names.positions.push_back(mesh.nodes[i].head<2>());
+    names.positions.emplace_back(mesh.nodes[i]);
     builder.add_node(name, names.positions.back(), table.where());
   }
   names.coordinates = coordinates;
@@ -290,15 +380,15 @@ void add_structure(const Values& root, ModelBuilder& builder, CaseNames& names, 
 void add_loads(const Values& root, ModelBuilder& builder, const CaseNames& names) {
   for (const Values& load : root.tables("load")) {
     std::vector<std::pair<int, double>> pattern =
-        first_of_two(load, "node", "group") ? node_load(load, names.node(load, "node")) : edge_load(load, names);
+        first_of_two(load, "node", "group") ? node_load(load, names.node(load, "node"), names.space) : edge_load(load, names);
     const std::string name = load.has("name") ? load.text("name") : "load on " + load.text("node");
     builder.add_load(name, std::move(pattern), names.function(load), !load.has("function"), load.where());
   }
   if (const Values* gravity = table_if(root, "gravity"); gravity && gravity->has("acceleration"))
-    builder.set_gravity(vec2(gravity->numbers("acceleration")), gravity->where());
+    builder.set_gravity(vector_of(*gravity, "acceleration", names.space), gravity->where());
   for (const Values& ground : root.tables("ground_acceleration")) {
     const std::string name = ground.has("name") ? ground.text("name") : "ground acceleration";
-    builder.add_ground_acceleration(vec2(ground.numbers("direction")),
+    builder.add_ground_acceleration(vector_of(ground, "direction", names.space),
                                     std::make_shared<Scaled>(ground.number("amplitude"), names.function(ground)), name, ground.where());
   }
 }

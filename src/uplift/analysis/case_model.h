@@ -15,7 +15,8 @@ namespace uplift {
 /// Names and places met so far.
 struct CaseNames {
   Names nodes{"node"}, functions{"function"}, interfaces{"interface"};
-  std::vector<Vec2> positions;  // of the nodes
+  Space space;
+  std::vector<Place> positions;  // of the nodes
   std::vector<std::shared_ptr<const TimeFunction>> functions_made;
   std::shared_ptr<const CaseSolids> solids;  // null without a mesh
   int first_of_mesh = 0;                     // node of the model that the mesh's first node is
@@ -29,7 +30,13 @@ struct CaseNames {
   std::shared_ptr<const TimeFunction> function(const Values& table) const;  // absent: constant 1
 };
 
-Vec2 vec2(const std::vector<double>& numbers);
+/// Two numbers in plane models, three in space; InputError otherwise.
+Place vector_of(const Values& table, std::string_view key, Space space);
+/// Something about the three axes: `plural` in space, else `single`, which is about z, or with `everywhere` about all axes of space. Zero
+/// when neither is there.
+Vec3 about_axes(const Values& table, std::string_view single, std::string_view plural, bool everywhere, Space space);
+/// Plane or space: as the mesh, else as the first node.
+Space space_of(const Case& read);
 /// A table that may be absent: null then.
 const Values* table_if(const Values& values, std::string_view key);
 
@@ -50,12 +57,12 @@ BulkDamping bulk_damping(const Values& damping);
 struct Joint {
   std::vector<JointPoint> points;
   InterfaceFacts facts;
-  Vec2 reference = Vec2::Zero();
+  Place reference;
 };
 /// `open`: the faces that the mesh was opened at for it.
 Joint make_joint(const Values& interface, const std::vector<FacePair>& open, bool rigid_ground, ModelBuilder& builder, CaseNames& names);
 
-/// Number of local components that a law or cone needs: 1 when it has no tangential part, else 2.
-int components_of(const Values& behaviour);
+/// Number of local components that a law or cone needs: 1 when it has no tangential part, else all of the space.
+int components_of(const Values& behaviour, Space space);
 
 }  // namespace uplift

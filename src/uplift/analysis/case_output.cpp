@@ -13,33 +13,52 @@ namespace {
 using Column = Request::Kind;
 
 struct NodeQuantity {
-  std::string_view word;
+  std::string word;
   Column kind;
-  int dof;
-  std::string_view unit;
+  int index;  // of the unknown among those of its node
+  std::string unit;
 };
-constexpr std::array<NodeQuantity, 9> node_quantities{{{"ux", Column::displacement, ux, "m"},
-                                                       {"uy", Column::displacement, uy, "m"},
-                                                       {"rz", Column::displacement, rz, "rad"},
-                                                       {"vx", Column::velocity, ux, "m/s"},
-                                                       {"vy", Column::velocity, uy, "m/s"},
-                                                       {"vrz", Column::velocity, rz, "rad/s"},
-                                                       {"ax", Column::acceleration, ux, "m/s2"},
-                                                       {"ay", Column::acceleration, uy, "m/s2"},
-                                                       {"arz", Column::acceleration, rz, "rad/s2"}}};
+
+/// Displacements "ux", velocities "vx" and accelerations "ax"; of rotations "rz", "vrz", "arz".
+std::vector<NodeQuantity> node_quantities(Space space) {
+  std::vector<NodeQuantity> made;
+  const std::pair<const char*, Column> kinds[] = {{"", Column::displacement}, {"v", Column::velocity}, {"a", Column::acceleration}};
+  const char* per[] = {"", "/s", "/s2"};
+  for (int order = 0; order < 3; ++order)
+    for (int i = 0; i < space.unknowns(); ++i) {
+      const std::string name(to_string(space.dof(i)));
+      const bool turns = space.is_rotation(i);
+      const std::string word = order == 0 ? name : kinds[order].first + (turns ? name : name.substr(1));
+      made.push_back({word, kinds[order].second, i, std::string(turns ? "rad" : "m") + per[order]});
+    }
+  return made;
+}
 
 struct Quantity {
   std::string_view word;
   Column kind;
   std::string_view unit;
 };
-constexpr std::array<Quantity, 7> interface_quantities{{{"axial", Column::axial, "N"},
-                                                        {"shear", Column::shear, "N"},
-                                                        {"moment", Column::moment, "N m"},
-                                                        {"rotation", Column::rotation, "rad"},
-                                                        {"uplifted_ratio", Column::uplifted_ratio, "1"},
-                                                        {"max_opening", Column::max_opening, "m"},
-                                                        {"max_pressure", Column::max_pressure, "Pa"}}};
+/// In space `shear`, `moment` and `rotation` are the lengths of their parts along (about) the two tangents.
+std::vector<Quantity> interface_quantities(Space space) {
+  std::vector<Quantity> made{{"axial", Column::axial, "N"}, {"shear", Column::shear, "N"}, {"moment", Column::moment, "N m"},
+                             {"rotation", Column::rotation, "rad"}};
+  if (space.dimension == 3)
+    for (const Quantity& each : {Quantity{"shear_1", Column::shear_1, "N"}, Quantity{"shear_2", Column::shear_2, "N"},
+                                 Quantity{"moment_1", Column::moment_1, "N m"}, Quantity{"moment_2", Column::moment_2, "N m"},
+                                 Quantity{"torsion", Column::torsion, "N m"}, Quantity{"rotation_1", Column::rotation_1, "rad"},
+                                 Quantity{"rotation_2", Column::rotation_2, "rad"}})
+      made.push_back(each);
+  for (const Quantity& each : {Quantity{"uplifted_ratio", Column::uplifted_ratio, "1"}, Quantity{"max_opening", Column::max_opening, "m"},
+                               Quantity{"max_pressure", Column::max_pressure, "Pa"}})
+    made.push_back(each);
+  return made;
+}
+/// Those that need a tangential part of the interface.
+bool is_shear(Column kind) {
+  return kind == Column::shear || kind == Column::shear_1 || kind == Column::shear_2 || kind == Column::torsion;
+}
+
 constexpr std::array<Quantity, 8> energy_quantities{{{"kinetic", Column::kinetic, "J"},
                                                      {"strain", Column::strain, "J"},
                                                      {"stored", Column::stored, "J"},
@@ -50,21 +69,27 @@ constexpr std::array<Quantity, 8> energy_quantities{{{"kinetic", Column::kinetic
                                                      {"residual", Column::residual, "J"}}};
 
 struct PointQuantity {
-  std::string_view word;
+  std::string word;
   Column kind;
-  bool normal;
+  int tangent;  // number of the tangent; -1: normal
   std::string_view unit;
 };
-constexpr std::array<PointQuantity, 6> point_quantities{{{"opening", Column::opening, true, "m"},
-                                                         {"slip", Column::opening, false, "m"},
-                                                         {"traction", Column::traction, true, "Pa"},
-                                                         {"shear_traction", Column::traction, false, "Pa"},
-                                                         {"mean_traction", Column::mean_traction, true, "Pa"},
-                                                         {"mean_shear_traction", Column::mean_traction, false, "Pa"}}};
+
+std::vector<PointQuantity> point_quantities(Space space) {
+  std::vector<PointQuantity> made{
+      {"opening", Column::opening, -1, "m"}, {"traction", Column::traction, -1, "Pa"}, {"mean_traction", Column::mean_traction, -1, "Pa"}};
+  for (int k = 0; k < space.dimension - 1; ++k) {
+    const std::string number = space.dimension == 2 ? "" : fmt::format("_{}", k + 1);
+    made.push_back({"slip" + number, Column::opening, k, "m"});
+    made.push_back({"shear_traction" + number, Column::traction, k, "Pa"});
+    made.push_back({"mean_shear_traction" + number, Column::mean_traction, k, "Pa"});
+  }
+  return made;
+}
 
 /// The entry with this word; InputError with the list and the nearest word when there is none.
 template <class Table>
-const auto& find_quantity(const Table& table, const Values& history, const char* of) {
+auto find_quantity(const Table& table, const Values& history, const char* of) {
   const std::string& word = history.text("quantity");
   std::vector<std::string> words;
   for (const auto& entry : table) {
@@ -86,13 +111,13 @@ Request make(Column kind, std::string name, std::string_view unit) {
 Request node_request(const Model& model, int node, const NodeQuantity& quantity, std::string name = {}) {
   if (name.empty()) name = fmt::format("{}.{}", model.nodes[node].name, quantity.word);
   Request request = make(quantity.kind, std::move(name), quantity.unit);
-  request.unknown = 3 * node + quantity.dof;
+  request.unknown = model.space.unknowns() * node + quantity.index;
   return request;
 }
 
 void add_node(const Model& model, int node, std::vector<std::string_view> words, std::vector<Request>& requests) {
-  for (const NodeQuantity& quantity : node_quantities)
-    if (std::find(words.begin(), words.end(), quantity.word) != words.end() && moves(model, 3 * node + quantity.dof))
+  for (const NodeQuantity& quantity : node_quantities(model.space))
+    if (std::find(words.begin(), words.end(), quantity.word) != words.end() && moves(model, model.space.unknowns() * node + quantity.index))
       requests.push_back(node_request(model, node, quantity));
 }
 
@@ -102,28 +127,32 @@ Request point_request(const Values& history, const Model& model, int interface, 
   if (point > joint.batch.points)
     throw InputError(history.where("point"), history.path("point"),
                      fmt::format("a point of \"{}\", from 1 to {}", joint.name, joint.batch.points), fmt::format("{}", point));
-  const PointQuantity& quantity = find_quantity(point_quantities, history, "an interface point");
-  if (!quantity.normal && joint.batch.components == 1)
+  const PointQuantity quantity = find_quantity(point_quantities(model.space), history, "an interface point");
+  if (quantity.tangent >= 0 && joint.batch.components == 1)
     throw InputError(history.where("quantity"), history.path("quantity"),
                      fmt::format("a normal quantity: \"{}\" has no tangential part", joint.name), "\"" + history.text("quantity") + "\"");
   if (name.empty()) name = fmt::format("{}.{}.{}", joint.name, point, quantity.word);
   Request request = make(quantity.kind, std::move(name), quantity.unit);
   request.interface = interface;
   request.point = point - 1;
-  request.component = quantity.normal ? joint.batch.components - 1 : 0;
+  request.component = quantity.tangent < 0 ? joint.batch.components - 1 : quantity.tangent;
   return request;
 }
 
 /// The node nearest to a place; of nodes at the same place (the sides of an interface) the first, that of the lower side.
 int nearest_node(const Values& history, Built& built) {
-  const Vec2 place = vec2(history.numbers("at"));
+  const Place place = vector_of(history, "at", built.model.space);
   int nearest = 0;
   const auto distance = [&](int node) { return (built.model.nodes[static_cast<std::size_t>(node)].position - place).norm(); };
   for (int node = 1; node < static_cast<int>(built.model.nodes.size()); ++node)
     if (distance(node) < distance(nearest) - 1e-9) nearest = node;
   const Node& found = built.model.nodes[static_cast<std::size_t>(nearest)];
-  built.notes.push_back(fmt::format("{} at ({:g}, {:g}) m: node {} at ({:g}, {:g}) m, {:.3g} m away", history.text("quantity"), place.x(),
-                                    place.y(), found.name, found.position.x() + 0.0, found.position.y() + 0.0, distance(nearest)));
+  const auto text = [&](const Vec3& v) {
+    const int d = built.model.space.dimension;
+    return d == 2 ? fmt::format("({:g}, {:g})", v.x() + 0.0, v.y() + 0.0) : fmt::format("({:g}, {:g}, {:g})", v.x() + 0.0, v.y() + 0.0, v.z() + 0.0);
+  };
+  built.notes.push_back(fmt::format("{} at {} m: node {} at {} m, {:.3g} m away", history.text("quantity"), text(place), found.name,
+                                    text(found.position), distance(nearest)));
   return nearest;
 }
 
@@ -135,11 +164,11 @@ Request asked_request(const Values& history, Built& built, const Names& nodes, c
                      given == 0 ? "none" : fmt::format("{}", given));
   if (!history.has("interface")) {
     const int node = history.has("node") ? nodes.find(history, "node") : nearest_node(history, built);
-    return node_request(built.model, node, find_quantity(node_quantities, history, "a node"), name);
+    return node_request(built.model, node, find_quantity(node_quantities(built.model.space), history, "a node"), name);
   }
   const int interface = interfaces.find(history, "interface");
   if (history.has("point")) return point_request(history, built.model, interface, name);
-  const Quantity& quantity = find_quantity(interface_quantities, history, "an interface");
+  const Quantity quantity = find_quantity(interface_quantities(built.model.space), history, "an interface");
   Request request =
       make(quantity.kind, name.empty() ? fmt::format("{}.{}", built.model.interfaces[interface].name, quantity.word) : name, quantity.unit);
   request.interface = interface;
@@ -165,12 +194,14 @@ void add_requests(const Case& read, Built& built) {
   std::vector<Request>& requests = built.plan.requests;
   const Model& model = built.model;
   if (output.flag("automatic")) {
-    if (built.top >= 0) add_node(model, built.top, {"ux", "vx", "uy"}, requests);
-    if (built.base >= 0 && built.base != built.top) add_node(model, built.base, {"ux", "uy", "rz", "vy", "vrz"}, requests);
-    if (built.base >= 0 && built.base == built.top) add_node(model, built.base, {"rz", "vy", "vrz"}, requests);
+    const bool plane = model.space.dimension == 2;
+    std::vector<std::string_view> top{"ux", "vx", "uy"}, base{"ux", "uy", "rz", "vy", "vrz"}, base_too{"rz", "vy", "vrz"};
+    if (!plane) top = {"ux", "uy", "uz", "vx", "vy"}, base = {"ux", "uy", "uz", "rx", "ry", "rz", "vz"}, base_too = {"rx", "ry", "rz", "vz"};
+    if (built.top >= 0) add_node(model, built.top, top, requests);
+    if (built.base >= 0) add_node(model, built.base, built.base != built.top ? base : base_too, requests);
     for (std::size_t k = 0; k < model.interfaces.size(); ++k)
-      for (const Quantity& quantity : interface_quantities) {
-        if (quantity.kind == Column::shear && model.interfaces[k].batch.components == 1) continue;
+      for (const Quantity& quantity : interface_quantities(model.space)) {
+        if (is_shear(quantity.kind) && model.interfaces[k].batch.components == 1) continue;
         requests.push_back(make(quantity.kind, fmt::format("{}.{}", model.interfaces[k].name, quantity.word), quantity.unit));
         requests.back().interface = static_cast<int>(k);
       }

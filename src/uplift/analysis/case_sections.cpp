@@ -16,8 +16,9 @@ using Fields = std::vector<Field>;
 // ---- the structure ----
 
 const Section& node_section() {
-  static const Section s{"node", "NAME = [x, y]: a point of the structure, with the unknowns ux, uy (m) and rz (rad, counter-clockwise)",
-                         Fields{numbers("value", "m", "position [x, y]; y points up", 2)}};
+  static const Section s{"node", "NAME = [x, y]: a point of the structure, with the unknowns ux, uy (m) and rz (rad, counter-clockwise); in space NAME = [x, y, z] with "
+                         "ux, uy, uz, rx, ry, rz",
+                         Fields{vector("value", "m", "position [x, y], y points up; in space [x, y, z], z points up")}};
   return s;
 }
 
@@ -25,7 +26,11 @@ const Section& beam_section() {
   static const Section s{
       "beam", "a straight beam between two nodes, rigidly connected to both",
       Fields{text("name", "name; inner nodes of a subdivided beam are called NAME.1, NAME.2, ..."), texts("nodes", "the two end nodes"),
-             number("E", "Pa", "Young's modulus").positive(), number("I", "m4", "second moment of area of the cross-section").positive(),
+             number("E", "Pa", "Young's modulus").positive(), number("I", "m4", "second moment of area of the cross-section; in space about both axes").positive().optional(),
+             number("I_y", "m4", "in space: second moment of area about the local y axis; with I_z instead of I").positive().optional(),
+             number("I_z", "m4", "in space: about the local z axis").positive().optional(),
+             number("J", "m4", "in space: torsion constant").positive().optional(),
+             vector("up", "1", "in space: local z lies in the plane of the beam and this direction; absent: the vertical, of vertical beams x").optional(),
              number("A", "m2", "area of the cross-section; absent: the beam is inextensible (eliminated exactly)").positive().optional(),
              choice("theory", {"euler_bernoulli", "timoshenko"}, "bending only, or with shear").standard("euler_bernoulli"),
              number("poisson", "1", "Poisson's ratio (shear modulus of a Timoshenko beam)").between(0, 0.5).standard(0.3),
@@ -39,21 +44,22 @@ const Section& beam_section() {
 
 const Section& mass_section() {
   static const Section s{
-      "mass", "a point mass; it acts in both directions",
+      "mass", "a point mass; it acts in all directions",
       Fields{text("name", "name").optional(), text("node", "node that carries it"),
              number("mass", "kg", "mass; or give tuned_frequency").positive().optional(),
              number("tuned_frequency", "Hz",
                     "find the mass for which the model with every interface bonded rigidly to fixed ground has this first frequency")
                  .positive()
                  .optional(),
-             number("inertia", "kg m2", "rotary inertia").nonnegative().standard(0.0)}};
+             number("inertia", "kg m2", "rotary inertia; in space about every axis").nonnegative().standard(0.0),
+             numbers("inertias", "kg m2", "in space: about the axes x, y, z, instead of inertia", 3).optional()}};
   return s;
 }
 
 const Section& spring_section() {
   static const Section s{"spring", "a linear spring between two nodes, or from one node to fixed ground",
                          Fields{text("name", "name").optional(), texts("nodes", "two nodes, or one (to the ground)"),
-                                numbers("direction", "1", "direction [x, y] in which it acts; with stiffness", 2).optional(),
+                                vector("direction", "1", "direction in which it acts; in space also the axis of a rotational spring").optional(),
                                 number("stiffness", "N/m", "stiffness along direction").positive().optional(),
                                 number("rotational_stiffness", "N m/rad", "stiffness of a rotational spring").positive().optional()}};
   return s;
@@ -62,7 +68,7 @@ const Section& spring_section() {
 const Section& dashpot_section() {
   static const Section s{"dashpot", "a linear dashpot between two nodes, or from one node to fixed ground",
                          Fields{text("name", "name").optional(), texts("nodes", "two nodes, or one (to the ground)"),
-                                numbers("direction", "1", "direction [x, y] in which it acts; with damping", 2).optional(),
+                                vector("direction", "1", "direction in which it acts; in space also the axis of a rotational dashpot").optional(),
                                 number("damping", "N s/m", "damping along direction").positive().optional(),
                                 number("rotational_damping", "N m s/rad", "damping of a rotational dashpot").positive().optional()}};
   return s;
@@ -72,15 +78,16 @@ const Section& rigid_section() {
   static const Section s{"rigid", "a rigid body (a footing): its nodes follow the master node exactly",
                          Fields{text("name", "name"), text("node", "master node"), texts("slaves", "further nodes of the body").optional(),
                                 number("mass", "kg", "mass of the body").nonnegative().standard(0.0),
-                                number("inertia", "kg m2", "rotary inertia about the centre of mass").nonnegative().standard(0.0),
-                                numbers("centre", "m", "centre of mass [x, y]; absent: the master node", 2).optional()}};
+                                number("inertia", "kg m2", "rotary inertia about the centre of mass; in space about every axis").nonnegative().standard(0.0),
+                                numbers("inertias", "kg m2", "in space: about the axes x, y, z through the centre, instead of inertia", 3).optional(),
+                                vector("centre", "m", "centre of mass; absent: the master node").optional()}};
   return s;
 }
 
 const Section& support_section() {
   static const Section s{"support", "unknowns that are held, of a node or of a group of the mesh",
                          Fields{text("node", "node; or give group").optional(),
-                                text("group", "group of the mesh: all its nodes").optional(), texts("fixed", "any of ux, uy, rz")}};
+                                text("group", "group of the mesh: all its nodes").optional(), texts("fixed", "any of ux, uy, rz; in space of ux, uy, uz, rx, ry, rz")}};
   return s;
 }
 
@@ -88,8 +95,8 @@ const Section& motion_section() {
   static const Section s{
       "motion", "a prescribed motion of one unknown of a node or of a group of the mesh: amplitude x function",
       Fields{text("name", "name").optional(), text("node", "node; or give group").optional(),
-             text("group", "group of the mesh: all its nodes").optional(), choice("direction", {"ux", "uy", "rz"}, "unknown that is moved"),
-             number("amplitude", "1", "m (or rad for rz) that the function multiplies").standard(1.0),
+             text("group", "group of the mesh: all its nodes").optional(), choice("direction", {"ux", "uy", "uz", "rx", "ry", "rz"}, "unknown that is moved"),
+             number("amplitude", "1", "m (or rad for rotations) that the function multiplies").standard(1.0),
              text("function", "name of the function of time")}};
   return s;
 }
@@ -97,7 +104,7 @@ const Section& motion_section() {
 const Section& ground_section() {
   static const Section s{"ground_acceleration",
                          "acceleration of the whole ground: inertia forces -M r a(t) in the frame that moves with it",
-                         Fields{text("name", "name").optional(), numbers("direction", "1", "direction [x, y]", 2),
+                         Fields{text("name", "name").optional(), vector("direction", "1", "direction"),
                                 number("amplitude", "m/s2", "acceleration that the function multiplies").standard(1.0),
                                 text("function", "name of the function of time")}};
   return s;
@@ -105,7 +112,7 @@ const Section& ground_section() {
 
 const Section& gravity_section() {
   static const Section s{"gravity", "weight of all masses, applied by the static stages",
-                         Fields{numbers("acceleration", "m/s2", "[x, y], for example [0, \"-9.81 m/s2\"]", 2)}};
+                         Fields{vector("acceleration", "m/s2", "for example [0, \"-9.81 m/s2\"]; in space [0, 0, \"-9.81 m/s2\"]")}};
   return s;
 }
 
@@ -118,12 +125,13 @@ const Section& function_section() {
 
 const Section& load_section() {
   static const Section s{"load",
-                         "a load on a node or on edges of the mesh; without a function it is constant and applied by the static stages",
+                         "a load on a node or on faces (edges) of the mesh; without a function it is constant and applied by the static stages",
                          Fields{text("name", "name; needed for a group").optional(), text("node", "node; or give group").optional(),
-                                text("group", "group of edges of the mesh").optional(),
-                                numbers("force", "N", "[x, y]; on a group: the whole force, spread evenly over its area", 2).optional(),
-                                numbers("traction", "Pa", "force per area of a group [x, y]", 2).optional(),
-                                number("moment", "N m", "moment on a node, counter-clockwise").optional(),
+                                text("group", "group of faces (edges) of the mesh").optional(),
+                                vector("force", "N", "force; on a group: the whole force, spread evenly over its area").optional(),
+                                vector("traction", "Pa", "force per area of a group").optional(),
+                                number("moment", "N m", "moment on a node, counter-clockwise (about z)").optional(),
+                                numbers("moments", "N m", "in space: moments on a node about x, y, z, instead of moment", 3).optional(),
                                 text("function", "name of the function of time that multiplies it; absent: constant").optional()}};
   return s;
 }
@@ -131,8 +139,12 @@ const Section& load_section() {
 const Section& initial_section() {
   static const Section s{
       "initial", "state of a node at the beginning of the first dynamic stage, added to that of the static stages",
-      Fields{text("node", "node"), numbers("displacement", "m", "[x, y]", 2).optional(), number("rotation", "rad", "rotation").optional(),
-             numbers("velocity", "m/s", "[x, y]", 2).optional(), number("angular_velocity", "rad/s", "angular velocity").optional()}};
+      Fields{text("node", "node"), vector("displacement", "m", "displacement").optional(),
+             number("rotation", "rad", "rotation, counter-clockwise (about z)").optional(),
+             numbers("rotations", "rad", "in space: about x, y, z, instead of rotation", 3).optional(),
+             vector("velocity", "m/s", "velocity").optional(),
+             number("angular_velocity", "rad/s", "angular velocity (about z)").optional(),
+             numbers("angular_velocities", "rad/s", "in space: about x, y, z, instead of angular_velocity", 3).optional()}};
   return s;
 }
 
@@ -154,13 +166,16 @@ const Section& footing_section() {
                          Fields{text("body", "node (the master of the footing) that carries the upper side"),
                                 number("width", "m", "width of the footing").positive(),
                                 number("thickness", "m", "length out of the plane").positive().standard(1.0),
-                                integer("points", "number of joint points").between(1, 100000),
+                                number("length", "m", "in space: length across the width").positive().optional(),
+                                integer("points", "number of joint points; in space along the width").between(1, 100000),
+                                integer("points_across", "in space: number of joint points along the length").between(1, 100000).optional(),
+                                number("azimuth", "rad", "in space: angle from the x axis to the width, about the normal").standard(0.0),
                                 choice("rule", {"nodal", "midpoint", "gauss"},
                                        "where they stand and what they weigh: trapezoidal rule with points on both edges, "
                                        "middle of equal strips, Gauss points")
                                     .standard("nodal"),
-                                numbers("offset", "m", "from the node to the middle of the footing's underside [x, y]", 2).optional(),
-                                numbers("normal", "1", "from the ground to the structure [x, y]; absent: [0, 1]", 2).optional(),
+                                vector("offset", "m", "from the node to the middle of the footing's underside").optional(),
+                                vector("normal", "1", "from the ground to the structure; absent: up").optional(),
                                 table("bed", bed_section(), "elastic ground under the joint; absent: fixed ground").optional()}};
   return s;
 }
@@ -169,7 +184,7 @@ const Section& pairs_section() {
   static const Section s{"pairs", "isolated pairs of nodes",
                          Fields{texts("upper", "nodes of the structure"),
                                 texts("lower", "nodes of the ground, in the same order; absent: fixed ground").optional(),
-                                numbers("normal", "1", "from the ground to the structure [x, y]; absent: [0, 1]", 2).optional(),
+                                vector("normal", "1", "from the ground to the structure; absent: up").optional(),
                                 number("area", "m2", "area of each pair").positive()}};
   return s;
 }
@@ -190,7 +205,7 @@ const Section& interface_section() {
       "interface", "a surface that may open: exactly one of footing, pairs, line and surface says where",
       Fields{text("name", "name"), table("footing", footing_section(), "under a rigid footing").optional(),
              table("pairs", pairs_section(), "isolated points").optional(), table("line", line_section(), "along a line").optional(),
-             table("surface", surface_section(), "along edges inside the mesh").optional(),
+             table("surface", surface_section(), "along faces (edges) inside the mesh").optional(),
              number("gap", "m", "initial gap of every point").standard(0.0),
              part("law", interface_behaviours, "what it does: a traction law or a cone (contact by constraint)")}};
   return s;
@@ -263,11 +278,12 @@ const Section& history_section() {
   static const Section s{
       "history", "a column of the output: of a node, of an interface, or of one of its points",
       Fields{text("name", "name of the column; absent: made from the rest").optional(), text("node", "node").optional(),
-             numbers("at", "m", "instead of node: the node nearest to this place [x, y]", 2).optional(),
+             vector("at", "m", "instead of node: the node nearest to this place").optional(),
              text("interface", "interface").optional(), integer("point", "point of the interface, from 1").between(1, 1000000).optional(),
              text("quantity",
                   "node: ux uy rz, vx vy vrz, ax ay arz; interface: axial shear moment rotation uplifted_ratio max_opening max_pressure; "
-                  "point: opening slip traction shear_traction mean_traction mean_shear_traction")}};
+                  "point: opening slip traction shear_traction mean_traction mean_shear_traction. In space: all three axes; also shear_1 "
+                  "shear_2 moment_1 moment_2 torsion rotation_1 rotation_2, and slip_1 slip_2 ... of a point")}};
   return s;
 }
 
@@ -344,8 +360,8 @@ const Section& case_section() {
       Fields{text("title", "title of the case"),
              text("description", "what it shows").optional(),
              flag("bonded", "run the model with bonded interfaces too, for comparison").standard(true),
-             named("nodes", node_section(), "nodes: name = [x, y]"),
-             table("mesh", mesh_section(), "plane mesh of solids").optional(),
+             named("nodes", node_section(), "nodes: name = [x, y], or [x, y, z]"),
+             table("mesh", mesh_section(), "mesh of solids, in the plane or in space").optional(),
              tables("solid", solid_section(), "materials of the mesh"),
              tables("absorbing", absorbing_section(), "absorbing boundaries of the mesh"),
              tables("beam", beam_section(), "beams"),

@@ -119,8 +119,8 @@ std::vector<int> nodes_of_sides(const Model& model, bool upper) {
     row += face.batch.normal();
     for (int i = 0; i < face.batch.points; ++i, ++row)
       for (SparseRows::InnerIterator entry(rows, row); entry; ++entry)
-        if (const Index dof = entry.col() % dofs_per_node; dof < 2)
-          integral[entry.col() / dofs_per_node] += face.area[i] * entry.value() * face.normal[static_cast<std::size_t>(i)][dof];
+        if (const int dof = model.space.index_of(entry.col()); dof < model.space.dimension)
+          integral[model.space.node_of(entry.col())] += face.area[i] * entry.value() * face.normal[static_cast<std::size_t>(i)][dof];
     row += face.rows() - face.batch.normal() - face.batch.points;
   }
   std::vector<int> nodes;
@@ -136,7 +136,7 @@ Sparse without_ground(const Sparse& held, const Model& model) {
   for (int column = 0, next = 0; column < static_cast<int>(held.cols()); ++column) {
     bool ground = true;
     for (Sparse::InnerIterator entry(held, column); entry; ++entry) {
-      const auto node = static_cast<std::size_t>(model.kept[static_cast<std::size_t>(entry.row())] / dofs_per_node);
+      const auto node = static_cast<std::size_t>(model.space.node_of(model.kept[static_cast<std::size_t>(entry.row())]));
       ground = ground && below[node] && !above[node];
     }
     if (!ground) chosen.emplace_back(column, next++, 1.0);

@@ -20,12 +20,12 @@ double median(std::vector<double> values) {
   return values.size() % 2 == 1 ? values[half] : (values[half - 1] + values[half]) / 2;
 }
 
-std::vector<std::size_t> compared_columns(const RunResult& result, const std::vector<std::string>& names, int top, int base) {
+std::vector<std::size_t> compared_columns(const RunResult& result, const std::vector<std::string>& names, int sway, int turn) {
   std::vector<std::size_t> chosen;
   for (std::size_t k = 0; k < result.columns.size(); ++k) {
     const Request& column = result.columns[k];
     const bool named = std::find(names.begin(), names.end(), column.name) != names.end();
-    const bool motion = column.kind == Request::Kind::displacement && (column.unknown == 3 * top + ux || column.unknown == 3 * base + rz);
+    const bool motion = column.kind == Request::Kind::displacement && (column.unknown == sway || column.unknown == turn);
     const bool standard = motion || (column.kind == Request::Kind::max_opening && column.interface == 0);
     if (names.empty() ? standard : named) chosen.push_back(k);
   }
@@ -49,11 +49,11 @@ std::string_view to_string(Agreement::Word word) {
 }
 
 std::vector<Agreement> agreement(const std::vector<RunResult>& results, const std::vector<RunSpec>& specs,
-                                 const std::vector<std::string>& columns, double band, int top, int base) {
+                                 const std::vector<std::string>& columns, double band, int sway, int turn) {
   std::map<std::string, std::map<std::size_t, std::vector<double>>> peaks;  // group, column: magnitudes
   for (std::size_t i = 0; i < results.size(); ++i)
     if (sound(results[i], specs[i]))
-      for (const std::size_t k : compared_columns(results[i], columns, top, base))
+      for (const std::size_t k : compared_columns(results[i], columns, sway, turn))
         peaks[results[i].group][k].push_back(std::abs(results[i].peaks[k].value));
   std::vector<Agreement> made(results.size());
   for (std::size_t i = 0; i < results.size(); ++i) {
@@ -62,7 +62,7 @@ std::vector<Agreement> agreement(const std::vector<RunResult>& results, const st
       made[i].word = Agreement::Word::failed;
       continue;
     }
-    for (const std::size_t k : compared_columns(results[i], columns, top, base)) {
+    for (const std::size_t k : compared_columns(results[i], columns, sway, turn)) {
       const std::vector<double>& sound_peaks = peaks[results[i].group][k];
       if (sound_peaks.empty()) continue;
       const double middle = median(sound_peaks);
@@ -78,9 +78,9 @@ std::vector<Agreement> agreement(const std::vector<RunResult>& results, const st
   return made;
 }
 
-std::vector<std::string> compared_names(const RunResult& result, const std::vector<std::string>& columns, int top, int base) {
+std::vector<std::string> compared_names(const RunResult& result, const std::vector<std::string>& columns, int sway, int turn) {
   std::vector<std::string> names;
-  for (const std::size_t k : compared_columns(result, columns, top, base)) names.push_back(result.columns[k].name);
+  for (const std::size_t k : compared_columns(result, columns, sway, turn)) names.push_back(result.columns[k].name);
   return names;
 }
 

@@ -15,13 +15,13 @@ struct Agreement {
 std::string_view to_string(Agreement::Word);
 
 /// Compares the peaks of all sound runs of each group with their median. Sound: completed, not expected to fail, not the bonded model.
-/// `columns`: names of the compared columns; empty: motion of the top, rotation of the base and largest
+/// `columns`: names of the compared columns; empty: motion `sway` (full unknown) of the top, rotation `turn` of the base and largest
 /// opening of the first interface.
 std::vector<Agreement> agreement(const std::vector<RunResult>& results, const std::vector<RunSpec>& specs,
-                                 const std::vector<std::string>& columns, double band, int top, int base);
+                                 const std::vector<std::string>& columns, double band, int sway, int turn);
 
 /// Names of the compared columns, as agreement() chooses them.
-std::vector<std::string> compared_names(const RunResult& result, const std::vector<std::string>& columns, int top, int base);
+std::vector<std::string> compared_names(const RunResult& result, const std::vector<std::string>& columns, int sway, int turn);
 
 /// One row of the stiffness sweep: energy created relative to the energy put in.
 struct SweepRow {

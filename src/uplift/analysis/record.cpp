@@ -7,6 +7,40 @@
 
 namespace uplift {
 
+namespace {
+
+/// Weights whose sums with the openings are the slopes of their best plane, c + theta . (arm x n), for arms in the axes of the mean normal.
+std::array<std::vector<double>, 2> slope_weights(const Interface& interface) {
+  const Vec3 normal = mean_normal(interface);
+  const int points = interface.batch.points, slopes = interface.space.dimension - 1;
+  Matrix shape(points, slopes);  // opening per slope
+  for (int i = 0; i < points; ++i) {
+    const Vec3 arm = interface.position[static_cast<std::size_t>(i)] - interface.reference;
+    for (int k = 0; k < slopes; ++k) {
+      const Vec3 axis = slopes == 1 ? Vec3(Vec3::UnitZ()) : local_axis(interface.space, normal, k);
+      shape(i, k) = cross(axis, arm).dot(normal);
+    }
+  }
+  const Vector mean = shape.transpose() * interface.area / interface.area.sum();
+  shape.rowwise() -= mean.transpose();
+  const Matrix inertia = shape.transpose() * interface.area.asDiagonal() * shape;
+  Matrix inverse = Matrix::Zero(slopes, slopes);
+  const double det = slopes == 1 ? inertia(0, 0) : inertia(0, 0) * inertia(1, 1) - inertia(0, 1) * inertia(1, 0);
+  const double size = inertia.trace();
+  if (slopes == 1 && size > 0) inverse(0, 0) = 1 / inertia(0, 0);
+  if (slopes == 2 && det > 1e-12 * size * size) inverse << inertia(1, 1) / det, -inertia(0, 1) / det, -inertia(1, 0) / det, inertia(0, 0) / det;
+  const Matrix weights = interface.area.asDiagonal() * shape * inverse;
+  std::array<std::vector<double>, 2> made;
+  for (int k = 0; k < slopes; ++k) made[static_cast<std::size_t>(k)].assign(weights.col(k).begin(), weights.col(k).end());
+  return made;
+}
+
+bool flat(const Interface& interface) {
+  return std::ranges::all_of(interface.normal, [&](const Vec3& n) { return (n - interface.normal.front()).norm() < 1e-9; });
+}
+
+}  // namespace
+
 InterfaceViewer::InterfaceViewer(const Model& model, double gap_tolerance) : tolerance_(gap_tolerance) {
   int first = 0;
   for (const Interface& interface : model.interfaces) {
@@ -14,22 +48,18 @@ InterfaceViewer::InterfaceViewer(const Model& model, double gap_tolerance) : tol
     layout.first = first;
     layout.points = interface.batch.points;
     layout.components = interface.batch.components;
-    double mean = 0;
+    layout.space = interface.space;
     for (int i = 0; i < layout.points; ++i) {
-      const std::size_t p = static_cast<std::size_t>(i);
-      const Vec2 normal = interface.normal[p], tangent(normal.y(), -normal.x()), arm = interface.position[p] - interface.reference;
+      const auto p = static_cast<std::size_t>(i);
+      const Vec3 arm = interface.position[p] - interface.reference;
       layout.area.push_back(interface.area[i]);
       layout.inverse_area.push_back(1 / interface.area[i]);
-      layout.along.push_back(arm.dot(tangent));
-      layout.across.push_back(arm.dot(normal));
+      layout.along.push_back(arm.dot(local_axis(interface.space, interface.normal[p], 0)));
+      layout.across.push_back(arm.dot(interface.normal[p]));
       layout.total += interface.area[i];
-      mean += interface.area[i] * layout.along.back();
     }
-    mean /= layout.total;
-    double inertia = 0;
-    for (std::size_t i = 0; i < layout.area.size(); ++i) inertia += layout.area[i] * std::pow(layout.along[i] - mean, 2);
-    for (std::size_t i = 0; i < layout.area.size(); ++i)
-      layout.slope_weight.push_back(inertia > 0 ? layout.area[i] * (layout.along[i] - mean) / inertia : 0);
+    if (interface.space.dimension == 3 || !flat(interface)) layout.resultant_rows = resultant_rows(interface);
+    layout.slope_weight = slope_weights(interface);
     layouts_.push_back(std::move(layout));
     first += interface.rows();
   }
@@ -55,20 +85,32 @@ void InterfaceViewer::look(const Vector& opening, const Vector& force, std::vect
       pressure = pressure > here ? pressure : here;
     }
     double shear = 0;
+    views[k] = {{}, open / layout.total, std::max(widest, 0.0), least, std::max(pressure, 0.0)};
+    if (layout.resultant_rows.size() > 0) {
+      std::array<double, 6> sums{};
+      for (Index row = 0; row < layout.resultant_rows.cols(); ++row)
+        for (Index c = 0; c < layout.resultant_rows.rows(); ++c)
+          sums[static_cast<std::size_t>(c)] += layout.resultant_rows(c, row) * force[layout.first + row];
+      views[k].resultant = resultant_of(layout.space, sums.data());
+      continue;
+    }
     if (layout.components > 1) {
       const double* t = force.data() + layout.first;
       const double* across = layout.across.data();
 #pragma omp simd reduction(+ : shear, moment)
       for (int i = 0; i < n; ++i) shear += t[i], moment -= across[i] * t[i];
     }
-    views[k] = {axial, shear, moment, open / layout.total, std::max(widest, 0.0), least, std::max(pressure, 0.0)};
+    views[k].resultant = {.axial = axial, .shear = shear, .moment = moment};
   }
 }
 
-double InterfaceViewer::rotation(int interface, const Vector& opening) const {
+std::array<double, 2> InterfaceViewer::rotation(int interface, const Vector& opening) const {
   const Layout& layout = layouts_[static_cast<std::size_t>(interface)];
   const double* gap = opening.data() + layout.first + (layout.components - 1) * layout.points;
-  return small::dot(layout.points, layout.slope_weight.data(), gap);
+  std::array<double, 2> slope{};
+  for (std::size_t k = 0; k < 2; ++k)
+    if (!layout.slope_weight[k].empty()) slope[k] = small::dot(layout.points, layout.slope_weight[k].data(), gap);
+  return slope;
 }
 
 Recorder::Recorder(const Model& model, const RunPlan& plan, const InterfaceViewer& viewer, std::size_t expected_rows, RunResult& result)
@@ -128,13 +170,29 @@ double Recorder::value(std::size_t column, const Stepper& stepper, const std::ve
     case What::mean_traction:
       return source.row >= 0 ? state.mean_force[source.row] * source.inverse_area : 0;
     case What::axial:
-      return view().axial;
+      return view().resultant.axial;
     case What::shear:
-      return view().shear;
+      return view().resultant.shear;
     case What::moment:
-      return view().moment;
-    case What::rotation:
-      return viewer_.rotation(request.interface, state.opening);
+      return view().resultant.moment;
+    case What::rotation: {
+      const std::array<double, 2> slope = viewer_.rotation(request.interface, state.opening);
+      return model_.space.dimension == 2 ? slope[0] : std::hypot(slope[0], slope[1]);
+    }
+    case What::shear_1:
+      return view().resultant.shear_1;
+    case What::shear_2:
+      return view().resultant.shear_2;
+    case What::moment_1:
+      return view().resultant.moment_1;
+    case What::moment_2:
+      return view().resultant.moment_2;
+    case What::torsion:
+      return view().resultant.torsion;
+    case What::rotation_1:
+      return viewer_.rotation(request.interface, state.opening)[0];
+    case What::rotation_2:
+      return viewer_.rotation(request.interface, state.opening)[1];
     case What::uplifted_ratio:
       return view().open_area;
     case What::max_opening:

@@ -1,4 +1,5 @@
 #pragma once
+#include <array>
 #include <utility>
 #include <vector>
 
@@ -9,8 +10,7 @@ namespace uplift {
 
 /// What one interface looks like at one instant, from one pass over its points.
 struct InterfaceView {
-  double axial = 0, shear = 0,
-         moment = 0;  // N, N, N m: work-conjugate to opening, sliding and rotation of the upper side (tension, +t, counter-clockwise > 0)
+  Resultant resultant;
   double open_area = 0;                       // share of the area
   double max_opening = 0, least_opening = 0;  // m
   double max_pressure = 0;                    // Pa
@@ -22,15 +22,17 @@ class InterfaceViewer {
   InterfaceViewer(const Model& model, double gap_tolerance);
   /// `force` is the end-of-step force per row [N].
   void look(const Vector& opening, const Vector& force, std::vector<InterfaceView>& views) const;
-  /// Slope of the plane that fits the normal opening best (area-weighted): relative rotation of the upper side [rad], counter-clockwise >
-  /// 0.
-  double rotation(int interface, const Vector& opening) const;
+  /// Slope of the plane that fits the normal opening best (area-weighted): relative rotation of the upper side [rad]. In the plane the first
+  /// number, counter-clockwise > 0; in space about the two tangents of the mean normal.
+  std::array<double, 2> rotation(int interface, const Vector& opening) const;
 
  private:
   struct Layout {
     int first = 0, points = 0, components = 0;
     std::vector<double> area, inverse_area, along, across;  // along t and along n from the reference point [m]
-    std::vector<double> slope_weight;
+    std::array<std::vector<double>, 2> slope_weight;
+    Space space;
+    Matrix resultant_rows;  // in space, and where the normals differ; else empty: the sums are then taken directly
     double total = 0;
   };
   std::vector<Layout> layouts_;

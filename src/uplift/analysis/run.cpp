@@ -166,8 +166,8 @@ void Runner::execute() {
   remember_gaps();
   initial_forces();
   for (int column = 0; column < b_.outerSize(); ++column) {
-    const std::string& name = model_.unknown_names[static_cast<std::size_t>(column)];
-    if (Sparse::InnerIterator(b_, column) && name.ends_with(".rz")) rotations_.push_back(column);
+    const int unknown = model_.kept[static_cast<std::size_t>(column)];
+    if (Sparse::InnerIterator(b_, column) && model_.space.is_rotation(unknown)) rotations_.push_back(column);
   }
 
   bool moving = false;
@@ -275,8 +275,8 @@ void Runner::note_views(double step) {
     };
     note(result_.max_uplifted_ratio, view.open_area);
     note(result_.max_opening, view.max_opening);
-    note(result_.max_base_moment, view.moment);
-    note(result_.max_base_shear, view.shear);
+    note(result_.max_base_moment, view.resultant.moment);
+    note(result_.max_base_shear, view.resultant.shear);
     note(result_.max_pressure, view.max_pressure);
     result_.max_penetration = std::max(result_.max_penetration, -view.least_opening);
     open = open || view.open_area > 0;

@@ -40,6 +40,13 @@ struct Request {
     shear,
     moment,
     rotation,
+    shear_1,
+    shear_2,
+    moment_1,
+    moment_2,
+    torsion,
+    rotation_1,
+    rotation_2,  // space only
     uplifted_ratio,
     max_opening,
     max_pressure,  // interface
@@ -53,7 +60,7 @@ struct Request {
     residual  // energies [J]
   } kind = Kind::displacement;
   std::string name, unit;
-  int unknown = 0;                              // full unknown: 3 * node + dof
+  int unknown = 0;                              // full unknown
   int interface = 0, point = 0, component = 0;  // `rotation` of an interface: slope of the opening's best plane [rad]
 };
 

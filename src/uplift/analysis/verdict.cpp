@@ -85,8 +85,8 @@ void say_beside_bonded(const Built& built, const RunResult& run, const RunResult
     text += fmt::format("Beside the bonded base, the largest base moment is {} ({} instead of {})",
                         beside(run.max_base_moment.value, bonded.max_base_moment.value), spoken(std::abs(run.max_base_moment.value), "N m"),
                         spoken(std::abs(bonded.max_base_moment.value), "N m"));
-  const Peak* top = built.top >= 0 ? find_peak(run, Column::displacement, 3 * built.top + ux) : nullptr;
-  const Peak* top_bonded = built.top >= 0 ? find_peak(bonded, Column::displacement, 3 * built.top + ux) : nullptr;
+  const Peak* top = built.top >= 0 ? find_peak(run, Column::displacement, built.top_sway()) : nullptr;
+  const Peak* top_bonded = built.top >= 0 ? find_peak(bonded, Column::displacement, built.top_sway()) : nullptr;
   if (top && top_bonded && top_bonded->value != 0) {
     text += fmt::format("{} the largest motion of {} is {} ({} instead of {})", text.empty() ? "Beside the bonded base," : ", and",
                         built.model.nodes[static_cast<std::size_t>(built.top)].name, beside(top->value, top_bonded->value),

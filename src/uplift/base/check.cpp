@@ -266,7 +266,7 @@ class Checker {
 
   static std::vector<double> numbers_of(const Raw& raw, const Field& field) {
     const RawList& list = list_of(raw, field);
-    if (field.size > 0 && static_cast<int>(list.size()) != field.size)
+    if (field.size > 0 && (static_cast<int>(list.size()) < field.size || static_cast<int>(list.size()) > field.most_size))
       refuse(raw, field, list.empty() ? "an empty list" : std::to_string(list.size()) + (list.size() == 1 ? " number" : " numbers"));
     Field one = field;
     one.kind = Kind::number;

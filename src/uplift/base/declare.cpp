@@ -146,7 +146,13 @@ Field choice(std::string_view name, std::vector<std::string_view> choices, std::
 Field numbers(std::string_view name, std::string_view unit, std::string_view meaning, int size) {
   Field field = make(name, Kind::numbers, meaning);
   field.unit = unit;
-  field.size = size;
+  field.size = field.most_size = size;
+  return field;
+}
+
+Field vector(std::string_view name, std::string_view unit, std::string_view meaning) {
+  Field field = numbers(name, unit, meaning, 2);
+  field.most_size = 3;
   return field;
 }
 
@@ -193,6 +199,10 @@ std::string bounds_text(const Field& field) {
   return out;
 }
 
+std::string size_text(const Field& field) {
+  return std::to_string(field.size) + (field.most_size > field.size ? " or " + std::to_string(field.most_size) : "");
+}
+
 std::string wanted_text(const Field& field) {
   const std::string bounds = bounds_text(field), bounded = bounds.empty() ? "" : " " + bounds;
   switch (field.kind) {
@@ -209,7 +219,7 @@ std::string wanted_text(const Field& field) {
     case Kind::choice:
       return one_of(field.choices);
     case Kind::numbers: {
-      const std::string count = field.size > 0 ? std::to_string(field.size) + (field.size == 1 ? " number" : " numbers") : "numbers";
+      const std::string count = (field.size > 0 ? size_text(field) + " " : "") + (field.most_size == 1 ? "number" : "numbers");
       const std::string unit = field.unit.empty() || field.unit == "1" || !bounds.empty() ? "" : " [" + std::string(field.unit) + "]";
       return "a list of " + count + unit + (bounds.empty() ? "" : ", each" + bounded);
     }

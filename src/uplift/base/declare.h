@@ -58,7 +58,7 @@ struct Field {
   std::vector<std::string_view> choices;                  // Kind::choice
   const Section* section = nullptr;                       // Kind::table, tables, named
   std::span<const PartInfo* const> (*parts)() = nullptr;  // Kind::part: the catalog
-  int size = 0;                                           // Kind::numbers: exact length, 0 = any
+  int size = 0, most_size = 0;                            // Kind::numbers: length from, to; 0 = any
   std::vector<std::string_view> words = {};               // Kind::number: words taken instead of a number (e.g. "rigid")
 
   // Modifiers, so that a declaration reads as one line: number("K_n", "Pa/m", "normal stiffness").positive()
@@ -80,6 +80,7 @@ Field flag(std::string_view name, std::string_view meaning);
 Field text(std::string_view name, std::string_view meaning);
 Field choice(std::string_view name, std::vector<std::string_view> choices, std::string_view meaning);
 Field numbers(std::string_view name, std::string_view unit, std::string_view meaning, int size = 0);
+Field vector(std::string_view name, std::string_view unit, std::string_view meaning);  // 2 numbers in plane models, 3 in space
 Field texts(std::string_view name, std::string_view meaning);
 // [name]. An absent table takes the defaults of its keys, and is missing when one of them has none; with optional() it stays absent.
 Field table(std::string_view name, const Section& section, std::string_view meaning);
@@ -162,6 +163,8 @@ std::string to_json_schema(const Section& section);
 
 /// What a field takes, for messages and reference pages: "a pressure > 0 Pa", "an integer from 1 to 10", "\"path\" or \"end\"".
 std::string wanted_text(const Field& field);
+/// How many numbers a list takes: "2", "2 or 3".
+std::string size_text(const Field& field);
 /// Only the bounds, with the unit: "> 0 Pa", "from 0 to 0.5"; empty when there are none.
 std::string bounds_text(const Field& field);
 /// The default as it would be written in a file: "0.3", "true", "\"path\""; empty when there is none.

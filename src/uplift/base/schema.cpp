@@ -33,7 +33,10 @@ Json entries_of(const Field& field) {
   Field one = field;
   one.kind = Kind::number;
   Json schema{{"type", "array"}, {"items", number_of(one)}};
-  if (field.size > 0) schema["minItems"] = schema["maxItems"] = field.size;
+  if (field.size > 0) {
+    schema["minItems"] = field.size;
+    schema["maxItems"] = field.most_size;
+  }
   return schema;
 }
 

@@ -27,8 +27,8 @@ void print_runs(const Results& results, const ComparisonSummary& compared) {
       group = run.group;
       if (!group.empty()) say((i > 0 ? "\n" : "") + group);
     }
-    const int top = results.built[i].top;
-    const Peak* motion = top >= 0 ? find_peak(run, Request::Kind::displacement, 3 * top + ux) : nullptr;
+    const int sway = results.built[i].top_sway();
+    const Peak* motion = sway >= 0 ? find_peak(run, Request::Kind::displacement, sway) : nullptr;
     const Agreement& agreement = compared.agreement[i];
     const bool counted = agreement.word == Agreement::Word::agrees || agreement.word == Agreement::Word::differs;
     const bool bonded = results.specs[i].bonded;  // it stretches instead of opening
@@ -77,8 +77,8 @@ int compare(const Options& options) {
   compared.band = compare ? compare->number("band") : 0.02;
   const std::vector<std::string> columns = compare ? compare->texts("agree_on") : std::vector<std::string>{};
   const Built& first = results.built.front();
-  compared.columns = compared_names(results.runs.front(), columns, first.top, first.base);
-  compared.agreement = agreement(results.runs, results.specs, columns, compared.band, first.top, first.base);
+  compared.columns = compared_names(results.runs.front(), columns, first.top_sway(), first.base_turn());
+  compared.agreement = agreement(results.runs, results.specs, columns, compared.band, first.top_sway(), first.base_turn());
   compared.sweep = sweep_table(swept.specs, swept.runs);
   const RunResult* bonded = nullptr;
   for (std::size_t i = 0; i < results.runs.size(); ++i)

@@ -75,7 +75,7 @@ std::string range_of(const Field& field) {
     case Kind::texts:
       return "list of texts";
     case Kind::numbers:
-      return field.size > 0 ? fmt::format("list of {}", field.size) : "list";
+      return field.size > 0 ? "list of " + size_text(field) : "list";
     case Kind::table:
       return "[table]";
     case Kind::tables:

@@ -13,7 +13,7 @@ namespace {
 /// Share of the model's mass that moves with a mode in a direction: (phi^T M r)^2 / (r^T M r), phi^T M phi = 1.
 double share(const Model& model, const Vector& full_shape, Dof direction) {
   Vector along = Vector::Zero(model.full_unknowns());
-  for (Index node = 0; node < static_cast<Index>(model.nodes.size()); ++node) along[3 * node + direction] = 1;
+  for (Index node = 0; node < static_cast<Index>(model.nodes.size()); ++node) along[model.at(static_cast<int>(node), direction)] = 1;
   const Vector inertia = model.assembly.mass * along;
   const double total = along.dot(inertia), taken = full_shape.dot(inertia);
   return total > 0 ? taken * taken / total : 0;
@@ -23,12 +23,14 @@ void print_modes(const Model& model, const std::vector<Mode>& found, std::string
   say(title);
   if (found.empty()) say("  none: a massless unknown has no stiffness");
   std::vector<std::vector<std::string>> rows{{"mode", "frequency [Hz]", "period [s]", "mass in x [%]", "mass in y [%]"}};
+  if (model.space.dimension == 3) rows.front().emplace_back("mass in z [%]");
   for (std::size_t i = 0; i < found.size(); ++i) {
     const Vector shape = model.reduction * found[i].shape;
     const double frequency = found[i].frequency;
     rows.push_back({fmt::format("{}", i + 1), fmt::format("{:.6g}", frequency),
                     frequency > 0 ? fmt::format("{:.6g}", 1 / frequency) : "rigid motion",
                     fmt::format("{:.1f}", 100 * share(model, shape, ux)), fmt::format("{:.1f}", 100 * share(model, shape, uy))});
+    if (model.space.dimension == 3) rows.back().push_back(fmt::format("{:.1f}", 100 * share(model, shape, uz)));
   }
   if (rows.size() > 1) print_table(rows);
 }
@@ -41,9 +43,10 @@ void write_modes(JsonWriter& json, const Model& model, const std::vector<Mode>& 
         .member("frequency", mode.frequency)
         .member("mass_share_x", share(model, shape, ux))
         .member("mass_share_y", share(model, shape, uy));
+    if (model.space.dimension == 3) json.member("mass_share_z", share(model, shape, uz));
     json.key("shape").begin_object();
     for (std::size_t node = 0; node < model.nodes.size(); ++node)
-      json.key(model.nodes[node].name).numbers(std::span<const double>(shape.data() + 3 * node, 3));
+      json.key(model.nodes[node].name).numbers(std::span<const double>(shape.data() + model.space.unknowns() * static_cast<int>(node), static_cast<std::size_t>(model.space.unknowns())));
     json.end_object().end_object();
   }
   json.end_array();

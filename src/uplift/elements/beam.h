@@ -33,6 +33,7 @@ class Beam : public Element {
   /// Positions in m; they must not coincide.
   Beam(int a, int b, Vec2 position_a, Vec2 position_b, BeamSection section);
   std::span<const int> nodes() const override { return nodes_; }
+  int unknowns_per_node() const override { return 3; }
   void form(Local local) const override;
   double axial_force(const Vector& displacement) const override;
   void geometric(double axial, Matrix& stiffness) const override;

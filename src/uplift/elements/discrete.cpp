@@ -10,11 +10,15 @@ namespace {
 Matrix connect(const Connection& connection, double value) {
   const auto ends = static_cast<int>(connection.nodes.size());
   assert(ends == 1 || ends == 2);
-  Vec3 axis = Vec3::UnitZ();
-  if (connection.direction) axis << connection.direction->normalized(), 0;
-  Vector row = Vector::Zero(dofs_per_node * ends);
-  row.head<3>() = -axis;
-  if (ends == 2) row.tail<3>() = axis;
+  const Space space = connection.space;
+  const bool rotational = connection.rotational || !connection.direction;
+  const Vec3 direction = connection.direction ? connection.direction->normalized() : Vec3(Vec3::UnitZ());
+  Vector axis = Vector::Zero(space.unknowns());
+  for (int i = 0; i < space.unknowns(); ++i)
+    if (space.is_rotation(i) == rotational) axis[i] = space.axis(i).dot(direction);
+  Vector row(ends * axis.size());
+  row.head(axis.size()) = -axis;
+  if (ends == 2) row.tail(axis.size()) = axis;
   return value * row * row.transpose();
 }
 
@@ -27,18 +31,26 @@ void form_none(Matrix* wanted, Index size) {
 
 }  // namespace
 
-PointMass::PointMass(int node, double mass, double inertia, Vec2 offset) : node_(node), mass_(mass), inertia_(inertia), offset_(offset) {}
+PointMass::PointMass(int node, double mass, double inertia, Place offset) : PointMass({2}, node, mass, {0, 0, inertia}, offset) {}
+
+PointMass::PointMass(Space space, int node, double mass, const Vec3& inertia, const Place& offset)
+    : space_(space), node_(node), mass_(mass), inertia_(inertia), offset_(offset) {}
 
 void PointMass::form(Local local) const {
-  form_none(local.stiffness, 3);
-  form_none(local.damping, 3);
+  const int n = space_.unknowns();
+  form_none(local.stiffness, n);
+  form_none(local.damping, n);
   if (!local.mass) return;
-  const double m = mass_, x = offset_.x(), y = offset_.y();
-  local.mass->resize(3, 3);
-  *local.mass << m, 0, -m * y, 0, m, m * x, -m * y, m * x, inertia_ + m * (x * x + y * y);
+  local.mass->resize(n, n);
+  for (int i = 0; i < n; ++i)
+    for (int j = 0; j < n; ++j) {
+      (*local.mass)(i, j) = mass_ * space_.motion(i, offset_).dot(space_.motion(j, offset_));
+      if (i == j && space_.is_rotation(i)) (*local.mass)(i, j) += inertia_.dot(space_.axis(i));
+    }
 }
 
-Spring::Spring(Connection connection, double stiffness) : nodes_(connection.nodes), stiffness_(connect(connection, stiffness)) {}
+Spring::Spring(Connection connection, double stiffness) 
+    : space_(connection.space), nodes_(connection.nodes), stiffness_(connect(connection, stiffness)) {}
 
 void Spring::form(Local local) const {
   form_one(local.stiffness, stiffness_);
@@ -46,7 +58,8 @@ void Spring::form(Local local) const {
   form_none(local.damping, stiffness_.rows());
 }
 
-Dashpot::Dashpot(Connection connection, double damping) : nodes_(connection.nodes), damping_(connect(connection, damping)) {}
+Dashpot::Dashpot(Connection connection, double damping) 
+    : space_(connection.space), nodes_(connection.nodes), damping_(connect(connection, damping)) {}
 
 void Dashpot::form(Local local) const {
   form_none(local.stiffness, damping_.rows());

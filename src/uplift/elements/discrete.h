@@ -5,27 +5,34 @@
 
 namespace uplift {
 
-/// Mass on a node, its centre rigidly offset by c = (cx, cy):
-///   M = [m, 0, -m cy; 0, m, m cx; -m cy, m cx, J + m |c|^2],   J about the centre.
+/// Mass on a node, its centre rigidly offset by c. In the plane
+///   M = [m, 0, -m cy; 0, m, m cx; -m cy, m cx, J + m |c|^2],   J about the centre;
+/// in space J is a diagonal tensor in the global axes.
 class PointMass : public Element {
  public:
-  /// mass [kg] >= 0, inertia about the centre [kg m2] >= 0, offset of the centre from the node [m].
-  PointMass(int node, double mass, double inertia = 0, Vec2 offset = Vec2::Zero());
+  /// Plane: mass [kg] >= 0, inertia about the centre [kg m2] >= 0, offset of the centre from the node [m].
+  PointMass(int node, double mass, double inertia = 0, Place offset = {});
+  /// Inertia about the three axes; in the plane only the last one counts.
+  PointMass(Space space, int node, double mass, const Vec3& inertia, const Place& offset = {});
   std::span<const int> nodes() const override { return {&node_, 1}; }
+  int unknowns_per_node() const override { return space_.unknowns(); }
   void form(Local local) const override;
-  Vec2 first_moment() const override { return mass_ * offset_; }
+  Vec3 first_moment() const override { return mass_ * offset_; }
 
  private:
+  Space space_;
   int node_;
-  double mass_, inertia_;
-  Vec2 offset_;
+  double mass_;
+  Vec3 inertia_, offset_;
 };
 
-/// What a spring or dashpot connects: one node to fixed ground, or two nodes; along a fixed direction, or the rotations.
+/// What a spring or dashpot connects: one node to fixed ground, or two nodes; their translations or rotations along a fixed direction.
 /// Its force is value * d . (u_b - u_a), the direction d does not turn with the nodes.
 struct Connection {
-  std::vector<int> nodes;         // 1 (to ground) or 2
-  std::optional<Vec2> direction;  // unit vector is made; absent: rotational
+  std::vector<int> nodes;          // 1 (to ground) or 2
+  std::optional<Place> direction;  // unit vector is made; absent: rotations about z
+  Space space{};
+  bool rotational = false;  // of the direction: rotations about it (space only)
 };
 
 /// Linear spring, stiffness in N/m or N m/rad.
@@ -33,9 +40,11 @@ class Spring : public Element {
  public:
   Spring(Connection connection, double stiffness);
   std::span<const int> nodes() const override { return nodes_; }
+  int unknowns_per_node() const override { return space_.unknowns(); }
   void form(Local local) const override;
 
  private:
+  Space space_;
   std::vector<int> nodes_;
   Matrix stiffness_;
 };
@@ -45,9 +54,11 @@ class Dashpot : public Element {
  public:
   Dashpot(Connection connection, double damping);
   std::span<const int> nodes() const override { return nodes_; }
+  int unknowns_per_node() const override { return space_.unknowns(); }
   void form(Local local) const override;
 
  private:
+  Space space_;
   std::vector<int> nodes_;
   Matrix damping_;
 };

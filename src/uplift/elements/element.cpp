@@ -2,17 +2,22 @@
 
 namespace uplift {
 
+std::string_view to_string(Dof dof) {
+  constexpr std::string_view names[] = {"ux", "uy", "uz", "rx", "ry", "rz"};
+  return names[static_cast<int>(dof)];
+}
+
 double Element::axial_force(const Vector&) const {
   return 0;
 }
 
 void Element::geometric(double, Matrix& stiffness) const {
-  const auto n = static_cast<Index>(dofs_per_node * nodes().size());
+  const auto n = unknowns_per_node() * static_cast<Index>(nodes().size());
   stiffness.setZero(n, n);
 }
 
-Vec2 Element::first_moment() const {
-  return Vec2::Zero();
+Vec3 Element::first_moment() const {
+  return Vec3::Zero();
 }
 
 }  // namespace uplift

@@ -3,12 +3,9 @@
 #include <span>
 #include <vector>
 
-#include "uplift/math/linalg.h"
+#include "uplift/elements/space.h"
 
-// Elements of the plane: every node has the three unknowns (ux [m], uy [m], rz [rad], counter-clockwise), in this order.
 namespace uplift {
-
-inline constexpr int dofs_per_node = 3;
 
 /// What an element is asked for, in global axes; null is not wanted. Sizes: unknowns per node x number of nodes.
 struct Local {
@@ -22,8 +19,8 @@ class Element {
   virtual ~Element() = default;
   /// Indices of the element's nodes.
   virtual std::span<const int> nodes() const = 0;
-  /// How many unknowns of each node the element knows: the first ones of (ux, uy, rz). A solid knows the displacements only.
-  virtual int unknowns_per_node() const { return dofs_per_node; }
+  /// How many unknowns of each node the element knows: the first ones of those in elements/space.h. A solid knows the translations only.
+  virtual int unknowns_per_node() const = 0;
   /// Fills (overwrites) what is wanted.
   virtual void form(Local local) const = 0;
   /// Axial force [N], tension > 0, of the state with the given end displacements; zero for elements without an axis and for inextensible
@@ -32,7 +29,7 @@ class Element {
   /// Geometric stiffness for a given axial force [N], tension > 0 (P-Delta); zero by default.
   virtual void geometric(double axial, Matrix& stiffness) const;
   /// Mass times the offset of its centre from the first node [kg m]: gravity acts there (P-Delta of an offset mass).
-  virtual Vec2 first_moment() const;
+  virtual Vec3 first_moment() const;
   /// Stiffness-proportional damping factor of this part [s]: its damping matrix gets beta * stiffness.
   double beta = 0;
 };

@@ -12,10 +12,6 @@ constexpr std::array<int, 6> rows_xy{0, 1, 5, 6, 7, 11};       // of the plane b
 constexpr std::array<int, 6> rows_xz{0, 2, 4, 6, 8, 10};       // u_x, u_z, -r_y
 constexpr std::array<double, 6> signs_xz{0, 1, -1, 0, 1, -1};  // the axial part is taken once, from x-y
 
-Vec3 cross(const Vec3& a, const Vec3& b) {
-  return {a.y() * b.z() - a.z() * b.y(), a.z() * b.x() - a.x() * b.z(), a.x() * b.y() - a.y() * b.x()};
-}
-
 Beam plane_beam(double length, double bending, double shear, double rotary, std::optional<double> axial, const SpaceBeamSection& section) {
   const BeamSection plane{.bending = bending,
                           .axial = axial,

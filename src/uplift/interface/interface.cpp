@@ -1,24 +1,55 @@
 #include "uplift/interface/interface.h"
 
+#include <cmath>
+
 namespace uplift {
 
-Resultant resultant(const Interface& interface, const double* force) {
-  const int points = interface.batch.points, normal_row = interface.batch.normal();
-  Vec2 total = Vec2::Zero(), mean_normal = Vec2::Zero();
-  double moment = 0;
+Vec3 local_axis(Space space, const Vec3& normal, int axis) {
+  if (axis == space.dimension - 1) return normal;
+  if (space.dimension == 2) return {normal.y(), -normal.x(), 0};
+  const Vec3 along = std::abs(normal.x()) < 0.9 ? Vec3::UnitX() : Vec3::UnitY();
+  const Vec3 first = (along - along.dot(normal) * normal).normalized();
+  return axis == 0 ? first : cross(normal, first);
+}
+
+Vec3 mean_normal(const Interface& interface) {
+  Vec3 sum = Vec3::Zero();
+  for (int i = 0; i < interface.batch.points; ++i) sum += interface.area[i] * interface.normal[static_cast<std::size_t>(i)];
+  return sum.norm() > 1e-9 * interface.area.sum() ? Vec3(sum.normalized()) : Vec3(interface.normal.front());
+}
+
+Matrix resultant_rows(const Interface& interface) {
+  const Space space = interface.space;
+  const int points = interface.batch.points, components = interface.batch.components, d = space.dimension;
+  const Vec3 mean = mean_normal(interface);
+  Matrix rows(space.unknowns(), interface.rows());
   for (int i = 0; i < points; ++i) {
-    const Vec2& n = interface.normal[i];
-    Vec2 p = force[normal_row + i] * n;
-    if (interface.batch.components == 2) p += force[i] * tangent(n);
-    const Vec2 arm = interface.position[i] - interface.reference;
-    total += p;
-    moment += arm.x() * p.y() - arm.y() * p.x();
-    mean_normal += interface.area[i] * n;
+    const Vec3 arm = interface.position[static_cast<std::size_t>(i)] - interface.reference;
+    for (int c = 0; c < components; ++c) {
+      const Vec3 force = component_axis(space, interface.normal[static_cast<std::size_t>(i)], c, components), moment = cross(arm, force);
+      auto column = rows.col(c * points + i);
+      for (int k = 0; k < d; ++k) column[k] = force.dot(local_axis(space, mean, k));
+      for (int k = 0; k < space.rotations(); ++k) column[d + k] = d == 2 ? moment.z() : moment.dot(local_axis(space, mean, k));
+    }
   }
-  // a closed ring has no mean normal: it is then reported in the axes of its first point
-  const double scale = interface.area.sum();
-  const Vec2 n = mean_normal.norm() > 1e-9 * scale ? mean_normal.normalized() : interface.normal[0];
-  return {.axial = total.dot(n), .shear = total.dot(tangent(n)), .moment = moment};
+  return rows;
+}
+
+Resultant resultant_of(Space space, const double* sums) {
+  if (space.dimension == 2) return {.axial = sums[1], .shear = sums[0], .moment = sums[2]};
+  return {.axial = sums[2],
+          .shear = std::hypot(sums[0], sums[1]),
+          .moment = std::hypot(sums[3], sums[4]),
+          .shear_1 = sums[0],
+          .shear_2 = sums[1],
+          .moment_1 = sums[3],
+          .moment_2 = sums[4],
+          .torsion = sums[5]};
+}
+
+Resultant resultant(const Interface& interface, const double* force) {
+  const Vector sums = resultant_rows(interface) * ConstMap(force, interface.rows());
+  return resultant_of(interface.space, sums.data());
 }
 
 double uplifted_ratio(const Interface& interface, const double* opening, double tolerance) {

@@ -3,8 +3,8 @@
 #include <string>
 #include <vector>
 
+#include "uplift/elements/space.h"
 #include "uplift/laws/law.h"
-#include "uplift/math/linalg.h"
 
 namespace uplift {
 
@@ -13,30 +13,43 @@ namespace uplift {
 struct Interface {
   std::string name;
   Batch batch;                              // points, components
-  std::vector<Vec2> position;               // m
-  std::vector<Vec2> normal;                 // unit
+  Space space;
+  std::vector<Place> position;              // m
+  std::vector<Place> normal;                // unit
   Vector area;                              // m2 per point: quadrature weight x det J x thickness
   Vector gap;                               // m per row: initial gap in the normal component, 0 in the tangential ones
   Sparse b;                                 // (points x components) x free unknowns
-  Vec2 reference = Vec2::Zero();            // m: point about which the resultant moment is taken
+  Place reference;                          // m: point about which the resultant moment is taken
   std::unique_ptr<const InterfaceLaw> law;  // one of the two
   std::unique_ptr<const Cone> cone;
   std::string behaviour;  // name of the law or cone
   int rows() const { return batch.points * batch.components; }
 };
 
-/// Tangent of a normal: n turned by -90 degrees, so that (t, n) is right-handed; n = (0, 1) gives t = (1, 0).
-inline Vec2 tangent(const Vec2& normal) {
-  return {normal.y(), -normal.x()};
+/// Local axes of a normal n: tangents first, the normal last (number space.dimension - 1).
+/// Plane: t is n turned by -90 degrees; n = (0, 1) gives t = (1, 0). Space: t1 is the x axis projected on the face (the y axis where n is
+/// within 26 degrees of x), t2 = n x t1; n = (0, 0, 1) gives t1 = x, t2 = y.
+Vec3 local_axis(Space space, const Vec3& normal, int axis);
+/// The same for one component of an interface; the normal is its last one.
+inline Vec3 component_axis(Space space, const Vec3& normal, int component, int components) {
+  return local_axis(space, normal, component + space.dimension - components);
 }
+/// Area-weighted mean of the normals; that of the first point for a closed ring, which has none.
+Vec3 mean_normal(const Interface&);
 
 /// What the upper side exerts on the lower one, in the axes of the mean normal: axial force N [N] (tension > 0), shear V [N] along +t,
 /// moment M [N m] about the reference point, counter-clockwise. A wind to the right on a tower gives V > 0, M < 0.
+/// In space: shear along t1 and t2, moments about t1, t2 and the normal; `shear` and `moment` are the lengths of (1, 2).
 struct Resultant {
   double axial = 0, shear = 0, moment = 0;
+  double shear_1 = 0, shear_2 = 0, moment_1 = 0, moment_2 = 0, torsion = 0;
 };
 /// `force` holds one force per row of the interface [N], tension > 0.
 Resultant resultant(const Interface&, const double* force);
+/// The linear part of it, one column per row of the interface. Rows in the plane: V, N, M; in space: V1, V2, N, M1, M2, torsion.
+Matrix resultant_rows(const Interface&);
+/// From what these rows give.
+Resultant resultant_of(Space space, const double* sums);
 /// Share of the interface's area whose gap is larger than `tolerance` [m]: counted by gap, never by zero pressure.
 double uplifted_ratio(const Interface&, const double* opening, double tolerance);
 

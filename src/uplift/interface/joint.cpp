@@ -10,17 +10,21 @@ namespace uplift {
 
 namespace {
 
-void refuse_exchanged_sides(const Vec2& upper, const Vec2& lower, const Vec2& normal, const Where& where) {
-  const Vec2 apart = upper - lower;
+std::string to_string(const Vec3& at) {
+  return at.z() == 0 ? fmt::format("({:g}, {:g})", at.x(), at.y()) : fmt::format("({:g}, {:g}, {:g})", at.x(), at.y(), at.z());
+}
+
+void refuse_exchanged_sides(const Vec3& upper, const Vec3& lower, const Vec3& normal, const Where& where) {
+  const Vec3 apart = upper - lower;
   // the initial gap is never taken from the coordinates, so only a clear distance counts
   if (apart.dot(normal) < -1e-9 * (1 + upper.norm() + lower.norm()))
     throw InputError(
         where, "interface.normal", "a normal from the lower to the upper side",
-        fmt::format("an interface inside out: the upper node at ({:g}, {:g}) m lies on the lower side of its partner at ({:g}, {:g}) m",
-                    upper.x(), upper.y(), lower.x(), lower.y()));
+        fmt::format("an interface inside out: the upper node at {} m lies on the lower side of its partner at {} m", to_string(upper),
+                    to_string(lower)));
 }
 
-Vec2 unit(const Vec2& v, const Where& where) {
+Vec3 unit(const Vec3& v, const Where& where) {
   if (!(v.norm() > 0)) throw InputError(where, "interface.normal", "a direction", "a vector of length zero");
   return v.normalized();
 }
@@ -31,23 +35,28 @@ void check_partners(std::size_t upper, std::size_t lower, const Where& where) {
     throw InputError(where, "interface.lower", fmt::format("as many nodes as the upper side ({})", upper), fmt::format("{}", lower));
 }
 
-Quadrature footing_rule(const Footing& footing) {
-  switch (footing.rule) {
+Quadrature footing_rule(FootingRule rule, int points) {
+  switch (rule) {
     case FootingRule::nodal:
-      return trapezoid(footing.points);
+      return trapezoid(points);
     case FootingRule::midpoint:
-      return midpoint(footing.points);
+      return midpoint(points);
     case FootingRule::gauss:
       break;
   }
-  return gauss_legendre(footing.points);
+  return gauss_legendre(points);
+}
+
+void check_points(FootingRule rule, int points, std::string_view key, const Where& where) {
+  const int least = rule == FootingRule::nodal ? 2 : 1;
+  if (points < least) throw InputError(where, fmt::format("interface.{}", key), fmt::format("at least {}", least), fmt::format("{}", points));
 }
 
 /// A point of one line element; the shape functions of both sides are the same.
 JointPoint element_point(const LineJoint& joint, std::size_t first, double xi, double weight, const Where& where) {
   const LineShape shape = line_shape(joint.nodes_per_element, xi);
   JointPoint point;
-  Vec2 along = Vec2::Zero();
+  Vec3 along = Vec3::Zero();
   for (int k = 0; k < joint.nodes_per_element; ++k) {
     const SideNode& node = joint.upper[first + k];
     point.position += shape.value[k] * node.position;
@@ -58,7 +67,7 @@ JointPoint element_point(const LineJoint& joint, std::size_t first, double xi, d
   }
   if (!(along.norm() > 0)) throw InputError(where, "interface.upper", "nodes in order along a line", "neighbours that coincide");
   point.area = weight * along.norm() * joint.thickness;
-  point.normal = Vec2(-along.y(), along.x()).normalized();
+  point.normal = Place(-along.y(), along.x()).normalized();
   point.gap = joint.gap;
   return point;
 }
@@ -66,32 +75,37 @@ JointPoint element_point(const LineJoint& joint, std::size_t first, double xi, d
 }  // namespace
 
 std::vector<JointPoint> footing_points(const Footing& footing, const Where& where) {
-  const int least = footing.rule == FootingRule::nodal ? 2 : 1;
-  if (footing.points < least)
-    throw InputError(where, "interface.points", fmt::format("at least {}", least), fmt::format("{}", footing.points));
+  const bool rectangle = footing.length > 0;
+  check_points(footing.rule, footing.points, "points", where);
+  if (rectangle) check_points(footing.rule, footing.points_across, "points_across", where);
   if (!(footing.width > 0)) throw InputError(where, "interface.width", "a width > 0 m", fmt::format("{:g}", footing.width));
   if (!(footing.thickness > 0)) throw InputError(where, "interface.thickness", "a thickness > 0 m", fmt::format("{:g}", footing.thickness));
-  const Vec2 n = unit(footing.normal, where), t = tangent(n);
-  const Quadrature rule = footing_rule(footing);
+  const Space space{rectangle ? 3 : 2};
+  const Vec3 n = unit(footing.normal, where), t = local_axis(space, n, 0);
+  const Vec3 along = rectangle ? Vec3(std::cos(footing.azimuth) * t + std::sin(footing.azimuth) * cross(n, t)) : t, across = cross(n, along);
+  const Quadrature rule = footing_rule(footing.rule, footing.points);
+  const Quadrature rule_across = rectangle ? footing_rule(footing.rule, footing.points_across) : Quadrature{Vector::Zero(1), Vector::Ones(1)};
+  const double half = footing.width / 2, half_across = rectangle ? footing.length / 2 : footing.thickness;
   std::vector<JointPoint> points;
-  for (int i = 0; i < footing.points; ++i) {
-    JointPoint point;
-    point.position = footing.centre + footing.width / 2 * rule.point[i] * t;
-    point.normal = n;
-    point.area = footing.width / 2 * rule.weight[i] * footing.thickness;
-    point.gap = footing.gap;
-    point.upper = {{footing.body, 1.0}};
-    point.rigid_upper = true;
-    points.push_back(std::move(point));
-  }
+  for (Index j = 0; j < rule_across.point.size(); ++j)
+    for (Index i = 0; i < rule.point.size(); ++i) {
+      JointPoint point;
+      point.position = footing.centre + half * rule.point[i] * along + half_across * rule_across.point[j] * across;
+      point.normal = n;
+      point.area = half * rule.weight[i] * half_across * rule_across.weight[j];
+      point.gap = footing.gap;
+      point.upper = {{footing.body, 1.0}};
+      point.rigid_upper = true;
+      points.push_back(std::move(point));
+    }
   return points;
 }
 
-std::vector<JointPoint> pair_points(const std::vector<SideNode>& upper, const std::vector<SideNode>& lower, const Vec2& normal, double area,
+std::vector<JointPoint> pair_points(const std::vector<SideNode>& upper, const std::vector<SideNode>& lower, const Place& normal, double area,
                                     double gap, const Where& where) {
   check_partners(upper.size(), lower.size(), where);
   if (!(area > 0)) throw InputError(where, "interface.area", "an area > 0 m2", fmt::format("{:g}", area));
-  const Vec2 n = unit(normal, where);
+  const Vec3 n = unit(normal, where);
   std::vector<JointPoint> points;
   for (std::size_t i = 0; i < upper.size(); ++i) {
     JointPoint point;

@@ -6,13 +6,13 @@
 #include "uplift/math/linalg.h"
 
 // Zero-thickness joints as lists of points (Goodman's joint; Cherubini, Richard & Frau, eqs 9-14): every point has an area and sees
-//   opening = R^T (u_upper - u_lower),   R = (t, n),  n from the lower to the upper side, t = n turned by -90 degrees.
+//   opening = R^T (u_upper - u_lower),   R = (t, n) in the plane, (t1, t2, n) in space, n from the lower to the upper side (local_axis).
 namespace uplift {
 
 /// One joint of an interface before the unknowns are numbered: either side follows nodes by shape functions.
 struct JointPoint {
-  Vec2 position = Vec2::Zero();                   // m
-  Vec2 normal = Vec2::UnitY();                    // from lower to upper
+  Place position{};                               // m
+  Place normal{0, 1};                             // from lower to upper
   double area = 0;                                // m2, > 0
   double gap = 0;                                 // m, initial
   std::vector<std::pair<int, double>> upper;      // node, shape function
@@ -26,29 +26,33 @@ enum class FootingRule {
   gauss      // one Gauss rule over the whole width
 };
 
-/// A rigid footing on fixed ground: points spread over its width, all on the motion of one body.
+/// A rigid footing on fixed ground: points spread over its width, in space over a rectangle, all on the motion of one body.
 struct Footing {
-  int body = 0;                 // node
-  Vec2 centre = Vec2::Zero();   // m: middle of the base
-  Vec2 normal = Vec2::UnitY();  // out of the ground
-  double width = 0;             // m, along t
-  double thickness = 1;         // m out of the plane
-  int points = 0;               // nodal: at least 2
+  int body = 0;          // node
+  Place centre{};        // m: middle of the base
+  Place normal{0, 1};    // out of the ground
+  double width = 0;      // m, along t
+  double thickness = 1;  // m out of the plane
+  int points = 0;        // along t; nodal: at least 2
   FootingRule rule = FootingRule::nodal;
   double gap = 0;  // m
+  // in space: a rectangle, `width` along t1 turned by `azimuth` about the normal, `length` [m] across; then `thickness` is 1
+  double length = 0;
+  int points_across = 0;
+  double azimuth = 0;  // rad
 };
-/// Points in the order of t. Throws InputError (at `where`) when the width or the number of points makes no sense.
+/// Points in the order of t; in space those along the width first, line after line. Throws InputError (at `where`) when the width or the number of points makes no sense.
 std::vector<JointPoint> footing_points(const Footing& footing, const Where& where);
 
 /// A node of one side with its place.
 struct SideNode {
   int node = 0;
-  Vec2 position = Vec2::Zero();
+  Place position;
 };
 
 /// Isolated node pairs (eq 13, point joints), each with the same tributary area; `lower` empty: fixed ground below each node.
 /// Throws InputError when the sides have different numbers of nodes or an upper node lies on the wrong side of its lower one.
-std::vector<JointPoint> pair_points(const std::vector<SideNode>& upper, const std::vector<SideNode>& lower, const Vec2& normal, double area,
+std::vector<JointPoint> pair_points(const std::vector<SideNode>& upper, const std::vector<SideNode>& lower, const Place& normal, double area,
                                     double gap, const Where& where);
 
 enum class LineQuadrature {

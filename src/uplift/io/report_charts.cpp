@@ -16,7 +16,8 @@ constexpr std::size_t points_per_curve = 1500;
 
 /// What a figure shows of every run: a column over time, or two columns against each other.
 struct View {
-  const char *id, *section, *title, *caption;
+  const char *id, *section, *title;
+  std::string caption;
   const char *label, *unit;
   Column kind;
   int of;         // full unknown or interface
@@ -197,29 +198,35 @@ void write_chart(JsonWriter& json, const Case& read, const Chart& chart) {
   json.end_array().end_object();
 }
 
+/// Which rotation is meant.
+std::string about(const Built& built) {
+  if (built.model.space.dimension == 2) return "Counter-clockwise positive.";
+  return fmt::format("About the {} axis, right-handed.", built.sway == ux ? "y" : "x");
+}
+
 /// Motion of the top and of the base for some runs, in the order of the paper's figures 5 and 6.
 std::vector<View> motion_views(const Built& built) {
   std::vector<View> views;
   if (built.top >= 0) {
     views.push_back({"top_displacement", "response", "Displacement of the top", "Horizontal displacement of the highest mass.",
-                     "Displacement", "m", Column::displacement, 3 * built.top + ux, 1});
+                     "Displacement", "m", Column::displacement, built.top_sway(), 1});
     views.push_back({"top_velocity", "response", "Velocity of the top", "Horizontal velocity of the highest mass.", "Velocity", "m/s",
-                     Column::velocity, 3 * built.top + ux, 1});
+                     Column::velocity, built.top_sway(), 1});
   }
   if (built.base >= 0) {
     views.push_back({"base_displacement", "response", "Displacement of the base", "Vertical displacement of the base.", "Displacement", "m",
-                     Column::displacement, 3 * built.base + uy, 1});
+                     Column::displacement, built.base_lift(), 1});
     views.push_back({"base_velocity", "response", "Velocity of the base", "Vertical velocity of the base.", "Velocity", "m/s",
-                     Column::velocity, 3 * built.base + uy, 1});
-    views.push_back({"base_rotation", "response", "Rotation of the base", "Counter-clockwise positive.", "Rotation", "rad",
-                     Column::displacement, 3 * built.base + rz, 1});
+                     Column::velocity, built.base_lift(), 1});
+    views.push_back({"base_rotation", "response", "Rotation of the base", about(built), "Rotation", "rad",
+                     Column::displacement, built.base_turn(), 1});
   }
   return views;
 }
 
-std::vector<View> interface_views() {
-  return {{"base_moment", "interface", "Base moment", "Moment of the interface about its middle, counter-clockwise positive.", "Moment",
-           "N m", Column::moment, 0, 1},
+std::vector<View> interface_views(const Built& built) {
+  return {{"base_moment", "interface", "Base moment", "Moment of the interface about its middle. " + about(built), "Moment", "N m",
+           built.base_moment(), 0, 1},
           {"base_axial", "interface", "Vertical force of the base", "Compression is negative.", "Force", "N", Column::axial, 0, 1},
           {"base_shear", "interface", "Base shear", "Shear of the interface.", "Force", "N", Column::shear, 0, 1},
           {"uplifted_ratio", "interface", "Uplifted share of the base", "Share of the area with an open gap.", "Uplifted share", "1",
@@ -232,8 +239,8 @@ std::vector<View> interface_views() {
 void write_loops(JsonWriter& json, const ReportInput& input, const std::vector<ReportRun>& runs) {
   const Built& built = *input.runs.front().built;
   if (built.top >= 0 && built.base >= 0) {
-    const Vec2 reference = built.model.interfaces.front().reference;
-    const double height = built.model.nodes[static_cast<std::size_t>(built.top)].position.y() - reference.y();
+    const Vec3 reference = built.model.interfaces.front().reference;
+    const double height = built.model.nodes[static_cast<std::size_t>(built.top)].position[built.model.space.up()] - reference[built.model.space.up()];
     if (height > 0)
       write_chart(json, *input.read,
                   loop_chart({"force_displacement",
@@ -245,7 +252,7 @@ void write_loops(JsonWriter& json, const ReportInput& input, const std::vector<R
                               {"Displacement of the top", "m"},
                               {"Moment / height", "N"},
                               {}},
-                             runs, {Column::displacement, 3 * built.top + ux}, {Column::moment, 0}, 1 / height));
+                             runs, {Column::displacement, built.top_sway()}, {built.base_moment(), 0}, 1 / height));
   }
   write_chart(json, *input.read,
               loop_chart({"moment_rotation",
@@ -255,7 +262,7 @@ void write_loops(JsonWriter& json, const ReportInput& input, const std::vector<R
                           {"Rotation", "rad"},
                           {"Moment", "N m"},
                           {}},
-                         runs, {Column::rotation, 0}, {Column::moment, 0}, 1));
+                         runs, {built.base_rotation(), 0}, {built.base_moment(), 0}, 1));
 }
 
 }  // namespace
@@ -292,13 +299,13 @@ void write_charts(JsonWriter& json, const ReportInput& input) {
   json.begin_array();
   write_chart(json, *input.read, load_chart(*input.read, input.runs.front()));
   for (const View& view : motion_views(built)) write_chart(json, *input.read, history_chart(view, runs));
-  for (const View& view : interface_views()) write_chart(json, *input.read, history_chart(view, runs));
+  for (const View& view : interface_views(built)) write_chart(json, *input.read, history_chart(view, runs));
   write_loops(json, input, runs);
   if (!others.empty()) {
     std::vector<View> views = motion_views(built);
     for (View& view : views) {
       const std::string id = std::string("other_") + view.id, title = fmt::format("{}, {}", view.title, others.front().result->group);
-      if (view.kind == Column::velocity && view.of != 3 * built.top + ux) continue;
+      if (view.kind == Column::velocity && view.of != built.top_sway()) continue;
       view.section = "others";
       Chart chart = history_chart(view, others);
       chart.id = id;

@@ -98,12 +98,12 @@ void write_bodies(JsonWriter& json, const Case& read, const Built& built) {
     const Interface* joint = nullptr;
     for (const Interface& each : built.model.interfaces)
       if (each.name == interface.text("name")) joint = &each;
-    const Vec2 n = joint->normal.front(), t = tangent(n), middle = joint->reference;
+    const Vec3 n = joint->normal.front(), t = local_axis(joint->space, n, 0), middle = joint->reference;
     const double half = footing->number("width") / 2;
     const double height = std::max(0.08 * 2 * half, (built.model.nodes[static_cast<std::size_t>(node)].position - middle).dot(n));
-    const std::array<Vec2, 4> corners{middle - half * t, middle + half * t, middle + half * t + height * n, middle - half * t + height * n};
+    const std::array<Vec3, 4> corners{middle - half * t, middle + half * t, middle + half * t + height * n, middle - half * t + height * n};
     json.begin_object().member("name", footing->text("body")).member("node", footing->text("body")).key("outline").begin_array();
-    for (const Vec2& corner : corners) json.numbers(std::array<double, 2>{corner.x(), corner.y()});
+    for (const Vec3& corner : corners) json.numbers(std::array<double, 2>{corner.x(), corner.y()});
     json.end_array().end_object();
   }
   json.end_array();
@@ -160,7 +160,7 @@ void write_small_parts(JsonWriter& json, const Case& read, const Built& built) {
 }
 
 /// The drawn node of the upper side that is nearest to a point of an opened surface: the point is drawn moving with it.
-std::string carrier(const Drawn& drawn, const Built& built, std::size_t interface, const Vec2& point) {
+std::string carrier(const Drawn& drawn, const Built& built, std::size_t interface, const Vec3& point) {
   const auto distance = [&](int node) { return (built.model.nodes[static_cast<std::size_t>(node)].position - point).norm(); };
   int nearest = -1;
   for (const int node : built.facts[interface].upper)
@@ -178,7 +178,7 @@ void write_interfaces(JsonWriter& json, const Drawn& drawn, const Case& read, co
     if (!built.facts[k].body.empty()) json.member("body", built.facts[k].body);
     json.key("points").begin_array();
     for (int i = 0; i < interface.batch.points; ++i) {
-      const Vec2 &at = interface.position[static_cast<std::size_t>(i)], &n = interface.normal[static_cast<std::size_t>(i)];
+      const Vec3 &at = interface.position[static_cast<std::size_t>(i)], &n = interface.normal[static_cast<std::size_t>(i)];
       json.begin_object().member("x", at.x()).member("y", at.y()).member("nx", n.x()).member("ny", n.y()).member("area", interface.area[i]);
       if (surface) json.member("node", carrier(drawn, built, k, at));
       json.end_object();

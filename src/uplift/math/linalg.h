@@ -19,6 +19,22 @@ using ConstMap = Eigen::Map<const Vector>;
 using ColumnStride = Eigen::OuterStride<>;
 using ConstMatrixMap = Eigen::Map<const Matrix, 0, ColumnStride>;  // columns of someone else's matrix, apart by a stride
 using Index = Eigen::Index;
+
+/// A position [m] or a direction: three numbers, or two of a plane model (z = 0).
+class Place : public Vec3 {
+ public:
+  Place() : Vec3(Vec3::Zero()) {}
+  Place(double x, double y, double z = 0) : Vec3(x, y, z) {}
+  template <typename Derived>
+  Place(const Eigen::MatrixBase<Derived>& numbers) : Vec3(Vec3::Zero()) {  // NOLINT(google-explicit-constructor): a plain conversion
+    head<Derived::RowsAtCompileTime>() = numbers;
+  }
+};
+
+inline Vec3 cross(const Vec3& a, const Vec3& b) {
+  return {a.y() * b.z() - a.z() * b.y(), a.z() * b.x() - a.x() * b.z(), a.x() * b.y() - a.y() * b.x()};
+}
+
 inline constexpr unsigned lower_triangle = Eigen::Lower, upper_triangle = Eigen::Upper;
 
 }  // namespace uplift

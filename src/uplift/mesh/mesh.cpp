@@ -4,7 +4,7 @@
 #include <cmath>
 
 #include "uplift/base/text.h"
-#include "uplift/mesh/geometry.h"
+#include "uplift/math/linalg.h"
 
 namespace uplift {
 namespace {

@@ -6,7 +6,7 @@
 #include <cmath>
 #include <numeric>
 
-#include "uplift/mesh/geometry.h"
+#include "uplift/math/linalg.h"
 
 namespace uplift {
 namespace {

@@ -7,11 +7,6 @@
 
 namespace uplift {
 
-std::string_view to_string(Dof dof) {
-  constexpr std::string_view names[] = {"ux", "uy", "rz"};
-  return names[dof];
-}
-
 BulkDamping rayleigh(double frequency_1, double ratio_1, double frequency_2, double ratio_2) {
   assert(frequency_1 > 0 && frequency_2 > 0 && frequency_1 != frequency_2);
   const double w1 = 2 * std::numbers::pi * frequency_1, w2 = 2 * std::numbers::pi * frequency_2;
@@ -21,7 +16,7 @@ BulkDamping rayleigh(double frequency_1, double ratio_1, double frequency_2, dou
   return damping;
 }
 
-int ModelBuilder::add_node(std::string name, Vec2 position, Where where) {
+int ModelBuilder::add_node(std::string name, Place position, Where where) {
   if (!node_names_.insert(name).second)
     throw InputError(std::move(where), "nodes." + name, "a name that no other node has", fmt::format("\"{}\" twice", name));
   nodes_.push_back({std::move(name), position});
@@ -54,7 +49,7 @@ void ModelBuilder::inextensible(int a, int b, Where where) {
 }
 
 void ModelBuilder::add_interface(InterfaceSpec spec, Where where) {
-  assert(spec.components == 1 || spec.components == 2);
+  assert(spec.components == 1 || spec.components == space_.dimension);
   assert(!spec.law != !spec.cone);
   if (spec.points.empty()) throw InputError(std::move(where), "interface." + spec.name, "at least one point", "none");
   for (const JointPoint& point : spec.points)
@@ -69,11 +64,11 @@ void ModelBuilder::add_load(std::string name, std::vector<std::pair<int, double>
   loads_.push_back({std::move(name), std::move(pattern), std::move(function), dead, std::move(where)});
 }
 
-void ModelBuilder::set_gravity(Vec2 acceleration, Where) {
+void ModelBuilder::set_gravity(Place acceleration, Where) {
   gravity_ = acceleration;
 }
 
-void ModelBuilder::add_ground_acceleration(Vec2 direction, std::shared_ptr<const TimeFunction> acceleration, std::string name, Where) {
+void ModelBuilder::add_ground_acceleration(Place direction, std::shared_ptr<const TimeFunction> acceleration, std::string name, Where) {
   grounds_.push_back({std::move(name), direction, std::move(acceleration)});
 }
 
@@ -82,7 +77,7 @@ void ModelBuilder::set_damping(BulkDamping damping) {
 }
 
 std::string ModelBuilder::name_of(int full_unknown) const {
-  return fmt::format("{}.{}", nodes_[full_unknown / dofs_per_node].name, to_string(static_cast<Dof>(full_unknown % dofs_per_node)));
+  return fmt::format("{}.{}", nodes_[space_.node_of(full_unknown)].name, to_string(space_.dof(space_.index_of(full_unknown))));
 }
 
 }  // namespace uplift

@@ -11,9 +11,6 @@
 
 namespace uplift {
 
-enum Dof { ux = 0, uy = 1, rz = 2 };
-std::string_view to_string(Dof dof);
-
 /// Damping of the bulk. Stiffness damping never acts across an interface: the interface's stiffness has no part in it.
 struct BulkDamping {
   double alpha = 0;           // 1/s, mass-proportional
@@ -26,9 +23,9 @@ BulkDamping rayleigh(double frequency_1, double ratio_1, double frequency_2, dou
 
 struct InterfaceSpec {
   std::string name;
-  int components = 2;
+  int components = 2;  // 1: normal only; else 2 in the plane, 3 in space
   std::vector<JointPoint> points;
-  Vec2 reference = Vec2::Zero();
+  Place reference;
   std::unique_ptr<const InterfaceLaw> law;  // one of the two
   std::unique_ptr<const Cone> cone;
   std::string behaviour;
@@ -38,11 +35,13 @@ struct InterfaceSpec {
 /// (repeated or contradicting constraints, an interface inside out) are thrown as InputError with the place given at add time.
 class ModelBuilder {
  public:
-  int add_node(std::string name, Vec2 position, Where where);
+  explicit ModelBuilder(Space space = {}) : space_(space) {}
+  Space space() const { return space_; }
+  int add_node(std::string name, Place position, Where where);
   void add_element(std::unique_ptr<const Element> element, Where where);
   void fix(int node, Dof dof, Where where);
   void prescribe(int node, Dof dof, std::shared_ptr<const TimeFunction> motion, std::string name, Where where);
-  /// slave's ux, uy, rz follow the master rigidly (small displacements); chains are allowed.
+  /// the slave's translations and rotations follow the master rigidly (small displacements); chains are allowed.
   void tie_rigid(int master, int slave, Where where);
   /// The distance of the two nodes does not change (beam without axial flexibility).
   void inextensible(int a, int b, Where where);
@@ -51,9 +50,9 @@ class ModelBuilder {
   void add_load(std::string name, std::vector<std::pair<int, double>> pattern, std::shared_ptr<const TimeFunction> function, bool dead,
                 Where where);
   /// Gravity [m/s2] on all masses: a dead load.
-  void set_gravity(Vec2 acceleration, Where where);
+  void set_gravity(Place acceleration, Where where);
   /// Relative-frame ground acceleration: inertia forces -M r a(t).
-  void add_ground_acceleration(Vec2 direction, std::shared_ptr<const TimeFunction> acceleration, std::string name, Where where);
+  void add_ground_acceleration(Place direction, std::shared_ptr<const TimeFunction> acceleration, std::string name, Where where);
   void set_damping(BulkDamping damping);
   /// The finished model; the builder is empty afterwards.
   Model finish();
@@ -82,7 +81,7 @@ class ModelBuilder {
   };
   struct Ground {
     std::string name;
-    Vec2 direction;
+    Vec3 direction;
     std::shared_ptr<const TimeFunction> function;
   };
 
@@ -92,9 +91,10 @@ class ModelBuilder {
   void drop_dead_tangents(const Model& model, const Matrix& motion_shapes);
   void place_interfaces(Model& model);
   void refuse_inside_out(const InterfaceSpec& spec, const Where& where) const;
-  std::vector<Vec2> structure_of(const InterfaceSpec& spec, bool upper, std::vector<int>& nodes) const;
+  std::vector<Vec3> structure_of(const InterfaceSpec& spec, bool upper, std::vector<int>& nodes) const;
   void make_drives(Model& model, const Matrix& motion_shapes) const;
 
+  Space space_;
   std::vector<Node> nodes_;
   std::unordered_set<std::string> node_names_;
   std::vector<std::unique_ptr<const Element>> elements_;
@@ -105,7 +105,7 @@ class ModelBuilder {
   std::vector<Where> interface_where_;
   std::vector<Load> loads_;
   std::vector<Ground> grounds_;
-  Vec2 gravity_ = Vec2::Zero();
+  Vec3 gravity_ = Vec3::Zero();
   BulkDamping damping_;
 };
 

@@ -1,6 +1,6 @@
 // Supports, rigid bodies and inextensible beams as linear constraints on the full unknowns, eliminated exactly:
 //   support       u = prescribed
-//   rigid tie     u_s = u_m + r (-ry, rx),  rotation_s = rotation_m,   (rx, ry) = slave - master     (small displacements)
+//   rigid tie     u_s = u_m + rotation_m x r,  rotation_s = rotation_m,   r = slave - master     (small displacements)
 //   inextensible  e . (u_b - u_a) = 0,   e the unit vector from a to b
 #include <fmt/format.h>
 
@@ -50,7 +50,7 @@ class ConstraintList {
 
 double size_of(const std::vector<Node>& nodes) {
   if (nodes.empty()) return 1;
-  Vec2 low = nodes.front().position, high = low;
+  Vec3 low = nodes.front().position, high = low;
   for (const Node& node : nodes) {
     low = low.cwiseMin(node.position);
     high = high.cwiseMax(node.position);
@@ -62,28 +62,35 @@ double size_of(const std::vector<Node>& nodes) {
 }  // namespace
 
 void ModelBuilder::eliminate(Model& model, Matrix& motion_shapes) const {
-  const int unknowns = dofs_per_node * static_cast<int>(nodes_.size());
+  const int unknowns = space_.unknowns() * static_cast<int>(nodes_.size());
   std::vector<double> scale(unknowns, 1.0);
   const double size = size_of(nodes_);
-  for (int i = rz; i < unknowns; i += dofs_per_node) scale[i] = 1 / size;
+  for (int i = 0; i < unknowns; ++i)
+    if (space_.is_rotation(i)) scale[i] = 1 / size;
   Elimination elimination(scale, static_cast<int>(motions_.size()));
   ConstraintList list(elimination);
   std::vector<std::string> names;
   for (const Motion& motion : motions_) names.push_back(motion.name);
-  const auto at = [](int node, Dof dof) { return dofs_per_node * node + dof; };
 
   for (const Pair& tie : ties_) {
     const int m = tie.first, s = tie.second;
-    const Vec2 r = nodes_[s].position - nodes_[m].position;
+    const Vec3 r = nodes_[s].position - nodes_[m].position;
     const std::string what = fmt::format("a rigid body that ties \"{}\" to \"{}\"", nodes_[s].name, nodes_[m].name);
     if (m == s) throw InputError(tie.where, "", "a rigid body of different nodes", what);
-    const int row = list.add({{{at(s, ux), 1}, {at(m, ux), -1}, {at(m, rz), r.y()}}, {}}, at(s, ux), what, "", names, tie.where);
-    list.add({{{at(s, uy), 1}, {at(m, uy), -1}, {at(m, rz), -r.x()}}, {}}, at(s, uy), what, "", names, tie.where);
-    list.add({{{at(s, rz), 1}, {at(m, rz), -1}}, {}}, at(s, rz), what, "", names, tie.where);
-    model.assembly.ties.push_back({s, row, r});
+    const int each = space_.unknowns();
+    for (int i = 0; i < each; ++i) {
+      Elimination::Row row{{{each * s + i, 1}}, {}};
+      if (space_.is_rotation(i))
+        row.unknowns[each * m + i] = -1;
+      else
+        for (int j = 0; j < each; ++j)
+          if (const double moved = space_.motion(j, r).dot(space_.axis(i)); moved != 0) row.unknowns[each * m + j] = -moved;
+      const int number = list.add(row, each * s + i, what, "", names, tie.where);
+      if (i == 0) model.assembly.ties.push_back({s, number, r});
+    }
   }
   for (const Support& support : supports_) {
-    const int unknown = at(support.node, support.dof);
+    const int unknown = space_.at(support.node, support.dof);
     Elimination::Row row{{{unknown, 1}}, {}};
     if (support.motion >= 0) row.motions[support.motion] = 1;
     list.add(row, unknown, fmt::format("a {} of {}", support.motion < 0 ? "support" : "prescribed motion", name_of(unknown)), "", names,
@@ -91,8 +98,12 @@ void ModelBuilder::eliminate(Model& model, Matrix& motion_shapes) const {
   }
   for (const Pair& link : links_) {
     const int a = link.first, b = link.second;
-    const Vec2 e = (nodes_[b].position - nodes_[a].position).normalized();
-    const Elimination::Row row{{{at(a, ux), -e.x()}, {at(a, uy), -e.y()}, {at(b, ux), e.x()}, {at(b, uy), e.y()}}, {}};
+    const Vec3 e = (nodes_[b].position - nodes_[a].position).normalized();
+    Elimination::Row row;
+    for (int k = 0; k < space_.dimension; ++k) {
+      row.unknowns[space_.unknowns() * a + k] = -e[k];
+      row.unknowns[space_.unknowns() * b + k] = e[k];
+    }
     const std::string what = fmt::format("an inextensible beam from \"{}\" to \"{}\"", nodes_[a].name, nodes_[b].name);
     model.assembly.links.push_back({a, b, list.add(row, -1, what, ", or give the beam its area A", names, link.where)});
   }

@@ -14,10 +14,10 @@ class One : public TimeFunction {
   double acceleration(double) const override { return 0; }
 };
 
-void add_to(const Element& element, const Matrix& local, double factor, std::vector<Triplet>& entries) {
+void add_to(Space space, const Element& element, const Matrix& local, double factor, std::vector<Triplet>& entries) {
   const auto nodes = element.nodes();
   const int each = element.unknowns_per_node();
-  const auto unknown = [&](Index i) { return dofs_per_node * nodes[i / each] + static_cast<int>(i % each); };
+  const auto unknown = [&](Index i) { return space.unknowns() * nodes[i / each] + static_cast<int>(i % each); };
   for (Index j = 0; j < local.cols(); ++j)
     for (Index i = 0; i < local.rows(); ++i)
       if (local(i, j) != 0) entries.emplace_back(unknown(i), unknown(j), factor * local(i, j));
@@ -40,9 +40,9 @@ Sparse reduced(const Sparse& t, const Sparse& a) {
   return result;
 }
 
-Vector translation(const Vec2& direction, Index unknowns) {
+Vector translation(Space space, const Vec3& direction, Index unknowns) {
   Vector full = Vector::Zero(unknowns);
-  for (Index i = 0; i < unknowns; i += dofs_per_node) full.segment<2>(i) = direction;
+  for (Index i = 0; i < unknowns; i += space.unknowns()) full.segment(i, space.dimension) = direction.head(space.dimension);
   return full;
 }
 
@@ -65,12 +65,12 @@ void ModelBuilder::assemble(Assembly& assembly) const {
   for (const auto& element : elements_) {
     Matrix k, m, c;
     element->form({&k, &m, &c});
-    add_to(*element, k, 1, stiffness);
-    add_to(*element, m, 1, mass);
-    add_to(*element, c, 1, damping);
-    if (element->beta != 0) add_to(*element, k, element->beta, damping);
+    add_to(space_, *element, k, 1, stiffness);
+    add_to(space_, *element, m, 1, mass);
+    add_to(space_, *element, c, 1, damping);
+    if (element->beta != 0) add_to(space_, *element, k, element->beta, damping);
   }
-  const int unknowns = dofs_per_node * static_cast<int>(nodes_.size());
+  const int unknowns = space_.unknowns() * static_cast<int>(nodes_.size());
   assembly.stiffness = from(unknowns, stiffness);
   assembly.mass = from(unknowns, mass);
   assembly.damping = from(unknowns, damping);
@@ -87,13 +87,13 @@ void ModelBuilder::make_drives(Model& model, const Matrix& motion_shapes) const 
     model.drives.push_back({std::move(name), model.reduction.transpose() * pattern, std::move(function), Drive::Order::value, dead});
     model.assembly.loads.push_back(pattern);
   };
-  if (!gravity_.isZero()) add("gravity", full.mass * translation(gravity_, unknowns), one, true);
+  if (!gravity_.isZero()) add("gravity", full.mass * translation(space_, gravity_, unknowns), one, true);
   for (const Load& load : loads_) {
     Vector pattern = Vector::Zero(unknowns);
     for (const auto& [unknown, value] : load.pattern) pattern[unknown] += value;
     add(load.name, pattern, load.function ? load.function : one, load.dead);
   }
-  for (const Ground& ground : grounds_) add(ground.name, -(full.mass * translation(ground.direction, unknowns)), ground.function, false);
+  for (const Ground& ground : grounds_) add(ground.name, -(full.mass * translation(space_, ground.direction, unknowns)), ground.function, false);
   for (Index k = 0; k < motion_shapes.cols(); ++k) {
     const Motion& motion = motions_[k];
     const Vector shape = motion_shapes.col(k);
@@ -111,6 +111,7 @@ void ModelBuilder::make_drives(Model& model, const Matrix& motion_shapes) const 
 
 Model ModelBuilder::finish() {
   Model model;
+  model.space = space_;
   Matrix motion_shapes;
   assemble(model.assembly);
   eliminate(model, motion_shapes);

@@ -9,16 +9,19 @@ namespace uplift {
 namespace {
 
 /// One side of one joint: its displacement in the direction d, as entries of a row of B.
-void add_side(const std::vector<Node>& nodes, const JointPoint& point, bool upper, const Vec2& d, int row, std::vector<Triplet>& entries) {
+void add_side(Space space, const std::vector<Node>& nodes, const JointPoint& point, bool upper, const Vec3& d, int row,
+              std::vector<Triplet>& entries) {
   const double sign = upper ? 1 : -1;
   for (const auto& [node, shape] : upper ? point.upper : point.lower) {
-    for (int k = 0; k < 2; ++k)
-      if (d[k] != 0) entries.emplace_back(row, dofs_per_node * node + k, sign * shape * d[k]);
-    if (!(upper ? point.rigid_upper : point.rigid_lower)) continue;
-    const Vec2 r = point.position - nodes[node].position;
-    const double arm = r.x() * d.y() - r.y() * d.x();  // d . (rotation x r)
-    if (arm != 0) entries.emplace_back(row, dofs_per_node * node + rz, sign * shape * arm);
+    const bool rigid = upper ? point.rigid_upper : point.rigid_lower;
+    const Vec3 r = point.position - nodes[node].position;
+    for (int k = 0; k < (rigid ? space.unknowns() : space.dimension); ++k)
+      if (const double moved = space.motion(k, r).dot(d); moved != 0) entries.emplace_back(row, space.unknowns() * node + k, sign * shape * moved);
   }
+}
+
+std::string to_text(const Vec3& v, Space space) {
+  return space.dimension == 2 ? fmt::format("({:g}, {:g})", v.x(), v.y()) : fmt::format("({:g}, {:g}, {:g})", v.x(), v.y(), v.z());
 }
 
 }  // namespace
@@ -27,12 +30,13 @@ void add_side(const std::vector<Node>& nodes, const JointPoint& point, bool uppe
 /// slide there, and the laws then skip the tangential part.
 void ModelBuilder::drop_dead_tangents(const Model& model, const Matrix& motion_shapes) {
   for (InterfaceSpec& spec : interfaces_) {
-    if (spec.components != 2) continue;
+    if (spec.components == 1) continue;
     std::vector<Triplet> entries;
     int row = 0;
     for (const JointPoint& point : spec.points) {
-      for (const bool upper : {true, false}) add_side(nodes_, point, upper, tangent(point.normal.normalized()), row, entries);
-      ++row;
+      for (int c = 0; c + 1 < spec.components; ++c, ++row)
+        for (const bool upper : {true, false})
+          add_side(space_, nodes_, point, upper, local_axis(space_, point.normal.normalized(), c), row, entries);
     }
     Sparse rows(row, model.reduction.rows());
     rows.setFromTriplets(entries.begin(), entries.end());
@@ -53,6 +57,7 @@ void ModelBuilder::place_interfaces(Model& model) {
     Interface face;
     const int points = static_cast<int>(spec.points.size());
     face.name = spec.name;
+    face.space = space_;
     face.batch.points = points;
     face.batch.components = spec.components;
     face.reference = spec.reference;
@@ -65,8 +70,8 @@ void ModelBuilder::place_interfaces(Model& model) {
       face.area[i] = point.area;
       face.gap[face.batch.normal() + i] = point.gap;
       for (const bool upper : {true, false}) {
-        add_side(nodes_, point, upper, face.normal[i], first + face.batch.normal() + i, entries);
-        if (spec.components == 2) add_side(nodes_, point, upper, tangent(face.normal[i]), first + i, entries);
+        for (int c = 0; c < spec.components; ++c)
+          add_side(space_, nodes_, point, upper, component_axis(space_, face.normal[i], c, spec.components), first + c * points + i, entries);
         if (!(upper ? point.rigid_upper : point.rigid_lower)) continue;
         for (const auto& [node, shape] : upper ? point.upper : point.lower)
           model.assembly.arms.push_back({node, static_cast<int>(k), i, shape, upper ? -1.0 : 1.0, point.position - nodes_[node].position});
@@ -78,13 +83,13 @@ void ModelBuilder::place_interfaces(Model& model) {
     first += face.rows();
     model.interfaces.push_back(std::move(face));
   }
-  model.assembly.b.resize(first, dofs_per_node * static_cast<Index>(nodes_.size()));
+  model.assembly.b.resize(first, space_.unknowns() * static_cast<Index>(nodes_.size()));
   model.assembly.b.setFromTriplets(entries.begin(), entries.end());
   model.assembly.interface_where = interface_where_;
 }
 
 /// Places of what hangs together with one side, through elements and rigid bodies: nodes and centres of masses.
-std::vector<Vec2> ModelBuilder::structure_of(const InterfaceSpec& spec, bool upper, std::vector<int>& nodes) const {
+std::vector<Vec3> ModelBuilder::structure_of(const InterfaceSpec& spec, bool upper, std::vector<int>& nodes) const {
   std::vector<std::vector<int>> neighbours(nodes_.size());
   const auto connect = [&](int a, int b) {
     neighbours[a].push_back(b);
@@ -100,7 +105,7 @@ std::vector<Vec2> ModelBuilder::structure_of(const InterfaceSpec& spec, bool upp
   for (std::size_t next = 0; next < nodes.size(); ++next)
     for (const int node : neighbours[nodes[next]])
       if (!seen[node]) seen[node] = 1, nodes.push_back(node);
-  std::vector<Vec2> places;
+  std::vector<Vec3> places;
   for (const int node : nodes) places.push_back(nodes_[node].position);
   for (const auto& element : elements_) {
     const int node = element->nodes()[0];
@@ -114,20 +119,20 @@ std::vector<Vec2> ModelBuilder::structure_of(const InterfaceSpec& spec, bool upp
 
 /// The structure on the upper side must not lie altogether below a plane interface, nor the lower side above it.
 void ModelBuilder::refuse_inside_out(const InterfaceSpec& spec, const Where& where) const {
-  const Vec2 n = spec.points.front().normal.normalized();
-  Vec2 middle = Vec2::Zero();
+  const Vec3 n = spec.points.front().normal.normalized();
+  Vec3 middle = Vec3::Zero();
   for (const JointPoint& point : spec.points) {
     if ((point.normal.normalized() - n).norm() > 1e-9) return;  // not plane: the sides are not that easily told
     middle += point.position / static_cast<double>(spec.points.size());
   }
   std::vector<int> upper_nodes, lower_nodes;
-  const std::vector<Vec2> upper = structure_of(spec, true, upper_nodes), lower = structure_of(spec, false, lower_nodes);
+  const std::vector<Vec3> upper = structure_of(spec, true, upper_nodes), lower = structure_of(spec, false, lower_nodes);
   std::ranges::sort(upper_nodes);
   for (const int node : lower_nodes)
     if (std::ranges::binary_search(upper_nodes, node)) return;  // both sides hang together
   for (const bool is_upper : {true, false}) {
     double least = 0, most = 0, size = 0;
-    for (const Vec2& place : is_upper ? upper : lower) {
+    for (const Vec3& place : is_upper ? upper : lower) {
       size = std::max(size, (place - middle).norm());
       const double height = (is_upper ? 1 : -1) * (place - middle).dot(n);
       least = std::min(least, height);
@@ -137,8 +142,8 @@ void ModelBuilder::refuse_inside_out(const InterfaceSpec& spec, const Where& whe
       throw InputError(
           where, "interface." + spec.name, "a normal from the lower side (soil) to the upper side (structure)",
           fmt::format(
-              "an interface inside out: with the normal ({:g}, {:g}) the whole {} side, which holds \"{}\", lies on the wrong side of it",
-              n.x(), n.y(), is_upper ? "upper" : "lower",
+              "an interface inside out: with the normal {} the whole {} side, which holds \"{}\", lies on the wrong side of it",
+              to_text(n, space_), is_upper ? "upper" : "lower",
               nodes_[(is_upper ? spec.points.front().upper : spec.points.front().lower).front().first].name));
   }
 }

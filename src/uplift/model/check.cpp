@@ -64,44 +64,63 @@ Vector null_motion(const Sparse& a) {
   return scale.cwiseProduct(x);
 }
 
+/// Translation and rotation of every node.
+struct Motions {
+  std::vector<Vec3> translation, rotation;
+};
+
+Motions motions_of(const Model& model, const Vector& full) {
+  const Space space = model.space;
+  Motions motions{std::vector<Vec3>(model.nodes.size(), Vec3::Zero()), std::vector<Vec3>(model.nodes.size(), Vec3::Zero())};
+  for (int i = 0; i < static_cast<int>(full.size()); ++i)
+    (space.is_rotation(i) ? motions.rotation : motions.translation)[space.node_of(i)] += full[i] * space.axis(space.index_of(i));
+  return motions;
+}
+
+/// "(1, 0)" in the plane, "(1, 0, 0)" in space; three digits, round-off shown as 0.
+std::string text(const Vec3& v, Space space) {
+  const auto tidy = [](double value) { return std::abs(value) < 1e-6 ? 0.0 : value; };
+  if (space.dimension == 2) return fmt::format("({:.3g}, {:.3g})", tidy(v.x()), tidy(v.y()));
+  return fmt::format("({:.3g}, {:.3g}, {:.3g})", tidy(v.x()), tidy(v.y()), tidy(v.z()));
+}
+
+/// The direction whose first number that is not zero is positive.
+Vec3 forward(const Vec3& v) {
+  const Vec3 direction = v.normalized();
+  for (int k = 0; k < 3; ++k)
+    if (std::abs(direction[k]) > 1e-9) return direction[k] < 0 ? Vec3(-direction) : direction;
+  return direction;
+}
+
 std::string describe(const Model& model, const Vector& motion) {
-  const Vector full = model.reduction * motion;
-  double size = 0, translation = 0, rotation = 0;
+  const auto [u, theta] = motions_of(model, model.reduction * motion);
+  double size = 1e-3, largest = 0;
   for (const Node& node : model.nodes) size = std::max(size, (node.position - model.nodes.front().position).norm());
-  size = std::max(size, 1e-3);
   const int count = static_cast<int>(model.nodes.size());
-  for (int i = 0; i < count; ++i) {
-    translation = std::max(translation, full.segment<2>(3 * i).norm());
-    rotation = std::max(rotation, std::abs(full[3 * i + 2]));
-  }
-  const double largest = std::max(translation, rotation * size);
+  const auto moved = [&](int i) { return std::max(u[i].norm(), theta[i].norm() * size); };
+  for (int i = 0; i < count; ++i) largest = std::max(largest, moved(i));
   std::vector<std::string> names;
   std::vector<int> moving;
   for (int i = 0; i < count; ++i)
-    if (std::max(full.segment<2>(3 * i).norm(), std::abs(full[3 * i + 2]) * size) > 1e-6 * largest) {
+    if (moved(i) > 1e-6 * largest) {
       moving.push_back(i);
       if (names.size() < 5) names.push_back("\"" + model.nodes[i].name + "\"");
     }
   if (moving.size() > names.size()) names.push_back(fmt::format("{} more nodes", moving.size() - names.size()));
   const std::string who = fmt::format("{}", fmt::join(names, ", "));
-  const auto tidy = [](double value) { return std::abs(value) < 1e-6 ? 0.0 : value; };
 
   const int first = moving.front();
-  const Vec2 u = full.segment<2>(3 * first);
-  const double theta = full[3 * first + 2];
+  const Vec3 turn = theta[first];
   const bool together = std::ranges::all_of(moving, [&](int i) {
-    const Vec2 r = model.nodes[i].position - model.nodes[first].position;
-    return (full.segment<2>(3 * i) - u - theta * Vec2(-r.y(), r.x())).norm() < 1e-5 * largest &&
-           std::abs(full[3 * i + 2] - theta) * size < 1e-5 * largest;
+    const Vec3 r = model.nodes[i].position - model.nodes[first].position;
+    return (u[i] - u[first] - cross(turn, r)).norm() < 1e-5 * largest && (theta[i] - turn).norm() * size < 1e-5 * largest;
   });
-  if (together && std::abs(theta) * size < 1e-6 * largest) {
-    Vec2 direction = u.normalized();
-    if (direction.x() < -1e-9 || (std::abs(direction.x()) <= 1e-9 && direction.y() < 0)) direction = -direction;
-    return fmt::format("{} can move along ({:.3g}, {:.3g})", who, tidy(direction.x()), tidy(direction.y()));
-  }
+  if (together && turn.norm() * size < 1e-6 * largest)
+    return fmt::format("{} can move along {}", who, text(forward(u[first]), model.space));
   if (together) {
-    const Vec2 centre = model.nodes[first].position + Vec2(-u.y(), u.x()) / theta;  // where u + theta x r vanishes
-    return fmt::format("{} can turn about the point ({:.3g}, {:.3g}) m", who, tidy(centre.x()), tidy(centre.y()));
+    const Vec3 centre = model.nodes[first].position + cross(turn, u[first]) / turn.squaredNorm();  // moves along the axis at most
+    if (model.space.dimension == 2) return fmt::format("{} can turn about the point {} m", who, text(centre, model.space));
+    return fmt::format("{} can turn about the axis {} through {} m", who, text(forward(turn), model.space), text(centre, model.space));
   }
   Index most = 0;
   motion.cwiseAbs().maxCoeff(&most);

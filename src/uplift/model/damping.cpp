@@ -27,7 +27,7 @@ Sparse cones_held(const Model& model) {
   double size = 0;
   for (const Node& node : model.nodes) size = std::max(size, (node.position - model.nodes.front().position).norm());
   for (int i = 0; i < model.free(); ++i)
-    if (model.kept[i] % dofs_per_node == 2 && size > 0) scale[i] = 1 / size;
+    if (model.space.is_rotation(model.kept[i]) && size > 0) scale[i] = 1 / size;
   Elimination elimination(scale, 0);
   for (const Interface& face : model.interfaces) {
     if (!face.cone) continue;

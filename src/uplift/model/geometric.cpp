@@ -25,24 +25,34 @@ std::pair<int, int> ordered(int a, int b) {
 
 class GeometricEntries {
  public:
-  void add_rotation(int node, double value) { entries_.emplace_back(dofs_per_node * node + 2, dofs_per_node * node + 2, value); }
+  explicit GeometricEntries(Space space) : space_(space) {}
 
-  void add_element(std::span<const int> nodes, const Matrix& local) {
+  /// A dead force f at the offset r [N m when summed]: potential -f . (theta x (theta x r))/2.
+  void add_rotation(int node, const Vec3& f, const Vec3& r) {
+    for (int i = space_.dimension; i < space_.unknowns(); ++i)
+      for (int j = space_.dimension; j < space_.unknowns(); ++j) {
+        const Vec3 a = space_.axis(i), b = space_.axis(j);
+        const double value = f.dot(r) * a.dot(b) - (f.dot(a) * r.dot(b) + f.dot(b) * r.dot(a)) / 2;
+        if (value != 0) entries_.emplace_back(space_.unknowns() * node + i, space_.unknowns() * node + j, value);
+      }
+  }
+
+  void add_element(std::span<const int> nodes, int each, const Matrix& local) {
     for (Index j = 0; j < local.cols(); ++j)
       for (Index i = 0; i < local.rows(); ++i)
         if (local(i, j) != 0)
-          entries_.emplace_back(dofs_per_node * nodes[i / dofs_per_node] + static_cast<int>(i % dofs_per_node),
-                                dofs_per_node * nodes[j / dofs_per_node] + static_cast<int>(j % dofs_per_node), local(i, j));
+          entries_.emplace_back(space_.unknowns() * nodes[i / each] + static_cast<int>(i % each),
+                                space_.unknowns() * nodes[j / each] + static_cast<int>(j % each), local(i, j));
   }
 
   /// A string of length |l| with the given tension: N/L across its axis.
-  void add_string(int a, int b, const Vec2& l, double tension) {
-    const Vec2 across = Vec2(-l.y(), l.x()).normalized();
-    Vector row = Vector::Zero(2 * dofs_per_node);
-    row.segment<2>(0) = -across;
-    row.segment<2>(dofs_per_node) = across;
-    const int nodes[] = {a, b};
-    add_element(nodes, tension / l.norm() * row * row.transpose());
+  void add_string(int a, int b, const Vec3& l, double tension) {
+    const int d = space_.dimension, nodes[] = {a, b};
+    const Vec3 e = l.normalized();
+    const Matrix across = (Matrix::Identity(d, d) - e.head(d) * e.head(d).transpose()) * (tension / l.norm());
+    Matrix local(2 * d, 2 * d);
+    local << across, -across, -across, across;
+    add_element(nodes, d, local);
   }
 
   Sparse matrix(Index unknowns) const {
@@ -52,18 +62,27 @@ class GeometricEntries {
   }
 
  private:
+  Space space_;
   std::vector<Triplet> entries_;
 };
 
 /// Force that an interface puts on the node of one of its rigidly offset points.
-Vec2 arm_force(const Model& model, const State& state, const Assembly::Arm& arm) {
+Vec3 arm_force(const Model& model, const State& state, const Assembly::Arm& arm) {
   Index first = 0;
   for (int k = 0; k < arm.interface; ++k) first += model.interfaces[k].rows();
   const Interface& face = model.interfaces[arm.interface];
-  const Vec2& n = face.normal[arm.point];
-  Vec2 p = state.force[first + face.batch.normal() + arm.point] * n;
-  if (face.batch.components == 2) p += state.force[first + arm.point] * tangent(n);
+  const int components = face.batch.components;
+  Vec3 p = Vec3::Zero();
+  for (int c = 0; c < components; ++c)
+    p += state.force[first + c * face.batch.points + arm.point] * component_axis(face.space, face.normal[arm.point], c, components);
   return arm.sign * arm.weight * p;
+}
+
+/// The translations' part of the constraint rows that start at `row`.
+Vec3 force_of(const Vector& constraint, int row, Space space) {
+  Vec3 force = Vec3::Zero();
+  for (int k = 0; k < space.dimension; ++k) force[k] = constraint[row + k];
+  return force;
 }
 
 }  // namespace
@@ -78,14 +97,17 @@ Vector constraint_forces(const Model& model, const State& state) {
 Sparse geometric_stiffness(const Model& model, const State& state) {
   const Assembly& full = model.assembly;
   const Vector displacement = model.full(state.displacement, 0, state.time), constraint = constraint_forces(model, state);
-  GeometricEntries entries;
+  const Space space = model.space;
+  GeometricEntries entries(space);
 
   std::map<std::pair<int, int>, double> link_tension;
   for (const Assembly::Link& link : full.links) link_tension[ordered(link.a, link.b)] = -constraint[link.row];
   for (const auto& element : model.elements) {
     const auto nodes = element->nodes();
-    Vector local(static_cast<Index>(dofs_per_node * nodes.size()));
-    for (std::size_t i = 0; i < nodes.size(); ++i) local.segment<3>(static_cast<Index>(3 * i)) = displacement.segment<3>(3 * nodes[i]);
+    const int each = element->unknowns_per_node();
+    Vector local(each * static_cast<Index>(nodes.size()));
+    for (std::size_t i = 0; i < nodes.size(); ++i)
+      local.segment(each * static_cast<Index>(i), each) = displacement.segment(space.unknowns() * nodes[i], each);
     double axial = element->axial_force(local);
     if (nodes.size() == 2) {
       const auto link = link_tension.find(ordered(nodes[0], nodes[1]));
@@ -98,14 +120,14 @@ Sparse geometric_stiffness(const Model& model, const State& state) {
     }
     Matrix stiffness;
     element->geometric(axial, stiffness);
-    entries.add_element(nodes, stiffness);
-    if (const double moment = full.gravity.dot(element->first_moment()); moment != 0) entries.add_rotation(nodes[0], moment);
+    entries.add_element(nodes, each, stiffness);
+    entries.add_rotation(nodes[0], full.gravity, element->first_moment());
   }
   for (const auto& [ends, tension] : link_tension)
     entries.add_string(ends.first, ends.second, model.nodes[ends.second].position - model.nodes[ends.first].position, tension);
   // the tie's force on the slave balances everything else that acts on it
-  for (const Assembly::Tie& tie : full.ties) entries.add_rotation(tie.slave, -constraint.segment<2>(tie.row).dot(tie.offset));
-  for (const Assembly::Arm& arm : full.arms) entries.add_rotation(arm.node, arm_force(model, state, arm).dot(arm.offset));
+  for (const Assembly::Tie& tie : full.ties) entries.add_rotation(tie.slave, -force_of(constraint, tie.row, space), tie.offset);
+  for (const Assembly::Arm& arm : full.arms) entries.add_rotation(arm.node, arm_force(model, state, arm), arm.offset);
   return model.reduction.transpose() * entries.matrix(model.full_unknowns()) * model.reduction;
 }
 

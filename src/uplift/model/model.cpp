@@ -65,10 +65,9 @@ Vector free_values(const Model& model, const std::vector<std::pair<int, double>>
   Index worst = 0;
   if (error.cwiseAbs().maxCoeff(&worst) > 1e-9 * values.cwiseAbs().maxCoeff()) {
     const int unknown = wanted[worst].first;
-    constexpr const char* dofs[] = {"ux", "uy", "rz"};
     throw InputError(where, "initial", "values that supports, rigid bodies and inextensible beams allow",
                      fmt::format("{} = {:g} at {}.{}, where only {:g} is possible together with the other values", "value", values[worst],
-                                 model.nodes[unknown / dofs_per_node].name, dofs[unknown % dofs_per_node], values[worst] + error[worst]));
+                                 model.nodes[model.space.node_of(unknown)].name, to_string(model.space.dof(model.space.index_of(unknown))), values[worst] + error[worst]));
   }
   return q;
 }

@@ -13,7 +13,7 @@ namespace uplift {
 
 struct Node {
   std::string name;
-  Vec2 position;  // m
+  Place position;  // m
 };
 
 /// A force pattern on the free unknowns times a function of time.
@@ -40,11 +40,11 @@ struct Assembly {
   Sparse b;                         // interface rows x full unknowns
   Sparse constraints;               // independent rows g with g . u = prescribed: supports, rigid ties, inextensible beams
   std::vector<Vector> loads;        // full pattern of drive i; empty for the drives that prescribed motions make
-  Vec2 gravity = Vec2::Zero();      // m/s2
-  /// slave's three constraint rows start at `row`; offset = slave - master [m]
+  Vec3 gravity = Vec3::Zero();      // m/s2
+  /// slave's constraint rows start at `row`, one per unknown of a node; offset = slave - master [m]
   struct Tie {
     int slave = 0, row = 0;
-    Vec2 offset = Vec2::Zero();
+    Vec3 offset = Vec3::Zero();
   };
   std::vector<Tie> ties;
   struct Link {
@@ -55,16 +55,17 @@ struct Assembly {
   struct Arm {
     int node = 0, interface = 0, point = 0;
     double weight = 1, sign = -1;
-    Vec2 offset = Vec2::Zero();
+    Vec3 offset = Vec3::Zero();
   };
   std::vector<Arm> arms;
   std::vector<Where> interface_where;
 };
 
 /// What is built once, checked once and never changes; shared by every thread.
-/// Full unknowns: 3 per node (ux, uy, rz). Free unknowns q: what is left after supports, rigid bodies and inextensible beams are
+/// Full unknowns: those of all nodes (elements/space.h). Free unknowns q: what is left after supports, rigid bodies and inextensible beams are
 /// eliminated exactly: full = T q + sum of prescribed motions.
 struct Model {
+  Space space;
   std::vector<Node> nodes;
   std::vector<std::unique_ptr<const Element>> elements;
   std::vector<Interface> interfaces;
@@ -80,6 +81,7 @@ struct Model {
 
   int free() const { return static_cast<int>(reduction.cols()); }
   int full_unknowns() const { return static_cast<int>(reduction.rows()); }
+  int at(int node, Dof dof) const { return space.at(node, dof); }  // full unknown
   int rows() const;                            // interface rows, of all interfaces
   int find_node(std::string_view name) const;  // -1 when absent
   /// Full displacement (derivative 0), velocity (1) or acceleration (2) of one full unknown from the free ones.

@@ -16,17 +16,17 @@ Sparse base_held(const Model& model) {
   std::set<int> held;
   for (Index unknown = 0; unknown < model.assembly.b.cols(); ++unknown)
     for (Sparse::InnerIterator entry(model.assembly.b, unknown); entry; ++entry)
-      if (entry.value() != 0) held.insert(static_cast<int>(unknown) / dofs_per_node);
+      if (entry.value() != 0) held.insert(model.space.node_of(unknown));
   double size = 0;
   for (const Node& node : model.nodes) size = std::max(size, (node.position - model.nodes.front().position).norm());
   std::vector<double> scale(model.free(), 1.0);
   for (int i = 0; i < model.free(); ++i)
-    if (model.kept[i] % dofs_per_node == 2 && size > 0) scale[i] = 1 / size;
+    if (model.space.is_rotation(model.kept[i]) && size > 0) scale[i] = 1 / size;
   Elimination elimination(scale, 0);
   for (const int node : held)
-    for (int dof = 0; dof < dofs_per_node; ++dof) {
+    for (int i = 0; i < model.space.unknowns(); ++i) {
       Elimination::Row row;
-      for (Sparse::InnerIterator entry(model.expansion, dofs_per_node * node + dof); entry; ++entry)
+      for (Sparse::InnerIterator entry(model.expansion, model.space.unknowns() * node + i); entry; ++entry)
         row.unknowns[static_cast<int>(entry.row())] = entry.value();
       if (!row.unknowns.empty()) elimination.add(row);
     }
@@ -37,7 +37,7 @@ double tuned_mass(const Model& model, int node, double frequency, const Where& w
   const Sparse held = base_held(model);
   const double omega_squared = std::pow(2 * std::numbers::pi * frequency, 2);
   Sparse dynamic = held.transpose() * (model.stiffness - omega_squared * model.mass) * held;
-  const Matrix at_node = Matrix(model.expansion.middleCols(dofs_per_node * node, 2));
+  const Matrix at_node = Matrix(model.expansion.middleCols(model.space.unknowns() * node, model.space.dimension));
   const Matrix direction = held.transpose() * at_node;
   const auto refuse = [&](const std::string& found) {
     throw InputError(where, "mass.tuned_frequency",

@@ -7,7 +7,7 @@ namespace uplift {
 /// Hz so). `model` is the structure without this mass; all bodies that an interface touches are held (also in the tangential direction and
 /// in rotation).
 ///
-/// A mass m on the node adds m (ex ex^T + ey ey^T), so that det(I - w^2 m E^T (K - w^2 M)^-1 E) = 0:
+/// A mass m on the node adds m times the sum of e e^T over the directions, so that det(I - w^2 m E^T (K - w^2 M)^-1 E) = 0:
 ///     m = 1/(w^2 largest eigenvalue of E^T (K - w^2 M)^-1 E)
 /// and w is the first frequency if and only if K - w^2 M is positive definite (interlacing of eigenvalues under an added mass).
 /// Throws InputError (at `where`) when the other masses alone already bring the structure below the frequency, or when the node cannot
