@@ -1,8 +1,8 @@
-// A block on soil in plane strain: what a condensed step costs beside one back-solve, and what the factor and the preparation cost.
-// Soil 60 x 20 m, E = 200 MPa, nu = 0.3, rho = 2000 kg/m3; block 10 x 20 m, E = 20 GPa, nu = 0.2, rho = 2500 kg/m3; 4-node quads with
-// incompatible modes; tensionless frictionless base, 2e10 Pa/m; bottom fixed, sides on rollers; gravity, then a half-sine of 3 MN/m and
-// 0.1 s along the block's top; 500 steps of 2 ms.
-// Usage: bench_soil_block [element sizes in m ...]
+// A block on soil, in plane strain and in space: what a condensed step costs beside one back-solve, and what the factor and the preparation
+// cost. Soil 60 (x 60) x 20 m, E = 200 MPa, nu = 0.3, rho = 2000 kg/m3; block 10 (x 10) x 20 m, E = 20 GPa, nu = 0.2, rho = 2500 kg/m3;
+// 4-node quads or 8-node bricks with incompatible modes; tensionless frictionless base, 2e10 Pa/m; bottom fixed, sides on rollers; gravity,
+// then a half-sine of 3 MN/m (30 MN) and 0.1 s on the block's top; 500 steps of 2 ms (in space 150).
+// Usage: bench_soil_block [plane|space|friction] [element sizes in m ...]; friction: in space, Coulomb friction of 0.7, 1e10 Pa/m
 #include <fmt/format.h>
 #include <sys/resource.h>
 
@@ -10,6 +10,7 @@
 #include <chrono>
 #include <cmath>
 #include <numbers>
+#include <set>
 
 #include "uplift/contact/method.h"
 #include "uplift/dynamics/statics.h"
@@ -37,15 +38,25 @@ class HalfSine final : public TimeFunction {
   static constexpr double duration = 0.1, omega = std::numbers::pi / duration;
 };
 
-Values part(std::span<const PartInfo* const> catalog, std::string type, const std::vector<std::pair<std::string, double>>& numbers) {
+Values part(std::span<const PartInfo* const> catalog, std::string type, const std::vector<std::pair<std::string, double>>& numbers,
+            const char* tangential = nullptr) {
   auto table = std::make_shared<RawTable>();
   table->entries.emplace_back("type", Raw{std::move(type), {}, ""});
+  if (tangential != nullptr) table->entries.emplace_back("tangential", Raw{std::string(tangential), {}, ""});
   for (const auto& [name, number] : numbers) table->entries.emplace_back(name, Raw{number, {}, ""});
   return check_part(Raw{table, {}, ""}, catalog);
 }
 
-Model block_on_soil(double size) {
+struct Setup {
+  Space space;
+  bool friction = false;
+};
+
+Model block_on_soil(double size, Setup kind) {
+  const Space space = kind.space;
   SoilBox box;
+  box.dimension = space.dimension;
+  box.cell = space.dimension == 2 ? Cell::quad4 : Cell::hex8;
   box.soil.layers = {{20, size}};
   box.soil.size = box.block.size = size;
   box.block.height = 20;
@@ -53,8 +64,8 @@ Model block_on_soil(double size) {
   const std::vector<OpenedSurface> opened = split(mesh, {"interface"}, {"soil_1"}, {});
   const auto coordinates = std::make_shared<const std::vector<Vec3>>(mesh.nodes);
 
-  ModelBuilder builder;
-  for (std::size_t i = 0; i < mesh.nodes.size(); ++i) builder.add_node(fmt::format("mesh.{}", i + 1), mesh.nodes[i].head<2>(), {});
+  ModelBuilder builder(space);
+  for (std::size_t i = 0; i < mesh.nodes.size(); ++i) builder.add_node(fmt::format("mesh.{}", i + 1), mesh.nodes[i], {});
   const auto add_solids = [&](const char* group, const ElasticMaterial& material) {
     SolidSection section;
     section.material = material;
@@ -63,45 +74,60 @@ Model block_on_soil(double size) {
   };
   add_solids("soil_1", {200e6, 0.3, 2000});
   add_solids("block", {20e9, 0.2, 2500});
+  std::set<std::pair<int, Dof>> held;
   const auto fix = [&](const char* group, std::initializer_list<Dof> dofs) {
     for (const int node : nodes_of(mesh, mesh.groups.at(group)))
-      for (const Dof dof : dofs) builder.fix(node, dof, {});
+      for (const Dof dof : dofs)
+        if (space.has(dof) && held.emplace(node, dof).second) builder.fix(node, dof, {});
   };
-  fix("soil_bottom", {uy});
+  fix("soil_bottom", {ux, uy, uz});
   fix("soil_left", {ux});
   fix("soil_right", {ux});
-  for (const int node : nodes_of(mesh, mesh.groups.at("soil_bottom"))) {
-    const double x = mesh.nodes[static_cast<std::size_t>(node)].x();
-    if (std::abs(x) < 30 - 1e-6) builder.fix(node, ux, {});
-  }
+  if (space.dimension == 3) fix("soil_front", {uy}), fix("soil_back", {uy});
   const std::vector<int> top = nodes_of(mesh, mesh.groups.at("block_top"));
   std::vector<std::pair<int, double>> pattern;
+  double shares = 0;  // of the top that belong to a node: a half along each edge
   for (const int node : top) {
-    const bool end = std::abs(std::abs(mesh.nodes[static_cast<std::size_t>(node)].x()) - 5) < 1e-6;
-    pattern.emplace_back(builder.space().at(node, ux), 3e6 * (end ? 0.5 : 1) / static_cast<double>(top.size() - 1));
+    double share = 1;
+    for (int k = 0; k < space.up(); ++k)
+      if (std::abs(std::abs(mesh.nodes[static_cast<std::size_t>(node)][k]) - 5) < 1e-6) share /= 2;
+    pattern.emplace_back(space.at(node, ux), share);
+    shares += share;
   }
+  for (auto& [unknown, value] : pattern) value *= (space.dimension == 2 ? 3e6 : 30e6) / shares;
   builder.add_load("pulse", pattern, std::make_shared<HalfSine>(), false, {});
-  builder.set_gravity({0, -9.81}, {});
+  builder.set_gravity(-9.81 * space.axis(space.up()), {});
   // nothing else holds the block sideways under gravity on a frictionless base; 0.02 Hz is far below everything that happens in a second
-  builder.add_element(std::make_unique<Spring>(Connection{{top.front()}, Vec2(1, 0)}, 1e4), {});
+  if (!kind.friction) {
+    builder.add_element(std::make_unique<Spring>(Connection{{top.front()}, Place(1, 0), space}, 1e4), {});
+    if (space.dimension == 3)
+      for (const int node : {top.front(), top.back()})
+        builder.add_element(std::make_unique<Spring>(Connection{{node}, Place(0, 1), space}, 1e4), {});
+  }
   InterfaceSpec base;
   base.name = "base";
-  base.components = 1;
+  base.components = kind.friction ? 3 : 1;
   base.points = face_points(mesh, opened[0].faces, FaceQuadrature::nodal, 1, 0);
-  base.law = make_part(law_catalog(), part(interface_behaviours(), "springs", {{"K_n", 2e10}}));
+  using Numbers = std::vector<std::pair<std::string, double>>;
+  const Numbers smooth{{"K_n", 2e10}}, rough{{"K_n", 2e10}, {"K_t", 1e10}, {"friction", 0.7}};
+  base.law = make_part(law_catalog(), part(interface_behaviours(), "springs", kind.friction ? rough : smooth, kind.friction ? "coulomb" : "none"));
   base.behaviour = "springs";
   builder.add_interface(std::move(base), {});
   return builder.finish();
 }
 
-void measure(double size) {
+int steps_of(Setup kind) {
+  return kind.space.dimension == 2 ? 500 : 150;  // the pulse and the first uplift
+}
+
+void measure(double size, Setup kind) {
   double start = now();
   const auto lap = [&start] {
     const double seconds = now() - start;
     start = now();
     return seconds;
   };
-  const Model model = block_on_soil(size);
+  const Model model = block_on_soil(size, kind);
   const double t_model = lap();
   const Bulk bulk(model, nullptr);
   const Sparse b = stack_interfaces(model);
@@ -130,7 +156,7 @@ void measure(double size) {
   const double t_first = lap();
   std::vector<double> steps;
   double open = 0;
-  for (int k = 1; k < 500; ++k) {
+  for (int k = 1; k < steps_of(kind); ++k) {
     const double begin = now();
     if (!stepper.advance()) {
       fmt::print("step {}: {}\n", k, stepper.why());
@@ -162,14 +188,18 @@ void measure(double size) {
       "back-solve {:7.2f} ms, ratio {:.2f} | factor {:.1f} MB, peak {:.0f} MB | iterations/step {:.2f}, uplift {:.0f} %, residual {:.1e}\n",
       model.nodes.size(), model.free(), b.rows(), t_model, t_static, t_first, 1e3 * step, 1e3 * steps.front(), 1e3 * solve, step / solve,
       8e-6 * factor.split()->nonzeros(), static_cast<double>(usage.ru_maxrss) / 1024,
-      static_cast<double>(stepper.counts().iterations) / 500, 100 * open, e.residual / std::max(stepper.largest_external(), e.kinetic));
+      static_cast<double>(stepper.counts().iterations) / steps_of(kind), 100 * open, e.residual / std::max(stepper.largest_external(), e.kinetic));
 }
 
 }  // namespace
 }  // namespace uplift
 
 int main(int count, char** words) {
-  if (count < 2)
-    for (const double size : {1.0, 0.39, 0.195}) uplift::measure(size);
-  for (int i = 1; i < count; ++i) uplift::measure(std::atof(words[i]));
+  const std::string_view word = count > 1 ? words[1] : "";
+  const bool named = word == "plane" || word == "space" || word == "friction";
+  const uplift::Setup kind{{word == "space" || word == "friction" ? 3 : 2}, word == "friction"};
+  std::vector<double> sizes;
+  for (int i = named ? 2 : 1; i < count; ++i) sizes.push_back(std::atof(words[i]));
+  if (sizes.empty()) sizes = kind.space.dimension == 2 ? std::vector<double>{1.0, 0.39, 0.195} : std::vector<double>{2.5, 1.67};
+  for (const double size : sizes) uplift::measure(size, kind);
 }

@@ -40,7 +40,7 @@ Request request(Request::Kind kind, const char* name, const char* unit, int unkn
 RunResult result_with(double moment, double ratio) {
   RunResult run;
   run.columns = {request(Request::Kind::axial, "soil.axial", "N"), request(Request::Kind::moment, "soil.moment", "N m"),
-                 request(Request::Kind::displacement, "top.ux", "m", ux)};
+                 request(Request::Kind::displacement, "top.ux", "m", 0)};
   run.table = {{0, 1}, {-1e6, -1e6}, {0, moment}, {0, 0.02}};
   run.peaks = {{"soil.axial", "N", -1e6, 0}, {"soil.moment", "N m", moment, 1}, {"top.ux", "m", 0.02, 1}};
   run.max_base_moment = {"", "N m", moment, 1};

@@ -14,6 +14,8 @@
 namespace uplift {
 namespace {
 
+constexpr int most_pictured = 20'000'000;  // numbers kept for the animation: 160 MB
+
 [[noreturn]] void fail(const Values& table, std::string_view key, const std::string& wanted, const std::string& found) {
   throw InputError(table.where(key), table.path(key), wanted, found);
 }
@@ -361,6 +363,7 @@ Built build(const Case& read, const RunSpec& spec) {
   plan.gap_tolerance = root.table("limits").number("gap_tolerance");
   plan.every = root.table("output").integer("every");
   plan.frames = spec.pictures ? root.table("output").integer("frames") : 0;
+  plan.frames = std::min(plan.frames, std::max(2, most_pictured / std::max(1, built.model.full_unknowns())));
   add_requests(read, built);
   if (const Values* compare = table_if(root, "compare")) check_columns(*compare, "agree_on", plan.requests);
   return built;

@@ -94,7 +94,7 @@ void open_surfaces(const std::vector<Values>& interfaces, CaseMesh& made) {
   }
 }
 
-const Group& group_named(const Mesh& mesh, const Values& table, std::string_view key, const char* what) {
+const Group& group_named(const Mesh& mesh, const Values& table, std::string_view key, const std::string& what) {
   const std::string& name = table.text(key);
   const auto found = mesh.groups.find(name);
   if (found != mesh.groups.end()) return found->second;
@@ -103,9 +103,10 @@ const Group& group_named(const Mesh& mesh, const Values& table, std::string_view
   fail(table, key, what, "no group " + in_quotes(name) + " in the mesh", nearest_name(name, names));
 }
 
-std::string dimension_word(const Group& group) {
-  constexpr const char* words[] = {"nodes", "edges", "surfaces", "volumes"};
-  return std::string("a group of ") + words[group.dimension];
+/// What a group holds, in the words of its mesh: cells fill it, edges (in space: faces) bound them.
+std::string dimension_word(const Mesh& mesh, int dimension) {
+  const char* word = dimension == 0 ? "nodes" : dimension == mesh.dimension ? "cells" : dimension == 2 ? "faces" : "edges";
+  return std::string("a group of ") + word;
 }
 
 SolidSection section_from(const Values& solid) {
@@ -169,7 +170,7 @@ CaseSolids::CaseSolids(const Values& root, const CaseMesh& from) : mesh_(&from.m
   solid_of_.assign(cells.size(), -1);
   for (const Values& solid : root.tables("solid")) {
     const Group& group = group_named(*mesh_, solid, "group", "a group of cells");
-    if (group.dimension != mesh_->dimension || group.cells.empty()) fail(solid, "group", "a group of cells", dimension_word(group));
+    if (group.dimension != mesh_->dimension || group.cells.empty()) fail(solid, "group", "a group of cells", dimension_word(*mesh_, group.dimension));
     for (const CellId cell : group.cells) {
       int& solid_here = solid_of_[static_cast<std::size_t>(std::ranges::lower_bound(cells, cell) - cells.begin())];
       if (solid_here >= 0)
@@ -198,8 +199,9 @@ std::vector<int> CaseSolids::nodes(const Values& table, std::string_view key) co
 }
 
 const std::vector<CellId>& CaseSolids::edges(const Values& table, std::string_view key) const {
-  const Group& group = group_named(*mesh_, table, key, "a group of edges (in space: faces)");
-  if (group.dimension != mesh_->dimension - 1 || group.cells.empty()) fail(table, key, "a group of edges (in space: faces)", dimension_word(group));
+  const std::string wanted = dimension_word(*mesh_, mesh_->dimension - 1);
+  const Group& group = group_named(*mesh_, table, key, wanted);
+  if (group.dimension != mesh_->dimension - 1 || group.cells.empty()) fail(table, key, wanted, dimension_word(*mesh_, group.dimension));
   for (const CellId edge : group.cells)
     if (!beside(edge)) fail(table, key, "edges of cells", describe_cell(*mesh_, edge) + " beside no cell");
   return group.cells;

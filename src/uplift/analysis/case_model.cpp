@@ -122,7 +122,7 @@ std::optional<double> shear_of(const Values& beam) {
 BeamSection plane_section(const Values& beam) {
   for (const char* key : {"I_y", "I_z", "J", "up"})
     if (beam.has(key)) fail(beam, key, "I alone in a plane model", fmt::format("{}", key));
-  if (!beam.has("I")) fail(beam, "", "I", "none");
+  if (!beam.has("I")) fail(beam, "I", "a second moment of area > 0 m4", "nothing");
   BeamSection section;
   section.bending = beam.number("E") * beam.number("I");
   if (beam.has("A")) section.axial = beam.number("E") * beam.number("A");

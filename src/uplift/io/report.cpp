@@ -62,10 +62,15 @@ std::string report_json(const ReportInput& input) {
   write_sections(json, input);
   json.key("charts");
   write_charts(json, input);
-  json.key("model");
-  write_model(json, *input.read, *input.runs.front().built);
-  json.key("animations");
-  write_animations(json, input);
+  if (input.runs.front().built->model.space.dimension == 2) {
+    json.key("model");
+    write_model(json, *input.read, *input.runs.front().built);
+    json.key("animations");
+    write_animations(json, input);
+  } else {
+    json.key("model").null().key("animations").begin_array().end_array();
+    write_space(json, input);
+  }
   json.end_object();
   return json.take();
 }

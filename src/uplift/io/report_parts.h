@@ -14,6 +14,8 @@ void write_tables(JsonWriter& json, const ReportInput& input);
 void write_charts(JsonWriter& json, const ReportInput& input);
 void write_model(JsonWriter& json, const Case& read, const Built& built);
 void write_animations(JsonWriter& json, const ReportInput& input);
+/// The same two for a model in space: the members "space" and "spaceAnimations".
+void write_space(JsonWriter& json, const ReportInput& input);
 
 struct Axis {
   std::string label, unit;

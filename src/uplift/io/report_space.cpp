@@ -1,0 +1,346 @@
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <map>
+#include <set>
+
+#include "uplift/analysis/case_model.h"
+#include "uplift/io/report_parts.h"
+#include "uplift/mesh/sides.h"
+
+// The drawing of a model in space and the pictures of its animation.
+namespace uplift {
+namespace {
+
+constexpr std::size_t most_numbers = 900'000;  // of all pictures of a run, about 6 MB
+
+std::size_t at(int i) {
+  return static_cast<std::size_t>(i);
+}
+
+/// The outer surface of a group of solids.
+struct Surface {
+  std::string name;
+  std::vector<int> triangles, edges;  // nodes of the mesh: three each, counter-clockwise from outside; two each
+};
+
+Surface surface_of(const Mesh& mesh, const std::string& group) {
+  Surface surface{group, {}, {}};
+  const Sides sides(mesh, mesh.groups.at(group).cells);
+  std::set<std::pair<int, int>> edges;
+  std::vector<int> nodes;
+  for (int cell = 0; cell < static_cast<int>(sides.cells().size()); ++cell)
+    for (int side = 0; side < sides.count(cell); ++side) {
+      const int number = Sides::stride * cell + side;
+      if (sides.twin(number) >= 0) continue;
+      sides.nodes_of(mesh, number, nodes);
+      const Cell type = info(mesh.type(sides.cells()[at(cell)])).sides[at(side)];
+      const auto corners = at(info(type).corners);
+      for (std::size_t k = 2; k < corners; ++k) surface.triangles.insert(surface.triangles.end(), {nodes[0], nodes[k - 1], nodes[k]});
+      for (std::size_t k = 0; k < corners; ++k) edges.insert(std::minmax(nodes[k], nodes[(k + 1) % corners]));
+    }
+  for (const auto& [a, b] : edges) surface.edges.insert(surface.edges.end(), {a, b});
+  return surface;
+}
+
+/// What is drawn: surfaces of solids, nodes of the case, of beams and of rigid bodies.
+struct Drawn {
+  std::vector<Surface> surfaces;
+  std::vector<std::vector<int>> beams;  // nodes of the model
+  std::vector<int> nodes;               // of the model, ascending
+  int first_of_mesh = 0;
+  int number(int node) const { return static_cast<int>(std::ranges::lower_bound(nodes, node) - nodes.begin()); }
+};
+
+Drawn drawn_of(const Case& read, const Built& built) {
+  Drawn drawn;
+  drawn.first_of_mesh = static_cast<int>(read.values.tables("nodes").size());
+  std::set<int> nodes;
+  for (int i = 0; i < drawn.first_of_mesh; ++i) nodes.insert(i);
+  if (read.mesh)
+    for (const Values& solid : read.values.tables("solid")) {
+      drawn.surfaces.push_back(surface_of(read.mesh->mesh, solid.text("group")));
+      for (const int node : drawn.surfaces.back().triangles) nodes.insert(drawn.first_of_mesh + node);
+    }
+  for (const Values& beam : read.values.tables("beam")) {
+    std::vector<int>& line = drawn.beams.emplace_back();
+    line.push_back(built.model.find_node(beam.texts("nodes").front()));
+    for (int k = 1; k < beam.integer("elements"); ++k)
+      line.push_back(built.model.find_node(beam.text("name") + "." + std::to_string(k)));
+    line.push_back(built.model.find_node(beam.texts("nodes").back()));
+    nodes.insert(line.begin(), line.end());
+  }
+  for (const int node : {built.top, built.base})
+    if (node >= 0) nodes.insert(node);
+  drawn.nodes.assign(nodes.begin(), nodes.end());
+  return drawn;
+}
+
+void write_whole(JsonWriter& json, std::string_view key, const std::vector<int>& numbers) {
+  const std::vector<double> doubles(numbers.begin(), numbers.end());
+  json.key(key).numbers(doubles);
+}
+
+void write_places(JsonWriter& json, std::string_view key, const std::vector<Vec3>& places) {
+  std::vector<double> numbers;
+  for (const Vec3& place : places) numbers.insert(numbers.end(), {place.x(), place.y(), place.z()});
+  json.key(key).numbers(numbers);
+}
+
+void write_surfaces(JsonWriter& json, const Drawn& drawn) {
+  json.key("parts").begin_array();
+  for (const Surface& surface : drawn.surfaces) {
+    json.begin_object().member("name", surface.name);
+    for (const auto& [key, of_mesh] : {std::pair("triangles", &surface.triangles), std::pair("edges", &surface.edges)}) {
+      std::vector<int> numbers;
+      for (const int node : *of_mesh) numbers.push_back(drawn.number(drawn.first_of_mesh + node));
+      write_whole(json, key, numbers);
+    }
+    json.end_object();
+  }
+  json.end_array();
+}
+
+/// Rectangle of a footing's points, in their order round it.
+std::array<Vec3, 4> corners_of(const Interface& joint, const Values& footing) {
+  const Vec3 n = joint.normal.front(), t = local_axis(joint.space, n, 0);
+  const double azimuth = footing.number("azimuth");
+  const Vec3 along = std::cos(azimuth) * t + std::sin(azimuth) * cross(n, t), across = cross(n, along);
+  const Vec3 a = footing.number("width") / 2 * along, b = footing.number("length") / 2 * across, middle = joint.reference;
+  return {middle - a - b, middle + a - b, middle + a + b, middle - a + b};
+}
+
+const Values* footing_of(const Case& read, const Interface& joint) {
+  for (const Values& interface : read.values.tables("interface"))
+    if (interface.text("name") == joint.name) return table_if(interface, "footing");
+  return nullptr;
+}
+
+void write_bodies(JsonWriter& json, const Case& read, const Built& built, const Drawn& drawn) {
+  json.key("bodies").begin_array();
+  for (const Interface& joint : built.model.interfaces)
+    if (const Values* footing = footing_of(read, joint)) {
+      const auto corners = corners_of(joint, *footing);
+      json.begin_object().member("name", footing->text("body")).member("node", drawn.number(built.model.find_node(footing->text("body"))));
+      write_places(json, "corners", {corners.begin(), corners.end()});
+      json.end_object();
+    }
+  json.end_array();
+}
+
+void write_small_parts(JsonWriter& json, const Case& read, const Built& built, const Drawn& drawn) {
+  json.key("masses").begin_array();
+  for (const Values& mass : read.values.tables("mass"))
+    json.begin_object()
+        .member("node", drawn.number(built.model.find_node(mass.text("node"))))
+        .member("mass", mass.has("mass") ? mass.number("mass") : built.tuned_mass)
+        .end_object();
+  json.end_array().key("supports").begin_array();
+  for (const Values& support : read.values.tables("support"))
+    if (support.has("node"))
+      json.begin_object()
+          .member("node", drawn.number(built.model.find_node(support.text("node"))))
+          .key("dofs")
+          .texts(support.texts("fixed"))
+          .end_object();
+  json.end_array().key("loads").begin_array();
+  for (const Values& load : read.values.tables("load")) {
+    const char* key = load.has("force") ? "force" : "traction";
+    if (!load.has(key)) continue;
+    int node = load.has("node") ? built.model.find_node(load.text("node")) : -1;
+    if (load.has("group") && read.mesh) {
+      const std::vector<int> nodes = nodes_of(read.mesh->mesh, read.mesh->mesh.groups.at(load.text("group")));
+      node = drawn.first_of_mesh + nodes[nodes.size() / 2];
+    }
+    if (!std::ranges::binary_search(drawn.nodes, node)) continue;
+    json.begin_object().member("node", drawn.number(node)).key("force").numbers(load.numbers(key));
+    json.member("label", load.has("name") ? load.text("name") : "load").end_object();
+  }
+  json.end_array();
+}
+
+/// The point of an interface at a place; places are compared to a millionth of a metre.
+class PointAt {
+ public:
+  explicit PointAt(const Interface& joint) {
+    for (int i = 0; i < joint.batch.points; ++i) number_[key(joint.position[at(i)])] = i;
+  }
+  int operator()(const Vec3& place) const {
+    const auto found = number_.find(key(place));
+    return found == number_.end() ? -1 : found->second;
+  }
+
+ private:
+  static std::array<long, 3> key(const Vec3& place) {
+    return {std::lround(place.x() * 1e6), std::lround(place.y() * 1e6), std::lround(place.z() * 1e6)};
+  }
+  std::map<std::array<long, 3>, int> number_;
+};
+
+/// Triangles between the points of an interface: over the faces of an opened surface, over the grid of a footing. Empty where the points do
+/// not stand at corners.
+std::vector<int> triangles_of(const Case& read, const Interface& joint, std::size_t number) {
+  std::vector<int> triangles;
+  const auto add_polygon = [&](const std::vector<int>& corners) {
+    for (std::size_t k = 2; k < corners.size(); ++k) triangles.insert(triangles.end(), {corners[0], corners[k - 1], corners[k]});
+  };
+  if (read.mesh) {
+    const PointAt point_at(joint);
+    for (const FacePair& face : read.mesh->open[number]) {
+      std::vector<int> corners;
+      for (int k = 0; k < info(read.mesh->mesh.type(face.lower)).corners; ++k)
+        corners.push_back(point_at(read.mesh->mesh.nodes[at(read.mesh->mesh.cell(face.lower)[at(k)])]));
+      if (std::ranges::find(corners, -1) != corners.end()) continue;
+      add_polygon(corners);
+    }
+  }
+  if (const Values* footing = footing_of(read, joint); footing && footing->text("rule") == "nodal") {
+    const int along = footing->integer("points"), across = footing->integer("points_across");
+    for (int j = 0; j + 1 < across; ++j)
+      for (int i = 0; i + 1 < along; ++i) {
+        const int a = j * along + i;
+        add_polygon({a, a + 1, a + along + 1, a + along});
+      }
+  }
+  return triangles;
+}
+
+/// "x" when the direction is an axis of the model.
+std::string axis_name(const Vec3& direction, const char* otherwise) {
+  constexpr const char* names[] = {"x", "y", "z"};
+  for (int k = 0; k < 3; ++k)
+    if (std::abs(direction[k]) > 1 - 1e-9) return names[k];
+  return otherwise;
+}
+
+/// The drawn node of the upper side that is nearest to each point: the point is drawn moving with it.
+std::vector<int> carriers(const Interface& joint, const InterfaceFacts& facts, const Built& built, const Drawn& drawn) {
+  std::vector<int> nodes;
+  for (int i = 0; i < joint.batch.points; ++i) {
+    int nearest = -1;
+    double least = 0;
+    for (const int node : facts.upper) {
+      const double distance = (built.model.nodes[at(node)].position - joint.position[at(i)]).squaredNorm();
+      if (std::ranges::binary_search(drawn.nodes, node) && (nearest < 0 || distance < least)) nearest = node, least = distance;
+    }
+    if (nearest < 0) return {};
+    nodes.push_back(drawn.number(nearest));
+  }
+  return nodes;
+}
+
+void write_interfaces(JsonWriter& json, const Case& read, const Built& built, const Drawn& drawn) {
+  json.key("interfaces").begin_array();
+  int bodies = 0;
+  for (std::size_t k = 0; k < built.model.interfaces.size(); ++k) {
+    const Interface& joint = built.model.interfaces[k];
+    const Vec3 normal = mean_normal(joint), s = local_axis(joint.space, normal, 0), t = local_axis(joint.space, normal, 1);
+    std::vector<double> plan;
+    for (const Place& place : joint.position) plan.insert(plan.end(), {(place - joint.reference).dot(s), (place - joint.reference).dot(t)});
+    json.begin_object().member("name", joint.name);
+    write_places(json, "points", {joint.position.begin(), joint.position.end()});
+    json.key("plan").numbers(plan).key("axes").texts({axis_name(s, "s"), axis_name(t, "t")});
+    json.key("normal").numbers(std::array<double, 3>{normal.x(), normal.y(), normal.z()});
+    json.key("area").numbers(std::span<const double>(joint.area.data(), at(joint.batch.points)));
+    write_whole(json, "triangles", triangles_of(read, joint, k));
+    if (footing_of(read, joint)) {
+      json.member("body", bodies++);
+    } else if (const std::vector<int> nodes = carriers(joint, built.facts[k], built, drawn); !nodes.empty()) {
+      write_whole(json, "node", nodes);
+    }
+    json.end_object();
+  }
+  json.end_array();
+}
+
+void write_model(JsonWriter& json, const Case& read, const Built& built, const Drawn& drawn) {
+  std::vector<Vec3> places;
+  for (const int node : drawn.nodes) places.push_back(built.model.nodes[at(node)].position);
+  json.begin_object();
+  write_places(json, "nodes", places);
+  write_surfaces(json, drawn);
+  json.key("lines").begin_array();
+  for (std::size_t k = 0; k < drawn.beams.size(); ++k) {
+    std::vector<int> line;
+    for (const int node : drawn.beams[k]) line.push_back(drawn.number(node));
+    json.begin_object().member("name", read.values.tables("beam")[k].text("name"));
+    write_whole(json, "nodes", line);
+    json.end_object();
+  }
+  json.end_array();
+  write_bodies(json, read, built, drawn);
+  write_small_parts(json, read, built, drawn);
+  write_interfaces(json, read, built, drawn);
+  json.end_object();
+}
+
+/// Values of the interfaces' points in the pictures, by interface.
+void write_points(JsonWriter& json, std::string_view key, const Built& built, const std::vector<const Frame*>& frames,
+                  Vector Frame::*field) {
+  json.key(key).begin_object();
+  Index first = 0;
+  for (const Interface& joint : built.model.interfaces) {
+    json.key(joint.name).begin_array();
+    for (const Frame* frame : frames) json.numbers(std::span<const double>((frame->*field).data() + first, at(joint.batch.points)));
+    json.end_array();
+    first += joint.batch.points;
+  }
+  json.end_object();
+}
+
+/// So many pictures, evenly chosen, that the report stays small.
+std::vector<const Frame*> chosen_frames(const RunResult& result, std::size_t nodes) {
+  const std::size_t most = std::max<std::size_t>(12, most_numbers / (3 * nodes + 1));
+  const std::size_t every = (result.frames.size() + most - 1) / most;
+  std::vector<const Frame*> frames;
+  for (std::size_t i = 0; i < result.frames.size(); i += std::max<std::size_t>(every, 1)) frames.push_back(&result.frames[i]);
+  return frames;
+}
+
+void write_animation(JsonWriter& json, const Case& read, const ReportRun& run, const Drawn& drawn) {
+  const Built& built = *run.built;
+  const Space space = built.model.space;
+  const std::vector<const Frame*> frames = chosen_frames(*run.result, drawn.nodes.size());
+  json.begin_object().member("run", run.result->label).key("time").begin_array();
+  for (const Frame* frame : frames) json.value(frame->time);
+  json.end_array().key("displacement").begin_array();
+  std::vector<double> numbers;
+  const auto part_of_node = [&](const Frame& frame, int node, bool rotation) {
+    for (int k = 0; k < 3; ++k)
+      numbers.push_back(static_cast<float>(frame.displacement[space.unknowns() * node + k + (rotation ? space.dimension : 0)]));
+  };
+  for (const Frame* frame : frames) {
+    numbers.clear();
+    for (const int node : drawn.nodes) part_of_node(*frame, node, false);
+    json.numbers(numbers);
+  }
+  json.end_array().key("rotation").begin_object();
+  for (const Interface& joint : built.model.interfaces)
+    if (const Values* footing = footing_of(read, joint)) {
+      json.key(footing->text("body")).begin_array();
+      for (const Frame* frame : frames) {
+        numbers.clear();
+        part_of_node(*frame, built.model.find_node(footing->text("body")), true);
+        json.numbers(numbers);
+      }
+      json.end_array();
+    }
+  json.end_object();
+  write_points(json, "openings", built, frames, &Frame::opening);
+  write_points(json, "pressures", built, frames, &Frame::pressure);
+  json.end_object();
+}
+
+}  // namespace
+
+void write_space(JsonWriter& json, const ReportInput& input) {
+  const Drawn drawn = drawn_of(*input.read, *input.runs.front().built);
+  json.key("space");
+  write_model(json, *input.read, *input.runs.front().built, drawn);
+  json.key("spaceAnimations").begin_array();
+  for (const ReportRun& run : input.runs)
+    if (run.result->frames.size() >= 2) write_animation(json, *input.read, run, drawn);
+  json.end_array();
+}
+
+}  // namespace uplift
