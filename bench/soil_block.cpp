@@ -2,7 +2,8 @@
 // cost. Soil 60 (x 60) x 20 m, E = 200 MPa, nu = 0.3, rho = 2000 kg/m3; block 10 (x 10) x 20 m, E = 20 GPa, nu = 0.2, rho = 2500 kg/m3;
 // 4-node quads or 8-node bricks with incompatible modes; tensionless frictionless base, 2e10 Pa/m; bottom fixed, sides on rollers; gravity,
 // then a half-sine of 3 MN/m (30 MN) and 0.1 s on the block's top; 500 steps of 2 ms (in space 150).
-// Usage: bench_soil_block [plane|space|friction] [element sizes in m ...]; friction: in space, Coulomb friction of 0.7, 1e10 Pa/m
+// Usage: bench_soil_block [plane|space|friction] [element sizes in m ...]; friction: in space, Coulomb friction of 0.7, 1e10 Pa/m, coarse
+// soil around a fine foundation
 #include <fmt/format.h>
 #include <sys/resource.h>
 
@@ -57,8 +58,9 @@ Model block_on_soil(double size, Setup kind) {
   SoilBox box;
   box.dimension = space.dimension;
   box.cell = space.dimension == 2 ? Cell::quad4 : Cell::hex8;
-  box.soil.layers = {{20, size}};
-  box.soil.size = box.block.size = size;
+  box.block.size = size;
+  box.soil.size = kind.friction ? 8 * size : size;  // many node pairs on a bulk of the wanted size
+  box.soil.layers = {{20, kind.friction ? 3 * size : size}};
   box.block.height = 20;
   Mesh mesh = soil_box(box, {});
   const std::vector<OpenedSurface> opened = split(mesh, {"interface"}, {"soil_1"}, {});
@@ -110,7 +112,8 @@ Model block_on_soil(double size, Setup kind) {
   base.points = face_points(mesh, opened[0].faces, FaceQuadrature::nodal, 1, 0);
   using Numbers = std::vector<std::pair<std::string, double>>;
   const Numbers smooth{{"K_n", 2e10}}, rough{{"K_n", 2e10}, {"K_t", 1e10}, {"friction", 0.7}};
-  base.law = make_part(law_catalog(), part(interface_behaviours(), "springs", kind.friction ? rough : smooth, kind.friction ? "coulomb" : "none"));
+  base.law =
+      make_part(law_catalog(), part(interface_behaviours(), "springs", kind.friction ? rough : smooth, kind.friction ? "coulomb" : "none"));
   base.behaviour = "springs";
   builder.add_interface(std::move(base), {});
   return builder.finish();
@@ -188,7 +191,8 @@ void measure(double size, Setup kind) {
       "back-solve {:7.2f} ms, ratio {:.2f} | factor {:.1f} MB, peak {:.0f} MB | iterations/step {:.2f}, uplift {:.0f} %, residual {:.1e}\n",
       model.nodes.size(), model.free(), b.rows(), t_model, t_static, t_first, 1e3 * step, 1e3 * steps.front(), 1e3 * solve, step / solve,
       8e-6 * factor.split()->nonzeros(), static_cast<double>(usage.ru_maxrss) / 1024,
-      static_cast<double>(stepper.counts().iterations) / steps_of(kind), 100 * open, e.residual / std::max(stepper.largest_external(), e.kinetic));
+      static_cast<double>(stepper.counts().iterations) / steps_of(kind), 100 * open,
+      e.residual / std::max(stepper.largest_external(), e.kinetic));
 }
 
 }  // namespace
@@ -200,6 +204,9 @@ int main(int count, char** words) {
   const uplift::Setup kind{{word == "space" || word == "friction" ? 3 : 2}, word == "friction"};
   std::vector<double> sizes;
   for (int i = named ? 2 : 1; i < count; ++i) sizes.push_back(std::atof(words[i]));
-  if (sizes.empty()) sizes = kind.space.dimension == 2 ? std::vector<double>{1.0, 0.39, 0.195} : std::vector<double>{2.5, 1.67};
+  if (sizes.empty())
+    sizes = kind.space.dimension == 2 ? std::vector<double>{1.0, 0.39, 0.195}
+            : kind.friction           ? std::vector<double>{0.5}
+                                      : std::vector<double>{2.5, 1.67};
   for (const double size : sizes) uplift::measure(size, kind);
 }

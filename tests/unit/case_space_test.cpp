@@ -62,8 +62,7 @@ Vector rest_of(const Built& built) {
   state.opening = state.force = state.mean_force = Vector::Zero(b.rows());
   state.history.assign(static_cast<std::size_t>(behaviours.history), 0);
   const Vector gap = Vector::Zero(b.rows());
-  const StaticOutcome rest =
-      solve_statics(built.model, bulk, b, gap, behaviours, *built.plan.method, *built.plan.solver, 5, state, counts);
+  const StaticOutcome rest = solve_statics(built.model, bulk, b, gap, behaviours, *built.plan.method, *built.plan.solver, 5, state, counts);
   EXPECT_TRUE(rest.converged) << rest.why;
   return built.model.full(state.displacement, 0, 0);
 }
@@ -130,7 +129,8 @@ TEST(CaseSpace, MistakesAreNamed) {
             "case.toml:4: nodes.top.value: wanted three numbers [x, y, z] in a model in space, found 2");
   EXPECT_EQ(refusal(replaced(good, "[0, 0, -9.81]", "[0, -9.81]")),
             "case.toml:28: gravity.acceleration: wanted three numbers [x, y, z] in a model in space, found 2");
-  EXPECT_EQ(refusal(replaced(good, "J = 0.4\n", "")), "case.toml:5: beam[0]: wanted J, the torsion constant, in a model in space, found none");
+  EXPECT_EQ(refusal(replaced(good, "J = 0.4\n", "")),
+            "case.toml:5: beam[0]: wanted J, the torsion constant, in a model in space, found none");
   EXPECT_EQ(refusal(replaced(good, "I_z = 0.5\n", "")), "case.toml:5: beam[0]: wanted either I, or I_y and I_z, found neither");
   EXPECT_EQ(refusal(replaced(good, "J = 0.4\n", "J = 0.4\nup = [0, 0, 2]\n")),
             "case.toml:12: beam[0].up: wanted a direction that is not along the beam, found one along it");

@@ -218,8 +218,8 @@ double weight_of(const Built& built) {
   for (std::size_t i = 0; i < model.drives.size(); ++i) {
     if (!model.drives[i].dead) continue;
     for (int node = 0; node < static_cast<int>(carried.size()); ++node)
-      if (carried[static_cast<std::size_t>(node)]) for (int k = 0; k < model.space.dimension; ++k)
-          weight -= model.assembly.loads[i][model.space.unknowns() * node + k] * normal[k];
+      if (carried[static_cast<std::size_t>(node)])
+        for (int k = 0; k < model.space.dimension; ++k) weight -= model.assembly.loads[i][model.space.unknowns() * node + k] * normal[k];
   }
   return weight;
 }

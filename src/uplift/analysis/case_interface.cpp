@@ -41,7 +41,8 @@ void add_bed(const Values& bed, const std::string& interface, std::vector<JointP
     builder.add_element(std::make_unique<Spring>(along, bed.number("stiffness") * point.area), bed.where("stiffness"));
     if (bed.number("damping") > 0)
       builder.add_element(std::make_unique<Dashpot>(along, bed.number("damping") * point.area), bed.where("damping"));
-    if (bed.number("mass") > 0) builder.add_element(std::make_unique<PointMass>(space, node, bed.number("mass") * point.area, Vec3::Zero()), bed.where("mass"));
+    if (bed.number("mass") > 0)
+      builder.add_element(std::make_unique<PointMass>(space, node, bed.number("mass") * point.area, Vec3::Zero()), bed.where("mass"));
     point.lower = {{node, 1.0}};
   }
 }
@@ -57,7 +58,8 @@ Joint footing_joint(const Values& interface, const Values& table, bool rigid_gro
   footing.points = table.integer("points");
   for (const char* key : {"length", "points_across"})
     if (table.has(key) != (names.space.dimension == 3))
-      throw InputError(table.where(key), table.path(key), names.space.dimension == 3 ? "length and points_across in space" : "width alone in the plane",
+      throw InputError(table.where(key), table.path(key),
+                       names.space.dimension == 3 ? "length and points_across in space" : "width alone in the plane",
                        table.has(key) ? "given" : "none");
   if (names.space.dimension == 3) {
     footing.length = table.number("length");
@@ -123,11 +125,10 @@ Joint make_joint(const Values& interface, const std::vector<FacePair>& open, boo
   Joint joint;
   if (footing) joint = footing_joint(interface, *footing, rigid_ground, builder, names);
   if (pairs)
-    joint.points = pair_points(side(*pairs, "upper", names), side(*pairs, "lower", names), normal_of(*pairs, names.space), pairs->number("area"),
-                               interface.number("gap"), pairs->where());
+    joint.points = pair_points(side(*pairs, "upper", names), side(*pairs, "lower", names), normal_of(*pairs, names.space),
+                               pairs->number("area"), interface.number("gap"), pairs->where());
   if (line) {
-    if (names.space.dimension == 3)
-      throw InputError(line->where(), line->path(), "footing, pairs or surface in a model in space", "line");
+    if (names.space.dimension == 3) throw InputError(line->where(), line->path(), "footing, pairs or surface in a model in space", "line");
     LineJoint made{side(*line, "upper", names),        side(*line, "lower", names),
                    line->integer("nodes_per_element"), line->text("quadrature") == "nodal" ? LineQuadrature::nodal : LineQuadrature::gauss,
                    line->number("thickness"),          interface.number("gap")};

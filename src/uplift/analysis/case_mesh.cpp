@@ -58,7 +58,8 @@ Mesh make_soil_box(const Values& box) {
   made.growth = box.number("growth");
   made.cell = box.has("cell") ? cell_named(box.text("cell")) : made.dimension == 2 ? Cell::quad4 : Cell::hex8;
   if (info(made.cell).dimension != made.dimension)
-    fail(box, "cell", made.dimension == 2 ? "a cell of the plane (soil.length makes the mesh one in space)" : "a cell of space, for example hex8",
+    fail(box, "cell",
+         made.dimension == 2 ? "a cell of the plane (soil.length makes the mesh one in space)" : "a cell of space, for example hex8",
          in_quotes(box.text("cell")));
   return soil_box(made, box.where());
 }
@@ -170,7 +171,8 @@ CaseSolids::CaseSolids(const Values& root, const CaseMesh& from) : mesh_(&from.m
   solid_of_.assign(cells.size(), -1);
   for (const Values& solid : root.tables("solid")) {
     const Group& group = group_named(*mesh_, solid, "group", "a group of cells");
-    if (group.dimension != mesh_->dimension || group.cells.empty()) fail(solid, "group", "a group of cells", dimension_word(*mesh_, group.dimension));
+    if (group.dimension != mesh_->dimension || group.cells.empty())
+      fail(solid, "group", "a group of cells", dimension_word(*mesh_, group.dimension));
     for (const CellId cell : group.cells) {
       int& solid_here = solid_of_[static_cast<std::size_t>(std::ranges::lower_bound(cells, cell) - cells.begin())];
       if (solid_here >= 0)

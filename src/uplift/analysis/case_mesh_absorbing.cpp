@@ -36,11 +36,12 @@ void add_absorbing(const Values& root, ModelBuilder& builder, const CaseNames& n
     for (const CellId edge : solids.edges(absorbing, "group")) {
       std::vector<int> nodes;
       for (const int node : solids.mesh().cell(edge)) nodes.push_back(names.first_of_mesh + node);
-      auto face =
-          std::make_unique<AbsorbingFace>(solids.mesh().type(edge), nodes, names.coordinates, section_of(absorbing, *solids.beside(edge), names.space));
+      auto face = std::make_unique<AbsorbingFace>(solids.mesh().type(edge), nodes, names.coordinates,
+                                                  section_of(absorbing, *solids.beside(edge), names.space));
       const Vector force = incident ? face->incident(motion) : Vector();
       for (Index i = 0; i < force.size(); ++i)
-        if (force[i] != 0) pattern.emplace_back(names.space.unknowns() * nodes[static_cast<std::size_t>(i / d)] + static_cast<int>(i % d), force[i]);
+        if (force[i] != 0)
+          pattern.emplace_back(names.space.unknowns() * nodes[static_cast<std::size_t>(i / d)] + static_cast<int>(i % d), force[i]);
       builder.add_element(std::move(face), absorbing.where());
     }
     if (!incident) continue;

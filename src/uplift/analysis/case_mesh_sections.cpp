@@ -35,16 +35,16 @@ Field part_size() {
 }
 
 const Section& raft_section() {
-  static const Section s{"raft", "the foundation, in the middle of the soil (x = 0)", Fields{part_width(), part_length(), part_height(), part_size()}};
+  static const Section s{"raft", "the foundation, in the middle of the soil (x = 0)",
+                         Fields{part_width(), part_length(), part_height(), part_size()}};
   return s;
 }
 
 const Section& block_section() {
-  static const Section s{
-      "block", "the building, on the raft (without one: on the soil)",
-      Fields{part_width(), part_length(), part_height(), part_size(),
-             number("offset", "m", "of its middle from the middle of the soil, along x").standard(0.0),
-             number("offset_y", "m", "in space: the same along y").standard(0.0)}};
+  static const Section s{"block", "the building, on the raft (without one: on the soil)",
+                         Fields{part_width(), part_length(), part_height(), part_size(),
+                                number("offset", "m", "of its middle from the middle of the soil, along x").standard(0.0),
+                                number("offset_y", "m", "in space: the same along y").standard(0.0)}};
   return s;
 }
 
@@ -66,7 +66,8 @@ const Section& soil_box_section() {
 }  // namespace
 
 const Section& mesh_section() {
-  static const Section s{"mesh", "mesh of solids, in the plane or in space: either a file or a soil box. Its nodes are called mesh.1, mesh.2, ...",
+  static const Section s{"mesh",
+                         "mesh of solids, in the plane or in space: either a file or a soil box. Its nodes are called mesh.1, mesh.2, ...",
                          Fields{text("file", "mesh of Gmsh (.msh) or MED (.med), in metres; in the plane where all z are equal").optional(),
                                 text("name", "the mesh to take when a MED file holds several").optional(),
                                 table("soil_box", soil_box_section(), "a made mesh").optional()}};
@@ -110,12 +111,13 @@ const Section& incident_section() {
 }  // namespace
 
 const Section& absorbing_section() {
-  static const Section s{"absorbing",
-                         "a viscous boundary: edges (faces) of the mesh through which waves leave (Lysmer & Kuhlemeyer), with the material of the "
-                         "solid beside them. It "
-                         "holds nothing at rest: static stages need supports elsewhere",
-                         Fields{text("group", "group of edges (faces) of the mesh"), flag("lumped", "diagonal damping matrix").standard(false),
-                                table("incident", incident_section(), "a wave that comes in; absent: none").optional()}};
+  static const Section s{
+      "absorbing",
+      "a viscous boundary: edges (faces) of the mesh through which waves leave (Lysmer & Kuhlemeyer), with the material of the "
+      "solid beside them. It "
+      "holds nothing at rest: static stages need supports elsewhere",
+      Fields{text("group", "group of edges (faces) of the mesh"), flag("lumped", "diagonal damping matrix").standard(false),
+             table("incident", incident_section(), "a wave that comes in; absent: none").optional()}};
   return s;
 }
 
@@ -126,7 +128,9 @@ const Section& surface_section() {
              texts("lower", "groups of cells of the lower side (soil); all other cells are the upper side"),
              choice("quadrature", {"nodal", "gauss"}, "where the joint points stand: at the pairs of nodes, or at Gauss points")
                  .standard("nodal"),
-             number("thickness", "m", "length out of the plane (plane meshes); absent: that of the solids (the smaller one)").positive().optional()}};
+             number("thickness", "m", "length out of the plane (plane meshes); absent: that of the solids (the smaller one)")
+                 .positive()
+                 .optional()}};
   return s;
 }
 

@@ -106,8 +106,7 @@ bool first_of_two(const Values& table, std::string_view first, std::string_view 
 template <typename Section>
 void add_beam_mass(const Values& beam, Section& section) {
   if (beam.text("mass") == "none") return;
-  if (!beam.has("density") || !beam.has("A"))
-    fail(beam, "mass", "density and A of the beam", !beam.has("density") ? "no density" : "no A");
+  if (!beam.has("density") || !beam.has("A")) fail(beam, "mass", "density and A of the beam", !beam.has("density") ? "no density" : "no A");
   section.mass = beam.text("mass") == "consistent" ? BeamSection::Mass::consistent : BeamSection::Mass::lumped;
   section.mass_per_length = beam.number("density") * beam.number("A");
 }
@@ -170,9 +169,8 @@ MakeBeam beam_maker(const Values& beam, const Vec3& along, Space space) {
   std::optional<Vec3> up;
   if (beam.has("up")) up = vector_of(beam, "up", space);
   if (!beam_axes(along, up)) fail(beam, "up", "a direction that is not along the beam", "one along it");
-  return [section, up](int a, int b, const Place& from, const Place& to) {
-    return std::make_unique<SpaceBeam>(a, b, from, to, section, up);
-  };
+  return
+      [section, up](int a, int b, const Place& from, const Place& to) { return std::make_unique<SpaceBeam>(a, b, from, to, section, up); };
 }
 
 void add_beam(const Values& beam, ModelBuilder& builder, CaseNames& names, Names& beams) {
@@ -226,7 +224,8 @@ void add_masses(const Values& root, ModelBuilder& builder, CaseNames& names, con
   for (const Values& mass : root.tables("mass")) {
     const int node = names.node(mass, "node");
     const double value = first_of_two(mass, "mass", "tuned_frequency") ? mass.number("mass") : tuned.at(next++);
-    builder.add_element(std::make_unique<PointMass>(names.space, node, value, about_axes(mass, "inertia", "inertias", true, names.space)), mass.where());
+    builder.add_element(std::make_unique<PointMass>(names.space, node, value, about_axes(mass, "inertia", "inertias", true, names.space)),
+                        mass.where());
   }
   Names bodies("rigid body");
   for (const Values& body : root.tables("rigid")) {

@@ -41,7 +41,9 @@ struct Quantity {
 };
 /// In space `shear`, `moment` and `rotation` are the lengths of their parts along (about) the two tangents.
 std::vector<Quantity> interface_quantities(Space space) {
-  std::vector<Quantity> made{{"axial", Column::axial, "N"}, {"shear", Column::shear, "N"}, {"moment", Column::moment, "N m"},
+  std::vector<Quantity> made{{"axial", Column::axial, "N"},
+                             {"shear", Column::shear, "N"},
+                             {"moment", Column::moment, "N m"},
                              {"rotation", Column::rotation, "rad"}};
   if (space.dimension == 3)
     for (const Quantity& each : {Quantity{"shear_1", Column::shear_1, "N"}, Quantity{"shear_2", Column::shear_2, "N"},
@@ -149,7 +151,8 @@ int nearest_node(const Values& history, Built& built) {
   const Node& found = built.model.nodes[static_cast<std::size_t>(nearest)];
   const auto text = [&](const Vec3& v) {
     const int d = built.model.space.dimension;
-    return d == 2 ? fmt::format("({:g}, {:g})", v.x() + 0.0, v.y() + 0.0) : fmt::format("({:g}, {:g}, {:g})", v.x() + 0.0, v.y() + 0.0, v.z() + 0.0);
+    return d == 2 ? fmt::format("({:g}, {:g})", v.x() + 0.0, v.y() + 0.0)
+                  : fmt::format("({:g}, {:g}, {:g})", v.x() + 0.0, v.y() + 0.0, v.z() + 0.0);
   };
   built.notes.push_back(fmt::format("{} at {} m: node {} at {} m, {:.3g} m away", history.text("quantity"), text(place), found.name,
                                     text(found.position), distance(nearest)));
@@ -196,7 +199,8 @@ void add_requests(const Case& read, Built& built) {
   if (output.flag("automatic")) {
     const bool plane = model.space.dimension == 2;
     std::vector<std::string_view> top{"ux", "vx", "uy"}, base{"ux", "uy", "rz", "vy", "vrz"}, base_too{"rz", "vy", "vrz"};
-    if (!plane) top = {"ux", "uy", "uz", "vx", "vy"}, base = {"ux", "uy", "uz", "rx", "ry", "rz", "vz"}, base_too = {"rx", "ry", "rz", "vz"};
+    if (!plane)
+      top = {"ux", "uy", "uz", "vx", "vy"}, base = {"ux", "uy", "uz", "rx", "ry", "rz", "vz"}, base_too = {"rx", "ry", "rz", "vz"};
     if (built.top >= 0) add_node(model, built.top, top, requests);
     if (built.base >= 0) add_node(model, built.base, built.base != built.top ? base : base_too, requests);
     for (std::size_t k = 0; k < model.interfaces.size(); ++k)

@@ -16,7 +16,9 @@ using Fields = std::vector<Field>;
 // ---- the structure ----
 
 const Section& node_section() {
-  static const Section s{"node", "NAME = [x, y]: a point of the structure, with the unknowns ux, uy (m) and rz (rad, counter-clockwise); in space NAME = [x, y, z] with "
+  static const Section s{"node",
+                         "NAME = [x, y]: a point of the structure, with the unknowns ux, uy (m) and rz (rad, counter-clockwise); in space "
+                         "NAME = [x, y, z] with "
                          "ux, uy, uz, rx, ry, rz",
                          Fields{vector("value", "m", "position [x, y], y points up; in space [x, y, z], z points up")}};
   return s;
@@ -25,20 +27,23 @@ const Section& node_section() {
 const Section& beam_section() {
   static const Section s{
       "beam", "a straight beam between two nodes, rigidly connected to both",
-      Fields{text("name", "name; inner nodes of a subdivided beam are called NAME.1, NAME.2, ..."), texts("nodes", "the two end nodes"),
-             number("E", "Pa", "Young's modulus").positive(), number("I", "m4", "second moment of area of the cross-section; in space about both axes").positive().optional(),
-             number("I_y", "m4", "in space: second moment of area about the local y axis; with I_z instead of I").positive().optional(),
-             number("I_z", "m4", "in space: about the local z axis").positive().optional(),
-             number("J", "m4", "in space: torsion constant").positive().optional(),
-             vector("up", "1", "in space: local z lies in the plane of the beam and this direction; absent: the vertical, of vertical beams x").optional(),
-             number("A", "m2", "area of the cross-section; absent: the beam is inextensible (eliminated exactly)").positive().optional(),
-             choice("theory", {"euler_bernoulli", "timoshenko"}, "bending only, or with shear").standard("euler_bernoulli"),
-             number("poisson", "1", "Poisson's ratio (shear modulus of a Timoshenko beam)").between(0, 0.5).standard(0.3),
-             number("shear_area", "m2", "effective shear area of a Timoshenko beam").positive().optional(),
-             choice("mass", {"none", "consistent", "lumped"}, "mass matrix of the beam").standard("none"),
-             number("density", "kg/m3", "density; needed unless mass = \"none\", and then A too").positive().optional(),
-             integer("elements", "number of equal elements").between(1, 10000).standard(1.0),
-             number("damping_beta", "s", "stiffness-proportional damping factor of this beam alone").nonnegative().standard(0.0)}};
+      Fields{
+          text("name", "name; inner nodes of a subdivided beam are called NAME.1, NAME.2, ..."), texts("nodes", "the two end nodes"),
+          number("E", "Pa", "Young's modulus").positive(),
+          number("I", "m4", "second moment of area of the cross-section; in space about both axes").positive().optional(),
+          number("I_y", "m4", "in space: second moment of area about the local y axis; with I_z instead of I").positive().optional(),
+          number("I_z", "m4", "in space: about the local z axis").positive().optional(),
+          number("J", "m4", "in space: torsion constant").positive().optional(),
+          vector("up", "1", "in space: local z lies in the plane of the beam and this direction; absent: the vertical, of vertical beams x")
+              .optional(),
+          number("A", "m2", "area of the cross-section; absent: the beam is inextensible (eliminated exactly)").positive().optional(),
+          choice("theory", {"euler_bernoulli", "timoshenko"}, "bending only, or with shear").standard("euler_bernoulli"),
+          number("poisson", "1", "Poisson's ratio (shear modulus of a Timoshenko beam)").between(0, 0.5).standard(0.3),
+          number("shear_area", "m2", "effective shear area of a Timoshenko beam").positive().optional(),
+          choice("mass", {"none", "consistent", "lumped"}, "mass matrix of the beam").standard("none"),
+          number("density", "kg/m3", "density; needed unless mass = \"none\", and then A too").positive().optional(),
+          integer("elements", "number of equal elements").between(1, 10000).standard(1.0),
+          number("damping_beta", "s", "stiffness-proportional damping factor of this beam alone").nonnegative().standard(0.0)}};
   return s;
 }
 
@@ -57,47 +62,51 @@ const Section& mass_section() {
 }
 
 const Section& spring_section() {
-  static const Section s{"spring", "a linear spring between two nodes, or from one node to fixed ground",
-                         Fields{text("name", "name").optional(), texts("nodes", "two nodes, or one (to the ground)"),
-                                vector("direction", "1", "direction in which it acts; in space also the axis of a rotational spring").optional(),
-                                number("stiffness", "N/m", "stiffness along direction").positive().optional(),
-                                number("rotational_stiffness", "N m/rad", "stiffness of a rotational spring").positive().optional()}};
+  static const Section s{
+      "spring", "a linear spring between two nodes, or from one node to fixed ground",
+      Fields{text("name", "name").optional(), texts("nodes", "two nodes, or one (to the ground)"),
+             vector("direction", "1", "direction in which it acts; in space also the axis of a rotational spring").optional(),
+             number("stiffness", "N/m", "stiffness along direction").positive().optional(),
+             number("rotational_stiffness", "N m/rad", "stiffness of a rotational spring").positive().optional()}};
   return s;
 }
 
 const Section& dashpot_section() {
-  static const Section s{"dashpot", "a linear dashpot between two nodes, or from one node to fixed ground",
-                         Fields{text("name", "name").optional(), texts("nodes", "two nodes, or one (to the ground)"),
-                                vector("direction", "1", "direction in which it acts; in space also the axis of a rotational dashpot").optional(),
-                                number("damping", "N s/m", "damping along direction").positive().optional(),
-                                number("rotational_damping", "N m s/rad", "damping of a rotational dashpot").positive().optional()}};
+  static const Section s{
+      "dashpot", "a linear dashpot between two nodes, or from one node to fixed ground",
+      Fields{text("name", "name").optional(), texts("nodes", "two nodes, or one (to the ground)"),
+             vector("direction", "1", "direction in which it acts; in space also the axis of a rotational dashpot").optional(),
+             number("damping", "N s/m", "damping along direction").positive().optional(),
+             number("rotational_damping", "N m s/rad", "damping of a rotational dashpot").positive().optional()}};
   return s;
 }
 
 const Section& rigid_section() {
-  static const Section s{"rigid", "a rigid body (a footing): its nodes follow the master node exactly",
-                         Fields{text("name", "name"), text("node", "master node"), texts("slaves", "further nodes of the body").optional(),
-                                number("mass", "kg", "mass of the body").nonnegative().standard(0.0),
-                                number("inertia", "kg m2", "rotary inertia about the centre of mass; in space about every axis").nonnegative().standard(0.0),
-                                numbers("inertias", "kg m2", "in space: about the axes x, y, z through the centre, instead of inertia", 3).optional(),
-                                vector("centre", "m", "centre of mass; absent: the master node").optional()}};
+  static const Section s{
+      "rigid", "a rigid body (a footing): its nodes follow the master node exactly",
+      Fields{text("name", "name"), text("node", "master node"), texts("slaves", "further nodes of the body").optional(),
+             number("mass", "kg", "mass of the body").nonnegative().standard(0.0),
+             number("inertia", "kg m2", "rotary inertia about the centre of mass; in space about every axis").nonnegative().standard(0.0),
+             numbers("inertias", "kg m2", "in space: about the axes x, y, z through the centre, instead of inertia", 3).optional(),
+             vector("centre", "m", "centre of mass; absent: the master node").optional()}};
   return s;
 }
 
 const Section& support_section() {
-  static const Section s{"support", "unknowns that are held, of a node or of a group of the mesh",
-                         Fields{text("node", "node; or give group").optional(),
-                                text("group", "group of the mesh: all its nodes").optional(), texts("fixed", "any of ux, uy, rz; in space of ux, uy, uz, rx, ry, rz")}};
+  static const Section s{
+      "support", "unknowns that are held, of a node or of a group of the mesh",
+      Fields{text("node", "node; or give group").optional(), text("group", "group of the mesh: all its nodes").optional(),
+             texts("fixed", "any of ux, uy, rz; in space of ux, uy, uz, rx, ry, rz")}};
   return s;
 }
 
 const Section& motion_section() {
-  static const Section s{
-      "motion", "a prescribed motion of one unknown of a node or of a group of the mesh: amplitude x function",
-      Fields{text("name", "name").optional(), text("node", "node; or give group").optional(),
-             text("group", "group of the mesh: all its nodes").optional(), choice("direction", {"ux", "uy", "uz", "rx", "ry", "rz"}, "unknown that is moved"),
-             number("amplitude", "1", "m (or rad for rotations) that the function multiplies").standard(1.0),
-             text("function", "name of the function of time")}};
+  static const Section s{"motion", "a prescribed motion of one unknown of a node or of a group of the mesh: amplitude x function",
+                         Fields{text("name", "name").optional(), text("node", "node; or give group").optional(),
+                                text("group", "group of the mesh: all its nodes").optional(),
+                                choice("direction", {"ux", "uy", "uz", "rx", "ry", "rz"}, "unknown that is moved"),
+                                number("amplitude", "1", "m (or rad for rotations) that the function multiplies").standard(1.0),
+                                text("function", "name of the function of time")}};
   return s;
 }
 
@@ -124,15 +133,15 @@ const Section& function_section() {
 }
 
 const Section& load_section() {
-  static const Section s{"load",
-                         "a load on a node or on faces (edges) of the mesh; without a function it is constant and applied by the static stages",
-                         Fields{text("name", "name; needed for a group").optional(), text("node", "node; or give group").optional(),
-                                text("group", "group of faces (edges) of the mesh").optional(),
-                                vector("force", "N", "force; on a group: the whole force, spread evenly over its area").optional(),
-                                vector("traction", "Pa", "force per area of a group").optional(),
-                                number("moment", "N m", "moment on a node, counter-clockwise (about z)").optional(),
-                                numbers("moments", "N m", "in space: moments on a node about x, y, z, instead of moment", 3).optional(),
-                                text("function", "name of the function of time that multiplies it; absent: constant").optional()}};
+  static const Section s{
+      "load", "a load on a node or on faces (edges) of the mesh; without a function it is constant and applied by the static stages",
+      Fields{text("name", "name; needed for a group").optional(), text("node", "node; or give group").optional(),
+             text("group", "group of faces (edges) of the mesh").optional(),
+             vector("force", "N", "force; on a group: the whole force, spread evenly over its area").optional(),
+             vector("traction", "Pa", "force per area of a group").optional(),
+             number("moment", "N m", "moment on a node, counter-clockwise (about z)").optional(),
+             numbers("moments", "N m", "in space: moments on a node about x, y, z, instead of moment", 3).optional(),
+             text("function", "name of the function of time that multiplies it; absent: constant").optional()}};
   return s;
 }
 
@@ -142,8 +151,7 @@ const Section& initial_section() {
       Fields{text("node", "node"), vector("displacement", "m", "displacement").optional(),
              number("rotation", "rad", "rotation, counter-clockwise (about z)").optional(),
              numbers("rotations", "rad", "in space: about x, y, z, instead of rotation", 3).optional(),
-             vector("velocity", "m/s", "velocity").optional(),
-             number("angular_velocity", "rad/s", "angular velocity (about z)").optional(),
+             vector("velocity", "m/s", "velocity").optional(), number("angular_velocity", "rad/s", "angular velocity (about z)").optional(),
              numbers("angular_velocities", "rad/s", "in space: about x, y, z, instead of angular_velocity", 3).optional()}};
   return s;
 }
@@ -278,8 +286,8 @@ const Section& history_section() {
   static const Section s{
       "history", "a column of the output: of a node, of an interface, or of one of its points",
       Fields{text("name", "name of the column; absent: made from the rest").optional(), text("node", "node").optional(),
-             vector("at", "m", "instead of node: the node nearest to this place").optional(),
-             text("interface", "interface").optional(), integer("point", "point of the interface, from 1").between(1, 1000000).optional(),
+             vector("at", "m", "instead of node: the node nearest to this place").optional(), text("interface", "interface").optional(),
+             integer("point", "point of the interface, from 1").between(1, 1000000).optional(),
              text("quantity",
                   "node: ux uy rz, vx vy vrz, ax ay arz; interface: axial shear moment rotation uplifted_ratio max_opening max_pressure; "
                   "point: opening slip traction shear_traction mean_traction mean_shear_traction. In space: all three axes; also shear_1 "

@@ -28,7 +28,8 @@ std::array<std::vector<double>, 2> slope_weights(const Interface& interface) {
   const double det = slopes == 1 ? inertia(0, 0) : inertia(0, 0) * inertia(1, 1) - inertia(0, 1) * inertia(1, 0);
   const double size = inertia.trace();
   if (slopes == 1 && size > 0) inverse(0, 0) = 1 / inertia(0, 0);
-  if (slopes == 2 && det > 1e-12 * size * size) inverse << inertia(1, 1) / det, -inertia(0, 1) / det, -inertia(1, 0) / det, inertia(0, 0) / det;
+  if (slopes == 2 && det > 1e-12 * size * size)
+    inverse << inertia(1, 1) / det, -inertia(0, 1) / det, -inertia(1, 0) / det, inertia(0, 0) / det;
   const Matrix weights = interface.area.asDiagonal() * shape * inverse;
   std::array<std::vector<double>, 2> made;
   for (int k = 0; k < slopes; ++k) made[static_cast<std::size_t>(k)].assign(weights.col(k).begin(), weights.col(k).end());

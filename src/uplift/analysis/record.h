@@ -22,8 +22,8 @@ class InterfaceViewer {
   InterfaceViewer(const Model& model, double gap_tolerance);
   /// `force` is the end-of-step force per row [N].
   void look(const Vector& opening, const Vector& force, std::vector<InterfaceView>& views) const;
-  /// Slope of the plane that fits the normal opening best (area-weighted): relative rotation of the upper side [rad]. In the plane the first
-  /// number, counter-clockwise > 0; in space about the two tangents of the mean normal.
+  /// Slope of the plane that fits the normal opening best (area-weighted): relative rotation of the upper side [rad]. In the plane the
+  /// first number, counter-clockwise > 0; in space about the two tangents of the mean normal.
   std::array<double, 2> rotation(int interface, const Vector& opening) const;
 
  private:

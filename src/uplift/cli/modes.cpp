@@ -46,7 +46,9 @@ void write_modes(JsonWriter& json, const Model& model, const std::vector<Mode>& 
     if (model.space.dimension == 3) json.member("mass_share_z", share(model, shape, uz));
     json.key("shape").begin_object();
     for (std::size_t node = 0; node < model.nodes.size(); ++node)
-      json.key(model.nodes[node].name).numbers(std::span<const double>(shape.data() + model.space.unknowns() * static_cast<int>(node), static_cast<std::size_t>(model.space.unknowns())));
+      json.key(model.nodes[node].name)
+          .numbers(std::span<const double>(shape.data() + model.space.unknowns() * static_cast<int>(node),
+                                           static_cast<std::size_t>(model.space.unknowns())));
     json.end_object().end_object();
   }
   json.end_array();

@@ -49,7 +49,7 @@ void PointMass::form(Local local) const {
     }
 }
 
-Spring::Spring(Connection connection, double stiffness) 
+Spring::Spring(Connection connection, double stiffness)
     : space_(connection.space), nodes_(connection.nodes), stiffness_(connect(connection, stiffness)) {}
 
 void Spring::form(Local local) const {
@@ -58,7 +58,7 @@ void Spring::form(Local local) const {
   form_none(local.damping, stiffness_.rows());
 }
 
-Dashpot::Dashpot(Connection connection, double damping) 
+Dashpot::Dashpot(Connection connection, double damping)
     : space_(connection.space), nodes_(connection.nodes), damping_(connect(connection, damping)) {}
 
 void Dashpot::form(Local local) const {

@@ -12,7 +12,7 @@ namespace uplift {
 /// component-major with the normal last, as in `Batch`. The normal n points from the lower side L (soil) to the upper side U (structure).
 struct Interface {
   std::string name;
-  Batch batch;                              // points, components
+  Batch batch;  // points, components
   Space space;
   std::vector<Place> position;              // m
   std::vector<Place> normal;                // unit

@@ -18,10 +18,9 @@ void refuse_exchanged_sides(const Vec3& upper, const Vec3& lower, const Vec3& no
   const Vec3 apart = upper - lower;
   // the initial gap is never taken from the coordinates, so only a clear distance counts
   if (apart.dot(normal) < -1e-9 * (1 + upper.norm() + lower.norm()))
-    throw InputError(
-        where, "interface.normal", "a normal from the lower to the upper side",
-        fmt::format("an interface inside out: the upper node at {} m lies on the lower side of its partner at {} m", to_string(upper),
-                    to_string(lower)));
+    throw InputError(where, "interface.normal", "a normal from the lower to the upper side",
+                     fmt::format("an interface inside out: the upper node at {} m lies on the lower side of its partner at {} m",
+                                 to_string(upper), to_string(lower)));
 }
 
 Vec3 unit(const Vec3& v, const Where& where) {
@@ -49,7 +48,8 @@ Quadrature footing_rule(FootingRule rule, int points) {
 
 void check_points(FootingRule rule, int points, std::string_view key, const Where& where) {
   const int least = rule == FootingRule::nodal ? 2 : 1;
-  if (points < least) throw InputError(where, fmt::format("interface.{}", key), fmt::format("at least {}", least), fmt::format("{}", points));
+  if (points < least)
+    throw InputError(where, fmt::format("interface.{}", key), fmt::format("at least {}", least), fmt::format("{}", points));
 }
 
 /// A point of one line element; the shape functions of both sides are the same.
@@ -82,9 +82,11 @@ std::vector<JointPoint> footing_points(const Footing& footing, const Where& wher
   if (!(footing.thickness > 0)) throw InputError(where, "interface.thickness", "a thickness > 0 m", fmt::format("{:g}", footing.thickness));
   const Space space{rectangle ? 3 : 2};
   const Vec3 n = unit(footing.normal, where), t = local_axis(space, n, 0);
-  const Vec3 along = rectangle ? Vec3(std::cos(footing.azimuth) * t + std::sin(footing.azimuth) * cross(n, t)) : t, across = cross(n, along);
+  const Vec3 along = rectangle ? Vec3(std::cos(footing.azimuth) * t + std::sin(footing.azimuth) * cross(n, t)) : t,
+             across = cross(n, along);
   const Quadrature rule = footing_rule(footing.rule, footing.points);
-  const Quadrature rule_across = rectangle ? footing_rule(footing.rule, footing.points_across) : Quadrature{Vector::Zero(1), Vector::Ones(1)};
+  const Quadrature rule_across =
+      rectangle ? footing_rule(footing.rule, footing.points_across) : Quadrature{Vector::Zero(1), Vector::Ones(1)};
   const double half = footing.width / 2, half_across = rectangle ? footing.length / 2 : footing.thickness;
   std::vector<JointPoint> points;
   for (Index j = 0; j < rule_across.point.size(); ++j)
@@ -101,8 +103,8 @@ std::vector<JointPoint> footing_points(const Footing& footing, const Where& wher
   return points;
 }
 
-std::vector<JointPoint> pair_points(const std::vector<SideNode>& upper, const std::vector<SideNode>& lower, const Place& normal, double area,
-                                    double gap, const Where& where) {
+std::vector<JointPoint> pair_points(const std::vector<SideNode>& upper, const std::vector<SideNode>& lower, const Place& normal,
+                                    double area, double gap, const Where& where) {
   check_partners(upper.size(), lower.size(), where);
   if (!(area > 0)) throw InputError(where, "interface.area", "an area > 0 m2", fmt::format("{:g}", area));
   const Vec3 n = unit(normal, where);

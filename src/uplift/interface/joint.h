@@ -41,7 +41,8 @@ struct Footing {
   int points_across = 0;
   double azimuth = 0;  // rad
 };
-/// Points in the order of t; in space those along the width first, line after line. Throws InputError (at `where`) when the width or the number of points makes no sense.
+/// Points in the order of t; in space those along the width first, line after line. Throws InputError (at `where`) when the width or the
+/// number of points makes no sense.
 std::vector<JointPoint> footing_points(const Footing& footing, const Where& where);
 
 /// A node of one side with its place.
@@ -52,8 +53,8 @@ struct SideNode {
 
 /// Isolated node pairs (eq 13, point joints), each with the same tributary area; `lower` empty: fixed ground below each node.
 /// Throws InputError when the sides have different numbers of nodes or an upper node lies on the wrong side of its lower one.
-std::vector<JointPoint> pair_points(const std::vector<SideNode>& upper, const std::vector<SideNode>& lower, const Place& normal, double area,
-                                    double gap, const Where& where);
+std::vector<JointPoint> pair_points(const std::vector<SideNode>& upper, const std::vector<SideNode>& lower, const Place& normal,
+                                    double area, double gap, const Where& where);
 
 enum class LineQuadrature {
   nodal,  // Lobatto: points at the node pairs, diagonal matrices, no traction oscillation for stiff joints

@@ -218,8 +218,8 @@ std::vector<View> motion_views(const Built& built) {
                      Column::displacement, built.base_lift(), 1});
     views.push_back({"base_velocity", "response", "Velocity of the base", "Vertical velocity of the base.", "Velocity", "m/s",
                      Column::velocity, built.base_lift(), 1});
-    views.push_back({"base_rotation", "response", "Rotation of the base", about(built), "Rotation", "rad",
-                     Column::displacement, built.base_turn(), 1});
+    views.push_back(
+        {"base_rotation", "response", "Rotation of the base", about(built), "Rotation", "rad", Column::displacement, built.base_turn(), 1});
   }
   return views;
 }
@@ -240,7 +240,8 @@ void write_loops(JsonWriter& json, const ReportInput& input, const std::vector<R
   const Built& built = *input.runs.front().built;
   if (built.top >= 0 && built.base >= 0) {
     const Vec3 reference = built.model.interfaces.front().reference;
-    const double height = built.model.nodes[static_cast<std::size_t>(built.top)].position[built.model.space.up()] - reference[built.model.space.up()];
+    const double height =
+        built.model.nodes[static_cast<std::size_t>(built.top)].position[built.model.space.up()] - reference[built.model.space.up()];
     if (height > 0)
       write_chart(json, *input.read,
                   loop_chart({"force_displacement",

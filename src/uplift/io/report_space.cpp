@@ -65,8 +65,7 @@ Drawn drawn_of(const Case& read, const Built& built) {
   for (const Values& beam : read.values.tables("beam")) {
     std::vector<int>& line = drawn.beams.emplace_back();
     line.push_back(built.model.find_node(beam.texts("nodes").front()));
-    for (int k = 1; k < beam.integer("elements"); ++k)
-      line.push_back(built.model.find_node(beam.text("name") + "." + std::to_string(k)));
+    for (int k = 1; k < beam.integer("elements"); ++k) line.push_back(built.model.find_node(beam.text("name") + "." + std::to_string(k)));
     line.push_back(built.model.find_node(beam.texts("nodes").back()));
     nodes.insert(line.begin(), line.end());
   }

@@ -93,7 +93,8 @@ void ModelBuilder::make_drives(Model& model, const Matrix& motion_shapes) const 
     for (const auto& [unknown, value] : load.pattern) pattern[unknown] += value;
     add(load.name, pattern, load.function ? load.function : one, load.dead);
   }
-  for (const Ground& ground : grounds_) add(ground.name, -(full.mass * translation(space_, ground.direction, unknowns)), ground.function, false);
+  for (const Ground& ground : grounds_)
+    add(ground.name, -(full.mass * translation(space_, ground.direction, unknowns)), ground.function, false);
   for (Index k = 0; k < motion_shapes.cols(); ++k) {
     const Motion& motion = motions_[k];
     const Vector shape = motion_shapes.col(k);

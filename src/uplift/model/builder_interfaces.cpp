@@ -16,7 +16,8 @@ void add_side(Space space, const std::vector<Node>& nodes, const JointPoint& poi
     const bool rigid = upper ? point.rigid_upper : point.rigid_lower;
     const Vec3 r = point.position - nodes[node].position;
     for (int k = 0; k < (rigid ? space.unknowns() : space.dimension); ++k)
-      if (const double moved = space.motion(k, r).dot(d); moved != 0) entries.emplace_back(row, space.unknowns() * node + k, sign * shape * moved);
+      if (const double moved = space.motion(k, r).dot(d); moved != 0)
+        entries.emplace_back(row, space.unknowns() * node + k, sign * shape * moved);
   }
 }
 
@@ -71,7 +72,8 @@ void ModelBuilder::place_interfaces(Model& model) {
       face.gap[face.batch.normal() + i] = point.gap;
       for (const bool upper : {true, false}) {
         for (int c = 0; c < spec.components; ++c)
-          add_side(space_, nodes_, point, upper, component_axis(space_, face.normal[i], c, spec.components), first + c * points + i, entries);
+          add_side(space_, nodes_, point, upper, component_axis(space_, face.normal[i], c, spec.components), first + c * points + i,
+                   entries);
         if (!(upper ? point.rigid_upper : point.rigid_lower)) continue;
         for (const auto& [node, shape] : upper ? point.upper : point.lower)
           model.assembly.arms.push_back({node, static_cast<int>(k), i, shape, upper ? -1.0 : 1.0, point.position - nodes_[node].position});
@@ -141,10 +143,9 @@ void ModelBuilder::refuse_inside_out(const InterfaceSpec& spec, const Where& whe
     if (least < -1e-6 * size && most <= 1e-6 * size)
       throw InputError(
           where, "interface." + spec.name, "a normal from the lower side (soil) to the upper side (structure)",
-          fmt::format(
-              "an interface inside out: with the normal {} the whole {} side, which holds \"{}\", lies on the wrong side of it",
-              to_text(n, space_), is_upper ? "upper" : "lower",
-              nodes_[(is_upper ? spec.points.front().upper : spec.points.front().lower).front().first].name));
+          fmt::format("an interface inside out: with the normal {} the whole {} side, which holds \"{}\", lies on the wrong side of it",
+                      to_text(n, space_), is_upper ? "upper" : "lower",
+                      nodes_[(is_upper ? spec.points.front().upper : spec.points.front().lower).front().first].name));
   }
 }
 

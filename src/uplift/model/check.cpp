@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <numeric>
 
+#include "uplift/math/dense.h"
 #include "uplift/math/sparse_solvers.h"
 
 namespace uplift {
@@ -92,8 +93,27 @@ Vec3 forward(const Vec3& v) {
   return direction;
 }
 
+/// Rotation of the rigid motion that fits the translations of some nodes best; that of the first node when they are at one place.
+Vec3 turn_of(const Model& model, const Motions& motions, const std::vector<int>& nodes) {
+  Vec3 centre = Vec3::Zero(), mean = Vec3::Zero();
+  for (const int i : nodes) {
+    centre += model.nodes[i].position / static_cast<double>(nodes.size());
+    mean += motions.translation[i] / static_cast<double>(nodes.size());
+  }
+  Matrix inertia = Matrix::Zero(3, 3);
+  Vector spin = Vector::Zero(3);
+  for (const int i : nodes) {
+    const Vec3 r = model.nodes[i].position - centre;
+    inertia += r.squaredNorm() * Matrix::Identity(3, 3) - r * r.transpose();
+    spin += cross(r, motions.translation[i] - mean);
+  }
+  if (inertia.isZero(0)) return motions.rotation[nodes.front()];
+  return CompleteQr(inertia).solve(spin);
+}
+
 std::string describe(const Model& model, const Vector& motion) {
-  const auto [u, theta] = motions_of(model, model.reduction * motion);
+  const Motions motions = motions_of(model, model.reduction * motion);
+  const auto& [u, theta] = motions;
   double size = 1e-3, largest = 0;
   for (const Node& node : model.nodes) size = std::max(size, (node.position - model.nodes.front().position).norm());
   const int count = static_cast<int>(model.nodes.size());
@@ -110,10 +130,11 @@ std::string describe(const Model& model, const Vector& motion) {
   const std::string who = fmt::format("{}", fmt::join(names, ", "));
 
   const int first = moving.front();
-  const Vec3 turn = theta[first];
+  const Vec3 turn = turn_of(model, motions, moving);
   const bool together = std::ranges::all_of(moving, [&](int i) {
     const Vec3 r = model.nodes[i].position - model.nodes[first].position;
-    return (u[i] - u[first] - cross(turn, r)).norm() < 1e-5 * largest && (theta[i] - turn).norm() * size < 1e-5 * largest;
+    const bool turns = theta[i].isZero(0) || (theta[i] - turn).norm() * size < 1e-5 * largest;  // nodes of solids have no rotation
+    return (u[i] - u[first] - cross(turn, r)).norm() < 1e-5 * largest && turns;
   });
   if (together && turn.norm() * size < 1e-6 * largest)
     return fmt::format("{} can move along {}", who, text(forward(u[first]), model.space));

@@ -9,8 +9,9 @@ namespace uplift {
 ///  - beams: N integral (dN/dx)^T (dN/dx) with the axial force N of the state; the axial force of an inextensible beam, which no
 ///    displacement shows, comes from equilibrium (its constraint force); without a beam element it counts as a string, N/L;
 ///  - rigid bodies: a dead force f at the offset r from the master moves by theta x (theta x r)/2 when the body turns by theta, potential
-///    + (theta^2 (f . r) - (theta . f)(theta . r))/2, so that in the plane f . r is added to the master's rotational stiffness. Forces: weights (also of masses with an offset
-///    centre), loads, end forces of elements and forces of the interfaces. A weight W at the height h above the master gives -W h.
+///    + (theta^2 (f . r) - (theta . f)(theta . r))/2, so that in the plane f . r is added to the master's rotational stiffness. Forces:
+///    weights (also of masses with an offset centre), loads, end forces of elements and forces of the interfaces. A weight W at the height
+///    h above the master gives -W h.
 /// The state must be in equilibrium under the drives that are dead; state.force holds the interface forces [N].
 Sparse geometric_stiffness(const Model& model, const State& state);
 

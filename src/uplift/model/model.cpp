@@ -67,7 +67,8 @@ Vector free_values(const Model& model, const std::vector<std::pair<int, double>>
     const int unknown = wanted[worst].first;
     throw InputError(where, "initial", "values that supports, rigid bodies and inextensible beams allow",
                      fmt::format("{} = {:g} at {}.{}, where only {:g} is possible together with the other values", "value", values[worst],
-                                 model.nodes[model.space.node_of(unknown)].name, to_string(model.space.dof(model.space.index_of(unknown))), values[worst] + error[worst]));
+                                 model.nodes[model.space.node_of(unknown)].name, to_string(model.space.dof(model.space.index_of(unknown))),
+                                 values[worst] + error[worst]));
   }
   return q;
 }

@@ -62,8 +62,8 @@ struct Assembly {
 };
 
 /// What is built once, checked once and never changes; shared by every thread.
-/// Full unknowns: those of all nodes (elements/space.h). Free unknowns q: what is left after supports, rigid bodies and inextensible beams are
-/// eliminated exactly: full = T q + sum of prescribed motions.
+/// Full unknowns: those of all nodes (elements/space.h). Free unknowns q: what is left after supports, rigid bodies and inextensible beams
+/// are eliminated exactly: full = T q + sum of prescribed motions.
 struct Model {
   Space space;
   std::vector<Node> nodes;
@@ -82,8 +82,8 @@ struct Model {
   int free() const { return static_cast<int>(reduction.cols()); }
   int full_unknowns() const { return static_cast<int>(reduction.rows()); }
   int at(int node, Dof dof) const { return space.at(node, dof); }  // full unknown
-  int rows() const;                            // interface rows, of all interfaces
-  int find_node(std::string_view name) const;  // -1 when absent
+  int rows() const;                                                // interface rows, of all interfaces
+  int find_node(std::string_view name) const;                      // -1 when absent
   /// Full displacement (derivative 0), velocity (1) or acceleration (2) of one full unknown from the free ones.
   double full(int full_unknown, const Vector& q, int derivative, double time) const;
   /// All full unknowns at once.
