@@ -10,7 +10,8 @@
 
 namespace uplift {
 
-class StatusRows;
+class PointRows;
+struct PointRelation;
 
 /// A point of a cone block, with friction or without.
 struct FrictionPoint {
@@ -70,6 +71,7 @@ class StatusStep {
     const FrictionPoint* slipping = nullptr;  // normal row of a slipping point
   };
   bool solve_by_rows();
+  void relate(const FrictionPoint&, PointRelation&) const;
   void size_work();
   void list_points();
   void list_held();
@@ -96,7 +98,7 @@ class StatusStep {
   double largest_force_ = 0;
   bool finite_ = true;
   std::vector<std::ptrdiff_t> changed_;
-  std::unique_ptr<StatusRows> rows_;  // many independent rows
+  std::unique_ptr<PointRows> rows_;  // many independent rows
   // of the linear problem
   bool plain_ = true;  // H is the identity
   Matrix hessian_, work_;

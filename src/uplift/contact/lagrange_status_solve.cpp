@@ -1,7 +1,8 @@
 #include <algorithm>
 #include <cmath>
 
-#include "uplift/contact/lagrange_rows.h"
+#include "uplift/contact/lagrange_status.h"
+#include "uplift/contact/point_rows.h"
 #include "uplift/math/small.h"
 
 // The linear problem of one status (lagrange_status.h).
@@ -11,12 +12,9 @@ namespace {
 /// Pivot of H that is taken for zero: H is of order one, the identity less a share of it.
 constexpr double singular = 1e-12;
 
-/// From so many rows on the equations of the rows are solved instead (lagrange_rows.h), if F can be regular.
-constexpr Index many = 12;
-
 }  // namespace
 
-StatusStep::StatusStep() : rows_(std::make_unique<StatusRows>()) {}
+StatusStep::StatusStep() : rows_(std::make_unique<PointRows>()) {}
 StatusStep::~StatusStep() = default;
 
 void StatusStep::size_work() {
@@ -157,8 +155,12 @@ bool StatusStep::solve() {
 }
 
 bool StatusStep::solve_by_rows() {
-  if (problem_->rows() < many || problem_->rows() > problem_->factor.cols()) return false;
-  if (!rows_->solve({*problem_, points_, offsets_, slope_, linear_force_}, z_, force_)) return false;
+  if (!PointRows::suits(*problem_)) return false;
+  rows_->begin(*problem_);
+  for (std::size_t b = 0; b < problem_->blocks.size(); ++b)
+    if (problem_->blocks[b].law != nullptr) rows_->linearise(b, slope_.data() + offsets_[b], solution_->force, solution_->opening);
+  for (const FrictionPoint& point : points_) relate(point, rows_->relation(point.index));
+  if (!rows_->solve(force_, moved_, z_)) return false;
   for (std::size_t k = 0; k < held_.size(); ++k) {
     const Held& held = held_[k];
     const double taken = problem_->shift.size() > 0 ? problem_->shift[held.row] * held.target : 0;
@@ -166,9 +168,59 @@ bool StatusStep::solve_by_rows() {
   }
   finite_ = true;
   solution_->z = z_;
-  open_at(z_);
+  solution_->opening = moved_;
   write_forces();
   return true;
+}
+
+/// The relation between P = p - D opening and the opening g of a cone point for its status (s = turning, e across the slip d):
+///     closed, normal     g_n = 0
+///     sticks             g_t = from_t
+///     open, frictionless P + D g = 0
+///     slips              P_t + D_t g_t = -mu d p_n + s e (e . (g_t - from_t))
+/// Without D an open point has no unknown; a slipping one has its pressure and the force across d.
+void StatusStep::relate(const FrictionPoint& point, PointRelation& relation) const {
+  const bool shifted = problem_->shift.size() > 0, slips = point.status == Status::slip && point.friction > 0;
+  const int normal = point.tangents();
+  relation = PointRelation();
+  relation.kind = 1 + static_cast<int>(point.status) + (slips ? 3 : 0);
+  const PointRelation::Local along{slips ? point.direction[0] : 0, slips && normal > 1 ? point.direction[1] : 0, 0};
+  const PointRelation::Local across{-along[1], along[0], 0};
+  const double flexible = normal > 0 ? std::max(rows_->compliance(point.row(0)), rows_->compliance(point.row(normal - 1))) : 0;
+  const double weight = 1 / (1 + point.turning * flexible);
+  const auto hold = [&](int c, double target) {
+    const std::size_t f = static_cast<std::size_t>(relation.count++);
+    relation.basis[f][static_cast<std::size_t>(c)] = 1;
+    relation.opening[f][static_cast<std::size_t>(c)] = 1 / rows_->compliance(point.row(c));
+    relation.right[f] = target / rows_->compliance(point.row(c));
+  };
+  const auto turn = [&](std::size_t f, double share) {  // + share s e . (g_t - from_t)
+    for (int t = 0; t < normal; ++t) {
+      const double slope = weight * share * point.turning * across[static_cast<std::size_t>(t)];
+      relation.opening[f][static_cast<std::size_t>(t)] += slope;
+      relation.right[f] += slope * problem_->from[point.row(t)];
+    }
+  };
+  if (point.status != Status::open) hold(normal, 0);
+  if (point.status == Status::stick) {
+    for (int c = 0; c < normal; ++c) hold(c, problem_->from[point.row(c)]);
+  } else if (shifted) {
+    for (int c = 0; c < (point.status == Status::open ? normal + 1 : normal); ++c) {
+      const std::size_t f = static_cast<std::size_t>(relation.count++), at = static_cast<std::size_t>(c);
+      relation.basis[f][at] = 1;
+      relation.force[f][at] = weight;
+      if (slips) relation.force[f][static_cast<std::size_t>(normal)] = weight * point.friction * along[at];
+      relation.opening[f][at] = -weight * problem_->shift[point.row(c)];
+      if (slips && normal > 1) turn(f, across[at]);
+    }
+  } else if (slips) {
+    for (int c = 0; c < normal; ++c) relation.basis[0][static_cast<std::size_t>(c)] = -point.friction * along[static_cast<std::size_t>(c)];
+    if (normal < 2) return;
+    const std::size_t f = static_cast<std::size_t>(relation.count++);
+    relation.basis[f] = across;
+    for (std::size_t t = 0; t < 2; ++t) relation.force[f][t] = weight * across[t];
+    turn(f, 1);
+  }
 }
 
 /// Openings of the held rows beyond their targets, times the root of the area.

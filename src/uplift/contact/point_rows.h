@@ -1,0 +1,88 @@
+#pragma once
+#include <array>
+#include <vector>
+
+#include "uplift/contact/problem.h"
+#include "uplift/math/partial_lu.h"
+
+namespace uplift {
+
+/// Recognises the factor C of a problem seen before without looking at all of it: by its place, its size and the sum of its first column,
+/// its diagonal and its last row, where a triangular factor has entries too.
+class SeenFactor {
+ public:
+  bool is(const Matrix& c) const { return at_ == c.data() && rows_ == c.rows() && columns_ == c.cols() && mark_ == mark(c); }
+  void take(const Matrix& c) { at_ = c.data(), rows_ = c.rows(), columns_ = c.cols(), mark_ = mark(c); }
+
+ private:
+  static double mark(const Matrix& c);
+  const double* at_ = nullptr;
+  Index rows_ = 0, columns_ = 0;
+  double mark_ = 0;
+};
+
+/// How force P [N] and opening g [m] of one point depend on each other, linearised. The force has `count` unknowns q and as many equations:
+///     P_c = known_c + sum over f of basis_fc q_f          sum over c of (opening_fc g_c - force_fc P_c) = right_f
+/// Equations are scaled so that their residual is a force.
+struct PointRelation {
+  using Local = std::array<double, 3>;
+  int count = 0;
+  int kind = 0;  // equal kinds have the same unknowns
+  Local known{}, right{};
+  std::array<Local, 3> basis{}, opening{}, force{};
+};
+
+/// The linear problem of an interface with many independent rows, as between meshes: opening = free opening - F P with F = C C^T regular,
+/// and a relation between the two at every point. Only forces that depend on the opening are unknown: an open point has none, a slipping
+/// one two of three. Methods bring the relations (Newton: the slopes of the laws; Lagrange: the contact status).
+///
+/// The matrix is factored anew when the kind of a point changes; else the last factor preconditions generalised conjugate residuals
+/// (Eisenstat, Elman & Schultz, SIAM J. Numer. Anal. 20, 1983).
+class PointRows {
+ public:
+  /// From so many rows on, when they can be independent, methods use this class.
+  static constexpr Index many = 12;
+  static bool suits(const InterfaceProblem& problem) { return problem.rows() > many && problem.rows() <= problem.factor.cols(); }
+
+  /// Takes up a problem; what belongs to the factor C is kept from the one before as long as C is the same.
+  void begin(const InterfaceProblem&);
+  /// F_ii [m/N].
+  double compliance(Index row) const { return compliance_(row, row); }
+  /// Relation of point i, all blocks one after another, to be filled before `solve`.
+  PointRelation& relation(Index point) { return relations_[static_cast<std::size_t>(point)]; }
+  /// Relations of the points of a block from forces p [N] and slopes k [N/m] (all as in NewtonScratch::slope) at an opening, the shift
+  /// D of statics taken back: P + D g - k g = p - k opening.
+  void linearise(std::size_t block, const double* slope, const Vector& force, const Vector& opening);
+  /// Forces P (rows), opening g (rows) and z = -C^T P; false when the matrix is singular or the residual does not fall to round-off.
+  bool solve(Vector& forces, Vector& opening, Vector& z);
+
+ private:
+  struct Place {  // of a point
+    Index first = 0, stride = 0, unknown = 0;
+    int components = 1, kind = -1;
+    Index row(int component) const { return first + component * stride; }
+  };
+  void list_unknowns();
+  bool same_kinds() const;
+  bool factorise();
+  void put_forces(const Vector& unknowns, bool with_known, Vector& forces) const;
+  void spread(const Vector& forces, Vector& opening) const;
+  double start(Vector& forces, Vector& opening);
+  void apply(const Vector& moved, const Vector& forces, Vector& result) const;
+  bool iterate(int most, double size, Vector& forces, Vector& opening);
+
+  const InterfaceProblem* problem_ = nullptr;
+  SeenFactor seen_;
+  bool valid_ = false;
+  Index unknowns_ = 0;
+  Matrix compliance_;
+  LuInPlace matrix_;
+  std::vector<Place> places_;
+  std::vector<std::size_t> first_point_;  // of a block
+  std::vector<PointRelation> relations_;
+  Vector residual_, direction_, image_, unknown_, change_, moved_, column_;
+  Matrix directions_, images_;  // of the iteration
+  double rest_ = 0;             // largest residual [N]
+};
+
+}  // namespace uplift
