@@ -4,8 +4,10 @@
 #include <cmath>
 #include <limits>
 
+#include "uplift/contact/lagrange.h"
 #include "uplift/contact/method.h"
 #include "uplift/contact/newton.h"
+#include "uplift/contact/point_rows.h"
 
 // Augmented Lagrangian (paper, eq 1 with alpha > 0): p = P(m + e g), solved by Newton; then m <- p, until the multipliers stand still. Each
 // update contracts the error by 1/(1 + e F): with e F_ii = factor a handful of updates reaches round-off. Where it contracts slowly
@@ -37,8 +39,10 @@ class AugmentedLagrangian final : public ContactMethod {
     AugmentedScratch& scratch = solution.augmented;
     prepare(problem, scratch);
     const AugmentedForce augmented{&scratch.multiplier, &scratch.stiffness};
+    const int tried = guess_by_status(problem, solution);
     Outcome total = iterate(problem, augmented, solution);
-    if (scratch.growth != 1) scratch.stiffness /= scratch.growth;  // a power of two: exact
+    total.iterations += tried;
+    reset_stiffness(scratch);
     return total;
   }
 
@@ -88,12 +92,31 @@ class AugmentedLagrangian final : public ContactMethod {
     return total;
   }
 
+  /// Where many independent rows rub, Newton's method has no potential to follow and fails from a poor guess: the exact status iteration
+  /// gives the first multipliers, which the updates then have to confirm. Returns its iterations.
+  static int guess_by_status(const InterfaceProblem& problem, InterfaceSolution& solution) {
+    const bool rubs = std::any_of(problem.blocks.begin(), problem.blocks.end(),
+                                  [](const Block& block) { return block.cone != nullptr && block.cone->friction() > 0; });
+    if (!rubs || !PointRows::suits(problem)) return 0;
+    size_solution(problem, solution);
+    const Outcome outcome = solve_frictional(problem, {}, solution);
+    if (outcome.converged)
+      solution.augmented.multiplier = solution.force;
+    else
+      solution.z.setZero();
+    return outcome.iterations;
+  }
+
+  static void reset_stiffness(AugmentedScratch& scratch) {
+    if (scratch.growth != 1) scratch.stiffness /= scratch.growth;  // a power of two: exact
+    scratch.growth = 1;
+  }
+
   /// Multipliers start at zero, so that the answer depends on the problem alone.
   void prepare(const InterfaceProblem& problem, AugmentedScratch& scratch) const {
     const Eigen::Index rows = problem.rows();
     if (scratch.multiplier.size() != rows) scratch.multiplier.resize(rows);
     scratch.multiplier.setZero();
-    scratch.growth = 1;
     if (scratch.stiffness.size() != rows) augmentation(problem, factor_, scratch.stiffness);
   }
 

@@ -7,6 +7,7 @@
 #include <limits>
 
 #include "uplift/contact/newton_many.h"
+#include "uplift/contact/point_rows.h"
 #include "uplift/math/small.h"
 
 namespace uplift {
@@ -275,6 +276,10 @@ Outcome solve_by_newton(const InterfaceProblem& problem, const AugmentedForce& a
   NewtonScratch& scratch = solution.newton;
   Outcome outcome;
   constexpr int patience = 12;  // iterations after which the search turns from the potential to the residual
+  // where an iteration is expensive, round-off counts as converged at once; sums over many columns have more of it
+  const bool large = PointRows::suits(problem);
+  const int enough = large ? 1 : patience;
+  const double noise = large ? 8 * std::sqrt(static_cast<double>(problem.factor.cols())) : 8;
   const Eigen::Index r = problem.factor.cols();
   const bool predictable = problem.average && r <= few && augmented.multiplier == nullptr;
   if (predictable && scratch.follows) predict(problem, solution);
@@ -290,7 +295,7 @@ Outcome solve_by_newton(const InterfaceProblem& problem, const AugmentedForce& a
     const double reference = balance_scale(problem, solution);
     outcome.residual = size / std::max(reference, 1e-300);
     if (size <= options.tolerance * reference || size == 0 ||
-        (outcome.iterations >= patience && size <= 8 * round_off(problem, solution))) {
+        (outcome.iterations >= enough && (!large || outcome.residual <= 1e-9) && size <= noise * round_off(problem, solution))) {
       outcome.converged = true;
       scratch.follows = predictable;
       return outcome;
