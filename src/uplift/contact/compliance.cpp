@@ -4,6 +4,7 @@
 #include <vector>
 
 #include "uplift/math/dense.h"
+#include "uplift/math/small.h"
 
 namespace uplift {
 
@@ -61,6 +62,14 @@ Sparse touched_unknowns(const Sparse& b) {
 }
 
 }  // namespace
+
+void Spread::add(double scale, const Vector& z, Vector& x) const {
+  if (through != nullptr) {
+    through->add(scale, z, x);
+    return;
+  }
+  for (Index k = 0; k < spread.cols(); ++k) small::add(spread.rows(), scale * z[k], spread.data() + k * spread.rows(), x.data());
+}
 
 Spread spread_through(const Factor& a, const Sparse& b) {
   const Sparse touched = touched_unknowns(b);

@@ -1,15 +1,28 @@
 #pragma once
+#include <memory>
+
 #include "uplift/linear/solver.h"
 #include "uplift/math/linalg.h"
 
 namespace uplift {
 
+/// Multiplies with the spread X of interface forces where it is too large to be kept.
+class Spreader {
+ public:
+  virtual ~Spreader() = default;
+  /// x += scale X z
+  virtual void add(double scale, const Vector& z, Vector& x) const = 0;
+};
+
 /// How forces on the interface rows spread through a factored symmetric matrix A (K_eff, M, ...):
-///   A^-1 B^T = spread * factor^T         B A^-1 B^T = factor * factor^T   (the compliance, never inverted)
+///   A^-1 B^T = X C^T         B A^-1 B^T = C C^T   (the compliance, never inverted)
 /// with r = rank of B, the least that is possible: at most three for a rigid footing in 2D, whatever its number of joints.
 struct Spread {
-  Matrix factor;  // rows x r
-  Matrix spread;  // free x r
+  Matrix factor;                                 // C: rows x r
+  Matrix spread;                                 // X: free x r; not there when `through` is
+  std::shared_ptr<const Spreader> through = {};  // r may then be more than the rank of B
+  /// x += scale X z
+  void add(double scale, const Vector& z, Vector& x) const;
 };
 
 /// One block of r right-hand sides through the factor; `b` is rows x free.

@@ -95,10 +95,9 @@ void project_rate(const Impact& impact, const Vector& rate, double weight, Selec
   for (Index i = first; i < first + n; ++i) scratch.impulse[i] = weight * scratch.taken[i];
 }
 
-void correct(const Impact& impact, double factor, Vector& rate, const ImpactScratch& scratch) {
-  const Matrix& x = impact.mass->spread;
-  for (Index k = 0; k < x.cols(); ++k)
-    small::add(x.rows(), factor * (scratch.push[k] + scratch.y[k]), x.data() + k * x.rows(), rate.data());
+void correct(const Impact& impact, double factor, Vector& rate, ImpactScratch& scratch) {
+  for (Index k = 0; k < scratch.y.size(); ++k) scratch.push[k] += scratch.y[k];
+  impact.mass->add(factor, scratch.push, rate);
 }
 
 void add_impulse(const Impact& impact, double factor, Vector& impulse, const ImpactScratch& scratch) {

@@ -27,8 +27,8 @@ bool select_rows(const Impact&, Hold, ImpactScratch&);
 /// Projects a rate (velocity or acceleration) of the free unknowns in the metric of M, without changing it: the correction is X (push + y).
 /// scratch.rate holds B v', scratch.impulse the total impulse (of an equality: the correction's), scratch.target B w.
 void project_rate(const Impact&, const Vector& rate, double weight, Select, ImpactScratch&);
-/// rate += factor * X (push + y)
-void correct(const Impact&, double factor, Vector& rate, const ImpactScratch&);
+/// rate += factor * X (push + y); uses up the push.
+void correct(const Impact&, double factor, Vector& rate, ImpactScratch&);
 /// impulse += factor * (total impulse - weight p): what the correction itself put in.
 void add_impulse(const Impact&, double factor, Vector& impulse, const ImpactScratch&);
 /// result = B v, on a range of rows at least.

@@ -1,5 +1,4 @@
 #include "uplift/contact/impact_projection.h"
-#include "uplift/math/small.h"
 
 // v_c = v + v''      [K + 4M/dt^2, C^T; C, 0] [v''; mu] = [0; f C (v' - v)]      C the active rows, v' the projection of eq 4, C v' = 0
 // As printed f = 2, which is a reflection, C v_c = -C v, spread by the dynamic stiffness. With A = K + 4M/dt^2 and A^-1 B^T = X C^T (rows C
@@ -17,13 +16,13 @@ class Propagate final : public ImpactRule {
   void apply(const Impact& impact, Vector& velocity, Vector&, Vector& impulse, ImpactScratch& scratch) const override {
     if (!select_rows(impact, Hold::equality, scratch)) return;
     project_rate(impact, velocity, 0, Select::all, scratch);  // leaves B v in the target
-    const Matrix &c = impact.dynamic->factor, &x = impact.dynamic->spread;
+    const Matrix& c = impact.dynamic->factor;
     const Index rows = c.rows();
     for (Index i = 0; i < rows; ++i) scratch.target[i] *= scratch.fixed[i] > 0 ? factor_ : 0;
     scratch.y.resize(c.cols());
     const Rows view{rows, c.cols(), rows, c.data(), scratch.target.data(), scratch.limit.data(), scratch.fixed.data(), 0, 1e-12};
     if (solve_rows(view, scratch.held.data(), scratch.y.data(), scratch.rate.data(), scratch.impulse.data(), scratch.kernel).solved()) {
-      small::multiply_add(x, scratch.y.data(), velocity.data());
+      impact.dynamic->add(1, scratch.y, velocity);
       for (Index i = 0; i < rows; ++i) impulse[i] += 0.25 * impact.step * impact.step * scratch.impulse[i];
     }
     scratch.y.resize(impact.mass->factor.cols());

@@ -2,50 +2,41 @@
 
 #include <fmt/format.h>
 
+#include <cmath>
+#include <limits>
+
+#include "uplift/dynamics/split_response.h"
 #include "uplift/math/small.h"
 
 namespace uplift {
 
-BulkMatrix::BulkMatrix(const Sparse& matrix, bool dense) : zero_(matrix.nonZeros() == 0), dense_(dense) {
-  if (dense)
-    full_ = Matrix(matrix);
-  else
-    sparse_ = matrix;
+BulkMatrix::BulkMatrix(const Sparse& matrix, bool dense) : zero_(matrix.nonZeros() == 0), sparse_(dense ? nullptr : &matrix) {
+  if (dense) full_ = Matrix(matrix);
 }
 
 void BulkMatrix::multiply(const Vector& x, Vector& y) const {
   if (zero_)
     y.setZero();
-  else if (dense_)
+  else if (sparse_ == nullptr)
     small::multiply(full_, x.data(), y.data());
   else
-    y.noalias() = sparse_.transpose() * x;  // symmetric: by rows, which gathers instead of scattering
+    y.noalias() = sparse_->transpose() * x;  // symmetric: by rows, which gathers instead of scattering
 }
 
 Bulk::Bulk(const Model& model, const Sparse* geometric)
-    : unknowns(model.free()),
+    : second_order_(geometric != nullptr ? Sparse(model.stiffness + *geometric) : Sparse()),
+      unknowns(model.free()),
       small(model.free() <= small_bulk),
-      stiffness_matrix(model.stiffness),
+      stiffness_matrix(geometric != nullptr ? second_order_ : model.stiffness),
       mass_matrix(model.mass),
-      damping_matrix(model.damping) {
-  if (geometric != nullptr) stiffness_matrix += *geometric;
-  stiffness = BulkMatrix(stiffness_matrix, small);
-  mass = BulkMatrix(mass_matrix, small);
-  damping = BulkMatrix(damping_matrix, small);
-  if (!small) pair_ = SymmetricPair(stiffness_matrix, mass_matrix);
+      damping_matrix(model.damping),
+      stiffness(stiffness_matrix, small),
+      mass(mass_matrix, small),
+      damping(damping_matrix, small) {
   massless.assign(static_cast<std::size_t>(unknowns), 1);
   for (int column = 0; column < mass_matrix.outerSize(); ++column)
     for (Sparse::InnerIterator entry(mass_matrix, column); entry; ++entry)
       if (entry.value() != 0) massless[static_cast<std::size_t>(column)] = 0;
-}
-
-void Bulk::products(const Vector& u, const Vector& v, Vector& ku, Vector& mv) const {
-  if (!small) {
-    pair_.multiply(u, v, ku, mv);
-    return;
-  }
-  stiffness.multiply(u, ku);
-  mass.multiply(v, mv);
 }
 
 namespace {
@@ -61,39 +52,23 @@ class InverseFactor final : public Factor {
   const Matrix& inverse_;
 };
 
-/// A factor in two halves as a whole one.
-class WholeOfSplit final : public Factor {
- public:
-  explicit WholeOfSplit(const SplitFactor& split) : split_(split) {}
-  void solve(const Matrix& b, Matrix& x) const override {
-    Matrix result(b.rows(), b.cols());
-    Vector column, half, solved;
-    for (Index k = 0; k < b.cols(); ++k) {
-      column = b.col(k);
-      split_.forward(column, half);
-      split_.backward(half, solved);
-      result.col(k) = solved;
-    }
-    x = std::move(result);
-  }
-  double nonzeros() const override { return split_.nonzeros(); }
-
- private:
-  const SplitFactor& split_;
-};
-
 }  // namespace
 
 BulkFactor::BulkFactor(const Sparse& matrix, const Sparse* b, bool small, const LinearSolver& solver, const Model& model,
                        LinearCounts& counts)
     : small_(small), counts_(&counts) {
   ++counts.factorisations;
-  if (!small && b != nullptr) {
-    for (int column = 0; column < b->outerSize(); ++column)
-      if (Sparse::InnerIterator(*b, column)) last_.push_back(column);
+  factorise(matrix, b, solver, model);
+  if (ok()) try_out(matrix, model);
+}
+
+void BulkFactor::factorise(const Sparse& matrix, const Sparse* b, const LinearSolver& solver, const Model& model) {
+  if (!small_ && b != nullptr) {
+    last_ = touched_unknowns(*b);
     if (!last_.empty()) {
       SplitFactorisation result = solver.factorise_split(matrix, last_);
       if (!result.why.empty()) {
+        too_large_ = result.too_large;
         fail(model, result.failed_unknown, result.why);
         return;
       }
@@ -103,6 +78,7 @@ BulkFactor::BulkFactor(const Sparse& matrix, const Sparse* b, bool small, const 
   }
   Factorisation result = solver.factorise(matrix);
   if (result.factor == nullptr) {
+    too_large_ = result.too_large;
     fail(model, result.failed_unknown, result.why);
     return;
   }
@@ -111,6 +87,38 @@ BulkFactor::BulkFactor(const Sparse& matrix, const Sparse* b, bool small, const 
     factor_->solve(Matrix::Identity(matrix.rows(), matrix.cols()), inverse_);
     inverse_ = (0.5 * (inverse_ + inverse_.transpose())).eval();
   }
+}
+
+void BulkFactor::try_out(const Sparse& matrix, const Model& model) {
+  const Index n = matrix.rows();
+  if (n == 0) return;
+  const Vector diagonal = matrix.diagonal(), weight = diagonal.cwiseSqrt();
+  Vector load(n), x(n);
+  for (Index i = 0; i < n; ++i) load[i] = std::sin(1.618 * static_cast<double>(i + 1) * static_cast<double>(i + 1)) * weight[i];
+  const long before = counts_->back_solves;
+  solve(load, x);
+  counts_->back_solves = before;
+  const double size = load.cwiseQuotient(weight).norm(),
+               round_off = 64 * std::numeric_limits<double>::epsilon() * weight.cwiseProduct(x).norm();
+  const double rest = (load - matrix * x).cwiseQuotient(weight).norm(), residual = rest / size;
+  if (!(rest <= 1e-6 * size + round_off)) {
+    why_ = fmt::format("back-solves meet their equations to {:.1e} of the load only", residual);
+    return;
+  }
+  if (residual <= counts_->residual) return;
+  counts_->residual = residual;
+  if (residual <= 1e-9) return;
+  Index least = 0, most = 0;
+  diagonal.minCoeff(&least);
+  diagonal.maxCoeff(&most);
+  const auto name = [&](Index i) {
+    return static_cast<std::size_t>(i) < model.unknown_names.size() ? model.unknown_names[static_cast<std::size_t>(i)]
+                                                                    : fmt::format("{}", i);
+  };
+  counts_->notice = fmt::format(
+      "back-solves meet their equations to {:.1e} of the load only, so many digits are lost: diagonal entries reach "
+      "from {:.1e} at {} to {:.1e} at {}",
+      residual, diagonal[least], name(least), diagonal[most], name(most));
 }
 
 void BulkFactor::fail(const Model& model, int unknown, const std::string& why) {
@@ -137,7 +145,7 @@ void BulkFactor::solve(const Vector& b, Vector& x) const {
 
 Spread BulkFactor::spread(const Sparse& b) const {
   if (small_) return spread_through(InverseFactor(inverse_), b);
-  if (split_ != nullptr) return spread_through(WholeOfSplit(*split_), b);
+  if (split_ != nullptr) return split_spread(*this, b);
   return spread_through(*factor_, b);
 }
 
@@ -155,7 +163,15 @@ Sparse stack_interfaces(const Model& model) {
   return b;
 }
 
-Accelerator::Accelerator(const Model& model, const Bulk& bulk, const LinearSolver& solver, LinearCounts& counts) : bulk_(bulk) {
+std::vector<int> touched_unknowns(const Sparse& b) {
+  std::vector<int> touched;
+  for (int column = 0; column < b.outerSize(); ++column)
+    if (Sparse::InnerIterator(b, column)) touched.push_back(column);
+  return touched;
+}
+
+Accelerator::Accelerator(const Model& model, const Bulk& bulk, const Sparse* b, const LinearSolver& solver, LinearCounts& counts)
+    : bulk_(bulk) {
   std::vector<Triplet> diagonal;
   for (int i = 0; i < bulk.unknowns; ++i)
     if (bulk.massless[static_cast<std::size_t>(i)] != 0) {
@@ -164,7 +180,7 @@ Accelerator::Accelerator(const Model& model, const Bulk& bulk, const LinearSolve
     }
   Sparse unit(bulk.unknowns, bulk.unknowns);
   unit.setFromTriplets(diagonal.begin(), diagonal.end());
-  mass_ = std::make_unique<BulkFactor>(bulk.mass_matrix + unit, nullptr, bulk.small, solver, model, counts);
+  mass_ = std::make_unique<BulkFactor>(bulk.mass_matrix + unit, b, bulk.small, solver, model, counts);
   if (massless_.empty()) return;
   const Eigen::Index count = static_cast<Eigen::Index>(massless_.size());
   std::vector<int> place(static_cast<std::size_t>(bulk.unknowns), -1);
@@ -182,6 +198,10 @@ Accelerator::Accelerator(const Model& model, const Bulk& bulk, const LinearSolve
 }
 
 void Accelerator::solve(const Vector& force, Vector& acceleration) const {
+  if (!mass_->ok()) {
+    acceleration.setZero();
+    return;
+  }
   mass_->solve(force, acceleration);
   for (int i : massless_) acceleration[i] = 0;
   if (condensed_ == nullptr) return;

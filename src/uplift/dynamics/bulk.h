@@ -4,7 +4,6 @@
 
 #include "uplift/contact/compliance.h"
 #include "uplift/dynamics/scheme.h"
-#include "uplift/math/symmetric_pair.h"
 #include "uplift/model/model.h"
 
 // The linear bulk (soil and structure without the interfaces) during one stage: products with K, C and M, and the matrix of a step.
@@ -13,42 +12,48 @@ namespace uplift {
 /// Counted by whoever owns a bulk; nothing global.
 struct LinearCounts {
   long factorisations = 0, back_solves = 0;
+  double residual = 0;  // the largest of all factors, see BulkFactor
+  std::string notice;   // what it is and where it may come from; empty up to 1e-9
 };
 
 /// Below this number of free unknowns matrices are dense and the inverse is kept: a step then needs no back-solve at all.
 inline constexpr int small_bulk = 48;
 
-/// A symmetric matrix of the bulk, dense when it is small.
+/// A symmetric matrix of the bulk: a dense copy when it is small, else a view.
 class BulkMatrix {
  public:
-  BulkMatrix() = default;
   BulkMatrix(const Sparse& matrix, bool dense);
   /// y = A x; y must have the right size.
   void multiply(const Vector& x, Vector& y) const;
   bool zero() const { return zero_; }
 
  private:
-  bool zero_ = true, dense_ = false;
+  bool zero_ = true;
   Matrix full_;
-  Sparse sparse_;
+  const Sparse* sparse_ = nullptr;  // null: dense
 };
 
-struct Bulk {
+/// Refers to the model's matrices, which are large: the model must stay alive.
+class Bulk {
+  Sparse second_order_;  // stiffness with the geometric one, when there is one
+
+ public:
   Bulk(const Model& model, const Sparse* geometric);
+  Bulk(const Bulk&) = delete;
+  Bulk& operator=(const Bulk&) = delete;
   int unknowns = 0;
   bool small = false;
-  Sparse stiffness_matrix, mass_matrix, damping_matrix;
+  const Sparse &stiffness_matrix, &mass_matrix, &damping_matrix;
   BulkMatrix stiffness, mass, damping;
   std::vector<char> massless;  // per free unknown
-  /// ku = K u and mv = M v, in one pass where the bulk is large.
-  void products(const Vector& u, const Vector& v, Vector& ku, Vector& mv) const;
-
- private:
-  SymmetricPair pair_;  // large bulks
 };
 
 /// A factored matrix of the bulk: the inverse itself when small; with the unknowns that the interfaces touch last when that is asked for
 /// and the solver can.
+///
+/// Every factor is tried on one load, of the size sqrt(A_ii) and changing signs in every unknown. The residual |b - A x| / |b| (both with
+/// the weights 1/sqrt(A_ii), so that units play no part) is about the condition number times 1e-16: above 1e-9 it is noted in the counts,
+/// because results lose digits; above 1e-6, beyond the round-off of A x, the factor is wrong and refused.
 class BulkFactor {
  public:
   /// `b`: interface rows x free unknowns, whose touched unknowns shall be last; null: in any order. `why` is set (and ok() false) when the
@@ -56,8 +61,12 @@ class BulkFactor {
   BulkFactor(const Sparse& matrix, const Sparse* b, bool small, const LinearSolver& solver, const Model& model, LinearCounts& counts);
   bool ok() const { return why_.empty(); }
   const std::string& why() const { return why_; }
+  /// It does not fit into memory: a smaller step would not help.
+  bool too_large() const { return too_large_; }
   /// x = A^-1 b
   void solve(const Vector& b, Vector& x) const;
+  /// How forces on the rows of B spread; through a split factor (of the same B) as its backward half, see split_spread. This factor must
+  /// stay alive, and where it is.
   Spread spread(const Sparse& b) const;
   /// The factor in two halves, and its last unknowns in their order; null when there is none.
   const SplitFactor* split() const { return split_.get(); }
@@ -65,9 +74,11 @@ class BulkFactor {
   void count_back_solve() const { ++counts_->back_solves; }
 
  private:
+  void factorise(const Sparse& matrix, const Sparse* b, const LinearSolver& solver, const Model& model);
+  void try_out(const Sparse& matrix, const Model& model);
   void fail(const Model& model, int unknown, const std::string& why);
 
-  bool small_ = false;
+  bool small_ = false, too_large_ = false;
   std::string why_;
   Matrix inverse_;
   std::unique_ptr<const Factor> factor_;
@@ -81,12 +92,18 @@ class BulkFactor {
 /// B of all interfaces, one after another: rows x free.
 Sparse stack_interfaces(const Model& model);
 
+/// The unknowns that have an entry in B.
+std::vector<int> touched_unknowns(const Sparse& b);
+
 /// Accelerations from the balance: M a = force for massive unknowns; massless ones follow K_cc a_c = -K_cr a_r.
 class Accelerator {
  public:
-  Accelerator(const Model& model, const Bulk& bulk, const LinearSolver& solver, LinearCounts& counts);
+  /// `b`: interface rows x free unknowns when impulses on them will be spread; else null.
+  Accelerator(const Model& model, const Bulk& bulk, const Sparse* b, const LinearSolver& solver, LinearCounts& counts);
   void solve(const Vector& force, Vector& acceleration) const;
-  bool ok() const { return mass_ == nullptr || mass_->ok(); }
+  /// Why M cannot be factorised; empty when it can. Accelerations are zero otherwise, and nothing spreads.
+  const std::string& why() const { return mass_->why(); }
+  bool too_large() const { return mass_->too_large(); }
   /// Spread through the mass matrix, for impact rules.
   Spread spread(const Sparse& b) const { return mass_->spread(b); }
 

@@ -56,8 +56,7 @@ Condensed::Condensed(const Model& model, const Sparse& b, const Vector& gap, Bul
   problem_.factor = std::move(spread.factor);
   spread_ = std::move(spread.spread);
   free_.setZero(model.free());
-  for (int column = 0; column < b.outerSize(); ++column)
-    if (Sparse::InnerIterator(b, column)) touched_.push_back(column);
+  touched_ = touched_unknowns(b);
   if (touched_.size() > 64) {
     touched_.clear();
     return;

@@ -26,6 +26,10 @@ void SplitResponse::forward(const Vector& right, Vector& opening) {
   opening.noalias() += c_ * tail_;
 }
 
+void SplitResponse::forward_of_nothing(Index unknowns) {
+  half_.setZero(unknowns);
+}
+
 void SplitResponse::backward(const Vector& z, Vector& x) {
   auto touched = half_.tail(static_cast<Index>(factor_.last().size()));
   if (q_.size() > 0)
@@ -34,6 +38,32 @@ void SplitResponse::backward(const Vector& z, Vector& x) {
     touched += z;
   factor_.split()->backward(half_, x);
   factor_.count_back_solve();
+}
+
+namespace {
+
+/// X z = P^T L^-T [0; Q^T z]
+class SplitSpreader final : public Spreader {
+ public:
+  SplitSpreader(const BulkFactor& factor, const Sparse& b) : response_(factor, b) {}
+  Matrix take_factor() { return response_.take_factor(); }
+  void add(double scale, const Vector& z, Vector& x) const override {
+    response_.forward_of_nothing(x.size());
+    response_.backward(z, solution_);
+    x += scale * solution_;
+  }
+
+ private:
+  mutable SplitResponse response_;  // its work space: a spread belongs to one run
+  mutable Vector solution_;
+};
+
+}  // namespace
+
+Spread split_spread(const BulkFactor& factor, const Sparse& b) {
+  auto through = std::make_shared<SplitSpreader>(factor, b);
+  Matrix c = through->take_factor();
+  return {.factor = std::move(c), .spread = {}, .through = std::move(through)};
 }
 
 }  // namespace uplift

@@ -1,4 +1,6 @@
 #pragma once
+#include <utility>
+
 #include "uplift/dynamics/bulk.h"
 
 namespace uplift {
@@ -13,8 +15,12 @@ class SplitResponse {
   /// `factor` must be split, its last unknowns those that `b` touches, and stay alive.
   SplitResponse(const BulkFactor& factor, const Sparse& b);
   const Matrix& factor() const { return c_; }  // C: rows x r
+  /// Hands C over, for those who need no forward half.
+  Matrix take_factor() { return std::move(c_); }
   /// Forward half for a right-hand side; adds B A^-1 r to `opening`.
   void forward(const Vector& right, Vector& opening);
+  /// The same for r = 0.
+  void forward_of_nothing(Index unknowns);
   /// x = A^-1 r + the spread of z, with the r of the last forward half.
   void backward(const Vector& z, Vector& x);
 
@@ -23,5 +29,9 @@ class SplitResponse {
   Matrix c_, q_;  // q_: r x touched unknowns; empty: the identity
   Vector half_, tail_;
 };
+
+/// The spread of interface forces through a split factor, which must stay alive: C is kept, a product with X is the backward half of a
+/// back-solve. What the dense X would take (free x r) is neither made nor streamed.
+Spread split_spread(const BulkFactor& factor, const Sparse& b);
 
 }  // namespace uplift

@@ -18,8 +18,10 @@ struct Stepper::Level {
   double mass = 0, damping = 0;  // K_eff = K + damping C + mass M
   double mass_velocity = 0, mass_acceleration = 0, damping_velocity = 0, damping_acceleration = 0;
   std::unique_ptr<StepSolver> solver;
-  std::unique_ptr<Spread> dynamic;  // of K + 4M/dt^2, for `propagate`
-  std::string why;                  // when the matrix could not be factorised
+  std::unique_ptr<BulkFactor> dynamic_factor;  // of K + 4M/dt^2, for `propagate`
+  std::unique_ptr<Spread> dynamic;
+  std::string why;        // when the matrix could not be factorised
+  bool hopeless = false;  // nor would that of a smaller step be
 };
 
 Stepper::Stepper(const Model& model, const Bulk& bulk, const Sparse& b, const Vector& gap, const Behaviours& behaviours,
@@ -39,9 +41,11 @@ Stepper::Stepper(const Model& model, const Bulk& bulk, const Sparse& b, const Ve
       linear_(counts),
       path_(options.path_average && options.scheme.average_acceleration() && !method.constrains()),
       impacts_(impact.acts() && !path_ && b.rows() > 0),
-      accelerator_(model, bulk, solver, counts) {
-  if (impacts_) {
-    mass_spread_ = std::make_unique<Spread>(accelerator_.spread(b));
+      accelerator_(std::make_unique<Accelerator>(model, bulk, impacts_ ? &b : nullptr, solver, counts)) {
+  if (!bulk.small) pair_ = SymmetricPair(bulk.stiffness_matrix, bulk.mass_matrix);
+  if (impacts_ || accelerator_->too_large()) mass_failure_ = accelerator_->why();
+  if (impacts_ && mass_failure_.empty()) {
+    mass_spread_ = std::make_unique<Spread>(accelerator_->spread(b));
     row_area_.resize(b.rows());
     normals_.reserve(static_cast<std::size_t>(b.rows()));
     tangents_.reserve(static_cast<std::size_t>(b.rows()));
@@ -61,6 +65,11 @@ Stepper::Level& Stepper::level(int halving) {
   if (slot != nullptr) return *slot;
   slot = std::make_unique<Level>();
   Level& made = *slot;
+  if (!mass_failure_.empty()) {
+    made.why = "the mass matrix: " + mass_failure_;
+    made.hopeless = true;
+    return made;
+  }
   const Scheme& s = options_.scheme;
   const double dt = made.step = options_.step / std::pow(2.0, halving), w = 1 - s.alpha_f;
   made.damping = s.gamma / (s.beta * dt);
@@ -82,6 +91,7 @@ Stepper::Level& Stepper::level(int halving) {
     BulkFactor factor(matrix, &b_, bulk_.small, solver_, model_, linear_);
     if (!factor.ok()) {
       made.why = factor.why();
+      made.hopeless = factor.too_large();
       return made;
     }
     std::unique_ptr<StepSolver> oracle;
@@ -91,9 +101,10 @@ Stepper::Level& Stepper::level(int halving) {
   }
   if (impacts_ && impact_.needs_dynamic()) {
     const Sparse dynamic = bulk_.stiffness_matrix + (4 / (dt * dt)) * bulk_.mass_matrix;
-    BulkFactor factor(dynamic, nullptr, bulk_.small, solver_, model_, linear_);
-    if (factor.ok()) made.dynamic = std::make_unique<Spread>(factor.spread(b_));
-    if (!factor.ok()) made.why = factor.why();
+    made.dynamic_factor = std::make_unique<BulkFactor>(dynamic, &b_, bulk_.small, solver_, model_, linear_);
+    made.why = made.dynamic_factor->why();
+    made.hopeless = made.dynamic_factor->too_large();
+    if (made.why.empty()) made.dynamic = std::make_unique<Spread>(made.dynamic_factor->spread(b_));
   }
   return made;
 }
@@ -119,7 +130,7 @@ void Stepper::acceleration(Vector& result) const {
   balance_.resize(bulk_.unknowns);
   forces_at(now_, balance_);
   result.resize(bulk_.unknowns);
-  accelerator_.solve(balance_, result);
+  accelerator_->solve(balance_, result);
 }
 
 void Stepper::start(State state, const Ledger* before) {
@@ -134,11 +145,12 @@ void Stepper::start(State state, const Ledger* before) {
   if (before == nullptr || !before->acceleration || path_) {
     forces_at(now_, work_);
     now_.acceleration.setZero(n);
-    accelerator_.solve(work_, now_.acceleration);
+    accelerator_->solve(work_, now_.acceleration);
   }
+  if (!path_ && !impacts_ && mass_failure_.empty()) accelerator_.reset();  // its factor is large, and the scheme carries accelerations on
   next_ = now_;
   model_.add_force(now_.time, force_now_);
-  bulk_.products(now_.displacement, now_.velocity, stiff_now_, momentum_now_);
+  products(now_.displacement, now_.velocity, stiff_now_, momentum_now_);
   const InterfaceProblem blocks = blocks_of(model_, behaviours_);
   interface_energy_.update(blocks, now_.opening, now_.history);
   energies_ = before != nullptr ? before->energies : Energies{};
@@ -162,6 +174,15 @@ void Stepper::move_gap(double from, double to) {
     gap_ += motion.opening * now;
     gap_step_ += motion.opening * (now - motion.function->value(from));
   }
+}
+
+void Stepper::products(const Vector& u, const Vector& v, Vector& ku, Vector& mv) const {
+  if (!bulk_.small) {
+    pair_.multiply(u, v, ku, mv);
+    return;
+  }
+  bulk_.stiffness.multiply(u, ku);
+  bulk_.mass.multiply(v, mv);
 }
 
 void Stepper::right_hand_side(const Level& level) {
@@ -254,7 +275,7 @@ void Stepper::apply_impact(Level& level) {
 }
 
 bool Stepper::try_step(Level& level) {
-  if (level.solver == nullptr) {
+  if (!level.why.empty()) {
     why_ = level.why;
     return false;
   }
@@ -280,7 +301,7 @@ bool Stepper::try_step(Level& level) {
   }
   std::copy_n(solution.opening.data(), solution.opening.size(), next_.opening.data());
   std::copy_n(solution.now.data(), solution.now.size(), next_.history.data());
-  bulk_.products(next_.displacement, next_.velocity, stiff_next_, momentum_next_);
+  products(next_.displacement, next_.velocity, stiff_next_, momentum_next_);
   if (path_) {
     for (const Block& block : last_->blocks)  // end-of-step tractions are what is reported
       for (int c = 0; c < block.batch.components; ++c)
@@ -337,7 +358,7 @@ bool Stepper::substep(int halving) {
     return true;
   }
   impact_loss_ = impact_before;
-  if (halving >= options_.halvings) return false;
+  if (now.hopeless || halving >= options_.halvings) return false;
   ++counts_.retries;
   return substep(halving + 1) && substep(halving + 1);
 }

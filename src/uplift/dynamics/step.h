@@ -8,6 +8,7 @@
 #include "uplift/dynamics/condensed.h"
 #include "uplift/dynamics/energy.h"
 #include "uplift/dynamics/scheme.h"
+#include "uplift/math/symmetric_pair.h"
 
 namespace uplift {
 
@@ -66,6 +67,8 @@ class Stepper {
   bool try_step(Level& level);
   bool substep(int halving);
   void move_gap(double from, double to);
+  /// ku = K u and mv = M v, in one pass where the bulk is large.
+  void products(const Vector& u, const Vector& v, Vector& ku, Vector& mv) const;
   void right_hand_side(const Level& level);
   void kinematics(const Level& level);
   void apply_impact(Level& level);
@@ -84,7 +87,9 @@ class Stepper {
   StepOptions options_;
   LinearCounts& linear_;
   bool path_ = false, impacts_ = false, gap_moves_ = false;
-  Accelerator accelerator_;
+  SymmetricPair pair_;                        // K and M of large bulks
+  std::unique_ptr<Accelerator> accelerator_;  // null once it is not needed any more
+  std::string mass_failure_;                  // why no step can be taken: no factor of M where one is needed
   std::unique_ptr<Spread> mass_spread_;
   Vector row_area_;  // m2, of the point that a row belongs to
   Matrix dense_b_;

@@ -26,6 +26,12 @@ SplitFactorisation LinearSolver::factorise_split(const Sparse&, const std::vecto
   return {};
 }
 
+FactorCost LinearSolver::predict(const Sparse& a, const std::vector<int>&) const {
+  FactorCost cost;
+  cost.unknowns = static_cast<double>(a.rows());
+  return cost;
+}
+
 Factorisation singular_at(int unknown) {
   return {.factor = nullptr, .failed_unknown = unknown, .why = fmt::format("the matrix is not positive definite at unknown {}", unknown)};
 }

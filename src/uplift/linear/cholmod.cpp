@@ -1,9 +1,11 @@
 // CHOLMOD's supernodal Cholesky with nested dissection (Chen, Davis, Hager & Rajamanickam, ACM TOMS 35, 2008): the default for the bulk.
 #include <algorithm>
 #include <mutex>
+#include <utility>
 
 #include "uplift/linear/cholmod_common.h"
 #include "uplift/linear/cholmod_split.h"
+#include "uplift/linear/memory.h"
 
 namespace uplift {
 
@@ -17,6 +19,7 @@ class CholmodFactor : public Factor {
   CholmodFactor& operator=(const CholmodFactor&) = delete;
 
   void solve(const Matrix& b, Matrix& x) const override {
+    if (b.cols() == 1 && factor_->is_super) return solve_one(b, x);
     std::unique_ptr<Workspace> work = take();
     cholmod_dense right = dense_view(b.data(), b.rows(), b.cols());
     if (b.size() > 0) {
@@ -30,9 +33,28 @@ class CholmodFactor : public Factor {
     give_back(std::move(work));
   }
 
+  /// The numbers; false when memory ran out.
+  bool fill(cholmod_sparse& upper) {
+    cholmod_factorize(&upper, factor_, &settings_->common);
+    return settings_->common.status >= 0;
+  }
+
   double nonzeros() const override { return static_cast<double>(factor_->is_super ? factor_->xsize : factor_->nzmax); }
 
  private:
+  /// One right-hand side through our own loops (supernodal.h).
+  void solve_one(const Matrix& b, Matrix& x) const {
+    const auto* order = static_cast<const int*>(factor_->Perm);
+    std::unique_ptr<Workspace> work = take();
+    work->column.resize(2 * static_cast<Index>(factor_->n));
+    double *solution = work->column.data(), *scratch = solution + factor_->n;
+    for (Index k = 0; k < b.rows(); ++k) solution[k] = b(order[k], 0);
+    solve_lower(supernodes(*factor_), solution, scratch);
+    solve_lower_transposed(supernodes(*factor_), solution, scratch);
+    x.resize(b.rows(), 1);
+    for (Index k = 0; k < x.rows(); ++k) x(order[k], 0) = solution[k];
+    give_back(std::move(work));
+  }
   std::unique_ptr<Workspace> take() const {
     const std::lock_guard lock(mutex_);
     if (idle_.empty()) return std::make_unique<Workspace>();
@@ -51,23 +73,48 @@ class CholmodFactor : public Factor {
   mutable std::vector<std::unique_ptr<Workspace>> idle_;
 };
 
+/// The analysis of a matrix: its upper triangle and the factor without numbers, null when there is none.
+struct Analysed {
+  explicit Analysed(const Sparse& given) : upper(given.triangularView<upper_triangle>()), settings(std::make_unique<Common>()) {
+    view = sparse_view(upper);
+    factor = cholmod_analyze(&view, &settings->common);
+  }
+  ~Analysed() {
+    if (settings != nullptr) cholmod_free_factor(&factor, &settings->common);
+  }
+  Analysed(const Analysed&) = delete;
+  Analysed& operator=(const Analysed&) = delete;
+  Sparse upper;
+  cholmod_sparse view{};
+  std::unique_ptr<Common> settings;
+  cholmod_factor* factor = nullptr;
+};
+
 class Cholmod : public LinearSolver {
  public:
   Factorisation factorise(const Sparse& given) const override {
-    Sparse lower = given.triangularView<lower_triangle>();
-    cholmod_sparse a = sparse_view(lower);
-    auto settings = std::make_unique<Common>();
-    cholmod_common& common = settings->common;
-    cholmod_factor* raw = cholmod_analyze(&a, &common);
-    if (!raw) return {.factor = nullptr, .failed_unknown = -1, .why = "the sparse factorisation ran out of memory in its analysis"};
-    cholmod_factorize(&a, raw, &common);
-    const int status = common.status;
-    auto factor = std::make_unique<CholmodFactor>(std::move(settings), raw);
-    if (status < 0) return {.factor = nullptr, .failed_unknown = -1, .why = "the sparse factorisation ran out of memory"};
+    const auto fail = [](std::string why) {
+      return Factorisation{.factor = nullptr, .failed_unknown = -1, .why = std::move(why), .too_large = true};
+    };
+    Analysed analysed(given);
+    if (analysed.factor == nullptr) return fail(why_not_analysed(analysed.settings->common));
+    const FactorCost cost = cost_of(*analysed.factor, analysed.settings->common, analysed.upper.nonZeros());
+    if (std::string why = refusal(cost); !why.empty()) return fail(std::move(why));
+    cholmod_factor* raw = std::exchange(analysed.factor, nullptr);
+    auto factor = std::make_unique<CholmodFactor>(std::move(analysed.settings), raw);
+    if (!factor->fill(analysed.view)) return fail("the sparse factorisation ran out of memory");
     if (const int broken = broken_unknown(*raw, given); broken >= 0) return singular_at(broken);
     return {.factor = std::move(factor), .failed_unknown = -1, .why = {}};
   }
   SplitFactorisation factorise_split(const Sparse& a, const std::vector<int>& last) const override { return cholmod_split(a, last); }
+  FactorCost predict(const Sparse& a, const std::vector<int>& last) const override {
+    if (!last.empty()) return cholmod_split_cost(a, last);
+    const Analysed analysed(a);
+    if (analysed.factor != nullptr) return cost_of(*analysed.factor, analysed.settings->common, analysed.upper.nonZeros());
+    FactorCost cost;
+    cost.why = why_not_analysed(analysed.settings->common);
+    return cost;
+  }
 };
 
 }  // namespace

@@ -1,6 +1,24 @@
 #include "uplift/linear/cholmod_common.h"
 
+#include "uplift/linear/memory.h"
+
+extern "C" void openblas_set_num_threads(int count);
+
 namespace uplift {
+
+Common::Common() {
+  // One thread: results then do not depend on the number of cores, and runs side by side do not fight for them.
+  static const bool single = (openblas_set_num_threads(1), true);
+  static_cast<void>(single);
+  cholmod_start(&common);
+  common.print = 0;
+  common.nmethods = 2;
+  common.method[0].ordering = CHOLMOD_NESDIS;
+  common.method[1].ordering = CHOLMOD_AMD;
+  common.postorder = 1;
+  common.supernodal = CHOLMOD_SUPERNODAL;
+  common.final_ll = 1;
+}
 
 cholmod_dense dense_view(const double* values, Index rows, Index columns) {
   cholmod_dense view{};
@@ -13,20 +31,53 @@ cholmod_dense dense_view(const double* values, Index rows, Index columns) {
   return view;
 }
 
-cholmod_sparse sparse_view(Sparse& lower) {
-  lower.makeCompressed();
+cholmod_sparse sparse_view(Sparse& upper) {
+  upper.makeCompressed();
   cholmod_sparse view{};
-  view.nrow = view.ncol = static_cast<std::size_t>(lower.rows());
-  view.nzmax = static_cast<std::size_t>(lower.nonZeros());
-  view.p = lower.outerIndexPtr();
-  view.i = lower.innerIndexPtr();
-  view.x = lower.valuePtr();
-  view.stype = -1;  // the lower triangle is stored
+  view.nrow = view.ncol = static_cast<std::size_t>(upper.rows());
+  view.nzmax = static_cast<std::size_t>(upper.nonZeros());
+  view.p = upper.outerIndexPtr();
+  view.i = upper.innerIndexPtr();
+  view.x = upper.valuePtr();
+  view.stype = 1;  // the upper triangle is stored
   view.itype = CHOLMOD_INT;
   view.xtype = CHOLMOD_REAL;
   view.dtype = CHOLMOD_DOUBLE;
   view.sorted = view.packed = 1;
   return view;
+}
+
+Supernodes supernodes(const cholmod_factor& factor) {
+  return {factor.nsuper,
+          static_cast<const int*>(factor.super),
+          static_cast<const int*>(factor.pi),
+          static_cast<const int*>(factor.px),
+          static_cast<const int*>(factor.s),
+          static_cast<const double*>(factor.x)};
+}
+
+FactorCost cost_of(const cholmod_factor& analysed, const cholmod_common& common, Index entries) {
+  const auto n = static_cast<double>(analysed.n), values = static_cast<double>(analysed.xsize);
+  const double numbers = static_cast<double>(analysed.ssize) + 3 * static_cast<double>(analysed.nsuper) + 2 * n;
+  FactorCost cost;
+  cost.unknowns = n;
+  cost.entries = values;
+  cost.operations = common.fl;
+  cost.bytes = 8 * values + 4 * numbers;
+  // the matrix as it was given and permuted, the largest update of a supernode, CHOLMOD's work space
+  cost.working_bytes = 2 * (12 * static_cast<double>(entries) + 4 * n) + 8 * static_cast<double>(analysed.maxcsize) + 16 * n;
+  return cost;
+}
+
+std::string refusal(const FactorCost& cost) {
+  constexpr double small = 16e6;  // bytes, not worth asking the system for
+  const double needed = cost.bytes + cost.working_bytes;
+  return needed < small ? std::string() : memory_refusal(needed, available_memory());
+}
+
+std::string why_not_analysed(const cholmod_common& common) {
+  if (common.status == CHOLMOD_TOO_LARGE) return "the factor has more than 2.1e9 entries, more than CHOLMOD counts: coarsen the mesh";
+  return "the sparse factorisation ran out of memory in its analysis";
 }
 
 Vector pivots(const cholmod_factor& factor) {

@@ -2,21 +2,16 @@
 #include <cholmod.h>
 
 #include "uplift/linear/solver.h"
+#include "uplift/linear/supernodal.h"
 
 // What the two factorisations by CHOLMOD share.
 namespace uplift {
 
-/// CHOLMOD's settings and scratch memory: one object per thread that works.
+/// CHOLMOD's settings and scratch memory: one object per thread that works. Two orders are analysed and the one with the smaller factor is
+/// taken: nested dissection, the better one for soil and solids, and minimum degree, the better one for frames; the second analysis adds a
+/// tenth to the first.
 struct Common {
-  Common() {
-    cholmod_start(&common);
-    common.print = 0;
-    common.nmethods = 1;
-    common.method[0].ordering = CHOLMOD_NESDIS;
-    common.postorder = 1;
-    common.supernodal = CHOLMOD_SUPERNODAL;
-    common.final_ll = 1;
-  }
+  Common();
   ~Common() { cholmod_finish(&common); }
   Common(const Common&) = delete;
   Common& operator=(const Common&) = delete;
@@ -27,6 +22,7 @@ struct Common {
 struct Workspace {
   Common settings;
   cholmod_dense *x = nullptr, *y = nullptr, *e = nullptr;
+  Vector column;  // of our own loops
   ~Workspace() {
     for (cholmod_dense** matrix : {&x, &y, &e}) cholmod_free_dense(matrix, &settings.common);
   }
@@ -35,8 +31,18 @@ struct Workspace {
 /// A dense column as CHOLMOD sees it; only read.
 cholmod_dense dense_view(const double* values, Index rows, Index columns);
 
-/// A lower triangle as CHOLMOD sees it; only read.
-cholmod_sparse sparse_view(Sparse& lower);
+/// An upper triangle as CHOLMOD sees it; only read. (A lower one would be copied twice in the factorisation.)
+cholmod_sparse sparse_view(Sparse& upper);
+
+/// The supernodes of a finished factor.
+Supernodes supernodes(const cholmod_factor& factor);
+
+/// What the numbers will take, after the analysis of a matrix with `entries` entries in one triangle.
+FactorCost cost_of(const cholmod_factor& analysed, const cholmod_common& common, Index entries);
+/// Why the numbers are not made: what they take does not fit into the memory that is left. Empty when it does; a small factor is not asked.
+std::string refusal(const FactorCost& cost);
+/// Why there is no analysis.
+std::string why_not_analysed(const cholmod_common& common);
 
 /// Square roots of the pivots, in the order of the factorisation.
 Vector pivots(const cholmod_factor& factor);

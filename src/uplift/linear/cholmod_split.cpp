@@ -7,6 +7,7 @@
 #include <algorithm>
 #include <mutex>
 #include <numeric>
+#include <utility>
 
 #include "uplift/linear/cholmod_common.h"
 #include "uplift/linear/supernodal.h"
@@ -28,7 +29,7 @@ class CholmodSplit : public SplitFactor {
     y.resize(b.size());
     for (Index k = 0; k < b.size(); ++k) y[k] = b[order[k]];
     Scratch scratch = take();
-    solve_lower(view(), y.data(), scratch->data());
+    solve_lower(supernodes(*factor_), y.data(), scratch->data());
     give_back(std::move(scratch));
   }
 
@@ -37,7 +38,7 @@ class CholmodSplit : public SplitFactor {
     Scratch scratch = take();
     double* solution = scratch->data() + factor_->n;
     std::copy_n(y.data(), y.size(), solution);
-    solve_lower_transposed(view(), solution, scratch->data());
+    solve_lower_transposed(supernodes(*factor_), solution, scratch->data());
     x.resize(y.size());
     for (Index k = 0; k < y.size(); ++k) x[order[k]] = solution[k];
     give_back(std::move(scratch));
@@ -59,6 +60,12 @@ class CholmodSplit : public SplitFactor {
     return block;
   }
 
+  /// The numbers; false when memory ran out.
+  bool fill(cholmod_sparse& upper) {
+    cholmod_factorize(&upper, factor_, &settings_->common);
+    return settings_->common.status >= 0;
+  }
+
   double nonzeros() const override { return static_cast<double>(factor_->xsize); }
 
  private:
@@ -75,15 +82,6 @@ class CholmodSplit : public SplitFactor {
     const std::lock_guard lock(mutex_);
     idle_.push_back(std::move(scratch));
   }
-  Supernodes view() const {
-    return {factor_->nsuper,
-            static_cast<const int*>(factor_->super),
-            static_cast<const int*>(factor_->pi),
-            static_cast<const int*>(factor_->px),
-            static_cast<const int*>(factor_->s),
-            static_cast<const double*>(factor_->x)};
-  }
-
   std::unique_ptr<Common> settings_;
   cholmod_factor* factor_;
   Index chosen_;
@@ -99,11 +97,12 @@ std::vector<int> order_of(const Sparse& a, const std::vector<int>& last, const s
   for (const int column : others)
     for (Sparse::InnerIterator entry(a, column); entry; ++entry) {
       const int row = place[static_cast<std::size_t>(entry.row())], col = place[static_cast<std::size_t>(column)];
-      if (row >= col) entries.emplace_back(row, col, 1.0);
+      if (row >= 0 && row <= col) entries.emplace_back(row, col, 1.0);
     }
-  Sparse lower(static_cast<Index>(others.size()), static_cast<Index>(others.size()));
-  lower.setFromTriplets(entries.begin(), entries.end());
-  cholmod_sparse view = sparse_view(lower);
+  Sparse upper(static_cast<Index>(others.size()), static_cast<Index>(others.size()));
+  upper.setFromTriplets(entries.begin(), entries.end());
+  entries = {};
+  cholmod_sparse view = sparse_view(upper);
   std::vector<int> order;
   if (!others.empty()) {
     cholmod_factor* factor = cholmod_analyze(&view, &settings.common);
@@ -140,48 +139,80 @@ std::vector<int> ends_of_components(const Sparse& a, const std::vector<int>& ord
   return ends;
 }
 
-/// Lower triangle of `a` with the explicit zeros that hold the chosen unknowns together.
+/// Upper triangle of `a` with the explicit zeros that hold the chosen unknowns together.
 Sparse with_chain(const Sparse& a, const std::vector<int>& last, const std::vector<int>& ends) {
   std::vector<Triplet> zeros;
-  const auto add = [&](int i, int j) { zeros.emplace_back(std::max(i, j), std::min(i, j), 0.0); };
+  const auto add = [&](int i, int j) { zeros.emplace_back(std::min(i, j), std::max(i, j), 0.0); };
   for (const int end : ends) add(last.front(), end);
   for (std::size_t k = 1; k < last.size(); ++k) add(last[k - 1], last[k]);
   Sparse extra(a.rows(), a.cols());
   extra.setFromTriplets(zeros.begin(), zeros.end());
-  Sparse lower = a.triangularView<lower_triangle>();
-  return lower + extra;
+  extra += a.triangularView<upper_triangle>();
+  return extra;
 }
+
+/// The analysis with the chosen unknowns last: the upper triangle, ready to be factorised, and the factor without numbers, null when there
+/// is none.
+struct Analysed {
+  Analysed(const Sparse& a, const std::vector<int>& last) : settings(std::make_unique<Common>()) {
+    std::vector<char> chosen(static_cast<std::size_t>(a.rows()), 0);
+    for (const int unknown : last) chosen[static_cast<std::size_t>(unknown)] = 1;
+    std::vector<int> others;
+    for (int i = 0; i < a.rows(); ++i)
+      if (chosen[static_cast<std::size_t>(i)] == 0) others.push_back(i);
+    count = others.size();
+    std::vector<int> order = order_of(a, last, others, *settings);
+    if (order.empty()) return;
+    upper = with_chain(a, last, ends_of_components(a, order, count));
+    view = sparse_view(upper);
+    settings->common.nmethods = 1;
+    settings->common.method[0].ordering = CHOLMOD_GIVEN;
+    factor = cholmod_analyze_p(&view, order.data(), nullptr, 0, &settings->common);
+  }
+  ~Analysed() {
+    if (settings != nullptr) cholmod_free_factor(&factor, &settings->common);
+  }
+  Analysed(const Analysed&) = delete;
+  Analysed& operator=(const Analysed&) = delete;
+  FactorCost cost() const {
+    if (factor != nullptr) return cost_of(*factor, settings->common, upper.nonZeros());
+    FactorCost none;
+    none.why = why_not_analysed(settings->common);
+    return none;
+  }
+
+  std::unique_ptr<Common> settings;
+  std::size_t count = 0;  // unknowns that are not chosen
+  Sparse upper;
+  cholmod_sparse view{};
+  cholmod_factor* factor = nullptr;
+};
 
 }  // namespace
 
 SplitFactorisation cholmod_split(const Sparse& a, const std::vector<int>& last) {
-  const auto fail = [](const char* why) { return SplitFactorisation{.factor = nullptr, .failed_unknown = -1, .why = why}; };
-  const char* const memory = "the sparse factorisation ran out of memory";
-  std::vector<char> chosen(static_cast<std::size_t>(a.rows()), 0);
-  for (const int unknown : last) chosen[static_cast<std::size_t>(unknown)] = 1;
-  std::vector<int> others;
-  for (int i = 0; i < a.rows(); ++i)
-    if (chosen[static_cast<std::size_t>(i)] == 0) others.push_back(i);
-
-  auto settings = std::make_unique<Common>();
-  std::vector<int> order = order_of(a, last, others, *settings);
-  if (order.empty()) return fail(memory);
-  Sparse lower = with_chain(a, last, ends_of_components(a, order, others.size()));
-  cholmod_sparse view = sparse_view(lower);
-  settings->common.method[0].ordering = CHOLMOD_GIVEN;
-  cholmod_factor* raw = cholmod_analyze_p(&view, order.data(), nullptr, 0, &settings->common);
-  if (raw == nullptr) return fail(memory);
-  cholmod_factorize(&view, raw, &settings->common);
-  const int status = settings->common.status;
-  auto factor = std::make_unique<CholmodSplit>(std::move(settings), raw, static_cast<Index>(last.size()));
-  if (status < 0) return fail(memory);
+  const auto fail = [](std::string why) {
+    return SplitFactorisation{.factor = nullptr, .failed_unknown = -1, .why = std::move(why), .too_large = true};
+  };
+  Analysed analysed(a, last);
+  const FactorCost cost = analysed.cost();
+  if (!cost.why.empty()) return fail(cost.why);
+  if (std::string why = refusal(cost); !why.empty()) return fail(std::move(why));
+  cholmod_factor* raw = std::exchange(analysed.factor, nullptr);
+  auto factor = std::make_unique<CholmodSplit>(std::move(analysed.settings), raw, static_cast<Index>(last.size()));
+  if (!factor->fill(analysed.view)) return fail("the sparse factorisation ran out of memory");
   if (const int broken = broken_unknown(*raw, a); broken >= 0) {
     Factorisation singular = singular_at(broken);
     return {.factor = nullptr, .failed_unknown = broken, .why = std::move(singular.why)};
   }
   const auto* permutation = static_cast<const int*>(raw->Perm);
-  if (!std::equal(last.begin(), last.end(), permutation + others.size())) return fail("the chosen unknowns did not stay last");
+  if (!std::equal(last.begin(), last.end(), permutation + analysed.count))
+    return {.factor = nullptr, .failed_unknown = -1, .why = "the chosen unknowns did not stay last"};
   return {.factor = std::move(factor), .failed_unknown = -1, .why = {}};
+}
+
+FactorCost cholmod_split_cost(const Sparse& a, const std::vector<int>& last) {
+  return Analysed(a, last).cost();
 }
 
 }  // namespace uplift

@@ -1,5 +1,6 @@
 #include "uplift/math/dense.h"
 
+#include "uplift/linear/memory.h"
 #include "uplift/linear/solver.h"
 
 namespace uplift {
@@ -34,6 +35,9 @@ Index broken_column(Matrix a) {
 class Dense : public LinearSolver {
  public:
   Factorisation factorise(const Sparse& a) const override {
+    const FactorCost cost = predict(a, {});
+    if (std::string why = memory_refusal(cost.bytes + cost.working_bytes, available_memory()); !why.empty())
+      return {.factor = nullptr, .failed_unknown = -1, .why = std::move(why), .too_large = true};
     const Matrix full = a;
     Cholesky cholesky(full);
     const Vector pivots = cholesky.matrixLLT().diagonal().cwiseAbs2();
@@ -45,6 +49,10 @@ class Dense : public LinearSolver {
       return singular_at(static_cast<int>(broken < full.rows() ? broken : smallest));
     }
     return {.factor = std::make_unique<DenseFactor>(std::move(cholesky)), .failed_unknown = -1, .why = {}};
+  }
+  FactorCost predict(const Sparse& a, const std::vector<int>&) const override {
+    const auto n = static_cast<double>(a.rows());
+    return {.unknowns = n, .entries = n * n, .operations = n * n * n / 3, .bytes = 8 * n * n, .working_bytes = 8 * n * n, .why = {}};
   }
 };
 

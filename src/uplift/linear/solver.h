@@ -19,11 +19,22 @@ class Factor {
   virtual double nonzeros() const = 0;  // of the factor, for the physical limit
 };
 
+/// What a factorisation takes, known from its symbolic analysis before it is done.
+struct FactorCost {
+  double unknowns = 0;
+  double entries = 0;        // of the factor as it is stored and streamed; 0: the solver cannot say
+  double operations = 0;     // additions and multiplications of the factorisation
+  double bytes = 0;          // of the factor
+  double working_bytes = 0;  // beside it while it is made
+  std::string why;           // why it cannot be made at all
+};
+
 /// Result of a factorisation: a factor, or the reason and the unknown at which it broke down.
 struct Factorisation {
   std::unique_ptr<const Factor> factor;
   int failed_unknown = -1;
   std::string why;
+  bool too_large = false;  // for the memory that is left
 };
 
 /// Factorises symmetric positive definite matrices (both triangles stored). A pivot that is only round-off (smaller than `least_pivot`
@@ -34,6 +45,8 @@ class LinearSolver {
   virtual Factorisation factorise(const Sparse& a) const = 0;
   /// The same with chosen unknowns eliminated last. No factor and an empty reason: this solver cannot.
   virtual SplitFactorisation factorise_split(const Sparse& a, const std::vector<int>& last) const;
+  /// What either would take; `last` empty: in any order. A factor that does not fit into the memory that is left is refused by them, too.
+  virtual FactorCost predict(const Sparse& a, const std::vector<int>& last) const;
   static constexpr double least_pivot = 1e-14;
 };
 
@@ -49,8 +62,10 @@ struct Mode {
   Vector shape;          // free unknowns, mass-normalised
 };
 /// The lowest `count` modes of K x = (2 pi f)^2 M x; massless unknowns are allowed (condensed exactly). Fewer are returned when there are
-/// fewer. Rigid-body modes come out with frequency 0. Dense up to about 500 massive unknowns, beyond that Lanczos (Spectra) on the
-/// flexibility seen by the masses, with our CHOLMOD. Empty when a massless unknown has no stiffness either.
+/// fewer. Up to 500 massive unknowns by a dense flexibility, beyond that by shift-invert Lanczos (Spectra) with our CHOLMOD; repeated
+/// frequencies are found by searching again beside the modes found. A frequency is exactly 0, a rigid motion, where the strain energy is
+/// round-off of the products it is summed of, |x^T K x| <= 1e-14 |x|^T |K| |x|, or w^2 <= 1e-7 of the first elastic one; components of a
+/// shape below 1e-14 of its largest are 0. Empty when a massless unknown has no stiffness either.
 std::vector<Mode> modes(const Sparse& stiffness, const Sparse& mass, int count);
 
 }  // namespace uplift

@@ -28,6 +28,7 @@ struct SplitFactorisation {
   std::unique_ptr<const SplitFactor> factor;
   int failed_unknown = -1;
   std::string why;
+  bool too_large = false;  // for the memory that is left
 };
 
 }  // namespace uplift

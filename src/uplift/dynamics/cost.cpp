@@ -1,0 +1,55 @@
+#include "uplift/dynamics/cost.h"
+
+#include <algorithm>
+
+#include "uplift/dynamics/bulk.h"
+#include "uplift/linear/memory.h"
+
+namespace uplift {
+
+namespace {
+
+double bytes_of(const Sparse& matrix) {
+  return 12 * static_cast<double>(matrix.nonZeros()) + 4 * static_cast<double>(matrix.cols());
+}
+
+/// C, Q and the last block of a split factor, and what the interface problem makes of C.
+double interface_blocks(double rows, double touched) {
+  const double r = std::min(rows, touched), turned = rows < touched ? r * touched : 0;
+  return 8 * (rows * r + turned + touched * touched + 3 * r * r);
+}
+
+}  // namespace
+
+BulkCost predict_bulk(const Model& model, const LinearSolver& solver, const BulkUse& use) {
+  BulkCost cost;
+  const Sparse b = stack_interfaces(model);
+  const std::vector<int> touched = touched_unknowns(b);
+  cost.touched = static_cast<int>(touched.size());
+  Sparse unit(model.free(), model.free());
+  unit.setIdentity();
+  {
+    const Sparse step = model.stiffness + model.damping + model.mass;
+    cost.step = solver.predict(step, touched);
+    cost.step.working_bytes += bytes_of(step);
+  }
+  cost.mass = solver.predict(model.mass + unit, use.impacts ? touched : std::vector<int>());
+  const auto rows = static_cast<double>(b.rows()), n = static_cast<double>(model.free());
+  cost.matrix_bytes = bytes_of(model.stiffness) + bytes_of(model.mass) + bytes_of(model.damping);
+  const double pair = 10 * static_cast<double>(model.stiffness.nonZeros()) + 24 * n;  // SymmetricPair: half the entries, 20 bytes each
+  const double steps = use.step_sizes + (use.propagates ? 1 : 0);
+  const double blocks = interface_blocks(rows, static_cast<double>(cost.touched));
+  cost.interface_bytes = (steps + (use.impacts ? 1 : 0)) * blocks;
+  const double kept = (use.keeps_mass ? cost.mass.bytes : 0) + steps * cost.step.bytes + cost.interface_bytes + pair + 25 * 8 * n;
+  const double more = std::max(kept + cost.step.working_bytes, cost.mass.bytes + cost.mass.working_bytes + pair);
+  cost.matrix_bytes += pair;
+  cost.bytes = cost.matrix_bytes - pair + more;
+  cost.available = available_memory();
+  const Rates rates = measure_rates(cost.step.bytes);
+  cost.factor_seconds = steps * factor_seconds(cost.step, rates) + factor_seconds(cost.mass, rates);
+  cost.solve_seconds = solve_seconds(cost.step, rates);
+  cost.refusal = !cost.step.why.empty() ? cost.step.why : !cost.mass.why.empty() ? cost.mass.why : memory_refusal(more, cost.available);
+  return cost;
+}
+
+}  // namespace uplift

@@ -1,0 +1,91 @@
+#include "uplift/linear/memory.h"
+
+#include <fmt/format.h>
+#include <sys/resource.h>
+#include <unistd.h>
+
+#include <algorithm>
+#include <fstream>
+#include <limits>
+
+namespace uplift {
+
+namespace {
+
+constexpr double unlimited = std::numeric_limits<double>::infinity();
+
+/// The first number of a file; `none` when there is none ("max").
+double number_in(const std::string& path, double none) {
+  std::ifstream file(path);
+  double value = 0;
+  return file >> value ? value : none;
+}
+
+/// The number after a word at the beginning of a line; 0 when there is none.
+double number_after(const std::string& path, const std::string& word) {
+  std::ifstream file(path);
+  std::string line;
+  while (std::getline(file, line))
+    if (line.starts_with(word)) return std::strtod(line.c_str() + word.size(), nullptr);
+  return 0;
+}
+
+/// What one control group leaves: its limit less what is used, where file cache out of use counts as free.
+double left_in_group(const std::string& folder, bool second) {
+  const double limit = number_in(folder + (second ? "/memory.max" : "/memory.limit_in_bytes"), unlimited);
+  if (limit == unlimited) return unlimited;
+  const double used = number_in(folder + (second ? "/memory.current" : "/memory.usage_in_bytes"), 0);
+  return std::max(0.0, limit - used + number_after(folder + "/memory.stat", second ? "inactive_file " : "total_inactive_file "));
+}
+
+/// The least of the group at `path` and all above it; a group that this process cannot see (containers) is passed over.
+double left_in_groups(const std::string& mount, std::string path, bool second) {
+  double least = left_in_group(mount, second);
+  while (path.size() > 1) {
+    least = std::min(least, left_in_group(mount + path, second));
+    path.resize(path.rfind('/'));
+  }
+  return least;
+}
+
+double left_in_groups(const std::string& root) {
+  double least = unlimited;
+  std::ifstream groups(root + "/proc/self/cgroup");
+  std::string line;  // "0::/path" (version 2) or "4:memory:/path"
+  while (std::getline(groups, line)) {
+    const std::size_t first = line.find(':'), second = line.find(':', first + 1);
+    if (first == std::string::npos || second == std::string::npos) continue;
+    const std::string controllers = "," + line.substr(first + 1, second - first - 1) + ",", path = line.substr(second + 1);
+    if (controllers == ",,") least = std::min(least, left_in_groups(root + "/sys/fs/cgroup", path, true));
+    if (controllers.find(",memory,") != std::string::npos)
+      least = std::min(least, left_in_groups(root + "/sys/fs/cgroup/memory", path, false));
+  }
+  return least;
+}
+
+double left_of_address_space(const std::string& root) {
+  rlimit limit{};
+  if (getrlimit(RLIMIT_AS, &limit) != 0 || limit.rlim_cur == RLIM_INFINITY) return unlimited;
+  const double used = number_in(root + "/proc/self/statm", 0) * static_cast<double>(sysconf(_SC_PAGESIZE));
+  return std::max(0.0, static_cast<double>(limit.rlim_cur) - used);
+}
+
+}  // namespace
+
+double available_memory(const std::string& root) {
+  const double system = 1024 * number_after(root + "/proc/meminfo", "MemAvailable:");
+  return std::min({system > 0 ? system : unlimited, left_in_groups(root), left_of_address_space(root)});
+}
+
+std::string spoken_bytes(double bytes) {
+  if (bytes >= 1e9) return fmt::format("{:.1f} GB", 1e-9 * bytes);
+  return fmt::format("{:.{}f} MB", 1e-6 * bytes, bytes < 1e7 ? 1 : 0);
+}
+
+std::string memory_refusal(double needed, double available) {
+  if (needed <= available) return {};
+  return fmt::format("the factor needs {}, {} are free: coarsen the mesh, make the model smaller, or run it on a machine with more memory",
+                     spoken_bytes(needed), spoken_bytes(available));
+}
+
+}  // namespace uplift

@@ -1,0 +1,18 @@
+#pragma once
+#include <string>
+
+// What memory there is, so that a factor is refused before it is made, not killed while it is.
+namespace uplift {
+
+/// Memory that this process can still take [bytes]: the least of what the system has available (MemAvailable), what every control group
+/// above the process leaves (versions 2 and 1; file cache that can be dropped counts as free) and what is left of the limit on its address
+/// space. Infinite where nothing is known. `root` stands before the paths of the system's files: for tests.
+double available_memory(const std::string& root = "");
+
+/// "31.2 GB"; decimal units.
+std::string spoken_bytes(double bytes);
+
+/// Why a factor that takes `needed` bytes is not made when `available` are left; empty when it fits.
+std::string memory_refusal(double needed, double available);
+
+}  // namespace uplift
