@@ -60,6 +60,7 @@ TEST(Impulse, SplitMassMatrixSpreadsAsTheDenseInverse) {
       TwoBoxesPlan plan;
       plan.dimension = dimension;
       plan.mass = kind;
+      if (dimension == 3) plan.soil = {7, 7, 3}, plan.block_width = plan.block_height = 3;
       const TwoBoxes boxes = two_boxes(plan);
       ASSERT_GT(boxes.mass.rows(), small_bulk);
       const double dt = 2e-3;

@@ -79,7 +79,7 @@ TEST(Residual, WrongFactorIsRefused) {
   std::string why;
   EXPECT_EQ(tried(chain(90, 10), Wrong(0), why).notice, "");
   EXPECT_EQ(why, "");
-  const LinearCounts little = tried(chain(90, 10), Wrong(1e-8), why);
+  const LinearCounts little = tried(chain(90, 10), Wrong(1e-11), why);
   EXPECT_EQ(why, "");
   EXPECT_NE(little.notice, "");
   tried(chain(90, 10), Wrong(1e-3), why);
