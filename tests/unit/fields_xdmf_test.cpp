@@ -140,7 +140,7 @@ TEST(Fields, SizesAreForeseen) {
     FieldFrame shape = frame_of(blocks, 0);
     for (BlockFields& fields : shape.blocks)
       for (auto* list : {&fields.points, &fields.cells})
-        for (Field& field : *list) field.values.clear();
+        for (FieldValues& field : *list) field.values.clear();
     constexpr int frames = 20;
     Files vtu, xdmf;
     VtuWriter vtu_writer("fields", blocks, precision, into(vtu));

@@ -295,6 +295,24 @@ const Section& history_section() {
   return s;
 }
 
+const Section& fields_section() {
+  static const Section s{
+      "fields",
+      "fields on the mesh, in the folder fields/ of the results, for ParaView: every n-th step of the dynamic stages, the moments that "
+      "matter, or both, and the end of every stage; without every and events about a hundred moments. The interfaces are a block of their "
+      "own, with opening, slip, traction, pressure and status (0 open, 1 closed, 2 slipping)",
+      Fields{choice("format", {"vtu", "xdmf"},
+                    "vtu: a file for each moment and block; xdmf: one HDF5 file for all. Absent: vtu up to 200 MB, else xdmf")
+                 .optional(),
+             integer("every", "every n-th step").between(1, 1000000000).optional(),
+             flag("events", "first uplift, largest gap, largest pressure").standard(false),
+             texts("quantities", "any of displacement, velocity, acceleration, stress; absent: all").optional(),
+             texts("groups", "groups with a [[solid]]; absent: all").optional(),
+             choice("precision", {"float32", "float64"}, "how values are stored: 7 or 16 digits").standard("float32"),
+             flag("variants", "of the runs of `uplift compare` too").standard(false)}};
+  return s;
+}
+
 const Section& output_section() {
   static const Section s{
       "output", "what is written",
@@ -302,7 +320,8 @@ const Section& output_section() {
              flag("automatic", "motion of the top and of the base, and the resultants of every interface").standard(true),
              flag("energies", "all energies").standard(true),
              integer("frames", "pictures of the animation; 0: none").between(0, 5000).standard(240.0),
-             tables("history", history_section(), "further columns")}};
+             tables("history", history_section(), "further columns"),
+             table("fields", fields_section(), "fields on the mesh; absent: none").optional()}};
   return s;
 }
 

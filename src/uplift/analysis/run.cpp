@@ -71,11 +71,12 @@ InterfaceProblem probe(const Model& model, const Bulk& bulk, const Sparse& b, co
 /// One run: the state, what is watched, what is written.
 class Runner {
  public:
-  Runner(const Model& model, const RunPlan& plan, const std::vector<const Values*>& behaviours, const Watch& watch)
+  Runner(const Model& model, const RunPlan& plan, const std::vector<const Values*>& behaviours, const Watch& watch, const Observe& observe)
       : model_(model),
         plan_(plan),
         parameters_(behaviours),
         watch_(watch),
+        observe_(observe),
         b_(stack_interfaces(model)),
         gap_(stack_gaps(model)),
         viewer_(model, plan.gap_tolerance) {
@@ -106,6 +107,7 @@ class Runner {
   void add_initial_state();
   bool statics(const Stage& stage, const Bulk& bulk);
   bool dynamics(const Stage& stage, const Bulk& bulk);
+  void show(const Stage& stage, const Stepper* stepper, long step, bool last) const;
   void note_views(double step);
   bool check_limits(const Stepper& stepper);
   void finish_energy(const Stepper& stepper);
@@ -115,6 +117,7 @@ class Runner {
   const RunPlan& plan_;
   const std::vector<const Values*>& parameters_;
   const Watch& watch_;
+  const Observe& observe_;
   const Sparse b_;
   const Vector gap_;
   Vector start_gap_;  // with the prescribed motions at time 0
@@ -175,6 +178,7 @@ void Runner::execute() {
     if (stage.type == Stage::Type::statics) {
       march_.reset();
       if (!statics(stage, bulk)) return;
+      show(stage, nullptr, stage.steps, true);
       continue;
     }
     if (stage.p_delta && geometric_ == nullptr) {
@@ -266,6 +270,11 @@ bool Runner::statics(const Stage& stage, const Bulk& bulk) {
   return true;
 }
 
+/// Tells the observer, if there is one, of the present state.
+void Runner::show(const Stage& stage, const Stepper* stepper, long step, bool last) const {
+  if (observe_) observe_({*seen_, stepper, result_, static_cast<std::size_t>(&stage - plan_.stages.data()), step, last});
+}
+
 void Runner::note_views(double step) {
   bool open = false, any_contact = views_.empty();
   for (const InterfaceView& view : views_) {
@@ -346,7 +355,10 @@ bool Runner::dynamics(const Stage& stage, const Bulk& bulk) {
     recorder.record(stepper, views_, step % plan_.every == 0 || step == steps);
     if (picture_every > 0 && step % picture_every == 0) recorder.picture(*seen_);
   };
-  if (!ledger_) observe(0);  // else the end of the stage before is there already
+  if (!ledger_) {  // else the end of the stage before is there already
+    observe(0);
+    show(stage, &stepper, 0, false);
+  }
   bool go_on = true;
   const long between = bulk.small ? 256 : 8;  // steps from one report of progress to the next
   auto first_done = std::chrono::steady_clock::now();
@@ -355,6 +367,7 @@ bool Runner::dynamics(const Stage& stage, const Bulk& bulk) {
       fail(fmt::format("step at t = {:.6g} s failed down to dt = {:.3g} s: {}", seen_->time, stage.step / std::pow(2, stage.halvings),
                        stepper.why()),
            stepper.problem());
+      show(stage, &stepper, step - 1, true);
       break;
     }
     finish_energy(stepper);
@@ -371,6 +384,7 @@ bool Runner::dynamics(const Stage& stage, const Bulk& bulk) {
         go_on = false;
       }
     }
+    show(stage, &stepper, step, step == steps || !go_on);
   }
   if (stepper.counts().steps > 1)
     result_.step_seconds = std::chrono::duration<double>(std::chrono::steady_clock::now() - first_done).count() /
@@ -401,8 +415,9 @@ bool Runner::dynamics(const Stage& stage, const Bulk& bulk) {
 
 }  // namespace
 
-RunResult run(const Model& model, const RunPlan& plan, const std::vector<const Values*>& behaviours, const Watch& watch) {
-  return Runner(model, plan, behaviours, watch).go();
+RunResult run(const Model& model, const RunPlan& plan, const std::vector<const Values*>& behaviours, const Watch& watch,
+              const Observe& observe) {
+  return Runner(model, plan, behaviours, watch, observe).go();
 }
 
 std::vector<StiffnessRatio> stiffness_ratios(const Model& model, const Stage& stage, const LinearSolver& solver) {

@@ -14,6 +14,8 @@
 
 namespace uplift {
 
+class Stepper;
+
 // ---- what is to be done ----
 
 struct Stage {
@@ -137,9 +139,22 @@ struct Progress {
 };
 using Watch = std::function<bool(const Progress&)>;
 
+/// A state that a run has reached. Everything ends with the call.
+struct Moment {
+  const State& state;
+  const Stepper* stepper;   // of a dynamic stage, for accelerations; null at the end of a static stage
+  const RunResult& so_far;  // peaks and counts up to here
+  std::size_t stage;        // of the plan
+  long step;                // of the stage, from 0
+  bool last;                // of the stage, also when the run ends here
+};
+/// Sees the end of every static stage, the state at the beginning of the first dynamic one, and every step.
+using Observe = std::function<void(const Moment&)>;
+
 /// Runs all stages. `behaviours` are the checked parameters of the interfaces' laws (for problem files). Never throws for numerical
-/// reasons.
-RunResult run(const Model& model, const RunPlan& plan, const std::vector<const Values*>& behaviours, const Watch& watch = {});
+/// reasons; what the observer throws ends it.
+RunResult run(const Model& model, const RunPlan& plan, const std::vector<const Values*>& behaviours, const Watch& watch = {},
+              const Observe& observe = {});
 
 /// What `uplift check` says of an interface: stiffness of a closed joint times compliance at the dynamic step.
 struct StiffnessRatio {

@@ -7,6 +7,7 @@
 #include "uplift/analysis/wording.h"
 #include "uplift/cli/console.h"
 #include "uplift/cli/load.h"
+#include "uplift/io/field_run.h"
 #include "uplift/io/json_writer.h"
 #include "uplift/mesh/quality.h"
 
@@ -29,6 +30,7 @@ struct Findings {
   };
   std::vector<Solid> solids;  // of a mesh
   int pieces = 0;             // of the opened mesh
+  std::optional<FieldForecast> fields;
 };
 
 constexpr double points_per_wavelength = 10;
@@ -112,6 +114,7 @@ void try_steps(Findings& found, const Built& built) {
 Findings find(const Case& read, const RunSpec& spec, const Built& built) {
   Findings found;
   look_at_mesh(read, found);
+  found.fields = field_forecast(read, built);
   found.fixed = frequencies(fixed_base_modes(built.model, 3));
   found.bonded = frequencies(bonded_modes(built.model, 5));
   found.base_free = frequencies(uplift::modes(built.model.stiffness, built.model.mass, 5));
@@ -160,6 +163,11 @@ void print(const Loaded& loaded, const Built& built, const Findings& found, cons
   if (found.seconds_per_step > 0)
     line("cost", fmt::format("about {:.2f} microseconds a step, {} a run", 1e6 * found.seconds_per_step,
                              spoken(found.seconds_per_step * static_cast<double>(found.steps), "s")));
+  if (found.fields) {
+    const FieldForecast& fields = *found.fields;
+    line("fields", fmt::format("{} frames x {} = {} a run, as {}", fields.frames, spoken_bytes(fields.size.per_frame),
+                               spoken_bytes(fields.bytes()), fields.format == FieldFormat::vtu ? "vtu" : "xdmf"));
+  }
   say("what is computed");
   for (const std::string& run : runs) say("  " + run);
   for (const std::string& warning : found.warnings) say("warning: " + warning);
@@ -190,6 +198,14 @@ void write(const Loaded& loaded, const Built& built, const Findings& found, cons
     json.end_object();
   }
   json.end_array();
+  if (found.fields)
+    json.key("fields")
+        .begin_object()
+        .member("format", found.fields->format == FieldFormat::vtu ? "vtu" : "xdmf")
+        .member("frames", found.fields->frames)
+        .member("bytes_per_frame", static_cast<long>(found.fields->size.per_frame))
+        .member("bytes", static_cast<long>(found.fields->bytes()))
+        .end_object();
   json.member("weight", built.weight)
       .key("frequencies_fixed_base")
       .numbers(found.fixed)

@@ -49,15 +49,17 @@ void print_sweep(const ComparisonSummary& compared) {
   print_table(rows);
 }
 
-/// Builds and runs one list of specs; stops after an interrupted run.
+/// Builds and runs one list of specs; stops after an interrupted run. Fields are written into the folder when there is one.
 void run_all(const Loaded& loaded, const Options& options, const std::vector<RunSpec>& specs, std::size_t before, std::size_t total,
-             Results& results) {
+             ResultFolder* folder, Results& results) {
+  std::vector<std::string> fields;
   for (const RunSpec& spec : specs) {
     if (interrupt_asked()) return;
     results.specs.push_back(spec);
     results.built.push_back(build(loaded.read, spec));
-    results.runs.push_back(
-        run_one(results.built.back(), fmt::format("[{}/{}] {}", before + results.runs.size() + 1, total, spec.name), options));
+    const std::string label = fmt::format("[{}/{}] {}", before + results.runs.size() + 1, total, spec.name);
+    results.runs.push_back(folder ? run_with_fields(loaded, results.built.back(), label, options, *folder, fields)
+                                  : run_one(results.built.back(), label, options));
   }
 }
 
@@ -68,9 +70,12 @@ int compare(const Options& options) {
   const Comparison comparison = comparison_of_case(loaded.read);
   const std::size_t total = comparison.runs.size() + comparison.sweep.size();
   Results results, swept;
+  ResultFolder folder(result_path(options, loaded.read));
+  const Values& output = loaded.read.values.table("output");
+  const bool with_fields = output.has("fields") && output.table("fields").flag("variants");
   catch_interrupts();
-  run_all(loaded, options, comparison.runs, 0, total, results);
-  run_all(loaded, options, comparison.sweep, comparison.runs.size(), total, swept);
+  run_all(loaded, options, comparison.runs, 0, total, with_fields ? &folder : nullptr, results);
+  run_all(loaded, options, comparison.sweep, comparison.runs.size(), total, nullptr, swept);
 
   const Values* compare = loaded.read.values.has("compare") ? &loaded.read.values.table("compare") : nullptr;
   ComparisonSummary compared;
@@ -85,10 +90,10 @@ int compare(const Options& options) {
     if (results.specs[i].bonded && results.runs[i].group == results.runs.front().group) bonded = &results.runs[i];
   results.verdict = judge(results.built.front(), results.runs.front(), bonded);
   results.warnings = warnings(loaded.read, results.specs.front(), results.built.front());
-  const std::string folder = write_results(options, loaded, results, &compared);
+  write_results(options, loaded, results, &compared, folder);
 
   if (options.json) {
-    fmt::print("{}", read_file(folder + "/summary.json"));
+    fmt::print("{}", read_file(folder.path() + "/summary.json"));
   } else if (!options.quiet) {
     for (const std::string& warning : results.warnings) complain("warning: " + warning);
     print_runs(results, compared);
@@ -96,7 +101,7 @@ int compare(const Options& options) {
     say(fmt::format("\nsound runs agree when their peaks of {} lie within {} of the median of their group",
                     fmt::join(compared.columns, ", "), percent(compared.band)));
     say(fmt::format("verdict ({}): {}", results.runs.front().label, results.verdict.headline));
-    say(fmt::format("results: {}/report.html", folder));
+    say(fmt::format("results: {}/report.html", folder.path()));
   }
   if (interrupt_asked()) {
     if (!options.quiet)

@@ -8,7 +8,7 @@
 
 #include "uplift/base/file.h"
 #include "uplift/cli/console.h"
-#include "uplift/io/files.h"
+#include "uplift/io/field_run.h"
 #include "uplift/io/histories.h"
 #include "uplift/io/mesh_file.h"
 #include "uplift/io/toml.h"
@@ -53,8 +53,21 @@ RunResult run_one(const Built& built, const std::string& label, const Options& o
   return uplift::run(built.model, built.plan, built.behaviours, [&line](const Progress& progress) { return line(progress); });
 }
 
-std::string write_results(const Options& options, const Loaded& loaded, const Results& results, const ComparisonSummary* compared) {
-  ResultFolder folder(result_path(options, loaded.read));
+RunResult run_with_fields(const Loaded& loaded, const Built& built, const std::string& label, const Options& options, ResultFolder& folder,
+                          std::vector<std::string>& lists) {
+  if (!loaded.read.values.table("output").has("fields")) return run_one(built, label, options);
+  FieldRun fields(loaded.read, built, folder);
+  ProgressLine line(label, options.quiet || options.json);
+  RunResult result = uplift::run(
+      built.model, built.plan, built.behaviours, [&line](const Progress& progress) { return line(progress); },
+      [&fields](const Moment& moment) { fields.see(moment); });
+  fields.finish(result);
+  lists.push_back(fields.list());
+  return result;
+}
+
+void write_results(const Options& options, const Loaded& loaded, const Results& results, const ComparisonSummary* compared,
+                   ResultFolder& folder) {
   ReportInput input{&loaded.read, &loaded.from, &results.verdict, {}, compared, results.warnings};
   for (std::size_t i = 0; i < results.runs.size(); ++i) {
     const RunResult& run = results.runs[i];
@@ -74,7 +87,6 @@ std::string write_results(const Options& options, const Loaded& loaded, const Re
     complain("note: this program was built without the report's page (web/dist/report.html): no report.html is written");
   const std::string moved = folder.finish();
   if (!moved.empty() && !options.quiet && !options.json) say("earlier results moved to " + moved + "/");
-  return folder.path();
 }
 
 }  // namespace uplift::cli

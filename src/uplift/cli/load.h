@@ -3,6 +3,7 @@
 
 #include "uplift/analysis/case.h"
 #include "uplift/cli/commands.h"
+#include "uplift/io/files.h"
 #include "uplift/io/report.h"
 
 namespace uplift::cli {
@@ -26,11 +27,15 @@ struct Results {
   Verdict verdict;
   std::vector<std::string> warnings;
 };
-/// Writes report, histories, summary, resolved case and problem files; says where earlier results went. Returns the folder.
-std::string write_results(const Options& options, const Loaded& loaded, const Results& results, const ComparisonSummary* compared);
+/// Writes report, histories, summary, resolved case and problem files and puts the folder into place; says where earlier results went.
+void write_results(const Options& options, const Loaded& loaded, const Results& results, const ComparisonSummary* compared,
+                   ResultFolder& folder);
 
 /// Runs one spec of a case with the progress line.
 RunResult run_one(const Built& built, const std::string& label, const Options& options);
+/// The same; writes its fields, when the case asks for them, and adds the name of their list to `lists`.
+RunResult run_with_fields(const Loaded& loaded, const Built& built, const std::string& label, const Options& options, ResultFolder& folder,
+                          std::vector<std::string>& lists);
 
 /// How a run is reported on one line: "completed", "failed (expected): ...".
 std::string status_text(const RunResult& result);

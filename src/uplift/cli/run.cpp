@@ -10,20 +10,22 @@ namespace uplift::cli {
 int run(const Options& options) {
   const Loaded loaded = load(options);
   Results results;
+  ResultFolder folder(result_path(options, loaded.read));
+  std::vector<std::string> fields;
   catch_interrupts();
   for (const RunSpec& spec : runs_of_case(loaded.read)) {
     if (interrupt_asked() && !results.runs.empty()) break;
     results.specs.push_back(spec);
     results.built.push_back(build(loaded.read, spec));
     if (results.runs.empty()) results.warnings = warnings(loaded.read, spec, results.built.front());
-    results.runs.push_back(run_one(results.built.back(), spec.label, options));
+    results.runs.push_back(run_with_fields(loaded, results.built.back(), spec.label, options, folder, fields));
   }
   const RunResult& main = results.runs.front();
   results.verdict = judge(results.built.front(), main, results.runs.size() > 1 ? &results.runs[1] : nullptr);
-  const std::string folder = write_results(options, loaded, results, nullptr);
+  write_results(options, loaded, results, nullptr, folder);
 
   if (options.json) {
-    fmt::print("{}", read_file(folder + "/summary.json"));
+    fmt::print("{}", read_file(folder.path() + "/summary.json"));
   } else if (!options.quiet) {
     for (const std::string& warning : results.warnings) complain("warning: " + warning);
     say(results.verdict.headline);
@@ -31,7 +33,8 @@ int run(const Options& options) {
     const double per_step = main.counts.steps > 0 ? 1e6 * main.wall / static_cast<double>(main.counts.steps) : 0;
     say(fmt::format("{}: {} steps in {} ({:.2f} microseconds a step), {} retries", status_text(main), main.counts.steps,
                     spoken(main.wall, "s"), per_step, main.counts.retries));
-    say(fmt::format("results: {}/report.html", folder));
+    say(fmt::format("results: {}/report.html", folder.path()));
+    for (const std::string& list : fields) say(fmt::format("fields: {}/{} (for ParaView)", folder.path(), list));
   }
   if (main.status == RunStatus::interrupted) {
     if (!options.quiet) complain(fmt::format("interrupted at t = {:g} s: the files hold everything up to there", main.end_time));
@@ -40,7 +43,8 @@ int run(const Options& options) {
   if (main.status == RunStatus::failed) {
     complain("failed: " + main.reason);
     if (!main.problem.empty())
-      complain(fmt::format("the interface problem of the failed step: {}/problem_{}.json (see `uplift replay --help`)", folder, main.name));
+      complain(fmt::format("the interface problem of the failed step: {}/problem_{}.json (see `uplift replay --help`)", folder.path(),
+                           main.name));
     return Exit::numerical_failure;
   }
   return Exit::done;

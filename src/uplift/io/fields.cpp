@@ -3,11 +3,9 @@
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <array>
 #include <cassert>
 #include <cmath>
 #include <limits>
-#include <map>
 #include <utility>
 
 #include "uplift/base/error.h"
@@ -57,11 +55,12 @@ bool fits(double value, FieldPrecision precision) {
          (precision == FieldPrecision::float64 || std::abs(value) <= static_cast<double>(std::numeric_limits<float>::max()));
 }
 
-std::optional<FieldTrouble> trouble_in(const FieldMesh& block, const std::vector<Field>& fields, bool points, FieldPrecision precision) {
-  for (const Field& field : fields) {
+std::optional<FieldTrouble> trouble_in(const FieldMesh& block, const std::vector<FieldValues>& fields, bool points,
+                                       FieldPrecision precision) {
+  for (const FieldValues& field : fields) {
     const std::size_t width = components(field.kind);
     assert(field.values.size() == width * (points ? block.points.size() : cells_in(block)) && "values for every point or cell");
-    assert(std::count_if(fields.begin(), fields.end(), [&](const Field& other) { return title(other) == title(field); }) == 1);
+    assert(std::count_if(fields.begin(), fields.end(), [&](const FieldValues& other) { return title(other) == title(field); }) == 1);
     const auto bad = std::find_if(field.values.begin(), field.values.end(), [&](double value) { return !fits(value, precision); });
     if (bad == field.values.end()) continue;
     const std::size_t at = static_cast<std::size_t>(bad - field.values.begin()) / width;
@@ -72,12 +71,11 @@ std::optional<FieldTrouble> trouble_in(const FieldMesh& block, const std::vector
   return std::nullopt;
 }
 
-/// For each entry of `from` its tuple in `values`; 0 where it is -1.
+/// For each entry of `from` its tuple in `values`.
 std::vector<double> spread(const std::vector<int>& from, FieldKind kind, std::span<const double> values) {
   const std::size_t width = components(kind);
   std::vector<double> result(from.size() * width, 0);
   for (std::size_t i = 0; i < from.size(); ++i) {
-    if (from[i] < 0) continue;
     const auto tuple = values.subspan(static_cast<std::size_t>(from[i]) * width, width);
     std::copy(tuple.begin(), tuple.end(), result.begin() + static_cast<std::ptrdiff_t>(i * width));
   }
@@ -86,28 +84,21 @@ std::vector<double> spread(const std::vector<int>& from, FieldKind kind, std::sp
 
 /// One lip of one face, before the lips are put in the order of types.
 struct Lip {
-  int surface, face, side;  // side: 0 lower, 1 upper
-  CellId cell, other;
+  int surface, face, place, side;  // place: that of the face's first node; side: 0 lower, 1 upper
+  CellId cell;
 };
 
 std::vector<Lip> lips_of(const Mesh& mesh, const std::vector<OpenedSurface>& surfaces) {
   std::vector<Lip> lips;
-  int face = 0;
+  int face = 0, place = 0;
   for (std::size_t s = 0; s < surfaces.size(); ++s)
     for (const FacePair& pair : surfaces[s].faces) {
-      lips.push_back({static_cast<int>(s), face, 0, pair.lower, pair.upper});
-      lips.push_back({static_cast<int>(s), face++, 1, pair.upper, pair.lower});
+      lips.push_back({static_cast<int>(s), face, place, 0, pair.lower});
+      lips.push_back({static_cast<int>(s), face++, place, 1, pair.upper});
+      place += static_cast<int>(mesh.cell(pair.lower).size());
     }
   std::stable_sort(lips.begin(), lips.end(), [&](const Lip& a, const Lip& b) { return mesh.type(a.cell) < mesh.type(b.cell); });
   return lips;
-}
-
-/// The number of the pair of two nodes within its surface; -1 when they are one node.
-int pair_number(const OpenedSurface& surface, NodePair pair) {
-  if (pair.lower == pair.upper) return -1;
-  const auto found = std::lower_bound(surface.pairs.begin(), surface.pairs.end(), pair);
-  assert(found != surface.pairs.end() && *found == pair && "the pairs of the mesh as it is now");
-  return static_cast<int>(found - surface.pairs.begin());
 }
 
 }  // namespace
@@ -160,53 +151,39 @@ InterfaceMesh interface_mesh(const Mesh& mesh, std::string name, const std::vect
   FieldMesh& block = result.mesh;
   block.name = std::move(name);
   block.marks = {{"interface", {}, {}}, {"lip", {}, {"lower", "upper"}}};
-  std::vector<int> first_pair;
-  int pairs = 0;
-  for (const OpenedSurface& surface : surfaces) {
-    block.marks[0].meanings.push_back(surface.name);
-    first_pair.push_back(pairs);
-    pairs += static_cast<int>(surface.pairs.size());
-  }
+  for (const OpenedSurface& surface : surfaces) block.marks[0].meanings.push_back(surface.name);
   std::vector<CellId> cells;
-  std::map<std::array<int, 3>, int> point_of;  // surface, lip, node
-  std::vector<int> points;
   for (const Lip& lip : lips_of(mesh, surfaces)) {
     cells.push_back(lip.cell);
     result.face.push_back(lip.face);
     block.marks[0].values.push_back(lip.surface);
     block.marks[1].values.push_back(lip.side);
-    const auto nodes = mesh.cell(lip.cell), beyond = mesh.cell(lip.other);
-    for (std::size_t i = 0; i < nodes.size(); ++i) {
-      const auto [at, is_new] = point_of.try_emplace({lip.surface, lip.side, nodes[i]}, static_cast<int>(block.points.size()));
-      points.push_back(at->second);
-      if (!is_new) continue;
-      const auto s = static_cast<std::size_t>(lip.surface);
-      const NodePair pair = lip.side == 0 ? NodePair{nodes[i], beyond[i]} : NodePair{beyond[i], nodes[i]};
-      const int number = pair_number(surfaces[s], pair);
-      result.pair.push_back(number < 0 ? -1 : first_pair[s] + number);
-      block.node.push_back(nodes[i]);
-      block.points.push_back(mesh.nodes[static_cast<std::size_t>(nodes[i])]);
+    int place = lip.place;
+    for (const int node : mesh.cell(lip.cell)) {
+      result.place.push_back(place++);
+      block.node.push_back(node);
+      block.points.push_back(mesh.nodes[static_cast<std::size_t>(node)]);
     }
   }
   take_cells(block, mesh, cells);
-  auto next = points.begin();
+  int point = 0;
   for (CellBlock& type : block.blocks)
-    for (int& node : type.nodes) node = *next++;
+    for (int& node : type.nodes) node = point++;
   return result;
 }
 
-std::vector<double> at_points(const FieldMesh& block, FieldKind kind, std::span<const double> nodal, int stride) {
-  const std::size_t width = components(kind), given = std::min(width, static_cast<std::size_t>(stride));
+std::vector<double> at_points(const FieldMesh& block, FieldKind kind, std::span<const double> nodal, int stride, int given) {
+  const std::size_t width = components(kind), kept = std::min(width, static_cast<std::size_t>(std::min(stride, given)));
   std::vector<double> result(block.node.size() * width, 0);
   for (std::size_t i = 0; i < block.node.size(); ++i) {
-    const auto tuple = nodal.subspan(static_cast<std::size_t>(block.node[i]) * static_cast<std::size_t>(stride), given);
+    const auto tuple = nodal.subspan(static_cast<std::size_t>(block.node[i]) * static_cast<std::size_t>(stride), kept);
     std::copy(tuple.begin(), tuple.end(), result.begin() + static_cast<std::ptrdiff_t>(i * width));
   }
   return result;
 }
 
-std::vector<double> at_points(const InterfaceMesh& block, FieldKind kind, std::span<const double> by_pair) {
-  return spread(block.pair, kind, by_pair);
+std::vector<double> at_points(const InterfaceMesh& block, FieldKind kind, std::span<const double> by_place) {
+  return spread(block.place, kind, by_place);
 }
 
 std::vector<double> at_cells(const InterfaceMesh& block, FieldKind kind, std::span<const double> by_face) {

@@ -24,7 +24,7 @@ enum class FieldPrecision : unsigned char { float32, float64 };
 
 /// Values at all points or all cells of a block, those of one point or cell side by side. In files it is called "displacement [m]"; just
 /// "status" when it has no unit.
-struct Field {
+struct FieldValues {
   std::string name, unit;
   FieldKind kind = FieldKind::scalar;
   std::vector<double> values;
@@ -51,26 +51,25 @@ struct FieldMesh {
 /// cell. Throws InputError (key "groups") for a group that is absent or holds no cells, and when no group is named.
 FieldMesh field_mesh(const Mesh& mesh, std::string name, const std::vector<std::string>& groups, const Where& where);
 
-/// The faces of opened surfaces: of each face the lower and then the upper lip. Surfaces and lips share no points, so that a corner has
-/// values of its bottom and of its wall, and a node where the surface ends inside the continuum is there twice. Marks: "interface", "lip".
+/// The faces of opened surfaces: of each face the lower and then the upper lip. Faces share no points, so that a corner has values of its
+/// bottom and of its wall, and a node where the surface ends inside the continuum is there on both lips. Marks: "interface", "lip".
 struct InterfaceMesh {
   FieldMesh mesh;
-  std::vector<int> pair;  // of each point, counted through the pairs of all surfaces one after another; -1 where the surface ends inside
-  std::vector<int> face;  // of each cell, counted through the faces of all surfaces one after another
+  std::vector<int> place;  // of each point, counted through the nodes of the faces of all surfaces one after another
+  std::vector<int> face;   // of each cell, counted through the faces of all surfaces one after another
 };
-/// The pairs must be those of the mesh as it is now (see split()).
 InterfaceMesh interface_mesh(const Mesh& mesh, std::string name, const std::vector<OpenedSurface>& surfaces);
 
-/// Values at the points of a block from those at all nodes of the mesh, `stride` numbers for each node: 3 of a tuple are kept, missing ones
-/// are 0, so the vectors of a plane model (stride 2) get z = 0. For a scalar the stride is 1, for a tensor 6.
-std::vector<double> at_points(const FieldMesh& block, FieldKind kind, std::span<const double> nodal, int stride);
-/// Both lips get the value of their pair; 0 where the surface ends inside the continuum.
-std::vector<double> at_points(const InterfaceMesh& block, FieldKind kind, std::span<const double> by_pair);
+/// Values at the points of a block from those at all nodes of the mesh, `stride` numbers for each node: the first ones of a tuple are kept,
+/// at most `given`, missing ones are 0, so the vectors of a plane model (2 given) get z = 0. For a scalar the stride is 1, for a tensor 6.
+std::vector<double> at_points(const FieldMesh& block, FieldKind kind, std::span<const double> nodal, int stride, int given = 6);
+/// Both lips get the value of their place.
+std::vector<double> at_points(const InterfaceMesh& block, FieldKind kind, std::span<const double> by_place);
 /// Both lips get the value of their face.
 std::vector<double> at_cells(const InterfaceMesh& block, FieldKind kind, std::span<const double> by_face);
 
 struct BlockFields {
-  std::vector<Field> points, cells;  // names differ within each list
+  std::vector<FieldValues> points, cells;  // names differ within each list
 };
 /// The fields of all blocks at one moment.
 struct FieldFrame {
@@ -90,7 +89,14 @@ using WriteFile = std::function<void(const std::string& name, std::string_view b
 /// Into a folder, which must live as long as the function.
 WriteFile into(ResultFolder& folder);
 
-/// Writes "<stem>/<block>_000000.vtu" and so on, "<stem>/<block>_names.csv" (what the marks mean) and the list "<stem>.pvd".
+/// What the list of frames says of one of them.
+struct FieldEntry {
+  double time = 0;  // s
+  std::string text;
+};
+
+/// Writes "<stem>/<block>_000000.vtu" and so on, "<stem>/<block>_names.csv" (what the marks mean) and the list
+/// "<stem>.pvd", in which frames stand in the order of time.
 class VtuWriter {
  public:
   VtuWriter(std::string stem, std::vector<FieldMesh> blocks, FieldPrecision precision, WriteFile write);
@@ -100,7 +106,8 @@ class VtuWriter {
   void finish();
 
  private:
-  std::string stem_, list_;
+  std::string stem_;
+  std::vector<FieldEntry> list_;
   std::vector<FieldMesh> blocks_;
   std::vector<std::string> files_, mesh_texts_;  // of each block
   FieldPrecision precision_;
@@ -108,7 +115,7 @@ class VtuWriter {
   int frames_ = 0;
 };
 
-/// Writes "<stem>.h5" and "<stem>.xdmf", which belong into one folder.
+/// Writes "<stem>.h5" and "<stem>.xdmf", which belong into one folder. Frames are described in the order of time.
 class XdmfWriter {
  public:
   /// The frames go to `data`: a file on the disk (then it must be "<stem>.h5") or in memory, where all of them stay until the end
@@ -122,7 +129,8 @@ class XdmfWriter {
   void finish_with_data(const WriteFile& write);
 
  private:
-  std::string stem_, list_;
+  std::string stem_;
+  std::vector<FieldEntry> list_;
   std::vector<FieldMesh> blocks_;
   std::vector<std::string> names_;  // of the blocks, in the file
   FieldPrecision precision_;

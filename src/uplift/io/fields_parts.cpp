@@ -8,7 +8,7 @@
 
 namespace uplift {
 
-std::string title(const Field& field) {
+std::string title(const FieldValues& field) {
   return field.unit.empty() ? field.name : field.name + " [" + field.unit + "]";
 }
 
@@ -82,6 +82,13 @@ std::vector<float> as_float32(std::span<const double> values) {
 std::span<const double> as_float64(std::span<const double> values) {
   assert(std::all_of(values.begin(), values.end(), [](double value) { return std::isfinite(value); }));
   return values;
+}
+
+std::string in_order_of_time(std::vector<FieldEntry> entries) {
+  std::stable_sort(entries.begin(), entries.end(), [](const FieldEntry& a, const FieldEntry& b) { return a.time < b.time; });
+  std::string text;
+  for (const FieldEntry& entry : entries) text += entry.text;
+  return text;
 }
 
 }  // namespace uplift

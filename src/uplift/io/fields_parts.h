@@ -9,7 +9,7 @@
 namespace uplift {
 
 /// "displacement [m]".
-std::string title(const Field& field);
+std::string title(const FieldValues& field);
 /// Text for XML, in elements and attributes; control characters, which XML 1.0 does not know, become spaces.
 std::string xml_text(std::string_view text);
 /// For names of files and of objects in HDF5: what is not a letter, digit, "-" or "_" becomes "_"; equal ones get numbers.
@@ -34,6 +34,9 @@ std::vector<int> vtk_nodes(const CellBlock& block);
 std::vector<float> as_float32(std::span<const double> values);
 /// Each must be finite (assertion).
 std::span<const double> as_float64(std::span<const double> values);
+
+/// The entries one after another in the order of their times.
+std::string in_order_of_time(std::vector<FieldEntry> entries);
 
 FieldSize vtu_size(const std::vector<FieldMesh>& blocks, const FieldFrame& frame, FieldPrecision precision);
 FieldSize xdmf_size(const std::vector<FieldMesh>& blocks, const FieldFrame& frame, FieldPrecision precision);

@@ -68,8 +68,8 @@ class Text {
   std::string text_;
 };
 
-void write_fields(Text& text, const std::vector<Field>& fields, std::size_t tuples, FieldPrecision precision) {
-  for (const Field& field : fields) {
+void write_fields(Text& text, const std::vector<FieldValues>& fields, std::size_t tuples, FieldPrecision precision) {
+  for (const FieldValues& field : fields) {
     if (precision == FieldPrecision::float32)
       text.array<float>(title(field), components(field.kind), tuples, [&] { return as_float32(field.values); });
     else
@@ -170,7 +170,7 @@ std::optional<FieldTrouble> VtuWriter::write(const FieldFrame& frame) {
     Text text(false);
     write_file(text, blocks_[b], frame.blocks[b], frame.time, precision_, [&](Text& to) { to.add(mesh_texts_[b]); });
     write_(file_name(stem_, files_[b], frames_), text.take());
-    list_ += list_entry(blocks_[b], b, frame.time, file_name(last_part(stem_), files_[b], frames_));
+    list_.push_back({frame.time, list_entry(blocks_[b], b, frame.time, file_name(last_part(stem_), files_[b], frames_))});
   }
   ++frames_;
   return std::nullopt;
@@ -178,7 +178,7 @@ std::optional<FieldTrouble> VtuWriter::write(const FieldFrame& frame) {
 
 void VtuWriter::finish() {
   for (std::size_t b = 0; b < blocks_.size(); ++b) write_(fmt::format("{}/{}_names.csv", stem_, files_[b]), meanings_text(blocks_[b]));
-  write_(stem_ + ".pvd", std::string(list_head) + list_ + std::string(list_tail));
+  write_(stem_ + ".pvd", std::string(list_head) + in_order_of_time(list_) + std::string(list_tail));
 }
 
 FieldSize vtu_size(const std::vector<FieldMesh>& blocks, const FieldFrame& frame, FieldPrecision precision) {

@@ -38,9 +38,9 @@ std::string frame_path(int frame, const std::string& block) {
   return fmt::format("/frames/{:06}/{}", frame, block);
 }
 
-std::vector<std::string> names_of(const std::vector<Field>& fields) {
+std::vector<std::string> names_of(const std::vector<FieldValues>& fields) {
   std::vector<std::string> names;
-  for (const Field& field : fields) names.push_back(field.name);
+  for (const FieldValues& field : fields) names.push_back(field.name);
   return plain_names(names);
 }
 
@@ -66,8 +66,8 @@ std::string attribute(std::string_view name, FieldKind kind, bool points, const 
          "</Attribute>\n";
 }
 
-std::string attributes(const std::string& file, const std::string& folder, const std::vector<Field>& fields, std::size_t rows, bool points,
-                       FieldPrecision precision) {
+std::string attributes(const std::string& file, const std::string& folder, const std::vector<FieldValues>& fields, std::size_t rows,
+                       bool points, FieldPrecision precision) {
   const int bytes = precision == FieldPrecision::float32 ? 4 : 8;
   const std::vector<std::string> names = names_of(fields);
   std::string text;
@@ -138,7 +138,7 @@ void write_mesh(Hdf5Writer& data, const std::string& name, const FieldMesh& bloc
 }
 
 /// Rows [first, first + rows) of each field, into one folder.
-void write_fields(Hdf5Writer& data, const std::string& folder, const std::vector<Field>& fields, std::size_t first, std::size_t rows,
+void write_fields(Hdf5Writer& data, const std::string& folder, const std::vector<FieldValues>& fields, std::size_t first, std::size_t rows,
                   FieldPrecision precision) {
   const std::vector<std::string> names = names_of(fields);
   for (std::size_t f = 0; f < fields.size(); ++f) {
@@ -201,9 +201,9 @@ Contents frame_contents(const FieldMesh& block, const BlockFields& fields, Field
   const std::size_t size = precision == FieldPrecision::float32 ? sizeof(float) : sizeof(double);
   Contents contents;
   contents.groups = 2 + static_cast<std::int64_t>(block.blocks.size());
-  for (const Field& field : fields.points) contents.add(block.points.size(), components(field.kind), size);
+  for (const FieldValues& field : fields.points) contents.add(block.points.size(), components(field.kind), size);
   for (const CellBlock& type : block.blocks)
-    for (const Field& field : fields.cells) contents.add(static_cast<std::size_t>(type.count()), components(field.kind), size);
+    for (const FieldValues& field : fields.cells) contents.add(static_cast<std::size_t>(type.count()), components(field.kind), size);
   return contents;
 }
 
@@ -231,14 +231,14 @@ std::optional<FieldTrouble> XdmfWriter::write(const FieldFrame& frame) {
   for (std::size_t b = 0; b < blocks_.size(); ++b)
     write_block(data_, frame_path(frames_, names_[b]), blocks_[b], frame.blocks[b], precision_);
   data_.attribute(fmt::format("/frames/{:06}", frames_), "time [s]", frame.time);
-  list_ += frame_text(data_name(stem_), names_, blocks_, frame, frames_, precision_);
+  list_.push_back({frame.time, frame_text(data_name(stem_), names_, blocks_, frame, frames_, precision_)});
   ++frames_;
   return std::nullopt;
 }
 
 void XdmfWriter::finish(const WriteFile& write) {
   data_.flush();
-  write(stem_ + ".xdmf", std::string(list_head) + list_ + std::string(list_tail));
+  write(stem_ + ".xdmf", std::string(list_head) + in_order_of_time(list_) + std::string(list_tail));
 }
 
 void XdmfWriter::finish_with_data(const WriteFile& write) {

@@ -41,13 +41,18 @@ ResultFolder::~ResultFolder() {
 }
 
 void ResultFolder::write(const std::string& name, std::string_view text) {
+  const std::string path = place(name);
+  File file(std::fopen(path.c_str(), "wb"));
+  if (!file) refuse(path, "a file that can be written", std::strerror(errno));
+  const bool written = std::fwrite(text.data(), 1, text.size(), file.get()) == text.size();
+  if (std::fclose(file.release()) != 0 || !written) refuse(path, "room for the results", std::strerror(errno));
+}
+
+std::string ResultFolder::place(const std::string& name) const {
   const fs::path path = fs::path(work_) / name;
   std::error_code error;
   fs::create_directories(path.parent_path(), error);
-  File file(std::fopen(path.c_str(), "wb"));
-  if (!file) refuse(path.string(), "a file that can be written", std::strerror(errno));
-  const bool written = std::fwrite(text.data(), 1, text.size(), file.get()) == text.size();
-  if (std::fclose(file.release()) != 0 || !written) refuse(path.string(), "room for the results", std::strerror(errno));
+  return path.string();
 }
 
 std::string ResultFolder::finish() {

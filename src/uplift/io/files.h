@@ -17,6 +17,8 @@ class ResultFolder {
 
   /// Writes a file, `name` may hold a subfolder. Throws InputError when the disk refuses.
   void write(const std::string& name, std::string_view text);
+  /// Where a file is until finish(), for those who write it bit by bit; its subfolder is there.
+  std::string place(const std::string& name) const;
   /// Moves everything into place. Returns where earlier results went; empty when there were none.
   std::string finish();
   const std::string& path() const { return path_; }

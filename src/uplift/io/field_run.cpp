@@ -1,0 +1,175 @@
+#include "uplift/io/field_run.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+#include <filesystem>
+
+#include "uplift/base/text.h"
+#include "uplift/io/field_run_frames.h"
+
+namespace uplift {
+namespace {
+
+constexpr long usual_frames = 100;
+constexpr std::int64_t most_vtu = 200'000'000;  // bytes: beyond, the mesh in every file and base64 cost too much
+
+const Values* fields_of(const Case& read) {
+  const Values& output = read.values.table("output");
+  return output.has("fields") ? &output.table("fields") : nullptr;
+}
+
+long steps_of(const Stage& stage) {
+  return std::max(1L, std::lround(stage.duration / stage.step));
+}
+
+bool is_static(const RunPlan& plan, std::size_t stage) {
+  return stage < plan.stages.size() && plan.stages[stage].type == Stage::Type::statics;
+}
+bool is_dynamic(const RunPlan& plan, std::size_t stage) {
+  return stage < plan.stages.size() && plan.stages[stage].type == Stage::Type::dynamics;
+}
+
+/// Every how many steps; 0: not at all.
+long every_of(const Values& fields, const RunPlan& plan) {
+  if (fields.has("every")) return fields.integer("every");
+  if (fields.flag("events")) return 0;
+  long steps = 0;
+  for (const Stage& stage : plan.stages)
+    if (stage.type == Stage::Type::dynamics) steps += steps_of(stage);
+  return std::max(1L, (steps + usual_frames - 1) / usual_frames);
+}
+
+long frames_of(const Values& fields, const RunPlan& plan) {
+  const long every = every_of(fields, plan);
+  long frames = 0;
+  bool moving = false;
+  for (std::size_t s = 0; s < plan.stages.size(); ++s) {
+    if (is_static(plan, s) && !is_dynamic(plan, s + 1)) ++frames;
+    if (!is_dynamic(plan, s)) continue;
+    if (!moving && every > 0) ++frames;  // its beginning
+    frames += every > 0 ? (steps_of(plan.stages[s]) + every - 1) / every : 1;
+    moving = true;
+  }
+  return frames + (fields.flag("events") && moving ? 3 : 0);
+}
+
+FieldPrecision precision_of(const Values& fields) {
+  return fields.text("precision") == "float32" ? FieldPrecision::float32 : FieldPrecision::float64;
+}
+
+FieldForecast forecast(const Values& fields, const RunFrames& frames, const RunPlan& plan) {
+  const FieldPrecision precision = precision_of(fields);
+  const auto of = [&](FieldFormat format) {
+    return FieldForecast{format, frames_of(fields, plan), size_per_frame(format, frames.blocks(), frames.empty(), precision)};
+  };
+  if (fields.has("format")) return of(fields.text("format") == "vtu" ? FieldFormat::vtu : FieldFormat::xdmf);
+  const FieldForecast vtu = of(FieldFormat::vtu);
+  return vtu.bytes() <= most_vtu ? vtu : of(FieldFormat::xdmf);
+}
+
+/// The disk must have room before the run starts, not only hours later.
+void check_room(const Values& fields, const FieldForecast& wanted, const std::string& folder) {
+  std::error_code error;
+  const std::filesystem::space_info disk = std::filesystem::space(folder, error);
+  if (!error && disk.available < static_cast<std::uintmax_t>(wanted.bytes()))
+    throw InputError(fields.where(), fields.path(), "room for " + spoken_bytes(wanted.bytes()) + " of fields",
+                     spoken_bytes(static_cast<std::int64_t>(disk.available)) + " on the disk");
+}
+
+}  // namespace
+
+std::string spoken_bytes(std::int64_t bytes) {
+  const auto value = static_cast<double>(bytes);
+  if (value < 1e3) return fmt::format("{} bytes", bytes);
+  if (value < 1e6) return fmt::format("{:.3g} kB", value / 1e3);
+  return value < 1e9 ? fmt::format("{:.3g} MB", value / 1e6) : fmt::format("{:.4g} GB", value / 1e9);
+}
+
+std::optional<FieldForecast> field_forecast(const Case& read, const Built& built) {
+  const Values* fields = fields_of(read);
+  if (!fields) return std::nullopt;
+  return forecast(*fields, RunFrames(*fields, read, built), built.plan);
+}
+
+FieldRun::FieldRun(const Case& read, const Built& built, ResultFolder& folder) : plan_(built.plan), folder_(folder) {
+  const Values& fields = *fields_of(read);
+  frames_ = std::make_unique<const RunFrames>(fields, read, built);
+  every_ = every_of(fields, plan_);
+  events_ = fields.flag("events");
+  const FieldForecast wanted = forecast(fields, *frames_, plan_);
+  const std::string stem = "fields/" + plan_.name, data = folder.place(stem + ".h5");
+  check_room(fields, wanted, std::filesystem::path(data).parent_path().string());
+  if (wanted.format == FieldFormat::vtu)
+    vtu_.emplace(stem, frames_->blocks(), precision_of(fields), into(folder));
+  else
+    xdmf_.emplace(stem, frames_->blocks(), precision_of(fields), Hdf5Writer::create(data));
+  list_ = stem + (vtu_ ? ".pvd" : ".xdmf");
+}
+
+FieldRun::~FieldRun() = default;
+
+void FieldRun::see(const Moment& moment) {
+  if (!moment.stepper) return see_static(moment);
+  if (events_) see_events(moment);
+  if (!moment.last && (every_ == 0 || moment.step % every_ != 0)) return;
+  Vector acceleration;
+  moment.stepper->acceleration(acceleration);
+  write(moment.state, &acceleration, moment.state.time);
+}
+
+void FieldRun::see_static(const Moment& moment) {
+  if (is_dynamic(plan_, moment.stage + 1)) return;
+  std::size_t later = moment.stage;
+  bool first = true;
+  for (std::size_t s = 0; s < moment.stage; ++s) first = first && is_static(plan_, s);
+  if (first) {
+    while (is_static(plan_, later + 1)) ++later;
+    return write(moment.state, nullptr, moment.state.time - static_cast<double>(later - moment.stage));
+  }
+  double step = 0;
+  for (std::size_t s = 0; s < moment.stage; ++s)
+    if (is_dynamic(plan_, s)) step = plan_.stages[s].step;
+  write(moment.state, nullptr, moment.state.time + step / 2);
+}
+
+void FieldRun::see_events(const Moment& moment) {
+  if (moment.so_far.first_uplift >= 0 && !std::exchange(uplifted_, true)) {
+    Vector acceleration;
+    moment.stepper->acceleration(acceleration);
+    write(moment.state, &acceleration, moment.state.time);
+  }
+  keep(gap_, moment.so_far.max_opening.value, moment);
+  keep(pressure_, moment.so_far.max_pressure.value, moment);
+}
+
+void FieldRun::keep(Kept& kept, double value, const Moment& moment) {
+  if (!(value > kept.largest)) return;
+  kept.largest = value;
+  kept.state = moment.state;
+  moment.stepper->acceleration(kept.acceleration);
+}
+
+void FieldRun::write(const State& state, const Vector* acceleration, double time) {
+  if (times_.contains(time)) return;
+  const FieldFrame frame = frames_->of(state, acceleration, time);
+  const std::optional<FieldTrouble> trouble = vtu_ ? vtu_->write(frame) : xdmf_->write(frame);
+  if (!trouble) {
+    times_.insert(time);
+    return;
+  }
+  if (left_out_++ == 0) trouble_ = fmt::format("{} at t = {:.6g} s", trouble->reason, time);
+}
+
+void FieldRun::finish(RunResult& result) {
+  for (const Kept* kept : {&gap_, &pressure_})
+    if (kept->largest > 0) write(kept->state, &kept->acceleration, kept->state.time);
+  if (vtu_) vtu_->finish();
+  if (xdmf_) xdmf_->finish(into(folder_));
+  if (left_out_ > 0)
+    result.notes.push_back(
+        fmt::format("{} {} of the fields left out: {}", left_out_, left_out_ == 1 ? "frame was" : "frames were", trouble_));
+}
+
+}  // namespace uplift

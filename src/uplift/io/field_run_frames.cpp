@@ -1,0 +1,170 @@
+#include "uplift/io/field_run_frames.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <array>
+#include <cassert>
+
+#include "uplift/analysis/case_mesh.h"
+#include "uplift/base/text.h"
+
+namespace uplift {
+namespace {
+
+struct Motion {
+  std::string_view name, unit;
+};
+constexpr std::array<Motion, 3> motions{{{"displacement", "m"}, {"velocity", "m/s"}, {"acceleration", "m/s2"}}};  // by derivative
+
+FieldValues field(std::string_view name, std::string_view unit, FieldKind kind) {
+  return {std::string(name), std::string(unit), kind, {}};
+}
+
+[[noreturn]] void fail(const Values& fields, std::string_view key, const std::vector<std::string>& known, const std::string& found) {
+  throw InputError(fields.where(key), fields.path(key), listed(known), in_quotes(found), nearest_name(found, known));
+}
+
+const Case& with_mesh(const Values& fields, const Case& read) {
+  if (!read.mesh) throw InputError(fields.where(), fields.path(), "a [mesh], on which fields are written", "none");
+  return read;
+}
+
+/// The solids whose groups are wanted, by number.
+std::vector<std::size_t> wanted_solids(const Values& fields, const CaseSolids& solids) {
+  std::vector<std::string> known;
+  for (const CaseSolids::Solid& solid : solids.solids()) known.push_back(solid.table->text("group"));
+  std::vector<std::size_t> wanted;
+  for (const std::string& group : fields.texts("groups")) {
+    const auto found = std::ranges::find(known, group);
+    if (found == known.end()) fail(fields, "groups", known, group);
+    wanted.push_back(static_cast<std::size_t>(found - known.begin()));
+  }
+  if (!fields.has("groups"))
+    for (std::size_t i = 0; i < known.size(); ++i) wanted.push_back(i);
+  if (wanted.empty()) throw InputError(fields.where("groups"), fields.path("groups"), "at least one group with a [[solid]]", "none");
+  std::ranges::sort(wanted);
+  wanted.erase(std::unique(wanted.begin(), wanted.end()), wanted.end());
+  return wanted;
+}
+
+/// The elements of every solid of the case. They were made solid after solid, cell after cell.
+std::vector<std::vector<const Solid*>> elements_of(const CaseSolids& solids, const Model& model) {
+  std::vector<const Solid*> all;
+  for (const auto& element : model.elements)
+    if (const auto* solid = dynamic_cast<const Solid*>(element.get())) all.push_back(solid);
+  std::vector<std::vector<const Solid*>> elements;
+  auto next = all.begin();
+  for (const CaseSolids::Solid& solid : solids.solids()) {
+    assert(all.end() - next >= static_cast<std::ptrdiff_t>(solid.cells.size()));
+    elements.emplace_back(next, next + static_cast<std::ptrdiff_t>(solid.cells.size()));
+    next += static_cast<std::ptrdiff_t>(solid.cells.size());
+  }
+  assert(next == all.end());
+  return elements;
+}
+
+}  // namespace
+
+RunFrames::RunFrames(const Values& fields, const Case& read, const Built& built)
+    : model_(&built.model), quantities_(fields.texts("quantities")), interfaces_(with_mesh(fields, read), built) {
+  const std::vector<std::string> known{"displacement", "velocity", "acceleration", "stress"};
+  for (const std::string& quantity : quantities_)
+    if (std::ranges::find(known, quantity) == known.end()) fail(fields, "quantities", known, quantity);
+  const CaseSolids solids(read.values, *read.mesh);
+  const Mesh& mesh = solids.mesh();
+  const std::vector<std::vector<const Solid*>> elements = elements_of(solids, *model_);
+  for (const std::size_t i : wanted_solids(fields, solids)) {
+    const CaseSolids::Solid& solid = solids.solids()[i];
+    const std::string& group = solid.table->text("group");
+    blocks_.push_back(field_mesh(mesh, group, {group}, fields.where("groups")));
+    solids_.push_back(elements[i]);
+    assert(blocks_.back().cell == solid.cells);
+  }
+  if (!interfaces_.mesh().face.empty()) blocks_.push_back(interfaces_.mesh().mesh);
+  dimension_ = mesh.dimension;
+  stride_ = static_cast<std::size_t>(model_->full_unknowns()) / model_->nodes.size();
+  const int first_node = elements.front().front()->nodes()[0] - mesh.cell(solids.solids().front().cells.front())[0];
+  first_ = stride_ * static_cast<std::size_t>(first_node);
+}
+
+bool RunFrames::wants(std::string_view quantity) const {
+  return quantities_.empty() || std::ranges::find(quantities_, quantity) != quantities_.end();
+}
+
+FieldFrame RunFrames::empty() const {
+  FieldFrame frame;
+  for (std::size_t b = 0; b < blocks_.size(); ++b) {
+    std::vector<FieldValues>& points = frame.blocks.emplace_back().points;
+    for (const Motion& motion : motions)
+      if (wants(motion.name)) points.push_back(field(motion.name, motion.unit, FieldKind::vector));
+    if (b < solids_.size()) {
+      if (wants("stress")) points.push_back(field("stress", "Pa", FieldKind::tensor));
+    } else {
+      points.push_back(field("opening", "m", FieldKind::scalar));
+      points.push_back(field("slip", "m", FieldKind::vector));
+      points.push_back(field("traction", "Pa", FieldKind::vector));
+      points.push_back(field("pressure", "Pa", FieldKind::scalar));
+      points.push_back(field("status", "", FieldKind::scalar));
+    }
+  }
+  return frame;
+}
+
+std::vector<double> RunFrames::motion(const FieldMesh& block, const Vector& full) const {
+  const std::span<const double> nodal(full.data(), static_cast<std::size_t>(full.size()));
+  return at_points(block, FieldKind::vector, nodal.subspan(first_), static_cast<int>(stride_), dimension_);
+}
+
+/// At the nodes, the mean of the cells of this material.
+std::vector<double> RunFrames::stress(std::size_t block, const Vector& full) const {
+  const std::size_t points = blocks_[block].points.size();
+  constexpr std::size_t width = 6;
+  std::vector<double> sum(width * points, 0), count(points, 0);
+  auto element = solids_[block].begin();
+  for (const CellBlock& type : blocks_[block].blocks)
+    for (int cell = 0; cell < type.count(); ++cell) {
+      const Solid& solid = **element++;
+      Vector displacement(solid.unknowns());
+      const std::span<const int> nodes = solid.nodes();
+      for (std::size_t a = 0; a < nodes.size(); ++a)
+        displacement.segment(dimension_ * static_cast<Index>(a), dimension_) =
+            full.segment(static_cast<Index>(stride_) * nodes[a], dimension_);
+      const std::vector<Stress> stress = solid.node_stress(displacement);
+      for (std::size_t a = 0; a < nodes.size(); ++a) {
+        const auto point = static_cast<std::size_t>(type[cell][a]);
+        count[point] += 1;
+        for (std::size_t c = 0; c < width; ++c) sum[width * point + c] += stress[a][static_cast<Index>(c)];
+      }
+    }
+  for (std::size_t point = 0; point < points; ++point)
+    for (std::size_t c = 0; c < width; ++c) sum[width * point + c] /= count[point];
+  return sum;
+}
+
+FieldFrame RunFrames::of(const State& state, const Vector* acceleration, double time) const {
+  const std::array<const Vector*, 3> free{&state.displacement, acceleration ? &state.velocity : nullptr, acceleration};
+  std::array<Vector, 3> full;
+  for (int d = 0; d < 3; ++d) {
+    const auto k = static_cast<std::size_t>(d);
+    full[k] = free[k] ? model_->full(*free[k], d, state.time) : Vector::Zero(model_->full_unknowns());
+  }
+  const InterfaceFrames::JointValues joint = interfaces_.at(state);
+  const auto at_lips = [&](FieldKind kind, const std::vector<double>& values) { return at_points(interfaces_.mesh(), kind, values); };
+  FieldFrame frame = empty();
+  frame.time = time;
+  for (std::size_t b = 0; b < blocks_.size(); ++b)
+    for (FieldValues& field : frame.blocks[b].points) {
+      for (std::size_t d = 0; d < motions.size(); ++d)
+        if (field.name == motions[d].name) field.values = motion(blocks_[b], full[d]);
+      if (field.name == "stress") field.values = stress(b, full[0]);
+      if (field.name == "opening") field.values = at_lips(field.kind, joint.opening);
+      if (field.name == "slip") field.values = at_lips(field.kind, joint.slip);
+      if (field.name == "traction") field.values = at_lips(field.kind, joint.traction);
+      if (field.name == "pressure") field.values = at_lips(field.kind, joint.pressure);
+      if (field.name == "status") field.values = at_lips(field.kind, joint.status);
+    }
+  return frame;
+}
+
+}  // namespace uplift

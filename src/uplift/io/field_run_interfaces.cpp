@@ -1,0 +1,181 @@
+#include <algorithm>
+#include <cassert>
+#include <map>
+
+#include "uplift/analysis/case_mesh.h"
+#include "uplift/interface/face_joint.h"
+#include "uplift/io/field_run_frames.h"
+#include "uplift/math/dense.h"
+
+// Joint points stand at the nodes of faces or at Gauss points; what is written stands at the nodes of every face.
+namespace uplift {
+namespace {
+
+using Terms = std::vector<std::pair<int, double>>;
+
+/// Any vector of the plane or of space.
+template <class Direction>
+Vec3 in_space(const Direction& v) {
+  Vec3 result = Vec3::Zero();
+  result.head(v.size()) = v;
+  return result;
+}
+
+/// Direction of a local component of an interface point; the normal is the last one.
+Vec3 direction(const Interface& interface, int point, int component) {
+  const auto& normal = interface.normal[static_cast<std::size_t>(point)];
+  return component == interface.batch.components - 1 ? in_space(normal) : in_space(tangent(normal));
+}
+
+/// The joint points at the pairs of a face's nodes: where a pair has several, for a corner, that with the face's own normal.
+class PairPoints {
+ public:
+  explicit PairPoints(const std::vector<JointPoint>& points) : points_(points) {
+    for (std::size_t i = 0; i < points.size(); ++i)
+      if (points[i].lower.size() == 1) at_[{points[i].lower[0].first, points[i].upper[0].first}].push_back(static_cast<int>(i));
+  }
+  std::vector<Terms> places(const Mesh& mesh, const FacePair& face) const {
+    const std::span<const int> lower = mesh.cell(face.lower), upper = mesh.cell(face.upper);
+    std::vector<Terms> terms(lower.size());
+    for (const JointPoint& own : face_points(mesh, {face}, FaceQuadrature::nodal, 1, 0)) {
+      if (own.lower.size() != 1) continue;  // the centre of a face of second degree
+      const auto a = static_cast<std::size_t>(std::ranges::find(lower, own.lower[0].first) - lower.begin());
+      const std::vector<int>& here = at_.at({lower[a], upper[a]});
+      const auto fit = [&](int i) { return points_[static_cast<std::size_t>(i)].normal.dot(own.normal); };
+      terms[a] = {{*std::ranges::max_element(here, {}, fit), 1.0}};
+    }
+    return terms;
+  }
+
+ private:
+  const std::vector<JointPoint>& points_;
+  std::map<std::pair<int, int>, std::vector<int>> at_;  // by lower and upper node
+};
+
+/// From the Gauss points of a face, the first of which has the number `first`, to its nodes: the least-squares fit of the shape functions,
+/// weighted with the areas, so that the integral over the face is kept: (S^T A S) v = S^T A f.
+std::vector<Terms> fitted_places(const Mesh& mesh, const FacePair& face, const std::vector<JointPoint>& own, int first) {
+  const std::span<const int> lower = mesh.cell(face.lower);
+  Matrix shape = Matrix::Zero(static_cast<Index>(own.size()), static_cast<Index>(lower.size()));
+  Vector area(static_cast<Index>(own.size()));
+  for (std::size_t i = 0; i < own.size(); ++i) {
+    area[static_cast<Index>(i)] = own[i].area;
+    for (const auto& [node, value] : own[i].lower) shape(static_cast<Index>(i), std::ranges::find(lower, node) - lower.begin()) = value;
+  }
+  const Matrix weighted = shape.transpose() * area.asDiagonal();
+  const Matrix fit = PivotedLdlt(weighted * shape).solve(weighted);
+  std::vector<Terms> terms(lower.size());
+  for (std::size_t a = 0; a < terms.size(); ++a)
+    for (std::size_t i = 0; i < own.size(); ++i)
+      terms[a].emplace_back(first + static_cast<int>(i), fit(static_cast<Index>(a), static_cast<Index>(i)));
+  return terms;
+}
+
+std::vector<Terms> places_of(const Mesh& mesh, const std::vector<FacePair>& faces, FaceQuadrature quadrature,
+                             [[maybe_unused]] int joint_points) {
+  std::vector<Terms> places;
+  const auto add = [&](const std::vector<Terms>& more) { places.insert(places.end(), more.begin(), more.end()); };
+  const std::vector<JointPoint> all = face_points(mesh, faces, quadrature, 1, 0);
+  assert(static_cast<int>(all.size()) == joint_points);
+  const PairPoints pairs(all);
+  int first = 0;
+  for (const FacePair& face : faces) {
+    if (quadrature == FaceQuadrature::nodal) {
+      add(pairs.places(mesh, face));
+    } else {
+      const std::vector<JointPoint> own = face_points(mesh, {face}, quadrature, 1, 0);
+      add(fitted_places(mesh, face, own, first));
+      first += static_cast<int>(own.size());
+    }
+  }
+  assert(quadrature == FaceQuadrature::nodal || first == joint_points);
+  return places;
+}
+
+/// A number of a law or cone that may not be there.
+double number_or(const Values& behaviour, std::string_view key, double otherwise) {
+  return behaviour.items().contains(key) && behaviour.has(key) ? behaviour.number(key) : otherwise;
+}
+
+}  // namespace
+
+InterfaceFrames::InterfaceFrames(const Case& read, const Built& built) : model_(&built.model), gap_tolerance_(built.plan.gap_tolerance) {
+  std::vector<OpenedSurface> faces;
+  int row = 0;
+  const std::vector<Values>& tables = read.values.tables("interface");
+  for (std::size_t k = 0; k < tables.size(); ++k) {
+    const Interface& interface = model_->interfaces[k];
+    if (tables[k].has("surface")) {
+      const bool nodal = tables[k].table("surface").text("quadrature") == "nodal";
+      const Values& behaviour = *built.behaviours[k];
+      Surface surface{static_cast<int>(k), row, -1, 0, interface.behaviour != "elastic", {}};
+      surface.friction = number_or(behaviour, "friction", -1);
+      surface.cohesion = number_or(behaviour, "cohesion", 0);
+      surface.places =
+          places_of(read.mesh->mesh, read.mesh->open[k], nodal ? FaceQuadrature::nodal : FaceQuadrature::gauss, interface.batch.points);
+      surfaces_.push_back(std::move(surface));
+      faces.push_back({interface.name, read.mesh->open[k], {}});
+    }
+    row += interface.rows();
+  }
+  mesh_ = interface_mesh(read.mesh->mesh, "interfaces", faces);
+}
+
+int InterfaceFrames::status(const Surface& surface, double opening, double pressure, double shear) const {
+  constexpr double reached = 1 - 1e-6;
+  if (surface.opens && opening > gap_tolerance_) return 0;
+  return surface.friction >= 0 && shear >= reached * (surface.friction * std::max(pressure, 0.0) + surface.cohesion) ? 2 : 1;
+}
+
+/// One joint point, added at the end.
+void InterfaceFrames::add_point(const Surface& surface, const State& state, int point, JointValues& values) const {
+  const Interface& interface = model_->interfaces[static_cast<std::size_t>(surface.interface)];
+  const int components = interface.batch.components;
+  Vec3 slip = Vec3::Zero(), shear = Vec3::Zero(), traction = Vec3::Zero();
+  double opening = 0, pressure = 0;
+  for (int c = 0; c < components; ++c) {
+    const int row = surface.first_row + c * interface.batch.points + point;
+    const Vec3 axis = direction(interface, point, c);
+    const double stress = state.force[row] / interface.area[point];
+    traction += stress * axis;
+    if (c == components - 1) {
+      opening = state.opening[row];
+      pressure = 0.0 - stress;
+    } else {
+      slip += state.opening[row] * axis;
+      shear += stress * axis;
+    }
+  }
+  values.opening.push_back(opening);
+  values.pressure.push_back(pressure);
+  values.slip.insert(values.slip.end(), slip.begin(), slip.end());
+  values.traction.insert(values.traction.end(), traction.begin(), traction.end());
+  values.status.push_back(status(surface, opening, pressure, shear.norm()));
+}
+
+InterfaceFrames::JointValues InterfaceFrames::at(const State& state) const {
+  JointValues all;
+  for (const Surface& surface : surfaces_) {
+    JointValues points;
+    const int count = model_->interfaces[static_cast<std::size_t>(surface.interface)].batch.points;
+    for (int point = 0; point < count; ++point) add_point(surface, state, point, points);
+    const auto sum = [](const Terms& terms, const std::vector<double>& values, std::size_t width, std::vector<double>& to) {
+      for (std::size_t c = 0; c < width; ++c) {
+        double total = 0;
+        for (const auto& [point, weight] : terms) total += weight * values[width * static_cast<std::size_t>(point) + c];
+        to.push_back(total);
+      }
+    };
+    for (const Terms& terms : surface.places) {
+      sum(terms, points.opening, 1, all.opening);
+      sum(terms, points.slip, 3, all.slip);
+      sum(terms, points.traction, 3, all.traction);
+      sum(terms, points.pressure, 1, all.pressure);
+      const auto weight = [](const std::pair<int, double>& term) { return term.second; };
+      all.status.push_back(terms.empty() ? 1 : points.status[static_cast<std::size_t>(std::ranges::max_element(terms, {}, weight)->first)]);
+    }
+  }
+  return all;
+}
+
+}  // namespace uplift
