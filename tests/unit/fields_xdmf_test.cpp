@@ -155,8 +155,7 @@ TEST(Fields, SizesAreForeseen) {
     const FieldSize of_xdmf = size_per_frame(FieldFormat::xdmf, blocks, shape, precision);
     const std::int64_t foreseen_vtu = of_vtu.once + frames * of_vtu.per_frame, foreseen_xdmf = of_xdmf.once + frames * of_xdmf.per_frame;
     EXPECT_NEAR(static_cast<double>(bytes_of(vtu)), static_cast<double>(foreseen_vtu), 2 * 20 * frames);  // digits of times, per block
-    EXPECT_LE(bytes_of(xdmf), foreseen_xdmf);
-    EXPECT_GE(static_cast<double>(bytes_of(xdmf)), 0.9 * static_cast<double>(foreseen_xdmf));
+    EXPECT_NEAR(static_cast<double>(bytes_of(xdmf)), static_cast<double>(foreseen_xdmf), 0.01 * static_cast<double>(foreseen_xdmf));
   }
 }
 

@@ -94,7 +94,7 @@ class Runner {
   RunResult go() {
     const auto start = std::chrono::steady_clock::now();
     execute();
-    result_.wall = std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
+    result_.wall = std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count() - shown_;
     result_.counts.factorisations = linear_.factorisations;
     result_.counts.back_solves = linear_.back_solves;
     return std::move(result_);
@@ -107,7 +107,7 @@ class Runner {
   void add_initial_state();
   bool statics(const Stage& stage, const Bulk& bulk);
   bool dynamics(const Stage& stage, const Bulk& bulk);
-  void show(const Stage& stage, const Stepper* stepper, long step, bool last) const;
+  void show(const Stage& stage, const Stepper* stepper, long step, bool last);
   void note_views(double step);
   bool check_limits(const Stepper& stepper);
   void finish_energy(const Stepper& stepper);
@@ -134,6 +134,7 @@ class Runner {
   std::optional<Ledger> ledger_;  // of the dynamic stage before
   std::optional<Stage> march_;    // that stage, as long as nothing came in between
   double round_off_work_ = 0;     // J
+  double shown_ = 0;              // s: taken by the observer
 };
 
 void Runner::fail(std::string why, const InterfaceProblem* problem) {
@@ -270,9 +271,12 @@ bool Runner::statics(const Stage& stage, const Bulk& bulk) {
   return true;
 }
 
-/// Tells the observer, if there is one, of the present state.
-void Runner::show(const Stage& stage, const Stepper* stepper, long step, bool last) const {
-  if (observe_) observe_({*seen_, stepper, result_, static_cast<std::size_t>(&stage - plan_.stages.data()), step, last});
+/// Tells the observer, if there is one, of the present state. Its time is not that of the run.
+void Runner::show(const Stage& stage, const Stepper* stepper, long step, bool last) {
+  if (!observe_) return;
+  const auto start = std::chrono::steady_clock::now();
+  observe_({*seen_, stepper, result_, static_cast<std::size_t>(&stage - plan_.stages.data()), step, last});
+  shown_ += std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
 }
 
 void Runner::note_views(double step) {
@@ -362,6 +366,7 @@ bool Runner::dynamics(const Stage& stage, const Bulk& bulk) {
   bool go_on = true;
   const long between = bulk.small ? 256 : 8;  // steps from one report of progress to the next
   auto first_done = std::chrono::steady_clock::now();
+  double shown_before = shown_;
   for (long step = 1; step <= steps && go_on; ++step) {
     if (!stepper.advance()) {
       fail(fmt::format("step at t = {:.6g} s failed down to dt = {:.3g} s: {}", seen_->time, stage.step / std::pow(2, stage.halvings),
@@ -373,7 +378,7 @@ bool Runner::dynamics(const Stage& stage, const Bulk& bulk) {
     finish_energy(stepper);
     observe(step);
     go_on = check_limits(stepper);
-    if (step == 1) first_done = std::chrono::steady_clock::now();
+    if (step == 1) first_done = std::chrono::steady_clock::now(), shown_before = shown_;
     if (watch_ && step % between == 0 && go_on) {
       const double open = views_.empty() ? 0 : views_.front().open_area;
       const double scale = result_.energy_scale > 0 ? result_.energy_scale : 1;
@@ -387,8 +392,9 @@ bool Runner::dynamics(const Stage& stage, const Bulk& bulk) {
     show(stage, &stepper, step, step == steps || !go_on);
   }
   if (stepper.counts().steps > 1)
-    result_.step_seconds = std::chrono::duration<double>(std::chrono::steady_clock::now() - first_done).count() /
-                           static_cast<double>(stepper.counts().steps - 1);
+    result_.step_seconds =
+        (std::chrono::duration<double>(std::chrono::steady_clock::now() - first_done).count() - (shown_ - shown_before)) /
+        static_cast<double>(stepper.counts().steps - 1);
   state_ = stepper.state();
   seen_ = &state_;
   ledger_ = stepper.ledger();

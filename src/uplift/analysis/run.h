@@ -113,7 +113,7 @@ struct RunResult {
   std::string reason;  // why it failed or stopped
   bool expected_to_fail = false;
   Counts counts;
-  double wall = 0;               // s
+  double wall = 0;               // s, without what the observer takes
   double step_seconds = 0;       // s of computing for a step of the last dynamic stage, its first step (which makes the factor) left out
   double end_time = 0;           // s reached
   std::vector<Request> columns;  // as requested; the table below has time first

@@ -168,8 +168,8 @@ void FieldRun::finish(RunResult& result) {
   if (vtu_) vtu_->finish();
   if (xdmf_) xdmf_->finish(into(folder_));
   if (left_out_ > 0)
-    result.notes.push_back(
-        fmt::format("{} {} of the fields left out: {}", left_out_, left_out_ == 1 ? "frame was" : "frames were", trouble_));
+    result.notes.push_back(fmt::format("{} of the fields {} left out: {}", left_out_ == 1 ? "a frame" : fmt::format("{} frames", left_out_),
+                                       left_out_ == 1 ? "was" : "were", trouble_));
 }
 
 }  // namespace uplift

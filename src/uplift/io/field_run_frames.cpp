@@ -22,7 +22,9 @@ FieldValues field(std::string_view name, std::string_view unit, FieldKind kind) 
 }
 
 [[noreturn]] void fail(const Values& fields, std::string_view key, const std::vector<std::string>& known, const std::string& found) {
-  throw InputError(fields.where(key), fields.path(key), listed(known), in_quotes(found), nearest_name(found, known));
+  std::vector<std::string> quoted;
+  for (const std::string& name : known) quoted.push_back(in_quotes(name));
+  throw InputError(fields.where(key), fields.path(key), listed(quoted), in_quotes(found), nearest_name(found, known));
 }
 
 const Case& with_mesh(const Values& fields, const Case& read) {

@@ -18,9 +18,10 @@ Hdf5Writer Hdf5Writer::create(const std::string& path) {
 Hdf5Writer Hdf5Writer::in_memory() {
   const Hdf5Quiet quiet;
   const Hdf5Id access = hdf5_access(true);
-  Hdf5Id file(H5Fcreate("memory.h5", H5F_ACC_TRUNC, H5P_DEFAULT, access.get()), H5Fclose);
-  if (!file.ok()) throw InputError({"memory.h5", 0}, "", "memory for a file", hdf5_reason());
-  return {std::move(file), "memory.h5"};
+  const std::string name = "memory" + std::to_string(access.get()) + ".h5";  // HDF5 takes files of one name for one file
+  Hdf5Id file(H5Fcreate(name.c_str(), H5F_ACC_TRUNC, H5P_DEFAULT, access.get()), H5Fclose);
+  if (!file.ok()) throw InputError({name, 0}, "", "memory for a file", hdf5_reason());
+  return {std::move(file), name};
 }
 
 void Hdf5Writer::fail(const std::string& object) const {

@@ -1,0 +1,248 @@
+#include <gtest/gtest.h>
+#include <unistd.h>
+
+#include <cmath>
+#include <filesystem>
+
+#include "uplift/base/file.h"
+#include "uplift/io/field_run.h"
+#include "uplift/io/hdf5.h"
+#include "uplift/io/toml.h"
+
+// Fields of runs, read back from HDF5 and judged by the states that an observer of the test's own has seen.
+namespace uplift {
+namespace {
+
+namespace fs = std::filesystem;
+
+/// A raft in a soil box, its bottom and its walls in one interface, pushed sideways by its weight and a pulse.
+std::string case_text(const std::string& cell, const std::string& quadrature, const std::string& fields) {
+  return R"(
+title = "embedded raft"
+[mesh.soil_box]
+cell = ")" +
+         cell + R"("
+embedment = 1
+[mesh.soil_box.soil]
+width = 16
+size = 2
+layers = [{ thickness = 4, size = 1 }]
+[mesh.soil_box.raft]
+width = 6
+height = 2
+size = 1
+[[solid]]
+group = "soil_1"
+E = 5e7
+poisson = 0.3
+density = 1900
+[[solid]]
+group = "raft"
+E = 2e10
+poisson = 0.2
+density = 2500
+[[support]]
+group = "soil_bottom"
+fixed = ["ux", "uy"]
+[[support]]
+group = "soil_left"
+fixed = ["ux"]
+[[support]]
+group = "soil_right"
+fixed = ["ux"]
+[[interface]]
+name = "joint"
+surface = { group = "interface", lower = ["soil_1"], quadrature = ")" +
+         quadrature + R"(" }
+law = { type = "springs", K_n = 1e9, K_t = 1e9, tangential = "bonded" }
+[gravity]
+acceleration = [0, -10]
+[[function]]
+name = "pulse"
+shape = { type = "half_sine", duration = 0.1 }
+[[load]]
+name = "pulse"
+group = "raft_top"
+force = [2e5, 1e5]
+function = "pulse"
+[[stage]]
+type = "static"
+[[stage]]
+type = "dynamic"
+duration = 0.05
+step = 0.005
+[output.fields]
+)" + fields;
+}
+
+/// A run with its fields, and copies of all states.
+class Written {
+ public:
+  explicit Written(const std::string& text)
+      : place_(fs::temp_directory_path() / ("uplift-field-run-" + std::to_string(::getpid()))),
+        read(check_case(read_toml_text(text, "case.toml"), "case.toml", {})),
+        built(build(read, runs_of_case(read).front())) {
+    ResultFolder folder((place_ / "r").string());
+    FieldRun fields(read, built, folder);
+    result = run(built.model, built.plan, built.behaviours, {}, [&](const Moment& moment) {
+      fields.see(moment);
+      states.push_back(moment.state);
+    });
+    fields.finish(result);
+    frames = fields.frames();
+    folder.finish();
+  }
+  ~Written() { fs::remove_all(place_); }
+  Written(const Written&) = delete;
+  Written& operator=(const Written&) = delete;
+  std::string file(const std::string& name) const { return (place_ / "r" / name).string(); }
+
+ private:
+  fs::path place_;
+
+ public:
+  Case read;
+  Built built;
+  RunResult result;
+  std::vector<State> states;
+  int frames = 0;
+};
+
+class FieldsOfARun : public testing::TestWithParam<std::tuple<const char*, const char*>> {};
+
+TEST_P(FieldsOfARun, InterfaceCarriesWhatItsJointsCarry) {
+  const auto [cell, quadrature] = GetParam();
+  const Written written(case_text(cell, quadrature, "format = \"xdmf\"\nprecision = \"float64\"\nevery = 2\n"));
+  ASSERT_EQ(written.result.status, RunStatus::completed) << written.result.reason;
+  EXPECT_EQ(written.frames, 6);
+  const Hdf5Reader file = Hdf5Reader::open(written.file("fields/run.h5"));
+  ASSERT_EQ(file.children("/frames").size(), 6u);
+  const bool quadratic = std::string(cell) == "quad8";
+  const std::string type = quadratic ? "line3" : "line2", mesh = "/mesh/interfaces";
+  const auto points = file.numbers(mesh + "/points");
+  const auto nodes = file.integers(mesh + "/" + type + "/nodes"), lip = file.integers(mesh + "/" + type + "/lip");
+  const std::size_t width = quadratic ? 3 : 2;
+  const std::vector<double> share = quadratic ? std::vector{1. / 6, 1. / 6, 4. / 6} : std::vector{.5, .5};  // exact for this degree
+
+  const Interface& joint = written.built.model.interfaces[0];
+  const State& last = written.states.back();
+  Vec3 wanted = Vec3::Zero(), found = Vec3::Zero();
+  double squeezed = 0, squeezed_found = 0;
+  for (int i = 0; i < joint.batch.points; ++i) {
+    const double nx = joint.normal[static_cast<std::size_t>(i)][0], ny = joint.normal[static_cast<std::size_t>(i)][1];
+    const double t = last.force[i], n = last.force[joint.batch.points + i];
+    wanted += Vec3(t * ny + n * nx, n * ny - t * nx, 0);  // t = (ny, -nx)
+    squeezed -= n;
+  }
+  const std::string frame = "/frames/000005/interfaces/points/";
+  const auto traction = file.numbers(frame + "traction"), pressure = file.numbers(frame + "pressure");
+  for (std::size_t c = 0; c < lip.size(); ++c) {
+    if (lip[c] == 1) continue;
+    const auto at = [&](std::size_t a) { return static_cast<std::size_t>(nodes[c * width + a]); };
+    const double length = std::hypot(points[3 * at(1)] - points[3 * at(0)], points[3 * at(1) + 1] - points[3 * at(0) + 1]);
+    for (std::size_t a = 0; a < width; ++a) {
+      for (std::size_t k = 0; k < 3; ++k) found[static_cast<Index>(k)] += share[a] * length * traction[3 * at(a) + k];
+      squeezed_found += share[a] * length * pressure[at(a)];
+    }
+  }
+  EXPECT_GT(squeezed, 1e5);
+  EXPECT_LT((found - wanted).norm(), 1e-9 * squeezed);
+  EXPECT_NEAR(squeezed_found, squeezed, 1e-9 * squeezed);
+}
+
+INSTANTIATE_TEST_SUITE_P(CellsAndQuadratures, FieldsOfARun,
+                         testing::Combine(testing::Values("quad4", "quad8"), testing::Values("nodal", "gauss")));
+
+class FieldsOfNodalJoints : public testing::TestWithParam<const char*> {};
+
+TEST_P(FieldsOfNodalJoints, LipsPartByTheOpening) {
+  const std::string cell = GetParam(), quadrature = "nodal";
+  const Written written(case_text(cell, quadrature, "format = \"xdmf\"\nprecision = \"float64\"\nevery = 10\n"));
+  const Hdf5Reader file = Hdf5Reader::open(written.file("fields/run.h5"));
+  const bool quadratic = cell == "quad8";
+  const std::string type = quadratic ? "line3" : "line2", mesh = "/mesh/interfaces", frame = "/frames/000001/interfaces/points/";
+  const auto points = file.numbers(mesh + "/points");
+  const auto nodes = file.integers(mesh + "/" + type + "/nodes");
+  const std::size_t width = quadratic ? 3 : 2;
+  const auto opening = file.numbers(frame + "opening"), slip = file.numbers(frame + "slip"), u = file.numbers(frame + "displacement");
+  double moved = 0;
+  for (std::size_t c = 0; c < nodes.size() / width; c += 2)  // lower and upper lip, one after the other
+    for (std::size_t a = 0; a < width; ++a) {
+      const auto lower = static_cast<std::size_t>(nodes[c * width + a]), upper = static_cast<std::size_t>(nodes[(c + 1) * width + a]);
+      const auto first = static_cast<std::size_t>(nodes[c * width]), second = static_cast<std::size_t>(nodes[c * width + 1]);
+      const double dx = points[3 * second] - points[3 * first], dy = points[3 * second + 1] - points[3 * first + 1];
+      const double length = std::hypot(dx, dy), normal_x = dy / length, normal_y = -dx / length;
+      for (std::size_t k = 0; k < 3; ++k) ASSERT_EQ(points[3 * lower + k], points[3 * upper + k]);
+      const double x = u[3 * upper] - u[3 * lower], y = u[3 * upper + 1] - u[3 * lower + 1];
+      moved = std::max(moved, std::hypot(x, y));
+      EXPECT_NEAR(opening[lower], x * normal_x + y * normal_y, 1e-15);
+      EXPECT_EQ(opening[lower], opening[upper]);
+      EXPECT_NEAR(slip[3 * lower], x - (x * normal_x + y * normal_y) * normal_x, 1e-15);
+      EXPECT_NEAR(slip[3 * lower + 1], y - (x * normal_x + y * normal_y) * normal_y, 1e-15);
+    }
+  EXPECT_GT(moved, 1e-5);
+}
+
+INSTANTIATE_TEST_SUITE_P(Cells, FieldsOfNodalJoints, testing::Values("quad4", "quad8"));
+
+TEST(FieldRun, NodesMoveAsInTheStates) {
+  const Written written(case_text("quad4", "nodal", "format = \"xdmf\"\nevery = 5\ngroups = [\"raft\"]\n"));
+  const Hdf5Reader file = Hdf5Reader::open(written.file("fields/run.h5"));
+  EXPECT_EQ(file.children("/mesh"), (std::vector<std::string>{"interfaces", "raft"}));
+  const auto points = file.numbers("/mesh/raft/points"), u = file.numbers("/frames/000001/raft/points/displacement");
+  const auto v = file.numbers("/frames/000001/raft/points/velocity");
+  const State& state = written.states.at(6);  // the end of the static stage, the beginning, five steps
+  EXPECT_NEAR(state.time, 0.025, 1e-12);
+  const Model& model = written.built.model;
+  const auto last_node = static_cast<int>(model.nodes.size()) - 1;  // the upper lip's, a corner of the raft
+  const auto& corner = model.nodes.back().position;
+  int met = 0;
+  for (std::size_t i = 0; i < points.size() / 3; ++i) {
+    if (points[3 * i] != corner[0] || points[3 * i + 1] != corner[1]) continue;
+    ++met;
+    const int stride = model.full_unknowns() / static_cast<int>(model.nodes.size());
+    for (int k = 0; k < 2; ++k) {
+      const auto c = 3 * i + static_cast<std::size_t>(k);
+      EXPECT_EQ(u[c], static_cast<float>(model.full(stride * last_node + k, state.displacement, 0, state.time)));
+      EXPECT_EQ(v[c], static_cast<float>(model.full(stride * last_node + k, state.velocity, 1, state.time)));
+    }
+  }
+  EXPECT_EQ(met, 1);
+}
+
+TEST(FieldRun, ANumberThatIsNotFiniteIsNotedAndNotWritten) {
+  const fs::path place = fs::temp_directory_path() / ("uplift-field-nan-" + std::to_string(::getpid()));
+  const Case read = check_case(read_toml_text(case_text("quad4", "nodal", "format = \"vtu\"\n"), "case.toml"), "case.toml", {});
+  const Built built = build(read, runs_of_case(read).front());
+  {
+    ResultFolder folder((place / "r").string());
+    FieldRun fields(read, built, folder);
+    RunResult result = run(built.model, built.plan, built.behaviours, {}, [&](const Moment& moment) {
+      State damaged = moment.state;
+      if (moment.step == 3 || moment.step == 4) damaged.displacement[7] = std::nan("");
+      fields.see({damaged, moment.stepper, moment.so_far, moment.stage, moment.step, moment.last});
+    });
+    fields.finish(result);
+    EXPECT_EQ(fields.frames(), 11 - 2);
+    ASSERT_EQ(result.notes.size(), 1u);
+    EXPECT_TRUE(result.notes[0].starts_with("2 frames of the fields were left out: field \"displacement [m]\" of block \""))
+        << result.notes[0];
+    EXPECT_TRUE(result.notes[0].ends_with("at t = 0.015 s")) << result.notes[0];
+    folder.finish();
+  }
+  const std::string list = read_file((place / "r/fields/run.pvd").string());
+  EXPECT_EQ(list.find("timestep=\"0.015"), std::string::npos);
+  for (const auto& entry : fs::recursive_directory_iterator(place / "r/fields"))
+    if (entry.path().extension() == ".vtu") EXPECT_NE(list.find(entry.path().filename().string()), std::string::npos) << entry.path();
+  fs::remove_all(place);
+}
+
+TEST(FieldRun, SizesAreSpoken) {
+  EXPECT_EQ(spoken_bytes(999), "999 bytes");
+  EXPECT_EQ(spoken_bytes(1230), "1.23 kB");
+  EXPECT_EQ(spoken_bytes(121'400'000), "121 MB");
+  EXPECT_EQ(spoken_bytes(1'234'500'000), "1.234 GB");
+}
+
+}  // namespace
+}  // namespace uplift
