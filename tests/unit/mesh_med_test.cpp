@@ -1,17 +1,20 @@
 #include "uplift/io/mesh_med.h"
 
 #include <gtest/gtest.h>
-#include <rapidcheck.h>
-#include <rapidcheck/gtest.h>
 #include <unistd.h>
 
 #include <cmath>
+#include <csignal>
 #include <filesystem>
+#include <random>
 
 #include "mesh_file_support.h"
 #include "uplift/base/file.h"
+#include "uplift/io/hdf5_child.h"
 #include "uplift/io/hdf5_library.h"
 #include "uplift/io/mesh_file.h"
+#include "uplift/io/mesh_med_file.h"
+#include "uplift/io/mesh_med_message.h"
 
 #ifdef __SANITIZE_ADDRESS__
 // HDF5 asks for what a damaged file says and takes a refusal well; some memory it loses when such a file does not close.
@@ -342,17 +345,128 @@ TEST(Med, ACutFileIsAnError) {
     ASSERT_THROW(read_med(Hdf5Reader::from_memory(std::string_view(bytes).substr(0, n), "cut.med")), InputError) << n;
 }
 
-RC_GTEST_PROP(Med, DamagedFilesAreReadOrRefused, ()) {
-  std::string bytes = SampleFile().image();
-  const int changes = *rc::gen::inRange(1, 6);
-  for (int i = 0; i < changes; ++i) bytes[*rc::gen::inRange<std::size_t>(0, bytes.size())] = static_cast<char>(*rc::gen::inRange(0, 256));
+// ---- apart from this process ----
+
+/// The mesh is returned; what it refers to must be there.
+void expect_whole(const Mesh& mesh) {
+  for (const CellBlock& block : mesh.blocks)
+    for (const int node : block.nodes) ASSERT_TRUE(node >= 0 && static_cast<std::size_t>(node) < mesh.nodes.size());
+  for (const auto& [name, group] : mesh.groups)
+    for (const CellId cell : group.cells)
+      ASSERT_TRUE(cell.index >= 0 && cell.index < mesh.blocks.at(static_cast<std::size_t>(cell.block)).count());
+}
+
+/// Damages to a file: read, or refused with the file's name, and this process lives.
+void expect_read_or_refused(const std::string& bytes, int& refused) {
   try {
-    const Mesh mesh = read_med(Hdf5Reader::from_memory(bytes, "damaged.med"));
-    for (const CellBlock& block : mesh.blocks)
-      for (const int node : block.nodes) RC_ASSERT(node >= 0 && static_cast<std::size_t>(node) < mesh.nodes.size());
+    expect_whole(read_med_bytes(bytes, "damaged.med"));
   } catch (const InputError& error) {
-    RC_ASSERT(std::string(error.what()).starts_with("damaged.med"));
+    EXPECT_TRUE(std::string(error.what()).starts_with("damaged.med")) << error.what();
+    ++refused;
   }
+}
+
+TEST(MedApart, DamagedFilesAreReadOrRefused) {
+  const std::string whole = SampleFile().image();
+  std::mt19937 random(20261122);
+  const auto below = [&](std::size_t n) { return static_cast<std::size_t>(random() % n); };
+  int refused = 0;
+  for (int i = 0; i < 200; ++i) {
+    std::string bytes = whole;
+    for (std::size_t changes = 1 + below(6); changes > 0; --changes) bytes[below(bytes.size())] = static_cast<char>(random());
+    expect_read_or_refused(bytes, refused);
+  }
+  EXPECT_GT(refused, 10);
+  EXPECT_LT(refused, 200);
+  refused = 0;
+  for (int i = 0; i < 100; ++i) {
+    std::string bytes = whole;
+    bytes[below(bytes.size())] ^= static_cast<char>(1 << below(8));
+    expect_read_or_refused(bytes, refused);
+  }
+  refused = 0;
+  for (int i = 0; i < 50; ++i) expect_read_or_refused(whole.substr(0, below(whole.size())), refused);
+  EXPECT_EQ(refused, 50);
+}
+
+TEST(MedApart, TheMeshAndTheErrorsAreThoseOfTheReader) {
+  SampleFile file;
+  const Mesh own = read_image(file), apart = read_med_bytes(file.image(), "a.med");
+  EXPECT_EQ(apart.dimension, own.dimension);
+  EXPECT_EQ(apart.nodes, own.nodes);
+  ASSERT_EQ(apart.blocks.size(), own.blocks.size());
+  for (std::size_t b = 0; b < own.blocks.size(); ++b) {
+    EXPECT_EQ(apart.blocks[b].cell, own.blocks[b].cell);
+    EXPECT_EQ(apart.blocks[b].nodes, own.blocks[b].nodes);
+  }
+  ASSERT_EQ(apart.groups.size(), own.groups.size());
+  for (const auto& [name, group] : own.groups) {
+    const Group& other = apart.groups.at(name);
+    EXPECT_EQ(other.dimension, group.dimension);
+    EXPECT_EQ(other.cells, group.cells);
+    EXPECT_EQ(other.nodes, group.nodes);
+  }
+  const auto both_errors = [&](const std::string& mesh, const std::string& name) {
+    const std::string bytes = file.image();
+    const std::string here = error_of([&] { read_med(Hdf5Reader::from_memory(bytes, name), mesh); });
+    EXPECT_EQ(error_of([&] { read_med_bytes(bytes, name, mesh); }), here);
+    EXPECT_NE(here, "no error");
+  };
+  both_errors("soli", "a.med");  // with a nearest name
+  both_errors("x", "it is wanted here, found there.med");
+  file.attribute("/ENS_MAA/soil", "ESP", 4);
+  both_errors("", "a.med");
+  EXPECT_EQ(error_of([&] { read_med_bytes("no HDF5", "b.med"); }).substr(0, 29), "b.med: wanted an HDF5 file, f");
+}
+
+TEST(MedApart, AMessageThatIsNotWholeIsADamagedFile) {
+  const std::string message = message_of(read_image(SampleFile()));
+  const std::string wanted = "a.med: wanted a sound MED file, found a damaged one: the HDF5 library failed while reading it";
+  expect_whole(mesh_of_message(message, {"a.med", 0}));
+  for (std::size_t n = 0; n < message.size(); n += 1 + n / 300)
+    ASSERT_EQ(error_of([&] { mesh_of_message(std::string_view(message).substr(0, n), {"a.med", 0}); }), wanted) << n;
+  std::mt19937 random(7);
+  for (int i = 0; i < 20000; ++i) {
+    std::string bytes = message;
+    bytes[random() % bytes.size()] = static_cast<char>(random());
+    try {
+      expect_whole(mesh_of_message(bytes, {"a.med", 0}));
+    } catch (const InputError& error) {
+      ASSERT_EQ(error.what(), wanted);
+    }
+  }
+}
+
+TEST(Hdf5Child, BringsTheAnswer) {
+  std::string large(50'000'000, 'x');
+  for (std::size_t i = 0; i < large.size(); i += 977) large[i] = static_cast<char>(i);
+  const ChildAnswer answer = answer_of_child([&] { return large; }, {1'000'000'000, 30});
+  EXPECT_EQ(answer.failure, "");
+  EXPECT_TRUE(answer.bytes == large);
+  EXPECT_EQ(answer_of_child([] { return std::string(); }, {1'000'000'000, 30}).failure, "");
+}
+
+TEST(Hdf5Child, WhateverHappensHappensToTheChildAlone) {
+  const auto failure = [](const std::function<std::string()>& work) {
+    const ChildAnswer answer = answer_of_child(work, {300'000'000, 1});
+    EXPECT_TRUE(answer.bytes.empty());
+    return answer.failure;
+  };
+  int touched = 0;
+  EXPECT_EQ(failure([&]() -> std::string { return ++touched, std::raise(SIGSEGV), "never"; }), "a crash (Segmentation fault)");
+  EXPECT_EQ(failure([&]() -> std::string { return ++touched, std::abort(), "never"; }), "a crash (Aborted)");
+  EXPECT_EQ(failure([&]() -> std::string {
+              while (::getppid() != 0) touched = 1;
+              return "never";
+            }),
+            "no end after 1 s of computing");
+  EXPECT_EQ(failure([]() -> std::string { throw std::runtime_error("lost"); }), "a crash");
+  EXPECT_EQ(failure([]() -> std::string { return std::string(301'000'000 / 2, 'x') + std::string(301'000'000 / 2, 'y'); }).substr(0, 2),
+            "a ");
+#ifndef __SANITIZE_ADDRESS__  // which ends a process that asks for too much
+  EXPECT_EQ(failure([]() -> std::string { return std::string(2'000'000'000, 'x'); }), "a need for more than 300 MB of memory");
+#endif
+  EXPECT_EQ(touched, 0);
 }
 
 // ---- files on the disk ----

@@ -8,7 +8,7 @@
 
 #include "uplift/base/text.h"
 #include "uplift/io/mesh_gmsh.h"
-#include "uplift/io/mesh_med.h"
+#include "uplift/io/mesh_med_file.h"
 
 namespace uplift {
 namespace {
@@ -46,8 +46,7 @@ Mesh read_mesh(const std::string& path, const Where& where, const std::string& m
   if (!fs::is_regular_file(status)) throw InputError(where, "", wanted, in_quotes(path) + ", which is no file");
   const std::uintmax_t size = fs::file_size(path, error);
   if (error) throw InputError(where, "", "a file that can be read", in_quotes(path) + ": " + error.message());
-  if (beginning(path, std::min<std::uintmax_t>(size, hdf5_signature.size()), where) == hdf5_signature)
-    return read_med(Hdf5Reader::open(path), mesh);
+  if (beginning(path, std::min<std::uintmax_t>(size, hdf5_signature.size()), where) == hdf5_signature) return read_med_file(path, mesh);
   const std::string bytes = beginning(path, size, where);
   if (!is_gmsh(bytes)) throw InputError(where, "", wanted, in_quotes(path) + ", which begins with " + in_quotes(bytes.substr(0, 20)));
   return read_gmsh(bytes, path);
