@@ -8,7 +8,7 @@ const root = fileURLToPath(new URL(".", import.meta.url));
 const PLACEHOLDER = "/*UPLIFT_DATA*/";
 
 /** Bundles one entry point (script or style sheet) and returns its text. */
-async function bundle(entry) {
+async function bundle(entry, options = {}) {
   const result = await build({
     absWorkingDir: root,
     entryPoints: [entry],
@@ -20,26 +20,36 @@ async function bundle(entry) {
     charset: "utf8",
     legalComments: "inline",
     logLevel: "warning",
+    ...options,
   });
   return result.outputFiles[0].text.trim();
 }
 
-const [template, script, style, licence] = await Promise.all([
+const [template, script, scene, style, uplot, three] = await Promise.all([
   readFile(root + "src/template.html", "utf8"),
   bundle("src/main.ts"),
+  // A script of its own, which the page runs only for a report with a model in three dimensions.
+  bundle("src/space/scene.ts", { globalName: "upliftScene" }),
   bundle("src/style/main.css"),
   readFile(root + "node_modules/uplot/LICENSE", "utf8"),
+  readFile(root + "node_modules/three/LICENSE", "utf8"),
 ]);
 
 // Replacement by functions: "$" in the bundle must not be read as a pattern.
-// The licence of uPlot asks that its notice go with every copy.
-const notice = `uPlot, bundled below:\n\n${licence.trim().replace(/\r/g, "").replace(/--/g, "- -")}`;
-const html = template.replace("NOTICE", () => notice).replace("/*STYLE*/", () => style).replace("/*SCRIPT*/", () => script);
+// The licences of uPlot and three.js ask that their notices go with every copy.
+const plain = (licence) => licence.trim().replace(/\r/g, "").replace(/--/g, "- -");
+const notice = `uPlot, bundled below:\n\n${plain(uplot)}\n\nthree.js, bundled below:\n\n${plain(three)}`;
+const html = template
+  .replace("NOTICE", () => notice)
+  .replace("/*STYLE*/", () => style)
+  .replace("/*SCENE*/", () => scene)
+  .replace("/*SCRIPT*/", () => script);
 
 const found = html.split(PLACEHOLDER).length - 1;
 if (found !== 1) throw new Error(`report.html holds the placeholder ${found} times instead of once`);
-if (/<\/script/i.test(script)) throw new Error("the script bundle would end its own script element");
+if (/<\/script|<!--/i.test(script + scene)) throw new Error("a script bundle would end its own script element");
 
 await mkdir(root + "dist", { recursive: true });
 await writeFile(root + "dist/report.html", html);
-console.log(`dist/report.html  ${(Buffer.byteLength(html) / 1024).toFixed(1)} kB`);
+const size = (text) => `${(Buffer.byteLength(text) / 1024).toFixed(1)} kB`;
+console.log(`dist/report.html  ${size(html)}, of it ${size(scene)} for the space view`);

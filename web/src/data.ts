@@ -1,5 +1,5 @@
 // Reads the JSON document out of the page and fills what an older or shorter document leaves out.
-import { FORMAT, type Model, type Report } from "./types";
+import { FORMAT, type Model, type Report, type SpaceModel } from "./types";
 
 export type ReadResult =
   | { kind: "report"; report: Report }
@@ -19,6 +19,20 @@ function complete_model(model: Partial<Model> | null | undefined): Model | null 
     loads: model.loads ?? [],
     outlines: model.outlines ?? [],
     grid: model.grid ?? [],
+  };
+}
+
+function complete_space(space: Partial<SpaceModel> | null | undefined): SpaceModel | null {
+  if (!space || !space.nodes || space.nodes.length === 0) return null;
+  return {
+    nodes: space.nodes,
+    parts: space.parts ?? [],
+    lines: space.lines ?? [],
+    bodies: space.bodies ?? [],
+    masses: space.masses ?? [],
+    supports: space.supports ?? [],
+    interfaces: space.interfaces ?? [],
+    loads: space.loads ?? [],
   };
 }
 
@@ -44,6 +58,8 @@ function complete(raw: Partial<Report>): Report {
     charts: raw.charts ?? [],
     model: complete_model(raw.model),
     animations: raw.animations ?? [],
+    space: complete_space(raw.space),
+    spaceAnimations: raw.spaceAnimations ?? [],
   };
 }
 

@@ -2,6 +2,7 @@
 import type { AnimationCard } from "./animation";
 import type { ChartCard } from "./chart";
 import type { View } from "./curve";
+import type { SpaceCard } from "./space/card";
 import type { TableCard } from "./table";
 import type { Report } from "./types";
 
@@ -12,7 +13,8 @@ export interface Inspection {
   charts: ChartProbe[];
   tables: { id: string; rows: number }[];
   animation: AnimationCard | null;
-  /** Draws every chart now, wherever the page stands. */
+  space: SpaceCard | null;
+  /** Draws every chart and the space view now, wherever the page stands. */
   renderAll(): void;
   chart(id: string): ChartProbe | undefined;
 }
@@ -74,6 +76,7 @@ export function inspection(
   charts: ChartCard[] = [],
   tables: TableCard[] = [],
   animation: AnimationCard | null = null,
+  space: SpaceCard | null = null,
 ): Inspection {
   const probes = charts.map(probe);
   return {
@@ -85,7 +88,8 @@ export function inspection(
       return tables.map((t) => ({ id: t.table.id, rows: t.row_count }));
     },
     animation,
-    renderAll: () => charts.forEach((card) => card.render()),
+    space,
+    renderAll: () => [...(space ? [space] : []), ...charts].forEach((card) => card.render()),
     chart: (id) => probes.find((p) => p.id === id),
   };
 }

@@ -9,12 +9,21 @@ import { case_card, choices_card, empty_page, page_head, verdict_card } from "./
 import { install_palette, run_names } from "./palette";
 import { run_bar } from "./runbar";
 import { Runs } from "./runs";
+import { SpaceCard } from "./space/card";
 import { TableCard } from "./table";
 import { ThemeSwitch } from "./theme";
 import type { Chart, Report, Section } from "./types";
 
 // Charts are drawn when they come this near to the screen.
 const NEAR = "500px";
+
+/** Figures that are drawn late, and differently in print. */
+interface Drawn {
+  readonly element: HTMLElement;
+  render(): void;
+  prepare_print(): void;
+  end_print(): void;
+}
 
 interface Part {
   id: string;
@@ -59,7 +68,7 @@ function contents(parts: Part[]): HTMLElement {
   return h("nav", { class: "toc", "aria-label": "Contents" }, h("details", { open: matchMedia("(min-width: 1180px)").matches }, h("summary", {}, "Contents"), h("ol", {}, ...links)));
 }
 
-function draw_when_near(cards: ChartCard[]): void {
+function draw_when_near(cards: Drawn[]): void {
   const observer = new IntersectionObserver(
     (entries) => {
       for (const entry of entries) {
@@ -74,7 +83,7 @@ function draw_when_near(cards: ChartCard[]): void {
 }
 
 /** Print shows drawings instead of canvases: sharp at any resolution, always in light colours. */
-function follow_print(cards: ChartCard[]): void {
+function follow_print(cards: Drawn[]): void {
   let printing = false;
   const set = (on: boolean): void => {
     if (on === printing) return;
@@ -107,14 +116,17 @@ function show_report(host: HTMLElement, report: Report): void {
   const runs = new Runs(run_names(report), failed_runs(report));
   const charts = in_page_order(report).map((chart, i) => new ChartCard(chart, runs, i + 1));
   const tables = report.tables.map((table) => new TableCard(table, runs));
-  const { model, animations, choices } = report;
+  const { model, animations, choices, space } = report;
   const animation = model && animations.length > 0 ? new AnimationCard(model, animations, runs) : null;
+  const space_card = space ? new SpaceCard(space, report.spaceAnimations ?? [], runs, themes) : null;
+  const drawn_late: Drawn[] = space_card ? [space_card, ...charts] : charts;
 
   const figures = chart_parts(report, charts);
   const parts: Part[] = [
     { id: "verdict", title: "Verdict", element: verdict_card(report.verdict) },
     ...(tables.length > 0 ? [part("tables", tables.length > 1 ? "Tables" : "Comparison", ...tables.map((t) => t.element))] : []),
     ...(model ? [part("model", animation ? "Model and motion" : "Model", h("div", { class: "grid" }, model_card(model), animation?.element ?? null))] : []),
+    ...(space_card ? [part("space-model", space_card.frames > 0 ? "Model and motion" : "Model", space_card.element)] : []),
     ...figures,
     ...(choices.length > 0 ? [part("choices", "Choices", choices_card(choices))] : []),
     part("case", "Case", case_card(report)),
@@ -130,10 +142,10 @@ function show_report(host: HTMLElement, report: Report): void {
   );
 
   themes.on_change(() => charts.forEach((card) => card.repaint()));
-  draw_when_near(charts);
-  follow_print(charts);
+  draw_when_near(drawn_late);
+  follow_print(drawn_late);
   follow_scroll(toc, parts);
-  window.upliftReport = inspection(report, "", charts, tables, animation);
+  window.upliftReport = inspection(report, "", charts, tables, animation, space_card);
 }
 
 function start(): void {

@@ -38,6 +38,7 @@ export function run_names(report: Report): string[] {
   const in_data = new Set<string>();
   for (const chart of report.charts) for (const series of chart.series) if (series.run) in_data.add(series.run);
   for (const animation of report.animations) in_data.add(animation.run);
+  for (const animation of report.spaceAnimations ?? []) in_data.add(animation.run);
   const ordered = new Set<string>();
   for (const table of report.tables) {
     for (const row of table.rows) {

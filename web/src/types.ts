@@ -189,6 +189,94 @@ export interface Animation {
   pressures?: Record<string, number[][]>;
 }
 
+/** Surface of a group of solids. Its cells are triangles, counter-clockwise seen from outside. */
+export interface SpacePart {
+  name: string;
+  /** Flat node indices, three per triangle. */
+  triangles: number[];
+  /** Flat node indices, two per edge: edges of elements on the surface. */
+  edges: number[];
+  /** Drawn translucent. Without it a part is ground when it lies below the first interface. */
+  ground?: boolean;
+}
+
+/** A beam: a chain of node indices. */
+export interface SpaceLine {
+  name: string;
+  nodes: number[];
+}
+
+/** A rigid raft or footing. It moves rigidly with its node (displacement and rotation). */
+export interface SpaceBody {
+  name: string;
+  node: number;
+  /** Flat x, y, z of the outline in the reference position, metres. */
+  corners: number[];
+}
+
+export interface SpaceMass {
+  node: number;
+  mass: number;
+}
+
+export interface SpaceSupport {
+  node: number;
+  dofs: string[];
+}
+
+export interface SpaceInterface {
+  name: string;
+  /** Flat x, y, z of its points, metres. */
+  points: number[];
+  /** Flat s, t of its points in the plane of the interface, metres. */
+  plan: number[];
+  /** Labels of s and t, such as "x" and "y". */
+  axes: [string, string];
+  /** Mean unit normal from the lower to the upper side. */
+  normal: number[];
+  area: number[];
+  /** Flat indices of points, three per triangle. Empty: each point is drawn as a square of its area. */
+  triangles: number[];
+  /** Drawn upper node that each point moves with. Without it the points move with `body`. */
+  node?: number[];
+  /** Index in the bodies. */
+  body?: number;
+}
+
+export interface SpaceLoad {
+  node: number;
+  force: [number, number, number];
+  label: string;
+}
+
+/** A model in three dimensions, z upwards. */
+export interface SpaceModel {
+  /** Flat x, y, z of the drawn nodes, metres. */
+  nodes: number[];
+  parts: SpacePart[];
+  lines: SpaceLine[];
+  bodies: SpaceBody[];
+  masses: SpaceMass[];
+  supports: SpaceSupport[];
+  interfaces: SpaceInterface[];
+  loads: SpaceLoad[];
+}
+
+export interface SpaceAnimation {
+  run: string;
+  time: number[];
+  /** Per frame: flat x, y, z of each drawn node, metres. */
+  displacement: number[][];
+  /** Per body, per frame: [rx, ry, rz], radian. */
+  rotation?: Record<string, number[][]>;
+  /** Per interface, per frame, per point: metres, > 0 open. */
+  openings: Record<string, number[][]>;
+  /** Same shape, pascal, > 0 in compression. */
+  pressures: Record<string, number[][]>;
+  /** Same shape, metres, magnitude. */
+  slips?: Record<string, number[][]>;
+}
+
 export interface Report {
   format: string;
   title: string;
@@ -204,4 +292,7 @@ export interface Report {
   charts: Chart[];
   model: Model | null;
   animations: Animation[];
+  /** The model in three dimensions; `model` is then null and `animations` is empty. */
+  space?: SpaceModel | null;
+  spaceAnimations?: SpaceAnimation[];
 }

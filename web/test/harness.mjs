@@ -7,9 +7,12 @@ import { fileURLToPath } from "node:url";
 
 const root = fileURLToPath(new URL("..", import.meta.url));
 const FLAGS = [
-  "--headless", "--no-sandbox", "--disable-gpu", "--disable-quic", "--no-first-run",
+  "--headless", "--no-sandbox", "--disable-quic", "--no-first-run",
   "--disable-background-networking", "--disable-component-update", "--disable-sync",
 ];
+// WebGL computed by the processor: the same picture with and without a graphics card.
+const WEBGL = ["--use-angle=swiftshader", "--enable-unsafe-swiftshader"];
+const NO_WEBGL = ["--disable-gpu", "--disable-3d-apis"];
 
 export const DENSE_SAMPLES = 20000;
 
@@ -44,8 +47,13 @@ export async function sample_report() {
   return write_page(await inject(document));
 }
 
-export async function start_browser() {
-  return chromium.launch({ executablePath: process.env.CHROMIUM ?? "/usr/bin/chromium", args: FLAGS });
+/** The report with a model in three dimensions. */
+export async function space_report(change = (document) => document) {
+  return write_page(await inject(change(JSON.parse(await readFile(join(root, "test/sample_space.json"), "utf8")))));
+}
+
+export async function start_browser({ webgl = true } = {}) {
+  return chromium.launch({ executablePath: process.env.CHROMIUM ?? "/usr/bin/chromium", args: [...FLAGS, ...(webgl ? WEBGL : NO_WEBGL)] });
 }
 
 /** Opens a page; `log` collects what should stay empty. */

@@ -1,4 +1,5 @@
-// Makes test/sample.json: a report document for the tests of the page, computed by a small model of its own.
+// Makes test/sample.json: a report document for the tests of the page, computed by a small model of its own, and
+// test/sample_space.json: one with a model in three dimensions (make_space.mjs).
 //
 //   node test/make_sample.mjs
 //
@@ -10,6 +11,7 @@
 // stands for the run that fails.
 import { writeFile } from "node:fs/promises";
 import { fileURLToPath } from "node:url";
+import { space_document } from "./make_space.mjs";
 
 const G = 9.81;
 const HEIGHT = 10; // m
@@ -256,8 +258,10 @@ const runs = [
   simulate({ name: "Lagrange, no correction", group: "undamped", k: 9e8, explicit: true }),
 ];
 const bonded = simulate({ name: "Bonded base", group: "damped 2 %", k: 4e8, damping: 0.02, bonded: true });
-const path = fileURLToPath(new URL("sample.json", import.meta.url));
-await writeFile(path, JSON.stringify(document_of(runs, bonded)) + "\n");
+const plane = document_of(runs, bonded);
+const path = (name) => fileURLToPath(new URL(name, import.meta.url));
+await writeFile(path("sample.json"), JSON.stringify(plane) + "\n");
+await writeFile(path("sample_space.json"), JSON.stringify(space_document(plane)) + "\n");
 for (const run of [...runs, bonded]) {
   console.log(`${run.name.padEnd(26)} top ${peak(run.top).toFixed(3)} m  uplifted ${Math.max(...run.ratio).toFixed(2)}  error ${(peak(run.error) / Math.abs(runs[0].work)).toExponential(1)}`);
 }

@@ -7,6 +7,7 @@ import { mkdir, readFile } from "node:fs/promises";
 import { join, resolve } from "node:path";
 import { pathToFileURL } from "node:url";
 import { Checks, DENSE_SAMPLES, inject, open, sample_report, start_browser, write_page } from "./harness.mjs";
+import { check_space, check_space_sample } from "./space_checks.mjs";
 
 const args = process.argv.slice(2);
 const shots_at = args.indexOf("--shots");
@@ -397,10 +398,12 @@ if (shots) {
   await shoot(fresh.page, "desktop_light");
   await fresh.context.close();
 }
+await check.group("check_space", () => check_space(page, check));
 await check.group("check_theme", () => check_theme(page));
 await check.group("check_print", () => check_print(page));
 await check.group("check_phone", check_phone);
 await check.group("check_other_pages", check_other_pages);
+if (!given) await check.group("check_space_sample", () => check_space_sample(browser, check, shots));
 check.equal(log.console.length, 0, `no error or warning in the console (${log.console[0] ?? ""})`);
 check.equal(log.network.length, 0, `no request beyond the file (${log.network[0] ?? ""})`);
 await context.close();
