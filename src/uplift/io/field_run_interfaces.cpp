@@ -13,18 +13,9 @@ namespace {
 
 using Terms = std::vector<std::pair<int, double>>;
 
-/// Any vector of the plane or of space.
-template <class Direction>
-Vec3 in_space(const Direction& v) {
-  Vec3 result = Vec3::Zero();
-  result.head(v.size()) = v;
-  return result;
-}
-
 /// Direction of a local component of an interface point; the normal is the last one.
 Vec3 direction(const Interface& interface, int point, int component) {
-  const auto& normal = interface.normal[static_cast<std::size_t>(point)];
-  return component == interface.batch.components - 1 ? in_space(normal) : in_space(tangent(normal));
+  return component_axis(interface.space, interface.normal[static_cast<std::size_t>(point)], component, interface.batch.components);
 }
 
 /// The joint points at the pairs of a face's nodes: where a pair has several, for a corner, that with the face's own normal.
