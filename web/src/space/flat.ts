@@ -12,7 +12,7 @@ const GROUND_OPACITY = 0.62;
 const SHADE = 0.52;
 const MASS_SIZE = 0.035;
 
-// Every direction of the pictures looks down or level: the ground lies behind all that stands on it.
+// Every direction of the pictures looks down or level: the ground lies behind all that stands on it, the gap between.
 const BEHIND = 1e6;
 
 interface Piece {
@@ -131,7 +131,7 @@ export class FlatView implements View {
       c.beginPath();
       c.moveTo(...project(this.frame, corners[k] as Vec3));
       c.lineTo(...project(this.frame, corners[(k + 1) % corners.length] as Vec3));
-      c.globalAlpha = kind === "sharp" ? 0.75 : 0.2;
+      c.globalAlpha = kind === "sharp" ? 0.75 : opaque ? 0.4 : 0.2;
       this.stroke(c, look.ink.edge, kind === "sharp" ? 1 : 0.7);
       c.globalAlpha = 1;
     });
@@ -143,9 +143,9 @@ export class FlatView implements View {
     c.stroke();
   }
 
-  private add_polygon(points: Vec3[], fill: string, stroke: string): void {
+  private add_polygon(points: Vec3[], fill: string, stroke: string, behind = 0): void {
     this.pieces_.push({
-      depth: this.depth(points),
+      depth: this.depth(points) - behind,
       paint: (c) => {
         this.outline(c, points);
         c.fillStyle = fill;
@@ -176,13 +176,13 @@ export class FlatView implements View {
       // Seen from below only: from above the structure covers it.
       if (dot(cross(sub(corners[1], corners[0]), sub(corners[2], corners[0])), this.frame.out) > 0) continue;
       const fill = mean > 0 ? look.ink.gap.css(mean / range) : look.ink.closed;
-      this.add_polygon(corners, fill, fill);
+      this.add_polygon(corners, fill, fill, BEHIND / 2);
     }
     for (let i = 0; i < skin.rim.length; i += 2) {
       const [a, b] = [skin.rim[i] as number, skin.rim[i + 1] as number];
       if ((opening[a] as number) <= 0 && (opening[b] as number) <= 0) continue;
       const fill = shaded(rgb(look.ink.open), 1, 0.6);
-      this.add_polygon([point(upper, a), point(upper, b), point(lower, b), point(lower, a)], fill, fill);
+      this.add_polygon([point(upper, a), point(upper, b), point(lower, b), point(lower, a)], fill, fill, BEHIND / 2);
     }
   }
 

@@ -36,6 +36,8 @@ export class PlanMap {
   private readonly face_: SpaceInterface;
   private readonly range_: Range;
   private readonly rim_: number[];
+  /** Of the plan: [smin, smax, tmin, tmax]. */
+  private readonly reach_: [number, number, number, number];
   private width_ = 0;
   private highest_ = 0;
   private density_ = 1;
@@ -45,6 +47,7 @@ export class PlanMap {
     this.quantity = quantity;
     this.range_ = range;
     this.rim_ = rim_edges(face.triangles);
+    this.reach_ = this.find_reach();
     const { name, unit } = TITLES[quantity];
     const scale = pick_scale(Math.max(range.high, -range.low), unit);
     this.canvas.setAttribute("role", "img");
@@ -102,8 +105,7 @@ export class PlanMap {
     return this.face_.triangles.length > 0 ? 0 : Math.sqrt(Math.max(0, this.face_.area[i] ?? 0)) / 2;
   }
 
-  /** Reach of the plan: [smin, smax, tmin, tmax]. */
-  private reach(): [number, number, number, number] {
+  private find_reach(): [number, number, number, number] {
     const box: [number, number, number, number] = [Infinity, -Infinity, Infinity, -Infinity];
     this.face_.area.forEach((_a, i) => {
       const [s, t, half] = [this.s(i), this.t(i), this.half(i)];
@@ -116,18 +118,18 @@ export class PlanMap {
   }
 
   private scale(): number {
-    const [s0, s1, t0, t1] = this.reach();
+    const [s0, s1, t0, t1] = this.reach_;
     return Math.min((this.width_ - LEFT - RIGHT) / (s1 - s0 || 1), this.highest_ / (t1 - t0 || 1));
   }
 
   private height(): number {
-    const [, , t0, t1] = this.reach();
+    const [, , t0, t1] = this.reach_;
     return TOP + BOTTOM + Math.max(MIN_PLAN_HEIGHT, this.scale() * (t1 - t0));
   }
 
   /** Canvas place of a point of the plan. */
   private at(s: number, t: number): [number, number] {
-    const [s0, , t0, t1] = this.reach();
+    const [s0, , t0, t1] = this.reach_;
     const spare = this.height() - TOP - BOTTOM - this.scale() * (t1 - t0);
     return [LEFT + this.scale() * (s - s0), TOP + spare / 2 + this.scale() * (t1 - t)];
   }
@@ -188,12 +190,12 @@ export class PlanMap {
   }
 
   private draw_axes(c: CanvasRenderingContext2D, ink: Ink): void {
-    const [s0, s1, t0, t1] = this.reach();
+    const [s0, s1, t0, t1] = this.reach_;
     const [left, low] = this.at(s0, t0);
     const [right, high] = this.at(s1, t1);
     c.fillStyle = ink.soft;
     const ticks = (from: number, to: number, size: number): { at: number; label: string }[] => {
-      const list = linear_ticks(from, to, Math.max(3, size / 45));
+      const list = linear_ticks(from, to, size < 40 ? 1 : Math.max(3, size / 45));
       const labels = tick_labels(list, false);
       return list.map((at, i) => ({ at, label: labels[i] as string }));
     };
@@ -227,7 +229,7 @@ export class PlanMap {
 
   private draw_bar(c: CanvasRenderingContext2D, colours: Colours, ink: Ink): void {
     const { low, high, over } = this.range_;
-    const x = this.at(this.reach()[1], 0)[0] + BAR_GAP;
+    const x = this.at(this.reach_[1], 0)[0] + BAR_GAP;
     const [top, bottom] = [TOP + (over ? 9 : 0), this.height() - BOTTOM];
     const span = high - low || 1;
     const y = (value: number): number => bottom - ((value - low) / span) * (bottom - top);
