@@ -22,6 +22,9 @@ const set_frame = (page, frame) => page.evaluate((f) => window.upliftReport.spac
 const scrub_to = (page, frame) =>
   page.locator(".space-card .scrub").evaluate((input, f) => ((input.value = String(f)), input.dispatchEvent(new Event("input", { bubbles: true }))), frame);
 
+/** Waits for something that the page does in its own time. */
+const eventually = (page, what, arg) => page.waitForFunction(what, arg, { timeout: 15000 }).then(() => true, () => false);
+
 export async function check_space(page, check) {
   const has = await page.evaluate(() => window.upliftReport.space !== null);
   const run = await page.evaluate(() => window.upliftScene !== undefined);
@@ -70,19 +73,17 @@ async function check_time(page, check) {
   check.ok(frames < 2 || (await maps(page)) !== still_maps, "and the maps");
   const frame = () => page.evaluate(() => window.upliftReport.space.frame);
   await scrub_to(page, 0);
+  await page.locator(".space-card .controls select").first().selectOption("0.5");
   await page.locator(".space-card .play").click();
-  await page.waitForTimeout(900);
-  check.ok((await frame()) > 0, "play advances the model");
+  check.ok(await eventually(page, () => window.upliftReport.space.frame > 0), "play advances the model");
   await page.locator(".space-card .play").click();
   const stopped = await frame();
   await page.waitForTimeout(150);
   check.equal(await frame(), stopped, "pause stops the model");
-  await page.locator(".space-card .play").focus();
   await page.locator(".space-card .scrub").focus();
   await page.keyboard.press(" ");
-  await page.waitForTimeout(900);
+  check.ok(await eventually(page, (f) => window.upliftReport.space.frame !== f, stopped), "the space bar plays too");
   await page.keyboard.press(" ");
-  check.ok((await frame()) !== stopped, "the space bar plays too");
   await check_shares(page, check, frames);
 }
 
@@ -210,11 +211,23 @@ async function check_directions(page, check) {
   await side("3D");
 }
 
+/** The page scrolls smoothly: the place of an element once it has come to rest. */
+async function resting_box(page, element) {
+  await element.scrollIntoViewIfNeeded();
+  let last = await element.boundingBox();
+  for (let i = 0; i < 40; i++) {
+    await page.waitForTimeout(80);
+    const box = await element.boundingBox();
+    if (box.y === last.y) break;
+    last = box;
+  }
+  return last;
+}
+
 async function check_orbit(page, check) {
   const seen = () => page.evaluate(() => window.upliftReport.space.stage.seen);
   const canvas = page.locator(".space-live");
-  await canvas.scrollIntoViewIfNeeded();
-  const box = await canvas.boundingBox();
+  const box = await resting_box(page, canvas);
   const [x, y] = [box.x + box.width / 2, box.y + Math.min(box.height, 400) / 2];
   const before = await seen();
   await page.evaluate(() => document.activeElement.blur());
@@ -222,16 +235,14 @@ async function check_orbit(page, check) {
   await page.mouse.wheel(0, -120);
   await page.waitForTimeout(120);
   check.equal((await seen()).scale, before.scale, "the wheel scrolls the page until the picture is clicked");
-  await canvas.scrollIntoViewIfNeeded();
-  const again = await canvas.boundingBox();
+  const again = await resting_box(page, canvas);
   await page.mouse.move(again.x + again.width / 2, again.y + 200);
   await page.mouse.down();
   await page.mouse.move(again.x + again.width / 2 + 90, again.y + 200, { steps: 4 });
   await page.mouse.up();
   check.ok(Math.abs((await seen()).out[0] - before.out[0]) > 0.1, "a drag turns the model");
   await page.mouse.wheel(0, -120);
-  await page.waitForTimeout(120);
-  check.ok((await seen()).scale > before.scale, "then the wheel zooms");
+  check.ok(await eventually(page, (scale) => window.upliftReport.space.stage.seen.scale > scale, before.scale), "then the wheel zooms");
   await page.locator(".space-sides button", { hasText: "3D" }).click();
   await canvas.focus();
   await page.keyboard.press("ArrowLeft");

@@ -4,7 +4,7 @@ import { OrbitControls } from "three/examples/jsm/controls/OrbitControls.js";
 import { fit_to, fitted, type Direction, type Frame } from "./frame";
 import type { Look } from "./layers";
 import { scene_items, type Item } from "./scene_items";
-import type { Box3, Vec3 } from "./vector";
+import { Box3, point, type Vec3 } from "./vector";
 import type { MakeScene, View, ViewInput } from "./view";
 
 const TURN = Math.PI / 36;
@@ -25,6 +25,8 @@ class SceneView implements View {
   private readonly depth_: number;
   private width_ = 1;
   private height_ = 1;
+  /** Metres that the picture shows at least, without the reader's zoom. */
+  private seen_ = { width: 1, height: 1 };
   private look_: Look | null = null;
 
   constructor(input: ViewInput, canvas: HTMLCanvasElement, context: WebGL2RenderingContext) {
@@ -38,8 +40,9 @@ class SceneView implements View {
     this.camera_.add(this.sun_, this.sun_.target);
     this.sun_.position.set(-0.55, 0.8, 0.6);
     this.sun_.target.position.set(0, 0, 0);
-    const reach = Math.max(...input.space.nodes.map(Math.abs), 1);
-    this.depth_ = 20 * reach;
+    const box = new Box3();
+    for (let i = 0; 3 * i < input.space.nodes.length; i++) box.include(point(input.space.nodes, i));
+    this.depth_ = 10 * (box.size || 1);
     this.camera_.up.set(0, 0, 1);
     this.camera_.near = 0;
     this.camera_.far = 2 * this.depth_;
@@ -58,14 +61,14 @@ class SceneView implements View {
     this.height_ = height;
     this.renderer_.setPixelRatio(density);
     this.renderer_.setSize(width, height, false);
-    const half = (this.camera_.top - this.camera_.bottom) / 2;
-    this.set_half_height(half);
+    this.fit_camera();
   }
 
   aim(from: Direction | null, box: Box3): void {
     const frame = from ? fitted(from, box, this.width_, this.height_) : fit_to(this.frame, box);
     this.camera_.zoom = 1;
-    this.set_half_height(this.height_ / 2 / frame.scale);
+    this.seen_ = { width: this.width_ / frame.scale, height: this.height_ / frame.scale };
+    this.fit_camera();
     this.look_from(frame.centre, frame.out);
   }
 
@@ -83,8 +86,10 @@ class SceneView implements View {
     this.renderer_.dispose();
   }
 
-  private set_half_height(half: number): void {
+  // Whatever the shape of the picture becomes, it shows what was last aimed at.
+  private fit_camera(): void {
     const aspect = this.width_ / this.height_;
+    const half = Math.max(this.seen_.height, this.seen_.width / aspect) / 2;
     Object.assign(this.camera_, { top: half, bottom: -half, left: -half * aspect, right: half * aspect });
     this.camera_.updateProjectionMatrix();
   }

@@ -170,7 +170,7 @@ export class SpaceStage {
 
   private use_view(try_webgl: boolean): void {
     const input: ViewInput = { space: this.space_, pose: this.pose, layers: this.layers_, largest_opening: this.events_.largest_opening, on_move: () => this.draw_marks() };
-    const fresh = (): HTMLCanvasElement => h("canvas", { class: "space-live", role: "img", "aria-label": HELP });
+    const fresh = (): HTMLCanvasElement => h("canvas", { class: "space-live", role: "img", "aria-label": "Picture of the model in three dimensions" });
     let view: View | null = null;
     try {
       view = try_webgl ? webgl_view(input, fresh()) : null;
@@ -190,6 +190,7 @@ export class SpaceStage {
 
   private prepare_webgl(view: View): void {
     view.canvas.tabIndex = 0;
+    view.canvas.setAttribute("aria-label", HELP);
     view.canvas.addEventListener("webglcontextlost", () => {
       if (this.view_ !== view) return;
       this.use_view(false);
@@ -207,8 +208,8 @@ export class SpaceStage {
     const fresh = first || frame.width <= 1;
     const density = this.printing_ ? MAX_DENSITY : Math.min(MAX_DENSITY, devicePixelRatio);
     this.view_.resize(width, height, density);
-    // A narrower box shows the whole model again.
-    if (fresh || width < frame.width) this.view_.aim(fresh ? this.direction("3D") : null, this.box());
+    // Pictures have no place of the reader's own to keep.
+    if (fresh || !this.view_.free) this.view_.aim(fresh ? this.direction("3D") : null, this.box());
     this.draw();
   }
 
