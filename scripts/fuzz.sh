@@ -16,7 +16,7 @@ mesh=("${base[@]}" src/uplift/mesh/{cells,mesh}.cpp src/uplift/io/mesh_draft.cpp
 sources() {
   case "$1" in
     gmsh) printf '%s\n' "${mesh[@]}" src/uplift/io/mesh_gmsh*.cpp ;;
-    med) printf '%s\n' "${mesh[@]}" src/uplift/io/hdf5.cpp src/uplift/io/mesh_med.cpp ;;
+    med) printf '%s\n' "${mesh[@]}" src/uplift/io/hdf5{,_child}.cpp src/uplift/io/mesh_med{,_message,_file}.cpp ;;
     toml) printf '%s\n' "${base[@]}" src/uplift/io/toml.cpp ;;
     *) echo "fuzz.sh: wanted gmsh, med or toml, found \"$1\"" >&2; exit 2 ;;
   esac
@@ -35,10 +35,10 @@ for target in "${targets[@]}"; do
 done
 
 fuzz() {
-  local target="$1" work="$out/corpus_$1" log="$out/$1.log" limit=512
+  local target="$1" work="$out/corpus_$1" log="$out/$1.log" limit=512 patience=20
   mkdir -p "$work"
-  [ "$target" = med ] && limit=0  # see the operator new of med_fuzz.cpp
-  if ! "$out/${target}_fuzz" -max_total_time="$seconds" -rss_limit_mb=2048 -malloc_limit_mb="$limit" -timeout=20 -max_len=65536 -print_final_stats=1 \
+  [ "$target" = med ] && limit=0 patience=60  # see the operator new of med_fuzz.cpp; a process that does not come to an end
+  if ! "$out/${target}_fuzz" -max_total_time="$seconds" -rss_limit_mb=2048 -malloc_limit_mb="$limit" -timeout="$patience" -max_len=65536 -print_final_stats=1 \
     -artifact_prefix="$out/${target}_" "$work" "fuzz/corpus/$target" >"$log" 2>&1; then
     tail -n 60 "$log" >&2
     echo "FAILED: $target; the input is in $out" >&2

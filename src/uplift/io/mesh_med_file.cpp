@@ -20,7 +20,7 @@ Mesh read_apart(const std::function<Hdf5Reader()>& open, std::uintmax_t size, co
     }
   };
   const auto bytes = static_cast<std::int64_t>(size);
-  const ChildLimits limits{1'000'000'000 + 64 * bytes, static_cast<int>(30 + bytes / 10'000'000)};
+  const ChildLimits limits{1'000'000'000 + 64 * bytes, static_cast<int>(5 + bytes / 2'000'000)};
   const ChildAnswer answer = answer_of_child(work, limits);
   if (!answer.failure.empty())
     throw InputError({name, 0}, "", "a sound MED file", "a damaged one: " + answer.failure + " while the HDF5 library was reading it");
