@@ -90,6 +90,8 @@ struct Built {
   /// The interface's moment and rotation that go with the sway.
   Request::Kind base_moment() const;
   Request::Kind base_rotation() const;
+  /// The model with all supports, those of static stages alone too.
+  const Model& at_rest() const { return plan.rest ? *plan.rest : model; }
 };
 
 /// Makes the model and the plan of one run. Throws InputError (dangling or duplicate names, mechanisms, contradictions).

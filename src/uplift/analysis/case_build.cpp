@@ -5,7 +5,7 @@
 #include <filesystem>
 #include <limits>
 
-#include "uplift/analysis/case_model.h"
+#include "uplift/analysis/case_ground.h"
 #include "uplift/analysis/case_output.h"
 #include "uplift/analysis/case_sections.h"
 #include "uplift/model/check.h"
@@ -57,15 +57,16 @@ const Values& behaviour_of(const Values& interface, const RunSpec& spec) {
   return replaced ? *spec.law : interface.part("law");
 }
 
-void add_interfaces(const Case& read, const RunSpec& spec, ModelBuilder& builder, CaseNames& names, Built& built) {
-  if (read.values.tables("interface").empty()) fail(read.values, "", "at least one [[interface]]", "none");
+/// `like`: the interfaces get the components that they have in this model; null: as many as their law and supports leave.
+void add_interfaces(const Case& read, const RunSpec& spec, const Model* like, ModelBuilder& builder, CaseNames& names, Built& built) {
+  if (like) builder.keep_tangents();
   for (const Values& interface : read.values.tables("interface")) {
     const auto number = static_cast<std::size_t>(names.interfaces.add(interface, "name"));
     Joint joint = make_joint(interface, read.mesh ? read.mesh->open[number] : std::vector<FacePair>(), spec.rigid_ground, builder, names);
     const Values& behaviour = behaviour_of(interface, spec);
     InterfaceSpec made;
     made.name = interface.text("name");
-    made.components = components_of(behaviour, names.space);
+    made.components = like ? like->interfaces[number].batch.components : components_of(behaviour, names.space);
     made.points = std::move(joint.points);
     made.reference = joint.reference;
     made.behaviour = behaviour.type();
@@ -155,9 +156,24 @@ void rename_shown(int node, const std::string& name, Model& model) {
   if (old.starts_with("mesh.") && model.find_node(name) < 0) old = name;
 }
 
+/// Without an interface: the highest node, of equally high ones that nearest to the middle.
+void find_highest(const CaseNames& names, Built& built) {
+  Vec3 middle = Vec3::Zero();
+  for (const Place& place : names.positions) middle += place / static_cast<double>(names.positions.size());
+  const int up = names.space.up();
+  for (int node = 0; node < static_cast<int>(names.positions.size()); ++node) {
+    const Place& here = names.positions[static_cast<std::size_t>(node)];
+    const double higher = built.top < 0 ? 1 : here[up] - names.positions[static_cast<std::size_t>(built.top)][up];
+    const bool nearer = built.top >= 0 && (here - middle).norm() < (names.positions[static_cast<std::size_t>(built.top)] - middle).norm();
+    if (higher > 1e-9 || (higher > -1e-9 && nearer)) built.top = node;
+  }
+  rename_shown(built.top, "top", built.model);
+}
+
 /// The highest node that hangs together with the upper side of the first interface, and the upper node in its middle; of equally high ones
 /// that nearest to the middle.
 void find_shown_mesh_nodes(const CaseNames& names, Built& built) {
+  if (built.facts.empty()) return find_highest(names, built);
   const std::vector<int>& upper = built.facts.front().upper;
   const Vec3 middle = built.model.interfaces.front().reference;
   const auto position = [&](int node) { return names.positions[static_cast<std::size_t>(node)]; };
@@ -212,6 +228,7 @@ Dof sway_of(const Model& model) {
 /// See Built::weight.
 double weight_of(const Built& built) {
   const Model& model = built.model;
+  if (model.interfaces.empty()) return 0;
   const Vec3 normal = model.interfaces.front().normal.front();
   const std::vector<char> carried = part_of(model, built.facts.front().upper);
   double weight = 0;
@@ -240,11 +257,59 @@ std::vector<double> tuned_masses(const Case& read, const RunSpec& spec) {
   add_nodes(read.values, builder, names);
   add_mesh(read, builder, names);
   add_functions(read.values, names);
-  add_structure(read.values, builder, names, {0.0});
-  add_interfaces(read, spec, builder, names, without);
+  add_structure(read.values, builder, names, {0.0}, true);
+  add_interfaces(read, spec, nullptr, builder, names, without);
   const Model model = builder.finish();
   check_static(model);  // a loose body is named as such, not as a mass that cannot be tuned
   return {tuned_mass(model, names.node(*tuned, "node"), tuned->number("tuned_frequency"), tuned->where("tuned_frequency"))};
+}
+
+/// The model of a run. `dynamic`: the model without the supports of static stages alone, when that with them is wanted; null: without them.
+Model make_model(const Case& read, const RunSpec& spec, const std::vector<double>& tuned, const Model* dynamic, CaseNames& names,
+                 Built& built) {
+  const Values& root = read.values;
+  names.space = space_of(read);
+  ModelBuilder builder(names.space);
+  add_nodes(root, builder, names);
+  add_mesh(read, builder, names);
+  add_functions(root, names);
+  add_structure(root, builder, names, tuned, dynamic != nullptr);
+  add_ties(root, builder, names);
+  add_absorbing(root, builder, names);
+  if (!dynamic)
+    add_free_field(root, built.plan.stages, spec.damping ? bulk_damping(*spec.damping) : BulkDamping{}, *bulk_solver(read), builder, names);
+  add_interfaces(read, spec, dynamic, builder, names, built);
+  add_loads(root, builder, names);
+  if (spec.damping) builder.set_damping(bulk_damping(*spec.damping));
+  return builder.finish();
+}
+
+/// The model of the static stages, with the laws that the run takes.
+std::shared_ptr<const Model> resting_model(const Case& read, const RunSpec& spec, const std::vector<double>& tuned, const Built& built) {
+  Built scratch;
+  CaseNames names;
+  auto rest = std::make_shared<Model>(make_model(read, spec, tuned, &built.model, names, scratch));
+  for (std::size_t k = 0; k < rest->interfaces.size(); ++k) {
+    Interface& interface = rest->interfaces[k];
+    interface.law = make_part(law_catalog(), *built.behaviours[k]);
+    interface.cone = interface.law ? nullptr : make_part(cone_catalog(), *built.behaviours[k]);
+    interface.behaviour = built.model.interfaces[k].behaviour;
+  }
+  return rest;
+}
+
+/// Released supports do not come back, and the second order begins with the state that they have borne.
+void check_release(const Values& root, const RunPlan& plan) {
+  const Stage* first = dynamic_stage(plan);
+  const std::vector<Values>& tables = root.tables("stage");
+  for (std::size_t k = 0; first && k < plan.stages.size(); ++k) {
+    const Stage& stage = plan.stages[k];
+    if (&stage < first) continue;
+    if (stage.type == Stage::Type::statics)
+      fail(tables[k], "type", "no static stage after a dynamic one, where supports hold in static stages alone", "one");
+    if (stage.p_delta && !first->p_delta)
+      fail(tables[k], "p_delta", "p_delta from the first dynamic stage on, where supports hold in static stages alone", "p_delta later");
+  }
 }
 
 /// Replaces laws that depend on the compliance of the model: the swept stiffness, the bonded joint.
@@ -325,23 +390,15 @@ Built build(const Case& read, const RunSpec& spec) {
   const Values& root = read.values;
   Built built;
   CaseNames names;
-  names.space = space_of(read);
-  ModelBuilder builder(names.space);
-  add_nodes(root, builder, names);
-  add_mesh(read, builder, names);
-  add_functions(root, names);
   const std::vector<double> tuned = tuned_masses(read, spec);
   if (!tuned.empty()) {
     built.tuned_mass = tuned.front();
     built.notes.push_back(fmt::format("the tuned mass is {:.10g} kg", built.tuned_mass));
   }
-  add_structure(root, builder, names, tuned);
-  add_absorbing(root, builder, names);
-  add_interfaces(read, spec, builder, names, built);
-  add_loads(root, builder, names);
-  if (spec.damping) builder.set_damping(bulk_damping(*spec.damping));
-  built.model = builder.finish();
-  check_static(built.model);
+  add_stages(read, spec, built.plan);
+  built.model = make_model(read, spec, tuned, nullptr, names, built);
+  const bool released = any_released(root);
+  if (!released) check_static(built.model);
   check_dynamic(built.model);
 
   RunPlan& plan = built.plan;
@@ -350,8 +407,12 @@ Built build(const Case& read, const RunSpec& spec) {
   plan.group = spec.group;
   plan.expected_to_fail = spec.expected_to_fail;
   plan.solver = bulk_solver(read);
-  add_stages(read, spec, plan);
   adapt_laws(read, spec, built);
+  if (released) {
+    check_release(root, plan);
+    plan.rest = resting_model(read, spec, tuned, built);
+    check_static(*plan.rest);
+  }
   add_method(read, spec, built);
   add_initial(read, names, built);
   find_shown_nodes(read, names, built);

@@ -194,6 +194,15 @@ const CaseSolids::Solid* CaseSolids::beside(CellId edge) const {
   return side < 0 ? nullptr : &solids_[at(solid_of_[at(side / Sides::stride)])];
 }
 
+Vec3 CaseSolids::centre_beside(CellId edge) const {
+  const int side = sides_.find(mesh_->type(edge), mesh_->cell(edge));
+  assert(side >= 0);
+  const std::span<const int> nodes = mesh_->cell(sides_.cells()[at(side / Sides::stride)]);
+  Vec3 sum = Vec3::Zero();
+  for (const int node : nodes) sum += mesh_->nodes[at(node)];
+  return sum / static_cast<double>(nodes.size());
+}
+
 std::vector<int> CaseSolids::nodes(const Values& table, std::string_view key) const {
   std::vector<int> found = nodes_of(*mesh_, group_named(*mesh_, table, key, "a group of the mesh"));
   if (found.empty()) fail(table, key, "a group with nodes", "an empty one");

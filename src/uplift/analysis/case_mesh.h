@@ -36,6 +36,8 @@ class CaseSolids {
   const std::vector<Solid>& solids() const { return solids_; }
   /// Of the cell that has this edge; null for an edge of none.
   const Solid* beside(CellId edge) const;
+  /// Mean place of the nodes of the cell that has this edge, which must be one.
+  Vec3 centre_beside(CellId edge) const;
   /// Nodes of the group named under `key`.
   std::vector<int> nodes(const Values& table, std::string_view key) const;
   /// Edges of the group named under `key`; InputError for a group of something else.

@@ -1,12 +1,10 @@
-#include "uplift/analysis/case_model.h"
+#include "uplift/analysis/case_ground.h"
 #include "uplift/base/text.h"
-#include "uplift/elements/absorbing.h"
 
 // Absorbing faces of the mesh and the waves that come in through them.
 namespace uplift {
-namespace {
 
-AbsorbingSection section_of(const Values& absorbing, const CaseSolids::Solid& solid, Space space) {
+AbsorbingSection absorbing_ground(const Values& absorbing, const CaseSolids::Solid& solid, Space space) {
   const auto refuse = [&](const char* wanted, const char* found) {
     throw InputError(absorbing.where("group"), absorbing.path("group"), wanted,
                      "edges of the solid " + in_quotes(solid.table->text("group")) + " " + found);
@@ -16,7 +14,7 @@ AbsorbingSection section_of(const Values& absorbing, const CaseSolids::Solid& so
   return {solid.section.material, solid.section.thickness, absorbing.flag("lumped")};
 }
 
-Vec3 motion_of(const Values& incident, Space space) {
+Vec3 incident_motion(const Values& incident, Space space) {
   const std::string& word = incident.text("wave");
   for (const bool plane_only : {word == "SH", incident.given("azimuth")})
     if (plane_only && space.dimension == 2)
@@ -24,20 +22,24 @@ Vec3 motion_of(const Values& incident, Space space) {
   return wave_motion(word == "P" ? Wave::p : word == "SV" ? Wave::sv : Wave::sh, space.dimension, incident.number("azimuth"));
 }
 
-}  // namespace
+std::shared_ptr<const TimeFunction> incident_velocity(const Values& incident, const CaseNames& names) {
+  // The surface of free rock moves twice as much as the wave that comes up.
+  const double incoming = incident.text("kind") == "outcrop" ? 0.5 : 1;
+  return scaled(incoming * incident.number("velocity"), names.function(incident));
+}
 
 void add_absorbing(const Values& root, ModelBuilder& builder, const CaseNames& names) {
   for (const Values& absorbing : root.tables("absorbing")) {
     const CaseSolids& solids = names.mesh_for(absorbing);
     const Values* incident = table_if(absorbing, "incident");
-    const Vec3 motion = incident ? motion_of(*incident, names.space) : Vec3::Zero();
+    const Vec3 motion = incident ? incident_motion(*incident, names.space) : Vec3::Zero();
     const int d = names.space.dimension;
     std::vector<std::pair<int, double>> pattern;
     for (const CellId edge : solids.edges(absorbing, "group")) {
       std::vector<int> nodes;
       for (const int node : solids.mesh().cell(edge)) nodes.push_back(names.first_of_mesh + node);
       auto face = std::make_unique<AbsorbingFace>(solids.mesh().type(edge), nodes, names.coordinates,
-                                                  section_of(absorbing, *solids.beside(edge), names.space));
+                                                  absorbing_ground(absorbing, *solids.beside(edge), names.space));
       const Vector force = incident ? face->incident(motion) : Vector();
       for (Index i = 0; i < force.size(); ++i)
         if (force[i] != 0)
@@ -45,10 +47,7 @@ void add_absorbing(const Values& root, ModelBuilder& builder, const CaseNames& n
       builder.add_element(std::move(face), absorbing.where());
     }
     if (!incident) continue;
-    // The surface of free rock moves twice as much as the wave that comes up.
-    const double incoming = incident->text("kind") == "outcrop" ? 0.5 : 1;
-    builder.add_load(incident->text("name"), std::move(pattern), scaled(incoming * incident->number("velocity"), names.function(*incident)),
-                     false, incident->where());
+    builder.add_load(incident->text("name"), std::move(pattern), incident_velocity(*incident, names), false, incident->where());
   }
 }
 

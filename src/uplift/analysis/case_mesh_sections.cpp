@@ -102,7 +102,8 @@ const Section& incident_section() {
           number("azimuth", "rad", "in space: turns the motion of S waves about the vertical, from x to y").standard(0.0),
           choice("kind", {"outcrop", "incoming"},
                  "what the function is: the motion that the free surface of the same rock would have (twice the incoming wave), or that of "
-                 "the incoming wave alone"),
+                 "the incoming wave alone. A motion recorded within the ground holds what comes down again: it is no incident wave but "
+                 "a prescribed motion, [[motion]] with the group of the base, and the base then reflects"),
           number("velocity", "m/s", "velocity that the function multiplies").standard(1.0),
           text("function", "name of the function of time: a velocity"), text("name", "name").standard("incident wave")}};
   return s;
@@ -116,8 +117,23 @@ const Section& absorbing_section() {
       "a viscous boundary: edges (faces) of the mesh through which waves leave (Lysmer & Kuhlemeyer), with the material of the "
       "solid beside them. It "
       "holds nothing at rest: static stages need supports elsewhere",
-      Fields{text("group", "group of edges (faces) of the mesh"), flag("lumped", "diagonal damping matrix").standard(false),
-             table("incident", incident_section(), "a wave that comes in; absent: none").optional()}};
+      Fields{
+          text("group", "group of edges (faces) of the mesh"), flag("lumped", "diagonal damping matrix").standard(false),
+          flag("free_field",
+               "for sides: the boundary follows a column of level ground (the layers beside it) under the incident wave at its foot, and "
+               "absorbs only what differs from it")
+              .standard(false),
+          table("incident", incident_section(), "a wave that comes in; absent: none").optional()}};
+  return s;
+}
+
+const Section& tie_section() {
+  static const Section s{
+      "tie",
+      "nodes of one side of the mesh that move as those at the same place of the opposite side, as in ground that goes on "
+      "the same",
+      Fields{text("group", "group of the mesh"), text("to", "group of the opposite side"),
+             texts("unknowns", "any of ux, uy; in space of ux, uy, uz")}};
   return s;
 }
 

@@ -243,20 +243,25 @@ void add_masses(const Values& root, ModelBuilder& builder, CaseNames& names, con
   }
 }
 
-void add_supports(const Values& root, ModelBuilder& builder, const CaseNames& names) {
+bool is_released(const Values& support) {
+  return support.text("stages") == "static";
+}
+
+void add_supports(const Values& root, ModelBuilder& builder, const CaseNames& names, bool at_rest) {
   std::set<std::pair<int, Dof>> held;  // by groups: those of two sides share the corner
-  for (const Values& support : root.tables("support"))
+  for (const Values& support : root.tables("support")) {
+    if (is_released(support) && !at_rest) continue;
     for (const int node : names.node_or_group(support))
       for (const std::string& word : support.texts("fixed")) {
         const Dof dof = dof_of(word, support, "fixed", names.space, support.has("node"));
         if (!support.has("group") || held.emplace(node, dof).second) builder.fix(node, dof, support.where("fixed"));
       }
+  }
   for (const Values& motion : root.tables("motion")) {
     const std::vector<int> nodes = names.node_or_group(motion);
     const std::string name = motion.has("name") ? motion.text("name") : "motion of " + motion.text(motion.has("node") ? "node" : "group");
-    for (const int node : nodes)
-      builder.prescribe(node, dof_of(motion.text("direction"), motion, "direction", names.space, motion.has("node")),
-                        std::make_shared<Scaled>(motion.number("amplitude"), names.function(motion)), name, motion.where());
+    builder.prescribe(nodes, dof_of(motion.text("direction"), motion, "direction", names.space, motion.has("node")),
+                      std::make_shared<Scaled>(motion.number("amplitude"), names.function(motion)), name, motion.where());
   }
 }
 
@@ -357,7 +362,11 @@ void add_functions(const Values& root, CaseNames& names) {
   }
 }
 
-void add_structure(const Values& root, ModelBuilder& builder, CaseNames& names, const std::vector<double>& tuned) {
+bool any_released(const Values& root) {
+  return std::ranges::any_of(root.tables("support"), is_released);
+}
+
+void add_structure(const Values& root, ModelBuilder& builder, CaseNames& names, const std::vector<double>& tuned, bool at_rest) {
   Names beams("beam");
   for (const Values& beam : root.tables("beam")) add_beam(beam, builder, names, beams);
   add_masses(root, builder, names, tuned);
@@ -373,7 +382,7 @@ void add_structure(const Values& root, ModelBuilder& builder, CaseNames& names, 
         std::make_unique<Dashpot>(connection_of(dashpot, names, along), dashpot.number(along ? "damping" : "rotational_damping")),
         dashpot.where());
   }
-  add_supports(root, builder, names);
+  add_supports(root, builder, names, at_rest);
 }
 
 void add_loads(const Values& root, ModelBuilder& builder, const CaseNames& names) {

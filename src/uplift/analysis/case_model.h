@@ -49,7 +49,10 @@ void add_absorbing(const Values& root, ModelBuilder& builder, const CaseNames& n
 /// A function times an amplitude.
 std::shared_ptr<const TimeFunction> scaled(double factor, std::shared_ptr<const TimeFunction> function);
 void add_functions(const Values& root, CaseNames& names);
-void add_structure(const Values& root, ModelBuilder& builder, CaseNames& names, const std::vector<double>& tuned);
+/// `at_rest`: with the supports that hold in static stages alone.
+void add_structure(const Values& root, ModelBuilder& builder, CaseNames& names, const std::vector<double>& tuned, bool at_rest);
+/// Whether there are such supports.
+bool any_released(const Values& root);
 void add_loads(const Values& root, ModelBuilder& builder, const CaseNames& names);
 BulkDamping bulk_damping(const Values& damping);
 

@@ -85,7 +85,7 @@ std::vector<RunSpec> runs_of_case(const Case& read) {
   spec.name = "run";
   spec.label = "as in the case";
   std::vector<RunSpec> runs{spec};
-  if (read.values.flag("bonded")) runs.push_back(bonded_run(read));
+  if (read.values.flag("bonded") && !read.values.tables("interface").empty()) runs.push_back(bonded_run(read));
   return runs;
 }
 
@@ -99,7 +99,7 @@ Comparison comparison_of_case(const Case& read) {
     names.add(variant, "name");
     plain.push_back(variant_run(read, variant));
   }
-  if (root.flag("bonded")) {
+  if (root.flag("bonded") && !root.tables("interface").empty()) {
     names.add("bonded", root.where("bonded"), "variant.name");
     plain.push_back(bonded_run(read));
   }

@@ -96,7 +96,10 @@ const Section& support_section() {
   static const Section s{
       "support", "unknowns that are held, of a node or of a group of the mesh",
       Fields{text("node", "node; or give group").optional(), text("group", "group of the mesh: all its nodes").optional(),
-             texts("fixed", "any of ux, uy, rz; in space of ux, uy, uz, rx, ry, rz")}};
+             texts("fixed", "any of ux, uy, rz; in space of ux, uy, uz, rx, ry, rz"),
+             choice("stages", {"all", "static"},
+                    "static: it is released when the first dynamic stage begins; what it has borne goes on as a constant load")
+                 .standard("all")}};
   return s;
 }
 
@@ -391,6 +394,7 @@ const Section& case_section() {
              table("mesh", mesh_section(), "mesh of solids, in the plane or in space").optional(),
              tables("solid", solid_section(), "materials of the mesh"),
              tables("absorbing", absorbing_section(), "absorbing boundaries of the mesh"),
+             tables("tie", tie_section(), "sides of the mesh that move together"),
              tables("beam", beam_section(), "beams"),
              tables("mass", mass_section(), "point masses"),
              tables("spring", spring_section(), "springs"),

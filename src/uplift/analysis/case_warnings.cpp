@@ -65,7 +65,7 @@ void warn_step(const Built& built, std::vector<std::string>& said) {
   const Stage* stage = dynamic_stage(built.plan);
   if (!stage) return;
   double fastest = 0;
-  for (const Mode& mode : bonded_modes(built.model, 3))
+  for (const Mode& mode : bonded_modes(built.at_rest(), 3))
     if (mode.frequency < 50) fastest = std::max(fastest, mode.frequency);
   if (fastest > 0 && stage->step > 1 / (20 * fastest))
     said.push_back(

@@ -79,7 +79,8 @@ class Runner {
         observe_(observe),
         b_(stack_interfaces(model)),
         gap_(stack_gaps(model)),
-        viewer_(model, plan.gap_tolerance) {
+        viewer_(model, plan.gap_tolerance),
+        rest_(plan.rest.get()) {
     result_.name = plan.name;
     result_.label = plan.label;
     result_.group = plan.group;
@@ -105,7 +106,10 @@ class Runner {
   void remember_gaps();
   void initial_forces();
   void add_initial_state();
-  bool statics(const Stage& stage, const Bulk& bulk);
+  bool statics(const Stage& stage, const Sparse* geometric);
+  bool second_order();
+  State carried() const;
+  void release();
   bool dynamics(const Stage& stage, const Bulk& bulk);
   void show(const Stage& stage, const Stepper* stepper, long step, bool last);
   void note_views(double step);
@@ -126,6 +130,8 @@ class Runner {
   LinearCounts linear_;
   std::unique_ptr<Behaviours> laws_;
   std::unique_ptr<Sparse> geometric_;
+  const Model* rest_;            // the static stages' model before the first dynamic stage; null: model_
+  Vector held_;                  // what released supports have borne, on the free unknowns [N, N m]
   State state_;                  // between stages
   const State* seen_ = &state_;  // the present one, wherever it lives
   std::vector<InterfaceView> views_;
@@ -133,7 +139,7 @@ class Runner {
   double initial_scale_ = 0;      // J
   std::optional<Ledger> ledger_;  // of the dynamic stage before
   std::optional<Stage> march_;    // that stage, as long as nothing came in between
-  double round_off_work_ = 0;     // J
+  double round_off_energy_ = 0;   // J: less than this is nothing
   double shown_ = 0;              // s: taken by the observer
 };
 
@@ -148,18 +154,17 @@ void Runner::execute() {
   const Stage* dynamic = nullptr;
   for (const Stage& stage : plan_.stages)
     if (dynamic == nullptr && stage.type == Stage::Type::dynamics) dynamic = &stage;
-  const Bulk bulk(model_, nullptr);
   InterfaceProblem compliance;
   bool cones = false;
   for (const Interface& interface : model_.interfaces) cones = cones || interface.cone != nullptr;
   if (dynamic != nullptr && cones && !plan_.method->constrains()) {
     std::string why;
-    compliance = probe(model_, bulk, b_, *dynamic, *plan_.solver, linear_, why);
+    compliance = probe(model_, Bulk(model_, nullptr), b_, *dynamic, *plan_.solver, linear_, why);
     if (!why.empty()) return fail(why, nullptr);
   }
   laws_ = std::make_unique<Behaviours>(model_, *plan_.method, compliance.rows() > 0 ? &compliance : nullptr);
 
-  const Eigen::Index n = model_.free();
+  const Eigen::Index n = rest_ != nullptr ? rest_->free() : model_.free();
   state_.displacement = state_.velocity = state_.acceleration = Vector::Zero(n);
   start_gap_ = gap_;
   for (const PrescribedMotion& motion : model_.motions)
@@ -178,17 +183,12 @@ void Runner::execute() {
   for (const Stage& stage : plan_.stages) {
     if (stage.type == Stage::Type::statics) {
       march_.reset();
-      if (!statics(stage, bulk)) return;
+      if (!statics(stage, nullptr)) return;
       show(stage, nullptr, stage.steps, true);
       continue;
     }
-    if (stage.p_delta && geometric_ == nullptr) {
-      geometric_ = std::make_unique<Sparse>(geometric_stiffness(model_, state_));
-      const Bulk second_order(model_, geometric_.get());
-      Stage again;
-      again.type = Stage::Type::statics;
-      if (state_.displacement.squaredNorm() > 0 && !statics(again, second_order)) return;
-    }
+    if (stage.p_delta && geometric_ == nullptr && !second_order()) return;
+    if (rest_ != nullptr) release();
     if (!std::exchange(moving, true)) add_initial_state();
     const Bulk stage_bulk(model_, geometric_.get());
     if (!dynamics(stage, stage_bulk)) return;
@@ -259,9 +259,47 @@ void Runner::initial_forces() {
   state_.mean_force = state_.force;
 }
 
-bool Runner::statics(const Stage& stage, const Bulk& bulk) {
+/// The geometric stiffness of the present static state, and equilibrium with it.
+bool Runner::second_order() {
+  const Model& resting = rest_ != nullptr ? *rest_ : model_;
+  geometric_ = std::make_unique<Sparse>(geometric_stiffness(resting, state_, model_.reduction));
+  if (state_.displacement.isZero(0)) return true;
+  Stage again;
+  again.type = Stage::Type::statics;
+  if (rest_ == nullptr) return statics(again, geometric_.get());
+  const Sparse geometric = geometric_stiffness(resting, state_);
+  return statics(again, &geometric);
+}
+
+/// The state of the model with all supports on the free unknowns of the one without those of static stages alone: the same displacements.
+State Runner::carried() const {
+  State state = state_;
+  const Vector full = rest_->full(state_.displacement, 0, state_.time);
+  const Eigen::Index n = model_.free();
+  state.displacement.resize(n);
+  for (Eigen::Index i = 0; i < n; ++i) state.displacement[i] = full[model_.kept[static_cast<std::size_t>(i)]];
+  state.velocity = state.acceleration = Vector::Zero(n);
+  return state;
+}
+
+/// Goes over to the model without these supports. What is missing for equilibrium, r = K u + B^T p - f, is what they have borne; from now
+/// on it is a constant load, so that nothing moves when nothing shakes (THEORY section 9).
+void Runner::release() {
+  state_ = carried();
+  held_ = model_.stiffness * state_.displacement;
+  if (geometric_ != nullptr) held_ += *geometric_ * state_.displacement;
+  if (b_.rows() > 0) held_ += b_.transpose() * state_.force;
+  for (const Drive& drive : model_.drives)
+    if (drive.dead) held_ -= drive.factor(state_.time) * drive.shape;
+  rest_ = nullptr;
+}
+
+bool Runner::statics(const Stage& stage, const Sparse* geometric) {
+  const Model& resting = rest_ != nullptr ? *rest_ : model_;
+  const Sparse b = rest_ != nullptr ? stack_interfaces(*rest_) : b_;
+  const Bulk bulk(resting, geometric);
   const StaticOutcome outcome =
-      solve_statics(model_, bulk, b_, start_gap_, *laws_, *plan_.method, *plan_.solver, stage.steps, state_, linear_);
+      solve_statics(resting, bulk, b, start_gap_, *laws_, *plan_.method, *plan_.solver, stage.steps, state_, linear_);
   result_.counts.retries += outcome.retries;
   result_.counts.iterations += outcome.iterations;
   if (!outcome.converged) {
@@ -275,7 +313,9 @@ bool Runner::statics(const Stage& stage, const Bulk& bulk) {
 void Runner::show(const Stage& stage, const Stepper* stepper, long step, bool last) {
   if (!observe_) return;
   const auto start = std::chrono::steady_clock::now();
-  observe_({*seen_, stepper, result_, static_cast<std::size_t>(&stage - plan_.stages.data()), step, last});
+  std::optional<State> resting;
+  if (rest_ != nullptr) resting = carried();
+  observe_({resting ? *resting : *seen_, stepper, result_, static_cast<std::size_t>(&stage - plan_.stages.data()), step, last});
   shown_ += std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
 }
 
@@ -303,7 +343,8 @@ void Runner::note_views(double step) {
 }
 
 /// Energy created and lost so far; the scale is the largest external work, or the energy at the beginning where no load works. Work of the
-/// dead loads over 1e-10 m is round-off: a structure that only stands there has created nothing.
+/// dead loads over 1e-10 m and 1e-10 of the energy that the static state stores are round-off: a structure that only stands there has
+/// created nothing.
 void Runner::finish_energy(const Stepper& stepper) {
   const Energies& energies = stepper.energies();
   const double created = energies.residual + std::max(0.0, -energies.impact);
@@ -311,7 +352,7 @@ void Runner::finish_energy(const Stepper& stepper) {
   if (-energies.residual > result_.energy_lost) result_.energy_lost = -energies.residual, result_.energy_lost_time = seen_->time;
   result_.energy_scale = std::max(stepper.largest_external(), initial_scale_);
   if (result_.energy_scale <= 0) result_.energy_scale = stepper.initial_energy();
-  result_.energy_scale = std::max(result_.energy_scale, round_off_work_);
+  result_.energy_scale = std::max(result_.energy_scale, round_off_energy_);
 }
 
 /// False when the run ends here: not finite, far beyond the energy limit, or rotated beyond the small-displacement model.
@@ -342,6 +383,7 @@ bool Runner::dynamics(const Stage& stage, const Bulk& bulk) {
   options.halvings = stage.halvings;
   options.monolithic = plan_.monolithic;
   options.oracle_tolerance = plan_.oracle_tolerance;
+  if (held_.size() > 0) options.held = &held_;
   if (ledger_ && !(march_ && march_->p_delta == stage.p_delta && march_->scheme == stage.scheme)) ledger_->acceleration = false;
   Stepper stepper(model_, bulk, b_, gap_, *laws_, *plan_.method, *plan_.impact, *plan_.solver, options, linear_);
   stepper.start(std::move(state_), ledger_ ? &*ledger_ : nullptr);
@@ -351,8 +393,9 @@ bool Runner::dynamics(const Stage& stage, const Bulk& bulk) {
   Recorder recorder(model_, plan_, viewer_, rows, result_);
   const long picture_every = plan_.frames > 0 ? std::max(1L, steps / plan_.frames) : 0;
   if (!ledger_) initial_scale_ = stepper.energies().kinetic;
+  if (!ledger_) round_off_energy_ = 1e-10 * (stepper.energies().strain + stepper.energies().stored);
   for (const Drive& drive : model_.drives)
-    if (drive.dead) round_off_work_ += 1e-10 * drive.shape.lpNorm<1>() * std::abs(drive.function->value(seen_->time));
+    if (drive.dead) round_off_energy_ += 1e-10 * drive.shape.lpNorm<1>() * std::abs(drive.function->value(seen_->time));
   const auto observe = [&](long step) {
     viewer_.look(seen_->opening, seen_->force, views_);
     note_views(step == 0 ? 0 : stage.step);

@@ -69,6 +69,8 @@ struct Request {
 struct RunPlan {
   std::string name, label, group;
   std::vector<Stage> stages;
+  // With the supports that hold in static stages alone, which the run's model lacks; null: there are none. Same nodes and interface rows.
+  std::shared_ptr<const Model> rest;
   std::shared_ptr<const ContactMethod> method;
   std::shared_ptr<const ImpactRule> impact;
   std::shared_ptr<const LinearSolver> solver;  // of the bulk when it is not small

@@ -31,6 +31,10 @@ double static_force(const Built& built, const RunResult& run, int interface) {
 
 void say_uplift(const Built& built, const RunResult& run, Verdict& verdict) {
   const double duration = run.end_time;
+  if (built.facts.empty()) {
+    verdict.paragraphs.push_back("The model has no interface: a linear analysis, which cannot say whether anything lifts off.");
+    return;
+  }
   if (run.max_uplifted_ratio.value <= 0) {
     verdict.paragraphs.push_back(
         "No point of any interface opened: a linear analysis of the bonded model would have been enough for these loads.");
@@ -50,6 +54,7 @@ void say_uplift(const Built& built, const RunResult& run, Verdict& verdict) {
 }
 
 void say_forces(const Built& built, const RunResult& run, Verdict& verdict) {
+  if (built.facts.empty()) return;
   verdict.facts.push_back({"Base moment", spoken(std::abs(run.max_base_moment.value), "N m"),
                            fmt::format("largest, at {}", spoken(run.max_base_moment.time, "s"))});
   for (std::size_t k = 0; k < built.facts.size(); ++k) {
@@ -195,7 +200,7 @@ Verdict judge(const Built& built, const RunResult& run, const RunResult* bonded)
     verdict.headline = fmt::format("The base uplifts: up to {} of its area, by up to {}", percent(run.max_uplifted_ratio.value),
                                    spoken(run.max_opening.value, "m"));
   } else {
-    verdict.headline = "The base does not uplift";
+    verdict.headline = built.facts.empty() ? "A linear run without an interface" : "The base does not uplift";
   }
   if (run.status == RunStatus::interrupted) verdict.headline += fmt::format(" (interrupted at {})", spoken(run.end_time, "s"));
   if (run.status == RunStatus::failed && run.counts.steps == 0) return verdict;

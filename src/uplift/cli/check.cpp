@@ -116,7 +116,7 @@ Findings find(const Case& read, const RunSpec& spec, const Built& built) {
   look_at_mesh(read, found);
   found.fields = field_forecast(read, built);
   found.fixed = frequencies(fixed_base_modes(built.model, 3));
-  found.bonded = frequencies(bonded_modes(built.model, 5));
+  found.bonded = frequencies(bonded_modes(built.at_rest(), 5));
   found.base_free = frequencies(uplift::modes(built.model.stiffness, built.model.mass, 5));
   if (const Stage* stage = dynamic_stage(built.plan)) found.ratios = stiffness_ratios(built.model, *stage, *built.plan.solver);
   double fastest = 0;

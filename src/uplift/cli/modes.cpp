@@ -59,20 +59,20 @@ void write_modes(JsonWriter& json, const Model& model, const std::vector<Mode>& 
 int modes(const Options& options, int count) {
   const Loaded loaded = load(options);
   const Built built = build(loaded.read, runs_of_case(loaded.read).front());
-  const std::vector<Mode> bonded = bonded_modes(built.model, count),
-                          base_free = uplift::modes(built.model.stiffness, built.model.mass, count);
+  const std::vector<Mode> bonded = bonded_modes(built.at_rest(), count),
+                          base_free = uplift::modes(built.at_rest().stiffness, built.at_rest().mass, count);
   if (options.json) {
     JsonWriter json(0, 2);
     json.begin_object().member("case", loaded.from.case_file).key("bonded");
-    write_modes(json, built.model, bonded);
+    write_modes(json, built.at_rest(), bonded);
     json.key("base_free");
-    write_modes(json, built.model, base_free);
+    write_modes(json, built.at_rest(), base_free);
     json.end_object();
     say(json.take());
     return Exit::done;
   }
-  print_modes(built.model, bonded, "interfaces closed and bonded");
-  print_modes(built.model, base_free, "\nbase free (interfaces open)");
+  print_modes(built.at_rest(), bonded, "interfaces closed and bonded");
+  print_modes(built.at_rest(), base_free, "\nbase free (interfaces open)");
   say("\nmode shapes: uplift modes --json");
   return Exit::done;
 }

@@ -109,9 +109,14 @@ Stepper::Level& Stepper::level(int halving) {
   return made;
 }
 
+void Stepper::add_force(double time, Vector& force) const {
+  model_.add_force(time, force);
+  if (options_.held != nullptr) force += *options_.held;
+}
+
 void Stepper::forces_at(const State& state, Vector& result) const {  // f - C v - K u - B^T p
   result.setZero();
-  model_.add_force(state.time, result);
+  add_force(state.time, result);
   product_.resize(bulk_.unknowns);
   bulk_.damping.multiply(state.velocity, product_);
   result -= product_;
@@ -149,7 +154,7 @@ void Stepper::start(State state, const Ledger* before) {
   }
   if (!path_ && !impacts_ && mass_failure_.empty()) accelerator_.reset();  // its factor is large, and the scheme carries accelerations on
   next_ = now_;
-  model_.add_force(now_.time, force_now_);
+  add_force(now_.time, force_now_);
   products(now_.displacement, now_.velocity, stiff_now_, momentum_now_);
   const InterfaceProblem blocks = blocks_of(model_, behaviours_);
   interface_energy_.update(blocks, now_.opening, now_.history);
@@ -281,7 +286,7 @@ bool Stepper::try_step(Level& level) {
   }
   next_.time = now_.time + level.step;
   std::fill_n(force_next_.data(), force_next_.size(), 0.0);
-  model_.add_force(next_.time, force_next_);
+  add_force(next_.time, force_next_);
   if (gap_moves_) move_gap(now_.time, next_.time);
   right_hand_side(level);
   last_ = &level.solver->problem();

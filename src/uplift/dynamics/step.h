@@ -20,6 +20,7 @@ struct StepOptions {
   int halvings = 8;
   bool monolithic = false;      // the oracle: Newton on all unknowns instead of the condensed step
   double oracle_tolerance = 0;  // > 0: every condensed step is also taken by the oracle; a larger relative difference fails it
+  const Vector* held = nullptr;  // constant forces beside those of the model [N, N m], free unknowns: what released supports have borne
 };
 
 struct StepCounts {
@@ -66,6 +67,7 @@ class Stepper {
   Level& level(int halving);
   bool try_step(Level& level);
   bool substep(int halving);
+  void add_force(double time, Vector& force) const;
   void move_gap(double from, double to);
   /// ku = K u and mv = M v, in one pass where the bulk is large.
   void products(const Vector& u, const Vector& v, Vector& ku, Vector& mv) const;

@@ -39,6 +39,7 @@ Chart law_chart(const ReportRun& run) {
       {"Opening", "m"},
       {"Traction", "Pa"},
       {}};
+  if (run.built->model.interfaces.empty()) return chart;
   const Interface& interface = run.built->model.interfaces.front();
   if (!interface.law) return chart;
   const Values& values = *run.built->behaviours.front();

@@ -37,6 +37,17 @@ void ModelBuilder::prescribe(int node, Dof dof, std::shared_ptr<const TimeFuncti
   motions_.push_back({std::move(name), std::move(motion)});
 }
 
+void ModelBuilder::prescribe(const std::vector<int>& nodes, Dof dof, std::shared_ptr<const TimeFunction> motion, std::string name,
+                             const Where& where) {
+  for (const int node : nodes) supports_.push_back({node, dof, static_cast<int>(motions_.size()), where});
+  motions_.push_back({std::move(name), std::move(motion)});
+}
+
+void ModelBuilder::tie_equal(int a, int b, Dof dof, Where where) {
+  assert(a != b);
+  equals_.push_back({a, b, dof, std::move(where)});
+}
+
 void ModelBuilder::tie_rigid(int master, int slave, Where where) {
   ties_.push_back({master, slave, std::move(where)});
 }
@@ -62,6 +73,10 @@ void ModelBuilder::add_interface(InterfaceSpec spec, Where where) {
 void ModelBuilder::add_load(std::string name, std::vector<std::pair<int, double>> pattern, std::shared_ptr<const TimeFunction> function,
                             bool dead, Where where) {
   loads_.push_back({std::move(name), std::move(pattern), std::move(function), dead, std::move(where)});
+}
+
+void ModelBuilder::add_feed(std::string name, std::vector<Triplet> pattern, int functions, std::shared_ptr<const TimeFunctions> values) {
+  feeds_.push_back({std::move(name), std::move(pattern), functions, std::move(values)});
 }
 
 void ModelBuilder::set_gravity(Place acceleration, Where) {

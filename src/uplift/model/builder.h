@@ -41,6 +41,10 @@ class ModelBuilder {
   void add_element(std::unique_ptr<const Element> element, Where where);
   void fix(int node, Dof dof, Where where);
   void prescribe(int node, Dof dof, std::shared_ptr<const TimeFunction> motion, std::string name, Where where);
+  /// The same motion of several nodes.
+  void prescribe(const std::vector<int>& nodes, Dof dof, std::shared_ptr<const TimeFunction> motion, std::string name, const Where& where);
+  /// Both nodes have the same value of one unknown. A tie that follows from other constraints is left out.
+  void tie_equal(int a, int b, Dof dof, Where where);
   /// the slave's translations and rotations follow the master rigidly (small displacements); chains are allowed.
   void tie_rigid(int master, int slave, Where where);
   /// The distance of the two nodes does not change (beam without axial flexibility).
@@ -49,6 +53,10 @@ class ModelBuilder {
   /// force pattern: (full unknown, value) pairs; without a function the load is constant
   void add_load(std::string name, std::vector<std::pair<int, double>> pattern, std::shared_ptr<const TimeFunction> function, bool dead,
                 Where where);
+  /// Forces that follow many functions of time: entries (full unknown, function, value).
+  void add_feed(std::string name, std::vector<Triplet> pattern, int functions, std::shared_ptr<const TimeFunctions> values);
+  /// Interfaces keep tangential components that supports and constraints hold still.
+  void keep_tangents() { keeps_tangents_ = true; }
   /// Gravity [m/s2] on all masses: a dead load.
   void set_gravity(Place acceleration, Where where);
   /// Relative-frame ground acceleration: inertia forces -M r a(t).
@@ -67,6 +75,17 @@ class ModelBuilder {
   struct Pair {
     int first, second;  // master, slave or ends of a link
     Where where;
+  };
+  struct Equal {
+    int first, second;
+    Dof dof;
+    Where where;
+  };
+  struct Feeding {
+    std::string name;
+    std::vector<Triplet> pattern;
+    int functions;
+    std::shared_ptr<const TimeFunctions> values;
   };
   struct Motion {
     std::string name;
@@ -100,11 +119,14 @@ class ModelBuilder {
   std::vector<std::unique_ptr<const Element>> elements_;
   std::vector<Support> supports_;
   std::vector<Pair> ties_, links_;
+  std::vector<Equal> equals_;
   std::vector<Motion> motions_;
   std::vector<InterfaceSpec> interfaces_;
   std::vector<Where> interface_where_;
   std::vector<Load> loads_;
   std::vector<Ground> grounds_;
+  std::vector<Feeding> feeds_;
+  bool keeps_tangents_ = false;
   Vec3 gravity_ = Vec3::Zero();
   BulkDamping damping_;
 };

@@ -1,5 +1,6 @@
 // Supports, rigid bodies and inextensible beams as linear constraints on the full unknowns, eliminated exactly:
 //   support       u = prescribed
+//   equal tie     u_b = u_a
 //   rigid tie     u_s = u_m + rotation_m x r,  rotation_s = rotation_m,   r = slave - master     (small displacements)
 //   inextensible  e . (u_b - u_a) = 0,   e the unit vector from a to b
 #include <fmt/format.h>
@@ -19,13 +20,14 @@ class ConstraintList {
  public:
   explicit ConstraintList(Elimination& elimination) : elimination_(elimination) {}
 
-  /// Returns the number of the row.
+  /// Returns the number of the row; -1 for one that repeats others where that may be (`repeats`): it is left out.
   int add(const Elimination::Row& row, int preferred, const std::string& what, const std::string& advice,
-          const std::vector<std::string>& motions, const Where& where) {
+          const std::vector<std::string>& motions, const Where& where, bool repeats = false) {
     switch (elimination_.add(row, preferred)) {
       case Elimination::Result::independent:
         break;
       case Elimination::Result::redundant:
+        if (repeats) return -1;
         throw InputError(where, "", "constraints that do not repeat each other", fmt::format(fmt::runtime(repeated), what, advice));
       case Elimination::Result::contradictory:
         throw InputError(where, "", "constraints that agree",
@@ -95,6 +97,10 @@ void ModelBuilder::eliminate(Model& model, Matrix& motion_shapes) const {
     if (support.motion >= 0) row.motions[support.motion] = 1;
     list.add(row, unknown, fmt::format("a {} of {}", support.motion < 0 ? "support" : "prescribed motion", name_of(unknown)), "", names,
              support.where);
+  }
+  for (const Equal& tie : equals_) {
+    const int a = space_.at(tie.first, tie.dof), b = space_.at(tie.second, tie.dof);
+    list.add({{{a, -1}, {b, 1}}, {}}, b, fmt::format("a tie of {} to {}", name_of(a), name_of(b)), "", names, tie.where, true);
   }
   for (const Pair& link : links_) {
     const int a = link.first, b = link.second;

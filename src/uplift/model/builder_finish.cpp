@@ -95,6 +95,11 @@ void ModelBuilder::make_drives(Model& model, const Matrix& motion_shapes) const 
   }
   for (const Ground& ground : grounds_)
     add(ground.name, -(full.mass * translation(space_, ground.direction, unknowns)), ground.function, false);
+  for (const Feeding& feed : feeds_) {
+    Sparse pattern(unknowns, feed.functions);
+    pattern.setFromTriplets(feed.pattern.begin(), feed.pattern.end());
+    model.feeds.push_back({feed.name, model.reduction.transpose() * pattern, feed.values});
+  }
   for (Index k = 0; k < motion_shapes.cols(); ++k) {
     const Motion& motion = motions_[k];
     const Vector shape = motion_shapes.col(k);
@@ -116,7 +121,7 @@ Model ModelBuilder::finish() {
   Matrix motion_shapes;
   assemble(model.assembly);
   eliminate(model, motion_shapes);
-  drop_dead_tangents(model, motion_shapes);
+  if (!keeps_tangents_) drop_dead_tangents(model, motion_shapes);
   place_interfaces(model);
 
   const Assembly& full = model.assembly;

@@ -95,6 +95,10 @@ Vector constraint_forces(const Model& model, const State& state) {
 }
 
 Sparse geometric_stiffness(const Model& model, const State& state) {
+  return geometric_stiffness(model, state, model.reduction);
+}
+
+Sparse geometric_stiffness(const Model& model, const State& state, const Sparse& reduction) {
   const Assembly& full = model.assembly;
   const Vector displacement = model.full(state.displacement, 0, state.time), constraint = constraint_forces(model, state);
   const Space space = model.space;
@@ -128,7 +132,7 @@ Sparse geometric_stiffness(const Model& model, const State& state) {
   // the tie's force on the slave balances everything else that acts on it
   for (const Assembly::Tie& tie : full.ties) entries.add_rotation(tie.slave, -force_of(constraint, tie.row, space), tie.offset);
   for (const Assembly::Arm& arm : full.arms) entries.add_rotation(arm.node, arm_force(model, state, arm), arm.offset);
-  return model.reduction.transpose() * entries.matrix(model.full_unknowns()) * model.reduction;
+  return reduction.transpose() * entries.matrix(model.full_unknowns()) * reduction;
 }
 
 }  // namespace uplift

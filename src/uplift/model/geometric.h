@@ -14,6 +14,8 @@ namespace uplift {
 ///    h above the master gives -W h.
 /// The state must be in equilibrium under the drives that are dead; state.force holds the interface forces [N].
 Sparse geometric_stiffness(const Model& model, const State& state);
+/// The same on the free unknowns of another model of the same nodes: full = reduction * free.
+Sparse geometric_stiffness(const Model& model, const State& state, const Sparse& reduction);
 
 /// Forces of the constraints (rows of Assembly::constraints) that hold the state in equilibrium under the dead drives [N, N m]:
 /// reactions of supports (acting on the structure), forces of rigid ties on the slave, minus the tension of inextensible beams.

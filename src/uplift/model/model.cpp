@@ -46,6 +46,11 @@ Vector Model::full(const Vector& q, int derivative, double time) const {
 
 void Model::add_force(double time, Vector& force) const {
   for (const Drive& drive : drives) force += drive.factor(time) * drive.shape;
+  Vector values;
+  for (const Feed& feed : feeds) {
+    feed.functions->values(time, values);
+    force += feed.pattern * values;
+  }
 }
 
 void Model::add_prescribed_opening(double time, Vector& opening) const {

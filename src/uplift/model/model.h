@@ -26,6 +26,21 @@ struct Drive {
   double factor(double time) const;                                     // the function's derivative of this order
 };
 
+/// Many functions of time at once.
+class TimeFunctions {
+ public:
+  virtual ~TimeFunctions() = default;
+  /// Fills (overwrites) the values at a time.
+  virtual void values(double time, Vector& values) const = 0;
+};
+
+/// Forces that follow many functions of time: pattern * values(t). Never a dead load.
+struct Feed {
+  std::string name;
+  Sparse pattern;  // free unknowns x functions
+  std::shared_ptr<const TimeFunctions> functions;
+};
+
 /// Motion of supported unknowns: full displacement += shape * function(t).
 struct PrescribedMotion {
   std::string name;
@@ -70,6 +85,7 @@ struct Model {
   std::vector<std::unique_ptr<const Element>> elements;
   std::vector<Interface> interfaces;
   std::vector<Drive> drives;
+  std::vector<Feed> feeds;
   std::vector<PrescribedMotion> motions;
 
   Sparse reduction;                        // T: full x free
@@ -88,7 +104,7 @@ struct Model {
   double full(int full_unknown, const Vector& q, int derivative, double time) const;
   /// All full unknowns at once.
   Vector full(const Vector& q, int derivative, double time) const;
-  /// Adds the force of all drives at a time to `force` (free unknowns).
+  /// Adds the force of all drives and feeds at a time to `force` (free unknowns).
   void add_force(double time, Vector& force) const;
   /// Adds what the prescribed motions do to the openings (rows of all interfaces).
   void add_prescribed_opening(double time, Vector& opening) const;
