@@ -125,7 +125,7 @@ export class SpaceCard {
     return h(
       "figure",
       { class: `card is-wide space-card${beside ? " is-beside" : ""}`, id: "space" },
-      h("header", {}, h("h3", {}, player ? "Motion in three dimensions" : "Model as computed"), player ? h("label", { class: "run-select" }, player.select) : null),
+      h("header", {}, h("h3", {}, player ? "Motion in 3D" : "Model as computed"), player ? h("label", { class: "run-select" }, player.select) : null),
       h("div", { class: "space-body" },
         h("div", { class: "space-main" }, stage.element, stage.note, player?.readouts, player?.timeline, player?.controls, stage.options),
         this.faces_.length > 0 ? this.maps_ : null),
