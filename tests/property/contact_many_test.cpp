@@ -2,6 +2,7 @@
 #include <rapidcheck.h>
 
 #include <cmath>
+#include <limits>
 #include <random>
 
 #include "unit/contact_support.h"
@@ -87,11 +88,20 @@ void fill(const Draw& draw, Own& own) {
   for (Index i = 0; i < 2 * n; ++i) own.problem.from[i] = 1e-5 * uniform(engine);
 }
 
+/// What the residual may be: a point counts as closed when it penetrates by more than 1e-12 m (gap_tolerance), and where the interface
+/// moves and pushes by round-off only, relative residuals mean nothing.
+double allowed(const InterfaceProblem& problem, const InterfaceSolution& solution) {
+  const double moved = (problem.factor * solution.z).cwiseAbs().maxCoeff();
+  const double pushed = (problem.factor * (problem.factor.transpose() * solution.force)).cwiseAbs().maxCoeff();
+  if (std::max(moved, pushed) <= 1e-13 * problem.free_opening.cwiseAbs().maxCoeff()) return std::numeric_limits<double>::infinity();
+  return 1e-7 + 4e-12 / std::max(moved, 1e-300);
+}
+
 // Claim: every method ends every problem with an answer whose common residual is small (p, opening and z together satisfy balance, law or
 // cone) or with a reason; nothing is "converged" that the residual does not confirm. The exact methods solve almost all independent ones.
 TEST(ManyPoints, every_end_is_honest) {
   int asked = 0, exact = 0, solved = 0;
-  rc::check("honest end", [&] {
+  const bool honest = rc::check("honest end", [&] {
     const Draw draw = draw_problem();
     for (const std::string name : {"lagrange", "augmented_lagrangian", "penalty", "newton", "sdm"}) {
       Own own;
@@ -117,7 +127,7 @@ TEST(ManyPoints, every_end_is_honest) {
           RC_ASSERT(!outcome.why.empty());
         } else if (name != "penalty") {
           const double residual = yardstick(own.problem, solution);
-          if (!(residual <= 1e-7))
+          if (!(residual <= allowed(own.problem, solution)))
             RC_FAIL(name + " says that it converged, residual " + std::to_string(std::log10(residual)) + ", " +
                     std::to_string(draw.points) + " points, rigid " + std::to_string(draw.rigid) + ", seed " + std::to_string(draw.seed));
         }
@@ -126,6 +136,7 @@ TEST(ManyPoints, every_end_is_honest) {
       }
     }
   });
+  EXPECT_TRUE(honest);
   EXPECT_GE(solved, exact * 95 / 100) << exact << " problems of " << asked;
 }
 

@@ -39,9 +39,9 @@ class AugmentedLagrangian final : public ContactMethod {
     AugmentedScratch& scratch = solution.augmented;
     prepare(problem, scratch);
     const AugmentedForce augmented{&scratch.multiplier, &scratch.stiffness};
-    const int tried = guess_by_status(problem, solution);
-    Outcome total = iterate(problem, augmented, solution);
-    total.iterations += tried;
+    const Outcome guess = guess_by_status(problem, solution);
+    Outcome total = iterate(problem, augmented, guess.converged, solution);
+    total.iterations += guess.iterations;
     reset_stiffness(scratch);
     return total;
   }
@@ -49,7 +49,8 @@ class AugmentedLagrangian final : public ContactMethod {
   bool constrains() const override { return true; }
 
  private:
-  Outcome iterate(const InterfaceProblem& problem, const AugmentedForce& augmented, InterfaceSolution& solution) const {
+  /// `guessed`: the multipliers are expected to be the answer.
+  Outcome iterate(const InterfaceProblem& problem, const AugmentedForce& augmented, bool guessed, InterfaceSolution& solution) const {
     constexpr double epsilon = std::numeric_limits<double>::epsilon();
     AugmentedScratch& scratch = solution.augmented;
     Outcome total;
@@ -76,8 +77,8 @@ class AugmentedLagrangian final : public ContactMethod {
         }
       }
       // under a rigid footing friction can be shared in many ways, between which the multipliers wander while everything else stands still
-      const bool wanders =
-          rubs && update >= 8 && change <= 1e-3 * largest && yardstick(problem, solution, solution.yardstick) <= 10 * tolerance_;
+      const bool wanders = rubs && (guessed || update >= 8) && change <= 1e-3 * largest &&
+                           yardstick(problem, solution, solution.yardstick) <= 10 * tolerance_;
       if (change <= tolerance_ * largest || wanders || change <= 4 * epsilon * noise) {
         total.converged = true;
         return total;
@@ -93,18 +94,18 @@ class AugmentedLagrangian final : public ContactMethod {
   }
 
   /// Where many independent rows rub, Newton's method has no potential to follow and fails from a poor guess: the exact status iteration
-  /// gives the first multipliers, which the updates then have to confirm. Returns its iterations.
-  static int guess_by_status(const InterfaceProblem& problem, InterfaceSolution& solution) {
+  /// gives the first multipliers, which the updates then have to confirm.
+  static Outcome guess_by_status(const InterfaceProblem& problem, InterfaceSolution& solution) {
     const bool rubs = std::any_of(problem.blocks.begin(), problem.blocks.end(),
                                   [](const Block& block) { return block.cone != nullptr && block.cone->friction() > 0; });
-    if (!rubs || !PointRows::suits(problem)) return 0;
+    if (!rubs || !PointRows::suits(problem)) return {};
     size_solution(problem, solution);
     const Outcome outcome = solve_frictional(problem, {}, solution);
     if (outcome.converged)
       solution.augmented.multiplier = solution.force;
     else
       solution.z.setZero();
-    return outcome.iterations;
+    return outcome;
   }
 
   static void reset_stiffness(AugmentedScratch& scratch) {

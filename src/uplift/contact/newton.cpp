@@ -275,7 +275,8 @@ Outcome solve_by_newton(const InterfaceProblem& problem, const AugmentedForce& a
   size_scratch(problem, solution);
   NewtonScratch& scratch = solution.newton;
   Outcome outcome;
-  constexpr int patience = 12;  // iterations after which the search turns from the potential to the residual
+  int patience = 12;         // iterations after which the search turns from the potential to the residual
+  constexpr int again = 25;  // when a large problem starts afresh: caught between two branches of a point, as friction can be
   // where an iteration is expensive, round-off counts as converged at once; sums over many columns have more of it
   const bool large = PointRows::suits(problem);
   const int enough = large ? 1 : patience;
@@ -299,6 +300,13 @@ Outcome solve_by_newton(const InterfaceProblem& problem, const AugmentedForce& a
       outcome.converged = true;
       scratch.follows = predictable;
       return outcome;
+    }
+    if (large && outcome.iterations == again) {
+      patience += again;
+      solution.z.setZero();
+      evaluate(problem, augmented, true, solution);
+      form_gradient(problem, true, solution);
+      size = norm(scratch.gradient);
     }
     const double before = size;
     std::copy_n(solution.z.data(), r, scratch.origin.data());
