@@ -18,21 +18,11 @@ StatusStep::StatusStep() : rows_(std::make_unique<PointRows>()) {}
 StatusStep::~StatusStep() = default;
 
 void StatusStep::size_work() {
-  const Index rows = problem_->rows(), r = problem_->factor.cols(), least = std::min(rows, r);
-  if (moved_.size() == rows && z_.size() == r && u_.cols() == rows) return;
+  const Index rows = problem_->rows(), r = problem_->factor.cols();
+  if (moved_.size() == rows && z_.size() == r) return;
   for (Vector* v : {&linear_force_, &field_, &q_, &excess_, &moved_, &taken_, &known_, &force_}) v->setZero(rows);
   for (Vector* v : {&right_, &z_, &reaction_}) v->setZero(r);
   for (Vector* v : {&more_, &resultant_}) v->setZero(std::max(rows, r));
-  hessian_.setZero(r, r);
-  work_.setZero(rows, r);
-  u_.setZero(r, rows);
-  v_.setZero(r, rows);
-  inverse_.setZero(r, least);
-  product_.setZero(rows, least);
-  range_ = image_ = reduced_ = Orthonormal();
-  range_.size(r, rows);
-  image_.size(rows, least);
-  reduced_.size(rows, least);
   held_.reserve(static_cast<std::size_t>(rows));
   changed_.reserve(static_cast<std::size_t>(rows));
 }
@@ -85,6 +75,19 @@ void StatusStep::turn_slip() {
 /// H and the right-hand side; false when something is not finite, or when nothing holds the body.
 bool StatusStep::assemble() {
   const Matrix& c = problem_->factor;
+  const Index rows = problem_->rows(), r = c.cols(), least = std::min(rows, r);
+  if (hessian_.rows() != r || u_.cols() != rows) {  // not before they are needed: many independent rows do without
+    hessian_.setZero(r, r);
+    work_.setZero(rows, r);
+    u_.setZero(r, rows);
+    v_.setZero(r, rows);
+    inverse_.setZero(r, least);
+    product_.setZero(rows, least);
+    range_ = image_ = reduced_ = Orthonormal();
+    range_.size(r, rows);
+    image_.size(rows, least);
+    reduced_.size(rows, least);
+  }
   plain_ = offsets_.back() == 0 && problem_->shift.size() == 0;
   hessian_.setIdentity();
   right_.setZero();
