@@ -329,6 +329,22 @@ TEST(CaseGround, FreeFieldOfLayersIsEvenToRoundOff) {
   }
 }
 
+TEST(CaseGround, MotionWithinTheGroundMovesItsGroupAsOne) {
+  const Mesh mesh = ground(Cell::quad4, 2, false);
+  const std::string text = soil + replaced(supports(false), "fixed = [\"ux\", \"uy\"]\nstages = \"static\"", "fixed = [\"uy\"]") +
+                           "[[motion]]\ngroup = \"soil_bottom\"\ndirection = \"ux\"\namplitude = 0.02\nfunction = \"pulse\"\n"
+                           "[[function]]\nname = \"pulse\"\nshape = { type = \"ricker\", frequency = 6 }\n" +
+                           stages(0.5, 4e-3);
+  const Case read = read_text(text, mesh);
+  EXPECT_EQ(build(read, runs_of_case(read).front()).model.motions.size(), 1u);
+  const RunResult result = run_text(text, mesh);
+  for (const Frame& frame : result.frames) {
+    const double x = std::numbers::pi * 6 * (frame.time - 1.5 / 6), wanted = 0.02 * (1 - 2 * x * x) * std::exp(-x * x);
+    for (std::size_t i = 0; i < mesh.nodes.size(); ++i)
+      if (mesh.nodes[i].y() < -depth + 1e-9) EXPECT_NEAR(frame.displacement[3 * static_cast<Index>(i)], wanted, 1e-15);
+  }
+}
+
 TEST(CaseGround, FreeFieldSaysWhatItNeeds) {
   const Mesh mesh = ground(Cell::quad4, 2, false);
   const std::string rest = soil + supports(false) + stages(0.1, 2e-3);

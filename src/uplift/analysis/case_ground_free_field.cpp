@@ -10,8 +10,8 @@
 #include "uplift/mesh/cell_quadrature.h"
 #include "uplift/mesh/cell_shapes.h"
 
-// What the free field puts on a lateral face whose outward normal is n (Zienkiewicz, Bicanic & Shen 1989; Nielsen 2006):
-//   t = C v_ff + sigma_ff n,     C of the viscous boundary, sigma_ff of the column's strains (and of their rates with stiffness damping).
+// What the free field puts on a lateral face whose outward normal is n (docs/theory, eq 24):
+//   t = c v_ff + sigma_ff n,     c of the viscous boundary, sigma_ff of the column's strains (and of their rates with stiffness damping).
 namespace uplift {
 namespace {
 
@@ -201,6 +201,8 @@ void add_free_field(const Values& root, const std::vector<Stage>& stages, const 
     if (absorbing.has("incident")) fail(absorbing, "free_field", "free_field on the sides, the incident wave below them", "both");
     if (!damping.modal.empty()) fail(absorbing, "free_field", "Rayleigh damping with a free field", "modal damping");
     const SideFaces side(absorbing, names);
+    std::vector<AbsorbingSection> sections;
+    for (const CellId face : side.faces) sections.push_back(absorbing_ground(absorbing, *side.solids.beside(face), names.space));
     const std::vector<ColumnLayer> rows = side.rows();
     const Values& incident = wave_below(root, side, rows.front().low);
     const Vec3 motion = incident_motion(incident, names.space);
@@ -212,7 +214,7 @@ void add_free_field(const Values& root, const std::vector<Stage>& stages, const 
     if (!field->why().empty()) fail(absorbing, "free_field", "a free field that can be marched", field->why());
     std::vector<Triplet> pattern;
     FacePattern faces(names, *field, axes, damping.beta, pattern);
-    for (const CellId face : side.faces) faces.add(side, face, absorbing_ground(absorbing, *side.solids.beside(face), names.space));
+    for (std::size_t i = 0; i < side.faces.size(); ++i) faces.add(side, side.faces[i], sections[i]);
     builder.add_feed("free field of " + absorbing.text("group"), std::move(pattern), field->functions(), field);
   }
 }

@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <cmath>
 #include <functional>
+#include <map>
 #include <numbers>
 #include <set>
 
@@ -247,14 +248,32 @@ bool is_released(const Values& support) {
   return support.text("stages") == "static";
 }
 
+using Unknown = std::pair<int, Dof>;
+
+/// Unknowns that motions of groups prescribe, with the group.
+std::map<Unknown, std::string> moved_by_groups(const Values& root, const CaseNames& names) {
+  std::map<Unknown, std::string> moved;
+  for (const Values& motion : root.tables("motion")) {
+    if (!motion.has("group")) continue;
+    const Dof dof = dof_of(motion.text("direction"), motion, "direction", names.space, false);
+    for (const int node : names.node_or_group(motion)) moved.emplace(Unknown(node, dof), motion.text("group"));
+  }
+  return moved;
+}
+
+/// Groups of two sides share the corner: it is held once, and moves where one of them moves.
 void add_supports(const Values& root, ModelBuilder& builder, const CaseNames& names, bool at_rest) {
-  std::set<std::pair<int, Dof>> held;  // by groups: those of two sides share the corner
+  const std::map<Unknown, std::string> moved = moved_by_groups(root, names);
+  std::set<Unknown> held;
   for (const Values& support : root.tables("support")) {
     if (is_released(support) && !at_rest) continue;
+    const bool group = support.has("group");
     for (const int node : names.node_or_group(support))
       for (const std::string& word : support.texts("fixed")) {
-        const Dof dof = dof_of(word, support, "fixed", names.space, support.has("node"));
-        if (!support.has("group") || held.emplace(node, dof).second) builder.fix(node, dof, support.where("fixed"));
+        const Unknown unknown(node, dof_of(word, support, "fixed", names.space, !group));
+        const auto motion = group ? moved.find(unknown) : moved.end();
+        if (motion != moved.end() && motion->second != support.text("group")) continue;
+        if (!group || held.insert(unknown).second) builder.fix(node, unknown.second, support.where("fixed"));
       }
   }
   for (const Values& motion : root.tables("motion")) {

@@ -283,7 +283,7 @@ State Runner::carried() const {
 }
 
 /// Goes over to the model without these supports. What is missing for equilibrium, r = K u + B^T p - f, is what they have borne; from now
-/// on it is a constant load, so that nothing moves when nothing shakes (THEORY section 9).
+/// on it is a constant load, so that nothing moves when nothing shakes (docs/theory, eq 22).
 void Runner::release() {
   state_ = carried();
   held_ = model_.stiffness * state_.displacement;
