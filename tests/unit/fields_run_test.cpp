@@ -210,6 +210,154 @@ TEST(FieldRun, NodesMoveAsInTheStates) {
   EXPECT_EQ(met, 1);
 }
 
+// ---- in space ----
+
+constexpr const char* sides_in_space = R"(
+[[support]]
+group = "soil_bottom"
+fixed = ["ux", "uy", "uz"]
+[[support]]
+group = "soil_left"
+fixed = ["ux"]
+[[support]]
+group = "soil_right"
+fixed = ["ux"]
+[[support]]
+group = "soil_front"
+fixed = ["uy"]
+[[support]]
+group = "soil_back"
+fixed = ["uy"]
+)";
+
+/// Soil and a body of that name on it, in space, with a bonded joint between them, at rest.
+std::string text_in_space(const std::string& box, const std::string& body, const std::string& density, const std::string& quadrature,
+                          const std::string& gravity) {
+  return "title = \"in space\"\nbonded = false\n" + box + R"(
+[[solid]]
+group = "soil_1"
+E = 5e7
+poisson = 0.3
+density = 1900
+[[solid]]
+group = ")" +
+         body + R"("
+E = 2e9
+poisson = 0.3
+density = )" +
+         density + R"(
+[[interface]]
+name = "joint"
+surface = { group = "interface", lower = ["soil_1"], quadrature = ")" +
+         quadrature + R"(" }
+law = { type = "elastic", K_n = 1e9, K_t = 7e8, tangential = "bonded" }
+[gravity]
+acceleration = )" +
+         gravity + R"(
+[[stage]]
+type = "static"
+[output.fields]
+format = "xdmf"
+precision = "float64"
+)" + sides_in_space;
+}
+
+class RaftInSpace : public testing::TestWithParam<const char*> {};
+
+/// A raft of 6 x 4 x 2 m, half of it in the soil, under a slanted gravity: whatever the soil does, the joint carries its mass times
+/// gravity.
+TEST_P(RaftInSpace, JointCarriesTheWeight) {
+  const std::string box = R"(
+[mesh.soil_box]
+embedment = 1
+[mesh.soil_box.soil]
+width = 12
+length = 10
+size = 3
+layers = [{ thickness = 3, size = 1 }]
+[mesh.soil_box.raft]
+width = 6
+length = 4
+height = 2
+size = 2
+)";
+  const Written written(text_in_space(box, "raft", "2500", GetParam(), "[3, 1, -10]"));
+  ASSERT_EQ(written.result.status, RunStatus::completed) << written.result.reason;
+  ASSERT_EQ(written.frames, 1);
+  const Hdf5Reader file = Hdf5Reader::open(written.file("fields/run.h5"));
+  const std::string mesh = "/mesh/interfaces", frame = "/frames/000000/";
+  const auto points = file.numbers(mesh + "/points"), traction = file.numbers(frame + "interfaces/points/traction");
+  const auto nodes = file.integers(mesh + "/quad4/nodes"), lip = file.integers(mesh + "/quad4/lip");
+  Vec3 total = Vec3::Zero();
+  for (std::size_t c = 0; c < lip.size(); ++c) {
+    if (lip[c] == 1) continue;
+    const auto first = [&](std::size_t a) { return 3 * static_cast<std::size_t>(nodes[4 * c + a]); };
+    const auto corner = [&](std::size_t a) { return Vec3(points[first(a)], points[first(a) + 1], points[first(a) + 2]); };
+    const double area = (corner(1) - corner(0)).norm() * (corner(3) - corner(0)).norm();  // rectangles
+    for (std::size_t a = 0; a < 4; ++a) total += area / 4 * Vec3(traction[first(a)], traction[first(a) + 1], traction[first(a) + 2]);
+  }
+  const double mass = 2500. * 6 * 4 * 2;
+  EXPECT_LT((total - mass * Vec3(3, 1, -10)).norm(), 1e-7 * 10 * mass);
+
+  const auto places = file.numbers("/mesh/raft/points"), u = file.numbers(frame + "raft/points/displacement");
+  const Model& model = written.built.model;
+  const Vector full = model.full(written.states.back().displacement, 0, 0);
+  int met = 0;
+  for (std::size_t i = 0; i < places.size() / 3; ++i)
+    for (const int node : written.built.facts[0].upper) {
+      const Vec3& at = model.nodes[static_cast<std::size_t>(node)].position;
+      if (at != Vec3(places[3 * i], places[3 * i + 1], places[3 * i + 2])) continue;
+      ++met;
+      for (int k = 0; k < 3; ++k) EXPECT_EQ(u[3 * i + static_cast<std::size_t>(k)], full[model.space.unknowns() * node + k]);
+    }
+  EXPECT_GE(met, 4);
+}
+
+INSTANTIATE_TEST_SUITE_P(Quadratures, RaftInSpace, testing::Values("nodal", "gauss"));
+
+TEST(FieldRun, StressOfAConfinedColumnInSpaceIsItsWeight) {
+  const std::string box = R"(
+[mesh.soil_box]
+cell = "hex20"
+[mesh.soil_box.soil]
+width = 2
+length = 2
+size = 1
+layers = [{ thickness = 2, size = 1 }]
+[mesh.soil_box.block]
+width = 2
+height = 2
+size = 1
+[[support]]
+group = "block_left"
+fixed = ["ux"]
+[[support]]
+group = "block_right"
+fixed = ["ux"]
+[[support]]
+group = "block_front"
+fixed = ["uy"]
+[[support]]
+group = "block_back"
+fixed = ["uy"]
+)";
+  const Written written(text_in_space(box, "block", "700", "nodal", "[0, 0, -10]"));
+  ASSERT_EQ(written.result.status, RunStatus::completed) << written.result.reason;
+  const Hdf5Reader file = Hdf5Reader::open(written.file("fields/run.h5"));
+  const double block_weight = 700 * 10 * 2;  // Pa
+  for (const std::string name : {"soil_1", "block"}) {
+    const auto places = file.numbers("/mesh/" + name + "/points"), stress = file.numbers("/frames/000000/" + name + "/points/stress");
+    ASSERT_EQ(stress.size(), 2 * places.size());
+    for (std::size_t i = 0; i < places.size() / 3; ++i) {
+      const double z = places[3 * i + 2], down = name == "block" ? -7000 * (2 - z) : -block_weight + 19000 * z, across = 3. / 7 * down;
+      const double wanted[6] = {across, across, down, 0, 0, 0};
+      for (std::size_t c = 0; c < 6; ++c) EXPECT_NEAR(stress[6 * i + c], wanted[c], 1e-6 * block_weight) << name << " at z = " << z;
+    }
+  }
+  for (const double pressure : file.numbers("/frames/000000/interfaces/points/pressure"))
+    EXPECT_NEAR(pressure, block_weight, 1e-6 * block_weight);
+}
+
 TEST(FieldRun, ANumberThatIsNotFiniteIsNotedAndNotWritten) {
   const fs::path place = fs::temp_directory_path() / ("uplift-field-nan-" + std::to_string(::getpid()));
   const Case read = check_case(read_toml_text(case_text("quad4", "nodal", "format = \"vtu\"\n"), "case.toml"), "case.toml", {});
@@ -233,7 +381,9 @@ TEST(FieldRun, ANumberThatIsNotFiniteIsNotedAndNotWritten) {
   const std::string list = read_file((place / "r/fields/run.pvd").string());
   EXPECT_EQ(list.find("timestep=\"0.015"), std::string::npos);
   for (const auto& entry : fs::recursive_directory_iterator(place / "r/fields"))
-    if (entry.path().extension() == ".vtu") EXPECT_NE(list.find(entry.path().filename().string()), std::string::npos) << entry.path();
+    if (entry.path().extension() == ".vtu") {
+      EXPECT_NE(list.find(entry.path().filename().string()), std::string::npos) << entry.path();
+    }
   fs::remove_all(place);
 }
 

@@ -84,8 +84,8 @@ RunFrames::RunFrames(const Values& fields, const Case& read, const Built& built)
     assert(blocks_.back().cell == solid.cells);
   }
   if (!interfaces_.mesh().face.empty()) blocks_.push_back(interfaces_.mesh().mesh);
-  dimension_ = mesh.dimension;
-  stride_ = static_cast<std::size_t>(model_->full_unknowns()) / model_->nodes.size();
+  dimension_ = model_->space.dimension;
+  stride_ = static_cast<std::size_t>(model_->space.unknowns());
   const int first_node = elements.front().front()->nodes()[0] - mesh.cell(solids.solids().front().cells.front())[0];
   first_ = stride_ * static_cast<std::size_t>(first_node);
 }

@@ -47,6 +47,7 @@ class PairPoints {
 /// weighted with the areas, so that the integral over the face is kept: (S^T A S) v = S^T A f.
 std::vector<Terms> fitted_places(const Mesh& mesh, const FacePair& face, const std::vector<JointPoint>& own, int first) {
   const std::span<const int> lower = mesh.cell(face.lower);
+  if (own.empty()) return std::vector<Terms>(lower.size());  // all its nodes are inside the continuum
   Matrix shape = Matrix::Zero(static_cast<Index>(own.size()), static_cast<Index>(lower.size()));
   Vector area(static_cast<Index>(own.size()));
   for (std::size_t i = 0; i < own.size(); ++i) {
