@@ -343,8 +343,8 @@ void Runner::note_views(double step) {
 }
 
 /// Energy created and lost so far; the scale is the largest external work, or the energy at the beginning where no load works. Work of the
-/// dead loads over 1e-10 m and 1e-10 of the energy that the static state stores are round-off: a structure that only stands there has
-/// created nothing.
+/// dead loads over 1e-10 m, and 1e-8 of the energy that the static state stores (of which the gate takes a hundredth), are round-off: a
+/// structure that only stands there has created nothing.
 void Runner::finish_energy(const Stepper& stepper) {
   const Energies& energies = stepper.energies();
   const double created = energies.residual + std::max(0.0, -energies.impact);
@@ -393,7 +393,7 @@ bool Runner::dynamics(const Stage& stage, const Bulk& bulk) {
   Recorder recorder(model_, plan_, viewer_, rows, result_);
   const long picture_every = plan_.frames > 0 ? std::max(1L, steps / plan_.frames) : 0;
   if (!ledger_) initial_scale_ = stepper.energies().kinetic;
-  if (!ledger_) round_off_energy_ = 1e-10 * (stepper.energies().strain + stepper.energies().stored);
+  if (!ledger_) round_off_energy_ = 1e-8 * (stepper.energies().strain + stepper.energies().stored);
   for (const Drive& drive : model_.drives)
     if (drive.dead) round_off_energy_ += 1e-10 * drive.shape.lpNorm<1>() * std::abs(drive.function->value(seen_->time));
   const auto observe = [&](long step) {
