@@ -1,6 +1,7 @@
 // What the linear bulk of a block on soil takes beside what was predicted: memory, factorisation, back-solve, interface blocks, impulses
 // and modes. One line per size; each size is measured in a process of its own, because peaks of memory do not go down. Usage: bench_bulk
-// [cells of the soil along one side ...]   3D: 8-node bricks; negative: plane strain, 4-node quads
+// [cells of the soil along one side ...]   3D: 8-node bricks; negative: plane strain, 4-node quads.
+// With BULK_MODES in the environment 20 modes, too.
 #include <fmt/format.h>
 #include <sys/wait.h>
 #include <unistd.h>
@@ -92,14 +93,14 @@ void measure(int cells, bool with_modes) {
   const Sparse b = stack_interfaces(model);
   LinearCounts counts;
   const Bulk bulk(model, nullptr);
-  std::unique_ptr<Accelerator> accelerator;
-  const double t_mass = seconds([&] { accelerator = std::make_unique<Accelerator>(model, bulk, &b, *solver, counts); });
   std::unique_ptr<BulkFactor> factor;
-  const SymmetricPair pair(model.stiffness, model.mass);
   const double t_step = seconds([&] {
     const Sparse matrix = model.stiffness + 1e6 * model.mass;
     factor = std::make_unique<BulkFactor>(matrix, &b, false, *solver, model, counts);
   });
+  std::unique_ptr<Accelerator> accelerator;
+  const double t_mass = seconds([&] { accelerator = std::make_unique<Accelerator>(model, bulk, &b, *solver, counts); });
+  const SymmetricPair pair(model.stiffness, model.mass);
   const double after_factor = status("VmHWM:");
   std::unique_ptr<SplitResponse> response;
   Spread spread;
@@ -131,12 +132,13 @@ void measure(int cells, bool with_modes) {
 
 int main(int count, char** words) {
   std::vector<int> sizes;
+  const bool with_modes = getenv("BULK_MODES") != nullptr;
   for (int i = 1; i < count; ++i) sizes.push_back(std::atoi(words[i]));
   if (sizes.empty()) sizes = {-120, -240, 20, 32};
   for (const int size : sizes) {
     std::fflush(stdout);
     if (const pid_t child = fork(); child == 0) {
-      uplift::measure(size, true);
+      uplift::measure(size, with_modes);
       std::fflush(stdout);
       _exit(0);
     } else {

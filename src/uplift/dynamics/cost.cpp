@@ -41,9 +41,10 @@ BulkCost predict_bulk(const Model& model, const LinearSolver& solver, const Bulk
   const double blocks = interface_blocks(rows, static_cast<double>(cost.touched));
   cost.interface_bytes = (steps + (use.impacts ? 1 : 0)) * blocks;
   const double kept = (use.keeps_mass ? cost.mass.bytes : 0) + steps * cost.step.bytes + cost.interface_bytes + pair + 25 * 8 * n;
-  const double more = std::max(kept + cost.step.working_bytes, cost.mass.bytes + cost.mass.working_bytes + pair);
+  double more = std::max(kept, cost.step.bytes + cost.mass.bytes + cost.mass.working_bytes);  // the first step size is made first
+  more = std::max(more, (steps > 1 ? kept : cost.step.bytes) + cost.step.working_bytes);
+  cost.bytes = cost.matrix_bytes + more;
   cost.matrix_bytes += pair;
-  cost.bytes = cost.matrix_bytes - pair + more;
   cost.available = available_memory();
   const Rates rates = measure_rates(cost.step.bytes);
   cost.factor_seconds = steps * factor_seconds(cost.step, rates) + factor_seconds(cost.mass, rates);

@@ -40,8 +40,11 @@ Stepper::Stepper(const Model& model, const Bulk& bulk, const Sparse& b, const Ve
       options_(options),
       linear_(counts),
       path_(options.path_average && options.scheme.average_acceleration() && !method.constrains()),
-      impacts_(impact.acts() && !path_ && b.rows() > 0),
-      accelerator_(std::make_unique<Accelerator>(model, bulk, impacts_ ? &b : nullptr, solver, counts)) {
+      impacts_(impact.acts() && !path_ && b.rows() > 0) {
+  // in the order that keeps the peak of memory low: the largest factor, which needs the most room while it is made, comes first
+  levels_.resize(static_cast<std::size_t>(options.halvings) + 1);
+  level(0);
+  accelerator_ = std::make_unique<Accelerator>(model, bulk, impacts_ ? &b : nullptr, solver, counts);
   if (!bulk.small) pair_ = SymmetricPair(bulk.stiffness_matrix, bulk.mass_matrix);
   if (impacts_ || accelerator_->too_large()) mass_failure_ = accelerator_->why();
   if (impacts_ && mass_failure_.empty()) {
@@ -55,7 +58,6 @@ Stepper::Stepper(const Model& model, const Bulk& bulk, const Sparse& b, const Ve
     if (bulk.small) dense_b_ = Matrix(b);
   }
   for (const PrescribedMotion& motion : model.motions) gap_moves_ = gap_moves_ || (motion.opening.size() > 0 && !motion.opening.isZero(0));
-  levels_.resize(static_cast<std::size_t>(options.halvings) + 1);
 }
 
 Stepper::~Stepper() = default;
@@ -65,11 +67,6 @@ Stepper::Level& Stepper::level(int halving) {
   if (slot != nullptr) return *slot;
   slot = std::make_unique<Level>();
   Level& made = *slot;
-  if (!mass_failure_.empty()) {
-    made.why = "the mass matrix: " + mass_failure_;
-    made.hopeless = true;
-    return made;
-  }
   const Scheme& s = options_.scheme;
   const double dt = made.step = options_.step / std::pow(2.0, halving), w = 1 - s.alpha_f;
   made.damping = s.gamma / (s.beta * dt);
@@ -280,8 +277,8 @@ void Stepper::apply_impact(Level& level) {
 }
 
 bool Stepper::try_step(Level& level) {
-  if (!level.why.empty()) {
-    why_ = level.why;
+  if (!mass_failure_.empty() || !level.why.empty()) {
+    why_ = mass_failure_.empty() ? level.why : "the mass matrix: " + mass_failure_;
     return false;
   }
   next_.time = now_.time + level.step;
@@ -363,7 +360,7 @@ bool Stepper::substep(int halving) {
     return true;
   }
   impact_loss_ = impact_before;
-  if (now.hopeless || halving >= options_.halvings) return false;
+  if (now.hopeless || !mass_failure_.empty() || halving >= options_.halvings) return false;
   ++counts_.retries;
   return substep(halving + 1) && substep(halving + 1);
 }

@@ -72,7 +72,9 @@ FactorCost cost_of(const cholmod_factor& analysed, const cholmod_common& common,
 std::string refusal(const FactorCost& cost) {
   constexpr double small = 16e6;  // bytes, not worth asking the system for
   const double needed = cost.bytes + cost.working_bytes;
-  return needed < small ? std::string() : memory_refusal(needed, available_memory());
+  if (needed < small) return {};
+  give_back_free_memory();  // of the analysis
+  return memory_refusal(needed, available_memory());
 }
 
 std::string why_not_analysed(const cholmod_common& common) {

@@ -1,6 +1,11 @@
 #include "uplift/linear/memory.h"
 
 #include <fmt/format.h>
+
+#include <cstdlib>
+#if defined(__GLIBC__)
+#include <malloc.h>
+#endif
 #include <sys/resource.h>
 #include <unistd.h>
 
@@ -75,6 +80,12 @@ double left_of_address_space(const std::string& root) {
 double available_memory(const std::string& root) {
   const double system = 1024 * number_after(root + "/proc/meminfo", "MemAvailable:");
   return std::min({system > 0 ? system : unlimited, left_in_groups(root), left_of_address_space(root)});
+}
+
+void give_back_free_memory() {
+#if defined(__GLIBC__)
+  malloc_trim(0);
+#endif
 }
 
 std::string spoken_bytes(double bytes) {
