@@ -97,6 +97,7 @@ class Runner {
     execute();
     result_.wall = std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count() - shown_;
     result_.counts.factorisations = linear_.factorisations;
+    if (!linear_.notice.empty()) result_.notes.push_back(linear_.notice);
     result_.counts.back_solves = linear_.back_solves;
     return std::move(result_);
   }

@@ -1,12 +1,14 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <chrono>
 #include <cmath>
 
 #include "uplift/analysis/case_mesh.h"
 #include "uplift/analysis/wording.h"
 #include "uplift/cli/console.h"
 #include "uplift/cli/load.h"
+#include "uplift/dynamics/cost.h"
 #include "uplift/io/field_run.h"
 #include "uplift/io/json_writer.h"
 #include "uplift/mesh/quality.h"
@@ -31,9 +33,12 @@ struct Findings {
   std::vector<Solid> solids;  // of a mesh
   int pieces = 0;             // of the opened mesh
   std::optional<FieldForecast> fields;
+  std::optional<BulkCost> bulk;  // of a large bulk
 };
 
 constexpr double points_per_wavelength = 10;
+constexpr int small_model = 3000, quick_modes = 30'000;  // unknowns: nothing to foresee below; only the bonded modes beyond
+constexpr double trial_seconds = 5;
 
 /// Quality and resolution of the groups that have a material.
 void look_at_mesh(const Case& read, Findings& found) {
@@ -106,7 +111,9 @@ void try_steps(Findings& found, const Built& built) {
       found.steps += std::lround(stage.duration / stage.step);
       stage.duration = std::min(stage.duration, 200 * stage.step);
     }
-  const RunResult trial = uplift::run(built.model, plan, built.behaviours);
+  const auto start = std::chrono::steady_clock::now();
+  const Watch enough = [&](const Progress&) { return std::chrono::steady_clock::now() - start < std::chrono::duration<double>(trial_seconds); };
+  const RunResult trial = uplift::run(built.model, plan, built.behaviours, enough);
   if (trial.status == RunStatus::failed && trial.counts.steps < 200) found.trial_failure = trial.reason;
   found.seconds_per_step = trial.step_seconds;
 }
@@ -115,9 +122,21 @@ Findings find(const Case& read, const RunSpec& spec, const Built& built) {
   Findings found;
   look_at_mesh(read, found);
   found.fields = field_forecast(read, built);
-  found.fixed = frequencies(fixed_base_modes(built.model, 3));
+  const int unknowns = built.model.free();
+  if (unknowns > small_model) {
+    BulkUse use;
+    use.impacts = built.plan.method->constrains();
+    found.bulk = predict_bulk(built.model, *built.plan.solver, use);
+    if (!found.bulk->refusal.empty()) {
+      found.trial_failure = found.bulk->refusal;
+      return found;
+    }
+  }
   found.bonded = frequencies(bonded_modes(built.at_rest(), 5));
-  found.base_free = frequencies(uplift::modes(built.model.stiffness, built.model.mass, 5));
+  if (unknowns <= quick_modes) {
+    found.fixed = frequencies(fixed_base_modes(built.model, 3));
+    found.base_free = frequencies(uplift::modes(built.model.stiffness, built.model.mass, 5));
+  }
   if (const Stage* stage = dynamic_stage(built.plan)) found.ratios = stiffness_ratios(built.model, *stage, *built.plan.solver);
   double fastest = 0;
   for (const double frequency : found.bonded)
@@ -149,9 +168,9 @@ void print(const Loaded& loaded, const Built& built, const Findings& found, cons
     if (k < found.ratios.size()) line("  compliance F_ii", fmt::format("up to {:.3g} m/N", found.ratios[k].compliance));
   }
   line("dead load on the base", spoken(built.weight, "N"));
-  line("frequencies, fixed base", list_hz(found.fixed));
+  if (!found.fixed.empty()) line("frequencies, fixed base", list_hz(found.fixed));
   line("frequencies, bonded base", list_hz(found.bonded));
-  line("frequencies, base free", list_hz(found.base_free));
+  if (!found.base_free.empty()) line("frequencies, base free", list_hz(found.base_free));
   for (const std::string& note : built.notes) line("chosen", note);
   const Stage* stage = dynamic_stage(built.plan);
   if (stage) {
@@ -163,6 +182,9 @@ void print(const Loaded& loaded, const Built& built, const Findings& found, cons
   if (found.seconds_per_step > 0)
     line("cost", fmt::format("about {:.2f} microseconds a step, {} a run", 1e6 * found.seconds_per_step,
                              spoken(found.seconds_per_step * static_cast<double>(found.steps), "s")));
+  if (found.bulk)
+    line("memory", fmt::format("about {} at most, {} of it the factor of a step; {} are free", spoken_bytes(found.bulk->bytes),
+                               spoken_bytes(found.bulk->step.bytes), spoken_bytes(found.bulk->available)));
   if (found.fields) {
     const FieldForecast& fields = *found.fields;
     line("fields", fmt::format("{} frames x {} = {} a run, as {}", fields.frames, spoken_bytes(fields.size.per_frame),
@@ -198,6 +220,13 @@ void write(const Loaded& loaded, const Built& built, const Findings& found, cons
     json.end_object();
   }
   json.end_array();
+  if (found.bulk)
+    json.key("memory")
+        .begin_object()
+        .member("bytes", found.bulk->bytes)
+        .member("factor_bytes", found.bulk->step.bytes)
+        .member("available_bytes", found.bulk->available)
+        .end_object();
   if (found.fields)
     json.key("fields")
         .begin_object()

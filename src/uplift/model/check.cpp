@@ -7,6 +7,7 @@
 
 #include "uplift/math/dense.h"
 #include "uplift/math/sparse_solvers.h"
+#include "uplift/model/rigid_pieces.h"
 
 namespace uplift {
 
@@ -48,7 +49,17 @@ Sparse unit_diagonal(const Sparse& a, Vector& scale, std::vector<int>& empty) {
   return scale.asDiagonal() * result * scale.asDiagonal();
 }
 
-/// A motion without resistance, in the free unknowns; empty when there is none: inverse iteration on the singular matrix.
+/// R^T A R; diagonal entries that are round-off of a cancellation, and their rows, become zero.
+Sparse on_motions(const Sparse& a, const Sparse& motions) {
+  Sparse result = motions.transpose() * a * motions;
+  const Sparse sizes = motions.transpose().cwiseAbs() * a.cwiseAbs() * motions.cwiseAbs();
+  const Vector size = sizes.diagonal(), diagonal = result.diagonal();
+  const auto nothing = [&](Index i) { return diagonal[i] <= 1e-11 * size[i]; };
+  result.prune([&](Index i, Index j, double) { return !nothing(i) && !nothing(j); });
+  return result;
+}
+
+/// A motion without resistance, in the unknowns of the matrix; empty when there is none: inverse iteration on the singular matrix.
 Vector null_motion(const Sparse& a) {
   Vector scale;
   std::vector<int> empty;
@@ -170,8 +181,9 @@ std::vector<int> blocks(const Sparse& a) {
 
 std::string loose_part(const Model& model) {
   if (model.free() == 0) return {};
-  const Vector motion = null_motion(closed_stiffness(model));
-  return motion.size() == 0 ? std::string() : describe(model, motion);
+  const Sparse rigid = rigid_motions(model, solid_pieces(model));
+  const Vector motion = null_motion(on_motions(closed_stiffness(model), rigid));
+  return motion.size() == 0 ? std::string() : describe(model, rigid * motion);
 }
 
 void check_static(const Model& model) {
@@ -194,15 +206,27 @@ void check_dynamic(const Model& model) {
   if (model.free() == 0) return;
   Vector scale;
   std::vector<int> massless;
-  const Sparse scaled = unit_diagonal(model.mass, scale, massless);
+  // a motion without kinetic energy moves no node of a massive solid: those need not be looked at
+  const std::vector<char> by_solid = moved_by_solid_mass(model);
+  std::vector<int> others;
+  std::vector<Triplet> chosen;
+  for (int i = 0; i < model.free(); ++i)
+    if (!by_solid[i]) {
+      chosen.emplace_back(i, static_cast<int>(others.size()), 1.0);
+      others.push_back(i);
+    }
+  if (others.empty()) return;
+  Sparse select(model.free(), static_cast<Index>(others.size()));
+  select.setFromTriplets(chosen.begin(), chosen.end());
+  const Sparse scaled = unit_diagonal(select.transpose() * model.mass * select, scale, massless);
   const SparseLdlt ldlt(scaled);
-  for (Index k = 0; k < model.free(); ++k) {
+  for (Index k = 0; k < scaled.rows(); ++k) {
     if (ldlt.vectorD()[k] > 1e-12) continue;
     const int broken = ldlt.permutationPinv().indices()[k];
     const std::vector<int> block = blocks(scaled);
     std::vector<std::string> members;
-    for (int i = 0; i < model.free(); ++i)
-      if (block[i] == block[broken] && members.size() < 6) members.push_back(model.unknown_names[i]);
+    for (std::size_t i = 0; i < others.size(); ++i)
+      if (block[i] == block[broken] && members.size() < 6) members.push_back(model.unknown_names[others[i]]);
     throw InputError(
         place_of(model), "mass", "a mass matrix that is regular where it is not zero",
         fmt::format(
