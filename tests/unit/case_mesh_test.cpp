@@ -256,7 +256,7 @@ fixed = ["uy"]
 [[spring]]                     # nothing else holds the column at rest; far softer than the wave is fast
 nodes = ["mesh.1"]
 direction = [1, 0]
-stiffness = 1
+stiffness = 100
 )");
   text = replaced(text, "[gravity]\nacceleration = [0, -10]\n", "");
   text = replaced(text, "E = 2e9\npoisson = 0.3\ndensity = 700", "E = 5e7\npoisson = 0.3\ndensity = 1900");

@@ -398,7 +398,8 @@ Built build(const Case& read, const RunSpec& spec) {
   add_stages(read, spec, built.plan);
   built.model = make_model(read, spec, tuned, nullptr, names, built);
   const bool released = any_released(root);
-  if (!released) check_static(built.model);
+  const bool rests = std::ranges::any_of(built.plan.stages, [](const Stage& stage) { return stage.type == Stage::Type::statics; });
+  if (!released) check_static(built.model, !rests);
   check_dynamic(built.model);
 
   RunPlan& plan = built.plan;

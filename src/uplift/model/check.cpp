@@ -13,10 +13,42 @@ namespace uplift {
 
 namespace {
 
-/// K + closed joints. Only the rank matters: a cone's stiffness is any number that fits the matrix.
-Sparse closed_stiffness(const Model& model) {
-  Sparse sum = model.stiffness;
-  const double typical = std::max(model.stiffness.nonZeros() > 0 ? Vector(model.stiffness.diagonal()).maxCoeff() : 0.0, 1.0);
+/// Stiffness (with dashpots_hold also damping) of the elements, full unknowns. Solids that a rigid motion of their piece carries along
+/// whole are left out: they do not resist it, and would only leave their round-off.
+Sparse resisting_elements(const Model& model, const std::vector<int>& pieces, bool dashpots_hold) {
+  const Space space = model.space;
+  std::vector<int> kept(model.nodes.size(), 0);  // translations
+  for (const int unknown : model.kept)
+    if (!space.is_rotation(unknown)) ++kept[space.node_of(unknown)];
+  std::vector<Triplet> entries;
+  for (const auto& element : model.elements) {
+    const auto nodes = element->nodes();
+    const int each = element->unknowns_per_node();
+    const auto whole = [&](int node) { return pieces[node] >= 0 && kept[node] == space.dimension; };
+    if (is_solid(*element) && std::ranges::all_of(nodes, whole)) continue;
+    Matrix stiffness, damping;
+    element->form({.stiffness = &stiffness, .damping = dashpots_hold ? &damping : nullptr});
+    if (dashpots_hold) stiffness += damping;  // only the rank counts
+    const auto unknown = [&](Index i) { return space.unknowns() * nodes[i / each] + static_cast<int>(i % each); };
+    for (Index j = 0; j < stiffness.cols(); ++j)
+      for (Index i = 0; i < stiffness.rows(); ++i)
+        if (stiffness(i, j) != 0) entries.emplace_back(unknown(i), unknown(j), stiffness(i, j));
+  }
+  Sparse matrix(model.full_unknowns(), model.full_unknowns());
+  matrix.setFromTriplets(entries.begin(), entries.end());
+  return matrix;
+}
+
+/// What resists each of some motions (columns, free unknowns), with all joints closed. Only the rank matters: a cone's stiffness is any
+/// number that fits. Diagonal entries that are round-off of a cancellation, and their rows, are zero.
+Sparse resistance(const Model& model, const Sparse& motions, const Sparse& elements) {
+  const Sparse full = model.reduction * motions;
+  Sparse sum = full.transpose() * elements * full;
+  const Sparse sizes = full.transpose().cwiseAbs() * elements.cwiseAbs() * full.cwiseAbs();
+  const Vector size = sizes.diagonal(), diagonal = sum.diagonal();
+  const auto nothing = [&](Index i) { return diagonal[i] <= 1e-13 * size[i]; };
+  sum.prune([&](Index i, Index j, double) { return !nothing(i) && !nothing(j); });
+  const double typical = std::max(diagonal.size() > 0 ? diagonal.maxCoeff() : 0.0, 1.0);
   for (const Interface& face : model.interfaces) {
     const int components = face.batch.components, points = face.batch.points;
     std::vector<double> closed(components, 0.0);
@@ -28,7 +60,10 @@ Sparse closed_stiffness(const Model& model) {
     }
     Vector stiffness(face.rows());
     for (int c = 0; c < components; ++c) stiffness.segment(c * points, points) = closed[c] * face.area;
-    sum += Sparse(face.b.transpose() * stiffness.asDiagonal() * face.b);
+    Sparse openings = face.b * motions;
+    const double largest = openings.nonZeros() > 0 ? openings.coeffs().abs().maxCoeff() : 0.0;
+    openings.prune([&](Index, Index, double value) { return std::abs(value) > 1e-13 * largest; });
+    sum += Sparse(openings.transpose() * stiffness.asDiagonal() * openings);
   }
   return sum;
 }
@@ -47,16 +82,6 @@ Sparse unit_diagonal(const Sparse& a, Vector& scale, std::vector<int>& empty) {
     }
   }
   return scale.asDiagonal() * result * scale.asDiagonal();
-}
-
-/// R^T A R; diagonal entries that are round-off of a cancellation, and their rows, become zero.
-Sparse on_motions(const Sparse& a, const Sparse& motions) {
-  Sparse result = motions.transpose() * a * motions;
-  const Sparse sizes = motions.transpose().cwiseAbs() * a.cwiseAbs() * motions.cwiseAbs();
-  const Vector size = sizes.diagonal(), diagonal = result.diagonal();
-  const auto nothing = [&](Index i) { return diagonal[i] <= 1e-11 * size[i]; };
-  result.prune([&](Index i, Index j, double) { return !nothing(i) && !nothing(j); });
-  return result;
 }
 
 /// A motion without resistance, in the unknowns of the matrix; empty when there is none: inverse iteration on the singular matrix.
@@ -179,15 +204,16 @@ std::vector<int> blocks(const Sparse& a) {
 
 }  // namespace
 
-std::string loose_part(const Model& model) {
+std::string loose_part(const Model& model, bool dashpots_hold) {
   if (model.free() == 0) return {};
-  const Sparse rigid = rigid_motions(model, solid_pieces(model));
-  const Vector motion = null_motion(on_motions(closed_stiffness(model), rigid));
+  const std::vector<int> pieces = solid_pieces(model);
+  const Sparse rigid = rigid_motions(model, pieces);
+  const Vector motion = null_motion(resistance(model, rigid, resisting_elements(model, pieces, dashpots_hold)));
   return motion.size() == 0 ? std::string() : describe(model, rigid * motion);
 }
 
-void check_static(const Model& model) {
-  const std::string loose = loose_part(model);
+void check_static(const Model& model, bool dashpots_hold) {
+  const std::string loose = loose_part(model, dashpots_hold);
   if (!loose.empty())
     throw InputError(place_of(model), "", "a structure that stands when all its interfaces are closed",
                      fmt::format("a mechanism: {} without resistance", loose));

@@ -11,11 +11,15 @@ namespace {
 
 constexpr int few = 30;  // nodes: smaller pieces are taken as they are
 
-const Solid* solid_of(const std::unique_ptr<const Element>& element) {
-  return dynamic_cast<const Solid*>(element.get());
+const Solid* solid_of(const Element& element) {
+  return dynamic_cast<const Solid*>(&element);
 }
 
 }  // namespace
+
+bool is_solid(const Element& element) {
+  return solid_of(element) != nullptr;
+}
 
 std::vector<int> solid_pieces(const Model& model) {
   std::vector<int> parent(model.nodes.size());
@@ -25,7 +29,7 @@ std::vector<int> solid_pieces(const Model& model) {
     return node;
   };
   for (const auto& element : model.elements)
-    if (solid_of(element))
+    if (is_solid(*element))
       for (const int node : element->nodes()) parent[root(node)] = root(element->nodes()[0]);
   std::vector<int> size(model.nodes.size(), 0), number(model.nodes.size(), -1), piece(model.nodes.size(), -1);
   const int nodes = static_cast<int>(parent.size());
@@ -73,7 +77,7 @@ Sparse rigid_motions(const Model& model, const std::vector<int>& pieces) {
 std::vector<char> moved_by_solid_mass(const Model& model) {
   std::vector<char> massive(model.nodes.size(), 0);
   for (const auto& element : model.elements)
-    if (const Solid* solid = solid_of(element);
+    if (const Solid* solid = solid_of(*element);
         solid && solid->section().mass != SolidSection::Mass::none && solid->section().material.density > 0)
       for (const int node : element->nodes()) massive[node] = 1;
   std::vector<char> moved(model.free(), 0);

@@ -6,6 +6,7 @@
 // Solids are stiff and heavy in every motion but those of a rigid body: what is loose or without mass is seen on a few unknowns.
 namespace uplift {
 
+bool is_solid(const Element& element);
 /// The piece of connected solids that each node belongs to; -1 for nodes of no solid and of pieces with few nodes.
 std::vector<int> solid_pieces(const Model& model);
 
