@@ -1,0 +1,266 @@
+// Rigid bodies pressed into elastic ground that is meshed. A rigid body's nodes face nodes of the ground without friction and without
+// tension (constraints). References (Johnson, Contact Mechanics, 1985): flat strip on the half-plane with uplift (VERIFICATION section 5),
+// line and point contact of Hertz (section 6), stiffness of discs on the half-space (section 8).
+#include <gtest/gtest.h>
+
+#include "mesh_support.h"
+
+namespace uplift::verification {
+namespace {
+
+/// A rigid body over nodes of the ground's surface.
+struct Punch {
+  double young = 1e8, poisson = 0.3;  // Pa, 1
+  std::string supports;               // of the ground
+  std::string master;                 // "fixed" list of the master node
+  std::string extra;                  // loads, motions
+  std::string law = "\"unilateral\"";
+  double height = 1;  // m, of the master above the ground
+};
+
+std::string punch_text(const Punch& punch, const Mesh& mesh, const std::vector<int>& touching, double area) {
+  const int d = mesh.dimension;
+  std::string out = "title = \"punch\"\n[mesh]\nfile = \"ground.msh\"\n[nodes]\nmaster = " +
+                    triple(d == 2 ? Vec3(0, punch.height, 0) : Vec3(0, 0, punch.height), d) + "\n";
+  std::string slaves;
+  for (std::size_t i = 0; i < touching.size(); ++i) {
+    out += fmt::format("s{} = {}\n", i, triple(mesh.nodes[static_cast<std::size_t>(touching[i])], d));
+    slaves += fmt::format("{}\"s{}\"", i ? ", " : "", i);
+  }
+  out += fmt::format("[[solid]]\ngroup = \"volume\"\nE = {:.17g}\npoisson = {}\ndensity = 1000\n", punch.young, punch.poisson) +
+         punch.supports;
+  out += fmt::format("[[rigid]]\nname = \"punch\"\nnode = \"master\"\nslaves = [{}]\nmass = 1\ninertia = 1\n", slaves);
+  out += fmt::format("[[support]]\nnode = \"master\"\nfixed = [{}]\n", punch.master);
+  out += fmt::format("[[interface]]\nname = \"foot\"\npairs = {{ upper = [{}], lower = {}, area = {:.17g} }}\nlaw = {}\n", slaves,
+                     names_of(touching), area, punch.law);
+  return out + punch.extra +
+         "[[stage]]\ntype = \"static\"\nsteps = 1\n[[stage]]\ntype = \"dynamic\"\nduration = 1e-7\nstep = 1e-7\n[energy]\ncreated_limit = "
+         "1e9\n[limits]\nrotation = 1\n[output]\nframes = 0\nenergies = false\n";
+}
+
+std::string fixed(const std::string& group, const std::string& unknowns) {
+  return fmt::format("[[support]]\ngroup = \"{}\"\nfixed = [{}]\n", group, unknowns);
+}
+
+std::vector<double> downwards(std::vector<double> depths) {
+  std::ranges::reverse(depths);
+  for (double& z : depths) z = -z;
+  return depths;
+}
+
+/// Forces on the points after the static stage: compression > 0 [N].
+void watch_tractions(Built& built) {
+  const Interface& foot = built.model.interfaces.front();
+  for (int i = 0; i < foot.batch.points; ++i) {
+    Request request;
+    request.kind = Request::Kind::traction;
+    request.name = fmt::format("p{}", i);
+    request.point = i;
+    request.component = foot.batch.components - 1;
+    built.plan.requests.push_back(request);
+  }
+}
+
+// ---- strip ----
+
+constexpr double half_width = 1, strip_load = 1e5;  // m, N/m
+
+struct StripAnswer {
+  double moment, uplifted;
+};
+
+/// Rigid strip on a mass of 60 x 30 m, `cells` elements under it, turned by `ratio` theta_u.
+StripAnswer strip(int cells, double ratio) {
+  const double h = 2 * half_width / cells, far = 30;
+  const Mesh mesh = rectangle(refined_lines(-far, -half_width, half_width, far, h, 6, 1.3),
+                              downwards(refined_lines(0, 0, 2 * h, far, h, 6, 1.3)), Cell::quad4);
+  const std::vector<int> touching = nodes_where(mesh, [](const Vec3& x) { return x.y() > -1e-9 && std::abs(x.x()) < half_width + 1e-9; });
+  EXPECT_EQ(static_cast<int>(touching.size()), cells + 1);
+  Punch punch;
+  punch.supports = fixed("bottom", "\"ux\", \"uy\"") + fixed("left", "\"ux\"") + fixed("right", "\"ux\"");
+  punch.master = "\"ux\"";
+  const double modulus = punch.young / (1 - punch.poisson * punch.poisson), theta_u = 2 * strip_load / (pi * modulus * half_width);
+  punch.extra = fmt::format(
+      "[[function]]\nname = \"held\"\nshape = {{ type = \"constant\" }}\n[[motion]]\nnode = \"master\"\ndirection = \"rz\"\namplitude = "
+      "{:.17g}\nfunction = \"held\"\n[[load]]\nnode = \"master\"\nforce = [0, {:.17g}]\n",
+      ratio * theta_u, -strip_load);
+  const MeshRun run = run_mesh(punch_text(punch, mesh, touching, h), mesh);
+  EXPECT_TRUE(run.completed()) << run.result.reason;
+  EXPECT_NEAR(run["foot.axial"][0], -strip_load, 1e-8 * strip_load);
+  return {std::abs(run["foot.moment"][0]), run["foot.uplifted_ratio"][0]};
+}
+
+// Claim: rigid smooth strip on the elastic half-plane: M_u = W b/2, theta_u = 2 W/(pi E* b); M/M_u = theta/theta_u up to 1 (so the rocking
+// stiffness is pi G b^2/(2 (1 - nu)), section 8) and 2 - theta_u/theta beyond, contact ratio theta_u/theta (one element). 2 % on the finest
+// mesh, order 1 (the pressure is singular at the edges).
+TEST(MeshPunch, StripOnTheHalfPlane) {
+  for (const double ratio : {0.5, 1.5, 3.0}) {
+    std::vector<double> size, error;
+    for (const int cells : {32, 64, 128}) {
+      const StripAnswer found = strip(cells, ratio);
+      const double exact = strip_load * half_width / 2 * (ratio < 1 ? ratio : 2 - 1 / ratio);
+      size.push_back(1.0 / cells), error.push_back(std::abs(found.moment / exact - 1));
+      EXPECT_NEAR(1 - found.uplifted, std::min(1.0, 1 / ratio), 2.0 / cells) << ratio;
+    }
+    RecordProperty(fmt::format("ratio_{}", ratio),
+                   fmt::format("{:.2e} {:.2e} {:.2e} order {:.2f}", error[0], error[1], error[2], order(size, error)));
+    EXPECT_LT(error.back(), 0.02) << ratio;
+    EXPECT_GT(order(size, error), 0.8) << ratio;
+  }
+}
+
+// ---- Hertz ----
+
+constexpr double radius = 0.1, steel = 210e9, nu = 0.3;  // m, Pa, 1
+
+struct Contact {
+  double half_width = 0, peak = 0;  // m, Pa
+};
+
+/// Cylinder (2D) or sphere (a quarter, 3D) under the load [N], `cells` elements over the exact half width a.
+Contact hertz(int dimension, double load, double a, int cells, double growth) {
+  const double h = a / cells, far = (dimension == 2 ? 30 : 20) * a;
+  const bool plane = dimension == 2;
+  const double fine = h * std::ceil(1.2 * cells);
+  const std::vector<double> across = refined_lines(plane ? -far : 0, plane ? -fine : 0, fine, far, h, far / 3, growth);
+  const std::vector<double> depth = downwards(refined_lines(0, 0, plane ? fine / 2 : 2 * h, far, h, far / 3, growth));
+  const Mesh mesh = plane ? rectangle(across, depth, Cell::quad4) : box(across, across, depth, Cell::hex8);
+  const std::vector<int> touching = nodes_where(
+      mesh, [&](const Vec3& x) { return x[dimension - 1] > -1e-12 && std::abs(x.x()) < fine + 1e-9 && (plane || x.y() < fine + 1e-9); });
+  Punch punch;
+  punch.young = steel;
+  punch.supports = plane ? fixed("bottom", "\"ux\", \"uy\"")
+                         : fixed("bottom", "\"ux\", \"uy\", \"uz\"") + fixed("left", "\"ux\"") + fixed("front", "\"uy\"");
+  punch.master = plane ? "\"ux\", \"rz\"" : "\"ux\", \"uy\", \"rx\", \"ry\", \"rz\"";
+  punch.height = radius;
+  punch.extra =
+      fmt::format("[[load]]\nnode = \"master\"\nforce = {}\n", triple(plane ? Vec3(0, -load, 0) : Vec3(0, 0, -load / 4), dimension));
+  const double cell = plane ? h : h * h;
+  const MeshRun run = run_mesh(punch_text(punch, mesh, touching, cell), mesh, [&](Built& built) {
+    watch_tractions(built);
+    Interface& foot = built.model.interfaces.front();
+    for (int i = 0; i < foot.batch.points; ++i) {
+      const Vec3 x = foot.position[static_cast<std::size_t>(i)];
+      foot.gap[(foot.batch.components - 1) * foot.batch.points + i] = (x.x() * x.x() + (plane ? 0 : x.y() * x.y())) / (2 * radius);
+    }
+  });
+  EXPECT_TRUE(run.completed()) << run.result.reason;
+  // int x^2 p = P a^2/4 (line), int r^2 p = 2/5 P a^2 (sphere): a from the moment of the pressure, not from counting nodes
+  double sum = 0, moment = 0;
+  Contact found;
+  for (std::size_t i = 0; i < touching.size(); ++i) {
+    const Vec3 x = mesh.nodes[static_cast<std::size_t>(touching[i])];
+    const double force = -run[fmt::format("p{}", i)][0] * cell, share = plane ? 1 : (x.x() < 1e-12 ? 0.5 : 1) * (x.y() < 1e-12 ? 0.5 : 1);
+    sum += force;
+    moment += force * (x.x() * x.x() + (plane ? 0 : x.y() * x.y()));
+    found.peak = std::max(found.peak, force / (cell * share));
+  }
+  EXPECT_NEAR(sum, plane ? load : load / 4, 1e-8 * load);
+  found.half_width = std::sqrt(moment / sum * (plane ? 4 : 2.5));
+  return found;
+}
+
+// Claim: rigid cylinder R = 0.1 m on E = 210e9 Pa, nu = 0.3, P' = 3.5e7 N/m: a = sqrt(4 P' R/(pi E*)) = 4.39440551e-3 m, p0 = 2 P'/(pi a) =
+// 5.07046789e9 Pa: 1 % with ten elements over a, order 1 or better.
+TEST(MeshPunch, LineContactOfHertz) {
+  const double load = 3.5e7, modulus = steel / (1 - nu * nu), a = std::sqrt(4 * load * radius / (pi * modulus)), p0 = 2 * load / (pi * a);
+  EXPECT_NEAR(a, 4.39440551e-3, 1e-11);
+  EXPECT_NEAR(p0, 5.07046789e9, 10);
+  std::vector<double> size, error;
+  for (const int cells : {5, 10, 20}) {
+    const Contact found = hertz(2, load, a, cells, 1.3);
+    size.push_back(1.0 / cells), error.push_back(std::abs(found.peak / p0 - 1));
+    RecordProperty(fmt::format("cells_{}", cells), fmt::format("a {:.2e} p0 {:.2e}", found.half_width / a - 1, found.peak / p0 - 1));
+    if (cells < 10) continue;
+    EXPECT_NEAR(found.half_width, a, 0.01 * a) << cells;
+    EXPECT_NEAR(found.peak, p0, 0.01 * p0) << cells;
+  }
+  EXPECT_GT(order(size, error), 0.8);
+}
+
+// Claim: rigid sphere R = 0.1 m, P = 1e4 N: a = (3 P R/(4 E*))^(1/3) = 1.48124803e-3 m, p0 = 3 P/(2 pi a^2) = 2.17613489e9 Pa: 2 % with ten
+// elements over a.
+TEST(MeshPunch, PointContactOfHertz) {
+  const double load = 1e4, modulus = steel / (1 - nu * nu), a = std::cbrt(3 * load * radius / (4 * modulus)),
+               p0 = 3 * load / (2 * pi * a * a);
+  EXPECT_NEAR(a, 1.48124803e-3, 1e-11);
+  EXPECT_NEAR(p0, 2.17613489e9, 10);
+  const Contact found = hertz(3, load, a, 10, 2);
+  RecordProperty("sphere", fmt::format("a {:.2e} p0 {:.2e}", found.half_width / a - 1, found.peak / p0 - 1));
+  EXPECT_NEAR(found.half_width, a, 0.02 * a);
+  EXPECT_NEAR(found.peak, p0, 0.02 * p0);
+}
+
+// ---- discs ----
+
+/// A quarter of the half-space as a cylinder: rings of a square grid become circles, one of them the edge of the disc (radius 1).
+Mesh quarter_space(int cells) {
+  const double h = 1.0 / cells, far = 60;
+  const std::vector<double> across = refined_lines(0, 0, 1, far, h, far / 2, 2);
+  Mesh mesh = box(across, across, downwards(refined_lines(0, 0, h, far, h, far / 2, 2)), Cell::hex20);
+  for (Vec3& x : mesh.nodes) {
+    const double r = std::hypot(x.x(), x.y()), ring = std::max(x.x(), x.y());
+    if (r > 0) x.x() *= ring / r, x.y() *= ring / r;
+  }
+  return mesh;
+}
+
+enum class Motion { vertical, horizontal, rocking };
+
+/// Stiffness of a rigid disc of radius 1 on the half-space, from a quarter of it.
+double disc_stiffness(int cells, Motion motion, double young, double poisson) {
+  const Mesh mesh = quarter_space(cells);
+  const std::vector<int> touching = nodes_where(mesh, [](const Vec3& x) { return x.z() > -1e-9 && std::hypot(x.x(), x.y()) < 1 + 1e-9; });
+  EXPECT_EQ(static_cast<int>(touching.size()), (cells + 1) * (3 * cells + 1));  // eight-node faces
+  Punch punch;
+  punch.young = young;
+  punch.poisson = poisson;
+  const bool even = motion == Motion::vertical;
+  punch.supports = fixed("left", even ? "\"ux\"" : "\"uy\", \"uz\"") + fixed("front", "\"uy\"");
+  for (const char* side : {"bottom", "right", "back"}) punch.supports += fixed(side, "\"ux\", \"uy\", \"uz\"");
+  const char* free = even ? "uz" : motion == Motion::horizontal ? "ux" : "ry";
+  for (const char* word : {"ux", "uy", "uz", "rx", "ry", "rz"})
+    if (std::string(word) != free) punch.master += fmt::format("{}\"{}\"", punch.master.empty() ? "" : ", ", word);
+  punch.height = 0.01;
+  punch.extra = "[[load]]\nnode = \"master\"\n";
+  punch.extra += even ? "force = [0, 0, -1e4]\n" : motion == Motion::horizontal ? "force = [1e4, 0, 0]\n" : "moments = [0, 1e4, 0]\n";
+  // far stiffer than the ground in the direction of the motion, nothing (1e-9) across: smooth
+  const double stiff = young * 1e5, soft = young * 1e-9;
+  punch.law = motion == Motion::horizontal
+                  ? fmt::format("{{ type = \"elastic\", K_n = {:.17g}, tangential = \"bonded\", K_t = {:.17g} }}", soft, stiff)
+                  : fmt::format("{{ type = \"elastic\", K_n = {:.17g}, tangential = \"none\" }}", stiff);
+  const MeshRun run = run_mesh(punch_text(punch, mesh, touching, 1.0 / (cells * cells)) +
+                                   fmt::format("[[output.history]]\nname = \"moved\"\nnode = \"master\"\nquantity = \"{}\"\n", free),
+                               mesh);
+  EXPECT_TRUE(run.completed()) << run.result.reason;
+  return 4 * 1e4 / std::abs(run["moved"][0]);
+}
+
+// Claim: smooth rigid disc on the half-space: K_v = 4 G R/(1 - nu), K_h = 8 G R/(2 - nu), K_r = 8 G R^3/(3 (1 - nu)): the error is of order
+// 1 (singular pressure at the edge), so what two and four elements of second degree over the radius point to by straight lines is right to
+// 3 %. Soil to 60 R: its far boundary makes K_v 2/(60 pi) = 1 % stiffer.
+TEST(MeshPunch, DiscOnTheHalfSpace) {
+  const double young = 1e8, poisson = 0.3, shear = young / (2 * (1 + poisson));
+  struct Kind {
+    Motion motion;
+    const char* name;
+    double exact;
+  };
+  for (const auto& [motion, name, exact] : {Kind{Motion::vertical, "K_v", 4 * shear / (1 - poisson)},
+                                            {Motion::horizontal, "K_h", 8 * shear / (2 - poisson)},
+                                            {Motion::rocking, "K_r", 8 * shear / (3 * (1 - poisson))}}) {
+    std::vector<double> size, error;
+    for (const int cells : {2, 4}) {
+      size.push_back(1.0 / cells);
+      error.push_back(disc_stiffness(cells, motion, young, poisson) / exact - 1);
+    }
+    const double pointed = 2 * error[1] - error[0];
+    RecordProperty(name, fmt::format("{:.3e} {:.3e} to {:.3e}", error[0], error[1], pointed));
+    EXPECT_LT(std::abs(pointed), 0.03) << name;
+    EXPECT_GT(error[1], 0) << name;
+    EXPECT_LT(error[1], 0.6 * error[0]) << name;
+  }
+}
+
+}  // namespace
+}  // namespace uplift::verification
