@@ -361,6 +361,18 @@ TEST(CaseGround, FreeFieldSaysWhatItNeeds) {
       std::string::npos);
 }
 
+TEST(CaseGround, SidesThatHoldTheWaveBackAreWarnedOf) {
+  for (const bool free_field : {true, false}) {
+    const std::string text = soil + supports(false) + boundaries(false, "wave = \"SV\"", free_field) + stages(0.1, 2e-3);
+    const Case read = read_text(text, ground(Cell::quad4, 2, false));
+    const RunSpec spec = runs_of_case(read).front();
+    const std::vector<std::string> said = warnings(read, spec, build(read, spec));
+    const auto of_sides =
+        std::ranges::count_if(said, [](const std::string& each) { return each.find("holds the incident wave back") != each.npos; });
+    EXPECT_EQ(of_sides, free_field ? 0 : 2);
+  }
+}
+
 TEST(CaseGround, TiesNeedAnOppositeSide) {
   Mesh mesh = ground(Cell::quad4, 2, false);
   const std::string rest = soil + supports(false) + bottom_only(boundaries(false, "wave = \"P\"", false)) + stages(0.1, 2e-3);

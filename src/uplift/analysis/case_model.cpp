@@ -5,9 +5,7 @@
 #include <algorithm>
 #include <cmath>
 #include <functional>
-#include <map>
 #include <numbers>
-#include <set>
 
 #include "uplift/elements/beam.h"
 #include "uplift/elements/discrete.h"
@@ -82,18 +80,6 @@ class Scaled final : public TimeFunction {
 [[noreturn]] void fail(const Values& table, std::string_view key, const std::string& wanted, const std::string& found,
                        const std::string& nearest = {}) {
   throw InputError(table.where(key), table.path(key), wanted, found, nearest);
-}
-
-/// Some unknowns of a node by name: all, or the translations.
-Dof dof_of(const std::string& word, const Values& table, std::string_view key, Space space, bool rotations) {
-  std::vector<std::string> words;
-  for (int i = 0; i < (rotations ? space.unknowns() : space.dimension); ++i) {
-    words.emplace_back(to_string(space.dof(i)));
-    if (words.back() == word) return space.dof(i);
-  }
-  std::string wanted = fmt::format("{}", fmt::join(words.begin(), words.end() - 1, ", ")) + " or " + words.back();
-  if (!rotations) wanted += " for a group of the mesh";
-  fail(table, key, wanted, "\"" + word + "\"", rotations ? nearest_name(word, words) : "");
 }
 
 /// Exactly one of two keys must be given.
@@ -244,46 +230,6 @@ void add_masses(const Values& root, ModelBuilder& builder, CaseNames& names, con
   }
 }
 
-bool is_released(const Values& support) {
-  return support.text("stages") == "static";
-}
-
-using Unknown = std::pair<int, Dof>;
-
-/// Unknowns that motions of groups prescribe, with the group.
-std::map<Unknown, std::string> moved_by_groups(const Values& root, const CaseNames& names) {
-  std::map<Unknown, std::string> moved;
-  for (const Values& motion : root.tables("motion")) {
-    if (!motion.has("group")) continue;
-    const Dof dof = dof_of(motion.text("direction"), motion, "direction", names.space, false);
-    for (const int node : names.node_or_group(motion)) moved.emplace(Unknown(node, dof), motion.text("group"));
-  }
-  return moved;
-}
-
-/// Groups of two sides share the corner: it is held once, and moves where one of them moves.
-void add_supports(const Values& root, ModelBuilder& builder, const CaseNames& names, bool at_rest) {
-  const std::map<Unknown, std::string> moved = moved_by_groups(root, names);
-  std::set<Unknown> held;
-  for (const Values& support : root.tables("support")) {
-    if (is_released(support) && !at_rest) continue;
-    const bool group = support.has("group");
-    for (const int node : names.node_or_group(support))
-      for (const std::string& word : support.texts("fixed")) {
-        const Unknown unknown(node, dof_of(word, support, "fixed", names.space, !group));
-        const auto motion = group ? moved.find(unknown) : moved.end();
-        if (motion != moved.end() && motion->second != support.text("group")) continue;
-        if (!group || held.insert(unknown).second) builder.fix(node, unknown.second, support.where("fixed"));
-      }
-  }
-  for (const Values& motion : root.tables("motion")) {
-    const std::vector<int> nodes = names.node_or_group(motion);
-    const std::string name = motion.has("name") ? motion.text("name") : "motion of " + motion.text(motion.has("node") ? "node" : "group");
-    builder.prescribe(nodes, dof_of(motion.text("direction"), motion, "direction", names.space, motion.has("node")),
-                      std::make_shared<Scaled>(motion.number("amplitude"), names.function(motion)), name, motion.where());
-  }
-}
-
 using Pattern = std::vector<std::pair<int, double>>;
 
 /// Along the translations, or about the rotations.
@@ -379,10 +325,6 @@ void add_functions(const Values& root, CaseNames& names) {
     names.functions.add(function, "name");
     names.functions_made.push_back(make_part(function_catalog(), function.part("shape")));
   }
-}
-
-bool any_released(const Values& root) {
-  return std::ranges::any_of(root.tables("support"), is_released);
 }
 
 void add_structure(const Values& root, ModelBuilder& builder, CaseNames& names, const std::vector<double>& tuned, bool at_rest) {

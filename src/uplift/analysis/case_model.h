@@ -51,7 +51,9 @@ std::shared_ptr<const TimeFunction> scaled(double factor, std::shared_ptr<const 
 void add_functions(const Values& root, CaseNames& names);
 /// `at_rest`: with the supports that hold in static stages alone.
 void add_structure(const Values& root, ModelBuilder& builder, CaseNames& names, const std::vector<double>& tuned, bool at_rest);
-/// Whether there are such supports.
+/// Supports and prescribed motions. Groups of two sides share the corner: it is held once, and moves where one of them moves.
+void add_supports(const Values& root, ModelBuilder& builder, const CaseNames& names, bool at_rest);
+/// Whether supports hold in static stages alone.
 bool any_released(const Values& root);
 void add_loads(const Values& root, ModelBuilder& builder, const CaseNames& names);
 BulkDamping bulk_damping(const Values& damping);

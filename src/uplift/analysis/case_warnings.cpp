@@ -42,6 +42,17 @@ void warn_magnitudes(const Case& read, std::vector<std::string>& said) {
     }
 }
 
+/// Absorbing sides take the ground beside the model to be at rest.
+void warn_sides(const Case& read, std::vector<std::string>& said) {
+  const std::vector<Values>& faces = read.values.tables("absorbing");
+  if (std::ranges::none_of(faces, [](const Values& each) { return each.has("incident"); })) return;
+  for (const Values& each : faces)
+    if (!each.has("incident") && !each.flag("free_field"))
+      said.push_back(
+          fmt::format("{}:{}: {} holds the incident wave back like ground at rest; take free_field = true, or a [[tie]] of opposite sides",
+                      each.where().file, each.where().line, each.text("group")));
+}
+
 /// THEORY section 3: a closure stress above 1 % of the bearing pressure resists the closing of gaps noticeably.
 void warn_closure(const Built& built, std::vector<std::string>& said) {
   double area = 0;
@@ -160,6 +171,7 @@ std::vector<std::string> warnings(const Case& read, const RunSpec& spec, const B
   std::vector<std::string> said;
   warn_magnitudes(read, said);
   warn_closure(built, said);
+  warn_sides(read, said);
   warn_step(built, said);
   warn_method(read, spec, built, said);
   return said;

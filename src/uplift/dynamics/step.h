@@ -18,8 +18,8 @@ struct StepOptions {
   double step = 0;           // s
   bool path_average = true;  // only with the average acceleration rule and a method that does not constrain
   int halvings = 8;
-  bool monolithic = false;      // the oracle: Newton on all unknowns instead of the condensed step
-  double oracle_tolerance = 0;  // > 0: every condensed step is also taken by the oracle; a larger relative difference fails it
+  bool monolithic = false;       // the oracle: Newton on all unknowns instead of the condensed step
+  double oracle_tolerance = 0;   // > 0: every condensed step is also taken by the oracle; a larger relative difference fails it
   const Vector* held = nullptr;  // constant forces beside those of the model [N, N m], free unknowns: what released supports have borne
 };
 

@@ -1,0 +1,71 @@
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <map>
+#include <set>
+
+#include "uplift/analysis/case_model.h"
+#include "uplift/base/text.h"
+
+// Supports and prescribed motions of a case.
+namespace uplift {
+namespace {
+
+/// Some unknowns of a node by name: all, or the translations.
+Dof dof_of(const std::string& word, const Values& table, std::string_view key, Space space, bool rotations) {
+  std::vector<std::string> words;
+  for (int i = 0; i < (rotations ? space.unknowns() : space.dimension); ++i) {
+    words.emplace_back(to_string(space.dof(i)));
+    if (words.back() == word) return space.dof(i);
+  }
+  std::string wanted = fmt::format("{}", fmt::join(words.begin(), words.end() - 1, ", ")) + " or " + words.back();
+  if (!rotations) wanted += " for a group of the mesh";
+  throw InputError(table.where(key), table.path(key), wanted, in_quotes(word), rotations ? nearest_name(word, words) : "");
+}
+
+bool is_released(const Values& support) {
+  return support.text("stages") == "static";
+}
+
+using Unknown = std::pair<int, Dof>;
+
+/// Unknowns that motions of groups prescribe, with the group.
+std::map<Unknown, std::string> moved_by_groups(const Values& root, const CaseNames& names) {
+  std::map<Unknown, std::string> moved;
+  for (const Values& motion : root.tables("motion")) {
+    if (!motion.has("group")) continue;
+    const Dof dof = dof_of(motion.text("direction"), motion, "direction", names.space, false);
+    for (const int node : names.node_or_group(motion)) moved.emplace(Unknown(node, dof), motion.text("group"));
+  }
+  return moved;
+}
+
+}  // namespace
+
+bool any_released(const Values& root) {
+  return std::ranges::any_of(root.tables("support"), is_released);
+}
+
+void add_supports(const Values& root, ModelBuilder& builder, const CaseNames& names, bool at_rest) {
+  const std::map<Unknown, std::string> moved = moved_by_groups(root, names);
+  std::set<Unknown> held;
+  for (const Values& support : root.tables("support")) {
+    if (is_released(support) && !at_rest) continue;
+    const bool group = support.has("group");
+    for (const int node : names.node_or_group(support))
+      for (const std::string& word : support.texts("fixed")) {
+        const Unknown unknown(node, dof_of(word, support, "fixed", names.space, !group));
+        const auto motion = group ? moved.find(unknown) : moved.end();
+        if (motion != moved.end() && motion->second != support.text("group")) continue;
+        if (!group || held.insert(unknown).second) builder.fix(node, unknown.second, support.where("fixed"));
+      }
+  }
+  for (const Values& motion : root.tables("motion")) {
+    const std::vector<int> nodes = names.node_or_group(motion);
+    const std::string name = motion.has("name") ? motion.text("name") : "motion of " + motion.text(motion.has("node") ? "node" : "group");
+    builder.prescribe(nodes, dof_of(motion.text("direction"), motion, "direction", names.space, motion.has("node")),
+                      scaled(motion.number("amplitude"), names.function(motion)), name, motion.where());
+  }
+}
+
+}  // namespace uplift
