@@ -134,8 +134,8 @@ Findings find(const Case& read, const RunSpec& spec, const Built& built) {
   }
   found.bonded = frequencies(bonded_modes(built.at_rest(), 5));
   if (unknowns <= quick_modes) {
-    found.fixed = frequencies(fixed_base_modes(built.model, 3));
-    found.base_free = frequencies(uplift::modes(built.model.stiffness, built.model.mass, 5));
+    found.fixed = frequencies(fixed_base_modes(built.at_rest(), 3));
+    found.base_free = frequencies(uplift::modes(built.at_rest().stiffness, built.at_rest().mass, 5));
   }
   if (const Stage* stage = dynamic_stage(built.plan)) found.ratios = stiffness_ratios(built.model, *stage, *built.plan.solver);
   double fastest = 0;
