@@ -46,8 +46,10 @@ class Frictional final : public MethodWork {
     return outcome_;
   }
 
-  /// The settled status is an answer only when the common residual says so; points may be off by the gap tolerance.
+  /// The settled status is an answer only when the common residual says so; points may be off by the gap tolerance. In statics a loose body
+  /// that has flown away meets its balance too: another status may hold it.
   bool confirmed() {
+    if (problem_->shift.size() > 0 && ran_away()) return false;
     step_.write_status();
     outcome_.residual = yardstick(*problem_, *solution_, solution_->yardstick);
     const double moved = problem_->rows() > 0 ? (solution_->opening - problem_->free_opening).cwiseAbs().maxCoeff() : 0;
