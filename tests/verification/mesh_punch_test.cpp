@@ -196,8 +196,8 @@ TEST(MeshPunch, PointContactOfHertz) {
 /// A quarter of the half-space as a cylinder: rings of a square grid become circles, one of them the edge of the disc (radius 1).
 Mesh quarter_space(int cells) {
   const double h = 1.0 / cells, far = 60;
-  const std::vector<double> across = refined_lines(0, 0, 1, far, h, far / 2, 2);
-  Mesh mesh = box(across, across, downwards(refined_lines(0, 0, h, far, h, far / 2, 2)), Cell::hex20);
+  const std::vector<double> across = refined_lines(0, 0, 1, far, h, far / 3, 1.6);
+  Mesh mesh = box(across, across, downwards(refined_lines(0, 0, 2 * h, far, h, far / 3, 1.6)), Cell::hex8);
   for (Vec3& x : mesh.nodes) {
     const double r = std::hypot(x.x(), x.y()), ring = std::max(x.x(), x.y());
     if (r > 0) x.x() *= ring / r, x.y() *= ring / r;
@@ -211,7 +211,7 @@ enum class Motion { vertical, horizontal, rocking };
 double disc_stiffness(int cells, Motion motion, double young, double poisson) {
   const Mesh mesh = quarter_space(cells);
   const std::vector<int> touching = nodes_where(mesh, [](const Vec3& x) { return x.z() > -1e-9 && std::hypot(x.x(), x.y()) < 1 + 1e-9; });
-  EXPECT_EQ(static_cast<int>(touching.size()), (cells + 1) * (3 * cells + 1));  // eight-node faces
+  EXPECT_EQ(static_cast<int>(touching.size()), (cells + 1) * (cells + 1));
   Punch punch;
   punch.young = young;
   punch.poisson = poisson;
@@ -236,9 +236,9 @@ double disc_stiffness(int cells, Motion motion, double young, double poisson) {
   return 4 * 1e4 / std::abs(run["moved"][0]);
 }
 
-// Claim: smooth rigid disc on the half-space: K_v = 4 G R/(1 - nu), K_h = 8 G R/(2 - nu), K_r = 8 G R^3/(3 (1 - nu)): the error is of order
-// 1 (singular pressure at the edge), so what two and four elements of second degree over the radius point to by straight lines is right to
-// 3 %. Soil to 60 R: its far boundary makes K_v 2/(60 pi) = 1 % stiffer.
+// Claim: smooth rigid disc on the half-space: K_v = 4 G R/(1 - nu), K_h = 8 G R/(2 - nu), K_r = 8 G R^3/(3 (1 - nu)): too stiff on every
+// mesh, less so on the finer one; what three and six elements over the radius point to by straight lines (the pressure is singular at the
+// edge: order 1) is right to 5 %. Soil to 60 R: its far boundary alone makes K_v 2/(60 pi) = 1 % stiffer.
 TEST(MeshPunch, DiscOnTheHalfSpace) {
   const double young = 1e8, poisson = 0.3, shear = young / (2 * (1 + poisson));
   struct Kind {
@@ -250,15 +250,15 @@ TEST(MeshPunch, DiscOnTheHalfSpace) {
                                             {Motion::horizontal, "K_h", 8 * shear / (2 - poisson)},
                                             {Motion::rocking, "K_r", 8 * shear / (3 * (1 - poisson))}}) {
     std::vector<double> size, error;
-    for (const int cells : {2, 4}) {
+    for (const int cells : {3, 6}) {
       size.push_back(1.0 / cells);
       error.push_back(disc_stiffness(cells, motion, young, poisson) / exact - 1);
     }
     const double pointed = 2 * error[1] - error[0];
     RecordProperty(name, fmt::format("{:.3e} {:.3e} to {:.3e}", error[0], error[1], pointed));
-    EXPECT_LT(std::abs(pointed), 0.03) << name;
+    EXPECT_LT(std::abs(pointed), 0.05) << name;
     EXPECT_GT(error[1], 0) << name;
-    EXPECT_LT(error[1], 0.6 * error[0]) << name;
+    EXPECT_LT(error[1], 0.75 * error[0]) << name;
   }
 }
 
