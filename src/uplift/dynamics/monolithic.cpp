@@ -33,6 +33,11 @@ class Monolithic final : public StepSolver {
     solution_.now = history;
     origin_ = gap_ + b_ * displacement;
     Outcome outcome;
+    for (const Block& block : problem_.blocks)
+      if (block.cone != nullptr && block.cone->friction() > 0 && block.batch.components == 3) {
+        outcome.why = "the monolithic solution knows friction under constraints in the plane only";
+        return outcome;
+      }
     for (const Contact guess : {Contact::open, Contact::stick}) {
       contact_.assign(points_, guess);
       if (settle(right, increment, outcome)) return outcome;

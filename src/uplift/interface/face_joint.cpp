@@ -40,6 +40,18 @@ class Pairs {
   std::map<std::pair<int, int>, std::vector<std::size_t>> known_;
 };
 
+/// What a node has of a bilinear face, int N_a n dA [m2]: that of the corner alone, det J times the weight, would not balance a uniform
+/// pressure where opposite edges are not parallel.
+Vec3 share_of_corner(Cell cell, std::size_t corner, const std::vector<Vec3>& positions) {
+  const CellRule rule = cell_rule(cell, 3);  // a linear vector of area times a bilinear shape function
+  Vec3 share = Vec3::Zero();
+  for (std::size_t i = 0; i < rule.point.size(); ++i) {
+    const CellShape shape = cell_shape(cell, rule.point[i]);
+    share += rule.weight[i] * shape.value[corner] * cell_area_vector(shape, positions, cell);
+  }
+  return share;
+}
+
 }  // namespace
 
 std::vector<JointPoint> face_points(const Mesh& mesh, const std::vector<FacePair>& faces, FaceQuadrature quadrature, double thickness,
@@ -57,11 +69,12 @@ std::vector<JointPoint> face_points(const Mesh& mesh, const std::vector<FacePair
     for (const int node : lower) positions.push_back(mesh.nodes[static_cast<std::size_t>(node)]);
     for (std::size_t i = 0; i < rule.point.size(); ++i) {
       const CellShape shape = cell_shape(cell, rule.point[i]);
-      const Vec3 area = cell_area_vector(shape, positions, cell);
+      const bool bilinear = cell == Cell::quad4 && quadrature == FaceQuadrature::nodal;
+      const Vec3 area = bilinear ? share_of_corner(cell, i, positions) : Vec3(rule.weight[i] * cell_area_vector(shape, positions, cell));
       JointPoint point;
       point.position = cell_position(shape, positions);
       point.normal = area.normalized();
-      point.area = rule.weight[i] * area.norm() * (mesh.dimension == 2 ? thickness : 1);
+      point.area = area.norm() * (mesh.dimension == 2 ? thickness : 1);
       point.gap = gap;
       point.lower = side(lower, shape);
       point.upper = side(upper, shape);
