@@ -170,6 +170,9 @@ void measure(double size, Setup kind) {
   }
   std::sort(steps.begin(), steps.end());
 
+  rusage usage{};
+  getrusage(RUSAGE_SELF, &usage);
+
   // one back-solve of the same matrix, in the same run
   const Sparse matrix = bulk.stiffness_matrix + 4 / (options.step * options.step) * bulk.mass_matrix;
   const BulkFactor factor(matrix, &b, bulk.small, *solver, model, counts);
@@ -183,8 +186,6 @@ void measure(double size, Setup kind) {
   }
   std::sort(solves.begin(), solves.end());
   const Energies& e = stepper.energies();
-  rusage usage{};
-  getrusage(RUSAGE_SELF, &usage);
   const double step = steps[steps.size() / 2], solve = solves[solves.size() / 2];
   fmt::print(
       "{:7} nodes {:7} unknowns {:4} points | model {:6.2f} s, gravity {:6.2f} s, factor {:6.2f} s | step {:7.2f} ms (least {:.2f}), "

@@ -61,19 +61,24 @@ std::vector<char> resisted(const Model& model, const Sparse& b) {
 }  // namespace
 
 void ModelBuilder::assemble(Assembly& assembly) const {
-  std::vector<Triplet> stiffness, mass, damping;
-  for (const auto& element : elements_) {
-    Matrix k, m, c;
-    element->form({&k, &m, &c});
-    add_to(space_, *element, k, 1, stiffness);
-    add_to(space_, *element, m, 1, mass);
-    add_to(space_, *element, c, 1, damping);
-    if (element->beta != 0) add_to(space_, *element, k, element->beta, damping);
-  }
   const int unknowns = space_.unknowns() * static_cast<int>(nodes_.size());
-  assembly.stiffness = from(unknowns, stiffness);
-  assembly.mass = from(unknowns, mass);
-  assembly.damping = from(unknowns, damping);
+  // one matrix after another: the lists of entries are the largest thing that is ever there beside the factors
+  const auto sum = [&](Matrix* Local::*wanted, bool proportional) {
+    std::vector<Triplet> entries;
+    for (const auto& element : elements_) {
+      Matrix local, stiffness;
+      Local one;
+      one.*wanted = &local;
+      if (proportional && element->beta != 0) one.stiffness = &stiffness;
+      element->form(one);
+      add_to(space_, *element, local, 1, entries);
+      if (stiffness.size() > 0) add_to(space_, *element, stiffness, element->beta, entries);
+    }
+    return from(unknowns, entries);
+  };
+  assembly.stiffness = sum(&Local::stiffness, false);
+  assembly.mass = sum(&Local::mass, false);
+  assembly.damping = sum(&Local::damping, true);
   if (damping_.alpha != 0) assembly.damping += damping_.alpha * assembly.mass;
   if (damping_.beta != 0) assembly.damping += damping_.beta * assembly.stiffness;
   assembly.gravity = gravity_;
