@@ -27,6 +27,7 @@ bench:             ## benchmarks: kernels, steps, whole process; figures and lim
 	cmake --build build/release
 	build/release/bench/bench_kernels
 	build/release/bench/bench_soil_block
+	build/release/bench/bench_soil_block space
 	bench/whole_process.py build/release/uplift
 
 web:               ## rebuild the report page (developers of the page only)
