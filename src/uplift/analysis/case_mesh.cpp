@@ -131,6 +131,26 @@ SolidSection section_from(const Values& solid) {
   return section;
 }
 
+std::optional<DruckerPragerParameters> plasticity_from(const Values& solid, const SolidSection& section) {
+  const Values* table = table_if(solid, "plasticity");
+  if (!table) return std::nullopt;
+  if (section.plane == PlaneState::stress) fail(solid, "plane", "plane = \"strain\" for a solid with plasticity", "\"stress\"");
+  using Fit = DruckerPragerParameters::Fit;
+  DruckerPragerParameters law;
+  law.elastic = section.material;
+  law.cohesion = table->number("cohesion");
+  law.friction = table->number("friction_angle");
+  law.dilation = table->number("dilatancy_angle");
+  law.hardening = table->number("hardening");
+  const std::string& fit = table->text("fit");
+  law.fit = fit == "compression" ? Fit::compression : fit == "extension" ? Fit::extension : Fit::plane_strain;
+  if (law.dilation > law.friction)
+    fail(*table, "dilatancy_angle", "an angle from 0 to the friction angle", fmt::format("{:g} rad", law.dilation));
+  if (law.friction == 0 && law.cohesion == 0) fail(*table, "cohesion", "above 0 Pa for a soil without friction", "0 Pa");
+  check_drucker_prager(law, table->where(), table->path());
+  return law;
+}
+
 /// The first group of cells that holds the cell, or the cell itself, for messages.
 std::string owner_of(const Mesh& mesh, CellId cell) {
   for (const auto& [name, group] : mesh.groups)
@@ -181,7 +201,8 @@ CaseSolids::CaseSolids(const Values& root, const CaseMesh& from) : mesh_(&from.m
                          in_quotes(solids_[at(solid_here)].table->text("group"))));
       solid_here = static_cast<int>(solids_.size());
     }
-    solids_.push_back({&solid, section_from(solid), group.cells});
+    const SolidSection section = section_from(solid);
+    solids_.push_back({&solid, section, plasticity_from(solid, section), group.cells});
   }
   const auto bare = std::ranges::find(solid_of_, -1);
   if (bare != solid_of_.end())

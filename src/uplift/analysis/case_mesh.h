@@ -1,9 +1,11 @@
 #pragma once
 #include <memory>
+#include <optional>
 #include <string>
 #include <vector>
 
 #include "uplift/analysis/case.h"
+#include "uplift/elements/drucker_prager.h"
 #include "uplift/elements/solid.h"
 #include "uplift/mesh/sides.h"
 #include "uplift/mesh/split.h"
@@ -31,6 +33,7 @@ class CaseSolids {
   struct Solid {
     const Values* table;
     SolidSection section;
+    std::optional<DruckerPragerParameters> plasticity;
     std::vector<CellId> cells;
   };
   const std::vector<Solid>& solids() const { return solids_; }

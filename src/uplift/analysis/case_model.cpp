@@ -9,6 +9,7 @@
 
 #include "uplift/elements/beam.h"
 #include "uplift/elements/discrete.h"
+#include "uplift/elements/solid_nonlinear.h"
 #include "uplift/elements/space_beam.h"
 
 namespace uplift {
@@ -314,7 +315,11 @@ void add_mesh(const Case& read, ModelBuilder& builder, CaseNames& names) {
     for (const CellId cell : solid.cells) {
       nodes.clear();
       for (const int node : mesh.cell(cell)) nodes.push_back(names.first_of_mesh + node);
-      auto element = std::make_unique<Solid>(mesh.type(cell), nodes, coordinates, solid.section);
+      std::unique_ptr<Solid> element;
+      if (solid.plasticity)
+        element = std::make_unique<NonlinearSolid>(mesh.type(cell), nodes, coordinates, solid.section, *solid.plasticity);
+      else
+        element = std::make_unique<Solid>(mesh.type(cell), nodes, coordinates, solid.section);
       element->beta = solid.table->number("damping_beta");
       builder.add_element(std::move(element), solid.table->where());
     }

@@ -6,6 +6,7 @@
 #include <array>
 
 #include "uplift/analysis/case_model.h"
+#include "uplift/dynamics/plastic_bulk.h"
 
 namespace uplift {
 namespace {
@@ -221,9 +222,11 @@ void add_requests(const Case& read, Built& built) {
     columns.add(request.name, history.where(), history.path());
     requests.push_back(std::move(request));
   }
-  if (output.flag("energies"))
+  if (output.flag("energies")) {
     for (const Quantity& quantity : energy_quantities)
       requests.push_back(make(quantity.kind, fmt::format("energy.{}", quantity.word), quantity.unit));
+    if (PlasticBulk(model).any()) requests.push_back(make(Column::plastic, "energy.plastic", "J"));
+  }
 }
 
 }  // namespace uplift

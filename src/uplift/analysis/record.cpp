@@ -216,6 +216,8 @@ double Recorder::value(std::size_t column, const Stepper& stepper, const std::ve
       return energies.external;
     case What::residual:
       return energies.residual;
+    case What::plastic:
+      return energies.plastic;
   }
   return 0;
 }

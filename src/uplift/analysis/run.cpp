@@ -8,6 +8,7 @@
 #include <utility>
 
 #include "uplift/analysis/record.h"
+#include "uplift/dynamics/plastic_bulk.h"
 #include "uplift/dynamics/split_response.h"
 #include "uplift/dynamics/statics.h"
 #include "uplift/dynamics/step.h"
@@ -289,6 +290,7 @@ void Runner::release() {
   state_ = carried();
   held_ = model_.stiffness * state_.displacement;
   if (geometric_ != nullptr) held_ += *geometric_ * state_.displacement;
+  if (const PlasticBulk yielding(model_); yielding.any()) held_ += yielding.state(state_.bulk_history).force;
   if (b_.rows() > 0) held_ += b_.transpose() * state_.force;
   for (const Drive& drive : model_.drives)
     if (drive.dead) held_ -= drive.factor(state_.time) * drive.shape;

@@ -59,7 +59,8 @@ struct Request {
     damping,
     impact,
     external,
-    residual  // energies [J]
+    residual,
+    plastic  // energies [J]
   } kind = Kind::displacement;
   std::string name, unit;
   int unknown = 0;                              // full unknown

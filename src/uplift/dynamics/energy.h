@@ -6,11 +6,13 @@
 namespace uplift {
 
 /// Energies [J] since the beginning of the first dynamic stage:
-///   residual = kinetic + strain + stored + interface_dissipated + damping + impact - external - (mechanical energy at the beginning)
+///   residual = kinetic + strain + stored + interface_dissipated + plastic + damping + impact - external - (mechanical energy at the
+///   beginning)
 /// which is zero to round-off for the average acceleration rule with path-averaged tractions. A positive residual is energy that the method
 /// created.
 struct Energies {
   double kinetic = 0, strain = 0, stored = 0, interface_dissipated = 0, damping = 0, impact = 0, external = 0, residual = 0;
+  double plastic = 0;  // dissipated by yielding solids; their strain energy is the recoverable one
 };
 
 /// What the interfaces' laws hold and have dissipated [J]; cones hold nothing.

@@ -87,7 +87,8 @@ std::string diagnose(const InterfaceProblem& problem, const ContactMethod& metho
 }  // namespace
 
 StaticOutcome solve_statics(const Model& model, const Bulk& bulk, const Sparse& b, const Vector& gap, const Behaviours& behaviours,
-                            const ContactMethod& method, const LinearSolver& solver, int steps, State& state, LinearCounts& counts) {
+                            const ContactMethod& method, const LinearSolver& solver, int steps, State& state, LinearCounts& counts,
+                            const PlasticOptions& plastic) {
   StaticOutcome outcome;
   const Eigen::Index n = bulk.unknowns;
   InterfaceProblem frame = blocks_of(model, behaviours);
@@ -100,7 +101,19 @@ StaticOutcome solve_statics(const Model& model, const Bulk& bulk, const Sparse& 
     outcome.why = "static stage: " + factor.why();
     return outcome;
   }
+  const InterfaceProblem blocks = frame;
   Condensed condensed(model, b, gap, std::move(factor), std::move(frame), method);
+
+  const PlasticBulk yielding(model);
+  PlasticNewton newton(yielding, matrix, plastic);
+  const PlasticNewton::Make soften = [&](const Sparse& d, std::string& why) -> std::unique_ptr<StepSolver> {
+    BulkFactor softer(matrix + d, &b, bulk.small, solver, model, counts);
+    why = softer.why();
+    if (!softer.ok()) return nullptr;
+    return std::make_unique<Condensed>(model, b, gap, std::move(softer), blocks, method);
+  };
+  PlasticState plastic_now, plastic_next;
+  if (yielding.any()) plastic_now = yielding.state(state.bulk_history);
 
   Vector dead = Vector::Zero(n), increment = Vector::Zero(n), product = Vector::Zero(n), moved = Vector::Zero(n),
          reaction = Vector::Zero(n);
@@ -112,21 +125,26 @@ StaticOutcome solve_statics(const Model& model, const Bulk& bulk, const Sparse& 
     bulk.stiffness.multiply(state.displacement, product);
     Vector right = to * dead - product;
     if (b.rows() > 0) right -= b.transpose() * (shift.cwiseProduct(state.opening)).eval();
-    const Outcome step = condensed.solve(right, state.displacement, state.opening, state.history, increment);
+    const Outcome step = yielding.any() ? newton.solve({right, state.displacement, state.opening, state.history, plastic_now, state.time},
+                                                       condensed, soften, increment, plastic_next)
+                                        : condensed.solve(right, state.displacement, state.opening, state.history, increment);
+    const StepSolver& last = yielding.any() ? newton.last() : condensed;
+    outcome.newton = newton.residuals();
     outcome.iterations += step.iterations;
     std::string why = step.why;
     if (step.converged) {
       moved = state.displacement + increment;
       bulk.stiffness.multiply(moved, product);
       right = to * dead - product;
-      if (b.rows() > 0) reaction.noalias() = b.transpose() * condensed.solution().force;
+      if (yielding.any()) right -= plastic_next.force;
+      if (b.rows() > 0) reaction.noalias() = b.transpose() * last.solution().force;
       right -= reaction;
       if (!in_balance(bulk, to * dead, reaction, moved, right)) {
-        why = b.rows() > 0 ? way_out(condensed.problem(), condensed.solution(), 1e3) : "";
+        why = b.rows() > 0 ? way_out(last.problem(), last.solution(), 1e3) : "";
         if (why.empty()) why = "the balance of the structure is not met";
       }
     } else if (b.rows() > 0 && depth >= 8) {
-      if (const std::string found = diagnose(condensed.problem(), method); !found.empty()) why = found + "; " + why;
+      if (const std::string found = diagnose(last.problem(), method); !found.empty()) why = found + "; " + why;
     }
     if (!why.empty()) {
       outcome.why = fmt::format("static stage, {:.3g} % of the load: {}", 100 * to, why);
@@ -137,10 +155,14 @@ StaticOutcome solve_statics(const Model& model, const Bulk& bulk, const Sparse& 
     }
     state.displacement = moved;
     if (b.rows() > 0) {
-      state.opening = condensed.solution().opening;
-      state.force = condensed.solution().force;
+      state.opening = last.solution().opening;
+      state.force = last.solution().force;
       state.mean_force = state.force;
-      state.history = condensed.solution().now;
+      state.history = last.solution().now;
+    }
+    if (yielding.any()) {
+      std::swap(plastic_now, plastic_next);
+      state.bulk_history = plastic_now.history;
     }
     ++outcome.steps;
     return true;

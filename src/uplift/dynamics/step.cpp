@@ -40,7 +40,8 @@ Stepper::Stepper(const Model& model, const Bulk& bulk, const Sparse& b, const Ve
       options_(options),
       linear_(counts),
       path_(options.path_average && options.scheme.average_acceleration() && !method.constrains()),
-      impacts_(impact.acts() && !path_ && b.rows() > 0) {
+      impacts_(impact.acts() && !path_ && b.rows() > 0),
+      yielding_(model) {
   // in the order that keeps the peak of memory low: the largest factor, which needs the most room while it is made, comes first
   levels_.resize(static_cast<std::size_t>(options.halvings) + 1);
   level(0);
@@ -57,6 +58,7 @@ Stepper::Stepper(const Model& model, const Bulk& bulk, const Sparse& b, const Ve
       for (int i = 0; i < interface.rows(); ++i) row_area_[row++] = interface.area[i % interface.batch.points];
     if (bulk.small) dense_b_ = Matrix(b);
   }
+  if (yielding_.any()) newton_ = std::make_unique<PlasticNewton>(yielding_, bulk.stiffness_matrix, options.plastic);
   for (const PrescribedMotion& motion : model.motions) gap_moves_ = gap_moves_ || (motion.opening.size() > 0 && !motion.opening.isZero(0));
 }
 
@@ -76,11 +78,8 @@ Stepper::Level& Stepper::level(int halving) {
   made.damping_velocity = 1 - s.gamma / s.beta + s.alpha_f / w;
   made.damping_acceleration = dt * (1 - s.gamma / (2 * s.beta));
 
-  const Sparse matrix = bulk_.stiffness_matrix + made.damping * bulk_.damping_matrix + made.mass * bulk_.mass_matrix;
-  InterfaceProblem frame = blocks_of(model_, behaviours_);
-  frame.average = path_;
-  frame.scale = path_ ? 2 : 1;
-  frame.step = dt;
+  const Sparse matrix = matrix_of(made);
+  InterfaceProblem frame = frame_of(made);
   if (options_.monolithic) {
     made.solver = make_monolithic(matrix, b_, gap_, std::move(frame));
     ++linear_.factorisations;
@@ -106,12 +105,48 @@ Stepper::Level& Stepper::level(int halving) {
   return made;
 }
 
+Sparse Stepper::matrix_of(const Level& level) const {
+  return bulk_.stiffness_matrix + level.damping * bulk_.damping_matrix + level.mass * bulk_.mass_matrix;
+}
+
+InterfaceProblem Stepper::frame_of(const Level& level) const {
+  InterfaceProblem frame = blocks_of(model_, behaviours_);
+  frame.average = path_;
+  frame.scale = path_ ? 2 : 1;
+  frame.step = level.step;
+  return frame;
+}
+
+/// The displacement increment: by the linear step, or by the outer Newton around it.
+Outcome Stepper::solve(Level& level) {
+  StepSolver* last = level.solver.get();
+  Outcome outcome;
+  if (newton_ == nullptr) {
+    outcome = last->solve(right_, now_.displacement, now_.opening, now_.history, increment_);
+  } else {
+    const PlasticNewton::Make soften = [&](const Sparse& d, std::string& why) -> std::unique_ptr<StepSolver> {
+      const Sparse matrix = matrix_of(level) + d;
+      if (options_.monolithic) return make_monolithic(matrix, b_, gap_, frame_of(level));
+      BulkFactor factor(matrix, &b_, bulk_.small, solver_, model_, linear_);
+      why = factor.why();
+      if (!factor.ok()) return nullptr;
+      return std::make_unique<Condensed>(model_, b_, gap_, std::move(factor), frame_of(level), method_);
+    };
+    outcome = newton_->solve({right_, now_.displacement, now_.opening, now_.history, plastic_now_, next_.time}, *last, soften, increment_,
+                             plastic_next_);
+    last = &newton_->last();
+  }
+  last_ = &last->problem();
+  solution_ = &last->solution();
+  return outcome;
+}
+
 void Stepper::add_force(double time, Vector& force) const {
   model_.add_force(time, force);
   if (options_.held != nullptr) force += *options_.held;
 }
 
-void Stepper::forces_at(const State& state, Vector& result) const {  // f - C v - K u - B^T p
+void Stepper::forces_at(const State& state, Vector& result) const {  // f - C v - K u - r - B^T p; r is that of now_
   result.setZero();
   add_force(state.time, result);
   product_.resize(bulk_.unknowns);
@@ -119,6 +154,7 @@ void Stepper::forces_at(const State& state, Vector& result) const {  // f - C v 
   result -= product_;
   bulk_.stiffness.multiply(state.displacement, product_);
   result -= product_;
+  if (newton_ != nullptr) result -= plastic_now_.force;
   if (b_.rows() == 0) return;
   product_.noalias() = b_.transpose() * state.force;
   result -= product_;
@@ -138,6 +174,10 @@ void Stepper::acceleration(Vector& result) const {
 void Stepper::start(State state, const Ledger* before) {
   now_ = std::move(state);
   start_time_ = now_.time;
+  if (newton_ != nullptr) {
+    plastic_now_ = yielding_.state(std::move(now_.bulk_history));
+    now_.bulk_history = plastic_now_.history;
+  }
   const Eigen::Index n = bulk_.unknowns;
   for (Vector* v : {&force_now_, &force_next_, &stiff_now_, &stiff_next_, &momentum_now_, &momentum_next_, &right_, &increment_, &work_,
                     &work2_, &damped_})
@@ -158,11 +198,12 @@ void Stepper::start(State state, const Ledger* before) {
   energies_ = before != nullptr ? before->energies : Energies{};
   energies_.kinetic = 0.5 * now_.velocity.dot(momentum_now_);
   energies_.strain = 0.5 * now_.displacement.dot(stiff_now_);
+  if (newton_ != nullptr) energies_.strain += yielding_.energy(now_.displacement, now_.time, plastic_now_);
   energies_.stored = interface_energy_.stored;
   energies_.interface_dissipated = interface_energy_.dissipated;
   impact_loss_ = energies_.impact;
   const double total = energies_.kinetic + energies_.strain + energies_.stored + energies_.interface_dissipated;
-  origin_ = total + energies_.damping + energies_.impact - energies_.external - energies_.residual;
+  origin_ = total + energies_.plastic + energies_.damping + energies_.impact - energies_.external - energies_.residual;
   initial_energy_ = before != nullptr ? before->initial_energy : total;
   largest_external_ = before != nullptr ? before->largest_external : 0;
 }
@@ -196,6 +237,7 @@ void Stepper::right_hand_side(const Level& level) {
   if (path_) {
     const double* mv = momentum_now_.data();
     for (Eigen::Index i = 0; i < n; ++i) right_[i] = f0[i] + f1[i] - 2 * ku[i] + (4 / dt) * mv[i];
+    if (newton_ != nullptr) right_ -= plastic_now_.force;
     return;
   }
   const double w = 1 - options_.scheme.alpha_f, ratio = options_.scheme.alpha_f / w;
@@ -211,6 +253,7 @@ void Stepper::right_hand_side(const Level& level) {
     bulk_.damping.multiply(work_, work2_);
     right_ -= work2_;
   }
+  if (newton_ != nullptr && ratio != 0) right_ -= ratio * plastic_now_.force;
   if (ratio == 0 || b_.rows() == 0) return;
   work_.noalias() = b_.transpose() * now_.force;
   right_ -= ratio * work_;
@@ -235,7 +278,7 @@ void Stepper::kinematics(const Level& level) {
 }
 
 void Stepper::apply_impact(Level& level) {
-  const InterfaceProblem& problem = level.solver->problem();
+  const InterfaceProblem& problem = *last_;
   normals_.clear();
   tangents_.clear();
   double largest = 0;
@@ -286,15 +329,14 @@ bool Stepper::try_step(Level& level) {
   add_force(next_.time, force_next_);
   if (gap_moves_) move_gap(now_.time, next_.time);
   right_hand_side(level);
-  last_ = &level.solver->problem();
-  const Outcome outcome = level.solver->solve(right_, now_.displacement, now_.opening, now_.history, increment_);
+  const Outcome outcome = solve(level);
   counts_.iterations += outcome.iterations;
   counts_.cycles += outcome.cycles;
   if (!outcome.converged) {
     why_ = outcome.why;
     return false;
   }
-  const InterfaceSolution& solution = level.solver->solution();
+  const InterfaceSolution& solution = *solution_;
   kinematics(level);
   const double probe = small::dot(increment_.size(), increment_.data(), increment_.data());
   if (!std::isfinite(probe)) {
@@ -303,6 +345,7 @@ bool Stepper::try_step(Level& level) {
   }
   std::copy_n(solution.opening.data(), solution.opening.size(), next_.opening.data());
   std::copy_n(solution.now.data(), solution.now.size(), next_.history.data());
+  if (newton_ != nullptr) next_.bulk_history = plastic_next_.history;
   products(next_.displacement, next_.velocity, stiff_next_, momentum_next_);
   if (path_) {
     for (const Block& block : last_->blocks)  // end-of-step tractions are what is reported
@@ -338,12 +381,17 @@ void Stepper::book_energies(const Level& level) {
   }
   energies_.kinetic = 0.5 * small::dot(n, next_.velocity.data(), momentum_next_.data());
   energies_.strain = 0.5 * small::dot(n, next_.displacement.data(), stiff_next_.data());
+  if (newton_ != nullptr) {
+    energies_.strain += yielding_.energy(next_.displacement, next_.time, plastic_next_);
+    energies_.plastic += yielding_.dissipated(now_.displacement, now_.time, plastic_now_, next_.displacement, next_.time, plastic_next_);
+    energies_.external += yielding_.support_work(now_.time, plastic_now_, next_.time, plastic_next_);
+  }
   interface_energy_.update(*last_, next_.opening, next_.history);
   energies_.stored = interface_energy_.stored;
   energies_.interface_dissipated = interface_energy_.dissipated;
   energies_.impact = impact_loss_;
-  energies_.residual = energies_.kinetic + energies_.strain + energies_.stored + energies_.interface_dissipated + energies_.damping +
-                       energies_.impact - energies_.external - origin_;
+  energies_.residual = energies_.kinetic + energies_.strain + energies_.stored + energies_.interface_dissipated + energies_.plastic +
+                       energies_.damping + energies_.impact - energies_.external - origin_;
   largest_external_ = std::max(largest_external_, std::abs(energies_.external));
 }
 
@@ -356,6 +404,7 @@ bool Stepper::substep(int halving) {
     std::swap(force_now_, force_next_);
     std::swap(stiff_now_, stiff_next_);
     std::swap(momentum_now_, momentum_next_);
+    std::swap(plastic_now_, plastic_next_);
     counts_.deepest = std::max(counts_.deepest, halving);
     return true;
   }

@@ -7,6 +7,7 @@
 #include "uplift/contact/impact.h"
 #include "uplift/dynamics/condensed.h"
 #include "uplift/dynamics/energy.h"
+#include "uplift/dynamics/plastic_newton.h"
 #include "uplift/dynamics/scheme.h"
 #include "uplift/math/symmetric_pair.h"
 
@@ -21,6 +22,7 @@ struct StepOptions {
   bool monolithic = false;       // the oracle: Newton on all unknowns instead of the condensed step
   double oracle_tolerance = 0;   // > 0: every condensed step is also taken by the oracle; a larger relative difference fails it
   const Vector* held = nullptr;  // constant forces beside those of the model [N, N m], free unknowns: what released supports have borne
+  PlasticOptions plastic;
 };
 
 struct StepCounts {
@@ -73,6 +75,9 @@ class Stepper {
   void products(const Vector& u, const Vector& v, Vector& ku, Vector& mv) const;
   void right_hand_side(const Level& level);
   void kinematics(const Level& level);
+  Sparse matrix_of(const Level& level) const;
+  InterfaceProblem frame_of(const Level& level) const;
+  Outcome solve(Level& level);
   void apply_impact(Level& level);
   void book_energies(const Level& level);
   void forces_at(const State& state, Vector& result) const;
@@ -97,6 +102,9 @@ class Stepper {
   Matrix dense_b_;
   std::vector<std::unique_ptr<Level>> levels_;
 
+  PlasticBulk yielding_;
+  std::unique_ptr<PlasticNewton> newton_;  // null without yielding solids
+  PlasticState plastic_now_, plastic_next_;
   State now_, next_;
   Vector force_now_, force_next_, stiff_now_, stiff_next_, momentum_now_, momentum_next_;  // f, K u, M v
   mutable Vector product_, balance_;                                                       // work space of forces_at and acceleration
@@ -111,6 +119,7 @@ class Stepper {
   StepCounts counts_;
   std::string why_;
   const InterfaceProblem* last_ = nullptr;
+  const InterfaceSolution* solution_ = nullptr;  // of the same solver
 };
 
 }  // namespace uplift

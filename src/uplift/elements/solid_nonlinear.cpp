@@ -82,16 +82,16 @@ void NonlinearSolid::evaluate(const Vector& displacement, std::span<const double
   }
 }
 
-Matrix NonlinearSolid::full_tangent(const Points& points, double elastic_share) const {
+Matrix NonlinearSolid::full_tangent(const Points& points, double elastic_share, int first) const {
   const Mat6 elastic = elastic_share * elastic_matrix(law_.parameters().elastic);
-  const int d = dimension(), functions = static_cast<int>(nodes().size()) + num_modes();
+  const int d = dimension(), functions = static_cast<int>(nodes().size()) + num_modes() - first;
   Matrix k = Matrix::Zero(d * functions, d * functions), strain_of(6, d * functions);
   for (std::size_t p = 0; p < points.gradient.size(); ++p) {
     const PointGradient& at = points.gradient[p];
     for (int c = 0; c < d * functions; ++c) {
       const Vec3 unit = Vec3::Unit(c % d);
       Strain column = Strain::Zero();
-      add_strain(at, d, c / d, 1, unit.data(), column);
+      add_strain(at, d, first + c / d, 1, unit.data(), column);
       strain_of.col(c) = column;
     }
     k += at.volume * strain_of.transpose() * ((points.tangent[p] + elastic) * strain_of);
@@ -110,7 +110,7 @@ BulkResponse NonlinearSolid::balance_modes(const Vector& displacement, std::span
   for (int iteration = 0; iteration < 200; ++iteration) {
     const double rest = points.mode_force.norm();
     if (rest <= 1e-13 * points.scale) return {};
-    amplitudes -= PartialLu(full_tangent(points, share).bottomRightCorner(n, n)).solve(points.mode_force);
+    amplitudes -= PartialLu(full_tangent(points, share, static_cast<int>(nodes().size()))).solve(points.mode_force);
     evaluate(displacement, old, now, points);
     if (points.mode_force.norm() < rest) {
       share = std::max(share / 2, floor);
@@ -170,6 +170,61 @@ double NonlinearSolid::stored_energy(const Vector& displacement, std::span<const
     const auto of_point = history.subspan(first, DruckerPrager::num_history);
     first += DruckerPrager::num_history;
     sum += at.volume * law_.stored_energy(strain(at, displacement, history.data() + first_amplitude()), of_point);
+  }
+  return sum;
+}
+
+bool NonlinearSolid::has_yielded(std::span<const double> history) const {
+  for (int p = 0; p < num_points(); ++p)
+    if (history[static_cast<std::size_t>(DruckerPrager::num_history * p + 6)] > 0) return true;
+  return false;
+}
+
+bool NonlinearSolid::yields(std::span<const double> old, std::span<const double> now) const {
+  for (int p = 0; p < num_points(); ++p) {
+    const auto at = static_cast<std::size_t>(DruckerPrager::num_history * p + 6);
+    if (now[at] > old[at]) return true;
+  }
+  return false;
+}
+
+// With the amplitudes of the linear solid taken off, the modes a answer the plastic strains e alone: int G^T D (G a - e) dV = 0. The stress
+// s = D (G a - e) is what yielding adds to the linear one, which is in balance with the modes as s is; so the mixed terms of the energy are
+// those with the nodes.
+NonlinearSolid::Yielded NonlinearSolid::yielded(std::span<const double> history) const {
+  const int count = static_cast<int>(nodes().size()), d = dimension();
+  const Mat6 elastic = elastic_matrix(law_.parameters().elastic);
+  Points points{gradients(), {}, std::vector<Mat6>(static_cast<std::size_t>(num_points()), Mat6::Zero()), {}};
+  const auto plastic = [&](std::size_t p) { return ConstMap(history.data() + DruckerPrager::num_history * p, 6); };
+  Vector amplitudes = Vector::Zero(d * num_modes());
+  if (num_modes() > 0) {
+    for (std::size_t p = 0; p < points.gradient.size(); ++p)
+      add_force(points.gradient[p], d, count, num_modes(), elastic * plastic(p), amplitudes.data());
+    amplitudes = PartialLu(full_tangent(points, 1, count)).solve(amplitudes).eval();
+  }
+  Yielded made;
+  made.force.setZero(unknowns());
+  for (std::size_t p = 0; p < points.gradient.size(); ++p) {
+    const PointGradient& at = points.gradient[p];
+    Strain strain = -plastic(p);
+    add_strain(at, d, count, num_modes(), amplitudes.data(), strain);
+    const Stress stress = elastic * strain;
+    add_force(at, d, 0, count, stress, made.force.data());
+    made.energy += at.volume * stress.dot(strain) / 2;
+  }
+  return made;
+}
+
+double NonlinearSolid::dissipated(const Vector& from, std::span<const double> old, const Vector& to, std::span<const double> now) const {
+  const Mat6 elastic = elastic_matrix(law_.parameters().elastic);
+  double sum = 0;
+  std::size_t first = 0;
+  for (const PointGradient& at : gradients()) {
+    const ConstMap before(old.data() + first, 6), after(now.data() + first, 6);
+    first += DruckerPrager::num_history;
+    const Strain recoverable =
+        strain(at, from, old.data() + first_amplitude()) + strain(at, to, now.data() + first_amplitude()) - before - after;
+    sum += at.volume * (elastic * recoverable).dot(after - before) / 2;
   }
   return sum;
 }

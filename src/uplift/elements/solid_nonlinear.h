@@ -36,11 +36,26 @@ class NonlinearSolid : public Solid {
   double stored_energy(const Vector& displacement, std::span<const double> history) const;
   const DruckerPrager& law() const { return law_; }
 
+  /// What the plastic strains and the modes that go with them add to the linear solid. The internal force is K u + force with K of `form`,
+  /// the recoverable energy u.(K u)/2 + u.force + energy. Both depend on the history alone.
+  struct Yielded {
+    Vector force;       // N
+    double energy = 0;  // J
+  };
+  Yielded yielded(std::span<const double> history) const;
+  /// True when a point has ever yielded; when one has between two histories.
+  bool has_yielded(std::span<const double> history) const;
+  bool yields(std::span<const double> old, std::span<const double> now) const;
+  /// Work of the mean stress of two states on the change of the plastic strain [J]: what the mean internal force does, less the change of
+  /// the recoverable energy.
+  double dissipated(const Vector& from, std::span<const double> old, const Vector& to, std::span<const double> now) const;
+
  private:
   struct Points;
   Strain strain(const PointGradient& at, const Vector& displacement, const double* amplitudes) const;
   void evaluate(const Vector& displacement, std::span<const double> old, std::span<double> now, Points& points) const;
-  Matrix full_tangent(const Points& points, double elastic_share) const;
+  /// Of the nodes and the modes; of those from function `first` on.
+  Matrix full_tangent(const Points& points, double elastic_share, int first = 0) const;
   double mode_gradient(const PointGradient& at) const;  // 1/m: size of the bubbles' gradients
   double node_gradient(const PointGradient& at) const;  // 1/m: largest of the nodes
   BulkResponse balance_modes(const Vector& displacement, std::span<const double> old, std::span<double> now, Points& points) const;

@@ -8,6 +8,7 @@
 
 #include "uplift/analysis/case_mesh.h"
 #include "uplift/base/text.h"
+#include "uplift/elements/solid_nonlinear.h"
 
 namespace uplift {
 namespace {
@@ -83,6 +84,12 @@ RunFrames::RunFrames(const Values& fields, const Case& read, const Built& built)
     solids_.push_back(elements[i]);
     assert(blocks_.back().cell == solid.cells);
   }
+  std::size_t first_history = 0;
+  for (const auto& element : model_->elements)
+    if (const auto* yielding = dynamic_cast<const NonlinearSolid*>(element.get()); yielding != nullptr) {
+      first_history_[yielding] = first_history;
+      first_history += static_cast<std::size_t>(yielding->num_history());
+    }
   if (!interfaces_.mesh().face.empty()) blocks_.push_back(interfaces_.mesh().mesh);
   dimension_ = model_->space.dimension;
   stride_ = static_cast<std::size_t>(model_->space.unknowns());
@@ -119,7 +126,7 @@ std::vector<double> RunFrames::motion(const FieldMesh& block, const Vector& full
 }
 
 /// At the nodes, the mean of the cells of this material.
-std::vector<double> RunFrames::stress(std::size_t block, const Vector& full) const {
+std::vector<double> RunFrames::stress(std::size_t block, const Vector& full, const std::vector<double>& history) const {
   const std::size_t points = blocks_[block].points.size();
   constexpr std::size_t width = 6;
   std::vector<double> sum(width * points, 0), count(points, 0);
@@ -132,7 +139,11 @@ std::vector<double> RunFrames::stress(std::size_t block, const Vector& full) con
       for (std::size_t a = 0; a < nodes.size(); ++a)
         displacement.segment(dimension_ * static_cast<Index>(a), dimension_) =
             full.segment(static_cast<Index>(stride_) * nodes[a], dimension_);
-      const std::vector<Stress> stress = solid.node_stress(displacement);
+      const auto yielding = first_history_.find(&solid);
+      const std::vector<Stress> stress =
+          yielding == first_history_.end() || history.empty()
+              ? solid.node_stress(displacement)
+              : static_cast<const NonlinearSolid&>(solid).node_stress(displacement, std::span(history).subspan(yielding->second));
       for (std::size_t a = 0; a < nodes.size(); ++a) {
         const auto point = static_cast<std::size_t>(type[cell][a]);
         count[point] += 1;
@@ -159,7 +170,7 @@ FieldFrame RunFrames::of(const State& state, const Vector* acceleration, double 
     for (FieldValues& field : frame.blocks[b].points) {
       for (std::size_t d = 0; d < motions.size(); ++d)
         if (field.name == motions[d].name) field.values = motion(blocks_[b], full[d]);
-      if (field.name == "stress") field.values = stress(b, full[0]);
+      if (field.name == "stress") field.values = stress(b, full[0], state.bulk_history);
       if (field.name == "opening") field.values = at_lips(field.kind, joint.opening);
       if (field.name == "slip") field.values = at_lips(field.kind, joint.slip);
       if (field.name == "traction") field.values = at_lips(field.kind, joint.traction);

@@ -1,4 +1,5 @@
 #pragma once
+#include <map>
 #include <string_view>
 #include <utility>
 #include <vector>
@@ -59,12 +60,13 @@ class RunFrames {
  private:
   bool wants(std::string_view quantity) const;
   std::vector<double> motion(const FieldMesh& block, const Vector& full) const;
-  std::vector<double> stress(std::size_t block, const Vector& full) const;
+  std::vector<double> stress(std::size_t block, const Vector& full, const std::vector<double>& history) const;
 
   const Model* model_;
   std::vector<std::string> quantities_;  // empty: all
   std::vector<FieldMesh> blocks_;
-  std::vector<std::vector<const Solid*>> solids_;  // of the blocks but the interfaces', in the order of their cells
+  std::vector<std::vector<const Solid*>> solids_;      // of the blocks but the interfaces', in the order of their cells
+  std::map<const Solid*, std::size_t> first_history_;  // of the solids that can yield: where the state remembers them
   InterfaceFrames interfaces_;
   std::size_t stride_ = 0, first_ = 0;  // unknowns of a node; the first of the mesh's first node
   int dimension_ = 2;

@@ -108,7 +108,8 @@ Chart ledger_chart(const ReportRun& run) {
   for (const Term& term :
        {Term{Column::external, "external work"}, Term{Column::kinetic, "kinetic"}, Term{Column::strain, "strain"},
         Term{Column::stored, "stored in the interface"}, Term{Column::interface_dissipated, "dissipated by the interface"},
-        Term{Column::damping, "damping"}, Term{Column::impact, "impacts"}, Term{Column::residual, "residual"}}) {
+        Term{Column::plastic, "dissipated by yielding solids"}, Term{Column::damping, "damping"}, Term{Column::impact, "impacts"},
+        Term{Column::residual, "residual"}}) {
     add_history(chart, run, term.kind, 0, 1);
     if (!chart.curves.empty() && chart.curves.back().label == run.result->label) {
       chart.curves.back().label = term.label;

@@ -39,6 +39,7 @@ void write_run(JsonWriter& json, const RunResult& run, const Agreement* agreemen
       .member("strain", end.strain)
       .member("stored", end.stored)
       .member("interface_dissipated", end.interface_dissipated);
+  if (end.plastic != 0) json.member("plastic", end.plastic);
   json.member("damping", end.damping)
       .member("impact", end.impact)
       .member("external", end.external)

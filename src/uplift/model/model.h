@@ -122,6 +122,7 @@ struct State {
   Vector force;                                 // interface rows, end of step [N], tension > 0
   Vector mean_force;                            // the same, mean over the last step
   std::vector<double> history;                  // memory of all laws, one flat array
+  std::vector<double> bulk_history;             // memory of all yielding solids, one flat array; empty without any
 };
 
 }  // namespace uplift

@@ -1,0 +1,56 @@
+#pragma once
+#include <span>
+#include <utility>
+#include <vector>
+
+#include "uplift/elements/solid_nonlinear.h"
+#include "uplift/model/model.h"
+
+namespace uplift {
+
+/// What yielding adds to the linear bulk at one state: the internal force is K u + force.
+struct PlasticState {
+  std::vector<double> history;  // of all yielding solids
+  Vector full, force;           // N: on the full unknowns, on the free ones
+  double energy = 0;            // J
+};
+
+/// The solids of a model that can yield (NonlinearSolid). Their elastic part is in the model's matrices.
+class PlasticBulk {
+ public:
+  /// Refers to the model, which must stay alive.
+  explicit PlasticBulk(const Model& model);
+  bool any() const { return !solids_.empty(); }
+  std::size_t num_history() const { return history_; }
+  /// The state of an accepted history; an empty one is the natural state.
+  PlasticState state(std::vector<double> history) const;
+  /// Answers displacements (free unknowns) at a time from an old history. `size`, free unknowns, receives the sums of the elements'
+  /// absolute forces [N]: what the balance is judged by.
+  BulkResponse respond(const Vector& displacement, double time, const std::vector<double>& old, PlasticState& now, Vector& size) const;
+  /// Symmetric part of the consistent tangent less the elastic stiffness, free x free, of the state that `respond` has just given.
+  Sparse softening(const Vector& displacement, double time, const std::vector<double>& old, const PlasticState& now) const;
+
+  /// Of a state: recoverable energy less u.(K u)/2 of the linear bulk [J].
+  double energy(const Vector& displacement, double time, const PlasticState& state) const;
+  /// Work of the mean stress on the plastic strain of a step [J].
+  double dissipated(const Vector& from, double before, const PlasticState& old, const Vector& to, double after,
+                    const PlasticState& now) const;
+  /// Work that moving supports do on the forces of yielding in a step [J].
+  double support_work(double before, const PlasticState& old, double after, const PlasticState& now) const;
+
+ private:
+  struct One {
+    const NonlinearSolid* solid;
+    std::size_t first;  // of its history
+  };
+  Vector of_element(const NonlinearSolid& solid, const Vector& full) const;
+  std::span<const double> history_of(const One& one, const std::vector<double>& all) const;
+  void gather(PlasticState& state) const;
+
+  const Model& model_;
+  std::vector<One> solids_;
+  std::size_t history_ = 0;
+  Sparse spread_;  // |T|^T: free x full
+};
+
+}  // namespace uplift

@@ -1,0 +1,64 @@
+#pragma once
+#include <functional>
+#include <memory>
+#include <string>
+#include <vector>
+
+#include "uplift/dynamics/condensed.h"
+#include "uplift/dynamics/plastic_bulk.h"
+
+// The outer Newton of a step with yielding solids:
+//     K_eff du + r(u0 + du) + B^T P = R       r: what yielding adds to the internal force of the linear bulk
+// Every iteration solves a whole linear step with the same interface inside,
+//     (K_eff + D) du + B^T P = y,             y = R - r(u_k) + D du_k
+// with D = 0 (modified Newton: the elastic factor that is there anyway) or D = consistent tangent - elastic stiffness. The change of y from
+// one iteration to the next is the residual of the whole balance. Modified iterations are accelerated by Anderson's mixing (Walker & Ni,
+// SIAM J. Numer. Anal. 49 (2011) 1715-1735).
+namespace uplift {
+
+struct PlasticOptions {
+  /// Automatic: elastic factor first, a new tangent where five iterations have left more than slow^5 of the residual. Full: a new tangent
+  /// after every iteration that made the residual smaller: quadratic for associated flow; with the symmetric part of another tangent it may
+  /// go round in circles.
+  enum class Newton { automatic, modified, full } newton = Newton::automatic;
+  double slow = 0.7;
+  double tolerance = 1e-11;  // of the sizes of the yielding solids' forces
+  int iterations = 100;
+};
+
+class PlasticNewton {
+ public:
+  /// Makes a solver of K_eff + D, or tells why not.
+  using Make = std::function<std::unique_ptr<StepSolver>(const Sparse& d, std::string& why)>;
+  /// `stiffness`: its diagonal weighs the unknowns in norms, so that units play no part.
+  PlasticNewton(const PlasticBulk& bulk, const Sparse& stiffness, const PlasticOptions& options);
+  /// The end of a step: what the bulk remembers at its beginning, and the time of its end.
+  struct Step {
+    const Vector &right, &displacement, &opening;
+    const std::vector<double>& history;
+    const PlasticState& old;
+    double time;
+  };
+  /// `increment` and `now` receive the end of the step.
+  Outcome solve(const Step& step, StepSolver& elastic, const Make& make, Vector& increment, PlasticState& now);
+  /// The solver of the last iteration, with the interface problem and its solution.
+  StepSolver& last() const { return *last_; }
+  /// Residuals of the iterations of the last step, of the size of the forces.
+  const std::vector<double>& residuals() const { return residuals_; }
+
+ private:
+  void mix();
+  bool wants_tangent(int since) const;
+  bool soften(const Step& step, const Make& make, const Vector& increment, const PlasticState& now);
+
+  const PlasticBulk& bulk_;
+  PlasticOptions options_;
+  Vector weight_, size_, given_, change_;  // given_: y
+  std::vector<Vector> given_before_, change_before_;
+  Sparse softening_;
+  std::unique_ptr<StepSolver> tangent_;
+  StepSolver* last_ = nullptr;
+  std::vector<double> residuals_;
+};
+
+}  // namespace uplift
