@@ -98,7 +98,8 @@ double allowed(const InterfaceProblem& problem, const InterfaceSolution& solutio
 }
 
 // Claim: every method ends every problem with an answer whose common residual is small (p, opening and z together satisfy balance, law or
-// cone) or with a reason; nothing is "converged" that the residual does not confirm. The exact methods solve almost all independent ones.
+// cone) or with a reason; nothing is "converged" that the residual does not confirm (penalty solves another law, so of its answers only
+// the reasons are asked). The exact methods solve 95 % of all problems, rigid ones with redundant rows included.
 TEST(ManyPoints, every_end_is_honest) {
   int asked = 0, exact = 0, solved = 0;
   const bool honest = rc::check("honest end", [&] {

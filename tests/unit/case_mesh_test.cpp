@@ -141,6 +141,21 @@ TEST(CaseMesh, DeadLoadIsThatOfTheBlockAlone) {
               (block_density * gravity * height + 500) * 2, 1e-6);
 }
 
+TEST(CaseMesh, NodesThatAreShownAreFoundByTheirNumbersToo) {
+  const std::string text = column_text(3e7, side_supports);
+  const Built built = build(read_text(text, column(Cell::quad4)), RunSpec{});
+  EXPECT_EQ(built.model.find_node("top"), built.top);
+  for (int node = 0; node < static_cast<int>(built.model.nodes.size()); ++node)
+    EXPECT_EQ(built.model.find_node("mesh." + std::to_string(node + 1)), node);
+  for (const int node : {built.top, built.base}) {
+    const std::string asked = "[[output.history]]\nname = \"asked\"\nnode = \"mesh." + std::to_string(node + 1) + "\"\nquantity = \"vy\"\n";
+    const Built again = build(read_text(text + asked, column(Cell::quad4)), RunSpec{});
+    const auto found = std::ranges::find(again.plan.requests, "asked", &Request::name);
+    ASSERT_NE(found, again.plan.requests.end());
+    EXPECT_EQ(found->unknown, again.model.at(node, uy));
+  }
+}
+
 /// Sway of the roof of the same block and soil without an interface, under the same traction at its left side, by the elements alone.
 double unsplit_sway(const Mesh& mesh, double traction) {
   ModelBuilder builder;

@@ -21,10 +21,6 @@ using support::mesh_file;
 constexpr double thickness = 0.7;
 constexpr std::array<FaceQuadrature, 2> both_rules{FaceQuadrature::nodal, FaceQuadrature::gauss};
 
-Vec3 cross(const Vec3& a, const Vec3& b) {
-  return {a.y() * b.z() - a.z() * b.y(), a.z() * b.x() - a.x() * b.z(), a.x() * b.y() - a.y() * b.x()};
-}
-
 struct Opened {
   Mesh mesh;
   std::vector<FacePair> faces;

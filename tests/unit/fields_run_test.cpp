@@ -387,12 +387,5 @@ TEST(FieldRun, ANumberThatIsNotFiniteIsNotedAndNotWritten) {
   fs::remove_all(place);
 }
 
-TEST(FieldRun, SizesAreSpoken) {
-  EXPECT_EQ(spoken_bytes(999), "999 bytes");
-  EXPECT_EQ(spoken_bytes(1230), "1.23 kB");
-  EXPECT_EQ(spoken_bytes(121'400'000), "121 MB");
-  EXPECT_EQ(spoken_bytes(1'234'500'000), "1.234 GB");
-}
-
 }  // namespace
 }  // namespace uplift

@@ -70,8 +70,6 @@ TEST(Memory, FirstVersionOfControlGroups) {
 TEST(Memory, RefusalSaysBothNumbers) {
   EXPECT_EQ(memory_refusal(20.1e9, 20.1e9), "");
   EXPECT_EQ(memory_refusal(31.2e9, 20.1e9).substr(0, 45), "the factor needs 31.2 GB, 20.1 GB are free: c");
-  EXPECT_EQ(spoken_bytes(2.34e6), "2.3 MB");
-  EXPECT_EQ(spoken_bytes(234e6), "234 MB");
 }
 
 TEST(Memory, PredictionIsWhatTheFactorHas) {

@@ -42,10 +42,6 @@ SpaceBeamSection slender(BeamSection::Mass mass) {
   return s;
 }
 
-Vec3 cross(const Vec3& a, const Vec3& b) {
-  return {a.y() * b.z() - a.z() * b.y(), a.z() * b.x() - a.x() * b.z(), a.x() * b.y() - a.y() * b.x()};
-}
-
 class SpaceBeams : public testing::TestWithParam<unsigned> {
  protected:
   Vec3 vector() { return {uniform_(random_), uniform_(random_), uniform_(random_)}; }

@@ -103,7 +103,7 @@ struct Column {
                          wave, azimuth != 0 ? fmt::format(", azimuth = {:.17g}", azimuth) : "");
     }
     out += fmt::format("[[function]]\nname = \"wave\"\nshape = {{ type = \"ricker\", frequency = {} }}\n", frequency);
-    // a case has an interface: here a spring of 3e-9 of the soil's stiffness, all that holds the column at rest
+    // all that holds the column at rest: a spring of 3e-9 of the soil's stiffness
     const Vec3 along = wave == "P" ? (plane ? Vec3(0, 1, 0) : Vec3(0, 0, 1)) : wave == "SH" ? Vec3(0, 1, 0) : Vec3(1, 0, 0);
     std::string held = "\"mesh.1\"";
     if (azimuth != 0) held += ", \"mesh.2\"";  // against twisting, too

@@ -100,9 +100,6 @@ Built build(const Case&, const RunSpec&);
 /// The solver named by the case.
 std::shared_ptr<const LinearSolver> bulk_solver(const Case&);
 
-/// The first dynamic stage of a plan, or null.
-const Stage* dynamic_stage(const RunPlan&);
-
 /// Natural modes with every interface closed and bonded: laws with their closed stiffness, cones held. Shapes on the free unknowns.
 std::vector<Mode> bonded_modes(const Model&, int count);
 /// Natural modes with every opening and sliding of the interfaces held to zero against rigid ground: the fixed-base frequencies.

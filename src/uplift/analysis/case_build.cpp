@@ -1,13 +1,12 @@
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <cmath>
 #include <filesystem>
-#include <limits>
 
 #include "uplift/analysis/case_ground.h"
 #include "uplift/analysis/case_output.h"
 #include "uplift/analysis/case_sections.h"
+#include "uplift/analysis/case_shown.h"
 #include "uplift/model/check.h"
 #include "uplift/model/tuned_mass.h"
 
@@ -15,10 +14,6 @@ namespace uplift {
 namespace {
 
 constexpr int most_pictured = 20'000'000;  // numbers kept for the animation: 160 MB
-
-[[noreturn]] void fail(const Values& table, std::string_view key, const std::string& wanted, const std::string& found) {
-  throw InputError(table.where(key), table.path(key), wanted, found);
-}
 
 /// Values as they would be read from a file again, with one number replaced.
 Values with_number(const Values& part, std::string_view key, double number) {
@@ -150,97 +145,6 @@ void add_initial(const Case& read, const CaseNames& names, Built& built) {
   if (!velocity.empty()) built.plan.initial_velocity = free_values(built.model, velocity, where);
 }
 
-/// A node of the mesh that is shown gets a name that can be remembered.
-void rename_shown(int node, const std::string& name, Model& model) {
-  std::string& old = model.nodes[static_cast<std::size_t>(node)].name;
-  if (old.starts_with("mesh.") && model.find_node(name) < 0) old = name;
-}
-
-/// Without an interface: the highest node, of equally high ones that nearest to the middle.
-void find_highest(const CaseNames& names, Built& built) {
-  Vec3 middle = Vec3::Zero();
-  for (const Place& place : names.positions) middle += place / static_cast<double>(names.positions.size());
-  const int up = names.space.up();
-  for (int node = 0; node < static_cast<int>(names.positions.size()); ++node) {
-    const Place& here = names.positions[static_cast<std::size_t>(node)];
-    const double higher = built.top < 0 ? 1 : here[up] - names.positions[static_cast<std::size_t>(built.top)][up];
-    const bool nearer = built.top >= 0 && (here - middle).norm() < (names.positions[static_cast<std::size_t>(built.top)] - middle).norm();
-    if (higher > 1e-9 || (higher > -1e-9 && nearer)) built.top = node;
-  }
-  rename_shown(built.top, "top", built.model);
-}
-
-/// The highest node that hangs together with the upper side of the first interface, and the upper node in its middle; of equally high ones
-/// that nearest to the middle.
-void find_shown_mesh_nodes(const CaseNames& names, Built& built) {
-  if (built.facts.empty()) return find_highest(names, built);
-  const std::vector<int>& upper = built.facts.front().upper;
-  const Vec3 middle = built.model.interfaces.front().reference;
-  const auto position = [&](int node) { return names.positions[static_cast<std::size_t>(node)]; };
-  const int up = names.space.up();
-  const auto nearer = [&](int a, int b) { return (position(a) - middle).norm() < (position(b) - middle).norm(); };
-  if (built.base < 0) built.base = *std::ranges::min_element(upper, nearer);
-  if (built.top < 0) {
-    const std::vector<char> carried = part_of(built.model, upper);
-    for (int node = 0; node < static_cast<int>(carried.size()); ++node) {
-      if (!carried[static_cast<std::size_t>(node)]) continue;
-      const double higher = built.top < 0 ? 1 : position(node)[up] - position(built.top)[up];
-      if (higher > 1e-9 || (higher > -1e-9 && nearer(node, built.top))) built.top = node;
-    }
-  }
-  rename_shown(built.top, "top", built.model);
-  rename_shown(built.base, "base", built.model);
-}
-
-/// The node of the highest mass (the largest of equally high ones), and the body of the first interface.
-void find_shown_nodes(const Case& read, const CaseNames& names, Built& built) {
-  double height = -std::numeric_limits<double>::infinity(), largest = 0;
-  const auto look = [&](int node, double mass) {
-    const double y = names.positions[static_cast<std::size_t>(node)][names.space.up()];
-    if (y > height || (y == height && mass > largest)) {
-      height = y;
-      largest = mass;
-      built.top = node;
-    }
-  };
-  for (const Values& mass : read.values.tables("mass")) look(names.node(mass, "node"), mass.has("mass") ? mass.number("mass") : 0);
-  for (const Values& body : read.values.tables("rigid"))
-    if (body.number("mass") > 0) look(names.node(body, "node"), body.number("mass"));
-  if (built.top < 0)
-    for (const Values& node : read.values.tables("nodes")) look(names.nodes.find(node.key(), node.where(), node.path()), 0);
-  if (!built.facts.empty() && !built.facts[0].body.empty()) built.base = built.model.find_node(built.facts[0].body);
-  if (read.mesh) find_shown_mesh_nodes(names, built);
-}
-
-/// See Built::sway.
-Dof sway_of(const Model& model) {
-  if (model.space.dimension == 2) return ux;
-  Vec3 size = Vec3::Zero();
-  for (const Drive& drive : model.drives)
-    if (!drive.dead)
-      for (Index i = 0; i < drive.shape.size(); ++i) {
-        const int unknown = model.kept[static_cast<std::size_t>(i)];
-        if (!model.space.is_rotation(unknown)) size[model.space.index_of(unknown)] += std::abs(drive.shape[i]);
-      }
-  return size.y() > size.x() ? uy : ux;
-}
-
-/// See Built::weight.
-double weight_of(const Built& built) {
-  const Model& model = built.model;
-  if (model.interfaces.empty()) return 0;
-  const Vec3 normal = model.interfaces.front().normal.front();
-  const std::vector<char> carried = part_of(model, built.facts.front().upper);
-  double weight = 0;
-  for (std::size_t i = 0; i < model.drives.size(); ++i) {
-    if (!model.drives[i].dead) continue;
-    for (int node = 0; node < static_cast<int>(carried.size()); ++node)
-      if (carried[static_cast<std::size_t>(node)])
-        for (int k = 0; k < model.space.dimension; ++k) weight -= model.assembly.loads[i][model.space.unknowns() * node + k] * normal[k];
-  }
-  return weight;
-}
-
 /// The mass that a tuned point mass gets: that of the structure without it, see tuned_mass.
 std::vector<double> tuned_masses(const Case& read, const RunSpec& spec) {
   const Values* tuned = nullptr;
@@ -347,16 +251,6 @@ void adapt_laws(const Case& read, const RunSpec& spec, Built& built) {
 
 }  // namespace
 
-Request::Kind Built::base_moment() const {
-  if (model.space.dimension == 2) return Request::Kind::moment;
-  return sway == ux ? Request::Kind::moment_2 : Request::Kind::moment_1;
-}
-
-Request::Kind Built::base_rotation() const {
-  if (model.space.dimension == 2) return Request::Kind::rotation;
-  return sway == ux ? Request::Kind::rotation_2 : Request::Kind::rotation_1;
-}
-
 Case check_case(const Raw& raw, const std::string& file, const MeshReader& read_mesh) {
   Case read{check(raw, case_section()), file, nullptr};
   read.mesh = mesh_of_case(read.values, file, read_mesh);
@@ -378,12 +272,6 @@ std::vector<std::string> input_files(const Case& read) {
 
 std::shared_ptr<const LinearSolver> bulk_solver(const Case& read) {
   return make_part(solver_catalog(), read.values.part("solver"));
-}
-
-const Stage* dynamic_stage(const RunPlan& plan) {
-  for (const Stage& stage : plan.stages)
-    if (stage.type == Stage::Type::dynamics) return &stage;
-  return nullptr;
 }
 
 Built build(const Case& read, const RunSpec& spec) {
@@ -416,9 +304,7 @@ Built build(const Case& read, const RunSpec& spec) {
   }
   add_method(read, spec, built);
   add_initial(read, names, built);
-  find_shown_nodes(read, names, built);
-  built.sway = sway_of(built.model);
-  built.weight = weight_of(built);
+  find_shown(read, names, built);
   plan.created_limit = root.table("energy").number("created_limit");
   plan.stop_at_limit = root.table("energy").flag("stop_at_limit");
   plan.rotation_limit = root.table("limits").number("rotation");

@@ -36,8 +36,7 @@ class Partners {
     const Vec3 apart = (to.low + to.high - from.low - from.high) / 2;
     apart.cwiseAbs().maxCoeff(&across_);
     tolerance_ = 1e-6 * (from.high.cwiseMax(to.high) - from.low.cwiseMin(to.low)).norm();
-    if (across_ == up_ || !(apart.norm() > tolerance_))
-      throw InputError(tie.where("to"), tie.path("to"), "the opposite side of the ground", in_quotes(tie.text("to")));
+    if (across_ == up_ || !(apart.norm() > tolerance_)) fail(tie, "to", "the opposite side of the ground", in_quotes(tie.text("to")));
   }
 
   /// The node of the other side (sorted by height) with the same place; InputError without one.
@@ -50,9 +49,9 @@ class Partners {
       apart[across_] = 0;
       if (apart.norm() <= tolerance_) return *other;
     }
-    throw InputError(tie_.where("group"), tie_.path("group"), "nodes with a partner on the opposite side, at the same height",
-                     fmt::format("node {} at ({:g}, {:g}, {:g}) without one in {}", node + 1, place.x(), place.y(), place.z(),
-                                 in_quotes(std::string(group))));
+    fail(tie_, "group", "nodes with a partner on the opposite side, at the same height",
+         fmt::format("node {} at ({:g}, {:g}, {:g}) without one in {}", node + 1, place.x(), place.y(), place.z(),
+                     in_quotes(std::string(group))));
   }
 
  private:
@@ -69,8 +68,7 @@ std::vector<Dof> unknowns_of(const Values& tie, Space space) {
     int found = -1;
     for (int k = 0; k < space.dimension; ++k)
       if (to_string(space.dof(k)) == word) found = k;
-    if (found < 0)
-      throw InputError(tie.where("unknowns"), tie.path("unknowns"), space.dimension == 2 ? "ux or uy" : "ux, uy or uz", in_quotes(word));
+    if (found < 0) fail(tie, "unknowns", space.dimension == 2 ? "ux or uy" : "ux, uy or uz", in_quotes(word));
     unknowns.push_back(space.dof(found));
   }
   return unknowns;

@@ -72,17 +72,14 @@ Model column_model(const std::vector<ColumnLayer>& layers, const ColumnWave& wav
     ground.direction = k == 0 ? Vec2(1, 0) : Vec2(0, 1);
     builder.add_element(std::make_unique<Dashpot>(ground, impedance[k]), {});
   }
-  builder.add_load("wave", {{3 * foot, 2 * impedance[0] * wave.shear}, {3 * foot + 1, 2 * impedance[1] * wave.compression}}, wave.velocity,
-                   false, {});
+  const Space plane = builder.space();
+  builder.add_load("wave", {{plane.at(foot, ux), 2 * impedance[0] * wave.shear}, {plane.at(foot, uy), 2 * impedance[1] * wave.compression}},
+                   wave.velocity, false, {});
   builder.set_damping(damping);
   return builder.finish();
 }
 
 /// Nothing opens in the column.
-struct NoContact final : ContactMethod {
-  Outcome solve(const InterfaceProblem&, InterfaceSolution&) const override { return {}; }
-  bool constrains() const override { return false; }
-};
 struct NoImpact final : ImpactRule {
   bool acts() const override { return false; }
   void apply(const Impact&, Vector&, Vector&, Vector&, ImpactScratch&) const override {}
@@ -128,10 +125,11 @@ FreeField::FreeField(const std::vector<ColumnLayer>& layers, const ColumnWave& w
 void FreeField::keep(const Model& model, const State& state) {
   const Vector u = model.full(state.displacement, 0, state.time), v = model.full(state.velocity, 1, state.time);
   const Index n = static_cast<Index>(heights_.size());
+  const int each = model.space.unknowns();
   Vector both(4 * n);
   for (Index i = 0; i < n; ++i) {
-    both.segment<2>(2 * i) = v.segment<2>(3 * i);
-    both.segment<2>(2 * (n + i)) = u.segment<2>(3 * i);
+    both.segment<2>(2 * i) = v.segment<2>(each * i);
+    both.segment<2>(2 * (n + i)) = u.segment<2>(each * i);
   }
   if (!times_.empty() && state.time <= times_.back()) return;  // the end of the stage before
   times_.push_back(state.time);

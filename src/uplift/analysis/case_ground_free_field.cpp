@@ -15,10 +15,6 @@
 namespace uplift {
 namespace {
 
-[[noreturn]] void fail(const Values& table, std::string_view key, const std::string& wanted, const std::string& found) {
-  throw InputError(table.where(key), table.path(key), wanted, found);
-}
-
 /// The faces of one side, in horizontal rows.
 struct SideFaces {
   const Values& absorbing;

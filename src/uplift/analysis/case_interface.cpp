@@ -20,7 +20,7 @@ std::vector<SideNode> side(const Values& table, std::string_view key, const Case
 Place normal_of(const Values& table, Space space) {
   if (!table.has("normal")) return space.axis(space.up());
   const Vec3 normal = vector_of(table, "normal", space);
-  if (normal.norm() == 0) throw InputError(table.where("normal"), table.path("normal"), "a direction", "one of length zero");
+  if (normal.norm() == 0) fail(table, "normal", "a direction", "one of length zero");
   return normal.normalized();
 }
 
@@ -33,7 +33,7 @@ void add_bed(const Values& bed, const std::string& interface, std::vector<JointP
     names.nodes.add(name, bed.where(), bed.path());
     names.positions.push_back(point.position);
     if (point.normal.cwiseAbs().maxCoeff() < 1 - 1e-12)
-      throw InputError(bed.where(), bed.path(), "a footing with a vertical or horizontal normal on a bed", "an inclined one");
+      fail(bed, "", "a footing with a vertical or horizontal normal on a bed", "an inclined one");
     const Space space = names.space;
     for (int k = 0; k < space.unknowns(); ++k)
       if (space.is_rotation(k) || std::abs(point.normal.dot(space.axis(k))) < 0.5) builder.fix(node, space.dof(k), bed.where());
@@ -58,9 +58,8 @@ Joint footing_joint(const Values& interface, const Values& table, bool rigid_gro
   footing.points = table.integer("points");
   for (const char* key : {"length", "points_across"})
     if (table.has(key) != (names.space.dimension == 3))
-      throw InputError(table.where(key), table.path(key),
-                       names.space.dimension == 3 ? "length and points_across in space" : "width alone in the plane",
-                       table.has(key) ? "given" : "none");
+      fail(table, key, names.space.dimension == 3 ? "length and points_across in space" : "width alone in the plane",
+           table.has(key) ? "given" : "none");
   if (names.space.dimension == 3) {
     footing.length = table.number("length");
     footing.points_across = table.integer("points_across");
@@ -119,16 +118,14 @@ Joint make_joint(const Values& interface, const std::vector<FacePair>& open, boo
   const Values* line = table_if(interface, "line");
   const Values* surface = table_if(interface, "surface");
   const int kinds = (footing != nullptr) + (pairs != nullptr) + (line != nullptr) + (surface != nullptr);
-  if (kinds != 1)
-    throw InputError(interface.where(), interface.path(), "exactly one of footing, pairs, line and surface",
-                     kinds == 0 ? "none" : fmt::format("{}", kinds));
+  if (kinds != 1) fail(interface, "", "exactly one of footing, pairs, line and surface", kinds == 0 ? "none" : fmt::format("{}", kinds));
   Joint joint;
   if (footing) joint = footing_joint(interface, *footing, rigid_ground, builder, names);
   if (pairs)
     joint.points = pair_points(side(*pairs, "upper", names), side(*pairs, "lower", names), normal_of(*pairs, names.space),
                                pairs->number("area"), interface.number("gap"), pairs->where());
   if (line) {
-    if (names.space.dimension == 3) throw InputError(line->where(), line->path(), "footing, pairs or surface in a model in space", "line");
+    if (names.space.dimension == 3) fail(*line, "", "footing, pairs or surface in a model in space", "line");
     LineJoint made{side(*line, "upper", names),        side(*line, "lower", names),
                    line->integer("nodes_per_element"), line->text("quadrature") == "nodal" ? LineQuadrature::nodal : LineQuadrature::gauss,
                    line->number("thickness"),          interface.number("gap")};

@@ -21,11 +21,6 @@ std::size_t at(int i) {
   return static_cast<std::size_t>(i);
 }
 
-[[noreturn]] void fail(const Values& table, std::string_view key, const std::string& wanted, const std::string& found,
-                       const std::string& nearest = {}) {
-  throw InputError(table.where(key), table.path(key), wanted, found, nearest);
-}
-
 Cell cell_named(const std::string& name) {
   for (const CellInfo& each : all_cells())
     if (each.name == name) return each.cell;
@@ -235,7 +230,8 @@ const std::vector<CellId>& CaseSolids::edges(const Values& table, std::string_vi
   const Group& group = group_named(*mesh_, table, key, wanted);
   if (group.dimension != mesh_->dimension - 1 || group.cells.empty()) fail(table, key, wanted, dimension_word(*mesh_, group.dimension));
   for (const CellId edge : group.cells)
-    if (!beside(edge)) fail(table, key, "edges of cells", describe_cell(*mesh_, edge) + " beside no cell");
+    if (!beside(edge))
+      fail(table, key, mesh_->dimension == 2 ? "edges of cells" : "faces of cells", describe_cell(*mesh_, edge) + " beside no cell");
   return group.cells;
 }
 

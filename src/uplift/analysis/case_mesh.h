@@ -25,7 +25,8 @@ struct CaseMesh {
 /// the case has none. Throws InputError: both a file and a soil box or neither, groups and surfaces that do not fit.
 std::shared_ptr<const CaseMesh> mesh_of_case(const Values& root, const std::string& file, const MeshReader& read_mesh);
 
-/// What the solids of a case are made of. Throws InputError unless every cell has exactly one of them.
+/// What the solids of a case are made of. Throws InputError unless every cell has exactly one of them. An edge is a side of a cell: in
+/// space a face.
 class CaseSolids {
  public:
   CaseSolids(const Values& root, const CaseMesh& from);
@@ -60,7 +61,7 @@ std::vector<std::pair<int, double>> tributary_areas(const CaseSolids& solids, co
 /// the surface.
 double thickness_of(const CaseSolids& solids, const std::vector<FacePair>& faces, const Values& surface);
 
-/// Which nodes of the model hang together with the given ones by elements, rigid bodies and inextensible beams.
+/// Which nodes of the model hang together with the given ones by elements, rigid bodies, ties and inextensible beams.
 std::vector<char> part_of(const Model& model, const std::vector<int>& nodes);
 
 }  // namespace uplift

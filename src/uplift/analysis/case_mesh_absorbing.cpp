@@ -5,20 +5,20 @@
 namespace uplift {
 
 AbsorbingSection absorbing_ground(const Values& absorbing, const CaseSolids::Solid& solid, Space space) {
+  const std::string sides = space.dimension == 2 ? "edges" : "faces";
   const auto refuse = [&](const char* wanted, const char* found) {
-    throw InputError(absorbing.where("group"), absorbing.path("group"), wanted,
-                     "edges of the solid " + in_quotes(solid.table->text("group")) + " " + found);
+    fail(absorbing, "group", sides + " of a solid " + wanted,
+         sides + " of the solid " + in_quotes(solid.table->text("group")) + " " + found);
   };
-  if (!(solid.section.material.density > 0)) refuse("edges of a solid with a density", "without one");
-  if (space.dimension == 2 && solid.section.plane != PlaneState::strain) refuse("edges of a solid in plane strain", "in plane stress");
+  if (!(solid.section.material.density > 0)) refuse("with a density", "without one");
+  if (space.dimension == 2 && solid.section.plane != PlaneState::strain) refuse("in plane strain", "in plane stress");
   return {solid.section.material, solid.section.thickness, absorbing.flag("lumped")};
 }
 
 Vec3 incident_motion(const Values& incident, Space space) {
   const std::string& word = incident.text("wave");
-  for (const bool plane_only : {word == "SH", incident.given("azimuth")})
-    if (plane_only && space.dimension == 2)
-      throw InputError(incident.where("wave"), incident.path("wave"), "P or SV without azimuth in a plane model", in_quotes(word));
+  if (space.dimension == 2 && word == "SH") fail(incident, "wave", "P or SV in a plane model", in_quotes(word));
+  if (space.dimension == 2 && incident.given("azimuth")) fail(incident, "azimuth", "no azimuth in a plane model", "one");
   return wave_motion(word == "P" ? Wave::p : word == "SV" ? Wave::sv : Wave::sh, space.dimension, incident.number("azimuth"));
 }
 

@@ -35,7 +35,7 @@ Field part_size() {
 }
 
 const Section& raft_section() {
-  static const Section s{"raft", "the foundation, in the middle of the soil (x = 0)",
+  static const Section s{"raft", "the foundation, in the middle of the soil (x = 0, in space y = 0)",
                          Fields{part_width(), part_length(), part_height(), part_size()}};
   return s;
 }

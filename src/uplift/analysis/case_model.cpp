@@ -4,22 +4,18 @@
 
 #include <algorithm>
 #include <cmath>
-#include <functional>
 #include <numbers>
 
-#include "uplift/elements/beam.h"
 #include "uplift/elements/discrete.h"
 #include "uplift/elements/solid_nonlinear.h"
-#include "uplift/elements/space_beam.h"
 
 namespace uplift {
 
 Place vector_of(const Values& table, std::string_view key, Space space) {
   const std::vector<double>& numbers = table.numbers(key);
   if (static_cast<int>(numbers.size()) != space.dimension)
-    throw InputError(table.where(key), table.path(key),
-                     space.dimension == 2 ? "two numbers [x, y] in a plane model" : "three numbers [x, y, z] in a model in space",
-                     fmt::format("{}", numbers.size()));
+    fail(table, key, space.dimension == 2 ? "two numbers [x, y] in a plane model" : "three numbers [x, y, z] in a model in space",
+         fmt::format("{}", numbers.size()));
   return {numbers[0], numbers[1], space.dimension == 3 ? numbers[2] : 0};
 }
 
@@ -41,15 +37,13 @@ std::vector<int> CaseNames::nodes_of(const Values& table, std::string_view key) 
 }
 
 const CaseSolids& CaseNames::mesh_for(const Values& table) const {
-  if (!solids) throw InputError(table.where("group"), table.path("group"), "a [mesh] with this group", "none");
+  if (!solids) fail(table, "group", "a [mesh] with this group", "none");
   return *solids;
 }
 
 std::vector<int> CaseNames::node_or_group(const Values& table) const {
   const bool node_given = table.has("node");
-  if (node_given == table.has("group"))
-    throw InputError(table.where(node_given ? "group" : ""), table.path(node_given ? "group" : ""), "either node or group",
-                     node_given ? "both" : "neither");
+  if (node_given == table.has("group")) fail(table, node_given ? "group" : "", "either node or group", node_given ? "both" : "neither");
   if (node_given) return {node(table, "node")};
   std::vector<int> found = mesh_for(table).nodes(table, "group");
   for (int& each : found) each += first_of_mesh;
@@ -57,13 +51,6 @@ std::vector<int> CaseNames::node_or_group(const Values& table) const {
 }
 
 namespace {
-
-class One final : public TimeFunction {
- public:
-  double value(double) const override { return 1; }
-  double rate(double) const override { return 0; }
-  double acceleration(double) const override { return 0; }
-};
 
 /// A function times an amplitude.
 class Scaled final : public TimeFunction {
@@ -78,115 +65,11 @@ class Scaled final : public TimeFunction {
   std::shared_ptr<const TimeFunction> function_;
 };
 
-[[noreturn]] void fail(const Values& table, std::string_view key, const std::string& wanted, const std::string& found,
-                       const std::string& nearest = {}) {
-  throw InputError(table.where(key), table.path(key), wanted, found, nearest);
-}
-
 /// Exactly one of two keys must be given.
 bool first_of_two(const Values& table, std::string_view first, std::string_view second) {
   const bool a = table.has(first), b = table.has(second);
   if (a == b) fail(table, a ? second : "", fmt::format("either {} or {}", first, second), a ? "both" : "neither");
   return a;
-}
-
-/// Mass of a beam by its table; density times area.
-template <typename Section>
-void add_beam_mass(const Values& beam, Section& section) {
-  if (beam.text("mass") == "none") return;
-  if (!beam.has("density") || !beam.has("A")) fail(beam, "mass", "density and A of the beam", !beam.has("density") ? "no density" : "no A");
-  section.mass = beam.text("mass") == "consistent" ? BeamSection::Mass::consistent : BeamSection::Mass::lumped;
-  section.mass_per_length = beam.number("density") * beam.number("A");
-}
-
-/// Shear stiffness G A_s [N]; nothing for Euler-Bernoulli beams.
-std::optional<double> shear_of(const Values& beam) {
-  if (beam.text("theory") != "timoshenko") return {};
-  if (!beam.has("shear_area")) fail(beam, "", "shear_area for theory = \"timoshenko\"", "none");
-  return beam.number("E") / (2 * (1 + beam.number("poisson"))) * beam.number("shear_area");
-}
-
-BeamSection plane_section(const Values& beam) {
-  for (const char* key : {"I_y", "I_z", "J", "up"})
-    if (beam.has(key)) fail(beam, key, "I alone in a plane model", fmt::format("{}", key));
-  if (!beam.has("I")) fail(beam, "I", "a second moment of area > 0 m4", "nothing");
-  BeamSection section;
-  section.bending = beam.number("E") * beam.number("I");
-  if (beam.has("A")) section.axial = beam.number("E") * beam.number("A");
-  add_beam_mass(beam, section);
-  if (const auto shear = shear_of(beam)) {
-    section.shear = *shear;
-    if (section.mass != BeamSection::Mass::none) section.rotary_per_length = beam.number("density") * beam.number("I");
-  }
-  return section;
-}
-
-SpaceBeamSection space_section(const Values& beam) {
-  const bool one = beam.has("I"), two = beam.has("I_y") && beam.has("I_z");
-  if (one == two || (one && (beam.has("I_y") || beam.has("I_z")))) fail(beam, "", "either I, or I_y and I_z", one ? "both" : "neither");
-  if (!beam.has("J")) fail(beam, "", "J, the torsion constant, in a model in space", "none");
-  const double young = beam.number("E"), about_y = beam.number(one ? "I" : "I_y"), about_z = beam.number(one ? "I" : "I_z");
-  SpaceBeamSection section;
-  section.bending_y = young * about_y;
-  section.bending_z = young * about_z;
-  section.torsion = young / (2 * (1 + beam.number("poisson"))) * beam.number("J");
-  if (beam.has("A")) section.axial = young * beam.number("A");
-  add_beam_mass(beam, section);
-  if (section.mass != BeamSection::Mass::none) section.polar = beam.number("density") * (about_y + about_z);
-  if (const auto shear = shear_of(beam)) {
-    section.shear_y = section.shear_z = *shear;
-    if (section.mass != BeamSection::Mass::none) {
-      section.rotary_y = beam.number("density") * about_y;
-      section.rotary_z = beam.number("density") * about_z;
-    }
-  }
-  return section;
-}
-
-/// Makes the elements of a beam, one after another.
-using MakeBeam = std::function<std::unique_ptr<Element>(int a, int b, const Place& from, const Place& to)>;
-
-MakeBeam beam_maker(const Values& beam, const Vec3& along, Space space) {
-  if (space.dimension == 2) {
-    const BeamSection section = plane_section(beam);
-    return [section](int a, int b, const Place& from, const Place& to) {
-      return std::make_unique<Beam>(a, b, from.head<2>(), to.head<2>(), section);
-    };
-  }
-  const SpaceBeamSection section = space_section(beam);
-  std::optional<Vec3> up;
-  if (beam.has("up")) up = vector_of(beam, "up", space);
-  if (!beam_axes(along, up)) fail(beam, "up", "a direction that is not along the beam", "one along it");
-  return
-      [section, up](int a, int b, const Place& from, const Place& to) { return std::make_unique<SpaceBeam>(a, b, from, to, section, up); };
-}
-
-void add_beam(const Values& beam, ModelBuilder& builder, CaseNames& names, Names& beams) {
-  beams.add(beam, "name");
-  const std::vector<int> ends = names.nodes_of(beam, "nodes");
-  if (ends.size() != 2) fail(beam, "nodes", "two nodes", fmt::format("{}", ends.size()));
-  const Place a = names.positions[ends[0]], b = names.positions[ends[1]];
-  if ((b - a).norm() == 0) fail(beam, "nodes", "two nodes at different places", "two nodes at the same place");
-  const MakeBeam make = beam_maker(beam, b - a, names.space);
-  const int pieces = beam.integer("elements");
-  int last = ends[0];
-  Place from = a;
-  for (int k = 1; k <= pieces; ++k) {
-    const Place to = k == pieces ? b : Place(a + (b - a) * (static_cast<double>(k) / pieces));
-    int next = ends[1];
-    if (k < pieces) {
-      const std::string name = fmt::format("{}.{}", beam.text("name"), k);
-      next = builder.add_node(name, to, beam.where());
-      names.nodes.add(name, beam.where("name"), beam.path("name"));
-      names.positions.push_back(to);
-    }
-    auto element = make(last, next, from, to);
-    element->beta = beam.number("damping_beta");
-    if (!beam.has("A")) builder.inextensible(last, next, beam.where());
-    builder.add_element(std::move(element), beam.where());
-    last = next;
-    from = to;
-  }
 }
 
 Connection connection_of(const Values& table, const CaseNames& names, bool along) {
@@ -333,8 +216,7 @@ void add_functions(const Values& root, CaseNames& names) {
 }
 
 void add_structure(const Values& root, ModelBuilder& builder, CaseNames& names, const std::vector<double>& tuned, bool at_rest) {
-  Names beams("beam");
-  for (const Values& beam : root.tables("beam")) add_beam(beam, builder, names, beams);
+  add_beams(root, builder, names);
   add_masses(root, builder, names, tuned);
   for (const Values& spring : root.tables("spring")) {
     const bool along = first_of_two(spring, "stiffness", "rotational_stiffness");

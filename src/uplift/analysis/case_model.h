@@ -49,6 +49,7 @@ void add_absorbing(const Values& root, ModelBuilder& builder, const CaseNames& n
 /// A function times an amplitude.
 std::shared_ptr<const TimeFunction> scaled(double factor, std::shared_ptr<const TimeFunction> function);
 void add_functions(const Values& root, CaseNames& names);
+void add_beams(const Values& root, ModelBuilder& builder, CaseNames& names);
 /// `at_rest`: with the supports that hold in static stages alone.
 void add_structure(const Values& root, ModelBuilder& builder, CaseNames& names, const std::vector<double>& tuned, bool at_rest);
 /// Supports and prescribed motions. Groups of two sides share the corner: it is held once, and moves where one of them moves.

@@ -2,6 +2,10 @@
 
 namespace uplift {
 
+void fail(const Values& table, std::string_view key, const std::string& wanted, const std::string& found, const std::string& nearest) {
+  throw InputError(table.where(key), table.path(key), wanted, found, nearest);
+}
+
 int Names::add(const Values& table, std::string_view key, std::string automatic) {
   if (!table.has(key)) return add(std::move(automatic), table.where(), table.path());
   return add(table.text(key), table.where(key), table.path(key));

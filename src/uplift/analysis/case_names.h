@@ -9,6 +9,10 @@
 
 namespace uplift {
 
+/// Throws the InputError of a key of a table, or with an empty key of the table itself.
+[[noreturn]] void fail(const Values& table, std::string_view key, const std::string& wanted, const std::string& found,
+                       const std::string& nearest = {});
+
 /// Names of one kind, given in the case file and referred to from elsewhere in it.
 class Names {
  public:

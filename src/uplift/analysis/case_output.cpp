@@ -99,8 +99,7 @@ auto find_quantity(const Table& table, const Values& history, const char* of) {
     if (entry.word == word) return entry;
     words.emplace_back(entry.word);
   }
-  throw InputError(history.where("quantity"), history.path("quantity"), fmt::format("a quantity of {}: {}", of, fmt::join(words, ", ")),
-                   "\"" + word + "\"", nearest_name(word, words));
+  fail(history, "quantity", fmt::format("a quantity of {}: {}", of, fmt::join(words, ", ")), "\"" + word + "\"", nearest_name(word, words));
 }
 
 Request make(Column kind, std::string name, std::string_view unit) {
@@ -128,12 +127,11 @@ Request point_request(const Values& history, const Model& model, int interface, 
   const Interface& joint = model.interfaces[interface];
   const int point = history.integer("point");
   if (point > joint.batch.points)
-    throw InputError(history.where("point"), history.path("point"),
-                     fmt::format("a point of \"{}\", from 1 to {}", joint.name, joint.batch.points), fmt::format("{}", point));
+    fail(history, "point", fmt::format("a point of \"{}\", from 1 to {}", joint.name, joint.batch.points), fmt::format("{}", point));
   const PointQuantity quantity = find_quantity(point_quantities(model.space), history, "an interface point");
   if (quantity.tangent >= 0 && joint.batch.components == 1)
-    throw InputError(history.where("quantity"), history.path("quantity"),
-                     fmt::format("a normal quantity: \"{}\" has no tangential part", joint.name), "\"" + history.text("quantity") + "\"");
+    fail(history, "quantity", fmt::format("a normal quantity: \"{}\" has no tangential part", joint.name),
+         "\"" + history.text("quantity") + "\"");
   if (name.empty()) name = fmt::format("{}.{}.{}", joint.name, point, quantity.word);
   Request request = make(quantity.kind, std::move(name), quantity.unit);
   request.interface = interface;
@@ -150,24 +148,19 @@ int nearest_node(const Values& history, Built& built) {
   for (int node = 1; node < static_cast<int>(built.model.nodes.size()); ++node)
     if (distance(node) < distance(nearest) - 1e-9) nearest = node;
   const Node& found = built.model.nodes[static_cast<std::size_t>(nearest)];
-  const auto text = [&](const Vec3& v) {
-    const int d = built.model.space.dimension;
-    return d == 2 ? fmt::format("({:g}, {:g})", v.x() + 0.0, v.y() + 0.0)
-                  : fmt::format("({:g}, {:g}, {:g})", v.x() + 0.0, v.y() + 0.0, v.z() + 0.0);
-  };
-  built.notes.push_back(fmt::format("{} at {} m: node {} at {} m, {:.3g} m away", history.text("quantity"), text(place), found.name,
-                                    text(found.position), distance(nearest)));
+  built.notes.push_back(fmt::format("{} at {} m: node {} at {} m, {:.3g} m away", history.text("quantity"),
+                                    to_string(place, built.model.space), found.name, to_string(found.position, built.model.space),
+                                    distance(nearest)));
   return nearest;
 }
 
 Request asked_request(const Values& history, Built& built, const Names& nodes, const Names& interfaces) {
   const std::string name = history.has("name") ? history.text("name") : "";
   const int given = history.has("node") + history.has("at") + history.has("interface");
-  if (given != 1)
-    throw InputError(history.where(), history.path(), "exactly one of node, at and interface",
-                     given == 0 ? "none" : fmt::format("{}", given));
+  if (given != 1) fail(history, "", "exactly one of node, at and interface", given == 0 ? "none" : fmt::format("{}", given));
   if (!history.has("interface")) {
-    const int node = history.has("node") ? nodes.find(history, "node") : nearest_node(history, built);
+    int node = history.has("node") ? built.model.find_node(history.text("node")) : nearest_node(history, built);
+    if (node < 0) node = nodes.find(history, "node");  // says what is near
     return node_request(built.model, node, find_quantity(node_quantities(built.model.space), history, "a node"), name);
   }
   const int interface = interfaces.find(history, "interface");

@@ -45,14 +45,13 @@ RunSpec bonded_run(const Case& read) {
 void check_file_name(const Values& table) {
   for (const char c : table.text("name"))
     if (!std::isalnum(static_cast<unsigned char>(c)) && c != '_' && c != '-' && c != '.')
-      throw InputError(table.where("name"), table.path("name"),
-                       "letters, digits, '_', '-' and '.' (it names files; `label` may be anything)", "\"" + table.text("name") + "\"");
+      fail(table, "name", "letters, digits, '_', '-' and '.' (it names files; `label` may be anything)", "\"" + table.text("name") + "\"");
 }
 
 std::vector<RunSpec> sweep_runs(const Case& read, const Values& sweep, const Values* damping) {
   std::vector<RunSpec> runs;
   for (const double ratio : sweep.numbers("ratios")) {
-    if (!(ratio > 0)) throw InputError(sweep.where("ratios"), sweep.path("ratios"), "ratios > 0", fmt::format("{}", ratio));
+    if (!(ratio > 0)) fail(sweep, "ratios", "ratios > 0", fmt::format("{}", ratio));
     for (const bool path : {true, false}) {
       RunSpec spec = base_run(read);
       if (damping) spec.damping = damping;

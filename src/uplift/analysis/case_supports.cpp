@@ -20,7 +20,7 @@ Dof dof_of(const std::string& word, const Values& table, std::string_view key, S
   }
   std::string wanted = fmt::format("{}", fmt::join(words.begin(), words.end() - 1, ", ")) + " or " + words.back();
   if (!rotations) wanted += " for a group of the mesh";
-  throw InputError(table.where(key), table.path(key), wanted, in_quotes(word), rotations ? nearest_name(word, words) : "");
+  fail(table, key, wanted, in_quotes(word), rotations ? nearest_name(word, words) : "");
 }
 
 bool is_released(const Values& support) {

@@ -88,6 +88,9 @@ struct RunPlan {
   double oracle_tolerance = 0;  // > 0: every condensed step is also taken by the oracle; a larger relative difference fails it
 };
 
+/// The first dynamic stage of a plan, or null.
+const Stage* dynamic_stage(const RunPlan&);
+
 // ---- what came out ----
 
 enum class RunStatus { completed, overturned, failed, interrupted };

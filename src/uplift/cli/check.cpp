@@ -6,6 +6,7 @@
 
 #include "uplift/analysis/case_mesh.h"
 #include "uplift/analysis/wording.h"
+#include "uplift/base/text.h"
 #include "uplift/cli/console.h"
 #include "uplift/cli/load.h"
 #include "uplift/dynamics/cost.h"
@@ -112,7 +113,9 @@ void try_steps(Findings& found, const Built& built) {
       stage.duration = std::min(stage.duration, 200 * stage.step);
     }
   const auto start = std::chrono::steady_clock::now();
-  const Watch enough = [&](const Progress&) { return std::chrono::steady_clock::now() - start < std::chrono::duration<double>(trial_seconds); };
+  const Watch enough = [&](const Progress&) {
+    return std::chrono::steady_clock::now() - start < std::chrono::duration<double>(trial_seconds);
+  };
   const RunResult trial = uplift::run(built.model, plan, built.behaviours, enough);
   if (trial.status == RunStatus::failed && trial.counts.steps < 200) found.trial_failure = trial.reason;
   found.seconds_per_step = trial.step_seconds;
@@ -187,8 +190,8 @@ void print(const Loaded& loaded, const Built& built, const Findings& found, cons
                                spoken_bytes(found.bulk->step.bytes), spoken_bytes(found.bulk->available)));
   if (found.fields) {
     const FieldForecast& fields = *found.fields;
-    line("fields", fmt::format("{} frames x {} = {} a run, as {}", fields.frames, spoken_bytes(fields.size.per_frame),
-                               spoken_bytes(fields.bytes()), fields.format == FieldFormat::vtu ? "vtu" : "xdmf"));
+    line("fields", fmt::format("{} frames x {} = {} a run, as {}", fields.frames, spoken_bytes(static_cast<double>(fields.size.per_frame)),
+                               spoken_bytes(static_cast<double>(fields.bytes())), fields.format == FieldFormat::vtu ? "vtu" : "xdmf"));
   }
   say("what is computed");
   for (const std::string& run : runs) say("  " + run);

@@ -16,7 +16,8 @@ class Spreader {
 
 /// How forces on the interface rows spread through a factored symmetric matrix A (K_eff, M, ...):
 ///   A^-1 B^T = X C^T         B A^-1 B^T = C C^T   (the compliance, never inverted)
-/// with r = rank of B, the least that is possible: at most three for a rigid footing in 2D, whatever its number of joints.
+/// with r = rank of B, the least that is possible: at most three for a rigid footing in the plane, six in space, whatever its number of
+/// joints.
 struct Spread {
   Matrix factor;                                 // C: rows x r
   Matrix spread;                                 // X: free x r; not there when `through` is

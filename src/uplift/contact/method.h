@@ -20,6 +20,13 @@ class ContactMethod {
   virtual std::unique_ptr<const InterfaceLaw> substitute(const Cone&, double flexibility) const;
 };
 
+/// Nothing touches: for models without an interface and for what is computed before a method is chosen.
+class NoContact final : public ContactMethod {
+ public:
+  Outcome solve(const InterfaceProblem&, InterfaceSolution&) const override { return {}; }
+  bool constrains() const override { return false; }
+};
+
 /// Largest area * F_ii [m3/N] over the normal rows of a block: the displacement of a point under a unit pressure on its own area.
 double flexibility(const InterfaceProblem&, const Block&);
 

@@ -2,11 +2,6 @@
 
 namespace uplift {
 
-std::string_view to_string(Dof dof) {
-  constexpr std::string_view names[] = {"ux", "uy", "uz", "rx", "ry", "rz"};
-  return names[static_cast<int>(dof)];
-}
-
 double Element::axial_force(const Vector&) const {
   return 0;
 }

@@ -1,5 +1,6 @@
 #pragma once
 #include <cassert>
+#include <string>
 #include <string_view>
 
 #include "uplift/math/linalg.h"
@@ -35,5 +36,8 @@ struct Space {
   /// What the unknown `index` of a node moves a point that is rigidly offset by r [m] from it.
   Vec3 motion(int index, const Vec3& r) const { return index < dimension ? axis(index) : cross(axis(index), r); }
 };
+
+/// "(1, 0)" in the plane, "(1, 0, 0)" in space.
+std::string to_string(const Vec3& v, Space space, int digits = 6);
 
 }  // namespace uplift

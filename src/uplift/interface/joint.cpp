@@ -10,17 +10,14 @@ namespace uplift {
 
 namespace {
 
-std::string to_string(const Vec3& at) {
-  return at.z() == 0 ? fmt::format("({:g}, {:g})", at.x(), at.y()) : fmt::format("({:g}, {:g}, {:g})", at.x(), at.y(), at.z());
-}
-
 void refuse_exchanged_sides(const Vec3& upper, const Vec3& lower, const Vec3& normal, const Where& where) {
   const Vec3 apart = upper - lower;
+  const Space space{upper.z() == 0 && lower.z() == 0 ? 2 : 3};
   // the initial gap is never taken from the coordinates, so only a clear distance counts
   if (apart.dot(normal) < -1e-9 * (1 + upper.norm() + lower.norm()))
     throw InputError(where, "interface.normal", "a normal from the lower to the upper side",
                      fmt::format("an interface inside out: the upper node at {} m lies on the lower side of its partner at {} m",
-                                 to_string(upper), to_string(lower)));
+                                 to_string(upper, space), to_string(lower, space)));
 }
 
 Vec3 unit(const Vec3& v, const Where& where) {

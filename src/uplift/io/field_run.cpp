@@ -74,18 +74,11 @@ void check_room(const Values& fields, const FieldForecast& wanted, const std::st
   std::error_code error;
   const std::filesystem::space_info disk = std::filesystem::space(folder, error);
   if (!error && disk.available < static_cast<std::uintmax_t>(wanted.bytes()))
-    throw InputError(fields.where(), fields.path(), "room for " + spoken_bytes(wanted.bytes()) + " of fields",
-                     spoken_bytes(static_cast<std::int64_t>(disk.available)) + " on the disk");
+    throw InputError(fields.where(), fields.path(), "room for " + spoken_bytes(static_cast<double>(wanted.bytes())) + " of fields",
+                     spoken_bytes(static_cast<double>(disk.available)) + " on the disk");
 }
 
 }  // namespace
-
-std::string spoken_bytes(std::int64_t bytes) {
-  const auto value = static_cast<double>(bytes);
-  if (value < 1e3) return fmt::format("{} bytes", bytes);
-  if (value < 1e6) return fmt::format("{:.3g} kB", value / 1e3);
-  return value < 1e9 ? fmt::format("{:.3g} MB", value / 1e6) : fmt::format("{:.4g} GB", value / 1e9);
-}
 
 std::optional<FieldForecast> field_forecast(const Case& read, const Built& built) {
   const Values* fields = fields_of(read);

@@ -23,9 +23,6 @@ struct FieldForecast {
 /// None when the case does not ask for fields. Throws InputError: no mesh, quantities and groups that are not there.
 std::optional<FieldForecast> field_forecast(const Case& read, const Built& built);
 
-/// "1.2 MB", "850 kB" (1 MB = 1e6 bytes).
-std::string spoken_bytes(std::int64_t bytes);
-
 /// Writes the frames of one run while it goes on: "fields/<run>.pvd" or "fields/<run>.xdmf" and what they name. Nothing of a frame is kept
 /// but, with events, the states of the largest gap and of the largest pressure.
 /// Times of the frames [s]: those of the states. Where several static stages come before the dynamic ones, the last of them ends at 0,

@@ -13,6 +13,8 @@
 #include <fstream>
 #include <limits>
 
+#include "uplift/base/text.h"
+
 namespace uplift {
 
 namespace {
@@ -86,11 +88,6 @@ void give_back_free_memory() {
 #if defined(__GLIBC__)
   malloc_trim(0);
 #endif
-}
-
-std::string spoken_bytes(double bytes) {
-  if (bytes >= 1e9) return fmt::format("{:.1f} GB", 1e-9 * bytes);
-  return fmt::format("{:.{}f} MB", 1e-6 * bytes, bytes < 1e7 ? 1 : 0);
 }
 
 std::string memory_refusal(double needed, double available) {

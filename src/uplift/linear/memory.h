@@ -12,9 +12,6 @@ double available_memory(const std::string& root = "");
 /// Hands pages of the heap that nobody uses back to the system, where the C library can: after an analysis, before what it was made for.
 void give_back_free_memory();
 
-/// "31.2 GB"; decimal units.
-std::string spoken_bytes(double bytes);
-
 /// Why a factor that takes `needed` bytes is not made when `available` are left; empty when it fits.
 std::string memory_refusal(double needed, double available);
 

@@ -37,29 +37,32 @@ class ModelBuilder {
  public:
   explicit ModelBuilder(Space space = {}) : space_(space) {}
   Space space() const { return space_; }
+  /// Returns the number of the node; its full unknowns are space().at(number, ...).
   int add_node(std::string name, Place position, Where where);
   void add_element(std::unique_ptr<const Element> element, Where where);
+  /// The unknown stays zero.
   void fix(int node, Dof dof, Where where);
+  /// The unknown follows a function [m, rad].
   void prescribe(int node, Dof dof, std::shared_ptr<const TimeFunction> motion, std::string name, Where where);
   /// The same motion of several nodes.
   void prescribe(const std::vector<int>& nodes, Dof dof, std::shared_ptr<const TimeFunction> motion, std::string name, const Where& where);
   /// Both nodes have the same value of one unknown. A tie that follows from other constraints is left out.
   void tie_equal(int a, int b, Dof dof, Where where);
-  /// the slave's translations and rotations follow the master rigidly (small displacements); chains are allowed.
+  /// The slave's translations and rotations follow the master rigidly (small displacements); chains are allowed.
   void tie_rigid(int master, int slave, Where where);
   /// The distance of the two nodes does not change (beam without axial flexibility).
   void inextensible(int a, int b, Where where);
   void add_interface(InterfaceSpec spec, Where where);
-  /// force pattern: (full unknown, value) pairs; without a function the load is constant
+  /// A force pattern of (full unknown, value) pairs [N, N m] times a function (null: constant). `dead`: static stages apply it.
   void add_load(std::string name, std::vector<std::pair<int, double>> pattern, std::shared_ptr<const TimeFunction> function, bool dead,
                 Where where);
-  /// Forces that follow many functions of time: entries (full unknown, function, value).
+  /// Forces that follow many functions of time at once (see Feed): entries (full unknown, function, value).
   void add_feed(std::string name, std::vector<Triplet> pattern, int functions, std::shared_ptr<const TimeFunctions> values);
   /// Interfaces keep tangential components that supports and constraints hold still.
   void keep_tangents() { keeps_tangents_ = true; }
   /// Gravity [m/s2] on all masses: a dead load.
   void set_gravity(Place acceleration, Where where);
-  /// Relative-frame ground acceleration: inertia forces -M r a(t).
+  /// Ground acceleration in the frame that moves with the ground: inertia forces -M r a(t), r the unit translation along `direction`.
   void add_ground_acceleration(Place direction, std::shared_ptr<const TimeFunction> acceleration, std::string name, Where where);
   void set_damping(BulkDamping damping);
   /// The finished model; the builder is empty afterwards.

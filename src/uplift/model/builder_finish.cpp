@@ -7,13 +7,6 @@ namespace uplift {
 
 namespace {
 
-class One : public TimeFunction {
- public:
-  double value(double) const override { return 1; }
-  double rate(double) const override { return 0; }
-  double acceleration(double) const override { return 0; }
-};
-
 void add_to(Space space, const Element& element, const Matrix& local, double factor, std::vector<Triplet>& entries) {
   const auto nodes = element.nodes();
   const int each = element.unknowns_per_node();

@@ -21,10 +21,6 @@ void add_side(Space space, const std::vector<Node>& nodes, const JointPoint& poi
   }
 }
 
-std::string to_text(const Vec3& v, Space space) {
-  return space.dimension == 2 ? fmt::format("({:g}, {:g})", v.x(), v.y()) : fmt::format("({:g}, {:g}, {:g})", v.x(), v.y(), v.z());
-}
-
 }  // namespace
 
 /// Where supports and constraints leave no tangential motion at any point, the interface is reduced to its normal components: nothing can
@@ -144,7 +140,7 @@ void ModelBuilder::refuse_inside_out(const InterfaceSpec& spec, const Where& whe
       throw InputError(
           where, "interface." + spec.name, "a normal from the lower side (soil) to the upper side (structure)",
           fmt::format("an interface inside out: with the normal {} the whole {} side, which holds \"{}\", lies on the wrong side of it",
-                      to_text(n, space_), is_upper ? "upper" : "lower",
+                      to_string(n, space_), is_upper ? "upper" : "lower",
                       nodes_[(is_upper ? spec.points.front().upper : spec.points.front().lower).front().first].name));
   }
 }

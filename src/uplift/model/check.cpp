@@ -114,11 +114,9 @@ Motions motions_of(const Model& model, const Vector& full) {
   return motions;
 }
 
-/// "(1, 0)" in the plane, "(1, 0, 0)" in space; three digits, round-off shown as 0.
+/// Three digits, round-off shown as 0.
 std::string text(const Vec3& v, Space space) {
-  const auto tidy = [](double value) { return std::abs(value) < 1e-6 ? 0.0 : value; };
-  if (space.dimension == 2) return fmt::format("({:.3g}, {:.3g})", tidy(v.x()), tidy(v.y()));
-  return fmt::format("({:.3g}, {:.3g}, {:.3g})", tidy(v.x()), tidy(v.y()), tidy(v.z()));
+  return to_string(v.unaryExpr([](double value) { return std::abs(value) < 1e-6 ? 0.0 : value; }), space, 3);
 }
 
 /// The direction whose first number that is not zero is positive.

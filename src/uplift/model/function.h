@@ -15,6 +15,14 @@ class TimeFunction {
   virtual double acceleration(double time) const = 0;
 };
 
+/// 1 at all times: what has no function of its own.
+class One final : public TimeFunction {
+ public:
+  double value(double) const override { return 1; }
+  double rate(double) const override { return 0; }
+  double acceleration(double) const override { return 0; }
+};
+
 std::span<const Entry<TimeFunction>* const> function_catalog();
 std::span<const PartInfo* const> time_functions();
 

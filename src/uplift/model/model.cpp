@@ -26,7 +26,7 @@ int Model::rows() const {
 
 int Model::find_node(std::string_view name) const {
   for (std::size_t i = 0; i < nodes.size(); ++i)
-    if (nodes[i].name == name) return static_cast<int>(i);
+    if (nodes[i].name == name || (!name.empty() && nodes[i].alias == name)) return static_cast<int>(i);
   return -1;
 }
 

@@ -13,7 +13,8 @@ namespace uplift {
 
 struct Node {
   std::string name;
-  Place position;  // m
+  Place position;          // m
+  std::string alias = {};  // a second name by which it is found; empty: none
 };
 
 /// A force pattern on the free unknowns times a function of time.

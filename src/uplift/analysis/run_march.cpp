@@ -1,0 +1,154 @@
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <chrono>
+#include <cmath>
+
+#include "uplift/analysis/runner.h"
+
+namespace uplift {
+
+void Runner::note_views(double step) {
+  bool open = false, any_contact = views_.empty();
+  for (const InterfaceView& view : views_) {
+    const double time = seen_->time;
+    const auto note = [time](Peak& peak, double value) {
+      if (std::abs(value) > std::abs(peak.value)) peak.value = value, peak.time = time;
+    };
+    note(result_.max_uplifted_ratio, view.open_area);
+    note(result_.max_opening, view.max_opening);
+    note(result_.max_base_moment, view.resultant.moment);
+    note(result_.max_base_shear, view.resultant.shear);
+    note(result_.max_pressure, view.max_pressure);
+    result_.max_penetration = std::max(result_.max_penetration, -view.least_opening);
+    open = open || view.open_area > 0;
+    any_contact = any_contact || view.open_area < 1;
+  }
+  if (open) {
+    if (result_.first_uplift < 0) result_.first_uplift = seen_->time;
+    result_.time_uplifted += step;
+  }
+  if (!any_contact) result_.full_loss += step;
+}
+
+/// Energy created and lost so far; the scale is the largest external work, or the energy at the beginning where no load works. Work of the
+/// dead loads over 1e-10 m, and 1e-8 of the energy that the static state stores (of which the gate takes a hundredth), are round-off: a
+/// structure that only stands there has created nothing.
+void Runner::finish_energy(const Stepper& stepper) {
+  const Energies& energies = stepper.energies();
+  const double created = energies.residual + std::max(0.0, -energies.impact);
+  if (created > result_.energy_created) result_.energy_created = created, result_.energy_created_time = seen_->time;
+  if (-energies.residual > result_.energy_lost) result_.energy_lost = -energies.residual, result_.energy_lost_time = seen_->time;
+  result_.energy_scale = std::max(stepper.largest_external(), initial_scale_);
+  if (result_.energy_scale <= 0) result_.energy_scale = stepper.initial_energy();
+  result_.energy_scale = std::max(result_.energy_scale, round_off_energy_);
+}
+
+/// False when the run ends here: not finite, far beyond the energy limit, or rotated beyond the small-displacement model.
+bool Runner::check_limits(const Stepper& stepper) {
+  const Energies& energies = stepper.energies();
+  if (!std::isfinite(energies.residual) || !std::isfinite(energies.kinetic)) {
+    fail(fmt::format("the energy is not finite at t = {:.6g} s", seen_->time), stepper.problem());
+    return false;
+  }
+  const bool creates = result_.energy_scale > 0 && result_.energy_created > plan_.created_limit * result_.energy_scale;
+  if (creates && (plan_.stop_at_limit || result_.energy_created > 1e6 * result_.energy_scale)) return false;
+  if (creates) return true;
+  for (int unknown : rotations_)
+    if (std::abs(seen_->displacement[unknown]) > plan_.rotation_limit) {
+      result_.status = RunStatus::overturned;
+      result_.reason = fmt::format("{} passed {:.3g} rad at t = {:.6g} s, the limit of the small-displacement model",
+                                   model_.unknown_names[static_cast<std::size_t>(unknown)], plan_.rotation_limit, seen_->time);
+      return false;
+    }
+  return true;
+}
+
+bool Runner::dynamics(const Stage& stage, const Bulk& bulk) {
+  StepOptions options;
+  options.scheme = stage.scheme;
+  options.step = stage.step;
+  options.path_average = stage.path_average;
+  options.halvings = stage.halvings;
+  options.monolithic = plan_.monolithic;
+  options.oracle_tolerance = plan_.oracle_tolerance;
+  if (held_.size() > 0) options.held = &held_;
+  if (ledger_ && !(march_ && march_->p_delta == stage.p_delta && march_->scheme == stage.scheme)) ledger_->acceleration = false;
+  Stepper stepper(model_, bulk, b_, gap_, *laws_, *plan_.method, *plan_.impact, *plan_.solver, options, linear_);
+  stepper.start(std::move(state_), ledger_ ? &*ledger_ : nullptr);
+  seen_ = &stepper.state();
+  const long steps = std::max(1L, std::lround(stage.duration / stage.step));
+  const std::size_t rows = static_cast<std::size_t>(steps / plan_.every) + 2;
+  Recorder recorder(model_, plan_, viewer_, rows, result_);
+  const long picture_every = plan_.frames > 0 ? std::max(1L, steps / plan_.frames) : 0;
+  if (!ledger_) initial_scale_ = stepper.energies().kinetic;
+  if (!ledger_) round_off_energy_ = 1e-8 * (stepper.energies().strain + stepper.energies().stored);
+  for (const Drive& drive : model_.drives)
+    if (drive.dead) round_off_energy_ += 1e-10 * drive.shape.lpNorm<1>() * std::abs(drive.function->value(seen_->time));
+  const auto observe = [&](long step) {
+    viewer_.look(seen_->opening, seen_->force, views_);
+    note_views(step == 0 ? 0 : stage.step);
+    recorder.record(stepper, views_, step % plan_.every == 0 || step == steps);
+    if (picture_every > 0 && step % picture_every == 0) recorder.picture(*seen_);
+  };
+  if (!ledger_) {  // else the end of the stage before is there already
+    observe(0);
+    show(stage, &stepper, 0, false);
+  }
+  bool go_on = true;
+  const long between = bulk.small ? 256 : 8;  // steps from one report of progress to the next
+  auto first_done = std::chrono::steady_clock::now();
+  double shown_before = shown_;
+  for (long step = 1; step <= steps && go_on; ++step) {
+    if (!stepper.advance()) {
+      fail(fmt::format("step at t = {:.6g} s failed down to dt = {:.3g} s: {}", seen_->time, stage.step / std::pow(2, stage.halvings),
+                       stepper.why()),
+           stepper.problem());
+      show(stage, &stepper, step - 1, true);
+      break;
+    }
+    finish_energy(stepper);
+    observe(step);
+    go_on = check_limits(stepper);
+    if (step == 1) first_done = std::chrono::steady_clock::now(), shown_before = shown_;
+    if (watch_ && step % between == 0 && go_on) {
+      const double open = views_.empty() ? 0 : views_.front().open_area;
+      const double scale = result_.energy_scale > 0 ? result_.energy_scale : 1;
+      if (!watch_({static_cast<double>(step) / static_cast<double>(steps), seen_->time, stage.step, open,
+                   stepper.energies().residual / scale})) {
+        result_.status = RunStatus::interrupted;
+        result_.reason = fmt::format("interrupted at t = {:.6g} s", seen_->time);
+        go_on = false;
+      }
+    }
+    show(stage, &stepper, step, step == steps || !go_on);
+  }
+  if (stepper.counts().steps > 1)
+    result_.step_seconds =
+        (std::chrono::duration<double>(std::chrono::steady_clock::now() - first_done).count() - (shown_ - shown_before)) /
+        static_cast<double>(stepper.counts().steps - 1);
+  state_ = stepper.state();
+  seen_ = &state_;
+  ledger_ = stepper.ledger();
+  march_ = stage;
+  result_.counts.steps += stepper.counts().steps;
+  result_.counts.retries += stepper.counts().retries;
+  result_.counts.iterations += stepper.counts().iterations;
+  result_.counts.cycles += stepper.counts().cycles;
+  result_.final_energy = stepper.energies();
+  result_.end_time = seen_->time;
+  if (stepper.counts().deepest > 0)
+    result_.notes.push_back(
+        fmt::format("the step was halved up to {} times ({} retries)", stepper.counts().deepest, stepper.counts().retries));
+  if (stepper.counts().cycles > 0)
+    result_.notes.push_back(fmt::format("{} cycles of the contact status were met and treated", stepper.counts().cycles));
+  const bool creates = result_.energy_scale > 0 && result_.energy_created > plan_.created_limit * result_.energy_scale;
+  if (creates && result_.status != RunStatus::interrupted && result_.status != RunStatus::failed) {
+    result_.status = RunStatus::failed;
+    result_.reason = fmt::format("energy was created: {} of the external work (limit {:.3g} %), at t = {:.6g} s", result_.created_percent(),
+                                 100 * plan_.created_limit, result_.energy_created_time);
+  }
+  return go_on && result_.status == RunStatus::completed;
+}
+
+}  // namespace uplift

@@ -1,0 +1,61 @@
+#pragma once
+#include <memory>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "uplift/analysis/record.h"
+#include "uplift/analysis/run.h"
+#include "uplift/dynamics/step.h"
+
+namespace uplift {
+
+/// One run: the state, what is watched, what is written. Used by run() alone: the stages are in run.cpp, the march through a dynamic one in
+/// run_march.cpp.
+class Runner {
+ public:
+  Runner(const Model& model, const RunPlan& plan, const std::vector<const Values*>& behaviours, const Watch& watch, const Observe& observe);
+  RunResult go();
+
+ private:
+  void execute();
+  void remember_gaps();
+  void add_initial_state();
+  bool statics(const Stage& stage, const Sparse* geometric);
+  bool second_order();
+  State carried() const;
+  void release();
+  bool dynamics(const Stage& stage, const Bulk& bulk);
+  void show(const Stage& stage, const Stepper* stepper, long step, bool last);
+  void note_views(double step);
+  bool check_limits(const Stepper& stepper);
+  void finish_energy(const Stepper& stepper);
+  void fail(std::string why, const InterfaceProblem* problem);
+
+  const Model& model_;
+  const RunPlan& plan_;
+  const std::vector<const Values*>& parameters_;
+  const Watch& watch_;
+  const Observe& observe_;
+  const Sparse b_;
+  const Vector gap_;
+  Vector start_gap_;  // with the prescribed motions at time 0
+  InterfaceViewer viewer_;
+  RunResult result_;
+  LinearCounts linear_;
+  std::unique_ptr<Behaviours> laws_;
+  std::unique_ptr<Sparse> geometric_;
+  const Model* rest_;            // the static stages' model before the first dynamic stage; null: model_
+  Vector held_;                  // what released supports have borne, on the free unknowns [N, N m]
+  State state_;                  // between stages
+  const State* seen_ = &state_;  // the present one, wherever it lives
+  std::vector<InterfaceView> views_;
+  std::vector<int> rotations_;    // free unknowns that are rotations of bodies on an interface
+  double initial_scale_ = 0;      // J
+  std::optional<Ledger> ledger_;  // of the dynamic stage before
+  std::optional<Stage> march_;    // that stage, as long as nothing came in between
+  double round_off_energy_ = 0;   // J: less than this is nothing
+  double shown_ = 0;              // s: taken by the observer
+};
+
+}  // namespace uplift

@@ -1,0 +1,17 @@
+#include <gtest/gtest.h>
+
+#include "uplift/base/text.h"
+
+namespace uplift {
+namespace {
+
+TEST(Text, BytesAreSpoken) {
+  EXPECT_EQ(spoken_bytes(999), "999 bytes");
+  EXPECT_EQ(spoken_bytes(1230), "1.23 kB");
+  EXPECT_EQ(spoken_bytes(2.34e6), "2.34 MB");
+  EXPECT_EQ(spoken_bytes(121'400'000), "121 MB");
+  EXPECT_EQ(spoken_bytes(31.25e9), "31.25 GB");
+}
+
+}  // namespace
+}  // namespace uplift
