@@ -14,7 +14,7 @@ struct BulkUse {
   bool impacts = false;     // a second set of interface blocks, of M
 };
 
-/// What the linear bulk of a run takes, known from symbolic analyses before anything large is made (about a tenth of the time of the
+/// What the linear bulk of a run takes, known from symbolic analyses before anything large is made (about half of the time of the
 /// factorisation). The factor of a static stage is as large as the step's, and gone before that is made.
 struct BulkCost {
   FactorCost step, mass;
