@@ -8,6 +8,7 @@
 #include "uplift/analysis/case.h"
 #include "uplift/dynamics/statics.h"
 #include "uplift/elements/solid_nonlinear.h"
+#include "uplift/io/field_run_frames.h"
 #include "uplift/io/toml.h"
 #include "uplift/mesh/box.h"
 
@@ -82,7 +83,7 @@ density = 1900
   text += "[[support]]\ngroup = \"soil_left\"\nfixed = [\"ux\"]\n";
   if (space) text += "[[support]]\ngroup = \"soil_front\"\nfixed = [\"uy\"]\n";
   text += "[[load]]\nname = \"press\"\ngroup = \"soil_top\"\ntraction = [" + std::string(space ? "0, 0, " : "0, ") +
-          std::to_string(-pressure) + "]\n[[stage]]\ntype = \"static\"\n";
+          std::to_string(-pressure) + "]\n[[stage]]\ntype = \"static\"\n[output.fields]\nformat = \"vtu\"\nquantities = [\"stress\"]\n";
   return prepared(text, &cube);
 }
 
@@ -131,6 +132,9 @@ TEST(PlasticRun, UniaxialCompressionHardensByTheClosedForm) {
       const Rest rest = rest_of(made.built, 5, {.newton = newton});
       ASSERT_TRUE(rest.outcome.converged) << rest.outcome.why;
       EXPECT_NEAR(settlement(made.built, rest.state), expected, 1e-8 * -expected) << psi;
+      const RunFrames frames(made.read->values.table("output").table("fields"), *made.read, made.built);
+      const std::vector<double> stress = frames.of(rest.state, nullptr, 0).blocks.front().points.front().values;
+      for (std::size_t i = 0; i < stress.size(); ++i) EXPECT_NEAR(stress[i], i % 6 == 2 ? -q : 0, 1e-8 * q);
     }
   }
 }
