@@ -6,6 +6,7 @@
 #include <cmath>
 
 #include "uplift/contact/method.h"
+#include "uplift/contact/newton.h"
 #include "uplift/math/small.h"
 
 namespace uplift {
@@ -17,11 +18,13 @@ class LagrangeMethod final : public ContactMethod {
 
   Outcome solve(const InterfaceProblem& problem, InterfaceSolution& solution) const override {
     size_solution(problem, solution);
-    bool laws = false, friction = false;
+    bool laws = false, cones = false, friction = false;
     for (const Block& block : problem.blocks) {
       laws = laws || block.law != nullptr;
+      cones = cones || block.cone != nullptr;
       friction = friction || (block.cone != nullptr && block.cone->friction() > 0);
     }
+    if (!cones && laws) return solve_laws(problem, solution);
     if (friction) return solve_frictional(problem, options_, solution);
     if (laws || problem.shift.size() > 0) return solve_frictionless(problem, options_, solution);
     return problem.blocks.size() == 1 ? solve_one(problem, solution) : solve_several(problem, solution);
@@ -30,6 +33,18 @@ class LagrangeMethod final : public ContactMethod {
   bool constrains() const override { return true; }
 
  private:
+  /// Traction laws alone constrain nothing: Newton's method with their true slopes, which friction makes unsymmetric and softening
+  /// indefinite. Where it fails, the descent of the potential may still arrive.
+  Outcome solve_laws(const InterfaceProblem& problem, InterfaceSolution& solution) const {
+    const Outcome newton = solve_by_newton(problem, {}, NewtonOptions{options_.tolerance, options_.most_iterations}, solution);
+    if (newton.converged) return newton;
+    solution.z.setZero();
+    Outcome descent = solve_frictionless(problem, options_, solution);
+    descent.iterations += newton.iterations;
+    if (!descent.converged) descent.why = newton.why;
+    return descent;
+  }
+
   /// One frictionless block: the normal rows alone are the problem.
   Outcome solve_one(const InterfaceProblem& problem, InterfaceSolution& solution) const {
     const Block& block = problem.blocks.front();
