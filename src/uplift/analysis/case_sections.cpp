@@ -133,9 +133,13 @@ const Section& energy_section() {
 }
 
 const Section& limits_section() {
-  static const Section s{"limits", "limits of the small-displacement model",
-                         Fields{number("rotation", "rad", "a node that turns more is overturned: the run ends").positive().standard(0.15),
-                                number("gap_tolerance", "m", "a gap larger than this counts as uplifted").positive().standard(1e-9)}};
+  static const Section s{
+      "limits", "limits of the small-displacement model",
+      Fields{number("rotation", "rad",
+                    "a body that turns more, or a surface whose sides turn more against each other, is overturned: the run ends")
+                 .positive()
+                 .standard(0.15),
+             number("gap_tolerance", "m", "a gap larger than this counts as uplifted").positive().standard(1e-9)}};
   return s;
 }
 

@@ -3,10 +3,22 @@
 #include <algorithm>
 #include <chrono>
 #include <cmath>
+#include <limits>
 
 #include "uplift/analysis/runner.h"
 
 namespace uplift {
+
+namespace {
+
+/// What round-off makes of the strain energy [J]: a stiff part that goes with soft ground strains by the difference of large forces.
+double sum_round_off(const Sparse& stiffness, const Vector& displacement) {
+  double sum = 0;
+  for (Index i = 0; i < displacement.size(); ++i) sum += stiffness.coeff(i, i) * displacement[i] * displacement[i];
+  return std::numeric_limits<double>::epsilon() * sum;
+}
+
+}  // namespace
 
 void Runner::note_views(double step) {
   bool open = false, any_contact = views_.empty();
@@ -61,6 +73,20 @@ bool Runner::check_limits(const Stepper& stepper) {
                                    model_.unknown_names[static_cast<std::size_t>(unknown)], plan_.rotation_limit, seen_->time);
       return false;
     }
+  return !rotations_.empty() || surfaces_turn_little();
+}
+
+/// Nodes of solids do not turn: there the slope of the opening's best plane is what the building has turned against the soil.
+bool Runner::surfaces_turn_little() {
+  for (std::size_t k = 0; k < model_.interfaces.size(); ++k) {
+    const std::array<double, 2> slope = viewer_.rotation(static_cast<int>(k), seen_->opening);
+    if (!(std::hypot(slope[0], slope[1]) > plan_.rotation_limit)) continue;
+    result_.status = RunStatus::overturned;
+    result_.reason =
+        fmt::format("'{}' passed a slope of {:.3g} rad between its sides at t = {:.6g} s, the limit of the small-displacement model",
+                    model_.interfaces[k].name, plan_.rotation_limit, seen_->time);
+    return false;
+  }
   return true;
 }
 
@@ -83,6 +109,7 @@ bool Runner::dynamics(const Stage& stage, const Bulk& bulk) {
   const long picture_every = plan_.frames > 0 ? std::max(1L, steps / plan_.frames) : 0;
   if (!ledger_) initial_scale_ = stepper.energies().kinetic;
   if (!ledger_) round_off_energy_ = 1e-8 * (stepper.energies().strain + stepper.energies().stored);
+  if (!ledger_) round_off_energy_ += 100 * sum_round_off(bulk.stiffness_matrix, stepper.state().displacement);
   for (const Drive& drive : model_.drives)
     if (drive.dead) round_off_energy_ += 1e-10 * drive.shape.lpNorm<1>() * std::abs(drive.function->value(seen_->time));
   const auto observe = [&](long step) {

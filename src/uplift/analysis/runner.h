@@ -29,6 +29,7 @@ class Runner {
   void show(const Stage& stage, const Stepper* stepper, long step, bool last);
   void note_views(double step);
   bool check_limits(const Stepper& stepper);
+  bool surfaces_turn_little();
   void finish_energy(const Stepper& stepper);
   void fail(std::string why, const InterfaceProblem* problem);
 
