@@ -3,6 +3,7 @@
 
 #include <cmath>
 #include <ctime>
+#include <limits>
 #include <map>
 #include <random>
 
@@ -346,7 +347,9 @@ void judge(const Drawn& drawn, const Built& built, const RunResult& result, Tall
     double far = 0;  // m
     for (const Frame& frame : result.frames) far = std::max(far, frame.displacement.cwiseAbs().maxCoeff());
     const double scale = std::max(result.energy_scale, result.final_energy.strain + result.final_energy.stored);
-    EXPECT_LE(result.energy_created + result.energy_lost, 1e-7 * scale + 1e-14 * drawn.stiffness * far * far);
+    // every step and unknown may leave the round-off of K u^2
+    const double round_off = std::numeric_limits<double>::epsilon() * built.model.free() * static_cast<double>(result.counts.steps);
+    EXPECT_LE(result.energy_created + result.energy_lost, 1e-7 * scale + round_off * drawn.stiffness * far * far);
   }
 }
 
@@ -373,7 +376,7 @@ TEST(Robust, RandomBuildingsOnSoilEndWell) {
       tally.steps += result.counts.steps;
       tally.retries += result.counts.retries;
       tally.iterations += result.counts.iterations;
-      EXPECT_LE(seconds, 20);
+      EXPECT_LE(seconds, 60);  // none hangs
       const auto says = [&](const char* word) { return result.reason.find(word) != std::string::npos; };
       if (result.status == RunStatus::failed && !says("overturns") && !says("slides") && (!says("energy") || drawn.sound)) {
         ++unsolved;
