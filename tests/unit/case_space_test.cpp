@@ -8,6 +8,7 @@
 #include "uplift/dynamics/statics.h"
 #include "uplift/dynamics/step.h"
 #include "uplift/io/toml.h"
+#include "uplift/mesh/box.h"
 
 namespace uplift {
 namespace {
@@ -120,6 +121,53 @@ TEST(CaseSpace, TowerBendsAboutBothAxesAndTwists) {
   EXPECT_NEAR(at(top, ux) - at(base, ux) - h * at(base, ry), 1e4 * h * h * h / (3 * e * 0.3), 1e-12);
   EXPECT_NEAR(at(top, uy) - at(base, uy) + h * at(base, rx), 2e4 * h * h * h / (3 * e * 0.5), 1e-12);
   EXPECT_NEAR(at(top, rz) - at(base, rz), 5e4 * h / (g * 0.4), 1e-12);
+}
+
+TEST(CaseSpace, RigidBodyOverAGroupOfTheMesh) {
+  // A pile of bricks without Poisson's ratio under a rigid cap with a mass on a mast: compressed by W h/(E A); the cap's nodes move with
+  // it.
+  const Mesh mesh = box(uniform_lines(-1, 1, 2), uniform_lines(-0.5, 0.5, 2), uniform_lines(0, 3, 3));
+  const std::string text = R"(title = "pile"
+[nodes]
+cap = [0, 0, 3]
+[mesh]
+file = "pile.msh"
+[[solid]]
+group = "volume"
+E = 1e7
+poisson = 0
+mass = "none"
+[[rigid]]
+name = "cap"
+node = "cap"
+group = "top"
+mass = 5000
+inertia = 1e3
+[[support]]
+group = "bottom"
+fixed = ["ux", "uy", "uz"]
+[gravity]
+acceleration = [0, 0, -10]
+[[load]]
+node = "cap"
+moments = [1e3, 2e3, 3e3]
+[[stage]]
+type = "static"
+)";
+  const Case read = check_case(read_toml_text(text, "case.toml"), "case.toml",
+                               [&](const std::string&, const Where&, const std::string&) { return mesh; });
+  const Built built = build(read, RunSpec{});
+  const Vector u = rest_of(built);
+  const int cap = built.model.find_node("cap");
+  EXPECT_NEAR(u[built.model.at(cap, uz)], -5e4 * 3 / (1e7 * 2), 1e-12);
+  Vec3 turn;
+  for (int k = 0; k < 3; ++k) turn[k] = u[6 * cap + 3 + k];
+  EXPECT_GT(turn.cwiseAbs().minCoeff(), 1e-6);
+  for (const int node : nodes_of(mesh, mesh.groups.at("top"))) {
+    const int at = cap + 1 + node;  // nodes of the case stand first
+    const Vec3 moved = u.segment<3>(6 * at) - u.segment<3>(6 * cap);
+    EXPECT_LE((moved - cross(turn, built.model.nodes[static_cast<std::size_t>(at)].position - Vec3(0, 0, 3))).norm(), 1e-14);
+  }
 }
 
 TEST(CaseSpace, MistakesAreNamed) {

@@ -106,6 +106,9 @@ void add_masses(const Values& root, ModelBuilder& builder, CaseNames& names, con
       if (slave == master) fail(body, "slaves", "nodes other than the master", "\"" + names.nodes[master] + "\"");
       builder.tie_rigid(master, slave, body.where("slaves"));
     }
+    if (body.has("group"))
+      for (const int node : names.mesh_for(body).nodes(body, "group"))
+        if (names.first_of_mesh + node != master) builder.tie_rigid(master, names.first_of_mesh + node, body.where("group"));
     Place offset;
     if (body.has("centre")) offset = vector_of(body, "centre", names.space) - names.positions[master];
     const Vec3 inertia = about_axes(body, "inertia", "inertias", true, names.space);

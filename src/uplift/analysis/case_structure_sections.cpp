@@ -79,6 +79,8 @@ const Section& rigid_section() {
   static const Section s{
       "rigid", "a rigid body (a footing): its nodes follow the master node exactly",
       Fields{text("name", "name"), text("node", "master node"), texts("slaves", "further nodes of the body").optional(),
+             text("group", "group of the mesh whose nodes belong to the body too: a rigid raft of solids, or the foot of a tower of beams")
+                 .optional(),
              number("mass", "kg", "mass of the body").nonnegative().standard(0.0),
              number("inertia", "kg m2", "rotary inertia about the centre of mass; in space about every axis").nonnegative().standard(0.0),
              numbers("inertias", "kg m2", "in space: about the axes x, y, z through the centre, instead of inertia", 3).optional(),
