@@ -100,7 +100,7 @@ class AugmentedLagrangian final : public ContactMethod {
                                   [](const Block& block) { return block.cone != nullptr && block.cone->friction() > 0; });
     if (!rubs || !PointRows::suits(problem)) return {};
     size_solution(problem, solution);
-    const Outcome outcome = solve_frictional(problem, {}, solution);
+    Outcome outcome = solve_frictional(problem, {}, solution);
     if (outcome.converged)
       solution.augmented.multiplier = solution.force;
     else
