@@ -36,7 +36,7 @@ class LagrangeMethod final : public ContactMethod {
   /// Traction laws alone constrain nothing: Newton's method with their true slopes, which friction makes unsymmetric and softening
   /// indefinite. Where it fails, the descent of the potential may still arrive.
   Outcome solve_laws(const InterfaceProblem& problem, InterfaceSolution& solution) const {
-    const Outcome newton = solve_by_newton(problem, {}, NewtonOptions{options_.tolerance, options_.most_iterations}, solution);
+    Outcome newton = solve_by_newton(problem, {}, NewtonOptions{options_.tolerance, options_.most_iterations}, solution);
     if (newton.converged) return newton;
     solution.z.setZero();
     Outcome descent = solve_frictionless(problem, options_, solution);
