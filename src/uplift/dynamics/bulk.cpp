@@ -23,8 +23,19 @@ void BulkMatrix::multiply(const Vector& x, Vector& y) const {
     y.noalias() = sparse_->transpose() * x;  // symmetric: by rows, which gathers instead of scattering
 }
 
+namespace {
+
+/// Stiffness with the geometric one; empty without.
+Sparse second_order(const Model& model, const Sparse* geometric) {
+  Sparse sum;
+  if (geometric != nullptr) sum = model.stiffness + *geometric;
+  return sum;
+}
+
+}  // namespace
+
 Bulk::Bulk(const Model& model, const Sparse* geometric)
-    : second_order_(geometric != nullptr ? Sparse(model.stiffness + *geometric) : Sparse()),
+    : second_order_(second_order(model, geometric)),
       unknowns(model.free()),
       small(model.free() <= small_bulk),
       stiffness_matrix(geometric != nullptr ? second_order_ : model.stiffness),
