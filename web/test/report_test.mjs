@@ -280,7 +280,7 @@ async function check_downloads(page) {
 /** Media queries tell the page of a change only with the next frames. */
 async function emulate(page, media, wanted) {
   await page.emulateMedia(media);
-  await page.waitForFunction(wanted, undefined, { timeout: 5000 }).catch(() => undefined);
+  await page.waitForFunction(wanted, undefined, { timeout: 60_000, polling: 50 }).catch(() => undefined);  // long: machines that test are busy
 }
 
 async function check_theme(page) {
@@ -301,7 +301,10 @@ async function check_theme(page) {
 }
 
 async function check_print(page) {
-  await emulate(page, { media: "print", colorScheme: "dark" }, () => document.querySelector(".plot-print svg") !== null);
+  await emulate(page, { media: "print", colorScheme: "dark" }, () => {
+    const drawn = [...document.querySelectorAll(".plot-print svg")].filter((e) => e.getClientRects().length > 0);
+    return drawn.length >= document.querySelectorAll(".chart").length;
+  });
   for (const cls of [".toc", ".page-tools", ".tools", ".controls", ".timeline", ".run-bar", ".plot-live"]) {
     const seen = await page.locator(cls).evaluateAll((list) => list.filter((e) => e.getClientRects().length > 0).length);
     check.equal(seen, 0, `print hides ${cls}`);
