@@ -135,6 +135,14 @@ class Failures(CliTest):
         self.assertIn("did not converge in 1 iterations", answers["reason"])
         self.assertTrue(all(answer["converged"] for answer in answers["methods"]))
 
+    def test_a_static_stage_without_equilibrium_leaves_its_problem(self):
+        text = BASE.replace('[[stage]]', '[[load]]\nname = "push"\nnode = "top"\nforce = [9e6, 0]\n[[stage]]', 1)
+        self.write(text)
+        done = self.uplift("run", "case.toml", "-o", "r", expect=3)
+        self.assertIn("static stage", done.stderr)
+        done = self.uplift("replay", "r/problem_run.json", "--json")
+        self.assertIn("overturns", json.loads(done.stdout)["reason"])
+
     def test_overturning_is_an_outcome_not_a_failure(self):
         self.write(BASE.replace("force = [3e5, 0]", "force = [9e6, 0]").replace("duration = 0.5", "duration = 3"))
         done = self.uplift("run", "case.toml", "-o", "r")

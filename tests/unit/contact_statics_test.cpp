@@ -98,6 +98,8 @@ TEST(BlockAtRest, beyond_the_limit_there_is_no_equilibrium) {
       const Rest sliding = rest(name, true, share * friction * weight, 0);
       EXPECT_FALSE(sliding.outcome.converged) << name << " x " << share << ": " << sliding.state.displacement.transpose();
       EXPECT_NE(sliding.outcome.why.find("slides"), std::string::npos) << name << " x " << share << ": " << sliding.outcome.why;
+      ASSERT_TRUE(sliding.outcome.failed.has_value());
+      EXPECT_EQ(sliding.outcome.failed->rows(), 2 * points);
       for (const bool rubs : {false, true}) {
         // the pressure's resultant leaves the base at width / 2
         const double push = 0.5 * friction * weight, height = share * 0.5 * width * weight / push;

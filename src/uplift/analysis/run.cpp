@@ -224,7 +224,7 @@ bool Runner::statics(const Stage& stage, const Sparse* geometric) {
   result_.counts.retries += outcome.retries;
   result_.counts.iterations += outcome.iterations;
   if (!outcome.converged) {
-    fail(outcome.why, nullptr);
+    fail(outcome.why, outcome.failed ? &*outcome.failed : nullptr);
     return false;
   }
   return true;

@@ -148,7 +148,10 @@ StaticOutcome solve_statics(const Model& model, const Bulk& bulk, const Sparse& 
     }
     if (!why.empty()) {
       outcome.why = fmt::format("static stage, {:.3g} % of the load: {}", 100 * to, why);
-      if (depth >= 8) return false;
+      if (depth >= 8) {
+        outcome.failed = last.problem();
+        return false;
+      }
       ++outcome.retries;
       const double middle = 0.5 * (from + to);
       return go(from, middle, depth + 1) && go(middle, to, depth + 1);

@@ -1,4 +1,5 @@
 #pragma once
+#include <optional>
 #include <string>
 
 #include "uplift/dynamics/condensed.h"
@@ -10,6 +11,7 @@ struct StaticOutcome {
   bool converged = false;
   int steps = 0, retries = 0, iterations = 0;
   std::string why;
+  std::optional<InterfaceProblem> failed;  // the interface problem of the load step that failed
   std::vector<double> newton;  // residuals of the outer Newton in the last load step, of the forces' size; empty without yielding solids
 };
 
