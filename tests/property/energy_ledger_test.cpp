@@ -83,6 +83,7 @@ TEST(EnergyLedger, StaysClosedForEveryLaw) {
   const double k = stiffness_for(10, 1e-3, [](double guess) { return oscillator_on(sdm(guess)); });
   std::vector<Part> laws = {{"springs", {{"K_n", k}}},
                             {"springs", {{"K_n", k}, {"c", 1e-4 * k}}},
+                            {"elastic", {{"K_n", k}, {"c", 1e-4 * k}}},
                             {"exponential", {{"K_n", k}, {"F_u", 2e4}, {"G_f", 20.0}}},
                             {"bilinear", {{"K_n", k}, {"F_u", 2e4}, {"G_f", 20.0}}},
                             {"sdm", {{"K_n", k}, {"F_u", 2e4}, {"G_f", 20.0}, {"F_c", -1e3}}}};

@@ -82,6 +82,7 @@ std::vector<Part> traction_laws(double k, const std::string& tangential) {
                             {"springs", {{"K_n", k}}},
                             {"springs", {{"K_n", k}, {"c", k * 1e-4}}},
                             {"elastic", {{"K_n", k}}},
+                            {"elastic", {{"K_n", k}, {"c", k * 1e-4}}},
                             {"exponential", {{"K_n", k}, {"F_u", 2e4}, {"G_f", 20.0}}},
                             {"bilinear", {{"K_n", k}, {"F_u", 2e4}, {"G_f", 20.0}}}};
   for (Part& law : laws) {

@@ -159,6 +159,15 @@ TEST(Case, BondedRunKeepsTheClosedStiffness) {
   EXPECT_DOUBLE_EQ(stiffness, 2e8);
 }
 
+TEST(Case, BondedRunKeepsTheDashpots) {
+  const Case file = read("[[variant]]\nname = \"damped\"\nlaw = {type = \"springs\", K_n = 1e8, c = 3e5, tangential = \"none\"}\n");
+  RunSpec spec = comparison_of_case(file).runs.front();
+  spec.bonded = true;
+  const Built built = build(file, spec);
+  EXPECT_EQ(built.behaviours.front()->type(), "elastic");
+  EXPECT_DOUBLE_EQ(built.behaviours.front()->number("c"), 3e5);
+}
+
 TEST(Case, SweepReachesTheWantedStiffnessRatio) {
   const Case file = read(
       "[[variant]]\nname = \"a\"\n[compare.stiffness_sweep]\nlaw = {type = \"springs\", K_n = 1e8, tangential = \"none\"}\nratios = [0.01, "

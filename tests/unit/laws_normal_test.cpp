@@ -93,6 +93,22 @@ TEST(Elastic, HoldsTensionAndShear) {
   EXPECT_NEAR(one.stored({1e-4, -2e-4, 5e-4}, {}), 0.5 * (3e8 * 5e-8 + 1e9 * 25e-8), 1e-12);
 }
 
+TEST(Elastic, DashpotActsInTensionToo) {
+  const double k = 2e8, c = 1e6, step = 1e-3;
+  Probe one(make_law("elastic", {{"K_n", k}, {"c", c}}), 1, 1, step);
+  ASSERT_EQ(one.law().num_history(1), 1);
+  for (const double from : {-1e-4, 1e-4}) {
+    const double to = from + 2e-5, r = 2e-5 / step;
+    EXPECT_NEAR(one.respond({from}, {to})[0], k * to + c * r, 1e-9);
+    EXPECT_NEAR(one.slope[0], k + c / step, 1e-3);
+    EXPECT_NEAR(one.mean({from}, {to})[0], k * 0.5 * (from + to) + c * r, 1e-9);
+    EXPECT_NEAR(one.slope[0], 0.5 * k + c / step, 1e-3);
+    EXPECT_NEAR(one.dissipated({to}, one.now), c * r * 2e-5, 1e-12) << "force c r over the way";
+  }
+  one.batch.step = 0;
+  EXPECT_EQ(one.respond({0}, {1e-3})[0], 2e5) << "statics: no rate";
+}
+
 // ---- cohesive laws ----
 
 constexpr double K = 1e10, F = 1e5, G = 80;

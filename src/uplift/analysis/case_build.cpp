@@ -33,12 +33,13 @@ Values with_number(const Values& part, std::string_view key, double number) {
   return check_part(Raw{table, part.where(), part.path()}, interface_behaviours());
 }
 
-/// An elastic joint that never opens.
+/// An elastic joint that never opens, with the damping of the one that may: what differs between the runs is the uplift alone.
 Values bonded_behaviour(const Values& like, const std::vector<double>& stiffness) {
   auto table = std::make_shared<RawTable>();
   const auto add = [&](const char* name, auto data) { table->entries.emplace_back(name, Raw{std::move(data), like.where(), like.path()}); };
   add("type", std::string("elastic"));
   add("K_n", stiffness.back());
+  if (like.items().contains("c") && like.has("c")) add("c", like.number("c"));
   if (stiffness.size() > 1)
     add("K_t", stiffness.front());
   else
