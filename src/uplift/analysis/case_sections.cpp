@@ -225,6 +225,21 @@ const Section& compare_section() {
   return s;
 }
 
+const Section& trust_section() {
+  static const Section s{
+      "trust", "for `uplift trust`: how far each choice of the computation is changed",
+      Fields{number("stiffness_factor", "1",
+                    "joints are computed this many times as stiff and as soft too; 1: not changed. Where the joint is the soil itself, "
+                    "give what the soil's stiffness is uncertain by")
+                 .between(1, 1e6)
+                 .standard(10.0),
+             number("mesh_factor", "1", "sizes of a made mesh are multiplied by this; 1: not changed").between(0.1, 1).standard(0.7),
+             number("spectrum_band", "1", "a floor spectrum speaks up to the frequency where its runs differ by more than this share")
+                 .positive()
+                 .standard(0.1)}};
+  return s;
+}
+
 const Section& origin_section() {
   static const Section s{"origin", "where values come from, shown with the results",
                          Fields{text("label", "for example \"paper\" or \"our choice\""),
@@ -276,6 +291,7 @@ const Section& case_section() {
              table("output", output_section(), "output"),
              tables("variant", variant_section(), "variants to compare"),
              table("compare", compare_section(), "comparison").optional(),
+             table("trust", trust_section(), "trust bands"),
              tables("origin", origin_section(), "origin of values"),
              tables("figure", figure_section(), "origin of figures")}};
   return s;

@@ -1,0 +1,21 @@
+#pragma once
+#include <cstdint>
+#include <string>
+#include <variant>
+#include <vector>
+
+#include "uplift/base/declare.h"
+
+namespace uplift {
+
+/// One value of a case file to be replaced. `path`: keys and places from the root, as in "stage[1].step"; numbers in SI. A word where a
+/// table is wanted (law = "unilateral") becomes the table that it stands for.
+struct CaseEdit {
+  std::string path;
+  std::variant<double, std::int64_t, std::string> value;
+};
+
+/// A copy of the tree with these values; tables that are missing are made. The tree itself is left as it is.
+Raw edited(const Raw& raw, const std::vector<CaseEdit>& edits);
+
+}  // namespace uplift

@@ -1,0 +1,188 @@
+#include "uplift/study/trust_plan.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+
+namespace uplift {
+namespace {
+
+constexpr double least_tolerance = 1e-13;  // below, round-off decides
+
+bool has_number(const Values& part, std::string_view key) {
+  return part.items().contains(key) && part.has(key);
+}
+
+std::string law_path(std::size_t interface) {
+  return fmt::format("interface[{}].law", interface);
+}
+
+bool is_cone(const Values& law) {
+  return law.type() == "unilateral" || law.type() == "coulomb";
+}
+
+/// Name of the contact method that a run of the case takes.
+std::string method_of(const Values& root) {
+  if (root.has("method")) return root.part("method").type();
+  const bool cones = std::ranges::any_of(root.tables("interface"), [](const Values& each) { return is_cone(each.part("law")); });
+  return cones ? "lagrange" : "newton";
+}
+
+class Planner {
+ public:
+  explicit Planner(const Case& read) : root_(read.values), trust_(root_.table("trust")) {}
+
+  TrustPlan plan() {
+    halve_step();
+    if (root_.tables("interface").empty()) {
+      leave_out("interface", "the case has no interface");
+    } else {
+      change_stiffness();
+      tighten();
+      change_method();
+    }
+    refine();
+    return std::move(plan_);
+  }
+
+ private:
+  void add(std::string name, std::string choice, std::string label, std::vector<CaseEdit> edits) {
+    plan_.changes.push_back({std::move(name), std::move(choice), std::move(label), std::move(edits)});
+  }
+  void leave_out(std::string choice, std::string reason) { plan_.left_out.push_back({std::move(choice), std::move(reason)}); }
+
+  void halve_step() {
+    std::vector<CaseEdit> edits;
+    double smallest = 0;
+    const std::vector<Values>& stages = root_.tables("stage");
+    for (std::size_t i = 0; i < stages.size(); ++i) {
+      if (!stages[i].has("step")) continue;
+      const double half = stages[i].number("step") / 2;
+      smallest = edits.empty() ? half : std::min(smallest, half);
+      edits.push_back({fmt::format("stage[{}].step", i), half});
+    }
+    if (edits.empty()) return leave_out("time step", "the case has no dynamic stage");
+    // columns keep their instants
+    edits.push_back({"output.every", std::int64_t{2} * root_.table("output").integer("every")});
+    add("step_half", "time step", fmt::format("half the time step, {:g} ms", 1e3 * smallest), std::move(edits));
+  }
+
+  void change_stiffness() {
+    const double factor = trust_.number("stiffness_factor");
+    if (factor == 1) return leave_out("joint stiffness", "stiffness_factor = 1");
+    const bool penalty = method_of(root_) == "penalty";
+    for (const bool stiffer : {true, false}) {
+      const double by = stiffer ? factor : 1 / factor;
+      std::vector<CaseEdit> edits;
+      const std::vector<Values>& interfaces = root_.tables("interface");
+      for (std::size_t k = 0; k < interfaces.size(); ++k) {
+        const Values& law = interfaces[k].part("law");
+        for (const char* key : {"K_n", "K_t"})
+          if (has_number(law, key)) edits.push_back({law_path(k) + "." + key, by * law.number(key)});
+        // the SDM asks for K_n > F_u^2/G_f, and the others soften no faster than they are stiff
+        if (!stiffer && has_number(law, "F_u") && has_number(law, "G_f")) {
+          const double least = law.number("F_u") * law.number("F_u") / law.number("G_f");
+          if (by * law.number("K_n") <= least)
+            return leave_out("joint stiffness, softer",
+                             fmt::format("the law of '{}' needs K_n > F_u2/G_f = {:.3g} Pa/m", interfaces[k].text("name"), least));
+        }
+      }
+      if (penalty) {
+        const Values& method = root_.part("method");
+        const char* key = method.has("stiffness") ? "stiffness" : "factor";
+        edits.push_back({std::string("method.") + key, by * method.number(key)});
+      }
+      if (edits.empty()) return leave_out("joint stiffness", "constraints are rigid");
+      add(stiffer ? "stiffer" : "softer", "joint stiffness", fmt::format("joint {:g} times as {}", factor, stiffer ? "stiff" : "soft"),
+          std::move(edits));
+    }
+  }
+
+  void tighten() {
+    std::vector<CaseEdit> edits;
+    const std::string method = method_of(root_);
+    const Values* given = root_.has("method") ? &root_.part("method") : nullptr;
+    const double standard = method == "augmented_lagrangian" ? 1e-11 : 1e-12;
+    const double tolerance = std::max(least_tolerance, 0.1 * (given ? given->number("tolerance") : standard));
+    if (!given) edits.push_back({"method", method});
+    edits.push_back({"method.tolerance", tolerance});
+    if (method == "lagrange") edits.push_back({"method.gap_tolerance", 0.1 * (given ? given->number("gap_tolerance") : 1e-12)});
+    edits.push_back({"limits.gap_tolerance", 0.1 * root_.table("limits").number("gap_tolerance")});
+    add("tighter", "tolerance", fmt::format("tolerance {:g}", tolerance), std::move(edits));
+  }
+
+  /// Another way to the same answer: constraints by another method; the SDM without strength and tensionless springs for each other; and
+  /// where the dashpots of springs have no other law, the dissipative scheme with the traction at the end of the step.
+  void change_method() {
+    const std::string method = method_of(root_);
+    if (method != "newton") {
+      const std::string other = method == "lagrange" ? "augmented_lagrangian" : "lagrange";
+      return add("other_method", "method", other + " instead of " + method, {{"method", other}});
+    }
+    std::vector<CaseEdit> edits;
+    const std::vector<Values>& interfaces = root_.tables("interface");
+    std::string label;
+    for (std::size_t k = 0; k < interfaces.size(); ++k) {
+      const Values& law = interfaces[k].part("law");
+      const std::string path = law_path(k), type = law.type();
+      const bool weak = type == "sdm" && law.number("F_u") == 0;
+      const bool undamped = type == "springs" && law.number("c") == 0;
+      if (!weak && !undamped) return change_scheme();
+      const std::string other = weak ? "springs" : "sdm";
+      edits.push_back({path, other});
+      if (undamped) {
+        // its closure stress is far below what the base bears at rest
+        edits.push_back({path + ".F_u", 0.0});
+        edits.push_back({path + ".G_f", 0.1});
+        edits.push_back({path + ".F_c", -1e-7 * law.number("K_n")});
+      }
+      for (const char* key : {"K_n", "K_t", "friction", "cohesion"})
+        if (has_number(law, key)) edits.push_back({path + "." + key, law.number(key)});
+      edits.push_back({path + ".tangential", law.text("tangential")});
+      label = fmt::format("{} instead of {}", other, type);
+    }
+    add("other_law", "method", label, std::move(edits));
+  }
+
+  void change_scheme() {
+    std::vector<CaseEdit> edits;
+    const std::vector<Values>& stages = root_.tables("stage");
+    for (std::size_t i = 0; i < stages.size(); ++i) {
+      if (stages[i].text("type") != "dynamic") continue;
+      if (stages[i].part("scheme").type() == "generalised_alpha")
+        return leave_out("method", "no other sound method is known for these laws and this scheme");
+      edits.push_back({fmt::format("stage[{}].scheme", i), std::string("generalised_alpha")});
+      edits.push_back({fmt::format("stage[{}].traction", i), std::string("end")});
+    }
+    if (edits.empty()) return leave_out("method", "the case has no dynamic stage");
+    add("other_scheme", "method", "generalised-alpha, end-of-step traction", std::move(edits));
+  }
+
+  void refine() {
+    const double factor = trust_.number("mesh_factor");
+    if (!root_.has("mesh") || !root_.table("mesh").has("soil_box"))
+      return leave_out("mesh", root_.has("mesh") ? "the mesh is a file" : "the case has no mesh");
+    if (factor == 1) return leave_out("mesh", "mesh_factor = 1");
+    const Values& box = root_.table("mesh").table("soil_box");
+    std::vector<CaseEdit> edits;
+    const std::string path = "mesh.soil_box.";
+    edits.push_back({path + "soil.size", factor * box.table("soil").number("size")});
+    const std::vector<Values>& layers = box.table("soil").tables("layers");
+    for (std::size_t i = 0; i < layers.size(); ++i)
+      edits.push_back({fmt::format("{}soil.layers[{}].size", path, i), factor * layers[i].number("size")});
+    for (const char* part : {"raft", "block"})
+      if (box.has(part)) edits.push_back({path + part + ".size", factor * box.table(part).number("size")});
+    add("finer", "mesh", fmt::format("elements {:g} times as large", factor), std::move(edits));
+  }
+
+  const Values &root_, &trust_;
+  TrustPlan plan_;
+};
+
+}  // namespace
+
+TrustPlan trust_plan(const Case& read) {
+  return Planner(read).plan();
+}
+
+}  // namespace uplift
