@@ -1,0 +1,22 @@
+#include "uplift/motion/parallel.h"
+
+#include <algorithm>
+#include <atomic>
+#include <thread>
+#include <vector>
+
+namespace uplift {
+
+void in_parallel(int count, int threads, const std::function<void(int)>& work) {
+  if (threads <= 0) threads = static_cast<int>(std::max(std::thread::hardware_concurrency(), 1U));
+  threads = std::min(threads, count);
+  std::atomic<int> next = 0;
+  const auto take = [&] {
+    for (int i = next++; i < count; i = next++) work(i);
+  };
+  std::vector<std::jthread> others;
+  for (int i = 1; i < threads; ++i) others.emplace_back(take);
+  take();
+}
+
+}  // namespace uplift
