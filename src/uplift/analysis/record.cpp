@@ -36,6 +36,8 @@ std::array<std::vector<double>, 2> slope_weights(const Interface& interface) {
   return made;
 }
 
+constexpr double nothing = 0;
+
 bool flat(const Interface& interface) {
   return std::ranges::all_of(interface.normal, [&](const Vec3& n) { return (n - interface.normal.front()).norm() < 1e-9; });
 }
@@ -114,49 +116,122 @@ std::array<double, 2> InterfaceViewer::rotation(int interface, const Vector& ope
   return slope;
 }
 
-Recorder::Recorder(const Model& model, const RunPlan& plan, const InterfaceViewer& viewer, std::size_t expected_rows, RunResult& result)
-    : model_(model), plan_(plan), viewer_(viewer), result_(result) {
+Recorder::Recorder(const Model& model, const RunPlan& plan, const InterfaceViewer& viewer, const Stepper& stepper,
+                   const std::vector<InterfaceView>& views, std::size_t expected_rows, RunResult& result)
+    : model_(model), plan_(plan), viewer_(viewer), stepper_(stepper), views_(views), result_(result) {
   const bool fresh = result_.table.empty();  // a later dynamic stage goes on in the same table
   if (fresh) {
     result_.columns = plan.requests;
     result_.table.assign(plan.requests.size() + 1, {});
   }
   for (std::vector<double>& column : result_.table) column.reserve(column.size() + expected_rows + 2);
-  const SparseRows rows(model.reduction);
+  const SparseRows reduction(model.reduction);
   for (const Request& request : plan.requests) {
-    Source source;
-    using What = Request::Kind;
-    if (request.kind == What::displacement || request.kind == What::velocity || request.kind == What::acceleration) {
-      for (SparseRows::InnerIterator entry(rows, request.unknown); entry; ++entry)
-        source.terms.emplace_back(static_cast<int>(entry.col()), entry.value());
-      for (const PrescribedMotion& motion : model.motions) source.moved = source.moved || motion.shape[request.unknown] != 0;
-      wants_acceleration_ = wants_acceleration_ || request.kind == What::acceleration;
-    }
-    if (request.kind == What::opening || request.kind == What::traction || request.kind == What::mean_traction) {
-      int first = 0;
-      for (int i = 0; i < request.interface; ++i) first += model.interfaces[static_cast<std::size_t>(i)].rows();
-      const Interface& interface = model.interfaces[static_cast<std::size_t>(request.interface)];
-      if (request.component < interface.batch.components) source.row = first + request.component * interface.batch.points + request.point;
-      source.inverse_area = 1 / interface.area[request.point];
-    }
-    sources_.push_back(std::move(source));
+    sources_.push_back(source_of(request, reduction));
+    wants_acceleration_ = wants_acceleration_ || request.kind == Request::Kind::acceleration;
     if (fresh) result_.peaks.push_back({request.name, request.unit, 0, 0});
+    most_.push_back(std::abs(result_.peaks[most_.size()].value));
   }
+  now_.resize(most_.size());
 }
 
-double Recorder::value(std::size_t column, const Stepper& stepper, const std::vector<InterfaceView>& views) {
+Recorder::Source Recorder::source_of(const Request& request, const SparseRows& reduction) const {
+  using What = Request::Kind;
+  const Energies& energies = stepper_.energies();
+  const InterfaceView* view = views_.data() + request.interface;
+  const auto entry_of = [&](const Vector State::*vector) {  // of one free unknown, or made from several
+    Source source{.vector = vector};
+    for (SparseRows::InnerIterator entry(reduction, request.unknown); entry; ++entry)
+      source.terms.emplace_back(static_cast<int>(entry.col()), entry.value());
+    for (const PrescribedMotion& motion : model_.motions) source.moved = source.moved || motion.shape[request.unknown] != 0;
+    if (source.moved || source.terms.size() != 1)
+      source.vector = nullptr;
+    else
+      source.entry = source.terms.front().first, source.factor = source.terms.front().second;
+    return source;
+  };
+  const auto row_of = [&](const Vector State::*vector, bool per_area) {
+    int first = 0;
+    for (int i = 0; i < request.interface; ++i) first += model_.interfaces[static_cast<std::size_t>(i)].rows();
+    const Interface& interface = model_.interfaces[static_cast<std::size_t>(request.interface)];
+    if (request.component >= interface.batch.components) return Source{.place = &nothing};  // free to slide: neither moved nor pulled
+    return Source{.vector = vector,
+                  .entry = first + request.component * interface.batch.points + request.point,
+                  .factor = per_area ? 1 / interface.area[request.point] : 1.0};
+  };
+  switch (request.kind) {
+    case What::displacement:
+      return entry_of(&State::displacement);
+    case What::velocity:
+      return entry_of(&State::velocity);
+    case What::acceleration:
+      return entry_of(nullptr);
+    case What::opening:
+      return row_of(&State::opening, false);
+    case What::traction:
+      return row_of(&State::force, true);
+    case What::mean_traction:
+      return row_of(&State::mean_force, true);
+    case What::rotation:
+    case What::rotation_1:
+    case What::rotation_2:
+      return {};
+    case What::axial:
+      return {.place = &view->resultant.axial};
+    case What::shear:
+      return {.place = &view->resultant.shear};
+    case What::moment:
+      return {.place = &view->resultant.moment};
+    case What::shear_1:
+      return {.place = &view->resultant.shear_1};
+    case What::shear_2:
+      return {.place = &view->resultant.shear_2};
+    case What::moment_1:
+      return {.place = &view->resultant.moment_1};
+    case What::moment_2:
+      return {.place = &view->resultant.moment_2};
+    case What::torsion:
+      return {.place = &view->resultant.torsion};
+    case What::uplifted_ratio:
+      return {.place = &view->open_area};
+    case What::max_opening:
+      return {.place = &view->max_opening};
+    case What::max_pressure:
+      return {.place = &view->max_pressure};
+    case What::kinetic:
+      return {.place = &energies.kinetic};
+    case What::strain:
+      return {.place = &energies.strain};
+    case What::stored:
+      return {.place = &energies.stored};
+    case What::interface_dissipated:
+      return {.place = &energies.interface_dissipated};
+    case What::damping:
+      return {.place = &energies.damping};
+    case What::impact:
+      return {.place = &energies.impact};
+    case What::external:
+      return {.place = &energies.external};
+    case What::residual:
+      return {.place = &energies.residual};
+    case What::plastic:
+      return {.place = &energies.plastic};
+  }
+  return {};
+}
+
+double Recorder::made(std::size_t column) const {
   using What = Request::Kind;
   const Request& request = plan_.requests[column];
   const Source& source = sources_[column];
-  const State& state = stepper.state();
+  const State& state = stepper_.state();
   const auto sum = [&](const Vector& q, int derivative) {
     if (source.moved) return model_.full(request.unknown, q, derivative, state.time);
     double total = 0;
     for (const auto& [unknown, factor] : source.terms) total += factor * q[unknown];
     return total;
   };
-  const auto view = [&]() -> const InterfaceView& { return views[static_cast<std::size_t>(request.interface)]; };
-  const Energies& energies = stepper.energies();
+  const auto slope = [&]() { return viewer_.rotation(request.interface, state.opening); };
   switch (request.kind) {
     case What::displacement:
       return sum(state.displacement, 0);
@@ -164,74 +239,45 @@ double Recorder::value(std::size_t column, const Stepper& stepper, const std::ve
       return sum(state.velocity, 1);
     case What::acceleration:
       return sum(acceleration_, 2);
-    case What::opening:
-      return source.row >= 0 ? state.opening[source.row] : 0;
-    case What::traction:
-      return source.row >= 0 ? state.force[source.row] * source.inverse_area : 0;
-    case What::mean_traction:
-      return source.row >= 0 ? state.mean_force[source.row] * source.inverse_area : 0;
-    case What::axial:
-      return view().resultant.axial;
-    case What::shear:
-      return view().resultant.shear;
-    case What::moment:
-      return view().resultant.moment;
     case What::rotation: {
-      const std::array<double, 2> slope = viewer_.rotation(request.interface, state.opening);
-      return model_.space.dimension == 2 ? slope[0] : std::hypot(slope[0], slope[1]);
+      const std::array<double, 2> both = slope();
+      return model_.space.dimension == 2 ? both[0] : std::hypot(both[0], both[1]);
     }
-    case What::shear_1:
-      return view().resultant.shear_1;
-    case What::shear_2:
-      return view().resultant.shear_2;
-    case What::moment_1:
-      return view().resultant.moment_1;
-    case What::moment_2:
-      return view().resultant.moment_2;
-    case What::torsion:
-      return view().resultant.torsion;
     case What::rotation_1:
-      return viewer_.rotation(request.interface, state.opening)[0];
+      return slope()[0];
     case What::rotation_2:
-      return viewer_.rotation(request.interface, state.opening)[1];
-    case What::uplifted_ratio:
-      return view().open_area;
-    case What::max_opening:
-      return view().max_opening;
-    case What::max_pressure:
-      return view().max_pressure;
-    case What::kinetic:
-      return energies.kinetic;
-    case What::strain:
-      return energies.strain;
-    case What::stored:
-      return energies.stored;
-    case What::interface_dissipated:
-      return energies.interface_dissipated;
-    case What::damping:
-      return energies.damping;
-    case What::impact:
-      return energies.impact;
-    case What::external:
-      return energies.external;
-    case What::residual:
-      return energies.residual;
-    case What::plastic:
-      return energies.plastic;
+      return slope()[1];
+    default:
+      return 0;
   }
-  return 0;
 }
 
-void Recorder::record(const Stepper& stepper, const std::vector<InterfaceView>& views, bool row) {
-  if (wants_acceleration_) stepper.acceleration(acceleration_);
-  const double time = stepper.state().time;
-  if (row) result_.table[0].push_back(time);
-  for (std::size_t k = 0; k < sources_.size(); ++k) {
-    const double now = value(k, stepper, views);
-    if (row) result_.table[k + 1].push_back(now);
-    Peak& peak = result_.peaks[k];
-    if (std::abs(now) > std::abs(peak.value)) peak.value = now, peak.time = time;
+void Recorder::record(bool row) {
+  const State& state = stepper_.state();
+  if (wants_acceleration_) stepper_.acceleration(acceleration_);
+  const std::size_t columns = sources_.size();
+  double *now = now_.data(), *most = most_.data();
+  for (std::size_t k = 0; k < columns; ++k) {
+    const Source& source = sources_[k];
+    if (source.place != nullptr)
+      now[k] = *source.place;
+    else if (source.vector != nullptr)
+      now[k] = source.factor * (state.*source.vector).data()[source.entry];
+    else
+      now[k] = made(k);
   }
+  double higher = 0;  // columns beyond their peaks
+#pragma omp simd reduction(+ : higher)
+  for (std::size_t k = 0; k < columns; ++k) higher += std::abs(now[k]) > most[k] ? 1.0 : 0.0;
+  for (std::size_t k = 0; higher > 0 && k < columns; ++k) {
+    if (!(std::abs(now[k]) > most[k])) continue;
+    most[k] = std::abs(now[k]);
+    result_.peaks[k].value = now[k], result_.peaks[k].time = state.time;
+  }
+  if (!row) return;
+  std::vector<double>* column = result_.table.data();
+  column->push_back(state.time);
+  for (std::size_t k = 0; k < columns; ++k) (++column)->push_back(now[k]);
 }
 
 void Recorder::picture(const State& state) {

@@ -42,27 +42,36 @@ class InterfaceViewer {
 /// Fills the columns of the output table and their peaks.
 class Recorder {
  public:
-  Recorder(const Model& model, const RunPlan& plan, const InterfaceViewer& viewer, std::size_t expected_rows, RunResult& result);
+  /// `views` holds what the interfaces look like whenever record is called; it keeps its place, as the energies of the stepper do.
+  Recorder(const Model& model, const RunPlan& plan, const InterfaceViewer& viewer, const Stepper& stepper,
+           const std::vector<InterfaceView>& views, std::size_t expected_rows, RunResult& result);
   /// Notes peaks every time; writes a row when `row` is set.
-  void record(const Stepper& stepper, const std::vector<InterfaceView>& views, bool row);
+  void record(bool row);
   /// Keeps a picture for the animation.
   void picture(const State& state);
 
  private:
-  double value(std::size_t column, const Stepper& stepper, const std::vector<InterfaceView>& views);
+  /// Where the number of a column is found, known from the start: one of these.
+  struct Source {
+    const double* place = nullptr;          // it stays there: an energy, or a part of an interface's view
+    const Vector State::*vector = nullptr;  // an entry of this vector of the state times a factor
+    int entry = 0;
+    double factor = 0;
+    // both null: it is made from several numbers, of which these are of the free unknowns
+    std::vector<std::pair<int, double>> terms = {};
+    bool moved = false;  // a prescribed motion takes part
+  };
+  Source source_of(const Request& request, const SparseRows& reduction) const;
+  double made(std::size_t column) const;
 
   const Model& model_;
   const RunPlan& plan_;
   const InterfaceViewer& viewer_;
+  const Stepper& stepper_;
+  const std::vector<InterfaceView>& views_;
   RunResult& result_;
-  struct Source {
-    std::vector<std::pair<int, double>> terms;  // of the free unknowns
-    bool moved = false;                         // a prescribed motion takes part
-    int row = -1;                               // interface row
-    double inverse_area = 0;
-  };
   std::vector<Source> sources_;
-  std::vector<std::vector<double>*> columns_;
+  std::vector<double> now_, most_;  // per column: the present number, and the size of its peak
   bool wants_acceleration_ = false;
   Vector acceleration_;
 };

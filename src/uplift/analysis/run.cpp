@@ -61,7 +61,8 @@ Runner::Runner(const Model& model, const RunPlan& plan, const std::vector<const 
       b_(stack_interfaces(model)),
       gap_(stack_gaps(model)),
       viewer_(model, plan.gap_tolerance),
-      rest_(plan.rest.get()) {
+      rest_(plan.rest.get()),
+      views_(model.interfaces.size()) {
   result_.name = plan.name;
   result_.label = plan.label;
   result_.group = plan.group;

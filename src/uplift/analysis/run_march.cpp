@@ -105,7 +105,7 @@ bool Runner::dynamics(const Stage& stage, const Bulk& bulk) {
   seen_ = &stepper.state();
   const long steps = std::max(1L, std::lround(stage.duration / stage.step));
   const std::size_t rows = static_cast<std::size_t>(steps / plan_.every) + 2;
-  Recorder recorder(model_, plan_, viewer_, rows, result_);
+  Recorder recorder(model_, plan_, viewer_, stepper, views_, rows, result_);
   const long picture_every = plan_.frames > 0 ? std::max(1L, steps / plan_.frames) : 0;
   if (!ledger_) initial_scale_ = stepper.energies().kinetic;
   if (!ledger_) round_off_energy_ = 1e-8 * (stepper.energies().strain + stepper.energies().stored);
@@ -115,7 +115,7 @@ bool Runner::dynamics(const Stage& stage, const Bulk& bulk) {
   const auto observe = [&](long step) {
     viewer_.look(seen_->opening, seen_->force, views_);
     note_views(step == 0 ? 0 : stage.step);
-    recorder.record(stepper, views_, step % plan_.every == 0 || step == steps);
+    recorder.record(step % plan_.every == 0 || step == steps);
     if (picture_every > 0 && step % picture_every == 0) recorder.picture(*seen_);
   };
   if (!ledger_) {  // else the end of the stage before is there already
