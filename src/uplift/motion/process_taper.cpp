@@ -1,6 +1,7 @@
 // Cosine taper: the ends of a record brought to zero without a jump of value or slope.
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <cmath>
 #include <numbers>
 #include <optional>

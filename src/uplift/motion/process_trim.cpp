@@ -1,6 +1,7 @@
 // A part of a record, by times or by what share of its Arias intensity is kept.
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <cmath>
 #include <optional>
 

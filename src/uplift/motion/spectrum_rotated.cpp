@@ -72,13 +72,14 @@ std::array<double, directions> largest_of(const Oscillator& oscillator, std::spa
   const OscillatorStep step = oscillator_step(oscillator.frequency, oscillator.damping, oscillator.step / subs);
   State x, y;
   Largest largest;
-  for (std::size_t i = 1; i < first.size(); ++i)
-    for (int sub = 1; sub <= subs; ++sub) {
-      const double s0 = static_cast<double>(sub - 1) / subs, s1 = static_cast<double>(sub) / subs;
-      x.advance(step, std::lerp(first[i - 1], first[i], s0), std::lerp(first[i - 1], first[i], s1));
-      y.advance(step, std::lerp(second[i - 1], second[i], s0), std::lerp(second[i - 1], second[i], s1));
+  for (std::size_t i = 1; i < first.size(); ++i) {
+    const double change_x = (first[i] - first[i - 1]) / subs, change_y = (second[i] - second[i - 1]) / subs;
+    for (int sub = 0; sub < subs; ++sub) {
+      x.advance(step, first[i - 1] + sub * change_x, first[i - 1] + (sub + 1) * change_x);
+      y.advance(step, second[i - 1] + sub * change_y, second[i - 1] + (sub + 1) * change_y);
       largest.add(oscillator.response(x), oscillator.response(y));
     }
+  }
   return largest.values();
 }
 
