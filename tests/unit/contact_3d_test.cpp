@@ -163,7 +163,7 @@ TEST(Surface, tangent_is_the_derivative) {
   multiplier.head(points).setConstant(100);
   const AugmentedForce augmented{&multiplier, &stiffness};
   InterfaceSolution solution;
-  solution.z = Vector::Zero(data.factor.cols());
+  size_newton(own.problem, solution);
   evaluate(own.problem, augmented, true, solution);
   const Vector slope = solution.newton.slope;
   int slips = 0, opens = 0;

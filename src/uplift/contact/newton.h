@@ -31,7 +31,10 @@ Outcome solve_by_newton(const InterfaceProblem&, const AugmentedForce&, const Ne
 /// Up to so many coordinates the Newton matrix is formed and solved by plain loops; beyond, see newton_many.h.
 inline constexpr int few = 12;
 
-/// Forces, and slopes when wanted, at solution.z: fills opening, force, now and the scratch's slope.
+/// Gives what follows its sizes; does nothing when they are right.
+void size_newton(const InterfaceProblem&, InterfaceSolution&);
+
+/// Forces, and slopes when wanted, at solution.z: fills opening, force, now and the scratch's slope, all of the right size.
 void evaluate(const InterfaceProblem&, const AugmentedForce&, bool with_slope, InterfaceSolution&);
 
 }  // namespace uplift

@@ -5,24 +5,10 @@
 #include <utility>
 
 #include "uplift/dynamics/monolithic.h"
+#include "uplift/dynamics/step_level.h"
 #include "uplift/math/small.h"
 
 namespace uplift {
-
-/// Everything that depends on the size of the step. The right-hand side of the displacement increment is
-///   R = f1 + f0 af/w - K u0/w - B^T p0 af/w + M (mass_velocity v0 + mass_acceleration a0) - C (damping_velocity v0 + damping_acceleration
-///   a0)
-/// with w = 1 - af, and for the path average, in the midpoint form,   R = f0 + f1 - 2 K u0 + (4/dt) M v0.
-struct Stepper::Level {
-  double step = 0;
-  double mass = 0, damping = 0;  // K_eff = K + damping C + mass M
-  double mass_velocity = 0, mass_acceleration = 0, damping_velocity = 0, damping_acceleration = 0;
-  std::unique_ptr<StepSolver> solver;
-  std::unique_ptr<BulkFactor> dynamic_factor;  // of K + 4M/dt^2, for `propagate`
-  std::unique_ptr<Spread> dynamic;
-  std::string why;        // when the matrix could not be factorised
-  bool hopeless = false;  // nor would that of a smaller step be
-};
 
 Stepper::Stepper(const Model& model, const Bulk& bulk, const Sparse& b, const Vector& gap, const Behaviours& behaviours,
                  const ContactMethod& method, const ImpactRule& impact, const LinearSolver& solver, const StepOptions& options,
@@ -63,59 +49,6 @@ Stepper::Stepper(const Model& model, const Bulk& bulk, const Sparse& b, const Ve
 }
 
 Stepper::~Stepper() = default;
-
-Stepper::Level& Stepper::level(int halving) {
-  auto& slot = levels_[static_cast<std::size_t>(halving)];
-  if (slot != nullptr) return *slot;
-  slot = std::make_unique<Level>();
-  Level& made = *slot;
-  const Scheme& s = options_.scheme;
-  const double dt = made.step = options_.step / std::pow(2.0, halving), w = 1 - s.alpha_f;
-  made.damping = s.gamma / (s.beta * dt);
-  made.mass = (1 - s.alpha_m) / (w * s.beta * dt * dt);
-  made.mass_velocity = (1 - s.alpha_m) / (w * s.beta * dt);
-  made.mass_acceleration = ((1 - s.alpha_m) * (1 / (2 * s.beta) - 1) - s.alpha_m) / w;
-  made.damping_velocity = 1 - s.gamma / s.beta + s.alpha_f / w;
-  made.damping_acceleration = dt * (1 - s.gamma / (2 * s.beta));
-
-  const Sparse matrix = matrix_of(made);
-  InterfaceProblem frame = frame_of(made);
-  if (options_.monolithic) {
-    made.solver = make_monolithic(matrix, b_, gap_, std::move(frame));
-    ++linear_.factorisations;
-  } else {
-    BulkFactor factor(matrix, &b_, bulk_.small, solver_, model_, linear_);
-    if (!factor.ok()) {
-      made.why = factor.why();
-      made.hopeless = factor.too_large();
-      return made;
-    }
-    std::unique_ptr<StepSolver> oracle;
-    if (options_.oracle_tolerance > 0) oracle = make_monolithic(matrix, b_, gap_, frame);
-    made.solver = std::make_unique<Condensed>(model_, b_, gap_, std::move(factor), std::move(frame), method_);
-    if (oracle != nullptr) made.solver = make_compared(matrix, std::move(made.solver), std::move(oracle), options_.oracle_tolerance);
-  }
-  if (impacts_ && impact_.needs_dynamic()) {
-    const Sparse dynamic = bulk_.stiffness_matrix + (4 / (dt * dt)) * bulk_.mass_matrix;
-    made.dynamic_factor = std::make_unique<BulkFactor>(dynamic, &b_, bulk_.small, solver_, model_, linear_);
-    made.why = made.dynamic_factor->why();
-    made.hopeless = made.dynamic_factor->too_large();
-    if (made.why.empty()) made.dynamic = std::make_unique<Spread>(made.dynamic_factor->spread(b_));
-  }
-  return made;
-}
-
-Sparse Stepper::matrix_of(const Level& level) const {
-  return bulk_.stiffness_matrix + level.damping * bulk_.damping_matrix + level.mass * bulk_.mass_matrix;
-}
-
-InterfaceProblem Stepper::frame_of(const Level& level) const {
-  InterfaceProblem frame = blocks_of(model_, behaviours_);
-  frame.average = path_;
-  frame.scale = path_ ? 2 : 1;
-  frame.step = level.step;
-  return frame;
-}
 
 /// The displacement increment: by the linear step, or by the outer Newton around it.
 Outcome Stepper::solve(Level& level) {
@@ -277,48 +210,6 @@ void Stepper::kinematics(const Level& level) {
   }
 }
 
-void Stepper::apply_impact(Level& level) {
-  const InterfaceProblem& problem = *last_;
-  normals_.clear();
-  tangents_.clear();
-  double largest = 0;
-  for (Eigen::Index i = 0; i < contact_.size(); ++i) largest = std::max(largest, std::abs(contact_[i]));
-  for (const Block& block : problem.blocks) {
-    const int n = block.batch.points, normal = block.first + block.batch.normal();
-    const double friction = block.cone != nullptr ? block.cone->friction() : 0;
-    for (int i = 0; i < n; ++i) {
-      const double pressure = -contact_[normal + i];
-      if (!(pressure > 1e-12 * largest)) continue;
-      normals_.push_back(normal + i);
-      for (int c = 0; friction > 0 && c < block.batch.components - 1; ++c)
-        if (std::abs(contact_[block.first + c * n + i]) < friction * pressure * (1 - 1e-9)) tangents_.push_back(block.first + c * n + i);
-    }
-  }
-  if (normals_.empty()) return;
-  const double weight = (1 - options_.scheme.alpha_f) / (1 - options_.scheme.alpha_m);
-  Impact data;
-  data.mass = mass_spread_.get();
-  data.dynamic = level.dynamic.get();
-  data.b = bulk_.small ? &dense_b_ : nullptr;
-  data.sparse_b = &b_;
-  std::swap(data.normals, normals_);
-  std::swap(data.tangents, tangents_);
-  data.force = &contact_;
-  data.step = level.step;
-  data.velocity_weight = options_.scheme.gamma * level.step * weight;
-  data.acceleration_weight = weight;
-  data.area = &row_area_;
-  const double before = 0.5 * small::dot(next_.velocity.size(), next_.velocity.data(), momentum_next_.data());
-  impulse_.setZero();
-  impact_.apply(data, next_.velocity, next_.acceleration, impulse_, impact_scratch_);
-  std::swap(data.normals, normals_);
-  std::swap(data.tangents, tangents_);
-  bulk_.mass.multiply(next_.velocity, momentum_next_);
-  impact_loss_ += before - 0.5 * small::dot(next_.velocity.size(), next_.velocity.data(), momentum_next_.data());
-  if (impact_.force_includes_impulse())
-    for (Eigen::Index i = 0; i < contact_.size(); ++i) contact_[i] += impulse_[i] / level.step;
-}
-
 bool Stepper::try_step(Level& level) {
   if (!mass_failure_.empty() || !level.why.empty()) {
     why_ = mass_failure_.empty() ? level.why : "the mass matrix: " + mass_failure_;
@@ -363,48 +254,16 @@ bool Stepper::try_step(Level& level) {
   return true;
 }
 
-void Stepper::book_energies(const Level& level) {
-  const Eigen::Index n = bulk_.unknowns;
-  const double* du = increment_.data();
-  double external = 0;
-  for (Eigen::Index i = 0; i < n; ++i) external += (force_now_[i] + force_next_[i]) * du[i];
-  energies_.external += 0.5 * external;
-  if (gap_moves_)  // what moving supports put in through the interfaces
-    for (Eigen::Index i = 0; i < gap_step_.size(); ++i)
-      energies_.external += (path_ ? next_.mean_force[i] : 0.5 * (now_.force[i] + next_.force[i])) * gap_step_[i];
-  if (!bulk_.damping.zero()) {  // work of the damping force, mean of both ends (average acceleration: C du/dt . du)
-    for (Eigen::Index i = 0; i < n; ++i) work_[i] = 0.5 * (now_.velocity[i] + next_.velocity[i]);
-    if (path_)
-      for (Eigen::Index i = 0; i < n; ++i) work_[i] = du[i] / level.step;
-    bulk_.damping.multiply(work_, damped_);
-    energies_.damping += small::dot(n, damped_.data(), du);
-  }
-  energies_.kinetic = 0.5 * small::dot(n, next_.velocity.data(), momentum_next_.data());
-  energies_.strain = 0.5 * small::dot(n, next_.displacement.data(), stiff_next_.data());
-  if (newton_ != nullptr) {
-    energies_.strain += yielding_.energy(next_.displacement, next_.time, plastic_next_);
-    energies_.plastic += yielding_.dissipated(now_.displacement, now_.time, plastic_now_, next_.displacement, next_.time, plastic_next_);
-    energies_.external += yielding_.support_work(now_.time, plastic_now_, next_.time, plastic_next_);
-  }
-  interface_energy_.update(*last_, next_.opening, next_.history);
-  energies_.stored = interface_energy_.stored;
-  energies_.interface_dissipated = interface_energy_.dissipated;
-  energies_.impact = impact_loss_;
-  energies_.residual = energies_.kinetic + energies_.strain + energies_.stored + energies_.interface_dissipated + energies_.plastic +
-                       energies_.damping + energies_.impact - energies_.external - origin_;
-  largest_external_ = std::max(largest_external_, std::abs(energies_.external));
-}
-
 bool Stepper::substep(int halving) {
   Level& now = level(halving);
   const double impact_before = impact_loss_;
   if (try_step(now)) {
     book_energies(now);
-    std::swap(now_, next_);
-    std::swap(force_now_, force_next_);
-    std::swap(stiff_now_, stiff_next_);
-    std::swap(momentum_now_, momentum_next_);
-    std::swap(plastic_now_, plastic_next_);
+    now_.swap(next_);
+    force_now_.swap(force_next_);
+    stiff_now_.swap(stiff_next_);
+    momentum_now_.swap(momentum_next_);
+    if (newton_ != nullptr) std::swap(plastic_now_, plastic_next_);
     counts_.deepest = std::max(counts_.deepest, halving);
     return true;
   }

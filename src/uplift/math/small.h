@@ -1,7 +1,7 @@
 #pragma once
 #include <cstddef>
 
-#include "uplift/math/linalg.h"
+#include "uplift/math/fixed.h"
 
 // Kernels for the few unknowns of an interface under a rigid body and for small bulks: plain loops over contiguous columns that the
 // compiler turns into vector code; Eigen's general products cost more than the arithmetic at these sizes.
@@ -9,6 +9,10 @@ namespace uplift::small {
 
 inline double dot(std::ptrdiff_t n, const double* a, const double* b) {
   double sum = 0;
+  if (n < 8) {  // to begin and end a vector loop would cost more than the sum
+    for (std::ptrdiff_t i = 0; i < n; ++i) sum += a[i] * b[i];
+    return sum;
+  }
 #pragma omp simd reduction(+ : sum)
   for (std::ptrdiff_t i = 0; i < n; ++i) sum += a[i] * b[i];
   return sum;
@@ -27,10 +31,7 @@ inline void add(std::ptrdiff_t n, double factor, const double* x, double* y) {
 /// y = A x for a square matrix whose size the compiler knows.
 template <int N>
 inline void multiply_fixed(const double* a, const double* x, double* y) {
-  double sum[N] = {};
-  for (int j = 0; j < N; ++j)
-    for (int i = 0; i < N; ++i) sum[i] += a[j * N + i] * x[j];
-  for (int i = 0; i < N; ++i) y[i] = sum[i];
+  Eigen::Map<Fixed<N, 1>>(y).noalias() = Eigen::Map<const Fixed<N, N>>(a) * Eigen::Map<const Fixed<N, 1>>(x);
 }
 
 /// y = A x, A column-major n x m
@@ -97,11 +98,18 @@ inline void affine(const Matrix& a, const double* b, const double* x, double* y)
   }
 }
 
-/// y += A^T x
-inline void multiply_transposed_add(const Matrix& a, const double* x, double* y) {
-  const std::ptrdiff_t n = a.rows(), m = a.cols();
-  const double* column = a.data();
-  for (std::ptrdiff_t j = 0; j < m; ++j, column += n) y[j] += dot(n, column, x);
+/// y += A^T x for n rows of m columns, `stride` apart. R: their number where the compiler shall know it (one pass), else 0.
+template <int R>
+void add_transposed(std::ptrdiff_t n, std::ptrdiff_t m, const double* a, std::ptrdiff_t stride, const double* x, double* y) {
+  if constexpr (R == 2) {
+    const double* other = a + stride;
+    double sum = 0, sum_other = 0;
+#pragma omp simd reduction(+ : sum, sum_other)
+    for (std::ptrdiff_t i = 0; i < n; ++i) sum += a[i] * x[i], sum_other += other[i] * x[i];
+    y[0] += sum, y[1] += sum_other;
+  } else {
+    for (std::ptrdiff_t j = 0; j < m; ++j, a += stride) y[j] += dot(n, a, x);
+  }
 }
 
 /// In-place Cholesky factor (lower, column-major) of a small symmetric matrix; false when it is not positive definite.

@@ -3,6 +3,7 @@
 #include <fmt/format.h>
 
 #include "uplift/math/dense.h"
+#include "uplift/math/small.h"
 
 namespace uplift {
 
@@ -45,7 +46,8 @@ Vector Model::full(const Vector& q, int derivative, double time) const {
 }
 
 void Model::add_force(double time, Vector& force) const {
-  for (const Drive& drive : drives) force += drive.factor(time) * drive.shape;
+  for (const Drive& drive : drives)
+    if (const double factor = drive.factor(time); factor != 0) small::add(force.size(), factor, drive.shape.data(), force.data());
   Vector values;
   for (const Feed& feed : feeds) {
     feed.functions->values(time, values);

@@ -124,6 +124,14 @@ struct State {
   Vector mean_force;                            // the same, mean over the last step
   std::vector<double> history;                  // memory of all laws, one flat array
   std::vector<double> bulk_history;             // memory of all yielding solids, one flat array; empty without any
+
+  /// Exchanges the numbers without copying them.
+  void swap(State& other) noexcept {
+    std::swap(time, other.time);
+    displacement.swap(other.displacement), velocity.swap(other.velocity), acceleration.swap(other.acceleration);
+    opening.swap(other.opening), force.swap(other.force), mean_force.swap(other.mean_force);
+    history.swap(other.history), bulk_history.swap(other.bulk_history);
+  }
 };
 
 }  // namespace uplift

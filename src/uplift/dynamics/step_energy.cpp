@@ -1,0 +1,42 @@
+#include <algorithm>
+#include <cmath>
+
+#include "uplift/dynamics/step_level.h"
+#include "uplift/math/small.h"
+
+namespace uplift {
+
+/// Adds the step that was just solved to the ledger.
+void Stepper::book_energies(const Level& level) {
+  const Eigen::Index n = bulk_.unknowns;
+  const double* du = increment_.data();
+  double external = 0;
+  for (Eigen::Index i = 0; i < n; ++i) external += (force_now_[i] + force_next_[i]) * du[i];
+  energies_.external += 0.5 * external;
+  if (gap_moves_)  // what moving supports put in through the interfaces
+    for (Eigen::Index i = 0; i < gap_step_.size(); ++i)
+      energies_.external += (path_ ? next_.mean_force[i] : 0.5 * (now_.force[i] + next_.force[i])) * gap_step_[i];
+  if (!bulk_.damping.zero()) {  // work of the damping force, mean of both ends (average acceleration: C du/dt . du)
+    for (Eigen::Index i = 0; i < n; ++i) work_[i] = 0.5 * (now_.velocity[i] + next_.velocity[i]);
+    if (path_)
+      for (Eigen::Index i = 0; i < n; ++i) work_[i] = du[i] / level.step;
+    bulk_.damping.multiply(work_, damped_);
+    energies_.damping += small::dot(n, damped_.data(), du);
+  }
+  energies_.kinetic = 0.5 * small::dot(n, next_.velocity.data(), momentum_next_.data());
+  energies_.strain = 0.5 * small::dot(n, next_.displacement.data(), stiff_next_.data());
+  if (newton_ != nullptr) {
+    energies_.strain += yielding_.energy(next_.displacement, next_.time, plastic_next_);
+    energies_.plastic += yielding_.dissipated(now_.displacement, now_.time, plastic_now_, next_.displacement, next_.time, plastic_next_);
+    energies_.external += yielding_.support_work(now_.time, plastic_now_, next_.time, plastic_next_);
+  }
+  interface_energy_.update(*last_, next_.opening, next_.history);
+  energies_.stored = interface_energy_.stored;
+  energies_.interface_dissipated = interface_energy_.dissipated;
+  energies_.impact = impact_loss_;
+  energies_.residual = energies_.kinetic + energies_.strain + energies_.stored + energies_.interface_dissipated + energies_.plastic +
+                       energies_.damping + energies_.impact - energies_.external - origin_;
+  largest_external_ = std::max(largest_external_, std::abs(energies_.external));
+}
+
+}  // namespace uplift

@@ -1,0 +1,53 @@
+#include <algorithm>
+#include <cmath>
+#include <utility>
+
+#include "uplift/dynamics/step_level.h"
+#include "uplift/math/small.h"
+
+namespace uplift {
+
+/// Velocity, acceleration and contact force of a step are corrected by the rule of impact, for the points that are pressed at its end.
+void Stepper::apply_impact(Level& level) {
+  const InterfaceProblem& problem = *last_;
+  normals_.clear();
+  tangents_.clear();
+  double largest = 0;
+  for (Eigen::Index i = 0; i < contact_.size(); ++i) largest = std::max(largest, std::abs(contact_[i]));
+  for (const Block& block : problem.blocks) {
+    const int n = block.batch.points, normal = block.first + block.batch.normal();
+    const double friction = block.cone != nullptr ? block.cone->friction() : 0;
+    for (int i = 0; i < n; ++i) {
+      const double pressure = -contact_[normal + i];
+      if (!(pressure > 1e-12 * largest)) continue;
+      normals_.push_back(normal + i);
+      for (int c = 0; friction > 0 && c < block.batch.components - 1; ++c)
+        if (std::abs(contact_[block.first + c * n + i]) < friction * pressure * (1 - 1e-9)) tangents_.push_back(block.first + c * n + i);
+    }
+  }
+  if (normals_.empty()) return;
+  const double weight = (1 - options_.scheme.alpha_f) / (1 - options_.scheme.alpha_m);
+  Impact data;
+  data.mass = mass_spread_.get();
+  data.dynamic = level.dynamic.get();
+  data.b = bulk_.small ? &dense_b_ : nullptr;
+  data.sparse_b = &b_;
+  std::swap(data.normals, normals_);
+  std::swap(data.tangents, tangents_);
+  data.force = &contact_;
+  data.step = level.step;
+  data.velocity_weight = options_.scheme.gamma * level.step * weight;
+  data.acceleration_weight = weight;
+  data.area = &row_area_;
+  const double before = 0.5 * small::dot(next_.velocity.size(), next_.velocity.data(), momentum_next_.data());
+  impulse_.setZero();
+  impact_.apply(data, next_.velocity, next_.acceleration, impulse_, impact_scratch_);
+  std::swap(data.normals, normals_);
+  std::swap(data.tangents, tangents_);
+  bulk_.mass.multiply(next_.velocity, momentum_next_);
+  impact_loss_ += before - 0.5 * small::dot(next_.velocity.size(), next_.velocity.data(), momentum_next_.data());
+  if (impact_.force_includes_impulse())
+    for (Eigen::Index i = 0; i < contact_.size(); ++i) contact_[i] += impulse_[i] / level.step;
+}
+
+}  // namespace uplift

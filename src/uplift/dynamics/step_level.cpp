@@ -1,0 +1,63 @@
+#include "uplift/dynamics/step_level.h"
+
+#include <cmath>
+#include <utility>
+
+#include "uplift/dynamics/monolithic.h"
+
+namespace uplift {
+
+Stepper::Level& Stepper::level(int halving) {
+  auto& slot = levels_[static_cast<std::size_t>(halving)];
+  if (slot != nullptr) return *slot;
+  slot = std::make_unique<Level>();
+  Level& made = *slot;
+  const Scheme& s = options_.scheme;
+  const double dt = made.step = options_.step / std::pow(2.0, halving), w = 1 - s.alpha_f;
+  made.damping = s.gamma / (s.beta * dt);
+  made.mass = (1 - s.alpha_m) / (w * s.beta * dt * dt);
+  made.mass_velocity = (1 - s.alpha_m) / (w * s.beta * dt);
+  made.mass_acceleration = ((1 - s.alpha_m) * (1 / (2 * s.beta) - 1) - s.alpha_m) / w;
+  made.damping_velocity = 1 - s.gamma / s.beta + s.alpha_f / w;
+  made.damping_acceleration = dt * (1 - s.gamma / (2 * s.beta));
+
+  const Sparse matrix = matrix_of(made);
+  InterfaceProblem frame = frame_of(made);
+  if (options_.monolithic) {
+    made.solver = make_monolithic(matrix, b_, gap_, std::move(frame));
+    ++linear_.factorisations;
+  } else {
+    BulkFactor factor(matrix, &b_, bulk_.small, solver_, model_, linear_);
+    if (!factor.ok()) {
+      made.why = factor.why();
+      made.hopeless = factor.too_large();
+      return made;
+    }
+    std::unique_ptr<StepSolver> oracle;
+    if (options_.oracle_tolerance > 0) oracle = make_monolithic(matrix, b_, gap_, frame);
+    made.solver = std::make_unique<Condensed>(model_, b_, gap_, std::move(factor), std::move(frame), method_);
+    if (oracle != nullptr) made.solver = make_compared(matrix, std::move(made.solver), std::move(oracle), options_.oracle_tolerance);
+  }
+  if (impacts_ && impact_.needs_dynamic()) {
+    const Sparse dynamic = bulk_.stiffness_matrix + (4 / (dt * dt)) * bulk_.mass_matrix;
+    made.dynamic_factor = std::make_unique<BulkFactor>(dynamic, &b_, bulk_.small, solver_, model_, linear_);
+    made.why = made.dynamic_factor->why();
+    made.hopeless = made.dynamic_factor->too_large();
+    if (made.why.empty()) made.dynamic = std::make_unique<Spread>(made.dynamic_factor->spread(b_));
+  }
+  return made;
+}
+
+Sparse Stepper::matrix_of(const Level& level) const {
+  return bulk_.stiffness_matrix + level.damping * bulk_.damping_matrix + level.mass * bulk_.mass_matrix;
+}
+
+InterfaceProblem Stepper::frame_of(const Level& level) const {
+  InterfaceProblem frame = blocks_of(model_, behaviours_);
+  frame.average = path_;
+  frame.scale = path_ ? 2 : 1;
+  frame.step = level.step;
+  return frame;
+}
+
+}  // namespace uplift

@@ -1,0 +1,24 @@
+#pragma once
+#include <memory>
+#include <string>
+
+#include "uplift/dynamics/step.h"
+
+namespace uplift {
+
+/// Everything that depends on the size of the step. The right-hand side of the displacement increment is
+///   R = f1 + f0 af/w - K u0/w - B^T p0 af/w + M (mass_velocity v0 + mass_acceleration a0) - C (damping_velocity v0 + damping_acceleration
+///   a0)
+/// with w = 1 - af, and for the path average, in the midpoint form,   R = f0 + f1 - 2 K u0 + (4/dt) M v0.
+struct Stepper::Level {
+  double step = 0;
+  double mass = 0, damping = 0;  // K_eff = K + damping C + mass M
+  double mass_velocity = 0, mass_acceleration = 0, damping_velocity = 0, damping_acceleration = 0;
+  std::unique_ptr<StepSolver> solver;
+  std::unique_ptr<BulkFactor> dynamic_factor;  // of K + 4M/dt^2, for `propagate`
+  std::unique_ptr<Spread> dynamic;
+  std::string why;        // when the matrix could not be factorised
+  bool hopeless = false;  // nor would that of a smaller step be
+};
+
+}  // namespace uplift
