@@ -314,6 +314,7 @@ Built build(const Case& read, const RunSpec& spec) {
   plan.frames = spec.pictures ? root.table("output").integer("frames") : 0;
   plan.frames = std::min(plan.frames, std::max(2, most_pictured / std::max(1, built.model.full_unknowns())));
   add_requests(read, built);
+  if (!spec.stiffness_ratio) add_floors(read, built);
   if (const Values* compare = table_if(root, "compare")) check_columns(*compare, "agree_on", plan.requests);
   return built;
 }

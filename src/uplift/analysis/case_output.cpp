@@ -20,7 +20,7 @@ struct NodeQuantity {
   std::string unit;
 };
 
-/// Displacements "ux", velocities "vx" and accelerations "ax"; of rotations "rz", "vrz", "arz".
+/// Displacements "ux", velocities "vx" and accelerations "ax"; of rotations "rz", "vrz", "arz"; absolute accelerations "abs_ax".
 std::vector<NodeQuantity> node_quantities(Space space) {
   std::vector<NodeQuantity> made;
   const std::pair<const char*, Column> kinds[] = {{"", Column::displacement}, {"v", Column::velocity}, {"a", Column::acceleration}};
@@ -32,6 +32,8 @@ std::vector<NodeQuantity> node_quantities(Space space) {
       const std::string word = order == 0 ? name : kinds[order].first + (turns ? name : name.substr(1));
       made.push_back({word, kinds[order].second, i, std::string(turns ? "rad" : "m") + per[order]});
     }
+  for (int i = 0; i < space.dimension; ++i)
+    made.push_back({fmt::format("abs_a{}", to_string(space.dof(i)).substr(1)), Column::absolute_acceleration, i, "m/s2"});
   return made;
 }
 
@@ -141,16 +143,15 @@ Request point_request(const Values& history, const Model& model, int interface, 
 }
 
 /// The node nearest to a place; of nodes at the same place (the sides of an interface) the first, that of the lower side.
-int nearest_node(const Values& history, Built& built) {
-  const Place place = vector_of(history, "at", built.model.space);
+int nearest_node(const Values& table, const std::string& what, Built& built) {
+  const Place place = vector_of(table, "at", built.model.space);
   int nearest = 0;
   const auto distance = [&](int node) { return (built.model.nodes[static_cast<std::size_t>(node)].position - place).norm(); };
   for (int node = 1; node < static_cast<int>(built.model.nodes.size()); ++node)
     if (distance(node) < distance(nearest) - 1e-9) nearest = node;
   const Node& found = built.model.nodes[static_cast<std::size_t>(nearest)];
-  built.notes.push_back(fmt::format("{} at {} m: node {} at {} m, {:.3g} m away", history.text("quantity"),
-                                    to_string(place, built.model.space), found.name, to_string(found.position, built.model.space),
-                                    distance(nearest)));
+  built.notes.push_back(fmt::format("{} at {} m: node {} at {} m, {:.3g} m away", what, to_string(place, built.model.space), found.name,
+                                    to_string(found.position, built.model.space), distance(nearest)));
   return nearest;
 }
 
@@ -159,8 +160,7 @@ Request asked_request(const Values& history, Built& built, const Names& nodes, c
   const int given = history.has("node") + history.has("at") + history.has("interface");
   if (given != 1) fail(history, "", "exactly one of node, at and interface", given == 0 ? "none" : fmt::format("{}", given));
   if (!history.has("interface")) {
-    int node = history.has("node") ? built.model.find_node(history.text("node")) : nearest_node(history, built);
-    if (node < 0) node = nodes.find(history, "node");  // says what is near
+    const int node = asked_node(history, history.text("quantity"), nodes, built);
     return node_request(built.model, node, find_quantity(node_quantities(built.model.space), history, "a node"), name);
   }
   const int interface = interfaces.find(history, "interface");
@@ -178,6 +178,13 @@ bool moves(const Model& model, int full_unknown) {
   if (Sparse::InnerIterator(model.expansion, full_unknown)) return true;
   return std::any_of(model.motions.begin(), model.motions.end(),
                      [&](const PrescribedMotion& motion) { return motion.shape[full_unknown] != 0; });
+}
+
+int asked_node(const Values& table, const std::string& what, const Names& nodes, Built& built) {
+  if (table.has("node") == table.has("at")) fail(table, "", "exactly one of node and at", table.has("at") ? "both" : "none");
+  if (table.has("at")) return nearest_node(table, what, built);
+  const int node = built.model.find_node(table.text("node"));
+  return node < 0 ? nodes.find(table, "node") : node;  // which says what is near
 }
 
 void check_columns(const Values& table, std::string_view key, const std::vector<Request>& requests) {

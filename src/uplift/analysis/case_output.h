@@ -1,10 +1,17 @@
 #pragma once
 #include "uplift/analysis/case.h"
+#include "uplift/analysis/case_names.h"
 
 namespace uplift {
 
 /// The columns of the output: the automatic ones, then those that the case asks for. Sets plan.requests; uses top, base and facts.
 void add_requests(const Case&, Built&);
+/// The floors whose spectra the case asks for. Sets plan.floors and plan.floor_bands; uses the plan's stages.
+void add_floors(const Case&, Built&);
+/// The node of `node`, or the one nearest to `at`, which is noted for `what`; InputError when neither or both are given.
+int asked_node(const Values& table, const std::string& what, const Names& nodes, Built& built);
+/// Frequencies of a key [Hz]; InputError unless they are > 0 and ascending.
+std::vector<double> ascending(const Values& table, std::string_view key);
 /// Throws InputError when a list of texts names a column that there is not.
 void check_columns(const Values& table, std::string_view key, const std::vector<Request>& requests);
 /// True when the full unknown can move: it follows a free unknown or a prescribed motion.

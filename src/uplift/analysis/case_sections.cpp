@@ -150,9 +150,32 @@ const Section& history_section() {
              vector("at", "m", "instead of node: the node nearest to this place").optional(), text("interface", "interface").optional(),
              integer("point", "point of the interface, from 1").between(1, 1000000).optional(),
              text("quantity",
-                  "node: ux uy rz, vx vy vrz, ax ay arz; interface: axial shear moment rotation uplifted_ratio max_opening max_pressure; "
+                  "node: ux uy rz, vx vy vrz, ax ay arz, and the absolute accelerations abs_ax abs_ay, which are others than ax ay under a "
+                  "ground acceleration; interface: axial shear moment rotation uplifted_ratio max_opening max_pressure; "
                   "point: opening slip traction shear_traction mean_traction mean_shear_traction. In space: all three axes; also shear_1 "
                   "shear_2 moment_1 moment_2 torsion rotation_1 rotation_2, and slip_1 slip_2 ... of a point")}};
+  return s;
+}
+
+const Section& floor_range_section() {
+  static const Section s{"range", "frequencies equally spaced in their logarithm",
+                         Fields{number("from", "Hz", "lowest").positive(), number("to", "Hz", "highest").positive(),
+                                integer("count", "how many").between(2, 100000).standard(300)}};
+  return s;
+}
+
+const Section& floor_section() {
+  static const Section s{
+      "floor_spectrum", "response spectra (pseudo-acceleration) of a floor's absolute acceleration, of every run and beside the bonded one",
+      Fields{text("name", "name of the floor, as shown"), text("node", "node").optional(),
+             vector("at", "m", "instead of node: the node nearest to this place").optional(),
+             vector("direction", "1", "direction of the acceleration; its length means nothing"),
+             numbers("damping", "1", "damping ratios of the equipment; absent: 0.02 and 0.05").optional(),
+             numbers("frequencies", "Hz", "frequencies, ascending; absent: the 75 of Regulatory Guide 1.122, 0.2 to 34 Hz").optional(),
+             table("range", floor_range_section(), "instead of frequencies").optional(),
+             number("broadening", "1", "peaks are broadened by this share to either side, with parallel sides; 0: not at all")
+                 .between(0, 0.5)
+                 .standard(0.15)}};
   return s;
 }
 
@@ -177,12 +200,16 @@ const Section& fields_section() {
 const Section& output_section() {
   static const Section s{
       "output", "what is written",
-      Fields{integer("every", "record every n-th step").between(1, 1000000000).standard(1.0),
-             flag("automatic", "motion of the top and of the base, and the resultants of every interface").standard(true),
-             flag("energies", "all energies").standard(true),
-             integer("frames", "pictures of the animation; 0: none").between(0, 5000).standard(240.0),
-             tables("history", history_section(), "further columns"),
-             table("fields", fields_section(), "fields on the mesh; absent: none").optional()}};
+      Fields{
+          integer("every", "record every n-th step").between(1, 1000000000).standard(1.0),
+          flag("automatic", "motion of the top and of the base, and the resultants of every interface").standard(true),
+          flag("energies", "all energies").standard(true),
+          integer("frames", "pictures of the animation; 0: none").between(0, 5000).standard(240.0),
+          tables("history", history_section(), "further columns"), tables("floor_spectrum", floor_section(), "floor spectra"),
+          numbers("floor_bands", "Hz",
+                  "frequencies that part the bands in which floor spectra are compared with those of the bonded run; absent: 2, 5, 10, 20")
+              .optional(),
+          table("fields", fields_section(), "fields on the mesh; absent: none").optional()}};
   return s;
 }
 

@@ -84,6 +84,17 @@ void warn_step(const Built& built, std::vector<std::string>& said) {
                     spoken(stage->step, "s"), fastest, spoken(1 / (20 * fastest), "s")));
 }
 
+/// Ten steps a period, as for any response by steps.
+void warn_floors(const Built& built, std::vector<std::string>& said) {
+  const Stage* stage = dynamic_stage(built.plan);
+  if (!stage || built.plan.floors.empty()) return;
+  double highest = 0;
+  for (const FloorRequest& floor : built.plan.floors) highest = std::max(highest, floor.frequencies.back());
+  if (const double resolved = 1 / (10 * stage->step); resolved < highest)
+    said.push_back(fmt::format("floor spectra up to {:.3g} Hz with a step of {}: ten steps a period reach up to {:.3g} Hz", highest,
+                               spoken(stage->step, "s"), resolved));
+}
+
 void warn_method(const Case& read, const RunSpec& spec, const Built& built, std::vector<std::string>& said) {
   const Stage* stage = dynamic_stage(built.plan);
   if (!stage || spec.bonded) return;
@@ -173,6 +184,7 @@ std::vector<std::string> warnings(const Case& read, const RunSpec& spec, const B
   warn_closure(built, said);
   warn_sides(read, said);
   warn_step(built, said);
+  warn_floors(built, said);
   warn_method(read, spec, built, said);
   return said;
 }

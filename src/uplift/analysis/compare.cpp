@@ -10,10 +10,6 @@
 namespace uplift {
 namespace {
 
-bool sound(const RunResult& result, const RunSpec& spec) {
-  return result.status == RunStatus::completed && !spec.expected_to_fail && !spec.bonded;
-}
-
 double median(std::vector<double> values) {
   std::sort(values.begin(), values.end());
   const std::size_t half = values.size() / 2;
@@ -34,6 +30,10 @@ std::vector<std::size_t> compared_columns(const RunResult& result, const std::ve
 
 }  // namespace
 
+bool is_sound(const RunResult& result, const RunSpec& spec) {
+  return result.status == RunStatus::completed && !spec.expected_to_fail && !spec.bonded;
+}
+
 std::string_view to_string(Agreement::Word word) {
   switch (word) {
     case Agreement::Word::agrees:
@@ -52,7 +52,7 @@ std::vector<Agreement> agreement(const std::vector<RunResult>& results, const st
                                  const std::vector<std::string>& columns, double band, int sway, int turn) {
   std::map<std::string, std::map<std::size_t, std::vector<double>>> peaks;  // group, column: magnitudes
   for (std::size_t i = 0; i < results.size(); ++i)
-    if (sound(results[i], specs[i]))
+    if (is_sound(results[i], specs[i]))
       for (const std::size_t k : compared_columns(results[i], columns, sway, turn))
         peaks[results[i].group][k].push_back(std::abs(results[i].peaks[k].value));
   std::vector<Agreement> made(results.size());

@@ -6,6 +6,9 @@
 
 namespace uplift {
 
+/// Completed, not expected to fail, and not the bonded model.
+bool is_sound(const RunResult& result, const RunSpec& spec);
+
 /// How one run stands beside the others of its group (same damping).
 struct Agreement {
   enum class Word { agrees, differs, failed, not_counted } word = Word::not_counted;
@@ -14,7 +17,7 @@ struct Agreement {
 };
 std::string_view to_string(Agreement::Word);
 
-/// Compares the peaks of all sound runs of each group with their median. Sound: completed, not expected to fail, not the bonded model.
+/// Compares the peaks of all sound runs of each group with their median.
 /// `columns`: names of the compared columns; empty: motion `sway` (full unknown) of the top, rotation `turn` of the base and largest
 /// opening of the first interface.
 std::vector<Agreement> agreement(const std::vector<RunResult>& results, const std::vector<RunSpec>& specs,

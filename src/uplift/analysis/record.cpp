@@ -117,8 +117,16 @@ std::array<double, 2> InterfaceViewer::rotation(int interface, const Vector& ope
 }
 
 Recorder::Recorder(const Model& model, const RunPlan& plan, const InterfaceViewer& viewer, const Stepper& stepper,
-                   const std::vector<InterfaceView>& views, std::size_t expected_rows, RunResult& result)
-    : model_(model), plan_(plan), viewer_(viewer), stepper_(stepper), views_(views), result_(result) {
+                   const std::vector<InterfaceView>& views, long steps, double step, RunResult& result)
+    : model_(model),
+      plan_(plan),
+      viewer_(viewer),
+      stepper_(stepper),
+      views_(views),
+      result_(result),
+      floors_(model, plan, steps, step, result) {
+  wants_acceleration_ = floors_.any();
+  const std::size_t expected_rows = static_cast<std::size_t>(steps / plan.every) + 2;
   const bool fresh = result_.table.empty();  // a later dynamic stage goes on in the same table
   if (fresh) {
     result_.columns = plan.requests;
@@ -128,7 +136,8 @@ Recorder::Recorder(const Model& model, const RunPlan& plan, const InterfaceViewe
   const SparseRows reduction(model.reduction);
   for (const Request& request : plan.requests) {
     sources_.push_back(source_of(request, reduction));
-    wants_acceleration_ = wants_acceleration_ || request.kind == Request::Kind::acceleration;
+    wants_acceleration_ =
+        wants_acceleration_ || request.kind == Request::Kind::acceleration || request.kind == Request::Kind::absolute_acceleration;
     if (fresh) result_.peaks.push_back({request.name, request.unit, 0, 0});
     most_.push_back(std::abs(result_.peaks[most_.size()].value));
   }
@@ -165,6 +174,7 @@ Recorder::Source Recorder::source_of(const Request& request, const SparseRows& r
     case What::velocity:
       return entry_of(&State::velocity);
     case What::acceleration:
+    case What::absolute_acceleration:
       return entry_of(nullptr);
     case What::opening:
       return row_of(&State::opening, false);
@@ -239,6 +249,8 @@ double Recorder::made(std::size_t column) const {
       return sum(state.velocity, 1);
     case What::acceleration:
       return sum(acceleration_, 2);
+    case What::absolute_acceleration:
+      return sum(acceleration_, 2) + model_.ground_acceleration(model_.space.axis(model_.space.index_of(request.unknown)), state.time);
     case What::rotation: {
       const std::array<double, 2> both = slope();
       return model_.space.dimension == 2 ? both[0] : std::hypot(both[0], both[1]);
@@ -255,6 +267,7 @@ double Recorder::made(std::size_t column) const {
 void Recorder::record(bool row) {
   const State& state = stepper_.state();
   if (wants_acceleration_) stepper_.acceleration(acceleration_);
+  floors_.record(acceleration_, state.time);
   const std::size_t columns = sources_.size();
   double *now = now_.data(), *most = most_.data();
   for (std::size_t k = 0; k < columns; ++k) {

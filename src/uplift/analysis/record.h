@@ -3,6 +3,7 @@
 #include <utility>
 #include <vector>
 
+#include "uplift/analysis/floor_record.h"
 #include "uplift/analysis/run.h"
 #include "uplift/dynamics/step.h"
 
@@ -39,12 +40,13 @@ class InterfaceViewer {
   double tolerance_;
 };
 
-/// Fills the columns of the output table and their peaks.
+/// Fills the columns of the output table and their peaks, and the records of the floors.
 class Recorder {
  public:
-  /// `views` holds what the interfaces look like whenever record is called; it keeps its place, as the energies of the stepper do.
+  /// For so many steps [s] of a dynamic stage: room is made for all of them. `views` holds what the interfaces look like whenever record is
+  /// called; it keeps its place, as the energies of the stepper do.
   Recorder(const Model& model, const RunPlan& plan, const InterfaceViewer& viewer, const Stepper& stepper,
-           const std::vector<InterfaceView>& views, std::size_t expected_rows, RunResult& result);
+           const std::vector<InterfaceView>& views, long steps, double step, RunResult& result);
   /// Notes peaks every time; writes a row when `row` is set.
   void record(bool row);
   /// Keeps a picture for the animation.
@@ -70,6 +72,7 @@ class Recorder {
   const Stepper& stepper_;
   const std::vector<InterfaceView>& views_;
   RunResult& result_;
+  FloorRecorder floors_;
   std::vector<Source> sources_;
   std::vector<double> now_, most_;  // per column: the present number, and the size of its peak
   bool wants_acceleration_ = false;

@@ -34,7 +34,8 @@ struct Request {
   enum class Kind {
     displacement,
     velocity,
-    acceleration,  // full unknown
+    acceleration,           // full unknown
+    absolute_acceleration,  // of a translation: with the ground's in the relative frame
     opening,
     traction,
     mean_traction,  // interface, point, component (normal last)
@@ -67,6 +68,16 @@ struct Request {
   int interface = 0, point = 0, component = 0;  // `rotation` of an interface: slope of the opening's best plane [rad]
 };
 
+/// A floor whose response spectra are wanted, from its absolute acceleration.
+struct FloorRequest {
+  std::string name;
+  int node = 0;
+  Vec3 direction = Vec3::UnitX();   // of length 1
+  std::vector<double> dampings;     // ratios to the critical damping, of the equipment
+  std::vector<double> frequencies;  // Hz, ascending
+  double broadening = 0.15;         // share to either side; 0: none
+};
+
 struct RunPlan {
   std::string name, label, group;
   std::vector<Stage> stages;
@@ -77,11 +88,13 @@ struct RunPlan {
   std::shared_ptr<const LinearSolver> solver;  // of the bulk when it is not small
   bool monolithic = false;                     // the oracle: Newton on all unknowns
   std::vector<Request> requests;
-  int every = 1;                 // record every n-th step
-  double created_limit = 0.01;   // of the external work; a run that creates more fails
-  bool stop_at_limit = false;    // else it goes on to the end and is marked
-  double rotation_limit = 0.15;  // rad: beyond the small-displacement model: overturned
-  double gap_tolerance = 1e-9;   // m: a gap larger than this counts as uplifted
+  std::vector<FloorRequest> floors;  // with these, all dynamic stages have the same step
+  std::vector<double> floor_bands;   // Hz, ascending: what parts the bands in which floor spectra are compared
+  int every = 1;                     // record every n-th step
+  double created_limit = 0.01;       // of the external work; a run that creates more fails
+  bool stop_at_limit = false;        // else it goes on to the end and is marked
+  double rotation_limit = 0.15;      // rad: beyond the small-displacement model: overturned
+  double gap_tolerance = 1e-9;       // m: a gap larger than this counts as uplifted
   bool expected_to_fail = false;
   int frames = 0;                                 // pictures kept for the animation (0: none)
   Vector initial_displacement, initial_velocity;  // free unknowns; empty: zero
@@ -113,6 +126,12 @@ struct Frame {
   Vector opening, pressure;  // normal rows of all interfaces [m], [Pa] compression > 0
 };
 
+/// Absolute acceleration of a floor at every step of the dynamic stages, from their beginning, whatever the output's `every` is.
+struct FloorRecord {
+  double step = 0;                   // s
+  std::vector<double> acceleration;  // m/s2
+};
+
 struct RunResult {
   std::string name, label, group;
   RunStatus status = RunStatus::completed;
@@ -125,6 +144,7 @@ struct RunResult {
   std::vector<Request> columns;  // as requested; the table below has time first
   std::vector<std::vector<double>> table;  // table[0]: time [s], table[1 + k]: column k
   std::vector<Peak> peaks;                 // one per column
+  std::vector<FloorRecord> floors;         // one per floor of the plan
   Peak max_uplifted_ratio, max_opening, max_base_moment, max_base_shear, max_pressure;
   double time_uplifted = 0;                                                                   // s with a gap open anywhere
   double first_uplift = -1;                                                                   // s; -1: never

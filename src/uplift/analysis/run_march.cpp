@@ -104,8 +104,7 @@ bool Runner::dynamics(const Stage& stage, const Bulk& bulk) {
   stepper.start(std::move(state_), ledger_ ? &*ledger_ : nullptr);
   seen_ = &stepper.state();
   const long steps = std::max(1L, std::lround(stage.duration / stage.step));
-  const std::size_t rows = static_cast<std::size_t>(steps / plan_.every) + 2;
-  Recorder recorder(model_, plan_, viewer_, stepper, views_, rows, result_);
+  Recorder recorder(model_, plan_, viewer_, stepper, views_, steps, stage.step, result_);
   const long picture_every = plan_.frames > 0 ? std::max(1L, steps / plan_.frames) : 0;
   if (!ledger_) initial_scale_ = stepper.energies().kinetic;
   if (!ledger_) round_off_energy_ = 1e-8 * (stepper.energies().strain + stepper.energies().stored);

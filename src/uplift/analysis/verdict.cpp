@@ -16,7 +16,8 @@ using Column = Request::Kind;
 int find_index(const RunResult& result, Request::Kind kind, int of) {
   for (std::size_t k = 0; k < result.columns.size(); ++k) {
     const Request& column = result.columns[k];
-    const bool node = kind == Column::displacement || kind == Column::velocity || kind == Column::acceleration;
+    const bool node =
+        kind == Column::displacement || kind == Column::velocity || kind == Column::acceleration || kind == Column::absolute_acceleration;
     if (column.kind == kind && (node ? column.unknown : column.interface) == of) return static_cast<int>(k);
   }
   return -1;

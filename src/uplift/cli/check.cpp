@@ -5,6 +5,7 @@
 #include <cmath>
 
 #include "uplift/analysis/case_mesh.h"
+#include "uplift/analysis/floor_record.h"
 #include "uplift/analysis/wording.h"
 #include "uplift/base/text.h"
 #include "uplift/cli/console.h"
@@ -35,6 +36,7 @@ struct Findings {
   int pieces = 0;             // of the opened mesh
   std::optional<FieldForecast> fields;
   std::optional<BulkCost> bulk;  // of a large bulk
+  double record_bytes = 0;       // floors at every step
 };
 
 constexpr double points_per_wavelength = 10;
@@ -125,10 +127,12 @@ Findings find(const Case& read, const RunSpec& spec, const Built& built) {
   Findings found;
   look_at_mesh(read, found);
   found.fields = field_forecast(read, built);
+  found.record_bytes = floor_record_bytes(built.plan);
   const int unknowns = built.model.free();
   if (unknowns > small_model) {
     BulkUse use;
     use.impacts = built.plan.method->constrains();
+    use.record_bytes = found.record_bytes;
     found.bulk = predict_bulk(built.model, *built.plan.solver, use);
     if (!found.bulk->refusal.empty()) {
       found.trial_failure = found.bulk->refusal;
@@ -188,6 +192,10 @@ void print(const Loaded& loaded, const Built& built, const Findings& found, cons
   if (found.bulk)
     line("memory", fmt::format("about {} at most, {} of it the factor of a step; {} are free", spoken_bytes(found.bulk->bytes),
                                spoken_bytes(found.bulk->step.bytes), spoken_bytes(found.bulk->available)));
+  if (found.record_bytes > 0)
+    line("floor spectra", fmt::format("{} at every step: {} a run",
+                                      built.plan.floors.size() == 1 ? "one record" : fmt::format("{} records", built.plan.floors.size()),
+                                      spoken_bytes(found.record_bytes)));
   if (found.fields) {
     const FieldForecast& fields = *found.fields;
     line("fields", fmt::format("{} frames x {} = {} a run, as {}", fields.frames, spoken_bytes(static_cast<double>(fields.size.per_frame)),
@@ -229,6 +237,12 @@ void write(const Loaded& loaded, const Built& built, const Findings& found, cons
         .member("bytes", found.bulk->bytes)
         .member("factor_bytes", found.bulk->step.bytes)
         .member("available_bytes", found.bulk->available)
+        .end_object();
+  if (found.record_bytes > 0)
+    json.key("floor_spectra")
+        .begin_object()
+        .member("floors", static_cast<int>(built.plan.floors.size()))
+        .member("bytes", static_cast<long>(found.record_bytes))
         .end_object();
   if (found.fields)
     json.key("fields")

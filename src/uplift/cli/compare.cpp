@@ -85,6 +85,7 @@ int compare(const Options& options) {
   compared.columns = compared_names(results.runs.front(), columns, first.top_sway(), first.base_turn());
   compared.agreement = agreement(results.runs, results.specs, columns, compared.band, first.top_sway(), first.base_turn());
   compared.sweep = sweep_table(swept.specs, swept.runs);
+  results.floors = floor_answers(first.plan, results.runs, results.specs);
   const RunResult* bonded = nullptr;
   for (std::size_t i = 0; i < results.runs.size(); ++i)
     if (results.specs[i].bonded && results.runs[i].group == results.runs.front().group) bonded = &results.runs[i];

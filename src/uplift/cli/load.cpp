@@ -9,6 +9,7 @@
 #include "uplift/base/file.h"
 #include "uplift/cli/console.h"
 #include "uplift/io/field_run.h"
+#include "uplift/io/floors.h"
 #include "uplift/io/histories.h"
 #include "uplift/io/mesh_file.h"
 #include "uplift/io/toml.h"
@@ -68,7 +69,7 @@ RunResult run_with_fields(const Loaded& loaded, const Built& built, const std::s
 
 void write_results(const Options& options, const Loaded& loaded, const Results& results, const ComparisonSummary* compared,
                    ResultFolder& folder) {
-  ReportInput input{&loaded.read, &loaded.from, &results.verdict, {}, compared, results.warnings};
+  ReportInput input{&loaded.read, &loaded.from, &results.verdict, {}, compared, results.warnings, &results.floors};
   for (std::size_t i = 0; i < results.runs.size(); ++i) {
     const RunResult& run = results.runs[i];
     input.runs.push_back({&results.specs[i], &results.built[i], &run});
@@ -78,7 +79,8 @@ void write_results(const Options& options, const Loaded& loaded, const Results& 
       folder.write("histories.csv", histories_csv(run));
     if (!run.problem.empty()) folder.write("problem_" + run.name + ".json", run.problem);
   }
-  folder.write("summary.json", summary_json(loaded.from, results.runs, compared));
+  if (results.floors.any()) folder.write("floor_spectra.csv", floor_spectra_csv(results.runs, results.floors));
+  folder.write("summary.json", summary_json(loaded.from, results.runs, compared, &results.floors));
   folder.write("case.resolved.toml", loaded.from.resolved);
   const std::string page = report_page(report_json(input));
   if (!page.empty())

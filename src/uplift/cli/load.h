@@ -24,6 +24,7 @@ struct Results {
   std::vector<RunSpec> specs;
   std::deque<Built> built;
   std::vector<RunResult> runs;
+  FloorAnswers floors;  // of the runs
   Verdict verdict;
   std::vector<std::string> warnings;
 };

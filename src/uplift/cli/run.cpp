@@ -20,6 +20,7 @@ int run(const Options& options) {
     if (results.runs.empty()) results.warnings = warnings(loaded.read, spec, results.built.front());
     results.runs.push_back(run_with_fields(loaded, results.built.back(), spec.label, options, folder, fields));
   }
+  results.floors = floor_answers(results.built.front().plan, results.runs, results.specs);
   const RunResult& main = results.runs.front();
   results.verdict = judge(results.built.front(), main, results.runs.size() > 1 ? &results.runs[1] : nullptr);
   write_results(options, loaded, results, nullptr, folder);

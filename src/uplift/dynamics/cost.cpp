@@ -43,6 +43,7 @@ BulkCost predict_bulk(const Model& model, const LinearSolver& solver, const Bulk
   const double kept = (use.keeps_mass ? cost.mass.bytes : 0) + steps * cost.step.bytes + cost.interface_bytes + pair + 25 * 8 * n;
   double more = std::max(kept, cost.step.bytes + cost.mass.bytes + cost.mass.working_bytes);  // the first step size is made first
   more = std::max(more, (steps > 1 ? kept : cost.step.bytes) + cost.step.working_bytes);
+  more += cost.record_bytes = use.record_bytes;
   cost.bytes = cost.matrix_bytes + more;
   cost.matrix_bytes += pair;
   cost.available = available_memory();

@@ -12,6 +12,7 @@ struct BulkUse {
   bool propagates = false;  // a second factor of the size of the step's (impact rule `propagate`)
   int step_sizes = 1;       // factors of the step kept: one more for every halving that happens
   bool impacts = false;     // a second set of interface blocks, of M
+  double record_bytes = 0;  // what the run keeps of its steps
 };
 
 /// What the linear bulk of a run takes, known from symbolic analyses before anything large is made (about half of the time of the
@@ -21,6 +22,7 @@ struct BulkCost {
   int touched = 0;             // unknowns that the interfaces touch
   double matrix_bytes = 0;     // K, M and C of the model, and the pair of K and M that the steps stream
   double interface_bytes = 0;  // dense blocks of the interface problem
+  double record_bytes = 0;     // what the run keeps of its steps
   double bytes = 0;            // largest sum of all that is there at one time
   double available = 0;        // bytes that can still be taken; the model's own matrices are there already
   double factor_seconds = 0;   // of all factors, one after another

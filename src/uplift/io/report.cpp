@@ -29,6 +29,10 @@ void write_sections(JsonWriter& json, const ReportInput& input) {
   write_section(json, "response", "Response", "Motion of the top and of the base.");
   write_section(json, "interface", "Interface",
                 "What the interface carries and how far it opens. Uplifted area is counted by gap, never by zero pressure.");
+  if (has_floors(input))
+    write_section(
+        json, "floors", "Floor spectra",
+        "What equipment on a floor feels: largest pseudo-acceleration of a damped oscillator of each frequency that stands there.");
   if (input.compared && input.runs.size() > 1 && input.runs.back().result->group != input.runs.front().result->group)
     write_section(json, "others", "Other dampings",
                   "The same variants with the other dampings of the case; without damping nothing hides an error of the velocity.");

@@ -2,6 +2,7 @@
 #include <string>
 #include <vector>
 
+#include "uplift/analysis/floor_spectra.h"
 #include "uplift/analysis/verdict.h"
 #include "uplift/io/summary.h"
 
@@ -23,6 +24,7 @@ struct ReportInput {
   std::vector<ReportRun> runs;                  // the first one is the one that the verdict is about
   const ComparisonSummary* compared = nullptr;  // null for a single run
   std::vector<std::string> warnings;
+  const FloorAnswers* floors = nullptr;  // as many runs; null: none are asked for
 };
 
 /// The data of the report as JSON text.

@@ -167,38 +167,6 @@ Chart sweep_chart(const ComparisonSummary& compared) {
   return chart;
 }
 
-/// Origin and caption of a figure as the case states them.
-void write_chart(JsonWriter& json, const Case& read, const Chart& chart) {
-  if (chart.curves.empty()) return;
-  std::string origin = "added by uplift", caption = chart.caption;
-  for (const Values& figure : read.values.tables("figure"))
-    if (figure.text("chart") == chart.id) {
-      origin = figure.text("origin");
-      if (figure.has("caption")) caption = figure.text("caption");
-    }
-  const auto axis = [&](const char* key, const Axis& each) {
-    json.key(key).begin_object().member("label", each.label).member("unit", each.unit).member("log", each.log).end_object();
-  };
-  json.begin_object()
-      .member("id", chart.id)
-      .member("section", chart.section)
-      .member("title", chart.title)
-      .member("caption", caption)
-      .member("origin", origin);
-  axis("x", chart.x);
-  axis("y", chart.y);
-  json.key("series").begin_array();
-  for (const Curve& curve : chart.curves) {
-    json.begin_object().member("label", curve.label);
-    if (!curve.run.empty()) json.member("run", curve.run);
-    json.key("x").numbers(curve.x).key("y").numbers(curve.y);
-    if (curve.dash) json.member("dash", true);
-    if (curve.failed) json.member("failed", true);
-    json.end_object();
-  }
-  json.end_array().end_object();
-}
-
 /// Which rotation is meant.
 std::string about(const Built& built) {
   if (built.model.space.dimension == 2) return "Counter-clockwise positive.";
@@ -269,6 +237,37 @@ void write_loops(JsonWriter& json, const ReportInput& input, const std::vector<R
 
 }  // namespace
 
+void write_chart(JsonWriter& json, const Case& read, const Chart& chart) {
+  if (chart.curves.empty()) return;
+  std::string origin = "added by uplift", caption = chart.caption;
+  for (const Values& figure : read.values.tables("figure"))
+    if (figure.text("chart") == chart.id) {
+      origin = figure.text("origin");
+      if (figure.has("caption")) caption = figure.text("caption");
+    }
+  const auto axis = [&](const char* key, const Axis& each) {
+    json.key(key).begin_object().member("label", each.label).member("unit", each.unit).member("log", each.log).end_object();
+  };
+  json.begin_object()
+      .member("id", chart.id)
+      .member("section", chart.section)
+      .member("title", chart.title)
+      .member("caption", caption)
+      .member("origin", origin);
+  axis("x", chart.x);
+  axis("y", chart.y);
+  json.key("series").begin_array();
+  for (const Curve& curve : chart.curves) {
+    json.begin_object().member("label", curve.label);
+    if (!curve.run.empty()) json.member("run", curve.run);
+    json.key("x").numbers(curve.x).key("y").numbers(curve.y);
+    if (curve.dash) json.member("dash", true);
+    if (curve.failed) json.member("failed", true);
+    json.end_object();
+  }
+  json.end_array().end_object();
+}
+
 void thin_history(std::vector<double>& x, std::vector<double>& y, std::size_t most) {
   const std::size_t count = y.size();
   if (count <= most || most < 4) return;
@@ -303,6 +302,7 @@ void write_charts(JsonWriter& json, const ReportInput& input) {
   for (const View& view : motion_views(built)) write_chart(json, *input.read, history_chart(view, runs));
   for (const View& view : interface_views(built)) write_chart(json, *input.read, history_chart(view, runs));
   write_loops(json, input, runs);
+  write_floor_charts(json, input);
   if (!others.empty()) {
     std::vector<View> views = motion_views(built);
     for (View& view : views) {

@@ -10,6 +10,10 @@
 namespace uplift {
 
 void write_choices(JsonWriter& json, const Case& read, const Built& built);
+/// Floor spectra, where there are any.
+bool has_floors(const ReportInput& input);
+void write_floor_charts(JsonWriter& json, const ReportInput& input);
+void write_floor_table(JsonWriter& json, const ReportInput& input);
 void write_tables(JsonWriter& json, const ReportInput& input);
 void write_charts(JsonWriter& json, const ReportInput& input);
 void write_model(JsonWriter& json, const Case& read, const Built& built);
@@ -31,6 +35,15 @@ struct Chart {
   Axis x, y;
   std::vector<Curve> curves;
 };
+/// With the origin and the caption that the case states; nothing without curves.
+void write_chart(JsonWriter& json, const Case& read, const Chart& chart);
+
+struct TableColumn {
+  const char *key, *label, *unit, *kind;
+  int digits;
+};
+void write_column(JsonWriter& json, const TableColumn& column);
+
 /// The traction law of the first interface driven through openings and closings, with its largest opening so far (figure 3 of the paper);
 /// without curves for a cone.
 Chart law_chart(const ReportRun& run);

@@ -9,17 +9,6 @@
 namespace uplift {
 namespace {
 
-struct TableColumn {
-  const char *key, *label, *unit, *kind;
-  int digits;
-};
-
-void write_column(JsonWriter& json, const TableColumn& column) {
-  json.begin_object().member("key", column.key).member("label", column.label).member("unit", column.unit).member("kind", column.kind);
-  if (column.digits > 0) json.member("digits", column.digits);
-  json.end_object();
-}
-
 void write_run_row(JsonWriter& json, const ReportInput& input, std::size_t i) {
   const RunResult& run = *input.runs[i].result;
   const Built& built = *input.runs[i].built;
@@ -150,9 +139,16 @@ bool covers(const std::string& key, const std::string& path) {
 
 }  // namespace
 
+void write_column(JsonWriter& json, const TableColumn& column) {
+  json.begin_object().member("key", column.key).member("label", column.label).member("unit", column.unit).member("kind", column.kind);
+  if (column.digits > 0) json.member("digits", column.digits);
+  json.end_object();
+}
+
 void write_tables(JsonWriter& json, const ReportInput& input) {
   json.begin_array();
   write_runs(json, input);
+  write_floor_table(json, input);
   if (input.compared) write_sweep(json, input.compared->sweep);
   json.end_array();
 }

@@ -1,5 +1,6 @@
 #include "uplift/io/summary.h"
 
+#include "uplift/io/floors.h"
 #include "uplift/io/json_writer.h"
 
 namespace uplift {
@@ -13,7 +14,7 @@ void write_peak(JsonWriter& json, std::string_view name, const Peak& peak) {
   write_peak(json, name, peak.value, peak.time, peak.unit);
 }
 
-void write_run(JsonWriter& json, const RunResult& run, const Agreement* agreement) {
+void write_run(JsonWriter& json, const RunResult& run, const Agreement* agreement, const FloorRun* floors) {
   json.begin_object();
   json.member("name", run.name).member("label", run.label).member("group", run.group);
   json.member("status", to_string(run.status)).member("reason", run.reason);
@@ -48,6 +49,7 @@ void write_run(JsonWriter& json, const RunResult& run, const Agreement* agreemen
   json.key("peaks").begin_object();
   for (const Peak& peak : run.peaks) write_peak(json, peak.name, peak);
   json.end_object();
+  if (floors) write_floors(json.key("floor_spectra"), *floors);
   if (agreement)
     json.key("agreement")
         .begin_object()
@@ -61,7 +63,8 @@ void write_run(JsonWriter& json, const RunResult& run, const Agreement* agreemen
 
 }  // namespace
 
-std::string summary_json(const Provenance& from, const std::vector<RunResult>& runs, const ComparisonSummary* compared) {
+std::string summary_json(const Provenance& from, const std::vector<RunResult>& runs, const ComparisonSummary* compared,
+                         const FloorAnswers* floors) {
   JsonWriter json(0, 2);
   json.begin_object();
   json.member("format", "uplift-summary-1").member("version", from.version).member("title", from.title).member("command", from.command);
@@ -71,8 +74,10 @@ std::string summary_json(const Provenance& from, const std::vector<RunResult>& r
   for (const auto& [file, hash] : from.inputs) json.begin_object().member("file", file).member("sha256", hash).end_object();
   json.end_array();
   json.key("runs").begin_array();
-  for (std::size_t i = 0; i < runs.size(); ++i) write_run(json, runs[i], compared ? &compared->agreement[i] : nullptr);
+  for (std::size_t i = 0; i < runs.size(); ++i)
+    write_run(json, runs[i], compared ? &compared->agreement[i] : nullptr, floors && floors->any() ? &floors->runs[i] : nullptr);
   json.end_array();
+  if (floors && !floors->envelopes.empty()) write_floor_envelopes(json.key("floor_envelopes"), *floors);
   if (compared) {
     json.member("band", compared->band).key("compared_columns").texts(compared->columns);
     json.key("stiffness_sweep").begin_array();

@@ -4,6 +4,7 @@
 #include <vector>
 
 #include "uplift/analysis/compare.h"
+#include "uplift/analysis/floor_spectra.h"
 
 namespace uplift {
 
@@ -23,7 +24,8 @@ struct ComparisonSummary {
   std::vector<SweepRow> sweep;
 };
 
-/// summary.json: an object with the provenance and the array `runs`. `compared` may be null.
-std::string summary_json(const Provenance&, const std::vector<RunResult>& runs, const ComparisonSummary* compared);
+/// summary.json: an object with the provenance and the array `runs`. `compared` and `floors` may be null.
+std::string summary_json(const Provenance&, const std::vector<RunResult>& runs, const ComparisonSummary* compared,
+                         const FloorAnswers* floors = nullptr);
 
 }  // namespace uplift

@@ -101,11 +101,6 @@ class ModelBuilder {
     bool dead;
     Where where;
   };
-  struct Ground {
-    std::string name;
-    Vec3 direction;
-    std::shared_ptr<const TimeFunction> function;
-  };
 
   std::string name_of(int full_unknown) const;
   void eliminate(Model& model, Matrix& motion_shapes) const;
@@ -127,7 +122,7 @@ class ModelBuilder {
   std::vector<InterfaceSpec> interfaces_;
   std::vector<Where> interface_where_;
   std::vector<Load> loads_;
-  std::vector<Ground> grounds_;
+  std::vector<GroundAcceleration> grounds_;
   std::vector<Feeding> feeds_;
   bool keeps_tangents_ = false;
   Vec3 gravity_ = Vec3::Zero();

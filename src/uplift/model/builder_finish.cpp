@@ -91,7 +91,7 @@ void ModelBuilder::make_drives(Model& model, const Matrix& motion_shapes) const 
     for (const auto& [unknown, value] : load.pattern) pattern[unknown] += value;
     add(load.name, pattern, load.function ? load.function : one, load.dead);
   }
-  for (const Ground& ground : grounds_)
+  for (const GroundAcceleration& ground : grounds_)
     add(ground.name, -(full.mass * translation(space_, ground.direction, unknowns)), ground.function, false);
   for (const Feeding& feed : feeds_) {
     Sparse pattern(unknowns, feed.functions);
@@ -159,6 +159,7 @@ Model ModelBuilder::finish() {
   }
   make_drives(model, motion_shapes);
   if (!damping_.modal.empty()) model.damping += modal_damping(model, damping_.modal, damping_.modal_count, {});
+  model.grounds = grounds_;
   model.nodes = std::move(nodes_);
   model.elements = std::move(elements_);
   return model;

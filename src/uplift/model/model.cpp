@@ -45,6 +45,13 @@ Vector Model::full(const Vector& q, int derivative, double time) const {
   return value;
 }
 
+double Model::ground_acceleration(const Vec3& direction, double time) const {
+  double value = 0;
+  for (const GroundAcceleration& ground : grounds)
+    if (const double share = ground.direction.dot(direction); share != 0) value += share * ground.function->value(time);
+  return value;
+}
+
 void Model::add_force(double time, Vector& force) const {
   for (const Drive& drive : drives)
     if (const double factor = drive.factor(time); factor != 0) small::add(force.size(), factor, drive.shape.data(), force.data());

@@ -50,6 +50,14 @@ struct PrescribedMotion {
   std::shared_ptr<const TimeFunction> function;
 };
 
+/// Acceleration of the ground in the relative frame: direction * function(t) [m/s2]. Its load is one of the drives; what moves with the
+/// ground is at rest in this frame.
+struct GroundAcceleration {
+  std::string name;
+  Vec3 direction;
+  std::shared_ptr<const TimeFunction> function;
+};
+
 /// What the elimination hides but reactions and the P-Delta effect need: everything on the full unknowns.
 struct Assembly {
   Sparse stiffness, mass, damping;  // full x full, before elimination, without modal damping
@@ -88,6 +96,7 @@ struct Model {
   std::vector<Drive> drives;
   std::vector<Feed> feeds;
   std::vector<PrescribedMotion> motions;
+  std::vector<GroundAcceleration> grounds;
 
   Sparse reduction;                        // T: full x free
   Sparse expansion;                        // T^T: column i is the row of T for full unknown i
@@ -105,6 +114,8 @@ struct Model {
   double full(int full_unknown, const Vector& q, int derivative, double time) const;
   /// All full unknowns at once.
   Vector full(const Vector& q, int derivative, double time) const;
+  /// Acceleration of the relative frame along a direction [m/s2].
+  double ground_acceleration(const Vec3& direction, double time) const;
   /// Adds the force of all drives and feeds at a time to `force` (free unknowns).
   void add_force(double time, Vector& force) const;
   /// Adds what the prescribed motions do to the openings (rows of all interfaces).

@@ -1,0 +1,142 @@
+#include "uplift/analysis/floor_spectra.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cassert>
+#include <cmath>
+
+#include "uplift/analysis/compare.h"
+
+namespace uplift {
+namespace {
+
+void broaden(FloorSpectra& floor, double share) {
+  if (!(share > 0)) return;
+  for (const Spectrum& raw : floor.raw) floor.broadened.push_back(broadened(raw, share));
+}
+
+FloorChange change_of(const Spectrum& raw, const Spectrum& bonded, const std::vector<FrequencyBand>& bands) {
+  FloorChange change;
+  change.damping = raw.damping;
+  for (const FrequencyBand& band : bands) {
+    FloorChange::Band made{band, 0, INFINITY, 0};
+    double largest = 0, bonded_largest = 0;
+    for (std::size_t i = 0; i < raw.frequencies.size(); ++i) {
+      const double f = raw.frequencies[i];
+      if (f < band.from || (band.to && f >= *band.to) || !(bonded.values[i] > 0)) continue;
+      change.frequencies.push_back(f);
+      change.bonded.push_back(bonded.values[i]);
+      change.ratio.push_back(raw.values[i] / bonded.values[i]);
+      made.least = std::min(made.least, change.ratio.back());
+      made.most = std::max(made.most, change.ratio.back());
+      largest = std::max(largest, raw.values[i]);
+      bonded_largest = std::max(bonded_largest, bonded.values[i]);
+    }
+    if (!(bonded_largest > 0)) continue;
+    made.change = largest / bonded_largest - 1;
+    change.bands.push_back(made);
+  }
+  return change;
+}
+
+/// The completed bonded run of a group; -1 without one.
+int bonded_of(const std::string& group, const std::vector<RunResult>& results, const std::vector<RunSpec>& specs) {
+  for (std::size_t i = 0; i < results.size(); ++i)
+    if (specs[i].bonded && results[i].group == group && results[i].status == RunStatus::completed) return static_cast<int>(i);
+  return -1;
+}
+
+void add_envelopes(const RunPlan& plan, const std::vector<RunResult>& results, const std::vector<RunSpec>& specs, FloorAnswers& answers) {
+  std::vector<std::string> groups;
+  for (const RunResult& result : results)
+    if (std::ranges::find(groups, result.group) == groups.end()) groups.push_back(result.group);
+  for (const std::string& group : groups) {
+    FloorEnvelope made{group, 0, {}};
+    for (std::size_t k = 0; k < plan.floors.size(); ++k) {
+      std::vector<const FloorSpectra*> same;
+      for (std::size_t i = 0; i < results.size(); ++i)
+        if (results[i].group == group && is_sound(results[i], specs[i])) same.push_back(&answers.runs[i].floors[k]);
+      made.runs = static_cast<int>(same.size());
+      if (made.runs < 2) break;
+      made.floors.push_back(floor_envelope(same, plan.floors[k].broadening));
+    }
+    if (!made.floors.empty()) answers.envelopes.push_back(std::move(made));
+  }
+}
+
+}  // namespace
+
+std::string to_string(const FrequencyBand& band) {
+  if (band.from == 0 && !band.to) return "all frequencies";
+  if (band.from == 0) return fmt::format("below {:g} Hz", *band.to);
+  if (!band.to) return fmt::format("above {:g} Hz", band.from);
+  return fmt::format("{:g} to {:g} Hz", band.from, *band.to);
+}
+
+std::vector<FrequencyBand> frequency_bands(const std::vector<double>& edges) {
+  std::vector<FrequencyBand> bands{{0, std::nullopt}};
+  for (const double edge : edges) {
+    bands.back().to = edge;
+    bands.push_back({edge, std::nullopt});
+  }
+  return bands;
+}
+
+bool FloorAnswers::any() const {
+  return std::ranges::any_of(runs, [](const FloorRun& run) { return !run.floors.empty(); });
+}
+
+std::vector<FloorSpectra> floor_spectra(const RunPlan& plan, const RunResult& result) {
+  if (result.status == RunStatus::failed || result.floors.size() != plan.floors.size()) return {};
+  std::vector<FloorSpectra> made;
+  for (std::size_t k = 0; k < plan.floors.size(); ++k) {
+    const FloorRequest& asked = plan.floors[k];
+    const FloorRecord& record = result.floors[k];
+    FloorSpectra floor{asked.name, {asked.name, "m/s2", 0, 0}, {}, {}};
+    for (std::size_t i = 0; i < record.acceleration.size(); ++i)
+      if (const double now = record.acceleration[i]; std::abs(now) > std::abs(floor.zero_period.value))
+        floor.zero_period.value = now, floor.zero_period.time = static_cast<double>(i) * record.step;
+    floor.raw =
+        response_spectra(record.acceleration, record.step, asked.frequencies, asked.dampings, Spectrum::Kind::psa, 0, Peaks::between);
+    broaden(floor, asked.broadening);
+    made.push_back(std::move(floor));
+  }
+  return made;
+}
+
+std::vector<FloorChange> floor_change(const FloorSpectra& floor, const FloorSpectra& bonded, const std::vector<double>& bands) {
+  std::vector<FloorChange> changes;
+  for (std::size_t d = 0; d < floor.raw.size(); ++d) changes.push_back(change_of(floor.raw[d], bonded.raw[d], frequency_bands(bands)));
+  return changes;
+}
+
+FloorSpectra floor_envelope(const std::vector<const FloorSpectra*>& floors, double broadening) {
+  assert(!floors.empty());
+  FloorSpectra made{floors.front()->name, floors.front()->zero_period, {}, {}};
+  for (std::size_t d = 0; d < floors.front()->raw.size(); ++d) {
+    std::vector<Spectrum> same;
+    for (const FloorSpectra* floor : floors) same.push_back(floor->raw[d]);
+    made.raw.push_back(envelope(same));
+  }
+  for (const FloorSpectra* floor : floors)
+    if (std::abs(floor->zero_period.value) > std::abs(made.zero_period.value)) made.zero_period = floor->zero_period;
+  broaden(made, broadening);
+  return made;
+}
+
+FloorAnswers floor_answers(const RunPlan& plan, const std::vector<RunResult>& results, const std::vector<RunSpec>& specs) {
+  FloorAnswers answers;
+  for (const RunResult& result : results) answers.runs.push_back({floor_spectra(plan, result), {}});
+  for (std::size_t i = 0; i < results.size(); ++i) {
+    const int bonded = bonded_of(results[i].group, results, specs);
+    if (bonded < 0 || specs[i].bonded) continue;
+    for (std::size_t k = 0; k < answers.runs[i].floors.size(); ++k)
+      answers.runs[i].beside.push_back(
+          floor_change(answers.runs[i].floors[k], answers.runs[static_cast<std::size_t>(bonded)].floors[k], plan.floor_bands));
+  }
+  add_envelopes(plan, results, specs, answers);
+  return answers;
+}
+
+}  // namespace uplift

@@ -1,0 +1,145 @@
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+
+#include "uplift/io/report_parts.h"
+
+// The page's floor spectra: a figure for every floor and damping, one of the ratio to the bonded run, and a table.
+namespace uplift {
+namespace {
+
+std::string percent_of_damping(double damping) {
+  return fmt::format("{:g} %", 100 * damping);
+}
+
+Curve spectrum_curve(std::string label, std::string run, const Spectrum& spectrum) {
+  return {std::move(label), std::move(run), spectrum.frequencies, spectrum.values, false, false};
+}
+
+/// The runs of the first one's group that have floors, by their index.
+std::vector<std::size_t> shown_runs(const ReportInput& input) {
+  std::vector<std::size_t> shown;
+  for (std::size_t i = 0; i < input.runs.size(); ++i)
+    if (input.runs[i].result->group == input.runs.front().result->group && !input.floors->runs[i].floors.empty()) shown.push_back(i);
+  return shown;
+}
+
+const FloorEnvelope* envelope_of(const ReportInput& input) {
+  for (const FloorEnvelope& envelope : input.floors->envelopes)
+    if (envelope.group == input.runs.front().result->group) return &envelope;
+  return nullptr;
+}
+
+/// Raw curves of all runs, the bonded one dashed; what is broadened: the envelope, or the first run without one.
+Chart spectrum_chart(const ReportInput& input, const FloorRequest& floor, std::size_t k, std::size_t d) {
+  const std::string damping = percent_of_damping(floor.dampings[d]);
+  Chart chart{fmt::format("floor_{}_{:g}", floor.name, 100 * floor.dampings[d]),
+              "floors",
+              fmt::format("{}: floor spectrum, {} damping", floor.name, damping),
+              "",
+              {"Frequency", "Hz", true},
+              {"Pseudo-acceleration", "m/s2"},
+              {}};
+  for (const std::size_t i : shown_runs(input)) {
+    const ReportRun& run = input.runs[i];
+    chart.curves.push_back(spectrum_curve(run.result->label, run.result->label, input.floors->runs[i].floors[k].raw[d]));
+    chart.curves.back().dash = run.spec->bonded;
+  }
+  chart.caption = "Raw; the bonded run dashed.";
+  if (!(floor.broadening > 0)) return chart;
+  const FloorEnvelope* envelope = envelope_of(input);
+  const std::string share = fmt::format("{:g} %", 100 * floor.broadening);
+  if (envelope) {
+    chart.curves.push_back(
+        spectrum_curve(fmt::format("envelope of {} runs, broadened by {}", envelope->runs, share), "", envelope->floors[k].broadened[d]));
+  } else if (!input.floors->runs.front().floors.empty()) {
+    const std::string& label = input.runs.front().result->label;
+    chart.curves.push_back(
+        spectrum_curve(fmt::format("{}, broadened by {}", label, share), "", input.floors->runs.front().floors[k].broadened[d]));
+  }
+  return chart;
+}
+
+/// All dampings of the one run, or all runs with the first damping.
+Chart ratio_chart(const ReportInput& input, const FloorRequest& floor, std::size_t k) {
+  Chart chart{"floor_ratio_" + floor.name,
+              "floors",
+              floor.name + ": floor spectrum beside the bonded base",
+              "Raw spectrum over that of the bonded run; above 1 uplift makes it worse for equipment of this frequency.",
+              {"Frequency", "Hz", true},
+              {"Ratio to bonded", "1"},
+              {}};
+  std::vector<std::size_t> runs;
+  for (const std::size_t i : shown_runs(input))
+    if (!input.floors->runs[i].beside.empty()) runs.push_back(i);
+  if (runs.size() > 1) chart.title += fmt::format(", {} damping", percent_of_damping(floor.dampings.front()));
+  for (const std::size_t i : runs)
+    for (const FloorChange& change : input.floors->runs[i].beside[k]) {
+      const std::string& label = input.runs[i].result->label;
+      chart.curves.push_back({runs.size() > 1 ? label : percent_of_damping(change.damping) + " damping", runs.size() > 1 ? label : "",
+                              change.frequencies, change.ratio, false, false});
+      if (runs.size() > 1) break;
+    }
+  std::erase_if(chart.curves, [](const Curve& curve) { return curve.x.empty(); });
+  return chart;
+}
+
+void write_row(JsonWriter& json, const ReportRun& run, const FloorRun& floors, std::size_t k, std::size_t d) {
+  const FloorSpectra& floor = floors.floors[k];
+  const Spectrum& raw = floor.raw[d];
+  const auto most = static_cast<std::size_t>(std::ranges::max_element(raw.values) - raw.values.begin());
+  json.begin_object().member("floor", floor.name).member("run", run.result->label).member("group", run.result->group);
+  json.member("damping", raw.damping).member("rigid", std::abs(floor.zero_period.value));
+  json.member("peak", raw.values[most]).member("at", raw.frequencies[most]);
+  if (!floors.beside.empty())
+    for (const FloorChange::Band& band : floors.beside[k][d].bands) json.member(fmt::format("from_{:g}", band.band.from), band.change);
+  json.end_object();
+}
+
+}  // namespace
+
+bool has_floors(const ReportInput& input) {
+  return input.floors && input.floors->any();
+}
+
+void write_floor_charts(JsonWriter& json, const ReportInput& input) {
+  if (!has_floors(input)) return;
+  const std::vector<FloorRequest>& floors = input.runs.front().built->plan.floors;
+  for (std::size_t k = 0; k < floors.size(); ++k) {
+    for (std::size_t d = 0; d < floors[k].dampings.size(); ++d) write_chart(json, *input.read, spectrum_chart(input, floors[k], k, d));
+    write_chart(json, *input.read, ratio_chart(input, floors[k], k));
+  }
+}
+
+void write_floor_table(JsonWriter& json, const ReportInput& input) {
+  if (!has_floors(input)) return;
+  const RunPlan& plan = input.runs.front().built->plan;
+  const bool grouped = !input.runs.front().result->group.empty();
+  json.begin_object().member("id", "floors").member("title", "Floor spectra").member("rowGroup", "floor");
+  json.member("caption",
+              "Largest absolute acceleration of the floor (what rigid equipment feels) and largest pseudo-acceleration. By bands of "
+              "frequency: change of the largest value in the band beside the bonded run.");
+  json.key("columns").begin_array();
+  for (const TableColumn& column : {TableColumn{"floor", "Floor", "", "text", 0}, {"run", "Run", "", "text", 0}})
+    write_column(json, column);
+  if (grouped) write_column(json, {"group", "Case", "", "text", 0});
+  for (const TableColumn& column : {TableColumn{"damping", "Damping", "", "percent", 2},
+                                    {"rigid", "Floor", "m/s2", "number", 4},
+                                    {"peak", "Peak", "m/s2", "number", 4},
+                                    {"at", "at", "Hz", "number", 3}})
+    write_column(json, column);
+  const bool beside = std::ranges::any_of(input.floors->runs, [](const FloorRun& run) { return !run.beside.empty(); });
+  for (const FrequencyBand& band : frequency_bands(plan.floor_bands)) {
+    const std::string key = fmt::format("from_{:g}", band.from), label = to_string(band);
+    if (beside) write_column(json, {key.c_str(), label.c_str(), "", "percent", 2});
+  }
+  json.end_array().key("rows").begin_array();
+  for (std::size_t k = 0; k < plan.floors.size(); ++k)
+    for (std::size_t d = 0; d < plan.floors[k].dampings.size(); ++d)
+      for (std::size_t i = 0; i < input.runs.size(); ++i)
+        if (!input.floors->runs[i].floors.empty()) write_row(json, input.runs[i], input.floors->runs[i], k, d);
+  json.end_array().end_object();
+}
+
+}  // namespace uplift

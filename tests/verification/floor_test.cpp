@@ -1,0 +1,243 @@
+// Floor spectra through whole runs (VERIFICATION section 7): what is recorded is the absolute acceleration, at every step, whatever is
+// written.
+#include <fmt/format.h>
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <cmath>
+#include <complex>
+#include <fstream>
+#include <numbers>
+#include <sstream>
+
+#include "support.h"
+#include "uplift/analysis/floor_spectra.h"
+#include "uplift/io/toml.h"
+
+namespace uplift::verification {
+namespace {
+
+using std::numbers::pi;
+
+struct Answer {
+  RunResult result;
+  std::vector<FloorSpectra> floors;
+
+  const std::vector<double>& column(const std::string& name) const {
+    for (std::size_t k = 0; k < result.columns.size(); ++k)
+      if (result.columns[k].name == name) return result.table[k + 1];
+    throw std::out_of_range(name);
+  }
+};
+
+Answer run_floors(const std::string& text, bool bonded = false) {
+  const Case read = check_case(read_toml_text(text, "case.toml"), "case.toml");
+  RunSpec spec;
+  spec.bonded = bonded;
+  spec.pictures = false;
+  const Built built = build(read, spec);
+  Answer answer{run(built.model, built.plan, built.behaviours), {}};
+  EXPECT_EQ(answer.result.status, RunStatus::completed) << answer.result.reason;
+  answer.floors = floor_spectra(built.plan, answer.result);
+  return answer;
+}
+
+/// A mass on a spring and a dashpot in the frame of the ground, whose acceleration has values at equal steps.
+std::string oscillator(double frequency, double damping, const std::vector<double>& ground, double spacing, double step,
+                       const std::string& floor) {
+  const double omega = 2 * pi * frequency, mass = 1000;
+  std::vector<double> times(ground.size());
+  for (std::size_t i = 0; i < times.size(); ++i) times[i] = static_cast<double>(i) * spacing;
+  return fmt::format(
+      "title = \"floor\"\n[nodes]\nfloor = [0, 1]\n[[mass]]\nnode = \"floor\"\nmass = {}\n"
+      "[[spring]]\nnodes = [\"floor\"]\ndirection = [1, 0]\nstiffness = {}\n"
+      "[[dashpot]]\nnodes = [\"floor\"]\ndirection = [1, 0]\ndamping = {}\n"
+      "[[support]]\nnode = \"floor\"\nfixed = [\"uy\", \"rz\"]\n"
+      "[[function]]\nname = \"quake\"\nshape = {{ type = \"table\", times = [{}], values = [{}] }}\n"
+      "[[ground_acceleration]]\ndirection = [1, 0]\nfunction = \"quake\"\n"
+      "[[stage]]\ntype = \"dynamic\"\nduration = {}\nstep = {}\n"
+      "[output]\nautomatic = false\nenergies = false\n[[output.floor_spectrum]]\nname = \"floor\"\nnode = \"floor\"\ndirection = [1, "
+      "0]\n{}\n",
+      mass, mass * omega * omega, 2 * damping * omega * mass, fmt::join(times, ", "), fmt::join(ground, ", "), times.back(), step, floor);
+}
+
+std::vector<double> el_centro() {
+  std::ifstream in(std::string(UPLIFT_SHARED_DIR) + "/records/elcentro.dat");
+  std::vector<double> values{0};  // the record begins one step after rest
+  for (std::string line; std::getline(in, line);) {
+    std::istringstream numbers(line[0] == '#' ? "" : line);
+    for (double value; numbers >> value && values.size() < 1560;) values.push_back(value);
+  }
+  return values;
+}
+
+/// Every n-th value.
+std::vector<double> thinned(const std::vector<double>& values, std::size_t n) {
+  std::vector<double> kept;
+  for (std::size_t i = 0; i < values.size(); i += n) kept.push_back(values[i]);
+  return kept;
+}
+
+double largest(const std::vector<double>& values) {
+  double most = 0;
+  for (const double value : values) most = std::max(most, std::abs(value));
+  return most;
+}
+
+double distance(const std::vector<double>& a, const std::vector<double>& b) {
+  EXPECT_EQ(a.size(), b.size());
+  double most = 0;
+  for (std::size_t i = 0; i < a.size(); ++i) most = std::max(most, std::abs(a[i] - b[i]));
+  return most;
+}
+
+// Claim: the floor of El Centro on an oscillator of 5 Hz and 5 %, 2 % equipment, raw and broadened. The reference takes the exact floor
+// every 2.5 ms. The trapezoidal rule is of order 2: the period is longer by (w h)^2/12, which floor and resonant equipment feel through
+// 1/(2 damping), 10 and 25 times; two steps extrapolated leave an error of order 4: 1e-6.
+TEST(FloorSpectrum, ElCentro) {
+  const Reference reference_curve = reference("floor_spectrum_elcentro_5Hz.csv");
+  const std::vector<double> quake = el_centro();
+  if (reference_curve.empty() || quake.size() != 1560) GTEST_SKIP() << "no shared records";
+  const std::vector<double>&f = reference_curve["f_Hz"], &raw = reference_curve["PSA2_g"];
+  const std::vector<double>& broad = reference_curve["PSA2_broadened15_g"];
+  const std::string floor = fmt::format("damping = [0.02]\nfrequencies = [{}]", fmt::join(f, ", "));
+  const double step = 0.0025, h = step / 8;
+  const Answer coarse = run_floors(oscillator(5, 0.05, quake, 0.02, 2 * h, floor)),
+               fine = run_floors(oscillator(5, 0.05, quake, 0.02, h, floor));
+  const std::vector<double> at_4 = thinned(coarse.result.floors[0].acceleration, 4), at_8 = thinned(fine.result.floors[0].acceleration, 8);
+  ASSERT_EQ(at_8.size(), 1559U * 8 + 1);
+  std::vector<double> exact;
+  for (std::size_t i = 0; i < at_8.size(); ++i) exact.push_back(at_8[i] + (at_8[i] - at_4[i]) / 3);
+  EXPECT_NEAR(distance(at_4, exact) / distance(at_8, exact), 4, 0.02);
+  EXPECT_NEAR(largest(exact), 0.823915, 1e-6);
+
+  const Spectrum known = response_spectra(exact, step, f, {0.02}, Spectrum::Kind::psa).front(), wide = broadened(known, 0.15);
+  const Spectrum seen = response_spectra(at_8, step, f, {0.02}, Spectrum::Kind::psa).front();
+  const double omega = 2 * pi * 5, felt = std::pow(omega * h, 2) / 12 * (10 + 25);
+  for (std::size_t i = 0; i < f.size(); ++i) {
+    EXPECT_NEAR(known.values[i] / raw[i], 1, 1e-6) << f[i];
+    EXPECT_NEAR(value_at(wide, f[i]) / broad[i], 1, 1e-6) << f[i];
+    EXPECT_NEAR(seen.values[i] / raw[i], 1, felt) << f[i];
+    // the answer of the program also finds the peaks between the points, by which the reference is at most 1.3 % too small
+    EXPECT_GT(fine.floors[0].raw[0].values[i], (1 - felt) * raw[i]) << f[i];
+    EXPECT_LT(fine.floors[0].raw[0].values[i], (1.013 + felt) * raw[i]) << f[i];
+    EXPECT_GE(value_at(fine.floors[0].broadened[0], f[i]), fine.floors[0].raw[0].values[i] * (1 - 1e-12)) << f[i];
+  }
+}
+
+// Claim: harmonic ground of 8 Hz, floor of 10 Hz and 5 %, equipment of 12 Hz and 2 %: steady factors 2.72029410 and 4.89089831. The
+// trapezoidal rule answers a harmonic exactly as if it were of the frequency tan(w h/2)/(h/2): the ground gets the frequency that is 8 Hz
+// then. The equipment stands on straight lines between the steps, whose harmonic is smaller by (sin(w h/2)/(w h/2))^2. The amplitude grows
+// so smoothly (five derivatives) that the beginning is not felt.
+TEST(FloorSpectrum, HarmonicFactors) {
+  const auto dynamic_factor = [](double r, double damping) { return 1 / std::abs(std::complex<double>(1 - r * r, 2 * damping * r)); };
+  const double floor_factor = std::abs(std::complex<double>(1, 2 * 0.05 * 0.8)) * dynamic_factor(0.8, 0.05);
+  EXPECT_NEAR(floor_factor, 2.72029410, 1e-8);
+  EXPECT_NEAR(floor_factor * dynamic_factor(8.0 / 12, 0.02), 4.89089831, 1e-8);
+
+  const double h = 1e-3, grows = 10, frequency = std::atan(8 * pi * h) / (pi * h);
+  std::vector<double> ground;
+  for (int i = 0; i <= 16000; ++i) {
+    const double t = i * h, x = std::min(1.0, t / grows);
+    const double share = std::pow(x, 5) * (126 + x * (-420 + x * (540 + x * (-315 + x * 70))));
+    ground.push_back(share * std::sin(2 * pi * frequency * t));
+  }
+  const Answer answer = run_floors(oscillator(10, 0.05, ground, h, h, "damping = [0.02]\nfrequencies = [12]\nbroadening = 0"));
+  EXPECT_NEAR(std::abs(answer.floors[0].zero_period.value) / floor_factor, 1, 1e-6);
+  const double half = pi * frequency * h, straight = std::pow(std::sin(half) / half, 2);
+  EXPECT_NEAR(answer.floors[0].raw[0].values[0] / (floor_factor * straight * dynamic_factor(frequency / 12, 0.02)), 1, 1e-6);
+  EXPECT_TRUE(answer.floors[0].broadened.empty());
+}
+
+/// A column on a footing that lifts off, shaken by A sin(w t): as inertia forces in the frame of the ground, or by moving its base.
+struct Column {
+  double shaking = 6, frequency = 2, step = 5e-4, duration = 1;  // m/s2, Hz, s
+  bool absolute = false;
+  int every = 1;
+  std::string law = "{ type = \"springs\", K_n = 2e8, tangential = \"none\" }", options;
+
+  std::string text() const {
+    // With average acceleration a harmonic acceleration has velocities and displacements of this frequency, in the discrete run exactly.
+    const double omega = std::tan(pi * frequency * step) * 2 / step;
+    std::string text = fmt::format(
+        "title = \"column\"\nimpact = \"none\"\n{}\n[nodes]\ntop = [0, 5]\nbase = [0, 0]\n"
+        "[[beam]]\nname = \"column\"\nnodes = [\"base\", \"top\"]\nE = \"20000 MPa\"\nI = 0.20\n[[mass]]\nnode = \"top\"\nmass = 24317\n"
+        "[[rigid]]\nname = \"footing\"\nnode = \"base\"\nmass = 1e4\ninertia = 7500\n"
+        "[[interface]]\nname = \"soil\"\nlaw = {}\n[interface.footing]\nbody = \"base\"\nwidth = 3\npoints = 40\n"
+        "[[load]]\nnode = \"top\"\nforce = [0, -1e6]\n"
+        "[[function]]\nname = \"quake\"\nshape = {{ type = \"harmonic\", frequency = {} }}\n[[stage]]\ntype = \"static\"\n"
+        "[[stage]]\ntype = \"dynamic\"\nduration = {}\nstep = {}\n",
+        options, law, frequency, duration, step);
+    if (absolute)
+      text += fmt::format(
+          "[[motion]]\nnode = \"base\"\ndirection = \"ux\"\namplitude = {}\nfunction = \"quake\"\n"
+          "[[initial]]\nnode = \"top\"\nvelocity = [{}, 0]\n",
+          -shaking / (omega * omega), -shaking / omega);
+    else
+      text += fmt::format(
+          "[[support]]\nnode = \"base\"\nfixed = [\"ux\"]\n"
+          "[[ground_acceleration]]\ndirection = [1, 0]\namplitude = {}\nfunction = \"quake\"\n",
+          shaking);
+    text += fmt::format("[output]\nevery = {}\n", every);
+    for (const char* quantity : {"ax", "abs_ax", "abs_ay"})
+      text += fmt::format("[[output.history]]\nnode = \"top\"\nquantity = \"{}\"\n", quantity);
+    for (const auto& [name, node, direction] :
+         {std::array{"top", "top", "[1, 0]"}, {"slanting", "top", "[3, 4]"}, {"base", "base", "[1, 0]"}})
+      text += fmt::format("[[output.floor_spectrum]]\nname = \"{}\"\nnode = \"{}\"\ndirection = {}\n", name, node, direction);
+    return text;
+  }
+};
+
+// Claim: the absolute acceleration of a run in the frame of the ground is that of a run in the absolute frame, bonded and uplifting, to
+// 1e-9 of its peak.
+TEST(FloorSpectrum, RelativeFrameIsAbsoluteFrame) {
+  for (const bool bonded : {true, false}) {
+    Column relative, absolute;
+    absolute.absolute = true;
+    const Answer a = run_floors(relative.text(), bonded), b = run_floors(absolute.text(), bonded);
+    EXPECT_GT(a.result.max_uplifted_ratio.value, 0.2);
+    for (const std::size_t floor : {0, 1}) {
+      const std::vector<double>&one = a.result.floors[floor].acceleration, &other = b.result.floors[floor].acceleration;
+      EXPECT_GT(largest(one), 4);
+      EXPECT_LT(distance(one, other), 1e-9 * largest(one)) << bonded;
+    }
+    EXPECT_LT(distance(b.column("top.ax"), b.column("top.abs_ax")), 1e-15);
+  }
+}
+
+// Claim: the record is relative + ground at the same instant along its direction, and what does not move in the frame has the ground's
+// acceleration.
+TEST(FloorSpectrum, RelativeAndGround) {
+  const Column column;
+  const Answer answer = run_floors(column.text());
+  const std::vector<double>&time = answer.result.table[0], &ax = answer.column("top.ax"), &ay = answer.column("top.abs_ay");
+  ASSERT_EQ(answer.result.floors[0].acceleration.size(), time.size());
+  for (std::size_t i = 0; i < time.size(); ++i) {
+    const double ground = column.shaking * std::sin(2 * pi * column.frequency * time[i]), sum = ax[i] + ground;
+    EXPECT_NEAR(answer.result.floors[0].acceleration[i], sum, 1e-12);
+    EXPECT_NEAR(answer.column("top.abs_ax")[i], sum, 1e-12);
+    EXPECT_NEAR(answer.result.floors[1].acceleration[i], 0.6 * sum + 0.8 * ay[i], 1e-12);
+    EXPECT_NEAR(answer.result.floors[2].acceleration[i], ground, 1e-12);
+  }
+}
+
+// Claim: the record has all steps, equal ones, whatever output.every is and however often steps are halved.
+TEST(FloorSpectrum, EveryStepOfTheRun) {
+  Column all;
+  all.law = "{ type = \"sdm\", K_n = 5e9, F_u = 5e4, G_f = 50, F_c = -1e3, tangential = \"none\" }";
+  all.options = "method = { type = \"newton\", most_iterations = 4 }";
+  all.step = 5e-3;
+  all.shaking = 10;
+  Column few = all;
+  few.every = 7;
+  const Answer a = run_floors(all.text()), b = run_floors(few.text());
+  ASSERT_GT(a.result.counts.retries, 0);
+  ASSERT_EQ(a.result.floors[0].acceleration.size(), 201U);
+  EXPECT_EQ(a.result.floors[0].step, 5e-3);
+  EXPECT_LT(b.result.table[0].size(), 35U);
+  for (std::size_t floor = 0; floor < 3; ++floor) EXPECT_EQ(a.result.floors[floor].acceleration, b.result.floors[floor].acceleration);
+  EXPECT_LT(distance(a.result.floors[0].acceleration, a.column("top.abs_ax")), 1e-12);
+}
+
+}  // namespace
+}  // namespace uplift::verification
