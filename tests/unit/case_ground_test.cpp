@@ -6,6 +6,7 @@
 #include <cmath>
 #include <numbers>
 
+#include "text_support.h"
 #include "uplift/io/toml.h"
 #include "uplift/mesh/box.h"
 
@@ -54,19 +55,10 @@ RunResult run_text(const std::string& text, const Mesh& mesh) {
 }
 
 std::string refusal(const std::string& text, const Mesh& mesh) {
-  try {
+  return support::refusal_of([&] {
     const Case read = read_text(text, mesh);
     build(read, runs_of_case(read).front());
-  } catch (const InputError& error) {
-    return error.what();
-  }
-  return "accepted";
-}
-
-std::string replaced(std::string text, const std::string& old, const std::string& with) {
-  const std::size_t at = text.find(old);
-  EXPECT_NE(at, text.npos) << old;
-  return text.replace(at, old.size(), with);
+  });
 }
 
 constexpr double speed = 160, density = 1800, poisson = 0.25;  // m/s, kg/m3
@@ -200,7 +192,7 @@ force = [1e4, 0]
 [gravity]
 acceleration = [0, -10]
 )" + stages(0.2, 2e-3);
-  if (p_delta) text = replaced(text, "type = \"dynamic\"", "type = \"dynamic\"\np_delta = true");
+  if (p_delta) text = support::replaced(text, "type = \"dynamic\"", "type = \"dynamic\"\np_delta = true");
   return soil + building(elastic) + supports(false) + boundaries(false, "", false) + text;
 }
 
@@ -319,9 +311,9 @@ TEST(CaseGround, FreeFieldOfLayersIsEvenToRoundOff) {
     const bool space = info(cell).dimension == 3;
     for (const std::string& wave : {std::string("wave = \"P\""), std::string(space ? "wave = \"SH\", azimuth = 0.5" : "wave = \"SV\"")}) {
       const Mesh mesh = ground(cell, 2, false);
-      const std::string text = replaced(soil, "group = \"soil_1\"\nshear_wave_speed = 160", "group = \"soil_1\"\nshear_wave_speed = 90") +
-                               supports(space) + boundaries(space, wave, true) + "[damping]\nalpha = 0.4\nbeta = 1e-3\n" +
-                               stages(0.5, 4e-3);
+      const std::string text =
+          support::replaced(soil, "group = \"soil_1\"\nshear_wave_speed = 160", "group = \"soil_1\"\nshear_wave_speed = 90") +
+          supports(space) + boundaries(space, wave, true) + "[damping]\nalpha = 0.4\nbeta = 1e-3\n" + stages(0.5, 4e-3);
       const RunResult result = run_text(text, mesh);
       EXPECT_LT(unevenness(result, mesh, space), 1e-10) << info(cell).name << " " << wave;
       EXPECT_LT(std::max(result.energy_created, result.energy_lost), 1e-9 * result.energy_scale);
@@ -331,7 +323,7 @@ TEST(CaseGround, FreeFieldOfLayersIsEvenToRoundOff) {
 
 TEST(CaseGround, MotionWithinTheGroundMovesItsGroupAsOne) {
   const Mesh mesh = ground(Cell::quad4, 2, false);
-  const std::string text = soil + replaced(supports(false), "fixed = [\"ux\", \"uy\"]\nstages = \"static\"", "fixed = [\"uy\"]") +
+  const std::string text = soil + support::replaced(supports(false), "fixed = [\"ux\", \"uy\"]\nstages = \"static\"", "fixed = [\"uy\"]") +
                            "[[motion]]\ngroup = \"soil_bottom\"\ndirection = \"ux\"\namplitude = 0.02\nfunction = \"pulse\"\n"
                            "[[function]]\nname = \"pulse\"\nshape = { type = \"ricker\", frequency = 6 }\n" +
                            stages(0.5, 4e-3);
@@ -355,10 +347,11 @@ TEST(CaseGround, FreeFieldSaysWhatItNeeds) {
   EXPECT_NE(
       refusal(rest + boundaries(false, "wave = \"P\"", true) + "[damping]\nmodal = [0.05]\nmodes = 2\n", mesh).find("found modal damping"),
       std::string::npos);
-  EXPECT_NE(
-      refusal(replaced(rest + boundaries(false, "wave = \"P\"", true), "group = \"soil_left\"\nfree", "group = \"soil_top\"\nfree"), mesh)
-          .find("found a level one"),
-      std::string::npos);
+  EXPECT_NE(refusal(support::replaced(rest + boundaries(false, "wave = \"P\"", true), "group = \"soil_left\"\nfree",
+                                      "group = \"soil_top\"\nfree"),
+                    mesh)
+                .find("found a level one"),
+            std::string::npos);
 }
 
 TEST(CaseGround, SidesThatHoldTheWaveBackAreWarnedOf) {
@@ -377,9 +370,10 @@ TEST(CaseGround, TiesNeedAnOppositeSide) {
   Mesh mesh = ground(Cell::quad4, 2, false);
   const std::string rest = soil + supports(false) + bottom_only(boundaries(false, "wave = \"P\"", false)) + stages(0.1, 2e-3);
   EXPECT_EQ(refusal(rest + tied(false), mesh), "accepted");
-  EXPECT_NE(refusal(rest + replaced(tied(false), "soil_right", "soil_left"), mesh).find("wanted the opposite side of the ground"),
+  EXPECT_NE(refusal(rest + support::replaced(tied(false), "soil_right", "soil_left"), mesh).find("wanted the opposite side of the ground"),
             std::string::npos);
-  EXPECT_NE(refusal(rest + replaced(tied(false), "\"uy\"", "\"rz\""), mesh).find("wanted ux or uy, found \"rz\""), std::string::npos);
+  EXPECT_NE(refusal(rest + support::replaced(tied(false), "\"uy\"", "\"rz\""), mesh).find("wanted ux or uy, found \"rz\""),
+            std::string::npos);
   for (Vec3& place : mesh.nodes)
     if (place.x() > width / 2 - 1e-9 && std::abs(place.y() + 2) < 1e-9) place.y() -= 0.1;
   EXPECT_NE(refusal(rest + tied(false), mesh).find("at (-6, -2, 0) without one in \"soil_right\""), std::string::npos);

@@ -6,6 +6,7 @@
 #include <cmath>
 #include <numbers>
 
+#include "text_support.h"
 #include "uplift/elements/solid.h"
 #include "uplift/io/toml.h"
 #include "uplift/math/sparse_solvers.h"
@@ -87,12 +88,7 @@ Case read_text(const std::string& text, const Mesh& mesh) {
 }
 
 std::string refusal(const std::string& text, const Mesh& mesh) {
-  try {
-    build(read_text(text, mesh), RunSpec{});
-  } catch (const InputError& error) {
-    return error.what();
-  }
-  return "accepted";
+  return support::refusal_of([&] { build(read_text(text, mesh), RunSpec{}); });
 }
 
 /// Value of a column after the static stage.
@@ -104,12 +100,6 @@ double at_rest(const Case& read, const std::string& column) {
     if (result.columns[k].name == column) return result.table[k + 1].front();
   ADD_FAILURE() << "no column " << column;
   return 0;
-}
-
-std::string replaced(std::string text, const std::string& old, const std::string& with) {
-  const std::size_t at = text.find(old);
-  EXPECT_NE(at, text.npos) << old;
-  return text.replace(at, old.size(), with);
 }
 
 double constrained(double young) {
@@ -205,7 +195,7 @@ quantity = "ux"
   const double wanted = unsplit_sway(mesh, 1e5);
   std::vector<double> errors;
   for (const double joint : {1e9, 1e10, 1e11}) {
-    const std::string text = replaced(column_text(joint, loaded), "[gravity]\nacceleration = [0, -10]\n", "");
+    const std::string text = support::replaced(column_text(joint, loaded), "[gravity]\nacceleration = [0, -10]\n", "");
     errors.push_back(std::abs(at_rest(read_text(text, mesh), "sway") - wanted) / wanted);
   }
   EXPECT_LT(errors.back(), 1e-3);
@@ -237,15 +227,16 @@ TEST(CaseMesh, LoadsOnEdgesAreConsistent) {
 }
 
 TEST(CaseMesh, ThicknessOfTheSurfaceIsTheSmallerOne) {
-  std::string text = replaced(column_text(3e7, side_supports), "density = 700", "density = 700\nthickness = 0.5");
+  std::string text = support::replaced(column_text(3e7, side_supports), "density = 700", "density = 700\nthickness = 0.5");
   EXPECT_NEAR(build(read_text(text, column(Cell::quad4)), RunSpec{}).facts.front().area, 2 * 0.5, 1e-12);
-  text = replaced(text, "lower = [\"soil\"]", "lower = [\"soil\"], thickness = 0.25");
+  text = support::replaced(text, "lower = [\"soil\"]", "lower = [\"soil\"], thickness = 0.25");
   EXPECT_NEAR(build(read_text(text, column(Cell::quad4)), RunSpec{}).facts.front().area, 2 * 0.25, 1e-12);
 }
 
 TEST(CaseMesh, FixedBaseFrequenciesAreThoseOfTheBlockAlone) {
   // The soil, however soft, stands still: the block between smooth walls on held ground, first mode of a column c/(4 h), c = sqrt(M/rho).
-  const Built built = build(read_text(replaced(column_text(3e9, side_supports), "E = 5e7", "E = 5e5"), column(Cell::quad8)), RunSpec{});
+  const Built built =
+      build(read_text(support::replaced(column_text(3e9, side_supports), "E = 5e7", "E = 5e5"), column(Cell::quad8)), RunSpec{});
   const double wave = std::sqrt(constrained(block_young) / block_density);
   const std::vector<Mode> modes = fixed_base_modes(built.model, 1);
   ASSERT_EQ(modes.size(), 1u);
@@ -273,9 +264,9 @@ nodes = ["mesh.1"]
 direction = [1, 0]
 stiffness = 100
 )");
-  text = replaced(text, "[gravity]\nacceleration = [0, -10]\n", "");
-  text = replaced(text, "E = 2e9\npoisson = 0.3\ndensity = 700", "E = 5e7\npoisson = 0.3\ndensity = 1900");
-  return replaced(text, "duration = 1e-3\nstep = 1e-3", "duration = 0.4\nstep = 5e-4");
+  text = support::replaced(text, "[gravity]\nacceleration = [0, -10]\n", "");
+  text = support::replaced(text, "E = 2e9\npoisson = 0.3\ndensity = 700", "E = 5e7\npoisson = 0.3\ndensity = 1900");
+  return support::replaced(text, "duration = 1e-3\nstep = 1e-3", "duration = 0.4\nstep = 5e-4");
 }
 
 TEST(CaseMesh, WaveThroughAnAbsorbingBaseDoublesAtTheSurfaceAndLeaves) {
@@ -307,9 +298,9 @@ TEST(CaseMesh, AbsorbingFacesNeedTheMaterialOfRock) {
   const std::string good = column_text(1e9, std::string(side_supports) + "[[absorbing]]\ngroup = \"block_top\"\n");
   EXPECT_EQ(refusal(good, mesh), "accepted");
   EXPECT_EQ(
-      refusal(replaced(good, "density = 700\n", "density = 700\nplane = \"stress\"\n"), mesh),
+      refusal(support::replaced(good, "density = 700\n", "density = 700\nplane = \"stress\"\n"), mesh),
       "case.toml:45: absorbing[0].group: wanted edges of a solid in plane strain, found edges of the solid \"block\" in plane stress");
-  EXPECT_EQ(refusal(replaced(good, "\"block_top\"", "\"block\""), mesh),
+  EXPECT_EQ(refusal(support::replaced(good, "\"block_top\"", "\"block\""), mesh),
             "case.toml:44: absorbing[0].group: wanted a group of edges, found a group of cells");
 }
 
@@ -317,18 +308,20 @@ TEST(CaseMesh, MistakesAreNamed) {
   const Mesh mesh = column(Cell::quad4);
   const std::string good = column_text(1e9, side_supports);
   EXPECT_EQ(refusal(good, mesh), "accepted");
-  EXPECT_EQ(refusal(replaced(good, "[[solid]]\ngroup = \"block\"\nE = 2e9\npoisson = 0.3\ndensity = 700\n", ""), mesh),
+  EXPECT_EQ(refusal(support::replaced(good, "[[solid]]\ngroup = \"block\"\nE = 2e9\npoisson = 0.3\ndensity = 700\n", ""), mesh),
             "case.toml:3: solid: wanted a [[solid]] for every cell of the mesh, found none for \"block\"");
-  EXPECT_EQ(refusal(replaced(good, "group = \"block\"", "group = \"blok\""), mesh),
+  EXPECT_EQ(refusal(support::replaced(good, "group = \"block\"", "group = \"blok\""), mesh),
             "case.toml:11: solid[1].group: wanted a group of cells, found no group \"blok\" in the mesh (did you mean \"block\"?)");
-  EXPECT_EQ(refusal(replaced(good, "group = \"block\"", "group = \"soil\""), mesh),
+  EXPECT_EQ(refusal(support::replaced(good, "group = \"block\"", "group = \"soil\""), mesh),
             "case.toml:11: solid[1].group: wanted cells without another solid, found " +
                 describe_cell(mesh, mesh.groups.at("soil").cells.front()) + ", which belongs to the solid \"soil\" too");
-  EXPECT_EQ(refusal(replaced(good, "group = \"block\"", "group = \"block_top\""), mesh),
+  EXPECT_EQ(refusal(support::replaced(good, "group = \"block\"", "group = \"block_top\""), mesh),
             "case.toml:11: solid[1].group: wanted a group of cells, found a group of edges");
-  EXPECT_EQ(refusal(replaced(good, "E = 2e9\n", ""), mesh), "case.toml:10: solid[1]: wanted either E or shear_wave_speed, found neither");
-  EXPECT_EQ(refusal(replaced(good, "density = 700\n", ""), mesh), "case.toml:10: solid[1]: wanted density, or mass = \"none\", found none");
-  EXPECT_EQ(refusal(replaced(good, "[mesh]\nfile = \"column.msh\"\n", ""), mesh),
+  EXPECT_EQ(refusal(support::replaced(good, "E = 2e9\n", ""), mesh),
+            "case.toml:10: solid[1]: wanted either E or shear_wave_speed, found neither");
+  EXPECT_EQ(refusal(support::replaced(good, "density = 700\n", ""), mesh),
+            "case.toml:10: solid[1]: wanted density, or mass = \"none\", found none");
+  EXPECT_EQ(refusal(support::replaced(good, "[mesh]\nfile = \"column.msh\"\n", ""), mesh),
             "case.toml:15: interface[0].surface: wanted a [mesh] for the surface, found none");
   EXPECT_EQ(refusal(good + "[[support]]\nfixed = [\"ux\"]\n", mesh),
             "case.toml:43: support[5]: wanted either node or group, found neither");

@@ -4,6 +4,7 @@
 #include <cmath>
 #include <numbers>
 
+#include "text_support.h"
 #include "uplift/analysis/case.h"
 #include "uplift/dynamics/statics.h"
 #include "uplift/dynamics/step.h"
@@ -69,18 +70,7 @@ Vector rest_of(const Built& built) {
 }
 
 std::string refusal(const std::string& text) {
-  try {
-    built_of(text);
-  } catch (const InputError& error) {
-    return error.what();
-  }
-  return "accepted";
-}
-
-std::string replaced(std::string text, const std::string& from, const std::string& to) {
-  const std::size_t at = text.find(from);
-  EXPECT_NE(at, text.npos) << from;
-  return text.replace(at, from.size(), to);
+  return support::refusal_of([&] { built_of(text); });
 }
 
 TEST(CaseSpace, FootingOnSpringsTiltsAsItsSecondMomentsSay) {
@@ -173,16 +163,16 @@ type = "static"
 TEST(CaseSpace, MistakesAreNamed) {
   const std::string good = std::string(tower) + at_rest;
   EXPECT_EQ(refusal(good), "accepted");
-  EXPECT_EQ(refusal(replaced(good, "[0, 0, 8]", "[0, 8]")),
+  EXPECT_EQ(refusal(support::replaced(good, "[0, 0, 8]", "[0, 8]")),
             "case.toml:4: nodes.top.value: wanted three numbers [x, y, z] in a model in space, found 2");
-  EXPECT_EQ(refusal(replaced(good, "[0, 0, -9.81]", "[0, -9.81]")),
+  EXPECT_EQ(refusal(support::replaced(good, "[0, 0, -9.81]", "[0, -9.81]")),
             "case.toml:28: gravity.acceleration: wanted three numbers [x, y, z] in a model in space, found 2");
-  EXPECT_EQ(refusal(replaced(good, "J = 0.4\n", "")),
+  EXPECT_EQ(refusal(support::replaced(good, "J = 0.4\n", "")),
             "case.toml:5: beam[0]: wanted J, the torsion constant, in a model in space, found none");
-  EXPECT_EQ(refusal(replaced(good, "I_z = 0.5\n", "")), "case.toml:5: beam[0]: wanted either I, or I_y and I_z, found neither");
-  EXPECT_EQ(refusal(replaced(good, "J = 0.4\n", "J = 0.4\nup = [0, 0, 2]\n")),
+  EXPECT_EQ(refusal(support::replaced(good, "I_z = 0.5\n", "")), "case.toml:5: beam[0]: wanted either I, or I_y and I_z, found neither");
+  EXPECT_EQ(refusal(support::replaced(good, "J = 0.4\n", "J = 0.4\nup = [0, 0, 2]\n")),
             "case.toml:12: beam[0].up: wanted a direction that is not along the beam, found one along it");
-  EXPECT_EQ(refusal(replaced(good, "length = 4, ", "")),
+  EXPECT_EQ(refusal(support::replaced(good, "length = 4, ", "")),
             "case.toml:25: interface[0].footing.length: wanted length and points_across in space, found none");
   EXPECT_EQ(refusal(good + "[[support]]\nnode = \"top\"\nfixed = [\"rw\"]\n"),
             "case.toml:33: support[0].fixed: wanted ux, uy, uz, rx, ry or rz, found \"rw\" (did you mean \"rx\"?)");

@@ -7,6 +7,7 @@
 #include <sstream>
 
 #include "contact_support.h"
+#include "text_support.h"
 
 // The interface problem as a plain object: the yardstick, the file, and every method on every stored problem.
 namespace uplift::contact_test {
@@ -206,19 +207,8 @@ TEST(ProblemFile, penalty_problem_replays_to_the_same_solution) {
 }
 
 std::string refusal(const std::string& text) {
-  try {
-    load_problem(text, "bad.json");
-  } catch (const InputError& error) {
-    return error.what();
-  }
-  return "accepted";
+  return support::refusal_of([&] { load_problem(text, "bad.json"); });
 }
-std::string replaced(std::string text, const std::string& what, const std::string& with) {
-  const std::size_t at = text.find(what);
-  EXPECT_NE(at, std::string::npos) << what;
-  return at == std::string::npos ? text : text.replace(at, what.size(), with);
-}
-
 TEST(ProblemFile, bad_files_are_refused_with_position) {
   const Sample sample;
   const std::string good = save_problem(sample.own.problem, sample.behaviours, "r");
@@ -230,18 +220,18 @@ TEST(ProblemFile, bad_files_are_refused_with_position) {
   expect("{\n\"format\": ,\n}", "bad.json:2");
   expect("[1, 2]", "a JSON object");
   expect("", "a JSON file");
-  expect(replaced(good, "problem 1", "problem 9"), "format");
-  expect(replaced(good, "\"reason\"", "\"raisin\""), "reason");
-  expect(replaced(good, "\"points\":3", "\"points\":0"), "blocks[0].points");
-  expect(replaced(good, "\"components\":2", "\"components\":4"), "blocks[0].components");
-  expect(replaced(good, "\"type\":\"coulomb\"", "\"type\":\"colomb\""), "coulomb");
-  expect(replaced(good, "\"type\":\"coulomb\",\"friction\"", "\"type\":\"coulomb\",\"frictions\""), "friction");
-  expect(replaced(good, "[0.1,0.2,0.3]", "[0.1,0.2]"), "blocks[0].area");
-  expect(replaced(good, "[0.1,0.2,0.3]", "[0.1,-0.2,0.3]"), "areas > 0");
-  expect(replaced(good, "\"average\": true", "\"average\": 1"), "average");
-  expect(replaced(good, "\"scale\": 2.0", "\"scale\": \"two\""), "scale");
-  expect(replaced(good, "\"from\": [", "\"from\": [0.0, "), "8 numbers");
-  expect(replaced(good, "\"factor\": [\n    [", "\"factor\": [\n    [7.0, "), "factor[1]");
+  expect(support::replaced(good, "problem 1", "problem 9"), "format");
+  expect(support::replaced(good, "\"reason\"", "\"raisin\""), "reason");
+  expect(support::replaced(good, "\"points\":3", "\"points\":0"), "blocks[0].points");
+  expect(support::replaced(good, "\"components\":2", "\"components\":4"), "blocks[0].components");
+  expect(support::replaced(good, "\"type\":\"coulomb\"", "\"type\":\"colomb\""), "coulomb");
+  expect(support::replaced(good, "\"type\":\"coulomb\",\"friction\"", "\"type\":\"coulomb\",\"frictions\""), "friction");
+  expect(support::replaced(good, "[0.1,0.2,0.3]", "[0.1,0.2]"), "blocks[0].area");
+  expect(support::replaced(good, "[0.1,0.2,0.3]", "[0.1,-0.2,0.3]"), "areas > 0");
+  expect(support::replaced(good, "\"average\": true", "\"average\": 1"), "average");
+  expect(support::replaced(good, "\"scale\": 2.0", "\"scale\": \"two\""), "scale");
+  expect(support::replaced(good, "\"from\": [", "\"from\": [0.0, "), "8 numbers");
+  expect(support::replaced(good, "\"factor\": [\n    [", "\"factor\": [\n    [7.0, "), "factor[1]");
 }
 
 // ---- every method on every stored problem ----

@@ -11,6 +11,7 @@
 #include <numeric>
 
 #include "mesh_file_support.h"
+#include "text_support.h"
 #include "uplift/base/file.h"
 
 namespace uplift {
@@ -251,13 +252,8 @@ const std::string plane_2 =
     "$Nodes\n3\n1 0 0 0\n2 1 0 0\n3 0 1 0\n$EndNodes\n"
     "$Elements\n1\n1 2 2 0 1 1 2 3\n$EndElements\n";
 
-std::string replaced(std::string text, const std::string& from, const std::string& to) {
-  const std::size_t at = text.find(from);
-  EXPECT_NE(at, text.npos) << from;
-  return text.replace(at, from.size(), to);
-}
 std::string error_with(const std::string& text, const std::string& from, const std::string& to) {
-  return error_of([&] { read_gmsh(replaced(text, from, to), "a.msh"); });
+  return error_of([&] { read_gmsh(support::replaced(text, from, to), "a.msh"); });
 }
 
 TEST(Gmsh, ErrorsHaveTheirLine) {
@@ -316,7 +312,9 @@ TEST(Gmsh, PartitionedFilesHaveTheirGroupsInEntitiesOfTheirOwn) {
   const std::string entities = "$Entities\n0 0 1 0\n1 0 0 0 1 1 0 1 5 0\n$EndEntities\n";
   const std::string parts = "$PartitionedEntities\n2 1\n8 1\n0 0 1 0\n1 2 1 2 1 2 0 0 0 1 1 0 1 9 1 -4\n$EndPartitionedEntities\n";
   const std::string ghosts = "$GhostElements\n1\n1 1 1 2\n$EndGhostElements\n";
-  const auto read = [&](const std::string& before) { return read_gmsh(replaced(plane, "$Nodes", before + "$Nodes") + ghosts, "a.msh"); };
+  const auto read = [&](const std::string& before) {
+    return read_gmsh(support::replaced(plane, "$Nodes", before + "$Nodes") + ghosts, "a.msh");
+  };
   EXPECT_EQ(read(entities).groups.at("physical_2_5").cells.size(), 1u);
   EXPECT_EQ(read(entities + parts).groups.at("physical_2_9").cells.size(), 1u);
 }
@@ -337,15 +335,17 @@ TEST(Gmsh, ParametersOfNodesAreSkipped) {
       "$ParametricNodes\n3\n1 0 0 0 0 1\n2 1 0 0 1 4 0.5\n3 0 1 0 2 7 0.5 0.25\n$EndParametricNodes\n"
       "$Elements\n1\n1 2 2 0 1 1 2 3\n$EndElements\n";
   EXPECT_EQ(read_gmsh(parametric, "a.msh").nodes, read_gmsh(plane_2, "a.msh").nodes);
-  EXPECT_EQ(
-      read_gmsh(replaced(replaced(plane, "2 1 0 3", "2 1 1 3"), "0 0 0\n1 0 0\n0 1 0\n", "0 0 0 7 8\n1 0 0 7 8\n0 1 0 7 8\n"), "a.msh")
-          .nodes,
-      read_gmsh(plane, "a.msh").nodes);
+  EXPECT_EQ(read_gmsh(support::replaced(support::replaced(plane, "2 1 0 3", "2 1 1 3"), "0 0 0\n1 0 0\n0 1 0\n",
+                                        "0 0 0 7 8\n1 0 0 7 8\n0 1 0 7 8\n"),
+                      "a.msh")
+                .nodes,
+            read_gmsh(plane, "a.msh").nodes);
 }
 
 TEST(Gmsh, TagsMayBeFarApart) {
-  const Mesh mesh =
-      read_gmsh(replaced(replaced(plane, "1\n2\n3\n", "900000000000000000\n2\n3\n"), "1 1 2 3\n", "1 900000000000000000 2 3\n"), "a.msh");
+  const Mesh mesh = read_gmsh(
+      support::replaced(support::replaced(plane, "1\n2\n3\n", "900000000000000000\n2\n3\n"), "1 1 2 3\n", "1 900000000000000000 2 3\n"),
+      "a.msh");
   EXPECT_EQ(mesh.nodes, read_gmsh(plane, "a.msh").nodes);
   EXPECT_EQ(mesh.blocks[0].nodes, (std::vector<int>{0, 1, 2}));
 }
@@ -355,13 +355,13 @@ TEST(Gmsh, TextCalledBinaryAndBinaryCalledTextAreErrors) {
   EXPECT_NE(error_with(plane_2, "2.2 0 8", "2.2 1 8"), "no error");
   for (const Variant& variant : variants) {
     if (!variant.binary) continue;
-    const std::string bytes = replaced(Writer(variant).file(), " 1 8\n", " 0 8\n");
+    const std::string bytes = support::replaced(Writer(variant).file(), " 1 8\n", " 0 8\n");
     EXPECT_THROW(read_gmsh(bytes, "a.msh"), InputError) << name(variant);
   }
 }
 
 TEST(Gmsh, NodesOfAClockwisePlaneCellAreMirrored) {
-  const Mesh mesh = read_gmsh(replaced(plane, "1 1 2 3", "1 1 3 2"), "a.msh");
+  const Mesh mesh = read_gmsh(support::replaced(plane, "1 1 2 3", "1 1 3 2"), "a.msh");
   EXPECT_EQ(mesh.dimension, 2);
   EXPECT_EQ(signed_size(mesh, {0, 0}), 0.5);
 }
@@ -369,10 +369,10 @@ TEST(Gmsh, NodesOfAClockwisePlaneCellAreMirrored) {
 TEST(Gmsh, NamesThatAreUsedForSeveralDimensionsAreToldApart) {
   const std::string named =
       "$PhysicalNames\n2\n1 1 \"base\"\n2 1 \"b\xe9ton\"\n$EndPhysicalNames\n";  // Latin-1, as old Windows programs write
-  const std::string lines = replaced(plane_2, "$Elements\n1\n1 2 2 0 1 1 2 3\n", "$Elements\n2\n1 2 2 1 1 1 2 3\n2 1 2 1 1 1 2\n");
+  const std::string lines = support::replaced(plane_2, "$Elements\n1\n1 2 2 0 1 1 2 3\n", "$Elements\n2\n1 2 2 1 1 1 2 3\n2 1 2 1 1 1 2\n");
   const Mesh mesh = read_gmsh(named + lines, "a.msh");
   EXPECT_EQ(mesh.groups.count("b\xc3\xa9ton"), 1u);
-  const Mesh both = read_gmsh(replaced(named, "b\xe9ton", "base") + lines, "a.msh");
+  const Mesh both = read_gmsh(support::replaced(named, "b\xe9ton", "base") + lines, "a.msh");
   ASSERT_EQ(both.groups.size(), 2u);
   EXPECT_EQ(both.groups.at("base_1d").dimension, 1);
   EXPECT_EQ(both.groups.at("base_2d").dimension, 2);

@@ -5,6 +5,7 @@
 #include <numbers>
 
 #include "solid_support.h"
+#include "text_support.h"
 #include "uplift/analysis/case.h"
 #include "uplift/dynamics/statics.h"
 #include "uplift/elements/solid_nonlinear.h"
@@ -32,12 +33,7 @@ Prepared prepared(const std::string& text, const Mesh* cube = nullptr) {
 }
 
 std::string refusal(const std::string& text) {
-  try {
-    prepared(text);
-  } catch (const InputError& error) {
-    return error.what();
-  }
-  return "accepted";
+  return support::refusal_of([&] { prepared(text); });
 }
 
 struct Rest {
@@ -255,19 +251,13 @@ TEST(PlasticRun, EnergyClosesWithUpliftSlidingAndYielding) {
   }
 }
 
-std::string replaced(std::string text, const std::string& from, const std::string& to) {
-  const std::size_t at = text.find(from);
-  EXPECT_NE(at, text.npos) << from;
-  return text.replace(at, from.size(), to);
-}
-
 const std::string bottom = "[[support]]\ngroup = \"soil_bottom\"\nfixed = [\"ux\", \"uy\"]\n";
 
 TEST(PlasticRun, EnergyClosesUnderAMovingBase) {
   const std::string moved =
       "[[support]]\ngroup = \"soil_bottom\"\nfixed = [\"uy\"]\n[[motion]]\nname = \"base\"\ngroup = "
       "\"soil_bottom\"\ndirection = \"ux\"\namplitude = 0.01\nfunction = \"pulse\"\n";
-  const Prepared made = prepared(replaced(block_on_soil(soil(0.4, 0.1), springs, shaken(1e3, 0.3)), bottom, moved));
+  const Prepared made = prepared(support::replaced(block_on_soil(soil(0.4, 0.1), springs, shaken(1e3, 0.3)), bottom, moved));
   const RunResult result = run(made.built.model, made.built.plan, made.built.behaviours);
   ASSERT_EQ(result.status, RunStatus::completed) << result.reason;
   EXPECT_GT(result.final_energy.plastic, 0.01 * result.energy_scale);
@@ -311,7 +301,7 @@ duration = 0.02
 )";
   const std::string yielding = block_on_soil(soil(0.3, 0.1, 1.2e4), springs, still);
   const std::string released = bottom + "stages = \"static\"\n[[absorbing]]\ngroup = \"soil_bottom\"\n";
-  for (const std::string& text : {yielding, yielding + "scheme = { type = \"hht\" }\n", replaced(yielding, bottom, released)}) {
+  for (const std::string& text : {yielding, yielding + "scheme = { type = \"hht\" }\n", support::replaced(yielding, bottom, released)}) {
     const Prepared made = prepared(text);
     const RunResult result = run(made.built.model, made.built.plan, made.built.behaviours);
     ASSERT_EQ(result.status, RunStatus::completed) << result.reason;
