@@ -2,9 +2,12 @@
 
 #include <gtest/gtest.h>
 
+#include <algorithm>
+
 #include "uplift/analysis/compare.h"
 #include "uplift/analysis/wording.h"
 #include "uplift/model/builder.h"
+#include "verdict_support.h"
 
 namespace uplift {
 namespace {
@@ -56,7 +59,7 @@ Built footing() {
   Built built;
   built.model.nodes = {{"top", Vec2(0, 5)}};
   built.top = 0;
-  built.facts = {{"soil", "base", 1.5, 0.5, 3, 0, {}, {}}};
+  built.facts = {{"soil", "base", {}, 0.5, 0, 3, 0, {}, {}}};
   built.weight = 1e6;
   return built;
 }
@@ -75,11 +78,57 @@ TEST(VerdictTest, SaysWhetherItUplifts) {
   EXPECT_EQ(uplifts.headline, "The base uplifts: up to 60 % of its area, by up to 13.0 mm");
 }
 
-TEST(VerdictTest, SafetyAgainstOverturning) {
-  // W b/M = 1e6 * 1.5/1.2e6 = 1.25
-  const Verdict verdict = judge(footing(), result_with(1.2e6, 0.6), nullptr);
+/// A strip of 3 m under 1 MN; W b = 1.5 MN m.
+Built strip() {
+  return support::built_of(R"(title = "strip"
+[nodes]
+base = [0, 0]
+[[rigid]]
+name = "footing"
+node = "base"
+mass = 1e4
+inertia = 7500
+[[interface]]
+name = "soil"
+footing = { body = "base", width = 3, points = 5 }
+law = { type = "springs", K_n = 2e8, K_t = 1e8, tangential = "coulomb", friction = 0.6 }
+[[load]]
+node = "base"
+force = [0, -1e6]
+[[stage]]
+type = "static"
+[[stage]]
+type = "dynamic"
+duration = 0.1
+step = 0.01
+)");
+}
+
+TEST(VerdictTest, SaysTheSafeties) {
+  const Built built = strip();
+  const RunResult run =
+      support::run_of({support::view_of({.axial = -1e6}), support::view_of({.axial = -1e6, .shear = 2.4e5, .moment = 1.2e6}, 0.7)}, 0.5);
+  const Verdict verdict = judge(built, run, nullptr);
   ASSERT_NE(fact(verdict, "Safety against overturning"), nullptr);
   EXPECT_EQ(fact(verdict, "Safety against overturning")->value, "1.25");
+  EXPECT_EQ(fact(verdict, "Safety against sliding")->value, "2.50");
+  EXPECT_EQ(fact(verdict, "Eccentricity e/B")->value, "0.400");
+  EXPECT_EQ(fact(verdict, "Eccentricity e/B")->detail, "largest of M/N over the width, at 0.500 s");
+}
+
+TEST(VerdictTest, SaysWhatATensionRatioHides) {
+  const Built built = strip();
+  InterfaceView pulled = support::view_of({.axial = -1e6, .moment = 1.25e6});
+  pulled.tension_area = 0.3;
+  RunResult run = support::run_of({support::view_of({.axial = -1e6}), support::view_of({.axial = -1e6}, 0.4)}, 0.5),
+            bonded = support::run_of({support::view_of({.axial = -1e6}), pulled}, 0.5);
+  run.max_uplifted_ratio.value = 0.4;
+  const Verdict verdict = judge(built, run, &bonded);
+  const std::string said =
+      "A linear analysis sees tension on 30 % of the base. By equal energy that stands for an uplift of 40 % (strip on Winkler springs); "
+      "40 % "
+      "was computed.";
+  EXPECT_NE(std::ranges::find(verdict.paragraphs, said), verdict.paragraphs.end());
 }
 
 TEST(VerdictTest, ComparesWithTheBondedBase) {
@@ -93,7 +142,6 @@ TEST(VerdictTest, ComparesWithTheBondedBase) {
           "the largest base moment is 50 % less (1.20 MN m instead of 2.40 MN m), and the largest motion of top is 2.00 times as large"),
       std::string::npos)
       << all;
-  EXPECT_NE(all.find("1.6 times the moment W b"), std::string::npos) << all;
 }
 
 TEST(VerdictTest, ARunThatCreatesEnergyIsNotToBeUsed) {

@@ -6,6 +6,7 @@
 #include <vector>
 
 #include "uplift/analysis/run.h"
+#include "uplift/analysis/verdict_quantities.h"
 #include "uplift/base/declare.h"
 #include "uplift/mesh/mesh.h"
 
@@ -62,11 +63,25 @@ Comparison comparison_of_case(const Case&);
 /// What the report and the verdict want to know of an interface beyond the model.
 struct InterfaceFacts {
   std::string name, body;         // body: node that carries the upper side; empty when there is none
-  double half_width = 0;          // m, from the reference point to the farther edge
+  std::vector<Place> corners;     // m, of a footing; without: the nodes of the upper side say how far it goes
   double friction = -1;           // coefficient; negative: none stated
+  double cohesion = 0;            // Pa: shear strength without pressure
   double area = 0;                // m2
   double tension = 0;             // Pa: tensile strength of the law, 0 without
   std::vector<int> upper, lower;  // nodes of either side, each once
+};
+
+/// A limit that the user sets for a number of the verdict.
+struct Criterion {
+  const VerdictQuantity* quantity = nullptr;
+  double limit = 0;    // in the quantity's unit
+  std::string source;  // where the limit comes from, in the user's words
+  int interface = -1;  // -1: all
+};
+/// What the case asks of the verdict.
+struct VerdictWishes {
+  std::vector<double> thresholds;  // of the uplifted share: how long it is above
+  std::vector<Criterion> criteria;
 };
 
 /// A case made ready to run.
@@ -76,6 +91,7 @@ struct Built {
   std::vector<const Values*> behaviours;               // one per interface: law or cone as in the case file
   std::vector<std::unique_ptr<const Values>> derived;  // behaviours made here (bonded, swept)
   std::vector<InterfaceFacts> facts;                   // one per interface
+  VerdictWishes wishes;                                // thresholds and criteria
   std::vector<std::string> notes;                      // what was chosen automatically (tuned mass, scaled penalty)
   double tuned_mass = 0;                               // kg: of the tuned point mass, 0 without
   // N: resultant, against the first interface's normal, of the dead loads on everything that hangs together with its upper side (the soil

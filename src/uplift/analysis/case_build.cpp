@@ -7,6 +7,7 @@
 #include "uplift/analysis/case_output.h"
 #include "uplift/analysis/case_sections.h"
 #include "uplift/analysis/case_shown.h"
+#include "uplift/analysis/case_verdict.h"
 #include "uplift/model/check.h"
 #include "uplift/model/tuned_mass.h"
 
@@ -69,6 +70,7 @@ void add_interfaces(const Case& read, const RunSpec& spec, const Model* like, Mo
     made.law = make_part(law_catalog(), behaviour);
     if (!made.law) made.cone = make_part(cone_catalog(), behaviour);
     if (behaviour.items().contains("friction") && behaviour.has("friction")) joint.facts.friction = behaviour.number("friction");
+    if (behaviour.items().contains("cohesion") && behaviour.has("cohesion")) joint.facts.cohesion = behaviour.number("cohesion");
     if (behaviour.items().contains("F_u") && behaviour.has("F_u")) joint.facts.tension = behaviour.number("F_u");
     built.facts.push_back(std::move(joint.facts));
     built.behaviours.push_back(&behaviour);
@@ -310,11 +312,13 @@ Built build(const Case& read, const RunSpec& spec) {
   plan.stop_at_limit = root.table("energy").flag("stop_at_limit");
   plan.rotation_limit = root.table("limits").number("rotation");
   plan.gap_tolerance = root.table("limits").number("gap_tolerance");
+  for (const InterfaceFacts& facts : built.facts) plan.bases.push_back(facts.upper);
   plan.every = root.table("output").integer("every");
   plan.frames = spec.pictures ? root.table("output").integer("frames") : 0;
   plan.frames = std::min(plan.frames, std::max(2, most_pictured / std::max(1, built.model.full_unknowns())));
   add_requests(read, built);
   if (!spec.stiffness_ratio) add_floors(read, built);
+  built.wishes = verdict_wishes(root, built.model);
   if (const Values* compare = table_if(root, "compare")) check_columns(*compare, "agree_on", plan.requests);
   return built;
 }

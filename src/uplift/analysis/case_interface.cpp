@@ -72,21 +72,16 @@ Joint footing_joint(const Values& interface, const Values& table, bool rigid_gro
   Joint joint;
   joint.points = footing_points(footing, table.where("points"));
   joint.facts.body = names.nodes[footing.body];
-  joint.facts.half_width = std::max(footing.width, footing.length) / 2;
+  joint.facts.corners = footing_corners(footing);
   joint.reference = footing.centre;
   if (const Values* bed = table_if(table, "bed"); bed && !rigid_ground) add_bed(*bed, interface.text("name"), joint.points, builder, names);
   return joint;
 }
 
-/// Middle of the points, and their farthest distance from it.
-void measure(Joint& joint, Space space) {
+Place middle_of(const Joint& joint) {
   Vec3 sum = Vec3::Zero();
   for (const JointPoint& point : joint.points) sum += point.area * point.position;
-  joint.reference = sum / joint.facts.area;
-  for (const JointPoint& point : joint.points)
-    for (int k = 0; k < space.dimension - 1; ++k)
-      joint.facts.half_width =
-          std::max(joint.facts.half_width, std::abs(local_axis(space, point.normal, k).dot(point.position - joint.reference)));
+  return sum / joint.facts.area;
 }
 
 /// Nodes of one side of the points, each once.
@@ -135,7 +130,7 @@ Joint make_joint(const Values& interface, const std::vector<FacePair>& open, boo
   joint.facts.upper = nodes_of_side(joint.points, &JointPoint::upper);
   joint.facts.lower = nodes_of_side(joint.points, &JointPoint::lower);
   for (const JointPoint& point : joint.points) joint.facts.area += point.area;
-  if (!footing) measure(joint, names.space);
+  if (!footing) joint.reference = middle_of(joint);
   joint.facts.name = interface.text("name");
   return joint;
 }

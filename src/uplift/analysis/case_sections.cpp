@@ -2,6 +2,7 @@
 
 #include "uplift/analysis/case_mesh_sections.h"
 #include "uplift/analysis/case_structure_sections.h"
+#include "uplift/analysis/case_verdict.h"
 #include "uplift/contact/impact.h"
 #include "uplift/contact/method.h"
 #include "uplift/dynamics/scheme.h"
@@ -316,6 +317,7 @@ const Section& case_section() {
              table("energy", energy_section(), "energy gate"),
              table("limits", limits_section(), "limits"),
              table("output", output_section(), "output"),
+             table("verdict", verdict_section(), "what the verdict is asked").optional(),
              tables("variant", variant_section(), "variants to compare"),
              table("compare", compare_section(), "comparison").optional(),
              table("trust", trust_section(), "trust bands"),

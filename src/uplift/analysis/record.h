@@ -3,26 +3,19 @@
 #include <utility>
 #include <vector>
 
+#include "uplift/analysis/base_motion.h"
 #include "uplift/analysis/floor_record.h"
 #include "uplift/analysis/run.h"
 #include "uplift/dynamics/step.h"
 
 namespace uplift {
 
-/// What one interface looks like at one instant, from one pass over its points.
-struct InterfaceView {
-  Resultant resultant;
-  double open_area = 0;                       // share of the area
-  double max_opening = 0, least_opening = 0;  // m
-  double max_pressure = 0;                    // Pa
-};
-
 /// Looks at all interfaces of a model quickly: arms and areas are laid out once.
 class InterfaceViewer {
  public:
-  InterfaceViewer(const Model& model, double gap_tolerance);
-  /// `force` is the end-of-step force per row [N].
-  void look(const Vector& opening, const Vector& force, std::vector<InterfaceView>& views) const;
+  /// `bases`: nodes of the upper side of every interface, or empty.
+  InterfaceViewer(const Model& model, double gap_tolerance, const std::vector<std::vector<int>>& bases = {});
+  void look(const State& state, std::vector<InterfaceView>& views) const;
   /// Slope of the plane that fits the normal opening best (area-weighted): relative rotation of the upper side [rad]. In the plane the
   /// first number, counter-clockwise > 0; in space about the two tangents of the mean normal.
   std::array<double, 2> rotation(int interface, const Vector& opening) const;
@@ -33,10 +26,12 @@ class InterfaceViewer {
     std::vector<double> area, inverse_area, along, across;  // along t and along n from the reference point [m]
     std::array<std::vector<double>, 2> slope_weight;
     Space space;
-    Matrix resultant_rows;  // in space, and where the normals differ; else empty: the sums are then taken directly
-    double total = 0;
+    Matrix resultant_rows;     // in space, and where the normals differ; else empty: the sums are then taken directly
+    double inverse_total = 0;  // 1/m2
   };
+  void look_along(const Layout& layout, const State& state, InterfaceView& view, double axial, double moment) const;
   std::vector<Layout> layouts_;
+  std::vector<BaseMotion> bases_;
   double tolerance_;
 };
 

@@ -60,7 +60,7 @@ Runner::Runner(const Model& model, const RunPlan& plan, const std::vector<const 
       observe_(observe),
       b_(stack_interfaces(model)),
       gap_(stack_gaps(model)),
-      viewer_(model, plan.gap_tolerance),
+      viewer_(model, plan.gap_tolerance, plan.bases),
       rest_(plan.rest.get()),
       views_(model.interfaces.size()) {
   result_.name = plan.name;
@@ -127,7 +127,10 @@ void Runner::execute() {
     }
     if (stage.p_delta && geometric_ == nullptr && !second_order()) return;
     if (rest_ != nullptr) release();
-    if (!std::exchange(moving, true)) add_initial_state();
+    if (!std::exchange(moving, true)) {
+      if (&stage != plan_.stages.data()) viewer_.look(state_, result_.steps.rest);
+      add_initial_state();
+    }
     const Bulk stage_bulk(model_, geometric_.get());
     if (!dynamics(stage, stage_bulk)) return;
   }

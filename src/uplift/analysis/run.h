@@ -6,6 +6,7 @@
 #include <string>
 #include <vector>
 
+#include "uplift/analysis/step_record.h"
 #include "uplift/contact/impact.h"
 #include "uplift/contact/method.h"
 #include "uplift/dynamics/energy.h"
@@ -88,13 +89,14 @@ struct RunPlan {
   std::shared_ptr<const LinearSolver> solver;  // of the bulk when it is not small
   bool monolithic = false;                     // the oracle: Newton on all unknowns
   std::vector<Request> requests;
-  std::vector<FloorRequest> floors;  // with these, all dynamic stages have the same step
-  std::vector<double> floor_bands;   // Hz, ascending: what parts the bands in which floor spectra are compared
-  int every = 1;                     // record every n-th step
-  double created_limit = 0.01;       // of the external work; a run that creates more fails
-  bool stop_at_limit = false;        // else it goes on to the end and is marked
-  double rotation_limit = 0.15;      // rad: beyond the small-displacement model: overturned
-  double gap_tolerance = 1e-9;       // m: a gap larger than this counts as uplifted
+  std::vector<FloorRequest> floors;     // with these, all dynamic stages have the same step
+  std::vector<double> floor_bands;      // Hz, ascending: what parts the bands in which floor spectra are compared
+  int every = 1;                        // record every n-th step
+  double created_limit = 0.01;          // of the external work; a run that creates more fails
+  bool stop_at_limit = false;           // else it goes on to the end and is marked
+  double rotation_limit = 0.15;         // rad: beyond the small-displacement model: overturned
+  double gap_tolerance = 1e-9;          // m: a gap larger than this counts as uplifted
+  std::vector<std::vector<int>> bases;  // nodes of the upper side of every interface, whose settlement and tilt are kept; may be empty
   bool expected_to_fail = false;
   int frames = 0;                                 // pictures kept for the animation (0: none)
   Vector initial_displacement, initial_velocity;  // free unknowns; empty: zero
@@ -145,6 +147,7 @@ struct RunResult {
   std::vector<std::vector<double>> table;  // table[0]: time [s], table[1 + k]: column k
   std::vector<Peak> peaks;                 // one per column
   std::vector<FloorRecord> floors;         // one per floor of the plan
+  StepRecord steps;                        // what the verdict is made of
   Peak max_uplifted_ratio, max_opening, max_base_moment, max_base_shear, max_pressure;
   double time_uplifted = 0;                                                                   // s with a gap open anywhere
   double first_uplift = -1;                                                                   // s; -1: never

@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <utility>
 
 #include "uplift/analysis/wording.h"
 #include "uplift/model/builder.h"
@@ -23,11 +24,21 @@ int find_index(const RunResult& result, Request::Kind kind, int of) {
   return -1;
 }
 
-/// Axial force at the beginning of the first dynamic stage, compression positive [N]; the stated dead load when it was not recorded.
-double static_force(const Built& built, const RunResult& run, int interface) {
-  const std::vector<double>* axial = find_column(run, Column::axial, interface);
-  if (axial && !axial->empty() && std::isfinite(axial->front())) return -axial->front();
-  return built.weight;
+/// "0.687" at "1.45 s"; eccentricities and safeties have no unit.
+std::string at(const VerdictNumber& number) {
+  return number.time ? "at " + spoken(*number.time, "s") : "";
+}
+
+/// Adds a fact for a number that there is: its value in the words of its unit, `detail` with its time behind.
+void say(const VerdictNumber* number, const std::string& label, std::string detail, Verdict& verdict) {
+  if (!number) return;
+  const bool share = number->quantity->name.ends_with("uplifted_ratio");
+  if (number->time) detail += (detail.empty() ? "" : ", ") + at(*number);
+  verdict.facts.push_back({label, share ? percent(number->value) : spoken(number->value, number->quantity->unit), std::move(detail)});
+}
+
+std::string of_interface(const Verdict& verdict, const InterfaceVerdict& said) {
+  return verdict.numbers.interfaces.size() > 1 ? " of " + said.name : "";
 }
 
 void say_uplift(const Built& built, const RunResult& run, Verdict& verdict) {
@@ -41,9 +52,14 @@ void say_uplift(const Built& built, const RunResult& run, Verdict& verdict) {
         "No point of any interface opened: a linear analysis of the bonded model would have been enough for these loads.");
     return;
   }
-  verdict.facts.push_back({"Uplifted area", percent(run.max_uplifted_ratio.value),
-                           fmt::format("largest, at {}; counted by gap", spoken(run.max_uplifted_ratio.time, "s"))});
-  verdict.facts.push_back({"Largest gap", spoken(run.max_opening.value, "m"), fmt::format("at {}", spoken(run.max_opening.time, "s"))});
+  for (const InterfaceVerdict& said : verdict.numbers.interfaces) {
+    const std::string of = of_interface(verdict, said);
+    say(find_number(said.numbers, "max_uplifted_ratio"), "Uplifted area" + of, "largest; counted by gap", verdict);
+    say(find_number(said.numbers, "max_opening"), "Largest gap" + of, "", verdict);
+    for (const InterfaceVerdict::Above& above : said.above)
+      verdict.facts.push_back(
+          {fmt::format("Uplifted above {}{}", percent(above.threshold), of), spoken(above.duration, "s"), "threshold of the case"});
+  }
   std::string text =
       fmt::format("The base first opens at {}. A gap stands open during {} of {} ({}).", spoken(run.first_uplift, "s"),
                   spoken(run.time_uplifted, "s"), spoken(duration, "s"), percent(duration > 0 ? run.time_uplifted / duration : 0));
@@ -58,25 +74,14 @@ void say_forces(const Built& built, const RunResult& run, Verdict& verdict) {
   if (built.facts.empty()) return;
   verdict.facts.push_back({"Base moment", spoken(std::abs(run.max_base_moment.value), "N m"),
                            fmt::format("largest, at {}", spoken(run.max_base_moment.time, "s"))});
-  for (std::size_t k = 0; k < built.facts.size(); ++k) {
-    const InterfaceFacts& facts = built.facts[k];
-    const int interface = static_cast<int>(k);
-    const std::string of = built.facts.size() > 1 ? " of " + facts.name : "";
-    const double force = static_force(built, run, interface);
-    if (!(force > 0)) continue;
-    const Peak* moment = find_peak(run, Column::moment, interface);
-    if (moment && moment->value != 0 && facts.half_width > 0)
-      verdict.facts.push_back({"Safety against overturning" + of, fmt::format("{:.3g}", force * facts.half_width / std::abs(moment->value)),
-                               fmt::format("W b/M with W = {} and b = {}", spoken(force, "N"), spoken(facts.half_width, "m"))});
-    const Peak* shear = find_peak(run, Column::shear, interface);
-    if (shear && shear->value != 0 && facts.friction > 0)
-      verdict.facts.push_back({"Safety against sliding" + of, fmt::format("{:.3g}", facts.friction * force / std::abs(shear->value)),
-                               fmt::format("mu W/V with mu = {:g}", facts.friction)});
-    const Peak* pressure = find_peak(run, Column::max_pressure, interface);
-    if (pressure && pressure->value > 0)
-      verdict.facts.push_back({"Largest pressure" + of, spoken(pressure->value, "Pa"),
-                               fmt::format("{:.3g} times the mean {}, at {}", pressure->value * facts.area / force,
-                                           spoken(force / facts.area, "Pa"), spoken(pressure->time, "s"))});
+  for (const InterfaceVerdict& said : verdict.numbers.interfaces) {
+    const std::string of = of_interface(verdict, said);
+    say(find_number(said.numbers, "max_eccentricity"), "Eccentricity e/B" + of, "largest of M/N over the width", verdict);
+    say(find_number(said.numbers, "min_overturning_safety"), "Safety against overturning" + of, "least, about the toe", verdict);
+    say(find_number(said.numbers, "min_sliding_safety"), "Safety against sliding" + of, "least", verdict);
+    const VerdictNumber* ratio = find_number(said.numbers, "toe_pressure_ratio");
+    say(find_number(said.numbers, "max_toe_pressure"), "Largest pressure" + of,
+        ratio ? fmt::format("{:.3g} times the mean {}", ratio->value, spoken(said.mean_pressure, "Pa")) : "", verdict);
   }
 }
 
@@ -91,50 +96,44 @@ void say_beside_bonded(const Built& built, const RunResult& run, const RunResult
     text += fmt::format("Beside the bonded base, the largest base moment is {} ({} instead of {})",
                         beside(run.max_base_moment.value, bonded.max_base_moment.value), spoken(std::abs(run.max_base_moment.value), "N m"),
                         spoken(std::abs(bonded.max_base_moment.value), "N m"));
-  const Peak* top = built.top >= 0 ? find_peak(run, Column::displacement, built.top_sway()) : nullptr;
-  const Peak* top_bonded = built.top >= 0 ? find_peak(bonded, Column::displacement, built.top_sway()) : nullptr;
-  if (top && top_bonded && top_bonded->value != 0) {
+  const VerdictNumber* top = find_number(verdict.numbers.whole, "max_top_motion");
+  if (top && top->bonded) {
     text += fmt::format("{} the largest motion of {} is {} ({} instead of {})", text.empty() ? "Beside the bonded base," : ", and",
-                        built.model.nodes[static_cast<std::size_t>(built.top)].name, beside(top->value, top_bonded->value),
-                        spoken(std::abs(top->value), "m"), spoken(std::abs(top_bonded->value), "m"));
+                        built.model.nodes[static_cast<std::size_t>(built.top)].name, beside(top->value, *top->bonded),
+                        spoken(top->value, "m"), spoken(*top->bonded, "m"));
     verdict.facts.push_back(
-        {"Top motion", spoken(std::abs(top->value), "m"),
-         fmt::format("{} beside the bonded base, at {}", beside(top->value, top_bonded->value), spoken(top->time, "s"))});
+        {"Top motion", spoken(top->value, "m"), fmt::format("{} beside the bonded base, {}", beside(top->value, *top->bonded), at(*top))});
   }
   if (!text.empty()) verdict.paragraphs.push_back(text + ".");
-  double tension = 0, mean = 0;
-  for (std::size_t k = 0; k < built.facts.size(); ++k) {
-    const Peak* moment = find_peak(bonded, Column::moment, static_cast<int>(k));
-    const double force = static_force(built, bonded, static_cast<int>(k));
-    if (!moment || !(force > 0)) continue;
-    tension = std::max(tension, std::abs(moment->value));
-    mean = force * built.facts[k].half_width;
-  }
-  if (tension > 0 && mean > 0)
-    verdict.paragraphs.push_back(
-        fmt::format("The bonded base would have to carry {} times the moment W b at which the resultant leaves the base: {}.",
-                    fmt::format("{:.3g}", tension / mean),
-                    tension > mean ? "more than any base without tension can carry, so the bonded analysis says nothing about forces here"
-                                   : "less than the moment that overturns the base statically"));
 }
 
-/// Mean over the last tenth of the run beside the first value.
-void say_residual(const Built& built, const RunResult& run, Verdict& verdict) {
-  for (std::size_t k = 0; k < built.facts.size(); ++k) {
-    const std::vector<double>* rotation = find_column(run, Column::rotation, static_cast<int>(k));
-    if (!rotation || rotation->size() < 20) continue;
-    const std::size_t tail = rotation->size() / 10;
-    double sum = 0, least = INFINITY, most = -INFINITY;
-    for (auto it = rotation->end() - static_cast<std::ptrdiff_t>(tail); it != rotation->end(); ++it) {
-      sum += *it;
-      least = std::min(least, *it);
-      most = std::max(most, *it);
-    }
-    const double mean = sum / static_cast<double>(tail) - rotation->front();
-    if (!std::isfinite(mean)) continue;
-    verdict.facts.push_back({"Rotation left at the end", spoken(mean, "rad"),
-                             fmt::format("mean of the last tenth; it still swings by {}", spoken((most - least) / 2, "rad"))});
+/// The linear tension ratio beside what happened.
+void say_tension(Verdict& verdict) {
+  for (const InterfaceVerdict& said : verdict.numbers.interfaces) {
+    const VerdictNumber *pulls = find_number(said.numbers, "linear_tension_ratio"),
+                        *uplift = find_number(said.numbers, "predicted_uplifted_ratio"),
+                        *happened = find_number(said.numbers, "max_uplifted_ratio");
+    if (!pulls || !happened || pulls->value <= 0) continue;
+    std::string text =
+        fmt::format("A linear analysis sees tension on {} of the base{}. ", percent(pulls->value), of_interface(verdict, said));
+    text += uplift ? fmt::format("By equal energy that stands for an uplift of {} (strip on Winkler springs); {} was computed.",
+                                 percent(uplift->value), percent(happened->value))
+                   : fmt::format("From one half on no uplift can be told from it; {} was computed.", percent(happened->value));
+    verdict.paragraphs.push_back(std::move(text));
   }
+}
+
+void say_residual(Verdict& verdict) {
+  for (const InterfaceVerdict& said : verdict.numbers.interfaces)
+    for (const auto& [name, label] : {std::pair{"residual_rotation", "Rotation left at the end"},
+                                      {"residual_settlement", "Settlement left at the end"},
+                                      {"residual_slip", "Slip left at the end"}}) {
+      const VerdictNumber* left = find_number(said.numbers, name);
+      if (!left) continue;
+      const std::string unit(left->quantity->unit);
+      verdict.facts.push_back({label + of_interface(verdict, said), spoken(left->value, unit),
+                               fmt::format("mean of the last tenth; it still moves by {}", spoken(left->swing.value_or(0), unit))});
+    }
 }
 
 void say_energy(const Built& built, const RunResult& run, Verdict& verdict) {
@@ -205,10 +204,12 @@ Verdict judge(const Built& built, const RunResult& run, const RunResult* bonded)
   }
   if (run.status == RunStatus::interrupted) verdict.headline += fmt::format(" (interrupted at {})", spoken(run.end_time, "s"));
   if (run.status == RunStatus::failed && run.counts.steps == 0) return verdict;
+  verdict.numbers = numbers_of(built, run, bonded);
   say_uplift(built, run, verdict);
   say_forces(built, run, verdict);
   if (bonded) say_beside_bonded(built, run, *bonded, verdict);
-  say_residual(built, run, verdict);
+  say_tension(verdict);
+  say_residual(verdict);
   say_energy(built, run, verdict);
   for (const std::string& note : run.notes) verdict.paragraphs.push_back(note);
   return verdict;

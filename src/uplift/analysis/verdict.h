@@ -2,11 +2,11 @@
 #include <string>
 #include <vector>
 
-#include "uplift/analysis/case.h"
+#include "uplift/analysis/verdict_numbers.h"
 
 namespace uplift {
 
-/// What a run says, in words: does it uplift, how much, when, for how long, and what that does beside the bonded base.
+/// What a run says, in numbers and in words: does it uplift, how much, when, for how long, and what that does beside the bonded base.
 struct Verdict {
   enum class Level { none, uplift, overturned, failed } level = Level::none;
   std::string headline;
@@ -15,10 +15,11 @@ struct Verdict {
   };
   std::vector<Fact> facts;
   std::vector<std::string> paragraphs;
+  VerdictNumbers numbers;
 };
 std::string_view to_string(Verdict::Level);
 
-/// `bonded`: the same model with interfaces that never open, or null. Codes' thresholds are not applied: the numbers are given.
+/// `bonded`: the same model with interfaces that never open, or null. Limits are those of the case: none is built in.
 Verdict judge(const Built& built, const RunResult& run, const RunResult* bonded);
 
 /// Column of a result: by kind and by unknown or interface. Null when it was not recorded.

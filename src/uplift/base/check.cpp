@@ -98,6 +98,10 @@ const std::string& text_of(const Raw& raw, const Field& field) {
   return *text;
 }
 
+bool bare_number(const Raw& raw) {
+  return std::holds_alternative<std::int64_t>(raw.data) || std::holds_alternative<double>(raw.data);
+}
+
 const RawList& list_of(const Raw& raw, const Field& field) {
   const auto* list = std::get_if<RawList>(&raw.data);
   if (!list) refuse(raw, field, found_text(raw));
@@ -203,7 +207,7 @@ class Checker {
         item.data = std::get<bool>(raw.data);
         break;
       case Kind::text:
-        item.data = text_of(raw, field);
+        item.data = field.unit == "*" && bare_number(raw) ? found_text(raw) : text_of(raw, field);
         break;
       case Kind::choice:
         if (const std::string& word = text_of(raw, field);

@@ -215,7 +215,7 @@ std::string wanted_text(const Field& field) {
     case Kind::flag:
       return "true or false";
     case Kind::text:
-      return "a text";
+      return field.unit == "*" ? "a number, or a text with a number and its unit" : "a text";
     case Kind::choice:
       return one_of(field.choices);
     case Kind::numbers: {

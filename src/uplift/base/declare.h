@@ -45,7 +45,7 @@ struct PartInfo;
 struct Field {
   std::string_view name;
   Kind kind = Kind::number;
-  std::string_view unit;     // SI unit of number(s), "1" when dimensionless
+  std::string_view unit;     // SI unit of number(s), "1" when dimensionless; of a text "*": it may be a bare number
   std::string_view meaning;  // one line, for the reader of `describe`
   bool required = true;
   std::optional<double> standard_number;  // also integers

@@ -75,6 +75,7 @@ Json shape_of(const Field& field) {
     case Kind::flag:
       return {{"type", "boolean"}};
     case Kind::text:
+      if (field.unit == "*") return {{"type", {"number", "string"}}};
       return {{"type", "string"}};
     case Kind::choice:
       return {{"enum", field.choices}};

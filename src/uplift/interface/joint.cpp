@@ -69,6 +69,13 @@ JointPoint element_point(const LineJoint& joint, std::size_t first, double xi, d
   return point;
 }
 
+/// Direction of the width.
+Vec3 direction_along(const Footing& footing, const Vec3& n) {
+  const bool rectangle = footing.length > 0;
+  const Vec3 t = local_axis(Space{rectangle ? 3 : 2}, n, 0);
+  return rectangle ? Vec3(std::cos(footing.azimuth) * t + std::sin(footing.azimuth) * cross(n, t)) : t;
+}
+
 }  // namespace
 
 std::vector<JointPoint> footing_points(const Footing& footing, const Where& where) {
@@ -77,10 +84,7 @@ std::vector<JointPoint> footing_points(const Footing& footing, const Where& wher
   if (rectangle) check_points(footing.rule, footing.points_across, "points_across", where);
   if (!(footing.width > 0)) throw InputError(where, "interface.width", "a width > 0 m", fmt::format("{:g}", footing.width));
   if (!(footing.thickness > 0)) throw InputError(where, "interface.thickness", "a thickness > 0 m", fmt::format("{:g}", footing.thickness));
-  const Space space{rectangle ? 3 : 2};
-  const Vec3 n = unit(footing.normal, where), t = local_axis(space, n, 0);
-  const Vec3 along = rectangle ? Vec3(std::cos(footing.azimuth) * t + std::sin(footing.azimuth) * cross(n, t)) : t,
-             across = cross(n, along);
+  const Vec3 n = unit(footing.normal, where), along = direction_along(footing, n), across = cross(n, along);
   const Quadrature rule = footing_rule(footing.rule, footing.points);
   const Quadrature rule_across =
       rectangle ? footing_rule(footing.rule, footing.points_across) : Quadrature{Vector::Zero(1), Vector::Ones(1)};
@@ -98,6 +102,16 @@ std::vector<JointPoint> footing_points(const Footing& footing, const Where& wher
       points.push_back(std::move(point));
     }
   return points;
+}
+
+std::vector<Place> footing_corners(const Footing& footing) {
+  const Vec3 n = footing.normal.normalized(), along = direction_along(footing, n), across = cross(n, along);
+  std::vector<Place> corners;
+  for (const double side : {-1.0, 1.0})
+    for (const double far : {-1.0, 1.0})
+      if (footing.length > 0 || far > 0)
+        corners.push_back(footing.centre + side * footing.width / 2 * along + far * footing.length / 2 * across);
+  return corners;
 }
 
 std::vector<JointPoint> pair_points(const std::vector<SideNode>& upper, const std::vector<SideNode>& lower, const Place& normal,

@@ -44,6 +44,8 @@ struct Footing {
 /// Points in the order of t; in space those along the width first, line after line. Throws InputError (at `where`) when the width or the
 /// number of points makes no sense.
 std::vector<JointPoint> footing_points(const Footing& footing, const Where& where);
+/// Corners of its underside: the two edges in the plane, four corners in space.
+std::vector<Place> footing_corners(const Footing& footing);
 
 /// A node of one side with its place.
 struct SideNode {

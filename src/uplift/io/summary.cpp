@@ -2,6 +2,7 @@
 
 #include "uplift/io/floors.h"
 #include "uplift/io/json_writer.h"
+#include "uplift/io/verdict_json.h"
 
 namespace uplift {
 namespace {
@@ -63,8 +64,8 @@ void write_run(JsonWriter& json, const RunResult& run, const Agreement* agreemen
 
 }  // namespace
 
-std::string summary_json(const Provenance& from, const std::vector<RunResult>& runs, const ComparisonSummary* compared,
-                         const FloorAnswers* floors) {
+std::string summary_json(const SummaryInput& input) {
+  const auto& [from, runs, verdict, compared, floors] = input;
   JsonWriter json(0, 2);
   json.begin_object();
   json.member("format", "uplift-summary-1").member("version", from.version).member("title", from.title).member("command", from.command);
@@ -78,6 +79,8 @@ std::string summary_json(const Provenance& from, const std::vector<RunResult>& r
     write_run(json, runs[i], compared ? &compared->agreement[i] : nullptr, floors && floors->any() ? &floors->runs[i] : nullptr);
   json.end_array();
   if (floors && !floors->envelopes.empty()) write_floor_envelopes(json.key("floor_envelopes"), *floors);
+  json.key("verdict");
+  write_verdict_numbers(json, verdict, runs);
   if (compared) {
     json.member("band", compared->band).key("compared_columns").texts(compared->columns);
     json.key("stiffness_sweep").begin_array();

@@ -5,6 +5,7 @@
 
 #include "uplift/analysis/compare.h"
 #include "uplift/analysis/floor_spectra.h"
+#include "uplift/analysis/verdict.h"
 
 namespace uplift {
 
@@ -24,8 +25,16 @@ struct ComparisonSummary {
   std::vector<SweepRow> sweep;
 };
 
-/// summary.json: an object with the provenance and the array `runs`. `compared` and `floors` may be null.
-std::string summary_json(const Provenance&, const std::vector<RunResult>& runs, const ComparisonSummary* compared,
-                         const FloorAnswers* floors = nullptr);
+/// What stands in summary.json.
+struct SummaryInput {
+  const Provenance& from;
+  const std::vector<RunResult>& runs;
+  const Verdict& verdict;                       // on the first run
+  const ComparisonSummary* compared = nullptr;  // null for a single run
+  const FloorAnswers* floors = nullptr;
+};
+
+/// summary.json: an object with the provenance, the array `runs` and the `verdict`.
+std::string summary_json(const SummaryInput&);
 
 }  // namespace uplift

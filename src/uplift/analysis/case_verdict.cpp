@@ -1,0 +1,77 @@
+#include "uplift/analysis/case_verdict.h"
+
+#include <fmt/format.h>
+
+#include "uplift/analysis/case_names.h"
+#include "uplift/base/units.h"
+
+// Thresholds and criteria: they come from the user, with their source; the program knows none.
+namespace uplift {
+namespace {
+
+Field limit_field() {
+  Field field = text("limit", "limit in the quantity's unit: a number, or a text with a unit (\"3 mm\")");
+  field.unit = "*";
+  return field;
+}
+
+const Section& criterion_section() {
+  static const Section s{
+      "criterion",
+      "a limit for a number of the verdict: met when the number is not larger (changes with their sign, else the magnitude), for safeties "
+      "and min_compression when it is not smaller",
+      {text("quantity",
+            "number of the verdict: those of summary.json, for example max_uplifted_ratio, max_opening, toe_pressure_ratio, "
+            "max_eccentricity, min_overturning_safety, min_sliding_safety, residual_rotation, residual_slip, residual_settlement"),
+       limit_field(), text("source", "where the limit comes from: code and clause, client, judgement"),
+       text("interface", "interface that it is for; absent: every one").optional()}};
+  return s;
+}
+
+Criterion criterion_of(const Values& table, const Names& interfaces) {
+  Criterion criterion;
+  const std::string& name = table.text("quantity");
+  criterion.quantity = find_verdict_quantity(name);
+  if (!criterion.quantity) {
+    std::vector<std::string> names;
+    for (const VerdictQuantity& each : verdict_quantities()) names.emplace_back(each.name);
+    fail(table, "quantity", fmt::format("a number of the verdict: {}", fmt::join(names, ", ")), "\"" + name + "\"",
+         nearest_name(name, names));
+  }
+  const std::string unit(criterion.quantity->unit);
+  const Quantity limit = parse_quantity(table.text("limit"), unit);
+  if (!limit.ok) fail(table, "limit", quantity_name(unit), limit.found, limit.nearest);
+  criterion.limit = limit.value;
+  criterion.source = table.text("source");
+  if (criterion.source.find_first_not_of(" \t\n") == std::string::npos)
+    fail(table, "source", "where the limit comes from", "an empty text");
+  if (table.has("interface")) {
+    if (!criterion.quantity->of_interface) fail(table, "interface", "no interface: \"" + name + "\" belongs to the whole run", "one");
+    criterion.interface = interfaces.find(table, "interface");
+  }
+  return criterion;
+}
+
+}  // namespace
+
+const Section& verdict_section() {
+  static const Section s{
+      "verdict",
+      "what the verdict is asked; thresholds and limits are the user's, none is built in",
+      {numbers("uplifted_ratio_thresholds", "1", "shares of the area: for how long the uplifted share is above").between(0, 1).optional(),
+       tables("criterion", criterion_section(), "limits")}};
+  return s;
+}
+
+VerdictWishes verdict_wishes(const Values& root, const Model& model) {
+  VerdictWishes wishes;
+  if (!root.has("verdict")) return wishes;
+  const Values& verdict = root.table("verdict");
+  wishes.thresholds = verdict.numbers("uplifted_ratio_thresholds");
+  Names interfaces("interface");
+  for (const Interface& interface : model.interfaces) interfaces.add(interface.name, {}, {});
+  for (const Values& table : verdict.tables("criterion")) wishes.criteria.push_back(criterion_of(table, interfaces));
+  return wishes;
+}
+
+}  // namespace uplift

@@ -1,0 +1,307 @@
+#include "uplift/analysis/verdict_numbers.h"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <utility>
+
+#include "uplift/analysis/base_shape.h"
+#include "uplift/analysis/verdict.h"
+#include "uplift/analysis/verdict_criteria.h"
+
+namespace uplift {
+namespace {
+
+constexpr double nothing = std::numeric_limits<double>::quiet_NaN();
+constexpr double least_share = 1e-3;  // of the static force: below it the place of the thrust has no meaning
+
+/// One interface of a run with what it is at rest.
+class Base {
+ public:
+  Base(const Built& built, const RunResult& result, std::size_t number)
+      : run(result),
+        index(number),
+        interface(built.model.interfaces[index]),
+        facts(built.facts[index]),
+        shape(built.model, interface, facts),
+        tolerance_(built.plan.gap_tolerance) {
+    if (!run.steps.rest.empty()) {
+      rest_view = run.steps.rest[index];
+      rest = thrust_of(interface.space, rest_view.resultant);
+    } else if (built.facts.size() == 1) {
+      rest.force = built.weight;
+    }
+  }
+
+  const InterfaceView& view(std::size_t step) const { return run.steps.at(step, index); }
+  Thrust thrust(std::size_t step) const { return thrust_of(interface.space, view(step).resultant); }
+  bool pressed() const { return rest.force > 0; }
+  bool carries(std::size_t step) const { return pressed() && -view(step).resultant.axial > least_share * rest.force; }
+  bool off(std::size_t step) const { return view(step).least_opening > tolerance_; }
+
+  /// e/B; without a direction the larger of both.
+  double eccentricity(std::size_t step, std::size_t axis) const {
+    const Thrust now = thrust(step);
+    return carries(step) && shape.width[axis] > 0 ? now.first[axis] / (now.force * shape.width[axis]) : nothing;
+  }
+  double overturning(std::size_t step) const { return pressed() ? shape.overturning_safety(rest, thrust(step)) : nothing; }
+  double sliding(std::size_t step) const {
+    const InterfaceView& now = view(step);
+    if (facts.friction < 0 || interface.batch.components == 1 || !carries(step)) return nothing;
+    const double holds = -facts.friction * now.resultant.axial + facts.cohesion * facts.area * (1 - now.open_area);
+    return now.resultant.shear != 0 ? holds / std::abs(now.resultant.shear) : nothing;
+  }
+  /// When the smallest gap of all points passes the tolerance between a step and the one before: linear in between.
+  double passing(std::size_t step) const {
+    const double before = view(step - 1).least_opening - tolerance_, after = view(step).least_opening - tolerance_;
+    const double from = run.steps.time[step - 1], to = run.steps.time[step];
+    return before != after ? from + (to - from) * std::clamp(before / (before - after), 0.0, 1.0) : to;
+  }
+
+  const RunResult& run;
+  std::size_t index;
+  const Interface& interface;
+  const InterfaceFacts& facts;
+  BaseShape shape;
+  InterfaceView rest_view;
+  Thrust rest;
+
+ private:
+  double tolerance_;
+};
+
+/// The largest magnitude of a quantity over the steps, or the least value; nothing when it is nowhere finite.
+template <class Of>
+std::optional<VerdictNumber> extreme(const Base& base, std::string_view name, const Of& of, bool least = false) {
+  VerdictNumber found{find_verdict_quantity(name)};
+  for (std::size_t i = 0; i < base.run.steps.size(); ++i) {
+    const double value = of(i), now = least ? value : std::abs(value);
+    if (std::isfinite(now) && (!found.time || (least ? now < found.value : now > found.value)))
+      found.value = now, found.time = base.run.steps.time[i];
+  }
+  return found.time ? std::optional(found) : std::nullopt;
+}
+
+void add(std::vector<VerdictNumber>& numbers, const std::optional<VerdictNumber>& number) {
+  if (number) numbers.push_back(*number);
+}
+void add(std::vector<VerdictNumber>& numbers, std::string_view name, double value, std::optional<double> time = {}) {
+  numbers.push_back({find_verdict_quantity(name), value, time});
+}
+
+/// Sum of the steps at whose end something holds [s].
+template <class Holds>
+double duration_of(const StepRecord& steps, const Holds& holds) {
+  double sum = 0;
+  for (std::size_t i = 1; i < steps.size(); ++i)
+    if (holds(i)) sum += steps.time[i] - steps.time[i - 1];
+  return sum;
+}
+
+void add_uplift(const Base& base, const VerdictWishes& wishes, InterfaceVerdict& said) {
+  const StepRecord& steps = base.run.steps;
+  add(said.numbers, extreme(base, "max_uplifted_ratio", [&](std::size_t i) { return base.view(i).open_area; }));
+  add(said.numbers, "uplifted_time", duration_of(steps, [&](std::size_t i) { return base.view(i).open_area > 0; }));
+  for (std::size_t i = 0; i < steps.size(); ++i)
+    if (base.view(i).open_area > 0) {
+      add(said.numbers, "first_uplift", steps.time[i], steps.time[i]);
+      break;
+    }
+  add(said.numbers, extreme(base, "max_opening", [&](std::size_t i) { return base.view(i).max_opening; }));
+  std::optional<VerdictNumber> deepest = extreme(
+      base, "max_penetration", [&](std::size_t i) { return base.view(i).least_opening; }, true);
+  if (deepest) deepest->value = std::max(0.0, -deepest->value);
+  add(said.numbers, deepest);
+  for (const double threshold : wishes.thresholds)
+    said.above.push_back({threshold, duration_of(steps, [&](std::size_t i) { return base.view(i).open_area > threshold; })});
+}
+
+void add_pressure(const Base& base, InterfaceVerdict& said) {
+  const std::optional<VerdictNumber> pressure = extreme(base, "max_toe_pressure", [&](std::size_t i) { return base.view(i).max_pressure; });
+  add(said.numbers, pressure);
+  if (pressure && base.pressed())
+    add(said.numbers, "toe_pressure_ratio", pressure->value * base.facts.area / base.rest.force, pressure->time);
+  const auto along = [&](std::size_t axis) { return [&base, axis](std::size_t i) { return base.eccentricity(i, axis); }; };
+  if (base.interface.space.dimension == 2) {
+    add(said.numbers, extreme(base, "max_eccentricity", along(0)));
+  } else {
+    add(said.numbers, extreme(base, "max_eccentricity", [&](std::size_t i) {
+          return std::max(std::abs(base.eccentricity(i, 0)), std::abs(base.eccentricity(i, 1)));
+        }));
+    add(said.numbers, extreme(base, "max_eccentricity_1", along(0)));
+    add(said.numbers, extreme(base, "max_eccentricity_2", along(1)));
+  }
+  add(said.numbers, extreme(
+                        base, "min_overturning_safety", [&](std::size_t i) { return base.overturning(i); }, true));
+  add(said.numbers, extreme(
+                        base, "min_sliding_safety", [&](std::size_t i) { return base.sliding(i); }, true));
+}
+
+void add_full_loss(const Base& base, InterfaceVerdict& said) {
+  const StepRecord& steps = base.run.steps;
+  for (std::size_t i = 0; i < steps.size(); ++i) {
+    const bool before = i > 0 && base.off(i - 1);
+    if (base.off(i) && !before) said.full_loss.push_back({i > 0 ? base.passing(i) : steps.time[i], steps.time.back()});
+    if (!base.off(i) && before) said.full_loss.back().to = base.passing(i);
+  }
+  double sum = 0;
+  Interval longest;
+  for (const Interval& each : said.full_loss) {
+    sum += each.to - each.from;
+    if (each.to - each.from > longest.to - longest.from) longest = each;
+  }
+  add(said.numbers, "full_loss_time", sum);
+  if (!said.full_loss.empty()) add(said.numbers, "longest_full_loss", longest.to - longest.from, longest.from);
+}
+
+void add_forces(const Base& base, std::vector<VerdictNumber>& numbers) {
+  if (base.interface.batch.components > 1)
+    add(numbers, extreme(base, "max_shear", [&](std::size_t i) { return base.view(i).resultant.shear; }));
+  add(numbers, extreme(base, "max_moment", [&](std::size_t i) { return base.view(i).resultant.moment; }));
+  const auto compression = [&](std::size_t i) { return -base.view(i).resultant.axial; };
+  add(numbers, extreme(base, "max_compression", [&](std::size_t i) { return std::max(0.0, compression(i)); }));
+  add(numbers, extreme(base, "min_compression", compression, true));
+}
+
+/// Mean of the last tenth of the run less the value at rest, and half of the range over which it moves there.
+template <class Of>
+VerdictNumber residual(const Base& base, std::string_view name, const Of& of, double rest) {
+  const std::size_t size = base.run.steps.size(), tail = std::max<std::size_t>(1, size / 10);
+  double sum = 0, least = INFINITY, most = -INFINITY;
+  for (std::size_t i = size - tail; i < size; ++i) {
+    const double value = of(base.view(i));
+    sum += value;
+    least = std::min(least, value), most = std::max(most, value);
+  }
+  return {find_verdict_quantity(name), sum / static_cast<double>(tail) - rest, {}, {}, (most - least) / 2};
+}
+
+VerdictNumber length_of(std::string_view name, const VerdictNumber& a, const VerdictNumber& b) {
+  return {find_verdict_quantity(name), std::hypot(a.value, b.value), {}, {}, std::hypot(*a.swing, *b.swing)};
+}
+
+void add_residuals(const Base& base, std::vector<VerdictNumber>& numbers) {
+  if (base.run.steps.size() == 0 || base.run.status == RunStatus::overturned || base.run.status == RunStatus::failed) return;
+  const InterfaceView& rest = base.rest_view;
+  const auto left = [&](const char* name, double InterfaceView::*of) {
+    return residual(
+        base, name, [of](const InterfaceView& view) { return view.*of; }, rest.*of);
+  };
+  const auto still = [&](const char* name, double InterfaceView::*of) {
+    return residual(
+        base, name, [of](const InterfaceView& view) { return view.*of; }, 0);
+  };
+  numbers.push_back(
+      length_of("residual_rotation", left("residual_rotation", &InterfaceView::tilt_1), left("residual_rotation", &InterfaceView::tilt_2)));
+  numbers.push_back(left("residual_settlement", &InterfaceView::settlement));
+  if (base.interface.batch.components > 1)
+    numbers.push_back(
+        length_of("residual_slip", left("residual_slip", &InterfaceView::slip_1), left("residual_slip", &InterfaceView::slip_2)));
+  numbers.push_back(still("residual_opening", &InterfaceView::max_opening));
+  numbers.push_back(still("residual_uplifted_ratio", &InterfaceView::open_area));
+}
+
+/// What a base carries, of a bonded run too.
+InterfaceVerdict carried_by(const Base& base) {
+  InterfaceVerdict said;
+  add_pressure(base, said);
+  add_forces(base, said.numbers);
+  return said;
+}
+
+/// The numbers of the bonded run beside those of the same name, and what has changed.
+void add_bonded(const Base& base, const Base& bonded, std::vector<VerdictNumber>& numbers) {
+  const InterfaceVerdict beside = carried_by(bonded);
+  for (VerdictNumber& number : numbers)
+    if (const VerdictNumber* other = find_number(beside.numbers, number.quantity->name)) number.bonded = other->value;
+  for (const auto& [name, of] :
+       {std::pair{"change_of_shear", "max_shear"}, {"change_of_moment", "max_moment"}, {"change_of_compression", "max_compression"}}) {
+    const VerdictNumber* number = find_number(numbers, of);
+    if (number && number->bonded.value_or(0) != 0) add(numbers, name, number->value / *number->bonded - 1);
+  }
+  const auto pulls = extreme(bonded, "linear_tension_ratio", [&](std::size_t i) { return bonded.view(i).tension_area; });
+  add(numbers, pulls);
+  if (const auto uplift = pulls ? uplift_of_tension(pulls->value) : std::nullopt; uplift && base.pressed())
+    add(numbers, "predicted_uplifted_ratio", *uplift);
+}
+
+void add_top(const Built& built, const RunResult& run, const RunResult* bonded, std::vector<VerdictNumber>& numbers) {
+  if (built.top < 0) return;
+  const Peak* motion = find_peak(run, Request::Kind::displacement, built.top_sway());
+  if (!motion) return;
+  add(numbers, "max_top_motion", std::abs(motion->value), motion->time);
+  const Peak* beside = bonded ? find_peak(*bonded, Request::Kind::displacement, built.top_sway()) : nullptr;
+  if (!beside || beside->value == 0) return;
+  numbers.back().bonded = std::abs(beside->value);
+  add(numbers, "change_of_top_motion", std::abs(motion->value / beside->value) - 1);
+}
+
+void in_order(std::vector<VerdictNumber>& numbers) {
+  std::ranges::stable_sort(numbers, {}, [](const VerdictNumber& number) { return number.quantity; });
+}
+
+}  // namespace
+
+const VerdictNumber* find_number(const std::vector<VerdictNumber>& numbers, std::string_view name) {
+  const auto found = std::ranges::find_if(numbers, [&](const VerdictNumber& number) { return number.quantity->name == name; });
+  return found == numbers.end() ? nullptr : &*found;
+}
+
+std::optional<double> uplift_of_tension(double t) {
+  if (!(t < 0.5)) return std::nullopt;
+  if (t <= 0) return 0;
+  const double y = 1 / (1 - 2 * t), root = (2 + std::sqrt(1.5 * y * y - 0.5)) / 3;  // root: sqrt(theta/theta_u)
+  return 1 - 1 / root;
+}
+
+std::vector<double> base_history(const Built& built, const RunResult& run, std::size_t interface, BaseHistory which) {
+  const Base base(built, run, interface);
+  std::vector<double> history(run.steps.size());
+  for (std::size_t i = 0; i < history.size(); ++i) {
+    switch (which) {
+      case BaseHistory::uplifted_ratio:
+        history[i] = base.view(i).open_area;
+        break;
+      case BaseHistory::eccentricity_1:
+        history[i] = base.eccentricity(i, 0);
+        break;
+      case BaseHistory::eccentricity_2:
+        history[i] = base.eccentricity(i, 1);
+        break;
+      case BaseHistory::overturning_safety:
+        history[i] = base.overturning(i);
+        break;
+      case BaseHistory::sliding_safety:
+        history[i] = base.sliding(i);
+        break;
+    }
+    if (!std::isfinite(history[i])) history[i] = nothing;
+  }
+  return history;
+}
+
+VerdictNumbers numbers_of(const Built& built, const RunResult& run, const RunResult* bonded) {
+  VerdictNumbers numbers;
+  if (bonded && (bonded->status != RunStatus::completed || run.status != RunStatus::completed)) bonded = nullptr;
+  add_top(built, run, bonded, numbers.whole);
+  for (std::size_t k = 0; k < built.facts.size() && run.steps.size() > 0; ++k) {
+    const Base base(built, run, k);
+    InterfaceVerdict said = carried_by(base);
+    said.name = built.facts[k].name;
+    if (base.pressed()) said.weight = base.rest.force, said.mean_pressure = base.rest.force / base.facts.area;
+    said.width = base.shape.width;
+    add_uplift(base, built.wishes, said);
+    add_full_loss(base, said);
+    add_residuals(base, said.numbers);
+    if (bonded) add_bonded(base, Base(built, *bonded, k), said.numbers);
+    in_order(said.numbers);
+    numbers.interfaces.push_back(std::move(said));
+  }
+  for (const Criterion& criterion : built.wishes.criteria) add_results(criterion, numbers);
+  for (CriterionResult& result : numbers.criteria)  // a run that did not get to its end has not shown that a limit is kept
+    if (run.status != RunStatus::completed && result.state == CriterionResult::State::met)
+      result.state = CriterionResult::State::undetermined;
+  return numbers;
+}
+
+}  // namespace uplift
