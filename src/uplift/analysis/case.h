@@ -5,6 +5,7 @@
 #include <string>
 #include <vector>
 
+#include "uplift/analysis/case_records.h"
 #include "uplift/analysis/run.h"
 #include "uplift/analysis/verdict_quantities.h"
 #include "uplift/base/declare.h"
@@ -20,15 +21,17 @@ struct Case {
   Values values;                         // of case_section()
   std::string file;                      // as the user gave it
   std::shared_ptr<const CaseMesh> mesh;  // opened along the interfaces; null without
+  std::vector<CaseRecord> records;       // in the order of the file
 };
 
 /// Reads the mesh of a path; the place names the file, the last text is the mesh to take when there are several.
 using MeshReader = std::function<Mesh(const std::string&, const Where&, const std::string&)>;
 
-/// Checks a case file that was read, and reads or makes its mesh. A case with a mesh file needs a reader. Throws InputError.
+/// Checks a case file that was read, reads or makes its mesh, and reads its records. A case with a mesh file needs a reader. Throws
+/// InputError.
 Case check_case(const Raw& raw, const std::string& file, const MeshReader& read_mesh = {});
 
-/// Other files that the case reads (tables of functions, the mesh), as paths that can be opened from here.
+/// Other files that the case reads (tables of functions, the mesh, records), as paths that can be opened from here.
 std::vector<std::string> input_files(const Case&);
 
 /// One run of a case: what differs from the case as it stands. Null and empty: as in the case. Points into the case's values.
@@ -44,6 +47,7 @@ struct RunSpec {
   std::optional<double> step, duration;   // s, of the dynamic stages
   std::optional<double> stiffness_ratio;  // the law's stiffness is chosen so that the largest k F_ii is this
   std::string stiffness_parameter;        // parameter of the law that is the stiffness
+  const Values* motion = nullptr;         // [[compare.motion]]: records that take the place of others
   bool bonded = false;                    // elastic interfaces that never open, as stiff as the closed joint
   bool rigid_ground = false;              // elastic beds are left out
   bool expected_to_fail = false;
@@ -53,12 +57,14 @@ struct RunSpec {
 /// What `uplift run` does: the case itself, then (unless it says bonded = false) the bonded model.
 std::vector<RunSpec> runs_of_case(const Case&);
 
-/// What `uplift compare` does: every variant and the bonded model with every damping, and the runs of the stiffness sweep.
+/// What `uplift compare` does: every variant (the case itself when there are none) and the bonded model, with every damping and every motion; and the runs of the stiffness sweep.
 struct Comparison {
   std::vector<RunSpec> runs;
   std::vector<RunSpec> sweep;  // pairs: path average, end of step; in the order of the ratios
 };
 Comparison comparison_of_case(const Case&);
+/// Whether a case has something to compare: variants, or other motions.
+bool compares(const Case&);
 
 /// What the report and the verdict want to know of an interface beyond the model.
 struct InterfaceFacts {
@@ -92,6 +98,7 @@ struct Built {
   std::vector<std::unique_ptr<const Values>> derived;  // behaviours made here (bonded, swept)
   std::vector<InterfaceFacts> facts;                   // one per interface
   VerdictWishes wishes;                                // thresholds and criteria
+  std::vector<MotionUse> motions;                      // records that drive it
   std::vector<std::string> notes;                      // what was chosen automatically (tuned mass, scaled penalty)
   double tuned_mass = 0;                               // kg: of the tuned point mass, 0 without
   // N: resultant, against the first interface's normal, of the dead loads on everything that hangs together with its upper side (the soil

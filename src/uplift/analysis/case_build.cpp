@@ -163,7 +163,7 @@ std::vector<double> tuned_masses(const Case& read, const RunSpec& spec) {
   ModelBuilder builder(names.space);
   add_nodes(read.values, builder, names);
   add_mesh(read, builder, names);
-  add_functions(read.values, names);
+  add_functions(read, names);
   add_structure(read.values, builder, names, {0.0}, true);
   add_interfaces(read, spec, nullptr, builder, names, without);
   const Model model = builder.finish();
@@ -179,7 +179,9 @@ Model make_model(const Case& read, const RunSpec& spec, const std::vector<double
   ModelBuilder builder(names.space);
   add_nodes(root, builder, names);
   add_mesh(read, builder, names);
-  add_functions(root, names);
+  names.instead = spec.motion;
+  names.share = newmark_share(built.plan.stages);
+  add_functions(read, names);
   add_structure(root, builder, names, tuned, dynamic != nullptr);
   add_ties(root, builder, names);
   add_absorbing(root, builder, names);
@@ -255,8 +257,9 @@ void adapt_laws(const Case& read, const RunSpec& spec, Built& built) {
 }  // namespace
 
 Case check_case(const Raw& raw, const std::string& file, const MeshReader& read_mesh) {
-  Case read{check(raw, case_section()), file, nullptr};
+  Case read{check(raw, case_section()), file, nullptr, {}};
   read.mesh = mesh_of_case(read.values, file, read_mesh);
+  read.records = read_records(read.values);
   return read;
 }
 
@@ -270,6 +273,7 @@ std::vector<std::string> input_files(const Case& read) {
     if (shape.items().contains("file") && shape.has("file")) add(shape);
   }
   if (const Values* mesh = table_if(read.values, "mesh"); mesh && mesh->has("file")) add(*mesh);
+  for (const Values& record : read.values.tables("record")) files.push_back(record_path(record));
   return files;
 }
 
@@ -292,6 +296,7 @@ Built build(const Case& read, const RunSpec& spec) {
   const bool rests = std::ranges::any_of(built.plan.stages, [](const Stage& stage) { return stage.type == Stage::Type::statics; });
   if (!released) check_static(built.model, !rests);
   check_dynamic(built.model);
+  built.motions = motions_used(root, read.records, spec.motion);
 
   RunPlan& plan = built.plan;
   plan.name = spec.name;

@@ -25,7 +25,7 @@ Vec3 incident_motion(const Values& incident, Space space) {
 std::shared_ptr<const TimeFunction> incident_velocity(const Values& incident, const CaseNames& names) {
   // The surface of free rock moves twice as much as the wave that comes up.
   const double incoming = incident.text("kind") == "outcrop" ? 0.5 : 1;
-  return scaled(incoming * incident.number("velocity"), names.function(incident));
+  return scaled(incoming * incident.number("velocity"), names.function(incident, MotionKind::velocity));
 }
 
 void add_absorbing(const Values& root, ModelBuilder& builder, const CaseNames& names) {

@@ -6,6 +6,7 @@
 #include <cmath>
 #include <numbers>
 
+#include "uplift/base/text.h"
 #include "uplift/elements/discrete.h"
 #include "uplift/elements/solid_nonlinear.h"
 
@@ -168,9 +169,17 @@ std::shared_ptr<const TimeFunction> scaled(double factor, std::shared_ptr<const 
   return std::make_shared<Scaled>(factor, std::move(function));
 }
 
-std::shared_ptr<const TimeFunction> CaseNames::function(const Values& table) const {
+std::shared_ptr<const TimeFunction> CaseNames::function(const Values& table, std::optional<MotionKind> kind) const {
   if (!table.has("function")) return std::make_shared<One>();
-  return functions_made[functions.find(table, "function")];
+  const std::string& name = name_taken(instead, table.text("function"));
+  const auto found = static_cast<std::size_t>(functions.find(name, table.where("function"), table.path("function")));
+  if (functions_made[found]) return functions_made[found];
+  const CaseRecord& record = (*records)[found - (functions_made.size() - records->size())];
+  if (!kind) fail(table, "function", "a function (a record is a motion: no load, no rotation)", "the record " + in_quotes(name));
+  if (!record.history->gives(*kind))
+    fail(table, "function", fmt::format("a record whose {} follows by integration", to_string(*kind)),
+         fmt::format("{}, a record of {}", in_quotes(name), to_string(record.motion().kind)));
+  return std::make_shared<MotionFunction>(record.history, *kind, share);
 }
 
 void add_nodes(const Values& root, ModelBuilder& builder, CaseNames& names) {
@@ -211,11 +220,17 @@ void add_mesh(const Case& read, ModelBuilder& builder, CaseNames& names) {
     }
 }
 
-void add_functions(const Values& root, CaseNames& names) {
-  for (const Values& function : root.tables("function")) {
+void add_functions(const Case& read, CaseNames& names) {
+  if (!read.records.empty()) names.functions = Names("function or record");
+  for (const Values& function : read.values.tables("function")) {
     names.functions.add(function, "name");
     names.functions_made.push_back(make_part(function_catalog(), function.part("shape")));
   }
+  for (const Values& record : read.values.tables("record")) {
+    names.functions.add(record, "name");
+    names.functions_made.push_back(nullptr);
+  }
+  names.records = &read.records;
 }
 
 void add_structure(const Values& root, ModelBuilder& builder, CaseNames& names, const std::vector<double>& tuned, bool at_rest) {
@@ -248,7 +263,8 @@ void add_loads(const Values& root, ModelBuilder& builder, const CaseNames& names
   for (const Values& ground : root.tables("ground_acceleration")) {
     const std::string name = ground.has("name") ? ground.text("name") : "ground acceleration";
     builder.add_ground_acceleration(vector_of(ground, "direction", names.space),
-                                    std::make_shared<Scaled>(ground.number("amplitude"), names.function(ground)), name, ground.where());
+                                    std::make_shared<Scaled>(ground.number("amplitude"), names.function(ground, MotionKind::acceleration)),
+                                    name, ground.where());
   }
 }
 

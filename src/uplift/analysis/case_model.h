@@ -16,8 +16,11 @@ namespace uplift {
 struct CaseNames {
   Names nodes{"node"}, functions{"function"}, interfaces{"interface"};
   Space space;
-  std::vector<Place> positions;  // of the nodes
-  std::vector<std::shared_ptr<const TimeFunction>> functions_made;
+  std::vector<Place> positions;                                     // of the nodes
+  std::vector<std::shared_ptr<const TimeFunction>> functions_made;  // then the records: null
+  const std::vector<CaseRecord>* records = nullptr;
+  const Values* instead = nullptr;           // [[compare.motion]] of the run; null: as in the case
+  double share = 0;                          // of the displacements of records, see MotionFunction
   std::shared_ptr<const CaseSolids> solids;  // null without a mesh
   int first_of_mesh = 0;                     // node of the model that the mesh's first node is
   Coordinates coordinates;                   // of the nodes up to the mesh's last
@@ -27,7 +30,8 @@ struct CaseNames {
   std::vector<int> node_or_group(const Values& table) const;
   /// The mesh that "group" speaks of; InputError without one.
   const CaseSolids& mesh_for(const Values& table) const;
-  std::shared_ptr<const TimeFunction> function(const Values& table) const;  // absent: constant 1
+  /// What drives something; absent: constant 1. `kind`: the quantity taken of a record, none where no motion can stand.
+  std::shared_ptr<const TimeFunction> function(const Values& table, std::optional<MotionKind> kind = {}) const;
 };
 
 /// Two numbers in plane models, three in space; InputError otherwise.
@@ -48,7 +52,8 @@ void add_mesh(const Case& read, ModelBuilder& builder, CaseNames& names);
 void add_absorbing(const Values& root, ModelBuilder& builder, const CaseNames& names);
 /// A function times an amplitude.
 std::shared_ptr<const TimeFunction> scaled(double factor, std::shared_ptr<const TimeFunction> function);
-void add_functions(const Values& root, CaseNames& names);
+/// Functions, then records.
+void add_functions(const Case& read, CaseNames& names);
 void add_beams(const Values& root, ModelBuilder& builder, CaseNames& names);
 /// `at_rest`: with the supports that hold in static stages alone.
 void add_structure(const Values& root, ModelBuilder& builder, CaseNames& names, const std::vector<double>& tuned, bool at_rest);

@@ -72,6 +72,27 @@ std::vector<RunSpec> sweep_runs(const Case& read, const Values& sweep, const Val
   return runs;
 }
 
+/// Every run with every one of some tables; pictures of the first alone.
+std::vector<RunSpec> with_each(const std::vector<RunSpec>& plain, const std::vector<Values>& tables, const std::string& what,
+                               const Values* RunSpec::* place) {
+  if (tables.empty()) return plain;
+  std::vector<RunSpec> made;
+  Names known(what);
+  for (const Values& table : tables) {
+    check_file_name(table);
+    known.add(table, "name");
+    for (RunSpec spec : plain) {
+      spec.name += "-" + table.text("name");
+      const std::string& label = table.text(table.has("label") ? "label" : "name");
+      spec.group = spec.group.empty() ? label : spec.group + ", " + label;
+      spec.*place = &table;
+      spec.pictures = spec.pictures && &table == &tables.front();
+      made.push_back(std::move(spec));
+    }
+  }
+  return made;
+}
+
 bool undamped(const Values& damping) {
   return damping.number("alpha") == 0 && damping.number("beta") == 0 && damping.numbers("modal").empty() &&
          damping.tables("rayleigh").empty();
@@ -88,10 +109,16 @@ std::vector<RunSpec> runs_of_case(const Case& read) {
   return runs;
 }
 
+bool compares(const Case& read) {
+  const Values& root = read.values;
+  return !root.tables("variant").empty() || (root.has("compare") && !root.table("compare").tables("motion").empty());
+}
+
 Comparison comparison_of_case(const Case& read) {
   const Values& root = read.values;
-  if (root.tables("variant").empty()) throw InputError(root.where(), "variant", "at least one [[variant]] to compare", "none");
+  if (!compares(read)) throw InputError(root.where(), "variant", "at least one [[variant]] or [[compare.motion]] to compare", "none");
   std::vector<RunSpec> plain;
+  if (root.tables("variant").empty()) plain.push_back(runs_of_case(read).front());
   Names names("variant");
   for (const Values& variant : root.tables("variant")) {
     check_file_name(variant);
@@ -104,21 +131,12 @@ Comparison comparison_of_case(const Case& read) {
   }
   Comparison made;
   const Values* compare = root.has("compare") ? &root.table("compare") : nullptr;
-  if (!compare || compare->tables("damping").empty()) {
-    made.runs = plain;
-  } else {
-    Names cases("damping case");
-    for (const Values& damping : compare->tables("damping")) {
-      check_file_name(damping);
-      cases.add(damping, "name");
-      for (RunSpec spec : plain) {
-        spec.name += "-" + damping.text("name");
-        spec.group = damping.has("label") ? damping.text("label") : damping.text("name");
-        spec.damping = &damping;
-        spec.pictures = &damping == &compare->tables("damping").front();
-        made.runs.push_back(std::move(spec));
-      }
-    }
+  made.runs = plain;
+  if (compare) {
+    const std::vector<Values>& motions = compare->tables("motion");
+    for (const Values& motion : motions) check_motion(root, motion);
+    made.runs = with_each(made.runs, motions, "motion of the comparison", &RunSpec::motion);
+    made.runs = with_each(made.runs, compare->tables("damping"), "damping case", &RunSpec::damping);
   }
   if (compare && compare->has("stiffness_sweep")) {
     // Without damping the error cannot hide; the first undamped case is taken when there is one.

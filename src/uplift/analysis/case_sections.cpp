@@ -1,6 +1,7 @@
 #include "uplift/analysis/case_sections.h"
 
 #include "uplift/analysis/case_mesh_sections.h"
+#include "uplift/analysis/case_records.h"
 #include "uplift/analysis/case_structure_sections.h"
 #include "uplift/analysis/case_verdict.h"
 #include "uplift/contact/impact.h"
@@ -249,6 +250,7 @@ const Section& compare_section() {
              texts("agree_on", "columns whose peaks are compared; absent: motion of the top, rotation and opening of the interface")
                  .optional(),
              tables("damping", damping_case_section(), "every variant is run with each of these"),
+             tables("motion", compare_motion_section(), "every variant is run with each of these"),
              table("stiffness_sweep", sweep_section(), "a table of energy error against stiffness").optional()}};
   return s;
 }
@@ -305,6 +307,7 @@ const Section& case_section() {
              tables("interface", interface_section(), "interfaces"),
              table("gravity", gravity_section(), "weight").optional(),
              tables("function", function_section(), "functions of time"),
+             tables("record", record_section(), "motions of the ground from files"),
              tables("load", load_section(), "loads"),
              tables("motion", motion_section(), "prescribed motions"),
              tables("ground_acceleration", ground_section(), "ground acceleration"),

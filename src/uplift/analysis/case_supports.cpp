@@ -63,8 +63,10 @@ void add_supports(const Values& root, ModelBuilder& builder, const CaseNames& na
   for (const Values& motion : root.tables("motion")) {
     const std::vector<int> nodes = names.node_or_group(motion);
     const std::string name = motion.has("name") ? motion.text("name") : "motion of " + motion.text(motion.has("node") ? "node" : "group");
-    builder.prescribe(nodes, dof_of(motion.text("direction"), motion, "direction", names.space, motion.has("node")),
-                      scaled(motion.number("amplitude"), names.function(motion)), name, motion.where());
+    const Dof dof = dof_of(motion.text("direction"), motion, "direction", names.space, motion.has("node"));
+    const bool turns = motion.text("direction").front() == 'r';
+    auto function = names.function(motion, turns ? std::nullopt : std::optional(MotionKind::displacement));
+    builder.prescribe(nodes, dof, scaled(motion.number("amplitude"), std::move(function)), name, motion.where());
   }
 }
 

@@ -186,6 +186,7 @@ std::vector<std::string> warnings(const Case& read, const RunSpec& spec, const B
   warn_step(built, said);
   warn_floors(built, said);
   warn_method(read, spec, built, said);
+  warn_motions(built.motions, built.plan.stages, said);
   return said;
 }
 

@@ -1,0 +1,28 @@
+#include "uplift/analysis/case_records.h"
+
+namespace uplift {
+
+const Section& record_section() {
+  static const Section s{
+      "record",
+      "a motion of the ground from a file. Its name stands wherever that of a function can: ground_acceleration takes its acceleration, an "
+      "incident wave its velocity, a prescribed motion its displacement, by exact integration",
+      {text("name", "name, different from those of functions"),
+       text("file", "path, relative to the case file: AT2, ESM, K-NET, COSMOS, SMC, text with columns ..."),
+       text("format", "name of the reader; absent: found by content").optional(),
+       text("unit", "of the numbers in the file (\"g\", \"cm/s2\"); absent: as the file says").optional(),
+       number("step", "s", "of files without times").positive().optional(),
+       text("column", "of tables: name, or number from 1; absent: the first after the time").optional(),
+       text("component", "which one, when the file has several").optional()}};
+  return s;
+}
+
+const Section& compare_motion_section() {
+  static const Section s{"motion", "for `uplift compare`: every variant, or the case itself when there are none, and the bonded model with other motions",
+                         {text("name", "name, part of the names of the runs"), text("label", "as shown").optional(),
+                          texts("replace", "names of records or functions that drive the case"),
+                          texts("by", "names of the records that take their places, in the same order")}};
+  return s;
+}
+
+}  // namespace uplift

@@ -1,0 +1,157 @@
+#include "uplift/analysis/case_records.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+#include <filesystem>
+
+#include "uplift/analysis/case_model.h"
+#include "uplift/analysis/wording.h"
+#include "uplift/base/text.h"
+#include "uplift/motion/read.h"
+
+namespace uplift {
+namespace {
+
+/// The component that the table names, of those in the file.
+Motion component_of(const Values& record, std::vector<Motion> motions) {
+  std::vector<std::string> known;
+  for (const Motion& each : motions) known.push_back(in_quotes(each.component));
+  if (!record.has("component")) {
+    if (motions.size() > 1) fail(record, "", "component, one of " + listed(known) + " in this file", "none");
+    return std::move(motions.front());
+  }
+  for (Motion& each : motions)
+    if (each.component == record.text("component")) return std::move(each);
+  fail(record, "component", (known.size() > 1 ? "one of " : "") + listed(known), in_quotes(record.text("component")));
+}
+
+Motion read_record(const Values& record) {
+  RecordOptions options;
+  if (record.has("format")) options.format = record.text("format");
+  if (record.has("unit")) options.unit = record.text("unit");
+  if (record.has("step")) options.step = record.number("step");
+  if (record.has("column")) options.column = record.text("column");
+  const std::string path = record_path(record);
+  if (!std::filesystem::is_regular_file(path)) fail(record, "file", "a file", in_quotes(path));
+  Motion motion = component_of(record, read_motions(path, options));
+  motion.file = record.text("file");
+  return motion;
+}
+
+}  // namespace
+
+std::string record_path(const Values& record) {
+  const std::filesystem::path given = record.text("file");
+  const std::filesystem::path folder = std::filesystem::path(record.where().file).parent_path();
+  return (given.is_absolute() ? given : folder / given).lexically_normal().string();
+}
+
+std::vector<CaseRecord> read_records(const Values& root) {
+  std::vector<CaseRecord> made;
+  for (const Values& record : root.tables("record")) {
+    Motion motion = read_record(record);
+    motion.name = record.text("name");
+    made.push_back({motion.name, std::make_shared<const MotionHistory>(std::make_shared<const Motion>(std::move(motion)))});
+  }
+  return made;
+}
+
+const std::string& name_taken(const Values* instead, const std::string& name) {
+  if (!instead) return name;
+  const std::vector<std::string>& replaced = instead->texts("replace");
+  const auto found = std::ranges::find(replaced, name);
+  return found == replaced.end() ? name : instead->texts("by")[static_cast<std::size_t>(found - replaced.begin())];
+}
+
+void check_motion(const Values& root, const Values& motion) {
+  const std::vector<std::string>&replaced = motion.texts("replace"), &by = motion.texts("by");
+  if (by.size() != replaced.size())
+    fail(motion, "by", fmt::format("as many names as in replace ({})", replaced.size()), fmt::format("{}", by.size()));
+  Names known("function or record");
+  for (const char* key : {"function", "record"})
+    for (const Values& table : root.tables(key)) known.add(table, "name");
+  std::vector<std::string> drives;
+  for (const DrivenBy& place : motions_wanted(root)) drives.push_back(place.table->text("function"));
+  for (std::size_t i = 0; i < by.size(); ++i) {
+    known.find(by[i], motion.where("by"), motion.path("by"));
+    if (std::ranges::find(drives, replaced[i]) == drives.end())
+      fail(motion, "replace", "the name of a function or record that drives the case", in_quotes(replaced[i]),
+           nearest_name(replaced[i], drives));
+  }
+}
+
+std::vector<DrivenBy> motions_wanted(const Values& root) {
+  std::vector<DrivenBy> wanted;
+  for (const Values& ground : root.tables("ground_acceleration")) wanted.push_back({&ground, MotionKind::acceleration});
+  for (const Values& motion : root.tables("motion"))
+    wanted.push_back({&motion, MotionKind::displacement, motion.text("direction").front() == 'r'});
+  for (const Values& absorbing : root.tables("absorbing"))
+    if (const Values* incident = table_if(absorbing, "incident")) wanted.push_back({incident, MotionKind::velocity});
+  return wanted;
+}
+
+std::vector<MotionUse> motions_used(const Values& root, const std::vector<CaseRecord>& records, const Values* instead) {
+  std::vector<MotionUse> used;
+  for (const DrivenBy& place : motions_wanted(root)) {
+    const std::string& name = name_taken(instead, place.table->text("function"));
+    const auto record = std::ranges::find(records, name, &CaseRecord::name);
+    if (record == records.end()) continue;
+    const auto same = [&](const MotionUse& each) { return each.history == record->history && each.kind == place.kind; };
+    if (std::ranges::none_of(used, same)) used.push_back({record->history, place.kind});
+  }
+  return used;
+}
+
+double newmark_share(const std::vector<Stage>& stages) {
+  const Stage* first = nullptr;
+  for (const Stage& stage : stages) {
+    if (stage.type == Stage::Type::statics) continue;
+    if (!first) first = &stage;
+    if (stage.step != first->step || !(stage.scheme == first->scheme)) return 0;
+  }
+  if (!first || first->scheme.gamma != 0.5) return 0;
+  return (first->scheme.beta - 1.0 / 6) * first->step * first->step;
+}
+
+void warn_motions(const std::vector<MotionUse>& used, const std::vector<Stage>& stages, std::vector<std::string>& said) {
+  double duration = 0, coarsest = 0;
+  for (const Stage& stage : stages)
+    if (stage.type == Stage::Type::dynamics) {
+      duration += stage.duration;
+      coarsest = std::max(coarsest, stage.step);
+    }
+  if (coarsest == 0) return;
+  std::vector<const MotionHistory*> seen;
+  for (const MotionUse& use : used) {
+    const Motion& motion = *use.history->motion();
+    if (use.kind == MotionKind::displacement && motion.kind == MotionKind::acceleration) {
+      double fastest = 0;
+      for (std::size_t i = 0; i < motion.values.size(); ++i)
+        fastest = std::max(fastest, std::abs(use.history->at(MotionKind::velocity, motion.step * static_cast<double>(i))));
+      const double left = use.history->at(MotionKind::velocity, motion.duration());
+      if (std::abs(left) > 0.01 * fastest)
+        said.push_back(
+            fmt::format("the record {} ends with a velocity of {}: the displacement that it prescribes drifts away; correct its "
+                        "base line",
+                        in_quotes(motion.name), spoken(left, "m/s")));
+    }
+    if (std::ranges::find(seen, use.history.get()) != seen.end()) continue;
+    seen.push_back(use.history.get());
+    const double steps = motion.step / coarsest;
+    if (steps < 1 - 1e-9)
+      said.push_back(
+          fmt::format("the step of {} is coarser than that of the record {} ({}): its high frequencies are lost; take a smaller "
+                      "step, or resample the record",
+                      spoken(coarsest, "s"), in_quotes(motion.name), spoken(motion.step, "s")));
+    else if (std::abs(steps - std::round(steps)) > 1e-6 * steps)
+      said.push_back(fmt::format("the step of {} is no whole fraction of that of the record {} ({}): its peaks fall between the steps",
+                                 spoken(coarsest, "s"), in_quotes(motion.name), spoken(motion.step, "s")));
+    if (duration < motion.duration() * (1 - 1e-9))
+      said.push_back(fmt::format("the record {} lasts {}, the dynamic stages {}: the rest of it is not used", in_quotes(motion.name),
+                                 spoken(motion.duration(), "s"), spoken(duration, "s")));
+  }
+}
+
+}  // namespace uplift
