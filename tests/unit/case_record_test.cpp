@@ -177,7 +177,9 @@ TEST_P(MovingFrame, IsTheAbsoluteFrame) {
     ASSERT_EQ(to_string(results.back().status), "completed") << results.back().reason;
   }
   const RunResult &moving = results[0], &absolute = results[1];
-  if (!bonded) EXPECT_GT(moving.max_uplifted_ratio.value, 0);
+  if (!bonded) {
+    EXPECT_GT(moving.max_uplifted_ratio.value, 0);
+  }
   int compared = 0;
   for (std::size_t k = 0; k < moving.columns.size(); ++k) {
     const Request& column = moving.columns[k];

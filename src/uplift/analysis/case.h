@@ -57,7 +57,8 @@ struct RunSpec {
 /// What `uplift run` does: the case itself, then (unless it says bonded = false) the bonded model.
 std::vector<RunSpec> runs_of_case(const Case&);
 
-/// What `uplift compare` does: every variant (the case itself when there are none) and the bonded model, with every damping and every motion; and the runs of the stiffness sweep.
+/// What `uplift compare` does: every variant (the case itself when there are none) and the bonded model, with every damping and every
+/// motion; and the runs of the stiffness sweep.
 struct Comparison {
   std::vector<RunSpec> runs;
   std::vector<RunSpec> sweep;  // pairs: path average, end of step; in the order of the ratios

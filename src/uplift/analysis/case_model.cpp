@@ -176,10 +176,7 @@ std::shared_ptr<const TimeFunction> CaseNames::function(const Values& table, std
   if (functions_made[found]) return functions_made[found];
   const CaseRecord& record = (*records)[found - (functions_made.size() - records->size())];
   if (!kind) fail(table, "function", "a function (a record is a motion: no load, no rotation)", "the record " + in_quotes(name));
-  if (!record.history->gives(*kind))
-    fail(table, "function", fmt::format("a record whose {} follows by integration", to_string(*kind)),
-         fmt::format("{}, a record of {}", in_quotes(name), to_string(record.motion().kind)));
-  return std::make_shared<MotionFunction>(record.history, *kind, share);
+  return std::make_shared<MotionFunction>(giving(record.history, *kind), *kind, share);
 }
 
 void add_nodes(const Values& root, ModelBuilder& builder, CaseNames& names) {

@@ -1,6 +1,15 @@
 #include "uplift/analysis/case_records.h"
+#include "uplift/motion/processing.h"
 
 namespace uplift {
+namespace {
+
+const Section& process_section() {
+  static const Section s{"process", "a step of the processing of a record", {part("do", motion_processes, "what is done")}};
+  return s;
+}
+
+}  // namespace
 
 const Section& record_section() {
   static const Section s{
@@ -13,15 +22,18 @@ const Section& record_section() {
        text("unit", "of the numbers in the file (\"g\", \"cm/s2\"); absent: as the file says").optional(),
        number("step", "s", "of files without times").positive().optional(),
        text("column", "of tables: name, or number from 1; absent: the first after the time").optional(),
-       text("component", "which one, when the file has several").optional()}};
+       text("component", "which one, when the file has several").optional(),
+       tables("process", process_section(), "steps between the record as read and what drives the model, in order")}};
   return s;
 }
 
 const Section& compare_motion_section() {
-  static const Section s{"motion", "for `uplift compare`: every variant, or the case itself when there are none, and the bonded model with other motions",
-                         {text("name", "name, part of the names of the runs"), text("label", "as shown").optional(),
-                          texts("replace", "names of records or functions that drive the case"),
-                          texts("by", "names of the records that take their places, in the same order")}};
+  static const Section s{
+      "motion",
+      "for `uplift compare`: every variant, or the case itself when there are none, and the bonded model with other motions",
+      {text("name", "name, part of the names of the runs"), text("label", "as shown").optional(),
+       texts("replace", "names of records or functions that drive the case"),
+       texts("by", "names of the records that take their places, in the same order")}};
   return s;
 }
 

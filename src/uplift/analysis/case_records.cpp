@@ -9,6 +9,8 @@
 #include "uplift/analysis/case_model.h"
 #include "uplift/analysis/wording.h"
 #include "uplift/base/text.h"
+#include "uplift/motion/convert.h"
+#include "uplift/motion/processing.h"
 #include "uplift/motion/read.h"
 
 namespace uplift {
@@ -53,9 +55,15 @@ std::vector<CaseRecord> read_records(const Values& root) {
   for (const Values& record : root.tables("record")) {
     Motion motion = read_record(record);
     motion.name = record.text("name");
+    for (const Values& step : record.tables("process")) motion = make_part(process_catalog(), step.part("do"))->apply(std::move(motion));
     made.push_back({motion.name, std::make_shared<const MotionHistory>(std::make_shared<const Motion>(std::move(motion)))});
   }
   return made;
+}
+
+std::shared_ptr<const MotionHistory> giving(const std::shared_ptr<const MotionHistory>& history, MotionKind kind) {
+  if (history->gives(kind)) return history;
+  return std::make_shared<const MotionHistory>(std::make_shared<const Motion>(converted(*history->motion(), kind)));
 }
 
 const std::string& name_taken(const Values* instead, const std::string& name) {

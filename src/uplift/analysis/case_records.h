@@ -29,6 +29,9 @@ std::string record_path(const Values& record);
 
 /// Refuses a [[compare.motion]] whose names do not pair, drive nothing or do not exist.
 void check_motion(const Values& root, const Values& motion);
+/// A history that gives a quantity: this one, or when it would have to be differentiated, that of its spline (see converted).
+std::shared_ptr<const MotionHistory> giving(const std::shared_ptr<const MotionHistory>& history, MotionKind kind);
+
 /// The function or record that is taken instead of another: `instead` is a [[compare.motion]], or null.
 const std::string& name_taken(const Values* instead, const std::string& name);
 

@@ -74,7 +74,7 @@ std::vector<RunSpec> sweep_runs(const Case& read, const Values& sweep, const Val
 
 /// Every run with every one of some tables; pictures of the first alone.
 std::vector<RunSpec> with_each(const std::vector<RunSpec>& plain, const std::vector<Values>& tables, const std::string& what,
-                               const Values* RunSpec::* place) {
+                               const Values* RunSpec::*place) {
   if (tables.empty()) return plain;
   std::vector<RunSpec> made;
   Names known(what);

@@ -17,12 +17,12 @@ struct MotionTable {
     RunStatus status = RunStatus::completed;
     std::vector<double> peaks;
   };
-  std::string run, damping;           // labels; damping is empty when there is but one
-  std::vector<Quantity> quantities;   // columns
-  std::vector<Row> rows;              // one per motion
-  int counted = 0;                    // completed runs: those of the three rows below
-  std::vector<double> envelope;       // the largest
-  std::vector<double> mean, spread;   // spread: standard deviation of the sample (over n - 1); zero for one run
+  std::string run, damping;          // labels; damping is empty when there is but one
+  std::vector<Quantity> quantities;  // columns
+  std::vector<Row> rows;             // one per motion
+  int counted = 0;                   // completed runs: those of the three rows below
+  std::vector<double> envelope;      // the largest
+  std::vector<double> mean, spread;  // spread: standard deviation of the sample (over n - 1); zero for one run
 };
 
 /// One table per variant and damping, the bonded model among them; none without [[compare.motion]]. Quantities that a model does not have

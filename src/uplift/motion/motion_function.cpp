@@ -3,18 +3,15 @@
 #include <algorithm>
 #include <cassert>
 
+#include "uplift/motion/convert.h"
+
 namespace uplift {
 
 MotionHistory::MotionHistory(std::shared_ptr<const Motion> motion) : motion_(std::move(motion)) {
-  const std::vector<double>& given = motion_->values;
-  assert(given.size() >= 2 && motion_->step > 0);
-  const double h = motion_->step;
-  once_.resize(given.size());
-  twice_.resize(given.size());
-  for (std::size_t i = 1; i < given.size(); ++i) {
-    once_[i] = once_[i - 1] + h / 2 * (given[i - 1] + given[i]);
-    twice_[i] = twice_[i - 1] + h * once_[i - 1] + h * h / 6 * (2 * given[i - 1] + given[i]);
-  }
+  assert(motion_->values.size() >= 2 && motion_->step > 0);
+  Integrals integrals = integrals_of(motion_->values, motion_->step);
+  once_ = std::move(integrals.velocity);
+  twice_ = std::move(integrals.displacement);
 }
 
 double MotionHistory::integrated(int times, double time) const {
