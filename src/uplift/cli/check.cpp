@@ -279,7 +279,7 @@ int check(const Options& options) {
   std::vector<std::string> runs;
   for (const RunSpec& spec : own) runs.push_back("uplift run: " + spec.label);
   const Built built = build(loaded.read, own.front());
-  if (!loaded.read.values.tables("variant").empty()) {
+  if (compares(loaded.read)) {
     const Comparison comparison = comparison_of_case(loaded.read);
     for (const RunSpec& spec : comparison.runs) {
       build(loaded.read, spec);  // every variant is checked too

@@ -49,6 +49,28 @@ void print_sweep(const ComparisonSummary& compared) {
   print_table(rows);
 }
 
+/// A value as the table shows it: shares in per cent.
+std::string shown(double value, const std::string& unit) {
+  return unit == "1" ? percent(value) : spoken(value, unit);
+}
+
+void print_over_motions(const ComparisonSummary& compared) {
+  for (const MotionTable& table : compared.motions) {
+    say(fmt::format("\nover the motions: {}{}", table.run, table.damping.empty() ? "" : ", " + table.damping));
+    std::vector<std::vector<std::string>> rows{{"motion", "status"}};
+    for (const MotionTable::Quantity& quantity : table.quantities) rows.front().push_back(quantity.label);
+    const auto add = [&](const std::string& name, std::string_view status, const std::vector<double>& values) {
+      std::vector<std::string>& row = rows.emplace_back(std::vector<std::string>{name, std::string(status)});
+      for (std::size_t k = 0; k < values.size(); ++k) row.push_back(shown(values[k], table.quantities[k].unit));
+    };
+    for (const MotionTable::Row& row : table.rows) add(row.motion, to_string(row.status), row.peaks);
+    add("envelope", "", table.envelope);
+    add("mean", "", table.mean);
+    add("spread", "", table.spread);
+    print_table(rows);
+  }
+}
+
 /// Builds and runs one list of specs; stops after an interrupted run. Fields are written into the folder when there is one.
 void run_all(const Loaded& loaded, const Options& options, const std::vector<RunSpec>& specs, std::size_t before, std::size_t total,
              ResultFolder* folder, Results& results) {
@@ -85,6 +107,7 @@ int compare(const Options& options) {
   compared.columns = compared_names(results.runs.front(), columns, first.top_sway(), first.base_turn());
   compared.agreement = agreement(results.runs, results.specs, columns, compared.band, first.top_sway(), first.base_turn());
   compared.sweep = sweep_table(swept.specs, swept.runs);
+  compared.motions = motion_tables(results.specs, results.built, results.runs);
   results.floors = floor_answers(first.plan, results.runs, results.specs);
   const RunResult* bonded = nullptr;
   for (std::size_t i = 0; i < results.runs.size(); ++i)
@@ -98,6 +121,7 @@ int compare(const Options& options) {
   } else if (!options.quiet) {
     for (const std::string& warning : results.warnings) complain("warning: " + warning);
     print_runs(results, compared);
+    print_over_motions(compared);
     print_sweep(compared);
     say(fmt::format("\nsound runs agree when their peaks of {} lie within {} of the median of their group",
                     fmt::join(compared.columns, ", "), percent(compared.band)));

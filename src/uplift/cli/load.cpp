@@ -12,6 +12,7 @@
 #include "uplift/io/floors.h"
 #include "uplift/io/histories.h"
 #include "uplift/io/mesh_file.h"
+#include "uplift/io/report_motions.h"
 #include "uplift/io/toml.h"
 
 namespace uplift::cli {
@@ -80,7 +81,8 @@ void write_results(const Options& options, const Loaded& loaded, const Results& 
     if (!run.problem.empty()) folder.write("problem_" + run.name + ".json", run.problem);
   }
   if (results.floors.any()) folder.write("floor_spectra.csv", floor_spectra_csv(results.runs, results.floors));
-  folder.write("summary.json", summary_json({loaded.from, results.runs, results.verdict, compared, &results.floors}));
+  folder.write("summary.json",
+               summary_json({loaded.from, results.runs, results.verdict, motions_of(input.runs), compared, &results.floors}));
   folder.write("case.resolved.toml", loaded.from.resolved);
   const std::string page = report_page(report_json(input));
   if (!page.empty())

@@ -1,6 +1,6 @@
 #include "uplift/io/report.h"
 
-#include "uplift/io/report_parts.h"
+#include "uplift/io/report_motions.h"
 
 namespace uplift {
 namespace {
@@ -26,6 +26,8 @@ void write_section(JsonWriter& json, const char* id, std::string_view title, std
 void write_sections(JsonWriter& json, const ReportInput& input) {
   json.begin_array();
   write_section(json, "loads", "Loads", "What acts on the structure.");
+  if (!motions_of(input.runs).empty())
+    write_section(json, "motions", "Ground motions", "Recorded and generated motions that drive the model.");
   write_section(json, "response", "Response", "Motion of the top and of the base.");
   write_section(json, "interface", "Interface",
                 "What the interface carries and how far it opens. Uplifted area is counted by gap, never by zero pressure.");
@@ -34,8 +36,9 @@ void write_sections(JsonWriter& json, const ReportInput& input) {
         json, "floors", "Floor spectra",
         "What equipment on a floor feels: largest pseudo-acceleration of a damped oscillator of each frequency that stands there.");
   if (input.compared && input.runs.size() > 1 && input.runs.back().result->group != input.runs.front().result->group)
-    write_section(json, "others", "Other dampings",
-                  "The same variants with the other dampings of the case; without damping nothing hides an error of the velocity.");
+    write_section(
+        json, "others", "Other dampings and motions",
+        "The same variants with the other dampings and motions of the case; without damping nothing hides an error of the velocity.");
   write_section(json, "energy", "Energy",
                 "Every step keeps a balance of energy. What it does not explain was created (or lost) by the computation.");
   write_section(json, "law", "Interface law", "The law of the interface, driven through openings and closings.");

@@ -15,6 +15,7 @@ struct ReportRun {
   const RunSpec* spec = nullptr;
   const Built* built = nullptr;
   const RunResult* result = nullptr;
+  bool say_group = false;  // its curves are named with its damping and motion
 };
 
 struct ReportInput {

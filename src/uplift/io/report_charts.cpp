@@ -5,7 +5,7 @@
 
 #include "uplift/analysis/case_model.h"
 #include "uplift/io/histories.h"
-#include "uplift/io/report_parts.h"
+#include "uplift/io/report_motions.h"
 
 // The figures: histories of all runs, side by side; hysteresis; energy.
 namespace uplift {
@@ -26,7 +26,7 @@ struct View {
 
 Curve curve_of(const ReportRun& run) {
   Curve curve;
-  curve.label = run.result->label;
+  curve.label = run.result->label + (run.say_group ? ", " + run.result->group : "");
   curve.run = run.result->label;  // not the name: a variant has one colour, whatever its damping
   curve.dash = run.spec->bonded;
   curve.failed = run.result->status == RunStatus::failed;
@@ -297,8 +297,14 @@ void write_charts(JsonWriter& json, const ReportInput& input) {
   const Built& built = *input.runs.front().built;
   std::vector<ReportRun> runs, others;  // the group of the first run, and the rest
   for (const ReportRun& run : input.runs) (run.result->group == input.runs.front().result->group ? runs : others).push_back(run);
+  std::string other = others.empty() ? "" : others.front().result->group;
+  if (std::ranges::any_of(others, [&](const ReportRun& run) { return run.result->group != other; })) {
+    for (ReportRun& run : others) run.say_group = true;
+    other = "all others";
+  }
   json.begin_array();
   write_chart(json, *input.read, load_chart(*input.read, input.runs.front()));
+  write_motion_charts(json, input);
   for (const View& view : motion_views(built)) write_chart(json, *input.read, history_chart(view, runs));
   for (const View& view : interface_views(built)) write_chart(json, *input.read, history_chart(view, runs));
   write_loops(json, input, runs);
@@ -306,7 +312,7 @@ void write_charts(JsonWriter& json, const ReportInput& input) {
   if (!others.empty()) {
     std::vector<View> views = motion_views(built);
     for (View& view : views) {
-      const std::string id = std::string("other_") + view.id, title = fmt::format("{}, {}", view.title, others.front().result->group);
+      const std::string id = std::string("other_") + view.id, title = fmt::format("{}, {}", view.title, other);
       if (view.kind == Column::velocity && view.of != built.top_sway()) continue;
       view.section = "others";
       Chart chart = history_chart(view, others);
@@ -314,8 +320,7 @@ void write_charts(JsonWriter& json, const ReportInput& input) {
       chart.title = title;
       write_chart(json, *input.read, chart);
     }
-    write_chart(json, *input.read,
-                energy_error_chart("other_energy_error", "others", "Energy error, " + others.front().result->group, others));
+    write_chart(json, *input.read, energy_error_chart("other_energy_error", "others", "Energy error, " + other, others));
   }
   write_chart(json, *input.read, energy_error_chart("energy_error", "energy", "Energy error", runs));
   write_chart(json, *input.read, ledger_chart(input.runs.front()));

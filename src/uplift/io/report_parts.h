@@ -38,6 +38,7 @@ struct Chart {
 /// With the origin and the caption that the case states; nothing without curves.
 void write_chart(JsonWriter& json, const Case& read, const Chart& chart);
 
+/// A column of a table of the report.
 struct TableColumn {
   const char *key, *label, *unit, *kind;
   int digits;

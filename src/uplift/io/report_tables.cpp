@@ -3,7 +3,7 @@
 #include <cmath>
 
 #include "uplift/analysis/case_model.h"
-#include "uplift/io/report_parts.h"
+#include "uplift/io/report_motions.h"
 
 // The tables: all runs side by side, the stiffness sweep, and where the values come from.
 namespace uplift {
@@ -148,6 +148,7 @@ void write_column(JsonWriter& json, const TableColumn& column) {
 void write_tables(JsonWriter& json, const ReportInput& input) {
   json.begin_array();
   write_runs(json, input);
+  write_motion_tables(json, input);
   write_floor_table(json, input);
   if (input.compared) write_sweep(json, input.compared->sweep);
   json.end_array();
@@ -155,8 +156,8 @@ void write_tables(JsonWriter& json, const ReportInput& input) {
 
 void write_choices(JsonWriter& json, const Case& read, const Built& built) {
   std::vector<Given> given;
-  for (const char* table : {"nodes", "beam", "mass", "spring", "dashpot", "rigid", "interface", "gravity", "function", "load", "motion",
-                            "ground_acceleration", "initial", "damping", "stage", "compare"}) {
+  for (const char* table : {"nodes", "beam", "mass", "spring", "dashpot", "rigid", "interface", "gravity", "function", "record", "load",
+                            "motion", "ground_acceleration", "initial", "damping", "stage", "compare"}) {
     const Field* field = nullptr;
     for (const Field& each : read.values.section()->fields)
       if (each.name == table) field = &each;

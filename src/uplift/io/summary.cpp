@@ -2,6 +2,7 @@
 
 #include "uplift/io/floors.h"
 #include "uplift/io/json_writer.h"
+#include "uplift/io/report_motions.h"
 #include "uplift/io/verdict_json.h"
 
 namespace uplift {
@@ -65,7 +66,7 @@ void write_run(JsonWriter& json, const RunResult& run, const Agreement* agreemen
 }  // namespace
 
 std::string summary_json(const SummaryInput& input) {
-  const auto& [from, runs, verdict, compared, floors] = input;
+  const auto& [from, runs, verdict, motions, compared, floors] = input;
   JsonWriter json(0, 2);
   json.begin_object();
   json.member("format", "uplift-summary-1").member("version", from.version).member("title", from.title).member("command", from.command);
@@ -74,6 +75,7 @@ std::string summary_json(const SummaryInput& input) {
   json.key("inputs").begin_array();
   for (const auto& [file, hash] : from.inputs) json.begin_object().member("file", file).member("sha256", hash).end_object();
   json.end_array();
+  write_motions(json, motions);
   json.key("runs").begin_array();
   for (std::size_t i = 0; i < runs.size(); ++i)
     write_run(json, runs[i], compared ? &compared->agreement[i] : nullptr, floors && floors->any() ? &floors->runs[i] : nullptr);
@@ -93,6 +95,7 @@ std::string summary_json(const SummaryInput& input) {
           .member("status_end", row.end_status)
           .end_object();
     json.end_array();
+    if (!compared->motions.empty()) write_over_motions(json, compared->motions);
   }
   json.end_object();
   return json.take() + "\n";

@@ -4,6 +4,7 @@
 #include <vector>
 
 #include "uplift/analysis/compare.h"
+#include "uplift/analysis/compare_motions.h"
 #include "uplift/analysis/floor_spectra.h"
 #include "uplift/analysis/verdict.h"
 
@@ -23,18 +24,20 @@ struct ComparisonSummary {
   double band = 0;
   std::vector<std::string> columns;  // whose peaks are compared
   std::vector<SweepRow> sweep;
+  std::vector<MotionTable> motions;  // one per variant and damping; empty without [[compare.motion]]
 };
 
 /// What stands in summary.json.
 struct SummaryInput {
   const Provenance& from;
   const std::vector<RunResult>& runs;
-  const Verdict& verdict;                       // on the first run
-  const ComparisonSummary* compared = nullptr;  // null for a single run
+  const Verdict& verdict;                                     // on the first run
+  std::vector<std::shared_ptr<const MotionHistory>> motions;  // those that drive the runs
+  const ComparisonSummary* compared = nullptr;                // null for a single run
   const FloorAnswers* floors = nullptr;
 };
 
-/// summary.json: an object with the provenance, the array `runs` and the `verdict`.
+/// summary.json: an object with the provenance, the arrays `motions` and `runs`, and the `verdict`.
 std::string summary_json(const SummaryInput&);
 
 }  // namespace uplift

@@ -1,0 +1,230 @@
+#include "uplift/io/report_motions.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cctype>
+#include <numbers>
+#include <utility>
+
+#include "uplift/motion/convert.h"
+#include "uplift/motion/intensity.h"
+#include "uplift/motion/spectrum.h"
+
+namespace uplift {
+namespace {
+
+constexpr double spectrum_damping = 0.05, least_frequency = 0.1, most_frequency = 50;  // 1, Hz
+constexpr int spectrum_points = 300;
+constexpr std::size_t points_per_curve = 1500;
+
+Motion acceleration_of(const MotionHistory& history) {
+  return converted(*history.motion(), MotionKind::acceleration);
+}
+
+/// What one number can say of them.
+void write_numbers(JsonWriter& json, const Histories& motions) {
+  json.begin_object().member("id", "motions").member("title", "Motions");
+  json.member("caption",
+              "As they drive the model. PGV and PGD by exact integration of the acceleration, which is straight between its points; Arias: "
+              "pi/(2 g) times the integral of a2; D5-95: from 5 % to 95 % of it.");
+  json.key("columns").begin_array();
+  for (const TableColumn& column : {TableColumn{"name", "Motion", "", "text", 0},
+                                    {"station", "Station", "", "text", 0},
+                                    {"component", "Component", "", "text", 0},
+                                    {"count", "Points", "", "number", 6},
+                                    {"step", "Step", "s", "number", 4},
+                                    {"duration", "Duration", "s", "number", 4},
+                                    {"pga", "PGA", "m/s2", "number", 4},
+                                    {"pgv", "PGV", "m/s", "number", 4},
+                                    {"pgd", "PGD", "m", "number", 4},
+                                    {"arias", "Arias", "m/s", "number", 4},
+                                    {"significant", "D5-95", "s", "number", 4}})
+    write_column(json, column);
+  json.end_array().key("rows").begin_array();
+  for (const auto& history : motions) {
+    const Motion& motion = *history->motion();
+    const Intensity intensity = intensity_of(acceleration_of(*history));
+    json.begin_object().member("name", motion.name).member("station", motion.station).member("component", motion.component);
+    json.member("count", static_cast<long>(motion.values.size())).member("step", motion.step).member("duration", motion.duration());
+    json.member("pga", intensity.pga).member("pgv", intensity.pgv).member("pgd", intensity.pgd);
+    json.member("arias", intensity.arias).member("significant", intensity.significant_duration()).end_object();
+  }
+  json.end_array().end_object();
+}
+
+/// Where they come from and what was done with them.
+void write_origins(JsonWriter& json, const Histories& motions) {
+  json.begin_object().member("id", "motion_origins").member("title", "Where the motions come from");
+  json.member("caption", "File with its SHA-256, the factor from its numbers to SI, what was mended when it was read, every step since.");
+  json.key("columns").begin_array();
+  for (const TableColumn& column : {TableColumn{"name", "Motion", "", "text", 0},
+                                    {"file", "File", "", "text", 0},
+                                    {"event", "Event", "", "text", 0},
+                                    {"format", "Format", "", "text", 0},
+                                    {"unit", "Unit", "", "text", 0},
+                                    {"factor", "Factor", "", "number", 8},
+                                    {"repairs", "Repairs", "", "text", 0},
+                                    {"processing", "Processing", "", "text", 0},
+                                    {"sha256", "SHA-256", "", "text", 0}})
+    write_column(json, column);
+  json.end_array().key("rows").begin_array();
+  for (const auto& history : motions) {
+    const Motion& motion = *history->motion();
+    json.begin_object().member("name", motion.name).member("file", motion.file).member("event", motion.event);
+    json.member("format", motion.format).member("unit", motion.unit).member("factor", motion.factor);
+    json.member("repairs", fmt::format("{}", fmt::join(motion.repairs, "; ")));
+    json.member("processing", fmt::format("{}", fmt::join(motion.processing, "; "))).member("sha256", motion.sha256).end_object();
+  }
+  json.end_array().end_object();
+}
+
+/// Title of a table over motions: the variant, and the damping when there are several.
+std::string title_of(const MotionTable& table) {
+  return "Over the motions: " + table.run + (table.damping.empty() ? "" : ", " + table.damping);
+}
+
+void write_over_motions_table(JsonWriter& json, const MotionTable& table, std::size_t number) {
+  json.begin_object().member("id", fmt::format("over_motions_{}", number)).member("title", title_of(table));
+  json.member("caption",
+              fmt::format("Largest magnitudes. Envelope, mean and spread (standard deviation of the sample) of the {} of {} runs "
+                          "that were completed.",
+                          table.counted, table.rows.size()));
+  json.key("columns").begin_array();
+  write_column(json, {"motion", "Motion", "", "text", 0});
+  write_column(json, {"status", "Status", "", "status", 0});
+  for (const MotionTable::Quantity& quantity : table.quantities) {
+    const bool share = quantity.unit == "1";
+    write_column(json, {quantity.key.c_str(), quantity.label.c_str(), share ? "" : quantity.unit.c_str(), share ? "percent" : "number", 4});
+  }
+  json.end_array().key("rows").begin_array();
+  const auto row = [&](const std::string& motion, std::string_view status, const std::vector<double>& values) {
+    json.begin_object().member("motion", motion).member("status", status);
+    for (std::size_t k = 0; k < values.size(); ++k) json.member(table.quantities[k].key, values[k]);
+    json.end_object();
+  };
+  for (const MotionTable::Row& each : table.rows) row(each.motion, to_string(each.status), each.peaks);
+  row("envelope", "", table.envelope);
+  row("mean", "", table.mean);
+  row("spread", "", table.spread);
+  json.end_array().end_object();
+}
+
+Chart motion_chart(const Histories& motions, MotionKind kind) {
+  const std::string word(to_string(kind)), title = std::string(1, static_cast<char>(std::toupper(word.front()))) + word.substr(1);
+  Chart chart{"motion_" + word,
+              "motions",
+              title + " of the ground",
+              "The motions that drive the model, before their amplitudes.",
+              {"Time", "s"},
+              {title, std::string(unit_of(kind))},
+              {}};
+  for (const auto& history : motions) {
+    const Motion motion = converted(*history->motion(), kind);
+    Curve curve;
+    curve.label = motion.name;
+    curve.y = motion.values;
+    for (std::size_t i = 0; i < curve.y.size(); ++i) curve.x.push_back(motion.step * static_cast<double>(i));
+    thin_history(curve.x, curve.y, points_per_curve);
+    chart.curves.push_back(std::move(curve));
+  }
+  return chart;
+}
+
+Chart spectrum_chart(const Histories& motions) {
+  Chart chart{"motion_spectrum",
+              "motions",
+              "Response spectra of the ground",
+              "Pseudo-acceleration of oscillators with 5 % damping.",
+              {"Frequency", "Hz", true},
+              {"PSA", "m/s2"},
+              {}};
+  const std::vector<double> frequencies = log_spaced(least_frequency, most_frequency, spectrum_points);
+  for (const auto& history : motions) {
+    const Motion motion = acceleration_of(*history);
+    Spectrum spectrum = response_spectra(motion.values, motion.step, frequencies, {spectrum_damping}, Spectrum::Kind::psa).front();
+    Curve curve;
+    curve.label = motion.name;
+    curve.x = frequencies;
+    curve.y = std::move(spectrum.values);
+    chart.curves.push_back(std::move(curve));
+  }
+  return chart;
+}
+
+}  // namespace
+
+Histories motions_of(const std::vector<ReportRun>& runs) {
+  Histories found;
+  for (const ReportRun& run : runs)
+    for (const MotionUse& use : run.built->motions)
+      if (std::ranges::find(found, use.history) == found.end()) found.push_back(use.history);
+  return found;
+}
+
+void write_motions(JsonWriter& json, const Histories& motions) {
+  json.key("motions").begin_array();
+  for (const auto& history : motions) {
+    const Motion& motion = *history->motion();
+    const Motion acceleration = acceleration_of(*history);
+    const MotionPeak peak = peak_of(acceleration);
+    json.begin_object().member("name", motion.name).member("file", motion.file).member("sha256", motion.sha256);
+    json.member("format", motion.format).member("event", motion.event).member("station", motion.station);
+    json.member("component", motion.component);
+    if (motion.azimuth) json.member("azimuth_degrees", *motion.azimuth * 180 / std::numbers::pi);
+    json.member("quantity", to_string(motion.kind)).member("unit", motion.unit).member("factor", motion.factor);
+    json.key("repairs").texts(motion.repairs).key("processing").texts(motion.processing);
+    json.member("step", motion.step).member("count", static_cast<long>(motion.values.size())).member("duration", motion.duration());
+    json.key("pga").begin_object().member("value", peak.value).member("time", peak.time).member("unit", "m/s2").end_object();
+    json.end_object();
+  }
+  json.end_array();
+}
+
+void write_over_motions(JsonWriter& json, const std::vector<MotionTable>& tables) {
+  json.key("over_motions").begin_array();
+  for (const MotionTable& table : tables) {
+    const auto values = [&](const std::vector<double>& numbers) {
+      json.begin_object();
+      for (std::size_t k = 0; k < numbers.size(); ++k) json.member(table.quantities[k].key, numbers[k]);
+      json.end_object();
+    };
+    json.begin_object().member("run", table.run).member("damping", table.damping).member("counted", table.counted);
+    json.key("units").begin_object();
+    for (const MotionTable::Quantity& quantity : table.quantities) json.member(quantity.key, quantity.unit);
+    json.end_object().key("motions").begin_array();
+    for (const MotionTable::Row& row : table.rows) {
+      json.begin_object().member("motion", row.motion).member("status", to_string(row.status)).key("peaks");
+      values(row.peaks);
+      json.end_object();
+    }
+    json.end_array();
+    for (const auto& [key, numbers] :
+         {std::pair("envelope", &table.envelope), std::pair("mean", &table.mean), std::pair("spread", &table.spread)}) {
+      json.key(key);
+      values(*numbers);
+    }
+    json.end_object();
+  }
+  json.end_array();
+}
+
+void write_motion_tables(JsonWriter& json, const ReportInput& input) {
+  if (input.compared)
+    for (std::size_t i = 0; i < input.compared->motions.size(); ++i) write_over_motions_table(json, input.compared->motions[i], i + 1);
+  const Histories motions = motions_of(input.runs);
+  if (motions.empty()) return;
+  write_numbers(json, motions);
+  write_origins(json, motions);
+}
+
+void write_motion_charts(JsonWriter& json, const ReportInput& input) {
+  const Histories motions = motions_of(input.runs);
+  if (motions.empty()) return;
+  write_chart(json, *input.read, motion_chart(motions, MotionKind::acceleration));
+  write_chart(json, *input.read, spectrum_chart(motions));
+  write_chart(json, *input.read, motion_chart(motions, MotionKind::velocity));
+  write_chart(json, *input.read, motion_chart(motions, MotionKind::displacement));
+}
+
+}  // namespace uplift
