@@ -205,5 +205,161 @@ TEST_P(MovingFrame, IsTheAbsoluteFrame) {
 INSTANTIATE_TEST_SUITE_P(Steps, MovingFrame,
                          testing::Values(std::pair(0.02, true), std::pair(0.005, true), std::pair(0.0025, true), std::pair(0.0025, false)));
 
+/// a = 1, 3, -1 m/s2 every 0.5 s; integrals by hand.
+TEST(MotionHistories, IntegrateExactlyAndGoOnAfterTheEnd) {
+  Motion motion;
+  motion.step = 0.5;
+  motion.values = {1, 3, -1};
+  const auto history = std::make_shared<const MotionHistory>(std::make_shared<const Motion>(motion));
+  struct Expected {
+    double time, acceleration, velocity, displacement;
+  };
+  for (const Expected& each : {Expected{-0.1, 0, 0, 0},
+                               {0, 1, 0, 0},
+                               {0.25, 2, 0.375, 1.0 / 24},
+                               {0.5, 3, 1, 5.0 / 24},
+                               {1, -1, 1.5, 11.0 / 12},
+                               {2, 0, 1.5, 11.0 / 12 + 1.5}}) {
+    EXPECT_NEAR(history->at(MotionKind::acceleration, each.time), each.acceleration, 1e-15) << each.time;
+    EXPECT_NEAR(history->at(MotionKind::velocity, each.time), each.velocity, 1e-15) << each.time;
+    EXPECT_NEAR(history->at(MotionKind::displacement, each.time), each.displacement, 1e-15) << each.time;
+    const MotionFunction moved(history, MotionKind::displacement, 0.01), pushed(history, MotionKind::acceleration, 0.01);
+    EXPECT_NEAR(moved.value(each.time), each.displacement + (each.time < 0 ? -0.01 : 0.01 * (each.acceleration - 1)), 1e-15);
+    EXPECT_NEAR(moved.rate(each.time), each.velocity, 1e-15);
+    EXPECT_NEAR(moved.acceleration(each.time), each.acceleration, 1e-15);
+    EXPECT_EQ(pushed.value(each.time), history->at(MotionKind::acceleration, each.time));
+    EXPECT_EQ(pushed.acceleration(each.time), 0);
+  }
+  EXPECT_NEAR(MotionFunction(history, MotionKind::acceleration).rate(0.7), -8, 1e-14);
+}
+
+/// Of a velocity the displacement follows by integration, and it goes on with its last value.
+TEST(MotionHistories, KeepAVelocityAsItIs) {
+  Motion motion;
+  motion.kind = MotionKind::velocity;
+  motion.step = 0.1;
+  motion.values = {0.5, 1, 0.25};
+  const auto history = std::make_shared<const MotionHistory>(std::make_shared<const Motion>(motion));
+  EXPECT_NEAR(history->at(MotionKind::velocity, 0.05), 0.75, 1e-15);
+  EXPECT_NEAR(history->at(MotionKind::displacement, 0.2), 0.075 + 0.0625, 1e-15);
+  EXPECT_NEAR(history->at(MotionKind::displacement, 0.4), 0.1375 + 0.05, 1e-15);
+  EXPECT_FALSE(history->gives(MotionKind::acceleration));
+  EXPECT_NEAR(MotionFunction(history, MotionKind::displacement, 1.0).value(0.2), 0.1375, 1e-15);
+}
+
+const std::string quick = "step = 0.02\n";
+
+/// Line of the first place of a text.
+int line_of(const std::string& text, const std::string& what) {
+  return 1 + static_cast<int>(std::count(text.begin(), text.begin() + static_cast<std::ptrdiff_t>(text.find(what)), '\n'));
+}
+
+std::string replaced(std::string text, const std::string& old, const std::string& with) {
+  const std::size_t at = text.find(old);
+  EXPECT_NE(at, text.npos) << old;
+  return text.replace(at, old.size(), with);
+}
+
+TEST_F(RecordCase, NamesWhatIsWrong) {
+  write_record("ex.txt", 0.02, 51, 1);
+  write_record("ey.txt", 0.02, 51, 1);
+  const std::string good = tower(quick, moving_frame);
+  EXPECT_EQ(refusal(good), "");
+  const auto says = [&](const std::string& text, const std::string& marker, const std::string& rest) {
+    EXPECT_EQ(refusal(text), "case.toml:" + std::to_string(line_of(text, marker)) + ": " + rest);
+  };
+  const std::string unknown = replaced(good, "function = \"ey\"", "function = \"eyy\"");
+  says(unknown, "function = \"eyy\"",
+       "ground_acceleration[1].function: wanted the name of a function or record, found \"eyy\" (did you mean \"ey\"?)");
+  const std::string missing = replaced(good, "file = \"ey.txt\"", "file = \"up.txt\"");
+  says(missing, "file = \"up.txt\"", "record[1].file: wanted a file, found \"up.txt\"");
+  const std::string turned = tower(quick, replaced(absolute_frame(), "direction = \"ux\"", "direction = \"rz\""));
+  says(replaced(turned, "fixed = [\"rz\"]", "fixed = [\"ux\"]"), "function = \"ex\"",
+       "motion[0].function: wanted a function (a record is a motion: no load, no rotation), found the record \"ex\"");
+  const std::string loaded = good + "[[load]]\nnode = \"top\"\nforce = [1, 0]\nfunction = \"ex\" # load\n";
+  says(loaded, "function = \"ex\" # load",
+       "load[0].function: wanted a function (a record is a motion: no load, no rotation), found the record \"ex\"");
+  const std::string twice = good + "[[function]]\nname = \"ey\"\nshape = \"constant\"\n";
+  says(twice, "name = \"ey\"",
+       "record[1].name: wanted a name that no other function or record has, found \"ey\", which line " +
+           std::to_string(line_of(twice, "[[function]]") + 1) + " uses already");
+}
+
+TEST_F(RecordCase, WarnsOfStepsThatDoNotFit) {
+  write_record("ex.txt", 0.02, 301, 1);
+  const std::string ground = replaced(moving_frame, "function = \"ey\"", "function = \"ex\"");
+  write_record("ey.txt", 0.02, 301, 1);
+  const auto said = [&](const std::string& step, const std::string& words) {
+    const Case file = read(tower("step = " + step + "\n", ground));
+    const RunSpec spec = runs_of_case(file).front();
+    const std::vector<std::string> all = warnings(file, spec, build(file, spec));
+    return std::ranges::count_if(all, [&](const std::string& each) { return each.find(words) != each.npos; });
+  };
+  EXPECT_EQ(said("0.005", "of the record \"ex\""), 0);
+  EXPECT_EQ(said("0.04", "is coarser than that of the record \"ex\" (20 ms)"), 1);
+  EXPECT_EQ(said("0.008", "is no whole fraction of that of the record \"ex\" (20 ms)"), 1);
+  EXPECT_EQ(said("0.005", "the record \"ex\" lasts 6 s, the dynamic stages 3 s"), 1);
+}
+
+/// A prescribed displacement drifts away with the velocity that is left.
+TEST_F(RecordCase, WarnsOfADrift) {
+  std::ofstream(folder_ / "ex.txt") << "0 0\n0.02 1\n0.04 1\n0.06 0\n";
+  std::ofstream(folder_ / "ey.txt") << "0 0\n0.02 1\n0.04 -1\n0.06 0\n";
+  const Case file = read(tower(quick, absolute_frame()));
+  const RunSpec spec = runs_of_case(file).front();
+  const std::vector<std::string> all = warnings(file, spec, build(file, spec));
+  const auto drifts = [&](const std::string& name) {
+    return std::ranges::count_if(all, [&](const std::string& each) {
+      return each.find("the record \"" + name + "\" ends with a velocity of 0.04 m/s") != each.npos ||
+             each.find("the record \"" + name + "\" ends with a velocity of 40 mm/s") != each.npos;
+    });
+  };
+  EXPECT_EQ(drifts("ex"), 1);
+  EXPECT_EQ(drifts("ey"), 0);
+}
+
+const std::string box = R"(title = "soil"
+bonded = false
+[mesh.soil_box]
+cell = "quad4"
+[mesh.soil_box.soil]
+width = 4
+size = 1
+layers = [{ thickness = 4, size = 1 }]
+[[solid]]
+group = "soil_1"
+shear_wave_speed = 200
+poisson = 0.3
+density = 1900
+[[absorbing]]
+group = "soil_bottom"
+incident = { wave = "SV", kind = "outcrop", velocity = 3, function = "ex" }
+[[stage]]
+type = "dynamic"
+duration = 1
+step = 0.01
+[[record]]
+name = "ex"
+file = "ex.txt"
+unit = "m/s2"
+)";
+
+/// An outcrop moves twice as much as the wave that comes in: half of three times the velocity of the record.
+TEST_F(RecordCase, GivesAnIncidentWaveItsVelocity) {
+  const std::vector<double> values = write_record("ex.txt", 0.02, 51, 1);
+  const Case file = read(box);
+  const Built built = build(file, runs_of_case(file).front());
+  const auto drive = std::ranges::find(built.model.drives, "incident wave", &Drive::name);
+  ASSERT_NE(drive, built.model.drives.end());
+  double velocity = 0;
+  for (std::size_t i = 0; i < values.size(); ++i) {
+    if (i > 0) velocity += 0.01 * (values[i - 1] + values[i]);
+    EXPECT_NEAR(drive->function->value(0.02 * static_cast<double>(i)), 1.5 * velocity, 1e-13);
+  }
+  ASSERT_EQ(built.motions.size(), 1u);
+  EXPECT_EQ(built.motions[0].kind, MotionKind::velocity);
+  EXPECT_EQ(built.motions[0].history->motion()->name, "ex");
+}
+
 }  // namespace
 }  // namespace uplift

@@ -77,6 +77,15 @@ node = "top"
 force = ["300 kN", 0]
 function = "pulse"                    # without a function a load is constant and part of the static stage
 
+# An earthquake instead of the gust: a recorded motion, which drives the ground under its name.
+# [[record]]
+# name = "quake"
+# file = "quake.at2"                  # its unit and step are read from it; keys for files that do not say: `uplift describe section record`
+#
+# [[ground_acceleration]]
+# direction = [1, 0]
+# function = "quake"
+
 # ---- the analysis ----
 
 [damping]                             # of the structure; it never acts across an open interface
