@@ -13,10 +13,10 @@
 namespace uplift {
 namespace {
 
-struct Motion {
+struct MotionField {
   std::string_view name, unit;
 };
-constexpr std::array<Motion, 3> motions{{{"displacement", "m"}, {"velocity", "m/s"}, {"acceleration", "m/s2"}}};  // by derivative
+constexpr std::array<MotionField, 3> motions{{{"displacement", "m"}, {"velocity", "m/s"}, {"acceleration", "m/s2"}}};  // by derivative
 
 FieldValues field(std::string_view name, std::string_view unit, FieldKind kind) {
   return {std::string(name), std::string(unit), kind, {}};
@@ -105,7 +105,7 @@ FieldFrame RunFrames::empty() const {
   FieldFrame frame;
   for (std::size_t b = 0; b < blocks_.size(); ++b) {
     std::vector<FieldValues>& points = frame.blocks.emplace_back().points;
-    for (const Motion& motion : motions)
+    for (const MotionField& motion : motions)
       if (wants(motion.name)) points.push_back(field(motion.name, motion.unit, FieldKind::vector));
     if (b < solids_.size()) {
       if (wants("stress")) points.push_back(field("stress", "Pa", FieldKind::tensor));
