@@ -1,0 +1,250 @@
+#include "uplift/motion/generate.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+#include <numbers>
+#include <numeric>
+#include <random>
+
+#include "uplift/math/linalg.h"
+#include "uplift/motion/spectral_fit.h"
+#include "uplift/motion/spectrum.h"
+
+// Sums of sines of random phase under an envelope, their amplitudes scaled until the response spectrum is near the target (E. H. Vanmarcke,
+// D. A. Gasparini, Simulated earthquake ground motions, SMiRT 4, 1977), then changed as little as possible until it is there
+// (motion/spectral_fit.h).
+namespace uplift {
+
+namespace {
+
+using std::numbers::pi;
+
+constexpr double grain = 1e-6;  // m/s2: values are whole multiples of it
+
+/// Uniform numbers whose bits the C++ standard fixes: its distributions differ between libraries, its engines do not.
+class Draw {
+ public:
+  Draw(std::uint64_t seed, std::uint64_t component, std::uint64_t attempt) : engine_(mixed(mixed(mixed(seed) + component) + attempt)) {}
+  /// 0 <= number < 1, 53 bits.
+  double operator()() { return std::ldexp(static_cast<double>(engine_() >> 11), -53); }
+
+ private:
+  /// Neighbouring seeds far apart: the finaliser of splitmix64 (Steele, Lea and Flood 2014).
+  static std::uint64_t mixed(std::uint64_t x) {
+    x += 0x9e3779b97f4a7c15U;
+    x = (x ^ (x >> 30)) * 0xbf58476d1ce4e5b9U;
+    x = (x ^ (x >> 27)) * 0x94d049bb133111ebU;
+    return x ^ (x >> 31);
+  }
+  std::mt19937_64 engine_;
+};
+
+std::vector<double> fit_frequencies(double from, double to, double damping) {
+  const double per_decade = damping < 0.02 ? 300 : 100;
+  return log_spaced(from, to, std::max(2, static_cast<int>(std::ceil(per_decade * std::log10(to / from))) + 1));
+}
+
+std::span<const double> span_of(const Vector& v) {
+  return {v.data(), static_cast<std::size_t>(v.size())};
+}
+
+/// The motion before the fit by changes: sines under the envelope.
+class Sines {
+ public:
+  Sines(const GenerateOptions& options, const TargetSpectrum& target, Draw draw) : options_(options) {
+    constexpr double per_e = 100;  // sines in a band of frequencies whose ends have the ratio e
+    const int count = static_cast<int>(std::ceil(per_e * std::log(options.to / options.from)));
+    const double width = std::log(options.to / options.from) / count;
+    for (int i = 0; i < count; ++i) {
+      frequencies_.push_back(options.from * std::exp(width * (i + draw())));
+      phases_.push_back(2 * pi * draw());
+      // white noise of density G gives the variance pi f G/(4 zeta); a peak is about 3 standard deviations; amplitude2/2 = G f width
+      amplitudes_.push_back(target.at(frequencies_.back()) / 3 * std::sqrt(8 * target.damping() * width / pi));
+    }
+  }
+
+  Vector sum(const Vector& envelope) const {
+    Vector a = Vector::Zero(envelope.size());
+    for (std::size_t i = 0; i < frequencies_.size(); ++i) {
+      const double turn = 2 * pi * frequencies_[i] * options_.step, c = std::cos(turn), s = std::sin(turn);
+      double x = amplitudes_[i] * std::cos(phases_[i]), y = amplitudes_[i] * std::sin(phases_[i]);
+      for (double& value : a) {
+        value += x;
+        const double next = c * x - s * y;
+        y = s * x + c * y;
+        x = next;
+      }
+    }
+    return a.cwiseProduct(envelope);
+  }
+
+  /// Every amplitude times what is missing at its frequency.
+  void scale(const Vector& acceleration, const TargetSpectrum& target) {
+    constexpr double most = 2;
+    const std::vector<double> grid = log_spaced(frequencies_.front(), frequencies_.back(), 100);
+    const Spectrum reached = response_spectra(span_of(acceleration), options_.step, grid, {target.damping()}, Spectrum::Kind::psa).front();
+    for (std::size_t i = 0; i < frequencies_.size(); ++i)
+      amplitudes_[i] *= std::clamp(target.at(frequencies_[i]) / value_at(reached, frequencies_[i]), 1 / most, most);
+  }
+
+ private:
+  const GenerateOptions& options_;
+  std::vector<double> frequencies_, phases_, amplitudes_;
+};
+
+/// How far a fit is from what it must be; below 1 it is good.
+double distance(const SpectrumFit& fit) {
+  return std::max(fit.mean_error / 0.05, (1 - fit.least_ratio) / 0.10);
+}
+
+Vector at_rest_in_grains(Vector a, const Vector& envelope, double step) {
+  a += rest_change(a, envelope, step);
+  for (double& value : a) value = grain * std::round(value / grain) + 0.0;
+  return a;
+}
+
+/// The target over the band. Below it the response must not exceed the displacement at the lower end: without that the fit would let the
+/// ground drift by metres, which no frequency of the band sees.
+SpectralDemand demand_of(const TargetSpectrum& target, const GenerateOptions& options) {
+  constexpr int below = 12;
+  SpectralDemand demand{.step = options.step, .damping = target.damping(), .frequencies = {}, .target = {}};
+  const double lowest = 0.25 / options.duration, limit = 0.95 * options.from;
+  if (lowest < limit) demand.frequencies = log_spaced(lowest, limit, below);
+  demand.limits = demand.frequencies.size();
+  for (const double f : demand.frequencies) demand.target.push_back(target.at(options.from) * (f / options.from) * (f / options.from));
+  for (const double f : fit_frequencies(options.from, options.to, target.damping())) {
+    demand.frequencies.push_back(f);
+    demand.target.push_back(target.at(f));
+  }
+  demand.peak = target.peak_ground_acceleration();
+  return demand;
+}
+
+GeneratedMotion one_motion(const TargetSpectrum& target, const GenerateOptions& options, const Draw& draw) {
+  const auto points = static_cast<Index>(std::llround(options.duration / options.step)) + 1;
+  Vector envelope(points);
+  for (Index i = 0; i < points; ++i) envelope[i] = options.envelope.at(static_cast<double>(i) * options.step, options.duration);
+
+  Sines sines(options, target, draw);
+  Vector a = sines.sum(envelope);
+  constexpr int scalings = 5, most_changes = 30;
+  for (int i = 0; i < scalings; ++i) {
+    sines.scale(a, target);
+    a = sines.sum(envelope);
+  }
+
+  const SpectralDemand demand = demand_of(target, options);
+  GeneratedMotion best;
+  constexpr double enough = 0.4;
+  for (int i = 0; i <= most_changes; ++i) {
+    const Vector rounded = at_rest_in_grains(a, envelope, options.step);
+    SpectrumFit fit = spectrum_fit(span_of(rounded), options.step, target, options.from, options.to);
+    if (i == 0 || distance(fit) < distance(best.fit)) {
+      best.motion.values.assign(rounded.begin(), rounded.end());
+      best.fit = std::move(fit);
+      best.iterations = i;
+    }
+    if (distance(best.fit) < enough) break;
+    a += spectral_change(a, envelope, demand, 0.7);
+  }
+  return best;
+}
+
+std::string told(const GenerateOptions& options, std::size_t component, const SpectrumFit& fit) {
+  const Envelope& envelope = options.envelope;
+  const std::string fall = envelope.shape == Envelope::Shape::saragoni_hart ? "" : fmt::format(", falls from {:g} s", envelope.fall);
+  return fmt::format(
+      "generated from seed {}, component {}; envelope {} that rises until {:g} s{}; fitted from {:.4g} Hz to {:.4g} Hz at {:g} % damping: "
+      "mean error {:.2f} %, at least {:.1f} % of the target",
+      options.seed, component + 1, to_string(envelope.shape), envelope.rise, fall, options.from, options.to, 100 * fit.damping,
+      100 * fit.mean_error, 100 * fit.least_ratio);
+}
+
+}  // namespace
+
+std::string_view to_string(Envelope::Shape shape) {
+  switch (shape) {
+    case Envelope::Shape::trapezoid:
+      return "trapezoid";
+    case Envelope::Shape::jennings:
+      return "jennings";
+    case Envelope::Shape::saragoni_hart:
+      return "saragoni_hart";
+  }
+  return "";
+}
+
+double Envelope::at(double time, double duration) const {
+  constexpr double at_end = 0.05;
+  if (time < 0 || time > duration) return 0;
+  switch (shape) {
+    case Shape::trapezoid:
+      return time < rise ? time / rise : time > fall ? (duration - time) / (duration - fall) : 1;
+    case Shape::jennings:
+      if (time < rise) return (time / rise) * (time / rise);
+      return time > fall ? std::exp(std::log(at_end) * (time - fall) / (duration - fall)) : 1;
+    case Shape::saragoni_hart: {
+      const double share = rise / duration, b = -share * std::log(at_end) / (1 + share * (std::log(share) - 1)), s = time / rise;
+      return time > 0 ? std::exp(b * (1 + std::log(s) - s)) : 0;
+    }
+  }
+  return 0;
+}
+
+bool SpectrumFit::good() const {
+  return mean_error <= 0.05 && least_ratio >= 0.90;
+}
+
+SpectrumFit spectrum_fit(std::span<const double> acceleration, double step, const TargetSpectrum& target, double from, double to) {
+  SpectrumFit fit{.damping = target.damping(), .frequencies = fit_frequencies(from, to, target.damping()), .target = {}, .reached = {}};
+  fit.reached = response_spectra(acceleration, step, fit.frequencies, {fit.damping}, Spectrum::Kind::psa).front().values;
+  fit.least_ratio = std::numeric_limits<double>::max();
+  const auto count = static_cast<double>(fit.frequencies.size());
+  for (std::size_t i = 0; i < fit.frequencies.size(); ++i) {
+    fit.target.push_back(target.at(fit.frequencies[i]));
+    const double ratio = fit.reached[i] / fit.target[i];
+    fit.mean_error += std::abs(ratio - 1) / count;
+    fit.mean_ratio += ratio / count;
+    fit.largest_error = std::max(fit.largest_error, std::abs(ratio - 1));
+    fit.least_ratio = std::min(fit.least_ratio, ratio);
+  }
+  return fit;
+}
+
+double correlation(std::span<const double> first, std::span<const double> second) {
+  const ConstMap a(first.data(), static_cast<Index>(first.size())), b(second.data(), static_cast<Index>(second.size()));
+  const Vector from_a = a.array() - a.mean(), from_b = b.array() - b.mean();
+  const double norms = from_a.norm() * from_b.norm();
+  return norms > 0 ? from_a.dot(from_b) / norms : 0;
+}
+
+std::vector<GeneratedMotion> generate_motions(std::span<const TargetSpectrum* const> targets, const GenerateOptions& options) {
+  constexpr double most_correlated = 0.16;
+  constexpr std::uint64_t attempts = 10;
+  std::vector<GeneratedMotion> motions;
+  for (const TargetSpectrum* target : targets) {
+    double least = std::numeric_limits<double>::infinity();
+    GeneratedMotion chosen;
+    for (std::uint64_t attempt = 0; attempt < attempts && least > most_correlated; ++attempt) {
+      GeneratedMotion drawn = one_motion(*target, options, Draw(options.seed, motions.size(), attempt));
+      double largest = 0;
+      for (const GeneratedMotion& other : motions)
+        largest = std::max(largest, std::abs(correlation(drawn.motion.values, other.motion.values)));
+      if (largest < least) {
+        least = largest;
+        chosen = std::move(drawn);
+      }
+    }
+    chosen.motion.step = options.step;
+    chosen.motion.name = fmt::format("generated {}", motions.size() + 1);
+    chosen.motion.format = "generated";
+    chosen.motion.unit = "m/s2";
+    chosen.motion.processing = {told(options, motions.size(), chosen.fit)};
+    motions.push_back(std::move(chosen));
+  }
+  return motions;
+}
+
+}  // namespace uplift
