@@ -137,12 +137,7 @@ TEST_F(MotionCase, RefusesNamesThatDriveNothing) {
   const std::string good = tower(quick, moving_frame) + two_motions;
   const auto says = [&](const std::string& old, const std::string& with, const std::string& rest) {
     const std::string text = replaced(good, old, with);
-    std::string said = "accepted";
-    try {
-      comparison_of_case(read(text));
-    } catch (const InputError& error) {
-      said = error.what();
-    }
+    const std::string said = support::refusal_of([&] { comparison_of_case(read(text)); });
     EXPECT_EQ(said, name() + ":" + std::to_string(line_of(text, with)) + ": " + rest);
   };
   says("by = [\"ex\", \"ey\"]", "by = [\"ex\"]", "compare.motion[0].by: wanted as many names as in replace (2), found 1");

@@ -10,12 +10,14 @@
 #include <string>
 #include <vector>
 
+#include "text_support.h"
 #include "uplift/analysis/case.h"
 #include "uplift/io/toml.h"
 
 // A tower whose ground is moved by records, and the files of these.
 namespace uplift {
 
+using support::replaced;
 namespace fs = std::filesystem;
 
 /// A folder that is removed at the end of a test.
@@ -40,17 +42,14 @@ class RecordCase : public testing::Test {
 
   std::string name() const { return (folder_ / "case.toml").string(); }
   Case read(const std::string& text) const { return check_case(read_toml_text(text, name()), name()); }
-  /// The error without the folder; empty when there is none.
+  /// The error without the folder, or "accepted".
   std::string refusal(const std::string& text) const {
-    try {
+    std::string said = support::refusal_of([&] {
       const Case file = read(text);
       build(file, runs_of_case(file).front());
-    } catch (const InputError& error) {
-      std::string said = error.what();
-      for (std::size_t at; (at = said.find(folder_.string() + "/")) != said.npos;) said.erase(at, folder_.string().size() + 1);
-      return said;
-    }
-    return {};
+    });
+    for (std::size_t at; (at = said.find(folder_.string() + "/")) != said.npos;) said.erase(at, folder_.string().size() + 1);
+    return said;
   }
   fs::path folder_;
 };
@@ -128,12 +127,6 @@ inline const std::string quick = "step = 0.02\n";
 /// Line of the first place of a text.
 inline int line_of(const std::string& text, const std::string& what) {
   return 1 + static_cast<int>(std::count(text.begin(), text.begin() + static_cast<std::ptrdiff_t>(text.find(what)), '\n'));
-}
-
-inline std::string replaced(std::string text, const std::string& old, const std::string& with) {
-  const std::size_t at = text.find(old);
-  EXPECT_NE(at, text.npos) << old;
-  return text.replace(at, old.size(), with);
 }
 
 }  // namespace uplift

@@ -21,7 +21,8 @@ const Section& record_section() {
        text("format", "name of the reader; absent: found by content").optional(),
        text("unit", "of the numbers in the file (\"g\", \"cm/s2\"); absent: as the file says").optional(),
        number("step", "s", "of files without times").positive().optional(),
-       text("column", "of tables: name, or number from 1; absent: the first after the time").optional(),
+       text("column", "of tables: name, or number from 1; absent: all that their head gives a unit, else the first after the time")
+           .optional(),
        text("component", "which one, when the file has several").optional(),
        tables("process", process_section(), "steps between the record as read and what drives the model, in order")}};
   return s;

@@ -18,15 +18,20 @@ namespace {
 
 /// The component that the table names, of those in the file.
 Motion component_of(const Values& record, std::vector<Motion> motions) {
-  std::vector<std::string> known;
-  for (const Motion& each : motions) known.push_back(in_quotes(each.component));
+  std::vector<std::string> known, quoted;
+  for (const Motion& each : motions) {
+    known.push_back(each.component);
+    quoted.push_back(in_quotes(each.component));
+  }
   if (!record.has("component")) {
-    if (motions.size() > 1) fail(record, "", "component, one of " + listed(known) + " in this file", "none");
+    if (motions.size() > 1) fail(record, "", "component, one of " + listed(quoted) + " in this file", "none");
     return std::move(motions.front());
   }
-  for (Motion& each : motions)
-    if (each.component == record.text("component")) return std::move(each);
-  fail(record, "component", (known.size() > 1 ? "one of " : "") + listed(known), in_quotes(record.text("component")));
+  const std::string& wanted = record.text("component");
+  const auto found = std::ranges::find(known, wanted);
+  if (found == known.end())
+    fail(record, "component", (known.size() > 1 ? "one of " : "") + listed(quoted), in_quotes(wanted), nearest_name(wanted, known));
+  return std::move(motions[static_cast<std::size_t>(found - known.begin())]);
 }
 
 Motion read_record(const Values& record) {
@@ -37,9 +42,18 @@ Motion read_record(const Values& record) {
   if (record.has("column")) options.column = record.text("column");
   const std::string path = record_path(record);
   if (!std::filesystem::is_regular_file(path)) fail(record, "file", "a file", in_quotes(path));
-  Motion motion = component_of(record, read_motions(path, options));
-  motion.file = record.text("file");
-  return motion;
+  try {
+    Motion motion = component_of(record, read_motions(path, options));
+    motion.file = record.text("file");
+    return motion;
+  } catch (const InputError& error) {
+    // what is wrong with an option has the option's name and no place
+    const std::string said = error.what(), before = error.path() + ": wanted ";
+    const bool of_option = error.path() == "format" || error.path() == "unit" || error.path() == "step" || error.path() == "column";
+    const std::size_t at = said.find(before);
+    if (!of_option || at == said.npos) throw;
+    throw InputError(record.where(error.path()), record.path(error.path()), said.substr(at + before.size()), "");
+  }
 }
 
 }  // namespace
