@@ -111,7 +111,7 @@ TEST_F(MotionCase, SummarisesTheCompletedRuns) {
   ComparisonSummary compared;
   compared.agreement.resize(results.size());
   compared.motions = tables;
-  const auto json = nlohmann::json::parse(summary_json({}, results, &compared));
+  const auto json = nlohmann::json::parse(summary_json({Provenance(), results, Verdict(), {}, &compared}));
   const auto& written = json["over_motions"][0];
   EXPECT_EQ(written["motions"][2]["motion"], "three");
   EXPECT_EQ(written["motions"][1]["peaks"]["moment"], 2);
@@ -155,7 +155,7 @@ TEST_F(MotionCase, SaysWhereTheMotionsComeFrom) {
   EXPECT_EQ(input_files(file), (Texts{(folder_ / "ex.txt").string(), (folder_ / "ey.txt").string()}));
   const Histories motions = motions_of({{nullptr, &built, nullptr}, {nullptr, &built, nullptr}});
   ASSERT_EQ(motions.size(), 2u);
-  const auto json = nlohmann::json::parse(summary_json({}, {}, nullptr, motions))["motions"];
+  const auto json = nlohmann::json::parse(summary_json({Provenance(), {}, Verdict(), motions}))["motions"];
   ASSERT_EQ(json.size(), 2u);
   EXPECT_EQ(json[0]["name"], "ex");
   EXPECT_EQ(json[0]["file"], "ex.txt");
