@@ -13,6 +13,7 @@
 #include "uplift/dynamics/cost.h"
 #include "uplift/io/field_run.h"
 #include "uplift/io/json_writer.h"
+#include "uplift/io/report_motions.h"
 #include "uplift/mesh/quality.h"
 
 namespace uplift::cli {
@@ -173,6 +174,12 @@ void print(const Loaded& loaded, const Built& built, const Findings& found, cons
     if (k < found.ratios.size() && found.ratios[k].most > 0)
       line("  k F_ii at the time step", fmt::format("{:.3g} to {:.3g}", found.ratios[k].least, found.ratios[k].most));
     if (k < found.ratios.size()) line("  compliance F_ii", fmt::format("up to {:.3g} m/N", found.ratios[k].compliance));
+  }
+  for (const auto& history : motions_of({{nullptr, &built, nullptr}})) {
+    const Motion& motion = *history->motion();
+    line("record " + motion.name,
+         fmt::format("{}, {} points every {}, {}, peak {}", motion.format, motion.values.size(), spoken(motion.step, "s"),
+                     spoken(motion.duration(), "s"), spoken(std::abs(peak_of(motion).value), unit_of(motion.kind))));
   }
   line("dead load on the base", spoken(built.weight, "N"));
   if (!found.fixed.empty()) line("frequencies, fixed base", list_hz(found.fixed));
