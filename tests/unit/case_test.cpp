@@ -1,14 +1,17 @@
 #include "uplift/analysis/case.h"
 
+#include <fmt/format.h>
 #include <gtest/gtest.h>
 
 #include <algorithm>
 #include <cmath>
 #include <functional>
 #include <numbers>
+#include <regex>
 
 #include "uplift/analysis/case_names.h"
 #include "uplift/analysis/case_sections.h"
+#include "uplift/analysis/verdict.h"
 #include "uplift/io/toml.h"
 #include "uplift/model/builder.h"
 
@@ -97,7 +100,9 @@ TEST(Case, FindsTopBaseAndWeight) {
   EXPECT_EQ(built.model.nodes[static_cast<std::size_t>(built.top)].name, "top");
   EXPECT_EQ(built.model.nodes[static_cast<std::size_t>(built.base)].name, "base");
   EXPECT_DOUBLE_EQ(built.weight, 1e6);
-  EXPECT_DOUBLE_EQ(built.facts.front().half_width, 1.5);
+  double half_width = 0;
+  for (const Place& corner : built.facts.front().corners) half_width = std::max(half_width, std::abs(corner[0]));
+  EXPECT_DOUBLE_EQ(half_width, 1.5);
   EXPECT_NEAR(built.facts.front().area, 3, 1e-12);
 }
 
@@ -166,6 +171,26 @@ TEST(Case, BondedRunKeepsTheDashpots) {
   const Built built = build(file, spec);
   EXPECT_EQ(built.behaviours.front()->type(), "elastic");
   EXPECT_DOUBLE_EQ(built.behaviours.front()->number("c"), 3e5);
+}
+
+TEST(Case, TractionAtTheEndOfTheStepLosesNoVelocityInASoftJoint) {
+  // An impact rule is for constraints: on a soft bonded joint both tractions go to the same motion as the step goes to zero.
+  const auto top = [](const char* traction, double step) {
+    std::string text = base_text;
+    text += fmt::format("traction = \"{}\"\n", traction);
+    text = std::regex_replace(text, std::regex("type = \"springs\""), "type = \"elastic\"");
+    text = std::regex_replace(text, std::regex("step = 1e-3"), fmt::format("step = {}", step));
+    text +=
+        "[[function]]\nname = \"pulse\"\nshape = { type = \"half_sine\", duration = 0.1 }\n[[load]]\nname = \"push\"\nnode = \"top\"\n"
+        "force = [3e4, 0]\nfunction = \"pulse\"\n";
+    const Case file = check_case(read_toml_text(text, "case.toml"), "case.toml");
+    const Built built = build(file, runs_of_case(file).front());
+    const RunResult result = run(built.model, built.plan, built.behaviours);
+    return std::abs(find_peak(result, Request::Kind::displacement, built.top_sway())->value);
+  };
+  const double coarse = std::abs(top("end", 2e-3) - top("path", 2e-3)), fine = std::abs(top("end", 5e-4) - top("path", 5e-4));
+  EXPECT_LT(coarse, 0.05 * top("path", 5e-4));
+  EXPECT_LT(fine, 0.3 * coarse) << "a quarter for a method of order one";
 }
 
 TEST(Case, SweepReachesTheWantedStiffnessRatio) {

@@ -122,7 +122,11 @@ void add_method(const Case& read, const RunSpec& spec, Built& built) {
     fail(*method, "", "a cone (law = \"unilateral\" or \"coulomb\"), or method = \"newton\"", "\"penalty\" with a traction law");
   const Values automatic = check_part(Raw{std::string(cone ? "lagrange" : "newton"), root.where(), "method"}, contact_methods());
   built.plan.method = make_part(method_catalog(), method ? *method : automatic);
-  built.plan.impact = make_part(impact_catalog(), spec.impact ? *spec.impact : root.part("impact"));
+  // a joint that gives way keeps its velocity: a correction is for constraints, and for a stiff law where the user asks for it
+  const Values* impact = spec.bonded ? nullptr : spec.impact ? spec.impact : root.has("impact") ? &root.part("impact") : nullptr;
+  const Values standard =
+      check_part(Raw{std::string(cone && !spec.bonded ? "project_hold" : "none"), root.where(), "impact"}, impact_rules());
+  built.plan.impact = make_part(impact_catalog(), impact ? *impact : standard);
 }
 
 /// Initial displacements and velocities of the free unknowns.

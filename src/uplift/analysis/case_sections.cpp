@@ -315,7 +315,8 @@ const Section& case_section() {
              table("damping", damping_section(), "damping").optional(),
              tables("stage", stage_section(), "stages, in order"),
              part("method", contact_methods, "contact method; absent: newton for traction laws, lagrange for cones").optional(),
-             part("impact", impact_rules, "velocity correction on impact, for constraints").standard("project_hold"),
+             part("impact", impact_rules, "velocity correction on impact; absent: project_hold for constraints, none for traction laws")
+                 .optional(),
              part("solver", linear_solvers, "factorisation of the structure's matrices").standard("cholmod"),
              table("energy", energy_section(), "energy gate"),
              table("limits", limits_section(), "limits"),

@@ -98,16 +98,17 @@ void warn_floors(const Built& built, std::vector<std::string>& said) {
 void warn_method(const Case& read, const RunSpec& spec, const Built& built, std::vector<std::string>& said) {
   const Stage* stage = dynamic_stage(built.plan);
   if (!stage || spec.bonded) return;
-  const Values& impact = spec.impact ? *spec.impact : read.values.part("impact");
+  const Values* given = spec.impact ? spec.impact : read.values.has("impact") ? &read.values.part("impact") : nullptr;
+  const std::string impact = given ? given->type() : built.plan.method->constrains() ? "project_hold" : "none";
   if (built.plan.method->constrains()) {
-    if (impact.type() == "none")
+    if (impact == "none")
       said.push_back("constraints without a velocity correction (impact = \"none\") create energy without bound; take \"project_hold\"");
-    if (impact.type() == "reflect" || impact.type() == "propagate")
-      said.push_back(fmt::format("impact = \"{}\" corrects the velocity at every step: the multipliers alone are not the contact force",
-                                 impact.type()));
+    if (impact == "reflect" || impact == "propagate")
+      said.push_back(
+          fmt::format("impact = \"{}\" corrects the velocity at every step: the multipliers alone are not the contact force", impact));
     if (spec.path_average.value_or(false))
       said.push_back("traction = \"path\" has no effect with a constraint method: it takes the force at the end of the step");
-  } else if (!stage->path_average && impact.type() == "none") {
+  } else if (!stage->path_average && impact == "none") {
     double largest = 0;
     for (const StiffnessRatio& ratio : stiffness_ratios(built.model, *stage, *built.plan.solver)) largest = std::max(largest, ratio.most);
     if (largest > 0.05)

@@ -20,6 +20,8 @@ int new_case(const std::string& name);
 int check(const Options& options);
 int run(const Options& options);
 int compare(const Options& options);
+/// Repeats the run with every choice of the computation changed.
+int trust(const Options& options);
 int modes(const Options& options, int count);
 /// `family` and `name` may be empty: lists.
 int describe(const std::string& family, const std::string& name);

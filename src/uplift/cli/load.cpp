@@ -18,12 +18,17 @@
 namespace uplift::cli {
 namespace fs = std::filesystem;
 
+MeshReader mesh_reader() {
+  return [](const std::string& path, const Where& where, const std::string& name) { return read_mesh(path, where, name); };
+}
+
 Loaded load(const Options& options) {
   std::string file = options.file;
   std::error_code error;
   if (fs::is_directory(file, error) && fs::exists(fs::path(file) / "case.toml", error)) file = (fs::path(file) / "case.toml").string();
-  const auto mesh = [](const std::string& path, const Where& where, const std::string& name) { return read_mesh(path, where, name); };
-  Loaded loaded{check_case(read_toml_file(file), file, mesh), {}};
+  Loaded loaded;
+  loaded.raw = read_toml_file(file);
+  loaded.read = check_case(loaded.raw, file, mesh_reader());
   Provenance& from = loaded.from;
   from.title = loaded.read.values.text("title");
   if (loaded.read.values.has("description")) from.subtitle = loaded.read.values.text("description");
@@ -70,7 +75,7 @@ RunResult run_with_fields(const Loaded& loaded, const Built& built, const std::s
 
 void write_results(const Options& options, const Loaded& loaded, const Results& results, const ComparisonSummary* compared,
                    ResultFolder& folder) {
-  ReportInput input{&loaded.read, &loaded.from, &results.verdict, {}, compared, results.warnings, &results.floors};
+  ReportInput input{&loaded.read, &loaded.from, &results.verdict, {}, compared, results.warnings, &results.floors, results.trust};
   for (std::size_t i = 0; i < results.runs.size(); ++i) {
     const RunResult& run = results.runs[i];
     input.runs.push_back({&results.specs[i], &results.built[i], &run});

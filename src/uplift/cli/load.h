@@ -10,11 +10,14 @@ namespace uplift::cli {
 
 /// A case file, read and checked, with where it comes from.
 struct Loaded {
+  Raw raw;  // the file as it stands
   Case read;
   Provenance from;
 };
 /// `options.file` may be a folder with a case.toml. Throws InputError.
 Loaded load(const Options& options);
+/// Reads meshes of files.
+MeshReader mesh_reader();
 
 /// Where results go: options.out, or out/NAME with the case's folder (for case.toml) or file name.
 std::string result_path(const Options& options, const Case& read);
@@ -27,6 +30,7 @@ struct Results {
   FloorAnswers floors;  // of the runs
   Verdict verdict;
   std::vector<std::string> warnings;
+  const TrustAnswer* trust = nullptr;  // of `uplift trust`
 };
 /// Writes report, histories, summary, resolved case and problem files and puts the folder into place; says where earlier results went.
 void write_results(const Options& options, const Loaded& loaded, const Results& results, const ComparisonSummary* compared,

@@ -64,6 +64,13 @@ void declare(CLI::App& app, Choices& given) {
   take_output(command, options);
   take_json(command, options);
 
+  command =
+      add(app, "trust", "repeat a run with half the step, other stiffness, tolerance, method and mesh: how far its numbers can be trusted",
+          "  uplift trust tower/case.toml\n  uplift trust examples/05_bridge_pier --json");
+  take_case(command, options);
+  take_output(command, options);
+  take_json(command, options);
+
   command = add(app, "modes", "natural frequencies and shapes, bonded and with the base free",
                 "  uplift modes tower\n  uplift modes tower --count 10 --json");
   take_case(command, options);
@@ -109,6 +116,7 @@ int dispatch(const CLI::App& app, const Choices& given) {
   if (name == "check") return cli::check(given.options);
   if (name == "run") return cli::run(given.options);
   if (name == "compare") return cli::compare(given.options);
+  if (name == "trust") return cli::trust(given.options);
   if (name == "modes") return cli::modes(given.options, given.modes);
   if (name == "describe") return cli::describe(given.family, given.name);
   if (name == "schema") return cli::schema();

@@ -7,14 +7,17 @@
 
 namespace uplift {
 
-/// Velocity, acceleration and contact force of a step are corrected by the rule of impact, for the points that are pressed at its end.
+/// Velocity, acceleration and contact force of a step are corrected by the rule of impact, for the points that are pressed at its end:
+/// those of constraints, or of stiff laws where there is no constraint.
 void Stepper::apply_impact(Level& level) {
   const InterfaceProblem& problem = *last_;
   normals_.clear();
   tangents_.clear();
   double largest = 0;
   for (Eigen::Index i = 0; i < contact_.size(); ++i) largest = std::max(largest, std::abs(contact_[i]));
+  const bool constrained = std::ranges::any_of(problem.blocks, [](const Block& block) { return block.cone != nullptr; });
   for (const Block& block : problem.blocks) {
+    if (constrained && block.cone == nullptr) continue;  // a law beside constraints gives way
     const int n = block.batch.points, normal = block.first + block.batch.normal();
     const double friction = block.cone != nullptr ? block.cone->friction() : 0;
     for (int i = 0; i < n; ++i) {

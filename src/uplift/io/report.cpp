@@ -39,6 +39,9 @@ void write_sections(JsonWriter& json, const ReportInput& input) {
     write_section(
         json, "others", "Other dampings and motions",
         "The same variants with the other dampings and motions of the case; without damping nothing hides an error of the velocity.");
+  if (input.trust && !input.trust->spectra.empty())
+    write_section(json, "trust", "Trust bands of the floor spectra",
+                  "Every spectrum over all runs in which one choice of the computation was changed.");
   write_section(json, "energy", "Energy",
                 "Every step keeps a balance of energy. What it does not explain was created (or lost) by the computation.");
   write_section(json, "law", "Interface law", "The law of the interface, driven through openings and closings.");

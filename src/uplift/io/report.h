@@ -5,6 +5,7 @@
 #include "uplift/analysis/floor_spectra.h"
 #include "uplift/analysis/verdict.h"
 #include "uplift/io/summary.h"
+#include "uplift/study/trust.h"
 
 // The report: one self-contained page. The program writes its data (format "uplift-report-1", declared in web/src/types.ts); the page draws
 // them.
@@ -26,6 +27,7 @@ struct ReportInput {
   const ComparisonSummary* compared = nullptr;  // null for a single run
   std::vector<std::string> warnings;
   const FloorAnswers* floors = nullptr;  // as many runs; null: none are asked for
+  const TrustAnswer* trust = nullptr;    // of `uplift trust`
 };
 
 /// The data of the report as JSON text.

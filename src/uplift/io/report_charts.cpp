@@ -309,6 +309,8 @@ void write_charts(JsonWriter& json, const ReportInput& input) {
   for (const View& view : interface_views(built)) write_chart(json, *input.read, history_chart(view, runs));
   write_loops(json, input, runs);
   write_floor_charts(json, input);
+  if (input.trust)
+    for (const Chart& chart : trust_charts(*input.trust)) write_chart(json, *input.read, chart);
   if (!others.empty()) {
     std::vector<View> views = motion_views(built);
     for (View& view : views) {

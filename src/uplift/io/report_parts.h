@@ -35,6 +35,9 @@ struct Chart {
   Axis x, y;
   std::vector<Curve> curves;
 };
+/// How far the numbers can be trusted: two tables, and a figure for every floor spectrum.
+void write_trust_tables(JsonWriter& json, const TrustAnswer& answer);
+std::vector<Chart> trust_charts(const TrustAnswer& answer);
 /// With the origin and the caption that the case states; nothing without curves.
 void write_chart(JsonWriter& json, const Case& read, const Chart& chart);
 

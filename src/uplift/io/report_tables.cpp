@@ -150,6 +150,7 @@ void write_tables(JsonWriter& json, const ReportInput& input) {
   write_runs(json, input);
   write_motion_tables(json, input);
   write_floor_table(json, input);
+  if (input.trust) write_trust_tables(json, *input.trust);
   if (input.compared) write_sweep(json, input.compared->sweep);
   json.end_array();
 }

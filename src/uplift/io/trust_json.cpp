@@ -1,0 +1,76 @@
+#include "uplift/io/trust_json.h"
+
+#include <fmt/format.h>
+
+#include <cmath>
+
+#include "uplift/analysis/wording.h"
+#include "uplift/io/json_writer.h"
+
+namespace uplift {
+namespace {
+
+void write_run(JsonWriter& json, const TrustRun& run) {
+  json.begin_object().member("name", run.name).member("choice", run.choice).member("label", run.label);
+  json.member("status", to_string(run.status)).member("bonded_status", to_string(run.bonded_status)).member("reason", run.reason);
+  json.member("counts", run.counts()).member("wall_seconds", run.wall).end_object();
+}
+
+void write_band(JsonWriter& json, const TrustBand& band) {
+  json.begin_object().member("quantity", band.quantity->name).member("interface", band.interface).member("unit", band.quantity->unit);
+  json.member("value", band.value).member("least", band.least).member("most", band.most).member("dominant", band.dominant);
+  json.key("values").begin_array();
+  for (const std::optional<double>& value : band.values) {
+    if (value)
+      json.value(*value);
+    else
+      json.null();
+  }
+  json.end_array().end_object();
+}
+
+void write_spectrum(JsonWriter& json, const TrustSpectrum& spectrum) {
+  json.begin_object().member("floor", spectrum.floor).member("damping", spectrum.damping);
+  json.member("speaks_to", spectrum.speaks_to).member("limited_by", spectrum.limited_by);
+  json.key("frequencies").numbers(spectrum.frequencies).key("value").numbers(spectrum.value);
+  json.key("least").numbers(spectrum.least).key("most").numbers(spectrum.most).end_object();
+}
+
+}  // namespace
+
+std::string trust_json(const TrustAnswer& answer) {
+  JsonWriter json(0, 2);
+  json.begin_object().member("format", "uplift-trust-1").member("complete", answer.complete).member("dominant", answer.dominant);
+  json.member("spectrum_band", answer.accepted);
+  json.key("base");
+  write_run(json, answer.base);
+  json.key("runs").begin_array();
+  for (const TrustRun& run : answer.runs) write_run(json, run);
+  json.end_array().key("not_changed").begin_array();
+  for (const TrustPlan::LeftOut& each : answer.left_out)
+    json.begin_object().member("choice", each.choice).member("reason", each.reason).end_object();
+  json.end_array().key("bands").begin_array();
+  for (const TrustBand& band : answer.bands) write_band(json, band);
+  json.end_array().key("spectra").begin_array();
+  for (const TrustSpectrum& spectrum : answer.spectra) write_spectrum(json, spectrum);
+  json.end_array().end_object();
+  return json.take() + "\n";
+}
+
+std::string trust_sentence(const TrustAnswer& answer) {
+  if (!answer.base.counts()) return "No bands: the run of the case failed.";
+  std::string text;
+  for (const char* name : {"max_uplifted_ratio", "max_opening", "max_moment"})
+    for (const TrustBand& band : answer.bands) {
+      if (band.quantity->name != name) continue;
+      const std::string unit(band.quantity->unit);
+      const auto said = [&](double value) { return unit == "1" ? percent(value) : spoken(value, unit); };
+      text += fmt::format("{}{} from {} to {}", text.empty() ? "Over all changed choices: " : ", ", band.quantity->meaning,
+                          said(band.least), said(band.most));
+      break;  // of the first interface
+    }
+  if (text.empty()) return "Nothing was changed.";
+  return text + (answer.dominant.empty() ? "." : fmt::format(". What moves most numbers most is the {}.", answer.dominant));
+}
+
+}  // namespace uplift

@@ -1,0 +1,213 @@
+#include "uplift/study/trust.h"
+
+#include <algorithm>
+#include <atomic>
+#include <cmath>
+#include <map>
+#include <mutex>
+#include <numeric>
+#include <thread>
+
+namespace uplift {
+namespace {
+
+/// What is kept of a repetition: numbers and spectra, not its model.
+struct Repetition {
+  TrustRun run;
+  VerdictNumbers numbers;
+  std::vector<FloorSpectra> floors;
+};
+
+/// Share of the work that is done, over all runs.
+class Watcher {
+ public:
+  Watcher(std::size_t runs, const Watch& watch) : shares_(runs, 0.0), watch_(watch) {}
+  bool tell(std::size_t run, double share, Progress progress) {
+    const std::lock_guard lock(mutex_);
+    shares_[run] = share;
+    progress.fraction = std::accumulate(shares_.begin(), shares_.end(), 0.0) / static_cast<double>(shares_.size());
+    if (going_ && watch_) going_ = watch_(progress);
+    return going_;
+  }
+  bool stopped() const { return !going_; }
+
+ private:
+  std::vector<double> shares_;
+  const Watch& watch_;
+  std::mutex mutex_;
+  bool going_ = true;
+};
+
+Repetition repetition_of(const TrustChange& change, const Built& built, const RunResult& result, const RunResult* bonded) {
+  Repetition made;
+  made.run = {change.name,
+              change.choice,
+              change.label,
+              result.status,
+              bonded ? bonded->status : RunStatus::completed,
+              result.reason,
+              result.wall + (bonded ? bonded->wall : 0)};
+  if (!made.run.counts()) return made;
+  made.numbers = numbers_of(built, result, bonded);
+  made.floors = floor_spectra(built.plan, result);
+  return made;
+}
+
+/// Runs a case, and its bonded run where it has one.
+Repetition compute(const Case& read, const TrustChange& change, std::size_t place, Watcher& watcher) {
+  std::vector<RunSpec> specs = runs_of_case(read);
+  for (RunSpec& spec : specs) spec.pictures = false;
+  const double each = 1.0 / static_cast<double>(specs.size());
+  const auto one = [&](std::size_t k, const Built& built) {
+    return run(built.model, built.plan, built.behaviours,
+               [&](const Progress& now) { return watcher.tell(place, each * (static_cast<double>(k) + now.fraction), now); });
+  };
+  const Built built = build(read, specs.front());
+  const RunResult result = one(0, built);
+  std::optional<RunResult> bonded;
+  if (specs.size() > 1) bonded = one(1, build(read, specs[1]));
+  return repetition_of(change, built, result, bonded ? &*bonded : nullptr);
+}
+
+/// All repetitions, `threads` at a time. What one of them throws is thrown here, the first of the list first.
+std::vector<Repetition> compute_all(const std::vector<Case>& cases, const std::vector<TrustChange>& changes, int threads,
+                                    Watcher& watcher) {
+  std::vector<Repetition> made(cases.size());
+  std::vector<std::exception_ptr> errors(cases.size());
+  std::atomic<std::size_t> next{0};
+  const auto work = [&] {
+    for (std::size_t i = next++; i < cases.size(); i = next++) try {
+        made[i] = compute(cases[i], changes[i], i, watcher);
+      } catch (...) {
+        errors[i] = std::current_exception();
+      }
+  };
+  {
+    std::vector<std::jthread> helpers;
+    for (int k = 1; k < threads && static_cast<std::size_t>(k) < cases.size(); ++k) helpers.emplace_back(work);
+    work();
+  }
+  for (const std::exception_ptr& error : errors)
+    if (error) std::rethrow_exception(error);
+  return made;
+}
+
+// ---- numbers ----
+
+/// The number of this quantity of a run, of one interface or of the run.
+std::optional<double> number_in(const Repetition& outcome, const VerdictQuantity& quantity, const std::string& interface) {
+  const std::vector<VerdictNumber>* numbers = interface.empty() ? &outcome.numbers.whole : nullptr;
+  for (const InterfaceVerdict& each : outcome.numbers.interfaces)
+    if (!interface.empty() && each.name == interface) numbers = &each.numbers;
+  const VerdictNumber* found = numbers && outcome.run.counts() ? find_number(*numbers, quantity.name) : nullptr;
+  if (!found || !std::isfinite(found->value)) return std::nullopt;
+  return found->value;
+}
+
+/// Below this a number of the unit is nothing: it may differ by any share without meaning.
+double nothing(std::string_view unit) {
+  if (unit == "m" || unit == "rad") return 1e-9;
+  return unit == "1" ? 1e-6 : 0;
+}
+
+TrustBand band_of(const VerdictNumber& number, const std::string& interface, const std::vector<Repetition>& repetitions) {
+  TrustBand band{number.quantity, interface, number.value, number.value, number.value, {}, {}};
+  double largest = 0;
+  for (std::size_t i = 1; i < repetitions.size(); ++i) {
+    const std::optional<double> value = number_in(repetitions[i], *number.quantity, interface);
+    band.values.push_back(value);
+    if (!value) continue;
+    band.least = std::min(band.least, *value);
+    band.most = std::max(band.most, *value);
+    const double moved = std::abs(*value - number.value);
+    if (moved > largest) {
+      largest = moved;
+      band.dominant = repetitions[i].run.choice;
+    }
+  }
+  if (std::max(std::abs(band.least), std::abs(band.most)) < nothing(number.quantity->unit)) band.dominant.clear();
+  return band;
+}
+
+std::vector<TrustBand> bands_of(const std::vector<Repetition>& repetitions) {
+  std::vector<TrustBand> bands;
+  const auto take = [&](const std::vector<VerdictNumber>& numbers, const std::string& interface) {
+    for (const VerdictNumber& number : numbers)
+      if (std::isfinite(number.value)) bands.push_back(band_of(number, interface, repetitions));
+  };
+  take(repetitions.front().numbers.whole, "");
+  for (const InterfaceVerdict& each : repetitions.front().numbers.interfaces) take(each.numbers, each.name);
+  return bands;
+}
+
+// ---- spectra ----
+
+TrustSpectrum spectrum_of(std::size_t floor, std::size_t damping, const std::vector<Repetition>& repetitions, double accepted) {
+  const FloorSpectra& base = repetitions.front().floors[floor];
+  const Spectrum& raw = base.raw[damping];
+  TrustSpectrum made{base.name, raw.damping, raw.frequencies, raw.values, raw.values, raw.values, 0, {}};
+  bool speaks = true;
+  for (std::size_t f = 0; f < raw.frequencies.size(); ++f) {
+    double largest = 0;
+    std::string choice;
+    for (std::size_t i = 1; i < repetitions.size(); ++i) {
+      if (!repetitions[i].run.counts()) continue;
+      const double value = value_at(repetitions[i].floors[floor].raw[damping], raw.frequencies[f]);
+      made.least[f] = std::min(made.least[f], value);
+      made.most[f] = std::max(made.most[f], value);
+      if (std::abs(value - raw.values[f]) > largest) {
+        largest = std::abs(value - raw.values[f]);
+        choice = repetitions[i].run.choice;
+      }
+    }
+    if (speaks && largest > accepted * raw.values[f]) {
+      speaks = false;
+      made.limited_by = choice;
+    }
+    if (speaks) made.speaks_to = raw.frequencies[f];
+  }
+  return made;
+}
+
+/// The choice that is dominant for most numbers.
+std::string most_frequent(const std::vector<TrustBand>& bands) {
+  std::map<std::string, int> count;
+  for (const TrustBand& band : bands)
+    if (!band.dominant.empty()) ++count[band.dominant];
+  std::string found;
+  for (const auto& [choice, times] : count)
+    if (found.empty() || times > count[found]) found = choice;
+  return found;
+}
+
+}  // namespace
+
+std::optional<double> TrustBand::share() const {
+  if (value == 0 || dominant.empty()) return std::nullopt;
+  return 0.5 * (most - least) / std::abs(value);
+}
+
+TrustAnswer trust(const Raw& raw, const Case& read, const MeshReader& read_mesh, const TrustBase& base, int threads, const Watch& watch) {
+  const TrustPlan plan = trust_plan(read);
+  std::vector<Case> cases;
+  for (const TrustChange& change : plan.changes) cases.push_back(check_case(edited(raw, change.edits), read.file, read_mesh));
+  Watcher watcher(cases.size(), watch);
+  std::vector<Repetition> repetitions = compute_all(cases, plan.changes, threads, watcher);
+  repetitions.insert(repetitions.begin(), repetition_of({"base", "", "as in the case", {}}, base.built, base.run, base.bonded));
+
+  TrustAnswer made;
+  made.base = repetitions.front().run;
+  for (std::size_t i = 1; i < repetitions.size(); ++i) made.runs.push_back(repetitions[i].run);
+  made.left_out = plan.left_out;
+  made.accepted = read.values.table("trust").number("spectrum_band");
+  made.complete = !watcher.stopped();
+  if (!made.base.counts()) return made;
+  made.bands = bands_of(repetitions);
+  for (std::size_t floor = 0; floor < repetitions.front().floors.size(); ++floor)
+    for (std::size_t damping = 0; damping < repetitions.front().floors[floor].raw.size(); ++damping)
+      made.spectra.push_back(spectrum_of(floor, damping, repetitions, made.accepted));
+  made.dominant = most_frequent(made.bands);
+  return made;
+}
+
+}  // namespace uplift

@@ -1,0 +1,66 @@
+#pragma once
+#include <functional>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "uplift/analysis/floor_spectra.h"
+#include "uplift/analysis/verdict_numbers.h"
+#include "uplift/study/trust_plan.h"
+
+namespace uplift {
+
+/// One repetition of the case with one changed choice, beside its own bonded run.
+struct TrustRun {
+  std::string name, choice, label;
+  RunStatus status = RunStatus::completed, bonded_status = RunStatus::completed;
+  std::string reason;  // why it failed or stopped
+  double wall = 0;     // s, both runs
+  bool counts() const { return status == RunStatus::completed || status == RunStatus::overturned; }
+};
+
+/// A number of the verdict with its band.
+struct TrustBand {
+  const VerdictQuantity* quantity = nullptr;
+  std::string interface;                      // empty: of the run
+  double value = 0;                           // of the case as it stands
+  double least = 0, most = 0;                 // over all runs that count, the case's own included
+  std::string dominant;                       // choice that moves it most; empty when nothing does
+  std::vector<std::optional<double>> values;  // per run; nothing where the run has no such number
+  /// Half the band as a share of the value; nothing where the value is zero or does not move.
+  std::optional<double> share() const;
+};
+
+/// A floor spectrum with its band, for one damping.
+struct TrustSpectrum {
+  std::string floor;
+  double damping = 0;
+  std::vector<double> frequencies, value, least, most;  // Hz, m/s2
+  double speaks_to = 0;                                 // Hz: up to here all runs lie within the band that the case accepts; 0: nowhere
+  std::string limited_by;                               // choice that ends it; empty when it speaks everywhere
+};
+
+struct TrustAnswer {
+  TrustRun base;
+  std::vector<TrustRun> runs;  // in the order of the plan
+  std::vector<TrustPlan::LeftOut> left_out;
+  std::vector<TrustBand> bands;
+  std::vector<TrustSpectrum> spectra;
+  double accepted = 0;    // the share that a spectrum may differ by
+  std::string dominant;   // the choice that is dominant most often; empty when there is none
+  bool complete = false;  // not interrupted
+};
+
+/// The run of the case as it stands.
+struct TrustBase {
+  const Built& built;
+  const RunResult& run;
+  const RunResult* bonded = nullptr;  // where the case has a bonded run
+};
+
+/// Repeats the case with its choices changed. `raw`: the file of the case as read. `threads`: runs at the same time; the answer does not
+/// depend on them. `watch` is called from these threads, one at a time. Throws InputError when a changed case does not pass the checks.
+TrustAnswer trust(const Raw& raw, const Case& read, const MeshReader& read_mesh, const TrustBase& base, int threads,
+                  const Watch& watch = {});
+
+}  // namespace uplift
