@@ -12,24 +12,29 @@ namespace {
 
 constexpr int most_head_lines = 100;
 
-/// The text after "key =" or "key:" in a comment.
+/// The text after a key and "=", ":", "of", "is" or "are" in a comment.
 std::string_view value_after(std::string_view line, std::string_view key) {
   const std::string capital = upper(line);
   for (std::size_t at = find_word(capital, key); at != capital.npos; at = find_word(capital, key, at + 1)) {
-    const std::size_t sign = capital.find_first_not_of(" \t", at + key.size());
-    if (sign == capital.npos || (line[sign] != '=' && line[sign] != ':')) continue;
-    return trim(line.substr(sign + 1, line.find_first_of(";,", sign) - sign - 1));
+    const std::size_t next = capital.find_first_not_of(" \t", at + key.size());
+    if (next == capital.npos) return {};
+    for (const std::string_view link : {"=", ":", "OF ", "IS ", "ARE "})
+      if (std::string_view(capital).substr(next).starts_with(link)) {
+        const std::string_view value = line.substr(next + link.size());
+        return trim(value.substr(0, value.find_first_of(";,")));
+      }
   }
   return {};
 }
 
+/// "1559 points at equal spacing of 0.02 sec", "step = 0.02 s; unit = g".
 void read_comment(std::string_view line, int number, Columns& columns) {
-  for (const std::string_view key : {"STEP", "DT"}) {
+  for (const std::string_view key : {"STEP", "DT", "SPACING", "INTERVAL", "INTERVALS"}) {
     const std::string_view value = value_after(line, key);
     const LeadingNumber step = leading_number(value);
     const std::string unit = upper(trim(value.substr(step.length)));
-    if (!columns.step && step.length > 0 && !step.out_of_range && (unit.empty() || unit == "S" || unit == "SEC"))
-      columns.step = {step.value, number};
+    const bool seconds = unit.empty() || unit == "S" || unit == "SEC" || unit == "SECONDS";
+    if (!columns.step && step.length > 0 && !step.out_of_range && seconds) columns.step = {step.value, number};
   }
   for (const std::string_view key : {"UNIT", "UNITS"}) {
     const std::string_view value = value_after(line, key);
@@ -37,6 +42,11 @@ void read_comment(std::string_view line, int number, Columns& columns) {
     columns.unit = value;
     columns.unit_line = number;
   }
+  const std::string capital = upper(line);
+  const std::string_view before = trim(std::string_view(capital).substr(0, std::min(find_word(capital, "POINTS"), capital.size())));
+  if (columns.count || before.size() == capital.size() || before.empty()) return;
+  if (const std::optional<double> count = whole_number(before.substr(before.find_last_of(" \t#%!/;,") + 1)))
+    columns.count = {*count, number};
 }
 
 char separator_of(std::string_view line) {

@@ -16,9 +16,10 @@ struct Columns {
   struct Head {
     std::string name, unit;
   };
-  std::vector<Head> heads;     // empty or `width`
-  std::optional<Stated> step;  // of a comment, "# step = 0.01 s"
-  std::string unit;            // of a comment, "# unit = g"
+  std::vector<Head> heads;  // empty or `width`
+  // of comments: "# step = 0.01 s; unit = g", "# 1559 points at equal spacing of 0.02 sec"
+  std::optional<Stated> step, count;
+  std::string unit;
   int unit_line = 0;
 };
 

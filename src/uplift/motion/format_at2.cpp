@@ -13,10 +13,11 @@ namespace {
 
 constexpr int head_lines = 12;  // nobody has more before the line of NPTS
 
+/// The line with both words and a number below it, 0 when there is none.
 int counts_line(const RecordText& text) {
   for (int i = 1; i <= std::min(head_lines, text.count()); ++i) {
     const std::string line = upper(text.line(i));
-    if (find_word(line, "NPTS") != line.npos && find_word(line, "DT") != line.npos) return i;
+    if (find_word(line, "NPTS") != line.npos && find_word(line, "DT") != line.npos) return number_after(text.line(i + 1), 0) ? i : 0;
   }
   return 0;
 }

@@ -157,6 +157,8 @@ std::vector<Motion> read(const RecordText& text, const RecordOptions& options) {
   const Layout layout = layout_of(text, columns, options);
   if (layout.values.empty()) {
     RecordDraft draft = draft_of(columns, none);
+    draft.count = columns.count;
+    draft.per_row = columns.width;
     if (columns.separator == ';' || columns.decimal_comma)
       throw InputError(text.where(columns.first_row), "", "a column of times at equal steps",
                        in_quotes(trim(text.line(columns.first_row))));
@@ -170,6 +172,7 @@ std::vector<Motion> read(const RecordText& text, const RecordOptions& options) {
   std::vector<Motion> motions;
   for (std::size_t k = 0; k < layout.values.size(); ++k) {
     RecordDraft draft = draft_of(columns, layout.values[k]);
+    if (layout.time == none) draft.count = columns.count;
     draft.samples = placed(rows.samples[k], rows, steps ? &*steps : nullptr);
     if (steps) draft.step = {steps->step, columns.first_row};
     if (steps && rows.times.front() != 0)

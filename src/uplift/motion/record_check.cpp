@@ -234,8 +234,8 @@ Motion finished(const RecordText& text, const RecordOptions& options, RecordDraf
   motion.factor = unit.factor * draft.scale;
   motion.values = std::move(draft.samples.values);
   for (double& value : motion.values) value *= motion.factor;
-  check_magnitude(text, draft, motion);
   if (draft.arbitrary_zero) take_off_mean(motion);
+  check_magnitude(text, draft, motion);
   check_peak(draft, motion);
   return motion;
 }

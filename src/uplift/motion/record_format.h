@@ -50,6 +50,14 @@ struct Samples {
 /// Adds all numbers of a line: blanks between them, or the sign of the next one, or fields of `width` characters when it is not 0.
 /// "NaN", "Inf" and "*****" are missing numbers; anything else is an InputError.
 void add_numbers(const RecordText& text, int line, Samples& samples, std::size_t width = 0);
+/// A row as Fortran's "(8F10.5)" in the text of a line describes it: 8 numbers in fields of 10 characters; zeros when there is none.
+struct RowForm {
+  std::size_t numbers = 0, width = 0;
+};
+RowForm row_form(std::string_view line);
+/// Adds the numbers of the lines from `first` on, until there are `count` of them or the next line is one of text that ends a block
+/// ("End of data", "/&", "|"). Fields of the given width unless the first row has other ones. Returns the line after them.
+int add_block(const RecordText& text, int first, double count, std::size_t width, Samples& samples);
 /// The number that a whole word is ("1.5", ".5", "1.5D-3"); none for anything else.
 std::optional<double> whole_number(std::string_view word);
 
@@ -106,6 +114,8 @@ std::span<const PartInfo* const> record_formats();
 std::string upper(std::string_view text);
 /// Position of a word of letters, digits and "_" in an upper-case text, not as a part of another word; npos when absent.
 std::size_t find_word(std::string_view text, std::string_view word, std::size_t from = 0);
+/// The text after a label ("Station Code"), past blanks and "=", ":" and "."; empty when the line has no such label. Case matters not.
+std::string_view text_after(std::string_view line, std::string_view label);
 /// The number after a position, past blanks and "=", ":" and ",".
 std::optional<double> number_after(std::string_view text, std::size_t position);
 

@@ -139,6 +139,45 @@ void add_numbers(const RecordText& text, int line, Samples& samples, std::size_t
   }
 }
 
+RowForm row_form(std::string_view line) {
+  const std::string capital = upper(line);
+  for (std::size_t open = capital.find('('); open != capital.npos; open = capital.find('(', open + 1)) {
+    const std::size_t letter = capital.find_first_not_of("0123456789", open + 1);
+    if (letter == capital.npos || std::string_view("FEI").find(capital[letter]) == std::string_view::npos) continue;
+    const LeadingNumber numbers = leading_number(std::string_view(capital).substr(open + 1));
+    const LeadingNumber width = leading_number(std::string_view(capital).substr(letter + 1));
+    if (width.length == 0 || width.value < 1 || width.value > 80 || numbers.value > 80) continue;
+    return {numbers.length == 0 ? 1 : static_cast<std::size_t>(numbers.value), static_cast<std::size_t>(width.value)};
+  }
+  return {};
+}
+
+int add_block(const RecordText& text, int first, double count, std::size_t width, Samples& samples) {
+  if (width > 0) {
+    Samples row;
+    try {
+      add_numbers(text, first, row, width);
+    } catch (const InputError&) {
+      width = 0;  // written with blanks by another program
+    }
+  }
+  int line = first;
+  for (; line <= text.count() && static_cast<double>(samples.values.size()) < count; ++line) {
+    const std::string start = upper(trim(text.line(line)).substr(0, 3));
+    if (start.starts_with("END") || start.starts_with("/&") || start.starts_with("|")) break;
+    add_numbers(text, line, samples, width);
+  }
+  return line;
+}
+
+std::string_view text_after(std::string_view line, std::string_view label) {
+  const std::size_t at = upper(line).find(upper(label));
+  if (at == std::string::npos) return {};
+  line.remove_prefix(at + label.size());
+  const std::size_t begin = line.find_first_not_of(" \t=:.");
+  return begin == line.npos ? std::string_view() : trim(line.substr(begin));
+}
+
 std::optional<double> whole_number(std::string_view word) {
   const Word found = word_of(trim(word));
   return found.length > 0 && found.length == trim(word).size() ? found.number : std::nullopt;
