@@ -6,7 +6,7 @@
 namespace uplift {
 
 std::vector<std::complex<double>> fourier(const std::vector<double>& values) {
-  assert(!values.empty());
+  assert(values.size() >= 2);
   Eigen::FFT<double> transform;
   transform.SetFlag(Eigen::FFT<double>::HalfSpectrum);
   std::vector<std::complex<double>> half;

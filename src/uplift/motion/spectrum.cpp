@@ -68,13 +68,17 @@ inline void Pack::look_at_end() {
   for (int j = 0; j < lanes; ++j) peak[j] = std::max(peak[j], std::abs(on_p[j] * p[j] + on_q[j] * q[j]));
 }
 
-/// Where the rate changes its sign within a sub-step, y has its extreme near the place where a straight rate is zero; the cubic through
-/// both ends is taken there. (An error of the place enters squared.)
+/// Where the rate changes its sign within a sub-step, y has an extreme: near the place where a straight rate is zero, nearer after one step
+/// of Newton on the slope of the cubic through both ends; the cubic is taken there. (An error of the place enters squared.)
 inline void Pack::look_between(double to) {
   for (int j = 0; j < lanes; ++j) {
     const double y0 = y[j], d0 = dy[j];
     const double y1 = on_p[j] * p[j] + on_q[j] * q[j], d1 = rate_p[j] * p[j] + (rate_q[j] * q[j] + rate_a[j] * to);
-    const double turn = d0 * d1 < 0 ? d0 / (d0 - d1) : 1, left = 1 - turn;
+    const double first = d0 * d1 < 0 ? d0 / (d0 - d1) : 1, rise = 6 * (y1 - y0);
+    const double slope = d0 * (1 - first) * (1 - 3 * first) + d1 * first * (3 * first - 2) + rise * first * (1 - first);
+    const double bend = d0 * (6 * first - 4) + d1 * (6 * first - 2) + rise * (1 - 2 * first);
+    const double nearer = first < 1 && bend != 0 ? first - slope / bend : first;
+    const double turn = std::min(std::max(nearer, 0.0), 1.0), left = 1 - turn;
     const double top = ((1 + 2 * turn) * y0 + turn * d0) * left * left + ((1 + 2 * left) * y1 - left * d1) * turn * turn;
     peak[j] = std::max(peak[j], std::max(std::abs(top), std::abs(y1)));
     y[j] = y1;
