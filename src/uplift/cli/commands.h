@@ -2,6 +2,8 @@
 #include <string>
 #include <vector>
 
+#include "uplift/motion/read.h"
+
 // The commands of the program: one function and one file each. main.cpp declares their options and calls them.
 namespace uplift::cli {
 
@@ -27,6 +29,15 @@ int modes(const Options& options, int count);
 int describe(const std::string& family, const std::string& name);
 int schema();
 int replay(const Options& options, const std::string& method, bool all);
+
+struct MotionOptions {
+  std::vector<std::string> files;                 // of records; with `generate` KEY=VALUE words
+  std::vector<std::string> generate;              // "TARGET KEY=VALUE ...", one for each component
+  std::vector<std::string> process;               // "STEP KEY=VALUE ...", in order
+  std::vector<double> dampings{0.05, 0.02, 0.1};  // of the spectra
+  RecordOptions record;
+};
+int motion(const Options& options, const MotionOptions& given);
 
 /// A command as it was declared, for completion.
 struct Declared {

@@ -11,6 +11,9 @@
 #include "uplift/laws/law.h"
 #include "uplift/linear/solver.h"
 #include "uplift/model/function.h"
+#include "uplift/motion/generate.h"
+#include "uplift/motion/processing.h"
+#include "uplift/motion/target.h"
 
 namespace uplift::cli {
 namespace {
@@ -26,6 +29,8 @@ std::vector<Family> families() {
           {"impact", "velocity corrections on impact, for constraints", impact_rules()},
           {"scheme", "time integration", schemes()},
           {"function", "functions of time", time_functions()},
+          {"process", "processing steps of ground motions", motion_processes()},
+          {"target", "target spectra of generated motions", target_spectra()},
           {"solver", "factorisation of the structure's matrices", linear_solvers()}};
 }
 
@@ -48,6 +53,7 @@ void collect(const Section& section, const std::string& path, std::vector<Place>
 std::vector<Place> places() {
   std::vector<Place> all{{"case", &case_section(), Kind::table}};
   collect(case_section(), "", all);
+  all.push_back({"generate", &generate_section(), Kind::table});
   return all;
 }
 
@@ -135,6 +141,7 @@ void print_sections() {
 
 std::string head_of(const Place& place) {
   if (place.path == "case") return "the keys at the top of a case file";
+  if (place.section == &generate_section()) return "KEY=VALUE words of uplift motion --generate";
   return place.kind == Kind::tables ? "[[" + place.path + "]]" : "[" + place.path + "]";
 }
 

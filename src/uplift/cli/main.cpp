@@ -20,6 +20,7 @@ constexpr const char* exit_codes =
 struct Choices {
   Options options;
   std::string name, family, method = "lagrange", shell = "bash";
+  uplift::cli::MotionOptions motion;
   int modes = 6;
   bool all = false;
 };
@@ -40,6 +41,32 @@ void take_output(CLI::App* command, Options& options) {
 }
 void take_json(CLI::App* command, Options& options) {
   command->add_flag("--json", options.json, "print JSON for machines");
+}
+
+void declare_motion(CLI::App& app, Choices& given) {
+  uplift::cli::MotionOptions& motion = given.motion;
+  CLI::App* command =
+      add(app, "motion", "ground motions: peaks, intensities and spectra of records, processing, generation to a target spectrum",
+          "  uplift motion RSN8883.AT2 --damping 0.02 0.05\n"
+          "  uplift motion quake.csv --unit cm/s2 --process \"baseline\" --process \"bandpass from=0.1 to=25\"\n"
+          "  uplift motion --generate rg_1_60 pga=\"0.3 g_n\" duration=20 seed=7\n"
+          "  uplift motion --generate eurocode_8 --generate eurocode_8 --generate \"eurocode_8 direction=vertical\" a_g=2 ground=C");
+  command->add_option("words", motion.files,
+                      "files of recorded motions; with --generate: KEY=VALUE of the target and of the generation "
+                      "(uplift describe target; uplift describe section generate)");
+  command->add_option("--unit", motion.record.unit, "unit of the numbers in the file, when it does not state it (g, cm/s2, m/s, ...)");
+  command->add_option("--step", motion.record.step, "time step [s] of files without times, or of the generated motion");
+  command->add_option("--format", motion.record.format, "format of the file, instead of the one found by content");
+  command->add_option("--column", motion.record.column, "name or number of the column of a table");
+  command->add_option("--process", motion.process, "a processing step: \"NAME KEY=VALUE ...\"; may be repeated (uplift describe process)")
+      ->expected(1)
+      ->take_all();
+  command->add_option("--generate", motion.generate, "a target spectrum: \"NAME KEY=VALUE ...\"; repeated: independent components")
+      ->expected(1)
+      ->take_all();
+  command->add_option("--damping", motion.dampings, "damping ratios of the response spectra")->check(CLI::Range(0.0, 0.99));
+  take_output(command, given.options);
+  take_json(command, given.options);
 }
 
 void declare(CLI::App& app, Choices& given) {
@@ -79,7 +106,7 @@ void declare(CLI::App& app, Choices& given) {
 
   command = add(app, "describe", "equations, parameters, units and sources of every part, and the tables of a case file",
                 "  uplift describe\n  uplift describe law\n  uplift describe law sdm\n  uplift describe section interface.footing");
-  command->add_option("family", given.family, "law, method, impact, scheme, function, solver or section");
+  command->add_option("family", given.family, "law, method, impact, scheme, function, process, target, solver or section");
   command->add_option("name", given.name, "name of the part or table");
 
   add(app, "schema", "print the JSON Schema of the case file", "  uplift schema > case.schema.json");
@@ -90,6 +117,8 @@ void declare(CLI::App& app, Choices& given) {
   command->add_option("-m,--method", given.method, "contact method (see uplift describe method)");
   command->add_flag("--all", given.all, "compare all methods");
   take_json(command, options);
+
+  declare_motion(app, given);
 
   command = add(app, "completion", "print a completion script for the shell",
                 "  source <(uplift completion bash)\n  source <(uplift completion zsh)");
@@ -120,6 +149,7 @@ int dispatch(const CLI::App& app, const Choices& given) {
   if (name == "modes") return cli::modes(given.options, given.modes);
   if (name == "describe") return cli::describe(given.family, given.name);
   if (name == "schema") return cli::schema();
+  if (name == "motion") return cli::motion(given.options, given.motion);
   if (name == "replay") return cli::replay(given.options, given.method, given.all);
   return cli::completion(given.shell, declared(app));
 }

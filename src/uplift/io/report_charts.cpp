@@ -245,6 +245,11 @@ void write_chart(JsonWriter& json, const Case& read, const Chart& chart) {
       origin = figure.text("origin");
       if (figure.has("caption")) caption = figure.text("caption");
     }
+  write_chart(json, chart, origin, caption);
+}
+
+void write_chart(JsonWriter& json, const Chart& chart, std::string_view origin, std::string_view caption) {
+  if (chart.curves.empty()) return;
   const auto axis = [&](const char* key, const Axis& each) {
     json.key(key).begin_object().member("label", each.label).member("unit", each.unit).member("log", each.log).end_object();
   };

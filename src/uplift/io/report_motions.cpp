@@ -22,63 +22,6 @@ Motion acceleration_of(const MotionHistory& history) {
   return converted(*history.motion(), MotionKind::acceleration);
 }
 
-/// What one number can say of them.
-void write_numbers(JsonWriter& json, const Histories& motions) {
-  json.begin_object().member("id", "motions").member("title", "Motions");
-  json.member("caption",
-              "As they drive the model. PGV and PGD by exact integration of the acceleration, which is straight between its points; Arias: "
-              "pi/(2 g) times the integral of a2; D5-95: from 5 % to 95 % of it.");
-  json.key("columns").begin_array();
-  for (const TableColumn& column : {TableColumn{"name", "Motion", "", "text", 0},
-                                    {"station", "Station", "", "text", 0},
-                                    {"component", "Component", "", "text", 0},
-                                    {"count", "Points", "", "number", 6},
-                                    {"step", "Step", "s", "number", 4},
-                                    {"duration", "Duration", "s", "number", 4},
-                                    {"pga", "PGA", "m/s2", "number", 4},
-                                    {"pgv", "PGV", "m/s", "number", 4},
-                                    {"pgd", "PGD", "m", "number", 4},
-                                    {"arias", "Arias", "m/s", "number", 4},
-                                    {"significant", "D5-95", "s", "number", 4}})
-    write_column(json, column);
-  json.end_array().key("rows").begin_array();
-  for (const auto& history : motions) {
-    const Motion& motion = *history->motion();
-    const Intensity intensity = intensity_of(acceleration_of(*history));
-    json.begin_object().member("name", motion.name).member("station", motion.station).member("component", motion.component);
-    json.member("count", static_cast<long>(motion.values.size())).member("step", motion.step).member("duration", motion.duration());
-    json.member("pga", intensity.pga).member("pgv", intensity.pgv).member("pgd", intensity.pgd);
-    json.member("arias", intensity.arias).member("significant", intensity.significant_duration()).end_object();
-  }
-  json.end_array().end_object();
-}
-
-/// Where they come from and what was done with them.
-void write_origins(JsonWriter& json, const Histories& motions) {
-  json.begin_object().member("id", "motion_origins").member("title", "Where the motions come from");
-  json.member("caption", "File with its SHA-256, the factor from its numbers to SI, what was mended when it was read, every step since.");
-  json.key("columns").begin_array();
-  for (const TableColumn& column : {TableColumn{"name", "Motion", "", "text", 0},
-                                    {"file", "File", "", "text", 0},
-                                    {"event", "Event", "", "text", 0},
-                                    {"format", "Format", "", "text", 0},
-                                    {"unit", "Unit", "", "text", 0},
-                                    {"factor", "Factor", "", "number", 8},
-                                    {"repairs", "Repairs", "", "text", 0},
-                                    {"processing", "Processing", "", "text", 0},
-                                    {"sha256", "SHA-256", "", "text", 0}})
-    write_column(json, column);
-  json.end_array().key("rows").begin_array();
-  for (const auto& history : motions) {
-    const Motion& motion = *history->motion();
-    json.begin_object().member("name", motion.name).member("file", motion.file).member("event", motion.event);
-    json.member("format", motion.format).member("unit", motion.unit).member("factor", motion.factor);
-    json.member("repairs", fmt::format("{}", fmt::join(motion.repairs, "; ")));
-    json.member("processing", fmt::format("{}", fmt::join(motion.processing, "; "))).member("sha256", motion.sha256).end_object();
-  }
-  json.end_array().end_object();
-}
-
 /// Title of a table over motions: the variant, and the damping when there are several.
 std::string title_of(const MotionTable& table) {
   return "Over the motions: " + table.run + (table.damping.empty() ? "" : ", " + table.damping);
@@ -209,13 +152,73 @@ void write_over_motions(JsonWriter& json, const std::vector<MotionTable>& tables
   json.end_array();
 }
 
+void write_motion_numbers(JsonWriter& json, const Histories& motions, std::string_view caption) {
+  json.begin_object().member("id", "motions").member("title", "Motions");
+  json.member("caption",
+              fmt::format("{} PGV and PGD by exact integration of the acceleration, which is straight between its points; Arias: pi/(2 g) "
+                          "times the integral of a2; D5-95: from 5 % to 95 % of it; CAV: integral of |a|; Housner: integral of the "
+                          "pseudo-velocity, 5 % damping, over periods from 0.1 s to 2.5 s.",
+                          caption));
+  json.key("columns").begin_array();
+  for (const TableColumn& column : {TableColumn{"name", "Motion", "", "text", 0},
+                                    {"station", "Station", "", "text", 0},
+                                    {"component", "Component", "", "text", 0},
+                                    {"count", "Points", "", "number", 6},
+                                    {"step", "Step", "s", "number", 4},
+                                    {"duration", "Duration", "s", "number", 4},
+                                    {"pga", "PGA", "m/s2", "number", 4},
+                                    {"pgv", "PGV", "m/s", "number", 4},
+                                    {"pgd", "PGD", "m", "number", 4},
+                                    {"arias", "Arias", "m/s", "number", 4},
+                                    {"cav", "CAV", "m/s", "number", 4},
+                                    {"significant", "D5-95", "s", "number", 4},
+                                    {"housner", "Housner", "m", "number", 4}})
+    write_column(json, column);
+  json.end_array().key("rows").begin_array();
+  for (const auto& history : motions) {
+    const Motion& motion = *history->motion();
+    const Intensity intensity = intensity_of(acceleration_of(*history));
+    json.begin_object().member("name", motion.name).member("station", motion.station).member("component", motion.component);
+    json.member("count", static_cast<long>(motion.values.size())).member("step", motion.step).member("duration", motion.duration());
+    json.member("pga", intensity.pga).member("pgv", intensity.pgv).member("pgd", intensity.pgd);
+    json.member("arias", intensity.arias).member("cav", intensity.cav);
+    json.member("significant", intensity.significant_duration()).member("housner", intensity.housner).end_object();
+  }
+  json.end_array().end_object();
+}
+
+void write_motion_origins(JsonWriter& json, const Histories& motions) {
+  json.begin_object().member("id", "motion_origins").member("title", "Where the motions come from");
+  json.member("caption", "File with its SHA-256, the factor from its numbers to SI, what was mended when it was read, every step since.");
+  json.key("columns").begin_array();
+  for (const TableColumn& column : {TableColumn{"name", "Motion", "", "text", 0},
+                                    {"file", "File", "", "text", 0},
+                                    {"event", "Event", "", "text", 0},
+                                    {"format", "Format", "", "text", 0},
+                                    {"unit", "Unit", "", "text", 0},
+                                    {"factor", "Factor", "", "number", 8},
+                                    {"repairs", "Repairs", "", "text", 0},
+                                    {"processing", "Processing", "", "text", 0},
+                                    {"sha256", "SHA-256", "", "text", 0}})
+    write_column(json, column);
+  json.end_array().key("rows").begin_array();
+  for (const auto& history : motions) {
+    const Motion& motion = *history->motion();
+    json.begin_object().member("name", motion.name).member("file", motion.file).member("event", motion.event);
+    json.member("format", motion.format).member("unit", motion.unit).member("factor", motion.factor);
+    json.member("repairs", fmt::format("{}", fmt::join(motion.repairs, "; ")));
+    json.member("processing", fmt::format("{}", fmt::join(motion.processing, "; "))).member("sha256", motion.sha256).end_object();
+  }
+  json.end_array().end_object();
+}
+
 void write_motion_tables(JsonWriter& json, const ReportInput& input) {
   if (input.compared)
     for (std::size_t i = 0; i < input.compared->motions.size(); ++i) write_over_motions_table(json, input.compared->motions[i], i + 1);
   const Histories motions = motions_of(input.runs);
   if (motions.empty()) return;
-  write_numbers(json, motions);
-  write_origins(json, motions);
+  write_motion_numbers(json, motions, "As they drive the model.");
+  write_motion_origins(json, motions);
 }
 
 void write_motion_charts(JsonWriter& json, const ReportInput& input) {

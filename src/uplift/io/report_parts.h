@@ -1,12 +1,13 @@
 #pragma once
 #include <span>
 #include <string>
+#include <string_view>
 #include <vector>
 
 #include "uplift/io/json_writer.h"
 #include "uplift/io/report.h"
 
-// The parts of the report's document; used by report.cpp alone.
+// The parts of the reports' documents; used by the files of the reports alone.
 namespace uplift {
 
 void write_choices(JsonWriter& json, const Case& read, const Built& built);
@@ -40,6 +41,7 @@ void write_trust_tables(JsonWriter& json, const TrustAnswer& answer);
 std::vector<Chart> trust_charts(const TrustAnswer& answer);
 /// With the origin and the caption that the case states; nothing without curves.
 void write_chart(JsonWriter& json, const Case& read, const Chart& chart);
+void write_chart(JsonWriter& json, const Chart& chart, std::string_view origin, std::string_view caption);
 
 /// A column of a table of the report.
 struct TableColumn {

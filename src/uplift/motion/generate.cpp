@@ -94,9 +94,9 @@ class Sines {
   std::vector<double> frequencies_, phases_, amplitudes_;
 };
 
-/// How far a fit is from what it must be; below 1 it is good.
+/// How far a fit is from what it must be; below 1 it is good. Nowhere far above the target either.
 double distance(const SpectrumFit& fit) {
-  return std::max(fit.mean_error / 0.05, (1 - fit.least_ratio) / 0.10);
+  return std::max({fit.mean_error / 0.05, (1 - fit.least_ratio) / 0.10, fit.largest_error / 0.25});
 }
 
 Vector at_rest_in_grains(Vector a, const Vector& envelope, double step) {

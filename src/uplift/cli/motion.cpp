@@ -1,0 +1,226 @@
+#include <fmt/chrono.h>
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <ctime>
+#include <filesystem>
+
+#include "uplift/base/file.h"
+#include "uplift/base/text.h"
+#include "uplift/cli/commands.h"
+#include "uplift/cli/console.h"
+#include "uplift/io/files.h"
+#include "uplift/io/report.h"
+#include "uplift/io/report_motion.h"
+#include "uplift/io/toml.h"
+#include "uplift/motion/convert.h"
+#include "uplift/motion/intensity.h"
+#include "uplift/motion/processing.h"
+#include "uplift/motion/write.h"
+
+namespace uplift::cli {
+namespace {
+
+namespace fs = std::filesystem;
+
+/// KEY=VALUE, the value as in a case file; a text may stand there without quotes.
+std::pair<std::string, Raw> pair_of(const std::string& word, const std::string& place) {
+  const std::size_t sign = word.find('=');
+  if (sign == 0 || sign == std::string::npos) throw InputError({place, 0}, "", "KEY=VALUE", in_quotes(word));
+  const std::string key(trim(word.substr(0, sign))), text(trim(word.substr(sign + 1)));
+  Raw value{text, {place, 0}, key};
+  try {
+    const Raw read = read_toml_text("v = " + text, place);
+    if (const Raw* found = std::get<std::shared_ptr<RawTable>>(read.data)->find("v")) value.data = found->data;
+  } catch (const InputError&) {
+    value.data = text;  // `0.3 g_n`, `vertical`
+  }
+  return {key, value};
+}
+
+using Pairs = std::vector<std::pair<std::string, Raw>>;
+
+Raw table_of(Pairs pairs, const std::string& place) {
+  return {std::make_shared<RawTable>(RawTable{std::move(pairs)}), {place, 0}, ""};
+}
+
+/// "NAME KEY=VALUE KEY=VALUE": a part. Blanks around a unit (`0.3 g_n`) belong to the value before.
+Pairs part_of(const std::string& text, const std::string& place) {
+  std::vector<std::string> words;
+  for (std::size_t begin = 0; (begin = text.find_first_not_of(' ', begin)) != std::string::npos;) {
+    const std::size_t end = std::min(text.find(' ', begin), text.size());
+    const std::string word = text.substr(begin, end - begin);
+    if (words.size() < 2 || word.find('=') != std::string::npos)
+      words.push_back(word);
+    else
+      words.back() += " " + word;
+    begin = end;
+  }
+  if (words.empty()) throw InputError({place, 0}, "", "the name of a part", in_quotes(text));
+  Pairs pairs{{"type", {words.front(), {place, 0}, "type"}}};
+  for (std::size_t i = 1; i < words.size(); ++i) pairs.push_back(pair_of(words[i], place));
+  return pairs;
+}
+
+std::vector<ShownMotion> read_all(const MotionOptions& given) {
+  std::vector<ShownMotion> shown;
+  for (const std::string& file : given.files)
+    for (Motion& motion : read_motions(file, given.record)) shown.push_back({motion, motion, std::nullopt});
+  return shown;
+}
+
+/// KEY=VALUE words that belong to the generation itself, and those that belong to the targets.
+std::pair<Pairs, Pairs> sorted_words(const std::vector<std::string>& words, const std::string& place) {
+  std::pair<Pairs, Pairs> sorted;
+  for (const std::string& word : words) {
+    auto pair = pair_of(word, place);
+    const bool own = std::ranges::any_of(generate_section().fields, [&](const Field& field) { return field.name == pair.first; });
+    (own ? sorted.first : sorted.second).push_back(std::move(pair));
+  }
+  return sorted;
+}
+
+std::vector<std::unique_ptr<const TargetSpectrum>> targets_of(const MotionOptions& given, const Pairs& common, const std::string& place) {
+  std::vector<std::unique_ptr<const TargetSpectrum>> targets;
+  for (const std::string& text : given.generate) {
+    Pairs pairs = part_of(text, place);
+    for (const auto& pair : common)
+      if (std::ranges::none_of(pairs, [&](const auto& own) { return own.first == pair.first; })) pairs.push_back(pair);
+    targets.push_back(make_part(target_catalog(), check_part(table_of(std::move(pairs), place), target_spectra())));
+  }
+  return targets;
+}
+
+/// The motions, each with its target for the fit after the processing.
+std::vector<ShownMotion> generate_all(const MotionOptions& given, std::vector<std::unique_ptr<const TargetSpectrum>>& targets,
+                                      GenerateOptions& options) {
+  const std::string place = "uplift motion --generate";
+  auto [own, common] = sorted_words(given.files, place);
+  if (given.record.step) own.push_back({"step", {*given.record.step, {place, 0}, "step"}});
+  targets = targets_of(given, common, place);
+  options = generate_options(check(table_of(std::move(own), place), generate_section()), *targets.front());
+  std::vector<const TargetSpectrum*> list;
+  for (const auto& target : targets) list.push_back(target.get());
+  std::vector<ShownMotion> shown;
+  for (GeneratedMotion& made : generate_motions(list, options)) {
+    const std::string& text = given.generate[shown.size()];
+    made.motion.name = text.substr(0, text.find(' ')) + (targets.size() > 1 ? fmt::format(" {}", shown.size() + 1) : "");
+    shown.push_back({made.motion, made.motion, std::move(made.fit)});
+  }
+  return shown;
+}
+
+void process(std::vector<ShownMotion>& shown, const std::vector<std::string>& steps) {
+  const std::string place = "uplift motion --process";
+  for (const std::string& step : steps) {
+    const auto made = make_part(process_catalog(), check_part(table_of(part_of(step, place), place), motion_processes()));
+    for (ShownMotion& each : shown) each.now = made->apply(std::move(each.now));
+  }
+}
+
+Provenance provenance_of(const MotionOptions& given, const Options& options, const std::vector<ShownMotion>& shown) {
+  Provenance from;
+  const bool made = !given.generate.empty();
+  const Motion& first = shown.front().now;
+  from.title = made ? "Generated motion" : fs::path(given.files.front()).filename().string();
+  from.subtitle =
+      fmt::format("{}, {:g} s in steps of {:g} s", made ? "spectrum " + given.generate.front() : first.name, first.duration(), first.step);
+  if (shown.size() > 1) from.subtitle = fmt::format("{} motions; the first: {}", shown.size(), from.subtitle);
+  from.command = options.command;
+  from.version = UPLIFT_VERSION;
+  from.created = fmt::format("{:%Y-%m-%dT%H:%M:%SZ}", fmt::gmtime(std::time(nullptr)));
+  from.case_file = made ? "" : given.files.front();
+  from.case_hash = first.sha256;
+  return from;
+}
+
+std::string folder_of(const MotionOptions& given, const Options& options) {
+  if (!options.out.empty()) return options.out;
+  std::string name = given.generate.empty() ? fs::path(given.files.front()).stem().string() : given.generate.front();
+  return "out/motion_" + name.substr(0, name.find(' '));
+}
+
+void print(const MotionReport& report) {
+  std::vector<std::vector<std::string>> rows{{"motion", "PGA [m/s2]", "PGV [m/s]", "PGD [m]", "Arias [m/s]", "CAV [m/s]", "D5-95 [s]",
+                                              "Housner [m]", "step [s]", "points", "repairs"}};
+  for (const ShownMotion& shown : report.motions) {
+    const Intensity i = intensity_of(converted(shown.now, MotionKind::acceleration));
+    rows.push_back({shown.now.name, fmt::format("{:.4g}", i.pga), fmt::format("{:.4g}", i.pgv), fmt::format("{:.4g}", i.pgd),
+                    fmt::format("{:.4g}", i.arias), fmt::format("{:.4g}", i.cav), fmt::format("{:.4g}", i.significant_duration()),
+                    fmt::format("{:.4g}", i.housner), shortest(shown.now.step), fmt::format("{}", shown.now.values.size()),
+                    fmt::format("{}", shown.now.repairs.size())});
+  }
+  print_table(rows);
+  for (const ShownMotion& shown : report.motions) {
+    for (const std::string& text : shown.now.repairs) say(fmt::format("{}: repaired: {}", shown.now.name, text));
+    for (const std::string& text : shown.now.processing) say(fmt::format("{}: {}", shown.now.name, text));
+    if (shown.fit)
+      say(fmt::format("{}: fit {} from {:.4g} Hz to {:.4g} Hz: mean error {:.2f} %, nowhere below {:.1f} % of the target", shown.now.name,
+                      shown.fit->good() ? "good" : "beyond its bounds", shown.fit->frequencies.front(), shown.fit->frequencies.back(),
+                      100 * shown.fit->mean_error, 100 * shown.fit->least_ratio));
+  }
+  for (std::size_t i = 0; i < report.motions.size(); ++i)
+    for (std::size_t j = i + 1; j < report.motions.size(); ++j)
+      if (const auto value = correlation_of(report.motions[i].now, report.motions[j].now))
+        say(fmt::format("correlation of {} and {}: {:.3f}", report.motions[i].now.name, report.motions[j].now.name, *value));
+}
+
+/// One file for motions of one step, else one for each.
+void write_motions(const MotionReport& report, ResultFolder& folder) {
+  std::vector<Motion> all;
+  for (const ShownMotion& shown : report.motions) all.push_back(shown.now);
+  if (std::ranges::all_of(all, [&](const Motion& motion) { return motion.step == all.front().step; })) {
+    folder.write("motion.csv", motion_csv(all));
+    return;
+  }
+  for (std::size_t i = 0; i < all.size(); ++i) folder.write(fmt::format("motion_{}.csv", i + 1), motion_csv({&all[i], 1}));
+}
+
+void write(const MotionReport& report, const Options& options, ResultFolder& folder) {
+  write_motions(report, folder);
+  folder.write("summary.json", motion_summary_json(report));
+  const std::string page = report_page(motion_report_json(report));
+  if (!page.empty())
+    folder.write("report.html", page);
+  else if (!options.quiet)
+    complain("note: this program was built without the report's page (web/dist/report.html): no report.html is written");
+  const std::string moved = folder.finish();
+  if (!moved.empty() && !options.quiet && !options.json) say("earlier results moved to " + moved + "/");
+}
+
+}  // namespace
+
+int motion(const Options& options, const MotionOptions& given) {
+  std::vector<std::unique_ptr<const TargetSpectrum>> targets;
+  GenerateOptions generating;
+  if (given.generate.empty() && given.files.empty())
+    throw InputError({"uplift motion", 0}, "", "a file of a recorded motion, or --generate TARGET", "neither");
+  MotionReport report;
+  report.motions = given.generate.empty() ? read_all(given) : generate_all(given, targets, generating);
+  process(report.motions, given.process);
+  if (!given.process.empty())
+    for (std::size_t i = 0; i < targets.size(); ++i)
+      report.motions[i].fit =
+          spectrum_fit(report.motions[i].now.values, report.motions[i].now.step, *targets[i], generating.from, generating.to);
+  report.dampings = given.dampings;
+  report.from = provenance_of(given, options, report.motions);
+
+  ResultFolder folder(folder_of(given, options));
+  write(report, options, folder);
+  if (options.json) {
+    fmt::print("{}", read_file(folder.path() + "/summary.json"));
+  } else if (!options.quiet) {
+    print(report);
+    say(fmt::format("results: {}/report.html, {}/motion.csv", folder.path(), folder.path()));
+  }
+  bool good = true;
+  for (const ShownMotion& shown : report.motions)
+    if (shown.fit && !shown.fit->good() && given.process.empty()) {
+      complain(fmt::format("failed: {}: the spectrum could not be brought within its bounds; a longer duration or a narrower band may help",
+                           shown.now.name));
+      good = false;
+    }
+  return good ? Exit::done : Exit::numerical_failure;
+}
+
+}  // namespace uplift::cli

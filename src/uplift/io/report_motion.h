@@ -1,0 +1,32 @@
+#pragma once
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "uplift/io/summary.h"
+#include "uplift/motion/generate.h"
+
+// The report of `uplift motion`: motions without a model, on the page of the other reports.
+namespace uplift {
+
+/// A motion as it was read or generated, and as it is after the processing.
+struct ShownMotion {
+  Motion first, now;               // the same without processing
+  std::optional<SpectrumFit> fit;  // of a generated motion, as it is now
+};
+
+struct MotionReport {
+  Provenance from;
+  std::vector<ShownMotion> motions;  // one at least
+  std::vector<double> dampings;      // of the response spectra; one at least
+};
+
+/// Correlation coefficient of two motions; none when their steps or lengths differ.
+std::optional<double> correlation_of(const Motion& first, const Motion& second);
+
+/// The data of the page, see report_page().
+std::string motion_report_json(const MotionReport& report);
+/// summary.json: provenance, `motions` (as in the summary of a run), `intensities`, `fits` and `correlations`.
+std::string motion_summary_json(const MotionReport& report);
+
+}  // namespace uplift
