@@ -81,6 +81,52 @@ class Results(CliTest):
         self.assertEqual([row["name"] for row in report["tables"][0]["rows"]], ["run", "bonded"])
         self.assertEqual(len(report["model"]["interfaces"][0]["points"]), 11)
 
+    def test_floor_spectra_stand_beside_the_bonded_run(self):
+        roof = '[[output.floor_spectrum]]\nname = "roof, x"\nnode = "top"\ndirection = [1, 0]\n'
+        foot = '[[output.floor_spectrum]]\nname = "foot"\nat = [0, 0]\ndirection = [0, 1]\ndamping = [0.05]\nrange = { from = 1, to = 40, count = 9 }\n'
+        self.write(BASE.replace("bonded = false\n", "") + roof + foot)
+        checked = json.loads(self.uplift("check", "case.toml", "--json").stdout)
+        self.assertEqual(checked["floor_spectra"], {"floors": 2, "bytes": 2 * 501 * 8})
+        self.uplift("run", "case.toml", "-o", "r")
+        with open(self.folder / "r" / "floor_spectra.csv", newline="") as file:
+            head, *rows = csv.reader(file)
+        self.assertEqual(len(rows), 2 * (2 * 75 + 9))
+        self.assertEqual(head[5], "pseudo-acceleration [m/s2]")
+        blocks = {}
+        for group, run, floor, damping, frequency, raw, broad, bonded, ratio in rows:
+            blocks[run, floor, float(damping), float(frequency)] = [float(cell) if cell else None for cell in (raw, broad, bonded, ratio)]
+        for (run, *at), (raw, broad, bonded, ratio) in blocks.items():
+            self.assertGreaterEqual(broad, raw * (1 - 1e-9))
+            if run == "bonded":
+                self.assertEqual((bonded, ratio), (None, None))
+                continue
+            self.assertEqual(bonded, blocks["bonded", *at][0])
+            self.assertAlmostEqual(ratio, raw / bonded, delta=2e-9 * ratio)
+        run, bonded = self.summary("r")["runs"]
+        spectra = run["floor_spectra"][0]["spectra"]
+        self.assertEqual([each["damping"] for each in spectra], [0.02, 0.05])
+        for each, beside in zip(spectra, bonded["floor_spectra"][0]["spectra"]):
+            largest = max((values[0], at[2]) for (name, *at), values in blocks.items() if name == "run" and at[:2] == ["roof, x", each["damping"]])
+            self.assertAlmostEqual(each["peak"]["value"], largest[0], delta=1e-9 * largest[0])
+            self.assertEqual(each["peak"]["frequency"], largest[1])
+            self.assertEqual([band["band"] for band in each["beside_bonded"]],
+                             ["below 2 Hz", "2 to 5 Hz", "5 to 10 Hz", "10 to 20 Hz", "above 20 Hz"])
+            most = max(band["change"] for band in each["beside_bonded"])
+            self.assertGreater(abs(most), 1e-3)  # it uplifts
+            self.assertNotIn("beside_bonded", beside)
+        self.uplift("run", "r/case.resolved.toml", "-o", "again")
+        self.assertEqual((self.folder / "r/floor_spectra.csv").read_text(), (self.folder / "again/floor_spectra.csv").read_text())
+        page = self.folder / "r" / "report.html"
+        if not page.exists():
+            return
+        report = json.loads(re.search(r'<script id="uplift-data" type="application/json">(.*?)</script>', page.read_text(), re.S).group(1))
+        charts = {chart["id"]: chart for chart in report["charts"]}
+        for name, curves in {"floor_roof, x_2": 3, "floor_roof, x_5": 3, "floor_foot_5": 3, "floor_ratio_roof, x": 2, "floor_ratio_foot": 1}.items():
+            self.assertEqual(len(charts[name]["series"]), curves, name)
+            self.assertTrue(charts[name]["x"]["log"])
+        (table,) = (table for table in report["tables"] if table["id"] == "floors")
+        self.assertEqual(len(table["rows"]), 2 * 3)
+
     def test_json_on_standard_output_is_the_summary(self):
         self.write(BASE)
         done = self.uplift("run", "case.toml", "-o", "r", "--json")

@@ -118,7 +118,7 @@ TEST(FloorSpectra, RefusesWhatCannotBe) {
   says("[[stage]]\ntype = \"dynamic\"\nduration = 1\nstep = 0.01\n" + roof, "the same step");
 }
 
-/// Two variants, one that may fail, and the bonded run of a case without an interface is not there: the envelope is that of the sound ones.
+/// Two variants, one that may fail, and and one that stands for the bonded run: the envelope is that of the sound ones.
 TEST(FloorSpectra, SoundRunsOfAGroup) {
   const Case read = read_case(roof + "frequencies = [2, 4, 8]\nbroadening = 0\n");
   std::vector<RunResult> results;

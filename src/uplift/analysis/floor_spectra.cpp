@@ -47,19 +47,33 @@ int bonded_of(const std::string& group, const std::vector<RunResult>& results, c
   return -1;
 }
 
+/// The same floor over some runs.
+FloorSpectra over_runs(const std::vector<FloorRun>& runs, const std::vector<std::size_t>& chosen, std::size_t floor, double broadening) {
+  std::vector<const FloorSpectra*> same;
+  for (const std::size_t i : chosen) same.push_back(&runs[i].floors[floor]);
+  return floor_envelope(same, broadening);
+}
+
+std::string label_of(const Values& damping) {
+  return damping.text(damping.has("label") ? "label" : "name");
+}
+
 void add_envelopes(const RunPlan& plan, const std::vector<RunResult>& results, const std::vector<RunSpec>& specs, FloorAnswers& answers) {
-  std::vector<std::string> groups;
-  for (const RunResult& result : results)
-    if (std::ranges::find(groups, result.group) == groups.end()) groups.push_back(result.group);
-  for (const std::string& group : groups) {
-    FloorEnvelope made{group, 0, {}};
+  std::vector<const Values*> dampings;
+  for (const RunSpec& spec : specs)
+    if (std::ranges::find(dampings, spec.damping) == dampings.end()) dampings.push_back(spec.damping);
+  for (const Values* damping : dampings) {
+    std::vector<std::size_t> sound, bonded;
+    for (std::size_t i = 0; i < results.size(); ++i) {
+      if (specs[i].damping != damping) continue;
+      if (is_sound(results[i], specs[i])) sound.push_back(i);
+      if (specs[i].bonded && results[i].status == RunStatus::completed) bonded.push_back(i);
+    }
+    if (sound.size() < 2) continue;
+    FloorEnvelope made{dampings.size() > 1 ? label_of(*damping) : "", static_cast<int>(sound.size()), {}, {}};
     for (std::size_t k = 0; k < plan.floors.size(); ++k) {
-      std::vector<const FloorSpectra*> same;
-      for (std::size_t i = 0; i < results.size(); ++i)
-        if (results[i].group == group && is_sound(results[i], specs[i])) same.push_back(&answers.runs[i].floors[k]);
-      made.runs = static_cast<int>(same.size());
-      if (made.runs < 2) break;
-      made.floors.push_back(floor_envelope(same, plan.floors[k].broadening));
+      made.floors.push_back(over_runs(answers.runs, sound, k, plan.floors[k].broadening));
+      if (!bonded.empty()) made.beside.push_back(floor_change(made.floors[k], over_runs(answers.runs, bonded, k, 0), plan.floor_bands));
     }
     if (!made.floors.empty()) answers.envelopes.push_back(std::move(made));
   }

@@ -46,16 +46,17 @@ struct FloorRun {
   std::vector<std::vector<FloorChange>> beside;  // per floor and damping; empty without a completed bonded run of its group
 };
 
-/// Largest values over all sound runs of a group.
+/// Largest values over all sound runs with the same damping of the structure: variants and motions.
 struct FloorEnvelope {
-  std::string group;
+  std::string damping;  // its label; empty when there is only one
   int runs = 0;
   std::vector<FloorSpectra> floors;
+  std::vector<std::vector<FloorChange>> beside;  // the envelope of the completed bonded runs, as in FloorRun
 };
 
 struct FloorAnswers {
   std::vector<FloorRun> runs;            // one per run
-  std::vector<FloorEnvelope> envelopes;  // of groups with two sound runs at least
+  std::vector<FloorEnvelope> envelopes;  // of two sound runs at least
   bool any() const;
 };
 

@@ -83,9 +83,10 @@ std::string floor_spectra_csv(const std::vector<RunResult>& runs, const FloorAns
         write_block(text, head, floor, d, floors.runs[i].beside.empty() ? nullptr : &floors.runs[i].beside[k][d]);
     }
   for (const FloorEnvelope& envelope : floors.envelopes)
-    for (const FloorSpectra& floor : envelope.floors)
-      for (std::size_t d = 0; d < floor.raw.size(); ++d)
-        write_block(text, cell(envelope.group) + ",envelope," + cell(floor.name) + ",", floor, d, nullptr);
+    for (std::size_t k = 0; k < envelope.floors.size(); ++k)
+      for (std::size_t d = 0; d < envelope.floors[k].raw.size(); ++d)
+        write_block(text, cell(envelope.damping) + ",envelope," + cell(envelope.floors[k].name) + ",", envelope.floors[k], d,
+                    envelope.beside.empty() ? nullptr : &envelope.beside[k][d]);
   return text;
 }
 
@@ -98,8 +99,9 @@ void write_floors(JsonWriter& json, const FloorRun& run) {
 void write_floor_envelopes(JsonWriter& json, const FloorAnswers& floors) {
   json.begin_array();
   for (const FloorEnvelope& envelope : floors.envelopes) {
-    json.begin_object().member("group", envelope.group).member("runs", envelope.runs).key("floors").begin_array();
-    for (const FloorSpectra& floor : envelope.floors) write_floor(json, floor, nullptr);
+    json.begin_object().member("damping_case", envelope.damping).member("runs", envelope.runs).key("floors").begin_array();
+    for (std::size_t k = 0; k < envelope.floors.size(); ++k)
+      write_floor(json, envelope.floors[k], envelope.beside.empty() ? nullptr : &envelope.beside[k]);
     json.end_array().end_object();
   }
   json.end_array();

@@ -25,10 +25,9 @@ std::vector<std::size_t> shown_runs(const ReportInput& input) {
   return shown;
 }
 
+/// That of the first damping of the structure, which the runs of the figures have.
 const FloorEnvelope* envelope_of(const ReportInput& input) {
-  for (const FloorEnvelope& envelope : input.floors->envelopes)
-    if (envelope.group == input.runs.front().result->group) return &envelope;
-  return nullptr;
+  return input.floors->envelopes.empty() ? nullptr : &input.floors->envelopes.front();
 }
 
 /// Raw curves of all runs, the bonded one dashed; what is broadened: the envelope, or the first run without one.
@@ -85,15 +84,15 @@ Chart ratio_chart(const ReportInput& input, const FloorRequest& floor, std::size
   return chart;
 }
 
-void write_row(JsonWriter& json, const ReportRun& run, const FloorRun& floors, std::size_t k, std::size_t d) {
-  const FloorSpectra& floor = floors.floors[k];
+void write_row(JsonWriter& json, const std::string& run, const std::string& group, const FloorSpectra& floor, const FloorChange* change,
+               std::size_t d) {
   const Spectrum& raw = floor.raw[d];
   const auto most = static_cast<std::size_t>(std::ranges::max_element(raw.values) - raw.values.begin());
-  json.begin_object().member("floor", floor.name).member("run", run.result->label).member("group", run.result->group);
+  json.begin_object().member("floor", floor.name).member("run", run).member("group", group);
   json.member("damping", raw.damping).member("rigid", std::abs(floor.zero_period.value));
   json.member("peak", raw.values[most]).member("at", raw.frequencies[most]);
-  if (!floors.beside.empty())
-    for (const FloorChange::Band& band : floors.beside[k][d].bands) json.member(fmt::format("from_{:g}", band.band.from), band.change);
+  if (change)
+    for (const FloorChange::Band& band : change->bands) json.member(fmt::format("from_{:g}", band.band.from), band.change);
   json.end_object();
 }
 
@@ -136,9 +135,17 @@ void write_floor_table(JsonWriter& json, const ReportInput& input) {
   }
   json.end_array().key("rows").begin_array();
   for (std::size_t k = 0; k < plan.floors.size(); ++k)
-    for (std::size_t d = 0; d < plan.floors[k].dampings.size(); ++d)
-      for (std::size_t i = 0; i < input.runs.size(); ++i)
-        if (!input.floors->runs[i].floors.empty()) write_row(json, input.runs[i], input.floors->runs[i], k, d);
+    for (std::size_t d = 0; d < plan.floors[k].dampings.size(); ++d) {
+      for (std::size_t i = 0; i < input.runs.size(); ++i) {
+        const FloorRun& run = input.floors->runs[i];
+        if (run.floors.empty()) continue;
+        const RunResult& result = *input.runs[i].result;
+        write_row(json, result.label, result.group, run.floors[k], run.beside.empty() ? nullptr : &run.beside[k][d], d);
+      }
+      for (const FloorEnvelope& all : input.floors->envelopes)
+        write_row(json, fmt::format("envelope of {} runs", all.runs), all.damping, all.floors[k],
+                  all.beside.empty() ? nullptr : &all.beside[k][d], d);
+    }
   json.end_array().end_object();
 }
 
