@@ -288,6 +288,7 @@ void Recorder::record(bool row) {
   floors_.record(acceleration_, state.time);
   const std::size_t columns = sources_.size();
   double *now = now_.data(), *most = most_.data();
+  bool higher = false;
   for (std::size_t k = 0; k < columns; ++k) {
     const Source& source = sources_[k];
     if (source.place != nullptr)
@@ -296,11 +297,9 @@ void Recorder::record(bool row) {
       now[k] = source.factor * (state.*source.vector).data()[source.entry];
     else
       now[k] = made(k);
+    higher |= std::abs(now[k]) > most[k];
   }
-  double higher = 0;  // columns beyond their peaks
-#pragma omp simd reduction(+ : higher)
-  for (std::size_t k = 0; k < columns; ++k) higher += std::abs(now[k]) > most[k] ? 1.0 : 0.0;
-  for (std::size_t k = 0; higher > 0 && k < columns; ++k) {
+  for (std::size_t k = 0; higher && k < columns; ++k) {
     if (!(std::abs(now[k]) > most[k])) continue;
     most[k] = std::abs(now[k]);
     result_.peaks[k].value = now[k], result_.peaks[k].time = state.time;

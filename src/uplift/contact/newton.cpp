@@ -42,6 +42,7 @@ class Newton {
   }
 
   void predict();
+  void go_on();
   void look(bool with_hessian);
   void move(double alpha, bool with_hessian);
   void form_gradient(bool with_hessian);
@@ -63,8 +64,8 @@ class Newton {
   double size_ = 0;  // |G| where it was looked at last
 };
 
-/// First guess of a step from the last one: the laws go on linearly from their end-of-step force with their last slope,
-///     H_last z = -C^T (p_end + k_last (free_opening - from))
+/// First guess of a step from the last one: the laws go on linearly from their end-of-step force with their slope there,
+///     H_end z = -C^T (p_end + k_end (free_opening - from))
 /// which is the solution itself where no law changes its branch. Costs two sums over the points instead of an evaluation of the laws.
 template <int R>
 void Newton<R>::predict() {
@@ -87,6 +88,21 @@ void Newton<R>::predict() {
     small::add_transposed<R>(block.rows(), r(), column(0) + block.first, rows_, force, scratch_.gradient.data());
   }
   if (direction()) std::copy_n(scratch_.direction.data(), r(), solution_.z.data());
+}
+
+/// After a step that some law bent in: slopes and Hessian of the step to come, in which it goes on straight.
+template <int R>
+void Newton<R>::go_on() {
+  for (std::size_t b = 0; b < problem_.blocks.size(); ++b) {
+    const Block& block = problem_.blocks[b];
+    const int n = block.batch.points, components = block.batch.components;
+    double* slope = scratch_.slope.data() + scratch_.first_slope[b];
+    const double *next = scratch_.next.data() + scratch_.first_slope[b], *area = block.area.data();
+    for (int c = 0; c < components * components; ++c)
+#pragma omp simd
+      for (int i = 0; i < n; ++i) slope[c * n + i] = problem_.scale * area[i] * next[c * n + i];
+  }
+  form_gradient(true);
 }
 
 /// Forces, G and |G| at solution.z, and the Hessian when wanted.
@@ -271,6 +287,7 @@ Outcome Newton<R>::solve() {
         (outcome.iterations >= enough && (!large || outcome.residual <= 1e-9) && size_ <= noise * round_off())) {
       outcome.converged = true;
       scratch_.follows = predictable;
+      if (predictable && outcome.iterations > 0) go_on();
       return outcome;
     }
     if (large && outcome.iterations == again) {

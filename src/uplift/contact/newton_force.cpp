@@ -39,6 +39,7 @@ void size_newton(const InterfaceProblem& problem, InterfaceSolution& solution) {
     slopes += block.batch.points * block.batch.components * block.batch.components;
   }
   scratch.slope.setZero(slopes);
+  scratch.next.setZero(slopes);
   scratch.gradient.setZero(r);
   scratch.direction.setZero(r);
   scratch.origin.setZero(r);
@@ -54,13 +55,16 @@ void evaluate(const InterfaceProblem& problem, const AugmentedForce& augmented, 
   small::affine(problem.factor, problem.free_opening.data(), solution.z.data(), solution.opening.data());
   for (std::size_t b = 0; b < problem.blocks.size(); ++b) {
     const Block& block = problem.blocks[b];
-    double* slope = with_slope ? solution.newton.slope.data() + solution.newton.first_slope[b] : nullptr;
-    if (block.law != nullptr)
-      law_force(problem, block, solution.opening.data(),
-                {solution.force.data() + block.first, slope, solution.now.data() + block.first_history,
-                 problem.average ? solution.newton.end.data() + block.first : nullptr});
-    else
+    const int first_slope = solution.newton.first_slope[b];
+    double* slope = with_slope ? solution.newton.slope.data() + first_slope : nullptr;
+    if (block.law != nullptr) {
+      Reply reply{solution.force.data() + block.first, slope, solution.now.data() + block.first_history};
+      if (problem.average) reply.end = solution.newton.end.data() + block.first;
+      if (problem.average && with_slope) reply.next = solution.newton.next.data() + first_slope;
+      law_force(problem, block, solution.opening.data(), reply);
+    } else {
       cone_force(problem, block, augmented, slope, solution);
+    }
   }
 }
 

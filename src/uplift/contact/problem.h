@@ -68,7 +68,8 @@ struct NewtonScratch {
   Vector slope;  // per block (components x components x points), blocks one after another [N/m]
   std::vector<int> first_slope;
   Vector gradient, direction, origin;
-  Vector end;  // traction at the end of the step [Pa], path average only
+  Vector end;   // traction at the end of the step [Pa], path average only
+  Vector next;  // as slope, for the step to come [Pa/m], path average only
   Matrix hessian;
   bool follows = false;        // the next problem may be guessed from this solution: slope, end and hessian are those of a converged step
   KeptWork direction_of_many;  // more than twelve coordinates

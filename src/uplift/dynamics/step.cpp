@@ -28,6 +28,7 @@ Stepper::Stepper(const Model& model, const Bulk& bulk, const Sparse& b, const Ve
       path_(options.path_average && options.scheme.average_acceleration() && !method.constrains()),
       impacts_(impact.acts() && !path_ && b.rows() > 0),
       yielding_(model) {
+  still_force_ = options.held != nullptr ? *options.held : Vector(Vector::Zero(bulk.unknowns));
   // in the order that keeps the peak of memory low: the largest factor, which needs the most room while it is made, comes first
   levels_.resize(static_cast<std::size_t>(options.halvings) + 1);
   level(0);
@@ -74,14 +75,13 @@ Outcome Stepper::solve(Level& level) {
   return outcome;
 }
 
-void Stepper::add_force(double time, Vector& force) const {
+void Stepper::force_at(double time, Vector& force) const {
+  std::copy_n(still_force_.data(), still_force_.size(), force.data());
   model_.add_force(time, force);
-  if (options_.held != nullptr) force += *options_.held;
 }
 
 void Stepper::forces_at(const State& state, Vector& result) const {  // f - C v - K u - r - B^T p; r is that of now_
-  result.setZero();
-  add_force(state.time, result);
+  force_at(state.time, result);
   product_.resize(bulk_.unknowns);
   bulk_.damping.multiply(state.velocity, product_);
   result -= product_;
@@ -124,7 +124,7 @@ void Stepper::start(State state, const Ledger* before) {
   }
   if (!path_ && !impacts_ && mass_failure_.empty()) accelerator_.reset();  // its factor is large, and the scheme carries accelerations on
   next_ = now_;
-  add_force(now_.time, force_now_);
+  force_at(now_.time, force_now_);
   products(now_.displacement, now_.velocity, stiff_now_, momentum_now_);
   const InterfaceProblem blocks = blocks_of(model_, behaviours_);
   interface_energy_.update(blocks, now_.opening, now_.history);
@@ -216,8 +216,7 @@ bool Stepper::try_step(Level& level) {
     return false;
   }
   next_.time = now_.time + level.step;
-  std::fill_n(force_next_.data(), force_next_.size(), 0.0);
-  add_force(next_.time, force_next_);
+  force_at(next_.time, force_next_);
   if (gap_moves_) move_gap(now_.time, next_.time);
   right_hand_side(level);
   const Outcome outcome = solve(level);

@@ -69,7 +69,7 @@ class Stepper {
   Level& level(int halving);
   bool try_step(Level& level);
   bool substep(int halving);
-  void add_force(double time, Vector& force) const;
+  void force_at(double time, Vector& force) const;
   void move_gap(double from, double to);
   /// ku = K u and mv = M v, in one pass where the bulk is large.
   void products(const Vector& u, const Vector& v, Vector& ku, Vector& mv) const;
@@ -86,6 +86,7 @@ class Stepper {
   const Bulk& bulk_;
   const Sparse& b_;
   const Vector& still_gap_;  // initial gaps
+  Vector still_force_;       // that do not change in the stage: StepOptions::held [N, N m]
   Vector gap_, gap_step_;    // with the prescribed motions at the end of the step, and their change in the step
   const Behaviours& behaviours_;
   const ContactMethod& method_;

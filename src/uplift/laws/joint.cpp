@@ -29,6 +29,7 @@ class JointLaw final : public InterfaceLaw {
     const int normal = batch.normal();
     normal_->mean(one_component(batch), from + normal, to + normal, old, normal_reply(batch, reply));
     tangential_->mean(call(batch, from, to, old, reply));
+    if (reply.next != nullptr) std::copy_n(reply.slope, others(batch), reply.next);
   }
 
   void energy(const Batch& batch, const double* opening, const double* history, double* stored, double* dissipated) const override {
@@ -51,12 +52,15 @@ class JointLaw final : public InterfaceLaw {
     part.traction += batch.normal();
     if (reply.end != nullptr) part.end += batch.normal();
     if (reply.slope != nullptr) {
-      const int last = (batch.components * batch.components - 1) * batch.points;
-      std::fill_n(reply.slope, last, 0.0);
-      part.slope += last;
+      std::fill_n(reply.slope, others(batch), 0.0);
+      part.slope += others(batch);
     }
+    if (reply.next != nullptr) part.next += others(batch);
     return part;
   }
+
+  /// Entries of the slope before those of the normal part.
+  static int others(const Batch& batch) { return (batch.components * batch.components - 1) * batch.points; }
 
   TangentialCall call(const Batch& batch, const double* from, const double* to, const double* old, const Reply& reply) const {
     const int first = normal_->num_history() * batch.points;

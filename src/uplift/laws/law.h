@@ -25,6 +25,7 @@ struct Reply {
   double* slope = nullptr;     // Pa/m
   double* now = nullptr;       // memory at the end of the step
   double* end = nullptr;       // `mean` only: traction at the end of the step [Pa]
+  double* next = nullptr;      // `mean` only: the slope that a short step onwards will have, for first guesses; in the layout of `slope`
 };
 
 /// A traction law: traction from opening, with memory.

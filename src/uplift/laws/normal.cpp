@@ -27,6 +27,7 @@ void PointLaw::mean(const Batch& batch, const double* from, const double* to, co
     reply.traction[i] = point.mean;
     if (reply.slope != nullptr) reply.slope[i] = point.mean_slope;
     if (reply.end != nullptr) reply.end[i] = point.end;
+    if (reply.next != nullptr) reply.next[i] = 0.5 * point.end_slope;
     keep(now, num_history(), i, batch.points, reply.now);
   }
 }

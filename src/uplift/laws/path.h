@@ -1,6 +1,7 @@
 #pragma once
 #include <algorithm>
 #include <cmath>
+#include <cstdint>
 
 // Averages along the straight path of one opening, without cancellation: a piecewise linear function f is integrated piece by piece,
 //     1/(to - from) * integral of f = sum over pieces of share * f(middle)
@@ -19,6 +20,25 @@ inline double smaller(double a, double b) {
 inline double larger(double a, double b) {
   return a > b ? a : b;
 }
+
+/// Loops over points take so many together: the lanes of the widest vector registers.
+constexpr int lanes = 8;
+
+/// Marks of up to 64 points, as wide as their numbers.
+struct Marks {
+  alignas(64) std::int64_t of[64] = {};
+
+  /// Calls part(first, count) for every group of `lanes` points in which one is marked.
+  template <class Part>
+  void for_groups(int points, const Part& part) const {
+    for (int first = 0; first < points; first += lanes) {
+      std::int64_t any = 0;
+#pragma omp simd reduction(| : any)
+      for (int i = 0; i < lanes; ++i) any |= of[first + i];
+      if (any != 0) part(first, points - first < lanes ? points - first : lanes);
+    }
+  }
+};
 
 /// The part of a path that lies on one piece of the axis.
 struct Piece {

@@ -26,9 +26,9 @@ struct Traction {
   double value, slope;
 };
 
-/// Path average at a fixed jump, its derivative with respect to the end of the path, and the traction there.
+/// Path average at a fixed jump, its derivative with respect to the end of the path, and the traction and its slope there.
 struct Average {
-  double value, slope, end;
+  double value, slope, end, end_slope;
 };
 
 /// What becomes of a path that may soften.
@@ -68,8 +68,18 @@ struct Sdm {
     return {d < knot ? k * d : slope * (d - j), slope};
   }
 
-  /// Average at fixed jump, which is that of the three straight pieces below `knot`, from there to j, and above. Places are measured from
-  /// `from`.
+  /// Whether a path meets a bend of the traction at fixed jump, at the knot or at j.
+  bool bends(double from, double to, double j) const { return ((from < knot) != (to < knot)) | ((from < j) != (to < j)); }
+
+  /// Average at fixed jump of a path without a bend: the traction of its middle.
+  Average straight(double from, double to, double j) const {
+    const bool closed = to < knot;
+    const double slope = !closed & (to < j) ? closing(j) : k, start = closed ? 0.0 : j;
+    return {slope * (0.5 * (from + to) - start), 0.5 * slope, slope * (to - start), slope};
+  }
+
+  /// Average at fixed jump of any path, which is that of the three straight pieces below `knot`, from there to j, and above. Places are
+  /// measured from `from`.
   Average average(double from, double to, double j) const {
     const double way = to - from, low = smaller(way, 0.0), high = larger(way, 0.0), length = std::abs(way);
     const double held = larger(length, shortest_path), soft = closure + k * j;
@@ -83,7 +93,7 @@ struct Sdm {
     const double levers = std::abs(a * (a0 + a1) + b * (b0 + b1) + c * (c0 + c1));
     const double slope = to >= knot && to < j ? closing_stiffness : k;
     const double end = to < knot ? k * to : slope * (to - j);
-    return {length > shortest_path ? sum * half : end, length > shortest_path ? levers * half * inverse : 0.5 * slope, end};
+    return {length > shortest_path ? sum * half : end, length > shortest_path ? levers * half * inverse : 0.5 * slope, end, slope};
   }
 
   double stored(double d, double j) const {
@@ -111,8 +121,6 @@ struct Step {
   const double *from, *to, *old;
   int count;
 };
-
-constexpr int lanes = 8;  // of the widest vector registers
 
 /// Points of a block whose path touches the threshold, side by side.
 struct Gathered {
@@ -147,18 +155,29 @@ bool respond_below(const Sdm law, const Step step, double* traction, double* slo
   return most > 0;
 }
 
-bool mean_below(const Sdm law, const Step step, double* mean, double* slope, double* now, double* end) {
-  double most = 0;
+/// The first loop is right for points without a bend in their path, which is the rule; lanes in which one has a bend are done again.
+bool mean_below(const Sdm law, const Step step, const Reply& reply) {
+  double *mean = reply.traction, *slope = reply.slope, *now = reply.now, *end = reply.end, *next = reply.next, most = 0;
+  Marks bends;
 #pragma omp simd reduction(max : most)
   for (int i = 0; i < step.count; ++i) {
-    const double j = step.old[i];
-    const Average average = law.average(step.from[i], step.to[i], j);
-    most = larger(most, law.excess(larger(step.from[i], step.to[i]) - j, j));
+    const double from = step.from[i], to = step.to[i], j = step.old[i];
+    const Average average = law.straight(from, to, j);
+    most = larger(most, law.excess(larger(from, to) - j, j));
+    bends.of[i] = law.bends(from, to, j);
     mean[i] = average.value;
-    slope[i] = average.slope;
+    slope[i] = next[i] = average.slope;
     now[i] = j;
     end[i] = average.end;
   }
+  bends.for_groups(step.count, [=](int first, int count) {
+#pragma omp simd
+    for (int i = first; i < first + count; ++i) {
+      const Average average = law.average(step.from[i], step.to[i], step.old[i]);
+      mean[i] = average.value;
+      slope[i] = average.slope;
+    }
+  });
   return most > 0;
 }
 
@@ -207,12 +226,13 @@ void respond_beyond(const Sdm law, const Step& step, double* traction, double* s
   }
 }
 
-void mean_beyond(const Sdm law, const Step& step, double* mean, double* slope, double* now, double* end) {
+void mean_beyond(const Sdm law, const Step& step, const Reply& reply) {
   Gathered points;
   gather(law, step, points);
   alignas(64) double value[block];
   alignas(64) double derivative[block];
   alignas(64) double last[block];
+  alignas(64) double last_slope[block];
   const int padded = points.padded;
 #pragma omp simd
   for (int i = 0; i < padded; ++i) {
@@ -235,13 +255,15 @@ void mean_beyond(const Sdm law, const Step& step, double* mean, double* slope, d
     derivative[i] = inverse != 0 ? share * share * elastic.slope - (way * r - below) * inverse * inverse : elastic.slope;
     points.jump[i] = s.jump;
     last[i] = at_end;
+    last_slope[i] = softens ? law.softening_slope(s.traction) : elastic.end_slope;
   }
   for (int i = 0; i < points.count; ++i) {
     const int place = points.place[i];
-    mean[place] = value[i];
-    slope[place] = derivative[i];
-    now[place] = points.jump[i];
-    end[place] = last[i];
+    reply.traction[place] = value[i];
+    reply.slope[place] = derivative[i];
+    reply.now[place] = points.jump[i];
+    reply.end[place] = last[i];
+    reply.next[place] = 0.5 * last_slope[i];
   }
 }
 
@@ -263,12 +285,15 @@ class SdmLaw final : public NormalLaw {
 
   void mean(const Batch& batch, const double* from, const double* to, const double* old, const Reply& reply) const override {
     for (int first = 0; first < batch.points; first += block) {
-      double spare[3][block];
+      double spare[4][block];
+      const auto given = [first](double* values, double* instead) { return values != nullptr ? values + first : instead; };
       const Step step{from + first, to + first, old + first, std::min(block, batch.points - first)};
-      double* slope = reply.slope != nullptr ? reply.slope + first : spare[0];
-      double* now = reply.now != nullptr ? reply.now + first : spare[1];
-      double* end = reply.end != nullptr ? reply.end + first : spare[2];
-      if (mean_below(law_, step, reply.traction + first, slope, now, end)) mean_beyond(law_, step, reply.traction + first, slope, now, end);
+      const Reply here{.traction = reply.traction + first,
+                       .slope = given(reply.slope, spare[0]),
+                       .now = given(reply.now, spare[1]),
+                       .end = given(reply.end, spare[2]),
+                       .next = given(reply.next, spare[3])};
+      if (mean_below(law_, step, here)) mean_beyond(law_, step, here);
     }
   }
 

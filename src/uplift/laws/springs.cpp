@@ -32,10 +32,10 @@ class Springs final : public NormalLaw {
   void mean(const Batch& batch, const double* from, const double* to, const double* old, const Reply& reply) const override {
     if (damping_ > 0) return viscous(batch, from, to, old, reply, true);
     for (int first = 0; first < batch.points; first += block) {
-      const int count = batch.points - first < block ? batch.points - first : block;
-      double spare[2][block];
-      average(count, from + first, to + first, reply.traction + first, reply.slope != nullptr ? reply.slope + first : spare[0],
-              reply.end != nullptr ? reply.end + first : spare[1]);
+      double spare[3][block];
+      const auto given = [first](double* values, double* instead) { return values != nullptr ? values + first : instead; };
+      average(batch.points - first < block ? batch.points - first : block, from + first, to + first, reply.traction + first,
+              given(reply.slope, spare[0]), given(reply.end, spare[1]), given(reply.next, spare[2]));
     }
   }
 
@@ -66,17 +66,27 @@ class Springs final : public NormalLaw {
     return d > 0 ? 0.0 : stiffness * d;
   }
 
-  void average(int count, const double* from, const double* to, double* mean, double* slope, double* end) const {
+  /// Points that stay in contact, or apart, have the traction of the middle of their path; only the others need the pieces of it.
+  void average(int count, const double* from, const double* to, double* mean, double* slope, double* end, double* next) const {
     const double stiffness = stiffness_;
+    Marks crossing;
 #pragma omp simd
     for (int i = 0; i < count; ++i) {
-      const double way = to[i] - from[i], low = smaller(way, 0.0), high = larger(way, 0.0), length = std::abs(way);
-      const double a = smaller(low, -from[i]), b = smaller(high, -from[i]), inverse = 1 / length;
-      const double weight = 0.5 * stiffness * (b - a) * inverse, at_end = force(stiffness, to[i]);
-      mean[i] = length > shortest_path ? weight * (2 * from[i] + (a + b)) : at_end;
-      slope[i] = length > shortest_path ? weight * std::abs(a + b) * inverse : (to[i] < 0 ? 0.5 * stiffness : 0.0);
-      end[i] = at_end;
+      crossing.of[i] = (from[i] < 0) != (to[i] < 0);
+      mean[i] = force(stiffness, 0.5 * (from[i] + to[i]));
+      slope[i] = next[i] = to[i] < 0 ? 0.5 * stiffness : 0.0;
+      end[i] = force(stiffness, to[i]);
     }
+    crossing.for_groups(count, [=](int first, int some) {
+#pragma omp simd
+      for (int i = first; i < first + some; ++i) {
+        const double way = to[i] - from[i], low = smaller(way, 0.0), high = larger(way, 0.0), length = std::abs(way);
+        const double a = smaller(low, -from[i]), b = smaller(high, -from[i]), inverse = 1 / length;
+        const double weight = 0.5 * stiffness * (b - a) * inverse;
+        mean[i] = length > shortest_path ? weight * (2 * from[i] + (a + b)) : end[i];
+        slope[i] = length > shortest_path ? weight * std::abs(a + b) * inverse : next[i];
+      }
+    });
   }
 
   /// With the dashpot, or one point without; `average`: the path average, else the traction at the end.
@@ -95,6 +105,7 @@ class Springs final : public NormalLaw {
         const double jump = from[i] > 0 && to[i] < 0 ? per_step * from[i] / path.length() : 0;
         if (reply.slope != nullptr) reply.slope[i] = pushing.share * (stiffness_ * pushing.lever + per_step) + jump;
         if (reply.end != nullptr) reply.end[i] = end;
+        if (reply.next != nullptr) reply.next[i] = to[i] < knee ? 0.5 * stiffness_ + per_step : 0;
       } else {
         reply.traction[i] = end;
         if (reply.slope != nullptr) reply.slope[i] = end_slope;

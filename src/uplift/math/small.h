@@ -7,14 +7,36 @@
 // compiler turns into vector code; Eigen's general products cost more than the arithmetic at these sizes.
 namespace uplift::small {
 
+/// Eight numbers side by side, in vector registers. Sums over points are made of these: what compilers make of a loop with several sums
+/// ends in long chains of single additions.
+using Lanes = Eigen::Array<double, 8, 1>;
+inline constexpr std::ptrdiff_t lanes = 8;
+inline Eigen::Map<const Lanes> lanes_at(const double* x) {
+  return Eigen::Map<const Lanes>(x);
+}
+
+/// Calls add(at) for eight points after another out of n, where at(x) are their numbers in the array x: zeros beyond the last one.
+template <class Add>
+inline void for_lanes(std::ptrdiff_t n, const Add& add) {
+  std::ptrdiff_t i = 0;
+  for (; i + lanes <= n; i += lanes) add([i](const double* x) { return lanes_at(x + i); });
+  if (i == n) return;
+  add([i, n](const double* x) {
+    Lanes rest = Lanes::Zero();
+    for (std::ptrdiff_t k = i; k < n; ++k) rest[k - i] = x[k];
+    return rest;
+  });
+}
+
 inline double dot(std::ptrdiff_t n, const double* a, const double* b) {
   double sum = 0;
-  if (n < 8) {  // to begin and end a vector loop would cost more than the sum
-    for (std::ptrdiff_t i = 0; i < n; ++i) sum += a[i] * b[i];
-    return sum;
+  std::ptrdiff_t i = 0;
+  if (n >= lanes) {
+    Lanes part = Lanes::Zero();
+    for (; i + lanes <= n; i += lanes) part += lanes_at(a + i) * lanes_at(b + i);
+    sum = part.sum();
   }
-#pragma omp simd reduction(+ : sum)
-  for (std::ptrdiff_t i = 0; i < n; ++i) sum += a[i] * b[i];
+  for (; i < n; ++i) sum += a[i] * b[i];
   return sum;
 }
 
@@ -101,14 +123,15 @@ inline void affine(const Matrix& a, const double* b, const double* x, double* y)
 /// y += A^T x for n rows of m columns, `stride` apart. R: their number where the compiler shall know it (one pass), else 0.
 template <int R>
 void add_transposed(std::ptrdiff_t n, std::ptrdiff_t m, const double* a, std::ptrdiff_t stride, const double* x, double* y) {
-  if constexpr (R == 2) {
-    const double* other = a + stride;
-    double sum = 0, sum_other = 0;
-#pragma omp simd reduction(+ : sum, sum_other)
-    for (std::ptrdiff_t i = 0; i < n; ++i) sum += a[i] * x[i], sum_other += other[i] * x[i];
-    y[0] += sum, y[1] += sum_other;
-  } else {
+  if constexpr (R == 0) {
     for (std::ptrdiff_t j = 0; j < m; ++j, a += stride) y[j] += dot(n, a, x);
+  } else {
+    Lanes sum[R];
+    for (Lanes& part : sum) part.setZero();
+    for_lanes(n, [&](const auto& at) {
+      for (int r = 0; r < R; ++r) sum[r] += at(a + r * stride) * at(x);
+    });
+    for (int r = 0; r < R; ++r) y[r] += sum[r].sum();
   }
 }
 
@@ -123,39 +146,24 @@ bool gauss_solve(std::ptrdiff_t n, double* a, double* b);
 /// columns with stride `rows`.
 template <int R>
 void gradient_and_gram(std::ptrdiff_t n, const double* c, std::ptrdiff_t rows, const double* p, const double* k, double* g, double* h) {
-  double sum[R] = {}, gram[R * (R + 1) / 2] = {};
-  const double* column[R];
-  for (int r = 0; r < R; ++r) column[r] = c + r * rows;
-  if constexpr (R == 1) {
-    double s0 = 0, a0 = 0;
-#pragma omp simd reduction(+ : s0, a0)
-    for (std::ptrdiff_t i = 0; i < n; ++i) s0 += column[0][i] * p[i], a0 += column[0][i] * k[i] * column[0][i];
-    sum[0] = s0, gram[0] = a0;
-  } else if constexpr (R == 2) {
-    double s0 = 0, s1 = 0, a0 = 0, a1 = 0, a2 = 0;
-#pragma omp simd reduction(+ : s0, s1, a0, a1, a2)
-    for (std::ptrdiff_t i = 0; i < n; ++i) {
-      const double x = column[0][i], y = column[1][i], kx = k[i] * x, ky = k[i] * y;
-      s0 += x * p[i], s1 += y * p[i];
-      a0 += x * kx, a1 += y * kx, a2 += y * ky;
-    }
-    sum[0] = s0, sum[1] = s1, gram[0] = a0, gram[1] = a1, gram[2] = a2;
-  } else {
-    double s0 = 0, s1 = 0, s2 = 0, a0 = 0, a1 = 0, a2 = 0, a3 = 0, a4 = 0, a5 = 0;
-#pragma omp simd reduction(+ : s0, s1, s2, a0, a1, a2, a3, a4, a5)
-    for (std::ptrdiff_t i = 0; i < n; ++i) {
-      const double x = column[0][i], y = column[1][i], w = column[2][i], kx = k[i] * x, ky = k[i] * y, kw = k[i] * w;
-      s0 += x * p[i], s1 += y * p[i], s2 += w * p[i];
-      a0 += x * kx, a1 += y * kx, a2 += w * kx, a3 += y * ky, a4 += w * ky, a5 += w * kw;
-    }
-    sum[0] = s0, sum[1] = s1, sum[2] = s2;
-    gram[0] = a0, gram[1] = a1, gram[2] = a2, gram[3] = a3, gram[4] = a4, gram[5] = a5;
+  Lanes sum[R], gram[R][R];  // gram: lower triangle
+  for (int s = 0; s < R; ++s) {
+    sum[s].setZero();
+    for (int r = s; r < R; ++r) gram[s][r].setZero();
   }
-  for (int s = 0, entry = 0; s < R; ++s) {
-    g[s] += sum[s];
-    for (int r = s; r < R; ++r, ++entry) {
-      h[s * R + r] += gram[entry];
-      if (r != s) h[r * R + s] += gram[entry];
+  for_lanes(n, [&](const auto& at) {
+    for (int s = 0; s < R; ++s) {
+      const Lanes column = at(c + s * rows), weighted = at(k) * column;
+      sum[s] += column * at(p);
+      for (int r = s; r < R; ++r) gram[s][r] += weighted * at(c + r * rows);
+    }
+  });
+  for (int s = 0; s < R; ++s) {
+    g[s] += sum[s].sum();
+    for (int r = s; r < R; ++r) {
+      const double entry = gram[s][r].sum();
+      h[s * R + r] += entry;
+      if (r != s) h[r * R + s] += entry;
     }
   }
 }
