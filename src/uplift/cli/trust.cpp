@@ -17,10 +17,9 @@ namespace {
 void print_answer(const TrustAnswer& answer) {
   std::vector<std::vector<std::string>> rows{{"number", "of", "value", "least", "most", "band", "moved most by"}};
   for (const TrustBand& band : answer.bands) {
-    const std::string unit(band.quantity->unit);
     const std::optional<double> share = band.share();
-    rows.push_back({std::string(band.quantity->meaning), band.interface, spoken(band.value, unit), spoken(band.least, unit),
-                    spoken(band.most, unit), share ? "+-" + percent(*share) : "-", band.dominant});
+    rows.push_back({std::string(band.quantity->meaning), band.interface, said(*band.quantity, band.value), said(*band.quantity, band.least),
+                    said(*band.quantity, band.most), share ? "+-" + percent(*share) : "-", band.dominant});
   }
   print_table(rows);
   for (const TrustSpectrum& each : answer.spectra)

@@ -16,10 +16,6 @@ void write_heads(JsonWriter& json, std::initializer_list<std::pair<const char*, 
   json.end_array();
 }
 
-std::string said(double value, std::string_view unit) {
-  return unit == "1" ? percent(value) : spoken(value, std::string(unit));
-}
-
 }  // namespace
 
 void write_trust_tables(JsonWriter& json, const TrustAnswer& answer) {
@@ -39,8 +35,8 @@ void write_trust_tables(JsonWriter& json, const TrustAnswer& answer) {
   for (const TrustBand& band : answer.bands) {
     const std::optional<double> share = band.share();
     json.begin_object().member("number", band.quantity->meaning).member("of", band.interface);
-    json.member("value", said(band.value, band.quantity->unit)).member("least", said(band.least, band.quantity->unit));
-    json.member("most", said(band.most, band.quantity->unit)).member("band", share ? "±" + percent(*share) : "–");
+    json.member("value", said(*band.quantity, band.value)).member("least", said(*band.quantity, band.least));
+    json.member("most", said(*band.quantity, band.most)).member("band", share ? "±" + percent(*share) : "–");
     json.member("by", band.dominant).end_object();
   }
   json.end_array().end_object();

@@ -4,7 +4,6 @@
 
 #include <cmath>
 
-#include "uplift/analysis/wording.h"
 #include "uplift/io/json_writer.h"
 
 namespace uplift {
@@ -63,10 +62,8 @@ std::string trust_sentence(const TrustAnswer& answer) {
   for (const char* name : {"max_uplifted_ratio", "max_opening", "max_moment"})
     for (const TrustBand& band : answer.bands) {
       if (band.quantity->name != name) continue;
-      const std::string unit(band.quantity->unit);
-      const auto said = [&](double value) { return unit == "1" ? percent(value) : spoken(value, unit); };
       text += fmt::format("{}{} from {} to {}", text.empty() ? "Over all changed choices: " : ", ", band.quantity->meaning,
-                          said(band.least), said(band.most));
+                          said(*band.quantity, band.least), said(*band.quantity, band.most));
       break;  // of the first interface
     }
   if (text.empty()) return "Nothing was changed.";

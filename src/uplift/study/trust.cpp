@@ -8,6 +8,8 @@
 #include <numeric>
 #include <thread>
 
+#include "uplift/analysis/wording.h"
+
 namespace uplift {
 namespace {
 
@@ -181,6 +183,13 @@ std::string most_frequent(const std::vector<TrustBand>& bands) {
 }
 
 }  // namespace
+
+std::string said(const VerdictQuantity& quantity, double value) {
+  if (std::abs(value) < nothing(quantity.unit)) value = 0;
+  const bool share =
+      quantity.name.starts_with("change_of") || quantity.name.ends_with("uplifted_ratio") || quantity.name == "linear_tension_ratio";
+  return share ? percent(value) : spoken(value, quantity.unit);
+}
 
 std::optional<double> TrustBand::share() const {
   if (value == 0 || dominant.empty()) return std::nullopt;

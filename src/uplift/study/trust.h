@@ -51,6 +51,9 @@ struct TrustAnswer {
   bool complete = false;  // not interrupted
 };
 
+/// A number as an engineer says it: shares and changes in per cent; what is nothing beside the precision of a run as 0.
+std::string said(const VerdictQuantity& quantity, double value);
+
 /// The run of the case as it stands.
 struct TrustBase {
   const Built& built;
