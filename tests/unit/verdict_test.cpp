@@ -131,6 +131,18 @@ TEST(VerdictTest, SaysWhatATensionRatioHides) {
   EXPECT_NE(std::ranges::find(verdict.paragraphs, said), verdict.paragraphs.end());
 }
 
+TEST(VerdictTest, TheHeadlineSaysWhatTheUpliftDoes) {
+  const Built built = strip();
+  const auto turned = [](double moment, double share) {
+    RunResult run = support::run_of({support::view_of({.axial = -1e6}), support::view_of({.axial = -1e6, .moment = moment}, share)}, 0.5);
+    run.max_uplifted_ratio.value = share;
+    return run;
+  };
+  const RunResult bonded = turned(2e6, 0);
+  const std::string headline = judge(built, turned(-1.2e6, 0.4), &bonded).headline;
+  EXPECT_TRUE(headline.ends_with("; beside the bonded base the base moment is 40 % less")) << headline;
+}
+
 TEST(VerdictTest, ComparesWithTheBondedBase) {
   RunResult bonded = result_with(2.4e6, 0);
   bonded.peaks[2].value = 0.01;

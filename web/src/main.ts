@@ -5,17 +5,22 @@ import { read_report } from "./data";
 import { h } from "./dom";
 import { inspection } from "./inspect";
 import { model_card } from "./model";
-import { case_card, choices_card, empty_page, page_head, verdict_card } from "./page";
+import { case_card, choices_card, empty_page, page_head } from "./page";
 import { install_palette, run_names } from "./palette";
 import { run_bar } from "./runbar";
 import { Runs } from "./runs";
 import { SpaceCard } from "./space/card";
+import { RestMaps } from "./space/rest_maps";
 import { TableCard } from "./table";
 import { ThemeSwitch } from "./theme";
+import { rest_table, verdict_card } from "./verdict";
 import type { Chart, Report, Section } from "./types";
 
 // Charts are drawn when they come this near to the screen.
 const NEAR = "500px";
+
+// The section of the state after the shock stands right behind the verdict.
+const REST = "rest";
 
 /** Figures that are drawn late, and differently in print. */
 interface Drawn {
@@ -55,11 +60,22 @@ function chart_parts(report: Report, cards: ChartCard[]): Part[] {
   const known = new Set(report.sections.map((section) => section.id));
   const rest: Section = { id: "", title: "Further figures" };
   return [...report.sections, rest].flatMap((section) => {
+    if (section.id === REST) return [];
     const mine = cards.filter(({ model }) => (section.id === "" ? !known.has(model.chart.section) : model.chart.section === section.id));
     if (mine.length === 0 && !section.text) return [];
     const text = section.text ? h("p", { class: "section-text" }, section.text) : null;
     return [part(`section-${section.id || "rest"}`, section.title, text, h("div", { class: "grid" }, ...mine.map((c) => c.element)))];
   });
+}
+
+/** What is left at the end: table, profile or map of the gap. */
+function after_shock(report: Report, cards: ChartCard[], maps: RestMaps | null): Part[] {
+  const table = rest_table(report.verdict);
+  const mine = cards.filter(({ model }) => model.chart.section === REST);
+  if (!table && mine.length === 0 && !maps) return [];
+  const section = report.sections.find(({ id }) => id === REST);
+  const text = section?.text ? h("p", { class: "section-text" }, section.text) : null;
+  return [part("after-shock", section?.title ?? "After the shock", text, table, h("div", { class: "grid" }, ...mine.map((c) => c.element), maps?.element ?? null))];
 }
 
 function contents(parts: Part[]): HTMLElement {
@@ -119,11 +135,14 @@ function show_report(host: HTMLElement, report: Report): void {
   const { model, animations, choices, space } = report;
   const animation = model && animations.length > 0 ? new AnimationCard(model, animations, runs) : null;
   const space_card = space ? new SpaceCard(space, report.spaceAnimations ?? [], runs, themes) : null;
-  const drawn_late: Drawn[] = space_card ? [space_card, ...charts] : charts;
+  const last = report.spaceAnimations?.find((a) => a.run === report.verdict.run) ?? report.spaceAnimations?.[0];
+  const rest_maps = space && last && last.time.length > 0 ? new RestMaps(space, last, themes) : null;
+  const drawn_late: Drawn[] = [...(rest_maps ? [rest_maps] : []), ...(space_card ? [space_card] : []), ...charts];
 
   const figures = chart_parts(report, charts);
   const parts: Part[] = [
     { id: "verdict", title: "Verdict", element: verdict_card(report.verdict) },
+    ...after_shock(report, charts, rest_maps),
     ...(tables.length > 0 ? [part("tables", tables.length > 1 ? "Tables" : "Comparison", ...tables.map((t) => t.element))] : []),
     ...(model ? [part("model", animation ? "Model and motion" : "Model", h("div", { class: "grid" }, model_card(model), animation?.element ?? null))] : []),
     ...(space_card ? [part("space-model", space_card.frames > 0 ? "Model and motion" : "Model", space_card.element)] : []),

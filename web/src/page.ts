@@ -1,32 +1,8 @@
-// The parts of the page that are words: head, verdict, choices, case, foot, and pages without data.
+// The parts of the page that are words: head, choices, case, foot, and pages without data.
 import { origin_chip } from "./chart";
-import { h, s } from "./dom";
+import { h } from "./dom";
 import type { ThemeSwitch } from "./theme";
-import type { Choice, Report, Verdict, VerdictLevel } from "./types";
-
-const LEVEL_WORD: Record<VerdictLevel, string> = {
-  none: "No uplift",
-  uplift: "Uplift",
-  overturned: "Overturned",
-  failed: "Run failed",
-};
-
-// A tick, a lifted edge, a toppled block, a cross: shape tells the level without colour.
-const LEVEL_SIGN: Record<VerdictLevel, string> = {
-  none: "M5 12.5L10 17.5L19 7",
-  uplift: "M3 20H21M4 17L20 10M20 10V5M17.5 7.5L20 5L22.5 7.5",
-  overturned: "M3 20H21M6 20L13 6L20 9.5L14.5 20",
-  failed: "M6 6L18 18M18 6L6 18",
-};
-
-function level_sign(level: VerdictLevel): SVGElement {
-  return s("svg", { class: "sign", viewBox: "0 0 24 24", width: 34, height: 34, "aria-hidden": "true" }, s("path", { d: LEVEL_SIGN[level] }));
-}
-
-/** Keeps a number and its unit on one line. */
-function tied(text: string): string {
-  return text.replace(/(\d) (?=(?:%|[µmkMG]?(?:m|s|g|N|Pa|J|Hz|rad|t)(?![a-z])))/g, "$1\u00a0");
-}
+import type { Choice, Report } from "./types";
 
 /** "2025-03-01T10:20:30Z" as "2025-03-01 10:20 UTC": the same for every reader. */
 function created_text(created: string): string {
@@ -58,21 +34,6 @@ export function page_head(report: Report, themes: ThemeSwitch): HTMLElement {
     h("div", { class: "page-tools" },
       theme_button(themes),
       h("button", { type: "button", onclick: () => window.print() }, "Print")),
-  );
-}
-
-export function verdict_card(verdict: Verdict): HTMLElement {
-  const facts = verdict.facts.map((fact) =>
-    h("div", { class: "fact" }, h("dt", {}, fact.label), h("dd", {}, h("b", {}, tied(fact.value)), fact.detail ? h("small", {}, tied(fact.detail)) : null)),
-  );
-  return h(
-    "section",
-    { class: `verdict verdict-${verdict.level}`, id: "verdict", "aria-label": "Verdict" },
-    h("div", { class: "verdict-head" },
-      level_sign(verdict.level),
-      h("div", {}, h("p", { class: "verdict-level" }, LEVEL_WORD[verdict.level] ?? verdict.level), h("h2", {}, tied(verdict.headline)))),
-    facts.length > 0 ? h("dl", { class: "facts" }, ...facts) : null,
-    verdict.paragraphs.length > 0 ? h("div", { class: "prose" }, ...verdict.paragraphs.map((text) => h("p", {}, tied(text)))) : null,
   );
 }
 

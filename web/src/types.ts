@@ -22,11 +22,57 @@ export interface Fact {
   detail?: string;
 }
 
+/** A number of the verdict, SI. */
+export interface VerdictRow {
+  label: string;
+  value: number;
+  unit: string;
+  /** Seconds. */
+  time?: number;
+  /** The same number of the bonded run. */
+  bonded?: number;
+  /** Half of the range in which a residual still moves. */
+  swing?: number;
+}
+
+/** What is said of one interface. */
+export interface BaseVerdict {
+  name: string;
+  /** Uplifted share of the area over time. */
+  time: number[];
+  share: number[];
+  /** Thresholds that the user gave, and for how many seconds the share is above. */
+  above: { threshold: number; duration: number }[];
+  /** Intervals without any contact, seconds. */
+  lost: [number, number][];
+  beside: VerdictRow[];
+  rest: VerdictRow[];
+  /** Shares: what pulls in the bonded run, the uplift that stands for by equal energy (null: no answer), what was computed. */
+  linear?: { tension: number; predicted: number | null; computed: number };
+}
+
+export type CriterionState = "met" | "not met" | "undetermined";
+
+export interface Criterion {
+  label: string;
+  interface: string;
+  state: CriterionState;
+  value: number | null;
+  limit: number;
+  unit: string;
+  atLeast: boolean;
+  source: string;
+}
+
 export interface Verdict {
   level: VerdictLevel;
   headline: string;
   facts: Fact[];
   paragraphs: string[];
+  /** Run that the verdict is about. */
+  run: string;
+  interfaces: BaseVerdict[];
+  criteria: Criterion[];
 }
 
 export interface Choice {

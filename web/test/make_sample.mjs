@@ -230,12 +230,43 @@ function verdict(runs, bonded) {
   };
 }
 
+/** Numbers beside the bonded run, criteria in each state, and what is left; of one base. */
+function bases(runs, bonded) {
+  const [sdm] = runs;
+  const top = { label: "Motion of the top", value: peak(sdm.top), unit: "m", time: 0.4, bonded: peak(bonded.top) };
+  const moment = { label: "Base moment", value: peak(sdm.moment), unit: "N m", time: 0.3, bonded: peak(bonded.moment) };
+  const least = { label: "Safety against overturning", value: 1.1, unit: "1", time: 0.5 };
+  const share = Math.max(...sdm.ratio);
+  const beyond = sdm.ratio.filter((r) => r > 0.3).length * STEP * EVERY;
+  return [{
+    name: "footing", time: sdm.t, share: sdm.ratio, above: [{ threshold: 0.3, duration: beyond }], lost: [[0.5, 0.52], [0.9, 0.93]],
+    beside: [top, moment, least],
+    rest: [{ label: "Rotation", value: 1e-4, unit: "rad", swing: 2e-4 }, { label: "Settlement", value: -2e-4, unit: "m", swing: 1e-5 }, { label: "Uplifted area", value: 0, unit: "1", swing: 0.05 }],
+    linear: { tension: 0.3, predicted: 0.3975, computed: share },
+  }];
+}
+
+const CRITERIA = [
+  { label: "largest share of the area with a gap", interface: "footing", state: "not met", value: 0.6, limit: 0.3, unit: "1", atLeast: false, source: "specification of the client, 4.2" },
+  { label: "least safety against overturning", interface: "footing", state: "met", value: 1.1, limit: 1, unit: "1", atLeast: true, source: "judgement" },
+  { label: "least safety against sliding", interface: "footing", state: "undetermined", value: null, limit: 1.1, unit: "1", atLeast: true, source: "code <script>" },
+];
+
+/** Gap along the base at the end. */
+function rest_chart(run) {
+  const last = openings(run, run.t.length - 1);
+  return {
+    id: "rest_gap", section: "rest", title: "Gap along the base", caption: "At the end.", origin: "added by uplift",
+    x: { label: "Along the base", unit: "m" }, y: { label: "Gap", unit: "m" }, series: [{ label: "at the end", x: last.map((_, i) => i), y: last.map((v) => Math.max(0, v)) }],
+  };
+}
+
 function document_of(runs, bonded) {
   return {
     format: "uplift-report-1", title: "Rocking oscillator on tensionless springs", subtitle: "Sample for the tests of the report page",
     version: "0.1.0", created: "2025-01-15T09:30:00Z", command: "uplift compare sample/case.toml",
     case: { file: "sample/case.toml", sha256: "0".repeat(64), resolved: `title = "Rocking oscillator"\n\n[beam.column]\nheight = "${HEIGHT} m"\n\n[footing]\nwidth = "${2 * HALF_WIDTH} m"\nmass = "30 t"\n` },
-    verdict: verdict(runs, bonded),
+    verdict: { ...verdict(runs, bonded), run: runs[0].name, interfaces: bases(runs, bonded), criteria: CRITERIA },
     choices: [
       { what: "Fixed-base frequency", value: "2 Hz", origin: "paper" },
       { what: "Points over the width", value: String(POINTS), origin: "our choice", note: "Enough to place the edge of the contact within a tenth of the width." },
@@ -243,11 +274,12 @@ function document_of(runs, bonded) {
     ],
     tables: [table([...runs, bonded])],
     sections: [
+      { id: "rest", title: "After the shock", text: "How the base stands when the run ends." },
       { id: "laws", title: "Law and load" },
       { id: "histories", title: "Response", text: "Bonded base for comparison. Runs that failed are dashed and do not set the range." },
       { id: "energy", title: "Energy" },
     ],
-    charts: charts(runs, bonded), model: model(), animations: runs.map(animation),
+    charts: [...charts(runs, bonded), rest_chart(runs[0])], model: model(), animations: runs.map(animation),
   };
 }
 

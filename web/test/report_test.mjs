@@ -171,6 +171,50 @@ async function check_tables(page) {
   check.equal(csv.text.trim().split("\n").length, tables[0].wanted + 1, "the table downloads as CSV");
 }
 
+/** The first page: share over time, the bonded run beside, the user's limits, what is left. */
+async function check_verdict(page) {
+  const { interfaces, criteria } = await page.evaluate(() => window.upliftReport.report.verdict);
+  const card = page.locator("#verdict");
+  check.equal(await card.locator(".base-verdict").count(), interfaces.length, "the verdict speaks of every interface");
+  check.equal(await card.locator(".criterion").count(), criteria.length, "every criterion has a row");
+  for (const state of ["met", "not met", "undetermined"]) {
+    const wanted = criteria.filter((c) => c.state === state).length;
+    check.equal(await card.locator(`.criterion.is-${state.replace(" ", "-")}`).count(), wanted, `criteria that are ${state} are marked so`);
+  }
+  for (const [i, base] of interfaces.entries()) {
+    const block = card.locator(".base-verdict").nth(i);
+    check.equal(await block.locator("table.beside tbody tr").count(), base.beside.length, "every number stands beside the bonded run");
+    const opens = base.share.some((v) => v > 0);
+    check.equal(await block.locator(".share-chart").count(), opens ? 1 : 0, "a base that opens shows its uplifted share over time");
+    if (opens) check.equal(await block.locator(".share-chart .threshold").count(), base.above.length, "with a line for each threshold");
+    if (opens) {
+      const box = await block.locator(".share-chart .line").evaluate((path) => {
+        const { x, y, width, height } = path.getBBox();
+        const [, , w, h] = path.ownerSVGElement.getAttribute("viewBox").split(" ").map(Number);
+        return { inside: x >= 0 && y >= 0 && x + width <= w && y + height <= h, width, height };
+      });
+      check.ok(box.inside && box.width > 100 && box.height > 20, "the curve fills its drawing and stays inside", JSON.stringify(box));
+    }
+    if (base.linear) check.equal(await block.locator(".bar").count(), base.linear.tension > 0 || base.linear.computed > 0 ? 3 : 0, "the tension ratio stands beside what happened");
+  }
+  const left = interfaces.reduce((sum, base) => sum + base.rest.length, 0);
+  if (left > 0) check.equal(await page.locator("#after-shock .rest-card tbody tr").count(), left, "what is left at the end has a row for each number");
+}
+
+/** What the numbers of the sample must read as. */
+async function check_sample_verdict(page) {
+  const texts = async (selector) => (await page.locator(`#verdict ${selector}`).allInnerTexts()).map((text) => text.replace(/\s+/g, " "));
+  const bars = await texts(".bar");
+  check.ok(bars[1].includes("40 %"), "the uplift by equal energy is given in per cent", bars[1]);
+  const [first] = await texts(".criterion");
+  check.ok(/✕ not met .*0\.600, limit ≤ 0\.300.*specification of the client, 4\.2/.test(first), "a criterion shows state, value, limit and source", first);
+  check.ok((await texts(".criteria h3"))[0].includes("1 of 3 met"), "the number of criteria that are met is said");
+  const [top] = await page.evaluate(() => window.upliftReport.report.verdict.interfaces[0].beside);
+  const change = Math.round(100 * (top.value / top.bonded - 1));
+  const shown = (await texts("table.beside .change"))[0];
+  check.ok(top.value / top.bonded >= 2 ? shown.startsWith("×") : shown.includes(String(Math.abs(change))), "the change against the bonded run is given", `${shown}, ${change} %`);
+}
+
 async function check_animation(page) {
   if (!(await page.evaluate(() => window.upliftReport.animation !== null))) return;
   const card = page.locator(".animation-card");
@@ -358,6 +402,7 @@ async function check_other_pages() {
 
 async function check_sample(page) {
   if (given) return;
+  await check_sample_verdict(page);
   const text = await page.locator("main").innerText();
   check.ok(text.includes("Penalty </script>"), "markup in names is text");
   const chips = await page.locator(".chip-failed.chip-expected").count();
@@ -394,7 +439,7 @@ async function shoot(page, name) {
 if (shots) await mkdir(shots, { recursive: true });
 const { context, page, log } = await open(browser, url);
 check.ok(await page.evaluate(() => window.upliftReport.hasData), "the report has data", await page.evaluate(() => window.upliftReport.message));
-const groups = { check_charts, check_ranges, check_zoom_and_hover, check_keyboard, check_hiding, check_tables, check_animation, check_uplift_readout, check_stage_geometry, check_downloads, check_sample };
+const groups = { check_charts, check_ranges, check_zoom_and_hover, check_keyboard, check_hiding, check_verdict, check_tables, check_animation, check_uplift_readout, check_stage_geometry, check_downloads, check_sample };
 for (const [name, body] of Object.entries(groups)) await check.group(name, () => body(page));
 if (shots) {
   const fresh = await open(browser, url);

@@ -96,7 +96,7 @@ async function check_shares(page, check, frames) {
       const source = report.spaceAnimations.find((a) => a.run === space.run);
       return report.space.interfaces.map((face, i) => {
         const open = face.area.reduce((sum, a, k) => sum + (source.openings[face.name][space.frame][k] > 0 ? a : 0), 0);
-        const said = parseFloat(document.querySelectorAll(".face-maps .open-share")[i].textContent);
+        const said = parseFloat(document.querySelectorAll("#space .face-maps .open-share")[i].textContent);
         return { name: face.name, wanted: (100 * open) / face.area.reduce((sum, a) => sum + a, 0), said };
       });
     });
@@ -264,9 +264,9 @@ async function check_colours(page, check) {
   await page.locator(".space-options select").selectOption("part");
   const map = page.locator(".plan-map").first();
   await map.scrollIntoViewIfNeeded();
-  const summary = await page.locator(".plan-readout").first().innerText();
+  const summary = await page.locator("#space .plan-readout").first().innerText();
   await map.hover({ position: { x: 80, y: 60 } });
-  const point = await page.locator(".plan-readout").first().innerText();
+  const point = await page.locator("#space .plan-readout").first().innerText();
   check.ok(point !== summary && /^x .* m, y .* m: /.test(point), "the pointer reads values off the map", point);
   await page.mouse.move(2, 2);
 }

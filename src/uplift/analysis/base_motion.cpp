@@ -79,10 +79,10 @@ double BaseMotion::value(const Sum& sum, const State& state) {
   return total;
 }
 
-void BaseMotion::look(const State& state, InterfaceView& view) const {
-  view.settlement = value(sums_[0], state);
-  view.tilt_1 = value(sums_[1], state);
-  view.tilt_2 = value(sums_[2], state);
+void BaseMotion::look(const State& state, BasePose& pose) const {
+  pose.settlement = value(sums_[0], state);
+  pose.tilt_1 = value(sums_[1], state);
+  pose.tilt_2 = value(sums_[2], state);
 }
 
 }  // namespace uplift

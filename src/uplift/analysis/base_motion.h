@@ -15,8 +15,8 @@ class BaseMotion {
  public:
   /// Nothing moves when there are no nodes.
   BaseMotion(const Model& model, const Interface& interface, const std::vector<int>& nodes);
-  /// Sets settlement and tilt of a view.
-  void look(const State& state, InterfaceView& view) const;
+  /// Sets settlement and tilt.
+  void look(const State& state, BasePose& pose) const;
 
  private:
   struct Sum {

@@ -33,9 +33,9 @@ std::vector<Point> convex_hull(std::vector<Point> points, double flat) {
 
 }  // namespace
 
-Thrust thrust_of(Space space, const Resultant& resultant) {
-  if (space.dimension == 2) return {-resultant.axial, {-resultant.moment, 0}};
-  return {-resultant.axial, {resultant.moment_2, -resultant.moment_1}};
+Thrust thrust_of(Space space, double axial, double moment_1, double moment_2) {
+  if (space.dimension == 2) return {-axial, {-moment_1, 0}};
+  return {-axial, {moment_2, -moment_1}};
 }
 
 BaseShape::BaseShape(const Model& model, const Interface& interface, const InterfaceFacts& facts) {

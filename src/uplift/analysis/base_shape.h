@@ -6,12 +6,13 @@
 
 namespace uplift {
 
-/// The pressure of a base as one force: its size, and its size times its place e from the reference point along t1 and t2.
+/// The pressure of a base as one force: its size, and its size times its place e from the reference point along t1 and t2. In the plane
+/// moment_1 is the moment (docs/theory, eq 28).
 struct Thrust {
   double force = 0;               // N, compression > 0
   std::array<double, 2> first{};  // N m: P e
 };
-Thrust thrust_of(Space space, const Resultant& resultant);
+Thrust thrust_of(Space space, double axial, double moment_1, double moment_2);
 
 /// How far a base goes: its convex outline in the plane of its mean normal, about the reference point of its moments.
 class BaseShape {

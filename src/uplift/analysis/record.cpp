@@ -63,19 +63,19 @@ InterfaceViewer::InterfaceViewer(const Model& model, double gap_tolerance, const
       layout.across.push_back(arm.dot(interface.normal[p]));
     }
     if (interface.space.dimension == 3 || !flat(interface)) layout.resultant_rows = resultant_rows(interface);
-    layout.inverse_total = 1 / interface.area.sum();
+    layout.total = interface.area.sum();
     layout.slope_weight = slope_weights(interface);
     layouts_.push_back(std::move(layout));
     first += interface.rows();
   }
 }
 
-void InterfaceViewer::look(const State& state, std::vector<InterfaceView>& views) const {
+void InterfaceViewer::look(const Vector& opening, const Vector& force, std::vector<InterfaceView>& views) const {
   views.resize(layouts_.size());
   for (std::size_t k = 0; k < layouts_.size(); ++k) {
     const Layout& layout = layouts_[k];
     const int n = layout.points, normal = layout.first + (layout.components - 1) * n;
-    const double *gap = state.opening.data() + normal, *p = state.force.data() + normal;
+    const double *gap = opening.data() + normal, *p = force.data() + normal;
     const double *area = layout.area.data(), *inverse = layout.inverse_area.data(), *along = layout.along.data();
     double axial = 0, moment = 0, open = 0, pulled = 0, widest = -1e300, least = 1e300, pressure = 0;
     const double tolerance = tolerance_;
@@ -90,39 +90,35 @@ void InterfaceViewer::look(const State& state, std::vector<InterfaceView>& views
       const double here = -p[i] * inverse[i];
       pressure = pressure > here ? pressure : here;
     }
-    InterfaceView& view = views[k];
-    view.open_area = std::min(1.0, open * layout.inverse_total);
-    view.tension_area = pulled * layout.inverse_total;
-    view.max_opening = std::max(widest, 0.0);
-    view.least_opening = least;
-    view.max_pressure = std::max(pressure, 0.0);
-    if (!bases_.empty()) bases_[k].look(state, view);
-    look_along(layout, state, view, axial, moment);
+    double shear = 0;
+    views[k] = {{}, std::min(1.0, open / layout.total), pulled / layout.total, std::max(widest, 0.0), least, std::max(pressure, 0.0)};
+    if (layout.resultant_rows.size() > 0) {
+      std::array<double, 6> sums{};
+      for (Index row = 0; row < layout.resultant_rows.cols(); ++row)
+        for (Index c = 0; c < layout.resultant_rows.rows(); ++c)
+          sums[static_cast<std::size_t>(c)] += layout.resultant_rows(c, row) * force[layout.first + row];
+      views[k].resultant = resultant_of(layout.space, sums.data());
+      continue;
+    }
+    if (layout.components > 1) {
+      const double* t = force.data() + layout.first;
+      const double* across = layout.across.data();
+#pragma omp simd reduction(+ : shear, moment)
+      for (int i = 0; i < n; ++i) shear += t[i], moment -= across[i] * t[i];
+    }
+    views[k].resultant = {.axial = axial, .shear = shear, .moment = moment};
   }
 }
 
-/// Tangential openings, and the resultant: `axial` and `moment` are those of the normal forces.
-void InterfaceViewer::look_along(const Layout& layout, const State& state, InterfaceView& view, double axial, double moment) const {
+BasePose InterfaceViewer::pose(const State& state, std::size_t interface, const InterfaceView& view) const {
+  const Layout& layout = layouts_[interface];
   const int n = layout.points;
-  const double *u = state.opening.data() + layout.first, *t = state.force.data() + layout.first, *area = layout.area.data();
-  if (layout.components > 1) view.slip_1 = layout.inverse_total * small::dot(n, area, u);
-  if (layout.components > 2) view.slip_2 = layout.inverse_total * small::dot(n, area, u + n);
-  if (layout.resultant_rows.size() > 0) {
-    std::array<double, 6> sums{};
-    for (Index row = 0; row < layout.resultant_rows.cols(); ++row)
-      for (Index c = 0; c < layout.resultant_rows.rows(); ++c) sums[static_cast<std::size_t>(c)] += layout.resultant_rows(c, row) * t[row];
-    view.resultant = resultant_of(layout.space, sums.data());
-    return;
-  }
-  double shear = 0;
-  if (layout.components > 1) {
-    const double* across = layout.across.data();
-#pragma omp simd reduction(+ : shear, moment)
-    for (int i = 0; i < n; ++i) shear += t[i], moment -= across[i] * t[i];
-  }
-  view.resultant.axial = axial;
-  view.resultant.shear = shear;
-  view.resultant.moment = moment;
+  const double *along = state.opening.data() + layout.first, *area = layout.area.data();
+  BasePose pose{.max_opening = view.max_opening, .open_area = view.open_area};
+  if (layout.components > 1) pose.slip_1 = small::dot(n, area, along) / layout.total;
+  if (layout.components > 2) pose.slip_2 = small::dot(n, area, along + n) / layout.total;
+  if (!bases_.empty()) bases_[interface].look(state, pose);
+  return pose;
 }
 
 std::array<double, 2> InterfaceViewer::rotation(int interface, const Vector& opening) const {

@@ -15,7 +15,10 @@ class InterfaceViewer {
  public:
   /// `bases`: nodes of the upper side of every interface, or empty.
   InterfaceViewer(const Model& model, double gap_tolerance, const std::vector<std::vector<int>>& bases = {});
-  void look(const State& state, std::vector<InterfaceView>& views) const;
+  /// `force` is the end-of-step force per row [N].
+  void look(const Vector& opening, const Vector& force, std::vector<InterfaceView>& views) const;
+  /// How an interface stands; `view` is what look() saw of it.
+  BasePose pose(const State& state, std::size_t interface, const InterfaceView& view) const;
   /// Slope of the plane that fits the normal opening best (area-weighted): relative rotation of the upper side [rad]. In the plane the
   /// first number, counter-clockwise > 0; in space about the two tangents of the mean normal.
   std::array<double, 2> rotation(int interface, const Vector& opening) const;
@@ -26,10 +29,9 @@ class InterfaceViewer {
     std::vector<double> area, inverse_area, along, across;  // along t and along n from the reference point [m]
     std::array<std::vector<double>, 2> slope_weight;
     Space space;
-    Matrix resultant_rows;     // in space, and where the normals differ; else empty: the sums are then taken directly
-    double inverse_total = 0;  // 1/m2
+    Matrix resultant_rows;  // in space, and where the normals differ; else empty: the sums are then taken directly
+    double total = 0;       // m2
   };
-  void look_along(const Layout& layout, const State& state, InterfaceView& view, double axial, double moment) const;
   std::vector<Layout> layouts_;
   std::vector<BaseMotion> bases_;
   double tolerance_;

@@ -117,6 +117,10 @@ void Runner::execute() {
     if (Sparse::InnerIterator(b_, column) && model_.space.is_rotation(unknown)) rotations_.push_back(column);
   }
 
+  double planned = 0;
+  for (const Stage& stage : plan_.stages) planned += stage.type == Stage::Type::dynamics ? stage.duration : 0;
+  if (dynamic != nullptr) tail_from_ = 0.9 * planned - 0.5 * dynamic->step;
+
   bool moving = false;
   for (const Stage& stage : plan_.stages) {
     if (stage.type == Stage::Type::statics) {
@@ -128,7 +132,7 @@ void Runner::execute() {
     if (stage.p_delta && geometric_ == nullptr && !second_order()) return;
     if (rest_ != nullptr) release();
     if (!std::exchange(moving, true)) {
-      if (&stage != plan_.stages.data()) viewer_.look(state_, result_.steps.rest);
+      if (&stage != plan_.stages.data()) note_rest();
       add_initial_state();
     }
     const Bulk stage_bulk(model_, geometric_.get());
@@ -149,6 +153,15 @@ void Runner::remember_gaps() {
     reply.traction = traction.data();
     reply.now = state_.history.data() + block.first_history;
     block.law->respond(block.batch, closed.data(), gap.data(), blocks.old.data() + block.first_history, reply);
+  }
+}
+
+/// What the verdict holds the rest of the run against.
+void Runner::note_rest() {
+  viewer_.look(state_.opening, state_.force, views_);
+  for (std::size_t k = 0; k < views_.size(); ++k) {
+    result_.steps.rest.push_back(views_[k].resultant);
+    result_.steps.rest_poses.push_back(viewer_.pose(state_, k, views_[k]));
   }
 }
 

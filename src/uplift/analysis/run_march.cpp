@@ -22,8 +22,9 @@ double sum_round_off(const Sparse& stiffness, const Vector& displacement) {
 
 void Runner::note_views(double step) {
   StepRecord& steps = result_.steps;
-  steps.time.push_back(seen_->time);
-  steps.views.insert(steps.views.end(), views_.begin(), views_.end());
+  steps.add(seen_->time, views_, plan_.gap_tolerance);
+  if (seen_->time >= tail_from_)
+    for (std::size_t k = 0; k < views_.size(); ++k) steps.tail[k].push_back(viewer_.pose(*seen_, k, views_[k]));
   bool open = false, any_contact = views_.empty();
   for (const InterfaceView& view : views_) {
     const double time = seen_->time;
@@ -115,14 +116,12 @@ bool Runner::dynamics(const Stage& stage, const Bulk& bulk) {
   for (const Drive& drive : model_.drives)
     if (drive.dead) round_off_energy_ += 1e-10 * drive.shape.lpNorm<1>() * std::abs(drive.function->value(seen_->time));
   const auto observe = [&](long step) {
-    viewer_.look(*seen_, views_);
+    viewer_.look(seen_->opening, seen_->force, views_);
     note_views(step == 0 ? 0 : stage.step);
     recorder.record(step % plan_.every == 0 || step == steps);
     if (picture_every > 0 && step % picture_every == 0) recorder.picture(*seen_);
   };
-  result_.steps.interfaces = model_.interfaces.size();
-  result_.steps.time.reserve(result_.steps.size() + static_cast<std::size_t>(steps) + 1);
-  result_.steps.views.reserve(result_.steps.views.size() + (static_cast<std::size_t>(steps) + 1) * model_.interfaces.size());
+  result_.steps.reserve(model_.interfaces.size(), static_cast<std::size_t>(steps) + 1);
   if (!ledger_) {  // else the end of the stage before is there already
     observe(0);
     show(stage, &stepper, 0, false);

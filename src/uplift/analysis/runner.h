@@ -20,6 +20,7 @@ class Runner {
  private:
   void execute();
   void remember_gaps();
+  void note_rest();
   void add_initial_state();
   bool statics(const Stage& stage, const Sparse* geometric);
   bool second_order();
@@ -56,6 +57,7 @@ class Runner {
   std::optional<Ledger> ledger_;  // of the dynamic stage before
   std::optional<Stage> march_;    // that stage, as long as nothing came in between
   double round_off_energy_ = 0;   // J: less than this is nothing
+  double tail_from_ = 0;          // s: from here on the base's pose is kept
   double shown_ = 0;              // s: taken by the observer
 };
 

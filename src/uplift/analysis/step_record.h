@@ -1,6 +1,6 @@
 #pragma once
 #include <cstddef>
-#include <span>
+#include <optional>
 #include <vector>
 
 #include "uplift/interface/interface.h"
@@ -13,20 +13,52 @@ struct InterfaceView {
   double open_area = 0, tension_area = 0;     // shares of the area: with a gap; that pulls
   double max_opening = 0, least_opening = 0;  // m
   double max_pressure = 0;                    // Pa
-  double slip_1 = 0, slip_2 = 0;              // m: mean tangential opening along t1 and t2
-  // Of the upper side: m downwards; rad in the plane (tilt_1, counter-clockwise), in space about x and y. 0 when its nodes are not known.
-  double settlement = 0, tilt_1 = 0, tilt_2 = 0;
 };
 
-/// All interfaces at the beginning of the first dynamic stage and after every step of the dynamic stages, whatever is written to the table.
-struct StepRecord {
-  std::size_t interfaces = 0;
-  std::vector<InterfaceView> rest;   // where the static stages ended, before the initial state; empty without static stages
-  std::vector<double> time;          // s
-  std::vector<InterfaceView> views;  // interfaces of the first instant, of the second, ...
+/// How an interface and the base on it stand.
+struct BasePose {
+  double slip_1 = 0, slip_2 = 0;  // m: mean tangential opening along t1 and t2
+  // Of the upper side: m downwards; rad in the plane (tilt_1, counter-clockwise), in space about x and y. 0 when its nodes are not known.
+  double settlement = 0, tilt_1 = 0, tilt_2 = 0;
+  double max_opening = 0, open_area = 0;  // m, share
+};
 
+/// A time in which something lasts [s].
+struct Interval {
+  double from = 0, to = 0;
+};
+
+/// What is kept of the interfaces at the beginning of the first dynamic stage and after every step of the dynamic stages, whatever is
+/// written to the table: little per step, since a step may take less than a microsecond.
+class StepRecord {
+ public:
+  struct Instant {
+    double axial = 0, shear_1 = 0, shear_2 = 0, moment_1 = 0, moment_2 = 0;  // N, N m; in the plane shear_1 and moment_1
+    double open_area = 0;
+  };
+  struct Reached {
+    double value = 0, time = 0;
+  };
+  /// Of one interface: largest values, and when there was no contact at all.
+  struct Extremes {
+    Reached max_opening, max_pressure, tension_area, penetration;
+    std::vector<Interval> full_loss;
+    double least_opening = 0;  // at the last instant
+  };
+
+  /// Makes room for instants to come.
+  void reserve(std::size_t interfaces, std::size_t instants);
+  /// A gap larger than the tolerance [m] is open.
+  void add(double time, const std::vector<InterfaceView>& views, double gap_tolerance);
   std::size_t size() const { return time.size(); }
-  const InterfaceView& at(std::size_t step, std::size_t interface) const { return views[step * interfaces + interface]; }
+  const Instant& at(std::size_t step, std::size_t interface) const { return instants[step * extremes.size() + interface]; }
+
+  std::vector<Resultant> rest;              // where the static stages ended, before the initial state; empty without static stages
+  std::vector<BasePose> rest_poses;         // there
+  std::vector<std::vector<BasePose>> tail;  // of every interface, in the last tenth of the planned time
+  std::vector<double> time;                 // s
+  std::vector<Instant> instants;            // interfaces of the first instant, of the second, ...
+  std::vector<Extremes> extremes;           // one per interface
 };
 
 }  // namespace uplift

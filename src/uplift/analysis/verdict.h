@@ -12,6 +12,7 @@ struct Verdict {
   std::string headline;
   struct Fact {
     std::string label, value, detail;
+    bool tile = true;  // shown large on the report's first page; else it stands in a table there
   };
   std::vector<Fact> facts;
   std::vector<std::string> paragraphs;

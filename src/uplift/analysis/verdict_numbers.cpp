@@ -23,39 +23,33 @@ class Base {
         index(number),
         interface(built.model.interfaces[index]),
         facts(built.facts[index]),
-        shape(built.model, interface, facts),
-        tolerance_(built.plan.gap_tolerance) {
+        shape(built.model, interface, facts) {
     if (!run.steps.rest.empty()) {
-      rest_view = run.steps.rest[index];
-      rest = thrust_of(interface.space, rest_view.resultant);
+      const Resultant& sum = run.steps.rest[index];
+      const bool plane = interface.space.dimension == 2;
+      rest = thrust_of(interface.space, sum.axial, plane ? sum.moment : sum.moment_1, sum.moment_2);
     } else if (built.facts.size() == 1) {
       rest.force = built.weight;
     }
   }
 
-  const InterfaceView& view(std::size_t step) const { return run.steps.at(step, index); }
-  Thrust thrust(std::size_t step) const { return thrust_of(interface.space, view(step).resultant); }
+  const StepRecord::Instant& at(std::size_t step) const { return run.steps.at(step, index); }
+  const StepRecord::Extremes& extremes() const { return run.steps.extremes[index]; }
+  Thrust thrust(std::size_t step) const { return thrust_of(interface.space, at(step).axial, at(step).moment_1, at(step).moment_2); }
   bool pressed() const { return rest.force > 0; }
-  bool carries(std::size_t step) const { return pressed() && -view(step).resultant.axial > least_share * rest.force; }
-  bool off(std::size_t step) const { return view(step).least_opening > tolerance_; }
+  bool carries(std::size_t step) const { return pressed() && -at(step).axial > least_share * rest.force; }
+  double shear(std::size_t step) const { return std::hypot(at(step).shear_1, at(step).shear_2); }
 
-  /// e/B; without a direction the larger of both.
+  /// e/B along t1 or t2.
   double eccentricity(std::size_t step, std::size_t axis) const {
     const Thrust now = thrust(step);
     return carries(step) && shape.width[axis] > 0 ? now.first[axis] / (now.force * shape.width[axis]) : nothing;
   }
   double overturning(std::size_t step) const { return pressed() ? shape.overturning_safety(rest, thrust(step)) : nothing; }
   double sliding(std::size_t step) const {
-    const InterfaceView& now = view(step);
     if (facts.friction < 0 || interface.batch.components == 1 || !carries(step)) return nothing;
-    const double holds = -facts.friction * now.resultant.axial + facts.cohesion * facts.area * (1 - now.open_area);
-    return now.resultant.shear != 0 ? holds / std::abs(now.resultant.shear) : nothing;
-  }
-  /// When the smallest gap of all points passes the tolerance between a step and the one before: linear in between.
-  double passing(std::size_t step) const {
-    const double before = view(step - 1).least_opening - tolerance_, after = view(step).least_opening - tolerance_;
-    const double from = run.steps.time[step - 1], to = run.steps.time[step];
-    return before != after ? from + (to - from) * std::clamp(before / (before - after), 0.0, 1.0) : to;
+    const double holds = -facts.friction * at(step).axial + facts.cohesion * facts.area * (1 - at(step).open_area);
+    return shear(step) > 0 ? holds / shear(step) : nothing;
   }
 
   const RunResult& run;
@@ -63,11 +57,7 @@ class Base {
   const Interface& interface;
   const InterfaceFacts& facts;
   BaseShape shape;
-  InterfaceView rest_view;
   Thrust rest;
-
- private:
-  double tolerance_;
 };
 
 /// The largest magnitude of a quantity over the steps, or the least value; nothing when it is nowhere finite.
@@ -88,6 +78,9 @@ void add(std::vector<VerdictNumber>& numbers, const std::optional<VerdictNumber>
 void add(std::vector<VerdictNumber>& numbers, std::string_view name, double value, std::optional<double> time = {}) {
   numbers.push_back({find_verdict_quantity(name), value, time});
 }
+void add(std::vector<VerdictNumber>& numbers, std::string_view name, const StepRecord::Reached& reached) {
+  add(numbers, name, reached.value, reached.value != 0 ? std::optional(reached.time) : std::nullopt);
+}
 
 /// Sum of the steps at whose end something holds [s].
 template <class Holds>
@@ -100,27 +93,23 @@ double duration_of(const StepRecord& steps, const Holds& holds) {
 
 void add_uplift(const Base& base, const VerdictWishes& wishes, InterfaceVerdict& said) {
   const StepRecord& steps = base.run.steps;
-  add(said.numbers, extreme(base, "max_uplifted_ratio", [&](std::size_t i) { return base.view(i).open_area; }));
-  add(said.numbers, "uplifted_time", duration_of(steps, [&](std::size_t i) { return base.view(i).open_area > 0; }));
+  add(said.numbers, extreme(base, "max_uplifted_ratio", [&](std::size_t i) { return base.at(i).open_area; }));
+  add(said.numbers, "uplifted_time", duration_of(steps, [&](std::size_t i) { return base.at(i).open_area > 0; }));
   for (std::size_t i = 0; i < steps.size(); ++i)
-    if (base.view(i).open_area > 0) {
+    if (base.at(i).open_area > 0) {
       add(said.numbers, "first_uplift", steps.time[i], steps.time[i]);
       break;
     }
-  add(said.numbers, extreme(base, "max_opening", [&](std::size_t i) { return base.view(i).max_opening; }));
-  std::optional<VerdictNumber> deepest = extreme(
-      base, "max_penetration", [&](std::size_t i) { return base.view(i).least_opening; }, true);
-  if (deepest) deepest->value = std::max(0.0, -deepest->value);
-  add(said.numbers, deepest);
+  add(said.numbers, "max_opening", base.extremes().max_opening);
+  add(said.numbers, "max_penetration", base.extremes().penetration);
   for (const double threshold : wishes.thresholds)
-    said.above.push_back({threshold, duration_of(steps, [&](std::size_t i) { return base.view(i).open_area > threshold; })});
+    said.above.push_back({threshold, duration_of(steps, [&](std::size_t i) { return base.at(i).open_area > threshold; })});
 }
 
 void add_pressure(const Base& base, InterfaceVerdict& said) {
-  const std::optional<VerdictNumber> pressure = extreme(base, "max_toe_pressure", [&](std::size_t i) { return base.view(i).max_pressure; });
-  add(said.numbers, pressure);
-  if (pressure && base.pressed())
-    add(said.numbers, "toe_pressure_ratio", pressure->value * base.facts.area / base.rest.force, pressure->time);
+  const StepRecord::Reached& pressure = base.extremes().max_pressure;
+  add(said.numbers, "max_toe_pressure", pressure);
+  if (base.pressed()) add(said.numbers, "toe_pressure_ratio", {pressure.value * base.facts.area / base.rest.force, pressure.time});
   const auto along = [&](std::size_t axis) { return [&base, axis](std::size_t i) { return base.eccentricity(i, axis); }; };
   if (base.interface.space.dimension == 2) {
     add(said.numbers, extreme(base, "max_eccentricity", along(0)));
@@ -138,12 +127,7 @@ void add_pressure(const Base& base, InterfaceVerdict& said) {
 }
 
 void add_full_loss(const Base& base, InterfaceVerdict& said) {
-  const StepRecord& steps = base.run.steps;
-  for (std::size_t i = 0; i < steps.size(); ++i) {
-    const bool before = i > 0 && base.off(i - 1);
-    if (base.off(i) && !before) said.full_loss.push_back({i > 0 ? base.passing(i) : steps.time[i], steps.time.back()});
-    if (!base.off(i) && before) said.full_loss.back().to = base.passing(i);
-  }
+  said.full_loss = base.extremes().full_loss;
   double sum = 0;
   Interval longest;
   for (const Interval& each : said.full_loss) {
@@ -155,50 +139,38 @@ void add_full_loss(const Base& base, InterfaceVerdict& said) {
 }
 
 void add_forces(const Base& base, std::vector<VerdictNumber>& numbers) {
-  if (base.interface.batch.components > 1)
-    add(numbers, extreme(base, "max_shear", [&](std::size_t i) { return base.view(i).resultant.shear; }));
-  add(numbers, extreme(base, "max_moment", [&](std::size_t i) { return base.view(i).resultant.moment; }));
-  const auto compression = [&](std::size_t i) { return -base.view(i).resultant.axial; };
+  if (base.interface.batch.components > 1) add(numbers, extreme(base, "max_shear", [&](std::size_t i) { return base.shear(i); }));
+  add(numbers, extreme(base, "max_moment", [&](std::size_t i) { return std::hypot(base.at(i).moment_1, base.at(i).moment_2); }));
+  const auto compression = [&](std::size_t i) { return -base.at(i).axial; };
   add(numbers, extreme(base, "max_compression", [&](std::size_t i) { return std::max(0.0, compression(i)); }));
   add(numbers, extreme(base, "min_compression", compression, true));
 }
 
-/// Mean of the last tenth of the run less the value at rest, and half of the range over which it moves there.
-template <class Of>
-VerdictNumber residual(const Base& base, std::string_view name, const Of& of, double rest) {
-  const std::size_t size = base.run.steps.size(), tail = std::max<std::size_t>(1, size / 10);
+/// Mean over the last tenth of the planned time less the value at rest, and half of the range over which it moves there.
+VerdictNumber residual(const std::vector<BasePose>& tail, std::string_view name, double BasePose::*of, double rest) {
   double sum = 0, least = INFINITY, most = -INFINITY;
-  for (std::size_t i = size - tail; i < size; ++i) {
-    const double value = of(base.view(i));
-    sum += value;
-    least = std::min(least, value), most = std::max(most, value);
+  for (const BasePose& pose : tail) {
+    sum += pose.*of;
+    least = std::min(least, pose.*of), most = std::max(most, pose.*of);
   }
-  return {find_verdict_quantity(name), sum / static_cast<double>(tail) - rest, {}, {}, (most - least) / 2};
-}
-
-VerdictNumber length_of(std::string_view name, const VerdictNumber& a, const VerdictNumber& b) {
-  return {find_verdict_quantity(name), std::hypot(a.value, b.value), {}, {}, std::hypot(*a.swing, *b.swing)};
+  return {find_verdict_quantity(name), sum / static_cast<double>(tail.size()) - rest, {}, {}, (most - least) / 2};
 }
 
 void add_residuals(const Base& base, std::vector<VerdictNumber>& numbers) {
-  if (base.run.steps.size() == 0 || base.run.status == RunStatus::overturned || base.run.status == RunStatus::failed) return;
-  const InterfaceView& rest = base.rest_view;
-  const auto left = [&](const char* name, double InterfaceView::*of) {
-    return residual(
-        base, name, [of](const InterfaceView& view) { return view.*of; }, rest.*of);
+  const StepRecord& steps = base.run.steps;
+  const std::vector<BasePose>& tail = steps.tail[base.index];
+  if (tail.empty() || base.run.status == RunStatus::overturned || base.run.status == RunStatus::failed) return;
+  const BasePose rest = steps.rest_poses.empty() ? BasePose() : steps.rest_poses[base.index];
+  const auto left = [&](const char* name, double BasePose::*of) { return residual(tail, name, of, rest.*of); };
+  const auto length = [&](const char* name, double BasePose::*one, double BasePose::*two) {
+    const VerdictNumber a = left(name, one), b = left(name, two);
+    return VerdictNumber{a.quantity, std::hypot(a.value, b.value), {}, {}, std::hypot(*a.swing, *b.swing)};
   };
-  const auto still = [&](const char* name, double InterfaceView::*of) {
-    return residual(
-        base, name, [of](const InterfaceView& view) { return view.*of; }, 0);
-  };
-  numbers.push_back(
-      length_of("residual_rotation", left("residual_rotation", &InterfaceView::tilt_1), left("residual_rotation", &InterfaceView::tilt_2)));
-  numbers.push_back(left("residual_settlement", &InterfaceView::settlement));
-  if (base.interface.batch.components > 1)
-    numbers.push_back(
-        length_of("residual_slip", left("residual_slip", &InterfaceView::slip_1), left("residual_slip", &InterfaceView::slip_2)));
-  numbers.push_back(still("residual_opening", &InterfaceView::max_opening));
-  numbers.push_back(still("residual_uplifted_ratio", &InterfaceView::open_area));
+  numbers.push_back(length("residual_rotation", &BasePose::tilt_1, &BasePose::tilt_2));
+  numbers.push_back(left("residual_settlement", &BasePose::settlement));
+  if (base.interface.batch.components > 1) numbers.push_back(length("residual_slip", &BasePose::slip_1, &BasePose::slip_2));
+  numbers.push_back(residual(tail, "residual_opening", &BasePose::max_opening, 0));
+  numbers.push_back(residual(tail, "residual_uplifted_ratio", &BasePose::open_area, 0));
 }
 
 /// What a base carries, of a bonded run too.
@@ -219,9 +191,9 @@ void add_bonded(const Base& base, const Base& bonded, std::vector<VerdictNumber>
     const VerdictNumber* number = find_number(numbers, of);
     if (number && number->bonded.value_or(0) != 0) add(numbers, name, number->value / *number->bonded - 1);
   }
-  const auto pulls = extreme(bonded, "linear_tension_ratio", [&](std::size_t i) { return bonded.view(i).tension_area; });
-  add(numbers, pulls);
-  if (const auto uplift = pulls ? uplift_of_tension(pulls->value) : std::nullopt; uplift && base.pressed())
+  const StepRecord::Reached& pulls = bonded.extremes().tension_area;
+  add(numbers, "linear_tension_ratio", pulls);
+  if (const std::optional<double> uplift = uplift_of_tension(pulls.value); uplift && base.pressed())
     add(numbers, "predicted_uplifted_ratio", *uplift);
 }
 
@@ -260,7 +232,7 @@ std::vector<double> base_history(const Built& built, const RunResult& run, std::
   for (std::size_t i = 0; i < history.size(); ++i) {
     switch (which) {
       case BaseHistory::uplifted_ratio:
-        history[i] = base.view(i).open_area;
+        history[i] = base.at(i).open_area;
         break;
       case BaseHistory::eccentricity_1:
         history[i] = base.eccentricity(i, 0);

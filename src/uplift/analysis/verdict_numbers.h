@@ -17,10 +17,6 @@ struct VerdictNumber {
   std::optional<double> swing = {};   // half of the range in which a residual still moves
 };
 
-struct Interval {
-  double from = 0, to = 0;  // s
-};
-
 /// What is said of one interface.
 struct InterfaceVerdict {
   std::string name;

@@ -7,24 +7,13 @@ namespace {
 
 constexpr std::string_view placeholder = "/*UPLIFT_DATA*/";
 
-void write_verdict(JsonWriter& json, const Verdict& verdict, const std::vector<std::string>& warnings) {
-  json.begin_object().member("level", to_string(verdict.level)).member("headline", verdict.headline);
-  json.key("facts").begin_array();
-  for (const Verdict::Fact& fact : verdict.facts)
-    json.begin_object().member("label", fact.label).member("value", fact.value).member("detail", fact.detail).end_object();
-  json.end_array();
-  std::vector<std::string> paragraphs = verdict.paragraphs;
-  for (const std::string& warning : warnings) paragraphs.push_back("Warning: " + warning + ".");
-  json.key("paragraphs").texts(paragraphs);
-  json.end_object();
-}
-
 void write_section(JsonWriter& json, const char* id, std::string_view title, std::string_view text) {
   json.begin_object().member("id", id).member("title", title).member("text", text).end_object();
 }
 
 void write_sections(JsonWriter& json, const ReportInput& input) {
   json.begin_array();
+  write_section(json, "rest", "After the shock", "How the base stands when the run ends, beside how it stood before.");
   write_section(json, "loads", "Loads", "What acts on the structure.");
   if (!motions_of(input.runs).empty())
     write_section(json, "motions", "Ground motions", "Recorded and generated motions that drive the model.");
@@ -63,7 +52,7 @@ std::string report_json(const ReportInput& input) {
       .member("resolved", from.resolved)
       .end_object();
   json.key("verdict");
-  write_verdict(json, *input.verdict, input.warnings);
+  write_verdict(json, input);
   json.key("choices");
   write_choices(json, *input.read, *input.runs.front().built);
   json.key("tables");

@@ -312,6 +312,8 @@ void write_charts(JsonWriter& json, const ReportInput& input) {
   write_motion_charts(json, input);
   for (const View& view : motion_views(built)) write_chart(json, *input.read, history_chart(view, runs));
   for (const View& view : interface_views(built)) write_chart(json, *input.read, history_chart(view, runs));
+  for (const Chart& chart : safety_charts(runs)) write_chart(json, *input.read, chart);
+  for (const Chart& chart : rest_charts(runs.front())) write_chart(json, *input.read, chart);
   write_loops(json, input, runs);
   write_floor_charts(json, input);
   if (input.trust)

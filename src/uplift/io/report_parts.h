@@ -15,6 +15,7 @@ void write_choices(JsonWriter& json, const Case& read, const Built& built);
 bool has_floors(const ReportInput& input);
 void write_floor_charts(JsonWriter& json, const ReportInput& input);
 void write_floor_table(JsonWriter& json, const ReportInput& input);
+void write_verdict(JsonWriter& json, const ReportInput& input);
 void write_tables(JsonWriter& json, const ReportInput& input);
 void write_charts(JsonWriter& json, const ReportInput& input);
 void write_model(JsonWriter& json, const Case& read, const Built& built);
@@ -53,6 +54,11 @@ void write_column(JsonWriter& json, const TableColumn& column);
 /// The traction law of the first interface driven through openings and closings, with its largest opening so far (figure 3 of the paper);
 /// without curves for a cone.
 Chart law_chart(const ReportRun& run);
+
+/// The base before and after: gap and pressure along the first interface, plane models with pictures.
+std::vector<Chart> rest_charts(const ReportRun& run);
+/// Eccentricity and safeties of the first interface over time.
+std::vector<Chart> safety_charts(const std::vector<ReportRun>& runs);
 
 /// At most about `most` of the points of a history y over x: the least and the largest of each bucket, so that no peak is lost.
 void thin_history(std::vector<double>& x, std::vector<double>& y, std::size_t most);

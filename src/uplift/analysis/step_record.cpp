@@ -1,0 +1,51 @@
+#include "uplift/analysis/step_record.h"
+
+#include <algorithm>
+
+namespace uplift {
+namespace {
+
+void note(StepRecord::Reached& reached, double value, double time) {
+  if (value > reached.value) reached = {value, time};
+}
+
+/// Intervals begin and end where the smallest opening passes the tolerance, linear between two instants.
+void note_loss(StepRecord::Extremes& extremes, double least, double tolerance, bool first, double before, double now) {
+  const bool off = least > tolerance, was_off = !first && extremes.least_opening > tolerance;
+  const auto passing = [&] {
+    const double from = extremes.least_opening - tolerance, to = least - tolerance;
+    return before + (now - before) * std::clamp(from / (from - to), 0.0, 1.0);  // of different signs
+  };
+  if (off && !was_off) extremes.full_loss.push_back({first ? now : passing(), now});
+  if (was_off) extremes.full_loss.back().to = off ? now : passing();
+  extremes.least_opening = least;
+}
+
+}  // namespace
+
+void StepRecord::reserve(std::size_t interfaces, std::size_t count) {
+  extremes.resize(interfaces);
+  tail.resize(interfaces);
+  time.reserve(time.size() + count);
+  instants.reserve(instants.size() + count * interfaces);
+}
+
+void StepRecord::add(double now, const std::vector<InterfaceView>& views, double gap_tolerance) {
+  const bool first = time.empty();
+  for (std::size_t k = 0; k < views.size(); ++k) {
+    const InterfaceView& view = views[k];
+    const Resultant& sum = view.resultant;
+    const bool plane = sum.shear_1 == 0 && sum.shear_2 == 0 && sum.moment_1 == 0 && sum.moment_2 == 0;
+    instants.push_back(
+        {sum.axial, plane ? sum.shear : sum.shear_1, sum.shear_2, plane ? sum.moment : sum.moment_1, sum.moment_2, view.open_area});
+    Extremes& most = extremes[k];
+    note(most.max_opening, view.max_opening, now);
+    note(most.max_pressure, view.max_pressure, now);
+    note(most.tension_area, view.tension_area, now);
+    note(most.penetration, -view.least_opening, now);
+    note_loss(most, view.least_opening, gap_tolerance, first, first ? now : time.back(), now);
+  }
+  time.push_back(now);
+}
+
+}  // namespace uplift

@@ -1,0 +1,148 @@
+// The first page: does it uplift, and so what? Headline, uplifted share over time, the bonded run beside, the user's limits, and what a
+// linear tension ratio would have said.
+import { h, s, type Child } from "./dom";
+import { fixed, number, pick_scale } from "./format";
+import { share_chart } from "./share_chart";
+import type { BaseVerdict, Criterion, CriterionState, Verdict, VerdictLevel, VerdictRow } from "./types";
+
+const LEVEL_WORD: Record<VerdictLevel, string> = {
+  none: "No uplift",
+  uplift: "Uplift",
+  overturned: "Overturned",
+  failed: "Run failed",
+};
+
+// A tick, a lifted edge, a toppled block, a cross: shape tells the level without colour.
+const LEVEL_SIGN: Record<VerdictLevel, string> = {
+  none: "M5 12.5L10 17.5L19 7",
+  uplift: "M3 20H21M4 17L20 10M20 10V5M17.5 7.5L20 5L22.5 7.5",
+  overturned: "M3 20H21M6 20L13 6L20 9.5L14.5 20",
+  failed: "M6 6L18 18M18 6L6 18",
+};
+
+function level_sign(level: VerdictLevel): SVGElement {
+  return s("svg", { class: "sign", viewBox: "0 0 24 24", width: 34, height: 34, "aria-hidden": "true" }, s("path", { d: LEVEL_SIGN[level] }));
+}
+
+/** Keeps a number and its unit on one line. */
+function tied(text: string): string {
+  return text.replace(/(\d) (?=(?:%|[µmkMG]?(?:m|s|g|N|Pa|J|Hz|rad|t)(?![a-z])))/g, "$1\u00a0");
+}
+
+/** "1.79 MN·m" in the prefix of the larger of both; shares in per cent. */
+export function spoken(value: number, unit: string, largest = Math.abs(value)): string {
+  const scale = pick_scale(largest, unit);
+  return number(value / scale.factor, 3) + (scale.unit ? `\u00a0${scale.unit}` : "");
+}
+
+const percent = (share: number): string => `${fixed(100 * share, Math.abs(share) < 0.0995 && share !== 0 ? 1 : 0)}\u00a0%`;
+
+/** "−13 %", "+40 %", and "× 2.6" from twice on. */
+function change(value: number, bonded: number): string {
+  if (!(bonded > 0) || !(value >= 0)) return "–";
+  const ratio = value / bonded;
+  if (ratio >= 2) return `× ${number(ratio, 2)}`;
+  const part = 100 * (ratio - 1);
+  return Math.abs(part) < 0.5 ? "the same" : `${part > 0 ? "+" : ""}${fixed(part, 0)}\u00a0%`;
+}
+
+function beside_table(base: BaseVerdict): HTMLElement | null {
+  if (base.beside.length === 0) return null;
+  const bonded = base.beside.some((row) => row.bonded !== undefined);
+  const row = ({ label, value, unit, time, bonded: other }: VerdictRow): HTMLElement => {
+    const largest = Math.max(Math.abs(value), Math.abs(other ?? 0));
+    return h("tr", {},
+      h("th", { scope: "row" }, label),
+      h("td", { title: time === undefined ? null : `at ${number(time, 4)} s` }, spoken(value, unit, largest)),
+      bonded ? h("td", {}, other === undefined ? "–" : spoken(other, unit, largest)) : null,
+      bonded ? h("td", { class: "change" }, other === undefined ? "–" : change(value, other)) : null);
+  };
+  const heads = bonded ? ["", "Uplifting", "Bonded", "Change"] : ["", "Largest"];
+  return h("table", { class: "beside" },
+    h("thead", {}, h("tr", {}, ...heads.map((text) => h("th", { scope: "col" }, text)))),
+    h("tbody", {}, ...base.beside.map(row)));
+}
+
+/** Three bars: what a linear analysis sees, what that stands for, what happened. */
+function tension_bars(base: BaseVerdict): HTMLElement | null {
+  const { linear } = base;
+  if (!linear || (linear.tension <= 0 && linear.computed <= 0)) return null;
+  const bar = (kind: string, label: string, share: number | null): HTMLElement =>
+    h("div", { class: `bar bar-${kind}` },
+      h("span", { class: "bar-label" }, label),
+      h("span", { class: "bar-track" }, share === null ? null : h("i", { style: `width:${Math.min(100, 100 * share).toFixed(1)}%` })),
+      h("b", {}, share === null ? "no answer" : percent(share)));
+  return h("div", { class: "tension" },
+    h("h3", {}, "Linear tension ratio beside what happened"),
+    bar("linear", "tension, bonded run", linear.tension),
+    bar("predicted", "uplift by equal energy", linear.predicted),
+    bar("computed", "uplift computed", linear.computed));
+}
+
+const STATE_SIGN: Record<CriterionState, string> = { met: "✓", "not met": "✕", undetermined: "?" };
+
+function criterion_row(criterion: Criterion): HTMLElement {
+  const { state, label, value, limit, unit, atLeast, source } = criterion;
+  const largest = Math.max(Math.abs(limit), Math.abs(value ?? 0));
+  return h("li", { class: `criterion is-${state.replace(" ", "-")}` },
+    h("span", { class: "state" }, h("i", { "aria-hidden": "true" }, STATE_SIGN[state]), ` ${state}`),
+    h("span", { class: "what" }, label + (criterion.interface ? ` (${criterion.interface})` : "")),
+    h("span", { class: "value" }, value === null ? "not computed" : spoken(value, unit, largest), `, limit ${atLeast ? "≥" : "≤"} ${spoken(limit, unit, largest)}`),
+    h("span", { class: "by" }, source));
+}
+
+function criteria_list(criteria: Criterion[]): HTMLElement {
+  if (criteria.length === 0) return h("p", { class: "no-criteria" }, "No criteria are set: ", h("code", {}, "[[verdict.criterion]]"), " in the case file holds limits against these numbers.");
+  const met = criteria.filter((c) => c.state === "met").length;
+  return h("div", { class: "criteria" },
+    h("h3", {}, `Criteria of the case: ${met} of ${criteria.length} met`),
+    h("ul", {}, ...criteria.map(criterion_row)));
+}
+
+function base_block(base: BaseVerdict, many: boolean): HTMLElement {
+  const chart = share_chart(base);
+  return h("div", { class: "base-verdict" },
+    many ? h("h3", { class: "base-name" }, base.name) : null,
+    h("div", { class: "base-columns" },
+      h("div", {}, chart, tension_bars(base)),
+      beside_table(base)));
+}
+
+export function verdict_card(verdict: Verdict): HTMLElement {
+  const facts = verdict.facts.map((fact) =>
+    h("div", { class: "fact" }, h("dt", {}, fact.label), h("dd", {}, h("b", {}, tied(fact.value)), fact.detail ? h("small", {}, tied(fact.detail)) : null)),
+  );
+  const many = verdict.interfaces.length > 1;
+  const blocks: Child[] = verdict.interfaces.map((base) => base_block(base, many));
+  return h(
+    "section",
+    { class: `verdict verdict-${verdict.level}`, id: "verdict", "aria-label": "Verdict" },
+    h("div", { class: "verdict-head" },
+      level_sign(verdict.level),
+      h("div", {}, h("p", { class: "verdict-level" }, LEVEL_WORD[verdict.level] ?? verdict.level), h("h2", {}, tied(verdict.headline)))),
+    facts.length > 0 ? h("dl", { class: "facts" }, ...facts) : null,
+    ...blocks,
+    verdict.interfaces.length > 0 ? criteria_list(verdict.criteria) : null,
+    verdict.paragraphs.length > 0 ? h("div", { class: "prose" }, ...verdict.paragraphs.map((text) => h("p", {}, tied(text)))) : null,
+  );
+}
+
+/** What is left: one table over all interfaces. Null when the run did not come to rest. */
+export function rest_table(verdict: Verdict): HTMLElement | null {
+  const bases = verdict.interfaces.filter((base) => base.rest.length > 0);
+  if (bases.length === 0) return null;
+  const value = ({ value: v, unit, label }: VerdictRow, largest: number): string => (label === "Uplifted area" ? percent(v) : spoken(v, unit, largest));
+  const rows = bases.flatMap((base) =>
+    base.rest.map((row) => {
+      const largest = Math.max(Math.abs(row.value), row.swing ?? 0);
+      return h("tr", {},
+        h("th", { scope: "row" }, bases.length > 1 ? `${row.label} (${base.name})` : row.label),
+        h("td", {}, value(row, largest)),
+        h("td", {}, row.swing === undefined ? "–" : `± ${value({ ...row, value: row.swing }, largest)}`));
+    }));
+  return h("figure", { class: "card rest-card" },
+    h("table", { class: "beside" },
+      h("thead", {}, h("tr", {}, ...["Left at the end", "Mean of the last tenth", "Still moves by"].map((text) => h("th", { scope: "col" }, text)))),
+      h("tbody", {}, ...rows)),
+    h("figcaption", {}, "Rotation, settlement (downwards positive) and slip count from the state before the shaking."));
+}
