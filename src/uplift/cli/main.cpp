@@ -59,10 +59,10 @@ void declare_motion(CLI::App& app, Choices& given) {
   command->add_option("--format", motion.record.format, "format of the file, instead of the one found by content");
   command->add_option("--column", motion.record.column, "name or number of the column of a table");
   command->add_option("--process", motion.process, "a processing step: \"NAME KEY=VALUE ...\"; may be repeated (uplift describe process)")
-      ->expected(1)
+      ->allow_extra_args(false)
       ->take_all();
   command->add_option("--generate", motion.generate, "a target spectrum: \"NAME KEY=VALUE ...\"; repeated: independent components")
-      ->expected(1)
+      ->allow_extra_args(false)
       ->take_all();
   command->add_option("--damping", motion.dampings, "damping ratios of the response spectra")->check(CLI::Range(0.0, 0.99));
   take_output(command, given.options);

@@ -154,7 +154,7 @@ void print(const MotionReport& report) {
   for (const ShownMotion& shown : report.motions) {
     for (const std::string& text : shown.now.repairs) say(fmt::format("{}: repaired: {}", shown.now.name, text));
     for (const std::string& text : shown.now.processing) say(fmt::format("{}: {}", shown.now.name, text));
-    if (shown.fit)
+    if (shown.fit && shown.now.processing.size() > 1)  // the first one tells the fit before
       say(fmt::format("{}: fit {} from {:.4g} Hz to {:.4g} Hz: mean error {:.2f} %, nowhere below {:.1f} % of the target", shown.now.name,
                       shown.fit->good() ? "good" : "beyond its bounds", shown.fit->frequencies.front(), shown.fit->frequencies.back(),
                       100 * shown.fit->mean_error, 100 * shown.fit->least_ratio));
@@ -211,7 +211,7 @@ int motion(const Options& options, const MotionOptions& given) {
     fmt::print("{}", read_file(folder.path() + "/summary.json"));
   } else if (!options.quiet) {
     print(report);
-    say(fmt::format("results: {}/report.html, {}/motion.csv", folder.path(), folder.path()));
+    say(fmt::format("results: {}/report.html", folder.path()));
   }
   bool good = true;
   for (const ShownMotion& shown : report.motions)

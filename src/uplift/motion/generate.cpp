@@ -21,7 +21,7 @@ namespace {
 
 using std::numbers::pi;
 
-constexpr double grain = 1e-6;  // m/s2: values are whole multiples of it
+constexpr double grain = 1e-5;  // m/s2: values are whole multiples of it
 
 /// Uniform numbers whose bits the C++ standard fixes: its distributions differ between libraries, its engines do not.
 class Draw {
@@ -129,7 +129,7 @@ GeneratedMotion one_motion(const TargetSpectrum& target, const GenerateOptions& 
 
   Sines sines(options, target, draw);
   Vector a = sines.sum(envelope);
-  constexpr int scalings = 5, most_changes = 30;
+  constexpr int scalings = 5, most_changes = 40, plenty = 12;
   for (int i = 0; i < scalings; ++i) {
     sines.scale(a, target);
     a = sines.sum(envelope);
@@ -146,7 +146,7 @@ GeneratedMotion one_motion(const TargetSpectrum& target, const GenerateOptions& 
       best.fit = std::move(fit);
       best.iterations = i;
     }
-    if (distance(best.fit) < enough) break;
+    if (distance(best.fit) < (i < plenty ? enough : 1)) break;
     a += spectral_change(a, envelope, demand, 0.7);
   }
   return best;
