@@ -142,7 +142,7 @@ class Replay(CliTest):
 
 class Shell(CliTest):
     def test_help_has_examples_and_exit_codes(self):
-        for command in ("new", "check", "run", "compare", "modes", "describe", "schema", "replay", "completion"):
+        for command in ("new", "check", "run", "compare", "modes", "describe", "schema", "replay", "motion", "completion"):
             text = self.uplift(command, "--help").stdout
             self.assertIn("Examples:", text)
             self.assertIn(f"uplift {command}", text)

@@ -47,8 +47,8 @@ void declare_motion(CLI::App& app, Choices& given) {
   uplift::cli::MotionOptions& motion = given.motion;
   CLI::App* command =
       add(app, "motion", "ground motions: peaks, intensities and spectra of records, processing, generation to a target spectrum",
-          "  uplift motion RSN8883.AT2 --damping 0.02 0.05\n"
-          "  uplift motion quake.csv --unit cm/s2 --process \"baseline\" --process \"bandpass from=0.1 to=25\"\n"
+          "  uplift motion RSN8883.AT2 --damping 0.02,0.05\n"
+          "  uplift motion quake.csv --unit cm/s2 --process \"baseline\" --process \"bandpass low=0.1 high=25\"\n"
           "  uplift motion --generate rg_1_60 pga=\"0.3 g_n\" duration=20 seed=7\n"
           "  uplift motion --generate eurocode_8 --generate eurocode_8 --generate \"eurocode_8 direction=vertical\" a_g=2 ground=C");
   command->add_option("words", motion.files,
@@ -64,7 +64,10 @@ void declare_motion(CLI::App& app, Choices& given) {
   command->add_option("--generate", motion.generate, "a target spectrum: \"NAME KEY=VALUE ...\"; repeated: independent components")
       ->allow_extra_args(false)
       ->take_all();
-  command->add_option("--damping", motion.dampings, "damping ratios of the response spectra")->check(CLI::Range(0.0, 0.99));
+  command->add_option("--damping", motion.dampings, "damping ratios of the response spectra, with commas between them")
+      ->delimiter(',')
+      ->allow_extra_args(false)
+      ->check(CLI::Range(0.0, 0.99));
   take_output(command, given.options);
   take_json(command, given.options);
 }

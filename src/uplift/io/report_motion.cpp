@@ -45,8 +45,8 @@ Chart history_chart(const ShownMotion& shown, std::size_t number, MotionKind kin
               {"Time", "s"},
               {"Ground " + word, std::string(unit_of(kind))},
               {}};
-  chart.curves.push_back(history_curve(shown.now, kind, was_processed(shown) ? "processed" : shown.now.name, false));
   if (was_processed(shown)) chart.curves.push_back(history_curve(shown.first, kind, "before", true));
+  chart.curves.push_back(history_curve(shown.now, kind, was_processed(shown) ? "processed" : shown.now.name, false));
   return chart;
 }
 
@@ -202,6 +202,11 @@ void write_facts(JsonWriter& json, const MotionReport& report) {
   json.end_array();
 }
 
+/// "NAME: what was done." whether the text ends with a full stop or not.
+std::string sentence(const std::string& name, const std::string& text) {
+  return fmt::format("{}: {}{}", name, text, text.ends_with('.') ? "" : ".");
+}
+
 void write_head(JsonWriter& json, const MotionReport& report) {
   const Provenance& from = report.from;
   json.member("format", "uplift-report-1").member("title", from.title).member("subtitle", from.subtitle).member("version", from.version);
@@ -210,8 +215,10 @@ void write_head(JsonWriter& json, const MotionReport& report) {
   json.end_object().key("verdict").begin_object().member("level", "Ground motion").member("headline", from.subtitle);
   write_facts(json, report);
   std::vector<std::string> paragraphs;
-  for (const ShownMotion& shown : report.motions)
-    for (const std::string& text : shown.now.repairs) paragraphs.push_back(fmt::format("Repaired in {}: {}.", shown.now.name, text));
+  for (const ShownMotion& shown : report.motions) {
+    for (const std::string& text : shown.now.repairs) paragraphs.push_back(sentence("Repaired in " + shown.now.name, text));
+    for (const std::string& text : shown.now.processing) paragraphs.push_back(sentence(shown.now.name, text));
+  }
   json.key("paragraphs").texts(paragraphs).end_object();
   json.key("choices").begin_array().end_array();
 }

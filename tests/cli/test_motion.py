@@ -1,0 +1,97 @@
+"""uplift motion: records, processing, generation to a target."""
+
+import math
+
+from support import *
+
+RECORD = "time [s],north [cm/s2]\n" + "".join(f"{0.01 * i:.2f},{100 * math.sin(2 * math.pi * i / 50):.6f}\n" for i in range(501))
+SHORT = ("step=0.02", "duration=8", "from=0.5", "to=15")
+
+
+class Records(CliTest):
+    def test_a_record_has_its_numbers_and_its_page(self):
+        self.write(RECORD, "quake.csv")
+        done = self.uplift("motion", "quake.csv")
+        self.assertRegex(done.stdout, r"PGA \[m/s2\].*D5-95 \[s\].*Housner")
+        folder = self.folder / "out/motion_quake"
+        self.assertIn("uplift-report-1", (folder / "report.html").read_text())
+        found = self.summary("out/motion_quake")
+        # 1 m/s2 at 2 Hz for 10 whole periods: Arias = pi/(2 g) T/2, CAV = 2 T/pi
+        numbers, motion = found["intensities"][0], found["motions"][0]
+        self.assertAlmostEqual(numbers["pga"], 1, delta=0.003)
+        self.assertAlmostEqual(numbers["arias"], math.pi / (2 * 9.80665) * 2.5, delta=0.003)
+        self.assertAlmostEqual(numbers["cav"], 2 * 5 / math.pi, delta=0.01)
+        self.assertEqual((motion["count"], motion["step"], motion["factor"], motion["unit"]), (501, 0.01, 0.01, "cm/s2"))
+        self.assertRegex(motion["sha256"], "^[0-9a-f]{64}$")
+
+    def test_processing_is_told_and_leaves_the_record_as_it_is(self):
+        self.write(RECORD, "quake.csv")
+        done = self.uplift("motion", "quake.csv", "--process", "scale pga=2", "--process", "taper", "--json")
+        found = json.loads(done.stdout)
+        self.assertAlmostEqual(found["intensities"][0]["pga"], 2, delta=0.01)
+        self.assertEqual(len(found["motions"][0]["processing"]), 2)
+        self.assertEqual((self.folder / "quake.csv").read_text(), RECORD)
+
+    def test_earlier_results_stay(self):
+        self.write(RECORD, "quake.csv")
+        self.uplift("motion", "quake.csv")
+        done = self.uplift("motion", "quake.csv", "--damping", "0.02,0.05")
+        self.assertIn("earlier results moved to out/motion_quake.1/", done.stdout)
+        self.assertTrue((self.folder / "out/motion_quake.1/report.html").exists())
+
+    def test_what_is_wrong_is_refused(self):
+        self.write(RECORD, "quake.csv")
+        for words, part in (
+            (("missing.at2",), "missing.at2"),
+            ((), "a file of a recorded motion, or --generate TARGET"),
+            (("quake.csv", "--process", "tapir"), '(did you mean "taper"?)'),
+            (("quake.csv", "--process", "bandpass low=a"), "low"),
+            (("--generate", "rg_1_61", "pga=3"), '(did you mean "rg_1_60"?)'),
+            (("--generate", "rg_1_60"), "pga"),
+            (("--generate", "rg_1_60", "pga"), "KEY=VALUE"),
+            (("--generate", "rg_1_60", "pga=3", "to=200"), "to"),
+        ):
+            done = self.uplift("motion", *words, expect=2)
+            self.assertIn(part, done.stderr)
+            self.assertTrue(done.stderr.startswith("error: "), done.stderr)
+            self.assertEqual(done.stdout, "")
+        self.assertFalse((self.folder / "out").exists())
+
+
+class Generated(CliTest):
+    def test_a_motion_fits_and_comes_again_from_its_seed(self):
+        words = ("motion", "--generate", "rg_1_60", "pga=0.2 g_n", "seed=5", *SHORT)
+        self.uplift(*words, "-o", "a")
+        self.uplift(*words, "-o", "b")
+        first = (self.folder / "a/motion.csv").read_text()
+        self.assertEqual(first, (self.folder / "b/motion.csv").read_text())
+        fit = self.summary("a")["fits"][0]
+        self.assertTrue(fit["good"])
+        self.assertLessEqual(fit["mean_error"], 0.05)
+        self.assertGreaterEqual(fit["least_ratio"], 0.90)
+
+    def test_what_was_generated_can_be_read(self):
+        self.uplift("motion", "--generate", "eurocode_8 ground=C", "a_g=2", *SHORT, "-o", "made")
+        again = json.loads(self.uplift("motion", "made/motion.csv", "--json").stdout)["intensities"][0]
+        made = self.summary("made")["intensities"][0]
+        for key in ("pga", "pgv", "pgd", "arias", "cav", "housner"):
+            self.assertEqual(again[key], made[key])
+
+    def test_three_components_are_independent(self):
+        self.uplift("motion", "--generate", "rg_1_60", "--generate", "rg_1_60", "--generate", "rg_1_60 direction=vertical", "pga=2",
+                    *SHORT, "-o", "three", "-q")
+        found = self.summary("three")
+        self.assertEqual(len(found["fits"]), 3)
+        self.assertEqual(len(found["correlations"]), 3)
+        for pair in found["correlations"]:
+            self.assertLessEqual(abs(pair["correlation"]), 0.16)
+        self.assertEqual((self.folder / "three/motion.csv").read_text().splitlines()[-1].count(","), 3)
+
+    def test_parts_are_described(self):
+        self.assertIn("Regulatory Guide 1.60", self.uplift("describe", "target", "rg_1_60").stdout)
+        self.assertIn("seed", self.uplift("describe", "section", "generate").stdout)
+        self.assertIn("bandpass", self.uplift("describe", "process").stdout)
+
+
+if __name__ == "__main__":
+    main()
