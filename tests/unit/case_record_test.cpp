@@ -1,4 +1,5 @@
 #include "case_record_support.h"
+#include "uplift/motion/generate.h"
 
 // Records that drive a case: what they give to each use, against sums over their points; the moving frame against the absolute one; errors.
 namespace uplift {
@@ -39,6 +40,7 @@ struct Ground {
 
 using Column = Request::Kind;
 
+/// The work of the ground and the kinetic energy are those of the unknowns, which move with the ground or do not.
 bool depends_on_frame(Column kind) {
   return kind == Column::kinetic || kind == Column::external;
 }
@@ -167,9 +169,9 @@ TEST_F(RecordCase, WarnsOfStepsThatDoNotFit) {
     return std::ranges::count_if(all, [&](const std::string& each) { return each.find(words) != each.npos; });
   };
   EXPECT_EQ(said("0.005", "of the record \"ex\""), 0);
-  EXPECT_EQ(said("0.04", "is coarser than that of the record \"ex\" (20 ms)"), 1);
-  EXPECT_EQ(said("0.008", "is no whole fraction of that of the record \"ex\" (20 ms)"), 1);
-  EXPECT_EQ(said("0.005", "the record \"ex\" lasts 6 s, the dynamic stages 3 s"), 1);
+  EXPECT_EQ(said("0.04", "is coarser than that of the record \"ex\" (20.0 ms)"), 1);
+  EXPECT_EQ(said("0.008", "is no whole fraction of that of the record \"ex\" (20.0 ms)"), 1);
+  EXPECT_EQ(said("0.005", "the record \"ex\" lasts 6.00 s, the dynamic stages 3.00 s"), 1);
 }
 
 /// A prescribed displacement drifts away with the velocity that is left.
@@ -180,10 +182,8 @@ TEST_F(RecordCase, WarnsOfADrift) {
   const RunSpec spec = runs_of_case(file).front();
   const std::vector<std::string> all = warnings(file, spec, build(file, spec));
   const auto drifts = [&](const std::string& name) {
-    return std::ranges::count_if(all, [&](const std::string& each) {
-      return each.find("the record \"" + name + "\" ends with a velocity of 0.04 m/s") != each.npos ||
-             each.find("the record \"" + name + "\" ends with a velocity of 40 mm/s") != each.npos;
-    });
+    const std::string words = "the record \"" + name + "\" ends with a velocity of 40.0 mm/s";
+    return std::ranges::count_if(all, [&](const std::string& each) { return each.find(words) != each.npos; });
   };
   EXPECT_EQ(drifts("ex"), 1);
   EXPECT_EQ(drifts("ey"), 0);
@@ -197,11 +197,20 @@ cell = "quad4"
 width = 4
 size = 1
 layers = [{ thickness = 4, size = 1 }]
+[mesh.soil_box.block]
+width = 2
+height = 1
+size = 1
 [[solid]]
 group = "soil_1"
 shear_wave_speed = 200
 poisson = 0.3
 density = 1900
+[[solid]]
+group = "block"
+E = 2e9
+poisson = 0.2
+density = 2000
 [[absorbing]]
 group = "soil_bottom"
 incident = { wave = "SV", kind = "outcrop", velocity = 3, function = "ex" }
@@ -230,6 +239,46 @@ TEST_F(RecordCase, GivesAnIncidentWaveItsVelocity) {
   ASSERT_EQ(built.motions.size(), 1u);
   EXPECT_EQ(built.motions[0].kind, MotionKind::velocity);
   EXPECT_EQ(built.motions[0].history->motion()->name, "ex");
+}
+
+std::string generated(const std::string& name, const std::string& options) {
+  return "[[record]]\nname = \"" + name + "\"\ngenerate = { target = { type = \"rg_1_60\", pga = 2 }, " + options + " }\n";
+}
+
+const std::string short_motion = "duration = 4, step = 0.02, from = 1.5, to = 10";
+
+/// Records with one seed are drawn together; every reading gives the same.
+TEST_F(RecordCase, GeneratesIndependentComponents) {
+  const std::string text = tower(
+      quick,
+      replaced(moving_frame, two_records, generated("ex", short_motion + ", seed = 4") + generated("ey", short_motion + ", seed = 4")));
+  const Case file = read(text), again = read(text);
+  const Motion &ex = file.records[0].motion(), &ey = file.records[1].motion();
+  ASSERT_EQ(ex.values.size(), 201u);
+  EXPECT_EQ(ex.step, 0.02);
+  EXPECT_EQ(ex.values, again.records[0].motion().values);
+  EXPECT_LE(std::abs(correlation(ex.values, ey.values)), 0.16);
+  EXPECT_NEAR(std::abs(peak_of(ex).value), 2, 0.5);
+  EXPECT_EQ(ex.name, "ex");
+  EXPECT_TRUE(input_files(file).empty());
+}
+
+TEST_F(RecordCase, RefusesRecordsFromNowhereAndFromTwoPlaces) {
+  write_record("ex.txt", 0.02, 51, 1);
+  const auto says = [&](const std::string& text, const std::string& marker, const std::string& rest) {
+    EXPECT_EQ(refusal(text), "case.toml:" + std::to_string(line_of(text, marker)) + ": " + rest);
+  };
+  const auto with = [](const std::string& records) { return tower(quick, replaced(moving_frame, two_records, records)); };
+  says(with("[[record]] # none\nname = \"ex\"\n"), "[[record]] # none", "record[0]: wanted either file or generate, found neither");
+  says(with(generated("ex", short_motion) + "file = \"ex.txt\"\n"), "generate = {",
+       "record[0].generate: wanted either file or generate, found both");
+  says(with(generated("ex", short_motion) + "unit = \"g\"\n"), "unit = \"g\"",
+       "record[0].unit: wanted a key of generate, found unit, which is for files");
+  says(with(generated("ex", short_motion + ", seed = 4") + generated("ey", "duration = 5, step = 0.02, from = 1.5, to = 10, seed = 4")),
+       "duration = 5",
+       "record[1].generate.seed: wanted a seed of its own (the record \"ex\" has this one with other times or another band), found 4");
+  const std::string unit = "[[record]]\nname = \"ex\"\nfile = \"ex.txt\"\nunit = \"furlong\"\n";
+  EXPECT_EQ(refusal(with(unit)).find("case.toml:" + std::to_string(line_of(with(unit), "furlong")) + ": record[0].unit: wanted "), 0u);
 }
 
 }  // namespace

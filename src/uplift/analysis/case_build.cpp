@@ -277,7 +277,8 @@ std::vector<std::string> input_files(const Case& read) {
     if (shape.items().contains("file") && shape.has("file")) add(shape);
   }
   if (const Values* mesh = table_if(read.values, "mesh"); mesh && mesh->has("file")) add(*mesh);
-  for (const Values& record : read.values.tables("record")) files.push_back(record_path(record));
+  for (const Values& record : read.values.tables("record"))
+    if (record.has("file")) files.push_back(record_path(record));
   return files;
 }
 

@@ -1,4 +1,5 @@
 #include "uplift/analysis/case_records.h"
+#include "uplift/motion/generate.h"
 #include "uplift/motion/processing.h"
 
 namespace uplift {
@@ -9,15 +10,27 @@ const Section& process_section() {
   return s;
 }
 
+const Section& generate_record_section() {
+  static const Section s = [] {
+    Section made = generate_section();
+    made.meaning = "an acceleration made to have a target spectrum; records with the same seed are statistically independent of each other";
+    made.fields.insert(made.fields.begin(), part("target", target_spectra, "the spectrum"));
+    return made;
+  }();
+  return s;
+}
+
 }  // namespace
 
 const Section& record_section() {
   static const Section s{
       "record",
-      "a motion of the ground from a file. Its name stands wherever that of a function can: ground_acceleration takes its acceleration, an "
+      "a motion of the ground, from a file or generated. Its name stands wherever that of a function can: ground_acceleration takes its "
+      "acceleration, an "
       "incident wave its velocity, a prescribed motion its displacement, by exact integration",
       {text("name", "name, different from those of functions"),
-       text("file", "path, relative to the case file: AT2, ESM, K-NET, COSMOS, SMC, text with columns ..."),
+       text("file", "path, relative to the case file: AT2, ESM, K-NET, COSMOS, SMC, text with columns ...; or give generate").optional(),
+       table("generate", generate_record_section(), "make it instead of reading it").optional(),
        text("format", "name of the reader; absent: found by content").optional(),
        text("unit", "of the numbers in the file (\"g\", \"cm/s2\"); absent: as the file says").optional(),
        number("step", "s", "of files without times").positive().optional(),

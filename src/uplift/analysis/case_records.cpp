@@ -5,11 +5,13 @@
 #include <algorithm>
 #include <cmath>
 #include <filesystem>
+#include <tuple>
 
 #include "uplift/analysis/case_model.h"
 #include "uplift/analysis/wording.h"
 #include "uplift/base/text.h"
 #include "uplift/motion/convert.h"
+#include "uplift/motion/generate.h"
 #include "uplift/motion/processing.h"
 #include "uplift/motion/read.h"
 
@@ -56,6 +58,65 @@ Motion read_record(const Values& record) {
   }
 }
 
+/// Generated records with one seed: drawn together, so that they are independent of each other.
+struct Family {
+  GenerateOptions options;
+  std::vector<std::size_t> records;
+  std::vector<std::unique_ptr<const TargetSpectrum>> targets;
+};
+
+bool same(const GenerateOptions& a, const GenerateOptions& b) {
+  const auto all = [](const GenerateOptions& o) {
+    return std::tuple(o.duration, o.step, o.envelope.shape, o.envelope.rise, o.envelope.fall, o.from, o.to);
+  };
+  return all(a) == all(b);
+}
+
+std::vector<Family> families_of(const std::vector<Values>& records) {
+  std::vector<Family> families;
+  for (std::size_t i = 0; i < records.size(); ++i) {
+    if (!records[i].has("generate")) continue;
+    const Values& generate = records[i].table("generate");
+    std::unique_ptr<const TargetSpectrum> target = make_part(target_catalog(), generate.part("target"));
+    const GenerateOptions options = generate_options(generate, *target);
+    auto family = std::ranges::find(families, options.seed, [](const Family& each) { return each.options.seed; });
+    if (family == families.end()) family = families.insert(family, Family{options, {}, {}});
+    if (!same(family->options, options))
+      fail(generate, "seed",
+           fmt::format("a seed of its own (the record {} has this one with other times or another band)",
+                       in_quotes(records[family->records.front()].text("name"))),
+           fmt::format("{}", options.seed));
+    family->records.push_back(i);
+    family->targets.push_back(std::move(target));
+  }
+  return families;
+}
+
+/// Of every record, empty for those from files.
+std::vector<Motion> generate_records(const std::vector<Values>& records) {
+  std::vector<Motion> made(records.size());
+  for (const Family& family : families_of(records)) {
+    std::vector<const TargetSpectrum*> targets;
+    for (const auto& target : family.targets) targets.push_back(target.get());
+    std::vector<GeneratedMotion> motions = generate_motions(targets, family.options);
+    for (std::size_t k = 0; k < motions.size(); ++k) {
+      if (const SpectrumFit& fit = motions[k].fit; !fit.good())
+        motions[k].motion.repairs.push_back(fmt::format("it does not fit its target well: mean error {}, down to {} of it",
+                                                        percent(fit.mean_error), percent(fit.least_ratio)));
+      made[family.records[k]] = std::move(motions[k].motion);
+    }
+  }
+  return made;
+}
+
+/// A record comes from a file or is generated, and says nothing of the other.
+void check_source(const Values& record) {
+  const bool file = record.has("file"), generate = record.has("generate");
+  if (file == generate) fail(record, file ? "generate" : "", "either file or generate", file ? "both" : "neither");
+  for (const char* key : {"format", "unit", "step", "column", "component"})
+    if (generate && record.has(key)) fail(record, key, "a key of generate", fmt::format("{}, which is for files", key));
+}
+
 }  // namespace
 
 std::string record_path(const Values& record) {
@@ -66,8 +127,12 @@ std::string record_path(const Values& record) {
 
 std::vector<CaseRecord> read_records(const Values& root) {
   std::vector<CaseRecord> made;
-  for (const Values& record : root.tables("record")) {
-    Motion motion = read_record(record);
+  const std::vector<Values>& records = root.tables("record");
+  for (const Values& record : records) check_source(record);
+  std::vector<Motion> generated = generate_records(records);
+  for (std::size_t i = 0; i < records.size(); ++i) {
+    const Values& record = records[i];
+    Motion motion = record.has("file") ? read_record(record) : std::move(generated[i]);
     motion.name = record.text("name");
     for (const Values& step : record.tables("process")) motion = make_part(process_catalog(), step.part("do"))->apply(std::move(motion));
     made.push_back({motion.name, std::make_shared<const MotionHistory>(std::make_shared<const Motion>(std::move(motion)))});
@@ -161,6 +226,8 @@ void warn_motions(const std::vector<MotionUse>& used, const std::vector<Stage>& 
     }
     if (std::ranges::find(seen, use.history.get()) != seen.end()) continue;
     seen.push_back(use.history.get());
+    if (motion.file.empty())
+      for (const std::string& doubt : motion.repairs) said.push_back(fmt::format("the record {}: {}", in_quotes(motion.name), doubt));
     const double steps = motion.step / coarsest;
     if (steps < 1 - 1e-9)
       said.push_back(

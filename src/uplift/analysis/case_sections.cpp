@@ -307,7 +307,7 @@ const Section& case_section() {
              tables("interface", interface_section(), "interfaces"),
              table("gravity", gravity_section(), "weight").optional(),
              tables("function", function_section(), "functions of time"),
-             tables("record", record_section(), "motions of the ground from files"),
+             tables("record", record_section(), "motions of the ground, recorded or generated"),
              tables("load", load_section(), "loads"),
              tables("motion", motion_section(), "prescribed motions"),
              tables("ground_acceleration", ground_section(), "ground acceleration"),

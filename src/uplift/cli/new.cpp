@@ -81,6 +81,7 @@ function = "pulse"                    # without a function a load is constant an
 # [[record]]
 # name = "quake"
 # file = "quake.at2"                  # its unit and step are read from it; keys for files that do not say: `uplift describe section record`
+#                                     # or made for a spectrum: generate = {{ target = {{ type = "rg_1_60", pga = "2 m/s2" }}, seed = 1 }}
 #
 # [[ground_acceleration]]
 # direction = [1, 0]
