@@ -33,6 +33,12 @@ Motion after(const Motion& motion, const std::string& type, std::vector<std::pai
   return make_part(process_catalog(), check_part(table, motion_processes()))->apply(motion);
 }
 
+/// A target of points, 5 % damping.
+Raw target_of(const std::vector<double>& frequencies, const std::vector<double>& accelerations) {
+  return raw(std::make_shared<RawTable>(
+      RawTable{{{"type", raw(std::string("table"))}, {"frequencies", list(frequencies)}, {"accelerations", list(accelerations)}}}));
+}
+
 std::string refusal(const Motion& motion, const std::string& type, std::vector<std::pair<std::string, Raw>> entries = {}) {
   try {
     after(motion, type, std::move(entries));
@@ -65,7 +71,7 @@ TEST(Processing, EveryStepWritesOneSentenceAndKeepsTheRest) {
       {"trim", {{"to", raw(5.0)}}},
       {"resample", {{"step", raw(0.005)}}},
       {"scale", {{"pga", raw(1.0)}}},
-      {"scale_to_spectrum", {{"frequencies", list({0.1, 50})}, {"values", list({1, 1})}, {"from", raw(0.1)}, {"to", raw(2.0)}}}};
+      {"scale_to_spectrum", {{"target", target_of({0.1, 50}, {1, 1})}, {"from", raw(0.1)}, {"to", raw(2.0)}}}};
   ASSERT_EQ(steps.size(), process_catalog().size());  // a new step is to be added here
   for (const auto& [type, entries] : steps) {
     const Motion done = after(motion, type, entries);
@@ -273,8 +279,8 @@ TEST(ScaleToSpectrum, FindsTheFactorOfItsOwnSpectrum) {
   const Spectrum own = response_spectra(motion.values, motion.step, log_spaced(0.5, 10, 100), {0.05}, Spectrum::Kind::psa)[0];
   std::vector<double> four = own.values;
   for (double& value : four) value *= 4;
-  const Motion scaled = after(motion, "scale_to_spectrum",
-                              {{"frequencies", list(own.frequencies)}, {"values", list(four)}, {"from", raw(0.1)}, {"to", raw(2.0)}});
+  const Motion scaled =
+      after(motion, "scale_to_spectrum", {{"target", target_of(own.frequencies, four)}, {"from", raw(0.1)}, {"to", raw(2.0)}});
   for (std::size_t i = 0; i < motion.values.size(); ++i) ASSERT_NEAR(scaled.values[i], 4 * motion.values[i], 1e-9);
 }
 

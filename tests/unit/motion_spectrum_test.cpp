@@ -351,12 +351,12 @@ TEST(FloorSpectrum, ElCentroOnAnOscillatorOf5Hz) {
   EXPECT_NEAR(frequencies[static_cast<std::size_t>(top - raw.values.begin())], 5.09, 0.005);
   for (std::size_t i = 0; i < rows.size(); ++i)
     if (frequencies[i] > 0.86 * 5.0907 && frequencies[i] < 1.14 * 5.0907) EXPECT_EQ(value_at(wide, frequencies[i]), *top) << frequencies[i];
-  // The file's raw curve is straight in f and not in log f: points between say so. Its broadening takes the largest of 201 places in the
-  // window only, and is short of a peak by what lies between two of them.
+  // The file's raw curve is straight in f and not in log f, up to 3 % apart: 20 points between leave 1/400 of that. Its broadening takes
+  // the largest of 201 places in the window only, and is short of a peak by what lies between two of them.
   Spectrum dense{raw.kind, raw.damping, refined(frequencies, 20), refined(raw.values, 20)};
   const Spectrum denser = broadened(dense, 0.15);
   for (std::size_t i = 0; i < rows.size(); ++i) {
-    EXPECT_GE(value_at(denser, frequencies[i]) / rows[i][2], 1 - 1e-5) << frequencies[i];
+    EXPECT_GE(value_at(denser, frequencies[i]) / rows[i][2], 1 - 1e-4) << frequencies[i];
     EXPECT_LE(value_at(denser, frequencies[i]) / rows[i][2], 1 + 3e-3) << frequencies[i];
   }
 }

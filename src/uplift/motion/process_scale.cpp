@@ -6,6 +6,7 @@
 #include "uplift/base/text.h"
 #include "uplift/motion/process_step.h"
 #include "uplift/motion/spectrum.h"
+#include "uplift/motion/target.h"
 
 namespace uplift {
 
@@ -49,34 +50,34 @@ class Scale final : public ProcessStep {
 /// spectra on a logarithmic drawing is smallest.
 class ScaleToSpectrum final : public ProcessStep {
  public:
-  explicit ScaleToSpectrum(const Values& v) : ProcessStep(v), from_(v.number("from")), to_(v.number("to")) {
-    target_ = {Spectrum::Kind::psa, v.number("damping"), v.numbers("frequencies"), v.numbers("values")};
-    const std::vector<double>&f = target_.frequencies, &s = target_.values;
-    if (f.size() != s.size()) refuse("values", fmt::format("as many values as frequencies ({})", f.size()), fmt::format("{}", s.size()));
-    for (std::size_t i = 0; i < f.size(); ++i)
-      if (!(f[i] > (i > 0 ? f[i - 1] : 0))) refuse("frequencies", "frequencies > 0 in ascending order", fmt::format("{:g} Hz", f[i]));
-    for (const double value : s)
-      if (!(value > 0)) refuse("values", "accelerations > 0", fmt::format("{:g} m/s2", value));
+  explicit ScaleToSpectrum(const Values& v)
+      : ProcessStep(v),
+        from_(v.number("from")),
+        to_(v.number("to")),
+        name_(v.part("target").type()),
+        target_(make_part(target_catalog(), v.part("target"))) {
     if (!(from_ < to_)) refuse("to", fmt::format("a period above from ({:g} s)", from_), fmt::format("{:g} s", to_));
   }
 
   Motion apply(Motion motion) const override {
     need_acceleration(motion);
     constexpr int count = 100;
+    const double damping = target_->damping();
     const Spectrum now =
-        response_spectra(motion.values, motion.step, log_spaced(1 / to_, 1 / from_, count), {target_.damping}, Spectrum::Kind::psa)[0];
+        response_spectra(motion.values, motion.step, log_spaced(1 / to_, 1 / from_, count), {damping}, Spectrum::Kind::psa)[0];
     double sum = 0;
     for (std::size_t i = 0; i < now.values.size(); ++i) {
       if (!(now.values[i] > 0)) refuse("", "a motion that is not zero throughout", "zeros");
-      sum += std::log(value_at(target_, now.frequencies[i]) / now.values[i]);
+      sum += std::log(target_->at(now.frequencies[i]) / now.values[i]);
     }
     return scaled(std::move(motion), std::exp(sum / count),
-                  fmt::format(": mean of the target from {:g} s to {:g} s, {:g} % damping", from_, to_, 100 * target_.damping));
+                  fmt::format(": mean of the target ({}) from {:g} s to {:g} s, {:g} % damping", name_, from_, to_, 100 * damping));
   }
 
  private:
   double from_, to_;
-  Spectrum target_;
+  std::string name_;
+  std::unique_ptr<const TargetSpectrum> target_;
 };
 
 Field damping() {
@@ -105,8 +106,7 @@ const Entry<Processing>& entry_process_scale_to_spectrum() {
        .summary = "the factor that brings the spectrum to a target in the mean over a range of periods",
        .equations = "ln c = mean of ln(target/PSA) over 100 periods, equally spaced in logarithms",
        .source = "",
-       .params = {numbers("frequencies", "Hz", "frequencies of the target, ascending"),
-                  numbers("values", "m/s2", "pseudo-acceleration of the target at these"), damping(),
+       .params = {part("target", target_spectra, "the spectrum aimed at, with its damping ratio"),
                   number("from", "s", "shortest period").positive(), number("to", "s", "longest period").positive()}},
       [](const Values& v) { return std::make_unique<ScaleToSpectrum>(v); }};
   return entry;
