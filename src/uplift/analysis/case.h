@@ -30,6 +30,8 @@ using MeshReader = std::function<Mesh(const std::string&, const Where&, const st
 /// Checks a case file that was read, reads or makes its mesh, and reads its records. A case with a mesh file needs a reader. Throws
 /// InputError.
 Case check_case(const Raw& raw, const std::string& file, const MeshReader& read_mesh = {});
+/// The same for a file with the records of `like`, and with its mesh where `same_mesh`: these are not read or made again.
+Case check_case_like(const Case& like, bool same_mesh, const Raw& raw, const MeshReader& read_mesh = {});
 
 /// Other files that the case reads (tables of functions, the mesh, records), as paths that can be opened from here.
 std::vector<std::string> input_files(const Case&);

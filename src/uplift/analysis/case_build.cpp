@@ -267,6 +267,12 @@ Case check_case(const Raw& raw, const std::string& file, const MeshReader& read_
   return read;
 }
 
+Case check_case_like(const Case& like, bool same_mesh, const Raw& raw, const MeshReader& read_mesh) {
+  Case read{check(raw, case_section()), like.file, like.mesh, like.records};
+  if (!same_mesh) read.mesh = mesh_of_case(read.values, like.file, read_mesh);
+  return read;
+}
+
 std::vector<std::string> input_files(const Case& read) {
   std::vector<std::string> files;
   const auto add = [&](const Values& table) {

@@ -199,7 +199,10 @@ std::optional<double> TrustBand::share() const {
 TrustAnswer trust(const Raw& raw, const Case& read, const MeshReader& read_mesh, const TrustBase& base, int threads, const Watch& watch) {
   const TrustPlan plan = trust_plan(read);
   std::vector<Case> cases;
-  for (const TrustChange& change : plan.changes) cases.push_back(check_case(edited(raw, change.edits), read.file, read_mesh));
+  for (const TrustChange& change : plan.changes) {
+    const bool same_mesh = std::ranges::none_of(change.edits, [](const CaseEdit& edit) { return edit.path.starts_with("mesh"); });
+    cases.push_back(check_case_like(read, same_mesh, edited(raw, change.edits), read_mesh));
+  }
   Watcher watcher(cases.size(), watch);
   std::vector<Repetition> repetitions = compute_all(cases, plan.changes, threads, watcher);
   repetitions.insert(repetitions.begin(), repetition_of({"base", "", "as in the case", {}}, base.built, base.run, base.bonded));
