@@ -2,10 +2,10 @@
 # Fuzzes the readers of files: scripts/fuzz.sh SECONDS [TARGET...]; see fuzz/README.md. Needs clang with its runtime (Debian: clang, libclang-rt-14-dev).
 set -euo pipefail
 cd "$(dirname "$0")/.."
-seconds="${1:?usage: scripts/fuzz.sh SECONDS [gmsh|med|toml...]}"
+seconds="${1:?usage: scripts/fuzz.sh SECONDS [gmsh|med|toml|record...]}"
 shift
 targets=("$@")
-[ ${#targets[@]} -gt 0 ] || targets=(gmsh med toml)
+[ ${#targets[@]} -gt 0 ] || targets=(gmsh med toml record)
 clang="${CLANG:-$(command -v clang++-14 || echo clang++)}"
 command -v ccache >/dev/null && clang="ccache $clang"
 
@@ -18,7 +18,8 @@ sources() {
     gmsh) printf '%s\n' "${mesh[@]}" src/uplift/io/mesh_gmsh*.cpp ;;
     med) printf '%s\n' "${mesh[@]}" src/uplift/io/hdf5{,_child}.cpp src/uplift/io/mesh_med{,_message,_file}.cpp ;;
     toml) printf '%s\n' "${base[@]}" src/uplift/io/toml.cpp ;;
-    *) echo "fuzz.sh: wanted gmsh, med or toml, found \"$1\"" >&2; exit 2 ;;
+    record) printf '%s\n' "${base[@]}" src/uplift/base/sha256.cpp src/uplift/motion/{motion,read,columns}.cpp src/uplift/motion/{record,format}_*.cpp ;;
+    *) echo "fuzz.sh: wanted gmsh, med, toml or record, found \"$1\"" >&2; exit 2 ;;
   esac
 }
 

@@ -21,8 +21,8 @@ double time_factor(const Columns::Head& head) {
   return named && unit.empty() ? 1 : 0;
 }
 
-/// Whether the first cells of the first rows are times: not negative, ascending by equal steps.
-bool begins_with_times(const RecordText& text, const Columns& columns) {
+/// Whether the first cells of the first rows are times: not negative, ascending by equal steps, by those that the file or the user states.
+bool begins_with_times(const RecordText& text, const Columns& columns, std::optional<double> stated) {
   std::vector<double> first;
   for (int i = columns.first_row; i <= text.count() && first.size() < 20; ++i) {
     if (trim(text.line(i)).empty() || is_comment(text.line(i))) continue;
@@ -35,6 +35,7 @@ bool begins_with_times(const RecordText& text, const Columns& columns) {
     first.push_back(*time);
   }
   if (first.size() < 2 || first.front() < 0) return false;
+  if (stated && std::abs(first[1] - first[0] - *stated) > 0.3 * *stated) return false;
   int even = 0;
   for (std::size_t i = 1; i < first.size(); ++i) {
     if (!(first[i] > first[i - 1])) return false;
@@ -63,12 +64,13 @@ std::size_t column_asked(const RecordText& text, const Columns& columns, const s
 
 Layout layout_of(const RecordText& text, const Columns& columns, const RecordOptions& options) {
   Layout layout;
+  const std::optional<double> stated = options.step ? options.step : columns.step ? std::optional(columns.step->value) : std::nullopt;
   for (std::size_t i = 0; i < columns.heads.size() && layout.time == none && columns.width > 1; ++i)
     if (const double factor = time_factor(columns.heads[i]); factor > 0) {
       layout.time = i;
       layout.factor = factor;
     }
-  if (layout.time == none && columns.width > 1 && begins_with_times(text, columns)) layout.time = 0;
+  if (layout.time == none && columns.width > 1 && begins_with_times(text, columns, stated)) layout.time = 0;
   if (!options.column.empty()) {
     layout.values = {column_asked(text, columns, options.column)};
     if (layout.values.front() == layout.time)

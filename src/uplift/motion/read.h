@@ -10,10 +10,10 @@ namespace uplift {
 
 /// What a user may have to say of a record because the file does not.
 struct RecordOptions {
-  std::string format;          // name of the reader; empty: chosen by content
-  std::string unit;            // of the numbers ("g", "cm/s2", "m/s"); empty: as the file states, and an error when it does not
-  std::optional<double> step;  // s; for files without times
-  std::string column;          // of tables: name or number from 1; empty: all with a unit in the head, or the first after the time
+  std::string format = {};          // name of the reader; empty: chosen by content
+  std::string unit = {};            // of the numbers ("g", "cm/s2", "m/s"); empty: as the file states, and an error when it does not
+  std::optional<double> step = {};  // s; for files without times
+  std::string column = {};          // of tables: name or number from 1; empty: all with a unit in the head, or the first after the time
 };
 
 /// Reads one file of recorded motion: all its components. The format is found by content. Throws InputError with file and line; of an

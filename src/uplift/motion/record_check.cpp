@@ -162,7 +162,8 @@ void fill_gaps(const RecordText& text, RecordDraft& draft, Motion& motion) {
 
 void check_magnitude(const RecordText& text, const RecordDraft& draft, Motion& motion) {
   const double most = std::abs(peak_of(motion).value);
-  if (!(most <= absurd))
+  const bool finite = std::ranges::all_of(motion.values, [](double value) { return std::isfinite(value); });
+  if (!finite || most > absurd)
     throw InputError(text.where(draft.unit_line), "", "values of a ground motion",
                      fmt::format("up to {:.4g} {} with the unit {}", most, unit_of(motion.kind), motion.unit));
   if (most > implausible(motion.kind))
