@@ -80,7 +80,7 @@ TEST(RecordRefusals, Units) {
   EXPECT_EQ(refusal("0 0\n0.01 -0.5\n", {.unit = "cm/s3"}),
             "unit: wanted a unit of motion: " + known + ", found \"cm/s3\" (did you mean \"cm/s2\"?)");
   EXPECT_EQ(refusal(cosmos(tone(20, 9), 10, 0, "Uncorrected", "counts(50)").text),
-            "file:49: wanted a unit of motion: " + known + ", found \"COUNTS\"");
+            "file:45: wanted a unit of motion: " + known + ", found \"COUNTS\"");
   EXPECT_EQ(refusal(replaced(ramp(sound), "2.5000000E-02", "2.5000000E+99")),
             "file:3: wanted values of a ground motion, found up to 2.452e+100 m/s2 with the unit g");
 }
@@ -120,7 +120,7 @@ TEST(RecordRefusals, TablesAndTheirTimes) {
   EXPECT_EQ(refusal("time [s],a [g]\n0,1\nNaN,2\n"), "file:3: wanted a time, found \"NaN\"");
   EXPECT_EQ(refusal("3 1\n1 2\n5 3\n", {.unit = "g"}), "file:1: wanted two columns: times at equal steps, and values, found \"3 1\"");
   EXPECT_EQ(refusal("time [s],a [g]\n0,1\n1,2\n", {.column = "b"}),
-            "file:1: column: wanted a column from 1 to 2, or time or a, found \"b\" (did you mean \"a\"?)");
+            "file:1: column: wanted a column from 1 to 2, or time or a, found \"b\"");
   EXPECT_EQ(refusal("time [s],a [g]\n0,1\n1,2\n", {.column = "1"}), "file:1: column: wanted a column of values, found that of the times");
   times.erase(times.begin() + 11, times.begin() + 13);
   EXPECT_EQ(refusal(table(times)), "file:13: wanted times at equal steps of 0.01 s, found 0.13 s after 0.1 s");
