@@ -13,6 +13,7 @@
 #include "uplift/model/function.h"
 #include "uplift/motion/generate.h"
 #include "uplift/motion/processing.h"
+#include "uplift/motion/record_format.h"
 #include "uplift/motion/target.h"
 
 namespace uplift::cli {
@@ -29,6 +30,7 @@ std::vector<Family> families() {
           {"impact", "velocity corrections on impact, for constraints", impact_rules()},
           {"scheme", "time integration", schemes()},
           {"function", "functions of time", time_functions()},
+          {"record", "formats of recorded ground motions, found by content", record_formats()},
           {"process", "processing steps of ground motions", motion_processes()},
           {"target", "target spectra of generated motions", target_spectra()},
           {"solver", "factorisation of the structure's matrices", linear_solvers()}};

@@ -18,10 +18,10 @@ bool begins_channel(std::string_view line) {
   return capital.find("(FORMAT V") != capital.npos && capital.find("TEXT LINES") != capital.npos;
 }
 
-/// The next line from `from` on with this text in capitals.
+/// The next line from `from` on with this text in capitals that is no comment.
 int find_line(const RecordText& text, int from, std::string_view words, const std::string& wanted) {
   for (int i = from; i <= text.count(); ++i)
-    if (upper(text.line(i)).find(words) != std::string::npos) return i;
+    if (!trim(text.line(i)).starts_with("|") && upper(text.line(i)).find(words) != std::string::npos) return i;
   throw InputError(text.where(from), "", wanted, "the end of the file");
 }
 
