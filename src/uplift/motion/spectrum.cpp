@@ -22,8 +22,9 @@ using Lane = double[lanes];
 struct Pack {
   alignas(64) Lane pp, pq, p0, p1, qp, qq, q0, q1;
   alignas(64) Lane on_p, on_q, rate_p, rate_q, rate_a;
-  alignas(64) Lane p, q, y, dy, peak;
-  double unit[lanes];  // of y, in SI
+  alignas(64) Lane p, q, peak;
+  alignas(64) Lane y, dy, y1, dy1;  // at the beginning and at the end of a sub-step
+  double unit[lanes];               // of y, in SI
 
   void set(int lane, double frequency, double damping, double sub_step, Spectrum::Kind kind);
   template <Peaks peaks>
@@ -32,7 +33,8 @@ struct Pack {
  private:
   void advance(double from, double to);
   void look_at_end();
-  void look_between(double to);
+  bool may_peak(double to);
+  void look_between();
 };
 
 void Pack::set(int lane, double frequency, double damping, double sub_step, Spectrum::Kind kind) {
@@ -68,21 +70,33 @@ inline void Pack::look_at_end() {
   for (int j = 0; j < lanes; ++j) peak[j] = std::max(peak[j], std::abs(on_p[j] * p[j] + on_q[j] * q[j]));
 }
 
+/// Values and rates at the end of a sub-step; false when no lane can have a new peak there or within: a cubic through values y and rates d
+/// is nowhere beyond max |y| + (4/27)(|d0| + |d1|).
+inline bool Pack::may_peak(double to) {
+  long long hits = 0;
+  for (int j = 0; j < lanes; ++j) {
+    y1[j] = on_p[j] * p[j] + on_q[j] * q[j];
+    dy1[j] = rate_p[j] * p[j] + (rate_q[j] * q[j] + rate_a[j] * to);
+    const double bound = std::max(std::abs(y[j]), std::abs(y1[j])) + 4.0 / 27 * (std::abs(dy[j]) + std::abs(dy1[j]));
+    hits += bound > peak[j] ? 1 : 0;
+  }
+  return hits > 0;
+}
+
 /// Where the rate changes its sign within a sub-step, y has an extreme: near the place where a straight rate is zero, nearer after one step
 /// of Newton on the slope of the cubic through both ends; the cubic is taken there. (An error of the place enters squared.)
-inline void Pack::look_between(double to) {
+inline void Pack::look_between() {
   for (int j = 0; j < lanes; ++j) {
-    const double y0 = y[j], d0 = dy[j];
-    const double y1 = on_p[j] * p[j] + on_q[j] * q[j], d1 = rate_p[j] * p[j] + (rate_q[j] * q[j] + rate_a[j] * to);
-    const double first = d0 * d1 < 0 ? d0 / (d0 - d1) : 1, rise = 6 * (y1 - y0);
+    const double d0 = dy[j], d1 = dy1[j];
+    const bool turns = d0 * d1 < 0;
+    const double first = d0 / (turns ? d0 - d1 : 1), rise = 6 * (y1[j] - y[j]);
     const double slope = d0 * (1 - first) * (1 - 3 * first) + d1 * first * (3 * first - 2) + rise * first * (1 - first);
     const double bend = d0 * (6 * first - 4) + d1 * (6 * first - 2) + rise * (1 - 2 * first);
-    const double nearer = first < 1 && bend != 0 ? first - slope / bend : first;
-    const double turn = std::min(std::max(nearer, 0.0), 1.0), left = 1 - turn;
-    const double top = ((1 + 2 * turn) * y0 + turn * d0) * left * left + ((1 + 2 * left) * y1 - left * d1) * turn * turn;
-    peak[j] = std::max(peak[j], std::max(std::abs(top), std::abs(y1)));
-    y[j] = y1;
-    dy[j] = d1;
+    const double nearer = first - slope / (bend == 0 ? 1 : bend);
+    const double within = nearer < 0 ? 0 : nearer > 1 ? 1 : nearer;
+    const double turn = turns ? within : 1, left = 1 - turn;
+    const double top = ((1 + 2 * turn) * y[j] + turn * d0) * left * left + ((1 + 2 * left) * y1[j] - left * d1) * turn * turn;
+    peak[j] = std::max(peak[j], std::max(std::abs(top), std::abs(y1[j])));
   }
 }
 
@@ -96,10 +110,13 @@ void Pack::march(std::span<const double> acceleration, int sub_steps) {
     for (int sub = 1; sub <= sub_steps; ++sub) {
       const double to = sub == sub_steps ? acceleration[i] : start + change * (share * sub);
       advance(from, to);
-      if constexpr (peaks == Peaks::between)
-        look_between(to);
-      else
+      if constexpr (peaks == Peaks::between) {
+        if (may_peak(to)) look_between();
+        std::copy_n(y1, lanes, y);
+        std::copy_n(dy1, lanes, dy);
+      } else {
         look_at_end();
+      }
       from = to;
     }
   }
