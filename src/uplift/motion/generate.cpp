@@ -225,15 +225,15 @@ std::vector<GeneratedMotion> generate_motions(std::span<const TargetSpectrum* co
   constexpr std::uint64_t attempts = 10;
   std::vector<GeneratedMotion> motions;
   for (const TargetSpectrum* target : targets) {
-    double least = std::numeric_limits<double>::infinity();
+    double least = std::numeric_limits<double>::infinity();  // up to 1: a motion that may be taken
     GeneratedMotion chosen;
-    for (std::uint64_t attempt = 0; attempt < attempts && least > most_correlated; ++attempt) {
+    for (std::uint64_t attempt = 0; attempt < attempts && least > 1; ++attempt) {
       GeneratedMotion drawn = one_motion(*target, options, Draw(options.seed, motions.size(), attempt));
-      double largest = 0;
+      double worst = distance(drawn.fit);
       for (const GeneratedMotion& other : motions)
-        largest = std::max(largest, std::abs(correlation(drawn.motion.values, other.motion.values)));
-      if (largest < least) {
-        least = largest;
+        worst = std::max(worst, std::abs(correlation(drawn.motion.values, other.motion.values)) / most_correlated);
+      if (worst < least) {
+        least = worst;
         chosen = std::move(drawn);
       }
     }

@@ -56,10 +56,10 @@ struct GeneratedMotion {
 };
 
 /// One motion for every target, statistically independent of each other: the magnitude of the correlation coefficient of any two is at most
-/// 0.16 (US NRC Standard Review Plan 3.7.1), unless no draw of ten comes that low. A motion depends on the options, its target and its
-/// position among them alone: no clock, no library's distribution of random numbers, no number of threads; its values are rounded to
-/// 1e-5 m/s2, far above the round-off of the fit, so that other processors and compilers give the same. A fit that is not good is still
-/// returned.
+/// 0.16 (US NRC Standard Review Plan 3.7.1). What is too much alike or does not fit is drawn again, up to ten times; the best is returned
+/// in any case. A motion depends on the options, its target and those before it alone: no clock, no library's distribution of random
+/// numbers, no number of threads; its values are rounded to 1e-5 m/s2, far above the round-off of the fit, so that other processors and
+/// compilers give the same.
 std::vector<GeneratedMotion> generate_motions(std::span<const TargetSpectrum* const> targets, const GenerateOptions& options);
 
 /// Correlation coefficient of two accelerations of the same length about their means, -1 to 1; 0 when one of them is constant.
