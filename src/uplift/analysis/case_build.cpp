@@ -292,6 +292,14 @@ std::shared_ptr<const LinearSolver> bulk_solver(const Case& read) {
   return make_part(solver_catalog(), read.values.part("solver"));
 }
 
+namespace {
+
+InterfaceSolver interface_solver(const std::string& word) {
+  return word == "direct" ? InterfaceSolver::direct : word == "krylov" ? InterfaceSolver::krylov : InterfaceSolver::automatic;
+}
+
+}  // namespace
+
 Built build(const Case& read, const RunSpec& spec) {
   const Values& root = read.values;
   Built built;
@@ -315,6 +323,7 @@ Built build(const Case& read, const RunSpec& spec) {
   plan.group = spec.group;
   plan.expected_to_fail = spec.expected_to_fail;
   plan.solver = bulk_solver(read);
+  plan.interface_solver = interface_solver(root.text("interface_solver"));
   adapt_laws(read, spec, built);
   if (released) {
     check_release(root, plan);

@@ -318,6 +318,11 @@ const Section& case_section() {
              part("impact", impact_rules, "velocity correction on impact; absent: project_hold for constraints, none for traction laws")
                  .optional(),
              part("solver", linear_solvers, "factorisation of the structure's matrices").standard("cholmod"),
+             choice("interface_solver", {"automatic", "direct", "krylov"},
+                    "linear problems of interfaces with more than twelve independent rows: one factor while the contact status stays, and "
+                    "none from 300 unknown forces on (automatic), a factor every time (direct), conjugate residuals on the compliance "
+                    "(krylov)")
+                 .standard("automatic"),
              table("energy", energy_section(), "energy gate"),
              table("limits", limits_section(), "limits"),
              table("output", output_section(), "output"),

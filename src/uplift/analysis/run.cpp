@@ -81,6 +81,7 @@ RunResult Runner::go() {
   result_.counts.factorisations = linear_.factorisations;
   if (!linear_.notice.empty()) result_.notes.push_back(linear_.notice);
   result_.counts.back_solves = linear_.back_solves;
+  result_.counts.systems = linear_.systems;
   return std::move(result_);
 }
 
@@ -102,6 +103,7 @@ void Runner::execute() {
     if (!why.empty()) return fail(why, nullptr);
   }
   laws_ = std::make_unique<Behaviours>(model_, *plan_.method, compliance.rows() > 0 ? &compliance : nullptr);
+  laws_->solver = plan_.interface_solver;
 
   const Eigen::Index n = rest_ != nullptr ? rest_->free() : model_.free();
   state_.displacement = state_.velocity = state_.acceleration = Vector::Zero(n);

@@ -87,7 +87,8 @@ struct RunPlan {
   std::shared_ptr<const ContactMethod> method;
   std::shared_ptr<const ImpactRule> impact;
   std::shared_ptr<const LinearSolver> solver;  // of the bulk when it is not small
-  bool monolithic = false;                     // the oracle: Newton on all unknowns
+  InterfaceSolver interface_solver = InterfaceSolver::automatic;
+  bool monolithic = false;  // the oracle: Newton on all unknowns
   std::vector<Request> requests;
   std::vector<FloorRequest> floors;     // with these, all dynamic stages have the same step
   std::vector<double> floor_bands;      // Hz, ascending: what parts the bands in which floor spectra are compared
@@ -120,6 +121,7 @@ struct Peak {
 struct Counts {
   long steps = 0, retries = 0, iterations = 0, cycles = 0;
   long factorisations = 0, back_solves = 0;
+  InterfaceSystems systems;
 };
 
 struct Frame {

@@ -26,6 +26,7 @@ struct Findings {
   double suggested_step = 0;    // s
   double seconds_per_step = 0;  // measured over the first steps
   long steps = 0;               // of one run
+  InterfaceSystems systems;     // of the first steps
   std::string trial_failure;    // why the first steps failed; empty when they did not
   std::vector<std::string> warnings;
   struct Solid {
@@ -122,6 +123,7 @@ void try_steps(Findings& found, const Built& built) {
   const RunResult trial = uplift::run(built.model, plan, built.behaviours, enough);
   if (trial.status == RunStatus::failed && trial.counts.steps < 200) found.trial_failure = trial.reason;
   found.seconds_per_step = trial.step_seconds;
+  found.systems = trial.counts.systems;
 }
 
 Findings find(const Case& read, const RunSpec& spec, const Built& built) {
@@ -196,6 +198,10 @@ void print(const Loaded& loaded, const Built& built, const Findings& found, cons
   if (found.seconds_per_step > 0)
     line("cost", fmt::format("about {:.2f} microseconds a step, {} a run", 1e6 * found.seconds_per_step,
                              spoken(found.seconds_per_step * static_cast<double>(found.steps), "s")));
+  if (found.systems.factored + found.systems.iterated > 0)
+    line("interface solver",
+         fmt::format("{}; in the first steps {} systems with a new factor, {} by conjugate residuals (one factor kept, or none)",
+                     loaded.read.values.text("interface_solver"), found.systems.factored, found.systems.iterated));
   if (found.bulk)
     line("memory", fmt::format("about {} at most, {} of it the factor of a step; {} are free", spoken_bytes(found.bulk->bytes),
                                spoken_bytes(found.bulk->step.bytes), spoken_bytes(found.bulk->available)));
@@ -267,6 +273,9 @@ void write(const Loaded& loaded, const Built& built, const Findings& found, cons
       .key("frequencies_base_free")
       .numbers(found.base_free);
   json.member("steps", found.steps).member("suggested_step", found.suggested_step).member("seconds_per_step", found.seconds_per_step);
+  json.member("interface_solver", loaded.read.values.text("interface_solver"))
+      .member("interface_systems_factored", found.systems.factored)
+      .member("interface_systems_iterated", found.systems.iterated);
   json.key("runs")
       .texts(runs)
       .key("notes")

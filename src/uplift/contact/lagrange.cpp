@@ -7,6 +7,7 @@
 
 #include "uplift/contact/method.h"
 #include "uplift/contact/newton.h"
+#include "uplift/contact/point_rows.h"
 #include "uplift/math/small.h"
 
 namespace uplift {
@@ -25,7 +26,8 @@ class LagrangeMethod final : public ContactMethod {
       friction = friction || (block.cone != nullptr && block.cone->friction() > 0);
     }
     if (!cones && laws) return solve_laws(problem, solution);
-    if (friction) return solve_frictional(problem, options_, solution);
+    const bool iterated = problem.solver == InterfaceSolver::krylov && PointRows::suits(problem);
+    if (friction || iterated) return solve_frictional(problem, options_, solution);
     if (laws || problem.shift.size() > 0) return solve_frictionless(problem, options_, solution);
     return problem.blocks.size() == 1 ? solve_one(problem, solution) : solve_several(problem, solution);
   }

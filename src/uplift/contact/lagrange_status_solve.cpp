@@ -163,7 +163,7 @@ bool StatusStep::solve_by_rows() {
   for (std::size_t b = 0; b < problem_->blocks.size(); ++b)
     if (problem_->blocks[b].law != nullptr) rows_->linearise(b, slope_.data() + offsets_[b], solution_->force, solution_->opening);
   for (const FrictionPoint& point : points_) relate(point, rows_->relation(point.index));
-  if (!rows_->solve(force_, moved_, z_)) return false;
+  if (!rows_->solve(force_, moved_, z_, solution_->systems)) return false;
   for (std::size_t k = 0; k < held_.size(); ++k) {
     const Held& held = held_[k];
     const double taken = problem_->shift.size() > 0 ? problem_->shift[held.row] * held.target : 0;

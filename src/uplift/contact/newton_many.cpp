@@ -47,7 +47,7 @@ class Direction final : public MethodWork {
     rows_.begin(problem);
     for (std::size_t b = 0; b < problem.blocks.size(); ++b)
       rows_.linearise(b, scratch.slope.data() + scratch.first_slope[b], solution.force, solution.opening);
-    if (!rows_.solve(force_, opening_, solution.newton.direction)) return false;
+    if (!rows_.solve(force_, opening_, solution.newton.direction, solution.systems)) return false;
     solution.newton.direction -= solution.z;
     return true;
   }

@@ -8,7 +8,7 @@
 namespace uplift {
 namespace {
 
-constexpr int most_iterations = 16;
+constexpr int most_with_factor = 16, most_alone = 100;
 
 double weighted(const PointRelation::Local& a, const PointRelation::Local& b, int components) {
   double sum = 0;
@@ -32,22 +32,24 @@ double SeenFactor::mark(const Matrix& c) {
 void PointRows::begin(const InterfaceProblem& problem) {
   const Index rows = problem.rows();
   std::size_t points = 0;
-  bool same = seen_.is(problem.factor) && first_point_.size() == problem.blocks.size();
+  bool same = seen_.is(problem.factor) && solver_ == problem.solver && first_point_.size() == problem.blocks.size();
   for (std::size_t b = 0; b < problem.blocks.size(); ++b) {
     const Block& block = problem.blocks[b];
     same = same && first_point_[b] == points && points < places_.size() && places_[points].components == block.batch.components;
     points += static_cast<std::size_t>(block.batch.points);
   }
   problem_ = &problem;
+  solver_ = problem.solver;
   if (same && places_.size() == points) return;
   seen_.take(problem.factor);
   valid_ = false;
   compliance_.resize(rows, rows);
   compliance_.noalias() = problem.factor * problem.factor.transpose();
-  matrix_.size(rows);
   for (Vector* v : {&residual_, &direction_, &image_, &unknown_, &change_, &moved_, &column_}) v->setZero(rows);
-  directions_.resize(rows, most_iterations);
-  images_.resize(rows, most_iterations);
+  const bool alone =
+      problem.solver == InterfaceSolver::krylov || (problem.solver == InterfaceSolver::automatic && rows >= enough_to_iterate);
+  directions_.resize(rows, alone ? most_alone : most_with_factor);
+  images_.resize(rows, directions_.cols());
   places_.clear();
   first_point_.clear();
   for (const Block& block : problem.blocks) {
@@ -108,6 +110,7 @@ void PointRows::list_unknowns() {
 /// The matrix opening . F . basis + force . basis, and its factor.
 bool PointRows::factorise() {
   const Index rows = compliance_.rows();
+  matrix_.size(rows);
   for (std::size_t p = 0; p < places_.size(); ++p)
     for (int f = 0; f < relations_[p].count; ++f) {
       const PointRelation::Local& basis = relations_[p].basis[static_cast<std::size_t>(f)];
@@ -193,8 +196,8 @@ double PointRows::start(Vector& forces, Vector& opening) {
   return std::max({size, rest_, forces.cwiseAbs().maxCoeff()});
 }
 
-/// Generalised conjugate residuals until the residual is round-off; false when it is not after so many iterations, or when it stops
-/// falling.
+/// Generalised conjugate residuals, with the factor when it is valid, until the residual is round-off; false when it is not after so many
+/// iterations, or when it stops falling although there is a factor.
 bool PointRows::iterate(int most, double size, Vector& forces, Vector& opening) {
   const Index n = unknowns_;
   auto rest = residual_.head(n);
@@ -204,7 +207,7 @@ bool PointRows::iterate(int most, double size, Vector& forces, Vector& opening) 
     auto direction = directions_.col(k).head(n);
     auto image = images_.col(k).head(n);
     direction = rest;
-    matrix_.solve(directions_.col(k).data());
+    if (valid_) matrix_.solve(directions_.col(k).data());
     direction_.head(n) = direction;
     put_forces(direction_, false, change_);
     moved_.setZero();
@@ -225,25 +228,31 @@ bool PointRows::iterate(int most, double size, Vector& forces, Vector& opening) 
     rest += step * image;
     unknown_.head(n) += step * direction;
     rest_ = largest(residual_, n);
-    if (rest_ <= 1e-14 * size || rest_ > 0.9 * before) break;
+    if (rest_ <= 1e-14 * size || (valid_ && rest_ > 0.9 * before)) break;
     before = rest_;
   }
   start(forces, opening);  // the true residual: that of the iteration gathers round-off
   return rest_ <= 1e-13 * size;
 }
 
-bool PointRows::solve(Vector& forces, Vector& opening, Vector& z) {
-  const bool kept = valid_ && same_kinds();
-  forces.resize(compliance_.rows());
-  if (!kept) {
-    list_unknowns();
-    unknown_.head(unknowns_).setZero();
+/// The iteration without a factor, from no unknown forces, begun afresh when its directions are used up. The equations are scaled so that
+/// the diagonal of the matrix is about one.
+bool PointRows::iterate_alone(double& size, Vector& forces, Vector& opening) {
+  const int most_restarts = solver_ == InterfaceSolver::krylov ? 6 : 2;
+  valid_ = false;
+  for (int k = 0; k < most_restarts; ++k) {
+    const double before = rest_;
+    if (iterate(most_alone, size, forces, opening)) return true;
+    size = std::max(size, forces.cwiseAbs().maxCoeff());
+    if (!(rest_ <= 0.5 * before)) return rest_ <= 1e-12 * size;
   }
-  double size = start(forces, opening);
-  if (!std::isfinite(size)) return false;
-  const int reuse = std::clamp(static_cast<int>(unknowns_ / 64), 3, most_iterations);
-  bool done = unknowns_ == 0 || (kept && iterate(reuse, size, forces, opening));
-  if (!done && !factorise()) return false;
+  return false;
+}
+
+/// A new factor, and corrections until the residual is round-off.
+bool PointRows::factor_and_correct(double size, Vector& forces, Vector& opening) {
+  if (!factorise()) return false;
+  bool done = false;
   for (int pass = 0; pass < 3 && !done; ++pass) {
     const double before = rest_;
     done = iterate(2, std::max(size, forces.cwiseAbs().maxCoeff()), forces, opening);
@@ -251,7 +260,27 @@ bool PointRows::solve(Vector& forces, Vector& opening, Vector& z) {
     if (!done && rest_ > 0.25 * before) done = rest_ <= 1e-11 * size;
     size = std::max(size, forces.cwiseAbs().maxCoeff());
   }
-  if (!done) valid_ = false;
+  valid_ = done;
+  return done;
+}
+
+bool PointRows::solve(Vector& forces, Vector& opening, Vector& z, InterfaceSystems& counts) {
+  const InterfaceSolver way = problem_->solver;
+  const bool same = same_kinds(), kept = valid_ && same && way == InterfaceSolver::automatic;
+  forces.resize(compliance_.rows());
+  if (!same) {
+    list_unknowns();
+    unknown_.head(unknowns_).setZero();
+  }
+  double size = start(forces, opening);
+  if (!std::isfinite(size)) return false;
+  const bool alone = way == InterfaceSolver::krylov || (way == InterfaceSolver::automatic && !kept && unknowns_ >= enough_to_iterate);
+  bool done = unknowns_ == 0;
+  if (!done && kept) done = iterate(std::clamp(static_cast<int>(unknowns_ / 64), 3, most_with_factor), size, forces, opening);
+  if (!done && alone) done = iterate_alone(size, forces, opening);
+  if (unknowns_ > 0) ++(done ? counts.iterated : counts.factored);
+  if (!done) done = factor_and_correct(size, forces, opening);
+  if (!done) unknown_.setZero();
   z.noalias() = -problem_->factor.transpose() * forces;
   return done;
 }

@@ -36,12 +36,18 @@ struct PointRelation {
 /// and a relation between the two at every point. Only forces that depend on the opening are unknown: an open point has none, a slipping
 /// one two of three. Methods bring the relations (Newton: the slopes of the laws; Lagrange: the contact status).
 ///
-/// The matrix is factored anew when the kind of a point changes; else the last factor preconditions generalised conjugate residuals
-/// (Eisenstat, Elman & Schultz, SIAM J. Numer. Anal. 20, 1983).
+/// By generalised conjugate residuals (Eisenstat, Elman & Schultz, SIAM J. Numer. Anal. 20, 1983), which need products with F only, or by a
+/// factor of the matrix, as the problem says:
+///  - automatic  the last factor preconditions the iteration while no point changes its kind; when one does, the matrix is factored anew,
+///               from `enough_to_iterate` unknowns on only where the iteration without a factor does not arrive
+///  - direct     the matrix is factored every time
+///  - krylov     the iteration without a factor; where it does not arrive, the matrix is factored
 class PointRows {
  public:
   /// From so many rows on, when they can be independent, methods use this class.
   static constexpr Index many = 12;
+  /// Unknown forces from which products with F are cheaper than a factor (docs/performance.md).
+  static constexpr Index enough_to_iterate = 300;
   static bool suits(const InterfaceProblem& problem) { return problem.rows() > many && problem.rows() <= problem.factor.cols(); }
 
   /// Takes up a problem; what belongs to the factor C is kept from the one before as long as C is the same.
@@ -54,7 +60,7 @@ class PointRows {
   /// D of statics taken back: P + D g - k g = p - k opening.
   void linearise(std::size_t block, const double* slope, const Vector& force, const Vector& opening);
   /// Forces P (rows), opening g (rows) and z = -C^T P; false when the matrix is singular or the residual does not fall to round-off.
-  bool solve(Vector& forces, Vector& opening, Vector& z);
+  bool solve(Vector& forces, Vector& opening, Vector& z, InterfaceSystems& counts);
 
  private:
   struct Place {  // of a point
@@ -70,9 +76,12 @@ class PointRows {
   double start(Vector& forces, Vector& opening);
   void apply(const Vector& moved, const Vector& forces, Vector& result) const;
   bool iterate(int most, double size, Vector& forces, Vector& opening);
+  bool iterate_alone(double& size, Vector& forces, Vector& opening);
+  bool factor_and_correct(double size, Vector& forces, Vector& opening);
 
   const InterfaceProblem* problem_ = nullptr;
   SeenFactor seen_;
+  InterfaceSolver solver_ = InterfaceSolver::automatic;
   bool valid_ = false;
   Index unknowns_ = 0;
   Matrix compliance_;

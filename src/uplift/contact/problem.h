@@ -30,19 +30,28 @@ struct Block {
   int rows() const { return batch.points * batch.components; }
 };
 
+/// How the linear problems of interfaces with many independent rows are solved, see PointRows.
+enum class InterfaceSolver : signed char { automatic, direct, krylov };
+
 /// Frozen: everything that a method may know about one step. It can be written to a file and solved again by any method.
 struct InterfaceProblem {
   std::vector<Block> blocks;
   Matrix factor;         // C: rows x r [m/sqrt(J)]
   Vector shift;          // D: rows [N/m]; empty in dynamics
   bool average = false;  // path-averaged traction: p = scale * area * mean(from -> opening)
-  double scale = 1;      // weight of the interface force in the scheme's balance: 2 with the path average, else 1
-  double step = 0;       // s; 0 in statics
+  InterfaceSolver solver = InterfaceSolver::automatic;
+  double scale = 1;  // weight of the interface force in the scheme's balance: 2 with the path average, else 1
+  double step = 0;   // s; 0 in statics
   // what changes from step to step
   Vector free_opening;      // m, initial gap included
   Vector from;              // opening at the beginning of the step [m]
   std::vector<double> old;  // memory at the beginning of the step
   int rows() const { return static_cast<int>(factor.rows()); }
+};
+
+/// Linear problems of interfaces with many independent rows that were solved: with a new factor of their matrix, and without one.
+struct InterfaceSystems {
+  long factored = 0, iterated = 0;
 };
 
 /// Contact status of a point. A closed point without friction slips.
@@ -106,6 +115,7 @@ struct InterfaceSolution {
   AugmentedScratch augmented;
   LagrangeScratch lagrange;
   YardstickScratch yardstick;
+  InterfaceSystems systems;
 };
 
 struct Outcome {

@@ -154,6 +154,11 @@ void BulkFactor::solve(const Vector& b, Vector& x) const {
   x = solved_.col(0);
 }
 
+void BulkFactor::count(const InterfaceSystems& solved) const {
+  counts_->systems.factored += solved.factored;
+  counts_->systems.iterated += solved.iterated;
+}
+
 Spread BulkFactor::spread(const Sparse& b) const {
   if (small_) return spread_through(InverseFactor(inverse_), b);
   if (split_ != nullptr) return split_spread(*this, b);

@@ -3,6 +3,7 @@
 #include <string>
 
 #include "uplift/contact/compliance.h"
+#include "uplift/contact/problem.h"
 #include "uplift/dynamics/scheme.h"
 #include "uplift/model/model.h"
 
@@ -14,6 +15,7 @@ struct LinearCounts {
   long factorisations = 0, back_solves = 0;
   double residual = 0;  // the largest of all factors, see BulkFactor
   std::string notice;   // what it is and where it may come from; empty up to 1e-9
+  InterfaceSystems systems;
 };
 
 /// Below this number of free unknowns matrices are dense and the inverse is kept: a step then needs no back-solve at all.
@@ -72,6 +74,8 @@ class BulkFactor {
   const SplitFactor* split() const { return split_.get(); }
   const std::vector<int>& last() const { return last_; }
   void count_back_solve() const { ++counts_->back_solves; }
+  /// Interface problems condensed with this factor.
+  void count(const InterfaceSystems& solved) const;
 
  private:
   void factorise(const Sparse& matrix, const Sparse* b, const LinearSolver& solver, const Model& model);

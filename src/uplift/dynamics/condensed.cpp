@@ -1,6 +1,7 @@
 #include "uplift/dynamics/condensed.h"
 
 #include <algorithm>
+#include <utility>
 
 #include "uplift/math/small.h"
 
@@ -24,6 +25,7 @@ Behaviours::Behaviours(const Model& model, const ContactMethod& method, const In
 
 InterfaceProblem blocks_of(const Model& model, const Behaviours& behaviours) {
   InterfaceProblem problem;
+  problem.solver = behaviours.solver;
   int first = 0;
   for (std::size_t i = 0; i < model.interfaces.size(); ++i) {
     const Interface& interface = model.interfaces[i];
@@ -98,6 +100,7 @@ Outcome Condensed::solve(const Vector& right, const Vector& displacement, const 
   std::copy_n(opening.data(), opening.size(), problem_.from.data());
   std::copy_n(history.data(), history.size(), problem_.old.data());
   Outcome outcome = method_.solve(problem_, solution_);
+  factor_.count(std::exchange(solution_.systems, {}));
   if (!outcome.converged) return outcome;
   if (split_ != nullptr)
     split_->backward(solution_.z, increment);

@@ -20,6 +20,7 @@ struct Behaviours {
   std::vector<std::unique_ptr<const InterfaceLaw>> owned;
   std::vector<int> first_history;
   int history = 0;  // memory values of all interfaces
+  InterfaceSolver solver = InterfaceSolver::automatic;
 
   /// `probe`: a problem with the compliance of the dynamic step, from which automatic stiffnesses are scaled; may be null when no method
   /// substitutes.

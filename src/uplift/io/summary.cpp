@@ -24,7 +24,9 @@ void write_run(JsonWriter& json, const RunResult& run, const Agreement* agreemen
   json.member("steps", run.counts.steps).member("retries", run.counts.retries).member("iterations", run.counts.iterations);
   json.member("cycles", run.counts.cycles)
       .member("factorisations", run.counts.factorisations)
-      .member("back_solves", run.counts.back_solves);
+      .member("back_solves", run.counts.back_solves)
+      .member("interface_systems_factored", run.counts.systems.factored)
+      .member("interface_systems_iterated", run.counts.systems.iterated);
   json.member("wall_seconds", run.wall).member("end_time", run.end_time);
   write_peak(json, "max_uplifted_ratio", run.max_uplifted_ratio);
   write_peak(json, "max_opening", run.max_opening);
