@@ -77,27 +77,36 @@ void InterfaceViewer::look(const Vector& opening, const Vector& force, std::vect
     const int n = layout.points, normal = layout.first + (layout.components - 1) * n;
     const double *gap = opening.data() + normal, *p = force.data() + normal;
     const double *area = layout.area.data(), *inverse = layout.inverse_area.data(), *along = layout.along.data();
-    double axial = 0, moment = 0, open = 0, pulled = 0, widest = -1e300, least = 1e300, pressure = 0;
-    const double tolerance = tolerance_;
-#pragma omp simd reduction(+ : axial, moment, open, pulled) reduction(max : widest, pressure) reduction(min : least)
-    for (int i = 0; i < n; ++i) {
-      axial += p[i];
-      moment += along[i] * p[i];
-      open += gap[i] > tolerance ? area[i] : 0.0;
-      pulled += p[i] > 0 ? area[i] : 0.0;
-      widest = widest > gap[i] ? widest : gap[i];
-      least = least < gap[i] ? least : gap[i];
-      const double here = -p[i] * inverse[i];
-      pressure = pressure > here ? pressure : here;
-    }
-    double shear = 0;
-    views[k] = {{}, std::min(1.0, open / layout.total), pulled / layout.total, std::max(widest, 0.0), least, std::max(pressure, 0.0)};
+    const double *slope = layout.slope_weight[0].data(), tolerance = tolerance_;
+    using small::Lanes;
+    const Lanes zero = Lanes::Zero();
+    Lanes axials = zero, moments = zero, slopes = zero, open = zero, pulled = zero, pressure = zero;
+    const auto positive = [](const auto& x) { return (x * 1e300).max(0).min(1); };  // 1 where it is, else 0
+    small::for_lanes(n, [&](const auto& at) {
+      const Lanes pull = at(p), here = at(gap), weight = at(area);
+      axials += pull;
+      moments += at(along) * pull;
+      slopes += at(slope) * here;
+      open += positive(here - tolerance) * weight;
+      pulled += positive(pull) * weight;
+      pressure = pressure.max(-pull * at(inverse));
+    });
+    const ConstMap gaps(gap, n);
+    double shear = 0, moment = moments.sum();
+    InterfaceView& view = views[k];
+    view.open_area = std::min(1.0, open.sum() / layout.total);
+    view.tension_area = pulled.sum() / layout.total;
+    view.max_opening = std::max(gaps.maxCoeff(), 0.0);
+    view.least_opening = gaps.minCoeff();
+    view.max_pressure = pressure.maxCoeff();
+    view.rotation = {slopes.sum(), 0};
+    if (!layout.slope_weight[1].empty()) view.rotation[1] = small::dot(n, layout.slope_weight[1].data(), gap);
     if (layout.resultant_rows.size() > 0) {
       std::array<double, 6> sums{};
       for (Index row = 0; row < layout.resultant_rows.cols(); ++row)
         for (Index c = 0; c < layout.resultant_rows.rows(); ++c)
           sums[static_cast<std::size_t>(c)] += layout.resultant_rows(c, row) * force[layout.first + row];
-      views[k].resultant = resultant_of(layout.space, sums.data());
+      view.resultant = resultant_of(layout.space, sums.data());
       continue;
     }
     if (layout.components > 1) {
@@ -106,7 +115,7 @@ void InterfaceViewer::look(const Vector& opening, const Vector& force, std::vect
 #pragma omp simd reduction(+ : shear, moment)
       for (int i = 0; i < n; ++i) shear += t[i], moment -= across[i] * t[i];
     }
-    views[k].resultant = {.axial = axial, .shear = shear, .moment = moment};
+    view.resultant = {.axial = axials.sum(), .shear = shear, .moment = moment};
   }
 }
 
@@ -121,24 +130,9 @@ BasePose InterfaceViewer::pose(const State& state, std::size_t interface, const 
   return pose;
 }
 
-std::array<double, 2> InterfaceViewer::rotation(int interface, const Vector& opening) const {
-  const Layout& layout = layouts_[static_cast<std::size_t>(interface)];
-  const double* gap = opening.data() + layout.first + (layout.components - 1) * layout.points;
-  std::array<double, 2> slope{};
-  for (std::size_t k = 0; k < 2; ++k)
-    if (!layout.slope_weight[k].empty()) slope[k] = small::dot(layout.points, layout.slope_weight[k].data(), gap);
-  return slope;
-}
-
-Recorder::Recorder(const Model& model, const RunPlan& plan, const InterfaceViewer& viewer, const Stepper& stepper,
-                   const std::vector<InterfaceView>& views, long steps, double step, RunResult& result)
-    : model_(model),
-      plan_(plan),
-      viewer_(viewer),
-      stepper_(stepper),
-      views_(views),
-      result_(result),
-      floors_(model, plan, steps, step, result) {
+Recorder::Recorder(const Model& model, const RunPlan& plan, const Stepper& stepper, const std::vector<InterfaceView>& views, long steps,
+                   double step, RunResult& result)
+    : model_(model), plan_(plan), stepper_(stepper), views_(views), result_(result), floors_(model, plan, steps, step, result) {
   wants_acceleration_ = floors_.any();
   const std::size_t expected_rows = static_cast<std::size_t>(steps / plan.every) + 2;
   const bool fresh = result_.table.empty();  // a later dynamic stage goes on in the same table
@@ -197,9 +191,11 @@ Recorder::Source Recorder::source_of(const Request& request, const SparseRows& r
     case What::mean_traction:
       return row_of(&State::mean_force, true);
     case What::rotation:
+      return {.place = model_.space.dimension == 2 ? &view->rotation[0] : nullptr};
     case What::rotation_1:
+      return {.place = &view->rotation[0]};
     case What::rotation_2:
-      return {};
+      return {.place = &view->rotation[1]};
     case What::axial:
       return {.place = &view->resultant.axial};
     case What::shear:
@@ -255,7 +251,6 @@ double Recorder::made(std::size_t column) const {
     for (const auto& [unknown, factor] : source.terms) total += factor * q[unknown];
     return total;
   };
-  const auto slope = [&]() { return viewer_.rotation(request.interface, state.opening); };
   switch (request.kind) {
     case What::displacement:
       return sum(state.displacement, 0);
@@ -266,13 +261,9 @@ double Recorder::made(std::size_t column) const {
     case What::absolute_acceleration:
       return sum(acceleration_, 2) + model_.ground_acceleration(model_.space.axis(model_.space.index_of(request.unknown)), state.time);
     case What::rotation: {
-      const std::array<double, 2> both = slope();
-      return model_.space.dimension == 2 ? both[0] : std::hypot(both[0], both[1]);
+      const std::array<double, 2>& slope = views_[static_cast<std::size_t>(request.interface)].rotation;
+      return std::hypot(slope[0], slope[1]);
     }
-    case What::rotation_1:
-      return slope()[0];
-    case What::rotation_2:
-      return slope()[1];
     default:
       return 0;
   }

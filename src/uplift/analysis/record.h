@@ -19,9 +19,6 @@ class InterfaceViewer {
   void look(const Vector& opening, const Vector& force, std::vector<InterfaceView>& views) const;
   /// How an interface stands; `view` is what look() saw of it.
   BasePose pose(const State& state, std::size_t interface, const InterfaceView& view) const;
-  /// Slope of the plane that fits the normal opening best (area-weighted): relative rotation of the upper side [rad]. In the plane the
-  /// first number, counter-clockwise > 0; in space about the two tangents of the mean normal.
-  std::array<double, 2> rotation(int interface, const Vector& opening) const;
 
  private:
   struct Layout {
@@ -42,8 +39,8 @@ class Recorder {
  public:
   /// For so many steps [s] of a dynamic stage: room is made for all of them. `views` holds what the interfaces look like whenever record is
   /// called; it keeps its place, as the energies of the stepper do.
-  Recorder(const Model& model, const RunPlan& plan, const InterfaceViewer& viewer, const Stepper& stepper,
-           const std::vector<InterfaceView>& views, long steps, double step, RunResult& result);
+  Recorder(const Model& model, const RunPlan& plan, const Stepper& stepper, const std::vector<InterfaceView>& views, long steps,
+           double step, RunResult& result);
   /// Notes peaks every time; writes a row when `row` is set.
   void record(bool row);
   /// Keeps a picture for the animation.
@@ -65,7 +62,6 @@ class Recorder {
 
   const Model& model_;
   const RunPlan& plan_;
-  const InterfaceViewer& viewer_;
   const Stepper& stepper_;
   const std::vector<InterfaceView>& views_;
   RunResult& result_;

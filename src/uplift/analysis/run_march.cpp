@@ -83,7 +83,7 @@ bool Runner::check_limits(const Stepper& stepper) {
 /// Nodes of solids do not turn: there the slope of the opening's best plane is what the building has turned against the soil.
 bool Runner::surfaces_turn_little() {
   for (std::size_t k = 0; k < model_.interfaces.size(); ++k) {
-    const std::array<double, 2> slope = viewer_.rotation(static_cast<int>(k), seen_->opening);
+    const std::array<double, 2>& slope = views_[k].rotation;
     if (!(std::hypot(slope[0], slope[1]) > plan_.rotation_limit)) continue;
     result_.status = RunStatus::overturned;
     result_.reason =
@@ -108,7 +108,7 @@ bool Runner::dynamics(const Stage& stage, const Bulk& bulk) {
   stepper.start(std::move(state_), ledger_ ? &*ledger_ : nullptr);
   seen_ = &stepper.state();
   const long steps = std::max(1L, std::lround(stage.duration / stage.step));
-  Recorder recorder(model_, plan_, viewer_, stepper, views_, steps, stage.step, result_);
+  Recorder recorder(model_, plan_, stepper, views_, steps, stage.step, result_);
   const long picture_every = plan_.frames > 0 ? std::max(1L, steps / plan_.frames) : 0;
   if (!ledger_) initial_scale_ = stepper.energies().kinetic;
   if (!ledger_) round_off_energy_ = 1e-8 * (stepper.energies().strain + stepper.energies().stored);

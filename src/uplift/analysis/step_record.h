@@ -13,6 +13,9 @@ struct InterfaceView {
   double open_area = 0, tension_area = 0;     // shares of the area: with a gap; that pulls
   double max_opening = 0, least_opening = 0;  // m
   double max_pressure = 0;                    // Pa
+  // Slope of the plane that fits the normal opening best (area-weighted): relative rotation of the upper side [rad]. In the plane the first
+  // number, counter-clockwise > 0; in space about the two tangents of the mean normal.
+  std::array<double, 2> rotation{};
 };
 
 /// How an interface and the base on it stand.

@@ -26,11 +26,12 @@ constexpr int lanes = 8;
 
 /// Marks of up to 64 points, as wide as their numbers.
 struct Marks {
-  alignas(64) std::int64_t of[64] = {};
+  alignas(64) std::int64_t of[64];
 
   /// Calls part(first, count) for every group of `lanes` points in which one is marked.
   template <class Part>
-  void for_groups(int points, const Part& part) const {
+  void for_groups(int points, const Part& part) {
+    for (int i = points; i % lanes != 0; ++i) of[i] = 0;
     for (int first = 0; first < points; first += lanes) {
       std::int64_t any = 0;
 #pragma omp simd reduction(| : any)

@@ -1,9 +1,16 @@
 #include "uplift/math/small.h"
 
+#include <algorithm>
 #include <cmath>
 #include <utility>
 
 namespace uplift::small {
+
+void multiply_any(const Matrix& a, const double* x, double* y) {
+  const double* column = a.data();
+  std::fill_n(y, a.rows(), 0.0);
+  for (std::ptrdiff_t j = 0; j < a.cols(); ++j, column += a.rows()) add(a.rows(), x[j], column, y);
+}
 
 bool cholesky(std::ptrdiff_t n, double* a) {
   for (std::ptrdiff_t j = 0; j < n; ++j) {

@@ -56,6 +56,9 @@ inline void multiply_fixed(const double* a, const double* x, double* y) {
   Eigen::Map<Fixed<N, 1>>(y).noalias() = Eigen::Map<const Fixed<N, N>>(a) * Eigen::Map<const Fixed<N, 1>>(x);
 }
 
+/// y = A x of any size
+void multiply_any(const Matrix& a, const double* x, double* y);
+
 /// y = A x, A column-major n x m
 inline void multiply(const Matrix& a, const double* x, double* y) {
   const std::ptrdiff_t n = a.rows(), m = a.cols();
@@ -79,9 +82,7 @@ inline void multiply(const Matrix& a, const double* x, double* y) {
       default:
         break;
     }
-  const double* column = a.data();
-  for (std::ptrdiff_t i = 0; i < n; ++i) y[i] = 0;
-  for (std::ptrdiff_t j = 0; j < m; ++j, column += n) add(n, x[j], column, y);
+  multiply_any(a, x, y);
 }
 
 /// y += A x
