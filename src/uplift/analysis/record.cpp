@@ -81,7 +81,7 @@ void InterfaceViewer::look(const Vector& opening, const Vector& force, std::vect
     using small::Lanes;
     const Lanes zero = Lanes::Zero();
     Lanes axials = zero, moments = zero, slopes = zero, open = zero, pulled = zero, pressure = zero;
-    const auto positive = [](const auto& x) { return (x * 1e300).max(0).min(1); };  // 1 where it is, else 0
+    const auto positive = [](const auto& x) -> Lanes { return (x * 1e300).max(0).min(1); };  // 1 where it is, else 0
     small::for_lanes(n, [&](const auto& at) {
       const Lanes pull = at(p), here = at(gap), weight = at(area);
       axials += pull;
@@ -143,7 +143,8 @@ Recorder::Recorder(const Model& model, const RunPlan& plan, const Stepper& stepp
   for (std::vector<double>& column : result_.table) column.reserve(column.size() + expected_rows + 2);
   const SparseRows reduction(model.reduction);
   for (const Request& request : plan.requests) {
-    sources_.push_back(source_of(request, reduction));
+    const Source& source = sources_.emplace_back(source_of(request, reduction));
+    (source.place != nullptr ? placed_ : source.vector != nullptr ? entries_ : made_).push_back(sources_.size() - 1);
     wants_acceleration_ =
         wants_acceleration_ || request.kind == Request::Kind::acceleration || request.kind == Request::Kind::absolute_acceleration;
     if (fresh) result_.peaks.push_back({request.name, request.unit, 0, 0});
@@ -273,24 +274,18 @@ void Recorder::record(bool row) {
   const State& state = stepper_.state();
   if (wants_acceleration_) stepper_.acceleration(acceleration_);
   floors_.record(acceleration_, state.time);
-  const std::size_t columns = sources_.size();
-  double *now = now_.data(), *most = most_.data();
-  bool higher = false;
-  for (std::size_t k = 0; k < columns; ++k) {
-    const Source& source = sources_[k];
-    if (source.place != nullptr)
-      now[k] = *source.place;
-    else if (source.vector != nullptr)
-      now[k] = source.factor * (state.*source.vector).data()[source.entry];
-    else
-      now[k] = made(k);
-    higher |= std::abs(now[k]) > most[k];
-  }
-  for (std::size_t k = 0; higher && k < columns; ++k) {
-    if (!(std::abs(now[k]) > most[k])) continue;
-    most[k] = std::abs(now[k]);
-    result_.peaks[k].value = now[k], result_.peaks[k].time = state.time;
-  }
+  double* now = now_.data();
+  const Source* source = sources_.data();
+  for (const std::size_t k : placed_) now[k] = *source[k].place;
+  for (const std::size_t k : entries_) now[k] = source[k].factor * (state.*source[k].vector).data()[source[k].entry];
+  for (const std::size_t k : made_) now[k] = made(k);
+  const std::size_t columns = now_.size();
+  double* most = most_.data();
+  for (std::size_t k = 0; k < columns; ++k)
+    if (std::abs(now[k]) > most[k]) {
+      most[k] = std::abs(now[k]);
+      result_.peaks[k].value = now[k], result_.peaks[k].time = state.time;
+    }
   if (!row) return;
   std::vector<double>* column = result_.table.data();
   column->push_back(state.time);

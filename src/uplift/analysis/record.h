@@ -67,7 +67,8 @@ class Recorder {
   RunResult& result_;
   FloorRecorder floors_;
   std::vector<Source> sources_;
-  std::vector<double> now_, most_;  // per column: the present number, and the size of its peak
+  std::vector<std::size_t> placed_, entries_, made_;  // columns of each kind
+  std::vector<double> now_, most_;                    // per column: the present number, and the size of its peak
   bool wants_acceleration_ = false;
   Vector acceleration_;
 };

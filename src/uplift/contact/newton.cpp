@@ -69,24 +69,22 @@ class Newton {
 /// which is the solution itself where no law changes its branch. Costs two sums over the points instead of an evaluation of the laws.
 template <int R>
 void Newton<R>::predict() {
-  std::fill_n(scratch_.gradient.data(), r(), 0.0);
+  using small::Lanes;
+  Lanes sum[R > 0 ? R : few];
+  for (Index j = 0; j < r(); ++j) sum[j].setZero();
   for (std::size_t b = 0; b < problem_.blocks.size(); ++b) {
     const Block& block = problem_.blocks[b];
     const int n = block.batch.points, components = block.batch.components;
-    const double* k = slope_of(b);
     const double *free = problem_.free_opening.data() + block.first, *from = problem_.from.data() + block.first;
-    const double *end = scratch_.end.data() + block.first, *area = block.area.data();
-    double* force = solution_.force.data() + block.first;
-    const double scale = problem_.scale;
-    for (int a = 0; a < components; ++a) {
-#pragma omp simd
-      for (int i = 0; i < n; ++i) force[a * n + i] = scale * area[i] * end[a * n + i];
-      for (int c = 0; c < components; ++c)
-#pragma omp simd
-        for (int i = 0; i < n; ++i) force[a * n + i] += k[(a * components + c) * n + i] * (free[c * n + i] - from[c * n + i]);
-    }
-    small::add_transposed<R>(block.rows(), r(), column(0) + block.first, rows_, force, scratch_.gradient.data());
+    const double *end = scratch_.end.data() + block.first, *area = block.area.data(), *slope = slope_of(b);
+    for (int a = 0; a < components; ++a)
+      small::for_lanes(n, [&](const auto& at) {
+        Lanes force = problem_.scale * at(area) * at(end + a * n);
+        for (int c = 0; c < components; ++c) force += at(slope + (a * components + c) * n) * (at(free + c * n) - at(from + c * n));
+        for (Index j = 0; j < r(); ++j) sum[j] += at(column(j) + block.first + a * n) * force;
+      });
   }
+  for (Index j = 0; j < r(); ++j) scratch_.gradient[j] = sum[j].sum();
   if (direction()) std::copy_n(scratch_.direction.data(), r(), solution_.z.data());
 }
 

@@ -239,11 +239,16 @@ bool Stepper::try_step(Level& level) {
   products(next_.displacement, next_.velocity, stiff_next_, momentum_next_);
   if (path_) {
     for (const Block& block : last_->blocks)  // end-of-step tractions are what is reported
-      for (int c = 0; c < block.batch.components; ++c)
-        for (int i = 0, row = block.first + c * block.batch.points; i < block.batch.points; ++i, ++row) {
-          next_.force[row] = solution.newton.end[row] * block.area[static_cast<std::size_t>(i)];
-          next_.mean_force[row] = 0.5 * solution.force[row];
+      for (int c = 0; c < block.batch.components; ++c) {
+        const int points = block.batch.points, first = block.first + c * points;
+        const double *end = solution.newton.end.data() + first, *force = solution.force.data() + first, *area = block.area.data();
+        double *at_end = next_.force.data() + first, *mean = next_.mean_force.data() + first;
+#pragma omp simd
+        for (int i = 0; i < points; ++i) {
+          at_end[i] = end[i] * area[i];
+          mean[i] = 0.5 * force[i];
         }
+      }
   } else {
     std::copy_n(solution.force.data(), contact_.size(), contact_.data());
     if (impacts_) apply_impact(level);
