@@ -2,6 +2,7 @@
 #include <cmath>
 
 #include "uplift/contact/kernel.h"
+#include "uplift/math/small.h"
 
 // The active set for at most three coordinates, as under a rigid footing in the plane. With A the closed rows and W their weights
 //     G = C_A^T W C_A     z = -G^+ C_A^T W target     y = -G^+ z     p = W C_A y
@@ -52,34 +53,24 @@ struct Sums {
 
 template <int R>
 void gather(std::ptrdiff_t n, const double* c, std::ptrdiff_t stride, const double* held, const double* target, Sums<R>& sums) {
-  const double *c0 = c, *c1 = R > 1 ? c + stride : c, *c2 = R > 2 ? c + 2 * stride : c;
-  double s0 = 0, s1 = 0, s2 = 0, a0 = 0, a1 = 0, a2 = 0, a3 = 0, a4 = 0, a5 = 0, w = 0, t2 = 0;
-  if constexpr (R == 1) {
-#pragma omp simd reduction(+ : s0, a0, w, t2)
-    for (std::ptrdiff_t i = 0; i < n; ++i) {
-      const double h = held[i] * c0[i], t = target[i];
-      s0 += h * t, a0 += h * c0[i], w += held[i], t2 += t * t;
+  using small::Lanes;
+  Lanes gram[packed<R>], right[R], weight = Lanes::Zero(), square = weight;
+  for (Lanes& sum : gram) sum.setZero();
+  for (Lanes& sum : right) sum.setZero();
+  small::for_lanes(n, [&](const auto& at) {
+    const Lanes h = at(held), t = at(target);
+    for (int s = 0, entry = 0; s < R; ++s) {
+      const Lanes weighted = h * at(c + s * stride);
+      right[s] += weighted * t;
+      for (int r = s; r < R; ++r, ++entry) gram[entry] += weighted * at(c + r * stride);
     }
-    sums = {{a0}, {-s0}, w, t2};
-  } else if constexpr (R == 2) {
-#pragma omp simd reduction(+ : s0, s1, a0, a1, a2, w, t2)
-    for (std::ptrdiff_t i = 0; i < n; ++i) {
-      const double x = c0[i], y = c1[i], hx = held[i] * x, hy = held[i] * y, t = target[i];
-      s0 += hx * t, s1 += hy * t;
-      a0 += hx * x, a1 += hx * y, a2 += hy * y;
-      w += held[i], t2 += t * t;
-    }
-    sums = {{a0, a1, a2}, {-s0, -s1}, w, t2};
-  } else {
-#pragma omp simd reduction(+ : s0, s1, s2, a0, a1, a2, a3, a4, a5, w, t2)
-    for (std::ptrdiff_t i = 0; i < n; ++i) {
-      const double x = c0[i], y = c1[i], v = c2[i], hx = held[i] * x, hy = held[i] * y, hv = held[i] * v, t = target[i];
-      s0 += hx * t, s1 += hy * t, s2 += hv * t;
-      a0 += hx * x, a1 += hx * y, a2 += hx * v, a3 += hy * y, a4 += hy * v, a5 += hv * v;
-      w += held[i], t2 += t * t;
-    }
-    sums = {{a0, a1, a2, a3, a4, a5}, {-s0, -s1, -s2}, w, t2};
-  }
+    weight += h;
+    square += t * t;
+  });
+  for (int k = 0; k < packed<R>; ++k) sums.gram[k] = gram[k].sum();
+  for (int r = 0; r < R; ++r) sums.right[r] = -right[r].sum();
+  sums.weight = weight.sum();
+  sums.target = square.sum();
 }
 
 struct Look {
