@@ -1,5 +1,6 @@
 #include <algorithm>
 #include <cmath>
+#include <cstring>
 
 #include "uplift/contact/kernel.h"
 #include "uplift/math/small.h"
@@ -74,8 +75,8 @@ void gather(std::ptrdiff_t n, const double* c, std::ptrdiff_t stride, const doub
 }
 
 struct Look {
-  double closed = 0;   // largest |opening| of a held row
-  double changes = 0;  // rows that change sides
+  double closed = 0;     // largest |opening| of a held row
+  bool changes = false;  // some rows change sides
 };
 
 /// opening = target + C z, force = held * C y, and the next set: a closed row opens when its pressure C y is tensile; an open one closes
@@ -87,25 +88,22 @@ Look look(std::ptrdiff_t n, const double* c, std::ptrdiff_t stride, const double
   const double *c0 = c, *c1 = R > 1 ? c + stride : c, *c2 = R > 2 ? c + 2 * stride : c;
   const double z0 = z[0], z1 = R > 1 ? z[R > 1 ? 1 : 0] : 0, z2 = R > 2 ? z[R > 2 ? 2 : 0] : 0;
   const double y0 = y[0], y1 = R > 1 ? y[R > 1 ? 1 : 0] : 0, y2 = R > 2 ? y[R > 2 ? 2 : 0] : 0;
-  double closed = 0, changes = 0;
-#pragma omp simd reduction(max : closed) reduction(+ : changes)
+#pragma omp simd
   for (std::ptrdiff_t i = 0; i < n; ++i) {
     double o = target[i] + c0[i] * z0, f = c0[i] * y0;
     if constexpr (R > 1) o += c1[i] * z1, f += c1[i] * y1;
     if constexpr (R > 2) o += c2[i] * z2, f += c2[i] * y2;
     const double h = held[i], most = limit[i];
     const bool was = h > 0, may = most > 0;
-    const double here = was ? std::abs(o) : 0.0;
-    closed = closed > here ? closed : here;
     opening[i] = o;
     force[i] = h * (may && f > 0 ? 0.0 : f);
     const bool noticed = weight * f * f > 1e-24 * work;  // beyond 1e-12 of the mean pressure
     const bool now = was ? !((f > 0) & noticed) : (o < -gap) | ((o <= gap) & (f < 0) & noticed);
-    const double value = may ? (now ? most : 0.0) : h;
-    next[i] = value;
-    changes += value != h ? 1.0 : 0.0;
+    next[i] = may ? (now ? most : 0.0) : h;
   }
-  return {closed, changes};
+  small::Lanes closed = small::Lanes::Zero();
+  small::for_lanes(n, [&](const auto& at) { closed = closed.max(at(opening).abs() * (at(held) * 1e300).min(1)); });
+  return {closed.maxCoeff(), std::memcmp(next, held, static_cast<std::size_t>(n) * sizeof(double)) != 0};
 }
 
 /// right = -sum held c opening: what is left to correct.
@@ -166,7 +164,7 @@ KernelReply active_set(const Rows& rows, double* held, double* z, double* openin
       apply<R>(inverse, step, step);
       for (int r = 0; r < R; ++r) z[r] += step[r];
     }
-    if (seen.changes == 0) {
+    if (!seen.changes) {
       if (reply.residual > 1e-11) return reply;  // the rank was misjudged
       reply.end = KernelEnd::solved;
       if (size > 0) reply.residual = std::max(reply.residual, seen.closed / size);

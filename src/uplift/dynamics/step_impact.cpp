@@ -13,8 +13,7 @@ void Stepper::apply_impact(Level& level) {
   const InterfaceProblem& problem = *last_;
   normals_.clear();
   tangents_.clear();
-  double largest = 0;
-  for (Eigen::Index i = 0; i < contact_.size(); ++i) largest = std::max(largest, std::abs(contact_[i]));
+  const double largest = contact_.cwiseAbs().maxCoeff();
   const bool constrained = std::ranges::any_of(problem.blocks, [](const Block& block) { return block.cone != nullptr; });
   for (const Block& block : problem.blocks) {
     if (constrained && block.cone == nullptr) continue;  // a law beside constraints gives way
