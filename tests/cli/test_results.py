@@ -42,6 +42,38 @@ class Results(CliTest):
             largest = max(abs(row[column]) for row in values)
             self.assertLessEqual(abs(abs(peak["value"]) - largest), 1e-9 * largest + 1e-300, name)
 
+    def test_verdict_with_criteria(self):
+        self.write(BASE + """
+[verdict]
+uplifted_ratio_thresholds = [0.05]
+[[verdict.criterion]]
+quantity = "max_opening"
+limit = "1 m"
+source = "no code says so"
+[[verdict.criterion]]
+quantity = "max_uplifted_ratio"
+limit = 0.001
+source = "specification, 4.2"
+""")
+        done = self.uplift("run", "case.toml", "-o", "r")
+        self.assertRegex(done.stdout, r"criterion met: max_opening of soil [\d.]+ mm, limit 1\.00 m \(no code says so\)")
+        self.assertIn("criterion not met: max_uplifted_ratio of soil", done.stdout)
+        summary = self.summary("r")
+        verdict, (run,) = summary["verdict"], summary["runs"]
+        (soil,) = verdict["interfaces"]
+        self.assertAlmostEqual(soil["static_force"]["value"], 1e6, delta=1)
+        numbers = soil["numbers"]
+        for name, of_run in (("max_uplifted_ratio", "max_uplifted_ratio"), ("max_opening", "max_opening"), ("max_toe_pressure", "max_pressure")):
+            self.assertAlmostEqual(numbers[name]["value"], run[of_run]["value"], delta=1e-12 * run[of_run]["value"])
+            self.assertEqual(numbers[name]["time"], run[of_run]["time"])
+        # a base that cannot pull keeps its thrust inside
+        self.assertLess(numbers["max_eccentricity"]["value"], 0.5)
+        self.assertGreater(numbers["min_overturning_safety"]["value"], 1)
+        self.assertGreater(soil["above"][0]["duration"], 0)
+        self.assertLessEqual(soil["above"][0]["duration"], numbers["uplifted_time"]["value"])
+        self.assertEqual([c["result"] for c in verdict["criteria"]], ["met", "not met"])
+        self.assertEqual(verdict["criteria"][1]["source"], "specification, 4.2")
+
     def test_resolved_case_gives_the_same_results(self):
         self.write(BASE)
         self.uplift("run", "case.toml", "-o", "first")

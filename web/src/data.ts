@@ -54,6 +54,7 @@ function complete(raw: Partial<Report>): Report {
       run: verdict?.run ?? "",
       interfaces: verdict?.interfaces ?? [],
       criteria: verdict?.criteria ?? [],
+      floors: verdict?.floors ?? [],
     },
     choices: raw.choices ?? [],
     tables: raw.tables ?? [],

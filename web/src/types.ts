@@ -64,6 +64,13 @@ export interface Criterion {
   source: string;
 }
 
+/** What becomes of a floor spectrum against the bonded run, band by band. */
+export interface FloorChange {
+  floor: string;
+  damping: number;
+  bands: { band: string; change_percent: number }[];
+}
+
 export interface Verdict {
   level: VerdictLevel;
   headline: string;
@@ -73,6 +80,7 @@ export interface Verdict {
   run: string;
   interfaces: BaseVerdict[];
   criteria: Criterion[];
+  floors: FloorChange[];
 }
 
 export interface Choice {

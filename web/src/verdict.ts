@@ -3,7 +3,7 @@
 import { h, s, type Child } from "./dom";
 import { fixed, number, pick_scale } from "./format";
 import { share_chart } from "./share_chart";
-import type { BaseVerdict, Criterion, CriterionState, Verdict, VerdictLevel, VerdictRow } from "./types";
+import type { BaseVerdict, Criterion, CriterionState, FloorChange, Verdict, VerdictLevel, VerdictRow } from "./types";
 
 const LEVEL_WORD: Record<VerdictLevel, string> = {
   none: "No uplift",
@@ -99,6 +99,23 @@ function criteria_list(criteria: Criterion[]): HTMLElement {
     h("ul", {}, ...criteria.map(criterion_row)));
 }
 
+/** Floors in rows, frequency bands in columns. */
+function floor_table(floors: FloorChange[]): HTMLElement | null {
+  if (floors.length === 0) return null;
+  const bands = [...new Set(floors.flatMap((floor) => floor.bands.map(({ band }) => band)))];
+  const cell = (floor: FloorChange, band: string): HTMLElement => {
+    const found = floor.bands.find((each) => each.band === band);
+    return h("td", {}, found ? change(1 + found.change_percent / 100, 1) : "–");
+  };
+  return h("div", { class: "floors" },
+    h("h3", {}, "Floor spectra against the bonded run"),
+    h("div", { class: "floors-box", tabindex: 0, role: "region", "aria-label": "Change of the floor spectra" },
+      h("table", { class: "beside" },
+        h("thead", {}, h("tr", {}, h("th", { scope: "col" }, "Floor, damping"), ...bands.map((band) => h("th", { scope: "col" }, tied(band))))),
+        h("tbody", {}, ...floors.map((floor) =>
+          h("tr", {}, h("th", { scope: "row" }, `${floor.floor}, ${number(100 * floor.damping, 2)}\u00a0%`), ...bands.map((band) => cell(floor, band))))))));
+}
+
 function base_block(base: BaseVerdict, many: boolean): HTMLElement {
   const chart = share_chart(base);
   return h("div", { class: "base-verdict" },
@@ -122,6 +139,7 @@ export function verdict_card(verdict: Verdict): HTMLElement {
       h("div", {}, h("p", { class: "verdict-level" }, LEVEL_WORD[verdict.level] ?? verdict.level), h("h2", {}, tied(verdict.headline)))),
     facts.length > 0 ? h("dl", { class: "facts" }, ...facts) : null,
     ...blocks,
+    floor_table(verdict.floors),
     verdict.interfaces.length > 0 ? criteria_list(verdict.criteria) : null,
     verdict.paragraphs.length > 0 ? h("div", { class: "prose" }, ...verdict.paragraphs.map((text) => h("p", {}, tied(text)))) : null,
   );

@@ -252,6 +252,10 @@ const CRITERIA = [
   { label: "least safety against sliding", interface: "footing", state: "undetermined", value: null, limit: 1.1, unit: "1", atLeast: true, source: "code <script>" },
 ];
 
+const FLOORS = [
+  { floor: "roof", damping: 0.05, bands: [{ band: "below 2 Hz", change_percent: 12.4 }, { band: "2 to 5 Hz", change_percent: -38.2 }, { band: "above 5 Hz", change_percent: 140 }] },
+];
+
 /** Gap along the base at the end. */
 function rest_chart(run) {
   const last = openings(run, run.t.length - 1);
@@ -266,7 +270,7 @@ function document_of(runs, bonded) {
     format: "uplift-report-1", title: "Rocking oscillator on tensionless springs", subtitle: "Sample for the tests of the report page",
     version: "0.1.0", created: "2025-01-15T09:30:00Z", command: "uplift compare sample/case.toml",
     case: { file: "sample/case.toml", sha256: "0".repeat(64), resolved: `title = "Rocking oscillator"\n\n[beam.column]\nheight = "${HEIGHT} m"\n\n[footing]\nwidth = "${2 * HALF_WIDTH} m"\nmass = "30 t"\n` },
-    verdict: { ...verdict(runs, bonded), run: runs[0].name, interfaces: bases(runs, bonded), criteria: CRITERIA },
+    verdict: { ...verdict(runs, bonded), run: runs[0].name, interfaces: bases(runs, bonded), criteria: CRITERIA, floors: FLOORS },
     choices: [
       { what: "Fixed-base frequency", value: "2 Hz", origin: "paper" },
       { what: "Points over the width", value: String(POINTS), origin: "our choice", note: "Enough to place the edge of the contact within a tenth of the width." },

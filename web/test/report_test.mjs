@@ -197,6 +197,8 @@ async function check_verdict(page) {
     }
     if (base.linear) check.equal(await block.locator(".bar").count(), base.linear.tension > 0 || base.linear.computed > 0 ? 3 : 0, "the tension ratio stands beside what happened");
   }
+  const floors = await page.evaluate(() => window.upliftReport.report.verdict.floors);
+  check.equal(await card.locator(".floors tbody tr").count(), floors.length, "every floor spectrum has a row of changes");
   const left = interfaces.reduce((sum, base) => sum + base.rest.length, 0);
   if (left > 0) check.equal(await page.locator("#after-shock .rest-card tbody tr").count(), left, "what is left at the end has a row for each number");
 }
@@ -209,6 +211,7 @@ async function check_sample_verdict(page) {
   const [first] = await texts(".criterion");
   check.ok(/✕ not met .*0\.600, limit ≤ 0\.300.*specification of the client, 4\.2/.test(first), "a criterion shows state, value, limit and source", first);
   check.ok((await texts(".criteria h3"))[0].includes("1 of 3 met"), "the number of criteria that are met is said");
+  check.equal((await texts(".floors tbody tr"))[0], "roof, 5.0 % +12 % −38 % × 2.4", "the floor spectra's changes are given band by band");
   const [top] = await page.evaluate(() => window.upliftReport.report.verdict.interfaces[0].beside);
   const change = Math.round(100 * (top.value / top.bonded - 1));
   const shown = (await texts("table.beside .change"))[0];

@@ -119,9 +119,8 @@ void Runner::execute() {
     if (Sparse::InnerIterator(b_, column) && model_.space.is_rotation(unknown)) rotations_.push_back(column);
   }
 
-  double planned = 0;
-  for (const Stage& stage : plan_.stages) planned += stage.type == Stage::Type::dynamics ? stage.duration : 0;
-  if (dynamic != nullptr) tail_from_ = 0.9 * planned - 0.5 * dynamic->step;
+  for (const Stage& stage : plan_.stages) planned_ += stage.type == Stage::Type::dynamics ? stage.duration : 0;
+  if (dynamic != nullptr) tail_ = 0.1 * planned_ + 0.5 * dynamic->step;
 
   bool moving = false;
   for (const Stage& stage : plan_.stages) {

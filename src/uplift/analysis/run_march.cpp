@@ -23,7 +23,7 @@ double sum_round_off(const Sparse& stiffness, const Vector& displacement) {
 void Runner::note_views(double step) {
   StepRecord& steps = result_.steps;
   steps.add(seen_->time, views_, plan_.gap_tolerance);
-  if (seen_->time >= tail_from_)
+  if (seen_->time >= planned_ - tail_)
     for (std::size_t k = 0; k < views_.size(); ++k) steps.tail[k].push_back(viewer_.pose(*seen_, k, views_[k]));
   bool open = false, any_contact = views_.empty();
   for (const InterfaceView& view : views_) {
@@ -121,7 +121,8 @@ bool Runner::dynamics(const Stage& stage, const Bulk& bulk) {
     recorder.record(step % plan_.every == 0 || step == steps);
     if (picture_every > 0 && step % picture_every == 0) recorder.picture(*seen_);
   };
-  result_.steps.reserve(model_.interfaces.size(), static_cast<std::size_t>(steps) + 1);
+  result_.steps.reserve(model_.interfaces.size(), static_cast<std::size_t>(steps) + 1,
+                        static_cast<std::size_t>(std::min(static_cast<double>(steps) + 1, tail_ / stage.step + 2)));
   if (!ledger_) {  // else the end of the stage before is there already
     observe(0);
     show(stage, &stepper, 0, false);

@@ -23,9 +23,11 @@ void note_loss(StepRecord::Extremes& extremes, double least, double tolerance, b
 
 }  // namespace
 
-void StepRecord::reserve(std::size_t interfaces, std::size_t count) {
+void StepRecord::reserve(std::size_t interfaces, std::size_t count, std::size_t in_tail) {
   extremes.resize(interfaces);
   tail.resize(interfaces);
+  for (Extremes& each : extremes) each.full_loss.reserve(each.full_loss.size() + count / 2 + 1);
+  for (std::vector<BasePose>& each : tail) each.reserve(each.size() + in_tail);
   time.reserve(time.size() + count);
   instants.reserve(instants.size() + count * interfaces);
 }

@@ -50,8 +50,8 @@ class StepRecord {
     double least_opening = 0;  // at the last instant
   };
 
-  /// Makes room for instants to come.
-  void reserve(std::size_t interfaces, std::size_t instants);
+  /// Makes room for instants to come, so many of them in the tail.
+  void reserve(std::size_t interfaces, std::size_t count, std::size_t in_tail);
   /// A gap larger than the tolerance [m] is open.
   void add(double time, const std::vector<InterfaceView>& views, double gap_tolerance);
   std::size_t size() const { return time.size(); }

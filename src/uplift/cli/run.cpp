@@ -6,6 +6,20 @@
 #include "uplift/cli/load.h"
 
 namespace uplift::cli {
+namespace {
+
+/// "criterion not met: max_opening of soil 13.7 mm, limit 10.0 mm (client)".
+void say_criteria(const std::vector<CriterionResult>& results) {
+  for (const CriterionResult& result : results) {
+    const VerdictQuantity& quantity = *result.criterion.quantity;
+    const std::string unit(quantity.unit), of = result.interface.empty() ? "" : " of " + result.interface;
+    say(fmt::format("criterion {}: {}{} {}, limit {} ({})", to_string(result.state), quantity.name, of,
+                    result.value ? spoken(*result.value, unit) : "not computed", spoken(result.criterion.limit, unit),
+                    result.criterion.source));
+  }
+}
+
+}  // namespace
 
 int run(const Options& options) {
   const Loaded loaded = load(options);
@@ -31,6 +45,7 @@ int run(const Options& options) {
     for (const std::string& warning : results.warnings) complain("warning: " + warning);
     say(results.verdict.headline);
     for (const Verdict::Fact& fact : results.verdict.facts) say(fmt::format("  {:<34} {:<14} {}", fact.label, fact.value, fact.detail));
+    say_criteria(results.verdict.numbers.criteria);
     const double per_step = main.counts.steps > 0 ? 1e6 * main.wall / static_cast<double>(main.counts.steps) : 0;
     say(fmt::format("{}: {} steps in {} ({:.2f} microseconds a step), {} retries", status_text(main), main.counts.steps,
                     spoken(main.wall, "s"), per_step, main.counts.retries));

@@ -3,6 +3,7 @@
 #include <utility>
 
 #include "uplift/io/report_parts.h"
+#include "uplift/io/verdict_json.h"
 
 // The first page: what the verdict says in numbers, beside the bonded run, against the user's limits, and what is left after the shock.
 namespace uplift {
@@ -143,7 +144,9 @@ void write_verdict(JsonWriter& json, const ReportInput& input) {
   for (std::size_t k = 0; k < verdict.numbers.interfaces.size(); ++k) write_interface(json, input, k);
   json.end_array().key("criteria").begin_array();
   for (const CriterionResult& result : verdict.numbers.criteria) write_criterion(json, result);
-  json.end_array().end_object();
+  json.end_array().key("floors");
+  write_floor_changes(json, input.floors);
+  json.end_object();
 }
 
 std::vector<Chart> rest_charts(const ReportRun& run) {

@@ -84,7 +84,7 @@ std::string summary_json(const SummaryInput& input) {
   json.end_array();
   if (floors && !floors->envelopes.empty()) write_floor_envelopes(json.key("floor_envelopes"), *floors);
   json.key("verdict");
-  write_verdict_numbers(json, verdict, runs);
+  write_verdict_numbers(json, verdict, runs, floors);
   if (compared) {
     json.member("band", compared->band).key("compared_columns").texts(compared->columns);
     json.key("stiffness_sweep").begin_array();

@@ -47,7 +47,20 @@ void write_criterion(JsonWriter& json, const CriterionResult& result) {
 
 }  // namespace
 
-void write_verdict_numbers(JsonWriter& json, const Verdict& verdict, const std::vector<RunResult>& runs) {
+void write_floor_changes(JsonWriter& json, const FloorAnswers* floors) {
+  json.begin_array();
+  const FloorRun none, &run = floors && !floors->runs.empty() ? floors->runs.front() : none;
+  for (std::size_t k = 0; k < run.beside.size(); ++k)
+    for (const FloorChange& change : run.beside[k]) {
+      json.begin_object().member("floor", run.floors[k].name).member("damping", change.damping).key("bands").begin_array();
+      for (const FloorChange::Band& band : change.bands)
+        json.begin_object().member("band", to_string(band.band)).member("change_percent", 100 * band.change).end_object();
+      json.end_array().end_object();
+    }
+  json.end_array();
+}
+
+void write_verdict_numbers(JsonWriter& json, const Verdict& verdict, const std::vector<RunResult>& runs, const FloorAnswers* floors) {
   json.begin_object().member("level", to_string(verdict.level)).member("headline", verdict.headline);
   json.member("run", runs.empty() ? "" : runs.front().name);
   json.key("numbers");
@@ -56,7 +69,9 @@ void write_verdict_numbers(JsonWriter& json, const Verdict& verdict, const std::
   for (const InterfaceVerdict& said : verdict.numbers.interfaces) write_interface(json, said);
   json.end_array().key("criteria").begin_array();
   for (const CriterionResult& result : verdict.numbers.criteria) write_criterion(json, result);
-  json.end_array().end_object();
+  json.end_array().key("floors");
+  write_floor_changes(json, floors);
+  json.end_object();
 }
 
 }  // namespace uplift

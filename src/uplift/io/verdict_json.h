@@ -1,10 +1,14 @@
 #pragma once
+#include "uplift/analysis/floor_spectra.h"
 #include "uplift/analysis/verdict.h"
 #include "uplift/io/json_writer.h"
 
 namespace uplift {
 
-/// The object `verdict` of summary.json: level, headline, every number with its unit (and its time, and the bonded run's), criteria.
-void write_verdict_numbers(JsonWriter& json, const Verdict& verdict, const std::vector<RunResult>& runs);
+/// The object `verdict` of summary.json: level, headline, every number with its unit (and its time, and the bonded run's), criteria, and
+/// what becomes of the floor spectra of the first run; `floors` may be null.
+void write_verdict_numbers(JsonWriter& json, const Verdict& verdict, const std::vector<RunResult>& runs, const FloorAnswers* floors);
+/// Change of every floor spectrum of the first run against the bonded one in each frequency band, in per cent; an empty array without.
+void write_floor_changes(JsonWriter& json, const FloorAnswers* floors);
 
 }  // namespace uplift
