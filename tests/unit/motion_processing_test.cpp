@@ -153,6 +153,7 @@ TEST(Bandpass, CornersAreChecked) {
   const Motion motion = random_motion();
   EXPECT_NE(refusal(motion, "bandpass").find("low, high or both"), std::string::npos);
   EXPECT_NE(refusal(motion, "bandpass", {{"high", raw(50.0)}}).find("50 Hz"), std::string::npos);
+  EXPECT_NE(refusal(motion, "bandpass", {{"low", raw(1e-9)}}).find("6e-05 Hz at least"), std::string::npos);
   EXPECT_NE(refusal(motion, "bandpass", {{"high", raw(1.0)}, {"low", raw(2.0)}}).find("case.toml:7"), std::string::npos);
 }
 
@@ -250,6 +251,11 @@ TEST(Resample, SpectraStay) {
     // straight pieces take (pi f step)^2/3 of a harmonic: 0.5 % at 8 Hz, where the filter leaves 1 %
     EXPECT_NEAR(limited[i] / original[i], 1, 5e-3) << frequencies[i];
   }
+}
+
+TEST(Resample, StepsThatDoNotFit) {
+  EXPECT_NE(refusal(random_motion(), "resample", {{"step", raw(20.0)}}).find("no longer than the record"), std::string::npos);
+  EXPECT_NE(refusal(random_motion(), "resample", {{"step", raw(1e-12)}}).find("points at most"), std::string::npos);
 }
 
 // ---- scale ----

@@ -29,7 +29,13 @@ class Bandpass final : public ProcessStep {
     for (const auto& [key, corner] : {std::pair{"low", low_}, std::pair{"high", high_}})
       if (corner && *corner >= nyquist)
         refuse(key, fmt::format("a frequency below {:g} Hz (half of one over the step)", nyquist), fmt::format("{:g} Hz", *corner));
-    const std::size_t count = motion.values.size(), pad = padding(motion.step);
+    const double wanted_pad = padding(motion.step);
+    if (wanted_pad > most_padding)
+      refuse(low_ ? "low" : "high",
+             fmt::format("a corner of {:.3g} Hz at least ({:g} points before and after)",
+                         wanted_pad * (low_ ? *low_ : *high_) / most_padding, most_padding),
+             fmt::format("{:g} Hz", low_ ? *low_ : *high_));
+    const std::size_t count = motion.values.size(), pad = static_cast<std::size_t>(wanted_pad);
     std::vector<double> padded(fourier_length(count + 2 * pad));
     std::ranges::copy(motion.values, padded.begin() + static_cast<std::ptrdiff_t>(pad));
 
@@ -45,6 +51,7 @@ class Bandpass final : public ProcessStep {
   }
 
  private:
+  static constexpr double most_padding = 1e7;  // points
   double gain(double frequency) const {
     double product = 1;
     if (high_) product /= 1 + std::pow(frequency / *high_, 2 * order_);
@@ -52,9 +59,9 @@ class Bandpass final : public ProcessStep {
     return product;
   }
   /// Zeros on either side: the length after which the slowest corner has died out.
-  std::size_t padding(double step) const {
+  double padding(double step) const {
     constexpr double periods = 1.5;
-    return static_cast<std::size_t>(std::ceil(periods * order_ / (low_ ? *low_ : *high_) / step));
+    return std::ceil(periods * order_ / (low_ ? *low_ : *high_) / step);
   }
   std::string sentence(double pad) const {
     std::string band = low_ && high_ ? fmt::format("Band-pass {:g} Hz to {:g} Hz", *low_, *high_)

@@ -68,7 +68,7 @@ class Resample final : public ProcessStep {
   }
 
  private:
-  static constexpr double most = 1e8;  // points
+  static constexpr double most = 1e7;  // points
   /// A place that is a point of the record but for round-off is that point.
   static double whole(double place) {
     const double near = std::round(place);
