@@ -50,6 +50,8 @@ class Records(CliTest):
             (("--generate", "rg_1_60"), "pga"),
             (("--generate", "rg_1_60", "pga"), "KEY=VALUE"),
             (("--generate", "rg_1_60", "pga=3", "to=200"), "to"),
+            (("--generate", "rg_1_60", "pga=3", "step=0.01", "--step", "0.02"), "step: wanted one value, found two"),
+            (("--generate", "rg_1_60", "pga=3", "--unit", "g"), "no options for files"),
         ):
             done = self.uplift("motion", *words, expect=2)
             self.assertIn(part, done.stderr)

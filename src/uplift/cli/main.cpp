@@ -157,6 +157,11 @@ int dispatch(const CLI::App& app, const Choices& given) {
   return cli::completion(given.shell, declared(app));
 }
 
+/// A word of the command line so that it can be copied back: in quotes when it holds a blank.
+std::string as_typed(const std::string& word) {
+  return word.find(' ') == std::string::npos ? word : fmt::format("\"{}\"", word);
+}
+
 /// Parses the command line and runs the command; what it throws is told to the user by main.
 int program(int count, char** words) {
   CLI::App app{"uplift: does a structure lift off its base in an earthquake, and what does that do to it?", "uplift"};
@@ -168,7 +173,8 @@ int program(int count, char** words) {
                   exit_codes));
   Choices given;
   declare(app, given);
-  for (int i = 0; i < count; ++i) given.options.command += (i > 0 ? " " : "") + std::string(i > 0 ? words[i] : "uplift");
+  given.options.command = "uplift";
+  for (int i = 1; i < count; ++i) given.options.command += " " + as_typed(words[i]);
   try {
     app.parse(count, words);
   } catch (const CLI::ParseError& error) {

@@ -80,10 +80,17 @@ std::pair<Pairs, Pairs> sorted_words(const std::vector<std::string>& words, cons
   return sorted;
 }
 
+void refuse_twice(const Pairs& pairs, const std::string& place) {
+  for (std::size_t i = 0; i < pairs.size(); ++i)
+    for (std::size_t j = 0; j < i; ++j)
+      if (pairs[i].first == pairs[j].first) throw InputError({place, 0}, pairs[i].first, "one value", "two");
+}
+
 std::vector<std::unique_ptr<const TargetSpectrum>> targets_of(const MotionOptions& given, const Pairs& common, const std::string& place) {
   std::vector<std::unique_ptr<const TargetSpectrum>> targets;
   for (const std::string& text : given.generate) {
     Pairs pairs = part_of(text, place);
+    refuse_twice(pairs, place);
     for (const auto& pair : common)
       if (std::ranges::none_of(pairs, [&](const auto& own) { return own.first == pair.first; })) pairs.push_back(pair);
     targets.push_back(make_part(target_catalog(), check_part(table_of(std::move(pairs), place), target_spectra())));
@@ -97,6 +104,9 @@ std::vector<ShownMotion> generate_all(const MotionOptions& given, std::vector<st
   const std::string place = "uplift motion --generate";
   auto [own, common] = sorted_words(given.files, place);
   if (given.record.step) own.push_back({"step", {*given.record.step, {place, 0}, "step"}});
+  for (const Pairs* pairs : {&own, &common}) refuse_twice(*pairs, place);
+  for (const std::string* word : {&given.record.unit, &given.record.format, &given.record.column})
+    if (!word->empty()) throw InputError({place, 0}, "", "no options for files", in_quotes(*word));
   targets = targets_of(given, common, place);
   options = generate_options(check(table_of(std::move(own), place), generate_section()), *targets.front());
   std::vector<const TargetSpectrum*> list;
