@@ -58,7 +58,7 @@ void say_uplift(const Built& built, const RunResult& run, Verdict& verdict) {
     say(find_number(said.numbers, "max_opening"), "Largest gap" + of, "", verdict, true);
     for (const InterfaceVerdict::Above& above : said.above)
       verdict.facts.push_back(
-          {fmt::format("Uplifted above {}{}", percent(above.threshold), of), spoken(above.duration, "s"), "threshold of the case"});
+          {fmt::format("Uplifted above {}{}", percent(above.threshold), of), spoken(above.duration, "s"), "threshold of the case", false});
   }
   std::string text =
       fmt::format("The base first opens at {}. A gap stands open during {} of {} ({}).", spoken(run.first_uplift, "s"),
