@@ -80,7 +80,7 @@ void InterfaceViewer::look(const Vector& opening, const Vector& force, std::vect
     const double *slope = layout.slope_weight[0].data(), tolerance = tolerance_;
     using small::Lanes;
     const Lanes zero = Lanes::Zero();
-    Lanes axials = zero, moments = zero, slopes = zero, open = zero, pulled = zero, pressure = zero;
+    Lanes axials = zero, moments = zero, slopes = zero, open = zero, pulled = zero, widest = zero, pressure = zero;
     const auto positive = [](const auto& x) -> Lanes { return (x * 1e300).max(0).min(1); };  // 1 where it is, else 0
     small::for_lanes(n, [&](const auto& at) {
       const Lanes pull = at(p), here = at(gap), weight = at(area);
@@ -89,15 +89,15 @@ void InterfaceViewer::look(const Vector& opening, const Vector& force, std::vect
       slopes += at(slope) * here;
       open += positive(here - tolerance) * weight;
       pulled += positive(pull) * weight;
+      widest = widest.max(here);
       pressure = pressure.max(-pull * at(inverse));
     });
-    const ConstMap gaps(gap, n);
     double shear = 0, moment = moments.sum();
     InterfaceView& view = views[k];
     view.open_area = std::min(1.0, open.sum() / layout.total);
     view.tension_area = pulled.sum() / layout.total;
-    view.max_opening = std::max(gaps.maxCoeff(), 0.0);
-    view.least_opening = gaps.minCoeff();
+    view.max_opening = widest.maxCoeff();
+    view.least_opening = ConstMap(gap, n).minCoeff();
     view.max_pressure = pressure.maxCoeff();
     view.rotation = {slopes.sum(), 0};
     if (!layout.slope_weight[1].empty()) view.rotation[1] = small::dot(n, layout.slope_weight[1].data(), gap);
