@@ -143,6 +143,20 @@ TEST(Counters, NoAllocationAfterTheFirstStep) {
   }
 }
 
+/// Room for the records of floors is taken when a stage begins; the accelerations of the balance need none.
+TEST(Counters, NoAllocationOfFloors) {
+  if (!can_count) GTEST_SKIP() << "allocations cannot be counted under the address sanitizer";
+  for (const std::string rule : {"average_acceleration", "hht"}) {
+    Whole whole = footing(springs(2e8), "newton", "none", 0.02);
+    FloorRequest floor;
+    floor.name = "floor";
+    floor.node = 1;
+    whole.plan.floors = {floor};
+    EXPECT_EQ(allocated_by_steps(whole, {rule}), 0) << rule;
+    EXPECT_GT(whole.run().floors.front().acceleration.size(), 500U);
+  }
+}
+
 TEST(Counters, NoAllocationOfSeveralInterfaces) {
   if (!can_count) GTEST_SKIP() << "allocations cannot be counted under the address sanitizer";
   const Part sdm{"sdm", {{"K_n", 3e8}, {"F_u", 2e4}, {"G_f", 20.0}, {"F_c", -1e3}, {"tangential", "open_free"}}};

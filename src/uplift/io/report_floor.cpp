@@ -30,12 +30,26 @@ const FloorEnvelope* envelope_of(const ReportInput& input) {
   return input.floors->envelopes.empty() ? nullptr : &input.floors->envelopes.front();
 }
 
+/// ", Kobe": which of several motions and dampings the figures show.
+std::string shown_group(const ReportInput& input) {
+  const std::string& group = input.runs.front().result->group;
+  return group.empty() ? "" : ", " + group;
+}
+
+/// The envelope where it is over several motions, and so beside several bonded runs; else null.
+const FloorEnvelope* motion_envelope(const ReportInput& input) {
+  const auto beside = std::ranges::count_if(
+      input.runs, [&](const ReportRun& run) { return run.spec->bonded && run.spec->damping == input.runs.front().spec->damping; });
+  const FloorEnvelope* envelope = envelope_of(input);
+  return beside > 1 && envelope && !envelope->beside.empty() ? envelope : nullptr;
+}
+
 /// Raw curves of all runs, the bonded one dashed; what is broadened: the envelope, or the first run without one.
 Chart spectrum_chart(const ReportInput& input, const FloorRequest& floor, std::size_t k, std::size_t d) {
   const std::string damping = percent_of_damping(floor.dampings[d]);
   Chart chart{fmt::format("floor_{}_{:g}", floor.name, 100 * floor.dampings[d]),
               "floors",
-              fmt::format("{}: floor spectrum, {} damping", floor.name, damping),
+              fmt::format("{}: floor spectrum, {} damping{}", floor.name, damping, shown_group(input)),
               "",
               {"Frequency", "Hz", true},
               {"Pseudo-acceleration", "m/s2"},
@@ -46,6 +60,10 @@ Chart spectrum_chart(const ReportInput& input, const FloorRequest& floor, std::s
     chart.curves.back().dash = run.spec->bonded;
   }
   chart.caption = "Raw; the bonded run dashed.";
+  if (const FloorEnvelope* all = motion_envelope(input)) {
+    const FloorChange& change = all->beside[k][d];
+    chart.curves.push_back({"envelope of the bonded runs", "", change.frequencies, change.bonded, true, false});
+  }
   if (!(floor.broadening > 0)) return chart;
   const FloorEnvelope* envelope = envelope_of(input);
   const std::string share = fmt::format("{:g} %", 100 * floor.broadening);
@@ -64,7 +82,7 @@ Chart spectrum_chart(const ReportInput& input, const FloorRequest& floor, std::s
 Chart ratio_chart(const ReportInput& input, const FloorRequest& floor, std::size_t k) {
   Chart chart{"floor_ratio_" + floor.name,
               "floors",
-              floor.name + ": floor spectrum beside the bonded base",
+              floor.name + ": floor spectrum beside the bonded base" + shown_group(input),
               "Raw spectrum over that of the bonded run; above 1 uplift makes it worse for equipment of this frequency.",
               {"Frequency", "Hz", true},
               {"Ratio to bonded", "1"},
@@ -80,6 +98,12 @@ Chart ratio_chart(const ReportInput& input, const FloorRequest& floor, std::size
                               change.frequencies, change.ratio, false, false});
       if (runs.size() > 1) break;
     }
+  if (const FloorEnvelope* all = motion_envelope(input)) {
+    const FloorChange& change = all->beside[k].front();
+    chart.curves.push_back(
+        {fmt::format("envelope of {} runs over that of the bonded runs, {} damping", all->runs, percent_of_damping(change.damping)), "",
+         change.frequencies, change.ratio, true, false});
+  }
   std::erase_if(chart.curves, [](const Curve& curve) { return curve.x.empty(); });
   return chart;
 }
@@ -116,15 +140,15 @@ void write_floor_table(JsonWriter& json, const ReportInput& input) {
   const RunPlan& plan = input.runs.front().built->plan;
   const bool grouped = !input.runs.front().result->group.empty();
   json.begin_object().member("id", "floors").member("title", "Floor spectra").member("rowGroup", "floor");
-  json.member("caption",
-              "Largest absolute acceleration of the floor (what rigid equipment feels) and largest pseudo-acceleration. By bands of "
-              "frequency: change of the largest value in the band beside the bonded run.");
+  json.member(
+      "caption",
+      "Zero period: largest absolute acceleration of the floor, what rigid equipment feels; then the largest pseudo-acceleration. By "
+      "bands of frequency: change of the largest value in the band beside the bonded run.");
   json.key("columns").begin_array();
-  for (const TableColumn& column : {TableColumn{"floor", "Floor", "", "text", 0}, {"run", "Run", "", "text", 0}})
-    write_column(json, column);
+  write_column(json, {"run", "Run", "", "text", 0});
   if (grouped) write_column(json, {"group", "Case", "", "text", 0});
   for (const TableColumn& column : {TableColumn{"damping", "Damping", "", "percent", 2},
-                                    {"rigid", "Floor", "m/s2", "number", 4},
+                                    {"rigid", "Zero period", "m/s2", "number", 4},
                                     {"peak", "Peak", "m/s2", "number", 4},
                                     {"at", "at", "Hz", "number", 3}})
     write_column(json, column);
