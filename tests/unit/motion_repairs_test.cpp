@@ -121,6 +121,7 @@ TEST(RecordRefusals, TablesAndTheirTimes) {
   EXPECT_EQ(refusal("3 1\n1 2\n5 3\n", {.unit = "g"}), "file:1: wanted two columns: times at equal steps, and values, found \"3 1\"");
   EXPECT_EQ(refusal("time [s],a [g]\n0,1\n1,2\n", {.column = "b"}),
             "file:1: column: wanted a column from 1 to 2, or time or a, found \"b\"");
+  EXPECT_EQ(refusal("0.5 -0.0012-0.3\n0.1 0.2\n"), "file:1: wanted a row of numbers, found \"0.5 -0.0012-0.3\"");
   EXPECT_EQ(refusal("time [s],a [g]\n0,1\n1,2\n", {.column = "1"}), "file:1: column: wanted a column of values, found that of the times");
   times.erase(times.begin() + 11, times.begin() + 13);
   EXPECT_EQ(refusal(table(times)), "file:13: wanted times at equal steps of 0.01 s, found 0.13 s after 0.1 s");

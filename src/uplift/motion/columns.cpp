@@ -152,6 +152,9 @@ Columns columns_of(const RecordText& text) {
       if (before > 0) read_heads(text, before, columns);
       return columns;
     }
+    // digits and signs that are no numbers are a row gone wrong, not a title
+    if (line.find_first_not_of("0123456789+-.eEdD \t,;") == line.npos)
+      throw InputError(text.where(i), "", "a row of numbers", in_quotes(line));
     before = i;
     ++heads;
   }
