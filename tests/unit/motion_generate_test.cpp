@@ -127,7 +127,8 @@ TEST(GeneratedMotions, DoNotDrift) {
 TEST(GeneratedMotions, ComeAgainFromTheirSeed) {
   const auto target = guide();
   GenerateOptions options = short_options();
-  options.duration = 6;
+  options.step = 0.02;
+  options.to = 15;
   const GeneratedMotion first = one(*target, options), again = one(*target, options);
   EXPECT_EQ(first.motion.values, again.motion.values);
   options.seed = 2;
@@ -139,7 +140,8 @@ TEST(GeneratedMotions, ThreeComponentsAreIndependent) {
   const auto horizontal = guide();
   const auto vertical = target_of("rg_1_60", {{"pga", target_raw(2.0)}, {"direction", target_raw("vertical")}});
   GenerateOptions options = short_options();
-  options.duration = 6;
+  options.step = 0.02;
+  options.to = 15;
   const TargetSpectrum* const targets[] = {horizontal.get(), horizontal.get(), vertical.get()};
   const std::vector<GeneratedMotion> made = generate_motions(targets, options);
   ASSERT_EQ(made.size(), 3U);
