@@ -262,13 +262,31 @@ async function check_colours(page, check) {
   check.ok((await picture(page)).sum !== before, "colours by displacement change the picture");
   check.ok(/mm/.test(await page.locator(".space-legend").innerText()), "and say their range");
   await page.locator(".space-options select").selectOption("part");
-  const map = page.locator(".plan-map").first();
+  const map = page.locator("#space .plan-map").first();
   await map.scrollIntoViewIfNeeded();
   const summary = await page.locator("#space .plan-readout").first().innerText();
   await map.hover({ position: { x: 80, y: 60 } });
   const point = await page.locator("#space .plan-readout").first().innerText();
   check.ok(point !== summary && /^x .* m, y .* m: /.test(point), "the pointer reads values off the map", point);
   await page.mouse.move(2, 2);
+}
+
+/** After the shock: a map of every interface at the last picture. */
+async function check_rest_maps(page, check) {
+  const maps = page.locator("#after-shock .rest-maps .face-maps");
+  const faces = await page.evaluate(() => window.upliftReport.report.space.interfaces.length);
+  check.equal(await maps.count(), faces, "the base after the shock has a map for every interface");
+  const { said, wanted } = await page.evaluate(() => {
+    const { space, spaceAnimations } = window.upliftReport.report;
+    const [face] = space.interfaces;
+    const last = spaceAnimations[0].openings[face.name].at(-1);
+    const all = face.area.reduce((sum, a) => sum + a, 0);
+    return {
+      said: parseFloat(document.querySelector("#after-shock .open-share").textContent),
+      wanted: (100 * face.area.reduce((sum, a, i) => sum + (last[i] > 0 ? a : 0), 0)) / all,
+    };
+  });
+  check.ok(Math.abs(said - wanted) <= 0.51, "it shows the last picture", `${said} %, wanted ${wanted} %`);
 }
 
 async function check_lost(page, check) {
@@ -339,7 +357,7 @@ export async function check_space_sample(browser, check, shots) {
   const { context, page, log } = await open(browser, url);
   await page.evaluate(() => window.upliftReport.renderAll());
   check.equal(await page.evaluate(() => window.upliftReport.space.stage.webgl), true, "the view is drawn by WebGL");
-  const groups = { check_space, check_pose, check_map_area, check_directions, check_orbit, check_colours };
+  const groups = { check_space, check_pose, check_map_area, check_directions, check_orbit, check_colours, check_rest_maps };
   for (const [name, body] of Object.entries(groups)) await check.group(name, () => body(page, check));
   if (shots) await shoot(page, shots, "space_light");
   await check.group("check_print_and_dark", () => check_print_and_dark(page, check, shots));
