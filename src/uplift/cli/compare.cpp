@@ -2,6 +2,8 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
+
 #include "uplift/analysis/wording.h"
 #include "uplift/base/file.h"
 #include "uplift/cli/console.h"
@@ -85,6 +87,14 @@ void run_all(const Loaded& loaded, const Options& options, const std::vector<Run
   }
 }
 
+/// Those of the motions that the first run does not have.
+void add_motion_warnings(Results& results) {
+  std::vector<std::string> said;
+  for (const Built& each : results.built) warn_motions(each.motions, each.plan.stages, said);
+  for (const std::string& warning : said)
+    if (std::ranges::find(results.warnings, warning) == results.warnings.end()) results.warnings.push_back(warning);
+}
+
 }  // namespace
 
 int compare(const Options& options) {
@@ -114,6 +124,7 @@ int compare(const Options& options) {
     if (results.specs[i].bonded && results.runs[i].group == results.runs.front().group) bonded = &results.runs[i];
   results.verdict = judge(results.built.front(), results.runs.front(), bonded);
   results.warnings = warnings(loaded.read, results.specs.front(), results.built.front());
+  add_motion_warnings(results);
   write_results(options, loaded, results, &compared, folder);
 
   if (options.json) {

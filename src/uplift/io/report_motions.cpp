@@ -191,25 +191,22 @@ void write_motion_origins(JsonWriter& json, const Histories& motions) {
   json.begin_object().member("id", "motion_origins").member("title", "Where the motions come from");
   json.member("caption", "File with its SHA-256, the factor from its numbers to SI, what was mended when it was read, every step since.");
   json.key("columns").begin_array();
-  for (const TableColumn& column : {TableColumn{"name", "Motion", "", "text", 0},
-                                    {"file", "File", "", "text", 0},
-                                    {"event", "Event", "", "text", 0},
-                                    {"format", "Format", "", "text", 0},
-                                    {"unit", "Unit", "", "text", 0},
-                                    {"factor", "Factor", "", "number", 8},
-                                    {"repairs", "Repairs", "", "text", 0},
-                                    {"processing", "Processing", "", "text", 0},
-                                    {"sha256", "SHA-256", "", "text", 0}})
-    write_column(json, column);
+  for (const TableColumn& column : {TableColumn{"what", "", "", "text", 0}, {"value", "", "", "text", 0}}) write_column(json, column);
   json.end_array().key("rows").begin_array();
   for (const auto& history : motions) {
     const Motion& motion = *history->motion();
-    json.begin_object().member("name", motion.name).member("file", motion.file).member("event", motion.event);
-    json.member("format", motion.format).member("unit", motion.unit).member("factor", motion.factor);
-    json.member("repairs", fmt::format("{}", fmt::join(motion.repairs, "; ")));
-    json.member("processing", fmt::format("{}", fmt::join(motion.processing, "; "))).member("sha256", motion.sha256).end_object();
+    const auto row = [&](const std::string& what, const std::string& value) {
+      if (!value.empty()) json.begin_object().member("name", motion.name).member("what", what).member("value", value).end_object();
+    };
+    row("file", motion.file);
+    row("SHA-256", motion.sha256);
+    row("format", motion.format);
+    row("event", motion.event);
+    if (!motion.unit.empty()) row("unit", fmt::format("{}, times {:.8g}", motion.unit, motion.factor));
+    for (const std::string& repair : motion.repairs) row("mended", repair);
+    for (std::size_t i = 0; i < motion.processing.size(); ++i) row(fmt::format("step {}", i + 1), motion.processing[i]);
   }
-  json.end_array().end_object();
+  json.end_array().member("rowGroup", "name").end_object();
 }
 
 void write_motion_tables(JsonWriter& json, const ReportInput& input) {
