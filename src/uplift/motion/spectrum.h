@@ -16,8 +16,8 @@ struct Spectrum {
 };
 
 /// Where the largest response is looked for. At the points: those of the record, and sub-steps between them so that a period has twenty at
-/// least; the usual definition, up to 1.2 % below the peak of a vibration. Between: also between these, by the cubic through values and rates;
-/// within 1e-4 of the true peak, however finely the same motion is sampled.
+/// least; the usual definition, up to 1.2 % below the peak of a vibration. Between: also between these, by the cubic through values and
+/// rates; within 1e-4 of the true peak, however finely the same motion is sampled.
 enum class Peaks { at_points, between };
 
 /// One spectrum for every damping ratio (0 <= ratio < 1), in their order. Exact for an acceleration [m/s2] that is straight between its
