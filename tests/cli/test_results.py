@@ -228,6 +228,27 @@ class Failures(CliTest):
         self.assertIn("overturns", done.stdout)
 
 
+class Trust(CliTest):
+    def test_bands_of_a_run(self):
+        self.write(BASE.replace("bonded = false", "bonded = true"))
+        done = self.uplift("trust", "case.toml", "-o", "r")
+        self.assertIn("What moves most numbers most is the joint stiffness.", done.stdout)
+        self.assertIn("not changed: mesh: the case has no mesh", done.stdout)
+        trust = json.loads((self.folder / "r" / "trust.json").read_text())
+        self.assertTrue(trust["complete"])
+        self.assertEqual([run["choice"] for run in trust["runs"]], ["time step", "joint stiffness", "joint stiffness", "tolerance", "method"])
+        for band in trust["bands"]:
+            self.assertLessEqual(band["least"], band["value"])
+            self.assertGreaterEqual(band["most"], band["value"])
+        # the run itself is that of `uplift run`
+        self.uplift("run", "case.toml", "-o", "a")
+        one, other = self.summary("r")["runs"][0], self.summary("a")["runs"][0]
+        self.assertEqual(one["peaks"], other["peaks"])
+        value = {band["quantity"]: band["value"] for band in trust["bands"]}
+        self.assertAlmostEqual(value["max_opening"], one["max_opening"]["value"], 12)
+        self.assertIn("How far the numbers can be trusted", (self.folder / "r" / "report.html").read_text())
+
+
 class Terminal(CliTest):
     def test_progress_line(self):
         """On a terminal: time left and the present state, redrawn on one line, gone at the end."""
