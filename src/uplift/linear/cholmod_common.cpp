@@ -1,10 +1,20 @@
 #include "uplift/linear/cholmod_common.h"
 
+#include <cstdlib>
+
 #include "uplift/linear/memory.h"
 
 extern "C" void openblas_set_num_threads(int count);
 
 namespace uplift {
+namespace {
+
+/// OpenBLAS starts its threads before main(), and they wait by spinning. Linked statically, its constructor comes after this one.
+[[gnu::constructor(101)]] void start_no_threads() {
+  setenv("OPENBLAS_NUM_THREADS", "1", 0);
+}
+
+}  // namespace
 
 Common::Common() {
   // One thread: results then do not depend on the number of cores, and runs side by side do not fight for them.
