@@ -42,6 +42,19 @@ TEST(Numbers, AreShortAndPlain) {
   EXPECT_EQ(number(5e-324), "5e-324");
 }
 
+TEST(Numbers, InALineHaveCommasBetweenThemHoweverMany) {
+  std::vector<double> values;
+  std::string wanted, text = "[";
+  for (int i = 0; i < 500; ++i) {
+    values.push_back(i % 7 == 0 ? std::nan("") : i - 250.5);
+    wanted += (i > 0 ? "," : "") + (i % 7 == 0 ? "null" : number(values.back()));
+  }
+  append_numbers(text, values);
+  EXPECT_EQ(text, "[" + wanted);
+  append_numbers(text, {});
+  EXPECT_EQ(text, "[" + wanted);
+}
+
 RC_GTEST_PROP(Numbers, ReadBackWithinHalfAUnitOfTheLastDigit, ()) {
   const double mantissa = *rc::gen::inRange<int>(-1000000000, 1000000000) * 1e-9 + 1e-17;
   const int exponent = *rc::gen::inRange(-250, 250), digits = *rc::gen::inRange(1, 16);
@@ -100,6 +113,17 @@ RunResult small_result() {
 
 TEST(Histories, HaveUnitsAndNoRowThatIsNotFinite) {
   EXPECT_EQ(histories_csv(small_result()), "time [s],top.ux [m]\n0,0\n0.5,-0.002\n");
+}
+
+TEST(Thinning, LeavesOutWhatIsNotFinite) {
+  std::vector<double> x, y, thin_x, thin_y;
+  for (int i = 0; i < 1000; ++i) x.push_back(i), y.push_back(i % 3 == 0 ? std::nan("") : i == 500 ? 7 : std::sin(i));
+  y.back() = std::numeric_limits<double>::infinity();
+  thin_history(x, y, 100, thin_x, thin_y);
+  EXPECT_LE(thin_y.size(), 100u);
+  EXPECT_EQ(std::ranges::max(thin_y), 7);
+  EXPECT_TRUE(std::ranges::all_of(thin_y, [](double value) { return std::isfinite(value); }));
+  EXPECT_EQ(thin_x.size(), thin_y.size());
 }
 
 TEST(Thinning, KeepsEveryPeak) {

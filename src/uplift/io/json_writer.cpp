@@ -122,9 +122,13 @@ JsonWriter& JsonWriter::null() {
 JsonWriter& JsonWriter::numbers(std::span<const double> values) {
   separate();
   text_ += '[';
-  for (std::size_t i = 0; i < values.size(); ++i) {
-    if (i > 0) text_ += ',';
-    number(values[i]);
+  if (digits_ > 0) {
+    append_numbers(text_, values, digits_);
+  } else {
+    for (std::size_t i = 0; i < values.size(); ++i) {
+      if (i > 0) text_ += ',';
+      number(values[i]);
+    }
   }
   text_ += ']';
   return *this;

@@ -1,6 +1,8 @@
 #include "uplift/io/numbers.h"
 
+#include <algorithm>
 #include <array>
+#include <bit>
 #include <cassert>
 #include <charconv>
 #include <cmath>
@@ -22,9 +24,9 @@ const std::array<long double, 2 * power_limit + 1>& powers() {
   return table;
 }
 
-constexpr std::array<std::uint64_t, 17> whole_powers = [] {
-  std::array<std::uint64_t, 17> made{};
-  std::uint64_t value = 1;
+constexpr std::array<std::int64_t, 17> whole_powers = [] {
+  std::array<std::int64_t, 17> made{};
+  std::int64_t value = 1;
   for (auto& each : made) {
     each = value;
     value *= 10;
@@ -32,55 +34,56 @@ constexpr std::array<std::uint64_t, 17> whole_powers = [] {
   return made;
 }();
 
-/// "00", "01", ... "99"
-constexpr std::array<char, 200> pairs = [] {
-  std::array<char, 200> made{};
-  for (std::size_t i = 0; i < 100; ++i) {
-    made[2 * i] = static_cast<char>('0' + i / 10);
-    made[2 * i + 1] = static_cast<char>('0' + i % 10);
-  }
-  return made;
-}();
+/// The eight digits of a number below 10^8 as eight bytes, the first digit in the lowest: halves, quarters and single digits side by side.
+inline std::uint64_t eight_digits(std::uint64_t number) {
+  std::uint64_t fours = number / 10000 | (number % 10000) << 32;
+  const std::uint64_t hundreds = ((fours * 10486) >> 20) & 0x0000007f0000007f;
+  std::uint64_t twos = hundreds | (fours - 100 * hundreds) << 16;
+  const std::uint64_t tens = ((twos * 103) >> 10) & 0x000f000f000f000f;
+  return tens | (twos - 10 * tens) << 8;
+}
+
+constexpr int figures = 16;
+constexpr std::uint64_t zeros = 0x3030303030303030;  // "00000000"
 
 struct Decimal {
-  char figures[20];  // without trailing zeros
-  int kept = 0;      // how many
-  int exponent = 0;  // value = d.ddd... * 10^exponent
+  char text[2 * figures];  // 16 figures, and room to copy 16 from any of them
+  int kept = 0;            // figures before the zeros at the end
+  int exponent = 0;        // value = d.ddd... * 10^exponent
 };
 
-/// size = mantissa * 10^(exponent - digits + 1) with 10^(digits - 1) <= mantissa < 10^digits, size > 0 and not tiny.
-Decimal decimal(double size, int digits) {
+/// size > 0 and not tiny, rounded to so many digits. Without a branch that depends on the number.
+inline Decimal decimal(double size, int digits) {
+  static_assert(std::endian::native == std::endian::little);
   Decimal made;
-  int binary;
-  std::frexp(size, &binary);
-  made.exponent = static_cast<int>(std::floor((binary - 1) * 0.30102999566398120));
-  const auto scaled = [&] {
-    return static_cast<std::uint64_t>(size * powers()[static_cast<std::size_t>(digits - 1 - made.exponent + power_limit)] + 0.5L);
-  };
-  const std::uint64_t limit = whole_powers[static_cast<std::size_t>(digits)];
-  std::uint64_t mantissa = scaled();
-  if (mantissa >= limit) {  // the estimate of the exponent is at most one too small
+  const int binary = static_cast<int>(std::bit_cast<std::uint64_t>(size) >> 52) - 1023;
+  const auto power = [](int e) { return powers()[static_cast<std::size_t>(e + power_limit)]; };
+  made.exponent = (binary * 315653) >> 20;  // log10(2) * 2^20: right or one too small
+  made.exponent += size >= power(made.exponent + 1);
+  auto mantissa = static_cast<std::int64_t>(size * power(digits - 1 - made.exponent) + 0.5L);
+  if (mantissa >= whole_powers[static_cast<std::size_t>(digits)]) {  // 9.99... was rounded up
     ++made.exponent;
-    mantissa = scaled();
-    if (mantissa >= limit) {
-      ++made.exponent;
-      mantissa /= 10;
-    }
+    mantissa /= 10;
   }
-  int at = digits;
-  for (; at >= 2; at -= 2) {
-    std::memcpy(made.figures + at - 2, pairs.data() + 2 * (mantissa % 100), 2);
-    mantissa /= 100;
+  const auto filled = [&](int count) {
+    return static_cast<std::uint64_t>(mantissa * whole_powers[static_cast<std::size_t>(count - digits)]);
+  };
+  std::uint64_t first, last = 0;
+  if (digits <= figures / 2) {
+    first = eight_digits(filled(figures / 2));
+  } else {
+    const std::uint64_t all = filled(figures);
+    first = eight_digits(all / 100'000'000), last = eight_digits(all % 100'000'000);
   }
-  if (at == 1) made.figures[0] = static_cast<char>('0' + mantissa);
-  made.kept = digits;
-  while (made.kept > 1 && made.figures[made.kept - 1] == '0') --made.kept;
+  made.kept = last != 0 ? figures - std::countl_zero(last) / 8 : figures / 2 - std::countl_zero(first) / 8;
+  for (int part = 0; const std::uint64_t bytes : {first | zeros, last | zeros, zeros, zeros})
+    std::memcpy(made.text + 8 * part++, &bytes, sizeof bytes);
   return made;
 }
 
-char* copy(char* out, const char* from, int count) {
-  std::memcpy(out, from, static_cast<std::size_t>(count));
-  return out + count;
+/// Always as many figures as there can be: one move.
+void copy(char* out, const char* from) {
+  std::memcpy(out, from, figures);
 }
 
 }  // namespace
@@ -93,29 +96,27 @@ char* write_number(char* out, double value, int digits) {
     *out++ = '0';
     return out;
   }
-  if (value < 0) *out++ = '-';
+  *out = '-';
+  out += value < 0;
   const Decimal number = decimal(size, digits);
   const int kept = number.kept, exponent = number.exponent;
   if (exponent >= 0 && exponent < digits) {
     const int whole = exponent + 1;
-    if (kept <= whole) {
-      out = copy(out, number.figures, kept);
-      for (int i = kept; i < whole; ++i) *out++ = '0';
-      return out;
-    }
-    out = copy(out, number.figures, whole);
-    *out++ = '.';
-    return copy(out, number.figures + whole, kept - whole);
+    copy(out, number.text);
+    if (kept <= whole) return out + whole;
+    out[whole] = '.';
+    copy(out + whole + 1, number.text + whole);
+    return out + kept + 1;
   }
   if (exponent < 0 && exponent >= -5) {
-    out = copy(out, "0.0000", 1 - exponent);
-    return copy(out, number.figures, kept);
+    std::memcpy(out, "0.000000", 8);
+    copy(out + 1 - exponent, number.text);
+    return out + 1 - exponent + kept;
   }
-  *out++ = number.figures[0];
-  if (kept > 1) {
-    *out++ = '.';
-    out = copy(out, number.figures + 1, kept - 1);
-  }
+  out[0] = number.text[0];
+  out[1] = '.';
+  copy(out + 2, number.text + 1);
+  out += kept > 1 ? kept + 1 : 1;
   *out++ = 'e';
   return std::to_chars(out, out + 8, exponent).ptr;
 }
@@ -123,6 +124,20 @@ char* write_number(char* out, double value, int digits) {
 void append_number(std::string& text, double value, int digits) {
   char out[number_room];
   text.append(out, write_number(out, value, digits));
+}
+
+void append_numbers(std::string& text, std::span<const double> values, int digits) {
+  std::array<char, 64 * number_room> some;
+  char* out = some.data();
+  for (const double value : values) {
+    if (out > some.data() + some.size() - 2 * number_room) {
+      text.append(some.data(), out);
+      out = some.data();
+    }
+    out = std::isfinite(value) ? write_number(out, value, digits) : std::copy_n("null", 4, out);
+    *out++ = ',';
+  }
+  text.append(some.data(), values.empty() ? out : out - 1);
 }
 
 void append_exact(std::string& text, double value) {

@@ -49,11 +49,8 @@ void add_history(Chart& chart, const ReportRun& run, Column kind, int of, double
   const std::vector<double>* column = find_column(*run.result, kind, of);
   if (!column) return;
   Curve curve = curve_of(run);
-  curve.x = run.result->table.front();
-  curve.y = *column;
+  thin_history(run.result->table.front(), *column, points_per_curve, curve.x, curve.y);
   for (double& value : curve.y) value *= factor;
-  keep_finite(curve);
-  thin_history(curve.x, curve.y, points_per_curve);
   if (!curve.x.empty()) chart.curves.push_back(std::move(curve));
 }
 
@@ -273,11 +270,12 @@ void write_chart(JsonWriter& json, const Chart& chart, std::string_view origin, 
   json.end_array().end_object();
 }
 
-void thin_history(std::vector<double>& x, std::vector<double>& y, std::size_t most) {
-  const std::size_t count = y.size();
-  if (count <= most || most < 4) return;
-  const std::size_t buckets = most / 2;
-  std::vector<double> thin_x, thin_y;
+void thin_history(std::span<const double> x, std::span<const double> y, std::size_t most, std::vector<double>& thin_x,
+                  std::vector<double>& thin_y) {
+  const auto finite = [&](std::size_t i) { return std::isfinite(x[i]) && std::isfinite(y[i]); };
+  std::size_t count = y.size();
+  while (count > 0 && !finite(count - 1)) --count;
+  const std::size_t buckets = count <= most || most < 4 ? count : most / 2;
   thin_x.reserve(2 * buckets);
   thin_y.reserve(2 * buckets);
   const auto keep = [&](std::size_t i) {
@@ -285,15 +283,23 @@ void thin_history(std::vector<double>& x, std::vector<double>& y, std::size_t mo
     thin_y.push_back(y[i]);
   };
   for (std::size_t b = 0; b < buckets; ++b) {
-    const std::size_t first = b * count / buckets, last = (b + 1) * count / buckets;
+    std::size_t first = b * count / buckets;
+    const std::size_t last = (b + 1) * count / buckets;
+    while (first < last && !finite(first)) ++first;
+    if (first == last) continue;
     std::size_t least = first, largest = first;
     for (std::size_t i = first; i < last; ++i) {
-      if (y[i] < y[least]) least = i;
-      if (y[i] > y[largest]) largest = i;
+      if (y[i] < y[least] && finite(i)) least = i;
+      if (y[i] > y[largest] && finite(i)) largest = i;
     }
     keep(std::min(least, largest));
     if (least != largest) keep(std::max(least, largest));
   }
+}
+
+void thin_history(std::vector<double>& x, std::vector<double>& y, std::size_t most) {
+  std::vector<double> thin_x, thin_y;
+  thin_history(x, y, most, thin_x, thin_y);
   x = std::move(thin_x);
   y = std::move(thin_y);
 }
