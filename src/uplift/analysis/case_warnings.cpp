@@ -5,6 +5,7 @@
 #include <cmath>
 
 #include "uplift/analysis/case_mesh.h"
+#include "uplift/analysis/floor_spectra.h"
 #include "uplift/analysis/wording.h"
 #include "uplift/model/damping.h"
 #include "uplift/model/tuned_mass.h"
@@ -84,10 +85,12 @@ void warn_step(const Built& built, std::vector<std::string>& said) {
                     spoken(stage->step, "s"), fastest, spoken(1 / (20 * fastest), "s")));
 }
 
-/// Ten steps a period, as for any response by steps.
-void warn_floors(const Built& built, std::vector<std::string>& said) {
+/// Ten steps a period, as for any response by steps; and the shocks of rigid ground.
+void warn_floors(const RunSpec& spec, const Built& built, std::vector<std::string>& said) {
   const Stage* stage = dynamic_stage(built.plan);
   if (!stage || built.plan.floors.empty()) return;
+  if (built.plan.method->constrains() && !spec.bonded)
+    said.push_back(fmt::format("floor spectra of a run with constraints: {}", floors_of_constraints));
   double highest = 0;
   for (const FloorRequest& floor : built.plan.floors) highest = std::max(highest, floor.frequencies.back());
   if (const double resolved = 1 / (10 * stage->step); resolved < highest)
@@ -185,7 +188,7 @@ std::vector<std::string> warnings(const Case& read, const RunSpec& spec, const B
   warn_closure(built, said);
   warn_sides(read, said);
   warn_step(built, said);
-  warn_floors(built, said);
+  warn_floors(spec, built, said);
   warn_method(read, spec, built, said);
   warn_motions(built.motions, built.plan.stages, said);
   return said;

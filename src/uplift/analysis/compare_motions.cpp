@@ -14,7 +14,7 @@ using Quantity = MotionTable::Quantity;
 /// What is compared of a run, with its value.
 std::vector<std::pair<Quantity, double>> peaks_of(const RunSpec& spec, const Built& built, const RunResult& run) {
   std::vector<std::pair<Quantity, double>> peaks;
-  const Peak* top = built.top >= 0 ? find_peak(run, Request::Kind::displacement, built.top_sway()) : nullptr;
+  const Peak* top = top_motion(built, run);
   if (top) peaks.emplace_back(Quantity{"top", "Top motion", "m"}, std::abs(top->value));
   if (built.facts.empty()) return peaks;
   if (!spec.bonded) {

@@ -1,6 +1,7 @@
 #pragma once
 #include <optional>
 #include <string>
+#include <string_view>
 #include <vector>
 
 #include "uplift/analysis/case.h"
@@ -59,6 +60,11 @@ struct FloorAnswers {
   std::vector<FloorEnvelope> envelopes;  // of two sound runs at least
   bool any() const;
 };
+
+/// What is to be known of floor spectra of a constraint method; a clause without a head.
+inline constexpr std::string_view floors_of_constraints =
+    "rigid ground stops what comes down within one step, and this impulse is in the spectra; the acceleration of the body itself lacks it. "
+    "Do not believe high frequencies, where half the step changes them (`uplift trust`), or take a joint of finite stiffness";
 
 /// Spectra of the floors that a run has recorded; none of a failed run.
 std::vector<FloorSpectra> floor_spectra(const RunPlan& plan, const RunResult& result);

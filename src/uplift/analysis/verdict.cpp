@@ -14,6 +14,8 @@ namespace {
 
 using Column = Request::Kind;
 
+constexpr double round_off = 1e-9;  // of the energy put in: below, nothing was created that a ledger in double precision can tell
+
 int find_index(const RunResult& result, Request::Kind kind, int of) {
   for (std::size_t k = 0; k < result.columns.size(); ++k) {
     const Request& column = result.columns[k];
@@ -32,9 +34,8 @@ std::string at(const VerdictNumber& number) {
 /// Adds a fact for a number that there is: its value in the words of its unit, `detail` with its time behind.
 void say(const VerdictNumber* number, const std::string& label, std::string detail, Verdict& verdict, bool tile = false) {
   if (!number) return;
-  const bool share = number->quantity->name.ends_with("uplifted_ratio");
   if (number->time) detail += (detail.empty() ? "" : ", ") + at(*number);
-  verdict.facts.push_back({label, share ? percent(number->value) : spoken(number->value, number->quantity->unit), std::move(detail), tile});
+  verdict.facts.push_back({label, said(*number->quantity, number->value), std::move(detail), tile});
 }
 
 std::string of_interface(const Verdict& verdict, const InterfaceVerdict& said) {
@@ -66,7 +67,7 @@ void say_uplift(const Built& built, const RunResult& run, Verdict& verdict) {
   text += run.full_loss > 0 ? fmt::format(" All contact is lost during {} in total.", spoken(run.full_loss, "s"))
                             : " Contact is never lost altogether.";
   if (run.max_penetration > built.plan.gap_tolerance)
-    text += fmt::format(" Closed points interpenetrate by at most {}.", spoken(run.max_penetration, "m"));
+    text += fmt::format(" Where it is closed the joint is pressed together by at most {}.", spoken(run.max_penetration, "m"));
   verdict.paragraphs.push_back(std::move(text));
 }
 
@@ -133,35 +134,61 @@ void say_residual(Verdict& verdict) {
                                       {"residual_slip", "Slip left at the end"}}) {
       const VerdictNumber* left = find_number(said.numbers, name);
       if (!left) continue;
-      const std::string unit(left->quantity->unit);
-      verdict.facts.push_back({label + of_interface(verdict, said), spoken(left->value, unit),
-                               fmt::format("mean of the last tenth; it still moves by {}", spoken(left->swing.value_or(0), unit)), false});
+      const std::string_view unit = left->quantity->unit;
+      const double nothing = nothing_beside(unit), swing = left->swing.value_or(0);
+      const bool moves = swing >= nothing;
+      verdict.facts.push_back(
+          {label + of_interface(verdict, said),
+           moves ? spoken_within(left->value, swing, unit) : spoken(std::abs(left->value) < nothing ? 0 : left->value, unit),
+           moves ? fmt::format("mean of the last tenth; it still moves by +-{}", spoken_within(swing, swing, unit)) : "at rest", false});
     }
 }
 
-/// "; beside the bonded base the base moment is 13 % less, the top motion 33 % more": what the uplift does, for the headline.
-std::string consequence(const VerdictNumbers& numbers) {
-  std::string said;
-  const auto add = [&said](const char* what, const VerdictNumber* number) {
-    if (!number || number->bonded.value_or(0) == 0) return;
-    said += fmt::format("{} {}", said.empty() ? fmt::format("; beside the bonded base the {} is", what) : fmt::format(", the {}", what),
-                        beside(number->value, *number->bonded));
+/// "-1.5 to +2.1 %": how far the bands of all floors and dampings change beside the bonded run.
+std::string range_of_bands(const FloorRun& floors) {
+  double least = INFINITY, most = -INFINITY;
+  for (const std::vector<FloorChange>& floor : floors.beside)
+    for (const FloorChange& change : floor)
+      for (const FloorChange::Band& band : change.bands) least = std::min(least, band.change), most = std::max(most, band.change);
+  if (!(least <= most)) return "";
+  const auto shown = [](double share) { return fmt::format("{:+.{}f}", 100 * share, std::abs(share) < 0.0995 ? 1 : 0); };
+  return fmt::format("{} to {} %", shown(least), shown(most));
+}
+
+/// What the uplift does: forces, motion and floors beside the bonded base, then the user's limits.
+void say_consequence(const FloorRun* floors, Verdict& verdict) {
+  std::vector<std::string> parts;
+  const auto add = [&parts](const char* what, const VerdictNumber* number) {
+    if (number && number->bonded.value_or(0) != 0) parts.push_back(fmt::format("{} {}", what, beside(number->value, *number->bonded)));
   };
-  if (!numbers.interfaces.empty()) add("base moment", find_number(numbers.interfaces.front().numbers, "max_moment"));
-  add("top motion", find_number(numbers.whole, "max_top_motion"));
-  return said;
+  if (!verdict.numbers.interfaces.empty()) {
+    add("base moment", find_number(verdict.numbers.interfaces.front().numbers, "max_moment"));
+    add("base shear", find_number(verdict.numbers.interfaces.front().numbers, "max_shear"));
+  }
+  add("top motion", find_number(verdict.numbers.whole, "max_top_motion"));
+  if (const std::string range = floors ? range_of_bands(*floors) : ""; !range.empty()) {
+    parts.push_back("floor spectra " + range);
+    verdict.facts.push_back({"Floor spectra", range, "peaks of the frequency bands, beside the bonded base"});
+  }
+  if (!parts.empty()) verdict.consequence = fmt::format("Beside the bonded base: {}.", fmt::join(parts, ", "));
+  const auto& criteria = verdict.numbers.criteria;
+  if (criteria.empty()) return;
+  const auto met = std::ranges::count(criteria, CriterionResult::State::met, &CriterionResult::state);
+  verdict.consequence += fmt::format("{}{} of {} criteria met.", parts.empty() ? "" : " ", met, criteria.size());
 }
 
 void say_energy(const Built& built, const RunResult& run, Verdict& verdict) {
   const double scale = run.energy_scale;
   const double created = scale > 0 ? run.energy_created / scale : 0, lost = scale > 0 ? run.energy_lost / scale : 0;
-  verdict.facts.push_back({"Energy created by the computation", percent(created),
-                           fmt::format("of {}; limit {}", spoken(scale, "J"), percent(built.plan.created_limit))});
+  const bool too_much = created > built.plan.created_limit;
+  verdict.facts.push_back({"Energy created by the computation", created < round_off ? "none" : percent(created),
+                           fmt::format("of {}; limit {}", spoken(scale, "J"), percent(built.plan.created_limit)), too_much});
   std::string text =
-      created > built.plan.created_limit
+      too_much
           ? fmt::format("The computation created {} of the energy put in ({} at {}): these results are not to be used.", percent(created),
                         spoken(run.energy_created, "J"), spoken(run.energy_created_time, "s"))
-          : fmt::format("The energy balance closes: the computation created at most {} of the energy put in.", percent(created));
+      : created < round_off ? "The energy balance closes: the computation created none of the energy put in."
+                            : fmt::format("The energy balance closes: the computation created at most {} of the energy put in.", percent(created));
   const Energies& end = run.final_energy;
   if (scale > 0) {
     if (end.damping > 1e-6 * scale) text += fmt::format(" Damping took {}.", percent(end.damping / scale));
@@ -194,12 +221,22 @@ const std::vector<double>* find_column(const RunResult& result, Request::Kind ki
                                                                                  : &result.table[static_cast<std::size_t>(index) + 1];
 }
 
+const Peak* top_motion(const Built& built, const RunResult& result) {
+  const Peak* largest = nullptr;
+  for (int axis = 0; built.top >= 0 && axis < built.model.space.dimension; ++axis) {
+    if (axis == built.model.space.up()) continue;
+    const Peak* peak = find_peak(result, Column::displacement, built.model.at(built.top, built.model.space.dof(axis)));
+    if (peak && (!largest || std::abs(peak->value) > std::abs(largest->value))) largest = peak;
+  }
+  return largest;
+}
+
 const Peak* find_peak(const RunResult& result, Request::Kind kind, int of) {
   const int index = find_index(result, kind, of);
   return index < 0 || static_cast<std::size_t>(index) >= result.peaks.size() ? nullptr : &result.peaks[static_cast<std::size_t>(index)];
 }
 
-Verdict judge(const Built& built, const RunResult& run, const RunResult* bonded) {
+Verdict judge(const Built& built, const RunResult& run, const RunResult* bonded, const FloorRun* floors) {
   Verdict verdict;
   if (run.status == RunStatus::failed) {
     verdict.level = Verdict::Level::failed;
@@ -221,10 +258,10 @@ Verdict judge(const Built& built, const RunResult& run, const RunResult* bonded)
   if (run.status == RunStatus::interrupted) verdict.headline += fmt::format(" (interrupted at {})", spoken(run.end_time, "s"));
   if (run.status == RunStatus::failed && run.counts.steps == 0) return verdict;
   verdict.numbers = numbers_of(built, run, bonded);
-  if (verdict.level == Verdict::Level::uplift) verdict.headline += consequence(verdict.numbers);
   say_uplift(built, run, verdict);
   say_forces(built, run, verdict);
   if (bonded) say_beside_bonded(built, run, *bonded, verdict);
+  say_consequence(floors, verdict);
   say_tension(verdict);
   say_residual(verdict);
   say_energy(built, run, verdict);

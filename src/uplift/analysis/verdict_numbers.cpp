@@ -198,11 +198,10 @@ void add_bonded(const Base& base, const Base& bonded, std::vector<VerdictNumber>
 }
 
 void add_top(const Built& built, const RunResult& run, const RunResult* bonded, std::vector<VerdictNumber>& numbers) {
-  if (built.top < 0) return;
-  const Peak* motion = find_peak(run, Request::Kind::displacement, built.top_sway());
+  const Peak* motion = top_motion(built, run);
   if (!motion) return;
   add(numbers, "max_top_motion", std::abs(motion->value), motion->time);
-  const Peak* beside = bonded ? find_peak(*bonded, Request::Kind::displacement, built.top_sway()) : nullptr;
+  const Peak* beside = bonded ? top_motion(built, *bonded) : nullptr;
   if (!beside || beside->value == 0) return;
   numbers.back().bonded = std::abs(beside->value);
   add(numbers, "change_of_top_motion", std::abs(motion->value / beside->value) - 1);

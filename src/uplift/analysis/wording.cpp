@@ -9,13 +9,34 @@
 namespace uplift {
 namespace {
 
-/// Three significant digits, not in powers of ten between 0.001 and 100000.
+/// Decimals that show so many significant digits of a size.
+int decimals_of(double size, int significant) {
+  return std::clamp(significant - 1 - static_cast<int>(std::floor(std::log10(size * 1.0005))), 0, 6);
+}
+
+/// Three significant digits, not in powers of ten between 1e-6 and 100000.
 std::string digits(double value) {
   if (value == 0) return "0";
   const double size = std::abs(value);
-  if (size < 1e-3 || size >= 1e5) return fmt::format("{:.2e}", value);
-  const int decimals = std::clamp(2 - static_cast<int>(std::floor(std::log10(size * 1.0005))), 0, 6);
-  return fmt::format("{:.{}f}", value, decimals);
+  if (size < 1e-6 || size >= 1e5) return fmt::format("{:.2e}", value);
+  return fmt::format("{:.{}f}", value, decimals_of(size, 3));
+}
+
+struct Prefix {
+  double factor;
+  const char* text;
+};
+
+/// The prefix in which a size of this unit reads well. Lengths and angles stay in m and rad down to a tenth: 0.5 m, but 35.9 mm.
+Prefix prefix_of(double magnitude, std::string_view unit) {
+  static constexpr std::array<Prefix, 5> prefixes{{{1e9, "G"}, {1e6, "M"}, {1e3, "k"}, {1, ""}, {1e-3, "m"}}};
+  const double size = magnitude * 1.0005;  // what rounds to 1000 kN is 1 MN
+  const bool small_only = unit == "m" || unit == "rad" || unit == "s" || unit == "m/s" || unit == "rad/s";
+  const bool scales = small_only || unit == "N" || unit == "N m" || unit == "Pa" || unit == "J" || unit == "Pa/m" || unit == "N/m";
+  if (!scales || size == 0) return {1, ""};
+  for (const Prefix& prefix : prefixes)
+    if ((!small_only || prefix.factor <= 1) && size >= prefix.factor * (small_only && prefix.factor == 1 ? 0.1 : 1)) return prefix;
+  return prefixes.back();
 }
 
 }  // namespace
@@ -23,22 +44,20 @@ std::string digits(double value) {
 std::string spoken(double value, std::string_view unit) {
   if (!std::isfinite(value)) return "not finite";
   if (unit == "1") return digits(value);
-  struct Prefix {
-    double factor;
-    const char* text;
-  };
-  static constexpr std::array<Prefix, 5> prefixes{{{1e9, "G"}, {1e6, "M"}, {1e3, "k"}, {1, ""}, {1e-3, "m"}}};
-  const double size = std::abs(value) * 1.0005;  // what rounds to 1000 kN is 1 MN
-  const bool small_only = unit == "m" || unit == "rad" || unit == "s" || unit == "m/s" || unit == "rad/s";
-  const bool scales = small_only || unit == "N" || unit == "N m" || unit == "Pa" || unit == "J" || unit == "Pa/m" || unit == "N/m";
-  if (!scales || size == 0) return fmt::format("{} {}", digits(value), unit);
-  for (const Prefix& prefix : prefixes) {
-    if (small_only && prefix.factor > 1) continue;
-    // Lengths and angles stay in m and rad down to a tenth: 0.5 m, but 35.9 mm.
-    if (size >= prefix.factor * (small_only && prefix.factor == 1 ? 0.1 : 1))
-      return fmt::format("{} {}{}", digits(value / prefix.factor), prefix.text, unit);
-  }
-  return fmt::format("{} m{}", digits(value * 1e3), unit);
+  const Prefix prefix = prefix_of(std::abs(value), unit);
+  return fmt::format("{} {}{}", digits(value / prefix.factor), prefix.text, unit);
+}
+
+std::string spoken_within(double value, double resolution, std::string_view unit) {
+  const double largest = std::max(std::abs(value), resolution);
+  if (!std::isfinite(largest) || !(resolution > 0)) return spoken(value, unit);
+  const Prefix prefix = prefix_of(largest, unit);
+  const double shown = value / prefix.factor;
+  int decimals = decimals_of(resolution / prefix.factor, 2);
+  if (shown != 0) decimals = std::min(decimals, decimals_of(std::max(std::abs(shown), resolution / prefix.factor), 3));
+  std::string text = fmt::format("{:.{}f}", shown, decimals);
+  if (text.starts_with('-') && text.find_first_not_of("-0.") == text.npos) text.erase(0, 1);
+  return unit == "1" ? text : fmt::format("{} {}{}", text, prefix.text, unit);
 }
 
 std::string percent(double fraction) {

@@ -29,8 +29,7 @@ void print_runs(const Results& results, const ComparisonSummary& compared) {
       group = run.group;
       if (!group.empty()) say((i > 0 ? "\n" : "") + group);
     }
-    const int sway = results.built[i].top_sway();
-    const Peak* motion = sway >= 0 ? find_peak(run, Request::Kind::displacement, sway) : nullptr;
+    const Peak* motion = top_motion(results.built[i], run);
     const Agreement& agreement = compared.agreement[i];
     const bool counted = agreement.word == Agreement::Word::agrees || agreement.word == Agreement::Word::differs;
     const bool bonded = results.specs[i].bonded;  // it stretches instead of opening
@@ -122,7 +121,7 @@ int compare(const Options& options) {
   const RunResult* bonded = nullptr;
   for (std::size_t i = 0; i < results.runs.size(); ++i)
     if (results.specs[i].bonded && results.runs[i].group == results.runs.front().group) bonded = &results.runs[i];
-  results.verdict = judge(results.built.front(), results.runs.front(), bonded);
+  results.verdict = judge(results.built.front(), results.runs.front(), bonded, &results.floors.runs.front());
   results.warnings = warnings(loaded.read, results.specs.front(), results.built.front());
   add_motion_warnings(results);
   write_results(options, loaded, results, &compared, folder);
@@ -137,6 +136,7 @@ int compare(const Options& options) {
     say(fmt::format("\nsound runs agree when their peaks of {} lie within {} of the median of their group",
                     fmt::join(compared.columns, ", "), percent(compared.band)));
     say(fmt::format("verdict ({}): {}", results.runs.front().label, results.verdict.headline));
+    if (!results.verdict.consequence.empty()) say(results.verdict.consequence);
     say(fmt::format("results: {}/report.html", folder.path()));
   }
   if (interrupt_asked()) {

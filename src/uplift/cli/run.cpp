@@ -12,10 +12,10 @@ namespace {
 void say_criteria(const std::vector<CriterionResult>& results) {
   for (const CriterionResult& result : results) {
     const VerdictQuantity& quantity = *result.criterion.quantity;
-    const std::string unit(quantity.unit), of = result.interface.empty() ? "" : " of " + result.interface;
-    say(fmt::format("criterion {}: {}{} {}, limit {} ({})", to_string(result.state), quantity.name, of,
-                    result.value ? spoken(*result.value, unit) : "not computed", spoken(result.criterion.limit, unit),
-                    result.criterion.source));
+    const std::string of = result.interface.empty() ? "" : " of " + result.interface;
+    say(fmt::format("criterion {}: {}{} {}, at {} {} ({})", to_string(result.state), quantity.brief, of,
+                    result.value ? said(quantity, *result.value) : "not computed", quantity.at_least ? "least" : "most",
+                    said(quantity, result.criterion.limit), result.criterion.source));
   }
 }
 
@@ -36,7 +36,8 @@ int run(const Options& options) {
   }
   results.floors = floor_answers(results.built.front().plan, results.runs, results.specs);
   const RunResult& main = results.runs.front();
-  results.verdict = judge(results.built.front(), main, results.runs.size() > 1 ? &results.runs[1] : nullptr);
+  results.verdict = judge(results.built.front(), main, results.runs.size() > 1 ? &results.runs[1] : nullptr,
+                          &results.floors.runs.front());
   write_results(options, loaded, results, nullptr, folder);
 
   if (options.json) {
@@ -44,6 +45,7 @@ int run(const Options& options) {
   } else if (!options.quiet) {
     for (const std::string& warning : results.warnings) complain("warning: " + warning);
     say(results.verdict.headline);
+    if (!results.verdict.consequence.empty()) say(results.verdict.consequence);
     for (const Verdict::Fact& fact : results.verdict.facts) say(fmt::format("  {:<34} {:<14} {}", fact.label, fact.value, fact.detail));
     say_criteria(results.verdict.numbers.criteria);
     const double per_step = main.counts.steps > 0 ? 1e6 * main.wall / static_cast<double>(main.counts.steps) : 0;

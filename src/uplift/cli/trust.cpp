@@ -14,17 +14,47 @@
 namespace uplift::cli {
 namespace {
 
-void print_answer(const TrustAnswer& answer) {
-  std::vector<std::vector<std::string>> rows{{"number", "of", "value", "least", "most", "band", "moved most by"}};
+std::string hertz(double frequency) {
+  return fmt::format("{:.3g} Hz", frequency);
+}
+
+/// Every number from ... to; the half of it as a share where that has a meaning.
+void print_bands(const TrustAnswer& answer) {
+  const bool many = std::ranges::any_of(answer.bands, [&](const TrustBand& band) {
+    return !band.interface.empty() && band.interface != answer.bands.back().interface;
+  });
+  std::vector<std::vector<std::string>> rows{{"number", "value", "from", "to", "band", "moved most by"}};
+  if (many) rows.front().insert(rows.front().begin() + 1, "of");
   for (const TrustBand& band : answer.bands) {
     const std::optional<double> share = band.share();
-    rows.push_back({std::string(band.quantity->meaning), band.interface, said(*band.quantity, band.value), said(*band.quantity, band.least),
-                    said(*band.quantity, band.most), share ? "+-" + percent(*share) : "-", band.dominant});
+    std::vector<std::string>& row = rows.emplace_back(std::vector<std::string>{
+        std::string(band.quantity->brief), said(*band.quantity, band.value), said(*band.quantity, band.least),
+        said(*band.quantity, band.most), share ? "+-" + percent(*share) : "", band.dominant});
+    if (many) row.insert(row.begin() + 1, band.interface);
   }
   print_table(rows);
-  for (const TrustSpectrum& each : answer.spectra)
-    say(fmt::format("floor {}, {} damping: speaks to {:.3g} Hz{}", each.floor, percent(each.damping), each.speaks_to,
-                    each.limited_by.empty() ? ", the last frequency" : ", limited by " + each.limited_by));
+}
+
+/// How far each spectrum speaks, what ends it, and what would end it next.
+void print_spectra(const TrustAnswer& answer) {
+  if (answer.spectra.empty()) return;
+  say(fmt::format("\nfloor spectra: up to where every repetition lies within {} of the case", percent(answer.accepted)));
+  std::vector<std::vector<std::string>> rows{{"floor", "damping", "speaks to", "limited by", "else to", "by", "above broadened"}};
+  for (const TrustSpectrum& each : answer.spectra) {
+    const bool ends = !each.limited_by.empty(), next = ends && each.reaches.size() > 1;
+    const bool next_ends = next && each.reaches[1].to < each.frequencies.back();
+    rows.push_back({each.floor, percent(each.damping), hertz(each.speaks_to), ends ? each.limited_by : "last frequency",
+                    next ? hertz(each.reaches[1].to) : "", next_ends ? each.reaches[1].choice : next ? "last frequency" : "",
+                    !each.above_broadened         ? ""
+                    : *each.above_broadened < 5e-3 ? "nowhere"
+                                                   : fmt::format("{} at {}", percent(*each.above_broadened), hertz(each.above_at))});
+  }
+  print_table(rows);
+}
+
+void print_answer(const TrustAnswer& answer) {
+  print_bands(answer);
+  print_spectra(answer);
   for (const TrustRun& run : answer.runs)
     if (!run.counts()) say(fmt::format("{} is left out: {}: {}", run.label, to_string(run.status), run.reason));
   for (const TrustPlan::LeftOut& each : answer.left_out) say(fmt::format("not changed: {}: {}", each.choice, each.reason));
@@ -53,7 +83,7 @@ int trust(const Options& options) {
   }
   results.trust = &answer;
   results.floors = floor_answers(results.built.front().plan, results.runs, results.specs);
-  results.verdict = judge(results.built.front(), results.runs.front(), bonded);
+  results.verdict = judge(results.built.front(), results.runs.front(), bonded, &results.floors.runs.front());
   results.verdict.paragraphs.push_back(trust_sentence(answer));
   folder.write("trust.json", trust_json(answer));
   write_results(options, loaded, results, nullptr, folder);
@@ -63,6 +93,7 @@ int trust(const Options& options) {
   } else if (!options.quiet) {
     for (const std::string& warning : results.warnings) complain("warning: " + warning);
     say(results.verdict.headline);
+    if (!results.verdict.consequence.empty()) say(results.verdict.consequence);
     print_answer(answer);
     say(trust_sentence(answer));
     say(fmt::format("results: {}/report.html", folder.path()));

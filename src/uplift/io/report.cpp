@@ -1,5 +1,7 @@
 #include "uplift/io/report.h"
 
+#include <fmt/format.h>
+
 #include "uplift/io/report_motions.h"
 
 namespace uplift {
@@ -11,6 +13,16 @@ void write_section(JsonWriter& json, const char* id, std::string_view title, std
   json.begin_object().member("id", id).member("title", title).member("text", text).end_object();
 }
 
+std::string floors_text(const ReportInput& input) {
+  std::string text = "What equipment on a floor feels: largest pseudo-acceleration of a damped oscillator of each frequency that stands there.";
+  std::string names;
+  for (const ReportRun& run : input.runs)
+    if (run.built->plan.method->constrains() && !run.spec->bonded && run.result->group == input.runs.front().result->group)
+      names += (names.empty() ? "" : ", ") + run.result->label;
+  if (!names.empty()) text += fmt::format(" Warning: runs with constraints ({}): {}.", names, floors_of_constraints);
+  return text;
+}
+
 void write_sections(JsonWriter& json, const ReportInput& input) {
   json.begin_array();
   write_section(json, "rest", "After the shock", "How the base stands when the run ends, beside how it stood before.");
@@ -20,10 +32,7 @@ void write_sections(JsonWriter& json, const ReportInput& input) {
   write_section(json, "response", "Response", "Motion of the top and of the base.");
   write_section(json, "interface", "Interface",
                 "What the interface carries and how far it opens. Uplifted area is counted by gap, never by zero pressure.");
-  if (has_floors(input))
-    write_section(
-        json, "floors", "Floor spectra",
-        "What equipment on a floor feels: largest pseudo-acceleration of a damped oscillator of each frequency that stands there.");
+  if (has_floors(input)) write_section(json, "floors", "Floor spectra", floors_text(input));
   if (input.compared && input.runs.size() > 1 && input.runs.back().result->group != input.runs.front().result->group)
     write_section(
         json, "others", "Other dampings and motions",

@@ -15,7 +15,7 @@ void write_run_row(JsonWriter& json, const ReportInput& input, std::size_t i) {
   json.begin_object().member("group", run.group).member("run", run.label).member("name", run.name);
   json.member("status",
               std::string(to_string(run.status)) + (run.expected_to_fail && run.status == RunStatus::failed ? " (expected)" : ""));
-  const Peak* top = built.top >= 0 ? find_peak(run, Request::Kind::displacement, built.top_sway()) : nullptr;
+  const Peak* top = top_motion(built, run);
   if (top) json.member("top", std::abs(top->value)).member("top_time", top->time);
   if (!input.runs[i].spec->bonded)  // a bonded base stretches instead of opening
     json.member("ratio", run.max_uplifted_ratio.value).member("opening", run.max_opening.value);

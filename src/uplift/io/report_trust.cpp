@@ -16,13 +16,43 @@ void write_heads(JsonWriter& json, std::initializer_list<std::pair<const char*, 
   json.end_array();
 }
 
+/// How far each spectrum speaks, by choice.
+void write_trust_reaches(JsonWriter& json, const TrustAnswer& answer) {
+  if (answer.spectra.empty()) return;
+  json.begin_object().member("id", "trust_reaches").member("title", "How far the floor spectra speak").member("rowGroup", "floor");
+  json.member("caption",
+              fmt::format("Up to the stated frequency no repetition with the changed choice differs from the case by more than {} of the raw curve; a "
+                          "peak that only moves counts in full, which is what broadened spectra are made for. Elements and step: what they can "
+                          "carry, ten nodes a wavelength and ten steps a period. Above the broadened curve: by how much the raw curve of a "
+                          "repetition rises above the broadened one of the case, and where.",
+                          percent(answer.accepted)));
+  json.key("columns").begin_array();
+  write_column(json, {"damping", "Damping", "", "percent", 2});
+  write_column(json, {"to", "Speaks to", "Hz", "number", 3});
+  std::vector<std::string> choices;
+  for (const TrustSpectrum::Reach& reach : answer.spectra.front().reaches) choices.push_back(reach.choice);
+  for (const std::string& choice : choices) write_column(json, {choice.c_str(), choice.c_str(), "Hz", "number", 3});
+  write_column(json, {"above", "Above broadened", "", "text", 0});
+  json.end_array().key("rows").begin_array();
+  for (const TrustSpectrum& each : answer.spectra) {
+    json.begin_object().member("floor", each.floor).member("damping", each.damping).member("to", each.speaks_to);
+    for (const TrustSpectrum::Reach& reach : each.reaches) json.member(reach.choice, reach.to);
+    if (each.above_broadened)
+      json.member("above", *each.above_broadened < 5e-3 ? std::string("nowhere")
+                                                        : fmt::format("{} at {:.3g} Hz", percent(*each.above_broadened), each.above_at));
+    json.end_object();
+  }
+  json.end_array().end_object();
+}
+
 }  // namespace
 
 void write_trust_tables(JsonWriter& json, const TrustAnswer& answer) {
   json.begin_object().member("id", "trust").member("title", "How far the numbers can be trusted");
   json.member(
       "caption",
-      "Every number of the verdict over all runs in which one choice of the computation was changed. Band: half of it, over the value. "
+      "Every number of the verdict over all runs in which one choice of the computation was changed. Band: half of what lies between least "
+      "and most, over the value; numbers that are shares, changes or residuals themselves have least and most only. "
       "Moved most by: the choice whose change is farthest from the case as it stands.");
   write_heads(json, {{"number", "Number"},
                      {"of", "Interface"},
@@ -36,10 +66,11 @@ void write_trust_tables(JsonWriter& json, const TrustAnswer& answer) {
     const std::optional<double> share = band.share();
     json.begin_object().member("number", band.quantity->meaning).member("of", band.interface);
     json.member("value", said(*band.quantity, band.value)).member("least", said(*band.quantity, band.least));
-    json.member("most", said(*band.quantity, band.most)).member("band", share ? "±" + percent(*share) : "–");
+    json.member("most", said(*band.quantity, band.most)).member("band", share ? "±" + percent(*share) : "");
     json.member("by", band.dominant).end_object();
   }
   json.end_array().end_object();
+  write_trust_reaches(json, answer);
 
   json.begin_object().member("id", "trust_runs").member("title", "What was changed");
   json.member("caption", "One choice at a time; a run that failed counts for no band.");
@@ -65,9 +96,9 @@ std::vector<Chart> trust_charts(const TrustAnswer& answer) {
     Chart chart{fmt::format("trust_{}_{:g}", each.floor, 100 * each.damping),
                 "trust",
                 fmt::format("Floor {}, {} damping", each.floor, percent(each.damping)),
-                each.limited_by.empty() ? fmt::format("All runs lie within {} of the case at every frequency.", percent(answer.accepted))
-                                        : fmt::format("Speaks to {:.3g} Hz: beyond, the {} moves it by more than {}.", each.speaks_to,
-                                                      each.limited_by, percent(answer.accepted)),
+                each.limited_by.empty()
+                    ? fmt::format("All runs lie within {} of the case at every frequency.", percent(answer.accepted))
+                    : fmt::format("Speaks to {:.3g} Hz, limited by the {}.", each.speaks_to, each.limited_by),
                 {"Frequency", "Hz", true},
                 {"Pseudo-acceleration", "m/s2"},
                 {}};

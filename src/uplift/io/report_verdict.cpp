@@ -82,12 +82,14 @@ void write_interface(JsonWriter& json, const ReportInput& input, std::size_t k) 
 void write_criterion(JsonWriter& json, const CriterionResult& result) {
   const VerdictQuantity& quantity = *result.criterion.quantity;
   json.begin_object().member("label", quantity.meaning).member("interface", result.interface).member("state", to_string(result.state));
+  const bool share = is_share(quantity);
   json.key("value");
   if (result.value)
-    json.value(*result.value);
+    json.value(*result.value * (share ? 100 : 1));
   else
     json.null();
-  json.member("limit", result.criterion.limit).member("unit", quantity.unit).member("atLeast", quantity.at_least);
+  json.member("limit", result.criterion.limit * (share ? 100 : 1)).member("unit", share ? "%" : quantity.unit);
+  json.member("atLeast", quantity.at_least);
   json.member("source", result.criterion.source).end_object();
 }
 
@@ -132,6 +134,7 @@ Chart safety_chart(const char* id, const char* title, const char* caption, BaseH
 void write_verdict(JsonWriter& json, const ReportInput& input) {
   const Verdict& verdict = *input.verdict;
   json.begin_object().member("level", to_string(verdict.level)).member("headline", verdict.headline);
+  json.member("consequence", verdict.consequence);
   json.key("facts").begin_array();
   for (const Verdict::Fact& fact : verdict.facts)
     if (fact.tile) json.begin_object().member("label", fact.label).member("value", fact.value).member("detail", fact.detail).end_object();

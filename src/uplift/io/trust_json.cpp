@@ -30,7 +30,10 @@ void write_band(JsonWriter& json, const TrustBand& band) {
 
 void write_spectrum(JsonWriter& json, const TrustSpectrum& spectrum) {
   json.begin_object().member("floor", spectrum.floor).member("damping", spectrum.damping);
-  json.member("speaks_to", spectrum.speaks_to).member("limited_by", spectrum.limited_by);
+  json.member("speaks_to", spectrum.speaks_to).member("limited_by", spectrum.limited_by).key("reaches").begin_array();
+  for (const TrustSpectrum::Reach& reach : spectrum.reaches) json.begin_object().member("choice", reach.choice).member("to", reach.to).end_object();
+  json.end_array();
+  if (spectrum.above_broadened) json.member("above_broadened", *spectrum.above_broadened).member("above_at", spectrum.above_at);
   json.key("frequencies").numbers(spectrum.frequencies).key("value").numbers(spectrum.value);
   json.key("least").numbers(spectrum.least).key("most").numbers(spectrum.most).end_object();
 }
@@ -62,7 +65,7 @@ std::string trust_sentence(const TrustAnswer& answer) {
   for (const char* name : {"max_uplifted_ratio", "max_opening", "max_moment"})
     for (const TrustBand& band : answer.bands) {
       if (band.quantity->name != name) continue;
-      text += fmt::format("{}{} from {} to {}", text.empty() ? "Over all changed choices: " : ", ", band.quantity->meaning,
+      text += fmt::format("{}{} from {} to {}", text.empty() ? "Over all changed choices: " : ", ", band.quantity->brief,
                           said(*band.quantity, band.least), said(*band.quantity, band.most));
       break;  // of the first interface
     }

@@ -62,6 +62,7 @@ void write_floor_changes(JsonWriter& json, const FloorAnswers* floors) {
 
 void write_verdict_numbers(JsonWriter& json, const Verdict& verdict, const std::vector<RunResult>& runs, const FloorAnswers* floors) {
   json.begin_object().member("level", to_string(verdict.level)).member("headline", verdict.headline);
+  json.member("consequence", verdict.consequence);
   json.member("run", runs.empty() ? "" : runs.front().name);
   json.key("numbers");
   write_numbers(json, verdict.numbers.whole);

@@ -8,10 +8,13 @@
 #include <numeric>
 #include <thread>
 
-#include "uplift/analysis/wording.h"
+#include "uplift/analysis/case_mesh.h"
+#include "uplift/mesh/quality.h"
 
 namespace uplift {
 namespace {
+
+constexpr double points_per_wavelength = 10, steps_per_period = 10;
 
 /// What is kept of a repetition: numbers and spectra, not its model.
 struct Repetition {
@@ -106,12 +109,6 @@ std::optional<double> number_in(const Repetition& outcome, const VerdictQuantity
   return found->value;
 }
 
-/// Below this a number of the unit is nothing: it may differ by any share without meaning.
-double nothing(std::string_view unit) {
-  if (unit == "m" || unit == "rad") return 1e-9;
-  return unit == "1" ? 1e-6 : 0;
-}
-
 TrustBand band_of(const VerdictNumber& number, const std::string& interface, const std::vector<Repetition>& repetitions) {
   TrustBand band{number.quantity, interface, number.value, number.value, number.value, {}, {}};
   double largest = 0;
@@ -127,7 +124,7 @@ TrustBand band_of(const VerdictNumber& number, const std::string& interface, con
       band.dominant = repetitions[i].run.choice;
     }
   }
-  if (std::max(std::abs(band.least), std::abs(band.most)) < nothing(number.quantity->unit)) band.dominant.clear();
+  if (std::max(std::abs(band.least), std::abs(band.most)) < nothing_beside(number.quantity->unit)) band.dominant.clear();
   return band;
 }
 
@@ -144,29 +141,76 @@ std::vector<TrustBand> bands_of(const std::vector<Repetition>& repetitions) {
 
 // ---- spectra ----
 
-TrustSpectrum spectrum_of(std::size_t floor, std::size_t damping, const std::vector<Repetition>& repetitions, double accepted) {
+using Reach = TrustSpectrum::Reach;
+
+/// What the model itself can carry: shear waves with ten nodes a wavelength in every group of a mesh, ten steps a period.
+std::vector<Reach> resolutions(const Case& read, const RunPlan& plan) {
+  std::vector<Reach> found;
+  if (read.mesh) {
+    const CaseSolids materials(read.values, *read.mesh);
+    const std::vector<GroupQuality> qualities = quality_by_group(read.mesh->mesh);
+    double least = INFINITY;
+    for (const CaseSolids::Solid& solid : materials.solids())
+      for (const GroupQuality& quality : qualities)
+        if (quality.name == solid.table->text("group") && solid.section.material.density > 0)
+          least = std::min(least, highest_frequency(quality, solid.section.material.s_wave_speed(), points_per_wavelength));
+    if (std::isfinite(least)) found.push_back({"size of the elements", least});
+  }
+  double step = 0;
+  for (const Stage& stage : plan.stages)
+    if (stage.type == Stage::Type::dynamics) step = std::max(step, stage.step);
+  if (step > 0) found.push_back({"length of the step", 1 / (steps_per_period * step)});
+  return found;
+}
+
+/// Up to where a repetition's spectrum keeps within the accepted share of the case's [Hz].
+double reach_of(const Spectrum& raw, const Spectrum& other, double accepted) {
+  double to = 0;
+  for (std::size_t f = 0; f < raw.frequencies.size(); ++f) {
+    if (std::abs(value_at(other, raw.frequencies[f]) - raw.values[f]) > accepted * raw.values[f]) break;
+    to = raw.frequencies[f];
+  }
+  return to;
+}
+
+/// (T2) for every choice, and the resolutions below the last frequency.
+void add_reaches(std::size_t floor, std::size_t damping, const std::vector<Repetition>& repetitions, double accepted,
+                 const std::vector<Reach>& bounds, TrustSpectrum& made) {
+  const Spectrum& raw = repetitions.front().floors[floor].raw[damping];
+  for (std::size_t i = 1; i < repetitions.size(); ++i) {
+    if (!repetitions[i].run.counts()) continue;
+    const double to = reach_of(raw, repetitions[i].floors[floor].raw[damping], accepted);
+    const auto same = std::ranges::find(made.reaches, repetitions[i].run.choice, &Reach::choice);
+    if (same == made.reaches.end())
+      made.reaches.push_back({repetitions[i].run.choice, to});
+    else
+      same->to = std::min(same->to, to);
+  }
+  for (const Reach& bound : bounds) made.reaches.push_back({bound.choice, std::min(bound.to, raw.frequencies.back())});
+  std::ranges::stable_sort(made.reaches, {}, &Reach::to);
+  made.speaks_to = made.reaches.empty() ? raw.frequencies.back() : made.reaches.front().to;
+  if (made.speaks_to < raw.frequencies.back()) made.limited_by = made.reaches.front().choice;
+}
+
+TrustSpectrum spectrum_of(std::size_t floor, std::size_t damping, const std::vector<Repetition>& repetitions, double accepted,
+                          const std::vector<Reach>& bounds) {
   const FloorSpectra& base = repetitions.front().floors[floor];
   const Spectrum& raw = base.raw[damping];
-  TrustSpectrum made{base.name, raw.damping, raw.frequencies, raw.values, raw.values, raw.values, 0, {}};
-  bool speaks = true;
-  for (std::size_t f = 0; f < raw.frequencies.size(); ++f) {
-    double largest = 0;
-    std::string choice;
-    for (std::size_t i = 1; i < repetitions.size(); ++i) {
-      if (!repetitions[i].run.counts()) continue;
+  TrustSpectrum made{base.name, raw.damping, raw.frequencies, raw.values, raw.values, raw.values, 0, {}, {}, {}, 0};
+  for (std::size_t i = 1; i < repetitions.size(); ++i) {
+    if (!repetitions[i].run.counts()) continue;
+    for (std::size_t f = 0; f < raw.frequencies.size(); ++f) {
       const double value = value_at(repetitions[i].floors[floor].raw[damping], raw.frequencies[f]);
       made.least[f] = std::min(made.least[f], value);
       made.most[f] = std::max(made.most[f], value);
-      if (std::abs(value - raw.values[f]) > largest) {
-        largest = std::abs(value - raw.values[f]);
-        choice = repetitions[i].run.choice;
-      }
     }
-    if (speaks && largest > accepted * raw.values[f]) {
-      speaks = false;
-      made.limited_by = choice;
-    }
-    if (speaks) made.speaks_to = raw.frequencies[f];
+  }
+  add_reaches(floor, damping, repetitions, accepted, bounds, made);
+  if (base.broadened.empty()) return made;
+  made.above_broadened = 0;
+  for (std::size_t f = 0; f < raw.frequencies.size(); ++f) {
+    const double above = made.most[f] / value_at(base.broadened[damping], raw.frequencies[f]) - 1;
+    if (above > *made.above_broadened) made.above_broadened = above, made.above_at = raw.frequencies[f];
   }
   return made;
 }
@@ -184,15 +228,8 @@ std::string most_frequent(const std::vector<TrustBand>& bands) {
 
 }  // namespace
 
-std::string said(const VerdictQuantity& quantity, double value) {
-  if (std::abs(value) < nothing(quantity.unit)) value = 0;
-  const bool share =
-      quantity.name.starts_with("change_of") || quantity.name.ends_with("uplifted_ratio") || quantity.name == "linear_tension_ratio";
-  return share ? percent(value) : spoken(value, quantity.unit);
-}
-
 std::optional<double> TrustBand::share() const {
-  if (value == 0 || dominant.empty()) return std::nullopt;
+  if (value == 0 || dominant.empty() || near_zero(*quantity)) return std::nullopt;
   return 0.5 * (most - least) / std::abs(value);
 }
 
@@ -215,9 +252,10 @@ TrustAnswer trust(const Raw& raw, const Case& read, const MeshReader& read_mesh,
   made.complete = !watcher.stopped();
   if (!made.base.counts()) return made;
   made.bands = bands_of(repetitions);
+  const std::vector<Reach> bounds = resolutions(read, base.built.plan);
   for (std::size_t floor = 0; floor < repetitions.front().floors.size(); ++floor)
     for (std::size_t damping = 0; damping < repetitions.front().floors[floor].raw.size(); ++damping)
-      made.spectra.push_back(spectrum_of(floor, damping, repetitions, made.accepted));
+      made.spectra.push_back(spectrum_of(floor, damping, repetitions, made.accepted, bounds));
   made.dominant = most_frequent(made.bands);
   return made;
 }

@@ -27,7 +27,7 @@ struct TrustBand {
   double least = 0, most = 0;                 // over all runs that count, the case's own included
   std::string dominant;                       // choice that moves it most; empty when nothing does
   std::vector<std::optional<double>> values;  // per run; nothing where the run has no such number
-  /// Half the band as a share of the value; nothing where the value is zero or does not move.
+  /// Half the band as a share of the value; nothing where the value does not move or can be near zero (shares, changes, residuals).
   std::optional<double> share() const;
 };
 
@@ -36,8 +36,18 @@ struct TrustSpectrum {
   std::string floor;
   double damping = 0;
   std::vector<double> frequencies, value, least, most;  // Hz, m/s2
-  double speaks_to = 0;                                 // Hz: up to here all runs lie within the band that the case accepts; 0: nowhere
-  std::string limited_by;                               // choice that ends it; empty when it speaks everywhere
+  double speaks_to = 0;    // Hz: up to here all runs lie within the band that the case accepts; 0: nowhere
+  std::string limited_by;  // choice that ends it; empty when it speaks everywhere
+  /// How far each choice alone lets it speak [Hz], and what the mesh and the step can carry, the shortest first.
+  struct Reach {
+    std::string choice;
+    double to = 0;
+  };
+  std::vector<Reach> reaches;
+  /// Where the raw curves of the repetitions rise most above the broadened one of the case: as a share of it (0: nowhere), and the
+  /// frequency [Hz]. Nothing without broadening.
+  std::optional<double> above_broadened;
+  double above_at = 0;
 };
 
 struct TrustAnswer {
@@ -50,9 +60,6 @@ struct TrustAnswer {
   std::string dominant;   // the choice that is dominant most often; empty when there is none
   bool complete = false;  // not interrupted
 };
-
-/// A number as an engineer says it: shares and changes in per cent; what is nothing beside the precision of a run as 0.
-std::string said(const VerdictQuantity& quantity, double value);
 
 /// The run of the case as it stands.
 struct TrustBase {
