@@ -1,6 +1,6 @@
 // One figure: heading, live plot, legend, notes, caption, downloads. Drawn when scrolled near.
 import { chart_csv, download } from "./export";
-import { chart_svg } from "./chart_svg";
+import { chart_svg, dash_of } from "./chart_svg";
 import type { Curve, View } from "./curve";
 import { ChartModel } from "./chart_model";
 import { h, s } from "./dom";
@@ -12,11 +12,11 @@ import type { Runs } from "./runs";
 import type { Chart } from "./types";
 
 /** A dashed or plain line, or a dot, in the colour of a curve. */
-export function swatch(slot: number, dash: number[]): SVGElement {
+export function swatch(slot: number, dash: number[], on_paper = dash): SVGElement {
   return s(
     "svg",
     { class: "swatch", width: 22, height: 8, viewBox: "0 0 22 8", "aria-hidden": "true" },
-    s("path", { d: "M0 4H22", style: `stroke:${colour_variable(slot)}`, "stroke-width": 2.2, fill: "none", "stroke-dasharray": dash.join(" ") || null }),
+    s("path", { d: "M0 4H22", style: `stroke:${colour_variable(slot)};--print-dash:${on_paper.join(" ") || "none"}`, "stroke-width": 2.2, fill: "none", "stroke-dasharray": dash.join(" ") || null }),
   );
 }
 
@@ -32,6 +32,7 @@ export class ChartCard {
   private plot_: Plot | null = null;
   private readout_: Readout | null = null;
   private readonly number_: number;
+  private readonly say_origin_: boolean;
   private readonly plot_box_ = h("div", { class: "plot-live", tabindex: 0, role: "group" });
   private readonly print_box_ = h("div", { class: "plot-print", "aria-hidden": "true" });
   private readonly legend_ = h("div", { class: "legend", role: "group", "aria-label": "Curves" });
@@ -40,9 +41,10 @@ export class ChartCard {
   private readonly reset_ = h("button", { type: "button", hidden: true, onclick: () => this.plot_?.reset() }, "Reset zoom");
   private readonly wide_ = h("button", { type: "button", class: "tool-wide", "aria-pressed": "false", title: "Use the whole width" }, "Widen");
 
-  constructor(chart: Chart, runs: Runs, figure: number) {
+  constructor(chart: Chart, runs: Runs, figure: number, say_origin: boolean) {
     this.model = new ChartModel(chart, runs);
     this.number_ = figure;
+    this.say_origin_ = say_origin;
     this.plot_box_.setAttribute("aria-label", `Plot of ${chart.title}. Arrow keys move the cursor, plus and minus zoom, 0 resets.`);
     this.element = this.build();
     this.update_legend();
@@ -128,7 +130,7 @@ export class ChartCard {
     return h(
       "figure",
       { class: "card chart", id: `chart-${chart.id}` },
-      h("header", {}, h("h3", {}, h("span", { class: "fig" }, `Fig. ${this.number_}`), chart.title), origin_chip(chart.origin), tools),
+      h("header", {}, h("h3", {}, h("span", { class: "fig" }, `Fig. ${this.number_}`), chart.title), this.say_origin_ ? origin_chip(chart.origin) : null, tools),
       h("div", { class: "ylabel" }, this.model.ylabel),
       this.plot_box_,
       this.print_box_,
@@ -174,7 +176,7 @@ export class ChartCard {
             title: "Click: hide or show. Shift-click: only this curve.",
             onclick: (event) => this.toggle(curve, (event as MouseEvent).shiftKey),
           },
-          swatch(curve.slot, curve.dash),
+          swatch(curve.slot, curve.dash, dash_of(curve, true)),
           h("span", {}, curve.label),
           curve.failed ? h("em", {}, "failed") : null,
         ),

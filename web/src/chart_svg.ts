@@ -2,7 +2,7 @@
 // Always in the light colours.
 import { has_markers, trace, type Curve, type Pen, type Projection, type View } from "./curve";
 import type { ChartModel } from "./chart_model";
-import { light_colour } from "./palette";
+import { light_colour, print_dash } from "./palette";
 import { linear_ticks, log_ticks, tick_labels } from "./ticks";
 
 export interface SvgOptions {
@@ -86,11 +86,27 @@ function axes_svg(model: ChartModel, frame: Frame, ticks: Ticks): string {
   return out.join("");
 }
 
-function curve_svg(curve: Curve, view: View, frame: Frame): string {
+/** Shaken histories stay plain on paper: dashes between so many turns would only hide them. */
+function is_shaken(curve: Curve): boolean {
+  let turns = 0;
+  for (let i = 2; i < curve.length; i++) {
+    const [a, b, c] = [curve.y[i - 2] as number, curve.y[i - 1] as number, curve.y[i] as number];
+    if ((b - a) * (c - b) < 0) turns++;
+  }
+  return turns > 80;
+}
+
+/** The dash of a curve, on paper that of its slot where it has none. */
+export function dash_of(curve: Curve, on_paper: boolean): number[] {
+  return on_paper && curve.dash.length === 0 && !is_shaken(curve) ? print_dash(curve.slot) : curve.dash;
+}
+
+function curve_svg(curve: Curve, view: View, frame: Frame, on_paper: boolean): string {
   const pen = new PathPen();
   trace(curve, view, frame, pen);
   const colour = light_colour(curve.slot);
-  const dash = curve.dash.length > 0 ? ` stroke-dasharray="${curve.dash.join(" ")}"` : "";
+  const dashes = dash_of(curve, on_paper);
+  const dash = dashes.length > 0 ? ` stroke-dasharray="${dashes.join(" ")}"` : "";
   let out = `<path d="${pen.d}" fill="none" stroke="${colour}" stroke-width="1.3" stroke-linejoin="round"${dash}/>`;
   if (has_markers(curve)) {
     for (let i = 0; i < curve.length; i++) {
@@ -147,6 +163,6 @@ export function chart_svg(model: ChartModel, view: View, options: SvgOptions): s
     (standalone ? `<rect width="${width}" height="${height}" fill="#fff"/>` : "") +
     title + legend + axes_svg(model, frame, { x, y }) +
     `<clipPath id="${clip}"><rect x="${round(left)}" y="${round(top)}" width="${round(right - left)}" height="${round(bottom - top)}"/></clipPath>` +
-    `<g clip-path="url(#${clip})">${curves.map((curve) => curve_svg(curve, view, frame)).join("")}</g></svg>\n`
+    `<g clip-path="url(#${clip})">${curves.map((curve) => curve_svg(curve, view, frame, !standalone)).join("")}</g></svg>\n`
   );
 }

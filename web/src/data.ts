@@ -45,10 +45,12 @@ function complete(raw: Partial<Report>): Report {
     version: raw.version ?? "",
     created: raw.created ?? "",
     command: raw.command ?? "",
+    builtWith: raw.builtWith,
     case: { file: "", sha256: "", resolved: "", ...raw.case },
     verdict: {
       level: verdict?.level ?? "none",
       headline: verdict?.headline ?? "",
+      consequence: verdict?.consequence ?? "",
       facts: verdict?.facts ?? [],
       paragraphs: verdict?.paragraphs ?? [],
       run: verdict?.run ?? "",

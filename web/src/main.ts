@@ -5,7 +5,7 @@ import { read_report } from "./data";
 import { h } from "./dom";
 import { inspection } from "./inspect";
 import { model_card } from "./model";
-import { case_card, choices_card, empty_page, page_head } from "./page";
+import { choices_card, empty_page, page_head, repeat_card } from "./page";
 import { install_palette, run_names } from "./palette";
 import { run_bar } from "./runbar";
 import { Runs } from "./runs";
@@ -62,7 +62,7 @@ function chart_parts(report: Report, cards: ChartCard[]): Part[] {
   return [...report.sections, rest].flatMap((section) => {
     if (section.id === REST) return [];
     const mine = cards.filter(({ model }) => (section.id === "" ? !known.has(model.chart.section) : model.chart.section === section.id));
-    if (mine.length === 0 && !section.text) return [];
+    if (mine.length === 0) return [];
     const text = section.text ? h("p", { class: "section-text" }, section.text) : null;
     return [part(`section-${section.id || "rest"}`, section.title, text, h("div", { class: "grid" }, ...mine.map((c) => c.element)))];
   });
@@ -105,6 +105,10 @@ function follow_print(cards: Drawn[]): void {
     if (on === printing) return;
     printing = on;
     cards.forEach((card) => (on ? card.prepare_print() : card.end_print()));
+    document.querySelectorAll<HTMLDetailsElement>("details.in-print").forEach((box) => {
+      if (on) box.dataset["was"] = box.open ? "open" : "";
+      box.open = on || box.dataset["was"] === "open";
+    });
   };
   addEventListener("beforeprint", () => set(true));
   addEventListener("afterprint", () => set(false));
@@ -130,7 +134,9 @@ function show_report(host: HTMLElement, report: Report): void {
   document.title = `${report.title} – uplift`;
   const themes = new ThemeSwitch();
   const runs = new Runs(run_names(report), failed_runs(report));
-  const charts = in_page_order(report).map((chart, i) => new ChartCard(chart, runs, i + 1));
+  // Whose choice a figure is says something only where there are several answers.
+  const say_origin = new Set(report.charts.map((chart) => chart.origin)).size > 1;
+  const charts = in_page_order(report).map((chart, i) => new ChartCard(chart, runs, i + 1, say_origin));
   const tables = report.tables.map((table) => new TableCard(table, runs));
   const { model, animations, choices, space } = report;
   const animation = model && animations.length > 0 ? new AnimationCard(model, animations, runs) : null;
@@ -141,14 +147,14 @@ function show_report(host: HTMLElement, report: Report): void {
 
   const figures = chart_parts(report, charts);
   const parts: Part[] = [
-    { id: "verdict", title: "Verdict", element: verdict_card(report.verdict) },
+    { id: "verdict", title: "Verdict", element: verdict_card(report.verdict, report.charts) },
     ...after_shock(report, charts, rest_maps),
     ...(tables.length > 0 ? [part("tables", tables.length > 1 ? "Tables" : "Comparison", ...tables.map((t) => t.element))] : []),
     ...(model ? [part("model", animation ? "Model and motion" : "Model", h("div", { class: "grid" }, model_card(model), animation?.element ?? null))] : []),
     ...(space_card ? [part("space-model", space_card.frames > 0 ? "Model and motion" : "Model", space_card.element)] : []),
     ...figures,
     ...(choices.length > 0 ? [part("choices", "Choices", choices_card(choices))] : []),
-    part("case", "Case", case_card(report)),
+    part("case", "How to repeat this", repeat_card(report)),
   ];
   const toc = contents(parts);
   // The bar of runs sticks to the top while the figures pass, so both share one box.

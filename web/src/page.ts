@@ -11,6 +11,9 @@ function created_text(created: string): string {
   return `${match[1]} ${match[2]}${match[3] === "Z" ? " UTC" : match[3] ? ` ${match[3]}` : ""}`;
 }
 
+// So many rows are shown without a click.
+const FEW = 12;
+
 function theme_button(themes: ThemeSwitch): HTMLElement {
   const button = h("button", { type: "button", class: "theme-toggle", onclick: () => themes.toggle() });
   const update = (): void => {
@@ -37,17 +40,26 @@ export function page_head(report: Report, themes: ThemeSwitch): HTMLElement {
   );
 }
 
-/** What the paper gives, what this program chose, what the user typed. */
-export function choices_card(choices: Choice[]): HTMLElement {
+function choice_table(choices: Choice[]): HTMLElement {
   const rows = choices.map((choice) =>
     h("tr", {}, h("th", { scope: "row" }, choice.what), h("td", { class: "value" }, choice.value), h("td", {}, origin_chip(choice.origin)), h("td", { class: "note" }, choice.note ?? "")),
   );
   const heads = ["What", "Value", "Origin", "Note"].map((text) => h("th", { scope: "col" }, text));
+  return h("div", { class: "table-box", tabindex: 0, role: "region", "aria-label": "Choices" },
+    h("table", {}, h("thead", {}, h("tr", {}, ...heads)), h("tbody", {}, ...rows)));
+}
+
+/** What the paper gives and what this program chose; what the user typed stands behind it, closed when it is long. */
+export function choices_card(choices: Choice[]): HTMLElement {
+  const typed = choices.filter((choice) => choice.origin === "user" && !choice.note);
+  const others = choices.filter((choice) => !typed.includes(choice));
+  const apart = typed.length > FEW;
+  const shown = apart ? others : choices;
   return h(
     "figure",
     { class: "card table-card choices" },
-    h("div", { class: "table-box", tabindex: 0, role: "region", "aria-label": "Choices" },
-      h("table", {}, h("thead", {}, h("tr", {}, ...heads)), h("tbody", {}, ...rows))),
+    shown.length > 0 ? choice_table(shown) : null,
+    apart ? h("details", {}, h("summary", {}, `${typed.length} values as the case file gives them`), choice_table(typed)) : null,
   );
 }
 
@@ -64,23 +76,41 @@ async function copy(text: string, button: HTMLElement, source: HTMLElement): Pro
   setTimeout(() => (button.textContent = label), 1600);
 }
 
-export function case_card(report: Report): HTMLElement {
+function step(...words: (Node | string)[]): HTMLElement {
+  return h("li", {}, ...words);
+}
+
+/** Program, files with their hashes, commands, and the case with every default: enough to get these results again. */
+export function repeat_card(report: Report): HTMLElement {
+  const { case: from, command } = report;
   const lines: [string, string][] = [
-    ["Case file", report.case.file],
-    ["SHA-256", report.case.sha256],
-    ["Command", report.command],
-    ["Program", report.version ? `uplift ${report.version}` : ""],
+    ["Program", report.version ? `uplift ${report.version}${report.builtWith ? `, ${report.builtWith}` : ""}` : ""],
     ["Created", created_text(report.created)],
+    ["Case file", from.file],
+    ["SHA-256", from.sha256],
+    ...(from.inputs ?? []).flatMap(({ file, sha256 }): [string, string][] => [["Input file", file], ["SHA-256", sha256]]),
+    ["Command", command],
   ];
-  const source = h("pre", { tabindex: 0 }, h("code", {}, report.case.resolved));
+  const source = h("pre", { tabindex: 0 }, h("code", {}, from.resolved));
   const button = h("button", { type: "button", class: "copy" }, "Copy");
-  button.addEventListener("click", () => void copy(report.case.resolved, button, source));
+  button.addEventListener("click", () => void copy(from.resolved, button, source));
+  const files = [from.file, ...(from.inputs ?? []).map(({ file }) => file)].filter(Boolean);
+  const code = (text: string): HTMLElement => h("code", {}, text);
+  const subcommand = /^uplift (\w+)/.exec(command)?.[1] ?? "run";
   return h(
     "div",
     { class: "card case-card" },
     h("dl", { class: "pairs" }, ...lines.filter(([, v]) => v !== "").flatMap(([k, v]) => [h("dt", {}, k), h("dd", {}, h("code", {}, v))])),
-    report.case.resolved
-      ? h("details", {}, h("summary", {}, "Resolved case: every default filled in"), h("div", { class: "source" }, button, source))
+    from.resolved
+      ? h("ol", { class: "repeat" },
+          step("Take the same program: ", code("uplift --version"), ` says ${report.version}.`),
+          step("Check the files: ", code(`sha256sum ${files.join(" ")}`), " gives the hashes above."),
+          step("Run ", code(command), "."),
+          step("Without the files: save the resolved case below as ", code("case.toml"), " and run ", code(`uplift ${subcommand} case.toml`),
+            ". It holds every default that this version filled in, so a later version with other defaults takes the same ones", (from.inputs ?? []).length > 0 ? "; it still reads the input files." : "."))
+      : null,
+    from.resolved
+      ? h("details", { class: "in-print" }, h("summary", {}, "Resolved case: every default filled in"), h("div", { class: "source" }, button, source))
       : null,
   );
 }

@@ -12,6 +12,11 @@ export const SLOTS = LIGHT.length;
 export const DASHES: number[][] = [[], [7, 3], [2, 2.5], [9, 3, 2, 3], [4, 2]];
 export const FAILED_DASH = [3, 3];
 
+/** Dash of a plain curve on paper, where colours may be greys: by its slot. */
+export function print_dash(slot: number): number[] {
+  return DASHES[slot % DASHES.length] ?? [];
+}
+
 export function light_colour(slot: number): string {
   return LIGHT[slot % SLOTS] ?? "#000";
 }

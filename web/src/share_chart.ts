@@ -16,6 +16,11 @@ function top_of(largest: number): number {
   return [0.05, 0.1, 0.2, 0.4, 0.6, 0.8].find((top) => largest <= 0.95 * top) ?? 1;
 }
 
+/** "85 ms", "2.55 s". */
+function seconds(value: number): string {
+  return value > 0 && value < 0.1 ? `${number(1e3 * value, 3)} ms` : `${number(value, 3)} s`;
+}
+
 export function share_chart(base: BaseVerdict): HTMLElement | null {
   const { time, share, above } = base;
   const largest = share.reduce((m, v) => Math.max(m, v), 0);
@@ -38,10 +43,10 @@ export function share_chart(base: BaseVerdict): HTMLElement | null {
     s("path", { class: "line", d: line }),
     ...above.map((each) => s("path", { class: "threshold", d: `M${LEFT} ${px(y(each.threshold))}H${WIDTH - RIGHT}` })),
     s("circle", { class: "peak", cx: px(x(time[peak] as number)), cy: px(y(largest)), r: 3.5 }));
-  const words = above.map((each) => `above ${fixed(100 * each.threshold, 0)} % for ${number(each.duration, 3)} s`);
+  const words = above.map((each) => `above ${fixed(100 * each.threshold, 0)} % for ${seconds(each.duration)}`);
   if (base.lost.length > 0) {
     const sum = base.lost.reduce((m, [a, b]) => m + b - a, 0);
-    words.push(`without any contact ${base.lost.length === 1 ? "once" : `${base.lost.length} times`}, ${number(sum, 3)} s`);
+    words.push(`without any contact ${base.lost.length === 1 ? "once" : `${base.lost.length} times`}, ${seconds(sum)}`);
   }
   return h("figure", { class: "share-chart" },
     h("figcaption", {}, h("b", {}, "Uplifted area over time"), words.length > 0 ? ` · ${words.join(" · ")}` : ""), drawing);

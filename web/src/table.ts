@@ -16,6 +16,9 @@ interface Shown {
 
 const DEFAULT_DIGITS = 4;
 
+// Characters: longer texts take several lines.
+const LONG = 40;
+
 /** "failed", "failed (expected)", "completed", "overturned": class, mark and words of a status chip. */
 function status_parts(text: string): { kind: string; mark: string; expected: boolean } {
   const expected = /expect/i.test(text) && !/unexpect/i.test(text);
@@ -175,6 +178,7 @@ export class TableCard {
       return h(tag, { ...props, title: exact }, format(value / scale.factor));
     }
     const text = String(value);
+    if (text.length > LONG) props.class += " is-long";
     const known = this.runs_.names.includes(text);
     const dot = known ? h("i", { class: "dot", style: `background:${colour_variable(this.runs_.slot(text))}` }) : null;
     return h(tag, props, dot, text);

@@ -12,9 +12,12 @@ export interface CaseInfo {
   sha256: string;
   /** The case with every default filled in, as TOML text. */
   resolved: string;
+  /** Other files that were read: meshes, records. */
+  inputs?: { file: string; sha256: string }[];
 }
 
-export type VerdictLevel = "none" | "uplift" | "overturned" | "failed";
+/** "motion": the report is one of ground motions, without a structure. */
+export type VerdictLevel = "none" | "uplift" | "overturned" | "failed" | "motion";
 
 export interface Fact {
   label: string;
@@ -74,6 +77,8 @@ export interface FloorChange {
 export interface Verdict {
   level: VerdictLevel;
   headline: string;
+  /** And so what: beside the bonded run and the user's limits. */
+  consequence?: string;
   facts: Fact[];
   paragraphs: string[];
   /** Run that the verdict is about. */
@@ -338,6 +343,8 @@ export interface Report {
   version: string;
   created: string;
   command: string;
+  /** Compiler of the program. */
+  builtWith?: string;
   case: CaseInfo;
   verdict: Verdict;
   choices: Choice[];

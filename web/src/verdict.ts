@@ -3,21 +3,24 @@
 import { h, s, type Child } from "./dom";
 import { fixed, number, pick_scale } from "./format";
 import { share_chart } from "./share_chart";
-import type { BaseVerdict, Criterion, CriterionState, FloorChange, Verdict, VerdictLevel, VerdictRow } from "./types";
+import { spectrum_chart } from "./spectrum_chart";
+import type { BaseVerdict, Chart, Criterion, CriterionState, FloorChange, Verdict, VerdictLevel, VerdictRow } from "./types";
 
 const LEVEL_WORD: Record<VerdictLevel, string> = {
   none: "No uplift",
   uplift: "Uplift",
   overturned: "Overturned",
   failed: "Run failed",
+  motion: "Ground motion",
 };
 
-// A tick, a lifted edge, a toppled block, a cross: shape tells the level without colour.
+// A tick, a lifted edge, a toppled block, a cross, a shaken line: shape tells the level without colour.
 const LEVEL_SIGN: Record<VerdictLevel, string> = {
   none: "M5 12.5L10 17.5L19 7",
   uplift: "M3 20H21M4 17L20 10M20 10V5M17.5 7.5L20 5L22.5 7.5",
   overturned: "M3 20H21M6 20L13 6L20 9.5L14.5 20",
   failed: "M6 6L18 18M18 6L6 18",
+  motion: "M2 12H6L8 6L11 18L14 4L17 15L19 12H22",
 };
 
 function level_sign(level: VerdictLevel): SVGElement {
@@ -26,13 +29,24 @@ function level_sign(level: VerdictLevel): SVGElement {
 
 /** Keeps a number and its unit on one line. */
 function tied(text: string): string {
-  return text.replace(/(\d) (?=(?:%|[µmkMG]?(?:m|s|g|N|Pa|J|Hz|rad|t)(?![a-z])))/g, "$1\u00a0");
+  return text.replace(/(^|[ (])-(?=\d)/g, "$1\u2212").replace(/(\d) (?=(?:%|[µmkMG]?(?:m|s|g|N|Pa|J|Hz|rad|t)(?![a-z])))/g, "$1\u00a0");
 }
 
 /** "1.79 MN·m" in the prefix of the larger of both; shares in per cent. */
 export function spoken(value: number, unit: string, largest = Math.abs(value)): string {
   const scale = pick_scale(largest, unit);
   return number(value / scale.factor, 3) + (scale.unit ? `\u00a0${scale.unit}` : "");
+}
+
+// Metres, radians, shares: less is nothing beside the precision of a run.
+const NOTHING = 1e-9;
+
+/** A value with no more decimals than make sense beside a range in which it still moves. */
+function within(value: number, swing: number, unit: string, largest: number): string {
+  const scale = pick_scale(largest, unit);
+  const places = (size: number, digits: number): number => Math.max(0, digits - 1 - Math.floor(Math.log10(size)));
+  const decimals = Math.min(places(swing / scale.factor, 2), places(largest / scale.factor, 3));
+  return fixed(value / scale.factor, decimals) + (scale.unit ? `\u00a0${scale.unit}` : "");
 }
 
 const percent = (share: number): string => `${fixed(100 * share, Math.abs(share) < 0.0995 && share !== 0 ? 1 : 0)}\u00a0%`;
@@ -43,7 +57,7 @@ function change(value: number, bonded: number): string {
   const ratio = value / bonded;
   if (ratio >= 2) return `× ${number(ratio, 2)}`;
   const part = 100 * (ratio - 1);
-  return Math.abs(part) < 0.5 ? "the same" : `${part > 0 ? "+" : ""}${fixed(part, 0)}\u00a0%`;
+  return Math.abs(part) < 0.5 ? "±0\u00a0%" : `${part > 0 ? "+" : ""}${fixed(part, 0)}\u00a0%`;
 }
 
 function beside_table(base: BaseVerdict): HTMLElement | null {
@@ -99,21 +113,33 @@ function criteria_list(criteria: Criterion[]): HTMLElement {
     h("ul", {}, ...criteria.map(criterion_row)));
 }
 
-/** Floors in rows, frequency bands in columns. */
-function floor_table(floors: FloorChange[]): HTMLElement | null {
+/** The floor and damping whose spectrum changes most in a band. */
+function most_changed(floors: FloorChange[]): FloorChange | undefined {
+  const size = (floor: FloorChange): number => Math.max(0, ...floor.bands.map((each) => Math.abs(each.change_percent)));
+  return floors.reduce<FloorChange | undefined>((best, each) => (best && size(best) >= size(each) ? best : each), undefined);
+}
+
+/** Floors in rows, frequency bands in columns; beside it the spectrum that changes most. */
+function floor_block(floors: FloorChange[], charts: Chart[]): HTMLElement | null {
   if (floors.length === 0) return null;
   const bands = [...new Set(floors.flatMap((floor) => floor.bands.map(({ band }) => band)))];
+  const short = (band: string): string => band.replace(/ Hz$/, "").replace("below ", "< ").replace("above ", "> ").replace(" to ", "–");
   const cell = (floor: FloorChange, band: string): HTMLElement => {
     const found = floor.bands.find((each) => each.band === band);
     return h("td", {}, found ? change(1 + found.change_percent / 100, 1) : "–");
   };
+  const most = most_changed(floors);
+  const chart = most ? charts.find((each) => each.id === `floor_${most.floor}_${number(100 * most.damping, 4).replace(/\.?0+$/, "")}`) : undefined;
   return h("div", { class: "floors" },
-    h("h3", {}, "Floor spectra against the bonded run"),
-    h("div", { class: "floors-box", tabindex: 0, role: "region", "aria-label": "Change of the floor spectra" },
-      h("table", { class: "beside" },
-        h("thead", {}, h("tr", {}, h("th", { scope: "col" }, "Floor, damping"), ...bands.map((band) => h("th", { scope: "col" }, tied(band))))),
-        h("tbody", {}, ...floors.map((floor) =>
-          h("tr", {}, h("th", { scope: "row" }, `${floor.floor}, ${number(100 * floor.damping, 2)}\u00a0%`), ...bands.map((band) => cell(floor, band))))))));
+    h("h3", {}, "Floor spectra beside the bonded base: change of the peak in each band of frequency (Hz)"),
+    h("div", { class: "floors-columns" },
+      h("div", { class: "floors-box", tabindex: 0, role: "region", "aria-label": "Change of the floor spectra" },
+        h("table", { class: "beside" },
+          h("thead", {}, h("tr", {}, h("th", { scope: "col" }, "Floor, damping"), ...bands.map((band) => h("th", { scope: "col", title: band }, short(band))))),
+          h("tbody", {}, ...floors.map((floor) =>
+            h("tr", { class: floor === most && chart ? "is-drawn" : null },
+              h("th", { scope: "row" }, `${floor.floor}, ${number(100 * floor.damping, 2)}\u00a0%`), ...bands.map((band) => cell(floor, band))))))),
+      chart ? spectrum_chart(chart) : null));
 }
 
 function base_block(base: BaseVerdict, many: boolean): HTMLElement {
@@ -125,7 +151,7 @@ function base_block(base: BaseVerdict, many: boolean): HTMLElement {
       beside_table(base)));
 }
 
-export function verdict_card(verdict: Verdict): HTMLElement {
+export function verdict_card(verdict: Verdict, charts: Chart[]): HTMLElement {
   const facts = verdict.facts.map((fact) =>
     h("div", { class: "fact" }, h("dt", {}, fact.label), h("dd", {}, h("b", {}, tied(fact.value)), fact.detail ? h("small", {}, tied(fact.detail)) : null)),
   );
@@ -136,10 +162,10 @@ export function verdict_card(verdict: Verdict): HTMLElement {
     { class: `verdict verdict-${verdict.level}`, id: "verdict", "aria-label": "Verdict" },
     h("div", { class: "verdict-head" },
       level_sign(verdict.level),
-      h("div", {}, h("p", { class: "verdict-level" }, LEVEL_WORD[verdict.level] ?? verdict.level), h("h2", {}, tied(verdict.headline)))),
+      h("div", {}, h("p", { class: "verdict-level" }, LEVEL_WORD[verdict.level] ?? verdict.level), h("h2", {}, tied(verdict.headline)), verdict.consequence ? h("p", { class: "so-what" }, tied(verdict.consequence)) : null)),
     facts.length > 0 ? h("dl", { class: "facts" }, ...facts) : null,
     ...blocks,
-    floor_table(verdict.floors),
+    floor_block(verdict.floors ?? [], charts),
     verdict.interfaces.length > 0 ? criteria_list(verdict.criteria) : null,
     verdict.paragraphs.length > 0 ? h("div", { class: "prose" }, ...verdict.paragraphs.map((text) => h("p", {}, tied(text)))) : null,
   );
@@ -149,14 +175,15 @@ export function verdict_card(verdict: Verdict): HTMLElement {
 export function rest_table(verdict: Verdict): HTMLElement | null {
   const bases = verdict.interfaces.filter((base) => base.rest.length > 0);
   if (bases.length === 0) return null;
-  const value = ({ value: v, unit, label }: VerdictRow, largest: number): string => (label === "Uplifted area" ? percent(v) : spoken(v, unit, largest));
+  const value = ({ value: v, unit, label, swing }: VerdictRow, largest: number): string =>
+    label === "Uplifted area" ? percent(v) : swing !== undefined && swing >= NOTHING ? within(v, swing, unit, largest) : spoken(Math.abs(v) < NOTHING ? 0 : v, unit, largest);
   const rows = bases.flatMap((base) =>
     base.rest.map((row) => {
       const largest = Math.max(Math.abs(row.value), row.swing ?? 0);
       return h("tr", {},
         h("th", { scope: "row" }, bases.length > 1 ? `${row.label} (${base.name})` : row.label),
         h("td", {}, value(row, largest)),
-        h("td", {}, row.swing === undefined ? "–" : `± ${value({ ...row, value: row.swing }, largest)}`));
+        h("td", {}, row.swing === undefined || row.swing < NOTHING ? "–" : `± ${value({ ...row, value: row.swing }, largest)}`));
     }));
   return h("figure", { class: "card rest-card" },
     h("table", { class: "beside" },

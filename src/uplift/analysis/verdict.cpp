@@ -168,7 +168,7 @@ void say_consequence(const FloorRun* floors, Verdict& verdict) {
   add("top motion", find_number(verdict.numbers.whole, "max_top_motion"));
   if (const std::string range = floors ? range_of_bands(*floors) : ""; !range.empty()) {
     parts.push_back("floor spectra " + range);
-    verdict.facts.push_back({"Floor spectra", range, "peaks of the frequency bands, beside the bonded base"});
+    verdict.facts.push_back({"Floor spectra", range, "peaks of the bands, beside the bonded base"});
   }
   if (!parts.empty()) verdict.consequence = fmt::format("Beside the bonded base: {}.", fmt::join(parts, ", "));
   const auto& criteria = verdict.numbers.criteria;

@@ -35,6 +35,11 @@ Loaded load(const Options& options) {
   if (loaded.read.values.has("description")) from.subtitle = loaded.read.values.text("description");
   from.command = options.command;
   from.version = UPLIFT_VERSION;
+#if defined(__clang__)
+  from.built_with = "Clang " __clang_version__;
+#else
+  from.built_with = "GCC " __VERSION__;
+#endif
   from.created = fmt::format("{:%Y-%m-%dT%H:%M:%SZ}", fmt::gmtime(std::time(nullptr)));
   from.case_file = file;
   from.case_hash = sha256(read_file(file));

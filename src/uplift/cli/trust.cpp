@@ -28,8 +28,8 @@ void print_bands(const TrustAnswer& answer) {
   for (const TrustBand& band : answer.bands) {
     const std::optional<double> share = band.share();
     std::vector<std::string>& row = rows.emplace_back(std::vector<std::string>{
-        std::string(band.quantity->brief), said(*band.quantity, band.value), said(*band.quantity, band.least),
-        said(*band.quantity, band.most), share ? "+-" + percent(*share) : "", band.dominant});
+        std::string(band.quantity->brief), band.said(band.value), band.said(band.least),
+        band.said(band.most), share ? "+-" + percent(*share) : "", band.dominant});
     if (many) row.insert(row.begin() + 1, band.interface);
   }
   print_table(rows);

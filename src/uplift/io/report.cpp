@@ -53,13 +53,16 @@ std::string report_json(const ReportInput& input) {
   JsonWriter json(6);
   json.begin_object();
   json.member("format", "uplift-report-1").member("title", from.title).member("subtitle", from.subtitle).member("version", from.version);
-  json.member("created", from.created).member("command", from.command);
+  json.member("created", from.created).member("command", from.command).member("builtWith", from.built_with);
   json.key("case")
       .begin_object()
       .member("file", from.case_file)
       .member("sha256", from.case_hash)
       .member("resolved", from.resolved)
-      .end_object();
+      .key("inputs")
+      .begin_array();
+  for (const auto& [file, hash] : from.inputs) json.begin_object().member("file", file).member("sha256", hash).end_object();
+  json.end_array().end_object();
   json.key("verdict");
   write_verdict(json, input);
   json.key("choices");

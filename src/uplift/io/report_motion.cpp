@@ -212,7 +212,7 @@ void write_head(JsonWriter& json, const MotionReport& report) {
   json.member("format", "uplift-report-1").member("title", from.title).member("subtitle", from.subtitle).member("version", from.version);
   json.member("created", from.created).member("command", from.command);
   json.key("case").begin_object().member("file", from.case_file).member("sha256", from.case_hash).member("resolved", from.resolved);
-  json.end_object().key("verdict").begin_object().member("level", "Ground motion").member("headline", from.subtitle);
+  json.end_object().key("verdict").begin_object().member("level", "motion").member("headline", from.subtitle);
   write_facts(json, report);
   std::vector<std::string> paragraphs;
   for (const ShownMotion& shown : report.motions) {

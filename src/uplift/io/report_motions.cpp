@@ -156,7 +156,7 @@ void write_motion_numbers(JsonWriter& json, const Histories& motions, std::strin
   json.begin_object().member("id", "motions").member("title", "Motions");
   json.member("caption",
               fmt::format("{} PGV and PGD by exact integration of the acceleration, which is straight between its points; Arias: pi/(2 g) "
-                          "times the integral of a2; D5-95: from 5 % to 95 % of it; CAV: integral of |a|; Housner: integral of the "
+                          "times the integral of a²; D5-95: from 5 % to 95 % of it; CAV: integral of |a|; Housner: integral of the "
                           "pseudo-velocity, 5 % damping, over periods from 0.1 s to 2.5 s.",
                           caption));
   json.key("columns").begin_array();

@@ -65,8 +65,8 @@ void write_trust_tables(JsonWriter& json, const TrustAnswer& answer) {
   for (const TrustBand& band : answer.bands) {
     const std::optional<double> share = band.share();
     json.begin_object().member("number", band.quantity->meaning).member("of", band.interface);
-    json.member("value", said(*band.quantity, band.value)).member("least", said(*band.quantity, band.least));
-    json.member("most", said(*band.quantity, band.most)).member("band", share ? "±" + percent(*share) : "");
+    json.member("value", band.said(band.value)).member("least", band.said(band.least));
+    json.member("most", band.said(band.most)).member("band", share ? "±" + percent(*share) : "");
     json.member("by", band.dominant).end_object();
   }
   json.end_array().end_object();

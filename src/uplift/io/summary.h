@@ -13,6 +13,7 @@ namespace uplift {
 /// Where results come from.
 struct Provenance {
   std::string title, subtitle, command, version, created;   // created: date and time, ISO 8601
+  std::string built_with;                                   // compiler
   std::string case_file, case_hash;                         // SHA-256 of the case file
   std::vector<std::pair<std::string, std::string>> inputs;  // other input files with their SHA-256
   std::string resolved;                                     // the case with all defaults, TOML

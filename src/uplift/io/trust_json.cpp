@@ -66,7 +66,7 @@ std::string trust_sentence(const TrustAnswer& answer) {
     for (const TrustBand& band : answer.bands) {
       if (band.quantity->name != name) continue;
       text += fmt::format("{}{} from {} to {}", text.empty() ? "Over all changed choices: " : ", ", band.quantity->brief,
-                          said(*band.quantity, band.least), said(*band.quantity, band.most));
+                          band.said(band.least), band.said(band.most));
       break;  // of the first interface
     }
   if (text.empty()) return "Nothing was changed.";

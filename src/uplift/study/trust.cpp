@@ -9,6 +9,7 @@
 #include <thread>
 
 #include "uplift/analysis/case_mesh.h"
+#include "uplift/analysis/wording.h"
 #include "uplift/mesh/quality.h"
 
 namespace uplift {
@@ -110,7 +111,7 @@ std::optional<double> number_in(const Repetition& outcome, const VerdictQuantity
 }
 
 TrustBand band_of(const VerdictNumber& number, const std::string& interface, const std::vector<Repetition>& repetitions) {
-  TrustBand band{number.quantity, interface, number.value, number.value, number.value, {}, {}};
+  TrustBand band{number.quantity, interface, number.value, number.value, number.value, number.swing.value_or(0), {}, {}};
   double largest = 0;
   for (std::size_t i = 1; i < repetitions.size(); ++i) {
     const std::optional<double> value = number_in(repetitions[i], *number.quantity, interface);
@@ -231,6 +232,11 @@ std::string most_frequent(const std::vector<TrustBand>& bands) {
 std::optional<double> TrustBand::share() const {
   if (value == 0 || dominant.empty() || near_zero(*quantity)) return std::nullopt;
   return 0.5 * (most - least) / std::abs(value);
+}
+
+std::string TrustBand::said(double number) const {
+  const bool moves = !is_share(*quantity) && swing >= nothing_beside(quantity->unit) && swing > 0;
+  return moves ? spoken_within(number, swing, quantity->unit) : uplift::said(*quantity, number);
 }
 
 TrustAnswer trust(const Raw& raw, const Case& read, const MeshReader& read_mesh, const TrustBase& base, int threads, const Watch& watch) {

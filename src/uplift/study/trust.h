@@ -25,10 +25,13 @@ struct TrustBand {
   std::string interface;                      // empty: of the run
   double value = 0;                           // of the case as it stands
   double least = 0, most = 0;                 // over all runs that count, the case's own included
+  double swing = 0;                           // half of the range in which a residual of the case still moves; 0 for other numbers
   std::string dominant;                       // choice that moves it most; empty when nothing does
   std::vector<std::optional<double>> values;  // per run; nothing where the run has no such number
   /// Half the band as a share of the value; nothing where the value does not move or can be near zero (shares, changes, residuals).
   std::optional<double> share() const;
+  /// One of its values in words: a residual no finer than it still moves.
+  std::string said(double number) const;
 };
 
 /// A floor spectrum with its band, for one damping.
