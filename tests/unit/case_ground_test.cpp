@@ -366,6 +366,21 @@ TEST(CaseGround, SidesThatHoldTheWaveBackAreWarnedOf) {
   }
 }
 
+TEST(CaseGround, HeldAbsorbingFacesAreWarnedOf) {
+  const std::string text = soil + supports(false) + boundaries(false, "wave = \"SV\"", true) + stages(0.1, 2e-3);
+  for (const bool everywhere : {true, false}) {
+    std::string held = text;
+    if (everywhere)
+      for (std::size_t at = 0; (at = held.find("stages = \"static\"")) != held.npos;) held.replace(at, 17, "");
+    const Case read = read_text(held, ground(Cell::quad4, 2, false));
+    const RunSpec spec = runs_of_case(read).front();
+    const std::vector<std::string> said = warnings(read, spec, build(read, spec));
+    const auto of_faces =
+        std::ranges::count_if(said, [](const std::string& each) { return each.find("is held in the dynamic stages too") != each.npos; });
+    EXPECT_EQ(of_faces, everywhere ? 1 : 0);  // the base; rollers at the sides leave a direction free
+  }
+}
+
 TEST(CaseGround, TiesNeedAnOppositeSide) {
   Mesh mesh = ground(Cell::quad4, 2, false);
   const std::string rest = soil + supports(false) + bottom_only(boundaries(false, "wave = \"P\"", false)) + stages(0.1, 2e-3);

@@ -1,5 +1,6 @@
 #include "uplift/analysis/case_mesh.h"
 
+#include <fmt/format.h>
 #include <gtest/gtest.h>
 
 #include <algorithm>
@@ -331,6 +332,36 @@ TEST(CaseMesh, MistakesAreNamed) {
             "case.toml:43: load[0]: wanted a name for the load on a group, found none");
   EXPECT_EQ(refusal(good + "[[load]]\nname = \"a\"\ngroup = \"block\"\nforce = [1, 0]\n", mesh),
             "case.toml:45: load[0].group: wanted a group of edges, found a group of cells");
+}
+
+TEST(CaseMesh, MeshesThatWereDrawnOtherwiseAreNamed) {
+  const std::string good = column_text(1e9, side_supports);
+  Mesh turned = column(Cell::quad4);  // drawn in x and z
+  turned.dimension = 3;
+  for (Vec3& place : turned.nodes) place = {place.x(), 0, place.y()};
+  EXPECT_EQ(
+      refusal(good, turned),
+      "case.toml:4: mesh.file: wanted cells of space (tet, hex, wedge), or a mesh in the plane: x to the right, y up, all z equal, found "
+      "no solid cells, nodes with x from -1 to 1, y from 0 to 0, z from -6 to 4");
+  Mesh nameless = column(Cell::quad4);
+  nameless.groups = {{"1", nameless.groups.at("soil")}, {"2", nameless.groups.at("block")}};
+  EXPECT_NE(refusal(good, nameless).find("found no group \"interface\" in the mesh, whose groups are \"1\", \"2\""), std::string::npos)
+      << refusal(good, nameless);
+  nameless.groups.clear();
+  EXPECT_NE(refusal(good, nameless).find("found no group \"interface\" in the mesh, which has no groups"), std::string::npos);
+}
+
+TEST(CaseMesh, ExchangedSidesAreWarnedOf) {
+  for (const char* lower : {"soil", "block"}) {
+    const std::string text =
+        support::replaced(column_text(1e9, side_supports), "lower = [\"soil\"]", fmt::format("lower = [\"{}\"]", lower));
+    const Case read = check_case(read_toml_text(text, "case.toml"), "case.toml",
+                                 [](const std::string&, const Where&, const std::string&) { return column(Cell::quad4); });
+    const RunSpec spec = runs_of_case(read).front();
+    const std::vector<std::string> said = warnings(read, spec, build(read, spec));
+    EXPECT_EQ(std::ranges::count_if(said, [](const std::string& each) { return each.find("pulls the upper side off") != each.npos; }),
+              lower == std::string("block") ? 1 : 0);
+  }
 }
 
 }  // namespace

@@ -236,6 +236,25 @@ TEST(MeshSpace, CondensedStepEqualsTheMonolithicOne) {
   }
 }
 
+// Claim: the same of constraints with friction: nine node pairs under a block of bricks, uplift about both axes, slip in directions that
+// turn (those of the oracle come from Newton's method on states of open, sticking and slipping pairs): each step to 1e-8.
+TEST(MeshSpace, CondensedStepEqualsTheMonolithicOneUnderFriction) {
+  Block block = space_block();
+  block.contact = held_friction;
+  block.box.soil.width = {8, 10};
+  block.box.soil.layers = {{4, 4}};
+  block.box.block.height = 6;
+  block.box.block.size = 3;
+  block.duration = 0.06;
+  block.step = 4e-3;
+  const MeshRun run = block.run([](Built& built) {
+    built.plan.oracle_tolerance = 1e-8;
+    for (Stage& stage : built.plan.stages) stage.halvings = 0;
+  });
+  EXPECT_GT(run.peak("base.uplifted_ratio"), 0.1);
+  EXPECT_GT(run.peak("energy.interface_dissipated"), 1);  // J: by slip alone
+}
+
 // Claim: constraints with friction are the limit of stiff springs with friction, which are checked above: under weight and a biaxial push
 // in statics, with uplift and slip, motion and resultants come nearer in proportion to 1/K (order 1) and to 1e-4 at K = 1e13 Pa/m.
 TEST(MeshSpace, ConstraintsWithFrictionAreTheLimitOfStiffSprings) {

@@ -10,6 +10,7 @@
 
 #include "uplift/analysis/case_model.h"
 #include "uplift/base/text.h"
+#include "uplift/mesh/absent_group.h"
 #include "uplift/mesh/cell_quadrature.h"
 #include "uplift/mesh/cell_shapes.h"
 #include "uplift/mesh/soil_box.h"
@@ -94,9 +95,7 @@ const Group& group_named(const Mesh& mesh, const Values& table, std::string_view
   const std::string& name = table.text(key);
   const auto found = mesh.groups.find(name);
   if (found != mesh.groups.end()) return found->second;
-  std::vector<std::string> names;
-  for (const auto& [other, group] : mesh.groups) names.push_back(other);
-  fail(table, key, what, "no group " + in_quotes(name) + " in the mesh", nearest_name(name, names));
+  throw absent_group(mesh, name, table.where(key), table.path(key), what);
 }
 
 /// What a group holds, in the words of its mesh: cells fill it, edges (in space: faces) bound them.
@@ -153,6 +152,19 @@ std::string owner_of(const Mesh& mesh, CellId cell) {
   return describe_cell(mesh, cell);
 }
 
+/// Faces that do not lie in a plane of equal z are taken for a mesh in space, which has nothing to be solid.
+void check_solid(const Mesh& mesh, const Values& table) {
+  const auto fills = [&](const CellBlock& block) { return info(block.cell).dimension == mesh.dimension; };
+  if (mesh.dimension == 2 || std::ranges::any_of(mesh.blocks, fills)) return;
+  std::string found = "no solid cells";
+  for (const char axis : {'x', 'y', 'z'}) {
+    const auto along = [&](const Vec3& point) { return point[axis - 'x']; };
+    const auto [least, most] = std::ranges::minmax(mesh.nodes, {}, along);
+    found += fmt::format("{} {} from {:g} to {:g}", axis == 'x' ? ", nodes with" : ",", axis, along(least), along(most));
+  }
+  fail(table, "file", "cells of space (tet, hex, wedge), or a mesh in the plane: x to the right, y up, all z equal", found);
+}
+
 }  // namespace
 
 std::shared_ptr<const CaseMesh> mesh_of_case(const Values& root, const std::string& file, const MeshReader& read_mesh) {
@@ -173,6 +185,7 @@ std::shared_ptr<const CaseMesh> mesh_of_case(const Values& root, const std::stri
     made->from = (std::filesystem::path(file).parent_path() / mesh->text("file")).lexically_normal().string();
     made->mesh = read_mesh(made->from, where, mesh->has("name") ? mesh->text("name") : "");
     check_mesh(made->mesh, where);
+    check_solid(made->mesh, *mesh);
   } else {
     made->from = "soil_box";
     made->mesh = make_soil_box(mesh->table("soil_box"));

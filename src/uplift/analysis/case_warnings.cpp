@@ -54,6 +54,30 @@ void warn_sides(const Case& read, std::vector<std::string>& said) {
                       each.where().file, each.where().line, each.text("group")));
 }
 
+/// Absorbing faces on which a support holds the nodes in the dynamic stages too: nothing goes out or comes in there.
+void warn_held_faces(const Case& read, const Built& built, std::vector<std::string>& said) {
+  const int dimension = built.model.space.dimension;
+  for (const Values& face : read.values.tables("absorbing"))
+    for (const Values& support : read.values.tables("support")) {
+      if (!support.has("group") || support.text("group") != face.text("group") || support.text("stages") != "all") continue;
+      const std::vector<std::string>& fixed = support.texts("fixed");
+      const auto held = std::ranges::count_if(fixed, [](const std::string& unknown) { return unknown.starts_with("u"); });
+      const bool comes_in = face.has("incident");
+      if (comes_in || held == dimension)
+        said.push_back(fmt::format("{}:{}: {} is held in the dynamic stages too: no wave {} there; take stages = \"static\"",
+                                   support.where().file, support.where().line, face.text("group"),
+                                   comes_in ? "comes in or leaves" : "leaves"));
+    }
+}
+
+void warn_sides_exchanged(const Case& read, const Built& built, std::vector<std::string>& said) {
+  const std::vector<Values>& interfaces = read.values.tables("interface");
+  if (interfaces.size() != 1 || !interfaces.front().has("surface") || !(built.weight < 0)) return;
+  const Values& surface = interfaces.front().table("surface");
+  said.push_back(fmt::format("{}:{}: the dead load of {} pulls the upper side off the lower one: does `lower` name the side that bears?",
+                             surface.where("lower").file, surface.where("lower").line, spoken(-built.weight, "N")));
+}
+
 /// THEORY section 3: a closure stress above 1 % of the bearing pressure resists the closing of gaps noticeably.
 void warn_closure(const Built& built, std::vector<std::string>& said) {
   double area = 0;
@@ -187,6 +211,8 @@ std::vector<std::string> warnings(const Case& read, const RunSpec& spec, const B
   warn_magnitudes(read, said);
   warn_closure(built, said);
   warn_sides(read, said);
+  warn_held_faces(read, built, said);
+  warn_sides_exchanged(read, built, said);
   warn_step(built, said);
   warn_floors(spec, built, said);
   warn_method(read, spec, built, said);

@@ -1,5 +1,6 @@
 #include "uplift/dynamics/energy.h"
 
+#include <algorithm>
 #include <cstring>
 
 #include "uplift/math/small.h"
@@ -22,6 +23,21 @@ void InterfaceEnergy::update(const InterfaceProblem& problem, const Vector& open
     if (changed) lost += small::dot(block.batch.points, lost_.data(), block.area.data());
   }
   if (changed) dissipated = lost;
+}
+
+double friction_work(const InterfaceProblem& problem, const State& from, const State& to) {
+  double total = 0;
+  for (const Block& block : problem.blocks) {
+    if (block.cone == nullptr || !(block.cone->friction() > 0)) continue;
+    const int n = block.batch.points;
+    for (int i = 0; i < n; ++i) {
+      double work = 0;
+      for (int row = block.first + i; row < block.first + block.batch.normal(); row += n)
+        work += 0.5 * (from.force[row] + to.force[row]) * (to.opening[row] - from.opening[row]);
+      total += std::max(0.0, work);
+    }
+  }
+  return total;
 }
 
 }  // namespace uplift

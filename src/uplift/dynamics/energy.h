@@ -2,6 +2,7 @@
 #include <vector>
 
 #include "uplift/contact/problem.h"
+#include "uplift/model/model.h"
 
 namespace uplift {
 
@@ -12,10 +13,11 @@ namespace uplift {
 /// created.
 struct Energies {
   double kinetic = 0, strain = 0, stored = 0, interface_dissipated = 0, damping = 0, impact = 0, external = 0, residual = 0;
-  double plastic = 0;  // dissipated by yielding solids; their strain energy is the recoverable one
+  double plastic = 0;   // dissipated by yielding solids; their strain energy is the recoverable one
+  double friction = 0;  // under constraints; a part of interface_dissipated
 };
 
-/// What the interfaces' laws hold and have dissipated [J]; cones hold nothing.
+/// What the interfaces' laws hold and have dissipated [J]; cones hold nothing, and what their friction takes is friction_work().
 class InterfaceEnergy {
  public:
   /// Dissipation is summed again only when the memory has changed (for the SDM it costs an exponential per point).
@@ -25,5 +27,9 @@ class InterfaceEnergy {
  private:
   std::vector<double> last_, density_, lost_;
 };
+
+/// What the friction of constraints takes in a step [J]: the work of the mean force on the slip of every point, where it is positive (a
+/// force that turns round in the step may give energy back: that is created by the scheme and stays in the residual).
+double friction_work(const InterfaceProblem& problem, const State& from, const State& to);
 
 }  // namespace uplift

@@ -4,7 +4,6 @@
 
 #include <algorithm>
 #include <cmath>
-#include <functional>
 #include <set>
 
 #include "uplift/math/dense.h"
@@ -13,7 +12,14 @@ namespace uplift {
 namespace {
 
 /// Contact state of a cone point in the active set.
-enum class Contact : signed char { open, stick, slip_forward, slip_backward };
+enum class Contact : signed char { open, stick, slip };
+
+/// How the friction of a slipping point depends on its slip s (two components in space, one in the plane), from the last equilibrium:
+/// p_t = -mu p_n d + w (I - d d^T) s, which is Newton's method on p_t = -mu p_n s/|s|: w = -mu p_n/|s|, and (I - d d^T) s -> 0.
+struct Slip {
+  Vec2 direction = Vec2::Zero();
+  double turning = 0;  // w, N/m
+};
 
 class Monolithic final : public StepSolver {
  public:
@@ -33,13 +39,9 @@ class Monolithic final : public StepSolver {
     solution_.now = history;
     origin_ = gap_ + b_ * displacement;
     Outcome outcome;
-    for (const Block& block : problem_.blocks)
-      if (block.cone != nullptr && block.cone->friction() > 0 && block.batch.components == 3) {
-        outcome.why = "the monolithic solution knows friction under constraints in the plane only";
-        return outcome;
-      }
     for (const Contact guess : {Contact::open, Contact::stick}) {
       contact_.assign(points_, guess);
+      slip_.assign(points_, {});
       if (settle(right, increment, outcome)) return outcome;
     }
     return outcome;
@@ -49,7 +51,8 @@ class Monolithic final : public StepSolver {
   const InterfaceSolution& solution() const override { return solution_; }
 
  private:
-  /// Equilibrium and contact state in turns until the state stands still; when it comes back, one point changes at a time.
+  /// Equilibrium and contact state in turns until state and directions of slip stand still; when a state comes back, one point changes at
+  /// a time.
   bool settle(const Vector& right, Vector& increment, Outcome& outcome) {
     std::set<std::vector<Contact>> seen;
     bool single = false;
@@ -58,8 +61,9 @@ class Monolithic final : public StepSolver {
     for (int round = 0; round < 300; ++round) {
       if (!equilibrium(right, increment, outcome)) return false;
       const std::vector<Contact> before = contact_;
-      update_contact();
+      const double turned = update_contact();
       if (contact_ == before) {
+        if (turned > 1e-10) continue;
         share_pressures();
         outcome.converged = true;
         return true;
@@ -116,6 +120,7 @@ class Monolithic final : public StepSolver {
         if (block.law != nullptr) law_force.segment(block.first, block.rows()) = solution_.force.segment(block.first, block.rows());
       const std::vector<std::pair<int, double>> rows = constraint_rows();  // row, opening that it must have
       const Eigen::Index m = static_cast<Eigen::Index>(rows.size());
+      law_force += turning_forces(slope);
       Matrix system = Matrix::Zero(n + m, n + m);
       Vector load(n + m);
       system.topLeftCorner(n, n) = bulk + b.transpose() * slope * b;
@@ -140,6 +145,8 @@ class Monolithic final : public StepSolver {
       for (const Block& block : problem_.blocks)
         if (block.cone != nullptr) solution_.force.segment(block.first, block.rows()).setZero();
       for (Eigen::Index k = 0; k < m; ++k) add_multiplier(rows[static_cast<std::size_t>(k)].first, scale * step[n + k]);
+      solution_.opening = origin_ + b * increment;
+      solution_.force += turning_forces(slope);
       outcome.residual = step.head(n).norm() / std::max(increment.norm(), 1e-300);
       if (factor == 1 && outcome.residual <= 1e-14) return true;
       if (iteration > 15 && outcome.residual <= 1e-9) return true;  // stiff joints: all that round-off leaves
@@ -164,67 +171,108 @@ class Monolithic final : public StepSolver {
     return 1;
   }
 
+  /// The part w (I - d d^T) s of the friction of slipping points, in space; its slope is added.
+  Vector turning_forces(Matrix& slope) const {
+    Vector force = Vector::Zero(b_.rows());
+    each_point([&](const Block& block, int i, std::size_t point) {
+      const int n = block.batch.points, tangents = block.batch.components - 1;
+      if (contact_[point] != Contact::slip || tangents < 2) return;
+      const Vec2 d = slip_[point].direction;
+      const Eigen::Matrix2d across = slip_[point].turning * (Eigen::Matrix2d::Identity() - d * d.transpose());
+      const Vec2 turned = across * slip_of(block, i);
+      for (int r = 0; r < tangents; ++r) {
+        force[block.first + r * n + i] = turned[r];
+        for (int c = 0; c < tangents; ++c) slope(block.first + r * n + i, block.first + c * n + i) += across(r, c);
+      }
+    });
+    return force;
+  }
+
+  /// Tangential opening since the beginning of the step; the second component is 0 in the plane.
+  Vec2 slip_of(const Block& block, int i) const {
+    Vec2 slip = Vec2::Zero();
+    for (int c = 0; c < block.batch.components - 1; ++c) {
+      const int row = block.first + c * block.batch.points + i;
+      slip[c] = solution_.opening[row] - problem_.from[row];
+    }
+    return slip;
+  }
+
   /// Rows that are held: closed normals at zero, sticking tangents where they were.
   std::vector<std::pair<int, double>> constraint_rows() const {
     std::vector<std::pair<int, double>> rows;
-    each_point([&](const Block& block, int i, Contact contact) {
-      if (contact == Contact::open) return;
+    each_point([&](const Block& block, int i, std::size_t point) {
+      if (contact_[point] == Contact::open) return;
       rows.emplace_back(block.first + block.batch.normal() + i, 0.0);
-      if (contact == Contact::stick && block.cone->friction() > 0 && block.batch.components == 2)
-        rows.emplace_back(block.first + i, problem_.from[block.first + i]);
+      if (contact_[point] != Contact::stick || block.cone->friction() <= 0) return;
+      for (int row = block.first + i; row < block.first + block.batch.normal(); row += block.batch.points)
+        rows.emplace_back(row, problem_.from[row]);
     });
     return rows;
+  }
+
+  /// Calls visit(row, factor) for the tangents of the slipping point whose normal row this is: p_t = -mu d p_n = factor p_n.
+  template <class Visit>
+  void each_friction(int normal_row, const Visit& visit) const {
+    each_point([&](const Block& block, int i, std::size_t point) {
+      if (normal_row != block.first + block.batch.normal() + i || contact_[point] != Contact::slip) return;
+      for (int c = 0; c < block.batch.components - 1; ++c)
+        visit(block.first + c * block.batch.points + i, -block.cone->friction() * slip_[point].direction[c]);
+    });
   }
 
   /// How the multiplier of a row acts on the unknowns: a slipping point's normal force brings its friction along.
   Vector force_pattern(const Matrix& b, int row) const {
     Vector pattern = b.row(row).transpose();
-    each_point([&](const Block& block, int i, Contact contact) {
-      if (row != block.first + block.batch.normal() + i) return;
-      const double friction = block.cone->friction();  // p_t = +-mu |p_n| = -+mu p_n
-      if (contact == Contact::slip_forward) pattern -= friction * b.row(block.first + i).transpose();
-      if (contact == Contact::slip_backward) pattern += friction * b.row(block.first + i).transpose();
-    });
+    each_friction(row, [&](int tangent, double factor) { pattern += factor * b.row(tangent).transpose(); });
     return pattern;
   }
 
   void add_multiplier(int row, double value) {
     solution_.force[row] += value;
-    each_point([&](const Block& block, int i, Contact contact) {
-      if (row != block.first + block.batch.normal() + i) return;
-      const double friction = block.cone->friction();
-      if (contact == Contact::slip_forward) solution_.force[block.first + i] -= friction * value;
-      if (contact == Contact::slip_backward) solution_.force[block.first + i] += friction * value;
-    });
+    each_friction(row, [&](int tangent, double factor) { solution_.force[tangent] += factor * value; });
   }
 
-  void update_contact() {
-    double largest = 1e-300;
-    for (Eigen::Index i = 0; i < solution_.force.size(); ++i) largest = std::max(largest, std::abs(solution_.force[i]));
-    std::size_t point = 0;
-    for (const Block& block : problem_.blocks) {
-      const int n = block.batch.points;
-      for (int i = 0; i < n; ++i, ++point) {
-        if (block.cone == nullptr) continue;
-        Contact& contact = contact_[point];
-        const int normal = block.first + block.batch.normal() + i, tangent = block.first + i;
-        const double gap = solution_.opening[normal], pressure = -solution_.force[normal], friction = block.cone->friction();
-        if (contact == Contact::open) {
-          if (gap < -1e-12) contact = Contact::stick;
-          continue;
-        }
-        if (pressure < -1e-12 * largest) {
-          contact = Contact::open;
-          continue;
-        }
-        if (friction <= 0 || block.batch.components != 2) continue;
-        const double slip = solution_.opening[tangent] - problem_.from[tangent], force = solution_.force[tangent];
-        if (contact == Contact::stick && std::abs(force) > friction * pressure * (1 + 1e-9))
-          contact = force > 0 ? Contact::slip_forward : Contact::slip_backward;
-        else if ((contact == Contact::slip_forward && slip < -1e-14) || (contact == Contact::slip_backward && slip > 1e-14))
-          contact = Contact::stick;
+  /// New contact states; returns by how much the directions of slip turned.
+  double update_contact() {
+    const double largest = std::max(solution_.force.lpNorm<Eigen::Infinity>(), 1e-300);
+    double turned = 0;
+    each_point([&](const Block& block, int i, std::size_t point) {
+      Contact& contact = contact_[point];
+      const int normal = block.first + block.batch.normal() + i;
+      const double pressure = -solution_.force[normal], friction = block.cone->friction();
+      if (contact == Contact::open) {
+        if (solution_.opening[normal] < -1e-12) contact = Contact::stick;
+      } else if (pressure < -1e-12 * largest) {
+        contact = Contact::open;
+      } else if (friction > 0 && block.batch.components > 1) {
+        turned = std::max(turned, update_friction(block, i, point, friction * pressure));
       }
+    });
+    return turned;
+  }
+
+  /// A closed point: past the bound it slips along its force, against its direction of slip it sticks, else the direction follows the slip.
+  double update_friction(const Block& block, int i, std::size_t point, double bound) {
+    Slip& slip = slip_[point];
+    const Vec2 moved = slip_of(block, i);
+    if (contact_[point] == Contact::stick) {
+      Vec2 force = Vec2::Zero();
+      for (int c = 0; c < block.batch.components - 1; ++c) force[c] = solution_.force[block.first + c * block.batch.points + i];
+      if (force.norm() <= bound * (1 + 1e-9)) return 0;
+      contact_[point] = Contact::slip;
+      slip = {force.normalized(), 0};
+      return 1;
     }
+    if (moved.dot(slip.direction) < -1e-14) {
+      contact_[point] = Contact::stick;
+      return 1;
+    }
+    if (block.batch.components == 2 || moved.norm() < 1e-14) return 0;
+    const Vec2 direction = moved.normalized();
+    const double turned = (direction - slip.direction).norm() * bound;
+    slip = {direction, bound / moved.norm()};
+    return turned / std::max(solution_.force.lpNorm<Eigen::Infinity>(), 1e-300);
   }
 
   /// Least-index rule: of all changes only that of the first point is made.
@@ -239,7 +287,7 @@ class Monolithic final : public StepSolver {
   void share_pressures() {
     std::vector<int> touching;
     std::vector<double> area;
-    each_point([&](const Block& block, int i, Contact) {
+    each_point([&](const Block& block, int i, std::size_t) {
       const int row = block.first + block.batch.normal() + i;
       if (block.cone->friction() > 0 || solution_.opening[row] > 1e-11) return;
       touching.push_back(row);
@@ -278,11 +326,13 @@ class Monolithic final : public StepSolver {
     }
   }
 
-  void each_point(const std::function<void(const Block&, int, Contact)>& visit) const {
+  /// Calls visit(block, number in the block, number among all points) for every point under a cone.
+  template <class Visit>
+  void each_point(const Visit& visit) const {
     std::size_t point = 0;
     for (const Block& block : problem_.blocks)
       for (int i = 0; i < block.batch.points; ++i, ++point)
-        if (block.cone != nullptr) visit(block, i, contact_[point]);
+        if (block.cone != nullptr) visit(block, i, point);
   }
 
   const Sparse matrix_;
@@ -292,6 +342,7 @@ class Monolithic final : public StepSolver {
   InterfaceSolution solution_;
   std::size_t points_ = 0;
   std::vector<Contact> contact_;
+  std::vector<Slip> slip_;
   Vector origin_;
 };
 

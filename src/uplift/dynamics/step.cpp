@@ -133,7 +133,7 @@ void Stepper::start(State state, const Ledger* before) {
   energies_.strain = 0.5 * now_.displacement.dot(stiff_now_);
   if (newton_ != nullptr) energies_.strain += yielding_.energy(now_.displacement, now_.time, plastic_now_);
   energies_.stored = interface_energy_.stored;
-  energies_.interface_dissipated = interface_energy_.dissipated;
+  energies_.interface_dissipated = interface_energy_.dissipated + energies_.friction;
   impact_loss_ = energies_.impact;
   const double total = energies_.kinetic + energies_.strain + energies_.stored + energies_.interface_dissipated;
   origin_ = total + energies_.plastic + energies_.damping + energies_.impact - energies_.external - energies_.residual;

@@ -77,12 +77,16 @@ RunFrames::RunFrames(const Values& fields, const Case& read, const Built& built)
   const CaseSolids solids(read.values, *read.mesh);
   const Mesh& mesh = solids.mesh();
   const std::vector<std::vector<const Solid*>> elements = elements_of(solids, *model_);
-  for (const std::size_t i : wanted_solids(fields, solids)) {
-    const CaseSolids::Solid& solid = solids.solids()[i];
-    const std::string& group = solid.table->text("group");
-    blocks_.push_back(field_mesh(mesh, group, {group}, fields.where("groups")));
-    solids_.push_back(elements[i]);
-    assert(blocks_.back().cell == solid.cells);
+  const std::vector<std::size_t> wanted = wanted_solids(fields, solids);
+  std::vector<std::string> groups;
+  for (const std::size_t i : wanted) groups.push_back(solids.solids()[i].table->text("group"));
+  for (std::size_t k = 0; k < wanted.size(); ++k) {
+    blocks_.push_back(field_mesh(mesh, groups[k], {groups[k]}, fields.where("groups")));
+    CellMark& mark = blocks_.back().marks.front();  // programs that put the blocks together tell them apart by it
+    mark.values.assign(mark.values.size(), static_cast<int>(k));
+    mark.meanings = groups;
+    solids_.push_back(elements[wanted[k]]);
+    assert(blocks_.back().cell == solids.solids()[wanted[k]].cells);
   }
   std::size_t first_history = 0;
   for (const auto& element : model_->elements)

@@ -5,6 +5,7 @@
 #include <numeric>
 
 #include "uplift/base/text.h"
+#include "uplift/mesh/absent_group.h"
 #include "uplift/mesh/sides.h"
 
 namespace uplift {
@@ -32,9 +33,7 @@ class CellMarks {
 const Group& group_named(const Mesh& mesh, const std::string& name, const std::string& wanted, const Where& where) {
   const auto found = mesh.groups.find(name);
   if (found != mesh.groups.end()) return found->second;
-  std::vector<std::string> names;
-  for (const auto& [other, group] : mesh.groups) names.push_back(other);
-  throw InputError(where, "", wanted, "no group " + in_quotes(name) + " in the mesh", nearest_name(name, names));
+  throw absent_group(mesh, name, where, "", wanted);
 }
 
 /// One face of a surface: the surface's cell, and the sides of the cells below and above it.
