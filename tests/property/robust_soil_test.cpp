@@ -326,6 +326,7 @@ void judge(const Drawn& drawn, const Built& built, const RunResult& result, Tall
       EXPECT_LE(result.energy_created, built.plan.created_limit * result.energy_scale);
       break;
     case RunStatus::overturned:
+    case RunStatus::separated:
       ++tally.overturned;
       EXPECT_FALSE(result.reason.empty());
       break;

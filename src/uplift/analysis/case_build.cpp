@@ -225,12 +225,19 @@ void check_release(const Values& root, const RunPlan& plan) {
   }
 }
 
+/// N/m; of rigid bodies alone any number does.
+double largest_stiffness(const Model& model) {
+  const double largest = model.free() > 0 ? Vector(model.stiffness.diagonal()).maxCoeff() : 0;
+  return largest > 0 ? largest : 1e9;
+}
+
 /// Replaces laws that depend on the compliance of the model: the swept stiffness, the bonded joint.
 void adapt_laws(const Case& read, const RunSpec& spec, Built& built) {
   if (!spec.stiffness_ratio && !spec.bonded) return;
   const Stage* stage = dynamic_stage(built.plan);
-  if (!stage) return;
-  const std::vector<StiffnessRatio> ratios = stiffness_ratios(built.model, *stage, *bulk_solver(read));
+  if (!stage && spec.stiffness_ratio) fail(*spec.law, "", "a dynamic stage, at whose step k F_ii is taken", "static stages alone");
+  std::vector<StiffnessRatio> ratios;
+  if (stage) ratios = stiffness_ratios(built.model, *stage, *bulk_solver(read));
   for (std::size_t k = 0; k < built.model.interfaces.size(); ++k) {
     Interface& interface = built.model.interfaces[k];
     const Values& behaviour = *built.behaviours[k];
@@ -240,7 +247,8 @@ void adapt_laws(const Case& read, const RunSpec& spec, Built& built) {
       if (interface.law)
         interface.law->closed_stiffness(interface.batch.components, stiffness.data());
       else  // a constraint: stiff beside the structure
-        std::fill(stiffness.begin(), stiffness.end(), 1e3 / (ratios[k].compliance * interface.area.mean()));
+        std::fill(stiffness.begin(), stiffness.end(),
+                  1e3 * (stage ? 1 / ratios[k].compliance : largest_stiffness(built.model)) / interface.area.mean());
       derived = std::make_unique<const Values>(bonded_behaviour(behaviour, stiffness));
     } else if (&behaviour == spec.law) {
       const std::string& key = spec.stiffness_parameter;
@@ -294,6 +302,25 @@ std::shared_ptr<const LinearSolver> bulk_solver(const Case& read) {
 
 namespace {
 
+/// Diagonal of the box around places [m].
+double extent(const std::vector<Place>& places) {
+  if (places.empty()) return 0;
+  Vec3 least = places.front(), most = least;
+  for (const Vec3& place : places) least = least.cwiseMin(place), most = most.cwiseMax(place);
+  return (most - least).norm();
+}
+
+/// A base of width B that turns by the limit theta opens by B theta at its toe: as far, everywhere, the displacement is no smaller beside
+/// the structure than there.
+double separation_limit(const Values& limits, const Model& model) {
+  if (limits.has("separation")) return limits.number("separation");
+  std::vector<Place> points, nodes;
+  for (const Interface& interface : model.interfaces) points.insert(points.end(), interface.position.begin(), interface.position.end());
+  for (const Node& node : model.nodes) nodes.push_back(node.position);
+  const double base = extent(points);
+  return limits.number("rotation") * (base > 0 ? base : extent(nodes));
+}
+
 InterfaceSolver interface_solver(const std::string& word) {
   return word == "direct" ? InterfaceSolver::direct : word == "krylov" ? InterfaceSolver::krylov : InterfaceSolver::automatic;
 }
@@ -314,7 +341,7 @@ Built build(const Case& read, const RunSpec& spec) {
   const bool released = any_released(root);
   const bool rests = std::ranges::any_of(built.plan.stages, [](const Stage& stage) { return stage.type == Stage::Type::statics; });
   if (!released) check_static(built.model, !rests);
-  check_dynamic(built.model);
+  if (dynamic_stage(built.plan)) check_dynamic(built.model);
   built.motions = motions_used(root, read.records, spec.motion);
 
   RunPlan& plan = built.plan;
@@ -336,6 +363,7 @@ Built build(const Case& read, const RunSpec& spec) {
   plan.created_limit = root.table("energy").number("created_limit");
   plan.stop_at_limit = root.table("energy").flag("stop_at_limit");
   plan.rotation_limit = root.table("limits").number("rotation");
+  plan.separation_limit = separation_limit(root.table("limits"), built.model);
   plan.gap_tolerance = root.table("limits").number("gap_tolerance");
   for (const InterfaceFacts& facts : built.facts) plan.bases.push_back(facts.upper);
   plan.every = root.table("output").integer("every");

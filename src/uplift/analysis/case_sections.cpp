@@ -141,6 +141,12 @@ const Section& limits_section() {
                     "a body that turns more, or a surface whose sides turn more against each other, is overturned: the run ends")
                  .positive()
                  .standard(0.15),
+             number("separation", "m",
+                    "an interface that is open everywhere by more than this beyond its initial gap is separated: the run ends. Absent: "
+                    "rotation times the largest distance between points of the interfaces (of nodes, where there is one point), the gap "
+                    "at the toe of a base of that width when it turns by the limit")
+                 .positive()
+                 .optional(),
              number("gap_tolerance", "m", "a gap larger than this counts as uplifted").positive().standard(1e-9)}};
   return s;
 }

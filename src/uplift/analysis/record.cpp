@@ -130,9 +130,16 @@ BasePose InterfaceViewer::pose(const State& state, std::size_t interface, const 
   return pose;
 }
 
-Recorder::Recorder(const Model& model, const RunPlan& plan, const Stepper& stepper, const std::vector<InterfaceView>& views, long steps,
-                   double step, RunResult& result)
-    : model_(model), plan_(plan), stepper_(stepper), views_(views), result_(result), floors_(model, plan, steps, step, result) {
+Recorder::Recorder(const Model& model, const RunPlan& plan, const State& state, const Energies& energies, const Stepper* stepper,
+                   const std::vector<InterfaceView>& views, long steps, double step, RunResult& result)
+    : model_(model),
+      plan_(plan),
+      state_(state),
+      energies_(energies),
+      stepper_(stepper),
+      views_(views),
+      result_(result),
+      floors_(model, plan, steps, step, result) {
   wants_acceleration_ = floors_.any();
   const std::size_t expected_rows = static_cast<std::size_t>(steps / plan.every) + 2;
   const bool fresh = result_.table.empty();  // a later dynamic stage goes on in the same table
@@ -151,11 +158,12 @@ Recorder::Recorder(const Model& model, const RunPlan& plan, const Stepper& stepp
     most_.push_back(std::abs(result_.peaks[most_.size()].value));
   }
   now_.resize(most_.size());
+  if (stepper_ == nullptr) acceleration_ = Vector::Zero(model.free());
 }
 
 Recorder::Source Recorder::source_of(const Request& request, const SparseRows& reduction) const {
   using What = Request::Kind;
-  const Energies& energies = stepper_.energies();
+  const Energies& energies = energies_;
   const InterfaceView* view = views_.data() + request.interface;
   const auto entry_of = [&](const Vector State::*vector) {  // of one free unknown, or made from several
     Source source{.vector = vector};
@@ -245,7 +253,7 @@ double Recorder::made(std::size_t column) const {
   using What = Request::Kind;
   const Request& request = plan_.requests[column];
   const Source& source = sources_[column];
-  const State& state = stepper_.state();
+  const State& state = state_;
   const auto sum = [&](const Vector& q, int derivative) {
     if (source.moved) return model_.full(request.unknown, q, derivative, state.time);
     double total = 0;
@@ -271,8 +279,8 @@ double Recorder::made(std::size_t column) const {
 }
 
 void Recorder::record(bool row) {
-  const State& state = stepper_.state();
-  if (wants_acceleration_) stepper_.acceleration(acceleration_);
+  const State& state = state_;
+  if (wants_acceleration_ && stepper_ != nullptr) stepper_->acceleration(acceleration_);
   floors_.record(acceleration_, state.time);
   double* now = now_.data();
   const Source* source = sources_.data();

@@ -38,9 +38,9 @@ class InterfaceViewer {
 class Recorder {
  public:
   /// For so many steps [s] of a dynamic stage: room is made for all of them. `views` holds what the interfaces look like whenever record is
-  /// called; it keeps its place, as the energies of the stepper do.
-  Recorder(const Model& model, const RunPlan& plan, const Stepper& stepper, const std::vector<InterfaceView>& views, long steps,
-           double step, RunResult& result);
+  /// called; it keeps its place, as the state and the energies do. `stepper` says what the accelerations are; null: at rest.
+  Recorder(const Model& model, const RunPlan& plan, const State& state, const Energies& energies, const Stepper* stepper,
+           const std::vector<InterfaceView>& views, long steps, double step, RunResult& result);
   /// Notes peaks every time; writes a row when `row` is set.
   void record(bool row);
   /// Keeps a picture for the animation.
@@ -62,7 +62,9 @@ class Recorder {
 
   const Model& model_;
   const RunPlan& plan_;
-  const Stepper& stepper_;
+  const State& state_;
+  const Energies& energies_;
+  const Stepper* stepper_;
   const std::vector<InterfaceView>& views_;
   RunResult& result_;
   FloorRecorder floors_;

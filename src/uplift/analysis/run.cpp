@@ -19,6 +19,8 @@ std::string_view to_string(RunStatus status) {
       return "completed";
     case RunStatus::overturned:
       return "overturned";
+    case RunStatus::separated:
+      return "separated";
     case RunStatus::failed:
       return "failed";
     case RunStatus::interrupted:
@@ -140,6 +142,7 @@ void Runner::execute() {
     if (!dynamics(stage, stage_bulk)) return;
   }
   result_.end_time = state_.time;
+  if (dynamic == nullptr && !plan_.stages.empty()) stand();
 }
 
 /// A joint with an initial gap was broken before the analysis: its law remembers an opening from zero to that gap (the SDM's jump is the
@@ -164,6 +167,26 @@ void Runner::note_rest() {
     result_.steps.rest.push_back(views_[k].resultant);
     result_.steps.rest_poses.push_back(viewer_.pose(state_, k, views_[k]));
   }
+}
+
+/// Static stages alone: how the structure stands at their end is the result, one row of it. What the verdict calls left is then measured
+/// from the unloaded structure.
+void Runner::stand() {
+  if (rest_ != nullptr) state_ = carried();
+  Energies& energies = result_.final_energy;
+  energies.strain = 0.5 * state_.displacement.dot(model_.stiffness * state_.displacement);
+  if (const PlasticBulk yielding(model_); yielding.any())
+    energies.strain += yielding.energy(state_.displacement, state_.time, yielding.state(state_.bulk_history));
+  InterfaceEnergy held;
+  held.update(blocks_of(model_, *laws_), state_.opening, state_.history);
+  energies.stored = held.stored, energies.interface_dissipated = held.dissipated;
+  result_.steps.reserve(model_.interfaces.size(), 1, 1);
+  viewer_.look(state_.opening, state_.force, views_);
+  note_views(0);
+  for (const InterfaceView& view : views_) result_.steps.rest.push_back(view.resultant);
+  Recorder recorder(model_, plan_, state_, energies, nullptr, views_, 0, 0, result_);
+  recorder.record(true);
+  if (plan_.frames > 0) recorder.picture(state_);
 }
 
 /// The initial state of the first dynamic stage comes on top of what the static stages left: laws answer the change of the openings, a

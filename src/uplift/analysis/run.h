@@ -90,12 +90,14 @@ struct RunPlan {
   InterfaceSolver interface_solver = InterfaceSolver::automatic;
   bool monolithic = false;  // the oracle: Newton on all unknowns
   std::vector<Request> requests;
-  std::vector<FloorRequest> floors;     // with these, all dynamic stages have the same step
-  std::vector<double> floor_bands;      // Hz, ascending: what parts the bands in which floor spectra are compared
-  int every = 1;                        // record every n-th step
-  double created_limit = 0.01;          // of the external work; a run that creates more fails
-  bool stop_at_limit = false;           // else it goes on to the end and is marked
-  double rotation_limit = 0.15;         // rad: beyond the small-displacement model: overturned
+  std::vector<FloorRequest> floors;  // with these, all dynamic stages have the same step
+  std::vector<double> floor_bands;   // Hz, ascending: what parts the bands in which floor spectra are compared
+  int every = 1;                     // record every n-th step
+  double created_limit = 0.01;       // of the external work; a run that creates more fails
+  bool stop_at_limit = false;        // else it goes on to the end and is marked
+  double rotation_limit = 0.15;      // rad: beyond the small-displacement model: overturned
+  // m, beyond the initial gap: an interface that is open everywhere by more is as far beyond that model: separated. 0: no limit
+  double separation_limit = 0;
   double gap_tolerance = 1e-9;          // m: a gap larger than this counts as uplifted
   std::vector<std::vector<int>> bases;  // nodes of the upper side of every interface, whose settlement and tilt are kept; may be empty
   bool expected_to_fail = false;
@@ -109,7 +111,7 @@ const Stage* dynamic_stage(const RunPlan&);
 
 // ---- what came out ----
 
-enum class RunStatus { completed, overturned, failed, interrupted };
+enum class RunStatus { completed, overturned, separated, failed, interrupted };
 std::string_view to_string(RunStatus);
 
 struct Peak {

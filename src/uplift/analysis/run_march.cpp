@@ -60,7 +60,7 @@ void Runner::finish_energy(const Stepper& stepper) {
   result_.energy_scale = std::max(result_.energy_scale, round_off_energy_);
 }
 
-/// False when the run ends here: not finite, far beyond the energy limit, or rotated beyond the small-displacement model.
+/// False when the run ends here: not finite, far beyond the energy limit, or moved beyond the small-displacement model.
 bool Runner::check_limits(const Stepper& stepper) {
   const Energies& energies = stepper.energies();
   if (!std::isfinite(energies.residual) || !std::isfinite(energies.kinetic)) {
@@ -77,7 +77,7 @@ bool Runner::check_limits(const Stepper& stepper) {
                                    model_.unknown_names[static_cast<std::size_t>(unknown)], plan_.rotation_limit, seen_->time);
       return false;
     }
-  return !rotations_.empty() || surfaces_turn_little();
+  return (!rotations_.empty() || surfaces_turn_little()) && surfaces_stay_near();
 }
 
 /// Nodes of solids do not turn: there the slope of the opening's best plane is what the building has turned against the soil.
@@ -89,6 +89,21 @@ bool Runner::surfaces_turn_little() {
     result_.reason =
         fmt::format("'{}' passed a slope of {:.3g} rad between its sides at t = {:.6g} s, the limit of the small-displacement model",
                     model_.interfaces[k].name, plan_.rotation_limit, seen_->time);
+    return false;
+  }
+  return true;
+}
+
+/// A body may also leave the ground without turning.
+bool Runner::surfaces_stay_near() {
+  if (plan_.separation_limit <= 0) return true;
+  for (std::size_t k = 0; k < model_.interfaces.size(); ++k) {
+    const Interface& interface = model_.interfaces[k];
+    if (!(views_[k].least_opening > plan_.separation_limit)) continue;
+    if (!(views_[k].least_opening - interface.gap.maxCoeff() > plan_.separation_limit)) continue;
+    result_.status = RunStatus::separated;
+    result_.reason = fmt::format("'{}' is open everywhere by more than {:.3g} m at t = {:.6g} s, the limit of the small-displacement model",
+                                 interface.name, plan_.separation_limit, seen_->time);
     return false;
   }
   return true;
@@ -108,7 +123,7 @@ bool Runner::dynamics(const Stage& stage, const Bulk& bulk) {
   stepper.start(std::move(state_), ledger_ ? &*ledger_ : nullptr);
   seen_ = &stepper.state();
   const long steps = std::max(1L, std::lround(stage.duration / stage.step));
-  Recorder recorder(model_, plan_, stepper, views_, steps, stage.step, result_);
+  Recorder recorder(model_, plan_, *seen_, stepper.energies(), &stepper, views_, steps, stage.step, result_);
   const long picture_every = plan_.frames > 0 ? std::max(1L, steps / plan_.frames) : 0;
   if (!ledger_) initial_scale_ = stepper.energies().kinetic;
   if (!ledger_) round_off_energy_ = 1e-8 * (stepper.energies().strain + stepper.energies().stored);

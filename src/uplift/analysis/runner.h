@@ -21,6 +21,7 @@ class Runner {
   void execute();
   void remember_gaps();
   void note_rest();
+  void stand();
   void add_initial_state();
   bool statics(const Stage& stage, const Sparse* geometric);
   bool second_order();
@@ -31,6 +32,7 @@ class Runner {
   void note_views(double step);
   bool check_limits(const Stepper& stepper);
   bool surfaces_turn_little();
+  bool surfaces_stay_near();
   void finish_energy(const Stepper& stepper);
   void fail(std::string why, const InterfaceProblem* problem);
 

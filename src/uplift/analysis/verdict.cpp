@@ -6,6 +6,7 @@
 #include <cmath>
 #include <utility>
 
+#include "uplift/analysis/verdict_standing.h"
 #include "uplift/analysis/wording.h"
 #include "uplift/model/builder.h"
 
@@ -209,6 +210,8 @@ std::string_view to_string(Verdict::Level level) {
       return "uplift";
     case Verdict::Level::overturned:
       return "overturned";
+    case Verdict::Level::separated:
+      return "separated";
     case Verdict::Level::failed:
       return "failed";
   }
@@ -237,6 +240,7 @@ const Peak* find_peak(const RunResult& result, Request::Kind kind, int of) {
 }
 
 Verdict judge(const Built& built, const RunResult& run, const RunResult* bonded, const FloorRun* floors) {
+  if (!dynamic_stage(built.plan) && run.status == RunStatus::completed) return judge_standing(built, run);
   Verdict verdict;
   if (run.status == RunStatus::failed) {
     verdict.level = Verdict::Level::failed;
@@ -248,6 +252,12 @@ Verdict judge(const Built& built, const RunResult& run, const RunResult* bonded,
     verdict.headline =
         fmt::format("It overturns: at {} the rotation passes {}", spoken(run.end_time, "s"), spoken(built.plan.rotation_limit, "rad"));
     verdict.paragraphs.push_back("Beyond this rotation the small-displacement model says nothing; the run ended there.");
+  } else if (run.status == RunStatus::separated) {
+    verdict.level = Verdict::Level::separated;
+    verdict.headline = fmt::format("It leaves the ground: at {} the base is open everywhere by more than {}", spoken(run.end_time, "s"),
+                                   spoken(built.plan.separation_limit, "m"));
+    verdict.paragraphs.push_back(
+        "Beyond this gap the small-displacement model says nothing, nor whether and where the structure comes down; the run ended there.");
   } else if (run.max_uplifted_ratio.value > 0) {
     verdict.level = Verdict::Level::uplift;
     verdict.headline = fmt::format("The base uplifts: up to {} of its area, by up to {}", percent(run.max_uplifted_ratio.value),

@@ -9,7 +9,7 @@ namespace uplift {
 
 /// What a run says, in numbers and in words: does it uplift, how much, when, for how long, and what that does beside the bonded base.
 struct Verdict {
-  enum class Level { none, uplift, overturned, failed } level = Level::none;
+  enum class Level { none, uplift, overturned, separated, failed } level = Level::none;
   std::string headline;     // does it uplift?
   std::string consequence;  // and so what? Beside the bonded run and the user's limits; empty when there is neither
   struct Fact {

@@ -159,7 +159,7 @@ VerdictNumber residual(const std::vector<BasePose>& tail, std::string_view name,
 void add_residuals(const Base& base, std::vector<VerdictNumber>& numbers) {
   const StepRecord& steps = base.run.steps;
   const std::vector<BasePose>& tail = steps.tail[base.index];
-  if (tail.empty() || base.run.status == RunStatus::overturned || base.run.status == RunStatus::failed) return;
+  if (tail.empty() || (base.run.status != RunStatus::completed && base.run.status != RunStatus::interrupted)) return;
   const BasePose rest = steps.rest_poses.empty() ? BasePose() : steps.rest_poses[base.index];
   const auto left = [&](const char* name, double BasePose::*of) { return residual(tail, name, of, rest.*of); };
   const auto length = [&](const char* name, double BasePose::*one, double BasePose::*two) {

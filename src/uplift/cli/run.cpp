@@ -49,8 +49,11 @@ int run(const Options& options) {
     for (const Verdict::Fact& fact : results.verdict.facts) say(fmt::format("  {:<34} {:<14} {}", fact.label, fact.value, fact.detail));
     say_criteria(results.verdict.numbers.criteria);
     const double per_step = main.counts.steps > 0 ? 1e6 * main.wall / static_cast<double>(main.counts.steps) : 0;
-    say(fmt::format("{}: {} steps in {} ({:.2f} microseconds a step), {} retries", status_text(main), main.counts.steps,
-                    spoken(main.wall, "s"), per_step, main.counts.retries));
+    if (dynamic_stage(results.built.front().plan))
+      say(fmt::format("{}: {} steps in {} ({:.2f} microseconds a step), {} retries", status_text(main), main.counts.steps,
+                      spoken(main.wall, "s"), per_step, main.counts.retries));
+    else
+      say(fmt::format("{}: static stages in {}, {} retries", status_text(main), spoken(main.wall, "s"), main.counts.retries));
     say(fmt::format("results: {}/report.html", folder.path()));
     for (const std::string& list : fields) say(fmt::format("fields: {}/{} (for ParaView)", folder.path(), list));
   }

@@ -24,7 +24,14 @@ std::string floors_text(const ReportInput& input) {
 }
 
 void write_sections(JsonWriter& json, const ReportInput& input) {
+  constexpr std::string_view law = "The law of the interface, driven through openings and closings.";
   json.begin_array();
+  if (!dynamic_stage(input.runs.front().built->plan)) {
+    write_section(json, "rest", "Under the constant loads", "How the base stands at the end of the static stages.");
+    write_section(json, "law", "Interface law", law);
+    json.end_array();
+    return;
+  }
   write_section(json, "rest", "After the shock", "How the base stands when the run ends, beside how it stood before.");
   write_section(json, "loads", "Loads", "What acts on the structure.");
   if (!motions_of(input.runs).empty())
@@ -42,7 +49,7 @@ void write_sections(JsonWriter& json, const ReportInput& input) {
                   "Every spectrum over all runs in which one choice of the computation was changed.");
   write_section(json, "energy", "Energy",
                 "Every step keeps a balance of energy. What it does not explain was created (or lost) by the computation.");
-  write_section(json, "law", "Interface law", "The law of the interface, driven through openings and closings.");
+  write_section(json, "law", "Interface law", law);
   json.end_array();
 }
 

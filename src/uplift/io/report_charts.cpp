@@ -314,6 +314,12 @@ void write_charts(JsonWriter& json, const ReportInput& input) {
     other = "all others";
   }
   json.begin_array();
+  if (!dynamic_stage(built.plan)) {  // one instant: nothing over time
+    for (const Chart& chart : rest_charts(input.runs.front())) write_chart(json, *input.read, chart);
+    write_chart(json, *input.read, law_chart(input.runs.front()));
+    json.end_array();
+    return;
+  }
   write_chart(json, *input.read, load_chart(*input.read, input.runs.front()));
   write_motion_charts(json, input);
   for (const View& view : motion_views(built)) write_chart(json, *input.read, history_chart(view, runs));

@@ -61,6 +61,12 @@ void write_interface(JsonWriter& json, const ReportInput& input, std::size_t k) 
   const VerdictNumbers& numbers = input.verdict->numbers;
   const InterfaceVerdict& said = numbers.interfaces[k];
   const ReportRun& run = input.runs.front();
+  if (!dynamic_stage(run.built->plan)) {  // its facts say all
+    json.begin_object().member("name", said.name);
+    for (const char* key : {"time", "share", "above", "lost", "beside", "rest"}) json.key(key).begin_array().end_array();
+    json.end_object();
+    return;
+  }
   std::vector<double> time = run.result->steps.time, share = base_history(*run.built, *run.result, k, BaseHistory::uplifted_ratio);
   thin_history(time, share, points_of_history);
   json.begin_object().member("name", said.name).key("time").numbers(time).key("share").numbers(share);
@@ -155,19 +161,27 @@ void write_verdict(JsonWriter& json, const ReportInput& input) {
 std::vector<Chart> rest_charts(const ReportRun& run) {
   const Model& model = run.built->model;
   const std::vector<Frame>& frames = run.result->frames;
-  if (model.space.dimension == 3 || model.interfaces.empty() || frames.size() < 2) return {};
+  if (model.space.dimension == 3 || model.interfaces.empty() || frames.empty()) return {};
   const Interface& interface = model.interfaces.front();
   const Vec3 t = local_axis(model.space, mean_normal(interface), 0);
   std::vector<std::pair<double, int>> order;
   for (int i = 0; i < interface.batch.points; ++i)
     order.emplace_back(t.dot(interface.position[static_cast<std::size_t>(i)] - interface.reference), i);
   std::ranges::sort(order);
+  const bool stands = !dynamic_stage(run.built->plan);  // static stages alone
+  if (!stands && frames.size() < 2) return {};
   Vector widest = Vector::Zero(interface.batch.points);
   for (const Frame& frame : frames) widest = widest.cwiseMax(frame.opening.head(interface.batch.points));
   Chart gap = profile("rest_gap", "Gap along the base",
                       "At the end of the run, beside the widest gap of each point in the pictures of the animation.", "Gap", "m");
-  gap.curves = {along("at the end", order, frames.back().opening.cwiseMax(0), false), along("widest", order, widest, true)};
   Chart pressure = profile("rest_pressure", "Pressure along the base", "At the beginning and at the end of the run.", "Pressure", "Pa");
+  if (stands) {
+    gap.caption = pressure.caption = "Under the constant loads.";
+    gap.curves = {along("gap", order, frames.back().opening.cwiseMax(0), false)};
+    pressure.curves = {along("pressure", order, frames.back().pressure, false)};
+    return {std::move(gap), std::move(pressure)};
+  }
+  gap.curves = {along("at the end", order, frames.back().opening.cwiseMax(0), false), along("widest", order, widest, true)};
   pressure.curves = {along("at the end", order, frames.back().pressure, false),
                      along("at the beginning", order, frames.front().pressure, true)};
   return {std::move(gap), std::move(pressure)};

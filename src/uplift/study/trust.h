@@ -16,7 +16,7 @@ struct TrustRun {
   RunStatus status = RunStatus::completed, bonded_status = RunStatus::completed;
   std::string reason;  // why it failed or stopped
   double wall = 0;     // s, both runs
-  bool counts() const { return status == RunStatus::completed || status == RunStatus::overturned; }
+  bool counts() const { return status != RunStatus::failed && status != RunStatus::interrupted; }
 };
 
 /// A number of the verdict with its band.

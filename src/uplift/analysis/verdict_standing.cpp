@@ -1,0 +1,73 @@
+#include "uplift/analysis/verdict_standing.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+
+#include "uplift/analysis/wording.h"
+
+namespace uplift {
+namespace {
+
+struct Said {
+  const char *name, *label;
+  bool share;
+};
+constexpr Said numbers[] = {{"max_uplifted_ratio", "Uplifted area", true},
+                            {"max_opening", "Largest gap", false},
+                            {"max_toe_pressure", "Largest pressure", false},
+                            {"residual_settlement", "Settlement", false},
+                            {"residual_rotation", "Rotation", false},
+                            {"residual_slip", "Slip", false},
+                            {"max_compression", "Compression", false},
+                            {"max_shear", "Base shear", false},
+                            {"max_moment", "Base moment", false},
+                            {"max_eccentricity", "Eccentricity e/B", false},
+                            {"min_sliding_safety", "Safety against sliding", false}};
+
+/// What is nothing but round-off beside what the base carries is not worth a line.
+bool counts(const InterfaceVerdict& said, const VerdictNumber& number) {
+  constexpr double little = 1e-9;
+  const std::string_view name = number.quantity->name;
+  if (name == "max_shear") return number.value > little * said.weight;
+  if (name == "max_moment") return number.value > little * said.weight * std::max(said.width[0], said.width[1]);
+  if (name == "max_eccentricity" || name == "residual_rotation") return number.value > little;
+  if (name == "residual_slip") return number.value > 1e-3 * little;
+  if (name == "min_sliding_safety") return number.value < 1 / little;
+  return true;
+}
+
+void say(const InterfaceVerdict& said, const std::string& of, Verdict& verdict) {
+  for (const Said& each : numbers) {
+    const VerdictNumber* number = find_number(said.numbers, each.name);
+    if (!number || !counts(said, *number)) continue;
+    std::string detail;
+    const VerdictNumber* ratio = find_number(said.numbers, "toe_pressure_ratio");
+    if (number->quantity->name == "max_toe_pressure" && ratio)
+      detail = fmt::format("{:.3g} times the mean {}", ratio->value, spoken(said.mean_pressure, "Pa"));
+    if (number->quantity->name == "residual_settlement") detail = "mean of the base, from the unloaded structure";
+    if (each.share) detail = "counted by gap";
+    verdict.facts.push_back({each.label + of, each.share ? percent(number->value) : spoken(number->value, number->quantity->unit), detail});
+  }
+}
+
+}  // namespace
+
+Verdict judge_standing(const Built& built, const RunResult& run) {
+  Verdict verdict;
+  verdict.numbers = numbers_of(built, run, nullptr);
+  const bool open = run.max_uplifted_ratio.value > 0;
+  if (open) verdict.level = Verdict::Level::uplift;
+  verdict.headline = built.facts.empty() ? "A static run without an interface"
+                     : open              ? fmt::format("Under its constant loads the base stands open: {} of its area, by up to {}",
+                                                       percent(run.max_uplifted_ratio.value), spoken(run.max_opening.value, "m"))
+                                         : "Under its constant loads the base is closed";
+  for (const InterfaceVerdict& said : verdict.numbers.interfaces)
+    say(said, verdict.numbers.interfaces.size() > 1 ? " of " + said.name : "", verdict);
+  verdict.paragraphs.push_back(
+      "The case has static stages alone: all numbers are of the state at their end, and nothing is said of an earthquake.");
+  for (const std::string& note : run.notes) verdict.paragraphs.push_back(note);
+  return verdict;
+}
+
+}  // namespace uplift
