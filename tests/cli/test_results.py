@@ -56,8 +56,8 @@ limit = 0.001
 source = "specification, 4.2"
 """)
         done = self.uplift("run", "case.toml", "-o", "r")
-        self.assertRegex(done.stdout, r"criterion met: max_opening of soil [\d.]+ mm, limit 1\.00 m \(no code says so\)")
-        self.assertIn("criterion not met: max_uplifted_ratio of soil", done.stdout)
+        self.assertRegex(done.stdout, r"criterion met: largest gap of soil [\d.]+ mm, at most 1\.00 m \(no code says so\)")
+        self.assertIn("criterion not met: uplifted area of soil", done.stdout)
         summary = self.summary("r")
         verdict, (run,) = summary["verdict"], summary["runs"]
         (soil,) = verdict["interfaces"]

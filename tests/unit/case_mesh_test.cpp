@@ -345,10 +345,10 @@ TEST(CaseMesh, MeshesThatWereDrawnOtherwiseAreNamed) {
       "no solid cells, nodes with x from -1 to 1, y from 0 to 0, z from -6 to 4");
   Mesh nameless = column(Cell::quad4);
   nameless.groups = {{"1", nameless.groups.at("soil")}, {"2", nameless.groups.at("block")}};
-  EXPECT_NE(refusal(good, nameless).find("found no group \"interface\" in the mesh, whose groups are \"1\", \"2\""), std::string::npos)
+  EXPECT_NE(refusal(good, nameless).find("found no group \"soil\" in the mesh, whose groups are \"1\", \"2\""), std::string::npos)
       << refusal(good, nameless);
   nameless.groups.clear();
-  EXPECT_NE(refusal(good, nameless).find("found no group \"interface\" in the mesh, which has no groups"), std::string::npos);
+  EXPECT_NE(refusal(good, nameless).find("found no group \"soil\" in the mesh, which has no groups"), std::string::npos);
 }
 
 TEST(CaseMesh, ExchangedSidesAreWarnedOf) {

@@ -61,6 +61,7 @@ Built footing() {
   built.top = 0;
   built.facts = {{"soil", "base", {}, 0.5, 0, 3, 0, {}, {}}};
   built.weight = 1e6;
+  built.plan.stages.emplace_back().type = Stage::Type::dynamics;
   return built;
 }
 

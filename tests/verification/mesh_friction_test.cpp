@@ -141,7 +141,7 @@ TEST(MeshFriction, ASlidingBodyLeavesItsEnergyInTheLedger) {
             "[[interface]]\nname = \"base\"\nfooting = {{ body = \"base\", width = 6, length = 4, points = 4, points_across = 3 }}\n"
             "law = {{ type = \"coulomb\", friction = {} }}\n[gravity]\nacceleration = [0, 0, -9.81]\n"
             "[[initial]]\nnode = \"base\"\nvelocity = [{}, {}, 0]\n[[stage]]\ntype = \"static\"\n[[stage]]\ntype = \"dynamic\"\n"
-            "duration = 0.2\nstep = {}\n[output]\nframes = 0\n",
+            "duration = 0.25\nstep = {}\n[output]\nframes = 0\n",
             mass, friction, 0.8 * speed, 0.6 * speed, step),
         {});
     ASSERT_TRUE(run.completed()) << run.result.reason;

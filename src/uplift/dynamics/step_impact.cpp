@@ -23,8 +23,11 @@ void Stepper::apply_impact(Level& level) {
       const double pressure = -contact_[normal + i];
       if (!(pressure > 1e-12 * largest)) continue;
       normals_.push_back(normal + i);
-      for (int c = 0; friction > 0 && c < block.batch.components - 1; ++c)
-        if (std::abs(contact_[block.first + c * n + i]) < friction * pressure * (1 - 1e-9)) tangents_.push_back(block.first + c * n + i);
+      if (!(friction > 0)) continue;
+      double tangential = 0;  // the norm of both directions: a point that slides along a slanted line does not stick in either
+      for (int c = 0; c < block.batch.components - 1; ++c) tangential = std::hypot(tangential, contact_[block.first + c * n + i]);
+      if (!(tangential < friction * pressure * (1 - 1e-9))) continue;
+      for (int c = 0; c < block.batch.components - 1; ++c) tangents_.push_back(block.first + c * n + i);
     }
   }
   if (normals_.empty()) return;
