@@ -39,6 +39,31 @@ class Records(CliTest):
         self.assertIn("earlier results moved to out/motion_quake.1/", done.stdout)
         self.assertTrue((self.folder / "out/motion_quake.1/report.html").exists())
 
+    def test_spectra_at_the_frequencies_that_are_asked_for(self):
+        self.write(RECORD, "quake.csv")
+        self.write(RECORD.replace("north", "east"), "other.csv")
+        self.uplift("motion", "quake.csv", "other.csv", "--damping", "0.05,0", "--frequencies", "50,0.1,2", "-o", "list")
+        head, *rows = (self.folder / "list/spectra.csv").read_text().splitlines()
+        columns = dict(zip(head.split(","), zip(*(map(float, row.split(",")) for row in rows))))
+        self.assertEqual(columns["frequency [Hz]"], (0.1, 2, 50))
+        # at resonance the undamped response to sin(w t) grows as w t/2: 20 pi after ten seconds; PSA = w2 SD; twice the same motion
+        self.assertAlmostEqual(columns["quake PSA 0 % [m/s2]"][1], 20 * math.pi, delta=0.02 * 20 * math.pi)
+        self.assertAlmostEqual(columns["quake SD 0 % [m]"][1] * (4 * math.pi) ** 2, columns["quake PSA 0 % [m/s2]"][1], delta=1e-4)
+        self.assertAlmostEqual(columns["quake SA 5 % [m/s2]"][2], 1, delta=0.02)
+        for row in range(3):
+            self.assertAlmostEqual(columns["RotD100 PSA 5 % [m/s2]"][row], math.sqrt(2) * columns["other PSA 5 % [m/s2]"][row], delta=1e-6)
+        self.uplift("motion", "quake.csv", "--frequencies", "rg_1_122", "-o", "guide")
+        self.assertEqual(len((self.folder / "guide/spectra.csv").read_text().splitlines()), 76)
+        self.uplift("motion", "quake.csv", "--frequencies", "1:16:5", "-o", "range")
+        first = [float(row.split(",")[0]) for row in (self.folder / "range/spectra.csv").read_text().splitlines()[1:]]
+        for found, wanted in zip(first, (1, 2, 4, 8, 16), strict=True):
+            self.assertAlmostEqual(found, wanted, delta=1e-6)
+
+    def test_motions_of_one_name_are_told_apart(self):
+        self.write(RECORD, "quake.csv")
+        done = self.uplift("motion", "quake.csv", "quake.csv", "--json")
+        self.assertEqual([each["name"] for each in json.loads(done.stdout)["motions"]], ["quake", "quake (2)"])
+
     def test_what_is_wrong_is_refused(self):
         self.write(RECORD, "quake.csv")
         for words, part in (
@@ -52,6 +77,9 @@ class Records(CliTest):
             (("--generate", "rg_1_60", "pga=3", "to=200"), "to"),
             (("--generate", "rg_1_60", "pga=3", "step=0.01", "--step", "0.02"), "step: wanted one value, found two"),
             (("--generate", "rg_1_60", "pga=3", "--unit", "g"), "no options for files"),
+            (("quake.csv", "--frequencies", "1,0"), 'frequencies > 0 Hz with commas, FROM:TO:COUNT or rg_1_122, found "0"'),
+            (("quake.csv", "--frequencies", "5"), "found one"),
+            (("quake.csv", "--frequencies", "9:1:5"), 'found "9:1:5"'),
         ):
             done = self.uplift("motion", *words, expect=2)
             self.assertIn(part, done.stderr)
@@ -71,6 +99,18 @@ class Generated(CliTest):
         self.assertTrue(fit["good"])
         self.assertLessEqual(fit["mean_error"], 0.05)
         self.assertGreaterEqual(fit["least_ratio"], 0.90)
+
+    def test_a_spectrum_out_of_its_bounds_is_told(self):
+        words = ("motion", "--generate", "rg_1_60", "pga=2", *SHORT, "-q")
+        # what was asked for was done
+        done = self.uplift(*words[:-1], "--process", "bandpass low=2 high=5", "-o", "filtered")
+        self.assertRegex(done.stderr, "warning: rg_1_60: after the processing the spectrum is beyond its bounds: mean error [0-9.]+ %")
+        # a second and a half of motion cannot fill such a target
+        self.write("", "unused")
+        done = self.uplift("motion", "--generate", "table frequencies=[1,1.1,20] accelerations=[0.01,9,0.01] damping=0.005", "duration=1.5",
+                           "step=0.02", "from=3", "to=12", "-q", "-o", "bad", expect=3)
+        self.assertRegex(done.stderr, r"failed: table: the spectrum could not be brought within its bounds \(mean error")
+        self.assertFalse(self.summary("bad")["fits"][0]["good"])
 
     def test_what_was_generated_can_be_read(self):
         self.uplift("motion", "--generate", "eurocode_8 ground=C", "a_g=2", *SHORT, "-o", "made")

@@ -120,6 +120,39 @@ TEST_F(MotionCase, SummarisesTheCompletedRuns) {
   EXPECT_EQ(written["units"]["moment"], "N m");
 }
 
+/// The page of a comparison is about the motion that does most, and says what the others do.
+TEST(HardestMotion, ComesBeforeTheOthers) {
+  RunResult small, large;
+  small.max_uplifted_ratio.value = 0.2;
+  large.max_uplifted_ratio.value = 0.3;
+  const auto under = [](const std::string& motion, const RunResult& run, int broken, Verdict::Level level = Verdict::Level::uplift) {
+    JudgedMotion judged{motion, &run, {}};
+    judged.verdict.level = level;
+    for (int i = 0; i < 2; ++i)
+      judged.verdict.numbers.criteria.push_back(
+          {.criterion = {}, .interface = "", .state = i < broken ? CriterionResult::State::not_met : CriterionResult::State::met});
+    return judged;
+  };
+  EXPECT_EQ(hardest({under("a", small, 0), under("b", large, 0), under("c", large, 0)}), 1u);
+  EXPECT_EQ(hardest({under("a", small, 1), under("b", large, 0)}), 0u);
+  EXPECT_EQ(hardest({under("a", large, 2), under("b", small, 0, Verdict::Level::overturned)}), 1u);
+
+  const MotionTable table{.run = "",
+                          .damping = "",
+                          .quantities = {{"ratio", "Uplifted", "1"}, {"opening", "Gap", "m"}},
+                          .rows = {},
+                          .counted = 2,
+                          .envelope = {0.3, 0.004},
+                          .mean = {0.25, 0.003},
+                          .spread = {}};
+  EXPECT_EQ(
+      said_over_motions({under("a", small, 1), under("b", large, 2)}, table),
+      "This page shows the hardest of 2 motions, b. Over the 2 of them that were completed, in the mean and at most: uplifted 25 % and "
+      "30 %, gap 3.00 mm and 4.00 mm. Of 2 criteria are not met: 1 under a, 2 under b.");
+  EXPECT_TRUE(said_over_motions({under("a", small, 0), under("b", large, 0)}, table)
+                  .ends_with("No criterion is broken under any of the 2 motions."));
+}
+
 TEST_F(MotionCase, OneCompletedRunHasNoSpread) {
   const Case file = read(tower(quick, moving_frame) + two_motions);
   const RunSpec spec = comparison_of_case(file).runs.front();

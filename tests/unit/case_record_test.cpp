@@ -1,4 +1,5 @@
 #include "case_record_support.h"
+#include "motion_files.h"
 #include "uplift/motion/generate.h"
 #include "uplift/motion/spectrum.h"
 
@@ -157,6 +158,33 @@ TEST_F(RecordCase, NamesWhatIsWrong) {
   says(twice, "name = \"ey\"",
        "record[1].name: wanted a name that no other function or record has, found \"ey\", which line " +
            std::to_string(line_of(twice, "[[function]]") + 1) + " uses already");
+}
+
+/// Three components of one file, two of them called the same: a name or a number says which one.
+TEST_F(RecordCase, TakesOneComponentOfAFile) {
+  const sample::Written first = sample::csmip_v2(sample::tone(60, 30), 0.02, 0), third = sample::csmip_v2(sample::tone(60, 10), 0.02, 0);
+  const sample::Written up = sample::csmip_v2(sample::tone(60, -20), 0.02, 0);
+  std::ofstream(folder_ / "three.v2") << first.text << replaced(up.text, "Chan  1:  360 Deg", "Chan  2:  Up") << third.text;
+  const auto with = [](const std::string& x, const std::string& y) {
+    const auto record = [](const std::string& name, const std::string& key) {
+      return "[[record]]\nname = \"" + name + "\"\nfile = \"three.v2\"\n" + key + "\n";
+    };
+    return tower(quick, replaced(moving_frame, two_records, record("ex", x) + record("ey", y)));
+  };
+  const Case file = read(with("component = \"3\"", "component = \"Up\""));
+  for (std::size_t i = 0; i < 60; ++i) {
+    EXPECT_DOUBLE_EQ(file.records[0].motion().values[i], 0.01 * third.numbers[i]);
+    EXPECT_DOUBLE_EQ(file.records[1].motion().values[i], 0.01 * up.numbers[i]);
+  }
+  EXPECT_EQ(file.records[0].motion().component, "360 Deg");
+  const auto says = [&](const std::string& x, const std::string& rest) {
+    const std::string said = refusal(with(x, "component = \"Up\""));
+    EXPECT_NE(said.find(rest), std::string::npos) << said;
+  };
+  const std::string all = R"("1" ("360 Deg"), "2" ("Up") or "3" ("360 Deg"))";
+  says("", "record[0]: wanted component, one of " + all + " in this file, found none");
+  says("component = \"360 Deg\"", "record[0].component: wanted a number: one of " + all + ", found \"360 Deg\", which several are called");
+  says("component = \"4\"", "record[0].component: wanted one of " + all + ", found \"4\"");
 }
 
 TEST_F(RecordCase, WarnsOfStepsThatDoNotFit) {

@@ -5,6 +5,7 @@
 
 #include "motion_target_support.h"
 #include "uplift/motion/generate.h"
+#include "uplift/motion/spectrum.h"
 
 namespace uplift {
 namespace {
@@ -110,6 +111,21 @@ TEST(GeneratedMotions, HaveTheSpectrumOfATableAtLowDamping) {
 
 // Without a limit below the band the ground drifts by metres. An oscillator of no stiffness moves as the ground: its displacement is
 // bounded by that of the target at the lower end of the band.
+// Claim: nowhere below 90 % of the target, between the frequencies at which the motion was changed too. With these seeds a fit that looks
+// at 100 frequencies a decade leaves dips to 87.6 % and 88.2 %.
+TEST(GeneratedMotions, HaveNoDipsBetweenTheFrequenciesOfTheFit) {
+  const auto target = guide();
+  GenerateOptions options = short_options();
+  const std::vector<double> dense = log_spaced(options.from, options.to, 1531);
+  for (const std::uint64_t seed : {15, 18}) {
+    options.seed = seed;
+    const GeneratedMotion made = one(*target, options);
+    EXPECT_TRUE(made.fit.good());
+    const Spectrum reached = response_spectra(made.motion.values, options.step, dense, {0.05}, Spectrum::Kind::psa).front();
+    for (std::size_t i = 0; i < dense.size(); ++i) EXPECT_GE(reached.values[i], 0.9 * target->at(dense[i])) << dense[i] << " Hz";
+  }
+}
+
 TEST(GeneratedMotions, DoNotDrift) {
   const auto target = guide();
   const GenerateOptions options = short_options();

@@ -1,6 +1,8 @@
 #include <gtest/gtest.h>
 
 #include <algorithm>
+#include <fmt/format.h>
+
 
 #include "motion_support.h"
 #include "uplift/math/fourier.h"
@@ -147,6 +149,21 @@ TEST(Bandpass, WithItsPaddingTheMotionEndsAtRest) {
   const Motion kept = after(motion, "bandpass", {{"low", raw(0.2)}, {"keep_padding", raw(true)}});
   EXPECT_GT(kept.values.size(), motion.values.size());
   EXPECT_LT(std::abs(final_of(kept, MotionKind::velocity)), 1e-3 * largest(converted(kept, MotionKind::velocity).values));
+}
+
+/// A pulse at the very beginning: half of what the filter makes of it lies before the record, and the velocity that is left is told.
+TEST(Bandpass, WhatIsCutAwayIsTold) {
+  Motion motion = random_motion();
+  for (std::size_t i = 0; i < motion.values.size(); ++i) motion.values[i] = i < 20 ? 1 : 0;
+  const Motion cut = after(motion, "bandpass", {{"low", raw(0.5)}});
+  double velocity = 0;
+  for (std::size_t i = 0; i + 1 < cut.values.size(); ++i) velocity += cut.step * (cut.values[i] + cut.values[i + 1]) / 2;
+  ASSERT_GT(std::abs(velocity), 0.02 * 20 * motion.step);
+  EXPECT_NE(cut.processing.back().find(fmt::format("cut away again. Without what was cut away the velocity ends at {:.3g} m/s", velocity)),
+            std::string::npos)
+      << cut.processing.back();
+  const Motion kept = after(motion, "bandpass", {{"low", raw(0.5)}, {"keep_padding", raw(true)}});
+  EXPECT_TRUE(kept.processing.back().ends_with("before and after, kept.")) << kept.processing.back();
 }
 
 TEST(Bandpass, CornersAreChecked) {

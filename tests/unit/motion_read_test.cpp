@@ -168,6 +168,38 @@ TEST(RecordFormats, CosmosWithTwoChannels) {
   EXPECT_NEAR(motions[0].azimuth.value(), 340 * degree, 1e-12);
 }
 
+/// Three components of one instrument, each with velocity and displacement behind the acceleration: those are left out.
+TEST(RecordFormats, CosmosWithThreeComponents) {
+  const auto channel = [](const std::vector<double>& values, const std::string& line, double azimuth) {
+    Written written = cosmos(values, 5, 0);
+    const std::string head = "Sta Cha:  1: 340 deg (Rcrdr Chan  1) Location: ground\n";
+    written.text.replace(written.text.find(head), head.size(), line + "\n");
+    const std::string number = fmt::format("{:8.0f}", 340.0);
+    written.text.replace(written.text.find(number), 8, fmt::format("{:8.0f}", azimuth));
+    for (const char* further : {"velocity pts, approx  1 secs, units=cm/sec(05)", "displacement pts, approx  1 secs, units=cm(06)"}) {
+      written.text += fmt::format("{:7}  {},Format=(8F10.5)\n", values.size(), further);
+      Written more;
+      add_rows(more, std::vector<double>(values.size(), 1.0), 8, "{:10.5f}");
+      written.text += more.text + "End-of-data for Chan  1\n";
+    }
+    return written;
+  };
+  const Written north = channel(tone(50, 90), "Sta Chan  1: 360 Deg  (Rcrdr Chan  1) Location: Ground floor: east", 360),
+                east = channel(tone(50, 60), "Sta Chan   HNE   90 deg   Location: 00", 90),
+                up = channel(tone(50, 30), "Sta Chan  3:  Up (Rcrdr Chan  3)  Location: Ground floor", 400);
+  const std::vector<Motion> motions = read_motions_from(north.text + east.text + up.text, "three.v2");
+  ASSERT_EQ(motions.size(), 3u);
+  expect_values(motions[0], north.numbers, 0.01);
+  expect_values(motions[1], east.numbers, 0.01);
+  expect_values(motions[2], up.numbers, 0.01);
+  EXPECT_EQ(motions[0].component, "360 Deg");
+  EXPECT_EQ(motions[1].component, "HNE   90 deg");
+  EXPECT_EQ(motions[2].component, "Up");
+  EXPECT_NEAR(motions[1].azimuth.value(), 90 * degree, 1e-12);
+  EXPECT_FALSE(motions[2].azimuth);
+  for (const Motion& motion : motions) EXPECT_EQ(motion.kind, MotionKind::acceleration);
+}
+
 TEST(RecordFormats, CsmipV2WithTwoChannels) {
   const Written written = csmip_v2(tone(75, 27.1), 0.01, 0);
   const std::vector<Motion> motions = read_motions_from(written.text + written.text, "file");

@@ -91,6 +91,7 @@ TEST(RecordRefusals, WhatIsNoRecord) {
   EXPECT_EQ(refusal("Dear reader,\nthis is prose.\n"),
             "file: wanted a record of ground motion (at2, esm, knet, cosmos, csmip, smc or columns), found no row of numbers within the "
             "first 2 lines of text");
+  EXPECT_EQ(refusal("0 1\n" + std::string(4'000'001, '1')), "file:2: wanted lines of at most 4000000 characters, found 4000001");
   EXPECT_EQ(refusal(std::string("0 1\n0 \0 1\n", 10)), "file:2: wanted text, found a zero byte (a binary file, or UTF-16)");
   EXPECT_EQ(refusal(ramp(sound), {.format = "at3"}),
             "format: wanted at2, esm, knet, cosmos, csmip, smc or columns, found \"at3\" (did you mean \"at2\"?)");

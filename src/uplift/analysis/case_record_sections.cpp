@@ -36,7 +36,7 @@ const Section& record_section() {
        number("step", "s", "of files without times").positive().optional(),
        text("column", "of tables: name, or number from 1; absent: all that their head gives a unit, else the first after the time")
            .optional(),
-       text("component", "which one, when the file has several").optional(),
+       text("component", "which one, when the file has several: its name as the file has it, or its number from 1").optional(),
        tables("process", process_section(), "steps between the record as read and what drives the model, in order")}};
   return s;
 }

@@ -18,18 +18,22 @@
 namespace uplift {
 namespace {
 
-/// The component that the table names, of those in the file.
+/// The component that the table names, of those in the file, or numbers: channels of a building may all be called "360 Deg".
 Motion component_of(const Values& record, std::vector<Motion> motions) {
   std::vector<std::string> known, quoted;
-  for (const Motion& each : motions) {
-    known.push_back(each.component);
-    quoted.push_back(in_quotes(each.component));
-  }
+  for (const Motion& each : motions) known.push_back(each.component);
+  const auto times = [&](const std::string& name) { return std::ranges::count(known, name); };
+  const bool numbered = std::ranges::any_of(known, [&](const std::string& name) { return name.empty() || times(name) > 1; });
+  for (std::size_t i = 0; i < known.size(); ++i)
+    quoted.push_back(numbered ? fmt::format("\"{}\" ({})", i + 1, in_quotes(known[i])) : in_quotes(known[i]));
   if (!record.has("component")) {
     if (motions.size() > 1) fail(record, "", "component, one of " + listed(quoted) + " in this file", "none");
     return std::move(motions.front());
   }
   const std::string& wanted = record.text("component");
+  if (times(wanted) > 1) fail(record, "component", "a number: one of " + listed(quoted), in_quotes(wanted) + ", which several are called");
+  for (std::size_t i = 0; i < motions.size(); ++i)
+    if (times(wanted) == 0 && wanted == fmt::format("{}", i + 1)) return std::move(motions[i]);
   const auto found = std::ranges::find(known, wanted);
   if (found == known.end())
     fail(record, "component", (known.size() > 1 ? "one of " : "") + listed(quoted), in_quotes(wanted), nearest_name(wanted, known));

@@ -1,10 +1,13 @@
 #include "uplift/analysis/compare_motions.h"
 
+#include <fmt/format.h>
+
 #include <algorithm>
 #include <cmath>
+#include <tuple>
 #include <utility>
 
-#include "uplift/analysis/verdict.h"
+#include "uplift/analysis/wording.h"
 
 namespace uplift {
 namespace {
@@ -52,7 +55,50 @@ void summarise(MotionTable& table) {
   }
 }
 
+std::ptrdiff_t not_met(const JudgedMotion& judged) {
+  return std::ranges::count(judged.verdict.numbers.criteria, CriterionResult::State::not_met, &CriterionResult::state);
+}
+
+/// "Top motion 17.2 mm and 18.0 mm, uplifted 22 % and 25 %": mean and largest.
+std::string mean_and_largest(const MotionTable& table) {
+  std::vector<std::string> parts;
+  for (std::size_t k = 0; k < table.quantities.size(); ++k) {
+    const Quantity& quantity = table.quantities[k];
+    const auto shown_value = [&](double value) { return quantity.unit == "1" ? percent(value) : spoken(value, quantity.unit); };
+    std::string label = quantity.label;
+    label.front() = static_cast<char>(label.front() - 'A' + 'a');
+    parts.push_back(fmt::format("{} {} and {}", label, shown_value(table.mean[k]), shown_value(table.envelope[k])));
+  }
+  return fmt::format("{}", fmt::join(parts, ", "));
+}
+
+/// Under which motions how many criteria are not met; empty when the case has none.
+std::string criteria_over_motions(const std::vector<JudgedMotion>& judged) {
+  const std::size_t count = judged.front().verdict.numbers.criteria.size();
+  if (count == 0) return {};
+  std::vector<std::string> broken;
+  for (const JudgedMotion& each : judged)
+    if (const auto number = not_met(each); number > 0) broken.push_back(fmt::format("{} under {}", number, each.motion));
+  if (broken.empty()) return fmt::format(" No criterion is broken under any of the {} motions.", judged.size());
+  return fmt::format(" Of {} criteria are not met: {}.", count, fmt::join(broken, ", "));
+}
+
 }  // namespace
+
+std::size_t hardest(const std::vector<JudgedMotion>& judged) {
+  const auto rank = [](const JudgedMotion& each) {
+    return std::tuple(each.verdict.level, not_met(each), each.run->max_uplifted_ratio.value, each.run->max_opening.value,
+                      std::abs(each.run->max_base_moment.value));
+  };
+  return static_cast<std::size_t>(std::ranges::max_element(judged, {}, rank) - judged.begin());
+}
+
+std::string said_over_motions(const std::vector<JudgedMotion>& judged, const MotionTable& table) {
+  std::string text = fmt::format("This page shows the hardest of {} motions, {}.", judged.size(), judged[hardest(judged)].motion);
+  if (table.counted > 0)
+    text += fmt::format(" Over the {} of them that were completed, in the mean and at most: {}.", table.counted, mean_and_largest(table));
+  return text + criteria_over_motions(judged);
+}
 
 std::vector<MotionTable> motion_tables(const std::vector<RunSpec>& specs, const std::deque<Built>& built,
                                        const std::vector<RunResult>& results) {

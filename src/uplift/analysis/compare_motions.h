@@ -4,6 +4,7 @@
 #include <vector>
 
 #include "uplift/analysis/case.h"
+#include "uplift/analysis/verdict.h"
 
 namespace uplift {
 
@@ -29,5 +30,17 @@ struct MotionTable {
 /// (no top, no interface) are left out; a bonded base stretches instead of opening.
 std::vector<MotionTable> motion_tables(const std::vector<RunSpec>& specs, const std::deque<Built>& built,
                                        const std::vector<RunResult>& results);
+
+/// One variant under one motion, with its verdict.
+struct JudgedMotion {
+  std::string motion;  // as shown
+  const RunResult* run = nullptr;
+  Verdict verdict;
+};
+/// Place of the hardest motion, the first of equals: by what becomes of the structure, the number of criteria that are not met, the uplifted
+/// share, the gap, the base moment. One motion at least.
+std::size_t hardest(const std::vector<JudgedMotion>& judged);
+/// What a page on the hardest motion has to say of all: which one it shows, mean and largest of the table's quantities, criteria.
+std::string said_over_motions(const std::vector<JudgedMotion>& judged, const MotionTable& table);
 
 }  // namespace uplift

@@ -35,6 +35,7 @@ struct MotionOptions {
   std::vector<std::string> generate;              // "TARGET KEY=VALUE ...", one for each component
   std::vector<std::string> process;               // "STEP KEY=VALUE ...", in order
   std::vector<double> dampings{0.05, 0.02, 0.1};  // of the spectra
+  std::string frequencies = "0.1:100:300";        // of the spectra: a list, FROM:TO:COUNT or rg_1_122
   RecordOptions record;
 };
 int motion(const Options& options, const MotionOptions& given);

@@ -94,6 +94,57 @@ void add_motion_warnings(Results& results) {
     if (std::ranges::find(results.warnings, warning) == results.warnings.end()) results.warnings.push_back(warning);
 }
 
+const RunResult* bonded_beside(const Results& results, std::size_t place) {
+  for (std::size_t i = 0; i < results.runs.size(); ++i)
+    if (results.specs[i].bonded && results.runs[i].group == results.runs[place].group) return &results.runs[i];
+  return nullptr;
+}
+
+/// Puts the group of a run first, because the page shows the first one. Only the runs that stood there have kept pictures: what now stands
+/// there is run again.
+void bring_forward(const Loaded& loaded, const Options& options, std::size_t place, Results& results) {
+  const std::string group = results.runs[place].group;
+  const auto mine = [&](const RunResult& run) { return run.group == group; };
+  const auto begin = std::ranges::find_if(results.runs, mine) - results.runs.begin(), count = std::ranges::count_if(results.runs, mine);
+  if (begin == 0) return;
+  const auto rotate = [&](auto& list) { std::rotate(list.begin(), list.begin() + begin, list.begin() + begin + count); };
+  std::vector<bool> pictures;
+  for (std::ptrdiff_t i = 0; i < count; ++i) pictures.push_back(results.specs[static_cast<std::size_t>(i)].pictures);
+  rotate(results.specs);
+  rotate(results.built);
+  rotate(results.runs);
+  for (std::size_t i = 0; i < pictures.size(); ++i) {
+    results.runs[i + pictures.size()].frames.clear();
+    if (!pictures[i] || interrupt_asked()) continue;
+    results.specs[i].pictures = true;
+    results.built[i] = build(loaded.read, results.specs[i]);
+    results.runs[i] = run_one(results.built[i], fmt::format("[again, for its pictures] {}", results.specs[i].name), options);
+  }
+}
+
+struct OverMotions {
+  std::string headline, paragraph;  // empty without [[compare.motion]]
+};
+/// Judges the first variant under every motion and puts the runs of the hardest one first.
+OverMotions show_hardest(const Loaded& loaded, const Options& options, const std::vector<MotionTable>& tables, Results& results) {
+  if (tables.empty() || interrupt_asked()) return {};
+  const RunSpec first = results.specs.front();
+  std::vector<JudgedMotion> judged;
+  std::vector<std::size_t> places;
+  for (std::size_t i = 0; i < results.runs.size(); ++i) {
+    if (results.specs[i].label != first.label || results.specs[i].damping != first.damping) continue;
+    judged.push_back(
+        {tables.front().rows[judged.size()].motion, &results.runs[i], judge(results.built[i], results.runs[i], bonded_beside(results, i))});
+    places.push_back(i);
+  }
+  if (judged.size() < 2) return {};
+  const std::size_t worst = hardest(judged);
+  OverMotions said{fmt::format(" ({}, the hardest of {} motions)", judged[worst].motion, judged.size()),
+                   said_over_motions(judged, tables.front())};
+  bring_forward(loaded, options, places[worst], results);
+  return said;
+}
+
 }  // namespace
 
 int compare(const Options& options) {
@@ -108,20 +159,20 @@ int compare(const Options& options) {
   run_all(loaded, options, comparison.runs, 0, total, with_fields ? &folder : nullptr, results);
   run_all(loaded, options, comparison.sweep, comparison.runs.size(), total, nullptr, swept);
 
-  const Values* compare = loaded.read.values.has("compare") ? &loaded.read.values.table("compare") : nullptr;
   ComparisonSummary compared;
+  compared.motions = motion_tables(results.specs, results.built, results.runs);
+  const OverMotions over = show_hardest(loaded, options, compared.motions, results);
+  const Values* compare = loaded.read.values.has("compare") ? &loaded.read.values.table("compare") : nullptr;
   compared.band = compare ? compare->number("band") : 0.02;
   const std::vector<std::string> columns = compare ? compare->texts("agree_on") : std::vector<std::string>{};
   const Built& first = results.built.front();
   compared.columns = compared_names(results.runs.front(), columns, first.top_sway(), first.base_turn());
   compared.agreement = agreement(results.runs, results.specs, columns, compared.band, first.top_sway(), first.base_turn());
   compared.sweep = sweep_table(swept.specs, swept.runs);
-  compared.motions = motion_tables(results.specs, results.built, results.runs);
   results.floors = floor_answers(first.plan, results.runs, results.specs);
-  const RunResult* bonded = nullptr;
-  for (std::size_t i = 0; i < results.runs.size(); ++i)
-    if (results.specs[i].bonded && results.runs[i].group == results.runs.front().group) bonded = &results.runs[i];
-  results.verdict = judge(results.built.front(), results.runs.front(), bonded, &results.floors.runs.front());
+  results.verdict = judge(results.built.front(), results.runs.front(), bonded_beside(results, 0), &results.floors.runs.front());
+  results.verdict.headline += over.headline;
+  if (!over.paragraph.empty()) results.verdict.paragraphs.insert(results.verdict.paragraphs.begin(), over.paragraph);
   results.warnings = warnings(loaded.read, results.specs.front(), results.built.front());
   add_motion_warnings(results);
   write_results(options, loaded, results, &compared, folder);

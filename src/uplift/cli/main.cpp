@@ -13,9 +13,8 @@ using uplift::cli::Declared;
 using uplift::cli::Options;
 
 constexpr const char* exit_codes =
-    "Exit codes: 0 done, 2 bad input, 3 numerical failure (a run failed, or created energy beyond its limit; results are kept and "
-    "marked),\n"
-    "130 interrupted by Ctrl-C (files hold what was computed), 1 a bug.";
+    "Exit codes: 0 done, 2 bad input, 3 numerical failure (a run failed, or created energy beyond its limit, or a generated motion missed\n"
+    "its spectrum; results are kept and marked), 130 interrupted by Ctrl-C (files hold what was computed), 1 a bug.";
 
 struct Choices {
   Options options;
@@ -47,7 +46,7 @@ void declare_motion(CLI::App& app, Choices& given) {
   uplift::cli::MotionOptions& motion = given.motion;
   CLI::App* command =
       add(app, "motion", "ground motions: peaks, intensities and spectra of records, processing, generation to a target spectrum",
-          "  uplift motion RSN8883.AT2 --damping 0.02,0.05\n"
+          "  uplift motion RSN8883.AT2 --damping 0.02,0.05 --frequencies rg_1_122\n"
           "  uplift motion quake.csv --unit cm/s2 --process \"baseline\" --process \"bandpass low=0.1 high=25\"\n"
           "  uplift motion --generate rg_1_60 pga=\"0.3 g_n\" duration=20 seed=7\n"
           "  uplift motion --generate eurocode_8 --generate eurocode_8 --generate \"eurocode_8 direction=vertical\" a_g=2 ground=C");
@@ -68,6 +67,9 @@ void declare_motion(CLI::App& app, Choices& given) {
       ->delimiter(',')
       ->allow_extra_args(false)
       ->check(CLI::Range(0.0, 0.99));
+  command->add_option("--frequencies", motion.frequencies,
+                      "frequencies [Hz] of the response spectra: a list with commas, FROM:TO:COUNT (equally spaced in the logarithm) or "
+                      "rg_1_122 (the 75 of Regulatory Guide 1.122); default 0.1:100:300");
   take_output(command, given.options);
   take_json(command, given.options);
 }

@@ -2,6 +2,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <cmath>
 #include <ctime>
 #include <filesystem>
 
@@ -16,6 +17,7 @@
 #include "uplift/motion/convert.h"
 #include "uplift/motion/intensity.h"
 #include "uplift/motion/processing.h"
+#include "uplift/motion/spectrum.h"
 #include "uplift/motion/write.h"
 
 namespace uplift::cli {
@@ -62,11 +64,44 @@ Pairs part_of(const std::string& text, const std::string& place) {
   return pairs;
 }
 
+/// Every motion has a name of its own: channels of a file may be called the same, and files of several folders.
 std::vector<ShownMotion> read_all(const MotionOptions& given) {
   std::vector<ShownMotion> shown;
+  const auto taken = [&](const std::string& name) { return std::ranges::any_of(shown, [&](const auto& s) { return s.now.name == name; }); };
   for (const std::string& file : given.files)
-    for (Motion& motion : read_motions(file, given.record)) shown.push_back({motion, motion, std::nullopt});
+    for (Motion& motion : read_motions(file, given.record)) {
+      const std::string name = motion.name;
+      for (int number = 2; taken(motion.name); ++number) motion.name = fmt::format("{} ({})", name, number);
+      shown.push_back({motion, motion, std::nullopt});
+    }
   return shown;
+}
+
+/// "rg_1_122", "0.1:100:300" or "1,2,5,10", ascending.
+std::vector<double> frequencies_of(const std::string& text) {
+  constexpr double most = 1e5;
+  const auto refuse = [&](const std::string& found) {
+    throw InputError({"uplift motion --frequencies", 0}, "", "frequencies > 0 Hz with commas, FROM:TO:COUNT or rg_1_122", found);
+  };
+  if (text == "rg_1_122") return rg_1_122_frequencies();
+  const bool range = text.find(':') != std::string::npos;
+  std::vector<double> numbers;
+  for (std::size_t begin = 0; begin <= text.size();) {
+    const std::size_t end = std::min(text.find(range ? ':' : ',', begin), text.size());
+    const std::string_view word = trim(std::string_view(text).substr(begin, end - begin));
+    const LeadingNumber number = leading_number(word);
+    if (number.length == 0 || number.length != word.size() || !(number.value > 0 && number.value <= most)) refuse(in_quotes(word));
+    numbers.push_back(number.value);
+    begin = end + 1;
+  }
+  if (!range) {
+    std::ranges::sort(numbers);
+    numbers.erase(std::ranges::unique(numbers).begin(), numbers.end());
+    if (numbers.size() < 2) refuse("one");
+    return numbers;
+  }
+  if (numbers.size() != 3 || !(numbers[0] < numbers[1]) || numbers[2] < 2 || numbers[2] != std::floor(numbers[2])) refuse(in_quotes(text));
+  return log_spaced(numbers[0], numbers[1], static_cast<int>(numbers[2]));
 }
 
 /// KEY=VALUE words that belong to the generation itself, and those that belong to the targets.
@@ -126,6 +161,18 @@ void process(std::vector<ShownMotion>& shown, const std::vector<std::string>& st
     const auto made = make_part(process_catalog(), check_part(table_of(part_of(step, place), place), motion_processes()));
     for (ShownMotion& each : shown) each.now = made->apply(std::move(each.now));
   }
+}
+
+/// The fit of a generated motion after its processing. What was asked for is done, also when it leaves the bounds of the fit: a warning.
+void fit_again(ShownMotion& shown, const TargetSpectrum& target, const GenerateOptions& generating, const Options& options) {
+  const bool was_good = shown.fit->good();
+  const Motion now = converted(shown.now, MotionKind::acceleration);
+  shown.fit = spectrum_fit(now.values, now.step, target, generating.from, generating.to);
+  if (was_good && !shown.fit->good() && !options.quiet)
+    complain(
+        fmt::format("warning: {}: after the processing the spectrum is beyond its bounds: mean error {:.2f} %, down to {:.1f} % of the "
+                    "target",
+                    shown.now.name, 100 * shown.fit->mean_error, 100 * shown.fit->least_ratio));
 }
 
 Provenance provenance_of(const MotionOptions& given, const Options& options, const std::vector<ShownMotion>& shown) {
@@ -188,6 +235,7 @@ void write_motions(const MotionReport& report, ResultFolder& folder) {
 
 void write(const MotionReport& report, const Options& options, ResultFolder& folder) {
   write_motions(report, folder);
+  folder.write("spectra.csv", motion_spectra_csv(report));
   folder.write("summary.json", motion_summary_json(report));
   const std::string page = report_page(motion_report_json(report));
   if (!page.empty())
@@ -206,13 +254,22 @@ int motion(const Options& options, const MotionOptions& given) {
   if (given.generate.empty() && given.files.empty())
     throw InputError({"uplift motion", 0}, "", "a file of a recorded motion, or --generate TARGET", "neither");
   MotionReport report;
+  report.frequencies = frequencies_of(given.frequencies);
   report.motions = given.generate.empty() ? read_all(given) : generate_all(given, targets, generating);
+  bool good = true;
+  for (const ShownMotion& shown : report.motions)
+    if (shown.fit && !shown.fit->good()) {
+      complain(
+          fmt::format("failed: {}: the spectrum could not be brought within its bounds (mean error {:.2f} %, down to {:.1f} % of the "
+                      "target); a longer duration or a narrower band may help",
+                      shown.now.name, 100 * shown.fit->mean_error, 100 * shown.fit->least_ratio));
+      good = false;
+    }
   process(report.motions, given.process);
   if (!given.process.empty())
-    for (std::size_t i = 0; i < targets.size(); ++i)
-      report.motions[i].fit =
-          spectrum_fit(report.motions[i].now.values, report.motions[i].now.step, *targets[i], generating.from, generating.to);
+    for (std::size_t i = 0; i < targets.size(); ++i) fit_again(report.motions[i], *targets[i], generating, options);
   report.dampings = given.dampings;
+  report = with_rotated(std::move(report));
   report.from = provenance_of(given, options, report.motions);
 
   ResultFolder folder(folder_of(given, options));
@@ -223,13 +280,6 @@ int motion(const Options& options, const MotionOptions& given) {
     print(report);
     say(fmt::format("results: {}/report.html", folder.path()));
   }
-  bool good = true;
-  for (const ShownMotion& shown : report.motions)
-    if (shown.fit && !shown.fit->good() && given.process.empty()) {
-      complain(fmt::format("failed: {}: the spectrum could not be brought within its bounds; a longer duration or a narrower band may help",
-                           shown.now.name));
-      good = false;
-    }
   return good ? Exit::done : Exit::numerical_failure;
 }
 

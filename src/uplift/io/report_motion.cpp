@@ -13,9 +13,7 @@
 namespace uplift {
 namespace {
 
-constexpr double least_frequency = 0.1, most_frequency = 100;  // Hz
-constexpr int spectrum_points = 300;
-constexpr std::size_t points_per_curve = 3000;
+constexpr std::size_t points_per_curve = 3000, points_per_fit = 800;
 constexpr std::string_view origin = "uplift motion";
 
 Histories histories_of(const MotionReport& report) {
@@ -54,10 +52,10 @@ std::string percent(double share) {
   return fmt::format("{:g} %", 100 * share);
 }
 
-std::vector<Spectrum> spectra_of(const Motion& motion, const std::vector<double>& dampings) {
+std::vector<Spectrum> spectra_of(const Motion& motion, const std::vector<double>& frequencies, const std::vector<double>& dampings,
+                                 Spectrum::Kind kind = Spectrum::Kind::psa) {
   const Motion acceleration = converted(motion, MotionKind::acceleration);
-  return response_spectra(acceleration.values, acceleration.step, log_spaced(least_frequency, most_frequency, spectrum_points), dampings,
-                          Spectrum::Kind::psa);
+  return response_spectra(acceleration.values, acceleration.step, frequencies, dampings, kind);
 }
 
 Curve spectrum_curve(const Spectrum& spectrum, std::string label, bool dash) {
@@ -65,7 +63,8 @@ Curve spectrum_curve(const Spectrum& spectrum, std::string label, bool dash) {
 }
 
 /// All dampings of one motion; before the processing the first one only.
-Chart spectrum_chart(const ShownMotion& shown, std::size_t number, const std::vector<double>& dampings) {
+Chart spectrum_chart(const ShownMotion& shown, std::size_t number, const MotionReport& report) {
+  const std::vector<double>& dampings = report.dampings;
   Chart chart{fmt::format("spectrum_{}", number),
               fmt::format("motion_{}", number),
               "Response spectra",
@@ -73,12 +72,12 @@ Chart spectrum_chart(const ShownMotion& shown, std::size_t number, const std::ve
               {"Frequency", "Hz", true},
               {"Pseudo-acceleration", "m/s2"},
               {}};
-  for (const Spectrum& spectrum : spectra_of(shown.now, dampings))
+  for (const Spectrum& spectrum : spectra_of(shown.now, report.frequencies, dampings))
     chart.curves.push_back(spectrum_curve(spectrum, percent(spectrum.damping) + " damping", false));
   if (was_processed(shown)) {
     chart.caption += " Dashed: before the processing.";
-    chart.curves.push_back(
-        spectrum_curve(spectra_of(shown.first, {dampings.front()}).front(), percent(dampings.front()) + ", before", true));
+    chart.curves.push_back(spectrum_curve(spectra_of(shown.first, report.frequencies, {dampings.front()}).front(),
+                                          percent(dampings.front()) + ", before", true));
   }
   return chart;
 }
@@ -98,6 +97,7 @@ Chart fit_chart(const SpectrumFit& fit, std::size_t number) {
   chart.curves = {{"target", "", fit.frequencies, fit.target, false, false},
                   {"motion", "", fit.frequencies, fit.reached, false, false},
                   {"90 % of the target", "", fit.frequencies, std::move(least), true, false}};
+  for (Curve& curve : chart.curves) thin_history(curve.x, curve.y, points_per_fit);
   return chart;
 }
 
@@ -116,15 +116,11 @@ Chart together_chart(const MotionReport& report) {
               {"Pseudo-acceleration", "m/s2"},
               {}};
   for (const ShownMotion& shown : report.motions)
-    chart.curves.push_back(spectrum_curve(spectra_of(shown.now, {damping}).front(), shown.now.name, false));
-  if (report.motions.size() == 2 && side_by_side(report.motions[0].now, report.motions[1].now)) {
-    const Motion a = converted(report.motions[0].now, MotionKind::acceleration),
-                 b = converted(report.motions[1].now, MotionKind::acceleration);
-    const RotatedSpectra rotated = rotated_spectra(a.values, b.values, a.step, log_spaced(least_frequency, most_frequency, spectrum_points),
-                                                   damping, Spectrum::Kind::psa);
+    chart.curves.push_back(spectrum_curve(spectra_of(shown.now, report.frequencies, {damping}).front(), shown.now.name, false));
+  if (report.rotated) {
     chart.caption += " RotD50 and RotD100: median and largest over all directions, if the two are horizontal and at right angles.";
-    chart.curves.push_back(spectrum_curve(rotated.median, "RotD50", true));
-    chart.curves.push_back(spectrum_curve(rotated.largest, "RotD100", true));
+    chart.curves.push_back(spectrum_curve(report.rotated->median, "RotD50", true));
+    chart.curves.push_back(spectrum_curve(report.rotated->largest, "RotD100", true));
   }
   return chart;
 }
@@ -263,7 +259,7 @@ std::string motion_report_json(const MotionReport& report) {
     const ShownMotion& shown = report.motions[i];
     write(history_chart(shown, i + 1, MotionKind::acceleration));
     if (shown.fit) write(fit_chart(*shown.fit, i + 1));
-    write(spectrum_chart(shown, i + 1, report.dampings));
+    write(spectrum_chart(shown, i + 1, report));
     write(history_chart(shown, i + 1, MotionKind::velocity));
     write(history_chart(shown, i + 1, MotionKind::displacement));
   }

@@ -95,6 +95,25 @@ Chart spectrum_chart(const Histories& motions) {
   return chart;
 }
 
+/// A long text as lines that fit a page, parted where a thought ends, else between words.
+std::vector<std::string> lines_of(std::string_view text) {
+  constexpr std::size_t most = 110;  // characters
+  std::vector<std::string> lines;
+  while (text.size() > most) {
+    std::size_t end = std::string_view::npos;
+    for (const std::string_view mark : {"; ", ". ", ": ", ", ", " "})
+      if (end = text.rfind(mark, most - mark.size()); end != text.npos && end >= most / 3) {
+        end += mark.size();
+        break;
+      }
+    if (end == text.npos || end < most / 3) break;
+    lines.emplace_back(text.substr(0, end - 1));
+    text.remove_prefix(end);
+  }
+  lines.emplace_back(text);
+  return lines;
+}
+
 }  // namespace
 
 Histories motions_of(const std::vector<ReportRun>& runs) {
@@ -191,7 +210,8 @@ void write_motion_origins(JsonWriter& json, const Histories& motions) {
   json.begin_object().member("id", "motion_origins").member("title", "Where the motions come from");
   json.member("caption", "File with its SHA-256, the factor from its numbers to SI, what was mended when it was read, every step since.");
   json.key("columns").begin_array();
-  for (const TableColumn& column : {TableColumn{"what", "", "", "text", 0}, {"value", "", "", "text", 0}}) write_column(json, column);
+  for (const TableColumn& column : {TableColumn{"what", "What", "", "text", 0}, {"value", "Value", "", "text", 0}})
+    write_column(json, column);
   json.end_array().key("rows").begin_array();
   for (const auto& history : motions) {
     const Motion& motion = *history->motion();
@@ -204,7 +224,8 @@ void write_motion_origins(JsonWriter& json, const Histories& motions) {
     row("event", motion.event);
     if (!motion.unit.empty()) row("unit", fmt::format("{}, times {:.8g}", motion.unit, motion.factor));
     for (const std::string& repair : motion.repairs) row("mended", repair);
-    for (std::size_t i = 0; i < motion.processing.size(); ++i) row(fmt::format("step {}", i + 1), motion.processing[i]);
+    for (std::size_t i = 0; i < motion.processing.size(); ++i)
+      for (const std::string& line : lines_of(motion.processing[i])) row(fmt::format("step {}", i + 1), line);
   }
   json.end_array().member("rowGroup", "name").end_object();
 }

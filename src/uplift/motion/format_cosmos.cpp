@@ -49,9 +49,12 @@ void read_texts(const RecordText& text, int first, int last, RecordDraft& draft)
     const std::string_view line = text.line(i);
     if (const std::string_view station = text_after(line, "Code:"); upper(line).starts_with("STATN")) draft.station = station;
     if (!upper(line).starts_with("STA CHA")) continue;
-    const std::string_view channel = line.substr(7, std::min(line.find("(Rcrdr"), line.size()) - 7);
-    const std::size_t colon = channel.rfind(':');
-    draft.component = trim(colon == channel.npos ? channel : channel.substr(colon + 1));
+    // "Sta Chan  1:  90 Deg (Rcrdr Chan  3) Location: roof", "Sta Chan  HNE  90 deg  Location: 00"
+    const std::size_t begin = line.find_first_not_of("nN", 7);
+    const std::string_view channel = line.substr(std::min(begin, line.size()));
+    const std::string_view named = channel.substr(0, std::min(channel.find("(Rcrdr"), channel.find("Location")));
+    const std::size_t colon = named.rfind(':');
+    draft.component = trim(colon == named.npos ? named : named.substr(colon + 1));
   }
 }
 

@@ -41,9 +41,16 @@ class Draw {
   std::mt19937_64 engine_;
 };
 
+std::vector<double> per_decade(double number, double from, double to) {
+  return log_spaced(from, to, std::max(2, static_cast<int>(std::ceil(number * std::log10(to / from))) + 1));
+}
+/// Where a motion is changed.
 std::vector<double> fit_frequencies(double from, double to, double damping) {
-  const double per_decade = damping < 0.02 ? 300 : 100;
-  return log_spaced(from, to, std::max(2, static_cast<int>(std::ceil(per_decade * std::log10(to / from))) + 1));
+  return per_decade(damping < 0.02 ? 300 : 100, from, to);
+}
+/// Where it is judged: so near each other that a spectrum, whose valleys between two of its cycles are sharp, hides no dip between them.
+std::vector<double> judged_frequencies(double from, double to, double damping) {
+  return per_decade(damping < 0.02 ? 2000 : 1000, from, to);
 }
 
 std::span<const double> span_of(const Vector& v) {
@@ -94,9 +101,13 @@ class Sines {
   std::vector<double> frequencies_, phases_, amplitudes_;
 };
 
-/// How far a fit is from what it must be; below 1 it is good. Nowhere far above the target either.
+/// How far a fit is from what it must be; below 1 it is good.
+double shortfall(const SpectrumFit& fit) {
+  return std::max(fit.mean_error / 0.05, (1 - fit.least_ratio) / 0.10);
+}
+/// Nowhere far above the target either.
 double distance(const SpectrumFit& fit) {
-  return std::max({fit.mean_error / 0.05, (1 - fit.least_ratio) / 0.10, fit.largest_error / 0.25});
+  return std::max(shortfall(fit), fit.largest_error / 0.25);
 }
 
 Vector at_rest_in_grains(Vector a, const Vector& envelope, double step) {
@@ -122,6 +133,33 @@ SpectralDemand demand_of(const TargetSpectrum& target, const GenerateOptions& op
   return demand;
 }
 
+SpectrumFit fit_at(std::vector<double> frequencies, std::span<const double> acceleration, double step, const TargetSpectrum& target) {
+  SpectrumFit fit{.damping = target.damping(), .frequencies = std::move(frequencies), .target = {}, .reached = {}};
+  fit.reached = response_spectra(acceleration, step, fit.frequencies, {fit.damping}, Spectrum::Kind::psa).front().values;
+  fit.least_ratio = std::numeric_limits<double>::max();
+  const auto count = static_cast<double>(fit.frequencies.size());
+  for (std::size_t i = 0; i < fit.frequencies.size(); ++i) {
+    fit.target.push_back(target.at(fit.frequencies[i]));
+    const double ratio = fit.reached[i] / fit.target[i];
+    fit.mean_error += std::abs(ratio - 1) / count;
+    fit.mean_ratio += ratio / count;
+    fit.largest_error = std::max(fit.largest_error, std::abs(ratio - 1));
+    fit.least_ratio = std::min(fit.least_ratio, ratio);
+  }
+  return fit;
+}
+
+/// The bottoms of the dips that a judged motion has between the frequencies of the demand, as further ones.
+void add_dips(const SpectrumFit& judged, SpectralDemand& demand) {
+  constexpr double shallow = 0.94;
+  const auto ratio = [&](std::size_t i) { return judged.reached[i] / judged.target[i]; };
+  for (std::size_t i = 1; i + 1 < judged.frequencies.size(); ++i) {
+    if (ratio(i) > shallow || ratio(i) > ratio(i - 1) || ratio(i) >= ratio(i + 1)) continue;
+    demand.frequencies.push_back(judged.frequencies[i]);
+    demand.target.push_back(judged.target[i]);
+  }
+}
+
 GeneratedMotion one_motion(const TargetSpectrum& target, const GenerateOptions& options, const Draw& draw) {
   const auto points = static_cast<Index>(std::llround(options.duration / options.step)) + 1;
   Vector envelope(points);
@@ -135,21 +173,28 @@ GeneratedMotion one_motion(const TargetSpectrum& target, const GenerateOptions& 
     a = sines.sum(envelope);
   }
 
-  const SpectralDemand demand = demand_of(target, options);
-  GeneratedMotion best;
-  constexpr double enough = 0.4;
+  SpectralDemand demand = demand_of(target, options);
+  GeneratedMotion best, judged;  // at the frequencies of the demand; at all frequencies
+  constexpr double enough = 0.4, sound = 0.9;
   for (int i = 0; i <= most_changes; ++i) {
     const Vector rounded = at_rest_in_grains(a, envelope, options.step);
-    SpectrumFit fit = spectrum_fit(span_of(rounded), options.step, target, options.from, options.to);
-    if (i == 0 || distance(fit) < distance(best.fit)) {
+    const auto band = demand.frequencies.begin() + static_cast<std::ptrdiff_t>(demand.limits);
+    SpectrumFit fit = fit_at({band, demand.frequencies.end()}, span_of(rounded), options.step, target);
+    if (best.motion.values.empty() || distance(fit) < distance(best.fit)) {
       best.motion.values.assign(rounded.begin(), rounded.end());
       best.fit = std::move(fit);
       best.iterations = i;
     }
-    if (distance(best.fit) < (i < plenty ? enough : 1)) break;
+    if (distance(best.fit) < (i < plenty ? enough : 1) || i == most_changes) {
+      best.fit = spectrum_fit(best.motion.values, options.step, target, options.from, options.to);
+      if (judged.motion.values.empty() || shortfall(best.fit) < shortfall(judged.fit)) judged = best;
+      if (shortfall(judged.fit) < sound) break;
+      add_dips(best.fit, demand);
+      best = {};
+    }
     a += spectral_change(a, envelope, demand, 0.7);
   }
-  return best;
+  return judged;
 }
 
 std::string told(const GenerateOptions& options, std::size_t component, const SpectrumFit& fit) {
@@ -198,19 +243,7 @@ bool SpectrumFit::good() const {
 }
 
 SpectrumFit spectrum_fit(std::span<const double> acceleration, double step, const TargetSpectrum& target, double from, double to) {
-  SpectrumFit fit{.damping = target.damping(), .frequencies = fit_frequencies(from, to, target.damping()), .target = {}, .reached = {}};
-  fit.reached = response_spectra(acceleration, step, fit.frequencies, {fit.damping}, Spectrum::Kind::psa).front().values;
-  fit.least_ratio = std::numeric_limits<double>::max();
-  const auto count = static_cast<double>(fit.frequencies.size());
-  for (std::size_t i = 0; i < fit.frequencies.size(); ++i) {
-    fit.target.push_back(target.at(fit.frequencies[i]));
-    const double ratio = fit.reached[i] / fit.target[i];
-    fit.mean_error += std::abs(ratio - 1) / count;
-    fit.mean_ratio += ratio / count;
-    fit.largest_error = std::max(fit.largest_error, std::abs(ratio - 1));
-    fit.least_ratio = std::min(fit.least_ratio, ratio);
-  }
-  return fit;
+  return fit_at(judged_frequencies(from, to, target.damping()), acceleration, step, target);
 }
 
 double correlation(std::span<const double> first, std::span<const double> second) {

@@ -35,7 +35,7 @@ struct GenerateOptions {
 const Section& generate_section();
 GenerateOptions generate_options(const Values& values, const TargetSpectrum& target);
 
-/// How well a motion has the spectrum that it was made for: 100 frequencies per decade over the band, and three times as many where the
+/// How well a motion has the spectrum that it was made for: at 1000 frequencies per decade over the band, and twice as many where the
 /// damping is small (below 2 %).
 struct SpectrumFit {
   double damping = 0;

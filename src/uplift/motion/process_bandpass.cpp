@@ -8,6 +8,7 @@
 #include <optional>
 
 #include "uplift/math/fourier.h"
+#include "uplift/motion/convert.h"
 #include "uplift/motion/process_step.h"
 
 namespace uplift {
@@ -46,7 +47,7 @@ class Bandpass final : public ProcessStep {
 
     const auto begin = padded.begin() + static_cast<std::ptrdiff_t>(keep_ ? 0 : pad);
     motion.values.assign(begin, begin + static_cast<std::ptrdiff_t>(keep_ ? count + 2 * pad : count));
-    motion.processing.push_back(sentence(motion.step * static_cast<double>(pad)));
+    motion.processing.push_back(sentence(motion.step * static_cast<double>(pad)) + left_over(motion));
     return motion;
   }
 
@@ -68,7 +69,20 @@ class Bandpass final : public ProcessStep {
                        : low_        ? fmt::format("High-pass {:g} Hz", *low_)
                                      : fmt::format("Low-pass {:g} Hz", *high_);
     return fmt::format("{}, Butterworth of order {} forwards and backwards (zero phase), zeros over {:.4g} s before and after{}.", band,
-                       order_, pad, keep_ ? ", kept" : "");
+                       order_, pad, keep_ ? ", kept" : ", cut away again");
+  }
+  /// What the filter has spread over the time that was cut away is missing in the integrals.
+  std::string left_over(const Motion& motion) const {
+    constexpr double felt = 0.01;
+    if (keep_ || !low_ || motion.kind != MotionKind::acceleration) return {};
+    const std::vector<double> velocity = integrals_of(motion.values, motion.step).velocity;
+    double most = 0;
+    for (const double value : velocity) most = std::max(most, std::abs(value));
+    if (std::abs(velocity.back()) <= felt * most) return {};
+    return fmt::format(
+        " Without what was cut away the velocity ends at {:.3g} m/s, {:.2g} % of its peak, and the displacement goes on; keep_padding = "
+        "true keeps it, a baseline with end = \"velocity\" mends it.",
+        velocity.back(), 100 * std::abs(velocity.back()) / most);
   }
   int order_;
   bool keep_;

@@ -12,7 +12,7 @@
 namespace uplift {
 
 /// A record as lines. Any line ends; bytes that are not UTF-8 are taken as Latin-1, and a mark of the byte order is skipped.
-/// Throws InputError for what is no text (zero bytes).
+/// Throws InputError for what is no text (zero bytes) and for lines longer than any record's.
 class RecordText {
  public:
   RecordText(std::string_view text, std::string file);

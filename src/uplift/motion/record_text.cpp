@@ -1,3 +1,5 @@
+#include <fmt/format.h>
+
 #include <algorithm>
 #include <cmath>
 #include <numbers>
@@ -67,6 +69,7 @@ Word word_of(std::string_view text) {
 }  // namespace
 
 RecordText::RecordText(std::string_view text, std::string file) : file_(std::move(file)) {
+  constexpr std::size_t longest = 4'000'000;  // bytes of a line: 250 000 numbers in one row
   if (text.starts_with("\xEF\xBB\xBF")) text.remove_prefix(3);
   if (const std::size_t zero = text.find('\0'); zero != text.npos)
     throw InputError({file_, 1 + static_cast<int>(std::count(text.begin(), text.begin() + static_cast<std::ptrdiff_t>(zero), '\n'))}, "",
@@ -81,6 +84,8 @@ RecordText::RecordText(std::string_view text, std::string file) : file_(std::mov
   for (std::size_t begin = 0; begin < text_.size();) {
     const std::size_t end = std::min(text_.find_first_of("\r\n", begin), text_.size());
     lines_.emplace_back(begin, end - begin);
+    if (end - begin > longest)
+      throw InputError(where(count()), "", fmt::format("lines of at most {} characters", longest), fmt::format("{}", end - begin));
     std::size_t next = end;
     while (next < text_.size() && text_[next] == '\r') ++next;
     const bool feed = next < text_.size() && text_[next] == '\n';
