@@ -135,5 +135,34 @@ class Generated(CliTest):
         self.assertIn("bandpass", self.uplift("describe", "process").stdout)
 
 
+class Compared(CliTest):
+    def test_the_hardest_motion_is_shown(self):
+        shaking = lambda peak: "time [s],a [m/s2]\n" + "".join(
+            f"{0.01 * i:.2f},{peak * math.sin(2 * math.pi * i / 50) * math.sin(math.pi * i / 100):.6f}\n" for i in range(101))
+        self.write(shaking(0.2), "weak.csv")
+        self.write(shaking(6), "strong.csv")
+        text = BASE.replace("bonded = false\n", "")
+        for name in ("weak", "strong"):
+            text += f'[[record]]\nname = "{name}"\nfile = "{name}.csv"\n'
+            text += f'[[compare.motion]]\nname = "{name}"\nlabel = "{name} shaking"\nreplace = ["weak"]\nby = ["{name}"]\n'
+        text += '[[ground_acceleration]]\ndirection = [1, 0]\nfunction = "weak"\n'
+        text += '[[verdict.criterion]]\nquantity = "max_uplifted_ratio"\nlimit = 0.01\nsource = "test"\n'
+        self.write(text)
+        self.uplift("compare", "case.toml", "-o", "out", "-q")
+        found = self.summary("out")
+        self.assertEqual(found["verdict"]["run"], "run-strong")
+        self.assertRegex(found["verdict"]["headline"], r"The base uplifts: .* \(strong shaking, the hardest of 2 motions\)")
+        self.assertEqual(found["verdict"]["criteria"][0]["result"], "not_met")
+        self.assertEqual([run["name"] for run in found["runs"]], ["run-strong", "bonded-strong", "run-weak", "bonded-weak"])
+        # the table keeps the user's order; its peaks are those of the runs
+        table = found["over_motions"][0]
+        self.assertEqual([row["motion"] for row in table["motions"]], ["weak shaking", "strong shaking"])
+        self.assertGreater(table["motions"][1]["peaks"]["ratio"], table["motions"][0]["peaks"]["ratio"])
+        page = (self.folder / "out/report.html").read_text()
+        self.assertIn("This page shows the hardest of 2 motions, strong shaking.", page)
+        for name in ("run-weak", "bonded-weak", "run-strong", "bonded-strong"):
+            self.assertTrue((self.folder / f"out/histories/{name}.csv").exists())
+
+
 if __name__ == "__main__":
     main()

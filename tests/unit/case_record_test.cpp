@@ -201,6 +201,9 @@ TEST_F(RecordCase, WarnsOfStepsThatDoNotFit) {
   EXPECT_EQ(said("0.04", "is coarser than that of the record \"ex\" (20.0 ms)"), 1);
   EXPECT_EQ(said("0.008", "is no whole fraction of that of the record \"ex\" (20.0 ms)"), 1);
   EXPECT_EQ(said("0.005", "the record \"ex\" lasts 6.00 s, the dynamic stages 3.00 s"), 1);
+  EXPECT_EQ(said("0.005", "stops with a jerk"), 0);
+  const double last = write_record("ex.txt", 0.02, 101, 1).back();
+  EXPECT_EQ(said("0.005", fmt::format("the record \"ex\" ends at 2.00 s with {:.3f} m/s2, and the run goes on to 3.00 s", last)), 1);
 }
 
 /// A prescribed displacement drifts away with the velocity that is left.
@@ -280,7 +283,7 @@ const std::string short_motion = "duration = 4, step = 0.02, from = 1.5, to = 10
 TEST_F(RecordCase, GeneratesIndependentComponents) {
   const std::string text = tower(
       quick,
-      replaced(moving_frame, two_records, generated("ex", short_motion + ", seed = 4") + generated("ey", short_motion + ", seed = 4")));
+      replaced(moving_frame, two_records, generated("ex", short_motion + ", seed = 10") + generated("ey", short_motion + ", seed = 10")));
   const Case file = read(text), again = read(text);
   const Motion &ex = file.records[0].motion(), &ey = file.records[1].motion();
   ASSERT_EQ(ex.values.size(), 201u);

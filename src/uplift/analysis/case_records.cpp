@@ -244,6 +244,13 @@ void warn_motions(const std::vector<MotionUse>& used, const std::vector<Stage>& 
     if (duration < motion.duration() * (1 - 1e-9))
       said.push_back(fmt::format("the record {} lasts {}, the dynamic stages {}: the rest of it is not used", in_quotes(motion.name),
                                  spoken(motion.duration(), "s"), spoken(duration, "s")));
+    constexpr double felt = 0.02;  // of the peak
+    const double last = motion.values.back();
+    if (motion.kind == MotionKind::acceleration && duration > motion.duration() * (1 + 1e-9) &&
+        std::abs(last) > felt * std::abs(peak_of(motion).value))
+      said.push_back(
+          fmt::format("the record {} ends at {} with {}, and the run goes on to {}: there the ground stops with a jerk; taper it",
+                      in_quotes(motion.name), spoken(motion.duration(), "s"), spoken(last, unit_of(motion.kind)), spoken(duration, "s")));
   }
 }
 

@@ -182,6 +182,9 @@ void print(const Loaded& loaded, const Built& built, const Findings& found, cons
     line("record " + motion.name,
          fmt::format("{}, {} points every {}, {}, peak {}", motion.format, motion.values.size(), spoken(motion.step, "s"),
                      spoken(motion.duration(), "s"), spoken(std::abs(peak_of(motion).value), unit_of(motion.kind))));
+    if (!motion.file.empty())  // of generated ones a warning tells
+      for (const std::string& repair : motion.repairs) line("  mended", repair);
+    for (const std::string& step : motion.processing) line("  processed", step);
   }
   line("dead load on the base", spoken(built.weight, "N"));
   if (!found.fixed.empty()) line("frequencies, fixed base", list_hz(found.fixed));

@@ -52,10 +52,9 @@ std::string percent(double share) {
   return fmt::format("{:g} %", 100 * share);
 }
 
-std::vector<Spectrum> spectra_of(const Motion& motion, const std::vector<double>& frequencies, const std::vector<double>& dampings,
-                                 Spectrum::Kind kind = Spectrum::Kind::psa) {
+std::vector<Spectrum> spectra_of(const Motion& motion, const std::vector<double>& frequencies, const std::vector<double>& dampings) {
   const Motion acceleration = converted(motion, MotionKind::acceleration);
-  return response_spectra(acceleration.values, acceleration.step, frequencies, dampings, kind);
+  return response_spectra(acceleration.values, acceleration.step, frequencies, dampings, Spectrum::Kind::psa);
 }
 
 Curve spectrum_curve(const Spectrum& spectrum, std::string label, bool dash) {
