@@ -18,7 +18,7 @@ AbsorbingSection absorbing_ground(const Values& absorbing, const CaseSolids::Sol
 Vec3 incident_motion(const Values& incident, Space space) {
   const std::string& word = incident.text("wave");
   if (space.dimension == 2 && word == "SH") fail(incident, "wave", "P or SV in a plane model", in_quotes(word));
-  if (space.dimension == 2 && incident.given("azimuth")) fail(incident, "azimuth", "no azimuth in a plane model", "one");
+  if (space.dimension == 2 && incident.number("azimuth") != 0) fail(incident, "azimuth", "no azimuth in a plane model", "one");
   return wave_motion(word == "P" ? Wave::p : word == "SV" ? Wave::sv : Wave::sh, space.dimension, incident.number("azimuth"));
 }
 

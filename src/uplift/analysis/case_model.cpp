@@ -157,7 +157,7 @@ Pattern edge_load(const Values& load, const CaseNames& names) {
 Vec3 about_axes(const Values& table, std::string_view single, std::string_view plural, bool everywhere, Space space) {
   if (table.has(plural)) {
     if (space.dimension == 2) fail(table, plural, fmt::format("{} in a plane model", single), "three numbers");
-    if (table.given(single)) fail(table, single, fmt::format("either {} or {}", single, plural), "both");
+    if (table.has(single) && table.number(single) != 0) fail(table, single, fmt::format("either {} or {}", single, plural), "both");
     const std::vector<double>& numbers = table.numbers(plural);
     return {numbers[0], numbers[1], numbers[2]};
   }

@@ -174,10 +174,11 @@ std::string about(const Built& built) {
 std::vector<View> motion_views(const Built& built) {
   std::vector<View> views;
   if (built.top >= 0) {
-    views.push_back({"top_displacement", "response", "Displacement of the top", "Horizontal displacement of the highest mass.",
+    const std::string along = built.model.space.dimension == 2 ? "." : fmt::format(" along {}.", built.sway == ux ? "x" : "y");
+    views.push_back({"top_displacement", "response", "Displacement of the top", "Horizontal displacement of the highest mass" + along,
                      "Displacement", "m", Column::displacement, built.top_sway(), 1});
-    views.push_back({"top_velocity", "response", "Velocity of the top", "Horizontal velocity of the highest mass.", "Velocity", "m/s",
-                     Column::velocity, built.top_sway(), 1});
+    views.push_back({"top_velocity", "response", "Velocity of the top", "Horizontal velocity of the highest mass" + along, "Velocity",
+                     "m/s", Column::velocity, built.top_sway(), 1});
   }
   if (built.base >= 0) {
     views.push_back({"base_displacement", "response", "Displacement of the base", "Vertical displacement of the base.", "Displacement", "m",
