@@ -136,6 +136,27 @@ TEST(Trust, TellsWhatMatters) {
   EXPECT_EQ(fixed.runs.size(), 3u);
   EXPECT_GT(fixed.spectra.front().speaks_to, answer.spectra.front().speaks_to);
   EXPECT_LT(*band(fixed, "max_moment").share(), 2e-3);
+  // what is a share, a change or a residual has its band from ... to, and no half of it over the value
+  for (const char* name : {"max_uplifted_ratio", "change_of_moment", "residual_rotation", "first_uplift"})
+    EXPECT_FALSE(band(answer, name).share().has_value()) << name;
+}
+
+/// A spectrum speaks as far as the shortest reach; what the step can carry, ten steps a period, is among them.
+TEST(Trust, ASpectrumSpeaksAsFarAsItsShortestReach) {
+  const TrustSpectrum spectrum = answered(rocking, 1).answer.spectra.front();
+  ASSERT_EQ(spectrum.reaches.size(), 5u);  // step, stiffness, tolerance, method; and what the step carries
+  EXPECT_EQ(spectrum.reaches.front().to, spectrum.speaks_to);
+  EXPECT_EQ(spectrum.reaches.front().choice, spectrum.limited_by);
+  EXPECT_TRUE(std::ranges::is_sorted(spectrum.reaches, {}, &TrustSpectrum::Reach::to));
+  for (std::size_t i = 0; i < spectrum.frequencies.size() && spectrum.frequencies[i] <= spectrum.speaks_to; ++i) {
+    EXPECT_LE(spectrum.most[i], 1.1 * spectrum.value[i]);
+    EXPECT_GE(spectrum.least[i], 0.9 * spectrum.value[i]);
+  }
+  std::string coarse = rocking;
+  coarse.replace(coarse.find("step = 1e-3"), 11, "step = 1e-2");
+  const TrustSpectrum bounded = answered(coarse + "[trust]\nstiffness_factor = 1\nspectrum_band = 10\n", 1).answer.spectra.front();
+  EXPECT_EQ(bounded.limited_by, "length of the step");
+  EXPECT_NEAR(bounded.speaks_to, 10, 1e-12);  // 1/(10 x 10 ms)
 }
 
 TEST(Trust, DoesNotDependOnThreads) {

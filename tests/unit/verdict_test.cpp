@@ -140,8 +140,72 @@ TEST(VerdictTest, TheHeadlineSaysWhatTheUpliftDoes) {
     return run;
   };
   const RunResult bonded = turned(2e6, 0);
-  const std::string headline = judge(built, turned(-1.2e6, 0.4), &bonded).headline;
-  EXPECT_TRUE(headline.ends_with("; beside the bonded base the base moment is 40 % less")) << headline;
+  const Verdict verdict = judge(built, turned(-1.2e6, 0.4), &bonded);
+  EXPECT_TRUE(verdict.headline.starts_with("The base uplifts: up to 40 % of its area")) << verdict.headline;
+  EXPECT_EQ(verdict.consequence, "Beside the bonded base: base moment 40 % less.");
+
+  FloorRun floors;
+  FloorChange change;
+  change.bands = {{{0, 2}, -0.031, 1, 1}, {{2, {}}, 0.12, 1, 1}};
+  floors.beside = {{change}};
+  EXPECT_EQ(judge(built, turned(-1.2e6, 0.4), &bonded, &floors).consequence,
+            "Beside the bonded base: base moment 40 % less, floor spectra -3.1 to +12 %.");
+  EXPECT_TRUE(judge(built, turned(-1.2e6, 0.4), nullptr).consequence.empty());
+}
+
+TEST(VerdictTest, NumbersNoFinerThanTheyStillMove) {
+  EXPECT_EQ(spoken_within(9.83e-7, 2.17e-5, "rad"), "0.001 mrad");
+  EXPECT_EQ(spoken_within(2.17e-5, 2.17e-5, "rad"), "0.022 mrad");
+  EXPECT_EQ(spoken_within(-4.5e-6, 1.16e-4, "m"), "0.00 mm");       // no "-0.00"
+  EXPECT_EQ(spoken_within(5.326e-4, 1e-9, "m"), "0.533 mm");        // three digits are enough
+  EXPECT_EQ(spoken_within(0.12345, 0, "m"), spoken(0.12345, "m"));  // nothing moves
+  EXPECT_EQ(spoken(9.83e-7, "rad"), "0.000983 mrad");
+}
+
+TEST(VerdictTest, NothingIsSaidAsZeroAndSharesInPercent) {
+  const auto words = [](const char* name, double value) { return said(*find_verdict_quantity(name), value); };
+  EXPECT_EQ(words("residual_rotation", 6.9e-20), "0 rad");
+  EXPECT_EQ(words("max_uplifted_ratio", 0.236), "24 %");
+  EXPECT_EQ(words("change_of_compression", 1.07e-4), "0.01 %");
+  EXPECT_EQ(words("change_of_compression", -3e-6), "0 %");
+  EXPECT_EQ(words("change_of_compression", 11.2), "1.12e+03 %");
+  for (const VerdictQuantity& quantity : verdict_quantities()) {
+    EXPECT_FALSE(quantity.brief.empty()) << quantity.name;
+    EXPECT_LE(quantity.brief.size(), 28u) << quantity.name;  // tables of a terminal
+  }
+}
+
+TEST(VerdictTest, TheTopIsJudgedInBothDirectionsOfSpace) {
+  const Built built = support::built_of(R"(
+title = "t"
+[nodes]
+base = [0, 0, 0]
+top = [0, 0, 3]
+[[beam]]
+name = "column"
+nodes = ["base", "top"]
+E = "30 GPa"
+A = 1
+I = 0.1
+J = 0.2
+[[mass]]
+node = "top"
+mass = 1000
+[[support]]
+node = "base"
+fixed = ["ux", "uy", "uz", "rx", "ry", "rz"]
+[[load]]
+name = "along"
+node = "top"
+force = [3e3, -4e3, 1e6]
+[[stage]]
+type = "static"
+)");
+  const RunResult run = support::run_of(built);
+  const Peak* top = top_motion(built, run);
+  ASSERT_NE(top, nullptr);
+  // clamped column: P l3/(3 E I) along y, whatever the larger vertical motion is
+  EXPECT_NEAR(top->value, -4e3 * 27 / (3 * 30e9 * 0.1), 1e-12);
 }
 
 TEST(VerdictTest, ComparesWithTheBondedBase) {

@@ -17,7 +17,7 @@ export interface CaseInfo {
 }
 
 /** "motion": the report is one of ground motions, without a structure. */
-export type VerdictLevel = "none" | "uplift" | "overturned" | "failed" | "motion";
+export type VerdictLevel = "none" | "uplift" | "overturned" | "separated" | "failed" | "motion";
 
 export interface Fact {
   label: string;

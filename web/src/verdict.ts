@@ -10,15 +10,17 @@ const LEVEL_WORD: Record<VerdictLevel, string> = {
   none: "No uplift",
   uplift: "Uplift",
   overturned: "Overturned",
+  separated: "Left the ground",
   failed: "Run failed",
   motion: "Ground motion",
 };
 
-// A tick, a lifted edge, a toppled block, a cross, a shaken line: shape tells the level without colour.
+// A tick, a lifted edge, a toppled block, a block in the air, a cross, a shaken line: shape tells the level without colour.
 const LEVEL_SIGN: Record<VerdictLevel, string> = {
   none: "M5 12.5L10 17.5L19 7",
   uplift: "M3 20H21M4 17L20 10M20 10V5M17.5 7.5L20 5L22.5 7.5",
   overturned: "M3 20H21M6 20L13 6L20 9.5L14.5 20",
+  separated: "M3 20H21M5 13H19M12 10V3M9 6L12 3L15 6",
   failed: "M6 6L18 18M18 6L6 18",
   motion: "M2 12H6L8 6L11 18L14 4L17 15L19 12H22",
 };

@@ -185,11 +185,11 @@ void say_energy(const Built& built, const RunResult& run, Verdict& verdict) {
   verdict.facts.push_back({"Energy created by the computation", created < round_off ? "none" : percent(created),
                            fmt::format("of {}; limit {}", spoken(scale, "J"), percent(built.plan.created_limit)), too_much});
   std::string text =
-      too_much
-          ? fmt::format("The computation created {} of the energy put in ({} at {}): these results are not to be used.", percent(created),
-                        spoken(run.energy_created, "J"), spoken(run.energy_created_time, "s"))
-      : created < round_off ? "The energy balance closes: the computation created none of the energy put in."
-                            : fmt::format("The energy balance closes: the computation created at most {} of the energy put in.", percent(created));
+      too_much ? fmt::format("The computation created {} of the energy put in ({} at {}): these results are not to be used.",
+                             percent(created), spoken(run.energy_created, "J"), spoken(run.energy_created_time, "s"))
+      : created < round_off
+          ? "The energy balance closes: the computation created none of the energy put in."
+          : fmt::format("The energy balance closes: the computation created at most {} of the energy put in.", percent(created));
   const Energies& end = run.final_energy;
   if (scale > 0) {
     if (end.damping > 1e-6 * scale) text += fmt::format(" Damping took {}.", percent(end.damping / scale));

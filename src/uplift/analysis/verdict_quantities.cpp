@@ -25,7 +25,8 @@ constexpr std::array<VerdictQuantity, 30> quantities{{
     {"max_eccentricity", "1", "largest eccentricity over the width, e/B", "eccentricity e/B"},
     {"max_eccentricity_1", "1", "in space: largest eccentricity along t1 over the width", "e/B along t1"},
     {"max_eccentricity_2", "1", "in space: largest eccentricity along t2 over the width", "e/B along t2"},
-    {"min_overturning_safety", "1", "least safety against overturning, stabilising over driving moment about the toe", "safety against overturning", true, at_least},
+    {"min_overturning_safety", "1", "least safety against overturning, stabilising over driving moment about the toe",
+     "safety against overturning", true, at_least},
     {"min_sliding_safety", "1", "least safety against sliding, (mu N + c A)/V", "safety against sliding", true, at_least},
     {"full_loss_time", "s", "time without any contact", "time without contact"},
     {"longest_full_loss", "s", "longest interval without any contact", "longest loss of contact"},
@@ -68,6 +69,7 @@ double nothing_beside(std::string_view unit) {
 std::string said(const VerdictQuantity& quantity, double value) {
   if (std::abs(value) < nothing_beside(quantity.unit)) value = 0;
   if (!is_share(quantity)) return spoken(value, quantity.unit);
+  if (quantity.name.starts_with("change_of") && std::abs(value) >= 10) return fmt::format("{:.3g} %", 100 * value);  // not "11 times"
   if (std::abs(value) >= 5e-4) return percent(value);
   return std::abs(value) < 5e-5 ? "0 %" : fmt::format("{:.2f} %", 100 * value);
 }

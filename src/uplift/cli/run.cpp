@@ -36,8 +36,7 @@ int run(const Options& options) {
   }
   results.floors = floor_answers(results.built.front().plan, results.runs, results.specs);
   const RunResult& main = results.runs.front();
-  results.verdict = judge(results.built.front(), main, results.runs.size() > 1 ? &results.runs[1] : nullptr,
-                          &results.floors.runs.front());
+  results.verdict = judge(results.built.front(), main, results.runs.size() > 1 ? &results.runs[1] : nullptr, &results.floors.runs.front());
   write_results(options, loaded, results, nullptr, folder);
 
   if (options.json) {

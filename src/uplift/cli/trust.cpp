@@ -20,16 +20,15 @@ std::string hertz(double frequency) {
 
 /// Every number from ... to; the half of it as a share where that has a meaning.
 void print_bands(const TrustAnswer& answer) {
-  const bool many = std::ranges::any_of(answer.bands, [&](const TrustBand& band) {
-    return !band.interface.empty() && band.interface != answer.bands.back().interface;
-  });
+  const bool many = std::ranges::any_of(
+      answer.bands, [&](const TrustBand& band) { return !band.interface.empty() && band.interface != answer.bands.back().interface; });
   std::vector<std::vector<std::string>> rows{{"number", "value", "from", "to", "band", "moved most by"}};
   if (many) rows.front().insert(rows.front().begin() + 1, "of");
   for (const TrustBand& band : answer.bands) {
     const std::optional<double> share = band.share();
-    std::vector<std::string>& row = rows.emplace_back(std::vector<std::string>{
-        std::string(band.quantity->brief), band.said(band.value), band.said(band.least),
-        band.said(band.most), share ? "+-" + percent(*share) : "", band.dominant});
+    std::vector<std::string>& row =
+        rows.emplace_back(std::vector<std::string>{std::string(band.quantity->brief), band.said(band.value), band.said(band.least),
+                                                   band.said(band.most), share ? "+-" + percent(*share) : "", band.dominant});
     if (many) row.insert(row.begin() + 1, band.interface);
   }
   print_table(rows);
@@ -44,8 +43,11 @@ void print_spectra(const TrustAnswer& answer) {
     const bool ends = !each.limited_by.empty(), next = ends && each.reaches.size() > 1;
     const bool next_ends = next && each.reaches[1].to < each.frequencies.back();
     rows.push_back({each.floor, percent(each.damping), hertz(each.speaks_to), ends ? each.limited_by : "last frequency",
-                    next ? hertz(each.reaches[1].to) : "", next_ends ? each.reaches[1].choice : next ? "last frequency" : "",
-                    !each.above_broadened         ? ""
+                    next ? hertz(each.reaches[1].to) : "",
+                    next_ends ? each.reaches[1].choice
+                    : next    ? "last frequency"
+                              : "",
+                    !each.above_broadened          ? ""
                     : *each.above_broadened < 5e-3 ? "nowhere"
                                                    : fmt::format("{} at {}", percent(*each.above_broadened), hertz(each.above_at))});
   }

@@ -14,7 +14,8 @@ void write_section(JsonWriter& json, const char* id, std::string_view title, std
 }
 
 std::string floors_text(const ReportInput& input) {
-  std::string text = "What equipment on a floor feels: largest pseudo-acceleration of a damped oscillator of each frequency that stands there.";
+  std::string text =
+      "What equipment on a floor feels: largest pseudo-acceleration of a damped oscillator of each frequency that stands there.";
   std::string names;
   for (const ReportRun& run : input.runs)
     if (run.built->plan.method->constrains() && !run.spec->bonded && run.result->group == input.runs.front().result->group)

@@ -20,12 +20,14 @@ void write_heads(JsonWriter& json, std::initializer_list<std::pair<const char*, 
 void write_trust_reaches(JsonWriter& json, const TrustAnswer& answer) {
   if (answer.spectra.empty()) return;
   json.begin_object().member("id", "trust_reaches").member("title", "How far the floor spectra speak").member("rowGroup", "floor");
-  json.member("caption",
-              fmt::format("Up to the stated frequency no repetition with the changed choice differs from the case by more than {} of the raw curve; a "
-                          "peak that only moves counts in full, which is what broadened spectra are made for. Elements and step: what they can "
-                          "carry, ten nodes a wavelength and ten steps a period. Above the broadened curve: by how much the raw curve of a "
-                          "repetition rises above the broadened one of the case, and where.",
-                          percent(answer.accepted)));
+  json.member(
+      "caption",
+      fmt::format(
+          "Up to the stated frequency no repetition with the changed choice differs from the case by more than {} of the raw curve; a "
+          "peak that only moves counts in full, which is what broadened spectra are made for. Elements and step: what they can "
+          "carry, ten nodes a wavelength and ten steps a period. Above the broadened curve: by how much the raw curve of a "
+          "repetition rises above the broadened one of the case, and where.",
+          percent(answer.accepted)));
   json.key("columns").begin_array();
   write_column(json, {"damping", "Damping", "", "percent", 2});
   write_column(json, {"to", "Speaks to", "Hz", "number", 3});
@@ -96,9 +98,8 @@ std::vector<Chart> trust_charts(const TrustAnswer& answer) {
     Chart chart{fmt::format("trust_{}_{:g}", each.floor, 100 * each.damping),
                 "trust",
                 fmt::format("Floor {}, {} damping", each.floor, percent(each.damping)),
-                each.limited_by.empty()
-                    ? fmt::format("All runs lie within {} of the case at every frequency.", percent(answer.accepted))
-                    : fmt::format("Speaks to {:.3g} Hz, limited by the {}.", each.speaks_to, each.limited_by),
+                each.limited_by.empty() ? fmt::format("All runs lie within {} of the case at every frequency.", percent(answer.accepted))
+                                        : fmt::format("Speaks to {:.3g} Hz, limited by the {}.", each.speaks_to, each.limited_by),
                 {"Frequency", "Hz", true},
                 {"Pseudo-acceleration", "m/s2"},
                 {}};

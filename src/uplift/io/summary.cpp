@@ -71,7 +71,11 @@ std::string summary_json(const SummaryInput& input) {
   const auto& [from, runs, verdict, motions, compared, floors] = input;
   JsonWriter json(0, 2);
   json.begin_object();
-  json.member("format", "uplift-summary-1").member("version", from.version).member("built_with", from.built_with).member("title", from.title).member("command", from.command);
+  json.member("format", "uplift-summary-1")
+      .member("version", from.version)
+      .member("built_with", from.built_with)
+      .member("title", from.title)
+      .member("command", from.command);
   json.member("created", from.created);
   json.key("case").begin_object().member("file", from.case_file).member("sha256", from.case_hash).end_object();
   json.key("inputs").begin_array();

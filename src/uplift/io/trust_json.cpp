@@ -31,7 +31,8 @@ void write_band(JsonWriter& json, const TrustBand& band) {
 void write_spectrum(JsonWriter& json, const TrustSpectrum& spectrum) {
   json.begin_object().member("floor", spectrum.floor).member("damping", spectrum.damping);
   json.member("speaks_to", spectrum.speaks_to).member("limited_by", spectrum.limited_by).key("reaches").begin_array();
-  for (const TrustSpectrum::Reach& reach : spectrum.reaches) json.begin_object().member("choice", reach.choice).member("to", reach.to).end_object();
+  for (const TrustSpectrum::Reach& reach : spectrum.reaches)
+    json.begin_object().member("choice", reach.choice).member("to", reach.to).end_object();
   json.end_array();
   if (spectrum.above_broadened) json.member("above_broadened", *spectrum.above_broadened).member("above_at", spectrum.above_at);
   json.key("frequencies").numbers(spectrum.frequencies).key("value").numbers(spectrum.value);

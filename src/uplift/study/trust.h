@@ -39,8 +39,8 @@ struct TrustSpectrum {
   std::string floor;
   double damping = 0;
   std::vector<double> frequencies, value, least, most;  // Hz, m/s2
-  double speaks_to = 0;    // Hz: up to here all runs lie within the band that the case accepts; 0: nowhere
-  std::string limited_by;  // choice that ends it; empty when it speaks everywhere
+  double speaks_to = 0;                                 // Hz: up to here all runs lie within the band that the case accepts; 0: nowhere
+  std::string limited_by;                               // choice that ends it; empty when it speaks everywhere
   /// How far each choice alone lets it speak [Hz], and what the mesh and the step can carry, the shortest first.
   struct Reach {
     std::string choice;
