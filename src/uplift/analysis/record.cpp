@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <utility>
 
 #include "uplift/math/small.h"
 
@@ -148,14 +149,17 @@ Recorder::Recorder(const Model& model, const RunPlan& plan, const State& state, 
     result_.table.assign(plan.requests.size() + 1, {});
   }
   for (std::vector<double>& column : result_.table) column.reserve(column.size() + expected_rows + 2);
+  recent_.resize(plan.requests.size() * many);
   const SparseRows reduction(model.reduction);
   for (const Request& request : plan.requests) {
-    const Source& source = sources_.emplace_back(source_of(request, reduction));
-    (source.place != nullptr ? placed_ : source.vector != nullptr ? entries_ : made_).push_back(sources_.size() - 1);
+    Source source = source_of(request, reduction);
+    source.request = &request;
+    source.to = recent_.data() + most_.size() * many;
     wants_acceleration_ =
         wants_acceleration_ || request.kind == Request::Kind::acceleration || request.kind == Request::Kind::absolute_acceleration;
     if (fresh) result_.peaks.push_back({request.name, request.unit, 0, 0});
     most_.push_back(std::abs(result_.peaks[most_.size()].value));
+    (source.place != nullptr ? placed_ : source.vector != nullptr ? entries_ : made_).push_back(std::move(source));
   }
   now_.resize(most_.size());
   if (stepper_ == nullptr) acceleration_ = Vector::Zero(model.free());
@@ -249,11 +253,13 @@ Recorder::Source Recorder::source_of(const Request& request, const SparseRows& r
   return {};
 }
 
-double Recorder::made(std::size_t column) const {
+double Recorder::made(const Source& source) const {
   using What = Request::Kind;
   const Request& request = plan_.requests[column];
   const Source& source = sources_[column];
   const State& state = state_;
+  const Request& request = *source.request;
+  const State& state = stepper_.state();
   const auto sum = [&](const Vector& q, int derivative) {
     if (source.moved) return model_.full(request.unknown, q, derivative, state.time);
     double total = 0;
@@ -282,22 +288,40 @@ void Recorder::record(bool row) {
   const State& state = state_;
   if (wants_acceleration_ && stepper_ != nullptr) stepper_->acceleration(acceleration_);
   floors_.record(acceleration_, state.time);
-  double* now = now_.data();
-  const Source* source = sources_.data();
-  for (const std::size_t k : placed_) now[k] = *source[k].place;
-  for (const std::size_t k : entries_) now[k] = source[k].factor * (state.*source[k].vector).data()[source[k].entry];
-  for (const std::size_t k : made_) now[k] = made(k);
-  const std::size_t columns = now_.size();
-  double* most = most_.data();
-  for (std::size_t k = 0; k < columns; ++k)
-    if (std::abs(now[k]) > most[k]) {
-      most[k] = std::abs(now[k]);
-      result_.peaks[k].value = now[k], result_.peaks[k].time = state.time;
-    }
-  if (!row) return;
-  std::vector<double>* column = result_.table.data();
-  column->push_back(state.time);
-  for (std::size_t k = 0; k < columns; ++k) (++column)->push_back(now[k]);
+  const std::size_t at = count_;
+  for (const Source& each : placed_) each.to[at] = *each.place;
+  for (const Source& each : entries_) each.to[at] = each.factor * (state.*each.vector).data()[each.entry];
+  for (const Source& each : made_) each.to[at] = made(each);
+  time_[at] = state.time;
+  is_row_[at] = row;
+  if (++count_ == many) flush();
+}
+
+void Recorder::flush() {
+  const std::size_t count = std::exchange(count_, 0);
+  for (std::size_t k = 0; k < most_.size(); ++k) {
+    const double* recent = recent_.data() + k * many;
+    small::Lanes sizes = small::Lanes::Constant(most_[k]);
+    small::for_lanes(static_cast<std::ptrdiff_t>(count), [&](const auto& at) {
+      const small::Lanes size = at(recent).abs();
+      sizes = (size > sizes).select(size, sizes);  // never what is not a number
+    });
+    const double most = sizes.maxCoeff();
+    if (most == most_[k]) continue;
+    most_[k] = most;
+    const double* peak = std::find_if(recent, recent + count, [most](double value) { return std::abs(value) == most; });
+    result_.peaks[k].value = *peak, result_.peaks[k].time = time_[static_cast<std::size_t>(peak - recent)];
+  }
+  std::array<std::size_t, many> rows;
+  std::size_t kept = 0;
+  for (std::size_t i = 0; i < count; ++i)
+    if (is_row_[i]) rows[kept++] = i;
+  const auto append_rows = [&](std::vector<double>& column, double* numbers) {
+    for (std::size_t i = 0; kept < count && i < kept; ++i) numbers[i] = numbers[rows[i]];
+    column.insert(column.end(), numbers, numbers + kept);
+  };
+  append_rows(result_.table.front(), time_.data());
+  for (std::size_t k = 0; k < most_.size(); ++k) append_rows(result_.table[k + 1], recent_.data() + k * many);
 }
 
 void Recorder::picture(const State& state) {

@@ -42,23 +42,33 @@ class Recorder {
   Recorder(const Model& model, const RunPlan& plan, const State& state, const Energies& energies, const Stepper* stepper,
            const std::vector<InterfaceView>& views, long steps, double step, RunResult& result);
   /// Notes peaks every time; writes a row when `row` is set.
+  /// called; it keeps its place, as the energies of the stepper do.
+  Recorder(const Model& model, const RunPlan& plan, const Stepper& stepper, const std::vector<InterfaceView>& views, long steps,
+           double step, RunResult& result);
+  /// Notes the numbers of every column; they become a row of the table when `row` is set. Peaks and rows are made for many steps at a time.
   void record(bool row);
+  /// Peaks and rows of the last steps; nothing is recorded after it.
+  void finish() { flush(); }
   /// Keeps a picture for the animation.
   void picture(const State& state);
 
  private:
+  static constexpr std::size_t many = 64;
   /// Where the number of a column is found, known from the start: one of these.
   struct Source {
+    double* to = nullptr;                   // the column in recent_
     const double* place = nullptr;          // it stays there: an energy, or a part of an interface's view
     const Vector State::*vector = nullptr;  // an entry of this vector of the state times a factor
     int entry = 0;
     double factor = 0;
     // both null: it is made from several numbers, of which these are of the free unknowns
+    const Request* request = nullptr;
     std::vector<std::pair<int, double>> terms = {};
     bool moved = false;  // a prescribed motion takes part
   };
   Source source_of(const Request& request, const SparseRows& reduction) const;
-  double made(std::size_t column) const;
+  double made(const Source& source) const;
+  void flush();
 
   const Model& model_;
   const RunPlan& plan_;
@@ -68,9 +78,12 @@ class Recorder {
   const std::vector<InterfaceView>& views_;
   RunResult& result_;
   FloorRecorder floors_;
-  std::vector<Source> sources_;
-  std::vector<std::size_t> placed_, entries_, made_;  // columns of each kind
-  std::vector<double> now_, most_;                    // per column: the present number, and the size of its peak
+  std::vector<Source> placed_, entries_, made_;  // columns of each kind
+  std::vector<double> recent_;                   // the last steps, `many` numbers per column
+  std::array<double, many> time_;                // of the same [s]
+  std::array<bool, many> is_row_;
+  std::size_t count_ = 0;     // of them
+  std::vector<double> most_;  // per column: size of its peak
   bool wants_acceleration_ = false;
   Vector acceleration_;
 };

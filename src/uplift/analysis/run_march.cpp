@@ -174,6 +174,7 @@ bool Runner::dynamics(const Stage& stage, const Bulk& bulk) {
     result_.step_seconds =
         (std::chrono::duration<double>(std::chrono::steady_clock::now() - first_done).count() - (shown_ - shown_before)) /
         static_cast<double>(stepper.counts().steps - 1);
+  recorder.finish();
   state_ = stepper.state();
   seen_ = &state_;
   ledger_ = stepper.ledger();
