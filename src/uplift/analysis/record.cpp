@@ -161,7 +161,6 @@ Recorder::Recorder(const Model& model, const RunPlan& plan, const State& state, 
     most_.push_back(std::abs(result_.peaks[most_.size()].value));
     (source.place != nullptr ? placed_ : source.vector != nullptr ? entries_ : made_).push_back(std::move(source));
   }
-  now_.resize(most_.size());
   if (stepper_ == nullptr) acceleration_ = Vector::Zero(model.free());
 }
 
@@ -255,11 +254,8 @@ Recorder::Source Recorder::source_of(const Request& request, const SparseRows& r
 
 double Recorder::made(const Source& source) const {
   using What = Request::Kind;
-  const Request& request = plan_.requests[column];
-  const Source& source = sources_[column];
-  const State& state = state_;
   const Request& request = *source.request;
-  const State& state = stepper_.state();
+  const State& state = state_;
   const auto sum = [&](const Vector& q, int derivative) {
     if (source.moved) return model_.full(request.unknown, q, derivative, state.time);
     double total = 0;

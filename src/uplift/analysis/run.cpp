@@ -186,6 +186,7 @@ void Runner::stand() {
   for (const InterfaceView& view : views_) result_.steps.rest.push_back(view.resultant);
   Recorder recorder(model_, plan_, state_, energies, nullptr, views_, 0, 0, result_);
   recorder.record(true);
+  recorder.finish();
   if (plan_.frames > 0) recorder.picture(state_);
 }
 
