@@ -126,6 +126,14 @@ TEST(GeneratedMotions, HaveNoDipsBetweenTheFrequenciesOfTheFit) {
   }
 }
 
+TEST(GeneratedMotions, SayWhatTheyWereMadeFor) {
+  GenerateOptions options = short_options();
+  options.seed = 12;
+  const std::string said = one(*guide(), options).motion.processing.front();
+  EXPECT_TRUE(said.starts_with("generated from seed 12, component 1, for Regulatory Guide 1.60, horizontal, pga 2 m/s2; envelope jennings"))
+      << said;
+}
+
 TEST(GeneratedMotions, DoNotDrift) {
   const auto target = guide();
   const GenerateOptions options = short_options();

@@ -1,8 +1,7 @@
+#include <fmt/format.h>
 #include <gtest/gtest.h>
 
 #include <algorithm>
-#include <fmt/format.h>
-
 
 #include "motion_support.h"
 #include "uplift/math/fourier.h"

@@ -121,6 +121,15 @@ TEST(TargetTable, InterpolatesAsTold) {
   EXPECT_EQ(logarithmic->band().to, 20);
 }
 
+TEST(TargetTable, EveryTargetSaysWhatItIs) {
+  EXPECT_EQ(target_of("rg_1_60", {{"pga", target_raw(2.5)}, {"direction", target_raw("vertical")}})->told(),
+            "Regulatory Guide 1.60, vertical, pga 2.5 m/s2");
+  EXPECT_EQ(target_of("eurocode_8", {{"a_g", target_raw(2.0)}, {"ground", target_raw("C")}})->told(),
+            "Eurocode 8, type 1, a_g 2 m/s2, ground C");
+  EXPECT_EQ(target_of("table", {{"frequencies", target_raw({1.0, 10.0})}, {"accelerations", target_raw({2.0, 3.0})}})->told(),
+            "a table of 2 points");
+}
+
 TEST(TargetTable, RefusesWhatIsNoSpectrum) {
   EXPECT_THROW(points({1}, {2}), InputError);
   EXPECT_THROW(points({1, 2}, {2}), InputError);

@@ -51,7 +51,9 @@ void summarise(MotionTable& table) {
     double squares = 0;
     for (const MotionTable::Row& row : table.rows)
       if (row.status == RunStatus::completed) squares += std::pow(row.peaks[k] - table.mean[k], 2);
+    constexpr double round_off = 1e-12;  // equal values have a mean that is not quite theirs
     if (table.counted > 1) table.spread[k] = std::sqrt(squares / (n - 1));
+    if (table.spread[k] < round_off * table.envelope[k]) table.spread[k] = 0;
   }
 }
 

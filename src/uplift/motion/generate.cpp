@@ -197,14 +197,15 @@ GeneratedMotion one_motion(const TargetSpectrum& target, const GenerateOptions& 
   return judged;
 }
 
-std::string told(const GenerateOptions& options, std::size_t component, const SpectrumFit& fit) {
+std::string told(const GenerateOptions& options, std::size_t component, const TargetSpectrum& target, const SpectrumFit& fit) {
   const Envelope& envelope = options.envelope;
   const std::string fall = envelope.shape == Envelope::Shape::saragoni_hart ? "" : fmt::format(", falls from {:g} s", envelope.fall);
   return fmt::format(
-      "generated from seed {}, component {}; envelope {} that rises until {:g} s{}; fitted from {:.4g} Hz to {:.4g} Hz at {:g} % damping: "
+      "generated from seed {}, component {}, for {}; envelope {} that rises until {:g} s{}; fitted from {:.4g} Hz to {:.4g} Hz at {:g} % "
+      "damping: "
       "mean error {:.2f} %, at least {:.1f} % of the target",
-      options.seed, component + 1, to_string(envelope.shape), envelope.rise, fall, options.from, options.to, 100 * fit.damping,
-      100 * fit.mean_error, 100 * fit.least_ratio);
+      options.seed, component + 1, target.told(), to_string(envelope.shape), envelope.rise, fall, options.from, options.to,
+      100 * fit.damping, 100 * fit.mean_error, 100 * fit.least_ratio);
 }
 
 }  // namespace
@@ -274,7 +275,7 @@ std::vector<GeneratedMotion> generate_motions(std::span<const TargetSpectrum* co
     chosen.motion.name = fmt::format("generated {}", motions.size() + 1);
     chosen.motion.format = "generated";
     chosen.motion.unit = "m/s2";
-    chosen.motion.processing = {told(options, motions.size(), chosen.fit)};
+    chosen.motion.processing = {told(options, motions.size(), *target, chosen.fit)};
     motions.push_back(std::move(chosen));
   }
   return motions;

@@ -52,17 +52,19 @@ struct Curve {
 
 class CurveTarget : public TargetSpectrum {
  public:
-  CurveTarget(Curve curve, double peak, double damping, Band band)
-      : curve_(std::move(curve)), peak_(peak), damping_(damping), band_(band) {}
+  CurveTarget(Curve curve, double peak, double damping, Band band, std::string told)
+      : curve_(std::move(curve)), peak_(peak), damping_(damping), band_(band), told_(std::move(told)) {}
   double at(double frequency) const override { return curve_.at(frequency); }
   double peak_ground_acceleration() const override { return peak_; }
   double damping() const override { return damping_; }
   Band band() const override { return band_; }
+  std::string told() const override { return told_; }
 
  private:
   Curve curve_;
   double peak_, damping_;
   Band band_;
+  std::string told_;
 };
 
 Field direction_field() {
@@ -100,7 +102,8 @@ std::unique_ptr<const TargetSpectrum> make_1_60(const Values& v) {
   const double w = 2 * std::numbers::pi * d_at, at_d = w * w * factor.d * displacement * peak / standard_gravity;
   Curve curve{{d_at, c_at, b_at, a_at}, {at_d, factor.c * peak, factor.b * peak, peak}};
   curve.slope_below = 2;  // parallel to the line of the ground displacement
-  return std::make_unique<CurveTarget>(std::move(curve), peak, damping, TargetSpectrum::Band{0.1, a_at});
+  return std::make_unique<CurveTarget>(std::move(curve), peak, damping, TargetSpectrum::Band{0.1, a_at},
+                                       fmt::format("Regulatory Guide 1.60, {}, pga {:g} m/s2", v.text("direction"), peak));
 }
 
 // ---- Eurocode 8 ----
@@ -122,8 +125,12 @@ constexpr std::array<std::array<Ground, 5>, 2> grounds_8{{{{{1.00, 0.15, 0.40, 2
 /// Equations 3.2 to 3.5 and 3.8 to 3.11: they differ in their numbers only.
 class Eurocode8 : public TargetSpectrum {
  public:
-  Eurocode8(Ground ground, double peak, double plateau, double damping)
-      : ground_(ground), peak_(peak), damping_(damping), top_(plateau * std::max(std::sqrt(0.10 / (0.05 + damping)), 0.55)) {}
+  Eurocode8(Ground ground, double peak, double plateau, double damping, std::string told)
+      : ground_(ground),
+        peak_(peak),
+        damping_(damping),
+        top_(plateau * std::max(std::sqrt(0.10 / (0.05 + damping)), 0.55)),
+        told_(std::move(told)) {}
   double at(double frequency) const override {
     const double t = 1 / frequency;
     if (t < ground_.t_b) return peak_ * (1 + t / ground_.t_b * (top_ - 1));
@@ -133,21 +140,24 @@ class Eurocode8 : public TargetSpectrum {
   double peak_ground_acceleration() const override { return peak_; }
   double damping() const override { return damping_; }
   Band band() const override { return {0.25, 50}; }
+  std::string told() const override { return told_; }
 
  private:
   Ground ground_;
   double peak_, damping_, top_;
+  std::string told_;
 };
 
 std::unique_ptr<const TargetSpectrum> make_eurocode_8(const Values& v) {
   const auto type = static_cast<std::size_t>(v.integer("spectrum") - 1);
   const double a_g = v.number("a_g"), damping = v.number("damping");
+  const std::string told = fmt::format("Eurocode 8, type {}, a_g {:g} m/s2, ", type + 1, a_g);
   if (v.text("direction") == "vertical") {
     constexpr Ground vertical{1, 0.05, 0.15, 1.0};
-    return std::make_unique<Eurocode8>(vertical, (type == 0 ? 0.90 : 0.45) * a_g, 3.0, damping);
+    return std::make_unique<Eurocode8>(vertical, (type == 0 ? 0.90 : 0.45) * a_g, 3.0, damping, told + "vertical");
   }
   const Ground ground = grounds_8[type][static_cast<std::size_t>(v.text("ground").front() - 'A')];
-  return std::make_unique<Eurocode8>(ground, ground.s * a_g, 2.5, damping);
+  return std::make_unique<Eurocode8>(ground, ground.s * a_g, 2.5, damping, told + "ground " + v.text("ground"));
 }
 
 // ---- the user's points ----
@@ -169,7 +179,8 @@ std::unique_ptr<const TargetSpectrum> make_target_table(const Values& v) {
       throw InputError(v.where("accelerations"), v.path("accelerations"), "accelerations > 0 m/s2", fmt::format("{:g} m/s2", values[i]));
   }
   return std::make_unique<CurveTarget>(Curve{frequencies, values, v.text("interpolation") == "logarithmic"}, 0.0, v.number("damping"),
-                                       TargetSpectrum::Band{frequencies.front(), frequencies.back()});
+                                       TargetSpectrum::Band{frequencies.front(), frequencies.back()},
+                                       fmt::format("a table of {} points", values.size()));
 }
 
 }  // namespace

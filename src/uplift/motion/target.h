@@ -1,6 +1,7 @@
 #pragma once
 #include <memory>
 #include <span>
+#include <string>
 
 #include "uplift/base/catalog.h"
 
@@ -21,6 +22,8 @@ class TargetSpectrum {
     double from = 0, to = 0;
   };
   virtual Band band() const = 0;
+  /// What it is, with its numbers: "Regulatory Guide 1.60, horizontal, pga 2.942 m/s2".
+  virtual std::string told() const = 0;
 };
 
 std::span<const Entry<TargetSpectrum>* const> target_catalog();
