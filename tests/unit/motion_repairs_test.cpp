@@ -128,6 +128,17 @@ TEST(RecordRefusals, TablesAndTheirTimes) {
   EXPECT_EQ(refusal(table(times)), "file:13: wanted times at equal steps of 0.01 s, found 0.13 s after 0.1 s");
 }
 
+TEST(RecordRefusals, MoreColumnsThanARecordHas) {
+  std::string head = "time [s]", rows[] = {"0", "0.01", "0.02"};
+  for (int i = 0; i < 101; ++i) {
+    head += ",a [g]";
+    for (std::string& row : rows) row += ",0.1";
+  }
+  const std::string text = head + "\n" + rows[0] + "\n" + rows[1] + "\n" + rows[2] + "\n";
+  EXPECT_EQ(refusal(text), "file:1: wanted at most 100 columns of motion (say which one with `column`), found 101");
+  EXPECT_EQ(refusal(text, {.column = "7"}), "none");
+}
+
 TEST(RecordRefusals, GapsThatCannotBeFilled) {
   const std::string text = ramp(sound);
   EXPECT_EQ(refusal(replaced(replaced(text, "7.0000000E-03", "          NaN"), "8.0000000E-03", "          NaN")),

@@ -80,6 +80,10 @@ Layout layout_of(const RecordText& text, const Columns& columns, const RecordOpt
   if (options.unit.empty())
     for (std::size_t i = 0; i < columns.heads.size(); ++i)
       if (i != layout.time && motion_unit(columns.heads[i].unit)) layout.values.push_back(i);
+  constexpr std::size_t most = 100;
+  if (layout.values.size() > most)
+    throw InputError(text.where(columns.head_line), "", fmt::format("at most {} columns of motion (say which one with `column`)", most),
+                     fmt::format("{}", layout.values.size()));
   if (!layout.values.empty()) return layout;
   if (layout.time != none)
     layout.values = {layout.time == 0 ? std::size_t{1} : 0};
