@@ -134,9 +134,9 @@ TEST(FloorSpectrum, HarmonicFactors) {
   EXPECT_NEAR(floor_factor, 2.72029410, 1e-8);
   EXPECT_NEAR(floor_factor * dynamic_factor(8.0 / 12, 0.02), 4.89089831, 1e-8);
 
-  const double h = 1e-3, grows = 10, frequency = std::atan(8 * pi * h) / (pi * h);
+  const double h = 1e-3, grows = 14, frequency = std::atan(8 * pi * h) / (pi * h);
   std::vector<double> ground;
-  for (int i = 0; i <= 15000; ++i) {
+  for (int i = 0; i <= 20000; ++i) {
     const double t = i * h, x = std::min(1.0, t / grows);
     const double share = std::pow(x, 5) * (126 + x * (-420 + x * (540 + x * (-315 + x * 70))));
     ground.push_back(share * std::sin(2 * pi * frequency * t));
