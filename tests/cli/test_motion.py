@@ -59,6 +59,23 @@ class Records(CliTest):
         for found, wanted in zip(first, (1, 2, 4, 8, 16), strict=True):
             self.assertAlmostEqual(found, wanted, delta=1e-6)
 
+    def test_spectra_over_all_directions_of_the_horizontal_components(self):
+        rows = (f"{0.01 * i:.2f},{math.sin(0.1 * i):.6f},{math.cos(0.13 * i):.6f},{math.sin(0.2 * i):.6f}\n" for i in range(200))
+        table = "".join(rows)
+        self.write("time [s],NS [g],EW [g],UD [g]\n" + table, "three.csv")
+        self.write("time [s],NS [g],N45E [g],UD [g]\n" + table, "slanting.csv")
+        self.uplift("motion", "three.csv", "--frequencies", "1,10", "-o", "three")
+        head, *rows = (self.folder / "three/spectra.csv").read_text().splitlines()
+        self.assertTrue(head.endswith(",RotD50 PSA 5 % [m/s2],RotD100 PSA 5 % [m/s2]"))
+        for row in rows:
+            cells = dict(zip(head.split(","), map(float, row.split(","))))
+            north, east = (cells[f"three {name} PSA 5 % [m/s2]"] for name in ("NS", "EW"))
+            self.assertGreaterEqual(cells["RotD100 PSA 5 % [m/s2]"], max(north, east))
+            self.assertLessEqual(cells["RotD100 PSA 5 % [m/s2]"], math.hypot(north, east))
+        self.assertIn("of three NS and three EW", (self.folder / "three/report.html").read_text())
+        self.uplift("motion", "slanting.csv", "--frequencies", "1,10", "-o", "slanting")
+        self.assertNotIn("RotD", (self.folder / "slanting/spectra.csv").read_text())
+
     def test_motions_of_one_name_are_told_apart(self):
         self.write(RECORD, "quake.csv")
         done = self.uplift("motion", "quake.csv", "quake.csv", "--json")

@@ -112,12 +112,12 @@ TEST(GeneratedMotions, HaveTheSpectrumOfATableAtLowDamping) {
 // Without a limit below the band the ground drifts by metres. An oscillator of no stiffness moves as the ground: its displacement is
 // bounded by that of the target at the lower end of the band.
 // Claim: nowhere below 90 % of the target, between the frequencies at which the motion was changed too. With these seeds a fit that looks
-// at 100 frequencies a decade leaves dips to 87.6 % and 88.2 %.
+// at 100 frequencies a decade leaves dips to 88.8 % and 89.8 %.
 TEST(GeneratedMotions, HaveNoDipsBetweenTheFrequenciesOfTheFit) {
   const auto target = guide();
   GenerateOptions options = short_options();
   const std::vector<double> dense = log_spaced(options.from, options.to, 1531);
-  for (const std::uint64_t seed : {15, 18}) {
+  for (const std::uint64_t seed : {3, 17}) {
     options.seed = seed;
     const GeneratedMotion made = one(*target, options);
     EXPECT_TRUE(made.fit.good());

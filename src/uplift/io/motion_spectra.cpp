@@ -1,6 +1,7 @@
 #include <fmt/format.h>
 
 #include <array>
+#include <cmath>
 #include <iterator>
 
 #include "uplift/base/text.h"
@@ -38,14 +39,25 @@ void add_columns(const Motion& motion, const MotionReport& report, std::vector<C
                          std::move(spectrum.values)});
 }
 
+std::pair<const Motion*, const Motion*> horizontal_pair(const std::vector<ShownMotion>& motions) {
+  if (motions.size() == 2) return {&motions[0].now, &motions[1].now};
+  std::vector<const Motion*> found;
+  for (const ShownMotion& shown : motions)
+    if (shown.now.azimuth) found.push_back(&shown.now);
+  constexpr double nearly = 0.02;  // of the cosine between them
+  if (found.size() != 2 || std::abs(std::cos(*found[0]->azimuth - *found[1]->azimuth)) > nearly) return {};
+  return {found[0], found[1]};
+}
+
 }  // namespace
 
 MotionReport with_rotated(MotionReport report) {
-  if (report.motions.size() != 2) return report;
-  const Motion a = converted(report.motions[0].now, MotionKind::acceleration),
-               b = converted(report.motions[1].now, MotionKind::acceleration);
-  if (a.step == b.step && a.values.size() == b.values.size())
-    report.rotated = rotated_spectra(a.values, b.values, a.step, report.frequencies, report.dampings.front(), Spectrum::Kind::psa);
+  const auto [first, second] = horizontal_pair(report.motions);
+  if (!first) return report;
+  const Motion a = converted(*first, MotionKind::acceleration), b = converted(*second, MotionKind::acceleration);
+  if (a.step != b.step || a.values.size() != b.values.size()) return report;
+  report.rotated_names = a.name + " and " + b.name;
+  report.rotated = rotated_spectra(a.values, b.values, a.step, report.frequencies, report.dampings.front(), Spectrum::Kind::psa);
   return report;
 }
 

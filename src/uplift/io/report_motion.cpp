@@ -117,7 +117,9 @@ Chart together_chart(const MotionReport& report) {
   for (const ShownMotion& shown : report.motions)
     chart.curves.push_back(spectrum_curve(spectra_of(shown.now, report.frequencies, {damping}).front(), shown.now.name, false));
   if (report.rotated) {
-    chart.caption += " RotD50 and RotD100: median and largest over all directions, if the two are horizontal and at right angles.";
+    chart.caption +=
+        fmt::format(" RotD50 and RotD100: median and largest over all directions of {}, if these are horizontal and at right angles.",
+                    report.rotated_names);
     chart.curves.push_back(spectrum_curve(report.rotated->median, "RotD50", true));
     chart.curves.push_back(spectrum_curve(report.rotated->largest, "RotD100", true));
   }

@@ -21,10 +21,12 @@ struct MotionReport {
   std::vector<ShownMotion> motions;  // one at least
   std::vector<double> dampings;      // of the response spectra; one at least
   std::vector<double> frequencies;   // of the response spectra [Hz], ascending; two at least
-  // of two motions that go together, with the first damping (PSA); see with_rotated()
+  // of two motions that go together, with the first damping (PSA), and their names; see with_rotated()
   std::optional<RotatedSpectra> rotated = {};
+  std::string rotated_names = {};
 };
-/// The same with the spectra over all directions, where there are two motions with equal steps and lengths.
+/// The same with the spectra over all directions of two motions with equal steps and lengths: of the only two there are, or of the only two
+/// with an azimuth when these are at right angles.
 MotionReport with_rotated(MotionReport report);
 
 /// Correlation coefficient of two motions; none when their steps or lengths differ.

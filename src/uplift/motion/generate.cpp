@@ -263,7 +263,7 @@ std::vector<GeneratedMotion> generate_motions(std::span<const TargetSpectrum* co
     GeneratedMotion chosen;
     for (std::uint64_t attempt = 0; attempt < attempts && least > 1; ++attempt) {
       GeneratedMotion drawn = one_motion(*target, options, Draw(options.seed, motions.size(), attempt));
-      double worst = distance(drawn.fit);
+      double worst = shortfall(drawn.fit);
       for (const GeneratedMotion& other : motions)
         worst = std::max(worst, std::abs(correlation(drawn.motion.values, other.motion.values)) / most_correlated);
       if (worst < least) {
