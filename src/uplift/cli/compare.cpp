@@ -34,7 +34,8 @@ void print_runs(const Results& results, const ComparisonSummary& compared) {
     const bool counted = agreement.word == Agreement::Word::agrees || agreement.word == Agreement::Word::differs;
     const bool bonded = results.specs[i].bonded;  // it stretches instead of opening
     rows.push_back({run.label, status_text(run), motion ? spoken(std::abs(motion->value), "m") : "-",
-                    bonded ? "-" : percent(run.max_uplifted_ratio.value), bonded ? "-" : spoken(run.max_opening.value, "m"),
+                    bonded ? "-" : percent(run.max_uplifted_ratio.value),
+                    bonded ? "-" : said(*find_verdict_quantity("max_opening"), run.max_opening.value),
                     spoken(std::abs(run.max_base_moment.value), "N m"), percent(created_share(run)), std::string(to_string(agreement.word)),
                     counted ? percent(agreement.deviation) : "-"});
   }

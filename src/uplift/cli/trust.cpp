@@ -86,7 +86,7 @@ int trust(const Options& options) {
   results.trust = &answer;
   results.floors = floor_answers(results.built.front().plan, results.runs, results.specs);
   results.verdict = judge(results.built.front(), results.runs.front(), bonded, &results.floors.runs.front());
-  results.verdict.paragraphs.push_back(trust_sentence(answer));
+  results.verdict.consequence += (results.verdict.consequence.empty() ? "" : " ") + trust_sentence(answer);
   folder.write("trust.json", trust_json(answer));
   write_results(options, loaded, results, nullptr, folder);
 
@@ -97,7 +97,6 @@ int trust(const Options& options) {
     say(results.verdict.headline);
     if (!results.verdict.consequence.empty()) say(results.verdict.consequence);
     print_answer(answer);
-    say(trust_sentence(answer));
     say(fmt::format("results: {}/report.html", folder.path()));
   }
   if (!answer.complete) {

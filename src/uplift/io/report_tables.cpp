@@ -18,7 +18,8 @@ void write_run_row(JsonWriter& json, const ReportInput& input, std::size_t i) {
   const Peak* top = top_motion(built, run);
   if (top) json.member("top", std::abs(top->value)).member("top_time", top->time);
   if (!input.runs[i].spec->bonded)  // a bonded base stretches instead of opening
-    json.member("ratio", run.max_uplifted_ratio.value).member("opening", run.max_opening.value);
+    json.member("ratio", run.max_uplifted_ratio.value)
+        .member("opening", run.max_opening.value < nothing_beside("m") ? 0 : run.max_opening.value);
   json.member("moment", std::abs(run.max_base_moment.value));
   json.member("pressure", run.max_pressure.value).member("created", created_share(run)).member("retries", run.counts.retries);
   json.member("wall", run.wall).member("per_step", run.counts.steps > 0 ? run.wall / static_cast<double>(run.counts.steps) * 1e6 : 0.0);
