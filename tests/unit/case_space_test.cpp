@@ -178,5 +178,14 @@ TEST(CaseSpace, MistakesAreNamed) {
             "case.toml:33: support[0].fixed: wanted ux, uy, uz, rx, ry or rz, found \"rw\" (did you mean \"rx\"?)");
 }
 
+/// case.resolved.toml holds every default; it must be a case itself, of the same model.
+TEST(SpaceCase, AResolvedCaseIsTheSameCase) {
+  const Case first = check_case(read_toml_text(std::string(tower) + "[[stage]]\ntype = \"static\"\n", "case.toml"), "case.toml");
+  const Case second = check_case(read_toml_text(to_toml(first.values), "resolved.toml"), "resolved.toml");
+  const Built one = build(first, {}), two = build(second, {});
+  EXPECT_EQ(Matrix(one.model.mass), Matrix(two.model.mass));
+  EXPECT_EQ(Matrix(one.model.stiffness), Matrix(two.model.stiffness));
+}
+
 }  // namespace
 }  // namespace uplift

@@ -197,7 +197,17 @@ async function check_verdict(page) {
     }
     if (base.linear) check.equal(await block.locator(".bar").count(), base.linear.tension > 0 || base.linear.computed > 0 ? 3 : 0, "the tension ratio stands beside what happened");
   }
-  const floors = await page.evaluate(() => window.upliftReport.report.verdict.floors);
+  const { floors, consequence, charts } = await page.evaluate(() => {
+    const { verdict, charts: all } = window.upliftReport.report;
+    return { floors: verdict.floors, consequence: verdict.consequence, charts: all.map((chart) => chart.id) };
+  });
+  check.equal(await card.locator(".so-what").count(), consequence ? 1 : 0, "the headline is followed by what it means");
+  const drawn = floors.some(({ floor, damping }) => charts.includes(`floor_${floor}_${Number((100 * damping).toFixed(6))}`));
+  check.equal(await card.locator(".spectrum-chart").count(), drawn ? 1 : 0, "the first page draws one floor spectrum");
+  if (drawn) {
+    const lines = await card.locator(".spectrum-chart > svg .spectrum").evaluateAll((paths) => paths.map((path) => path.getBBox().width));
+    check.ok(lines.length >= 2 && lines.every((width) => width > 200), "with the run and the bonded run over all frequencies", lines.join());
+  }
   check.equal(await card.locator(".floors tbody tr").count(), floors.length, "every floor spectrum has a row of changes");
   const left = interfaces.reduce((sum, base) => sum + base.rest.length, 0);
   if (left > 0) check.equal(await page.locator("#after-shock .rest-card tbody tr").count(), left, "what is left at the end has a row for each number");
@@ -361,6 +371,12 @@ async function check_print(page) {
   check.equal(drawn, figures, "print draws every chart, scrolled to or not");
   const background = await page.evaluate(() => getComputedStyle(document.body).backgroundColor);
   check.equal(background, "rgb(255, 255, 255)", "print is light even in dark mode");
+  const { resolved, sha256 } = await page.evaluate(() => window.upliftReport.report.case);
+  if (resolved) {
+    const words = await page.locator("#case").innerText();
+    check.ok(words.includes(resolved.split("\n")[0]), "print opens the resolved case");
+    check.ok(words.includes(sha256), "beside the hash of the case file");
+  }
   const pdf = await page.pdf({ format: "A4", printBackground: true, preferCSSPageSize: true, ...(shots ? { path: join(shots, "print.pdf") } : {}) });
   check.ok(pdf.length > 20_000, "the report prints", `${pdf.length} bytes`);
   await page.emulateMedia({ media: "screen" });
@@ -401,6 +417,12 @@ async function check_other_pages() {
   const bare = await open(browser, pathToFileURL(await write_page(await inject({ format: "uplift-report-1", title: "Bare" }))).href);
   check.ok(/Bare/.test(await bare.page.locator("h1").innerText()) && bare.log.console.length === 0, "a document with a title only is shown");
   await bare.context.close();
+  for (const [level, word] of [["motion", "GROUND MOTION"], ["separated", "LEFT THE GROUND"]]) {
+    const other = await open(browser, pathToFileURL(await write_page(await inject({ format: "uplift-report-1", title: "Level", verdict: { level, headline: "h" } }))).href);
+    check.equal(await other.page.locator(".verdict-level").innerText(), word, `the level ${level} has its words`);
+    check.ok((await other.page.locator(".sign path").getAttribute("d")) && other.log.console.length === 0, `the level ${level} has its sign`);
+    await other.context.close();
+  }
 }
 
 async function check_sample(page) {
