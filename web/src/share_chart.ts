@@ -11,6 +11,9 @@ const RIGHT = 12;
 const TOP = 10;
 const BOTTOM = 24;
 
+// So many intervals without contact are named.
+const SHOWN = 3;
+
 /** The next round share above the largest one. */
 function top_of(largest: number): number {
   return [0.05, 0.1, 0.2, 0.4, 0.6, 0.8].find((top) => largest <= 0.95 * top) ?? 1;
@@ -41,12 +44,15 @@ export function share_chart(base: BaseVerdict): HTMLElement | null {
     ...ticks.map((t, i) => text(x(t), HEIGHT - 8, "middle", `${labels[i] ?? ""}${i === ticks.length - 1 ? " s" : ""}`)),
     s("path", { class: "area", d: `${line}L${px(x(to))} ${px(y(0))}L${px(x(from))} ${px(y(0))}Z` }),
     s("path", { class: "line", d: line }),
+    ...base.lost.map(([a, b]) => s("path", { class: "lost", d: `M${px(x(a))} ${TOP}V${HEIGHT - BOTTOM}H${px(Math.max(x(b), x(a) + 1))}V${TOP}Z` })),
     ...above.map((each) => s("path", { class: "threshold", d: `M${LEFT} ${px(y(each.threshold))}H${WIDTH - RIGHT}` })),
     s("circle", { class: "peak", cx: px(x(time[peak] as number)), cy: px(y(largest)), r: 3.5 }));
   const words = above.map((each) => `above ${fixed(100 * each.threshold, 0)} % for ${seconds(each.duration)}`);
   if (base.lost.length > 0) {
     const sum = base.lost.reduce((m, [a, b]) => m + b - a, 0);
-    words.push(`without any contact ${base.lost.length === 1 ? "once" : `${base.lost.length} times`}, ${seconds(sum)}`);
+    const shown = base.lost.slice(0, SHOWN).map(([a, b]) => `${number(a, 4)} to ${number(b, 4)} s`).join(", ");
+    const more = base.lost.length > SHOWN ? " and later" : "";
+    words.push(`without any contact ${base.lost.length === 1 ? "once" : `${base.lost.length} times`}, ${seconds(sum)} in all (${shown}${more})`);
   }
   return h("figure", { class: "share-chart" },
     h("figcaption", {}, h("b", {}, "Uplifted area over time"), words.length > 0 ? ` · ${words.join(" · ")}` : ""), drawing);

@@ -94,8 +94,8 @@ void write_results(const Options& options, const Loaded& loaded, const Results& 
     if (!run.problem.empty()) folder.write("problem_" + run.name + ".json", run.problem);
   }
   if (results.floors.any()) folder.write("floor_spectra.csv", floor_spectra_csv(results.runs, results.floors));
-  folder.write("summary.json",
-               summary_json({loaded.from, results.runs, results.verdict, motions_of(input.runs), compared, &results.floors}));
+  folder.write("summary.json", summary_json({loaded.from, results.runs, results.verdict, motions_of(input.runs), compared, &results.floors,
+                                             results.built.empty() ? nullptr : &results.built.front()}));
   folder.write("case.resolved.toml", loaded.from.resolved);
   const std::string page = report_page(report_json(input));
   if (!page.empty())

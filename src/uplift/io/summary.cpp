@@ -68,7 +68,7 @@ void write_run(JsonWriter& json, const RunResult& run, const Agreement* agreemen
 }  // namespace
 
 std::string summary_json(const SummaryInput& input) {
-  const auto& [from, runs, verdict, motions, compared, floors] = input;
+  const auto& [from, runs, verdict, motions, compared, floors, built] = input;
   JsonWriter json(0, 2);
   json.begin_object();
   json.member("format", "uplift-summary-1")
@@ -88,7 +88,7 @@ std::string summary_json(const SummaryInput& input) {
   json.end_array();
   if (floors && !floors->envelopes.empty()) write_floor_envelopes(json.key("floor_envelopes"), *floors);
   json.key("verdict");
-  write_verdict_numbers(json, verdict, runs, floors);
+  write_verdict_numbers(json, verdict, runs, floors, built);
   if (compared) {
     json.member("band", compared->band).key("compared_columns").texts(compared->columns);
     json.key("stiffness_sweep").begin_array();

@@ -36,6 +36,7 @@ struct SummaryInput {
   std::vector<std::shared_ptr<const MotionHistory>> motions;  // those that drive the runs
   const ComparisonSummary* compared = nullptr;                // null for a single run
   const FloorAnswers* floors = nullptr;
+  const Built* built = nullptr;  // of the first run
 };
 
 /// summary.json: an object with the provenance, the arrays `motions` and `runs`, and the `verdict`.

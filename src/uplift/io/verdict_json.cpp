@@ -1,5 +1,11 @@
 #include "uplift/io/verdict_json.h"
 
+#include <algorithm>
+#include <cmath>
+#include <utility>
+
+#include "uplift/io/report_parts.h"
+
 namespace uplift {
 namespace {
 
@@ -12,6 +18,29 @@ void write_numbers(JsonWriter& json, const std::vector<VerdictNumber>& numbers) 
     if (number.bonded) json.member("bonded", *number.bonded);
     if (number.bonded && *number.bonded != 0) json.member("change_percent", 100 * (number.value / *number.bonded - 1));
     json.end_object();
+  }
+  json.end_object();
+}
+
+/// What the verdict follows over time, in few points that keep its peaks. Safeties that are infinite, or of a base that carries nothing,
+/// are left out.
+void write_over_time(JsonWriter& json, const Built& built, const RunResult& run, std::size_t interface) {
+  constexpr std::size_t points = 200;
+  constexpr double highest = 100;
+  using enum BaseHistory;
+  json.key("over_time").begin_object();
+  for (const auto& [name, which] : {std::pair{"uplifted_ratio", uplifted_ratio},
+                                    {"eccentricity_1", eccentricity_1},
+                                    {"eccentricity_2", eccentricity_2},
+                                    {"overturning_safety", overturning_safety},
+                                    {"sliding_safety", sliding_safety}}) {
+    const std::vector<double> all = base_history(built, run, interface, which);
+    std::vector<double> time, values;
+    for (std::size_t i = 0; i < all.size(); ++i)
+      if (std::isfinite(all[i])) time.push_back(run.steps.time[i]), values.push_back(std::min(all[i], highest));
+    if (values.empty()) continue;
+    thin_history(time, values, points);
+    json.key(name).begin_object().key("time").numbers(time).key("value").numbers(values).end_object();
   }
   json.end_object();
 }
@@ -29,7 +58,7 @@ void write_interface(JsonWriter& json, const InterfaceVerdict& said) {
   json.end_array().key("full_loss").begin_array();
   for (const Interval& interval : said.full_loss)
     json.begin_object().member("from", interval.from).member("to", interval.to).member("unit", "s").end_object();
-  json.end_array().end_object();
+  json.end_array();
 }
 
 void write_criterion(JsonWriter& json, const CriterionResult& result) {
@@ -60,14 +89,19 @@ void write_floor_changes(JsonWriter& json, const FloorAnswers* floors) {
   json.end_array();
 }
 
-void write_verdict_numbers(JsonWriter& json, const Verdict& verdict, const std::vector<RunResult>& runs, const FloorAnswers* floors) {
+void write_verdict_numbers(JsonWriter& json, const Verdict& verdict, const std::vector<RunResult>& runs, const FloorAnswers* floors,
+                           const Built* built) {
   json.begin_object().member("level", to_string(verdict.level)).member("headline", verdict.headline);
   json.member("consequence", verdict.consequence);
   json.member("run", runs.empty() ? "" : runs.front().name);
   json.key("numbers");
   write_numbers(json, verdict.numbers.whole);
   json.key("interfaces").begin_array();
-  for (const InterfaceVerdict& said : verdict.numbers.interfaces) write_interface(json, said);
+  for (std::size_t k = 0; k < verdict.numbers.interfaces.size(); ++k) {
+    write_interface(json, verdict.numbers.interfaces[k]);
+    if (built && !runs.empty() && runs.front().steps.size() > 0) write_over_time(json, *built, runs.front(), k);
+    json.end_object();
+  }
   json.end_array().key("criteria").begin_array();
   for (const CriterionResult& result : verdict.numbers.criteria) write_criterion(json, result);
   json.end_array().key("floors");
