@@ -84,6 +84,7 @@ void run_all(const Loaded& loaded, const Options& options, const std::vector<Run
     const std::string label = fmt::format("[{}/{}] {}", before + results.runs.size() + 1, total, spec.name);
     results.runs.push_back(folder ? run_with_fields(loaded, results.built.back(), label, options, *folder, fields)
                                   : run_one(results.built.back(), label, options));
+    forget_matrices(results.built.back());
   }
 }
 

@@ -66,6 +66,14 @@ RunResult run_one(const Built& built, const std::string& label, const Options& o
   return uplift::run(built.model, built.plan, built.behaviours, [&line](const Progress& progress) { return line(progress); });
 }
 
+void forget_matrices(Built& built) {
+  Model& model = built.model;
+  for (Sparse* matrix :
+       {&model.stiffness, &model.mass, &model.damping, &model.assembly.stiffness, &model.assembly.mass, &model.assembly.damping})
+    *matrix = Sparse();
+  built.plan.rest.reset();
+}
+
 RunResult run_with_fields(const Loaded& loaded, const Built& built, const std::string& label, const Options& options, ResultFolder& folder,
                           std::vector<std::string>& lists) {
   if (!loaded.read.values.table("output").has("fields")) return run_one(built, label, options);

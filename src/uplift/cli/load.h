@@ -36,6 +36,9 @@ struct Results {
 void write_results(const Options& options, const Loaded& loaded, const Results& results, const ComparisonSummary* compared,
                    ResultFolder& folder);
 
+/// Gives back the matrices of a model whose run is over: results are written without them.
+void forget_matrices(Built& built);
+
 /// Runs one spec of a case with the progress line.
 RunResult run_one(const Built& built, const std::string& label, const Options& options);
 /// The same; writes its fields, when the case asks for them, and adds the name of their list to `lists`.

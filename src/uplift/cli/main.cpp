@@ -193,6 +193,10 @@ int main(int count, char** words) {
   } catch (const uplift::InputError& error) {
     uplift::cli::complain(fmt::format("error: {}", error.what()));
     return uplift::cli::Exit::bad_input;
+  } catch (const std::bad_alloc&) {
+    uplift::cli::complain(
+        "error: wanted more memory than is free: coarsen the mesh, make the model smaller, or run it on a machine with more memory");
+    return uplift::cli::Exit::numerical_failure;
   } catch (const std::exception& error) {
     uplift::cli::complain(fmt::format("internal error: {}", error.what()));
     return uplift::cli::Exit::internal_error;

@@ -33,6 +33,7 @@ int run(const Options& options) {
     results.built.push_back(build(loaded.read, spec));
     if (results.runs.empty()) results.warnings = warnings(loaded.read, spec, results.built.front());
     results.runs.push_back(run_with_fields(loaded, results.built.back(), spec.label, options, folder, fields));
+    forget_matrices(results.built.back());
   }
   results.floors = floor_answers(results.built.front().plan, results.runs, results.specs);
   const RunResult& main = results.runs.front();

@@ -43,12 +43,32 @@ class AugmentedLagrangian final : public ContactMethod {
     Outcome total = iterate(problem, augmented, guess.converged, solution);
     total.iterations += guess.iterations;
     reset_stiffness(scratch);
+    for (const double softer : {1.0 / 128, 1.0 / 16384}) {
+      if (total.converged) break;
+      const Outcome again = iterate_from(softer, problem, augmented, solution);
+      const int iterations = total.iterations + again.iterations;
+      if (again.converged) total = again;
+      total.iterations = iterations;
+    }
     return total;
   }
 
   bool constrains() const override { return true; }
 
  private:
+  /// The same from rest on softer springs (a power of two, which the growth takes back): on these Newton's method, which follows no
+  /// potential with friction, arrives from afar.
+  Outcome iterate_from(double softer, const InterfaceProblem& problem, const AugmentedForce& augmented, InterfaceSolution& solution) const {
+    AugmentedScratch& scratch = solution.augmented;
+    scratch.multiplier.setZero();
+    scratch.stiffness *= softer;
+    scratch.growth = softer;
+    solution.z.setZero();
+    Outcome outcome = iterate(problem, augmented, false, solution);
+    reset_stiffness(scratch);
+    return outcome;
+  }
+
   /// `guessed`: the multipliers are expected to be the answer.
   Outcome iterate(const InterfaceProblem& problem, const AugmentedForce& augmented, bool guessed, InterfaceSolution& solution) const {
     constexpr double epsilon = std::numeric_limits<double>::epsilon();

@@ -95,15 +95,27 @@ class Frictional final : public MethodWork {
     return true;
   }
 
-  /// Updates of the augmented Lagrangian on the same problem, the exact solve being tried from the status that they show after every few of
-  /// them.
+  /// The augmented Lagrangian on the same problem, on softer and softer springs: on these Newton's method, which follows no potential with
+  /// friction, arrives from afar. The first reason is told.
   Outcome by_augmentation() {
+    std::string why;
+    for (const double factor : {100.0, 1.0, 0.01}) {
+      outcome_.why.clear();
+      if (by_augmentation(factor).converged) return outcome_;
+      if (why.empty()) why = outcome_.why;
+    }
+    return fail(why);
+  }
+
+  /// Updates of the augmented Lagrangian, the exact solve being tried from the status that they show after every few of them.
+  Outcome by_augmentation(double factor) {
     multiplier_.setZero(problem_->rows());
-    augmentation(*problem_, 100, stiffness_);
+    augmentation(*problem_, factor, stiffness_);
     const AugmentedForce augmented{&multiplier_, &stiffness_};
     NewtonOptions newton;
     newton.most_iterations = 100;
     solution_->z.setZero();
+    double before = std::numeric_limits<double>::infinity();
     for (int update = 1; update <= 200; ++update) {
       const Outcome inner = solve_by_newton(*problem_, augmented, newton, *solution_);
       outcome_.iterations += inner.iterations;
@@ -117,7 +129,9 @@ class Frictional final : public MethodWork {
           size = std::max(size, std::abs(solution_->force[row]));
         }
       multiplier_ = solution_->force;
-      const bool settled = change <= 1e-12 * size;
+      const bool settled = change <= 1e-12 * size || (change <= 1e-3 * size && update >= 8 && found_by_augmentation());
+      if (update >= 4 && change > 0.25 * before && factor < 1e4) stiffness_ *= 16, factor *= 16;
+      before = change;
       if (!settled && update % 4 != 0) continue;
       z_ = solution_->z;
       step_.guess_from_solution();
@@ -125,14 +139,19 @@ class Frictional final : public MethodWork {
       solution_->z = z_;
       if (!settled) continue;
       solve_by_newton(*problem_, augmented, newton, *solution_);
-      outcome_.residual = yardstick(*problem_, *solution_, solution_->yardstick);
-      if (outcome_.residual > 1e-9) break;
+      if (!found_by_augmentation()) break;
       outcome_.converged = true;
       step_.guess_from_solution();
       step_.write_status();
       return outcome_;
     }
     return fail(unsettled());
+  }
+
+  /// Forces of redundant points may wander for ever while everything else stands still.
+  bool found_by_augmentation() {
+    outcome_.residual = yardstick(*problem_, *solution_, solution_->yardstick);
+    return outcome_.residual <= 1e-9;
   }
 
   /// In statics a loose body has no equilibrium: the balance, which is relative, is then met at infinity.

@@ -44,7 +44,8 @@ BulkCost predict_bulk(const Model& model, const LinearSolver& solver, const Bulk
   double more = std::max(kept, cost.step.bytes + cost.mass.bytes + cost.mass.working_bytes);  // the first step size is made first
   more = std::max(more, (steps > 1 ? kept : cost.step.bytes) + cost.step.working_bytes);
   more += cost.record_bytes = use.record_bytes;
-  cost.bytes = cost.matrix_bytes + more;
+  give_back_free_memory();
+  cost.bytes = std::max(cost.matrix_bytes, resident_memory()) + more;
   cost.matrix_bytes += pair;
   cost.available = available_memory();
   const Rates rates = measure_rates(cost.step.bytes);

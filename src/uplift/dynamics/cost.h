@@ -23,7 +23,7 @@ struct BulkCost {
   double matrix_bytes = 0;     // K, M and C of the model, and the pair of K and M that the steps stream
   double interface_bytes = 0;  // dense blocks of the interface problem
   double record_bytes = 0;     // what the run keeps of its steps
-  double bytes = 0;            // largest sum of all that is there at one time
+  double bytes = 0;            // what the process will hold at its largest: what it has now (model, mesh, program) and all that is to come
   double available = 0;        // bytes that can still be taken; the model's own matrices are there already
   double factor_seconds = 0;   // of all factors, one after another
   double solve_seconds = 0;    // of one back-solve

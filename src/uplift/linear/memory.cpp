@@ -84,6 +84,10 @@ double available_memory(const std::string& root) {
   return std::min({system > 0 ? system : unlimited, left_in_groups(root), left_of_address_space(root)});
 }
 
+double resident_memory(const std::string& root) {
+  return 1024 * number_after(root + "/proc/self/status", "VmRSS:");
+}
+
 void give_back_free_memory() {
 #if defined(__GLIBC__)
   malloc_trim(0);

@@ -9,6 +9,9 @@ namespace uplift {
 /// space. Infinite where nothing is known. `root` stands before the paths of the system's files: for tests.
 double available_memory(const std::string& root = "");
 
+/// Real memory that this process holds now [bytes]; 0 where the system does not tell.
+double resident_memory(const std::string& root = "");
+
 /// Hands pages of the heap that nobody uses back to the system, where the C library can: after an analysis, before what it was made for.
 void give_back_free_memory();
 

@@ -16,6 +16,16 @@ void add_to(Space space, const Element& element, const Matrix& local, double fac
       if (local(i, j) != 0) entries.emplace_back(unknown(i), unknown(j), factor * local(i, j));
 }
 
+/// Entries of all element matrices, at most.
+std::size_t entries_of(const std::vector<std::unique_ptr<const Element>>& elements) {
+  std::size_t count = 0;
+  for (const auto& element : elements) {
+    const std::size_t unknowns = element->nodes().size() * static_cast<std::size_t>(element->unknowns_per_node());
+    count += unknowns * unknowns;
+  }
+  return count;
+}
+
 Sparse from(int unknowns, const std::vector<Triplet>& entries) {
   Sparse matrix(unknowns, unknowns);
   matrix.setFromTriplets(entries.begin(), entries.end());
@@ -58,6 +68,7 @@ void ModelBuilder::assemble(Assembly& assembly) const {
   // one matrix after another: the lists of entries are the largest thing that is ever there beside the factors
   const auto sum = [&](Matrix* Local::*wanted, bool proportional) {
     std::vector<Triplet> entries;
+    if (wanted != &Local::damping) entries.reserve(entries_of(elements_));  // a list that grows is there twice
     for (const auto& element : elements_) {
       Matrix local, stiffness;
       Local one;
