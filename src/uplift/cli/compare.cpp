@@ -81,6 +81,7 @@ void run_all(const Loaded& loaded, const Options& options, const std::vector<Run
     if (interrupt_asked()) return;
     results.specs.push_back(spec);
     results.built.push_back(build(loaded.read, spec));
+    if (results.runs.empty()) results.warnings = warnings(loaded.read, spec, results.built.back());
     const std::string label = fmt::format("[{}/{}] {}", before + results.runs.size() + 1, total, spec.name);
     results.runs.push_back(folder ? run_with_fields(loaded, results.built.back(), label, options, *folder, fields)
                                   : run_one(results.built.back(), label, options));
@@ -175,7 +176,6 @@ int compare(const Options& options) {
   results.verdict = judge(results.built.front(), results.runs.front(), bonded_beside(results, 0), &results.floors.runs.front());
   results.verdict.headline += over.headline;
   if (!over.paragraph.empty()) results.verdict.paragraphs.insert(results.verdict.paragraphs.begin(), over.paragraph);
-  results.warnings = warnings(loaded.read, results.specs.front(), results.built.front());
   add_motion_warnings(results);
   write_results(options, loaded, results, &compared, folder);
 
