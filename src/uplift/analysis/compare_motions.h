@@ -37,8 +37,8 @@ struct JudgedMotion {
   const RunResult* run = nullptr;
   Verdict verdict;
 };
-/// Place of the hardest motion, the first of equals: by what becomes of the structure, the number of criteria that are not met, the uplifted
-/// share, the gap, the base moment. One motion at least.
+/// Place of the hardest motion, the first of equals: by what becomes of the structure, the number of criteria that are not met, the
+/// uplifted share, the gap, the base moment. One motion at least.
 std::size_t hardest(const std::vector<JudgedMotion>& judged);
 /// What a page on the hardest motion has to say of all: which one it shows, mean and largest of the table's quantities, criteria.
 std::string said_over_motions(const std::vector<JudgedMotion>& judged, const MotionTable& table);
