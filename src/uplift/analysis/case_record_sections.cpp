@@ -44,7 +44,8 @@ const Section& record_section() {
 const Section& compare_motion_section() {
   static const Section s{
       "motion",
-      "for `uplift compare`: every variant, or the case itself when there are none, and the bonded model with other motions",
+      "for `uplift compare`: every variant, or the case itself when there are none, and the bonded model with other motions; the report "
+      "is about the hardest of them for the first variant, with the mean and the envelope of all",
       {text("name", "name, part of the names of the runs"), text("label", "as shown").optional(),
        texts("replace", "names of records or functions that drive the case"),
        texts("by", "names of the records that take their places, in the same order")}};

@@ -121,7 +121,8 @@ void bring_forward(const Loaded& loaded, const Options& options, std::size_t pla
     if (!pictures[i] || interrupt_asked()) continue;
     results.specs[i].pictures = true;
     results.built[i] = build(loaded.read, results.specs[i]);
-    results.runs[i] = run_one(results.built[i], fmt::format("[again, for its pictures] {}", results.specs[i].name), options);
+    RunResult again = run_one(results.built[i], fmt::format("[again, for its pictures] {}", results.specs[i].name), options);
+    if (again.status != RunStatus::interrupted) results.runs[i] = std::move(again);
   }
 }
 

@@ -223,7 +223,9 @@ void write_motion_origins(JsonWriter& json, const Histories& motions) {
     row("format", motion.format);
     row("event", motion.event);
     if (!motion.unit.empty()) row("unit", fmt::format("{}, times {:.8g}", motion.unit, motion.factor));
-    for (const std::string& repair : motion.repairs) row("mended", repair);
+    if (motion.azimuth) row("azimuth", fmt::format("{:.4g} degrees, clockwise from north", *motion.azimuth * 180 / std::numbers::pi));
+    for (const std::string& repair : motion.repairs)
+      for (const std::string& line : lines_of(repair)) row("mended", line);
     for (std::size_t i = 0; i < motion.processing.size(); ++i)
       for (const std::string& line : lines_of(motion.processing[i])) row(fmt::format("step {}", i + 1), line);
   }
