@@ -77,6 +77,15 @@ void Newton<R>::predict() {
     const int n = block.batch.points, components = block.batch.components;
     const double *free = problem_.free_opening.data() + block.first, *from = problem_.from.data() + block.first;
     const double *end = scratch_.end.data() + block.first, *area = block.area.data(), *slope = slope_of(b);
+    if (components == 1) {
+      const double* columns = column(0) + block.first;
+      const double scale = problem_.scale;
+      small::for_lanes(n, [=, this, &sum](const auto& at) {
+        const Lanes force = scale * at(area) * at(end) + at(slope) * (at(free) - at(from));
+        for (Index j = 0; j < r(); ++j) sum[j] += at(columns + j * rows_) * force;
+      });
+      continue;
+    }
     for (int a = 0; a < components; ++a)
       small::for_lanes(n, [&](const auto& at) {
         Lanes force = problem_.scale * at(area) * at(end + a * n);

@@ -76,7 +76,9 @@ Outcome Stepper::solve(Level& level) {
 }
 
 void Stepper::force_at(double time, Vector& force) const {
-  std::copy_n(still_force_.data(), still_force_.size(), force.data());
+  const double* still = still_force_.data();
+  double* sum = force.data();
+  small::with_size(still_force_.size(), [=](auto count) { std::copy_n(still, static_cast<Eigen::Index>(count), sum); });
   model_.add_force(time, force);
 }
 
@@ -166,18 +168,29 @@ void Stepper::right_hand_side(const Level& level) {
   const double* f0 = force_now_.data();
   const double* f1 = force_next_.data();
   const double* ku = stiff_now_.data();
+  double* right = right_.data();
   const Eigen::Index n = bulk_.unknowns;
   if (path_) {
     const double* mv = momentum_now_.data();
-    for (Eigen::Index i = 0; i < n; ++i) right_[i] = f0[i] + f1[i] - 2 * ku[i] + (4 / dt) * mv[i];
+    const double inertia = 4 / dt;
+    small::with_size(n, [=](auto count) {
+#pragma omp simd
+      for (Eigen::Index i = 0; i < count; ++i) right[i] = f0[i] + f1[i] - 2 * ku[i] + inertia * mv[i];
+    });
     if (newton_ != nullptr) right_ -= plastic_now_.force;
     return;
   }
   const double w = 1 - options_.scheme.alpha_f, ratio = options_.scheme.alpha_f / w;
-  for (Eigen::Index i = 0; i < n; ++i) {
-    right_[i] = f1[i] + ratio * f0[i] - ku[i] / w;
-    work_[i] = level.mass_velocity * now_.velocity[i] + level.mass_acceleration * now_.acceleration[i];
-  }
+  const double of_velocity = level.mass_velocity, of_acceleration = level.mass_acceleration;
+  const double *v0 = now_.velocity.data(), *a0 = now_.acceleration.data();
+  double* work = work_.data();
+  small::with_size(n, [=](auto count) {
+#pragma omp simd
+    for (Eigen::Index i = 0; i < count; ++i) {
+      right[i] = f1[i] + ratio * f0[i] - ku[i] / w;
+      work[i] = of_velocity * v0[i] + of_acceleration * a0[i];
+    }
+  });
   bulk_.mass.multiply(work_, work2_);
   right_ += work2_;
   if (!bulk_.damping.zero()) {
@@ -192,22 +205,41 @@ void Stepper::right_hand_side(const Level& level) {
   right_ -= ratio * work_;
 }
 
-void Stepper::kinematics(const Level& level) {
+/// Displacement, velocity and acceleration at the end of the step; false when they are not finite.
+bool Stepper::kinematics(const Level& level) {
   const double dt = level.step;
   const Scheme& s = options_.scheme;
-  const Eigen::Index n = bulk_.unknowns;
   const double* du = increment_.data();
   const double *u0 = now_.displacement.data(), *v0 = now_.velocity.data(), *a0 = now_.acceleration.data();
   double *u1 = next_.displacement.data(), *v1 = next_.velocity.data(), *a1 = next_.acceleration.data();
+  double size = 0;
   if (path_) {
-    for (Eigen::Index i = 0; i < n; ++i) u1[i] = u0[i] + du[i], v1[i] = (2 / dt) * du[i] - v0[i];
-    return;
+    const double rate = 2 / dt;
+    small::with_size(bulk_.unknowns, [=, &size](auto count) {
+      double sum = 0;
+#pragma omp simd reduction(+ : sum)
+      for (Eigen::Index i = 0; i < count; ++i) {
+        u1[i] = u0[i] + du[i];
+        v1[i] = rate * du[i] - v0[i];
+        sum += du[i] * du[i];
+      }
+      size = sum;
+    });
+    return std::isfinite(size);
   }
-  for (Eigen::Index i = 0; i < n; ++i) {
-    u1[i] = u0[i] + du[i];
-    a1[i] = (du[i] - dt * v0[i]) / (s.beta * dt * dt) - (1 / (2 * s.beta) - 1) * a0[i];
-    v1[i] = v0[i] + dt * ((1 - s.gamma) * a0[i] + s.gamma * a1[i]);
-  }
+  const double inertia = s.beta * dt * dt, before = 1 / (2 * s.beta) - 1, gamma = s.gamma;
+  small::with_size(bulk_.unknowns, [=, &size](auto count) {
+    double sum = 0;
+#pragma omp simd reduction(+ : sum)
+    for (Eigen::Index i = 0; i < count; ++i) {
+      u1[i] = u0[i] + du[i];
+      a1[i] = (du[i] - dt * v0[i]) / inertia - before * a0[i];
+      v1[i] = v0[i] + dt * ((1 - gamma) * a0[i] + gamma * a1[i]);
+      sum += du[i] * du[i];
+    }
+    size = sum;
+  });
+  return std::isfinite(size);
 }
 
 bool Stepper::try_step(Level& level) {
@@ -227,9 +259,7 @@ bool Stepper::try_step(Level& level) {
     return false;
   }
   const InterfaceSolution& solution = *solution_;
-  kinematics(level);
-  const double probe = small::dot(increment_.size(), increment_.data(), increment_.data());
-  if (!std::isfinite(probe)) {
+  if (!kinematics(level)) {
     why_ = "the displacement is not finite";
     return false;
   }

@@ -74,7 +74,7 @@ class Stepper {
   /// ku = K u and mv = M v, in one pass where the bulk is large.
   void products(const Vector& u, const Vector& v, Vector& ku, Vector& mv) const;
   void right_hand_side(const Level& level);
-  void kinematics(const Level& level);
+  bool kinematics(const Level& level);
   Sparse matrix_of(const Level& level) const;
   InterfaceProblem frame_of(const Level& level) const;
   Outcome solve(Level& level);

@@ -9,9 +9,19 @@ namespace uplift {
 /// Adds the step that was just solved to the ledger.
 void Stepper::book_energies(const Level& level) {
   const Eigen::Index n = bulk_.unknowns;
-  const double* du = increment_.data();
-  double external = 0;
-  for (Eigen::Index i = 0; i < n; ++i) external += (force_now_[i] + force_next_[i]) * du[i];
+  const double *du = increment_.data(), *f0 = force_now_.data(), *f1 = force_next_.data();
+  const double *u = next_.displacement.data(), *ku = stiff_next_.data(), *v = next_.velocity.data(), *mv = momentum_next_.data();
+  double external = 0, strain = 0, kinetic = 0;
+  small::with_size(n, [=, &external, &strain, &kinetic](auto count) {
+    double sums[3] = {};
+#pragma omp simd reduction(+ : sums)
+    for (Eigen::Index i = 0; i < count; ++i) {
+      sums[0] += (f0[i] + f1[i]) * du[i];
+      sums[1] += u[i] * ku[i];
+      sums[2] += v[i] * mv[i];
+    }
+    external = sums[0], strain = sums[1], kinetic = sums[2];
+  });
   energies_.external += 0.5 * external;
   if (gap_moves_)  // what moving supports put in through the interfaces
     for (Eigen::Index i = 0; i < gap_step_.size(); ++i)
@@ -23,8 +33,8 @@ void Stepper::book_energies(const Level& level) {
     bulk_.damping.multiply(work_, damped_);
     energies_.damping += small::dot(n, damped_.data(), du);
   }
-  energies_.kinetic = 0.5 * small::dot(n, next_.velocity.data(), momentum_next_.data());
-  energies_.strain = 0.5 * small::dot(n, next_.displacement.data(), stiff_next_.data());
+  energies_.kinetic = 0.5 * kinetic;
+  energies_.strain = 0.5 * strain;
   if (newton_ != nullptr) {
     energies_.strain += yielding_.energy(next_.displacement, next_.time, plastic_next_);
     energies_.plastic += yielding_.dissipated(now_.displacement, now_.time, plastic_now_, next_.displacement, next_.time, plastic_next_);

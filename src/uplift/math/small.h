@@ -1,5 +1,6 @@
 #pragma once
 #include <cstddef>
+#include <type_traits>
 
 #include "uplift/math/fixed.h"
 
@@ -26,6 +27,29 @@ inline void for_lanes(std::ptrdiff_t n, const Add& add) {
     for (std::ptrdiff_t k = i; k < n; ++k) rest[k - i] = x[k];
     return rest;
   });
+}
+
+/// Calls work(n), with n known to the compiler where it is small: loops over it then have neither a beginning nor an end.
+template <class Work>
+inline void with_size(std::ptrdiff_t n, const Work& work) {
+  switch (n) {
+    case 2:
+      return work(std::integral_constant<std::ptrdiff_t, 2>());
+    case 3:
+      return work(std::integral_constant<std::ptrdiff_t, 3>());
+    case 4:
+      return work(std::integral_constant<std::ptrdiff_t, 4>());
+    case 5:
+      return work(std::integral_constant<std::ptrdiff_t, 5>());
+    case 6:
+      return work(std::integral_constant<std::ptrdiff_t, 6>());
+    case 7:
+      return work(std::integral_constant<std::ptrdiff_t, 7>());
+    case 8:
+      return work(std::integral_constant<std::ptrdiff_t, 8>());
+    default:
+      return work(n);
+  }
 }
 
 inline double dot(std::ptrdiff_t n, const double* a, const double* b) {
