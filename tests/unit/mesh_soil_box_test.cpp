@@ -166,6 +166,19 @@ TEST(SoilBoxModel, FlushEdges) {
   EXPECT_NEAR(size_of(mesh, "block"), 0.9, 1e-12);
 }
 
+TEST(SoilBoxModel, LevelGround) {
+  SoilBox model = model_3d();
+  model.raft.height = model.block.height = model.embedment = 0;
+  const Mesh mesh = soil_box(model, mesh_file);
+  double depth = 0, volume = 0;
+  for (const SoilBox::Layer& layer : model.soil.layers) depth += layer.thickness;
+  for (std::size_t i = 0; i < model.soil.layers.size(); ++i) volume += size_of(mesh, "soil_" + std::to_string(i + 1));
+  const double plan = model.soil.width[0] * model.soil.width[1];
+  EXPECT_NEAR(volume, plan * depth, 1e-9 * plan * depth);
+  EXPECT_NEAR(size_of(mesh, "soil_top"), plan, 1e-9 * plan);
+  for (const char* none : {"interface", "raft", "block", "block_top"}) EXPECT_FALSE(mesh.groups.contains(none)) << none;
+}
+
 TEST(SoilBoxModel, BadValuesAreNamed) {
   const auto refusal = [](const std::function<void(SoilBox&)>& change) {
     SoilBox model = model_3d();
@@ -179,8 +192,8 @@ TEST(SoilBoxModel, BadValuesAreNamed) {
   EXPECT_EQ(refusal([](SoilBox& m) { m.block.size = 1e-12; }),
             "case.toml:7: block.size: wanted a length of at least a millionth of the soil's width (4e-05 m), found 1e-12 m");
   EXPECT_EQ(refusal([](SoilBox& m) { m.growth = 1; }), "case.toml:7: growth: wanted a factor from 1.01 to 2, found 1");
-  EXPECT_EQ(refusal([](SoilBox& m) { m.raft.height = m.block.height = 0; }),
-            "case.toml:7: block.height: wanted a raft or a block, found neither");
+  EXPECT_EQ(refusal([](SoilBox& m) { m.raft.height = m.block.height = 0, m.embedment = 1; }),
+            "case.toml:7: embedment: wanted 0 m where there is neither a raft nor a block, found 1 m");
   EXPECT_EQ(refusal([](SoilBox& m) { m.block.offset[0] = 2.5; }),
             "case.toml:7: block.width: wanted a block inside the plan of the raft, 8 m wide, found 4 m with its middle at 2.5 m");
   EXPECT_EQ(refusal([](SoilBox& m) { m.raft.width[1] = 31; }),

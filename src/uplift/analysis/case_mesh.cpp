@@ -57,7 +57,7 @@ Mesh make_soil_box(const Values& box) {
     fail(box, "cell",
          made.dimension == 2 ? "a cell of the plane (soil.length makes the mesh one in space)" : "a cell of space, for example hex8",
          in_quotes(box.text("cell")));
-  return soil_box(made, box.where());
+  return soil_box(made, box.where(), box.path() + ".");
 }
 
 /// Groups of interfaces whose surfaces have the same lower side, in the order of the case.

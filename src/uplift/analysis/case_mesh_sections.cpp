@@ -51,7 +51,8 @@ const Section& block_section() {
 const Section& soil_box_section() {
   static const Section s{
       "soil_box",
-      "layered soil with a building on it. Groups of cells: soil_1, soil_2, ..., raft, block; of edges (faces): soil_left, soil_right, "
+      "layered soil with a building on it, or level ground. Groups of cells: soil_1, soil_2, ..., raft, block; of edges (faces): "
+      "soil_left, soil_right, "
       "in space soil_front, soil_back, soil_bottom, soil_top, the same of raft_ and block_, and interface (between soil and building)",
       Fields{table("soil", soil_section(), "the soil"), table("raft", raft_section(), "the foundation; absent: none").optional(),
              table("block", block_section(), "the building; absent: none").optional(),

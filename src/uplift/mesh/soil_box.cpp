@@ -18,14 +18,13 @@ std::size_t at(int i) {
 
 class Check {
  public:
-  Check(const SoilBox& model, const Where& where) : model_(model), where_(where) {}
+  Check(const SoilBox& model, const Where& where, const std::string& path) : model_(model), where_(where), path_(path) {}
   void all() const {
     const SoilBox& m = model_;
     if (m.dimension != 2 && m.dimension != 3) refuse("dimension", "2 or 3", std::to_string(m.dimension));
     if (info(m.cell).dimension != m.dimension)
       refuse("cell", "a cell of dimension " + std::to_string(m.dimension), std::string(info(m.cell).name));
     if (!(m.growth >= 1.01 && m.growth <= 2)) refuse("growth", "a factor from 1.01 to 2", shortest(m.growth));
-    if (!(m.raft.height > 0) && !(m.block.height > 0)) refuse("block.height", "a raft or a block", "neither");
     soil();
     part("raft", m.raft, m.soil.width, {0, 0}, "the soil");
     const bool raft = m.raft.height > 0;
@@ -35,7 +34,7 @@ class Check {
 
  private:
   [[noreturn]] void refuse(const std::string& path, const std::string& wanted, const std::string& found) const {
-    throw InputError(where_, path, wanted, found);
+    throw InputError(where_, path_ + path, wanted, found);
   }
   void positive(const std::string& path, double value) const {
     if (!(value > 0) || !std::isfinite(value)) refuse(path, "a length > 0 m", shortest(value) + " m");
@@ -75,13 +74,16 @@ class Check {
   void depth() const {
     double all = 0;
     for (const SoilBox::Layer& layer : model_.soil.layers) all += layer.thickness;
-    const double most = std::min(all, model_.raft.height + model_.block.height);
+    const double structure = model_.raft.height + model_.block.height, most = std::min(all, structure);
+    if (!(structure > 0) && model_.embedment == 0) return;  // level ground
+    if (!(structure > 0)) refuse("embedment", "0 m where there is neither a raft nor a block", shortest(model_.embedment) + " m");
     if (!(model_.embedment >= 0 && model_.embedment < most))
       refuse("embedment", "a depth from 0 m to less than that of the soil and the height of the structure (" + shortest(most) + " m)",
              shortest(model_.embedment) + " m");
   }
   const SoilBox& model_;
   const Where& where_;
+  const std::string& path_;
 };
 
 /// A stretch of an axis on which a size is wanted.
@@ -159,8 +161,8 @@ std::string face_name(int part, Direction direction, int other) {
 
 }  // namespace
 
-Mesh soil_box(const SoilBox& model, const Where& where) {
-  Check(model, where).all();
+Mesh soil_box(const SoilBox& model, const Where& where, const std::string& path) {
+  Check(model, where, path).all();
   Grid lines{plan_lines(model, 0), {}, {}};
   lines.y = model.dimension == 2 ? height_lines(model) : plan_lines(model, 1);
   if (model.dimension == 3) lines.z = height_lines(model);
@@ -168,7 +170,7 @@ Mesh soil_box(const SoilBox& model, const Where& where) {
   const double cells = static_cast<double>(lines.x.size()) * static_cast<double>(lines.y.size()) *
                        static_cast<double>(std::max<std::size_t>(1, lines.z.size()));
   if (cells > most)
-    throw InputError(where, "soil.size", "sizes that make at most 50 million elements", "a grid of " + shortest(std::round(cells)));
+    throw InputError(where, path + "soil.size", "sizes that make at most 50 million elements", "a grid of " + shortest(std::round(cells)));
   std::vector<std::string> names{"raft", "block"};
   for (std::size_t i = 0; i < model.soil.layers.size(); ++i) names.push_back("soil_" + std::to_string(i + 1));
   const auto middle = [](const std::vector<double>& axis, int i) { return axis.empty() ? 0.0 : (axis[at(i)] + axis[at(i + 1)]) / 2; };

@@ -4,7 +4,8 @@
 
 #include "uplift/mesh/mesh.h"
 
-// Layered soil, a raft and a block building on it: one conforming structured mesh, to be opened at "interface" by split().
+// Layered soil, a raft and a block building on it (or level ground): one conforming structured mesh, to be opened at "interface" by
+// split().
 //
 //            +---------+            z (3D) or y (2D)
 //            |  block  |            ^
@@ -49,9 +50,9 @@ struct SoilBox {
 /// - "interface": faces between soil and raft or block, normals out of the soil: the bottom and, when embedded, the walls. Soil lies on a
 /// ledge of
 ///   an embedded raft, too.
-/// Throws InputError (keys "soil.width", "block.offset", ... of the structure above): sizes, thicknesses not positive, sizes below a
-/// millionth of the soil's width, growth outside ]1, 2], no structure, parts beyond the soil or the block beyond the raft, embedment not
+/// Throws InputError (keys "soil.width", "block.offset", ... of the structure above, after `path`): sizes, thicknesses not positive, sizes
+/// below a millionth of the soil's width, growth outside ]1, 2], parts beyond the soil or the block beyond the raft, embedment not
 /// less than the depth of the soil, not above the block's top, more than 50 million elements.
-Mesh soil_box(const SoilBox& model, const Where& where);
+Mesh soil_box(const SoilBox& model, const Where& where, const std::string& path = {});
 
 }  // namespace uplift
