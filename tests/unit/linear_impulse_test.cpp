@@ -3,7 +3,7 @@
 
 #include <random>
 
-#include "linear_support.h"
+#include "samples/two_boxes.h"
 #include "uplift/base/declare.h"
 #include "uplift/contact/impact.h"
 #include "uplift/dynamics/bulk.h"

@@ -6,7 +6,7 @@
 #include <filesystem>
 #include <fstream>
 
-#include "linear_support.h"
+#include "samples/two_boxes.h"
 #include "uplift/base/declare.h"
 #include "uplift/dynamics/bulk.h"
 #include "uplift/linear/memory.h"
@@ -87,9 +87,23 @@ TEST(Memory, PredictionIsWhatTheFactorHas) {
   // a Cholesky factor of n unknowns cannot need less than its own entries once each, nor more than the dense one
   EXPECT_GT(whole.operations, whole.entries);
   EXPECT_LT(whole.operations, std::pow(whole.unknowns, 3) / 3);
-  const Rates rates = measure_rates(whole.bytes);
-  EXPECT_GT(solve_seconds(whole, rates), 0);
-  EXPECT_GT(factor_seconds(whole, rates), solve_seconds(whole, rates));
+}
+
+// Times follow from the rates alone; these are stated, since what a loaded machine measures is anything.
+TEST(Memory, TimesFollowFromTheRates) {
+  FactorCost cost;
+  cost.entries = 1e8;
+  cost.operations = 1e12;
+  const Rates rates{1e10, 2e10};                       // 10 GB/s, 20 GFlop/s
+  EXPECT_DOUBLE_EQ(solve_seconds(cost, rates), 0.16);  // two passes over 8 bytes an entry
+  EXPECT_GT(factor_seconds(cost, rates), 50);          // not less than the operations at full rate
+  EXPECT_LT(factor_seconds(cost, rates), 150);
+  const Rates twice{2e10, 4e10};
+  EXPECT_DOUBLE_EQ(solve_seconds(cost, twice), 0.08);
+  EXPECT_LT(factor_seconds(cost, twice), 0.6 * factor_seconds(cost, rates));
+  const Rates measured = measure_rates(1e6);
+  EXPECT_GT(measured.bytes_per_second, 0);
+  EXPECT_GT(measured.operations_per_second, 0);
 }
 
 #if defined(__SANITIZE_ADDRESS__)

@@ -6,7 +6,8 @@
 
 #include "uplift/elements/solid.h"
 
-// Matrices of a block on soil without a model: two boxes of 4-node quads or 8-node bricks with node pairs between them.
+// Shared by tests and benchmarks. Matrices of a block on soil without a model: two boxes of 4-node quads or 8-node bricks with node pairs
+// between them.
 namespace uplift {
 
 /// Free unknowns: (ux, uy) or (ux, uy, uz) of every node, the soil's bottom left out. Rows of B: openings of the node pairs (block less
