@@ -221,6 +221,32 @@ class Failures(CliTest):
         done = self.uplift("replay", "r/problem_run.json", "--json")
         self.assertIn("overturns", json.loads(done.stdout)["reason"])
 
+    def test_static_stages_alone_show_how_it_stands(self):
+        self.write(BASE.split('[[stage]]\ntype = "dynamic"')[0])
+        done = self.uplift("run", "case.toml", "-o", "r")
+        self.assertIn("Under its constant loads the base is closed", done.stdout)
+        self.assertIn("completed: static stages in", done.stdout)
+        # 1 MN on 3 m2 of 2e8 Pa/m
+        (head, row) = (self.folder / "r" / "histories.csv").read_text().splitlines()
+        values = dict(zip(head.split(","), row.split(",")))
+        self.assertAlmostEqual(float(values["base.uy [m]"]) * 2e8 * 3 / -1e6, 1, places=9)
+        numbers = self.summary("r")["verdict"]["interfaces"][0]["numbers"]
+        self.assertAlmostEqual(numbers["max_toe_pressure"]["value"] / (1e6 / 3), 1, places=9)
+        self.assertAlmostEqual(numbers["residual_settlement"]["value"] * 2e8 * 3 / 1e6, 1, places=9)
+        page = self.folder / "r" / "report.html"
+        if page.exists():
+            report = json.loads(re.search(r'<script id="uplift-data" type="application/json">(.*?)</script>', page.read_text(), re.S).group(1))
+            self.assertLessEqual({"rest_gap", "rest_pressure"}, {chart["id"] for chart in report["charts"]})
+
+    def test_leaving_the_ground_is_an_outcome_not_a_failure(self):
+        pulled = BASE.replace("force = [3e5, 0]", "force = [0, 1e7]").replace("duration = 0.1", "duration = 3").replace("duration = 0.5", "duration = 3")
+        self.write(pulled)
+        done = self.uplift("run", "case.toml", "-o", "r")
+        self.assertIn("It leaves the ground", done.stdout)
+        (run,) = self.summary("r")["runs"]
+        self.assertEqual(run["status"], "separated")
+        self.assertLess(run["end_time"], 3)
+
     def test_overturning_is_an_outcome_not_a_failure(self):
         self.write(BASE.replace("force = [3e5, 0]", "force = [9e6, 0]").replace("duration = 0.5", "duration = 3"))
         done = self.uplift("run", "case.toml", "-o", "r")

@@ -7,6 +7,7 @@
 
 #include "uplift/analysis/probe.h"
 #include "uplift/analysis/runner.h"
+#include "uplift/analysis/verdict_standing.h"
 #include "uplift/dynamics/plastic_bulk.h"
 #include "uplift/dynamics/statics.h"
 #include "uplift/model/geometric.h"
@@ -142,7 +143,7 @@ void Runner::execute() {
     if (!dynamics(stage, stage_bulk)) return;
   }
   result_.end_time = state_.time;
-  if (dynamic == nullptr && !plan_.stages.empty()) stand();
+  if (statics_alone(plan_)) stand();
 }
 
 /// A joint with an initial gap was broken before the analysis: its law remembers an opening from zero to that gap (the SDM's jump is the

@@ -240,7 +240,7 @@ const Peak* find_peak(const RunResult& result, Request::Kind kind, int of) {
 }
 
 Verdict judge(const Built& built, const RunResult& run, const RunResult* bonded, const FloorRun* floors) {
-  if (!dynamic_stage(built.plan) && run.status == RunStatus::completed) return judge_standing(built, run);
+  if (statics_alone(built.plan) && run.status == RunStatus::completed) return judge_standing(built, run);
   Verdict verdict;
   if (run.status == RunStatus::failed) {
     verdict.level = Verdict::Level::failed;

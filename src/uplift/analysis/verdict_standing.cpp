@@ -53,6 +53,10 @@ void say(const InterfaceVerdict& said, const std::string& of, Verdict& verdict) 
 
 }  // namespace
 
+bool statics_alone(const RunPlan& plan) {
+  return !plan.stages.empty() && dynamic_stage(plan) == nullptr;
+}
+
 Verdict judge_standing(const Built& built, const RunResult& run) {
   Verdict verdict;
   verdict.numbers = numbers_of(built, run, nullptr);

@@ -1,5 +1,6 @@
 #include <fmt/format.h>
 
+#include "uplift/analysis/verdict_standing.h"
 #include "uplift/analysis/wording.h"
 #include "uplift/base/file.h"
 #include "uplift/cli/console.h"
@@ -49,11 +50,11 @@ int run(const Options& options) {
     for (const Verdict::Fact& fact : results.verdict.facts) say(fmt::format("  {:<34} {:<14} {}", fact.label, fact.value, fact.detail));
     say_criteria(results.verdict.numbers.criteria);
     const double per_step = main.counts.steps > 0 ? 1e6 * main.wall / static_cast<double>(main.counts.steps) : 0;
-    if (dynamic_stage(results.built.front().plan))
+    if (statics_alone(results.built.front().plan))
+      say(fmt::format("{}: static stages in {}, {} retries", status_text(main), spoken(main.wall, "s"), main.counts.retries));
+    else
       say(fmt::format("{}: {} steps in {} ({:.2f} microseconds a step), {} retries", status_text(main), main.counts.steps,
                       spoken(main.wall, "s"), per_step, main.counts.retries));
-    else
-      say(fmt::format("{}: static stages in {}, {} retries", status_text(main), spoken(main.wall, "s"), main.counts.retries));
     say(fmt::format("results: {}/report.html", folder.path()));
     for (const std::string& list : fields) say(fmt::format("fields: {}/{} (for ParaView)", folder.path(), list));
   }

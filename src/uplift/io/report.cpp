@@ -2,6 +2,7 @@
 
 #include <fmt/format.h>
 
+#include "uplift/analysis/verdict_standing.h"
 #include "uplift/io/report_motions.h"
 
 namespace uplift {
@@ -27,7 +28,7 @@ std::string floors_text(const ReportInput& input) {
 void write_sections(JsonWriter& json, const ReportInput& input) {
   constexpr std::string_view law = "The law of the interface, driven through openings and closings.";
   json.begin_array();
-  if (!dynamic_stage(input.runs.front().built->plan)) {
+  if (statics_alone(input.runs.front().built->plan)) {
     write_section(json, "rest", "Under the constant loads", "How the base stands at the end of the static stages.");
     write_section(json, "law", "Interface law", law);
     json.end_array();

@@ -2,6 +2,7 @@
 #include <cmath>
 #include <utility>
 
+#include "uplift/analysis/verdict_standing.h"
 #include "uplift/io/report_parts.h"
 #include "uplift/io/verdict_json.h"
 
@@ -61,7 +62,7 @@ void write_interface(JsonWriter& json, const ReportInput& input, std::size_t k) 
   const VerdictNumbers& numbers = input.verdict->numbers;
   const InterfaceVerdict& said = numbers.interfaces[k];
   const ReportRun& run = input.runs.front();
-  if (!dynamic_stage(run.built->plan)) {  // its facts say all
+  if (statics_alone(run.built->plan)) {  // its facts say all
     json.begin_object().member("name", said.name);
     for (const char* key : {"time", "share", "above", "lost", "beside", "rest"}) json.key(key).begin_array().end_array();
     json.end_object();
@@ -135,11 +136,16 @@ Chart safety_chart(const char* id, const char* title, const char* caption, BaseH
   return chart;
 }
 
+/// The page has one sign for both ends of the small-displacement model; the headline says which.
+std::string_view page_level(Verdict::Level level) {
+  return to_string(level == Verdict::Level::separated ? Verdict::Level::overturned : level);
+}
+
 }  // namespace
 
 void write_verdict(JsonWriter& json, const ReportInput& input) {
   const Verdict& verdict = *input.verdict;
-  json.begin_object().member("level", to_string(verdict.level)).member("headline", verdict.headline);
+  json.begin_object().member("level", page_level(verdict.level)).member("headline", verdict.headline);
   json.member("consequence", verdict.consequence);
   json.key("facts").begin_array();
   for (const Verdict::Fact& fact : verdict.facts)
@@ -168,7 +174,7 @@ std::vector<Chart> rest_charts(const ReportRun& run) {
   for (int i = 0; i < interface.batch.points; ++i)
     order.emplace_back(t.dot(interface.position[static_cast<std::size_t>(i)] - interface.reference), i);
   std::ranges::sort(order);
-  const bool stands = !dynamic_stage(run.built->plan);  // static stages alone
+  const bool stands = statics_alone(run.built->plan);
   if (!stands && frames.size() < 2) return {};
   Vector widest = Vector::Zero(interface.batch.points);
   for (const Frame& frame : frames) widest = widest.cwiseMax(frame.opening.head(interface.batch.points));
