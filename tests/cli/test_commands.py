@@ -8,7 +8,7 @@ from support import *
 class New(CliTest):
     def test_a_new_case_passes_check_and_runs(self):
         done = self.uplift("new", "my tower")
-        self.assertIn("my tower/case.toml", done.stdout)
+        self.assertIn("my tower/case.toml written; next: uplift check \"my tower\"", done.stdout)
         text = (self.folder / "my tower" / "case.toml").read_text()
         self.assertGreater(sum("#" in line for line in text.splitlines()), 15)
         self.assertIn("in order", self.uplift("check", "my tower").stdout)
@@ -48,6 +48,13 @@ class Check(CliTest):
         slow = math.sqrt((-b - math.sqrt(b * b - 4 * a * c)) / (2 * a)) / (2 * math.pi)
         self.assertAlmostEqual(found["frequencies_bonded"][0], slow, places=6)
         self.assertAlmostEqual(found["weight"], 1e6, places=3)
+
+    def test_without_an_interface_there_is_no_base_that_carries(self):
+        text = BASE.replace('[[interface]]\nname = "soil"\n', '').split("[interface.footing]")[0]
+        text = text.replace('fixed = ["ux"]', 'fixed = ["ux", "uy", "rz"]') + '[[stage]]\ntype = "dynamic"\nduration = 0.5\nstep = 1e-3\n'
+        self.write(text)
+        self.assertNotIn("dead load", self.uplift("check", "case.toml").stdout)
+        self.assertNotIn("weight", json.loads(self.uplift("check", "case.toml", "--json").stdout))
 
     def test_warns(self):
         law = 'type = "sdm"\nK_n = 2e8\nF_u = 1e3\nG_f = 0.1\nF_c = -1e4\ntangential = "none"\n'

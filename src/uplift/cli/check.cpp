@@ -186,7 +186,7 @@ void print(const Loaded& loaded, const Built& built, const Findings& found, cons
       for (const std::string& repair : motion.repairs) line("  mended", repair);
     for (const std::string& step : motion.processing) line("  processed", step);
   }
-  line("dead load on the base", spoken(built.weight, "N"));
+  if (!built.facts.empty()) line("dead load on the base", spoken(built.weight, "N"));
   if (!found.fixed.empty()) line("frequencies, fixed base", list_hz(found.fixed));
   line("frequencies, bonded base", list_hz(found.bonded));
   if (!found.base_free.empty()) line("frequencies, base free", list_hz(found.base_free));
@@ -268,8 +268,8 @@ void write(const Loaded& loaded, const Built& built, const Findings& found, cons
         .member("bytes_per_frame", static_cast<long>(found.fields->size.per_frame))
         .member("bytes", static_cast<long>(found.fields->bytes()))
         .end_object();
-  json.member("weight", built.weight)
-      .key("frequencies_fixed_base")
+  if (!built.facts.empty()) json.member("weight", built.weight);
+  json.key("frequencies_fixed_base")
       .numbers(found.fixed)
       .key("frequencies_bonded")
       .numbers(found.bonded)

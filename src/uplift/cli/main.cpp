@@ -1,8 +1,10 @@
 #include <fmt/format.h>
 
 #include <CLI/CLI.hpp>
+#include <algorithm>
 
 #include "uplift/base/error.h"
+#include "uplift/base/text.h"
 #include "uplift/cli/commands.h"
 #include "uplift/cli/console.h"
 
@@ -164,6 +166,16 @@ std::string as_typed(const std::string& word) {
   return word.find(' ') == std::string::npos ? word : fmt::format("\"{}\"", word);
 }
 
+/// A first word that is no command is named, before CLI11 only says that one is missing.
+void check_command(const CLI::App& app, const std::string& word) {
+  if (word.empty() || word.front() == '-') return;
+  std::vector<std::string> names;
+  for (const CLI::App* command : app.get_subcommands({})) names.push_back(command->get_name());
+  if (std::ranges::find(names, word) != names.end()) return;
+  throw uplift::InputError({"uplift", 0}, "", fmt::format("a command: {}", fmt::join(names, ", ")), uplift::in_quotes(word),
+                           uplift::nearest_name(word, names));
+}
+
 /// Parses the command line and runs the command; what it throws is told to the user by main.
 int program(int count, char** words) {
   CLI::App app{"uplift: does a structure lift off its base in an earthquake, and what does that do to it?", "uplift"};
@@ -177,6 +189,7 @@ int program(int count, char** words) {
   declare(app, given);
   given.options.command = "uplift";
   for (int i = 1; i < count; ++i) given.options.command += " " + as_typed(words[i]);
+  check_command(app, count > 1 ? words[1] : "");
   try {
     app.parse(count, words);
   } catch (const CLI::ParseError& error) {

@@ -139,7 +139,8 @@ int new_case(const std::string& name) {
   if (!out) throw InputError({file.string(), 0}, "", "a file that can be written", "none");
   fmt::print(out, template_text, title);
   std::fclose(out);
-  say(fmt::format("{} written; next: uplift check {}", file.string(), folder.string()));
+  const char* quote = name.find(' ') == std::string::npos ? "" : "\"";
+  say(fmt::format("{} written; next: uplift check {}{}{}", file.string(), quote, folder.string(), quote));
   return Exit::done;
 }
 
