@@ -21,6 +21,20 @@ class BadInput(CliTest):
         done = self.uplift("check", "cast.toml", expect=2)
         self.assertEqual(done.stderr.strip(), 'error: cast.toml: wanted a file, found no file of this name (did you mean "case.toml"?)')
 
+    def test_missing_file_of_a_function(self):
+        text = self.replace('shape = { type = "half_sine", duration = 0.1 }', 'shape = { type = "csv", file = "none.csv" }')
+        self.refused(text, f'{{file}}:{line_of(text, "none.csv")}: function[0].shape.file: wanted a file, found "none.csv"')
+
+    def test_unknown_command(self):
+        done = self.uplift("chek", "case.toml", expect=2)
+        self.assertRegex(done.stderr, r'^error: uplift: wanted a command: new, check, .*, found "chek" \(did you mean "check"\?\)$')
+        self.write(BASE)
+        self.assertIn('found "case.toml"', self.uplift("case.toml", expect=2).stderr)
+
+    def test_tons_are_refused(self):
+        text = self.replace("mass = 24317", 'mass = "24 tons"')
+        self.refused(text, f'{{file}}:{line_of(text, "24 tons")}: mass[0].mass: wanted a mass > 0 kg, found "24 tons" (a ton is 907, 1000 or 1016 kg; t is 1000 kg) (did you mean "t"?)')
+
     def test_wrong_dimension(self):
         text = self.replace("E = 2e10", 'E = "20000 kN"')
         self.refused(text, f'{{file}}:{line_of(text, "E = ")}: beam[0].E: wanted a pressure > 0 Pa, found "20000 kN" (a force)')

@@ -82,6 +82,13 @@ class Example(CliTest):
         moment = lambda run: abs(run["max_base_moment"]["value"])
         self.assertLess(moment(joint), 0.7 * moment(bonded))
         self.assertGreater(moment(bonded), 200 * 400 * 9.81 * 5)
+        # Its drawing knows what holds in static stages alone, and the faces through which waves leave.
+        if (self.folder / "r" / "report.html").exists():
+            model = report_of(self.folder / "r")["model"]
+            self.assertTrue(model["supports"] and all(support.get("staticsOnly") for support in model["supports"]))
+            self.assertEqual([(face["group"], face["incident"], face["freeField"]) for face in model["absorbing"]],
+                             [("soil_bottom", True, False), ("soil_left", False, True), ("soil_right", False, True)])
+            self.assertAlmostEqual(sum(abs(x2 - x1) for x1, _, x2, _ in model["absorbing"][0]["edges"]), 60, places=3)
         # The report of a mesh stays small.
         self.assertLess((self.folder / "r" / "report.html").stat().st_size, 3e6)
 
@@ -104,6 +111,11 @@ class Example(CliTest):
         self.assertAlmostEqual(told["weight"] / (200 * 400 * 9.81), 1, places=9)
 
 
+def report_of(folder):
+    page = (folder / "report.html").read_text()
+    return json.loads(re.search(r'<script id="uplift-data" type="application/json">(.*?)</script>', page, re.S).group(1).replace("<\\/", "</"))
+
+
 class MeshFile(CliTest):
     def run_block(self, text=BLOCK):
         self.write(gmsh(4, 8, 4), "soil.msh")
@@ -112,6 +124,12 @@ class MeshFile(CliTest):
     def test_run(self):
         self.run_block()
         self.uplift("run", "case.toml", "-o", "r")
+        # a traction is drawn as the force that it makes: 1 Pa on the roof of 4 m2
+        if (self.folder / "r" / "report.html").exists():
+            (loads,) = (chart for chart in report_of(self.folder / "r")["charts"] if chart["id"] == "loads")
+            (curve,) = loads["series"]
+            self.assertEqual(curve["label"], "pulse, vertical")
+            self.assertAlmostEqual(max(curve["y"]), 4, places=3)
         summary = self.summary("r")
         run = summary["runs"][0]
         self.assertEqual(run["status"], "completed")

@@ -328,8 +328,9 @@ TEST(CaseMesh, MistakesAreNamed) {
             "case.toml:43: support[5]: wanted either node or group, found neither");
   EXPECT_EQ(refusal(good + "[[support]]\ngroup = \"block_top\"\nfixed = [\"rz\"]\n", mesh),
             "case.toml:45: support[5].fixed: wanted ux or uy for a group of the mesh, found \"rz\"");
-  EXPECT_EQ(refusal(good + "[[load]]\ngroup = \"block_top\"\nforce = [1, 0]\n", mesh),
-            "case.toml:43: load[0]: wanted a name for the load on a group, found none");
+  EXPECT_EQ(refusal(good + "[[load]]\ngroup = \"block_top\"\nforce = [1, 0]\n", mesh), "accepted");  // it needs no name
+  EXPECT_EQ(refusal(good + "[[motion]]\ngroup = \"soil_bottom\"\ndirection = \"uz\"\nfunction = \"f\"\n", mesh),
+            "case.toml:45: motion[0].direction: wanted ux or uy for a group of the mesh, found \"uz\"");
   EXPECT_EQ(refusal(good + "[[load]]\nname = \"a\"\ngroup = \"block\"\nforce = [1, 0]\n", mesh),
             "case.toml:45: load[0].group: wanted a group of edges, found a group of cells");
 }

@@ -8,6 +8,7 @@
 #include "uplift/analysis/case_sections.h"
 #include "uplift/analysis/case_shown.h"
 #include "uplift/analysis/case_verdict.h"
+#include "uplift/base/text.h"
 #include "uplift/model/check.h"
 #include "uplift/model/tuned_mass.h"
 
@@ -284,7 +285,9 @@ Case check_case_like(const Case& like, bool same_mesh, const Raw& raw, const Mes
 std::vector<std::string> input_files(const Case& read) {
   std::vector<std::string> files;
   const auto add = [&](const Values& table) {
-    files.push_back((std::filesystem::path(read.file).parent_path() / table.text("file")).lexically_normal().string());
+    const std::filesystem::path path = std::filesystem::path(read.file).parent_path() / table.text("file");
+    if (!std::filesystem::is_regular_file(path)) fail(table, "file", "a file", in_quotes(path.string()));
+    files.push_back(path.lexically_normal().string());
   };
   for (const Values& function : read.values.tables("function")) {
     const Values& shape = function.part("shape");

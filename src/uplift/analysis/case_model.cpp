@@ -141,7 +141,6 @@ Pattern edge_load(const Values& load, const CaseNames& names) {
   for (const char* key : {"moment", "moments"})
     if (load.has(key)) fail(load, key, "force or traction on a group", "a moment");
   const bool traction = first_of_two(load, "traction", "force");
-  if (!load.has("name")) fail(load, "", "a name for the load on a group", "none");
   const CaseSolids& solids = names.mesh_for(load);
   const std::vector<std::pair<int, double>> areas = tributary_areas(solids, solids.edges(load, "group"));
   double area = 0;
@@ -248,12 +247,15 @@ void add_structure(const Values& root, ModelBuilder& builder, CaseNames& names, 
   add_supports(root, builder, names, at_rest);
 }
 
+std::string name_of_load(const Values& load) {
+  return load.has("name") ? load.text("name") : "load on " + load.text(load.has("node") ? "node" : "group");
+}
+
 void add_loads(const Values& root, ModelBuilder& builder, const CaseNames& names) {
   for (const Values& load : root.tables("load")) {
     std::vector<std::pair<int, double>> pattern =
         first_of_two(load, "node", "group") ? node_load(load, names.node(load, "node"), names.space) : edge_load(load, names);
-    const std::string name = load.has("name") ? load.text("name") : "load on " + load.text("node");
-    builder.add_load(name, std::move(pattern), names.function(load), !load.has("function"), load.where());
+    builder.add_load(name_of_load(load), std::move(pattern), names.function(load), !load.has("function"), load.where());
   }
   if (const Values* gravity = table_if(root, "gravity"); gravity && gravity->has("acceleration"))
     builder.set_gravity(vector_of(*gravity, "acceleration", names.space), gravity->where());

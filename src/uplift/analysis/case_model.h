@@ -52,6 +52,8 @@ void add_mesh(const Case& read, ModelBuilder& builder, CaseNames& names);
 void add_absorbing(const Values& root, ModelBuilder& builder, const CaseNames& names);
 /// A function times an amplitude.
 std::shared_ptr<const TimeFunction> scaled(double factor, std::shared_ptr<const TimeFunction> function);
+/// As stated, else from what it acts on.
+std::string name_of_load(const Values& load);
 /// Functions, then records.
 void add_functions(const Case& read, CaseNames& names);
 void add_beams(const Values& root, ModelBuilder& builder, CaseNames& names);

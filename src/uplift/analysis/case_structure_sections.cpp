@@ -100,12 +100,13 @@ const Section& support_section() {
 }
 
 const Section& motion_section() {
-  static const Section s{"motion", "a prescribed motion of one unknown of a node or of a group of the mesh: amplitude x function",
-                         Fields{text("name", "name").optional(), text("node", "node; or give group").optional(),
-                                text("group", "group of the mesh: all its nodes").optional(),
-                                choice("direction", {"ux", "uy", "uz", "rx", "ry", "rz"}, "unknown that is moved"),
-                                number("amplitude", "1", "m (or rad for rotations) that the function multiplies").standard(1.0),
-                                text("function", "name of the function of time")}};
+  static const Section s{
+      "motion", "a prescribed motion of one unknown of a node or of a group of the mesh: amplitude x function",
+      Fields{text("name", "name").optional(), text("node", "node; or give group").optional(),
+             text("group", "group of the mesh: all its nodes").optional(),
+             text("direction", "unknown that is moved: ux, uy or rz; in space ux, uy, uz, rx, ry or rz; of a group a translation"),
+             number("amplitude", "1", "m (or rad for rotations) that the function multiplies").standard(1.0),
+             text("function", "name of the function of time")}};
   return s;
 }
 
@@ -134,7 +135,7 @@ const Section& function_section() {
 const Section& load_section() {
   static const Section s{
       "load", "a load on a node or on faces (edges) of the mesh; without a function it is constant and applied by the static stages",
-      Fields{text("name", "name; needed for a group").optional(), text("node", "node; or give group").optional(),
+      Fields{text("name", "name; absent: made from the node or group").optional(), text("node", "node; or give group").optional(),
              text("group", "group of faces (edges) of the mesh").optional(),
              vector("force", "N", "force; on a group: the whole force, spread evenly over its area").optional(),
              vector("traction", "Pa", "force per area of a group").optional(),

@@ -4,6 +4,7 @@
 #include <cmath>
 
 #include "uplift/analysis/case_model.h"
+#include "uplift/analysis/verdict_standing.h"
 #include "uplift/io/histories.h"
 #include "uplift/io/report_motions.h"
 
@@ -117,9 +118,13 @@ Chart ledger_chart(const ReportRun& run) {
   return chart;
 }
 
-/// The loads of the case over time, as far as they are shown: forces and moments times their functions.
+/// The loads of the case over time: the sum of the forces of each, on a node or on faces.
 Chart load_chart(const Case& read, const ReportRun& run) {
-  Chart chart{"loads", "loads", "Loads", "Forces on the nodes.", {"Time", "s"}, {"Force", "N"}, {}};
+  Chart chart{"loads", "loads", "Loads", "Forces on nodes and faces.", {"Time", "s"}, {"Force", "N"}, {}};
+  const Model& model = run.built->model;
+  const auto along = [&](int axis) {
+    return axis == model.space.up() ? "vertical" : model.space.dimension == 2 ? "horizontal" : axis == 0 ? "along x" : "along y";
+  };
   const double end = std::max(run.result->end_time, 1e-9);
   const auto sample = [&](const std::string& label, double amplitude, const TimeFunction& function) {
     Curve curve;
@@ -131,14 +136,18 @@ Chart load_chart(const Case& read, const ReportRun& run) {
     thin_history(curve.x, curve.y, points_per_curve);
     chart.curves.push_back(std::move(curve));
   };
+  std::size_t next = 0;  // drives stand in the order of the loads; names may come twice
   for (const Values& load : read.values.tables("load")) {
-    const std::string name = load.has("name") ? load.text("name") : "load on " + load.text("node");
-    for (const Drive& drive : run.built->model.drives) {
-      if (drive.name != name || !load.has("force") || !drive.function) continue;
-      const std::vector<double>& force = load.numbers("force");
-      if (force[0] != 0) sample(name + ", horizontal", force[0], *drive.function);
-      if (force[1] != 0) sample(name + ", vertical", force[1], *drive.function);
-      break;
+    std::size_t at = next;
+    while (at < model.drives.size() && model.drives[at].name != name_of_load(load)) ++at;
+    if (at == model.drives.size()) continue;
+    next = at + 1;
+    const Vector& pattern = model.assembly.loads[at];
+    for (int axis = 0; axis < model.space.dimension; ++axis) {
+      double sum = 0;
+      for (Index i = axis; i < pattern.size(); i += model.space.unknowns()) sum += pattern[i];
+      if (std::abs(sum) > 1e-12 * pattern.lpNorm<1>())
+        sample(fmt::format("{}, {}", name_of_load(load), along(axis)), sum, *model.drives[at].function);
     }
   }
   return chart;
@@ -315,7 +324,7 @@ void write_charts(JsonWriter& json, const ReportInput& input) {
     other = "all others";
   }
   json.begin_array();
-  if (!dynamic_stage(built.plan)) {  // one instant: nothing over time
+  if (statics_alone(built.plan)) {  // one instant: nothing over time
     for (const Chart& chart : rest_charts(input.runs.front())) write_chart(json, *input.read, chart);
     write_chart(json, *input.read, law_chart(input.runs.front()));
     json.end_array();

@@ -111,13 +111,32 @@ void write_bodies(JsonWriter& json, const Case& read, const Built& built) {
 
 void write_supports(JsonWriter& json, const Drawn& drawn, const Case& read, const Built& built) {
   const auto write = [&](const std::string& node, const Values& support) {
-    json.begin_object().member("node", node).key("dofs").texts(support.texts("fixed")).end_object();
+    json.begin_object().member("node", node).key("dofs").texts(support.texts("fixed"));
+    if (support.text("stages") == "static") json.member("staticsOnly", true);
+    json.end_object();
   };
   json.key("supports").begin_array();
   for (const Values& support : read.values.tables("support")) {
     if (support.has("node")) write(support.text("node"), support);
     if (support.has("group"))
       for (const int node : drawn_of_group(drawn, read, support.text("group"), 8)) write(name_of_mesh_node(drawn, built, node), support);
+  }
+  json.end_array();
+}
+
+/// Absorbing faces as segments between the ends of their edges.
+void write_absorbing(JsonWriter& json, const Case& read) {
+  json.key("absorbing").begin_array();
+  for (const Values& face : read.values.tables("absorbing")) {
+    const Mesh& mesh = read.mesh->mesh;
+    json.begin_object().member("group", face.text("group")).member("freeField", face.flag("free_field"));
+    json.member("incident", face.has("incident")).key("edges").begin_array();
+    for (const CellId cell : mesh.groups.at(face.text("group")).cells) {
+      const auto ends = mesh.cell(cell);
+      const Vec3 &from = mesh.nodes[static_cast<std::size_t>(ends[0])], &to = mesh.nodes[static_cast<std::size_t>(ends[1])];
+      json.numbers(std::array<double, 4>{from.x(), from.y(), to.x(), to.y()});
+    }
+    json.end_array().end_object();
   }
   json.end_array();
 }
@@ -132,7 +151,7 @@ void write_loads(JsonWriter& json, const Drawn& drawn, const Case& read, const B
       if (const std::vector<int> nodes = drawn_of_group(drawn, read, load.text("group"), 1000); !nodes.empty())
         node = name_of_mesh_node(drawn, built, nodes[nodes.size() / 2]);
     json.begin_object().member("node", node).member("fx", load.numbers(key)[0]).member("fy", load.numbers(key)[1]);
-    json.member("label", load.has("name") ? load.text("name") : "load").end_object();
+    json.member("label", name_of_load(load)).end_object();
   }
   json.end_array();
 }
@@ -219,6 +238,7 @@ void write_model(JsonWriter& json, const Case& read, const Built& built) {
   write_bodies(json, read, built);
   write_small_parts(json, read, built);
   write_supports(json, drawn, read, built);
+  write_absorbing(json, read);
   if (read.mesh) write_outline(json, drawn, read, built);
   json.key("interfaces");
   write_interfaces(json, drawn, read, built);

@@ -153,7 +153,7 @@ void write_small_parts(JsonWriter& json, const Case& read, const Built& built, c
     }
     if (!std::ranges::binary_search(drawn.nodes, node)) continue;
     json.begin_object().member("node", drawn.number(node)).key("force").numbers(load.numbers(key));
-    json.member("label", load.has("name") ? load.text("name") : "load").end_object();
+    json.member("label", name_of_load(load)).end_object();
   }
   json.end_array();
 }
