@@ -14,6 +14,7 @@ function complete_model(model: Partial<Model> | null | undefined): Model | null 
     bodies: model.bodies ?? [],
     masses: model.masses ?? [],
     supports: model.supports ?? [],
+    absorbing: model.absorbing ?? [],
     springs: model.springs ?? [],
     interfaces: model.interfaces ?? [],
     loads: model.loads ?? [],

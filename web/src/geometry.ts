@@ -91,6 +91,8 @@ export function model_box(model: Model): Box {
 /** Metres to picture units, y upwards. */
 export class Map2 {
   readonly scale: number;
+  /** Of the picture's box. */
+  readonly middle: Point;
   private readonly x0_: number;
   private readonly y0_: number;
 
@@ -100,6 +102,7 @@ export class Map2 {
     this.scale = Math.min(w / (box.xmax - box.xmin || 1), t / (box.ymax - box.ymin || 1));
     this.x0_ = margin.left + w / 2 - (this.scale * (box.xmin + box.xmax)) / 2;
     this.y0_ = margin.top + t / 2 + (this.scale * (box.ymin + box.ymax)) / 2;
+    this.middle = [margin.left + w / 2, margin.top + t / 2];
   }
 
   at(x: number, y: number): Point {

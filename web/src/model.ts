@@ -8,6 +8,7 @@ import type { Interface, InterfacePoint, Model, ModelNode, Support } from "./typ
 const WIDTH = 440;
 const HEIGHT = 390;
 const NORMAL = 18;
+const ABSORBER = 26;
 const MAX_NAMED_NODES = 40;
 
 /** 52 000 kg as "52 t". */
@@ -39,6 +40,7 @@ class Drawing {
     this.bodies();
     this.beams();
     this.springs();
+    this.absorbing();
     this.supports();
     this.masses();
     this.interfaces();
@@ -116,8 +118,42 @@ class Drawing {
     for (const item of this.model_.supports) {
       const at = this.support_place(item);
       if (!at) continue;
-      this.svg.append(titled(support(at, item.dofs), `support at ${item.node}: ${item.dofs.join(", ")} blocked`));
+      const symbol = support(at, item.dofs);
+      // On the right side of a mesh the symbol stands outside, too.
+      const right = this.model_.outlines.length > 0 && at[0] > this.map_.middle[0] + 1 && !item.dofs.includes("uy");
+      if (right) symbol.setAttribute("transform", `translate(${px(2 * at[0])} 0) scale(-1 1)`);
+      if (item.staticsOnly) symbol.classList.add("statics-only");
+      const when = item.staticsOnly ? " in static stages alone" : "";
+      this.svg.append(titled(symbol, `support at ${item.node}: ${item.dofs.join(", ")} blocked${when}`));
       this.labels_.block(at, 14);
+    }
+  }
+
+  // Dashpots at equal distances along the faces, out of the model; an arrow where a wave comes in.
+  private absorbing(): void {
+    const middle = this.map_.middle;
+    for (const face of this.model_.absorbing) {
+      const edges = face.edges.map(([x1, y1, x2, y2]) => [this.map_.at(x1, y1), this.map_.at(x2, y2)] as [Point, Point]);
+      const group = s("g", { class: "absorbing" }, s("path", { class: "face-line", d: edges.map((edge) => path_of(edge)).join("") }));
+      const length = edges.reduce((sum, [a, b]) => sum + Math.hypot(b[0] - a[0], b[1] - a[1]), 0);
+      const every = length / Math.max(2, Math.min(8, Math.round(length / 40)));
+      let next = every / 2;
+      let done = 0;
+      for (const [a, b] of edges) {
+        const size = Math.hypot(b[0] - a[0], b[1] - a[1]);
+        for (; size > 0 && next <= done + size; next += every) {
+          const share = (next - done) / size;
+          const at: Point = [a[0] + share * (b[0] - a[0]), a[1] + share * (b[1] - a[1])];
+          const out: Point = [-(b[1] - a[1]) / size, (b[0] - a[0]) / size];
+          const side = (at[0] - middle[0]) * out[0] + (at[1] - middle[1]) * out[1] < 0 ? -1 : 1;
+          const end: Point = [at[0] + side * out[0] * ABSORBER, at[1] + side * out[1] * ABSORBER];
+          group.append(spring(at, end, "dashpot"));
+          this.labels_.block_line(at, end);
+        }
+        done += size;
+      }
+      const says = [`absorbing face ${face.group}`, face.freeField ? "follows level ground" : "", face.incident ? "a wave comes in" : ""];
+      this.svg.append(titled(group, says.filter((text) => text !== "").join("; ")));
     }
   }
 
@@ -222,6 +258,13 @@ function legend(model: Model): HTMLElement {
     model.masses.length > 0 ? legend_item(s("circle", { class: "mass", cx: 15, cy: 11, r: 7 }), "mass") : null,
     model.springs.some((i) => i.kind === "spring") ? legend_item(spring([2, 11], [28, 11], "spring"), "spring") : null,
     model.springs.some((i) => i.kind === "dashpot") ? legend_item(spring([2, 11], [28, 11], "dashpot"), "dashpot") : null,
+    model.absorbing.length > 0
+      ? legend_item(s("g", { class: "absorbing" }, s("path", { class: "face-line", d: "M3 3V19" }), spring([3, 11], [28, 11], "dashpot")),
+        `absorbing face${model.absorbing.some((face) => face.incident) ? `; a wave comes in through ${model.absorbing.filter((face) => face.incident).map((face) => face.group).join(", ")}` : ""}`)
+      : null,
+    model.supports.some((item) => item.staticsOnly)
+      ? legend_item(s("g", { class: "support statics-only" }, s("path", { d: "M15 3L7 17H23Z" })), "support of the static stages alone")
+      : null,
     model.loads.length > 0 ? legend_item(arrow([3, 11], [27, 11], 8, "load"), "load") : null,
   ];
   if (model.interfaces.length > 0) {

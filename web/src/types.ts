@@ -186,6 +186,19 @@ export interface Mass {
 export interface Support {
   node: string;
   dofs: string[];
+  /** Holds in static stages alone. */
+  staticsOnly?: boolean;
+}
+
+/** Faces of the mesh through which waves leave. */
+export interface Absorbing {
+  group: string;
+  /** Follows a column of level ground. */
+  freeField: boolean;
+  /** A wave comes in here. */
+  incident: boolean;
+  /** [x1, y1, x2, y2] of every edge, metres. */
+  edges: [number, number, number, number][];
 }
 
 export interface Spring {
@@ -226,6 +239,7 @@ export interface Model {
   bodies: Body[];
   masses: Mass[];
   supports: Support[];
+  absorbing: Absorbing[];
   springs: Spring[];
   interfaces: Interface[];
   loads: Load[];
