@@ -136,16 +136,11 @@ Chart safety_chart(const char* id, const char* title, const char* caption, BaseH
   return chart;
 }
 
-/// The page has one sign for both ends of the small-displacement model; the headline says which.
-std::string_view page_level(Verdict::Level level) {
-  return to_string(level == Verdict::Level::separated ? Verdict::Level::overturned : level);
-}
-
 }  // namespace
 
 void write_verdict(JsonWriter& json, const ReportInput& input) {
   const Verdict& verdict = *input.verdict;
-  json.begin_object().member("level", page_level(verdict.level)).member("headline", verdict.headline);
+  json.begin_object().member("level", to_string(verdict.level)).member("headline", verdict.headline);
   json.member("consequence", verdict.consequence);
   json.key("facts").begin_array();
   for (const Verdict::Fact& fact : verdict.facts)
