@@ -123,6 +123,7 @@ void bring_forward(const Loaded& loaded, const Options& options, std::size_t pla
     results.built[i] = build(loaded.read, results.specs[i]);
     RunResult again = run_one(results.built[i], fmt::format("[again, for its pictures] {}", results.specs[i].name), options);
     if (again.status != RunStatus::interrupted) results.runs[i] = std::move(again);
+    forget_matrices(results.built[i]);
   }
 }
 
