@@ -126,6 +126,13 @@ void try_steps(Findings& found, const Built& built) {
   found.systems = trial.counts.systems;
 }
 
+/// What the pictures of all runs of `uplift run` take until the report is written.
+double pictures_bytes(const Case& read, const Built& built) {
+  double numbers = built.model.full_unknowns();
+  for (const Interface& interface : built.model.interfaces) numbers += 2 * interface.rows();
+  return 8 * numbers * built.plan.frames * static_cast<double>(runs_of_case(read).size());
+}
+
 Findings find(const Case& read, const RunSpec& spec, const Built& built) {
   Findings found;
   look_at_mesh(read, found);
@@ -135,7 +142,7 @@ Findings find(const Case& read, const RunSpec& spec, const Built& built) {
   if (unknowns > small_model) {
     BulkUse use;
     use.impacts = built.plan.method->constrains();
-    use.record_bytes = found.record_bytes;
+    use.record_bytes = found.record_bytes + pictures_bytes(read, built);
     found.bulk = predict_bulk(built.model, *built.plan.solver, use);
     if (!found.bulk->refusal.empty()) {
       found.trial_failure = found.bulk->refusal;
@@ -199,14 +206,14 @@ void print(const Loaded& loaded, const Built& built, const Findings& found, cons
            fmt::format("{} (twenty a period of the bonded modes below 50 Hz)", spoken(found.suggested_step, "s")));
   }
   if (found.seconds_per_step > 0)
-    line("cost", fmt::format("about {:.2f} microseconds a step, {} a run", 1e6 * found.seconds_per_step,
+    line("cost", fmt::format("about {} a step, {} a run", spoken(found.seconds_per_step, "s"),
                              spoken(found.seconds_per_step * static_cast<double>(found.steps), "s")));
   if (found.systems.factored + found.systems.iterated > 0)
     line("interface solver",
          fmt::format("{}; in the first steps {} systems with a new factor, {} by conjugate residuals (one factor kept, or none)",
                      loaded.read.values.text("interface_solver"), found.systems.factored, found.systems.iterated));
   if (found.bulk)
-    line("memory", fmt::format("about {} at most, {} of it the factor of a step; {} are free", spoken_bytes(found.bulk->bytes),
+    line("memory", fmt::format("about {}, {} of it the factor of a step; {} are free", spoken_bytes(found.bulk->bytes),
                                spoken_bytes(found.bulk->step.bytes), spoken_bytes(found.bulk->available)));
   if (found.record_bytes > 0)
     line("floor spectra", fmt::format("{} at every step: {} a run",

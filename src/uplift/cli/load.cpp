@@ -70,7 +70,7 @@ void forget_matrices(Built& built) {
   Model& model = built.model;
   for (Sparse* matrix :
        {&model.stiffness, &model.mass, &model.damping, &model.assembly.stiffness, &model.assembly.mass, &model.assembly.damping})
-    *matrix = Sparse();
+    Sparse().swap(*matrix);  // an assignment would keep the memory
   built.plan.rest.reset();
 }
 

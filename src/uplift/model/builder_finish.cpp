@@ -32,10 +32,23 @@ Sparse from(int unknowns, const std::vector<Triplet>& entries) {
   return matrix;
 }
 
+/// Diagonal of |T|^T |A| |T|.
+Vector sizes(const Sparse& t, const Sparse& a) {
+  Vector size = Vector::Zero(t.cols()), weight = Vector::Zero(t.rows());  // weight: |column of T|
+  for (Index j = 0; j < t.cols(); ++j) {
+    for (Sparse::InnerIterator row(t, j); row; ++row) weight[row.row()] = std::abs(row.value());
+    for (Sparse::InnerIterator row(t, j); row; ++row)
+      for (Sparse::InnerIterator entry(a, row.row()); entry; ++entry)
+        size[j] += std::abs(entry.value()) * weight[entry.row()] * std::abs(row.value());
+    for (Sparse::InnerIterator row(t, j); row; ++row) weight[row.row()] = 0;
+  }
+  return size;
+}
+
 /// T^T A T. Entries that are only round-off of a cancellation become true zeros, so that «massless» and «without stiffness» are facts.
 Sparse reduced(const Sparse& t, const Sparse& a) {
   Sparse result = t.transpose() * a * t;
-  const Vector size = (t.cwiseAbs().transpose() * a.cwiseAbs() * t.cwiseAbs()).eval().diagonal();
+  const Vector size = sizes(t, a);
   Vector diagonal = result.diagonal();
   for (Index i = 0; i < diagonal.size(); ++i)
     if (std::abs(diagonal[i]) <= 1e-12 * size[i]) diagonal[i] = 0;
