@@ -169,11 +169,32 @@ TEST_F(Folder, LeavesNothingWhenItIsNotFinished) {
 TEST_F(Folder, MovesEarlierResultsAside) {
   for (const std::string& expected : {std::string(), path("r.1"), path("r.2")}) {
     ResultFolder folder(path("r"));
-    folder.write("a.txt", expected);
+    folder.write("summary.json", expected);
     EXPECT_EQ(folder.finish(), expected);
   }
-  EXPECT_EQ(read_file(path("r.1/a.txt")), "");
-  EXPECT_EQ(read_file(path("r.2/a.txt")), path("r.1"));
+  EXPECT_EQ(read_file(path("r.1/summary.json")), "");
+  EXPECT_EQ(read_file(path("r.2/summary.json")), path("r.1"));
+}
+
+TEST_F(Folder, MovesNothingThatIsNotResults) {
+  std::filesystem::create_directories(root_ / "tower");
+  write_file_atomically(path("tower/case.toml"), "title = \"mine\"");
+  const auto refusal = [this](const char* name) -> std::string {
+    try {
+      ResultFolder folder(path(name));
+    } catch (const InputError& error) {
+      return error.what();
+    }
+    return "accepted";
+  };
+  EXPECT_EQ(refusal("tower"), path("tower") +
+                                  ": wanted a new folder for the results, or one with earlier results, found a folder with something else "
+                                  "in it (it has no summary.json)");
+  EXPECT_EQ(refusal("tower/case.toml"), path("tower/case.toml") + ": wanted a folder for the results, found a file");
+  std::filesystem::create_directories(root_ / "empty");
+  ResultFolder folder(path("empty"));
+  EXPECT_EQ(folder.finish(), "");
+  EXPECT_TRUE(std::filesystem::exists(root_ / "tower/case.toml"));
 }
 
 TEST_F(Folder, RefusesAPlaceThatCannotBeMade) {

@@ -25,10 +25,21 @@ using File = std::unique_ptr<std::FILE, Closer>;
   throw InputError({path, 0}, "", wanted, why);
 }
 
+/// What stands in the way is moved aside only when it holds results: a case, or a home, is not ours to move.
+void check_place(const std::string& path) {
+  std::error_code error;
+  if (!fs::exists(path, error)) return;
+  if (!fs::is_directory(path, error)) refuse(path, "a folder for the results", "a file");
+  if (!fs::is_empty(path, error) && !fs::exists(fs::path(path) / "summary.json", error))
+    refuse(path, "a new folder for the results, or one with earlier results",
+           "a folder with something else in it (it has no summary.json)");
+}
+
 }  // namespace
 
 ResultFolder::ResultFolder(std::string path) : path_(fs::path(path).lexically_normal().string()) {
   if (path_.size() > 1 && path_.back() == '/') path_.pop_back();
+  check_place(path_);
   work_ = fmt::format("{}.part-{}", path_, getpid());
   std::error_code error;
   fs::remove_all(work_, error);
@@ -58,6 +69,7 @@ std::string ResultFolder::place(const std::string& name) const {
 std::string ResultFolder::finish() {
   std::string moved;
   std::error_code error;
+  if (fs::is_directory(path_, error) && fs::is_empty(path_, error)) fs::remove(path_, error);
   if (fs::exists(path_, error)) {
     int number = 1;
     while (fs::exists(fmt::format("{}.{}", path_, number), error)) ++number;
