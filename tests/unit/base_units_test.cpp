@@ -137,6 +137,8 @@ TEST(Units, NamesAUnitThatWasPerhapsMeant) {
 TEST(Units, GravityIsNotTheGram) {
   EXPECT_EQ(si("1 g_n", "m/s2"), 9.80665);
   EXPECT_NEAR(si("2 kN/g_n", "kg"), 2000 / 9.80665, 1e-12);
+  EXPECT_EQ(why_not("40 tons", "kg"), "\"40 tons\" (a ton is 907, 1000 or 1016 kg; t is 1000 kg)");
+  EXPECT_EQ(why_not("2 ton/m3", "kg/m3"), "\"2 ton/m3\" (a ton is 907, 1000 or 1016 kg; t is 1000 kg)");
   EXPECT_EQ(why_not("0.3 g", "m/s2"), "\"0.3 g\" (g is the gram; standard gravity is g_n)");
   EXPECT_EQ(why_not("0.3 g0", "m/s2"), "\"0.3 g0\" (g0 is the gram to the power 0; standard gravity is g_n)");
   EXPECT_EQ(why_not("0.3 g0", "1"), "\"0.3 g0\" (g0 is the gram to the power 0; standard gravity is g_n)");

@@ -303,8 +303,20 @@ std::string nearest_unit(std::string_view unit) {
   return nearest_name(unit, words);
 }
 
+/// To UDUNITS a ton is the American one of 907 kg, which hardly anybody means here.
+bool has_ton(std::string_view unit) {
+  for (std::size_t i = 0; i < unit.size(); ++i) {
+    const std::size_t begin = i;
+    while (i < unit.size() && (is_letter(unit[i]) || unit[i] == '_')) ++i;
+    const std::string_view word = unit.substr(begin, i - begin);
+    if (word == "ton" || word == "tons") return true;
+  }
+  return false;
+}
+
 /// Conversion by UDUNITS; `number` [unit] was read from `text`.
 Quantity convert(std::string_view text, double number, std::string_view unit, std::string_view wanted_unit) {
+  if (has_ton(unit)) return refused(text, "a ton is 907, 1000 or 1016 kg; t is 1000 kg", "t");
   const UnitSystem& system = unit_system();
   if (!system.ready()) return refused(text, "the data base of UDUNITS-2 is missing: install libudunits2-data");
   const std::lock_guard lock(system.guard());
