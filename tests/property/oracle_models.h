@@ -189,7 +189,7 @@ inline Whole make(const Bridge& data) {
       const int i = first ? k : data.elements - 2 + k;
       side.push_back({nodes[static_cast<std::size_t>(i)], place(i)});
     }
-    spec.points = pair_points(side, {}, Vec2::UnitY(), 0.09, 0, here);
+    spec.points = pair_points(side, {}, Vec2::UnitY(), 0.09, 0, Space{2}, here);
     behave(first ? data.left : data.right, spec, whole);
     builder.add_interface(std::move(spec), here);
   }
@@ -228,7 +228,7 @@ inline Whole make(const Leaves& data) {
   }
   InterfaceSpec spec;
   spec.name = "leaf";
-  spec.points = pair_points(above, below, Vec2::UnitY(), 0.1, 0, here);
+  spec.points = pair_points(above, below, Vec2::UnitY(), 0.1, 0, Space{2}, here);
   behave(data.behaviour, spec, whole);
   builder.add_interface(std::move(spec), here);
   whole.model = builder.finish();

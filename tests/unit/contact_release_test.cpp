@@ -81,7 +81,7 @@ RunResult by_program(double k, double m, double step, const std::string& name) {
   builder.add_load("lift", {{3 * top + 1, lift}}, whole::function({"half_sine", {{"duration", pulse}}}), false, whole::here);
   InterfaceSpec spec;
   spec.name = "base";
-  spec.points = pair_points({{top, Vec2::Zero()}}, {{ground, Vec2::Zero()}}, Vec2::UnitY(), 1, 0, whole::here);
+  spec.points = pair_points({{top, Vec2::Zero()}}, {{ground, Vec2::Zero()}}, Vec2::UnitY(), 1, 0, Space{2}, whole::here);
   whole::behave({"unilateral"}, spec, whole);
   builder.add_interface(std::move(spec), whole::here);
   whole.model = builder.finish();

@@ -105,17 +105,27 @@ TEST(Joint, RefusesWhatMakesNoSense) {
             "case.toml:7: interface.width: wanted a width > 0 m, found -3");
   const SideNode a{0, {0, 0}}, b{1, {0, 1}}, c{2, {1, 0}}, d{3, {1, 1}};
   EXPECT_EQ(message([&] {
-              pair_points({b}, {a, c}, {0, 1}, 1, 0, here);
+              pair_points({b}, {a, c}, {0, 1}, 1, 0, Space{2}, here);
             }),
             "case.toml:7: interface.lower: wanted as many nodes as the upper side (1), found 2");
   EXPECT_EQ(message([&] {
-              pair_points({b}, {a}, {0, -1}, 1, 0, here);
+              pair_points({b}, {a}, {0, -1}, 1, 0, Space{2}, here);
             }),
             "case.toml:7: interface.normal: wanted a normal from the lower to the upper side, found an interface inside out: the upper "
             "node at (0, 1) m lies on "
             "the lower side of its partner at (0, 0) m");
-  EXPECT_EQ(message([&] { pair_points({b}, {a}, {0, 1}, 1, 0, here); }), "");
-  EXPECT_EQ(message([&] { pair_points({b}, {a}, {0, 1}, 0, 0, here); }), "case.toml:7: interface.area: wanted an area > 0 m2, found 0");
+  EXPECT_EQ(message([&] { pair_points({b}, {a}, {0, 1}, 1, 0, Space{2}, here); }), "");
+  // in space a place has three numbers, on the ground plane z = 0 too
+  EXPECT_EQ(message([&] {
+              pair_points({b}, {a}, {0, -1, 0}, 1, 0, Space{3}, here);
+            }),
+            "case.toml:7: interface.normal: wanted a normal from the lower to the upper side, found an interface inside out: the upper "
+            "node at (0, 1, 0) m lies on "
+            "the lower side of its partner at (0, 0, 0) m");
+  EXPECT_EQ(message([&] {
+              pair_points({b}, {a}, {0, 1}, 0, 0, Space{2}, here);
+            }),
+            "case.toml:7: interface.area: wanted an area > 0 m2, found 0");
   EXPECT_EQ(message([&] { line_points({.upper = {b, d}, .lower = {a, c}}, here); }), "");
   EXPECT_NE(message([&] { line_points({.upper = {d, b}, .lower = {c, a}}, here); }).find("inside out"), std::string::npos);
   EXPECT_EQ(message([&] {

@@ -30,7 +30,7 @@ TEST(Interfaces, PrescribedGroundMotionOpensTheJoint) {
   builder.add_element(std::make_unique<PointMass>(0, 5.0), here);
   for (const Dof dof : {ux, rz}) builder.fix(1, dof, here);
   builder.prescribe(1, uy, std::make_shared<support::Parabola>(), "ground", here);
-  auto points = pair_points({{0, {0, 1}}}, {{1, {0, 0}}}, {0, 1}, 2.0, 1e-3, here);
+  auto points = pair_points({{0, {0, 1}}}, {{1, {0, 0}}}, {0, 1}, 2.0, 1e-3, Space{2}, here);
   builder.add_interface(support::linear_interface("joint", points, {1e6}), here);
   const Model model = builder.finish();
   Vector opening = model.interfaces[0].b * Vector::Constant(model.free(), 0.0) + model.interfaces[0].gap;
@@ -76,7 +76,8 @@ TEST(Interfaces, InsideOutIsRefused) {
     support::add_beam(builder, 0, 1, {0, -4}, {0, 0}, support::general(1e6, 1e8));
     support::add_beam(builder, 2, 3, {0, 0}, {0, 3}, support::general(1e6, 1e8));
     const SideNode soil{1, {0, 0}}, foot{2, {0, 0}};
-    auto points = exchanged ? pair_points({soil}, {foot}, {0, 1}, 1, 0, here) : pair_points({foot}, {soil}, {0, 1}, 1, 0, here);
+    auto points =
+        exchanged ? pair_points({soil}, {foot}, {0, 1}, 1, 0, Space{2}, here) : pair_points({foot}, {soil}, {0, 1}, 1, 0, Space{2}, here);
     builder.add_interface(support::linear_interface("joint", points, {1e7}), here);
     builder.finish();
   };

@@ -118,7 +118,7 @@ Joint make_joint(const Values& interface, const std::vector<FacePair>& open, boo
   if (footing) joint = footing_joint(interface, *footing, rigid_ground, builder, names);
   if (pairs)
     joint.points = pair_points(side(*pairs, "upper", names), side(*pairs, "lower", names), normal_of(*pairs, names.space),
-                               pairs->number("area"), interface.number("gap"), pairs->where());
+                               pairs->number("area"), interface.number("gap"), names.space, pairs->where());
   if (line) {
     if (names.space.dimension == 3) fail(*line, "", "footing, pairs or surface in a model in space", "line");
     LineJoint made{side(*line, "upper", names),        side(*line, "lower", names),

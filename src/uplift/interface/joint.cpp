@@ -10,9 +10,8 @@ namespace uplift {
 
 namespace {
 
-void refuse_exchanged_sides(const Vec3& upper, const Vec3& lower, const Vec3& normal, const Where& where) {
+void refuse_exchanged_sides(const Vec3& upper, const Vec3& lower, const Vec3& normal, Space space, const Where& where) {
   const Vec3 apart = upper - lower;
-  const Space space{upper.z() == 0 && lower.z() == 0 ? 2 : 3};
   // the initial gap is never taken from the coordinates, so only a clear distance counts
   if (apart.dot(normal) < -1e-9 * (1 + upper.norm() + lower.norm()))
     throw InputError(where, "interface.normal", "a normal from the lower to the upper side",
@@ -115,7 +114,7 @@ std::vector<Place> footing_corners(const Footing& footing) {
 }
 
 std::vector<JointPoint> pair_points(const std::vector<SideNode>& upper, const std::vector<SideNode>& lower, const Place& normal,
-                                    double area, double gap, const Where& where) {
+                                    double area, double gap, Space space, const Where& where) {
   check_partners(upper.size(), lower.size(), where);
   if (!(area > 0)) throw InputError(where, "interface.area", "an area > 0 m2", fmt::format("{:g}", area));
   const Vec3 n = unit(normal, where);
@@ -128,7 +127,7 @@ std::vector<JointPoint> pair_points(const std::vector<SideNode>& upper, const st
     point.gap = gap;
     point.upper = {{upper[i].node, 1.0}};
     if (!lower.empty()) {
-      refuse_exchanged_sides(upper[i].position, lower[i].position, n, where);
+      refuse_exchanged_sides(upper[i].position, lower[i].position, n, space, where);
       point.lower = {{lower[i].node, 1.0}};
     }
     points.push_back(std::move(point));
@@ -152,7 +151,7 @@ std::vector<JointPoint> line_points(const LineJoint& joint, const Where& where) 
     for (std::size_t k = 0; k < per; ++k) {
       JointPoint point = element_point(joint, first, rule.point[static_cast<Index>(k)], rule.weight[static_cast<Index>(k)], where);
       if (!joint.lower.empty())
-        refuse_exchanged_sides(joint.upper[first + k].position, joint.lower[first + k].position, point.normal, where);
+        refuse_exchanged_sides(joint.upper[first + k].position, joint.lower[first + k].position, point.normal, Space{2}, where);
       const bool shared = nodal && k == 0 && !points.empty() && (points.back().normal - point.normal).norm() < 1e-9;
       if (shared)
         points.back().area += point.area;

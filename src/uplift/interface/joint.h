@@ -3,6 +3,7 @@
 #include <vector>
 
 #include "uplift/base/error.h"
+#include "uplift/elements/space.h"
 #include "uplift/math/linalg.h"
 
 // Zero-thickness joints as lists of points (Goodman's joint; Cherubini, Richard & Frau, eqs 9-14): every point has an area and sees
@@ -53,18 +54,19 @@ struct SideNode {
   Place position;
 };
 
-/// Isolated node pairs (eq 13, point joints), each with the same tributary area; `lower` empty: fixed ground below each node.
+/// Isolated node pairs (eq 13, point joints), each with the same tributary area; `lower` empty: fixed ground below each node. `space`: of
+/// the model, for messages.
 /// Throws InputError when the sides have different numbers of nodes or an upper node lies on the wrong side of its lower one.
 std::vector<JointPoint> pair_points(const std::vector<SideNode>& upper, const std::vector<SideNode>& lower, const Place& normal,
-                                    double area, double gap, const Where& where);
+                                    double area, double gap, Space space, const Where& where);
 
 enum class LineQuadrature {
   nodal,  // Lobatto: points at the node pairs, diagonal matrices, no traction oscillation for stiff joints
   gauss   // as many Gauss points as node pairs
 };
 
-/// Line joint elements through node pairs that are listed in order along the line: the upper side lies to the left of the walking
-/// direction, so that n is the direction turned by +90 degrees. Neighbouring elements share their end pair.
+/// In the plane: line joint elements through node pairs that are listed in order along the line: the upper side lies to the left of the
+/// walking direction, so that n is the direction turned by +90 degrees. Neighbouring elements share their end pair.
 struct LineJoint {
   std::vector<SideNode> upper, lower;  // lower empty: fixed ground
   int nodes_per_element = 2;           // or 3 (end, middle, end)
