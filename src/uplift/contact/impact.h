@@ -12,7 +12,7 @@ namespace uplift {
 
 /// What an impact rule may know of the step just solved. Rows are interface rows; compression is negative.
 struct Impact {
-  const Spread* mass = nullptr;     // of M (massless unknowns left out)
+  const Spread* mass = nullptr;     // of M; all that the rows touch has mass (check_dynamic)
   const Spread* dynamic = nullptr;  // of K + 4M/dt^2 (eq 5); only for rules that ask for it
   const Matrix* b = nullptr;        // dense B, rows x free (null when large), or
   const Sparse* sparse_b = nullptr;

@@ -188,6 +188,8 @@ std::vector<int> touched_unknowns(const Sparse& b) {
 
 Accelerator::Accelerator(const Model& model, const Bulk& bulk, const Sparse* b, const LinearSolver& solver, LinearCounts& counts)
     : bulk_(bulk) {
+  // A unit mass makes the factor regular and is taken out of every acceleration. Impulses would move it: a dynamic case whose interfaces
+  // touch a massless unknown is refused (check_dynamic), since its velocity after an impact is not defined.
   std::vector<Triplet> diagonal;
   for (int i = 0; i < bulk.unknowns; ++i)
     if (bulk.massless[static_cast<std::size_t>(i)] != 0) {
