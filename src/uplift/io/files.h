@@ -8,8 +8,8 @@ namespace uplift {
 /// before is moved to NAME.1, NAME.2, ...: results are never overwritten or mixed, and nothing else than results is moved.
 class ResultFolder {
  public:
-  /// Makes the working folder beside `path`. Throws InputError when that is impossible, and when `path` is a file or a folder with something
-  /// else than results (without a summary.json).
+  /// Makes the working folder beside `path`. Throws InputError when that is impossible, and when `path` is a file or a folder with
+  /// something else than results (without a summary.json).
   explicit ResultFolder(std::string path);
   ResultFolder(const ResultFolder&) = delete;
   ResultFolder& operator=(const ResultFolder&) = delete;
