@@ -13,8 +13,8 @@
 namespace uplift {
 namespace {
 
-/// One solve. R: number of coordinates where it is known beforehand (a rigid footing in the plane has up to three), so that what goes over
-/// them is unrolled; else 0.
+/// One solve. R: number of coordinates where it is known beforehand (a rigid footing has up to three in the plane, six in space), so that
+/// what goes over them is unrolled; else 0.
 template <int R>
 class Newton {
  public:
@@ -155,25 +155,23 @@ void Newton<R>::add_block(const Block& block, const double* slope) {
   add_general(block, slope);
 }
 
-/// The same where the slope couples the components.
+/// The same where the slope couples the components: k C_block column by column, and its products with every column.
 template <int R>
 void Newton<R>::add_general(const Block& block, const double* slope) {
-  const int n = block.batch.points, components = block.batch.components;
+  const int n = block.batch.points, components = block.batch.components, rows = block.rows();
+  double* pull = scratch_.pull.data();
   for (Index j = 0; j < r(); ++j) {
-    const double* column_j = column(j) + block.first;
-    scratch_.gradient[j] += small::dot(block.rows(), column_j, solution_.force.data() + block.first);
-    for (Index i = 0; i < r(); ++i) {
-      const double* column_i = column(i) + block.first;
-      double sum = 0;
-      for (int a = 0; a < components; ++a)
-        for (int b = 0; b < components; ++b) {
-          const double* k = slope + (a * components + b) * n;
-          const double *left = column_i + a * n, *right = column_j + b * n;
-#pragma omp simd reduction(+ : sum)
-          for (int p = 0; p < n; ++p) sum += left[p] * k[p] * right[p];
-        }
-      scratch_.hessian(i, j) += sum;
-    }
+    const double* right = column(j) + block.first;
+    scratch_.gradient[j] += small::dot(rows, right, solution_.force.data() + block.first);
+    std::fill_n(pull, rows, 0.0);
+    for (int a = 0; a < components; ++a)
+      for (int b = 0; b < components; ++b) {
+        const double *k = slope + (a * components + b) * n, *from = right + b * n;
+        double* to = pull + a * n;
+#pragma omp simd
+        for (int p = 0; p < n; ++p) to[p] += k[p] * from[p];
+      }
+    for (Index i = 0; i < r(); ++i) scratch_.hessian(i, j) += small::dot(rows, column(i) + block.first, pull);
   }
 }
 
@@ -337,6 +335,8 @@ Outcome solve_by_newton(const InterfaceProblem& problem, const AugmentedForce& a
       return Newton<2>(problem, augmented, options, solution).solve();
     case 3:
       return Newton<3>(problem, augmented, options, solution).solve();
+    case 6:
+      return Newton<6>(problem, augmented, options, solution).solve();
     default:
       return Newton<0>(problem, augmented, options, solution).solve();
   }

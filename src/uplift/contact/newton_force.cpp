@@ -45,6 +45,7 @@ void size_newton(const InterfaceProblem& problem, InterfaceSolution& solution) {
   scratch.origin.setZero(r);
   if (r <= few) scratch.hessian.setZero(r, r);
   scratch.end.setZero(rows);
+  scratch.pull.setZero(rows);
   solution.opening.setZero(rows);
   solution.force.setZero(rows);
   if (solution.z.size() != r) solution.z.setZero(r);
