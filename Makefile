@@ -46,7 +46,7 @@ tidy:              ## clang-tidy on what the project exists for: laws, interface
 	cmake --preset dev
 	git ls-files 'src/uplift/laws/*.cpp' 'src/uplift/interface/*.cpp' 'src/uplift/contact/*.cpp' 'src/uplift/dynamics/*.cpp' | tr '\n' '\0' | xargs -0 -n 4 -P 2 clang-tidy-14 -p build/dev --quiet --extra-arg=-Wno-unknown-warning-option
 
-asan:              ## the tests under AddressSanitizer and UndefinedBehaviorSanitizer
+asan:              ## the tests but the long ones and those of verification under AddressSanitizer and UndefinedBehaviorSanitizer
 	cmake --preset asan
 	cmake --build build/asan
 	ctest --test-dir build/asan --output-on-failure -j 2 -LE long
