@@ -74,7 +74,7 @@ struct Sdm {
   /// Average at fixed jump of a path without a bend: the traction of its middle.
   Average straight(double from, double to, double j) const {
     const bool closed = to < knot;
-    const double slope = !closed & (to < j) ? closing(j) : k, start = closed ? 0.0 : j;
+    const double slope = (!closed & (to < j)) ? closing(j) : k, start = closed ? 0.0 : j;
     return {slope * (0.5 * (from + to) - start), 0.5 * slope, slope * (to - start), slope};
   }
 
