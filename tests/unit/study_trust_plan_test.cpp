@@ -2,6 +2,7 @@
 
 #include <algorithm>
 
+#include "tower_case.h"
 #include "uplift/io/toml.h"
 #include "uplift/study/trust_plan.h"
 
@@ -10,27 +11,7 @@ namespace uplift {
 namespace {
 
 std::string tower(const std::string& law, const std::string& more = "") {
-  return "title = \"tower\"\n" + more + R"(
-[nodes]
-top = [0, "5 m"]
-base = [0, 0]
-[[beam]]
-name = "column"
-nodes = ["base", "top"]
-E = "20 GPa"
-I = "0.2 m4"
-[[mass]]
-node = "top"
-mass = 24000
-[[rigid]]
-name = "footing"
-node = "base"
-mass = 1e4
-inertia = 7500
-[[support]]
-node = "base"
-fixed = ["ux"]
-[[interface]]
+  return "title = \"tower\"\n" + more + support::tower_structure + R"([[interface]]
 name = "soil"
 law = )" +
          law +
@@ -39,8 +20,6 @@ law = )" +
 body = "base"
 width = 3
 points = 11
-[gravity]
-acceleration = [0, -9.81]
 [[stage]]
 type = "static"
 [[stage]]

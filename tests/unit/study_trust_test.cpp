@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "tower_case.h"
 #include "uplift/io/toml.h"
 #include "uplift/study/trust.h"
 
@@ -10,36 +11,13 @@ namespace uplift {
 namespace {
 
 /// A mass on a column that a push makes rock on tensionless springs.
-const std::string rocking = R"(
-title = "tower"
-[nodes]
-top = [0, 5]
-base = [0, 0]
-[[beam]]
-name = "column"
-nodes = ["base", "top"]
-E = "20 GPa"
-I = "0.2 m4"
-[[mass]]
-node = "top"
-mass = 24000
-[[rigid]]
-name = "footing"
-node = "base"
-mass = 1e4
-inertia = 7500
-[[support]]
-node = "base"
-fixed = ["ux"]
-[[interface]]
+const std::string rocking = std::string("title = \"tower\"\n") + support::tower_structure + R"([[interface]]
 name = "soil"
 law = { type = "springs", K_n = "200 MPa/m", tangential = "none" }
 [interface.footing]
 body = "base"
 width = 3
 points = 21
-[gravity]
-acceleration = [0, -9.81]
 [[function]]
 name = "pulse"
 shape = { type = "half_sine", duration = 0.2 }

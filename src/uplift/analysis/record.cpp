@@ -166,7 +166,6 @@ Recorder::Recorder(const Model& model, const RunPlan& plan, const State& state, 
 
 Recorder::Source Recorder::source_of(const Request& request, const SparseRows& reduction) const {
   using What = Request::Kind;
-  const Energies& energies = energies_;
   const InterfaceView* view = views_.data() + request.interface;
   const auto entry_of = [&](const Vector State::*vector) {  // of one free unknown, or made from several
     Source source{.vector = vector};
@@ -231,23 +230,23 @@ Recorder::Source Recorder::source_of(const Request& request, const SparseRows& r
     case What::max_pressure:
       return {.place = &view->max_pressure};
     case What::kinetic:
-      return {.place = &energies.kinetic};
+      return {.place = &energies_.kinetic};
     case What::strain:
-      return {.place = &energies.strain};
+      return {.place = &energies_.strain};
     case What::stored:
-      return {.place = &energies.stored};
+      return {.place = &energies_.stored};
     case What::interface_dissipated:
-      return {.place = &energies.interface_dissipated};
+      return {.place = &energies_.interface_dissipated};
     case What::damping:
-      return {.place = &energies.damping};
+      return {.place = &energies_.damping};
     case What::impact:
-      return {.place = &energies.impact};
+      return {.place = &energies_.impact};
     case What::external:
-      return {.place = &energies.external};
+      return {.place = &energies_.external};
     case What::residual:
-      return {.place = &energies.residual};
+      return {.place = &energies_.residual};
     case What::plastic:
-      return {.place = &energies.plastic};
+      return {.place = &energies_.plastic};
   }
   return {};
 }

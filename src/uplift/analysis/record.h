@@ -41,10 +41,6 @@ class Recorder {
   /// called; it keeps its place, as the state and the energies do. `stepper` says what the accelerations are; null: at rest.
   Recorder(const Model& model, const RunPlan& plan, const State& state, const Energies& energies, const Stepper* stepper,
            const std::vector<InterfaceView>& views, long steps, double step, RunResult& result);
-  /// Notes peaks every time; writes a row when `row` is set.
-  /// called; it keeps its place, as the energies of the stepper do.
-  Recorder(const Model& model, const RunPlan& plan, const Stepper& stepper, const std::vector<InterfaceView>& views, long steps,
-           double step, RunResult& result);
   /// Notes the numbers of every column; they become a row of the table when `row` is set. Peaks and rows are made for many steps at a time.
   void record(bool row);
   /// Peaks and rows of the last steps; nothing is recorded after it.

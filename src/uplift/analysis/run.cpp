@@ -7,7 +7,6 @@
 
 #include "uplift/analysis/probe.h"
 #include "uplift/analysis/runner.h"
-#include "uplift/analysis/verdict_standing.h"
 #include "uplift/dynamics/plastic_bulk.h"
 #include "uplift/dynamics/statics.h"
 #include "uplift/model/geometric.h"
@@ -34,6 +33,10 @@ const Stage* dynamic_stage(const RunPlan& plan) {
   for (const Stage& stage : plan.stages)
     if (stage.type == Stage::Type::dynamics) return &stage;
   return nullptr;
+}
+
+bool statics_alone(const RunPlan& plan) {
+  return !plan.stages.empty() && dynamic_stage(plan) == nullptr;
 }
 
 std::string RunResult::created_percent() const {

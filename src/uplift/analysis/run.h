@@ -108,6 +108,8 @@ struct RunPlan {
 
 /// The first dynamic stage of a plan, or null.
 const Stage* dynamic_stage(const RunPlan&);
+/// There are stages, and none of them is dynamic: how the structure stands at their end is the result.
+bool statics_alone(const RunPlan&);
 
 // ---- what came out ----
 

@@ -11,19 +11,18 @@ namespace {
 
 struct Said {
   const char *name, *label;
-  bool share;
 };
-constexpr Said numbers[] = {{"max_uplifted_ratio", "Uplifted area", true},
-                            {"max_opening", "Largest gap", false},
-                            {"max_toe_pressure", "Largest pressure", false},
-                            {"residual_settlement", "Settlement", false},
-                            {"residual_rotation", "Rotation", false},
-                            {"residual_slip", "Slip", false},
-                            {"max_compression", "Compression", false},
-                            {"max_shear", "Base shear", false},
-                            {"max_moment", "Base moment", false},
-                            {"max_eccentricity", "Eccentricity e/B", false},
-                            {"min_sliding_safety", "Safety against sliding", false}};
+constexpr Said numbers[] = {{"max_uplifted_ratio", "Uplifted area"},
+                            {"max_opening", "Largest gap"},
+                            {"max_toe_pressure", "Largest pressure"},
+                            {"residual_settlement", "Settlement"},
+                            {"residual_rotation", "Rotation"},
+                            {"residual_slip", "Slip"},
+                            {"max_compression", "Compression"},
+                            {"max_shear", "Base shear"},
+                            {"max_moment", "Base moment"},
+                            {"max_eccentricity", "Eccentricity e/B"},
+                            {"min_sliding_safety", "Safety against sliding"}};
 
 /// What is nothing but round-off beside what the base carries is not worth a line.
 bool counts(const InterfaceVerdict& said, const VerdictNumber& number) {
@@ -46,16 +45,12 @@ void say(const InterfaceVerdict& said, const std::string& of, Verdict& verdict) 
     if (number->quantity->name == "max_toe_pressure" && ratio)
       detail = fmt::format("{:.3g} times the mean {}", ratio->value, spoken(said.mean_pressure, "Pa"));
     if (number->quantity->name == "residual_settlement") detail = "mean of the base, from the unloaded structure";
-    if (each.share) detail = "counted by gap";
-    verdict.facts.push_back({each.label + of, each.share ? percent(number->value) : spoken(number->value, number->quantity->unit), detail});
+    if (number->quantity->name == "max_uplifted_ratio") detail = "counted by gap";
+    verdict.facts.push_back({each.label + of, uplift::said(*number->quantity, number->value), detail});
   }
 }
 
 }  // namespace
-
-bool statics_alone(const RunPlan& plan) {
-  return !plan.stages.empty() && dynamic_stage(plan) == nullptr;
-}
 
 Verdict judge_standing(const Built& built, const RunResult& run) {
   Verdict verdict;

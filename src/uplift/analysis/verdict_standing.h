@@ -3,9 +3,6 @@
 
 namespace uplift {
 
-/// There are stages, and none of them is dynamic: how the structure stands at their end is the result.
-bool statics_alone(const RunPlan&);
-
 /// What a run of static stages alone says: how the structure stands at their end. There is nothing over time, and no bonded run beside:
 /// what the base carries under the weight hardly depends on what it could carry in tension.
 Verdict judge_standing(const Built& built, const RunResult& run);

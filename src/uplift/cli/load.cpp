@@ -91,7 +91,7 @@ void write_results(const Options& options, const Loaded& loaded, const Results& 
                    ResultFolder& folder) {
   ReportInput input{&loaded.read, &loaded.from, &results.verdict, {}, compared, results.warnings, &results.floors, results.trust};
   // Beside the report, which takes as long: half of the time of a small run goes into its files.
-  std::future<void> histories = std::async([&] {
+  std::future<void> histories = std::async(std::launch::async, [&] {
     for (const RunResult& run : results.runs)
       if (compared || &run == &results.runs.front())
         folder.write(compared ? "histories/" + run.name + ".csv" : "histories.csv", histories_csv(run));

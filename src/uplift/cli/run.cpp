@@ -1,6 +1,5 @@
 #include <fmt/format.h>
 
-#include "uplift/analysis/verdict_standing.h"
 #include "uplift/analysis/wording.h"
 #include "uplift/base/file.h"
 #include "uplift/cli/console.h"

@@ -79,7 +79,7 @@ struct NewtonScratch {
   Vector gradient, direction, origin;
   Vector end;   // traction at the end of the step [Pa], path average only
   Vector next;  // as slope, for the step to come [Pa/m], path average only
-  Vector pull;  // slope times a column of the factor, rows of one block
+  Vector pull;  // rows: k times one column of C, of one block; in the units of slope times those of the factor
   Matrix hessian;
   bool follows = false;        // the next problem may be guessed from this solution: slope, end and hessian are those of a converged step
   KeptWork direction_of_many;  // more than twelve coordinates

@@ -2,7 +2,6 @@
 
 #include <fmt/format.h>
 
-#include "uplift/analysis/verdict_standing.h"
 #include "uplift/io/report_motions.h"
 
 namespace uplift {

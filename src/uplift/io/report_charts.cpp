@@ -4,7 +4,6 @@
 #include <cmath>
 
 #include "uplift/analysis/case_model.h"
-#include "uplift/analysis/verdict_standing.h"
 #include "uplift/io/histories.h"
 #include "uplift/io/report_motions.h"
 

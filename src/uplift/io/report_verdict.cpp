@@ -2,7 +2,6 @@
 #include <cmath>
 #include <utility>
 
-#include "uplift/analysis/verdict_standing.h"
 #include "uplift/io/report_parts.h"
 #include "uplift/io/verdict_json.h"
 
