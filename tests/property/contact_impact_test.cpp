@@ -44,14 +44,14 @@ struct RandomImpact {
     impact.b = &b;
     impact.force = &force;
     impact.velocity_weight = 1e-3;
-    v -= impact.velocity_weight * m.inverse() * b.transpose() * force;  // as the displacement solve leaves it
+    v -= impact.velocity_weight * inverse(m) * b.transpose() * force;  // as the displacement solve leaves it
   }
   double energy(const Vector& velocity) const { return 0.5 * velocity.dot(m * velocity); }
 };
 
 RC_GTEST_PROP(Impact, projection_is_optimal, ()) {
   RandomImpact setup(*rc::gen::arbitrary<unsigned>());
-  const Vector w = setup.v + setup.impact.velocity_weight * setup.m.inverse() * setup.b.transpose() * setup.force;
+  const Vector w = setup.v + setup.impact.velocity_weight * inverse(setup.m) * setup.b.transpose() * setup.force;
   Vector after = setup.v, acceleration = setup.v, impulse = Vector::Zero(setup.force.size());
   ImpactScratch scratch;
   rule("project")->apply(setup.impact, after, acceleration, impulse, scratch);

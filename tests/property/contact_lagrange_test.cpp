@@ -46,10 +46,12 @@ std::optional<Vector> brute_force(const Matrix& c, const Vector& target) {
     for (int i = 0; i < k; ++i) a.row(i) = c.row(rows[static_cast<std::size_t>(i)]), b[i] = -target[rows[static_cast<std::size_t>(i)]];
     Vector push(0), z = Vector::Zero(c.cols());
     if (k > 0) {
-      const Svd svd(a, 20);  // thin U and V
-      if (svd.singularValues()[k - 1] < 1e-9 * svd.singularValues()[0]) continue;
-      z = svd.solve(b);
-      push = Svd(a.transpose(), 20).solve(z);
+      CompleteQr qr;
+      qr->setThreshold(1e-9);
+      qr.compute(a);
+      if (qr->rank() < k) continue;
+      z = qr.solve(b);
+      push = CompleteQr(a.transpose()).solve(z);
       if (push.minCoeff() < -1e-9 * push.cwiseAbs().maxCoeff()) continue;
     }
     if ((target + c * z).minCoeff() > -1e-9 * size) return z;
@@ -113,7 +115,7 @@ RC_GTEST_PROP(Lagrange, redundant_forces_are_of_least_norm, ()) {
   own.add_cone("footing", n, 1, 0, base.area);
   // the free motion under the weight at x = offset: the footing stays flat on the ground when it is held
   const Vector load = (Vector(2) << -weight, -weight * offset).finished();
-  own.set(spread.factor, base.b * stiffness.inverse() * load);
+  own.set(spread.factor, base.b * inverse(stiffness) * load);
   InterfaceSolution solution;
   RC_ASSERT(method("lagrange")->solve(own.problem, solution).converged);
   RC_ASSERT(yardstick(own.problem, solution) <= 1e-10);
@@ -130,7 +132,7 @@ RC_GTEST_PROP(Lagrange, redundant_forces_are_of_least_norm, ()) {
       sum += base.area[static_cast<std::size_t>(i)] * field * base.b.row(i).transpose();
       slope += base.area[static_cast<std::size_t>(i)] * base.b.row(i).transpose() * base.b.row(i);
     }
-    const Vector step = slope.inverse() * (load - sum);
+    const Vector step = inverse(slope) * (load - sum);
     if (step.norm() <= 1e-15 * y.norm()) break;
     y += step;
   }
@@ -174,7 +176,7 @@ std::vector<Vector> brute_force_friction(const InterfaceProblem& problem, double
         right[j] = problem.free_opening[row] - (row < n ? problem.from[row] : 0);
       }
       const PartialLu lu(u * v.transpose());
-      if (lu.rcond() < 1e-12) continue;
+      if (lu->rcond() < 1e-12) continue;
       const Vector q = lu.solve(right);
       z = -v.transpose() * q;
       for (int j = 0; j < k; ++j) p[rows[static_cast<std::size_t>(j)]] = q[j];

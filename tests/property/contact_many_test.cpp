@@ -78,7 +78,7 @@ void fill(const Draw& draw, Own& own) {
       const double here = std::pow(draw.contrast, 0.25 * uniform(engine));
       for (int c = 0; c < 3; ++c) scale[c * n + i] = here;
     }
-    factor = scale.asDiagonal() * Matrix(Cholesky(compliance).matrixL());
+    factor = scale.asDiagonal() * Matrix(Cholesky(compliance)->matrixL());
   }
   factor *= 1e-4;
   const Vector shape = Vector::NullaryExpr(factor.cols(), [&] { return uniform(engine); });
@@ -194,7 +194,7 @@ TEST(PathAveragedFriction, newton_solves_every_step_of_moderate_stiffness) {
           const Matrix mix = Matrix::NullaryExpr(rows, rows, [&] { return uniform(engine) / std::sqrt(static_cast<double>(rows)); });
           Matrix compliance = mix * mix.transpose();  // of order 1
           compliance.diagonal().array() += 0.1;
-          own.set(Cholesky(compliance).matrixL(),
+          own.set(Matrix(Cholesky(compliance)->matrixL()),
                   Vector::NullaryExpr(rows, [&] { return uniform(engine) * std::pow(10, uniform(engine)); }));
           own.problem.from = Vector::NullaryExpr(rows, [&] { return 0.3 * uniform(engine); });
           own.problem.average = true;

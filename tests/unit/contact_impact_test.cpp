@@ -152,7 +152,7 @@ struct RockingBlock {
     Vector force = Vector::Zero(4);
     force[2] = -contained / impact.velocity_weight;
     impact.force = &force;
-    v -= impact.velocity_weight * m.inverse() * b.transpose() * force;
+    v -= impact.velocity_weight * inverse(m) * b.transpose() * force;
     Vector a = Vector::Zero(3), sum = Vector::Zero(4);
     ImpactScratch scratch;
     rule(name)->apply(impact, v, a, sum, scratch);

@@ -62,7 +62,7 @@ struct FlatFooting {
     stiffness(1, 1) = 3e9;
     if (components == 2) stiffness(0, 2) = stiffness(2, 0) = 0.5e9;
     own.add_cone("footing", points, components, friction, base.area);
-    own.set(spread_of(stiffness, b).factor, b * stiffness.inverse() * load);
+    own.set(spread_of(stiffness, b).factor, b * inverse(stiffness) * load);
   }
 };
 
@@ -205,7 +205,7 @@ Own resting_body(int points, double weight, double eccentricity, double horizont
   own.add_cone("base", points, plane ? 2 : 1, friction, base.area);
   const Vector shift = Vector::Constant(b.rows(), 1e9 / points);
   const Matrix stiffness = b.transpose() * shift.asDiagonal() * b;
-  own.set(spread_of(stiffness, b).factor, b * stiffness.inverse() * load);
+  own.set(spread_of(stiffness, b).factor, b * inverse(stiffness) * load);
   own.problem.shift = shift;
   return own;
 }

@@ -89,9 +89,8 @@ inline Footing footing(int points, double half_width) {
 
 /// Factor of B K^-1 B^T, and the spread K^-1 B^T = spread factor^T.
 inline Spread spread_of(const Matrix& stiffness, const Matrix& b) {
-  const Cholesky cholesky(stiffness);
-  const Matrix half = cholesky.matrixL().solve(b.transpose());  // L^-1 B^T
-  return {half.transpose(), cholesky.matrixU().solve(Matrix::Identity(stiffness.rows(), stiffness.rows()))};
+  const Matrix back = inverse(Matrix(Cholesky(stiffness)->matrixL()));  // L^-1
+  return {b * back.transpose(), back.transpose()};
 }
 
 }  // namespace uplift::contact_test

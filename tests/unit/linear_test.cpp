@@ -48,7 +48,7 @@ Sparse diagonal(const Vector& values) {
 }
 
 Matrix random_spd(Index n, double condition) {
-  const Matrix q = Matrix::Random(n, n).householderQr().householderQ();
+  const Matrix q = columns_of_q(Qr(Matrix::Random(n, n)), n);
   const Vector values = (Vector::LinSpaced(n, 0, std::log(condition))).array().exp();
   return q * values.asDiagonal() * q.transpose();
 }
@@ -246,7 +246,7 @@ TEST(Spread, IdentitiesWithRedundantRows) {
       const Spread spread = spread_through(*result.factor, sparse);
       ASSERT_EQ(spread.factor.cols(), rank) << n << " " << rows;
       ASSERT_EQ(spread.spread.cols(), rank);
-      const Matrix answer = a.ldlt().solve(b.transpose()), compliance = b * answer;
+      const Matrix answer = PivotedLdlt(a).solve(b.transpose()), compliance = b * answer;
       EXPECT_LE((spread.factor * spread.factor.transpose() - compliance).norm(), 1e-11 * compliance.norm());
       EXPECT_LE((spread.spread * spread.factor.transpose() - answer).norm(), 1e-11 * answer.norm());
     }
@@ -273,7 +273,7 @@ TEST(Spread, RigidFootingNeedsThreeColumnsAndThreeSolves) {
   const Spread spread = spread_through(counted, b);
   EXPECT_EQ(spread.factor.cols(), 3);
   EXPECT_EQ(counted.columns, 3);
-  const Matrix answer = Matrix(a).ldlt().solve(Matrix(b.transpose()));
+  const Matrix answer = PivotedLdlt(Matrix(a)).solve(Matrix(b.transpose()));
   EXPECT_LE((spread.spread * spread.factor.transpose() - answer).norm(), 1e-12 * answer.norm());
   // without an interface nothing is spread
   EXPECT_EQ(spread_through(*result.factor, Sparse(0, model.free())).factor.cols(), 0);

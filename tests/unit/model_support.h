@@ -98,7 +98,7 @@ inline BeamSection general(double EI, double EA) {
 inline Vector static_solution(const Model& model, double time = 0) {
   Vector force = Vector::Zero(model.free());
   model.add_force(time, force);
-  return Matrix(model.stiffness).ldlt().solve(force);
+  return PivotedLdlt(Matrix(model.stiffness)).solve(force);
 }
 
 /// A rigid block (2000 kg) on a footing 3 m wide with 7 joints, its centre above.

@@ -42,7 +42,7 @@ Placed place(Cell cell, std::mt19937& random) {
     area += (a.x() * b.y() - b.x() * a.y()) / 2;
   }
   placed.area = area;
-  const Matrix q = PivotedQr(Matrix(Matrix::Random(3, 3))).householderQ();
+  const Matrix q = columns_of_q(Qr(Matrix::Random(3, 3)), 3);
   Mat3 turn = q;
   if (turn.determinant() < 0) turn = -turn;
   for (Vec3& x : placed.positions) x = (turn * x).eval();

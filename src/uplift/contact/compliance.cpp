@@ -21,7 +21,7 @@ bool independent(Matrix gram) {
   if (!scale.allFinite()) return false;
   gram = (scale.asDiagonal() * gram * scale.asDiagonal()).eval();
   const Cholesky cholesky(gram);
-  return cholesky.info() == Success && cholesky.matrixLLT().diagonal().minCoeff() > 1e-4;
+  return cholesky->info() == Success && cholesky->matrixLLT().diagonal().minCoeff() > 1e-4;
 }
 
 /// B = W V^T. The two common cases are tried first; else a QR decides about the rank, on columns scaled to length one, so that units play
@@ -35,16 +35,14 @@ RankFactors rank_factors(const Sparse& b) {
   const Matrix dense = b;
   const Vector scale = dense.colwise().norm().cwiseInverse();
   const PivotedQr qr(dense * scale.asDiagonal());
-  const double largest = qr.maxPivot();
+  const double largest = qr->maxPivot();
   Index rank = 0;
-  while (rank < std::min(rows, columns) && std::abs(qr.matrixR()(rank, rank)) > 1e-11 * largest) ++rank;
+  while (rank < std::min(rows, columns) && std::abs(qr->matrixR()(rank, rank)) > 1e-11 * largest) ++rank;
   if (rank == columns) return {dense, identity};
   if (rank == rows) return {Matrix(), b.transpose()};
-  Matrix q = Matrix::Identity(rows, rank);
-  q.applyOnTheLeft(qr.householderQ());
-  Matrix r = qr.matrixR().topRows(rank).triangularView<upper_triangle>();
-  r = (r * qr.colsPermutation().transpose()).eval();
-  return {q, Matrix(scale.cwiseInverse().asDiagonal() * r.transpose()).sparseView()};
+  Matrix r = qr->matrixR().topRows(rank).triangularView<upper_triangle>();
+  r = (r * qr->colsPermutation().transpose()).eval();
+  return {columns_of_q(qr, rank), Matrix(scale.cwiseInverse().asDiagonal() * r.transpose()).sparseView()};
 }
 
 /// The unknowns that B touches, as columns of an identity.
@@ -81,13 +79,13 @@ Spread spread_through(const Factor& a, const Sparse& b) {
   Matrix flexibility = right.transpose() * answer;
   flexibility = ((flexibility + flexibility.transpose()) / 2).eval();
   const Cholesky cholesky(flexibility);
-  assert(cholesky.info() == Success);  // A is positive definite and V has full rank
+  assert(cholesky->info() == Success);  // A is positive definite and V has full rank
   Spread result;
   if (parts.w.size() > 0)
-    result.factor = parts.w * cholesky.matrixL();
+    result.factor = parts.w * Matrix(cholesky->matrixL());
   else
-    result.factor = cholesky.matrixL();
-  result.spread = cholesky.matrixU().solve<OnTheRight>(answer);
+    result.factor = cholesky->matrixL();
+  result.spread = divided_by_upper(cholesky, answer);
   return result;
 }
 

@@ -97,8 +97,8 @@ class Frictionless final : public MethodWork {
         add_weighted_gram(*problem_, 0, 0, ConstMap(taken_.data(), taken_.size()), work_, hessian_);
       }
       lower_.compute(hessian_);
-      if (lower_.info() != Success) continue;
-      const auto diagonal = lower_.matrixLLT().diagonal();
+      if (lower_->info() != Success) continue;
+      const auto diagonal = lower_->matrixLLT().diagonal();
       if (attempt == 2 || diagonal.minCoeff() > 1e-6) return;  // H is the identity less a share of it: smaller is round-off
     }
   }
@@ -106,10 +106,10 @@ class Frictionless final : public MethodWork {
   /// One kernel problem; moves to its answer and returns the slope of the potential along the step at its beginning.
   double quadratic_program() {
     factorise();
-    newton_ = lower_.solve(gradient_);
+    lower_.solve(gradient_, newton_);
     newton_ = start_ - newton_;
     half_ = problem_->factor.transpose();
-    lower_.matrixL().solveInPlace(half_);
+    lower_->matrixL().solveInPlace(half_);
     factor_ = half_.transpose();
     target_ = problem_->free_opening;
     target_.noalias() += problem_->factor * newton_;
@@ -122,7 +122,7 @@ class Frictionless final : public MethodWork {
       outcome_.why = kernel_failure(*problem_, reply, 0);
       return 0;
     }
-    lower_.matrixU().solveInPlace(x_);
+    lower_->matrixU().solveInPlace(x_);
     end_ = newton_ + x_;
     direction_ = end_ - start_;
     const double slope = gradient_.dot(direction_);

@@ -122,8 +122,8 @@ bool StatusStep::assemble() {
     return true;
   }
   lu_.compute(hessian_);
-  z_ = lu_.solve(right_);
-  return lu_.matrixLU().diagonal().cwiseAbs().minCoeff() > singular;
+  lu_.solve(right_, z_);
+  return lu_->matrixLU().diagonal().cwiseAbs().minCoeff() > singular;
 }
 
 /// U^T and V^T.
@@ -247,7 +247,7 @@ bool StatusStep::hold() {
   if (plain_)
     inverse = basis;
   else
-    inverse = lu_.solve(basis);
+    lu_.solve(basis, inverse);
   product_.topLeftCorner(count, rank).noalias() = u_.leftCols(count).transpose() * inverse;
   reduced_.compute(product_, count, rank, 1e-10);
   resultant_.head(rank).setZero();

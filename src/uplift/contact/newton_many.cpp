@@ -36,7 +36,7 @@ class Direction final : public MethodWork {
       add_weighted_gram(problem, 0, 0, ConstMap(taken_.data(), taken_.size()), work_, hessian_);
     }
     lu_.compute(hessian_);
-    solution.newton.direction = lu_.solve(scratch.gradient);
+    lu_.solve(scratch.gradient, solution.newton.direction);
     solution.newton.direction *= -1;
     return solution.newton.direction.allFinite();
   }

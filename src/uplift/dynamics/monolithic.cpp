@@ -305,7 +305,7 @@ class Monolithic final : public StepSolver {
           gram += area[static_cast<std::size_t>(k)] * b.row(touching[static_cast<std::size_t>(k)]).transpose() *
                   b.row(touching[static_cast<std::size_t>(k)]);
       CompleteQr decomposition;
-      decomposition.setThreshold(1e-11);
+      decomposition->setThreshold(1e-11);
       decomposition.compute(gram);
       const Vector y = decomposition.solve(push);
       if ((gram * y - push).norm() > 1e-9 * push.norm()) return;  // the first answer stays

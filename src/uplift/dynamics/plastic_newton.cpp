@@ -36,7 +36,7 @@ void PlasticNewton::mix() {
       change.col(k) = change_before_[at + 1] - change_before_[at];
     }
     CompleteQr least_squares;
-    least_squares.setThreshold(1e-10);
+    least_squares->setThreshold(1e-10);
     least_squares.compute(weight_.asDiagonal() * change);
     const Vector share = least_squares.solve(weight_.cwiseProduct(change_));
     given_ -= (given + change) * share;

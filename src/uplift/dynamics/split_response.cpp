@@ -12,8 +12,8 @@ SplitResponse::SplitResponse(const BulkFactor& factor, const Sparse& b) : factor
   c_ = l.triangularView<lower_triangle>().solve(at_touched.transpose()).transpose();  // B_t L_tt^-T
   if (b.rows() >= touched) return;
   const Qr qr(c_.transpose());  // touched x rows
-  q_ = (qr.householderQ() * Matrix::Identity(touched, b.rows())).transpose();
-  c_ = Matrix(qr.matrixQR().topRows(b.rows()).triangularView<upper_triangle>()).transpose();
+  q_ = columns_of_q(qr, b.rows()).transpose();
+  c_ = Matrix(qr->matrixQR().topRows(b.rows()).triangularView<upper_triangle>()).transpose();
 }
 
 void SplitResponse::forward(const Vector& right, Vector& opening) {

@@ -12,9 +12,9 @@ class DenseFactor : public Factor {
   explicit DenseFactor(Cholesky cholesky) : cholesky_(std::move(cholesky)) {}
   void solve(const Matrix& b, Matrix& x) const override {
     if (&x != &b) x = b;
-    cholesky_.solveInPlace(x);
+    cholesky_->solveInPlace(x);
   }
-  double nonzeros() const override { return 0.5 * static_cast<double>(cholesky_.rows()) * static_cast<double>(cholesky_.rows() + 1); }
+  double nonzeros() const override { return 0.5 * static_cast<double>(cholesky_->rows()) * static_cast<double>(cholesky_->rows() + 1); }
 
  private:
   Cholesky cholesky_;
@@ -40,8 +40,8 @@ class Dense : public LinearSolver {
       return {.factor = nullptr, .failed_unknown = -1, .why = std::move(why), .too_large = true};
     const Matrix full = a;
     Cholesky cholesky(full);
-    const Vector pivots = cholesky.matrixLLT().diagonal().cwiseAbs2();
-    if (cholesky.info() != Success || !((pivots.array() > least_pivot * full.diagonal().array()).all())) {
+    const Vector pivots = cholesky->matrixLLT().diagonal().cwiseAbs2();
+    if (cholesky->info() != Success || !((pivots.array() > least_pivot * full.diagonal().array()).all())) {
       const Index broken = broken_column(full);
       // a pivot on the edge may pass the second, unblocked factorisation: then its smallest ratio is named
       Index smallest = 0;

@@ -18,7 +18,7 @@ Vector unit_scale(const Matrix& a) {
 /// Scaled Cholesky factorisation of A with the test that its pivots are more than round-off.
 struct ScaledCholesky {
   explicit ScaledCholesky(const Matrix& a) : scale(unit_scale(a)), factor(scale.asDiagonal() * a * scale.asDiagonal()) {
-    regular = a.rows() == 0 || (scale.minCoeff() > 0 && factor.info() == Success && factor.matrixLLT().diagonal().minCoeff() > 1e-7);
+    regular = a.rows() == 0 || (scale.minCoeff() > 0 && factor->info() == Success && factor->matrixLLT().diagonal().minCoeff() > 1e-7);
   }
   Matrix solve(const Matrix& b) const { return scale.asDiagonal() * factor.solve(scale.asDiagonal() * b); }
   Vector scale;
@@ -49,12 +49,12 @@ Vibration with_shift(const ScaledCholesky& a, const Matrix& root, double shift, 
 Matrix semidefinite_root(const Matrix& a) {
   const Vector scale = unit_scale(a);
   const PivotedLdlt ldlt(scale.asDiagonal() * a * scale.asDiagonal());
-  const Vector pivots = ldlt.vectorD();
-  Matrix lower = ldlt.matrixL();
+  const Vector pivots = ldlt->vectorD();
+  Matrix lower = ldlt->matrixL();
   Index rank = 0;
   while (rank < pivots.size() && pivots[rank] > 1e-12) ++rank;  // LDLT of a semidefinite matrix sorts its pivots
   Matrix root = lower.leftCols(rank) * pivots.head(rank).cwiseSqrt().asDiagonal();
-  root = (ldlt.transpositionsP().transpose() * root).eval();
+  root = (ldlt->transpositionsP().transpose() * root).eval();
   for (Index i = 0; i < a.rows(); ++i) root.row(i) *= scale[i] > 0 ? 1 / scale[i] : 0;
   return root;
 }
