@@ -80,6 +80,13 @@ struct InterfaceFacts {
   std::vector<int> upper, lower;  // nodes of either side, each once
 };
 
+/// Nodes of the model along beams, one after another, as they are drawn.
+struct BeamLine {
+  std::string name;  // of the beam
+  std::vector<int> nodes;
+  bool of_group = false;  // of a group of the mesh: its inner nodes are the program's
+};
+
 /// A limit that the user sets for a number of the verdict.
 struct Criterion {
   const VerdictQuantity* quantity = nullptr;
@@ -107,8 +114,9 @@ struct Built {
   // N: resultant, against the first interface's normal, of the dead loads on everything that hangs together with its upper side (the soil
   // too where the surface ends inside it)
   double weight = 0;
-  int top = -1, base = -1;  // nodes whose motion is shown: the highest mass, the first interface's body
-  Dof sway = ux;            // horizontal direction that is shown: in space that of the larger loads
+  int top = -1, base = -1;      // nodes whose motion is shown: the highest mass, the first interface's body
+  Dof sway = ux;                // horizontal direction that is shown: in space that of the larger loads
+  std::vector<BeamLine> beams;  // every beam of the case, one of a group in as many lines as it takes
   // Full unknowns that are shown; -1 without the node: sway of the top, vertical motion of the base, its rotation in the plane of the sway
   int top_sway() const { return top < 0 ? -1 : model.at(top, sway); }
   int base_lift() const { return base < 0 ? -1 : model.at(base, model.space.dof(model.space.up())); }

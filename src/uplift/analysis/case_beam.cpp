@@ -2,6 +2,7 @@
 
 #include <functional>
 
+#include "uplift/analysis/case_beam_cells.h"
 #include "uplift/analysis/case_model.h"
 #include "uplift/elements/beam.h"
 #include "uplift/elements/space_beam.h"
@@ -65,7 +66,7 @@ SpaceBeamSection space_section(const Values& beam) {
 /// Makes the elements of a beam, one after another.
 using MakeBeam = std::function<std::unique_ptr<Element>(int a, int b, const Place& from, const Place& to)>;
 
-MakeBeam beam_maker(const Values& beam, const Vec3& along, Space space) {
+MakeBeam beam_maker(const Values& beam, Space space) {
   if (space.dimension == 2) {
     const BeamSection section = plane_section(beam);
     return [section](int a, int b, const Place& from, const Place& to) {
@@ -75,44 +76,94 @@ MakeBeam beam_maker(const Values& beam, const Vec3& along, Space space) {
   const SpaceBeamSection section = space_section(beam);
   std::optional<Vec3> up;
   if (beam.has("up")) up = vector_of(beam, "up", space);
-  if (!beam_axes(along, up)) fail(beam, "up", "a direction that is not along the beam", "one along it");
   return
       [section, up](int a, int b, const Place& from, const Place& to) { return std::make_unique<SpaceBeam>(a, b, from, to, section, up); };
 }
 
-void add_beam(const Values& beam, ModelBuilder& builder, CaseNames& names, Names& beams) {
-  beams.add(beam, "name");
+/// Adds beams to a model: straight stretches between nodes, each in the same number of elements.
+class BeamMaking {
+ public:
+  BeamMaking(const Values& beam, ModelBuilder& builder, CaseNames& names)
+      : beam_(beam), builder_(builder), names_(names), make_(beam_maker(beam, names.space)), pieces_(beam.integer("elements")) {}
+
+  /// Inner nodes are called stem.1, stem.2, ..., from `first` on. Returns all nodes of the stretch.
+  std::vector<int> add(int a, int b, const std::string& stem, int first = 1) {
+    const Place from = names_.positions[static_cast<std::size_t>(a)], to = names_.positions[static_cast<std::size_t>(b)];
+    std::vector<int> line{a};
+    Place last = from;
+    for (int k = 1; k <= pieces_; ++k) {
+      const Place next = k == pieces_ ? to : Place(from + (to - from) * (static_cast<double>(k) / pieces_));
+      const int node = k == pieces_ ? b : inner_node(fmt::format("{}.{}", stem, first + k - 1), next);
+      auto element = make_(line.back(), node, last, next);
+      element->beta = beam_.number("damping_beta");
+      if (!beam_.has("A")) builder_.inextensible(line.back(), node, beam_.where());
+      builder_.add_element(std::move(element), beam_.where());
+      line.push_back(node);
+      last = next;
+    }
+    return line;
+  }
+
+ private:
+  int inner_node(const std::string& name, const Place& place) {
+    names_.nodes.add(name, beam_.where("name"), beam_.path("name"));
+    names_.positions.push_back(place);
+    return builder_.add_node(name, place, beam_.where());
+  }
+
+  const Values& beam_;
+  ModelBuilder& builder_;
+  CaseNames& names_;
+  MakeBeam make_;
+  int pieces_;
+};
+
+/// Whether `up` says something of a beam along this direction.
+bool up_fits(const Values& beam, const Vec3& along, Space space) {
+  return space.dimension == 2 || !beam.has("up") || beam_axes(along, vector_of(beam, "up", space));
+}
+
+std::vector<int> add_between(const Values& beam, ModelBuilder& builder, CaseNames& names) {
   const std::vector<int> ends = names.nodes_of(beam, "nodes");
   if (ends.size() != 2) fail(beam, "nodes", "two nodes", fmt::format("{}", ends.size()));
-  const Place a = names.positions[ends[0]], b = names.positions[ends[1]];
-  if ((b - a).norm() == 0) fail(beam, "nodes", "two nodes at different places", "two nodes at the same place");
-  const MakeBeam make = beam_maker(beam, b - a, names.space);
-  const int pieces = beam.integer("elements");
-  int last = ends[0];
-  Place from = a;
-  for (int k = 1; k <= pieces; ++k) {
-    const Place to = k == pieces ? b : Place(a + (b - a) * (static_cast<double>(k) / pieces));
-    int next = ends[1];
-    if (k < pieces) {
-      const std::string name = fmt::format("{}.{}", beam.text("name"), k);
-      next = builder.add_node(name, to, beam.where());
-      names.nodes.add(name, beam.where("name"), beam.path("name"));
-      names.positions.push_back(to);
-    }
-    auto element = make(last, next, from, to);
-    element->beta = beam.number("damping_beta");
-    if (!beam.has("A")) builder.inextensible(last, next, beam.where());
-    builder.add_element(std::move(element), beam.where());
-    last = next;
-    from = to;
+  const Vec3 along = names.positions[static_cast<std::size_t>(ends[1])] - names.positions[static_cast<std::size_t>(ends[0])];
+  if (along.norm() == 0) fail(beam, "nodes", "two nodes at different places", "two nodes at the same place");
+  BeamMaking making(beam, builder, names);
+  if (!up_fits(beam, along, names.space)) fail(beam, "up", "a direction that is not along the beam", "one along it");
+  return making.add(ends[0], ends[1], beam.text("name"));
+}
+
+/// The elements of a group: of every line one stretch, of a line with a node in its middle two.
+std::vector<std::vector<int>> add_along(const Values& beam, BeamCells& cells, ModelBuilder& builder, CaseNames& names) {
+  const std::vector<BeamCells::Stretch> stretches = cells.take(beam);
+  BeamMaking making(beam, builder, names);
+  std::vector<std::vector<int>> lines;
+  int inner = 0, last = 0;  // inner nodes of the cell so far
+  for (const BeamCells::Stretch& stretch : stretches) {
+    if (!up_fits(beam, stretch.along, names.space))
+      fail(beam, "up", "a direction that is along none of its lines", "one along " + cells.name(stretch.cell));
+    if (stretch.number != last) inner = 0, last = stretch.number;
+    lines.push_back(making.add(names.first_of_mesh + stretch.a, names.first_of_mesh + stretch.b,
+                               fmt::format("{}.{}", beam.text("name"), stretch.number), inner + 1));
+    inner += beam.integer("elements") - 1;
   }
+  return strung(std::move(lines));
 }
 
 }  // namespace
 
 void add_beams(const Values& root, ModelBuilder& builder, CaseNames& names) {
   Names beams("beam");
-  for (const Values& beam : root.tables("beam")) add_beam(beam, builder, names, beams);
+  BeamCells cells(root, names.solids.get());
+  for (const Values& beam : root.tables("beam")) {
+    beams.add(beam, "name");
+    if (first_of_two(beam, "nodes", "group")) {
+      names.beams.push_back({beam.text("name"), add_between(beam, builder, names), false});
+      continue;
+    }
+    names.mesh_for(beam);
+    for (std::vector<int>& line : add_along(beam, cells, builder, names)) names.beams.push_back({beam.text("name"), std::move(line), true});
+  }
 }
 
 }  // namespace uplift

@@ -195,6 +195,7 @@ Model make_model(const Case& read, const RunSpec& spec, const std::vector<double
   add_interfaces(read, spec, dynamic, builder, names, built);
   add_loads(root, builder, names);
   if (spec.damping) builder.set_damping(bulk_damping(*spec.damping));
+  built.beams = names.beams;
   return builder.finish();
 }
 

@@ -152,6 +152,11 @@ std::string owner_of(const Mesh& mesh, CellId cell) {
   return describe_cell(mesh, cell);
 }
 
+/// A mesh of beams needs no solids.
+bool beams_alone(const Values& root) {
+  return root.tables("solid").empty() && std::ranges::any_of(root.tables("beam"), [](const Values& beam) { return beam.has("group"); });
+}
+
 /// Faces that do not lie in a plane of equal z are taken for a mesh in space, which has nothing to be solid.
 void check_solid(const Mesh& mesh, const Values& table) {
   const auto fills = [&](const CellBlock& block) { return info(block.cell).dimension == mesh.dimension; };
@@ -185,7 +190,7 @@ std::shared_ptr<const CaseMesh> mesh_of_case(const Values& root, const std::stri
     made->from = (std::filesystem::path(file).parent_path() / mesh->text("file")).lexically_normal().string();
     made->mesh = read_mesh(made->from, where, mesh->has("name") ? mesh->text("name") : "");
     check_mesh(made->mesh, where);
-    check_solid(made->mesh, *mesh);
+    if (!beams_alone(root)) check_solid(made->mesh, *mesh);
   } else {
     made->from = "soil_box";
     made->mesh = make_soil_box(mesh->table("soil_box"));
@@ -236,6 +241,12 @@ std::vector<int> CaseSolids::nodes(const Values& table, std::string_view key) co
   std::vector<int> found = nodes_of(*mesh_, group_named(*mesh_, table, key, "a group of the mesh"));
   if (found.empty()) fail(table, key, "a group with nodes", "an empty one");
   return found;
+}
+
+const std::vector<CellId>& CaseSolids::lines(const Values& table) const {
+  const Group& group = group_named(*mesh_, table, "group", "a group of lines");
+  if (group.dimension != 1 || group.cells.empty()) fail(table, "group", "a group of lines", dimension_word(*mesh_, group.dimension));
+  return group.cells;
 }
 
 const std::vector<CellId>& CaseSolids::edges(const Values& table, std::string_view key) const {

@@ -44,6 +44,8 @@ class CaseSolids {
   Vec3 centre_beside(CellId edge) const;
   /// Nodes of the group named under `key`.
   std::vector<int> nodes(const Values& table, std::string_view key) const;
+  /// Lines of the group named under "group"; InputError for a group of something else.
+  const std::vector<CellId>& lines(const Values& table) const;
   /// Edges of the group named under `key`; InputError for a group of something else.
   const std::vector<CellId>& edges(const Values& table, std::string_view key) const;
 

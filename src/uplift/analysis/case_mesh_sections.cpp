@@ -68,7 +68,9 @@ const Section& soil_box_section() {
 
 const Section& mesh_section() {
   static const Section s{"mesh",
-                         "mesh of solids, in the plane or in space: either a file or a soil box. Its nodes are called mesh.1, mesh.2, ...",
+                         "mesh of solids and beams, in the plane or in space: either a file or a soil box. Its nodes are called mesh.1, "
+                         "mesh.2, ...; a node that "
+                         "is a group of its own has the name of the group",
                          Fields{text("file", "mesh of Gmsh (.msh) or MED (.med), in metres; in the plane where all z are equal").optional(),
                                 text("name", "the mesh to take when a MED file holds several").optional(),
                                 table("soil_box", soil_box_section(), "a made mesh").optional()}};

@@ -20,6 +20,12 @@ Place vector_of(const Values& table, std::string_view key, Space space) {
   return {numbers[0], numbers[1], space.dimension == 3 ? numbers[2] : 0};
 }
 
+bool first_of_two(const Values& table, std::string_view first, std::string_view second) {
+  const bool a = table.has(first), b = table.has(second);
+  if (a == b) fail(table, a ? second : "", fmt::format("either {} or {}", first, second), a ? "both" : "neither");
+  return a;
+}
+
 Space space_of(const Case& read) {
   if (read.mesh) return {read.mesh->mesh.dimension};
   const std::vector<Values>& nodes = read.values.tables("nodes");
@@ -66,13 +72,6 @@ class Scaled final : public TimeFunction {
   std::shared_ptr<const TimeFunction> function_;
 };
 
-/// Exactly one of two keys must be given.
-bool first_of_two(const Values& table, std::string_view first, std::string_view second) {
-  const bool a = table.has(first), b = table.has(second);
-  if (a == b) fail(table, a ? second : "", fmt::format("either {} or {}", first, second), a ? "both" : "neither");
-  return a;
-}
-
 Connection connection_of(const Values& table, const CaseNames& names, bool along) {
   const bool plane = names.space.dimension == 2;
   Connection connection;
@@ -102,7 +101,7 @@ void add_masses(const Values& root, ModelBuilder& builder, CaseNames& names, con
   Names bodies("rigid body");
   for (const Values& body : root.tables("rigid")) {
     bodies.add(body, "name");
-    const int master = names.node(body, "node");
+    const int master = master_of(body, names);
     for (const int slave : names.nodes_of(body, "slaves")) {
       if (slave == master) fail(body, "slaves", "nodes other than the master", "\"" + names.nodes[master] + "\"");
       builder.tie_rigid(master, slave, body.where("slaves"));
@@ -153,6 +152,16 @@ Pattern edge_load(const Values& load, const CaseNames& names) {
 
 }  // namespace
 
+int master_of(const Values& body, const CaseNames& names) {
+  if (body.has("node")) return names.node(body, "node");
+  if (!body.has("group")) fail(body, "", "node, or a group of the mesh", "neither");
+  std::vector<int> nodes = names.mesh_for(body).nodes(body, "group");
+  const auto position = [&](int node) -> const Place& { return names.positions[static_cast<std::size_t>(names.first_of_mesh + node)]; };
+  Vec3 middle = Vec3::Zero();
+  for (const int node : nodes) middle += position(node) / static_cast<double>(nodes.size());
+  return names.first_of_mesh + *std::ranges::min_element(nodes, {}, [&](int node) { return (position(node) - middle).norm(); });
+}
+
 Vec3 about_axes(const Values& table, std::string_view single, std::string_view plural, bool everywhere, Space space) {
   if (table.has(plural)) {
     if (space.dimension == 2) fail(table, plural, fmt::format("{} in a plane model", single), "three numbers");
@@ -186,19 +195,39 @@ void add_nodes(const Values& root, ModelBuilder& builder, CaseNames& names) {
   }
 }
 
+namespace {
+
+/// Nodes of the mesh that are a group of their own: the group's name is theirs, unless another node has it.
+std::map<int, std::string> named_nodes(const Mesh& mesh, const Names& taken) {
+  std::map<int, std::string> named;
+  for (const auto& [name, group] : mesh.groups)
+    if (group.dimension == 0 && !taken.has(name) && !name.starts_with("mesh."))
+      if (const std::vector<int> nodes = nodes_of(mesh, group); nodes.size() == 1) named.emplace(nodes.front(), name);
+  return named;
+}
+
+}  // namespace
+
 void add_mesh(const Case& read, ModelBuilder& builder, CaseNames& names) {
   if (!read.mesh) return;
   const Mesh& mesh = read.mesh->mesh;
   const Values& table = read.values.table("mesh");
   names.solids = std::make_shared<const CaseSolids>(read.values, *read.mesh);
   names.first_of_mesh = names.nodes.size();
+  const std::map<int, std::string> named = named_nodes(mesh, names.nodes);
   auto coordinates = std::make_shared<std::vector<Vec3>>(names.positions.size(), Vec3::Zero());
-  for (std::size_t i = 0; i < mesh.nodes.size(); ++i) {
-    const std::string name = fmt::format("mesh.{}", i + 1);
-    coordinates->push_back(mesh.nodes[i]);
-    names.nodes.add(name, table.where(), table.path());
-    names.positions.emplace_back(mesh.nodes[i]);
-    builder.add_node(name, names.positions.back(), table.where());
+  for (int i = 0; i < static_cast<int>(mesh.nodes.size()); ++i) {
+    const std::string number = fmt::format("mesh.{}", i + 1);
+    const auto name = named.find(i);
+    coordinates->push_back(mesh.nodes[static_cast<std::size_t>(i)]);
+    const int node = names.nodes.add(number, table.where(), table.path());
+    names.positions.emplace_back(coordinates->back());
+    if (name == named.end()) {
+      builder.add_node(number, names.positions.back(), table.where());
+    } else {
+      names.nodes.also(name->second, node);
+      builder.add_node(name->second, names.positions.back(), table.where(), number);
+    }
   }
   names.coordinates = coordinates;
   std::vector<int> nodes;

@@ -24,6 +24,7 @@ struct CaseNames {
   std::shared_ptr<const CaseSolids> solids;  // null without a mesh
   int first_of_mesh = 0;                     // node of the model that the mesh's first node is
   Coordinates coordinates;                   // of the nodes up to the mesh's last
+  std::vector<BeamLine> beams;               // met so far
   int node(const Values& table, std::string_view key) const { return nodes.find(table, key); }
   std::vector<int> nodes_of(const Values& table, std::string_view key) const;
   /// The node of "node" or the nodes of "group": exactly one of the keys must be given.
@@ -41,6 +42,8 @@ Place vector_of(const Values& table, std::string_view key, Space space);
 Vec3 about_axes(const Values& table, std::string_view single, std::string_view plural, bool everywhere, Space space);
 /// Plane or space: as the mesh, else as the first node.
 Space space_of(const Case& read);
+/// Exactly one of two keys must be given: whether it is the first.
+bool first_of_two(const Values& table, std::string_view first, std::string_view second);
 /// A table that may be absent: null then.
 const Values* table_if(const Values& values, std::string_view key);
 
@@ -56,7 +59,10 @@ std::shared_ptr<const TimeFunction> scaled(double factor, std::shared_ptr<const 
 std::string name_of_load(const Values& load);
 /// Functions, then records.
 void add_functions(const Case& read, CaseNames& names);
+/// Beams between nodes and along groups of the mesh.
 void add_beams(const Values& root, ModelBuilder& builder, CaseNames& names);
+/// The master node of a rigid body: as named, else the node of its group that is nearest to the group's middle.
+int master_of(const Values& body, const CaseNames& names);
 /// `at_rest`: with the supports that hold in static stages alone.
 void add_structure(const Values& root, ModelBuilder& builder, CaseNames& names, const std::vector<double>& tuned, bool at_rest);
 /// Supports and prescribed motions. Groups of two sides share the corner: it is held once, and moves where one of them moves.

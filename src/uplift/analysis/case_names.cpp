@@ -1,5 +1,7 @@
 #include "uplift/analysis/case_names.h"
 
+#include <cassert>
+
 namespace uplift {
 
 void fail(const Values& table, std::string_view key, const std::string& wanted, const std::string& found, const std::string& nearest) {
@@ -21,9 +23,15 @@ int Names::add(std::string name, const Where& where, const std::string& path) {
   return size() - 1;
 }
 
+void Names::also(const std::string& name, int index) {
+  [[maybe_unused]] const bool added = index_.emplace(name, index).second;
+  assert(added);
+  also_.push_back(name);
+}
+
 int Names::find(const std::string& name, const Where& where, const std::string& path) const {
   if (const auto found = index_.find(name); found != index_.end()) return found->second;
-  std::vector<std::string> known;
+  std::vector<std::string> known = also_;
   for (const auto& [other, place] : names_) known.push_back(other);
   throw InputError(where, path, std::string("the name of a") + (what_.front() == 'i' ? "n " : " ") + what_, "\"" + name + "\"",
                    nearest_name(name, known));

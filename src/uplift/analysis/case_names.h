@@ -23,6 +23,9 @@ class Names {
   int add(const Values& table, std::string_view key, std::string automatic = {});
   /// Adds a name that the program made at this place.
   int add(std::string name, const Where& where, const std::string& path);
+  /// A second name of something that was added; it must not be there yet.
+  void also(const std::string& name, int index);
+  bool has(const std::string& name) const { return index_.contains(name); }
   /// Index of a name used at this place; InputError with the nearest name when it does not exist.
   int find(const std::string& name, const Where& where, const std::string& path) const;
   int find(const Values& table, std::string_view key) const { return find(table.text(key), table.where(key), table.path(key)); }
@@ -32,6 +35,7 @@ class Names {
  private:
   std::string what_;
   std::vector<std::pair<std::string, Where>> names_;
+  std::vector<std::string> also_;
   std::unordered_map<std::string, int> index_;
 };
 

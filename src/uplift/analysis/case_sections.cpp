@@ -198,8 +198,8 @@ const Section& fields_section() {
                  .optional(),
              integer("every", "every n-th step").between(1, 1000000000).optional(),
              flag("events", "first uplift, largest gap, largest pressure").standard(false),
-             texts("quantities", "any of displacement, velocity, acceleration, stress; absent: all").optional(),
-             texts("groups", "groups with a [[solid]]; absent: all").optional(),
+             texts("quantities", "any of displacement, velocity, acceleration, stress (of solids); absent: all").optional(),
+             texts("groups", "groups with a [[solid]] or a [[beam]]; absent: all").optional(),
              choice("precision", {"float32", "float64"}, "how values are stored: 7 or 16 digits").standard("float32"),
              flag("variants", "of the runs of `uplift compare` too").standard(false)}};
   return s;

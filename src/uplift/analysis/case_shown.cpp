@@ -59,7 +59,7 @@ void find_shown_nodes(const Case& read, const CaseNames& names, Built& built) {
   };
   for (const Values& mass : read.values.tables("mass")) look(names.node(mass, "node"), mass.has("mass") ? mass.number("mass") : 0);
   for (const Values& body : read.values.tables("rigid"))
-    if (body.number("mass") > 0) look(names.node(body, "node"), body.number("mass"));
+    if (body.number("mass") > 0) look(master_of(body, names), body.number("mass"));
   if (built.top < 0)
     for (const Values& node : read.values.tables("nodes")) look(names.nodes.find(node.key(), node.where(), node.path()), 0);
   if (!built.facts.empty() && !built.facts[0].body.empty()) built.base = built.model.find_node(built.facts[0].body);

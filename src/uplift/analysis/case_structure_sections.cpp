@@ -20,15 +20,21 @@ const Section& node_section() {
 
 const Section& beam_section() {
   static const Section s{
-      "beam", "a straight beam between two nodes, rigidly connected to both",
+      "beam",
+      "a straight beam between two nodes, or the lines of a group of the mesh. Beams that share a node are rigidly connected. Solids hold "
+      "no rotation: a beam that ends at their node is hinged there, unless it runs on along their edges or a [[rigid]] group holds it",
       Fields{
-          text("name", "name; inner nodes of a subdivided beam are called NAME.1, NAME.2, ..."), texts("nodes", "the two end nodes"),
+          text("name", "name; inner nodes of a subdivided beam are called NAME.1, NAME.2, ..., of the n-th line of a group NAME.n.1, ..."),
+          texts("nodes", "the two end nodes; or give group").optional(),
+          text("group", "group of lines of the mesh; one with a node in its middle becomes two straight beams").optional(),
           number("E", "Pa", "Young's modulus").positive(),
           number("I", "m4", "second moment of area of the cross-section; in space about both axes").positive().optional(),
           number("I_y", "m4", "in space: second moment of area about the local y axis; with I_z instead of I").positive().optional(),
           number("I_z", "m4", "in space: about the local z axis").positive().optional(),
           number("J", "m4", "in space: torsion constant").positive().optional(),
-          vector("up", "1", "in space: local z lies in the plane of the beam and this direction; absent: the vertical, of vertical beams x")
+          vector("up", "1",
+                 "in space: local z lies in the plane of the beam and this direction; absent: the vertical, of vertical beams x (each line "
+                 "of a group by itself)")
               .optional(),
           number("A", "m2", "area of the cross-section; absent: the beam is inextensible (eliminated exactly)").positive().optional(),
           choice("theory", {"euler_bernoulli", "timoshenko"}, "bending only, or with shear").standard("euler_bernoulli"),
@@ -36,7 +42,7 @@ const Section& beam_section() {
           number("shear_area", "m2", "effective shear area of a Timoshenko beam").positive().optional(),
           choice("mass", {"none", "consistent", "lumped"}, "mass matrix of the beam").standard("none"),
           number("density", "kg/m3", "density; needed unless mass = \"none\", and then A too").positive().optional(),
-          integer("elements", "number of equal elements").between(1, 10000).standard(1.0),
+          integer("elements", "number of equal elements, of a group between two nodes of the mesh").between(1, 10000).standard(1.0),
           number("damping_beta", "s", "stiffness-proportional damping factor of this beam alone").nonnegative().standard(0.0)}};
   return s;
 }
@@ -78,7 +84,8 @@ const Section& dashpot_section() {
 const Section& rigid_section() {
   static const Section s{
       "rigid", "a rigid body (a footing): its nodes follow the master node exactly",
-      Fields{text("name", "name"), text("node", "master node"), texts("slaves", "further nodes of the body").optional(),
+      Fields{text("name", "name"), text("node", "master node; absent: the node of group that is nearest to its middle").optional(),
+             texts("slaves", "further nodes of the body").optional(),
              text("group", "group of the mesh whose nodes belong to the body too: a rigid raft of solids, or the foot of a tower of beams")
                  .optional(),
              number("mass", "kg", "mass of the body").nonnegative().standard(0.0),
@@ -92,7 +99,7 @@ const Section& support_section() {
   static const Section s{
       "support", "unknowns that are held, of a node or of a group of the mesh",
       Fields{text("node", "node; or give group").optional(), text("group", "group of the mesh: all its nodes").optional(),
-             texts("fixed", "any of ux, uy, rz; in space of ux, uy, uz, rx, ry, rz"),
+             texts("fixed", "any of ux, uy, rz; in space of ux, uy, uz, rx, ry, rz. Rotations of a group only where beams are"),
              choice("stages", {"all", "static"},
                     "static: it is released when the first dynamic stage begins; what it has borne goes on as a constant load")
                  .standard("all")}};

@@ -40,6 +40,12 @@ std::map<Unknown, std::string> moved_by_groups(const Values& root, const CaseNam
   return moved;
 }
 
+std::set<int> beam_nodes(const CaseNames& names) {
+  std::set<int> nodes;
+  for (const BeamLine& line : names.beams) nodes.insert(line.nodes.begin(), line.nodes.end());
+  return nodes;
+}
+
 }  // namespace
 
 bool any_released(const Values& root) {
@@ -48,13 +54,16 @@ bool any_released(const Values& root) {
 
 void add_supports(const Values& root, ModelBuilder& builder, const CaseNames& names, bool at_rest) {
   const std::map<Unknown, std::string> moved = moved_by_groups(root, names);
+  const std::set<int> turning = beam_nodes(names);
   std::set<Unknown> held;
   for (const Values& support : root.tables("support")) {
     if (is_released(support) && !at_rest) continue;
     const bool group = support.has("group");
-    for (const int node : names.node_or_group(support))
+    const std::vector<int> nodes = names.node_or_group(support);
+    const bool turns = !group || std::ranges::any_of(nodes, [&](int node) { return turning.contains(node); });
+    for (const int node : nodes)
       for (const std::string& word : support.texts("fixed")) {
-        const Unknown unknown(node, dof_of(word, support, "fixed", names.space, !group));
+        const Unknown unknown(node, dof_of(word, support, "fixed", names.space, turns));
         const auto motion = group ? moved.find(unknown) : moved.end();
         if (motion != moved.end() && motion->second != support.text("group")) continue;
         if (!group || held.insert(unknown).second) builder.fix(node, unknown.second, support.where("fixed"));

@@ -8,6 +8,7 @@
 #include "uplift/analysis/floor_spectra.h"
 #include "uplift/analysis/wording.h"
 #include "uplift/model/damping.h"
+#include "uplift/model/hinges.h"
 #include "uplift/model/tuned_mass.h"
 
 namespace uplift {
@@ -146,6 +147,15 @@ void warn_method(const Case& read, const RunSpec& spec, const Built& built, std:
   }
 }
 
+/// Solids hold no rotation: a column that ends at one of their nodes is hinged, which few mean.
+void warn_hinges(const Built& built, std::vector<std::string>& said) {
+  if (const std::vector<int> hinged = hinges(built.model); !hinged.empty())
+    said.push_back(fmt::format(
+        "beams end in hinges of solids, which hold no rotation: {}; where they are to be clamped, let them run on along edges of "
+        "the solids, or take a [[rigid]] group",
+        named_places(built.model, hinged)));
+}
+
 }  // namespace
 
 namespace {
@@ -213,6 +223,7 @@ std::vector<std::string> warnings(const Case& read, const RunSpec& spec, const B
   warn_sides(read, said);
   warn_held_faces(read, built, said);
   warn_sides_exchanged(read, built, said);
+  warn_hinges(built, said);
   warn_step(built, said);
   warn_floors(spec, built, said);
   warn_method(read, spec, built, said);

@@ -33,22 +33,19 @@ const Case& with_mesh(const Values& fields, const Case& read) {
   return read;
 }
 
-/// The solids whose groups are wanted, by number.
-std::vector<std::size_t> wanted_solids(const Values& fields, const CaseSolids& solids) {
+/// Groups with a solid or a beam that are wanted, in this order.
+std::vector<std::string> wanted_groups(const Values& fields, const Case& read) {
   std::vector<std::string> known;
-  for (const CaseSolids::Solid& solid : solids.solids()) known.push_back(solid.table->text("group"));
-  std::vector<std::size_t> wanted;
-  for (const std::string& group : fields.texts("groups")) {
-    const auto found = std::ranges::find(known, group);
-    if (found == known.end()) fail(fields, "groups", known, group);
-    wanted.push_back(static_cast<std::size_t>(found - known.begin()));
-  }
-  if (!fields.has("groups"))
-    for (std::size_t i = 0; i < known.size(); ++i) wanted.push_back(i);
-  if (wanted.empty()) throw InputError(fields.where("groups"), fields.path("groups"), "at least one group with a [[solid]]", "none");
-  std::ranges::sort(wanted);
-  wanted.erase(std::unique(wanted.begin(), wanted.end()), wanted.end());
-  return wanted;
+  for (const Values& solid : read.values.tables("solid")) known.push_back(solid.text("group"));
+  for (const Values& beam : read.values.tables("beam"))
+    if (beam.has("group")) known.push_back(beam.text("group"));
+  const std::vector<std::string> asked = fields.has("groups") ? fields.texts("groups") : known;
+  for (const std::string& group : asked)
+    if (std::ranges::find(known, group) == known.end()) fail(fields, "groups", known, group);
+  if (asked.empty())
+    throw InputError(fields.where("groups"), fields.path("groups"), "at least one group with a [[solid]] or a [[beam]]", "none");
+  std::erase_if(known, [&](const std::string& group) { return std::ranges::find(asked, group) == asked.end(); });
+  return known;
 }
 
 /// The elements of every solid of the case. They were made solid after solid, cell after cell.
@@ -77,16 +74,17 @@ RunFrames::RunFrames(const Values& fields, const Case& read, const Built& built)
   const CaseSolids solids(read.values, *read.mesh);
   const Mesh& mesh = solids.mesh();
   const std::vector<std::vector<const Solid*>> elements = elements_of(solids, *model_);
-  const std::vector<std::size_t> wanted = wanted_solids(fields, solids);
-  std::vector<std::string> groups;
-  for (const std::size_t i : wanted) groups.push_back(solids.solids()[i].table->text("group"));
-  for (std::size_t k = 0; k < wanted.size(); ++k) {
+  const std::vector<std::string> groups = wanted_groups(fields, read);
+  for (std::size_t k = 0; k < groups.size(); ++k) {
     blocks_.push_back(field_mesh(mesh, groups[k], {groups[k]}, fields.where("groups")));
     CellMark& mark = blocks_.back().marks.front();  // programs that put the blocks together tell them apart by it
     mark.values.assign(mark.values.size(), static_cast<int>(k));
     mark.meanings = groups;
-    solids_.push_back(elements[wanted[k]]);
-    assert(blocks_.back().cell == solids.solids()[wanted[k]].cells);
+    const auto solid =
+        std::ranges::find(solids.solids(), groups[k], [](const CaseSolids::Solid& each) { return each.table->text("group"); });
+    if (solid == solids.solids().end()) continue;  // a beam: these come last
+    solids_.push_back(elements[static_cast<std::size_t>(solid - solids.solids().begin())]);
+    assert(blocks_.back().cell == solid->cells);
   }
   std::size_t first_history = 0;
   for (const auto& element : model_->elements)
@@ -97,8 +95,7 @@ RunFrames::RunFrames(const Values& fields, const Case& read, const Built& built)
   if (!interfaces_.mesh().face.empty()) blocks_.push_back(interfaces_.mesh().mesh);
   dimension_ = model_->space.dimension;
   stride_ = static_cast<std::size_t>(model_->space.unknowns());
-  const int first_node = elements.front().front()->nodes()[0] - mesh.cell(solids.solids().front().cells.front())[0];
-  first_ = stride_ * static_cast<std::size_t>(first_node);
+  first_ = stride_ * read.values.tables("nodes").size();  // nodes of the case, then those of the mesh
 }
 
 bool RunFrames::wants(std::string_view quantity) const {
@@ -113,7 +110,7 @@ FieldFrame RunFrames::empty() const {
       if (wants(motion.name)) points.push_back(field(motion.name, motion.unit, FieldKind::vector));
     if (b < solids_.size()) {
       if (wants("stress")) points.push_back(field("stress", "Pa", FieldKind::tensor));
-    } else {
+    } else if (&blocks_[b] == &blocks_.back() && !interfaces_.mesh().face.empty()) {
       points.push_back(field("opening", "m", FieldKind::scalar));
       points.push_back(field("slip", "m", FieldKind::vector));
       points.push_back(field("traction", "Pa", FieldKind::vector));

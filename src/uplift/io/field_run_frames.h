@@ -46,7 +46,7 @@ class InterfaceFrames {
   std::vector<Surface> surfaces_;
 };
 
-/// The frames of a run: a block for each solid, and one for the faces of all interfaces, "interfaces".
+/// The frames of a run: a block for each solid, one for each beam of a group, and one for the faces of all interfaces, "interfaces".
 class RunFrames {
  public:
   /// `fields` is [output.fields]. Throws InputError: no mesh, quantities and groups that are not there.
@@ -65,7 +65,7 @@ class RunFrames {
   const Model* model_;
   std::vector<std::string> quantities_;  // empty: all
   std::vector<FieldMesh> blocks_;
-  std::vector<std::vector<const Solid*>> solids_;      // of the blocks but the interfaces', in the order of their cells
+  std::vector<std::vector<const Solid*>> solids_;      // of the first blocks, in the order of their cells
   std::map<const Solid*, std::size_t> first_history_;  // of the solids that can yield: where the state remembers them
   InterfaceFrames interfaces_;
   std::size_t stride_ = 0, first_ = 0;  // unknowns of a node; the first of the mesh's first node

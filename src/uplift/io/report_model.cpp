@@ -1,5 +1,7 @@
 #include <algorithm>
 #include <array>
+#include <set>
+#include <utility>
 
 #include "uplift/analysis/case_mesh_outline.h"
 #include "uplift/analysis/case_model.h"
@@ -10,15 +12,44 @@ namespace uplift {
 namespace {
 
 constexpr int most_outline_nodes = 140, most_drawn_cells = 2000;
+constexpr std::size_t most_beam_nodes = 200;
 
 /// What is drawn of the model: the outline of the mesh, and which nodes of the model.
 struct Drawn {
   MeshOutline outline;  // nodes of the mesh
   int first_of_mesh = 0;
-  std::vector<int> nodes;  // of the model
+  std::vector<BeamLine> beams;  // those of groups thinned
+  std::vector<int> nodes;       // of the model, ascending
+  std::set<int> hidden;         // nodes that the user has not named
 };
 
-/// Nodes of the case, of its beams and of the outline of its mesh; the nodes of an elastic bed are not drawn.
+/// Of a straight stretch of a beam every n-th node: the browser draws cubics between them.
+void thin(const Model& model, std::size_t every, std::vector<int>& line) {
+  const auto position = [&](std::size_t i) -> const Place& { return model.nodes[static_cast<std::size_t>(line[i])].position; };
+  constexpr double straight = 0.97;  // cosine of 14 degrees
+  std::vector<int> kept{line.front()};
+  std::size_t since = 0;
+  for (std::size_t i = 1; i < line.size(); ++i) {
+    const bool end = i + 1 == line.size();
+    const bool corner = !end && (position(i) - position(i - 1)).normalized().dot((position(i + 1) - position(i)).normalized()) < straight;
+    if (!end && !corner && ++since < every) continue;
+    kept.push_back(line[i]);
+    since = 0;
+  }
+  line = std::move(kept);
+}
+
+std::vector<BeamLine> drawn_beams(const Built& built) {
+  std::vector<BeamLine> beams = built.beams;
+  std::size_t nodes = 0;
+  for (const BeamLine& beam : beams)
+    if (beam.of_group) nodes += beam.nodes.size();
+  for (BeamLine& beam : beams)
+    if (beam.of_group) thin(built.model, nodes / most_beam_nodes + 1, beam.nodes);
+  return beams;
+}
+
+/// Nodes of the case, of its beams and of the outline of its mesh, and those that are a group; the nodes of an elastic bed are not drawn.
 Drawn drawn_of(const Case& read, const Built& built) {
   Drawn drawn;
   drawn.first_of_mesh = static_cast<int>(read.values.tables("nodes").size());
@@ -29,18 +60,32 @@ Drawn drawn_of(const Case& read, const Built& built) {
     drawn.outline = outline_of(read.mesh->mesh, groups, most_outline_nodes, most_drawn_cells);
     end_of_mesh += static_cast<int>(read.mesh->mesh.nodes.size());
   }
+  drawn.beams = drawn_beams(built);
+  std::set<int> kept = nodes_used(read, built), inner;
+  for (const BeamLine& beam : drawn.beams) kept.insert(beam.nodes.begin(), beam.nodes.end());
+  for (const BeamLine& beam : built.beams)
+    if (beam.of_group)
+      for (const int node : beam.nodes)
+        if (node >= end_of_mesh) inner.insert(node);
+  for (const int node : {built.top, built.base}) kept.insert(node);
   std::vector<std::string> beds;
   for (const Interface& interface : built.model.interfaces) beds.push_back(interface.name + ".");
   const auto& on_outline = drawn.outline.nodes;
   for (int i = 0; i < static_cast<int>(built.model.nodes.size()); ++i) {
     const std::string& name = built.model.nodes[static_cast<std::size_t>(i)].name;
     const bool bed = std::any_of(beds.begin(), beds.end(), [&](const std::string& start) { return name.starts_with(start); });
-    const bool of_mesh = i >= drawn.first_of_mesh && i < end_of_mesh;
-    if (of_mesh ? std::ranges::binary_search(on_outline, i - drawn.first_of_mesh) || i == built.top || i == built.base
-                : i < drawn.first_of_mesh || !bed)
-      drawn.nodes.push_back(i);
+    const bool of_mesh = i >= drawn.first_of_mesh && i < end_of_mesh, of_group = inner.contains(i), named = !name.starts_with("mesh.");
+    const bool shown =
+        of_mesh ? named || std::ranges::binary_search(on_outline, i - drawn.first_of_mesh) : i < drawn.first_of_mesh || !(bed || of_group);
+    if (shown || kept.contains(i)) drawn.nodes.push_back(i);
+    if (of_group || !named) drawn.hidden.insert(i);
   }
   return drawn;
+}
+
+/// The name by which a node is drawn; it may be named by its number.
+const std::string& shown_name(const Built& built, const std::string& node) {
+  return built.model.nodes[static_cast<std::size_t>(built.model.find_node(node))].name;
 }
 
 const std::string& name_of_mesh_node(const Drawn& drawn, const Built& built, int of_mesh) {
@@ -51,7 +96,7 @@ const std::string& name_of_mesh_node(const Drawn& drawn, const Built& built, int
 std::vector<int> drawn_of_group(const Drawn& drawn, const Case& read, const std::string& group, std::size_t most) {
   std::vector<int> found;
   for (const int node : nodes_of(read.mesh->mesh, read.mesh->mesh.groups.at(group)))
-    if (std::ranges::binary_search(drawn.outline.nodes, node)) found.push_back(node);
+    if (std::ranges::binary_search(drawn.nodes, drawn.first_of_mesh + node)) found.push_back(node);
   const std::size_t every = found.size() / most + 1;
   std::vector<int> thinned;
   for (std::size_t i = 0; i < found.size(); i += every) thinned.push_back(found[i]);
@@ -77,13 +122,12 @@ void write_outline(JsonWriter& json, const Drawn& drawn, const Case& read, const
   json.end_array();
 }
 
-void write_beams(JsonWriter& json, const Case& read) {
+void write_beams(JsonWriter& json, const Drawn& drawn, const Built& built) {
   json.begin_array();
-  for (const Values& beam : read.values.tables("beam")) {
-    std::vector<std::string> nodes{beam.texts("nodes").front()};
-    for (int k = 1; k < beam.integer("elements"); ++k) nodes.push_back(beam.text("name") + "." + std::to_string(k));
-    nodes.push_back(beam.texts("nodes").back());
-    json.begin_object().member("name", beam.text("name")).key("nodes").texts(nodes).end_object();
+  for (const BeamLine& beam : drawn.beams) {
+    std::vector<std::string> nodes;
+    for (const int node : beam.nodes) nodes.push_back(built.model.nodes[static_cast<std::size_t>(node)].name);
+    json.begin_object().member("name", beam.name).key("nodes").texts(nodes).end_object();
   }
   json.end_array();
 }
@@ -102,7 +146,11 @@ void write_bodies(JsonWriter& json, const Case& read, const Built& built) {
     const double half = footing->number("width") / 2;
     const double height = std::max(0.08 * 2 * half, (built.model.nodes[static_cast<std::size_t>(node)].position - middle).dot(n));
     const std::array<Vec3, 4> corners{middle - half * t, middle + half * t, middle + half * t + height * n, middle - half * t + height * n};
-    json.begin_object().member("name", footing->text("body")).member("node", footing->text("body")).key("outline").begin_array();
+    json.begin_object()
+        .member("name", footing->text("body"))
+        .member("node", shown_name(built, footing->text("body")))
+        .key("outline")
+        .begin_array();
     for (const Vec3& corner : corners) json.numbers(std::array<double, 2>{corner.x(), corner.y()});
     json.end_array().end_object();
   }
@@ -117,7 +165,7 @@ void write_supports(JsonWriter& json, const Drawn& drawn, const Case& read, cons
   };
   json.key("supports").begin_array();
   for (const Values& support : read.values.tables("support")) {
-    if (support.has("node")) write(support.text("node"), support);
+    if (support.has("node")) write(shown_name(built, support.text("node")), support);
     if (support.has("group"))
       for (const int node : drawn_of_group(drawn, read, support.text("group"), 8)) write(name_of_mesh_node(drawn, built, node), support);
   }
@@ -146,7 +194,7 @@ void write_loads(JsonWriter& json, const Drawn& drawn, const Case& read, const B
   for (const Values& load : read.values.tables("load")) {
     const char* key = load.has("force") ? "force" : "traction";
     if (!load.has(key)) continue;
-    std::string node = load.has("node") ? load.text("node") : "";
+    std::string node = load.has("node") ? shown_name(built, load.text("node")) : "";
     if (load.has("group"))
       if (const std::vector<int> nodes = drawn_of_group(drawn, read, load.text("group"), 1000); !nodes.empty())
         node = name_of_mesh_node(drawn, built, nodes[nodes.size() / 2]);
@@ -160,7 +208,7 @@ void write_small_parts(JsonWriter& json, const Case& read, const Built& built) {
   json.key("masses").begin_array();
   for (const Values& mass : read.values.tables("mass"))
     json.begin_object()
-        .member("node", mass.text("node"))
+        .member("node", shown_name(built, mass.text("node")))
         .member("mass", mass.has("mass") ? mass.number("mass") : built.tuned_mass)
         .end_object();
   json.end_array();
@@ -168,9 +216,9 @@ void write_small_parts(JsonWriter& json, const Case& read, const Built& built) {
   for (const char* kind : {"spring", "dashpot"})
     for (const Values& spring : read.values.tables(kind)) {
       const std::vector<std::string>& nodes = spring.texts("nodes");
-      json.begin_object().key("nodes").begin_array().value(nodes.front());
+      json.begin_object().key("nodes").begin_array().value(shown_name(built, nodes.front()));
       if (nodes.size() > 1)
-        json.value(nodes.back());
+        json.value(shown_name(built, nodes.back()));
       else
         json.null();
       json.end_array().member("kind", kind).end_object();
@@ -194,7 +242,7 @@ void write_interfaces(JsonWriter& json, const Drawn& drawn, const Case& read, co
     const bool surface = read.mesh && !read.mesh->open[k].empty();
     json.begin_object().member("name", interface.name);
     if (surface) json.member("opened", true);
-    if (!built.facts[k].body.empty()) json.member("body", built.facts[k].body);
+    if (!built.facts[k].body.empty()) json.member("body", shown_name(built, built.facts[k].body));
     json.key("points").begin_array();
     for (int i = 0; i < interface.batch.points; ++i) {
       const Vec3 &at = interface.position[static_cast<std::size_t>(i)], &n = interface.normal[static_cast<std::size_t>(i)];
@@ -223,17 +271,30 @@ void write_points(JsonWriter& json, const Built& built, const RunResult& result,
 
 }  // namespace
 
+std::set<int> nodes_used(const Case& read, const Built& built) {
+  std::set<int> nodes;
+  for (const char* kind : {"mass", "support", "load"})
+    for (const Values& table : read.values.tables(kind))
+      if (table.has("node")) nodes.insert(built.model.find_node(table.text("node")));
+  for (const char* kind : {"spring", "dashpot"})
+    for (const Values& table : read.values.tables(kind))
+      for (const std::string& node : table.texts("nodes")) nodes.insert(built.model.find_node(node));
+  for (const Values& interface : read.values.tables("interface"))
+    if (const Values* footing = table_if(interface, "footing")) nodes.insert(built.model.find_node(footing->text("body")));
+  return nodes;
+}
+
 void write_model(JsonWriter& json, const Case& read, const Built& built) {
   const Drawn drawn = drawn_of(read, built);
   json.begin_object().key("nodes").begin_array();
   for (const int i : drawn.nodes) {
     const Node& node = built.model.nodes[static_cast<std::size_t>(i)];
     json.begin_object().member("name", node.name).member("x", node.position.x()).member("y", node.position.y());
-    if (node.name.starts_with("mesh.")) json.member("hidden", true);
+    if (drawn.hidden.contains(i)) json.member("hidden", true);
     json.end_object();
   }
   json.end_array().key("beams");
-  write_beams(json, read);
+  write_beams(json, drawn, built);
   json.key("bodies");
   write_bodies(json, read, built);
   write_small_parts(json, read, built);

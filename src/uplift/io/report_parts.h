@@ -1,4 +1,5 @@
 #pragma once
+#include <set>
 #include <span>
 #include <string>
 #include <string_view>
@@ -18,6 +19,8 @@ void write_floor_table(JsonWriter& json, const ReportInput& input);
 void write_verdict(JsonWriter& json, const ReportInput& input);
 void write_tables(JsonWriter& json, const ReportInput& input);
 void write_charts(JsonWriter& json, const ReportInput& input);
+/// Nodes of the model that masses, supports, loads, springs, dashpots and footings stand on: they are drawn.
+std::set<int> nodes_used(const Case& read, const Built& built);
 void write_model(JsonWriter& json, const Case& read, const Built& built);
 void write_animations(JsonWriter& json, const ReportInput& input);
 /// The same two for a model in space: the members "space" and "spaceAnimations".

@@ -46,8 +46,7 @@ Surface surface_of(const Mesh& mesh, const std::string& group) {
 /// What is drawn: surfaces of solids, nodes of the case, of beams and of rigid bodies.
 struct Drawn {
   std::vector<Surface> surfaces;
-  std::vector<std::vector<int>> beams;  // nodes of the model
-  std::vector<int> nodes;               // of the model, ascending
+  std::vector<int> nodes;  // of the model, ascending
   int first_of_mesh = 0;
   int number(int node) const { return static_cast<int>(std::ranges::lower_bound(nodes, node) - nodes.begin()); }
 };
@@ -55,20 +54,14 @@ struct Drawn {
 Drawn drawn_of(const Case& read, const Built& built) {
   Drawn drawn;
   drawn.first_of_mesh = static_cast<int>(read.values.tables("nodes").size());
-  std::set<int> nodes;
+  std::set<int> nodes = nodes_used(read, built);
   for (int i = 0; i < drawn.first_of_mesh; ++i) nodes.insert(i);
   if (read.mesh)
     for (const Values& solid : read.values.tables("solid")) {
       drawn.surfaces.push_back(surface_of(read.mesh->mesh, solid.text("group")));
       for (const int node : drawn.surfaces.back().triangles) nodes.insert(drawn.first_of_mesh + node);
     }
-  for (const Values& beam : read.values.tables("beam")) {
-    std::vector<int>& line = drawn.beams.emplace_back();
-    line.push_back(built.model.find_node(beam.texts("nodes").front()));
-    for (int k = 1; k < beam.integer("elements"); ++k) line.push_back(built.model.find_node(beam.text("name") + "." + std::to_string(k)));
-    line.push_back(built.model.find_node(beam.texts("nodes").back()));
-    nodes.insert(line.begin(), line.end());
-  }
+  for (const BeamLine& beam : built.beams) nodes.insert(beam.nodes.begin(), beam.nodes.end());
   for (const int node : {built.top, built.base})
     if (node >= 0) nodes.insert(node);
   drawn.nodes.assign(nodes.begin(), nodes.end());
@@ -259,10 +252,10 @@ void write_model(JsonWriter& json, const Case& read, const Built& built, const D
   write_places(json, "nodes", places);
   write_surfaces(json, drawn);
   json.key("lines").begin_array();
-  for (std::size_t k = 0; k < drawn.beams.size(); ++k) {
+  for (const BeamLine& beam : built.beams) {
     std::vector<int> line;
-    for (const int node : drawn.beams[k]) line.push_back(drawn.number(node));
-    json.begin_object().member("name", read.values.tables("beam")[k].text("name"));
+    for (const int node : beam.nodes) line.push_back(drawn.number(node));
+    json.begin_object().member("name", beam.name);
     write_whole(json, "nodes", line);
     json.end_object();
   }

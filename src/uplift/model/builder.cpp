@@ -16,10 +16,10 @@ BulkDamping rayleigh(double frequency_1, double ratio_1, double frequency_2, dou
   return damping;
 }
 
-int ModelBuilder::add_node(std::string name, Place position, Where where) {
+int ModelBuilder::add_node(std::string name, Place position, Where where, std::string alias) {
   if (!node_names_.insert(name).second)
     throw InputError(std::move(where), "nodes." + name, "a name that no other node has", fmt::format("\"{}\" twice", name));
-  nodes_.push_back({std::move(name), position});
+  nodes_.push_back({std::move(name), position, std::move(alias)});
   return static_cast<int>(nodes_.size()) - 1;
 }
 

@@ -37,8 +37,8 @@ class ModelBuilder {
  public:
   explicit ModelBuilder(Space space = {}) : space_(space) {}
   Space space() const { return space_; }
-  /// Returns the number of the node; its full unknowns are space().at(number, ...).
-  int add_node(std::string name, Place position, Where where);
+  /// Returns the number of the node; its full unknowns are space().at(number, ...). `alias`: see Node.
+  int add_node(std::string name, Place position, Where where, std::string alias = {});
   void add_element(std::unique_ptr<const Element> element, Where where);
   /// The unknown stays zero.
   void fix(int node, Dof dof, Where where);

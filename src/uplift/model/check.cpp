@@ -7,6 +7,7 @@
 
 #include "uplift/math/dense.h"
 #include "uplift/math/sparse_solvers.h"
+#include "uplift/model/hinges.h"
 #include "uplift/model/rigid_pieces.h"
 
 namespace uplift {
@@ -212,9 +213,11 @@ std::string loose_part(const Model& model, bool dashpots_hold) {
 
 void check_static(const Model& model, bool dashpots_hold) {
   const std::string loose = loose_part(model, dashpots_hold);
-  if (!loose.empty())
-    throw InputError(place_of(model), "", "a structure that stands when all its interfaces are closed",
-                     fmt::format("a mechanism: {} without resistance", loose));
+  if (loose.empty()) return;
+  const std::vector<int> hinged = hinges(model);
+  throw InputError(place_of(model), "", "a structure that stands when all its interfaces are closed",
+                   fmt::format("a mechanism: {} without resistance{}", loose,
+                               hinged.empty() ? "" : "; beams end in hinges of solids: " + named_places(model, hinged)));
 }
 
 void check_dynamic(const Model& model) {
