@@ -348,6 +348,21 @@ TEST(CaseBeamGroup, RigidBodiesWithoutANodeTurnAboutTheMiddleOfTheirGroup) {
             "case.toml:27: rigid[0]: wanted node, or a group of the mesh, found neither");
 }
 
+TEST(CaseBeamGroup, RigidBodiesOfManySolidsAreNoMechanisms) {
+  Mesh mesh = rectangle(uniform_lines(0, 10, 10), {0, 1, 2, 4});  // its middle is at no node
+  name_node(mesh, "left", 0);
+  name_node(mesh, "right", 10);
+  const std::string text = std::string("title = \"t\"\n") + mesh_table +
+                           "[[solid]]\ngroup = \"volume\"\nE = 3e10\npoisson = 0.2\ndensity = 2500\n"
+                           "[[rigid]]\nname = \"body\"\ngroup = \"volume\"\n"
+                           "[[spring]]\nnodes = [\"left\"]\ndirection = [1, 0]\nstiffness = 1e8\n"
+                           "[[spring]]\nnodes = [\"left\"]\ndirection = [0, 1]\nstiffness = 1e8\n" +
+                           static_stage;
+  const std::string right = "[[spring]]\nnodes = [\"right\"]\ndirection = [0, 1]\nstiffness = 1e8\n";
+  EXPECT_EQ(refusal(text + right, mesh), "accepted");
+  EXPECT_NE(refusal(text, mesh).find("can turn about the point (0, 0) m without resistance"), std::string::npos) << refusal(text, mesh);
+}
+
 // ---- what is drawn ----
 
 TEST(CaseBeamGroup, LinesAreStrungTogetherWhereTheyDoNotBranch) {

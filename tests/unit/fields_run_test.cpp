@@ -210,6 +210,34 @@ TEST(FieldRun, NodesMoveAsInTheStates) {
   EXPECT_EQ(met, 1);
 }
 
+TEST(FieldRun, BeamsOfAGroupAreABlockAndMoveWithTheSolidsBelow) {
+  const std::string beam = "[[beam]]\nname = \"lid\"\ngroup = \"raft_top\"\nE = 3e10\nI = 0.02\nA = 0.3\n";
+  const std::string options = "format = \"xdmf\"\nprecision = \"float64\"\nevery = 5\n";
+  {
+    const Written written(case_text("quad4", "nodal", options) + beam);
+    ASSERT_EQ(written.result.status, RunStatus::completed) << written.result.reason;
+    const Hdf5Reader file = Hdf5Reader::open(written.file("fields/run.h5"));
+    EXPECT_EQ(file.integers("/mesh/raft_top/line2/nodes").size(), 2u * 6);
+    const std::string frame = "/frames/000002/";
+    EXPECT_EQ(file.children(frame + "raft_top/points").size(), 3u);  // no stress
+    const auto places = file.numbers("/mesh/raft_top/points"), solid = file.numbers("/mesh/raft/points");
+    int met = 0;
+    for (const char* quantity : {"displacement", "velocity", "acceleration"}) {
+      const auto on_beam = file.numbers(frame + "raft_top/points/" + quantity), on_raft = file.numbers(frame + "raft/points/" + quantity);
+      for (std::size_t i = 0; i < places.size(); i += 3)
+        for (std::size_t j = 0; j < solid.size(); j += 3) {
+          if (places[i] != solid[j] || places[i + 1] != solid[j + 1]) continue;
+          ++met;
+          for (std::size_t k = 0; k < 3; ++k) EXPECT_EQ(on_beam[i + k], on_raft[j + k]);
+          EXPECT_NE(on_beam[i + 1], 0);
+        }
+    }
+    EXPECT_EQ(met, 3 * 7);
+  }
+  const Written chosen(case_text("quad4", "nodal", options + "groups = [\"raft_top\"]\n") + beam);
+  EXPECT_EQ(Hdf5Reader::open(chosen.file("fields/run.h5")).children("/mesh"), (std::vector<std::string>{"interfaces", "raft_top"}));
+}
+
 // ---- in space ----
 
 constexpr const char* sides_in_space = R"(

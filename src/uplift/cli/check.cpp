@@ -34,8 +34,9 @@ struct Findings {
     double speed = 0;              // m/s: of shear waves; 0 without mass
     double highest_frequency = 0;  // Hz: with ten nodes per wavelength
   };
-  std::vector<Solid> solids;  // of a mesh
-  int pieces = 0;             // of the opened mesh
+  std::vector<Solid> solids;        // of a mesh
+  std::vector<GroupQuality> beams;  // groups of the mesh that are beams
+  int pieces = 0;                   // of the opened mesh
   std::optional<FieldForecast> fields;
   std::optional<BulkCost> bulk;  // of a large bulk
   double record_bytes = 0;       // floors at every step
@@ -56,6 +57,9 @@ void look_at_mesh(const Case& read, Findings& found) {
       const double speed = solid.section.material.density > 0 ? solid.section.material.s_wave_speed() : 0;
       found.solids.push_back({quality, speed, speed > 0 ? highest_frequency(quality, speed, points_per_wavelength) : 0});
     }
+  for (const Values& beam : read.values.tables("beam"))
+    for (const GroupQuality& quality : qualities)
+      if (beam.has("group") && quality.name == beam.text("group")) found.beams.push_back(quality);
   found.pieces = connected_pieces(read.mesh->mesh).count();
 }
 
@@ -73,6 +77,8 @@ void print_mesh(const Case& read, const Findings& found) {
     if (solid.speed > 0)
       line("", fmt::format("shear waves of {:.4g} m/s up to {:.3g} Hz (ten nodes a wavelength)", solid.speed, solid.highest_frequency));
   }
+  for (const GroupQuality& beam : found.beams)
+    line("  " + beam.name, fmt::format("beams along {} lines of {:.3g} to {:.3g} m", beam.cells, beam.shortest, beam.longest));
 }
 
 void write_mesh(JsonWriter& json, const Case& read, const Findings& found) {
@@ -88,6 +94,14 @@ void write_mesh(JsonWriter& json, const Case& read, const Findings& found) {
         .member("scaled_jacobian", solid.quality.jacobian)
         .member("shear_wave_speed", solid.speed)
         .member("highest_frequency", solid.highest_frequency)
+        .end_object();
+  json.end_array().key("beams").begin_array();
+  for (const GroupQuality& beam : found.beams)
+    json.begin_object()
+        .member("group", beam.name)
+        .member("lines", beam.cells)
+        .member("shortest", beam.shortest)
+        .member("longest", beam.longest)
         .end_object();
   json.end_array().end_object();
 }

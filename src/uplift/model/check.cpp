@@ -18,9 +18,7 @@ namespace {
 /// whole are left out: they do not resist it, and would only leave their round-off.
 Sparse resisting_elements(const Model& model, const std::vector<int>& pieces, bool dashpots_hold) {
   const Space space = model.space;
-  std::vector<int> kept(model.nodes.size(), 0);  // translations
-  for (const int unknown : model.kept)
-    if (!space.is_rotation(unknown)) ++kept[space.node_of(unknown)];
+  const std::vector<int> kept = kept_translations(model);
   std::vector<Triplet> entries;
   for (const auto& element : model.elements) {
     const auto nodes = element->nodes();

@@ -13,6 +13,10 @@ namespace uplift {
 
 namespace {
 
+bool is_beam(const Element& element) {
+  return dynamic_cast<const Beam*>(&element) || dynamic_cast<const SpaceBeam*>(&element);
+}
+
 /// Beams at nodes, and which of these are nodes of solids.
 struct Joints {
   std::vector<std::vector<int>> beams;   // of each node: the other ends
@@ -20,7 +24,7 @@ struct Joints {
   explicit Joints(const Model& model) : beams(model.nodes.size()), solids(model.nodes.size()) {
     for (const auto& element : model.elements) {
       const auto nodes = element->nodes();
-      if (!dynamic_cast<const Beam*>(element.get()) && !dynamic_cast<const SpaceBeam*>(element.get())) continue;
+      if (!is_beam(*element)) continue;
       beams[nodes[0]].push_back(nodes[1]);
       beams[nodes[1]].push_back(nodes[0]);
     }
@@ -52,6 +56,7 @@ bool held(const Model& model, int node) {
 }  // namespace
 
 std::vector<int> hinges(const Model& model) {
+  if (std::ranges::none_of(model.elements, [](const auto& element) { return is_beam(*element); })) return {};
   const Joints joints(model);
   std::vector<int> found;
   for (int node = 0; node < static_cast<int>(joints.beams.size()); ++node) {

@@ -9,7 +9,7 @@ namespace uplift {
 
 namespace {
 
-constexpr int few = 30;  // nodes: smaller pieces are taken as they are
+constexpr int few = 30;  // nodes that move freely: pieces with fewer are taken as they are
 
 const Solid* solid_of(const Element& element) {
   return dynamic_cast<const Solid*>(&element);
@@ -19,6 +19,13 @@ const Solid* solid_of(const Element& element) {
 
 bool is_solid(const Element& element) {
   return solid_of(element) != nullptr;
+}
+
+std::vector<int> kept_translations(const Model& model) {
+  std::vector<int> kept(model.nodes.size(), 0);
+  for (const int unknown : model.kept)
+    if (!model.space.is_rotation(unknown)) ++kept[model.space.node_of(unknown)];
+  return kept;
 }
 
 std::vector<int> solid_pieces(const Model& model) {
@@ -33,7 +40,9 @@ std::vector<int> solid_pieces(const Model& model) {
       for (const int node : element->nodes()) parent[root(node)] = root(element->nodes()[0]);
   std::vector<int> size(model.nodes.size(), 0), number(model.nodes.size(), -1), piece(model.nodes.size(), -1);
   const int nodes = static_cast<int>(parent.size());
-  for (int node = 0; node < nodes; ++node) ++size[root(node)];
+  const std::vector<int> kept = kept_translations(model);
+  for (int node = 0; node < nodes; ++node)
+    if (kept[node] == model.space.dimension) ++size[root(node)];
   int next = 0;
   for (int node = 0; node < nodes; ++node) {
     const int top = root(node);

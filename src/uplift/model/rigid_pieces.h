@@ -7,7 +7,9 @@
 namespace uplift {
 
 bool is_solid(const Element& element);
-/// The piece of connected solids that each node belongs to; -1 for nodes of no solid and of pieces with few nodes.
+/// How many translations of each node are free unknowns.
+std::vector<int> kept_translations(const Model& model);
+/// The piece of connected solids that each node belongs to; -1 for nodes of no solid and of pieces with few nodes that move freely.
 std::vector<int> solid_pieces(const Model& model);
 
 /// Columns span the free motions in which every piece moves as a rigid body; nothing else is held. A free motion without strain energy is
