@@ -271,6 +271,49 @@ TEST(CaseBeamGroup, HingesOfAStrutAreNamed) {
   EXPECT_EQ(hinges(build(read, RunSpec{}).model), (std::vector<int>{0, 9}));
 }
 
+/// A block of 2 x 2 x 2 m in bricks of 1 m, z from 0 down, and lines of 1 m on its axis from `from` to `to` m.
+Mesh block_with_axis(int from, int to) {
+  Mesh mesh = box(uniform_lines(-1, 1, 2), uniform_lines(-1, 1, 2), uniform_lines(-2, 0, 2));
+  const auto node_at = [&](double z) {
+    for (int i = 0; i < static_cast<int>(mesh.nodes.size()); ++i)
+      if ((mesh.nodes[static_cast<std::size_t>(i)] - Vec3(0, 0, z)).norm() < 1e-9) return i;
+    mesh.nodes.push_back({0, 0, z});
+    return static_cast<int>(mesh.nodes.size()) - 1;
+  };
+  std::vector<std::vector<int>> lines;
+  for (int z = from; z < to; ++z) lines.push_back({node_at(z), node_at(z + 1)});
+  add_lines(mesh, "axis", Cell::line2, lines);
+  name_node(mesh, "first", lines.front()[0]);
+  name_node(mesh, "last", lines.back()[1]);
+  return mesh;
+}
+
+std::string block_text(const std::string& extra) {
+  return std::string("title = \"t\"\n") + mesh_table + "[[solid]]\ngroup = \"volume\"\nE = 5e8\npoisson = 0.3\ndensity = 1900\n" +
+         beam("group = \"axis\"", "I_y = 0.02\nI_z = 0.05\nJ = 0.03\nA = 0.3") +
+         "[[support]]\ngroup = \"bottom\"\nfixed = [\"ux\", \"uy\", \"uz\"]\n[[load]]\nnode = \"last\"\nforce = [3e4, 0, 0]\n" +
+         "moments = [0, 0, 2e4]\n" + extra + static_stage;
+}
+
+TEST(CaseBeamGroup, PlateHoldsAColumnInSpaceAgainstBendingAndTorsion) {
+  const std::string text = block_text("[[rigid]]\nname = \"plate\"\ngroup = \"top\"\n");
+  const Mesh mesh = block_with_axis(0, 3);
+  const auto difference = [&](const char* of) {
+    const std::string both = text + history("first", of) + history("last", of);
+    return last_of(both, mesh, std::string("last.") + of) - last_of(both, mesh, std::string("first.") + of);
+  };
+  const double twist = 2e4 * 3 / (young / (2 * (1 + poisson)) * 0.03), bent = 3e4 * 27 / (3 * young * inertia);  // about y: I_y
+  EXPECT_NEAR(difference("rz"), twist, 1e-9 * twist);
+  EXPECT_NEAR(difference("ux"), bent + 3 * last_of(text + history("first", "ry"), mesh, "first.ry"), 1e-9 * bent);
+}
+
+TEST(CaseBeamGroup, PileTurnsAboutItselfUntilItsTipIsHeld) {
+  const Mesh mesh = block_with_axis(-2, 0);
+  const std::string said = refusal(block_text(""), mesh);
+  EXPECT_NE(said.find("can turn about the axis (0, 0, 1)"), std::string::npos) << said;
+  EXPECT_EQ(refusal(block_text("[[support]]\ngroup = \"first\"\nfixed = [\"rz\"]\n"), mesh), "accepted");
+}
+
 // ---- mistakes ----
 
 TEST(CaseBeamGroup, MistakesAreNamed) {

@@ -126,7 +126,7 @@ Vec3 forward(const Vec3& v) {
   return direction;
 }
 
-/// Rotation of the rigid motion that fits the translations of some nodes best; that of the first node when they are at one place.
+/// Rotation of the rigid motion that fits the translations of some nodes best; that of the first node when none moves.
 Vec3 turn_of(const Model& model, const Motions& motions, const std::vector<int>& nodes) {
   Vec3 centre = Vec3::Zero(), mean = Vec3::Zero();
   for (const int i : nodes) {
@@ -140,7 +140,8 @@ Vec3 turn_of(const Model& model, const Motions& motions, const std::vector<int>&
     inertia += r.squaredNorm() * Matrix::Identity(3, 3) - r * r.transpose();
     spin += cross(r, motions.translation[i] - mean);
   }
-  if (inertia.isZero(0)) return motions.rotation[nodes.front()];
+  const Vec3& first = motions.rotation[nodes.front()];
+  if (spin.norm() <= 1e-9 * inertia.norm() * first.norm()) return first;  // at one place, or on the axis
   return CompleteQr(inertia).solve(spin);
 }
 
