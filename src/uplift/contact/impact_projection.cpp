@@ -61,9 +61,10 @@ bool select_rows(const Impact& impact, Hold hold, ImpactScratch& scratch) {
   select(impact.normals, take ? scratch.limit.data() : scratch.fixed.data());
   select(impact.tangents, scratch.fixed.data());
   scratch.any_fixed = !take || !impact.tangents.empty();
-  if (impact.mass->factor.cols() > 3) least = 0, most = static_cast<int>(rows) - 1;  // the kernel's work space keeps its size
-  scratch.first = least;
-  scratch.count = most - least + 1;
+  // whole vector registers; with many columns all rows, so that the kernel's work space keeps its size
+  const bool all = impact.mass->factor.cols() > 3;
+  scratch.first = all ? 0 : least - least % small::lanes;
+  scratch.count = all ? rows : std::min(rows, most + small::lanes - most % small::lanes) - scratch.first;
   return true;
 }
 
