@@ -94,22 +94,27 @@ Look look(std::ptrdiff_t n, const double* c, std::ptrdiff_t stride, const double
   const double *c0 = c, *c1 = R > 1 ? c + stride : c, *c2 = R > 2 ? c + 2 * stride : c;
   const double z0 = z[0], z1 = R > 1 ? z[R > 1 ? 1 : 0] : 0, z2 = R > 2 ? z[R > 2 ? 2 : 0] : 0;
   const double y0 = y[0], y1 = R > 1 ? y[R > 1 ? 1 : 0] : 0, y2 = R > 2 ? y[R > 2 ? 2 : 0] : 0;
+  const double pull = std::sqrt(1e-24 * std::max(work, 0.0) / weight);  // a pressure beyond 1e-12 of the mean one is noticed
 #pragma omp simd
   for (std::ptrdiff_t i = 0; i < n; ++i) {
     double o = target[i] + c0[i] * z0, f = c0[i] * y0;
     if constexpr (R > 1) o += c1[i] * z1, f += c1[i] * y1;
     if constexpr (R > 2) o += c2[i] * z2, f += c2[i] * y2;
     const double h = held[i], most = limit[i];
-    const bool was = h > 0, may = most > 0;
     opening[i] = o;
-    force[i] = h * (may && f > 0 ? 0.0 : f);
-    const bool noticed = weight * f * f > 1e-24 * work;  // beyond 1e-12 of the mean pressure
-    const bool now = was ? !((f > 0) & noticed) : (o < -gap) | ((o <= gap) & (f < 0) & noticed);
-    next[i] = may ? (now ? most : 0.0) : h;
+    force[i] = h * (most > 0 && f > 0 ? 0.0 : f);
+    const double kept = f > pull ? 0.0 : most, touching = f < -pull ? most : 0.0;
+    const double taken = o < -gap ? most : o <= gap ? touching : 0.0;
+    next[i] = !(most > 0) ? h : h > 0 ? kept : taken;
   }
-  small::Lanes closed = small::Lanes::Zero();
-  small::for_lanes(n, [&](const auto& at) { closed = closed.max(at(opening).abs() * (at(held) * 1e300).min(1)); });
-  return {closed.maxCoeff(), std::memcmp(next, held, static_cast<std::size_t>(n) * sizeof(double)) != 0};
+  using small::Lanes;
+  Lanes closed = Lanes::Zero(), change = Lanes::Zero();
+  small::for_lanes(n, [&](const auto& at) {
+    const Lanes h = at(held);
+    closed = closed.max(at(opening).abs() * (h * 1e300).min(1));
+    change = change.max((at(next) - h).abs());
+  });
+  return {closed.maxCoeff(), change.maxCoeff() > 0};
 }
 
 /// right = -sum held c opening: what is left to correct.

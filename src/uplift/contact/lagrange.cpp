@@ -53,7 +53,7 @@ class LagrangeMethod final : public ContactMethod {
     const std::ptrdiff_t n = block.batch.points, first = block.first + block.batch.normal(), rows = problem.rows();
     const double* area = block.area.data();
     double* held = solution.lagrange.held.data();
-    const Status* status = solution.status.data();
+    Status* status = solution.status.data();
 #pragma omp simd
     for (std::ptrdiff_t i = 0; i < n; ++i) held[i] = status[i] != Status::open ? area[i] : 0.0;
     const Rows view{n,       problem.factor.cols(), rows, problem.factor.data() + first, problem.free_opening.data() + first, area,
@@ -61,7 +61,7 @@ class LagrangeMethod final : public ContactMethod {
     const KernelReply reply =
         solve_rows(view, held, solution.z.data(), solution.opening.data() + first, solution.force.data() + first, solution.lagrange.kernel);
     if (reply.iterations > 1)
-      for (std::ptrdiff_t i = 0; i < n; ++i) solution.status[static_cast<std::size_t>(i)] = held[i] > 0 ? Status::slip : Status::open;
+      for (std::ptrdiff_t i = 0; i < n; ++i) status[i] = held[i] > 0 ? Status::slip : Status::open;
     for (int c = 0; c + 1 < block.batch.components; ++c) {  // tractionless tangentially
       const std::ptrdiff_t row = block.first + c * n;
       double* opening = solution.opening.data() + row;

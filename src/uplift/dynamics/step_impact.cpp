@@ -11,25 +11,32 @@ namespace uplift {
 /// those of constraints, or of stiff laws where there is no constraint.
 void Stepper::apply_impact(Level& level) {
   const InterfaceProblem& problem = *last_;
-  normals_.clear();
-  tangents_.clear();
-  const double largest = contact_.cwiseAbs().maxCoeff();
+  const double nothing = 1e-12 * contact_.cwiseAbs().maxCoeff();
   const bool constrained = std::ranges::any_of(problem.blocks, [](const Block& block) { return block.cone != nullptr; });
+  std::size_t count = 0;
+  normals_.resize(static_cast<std::size_t>(b_.rows()));
+  tangents_.clear();
   for (const Block& block : problem.blocks) {
     if (constrained && block.cone == nullptr) continue;  // a law beside constraints gives way
     const int n = block.batch.points, normal = block.first + block.batch.normal();
+    const std::size_t before = count;
+    const double* force = contact_.data();
+    int* list = normals_.data();
+    for (int row = normal; row < normal + n; ++row) {  // without a branch that cannot be foretold
+      list[count] = row;
+      count += -force[row] > nothing ? 1 : 0;
+    }
     const double friction = block.cone != nullptr ? block.cone->friction() : 0;
-    for (int i = 0; i < n; ++i) {
-      const double pressure = -contact_[normal + i];
-      if (!(pressure > 1e-12 * largest)) continue;
-      normals_.push_back(normal + i);
-      if (!(friction > 0)) continue;
+    if (!(friction > 0)) continue;
+    for (std::size_t k = before; k < count; ++k) {
+      const int i = normals_[k] - normal;
       double tangential = 0;  // the norm of both directions: a point that slides along a slanted line does not stick in either
       for (int c = 0; c < block.batch.components - 1; ++c) tangential = std::hypot(tangential, contact_[block.first + c * n + i]);
-      if (!(tangential < friction * pressure * (1 - 1e-9))) continue;
+      if (!(tangential < friction * -contact_[normals_[k]] * (1 - 1e-9))) continue;
       for (int c = 0; c < block.batch.components - 1; ++c) tangents_.push_back(block.first + c * n + i);
     }
   }
+  normals_.resize(count);
   if (normals_.empty()) return;
   const double weight = (1 - options_.scheme.alpha_f) / (1 - options_.scheme.alpha_m);
   Impact data;
