@@ -82,6 +82,7 @@ void InterfaceViewer::look(const Vector& opening, const Vector& force, std::vect
     using small::Lanes;
     const Lanes zero = Lanes::Zero();
     Lanes axials = zero, moments = zero, slopes = zero, open = zero, pulled = zero, widest = zero, pressure = zero;
+    Lanes least = Lanes::Constant(gap[0]);
     const auto positive = [](const auto& x) -> Lanes { return (x * 1e300).max(0).min(1); };  // 1 where it is, else 0
     small::for_lanes(n, [&](const auto& at) {
       const Lanes pull = at(p), here = at(gap), weight = at(area);
@@ -91,6 +92,7 @@ void InterfaceViewer::look(const Vector& opening, const Vector& force, std::vect
       open += positive(here - tolerance) * weight;
       pulled += positive(pull) * weight;
       widest = widest.max(here);
+      least = least.min(at(gap, gap[0]));
       pressure = pressure.max(-pull * at(inverse));
     });
     double shear = 0, moment = moments.sum();
@@ -98,7 +100,7 @@ void InterfaceViewer::look(const Vector& opening, const Vector& force, std::vect
     view.open_area = std::min(1.0, open.sum() / layout.total);
     view.tension_area = pulled.sum() / layout.total;
     view.max_opening = widest.maxCoeff();
-    view.least_opening = ConstMap(gap, n).minCoeff();
+    view.least_opening = least.minCoeff();
     view.max_pressure = pressure.maxCoeff();
     view.rotation = {slopes.sum(), 0};
     if (!layout.slope_weight[1].empty()) view.rotation[1] = small::dot(n, layout.slope_weight[1].data(), gap);

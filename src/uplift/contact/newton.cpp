@@ -30,6 +30,7 @@ class Newton {
   Outcome solve();
 
  private:
+  static constexpr Index most = R > 0 ? R : few;  // where H is formed
   Index r() const { return R > 0 ? R : r_; }
   const double* column(Index j) const { return problem_.factor.data() + j * rows_; }
   const double* slope_of(std::size_t block) const { return scratch_.slope.data() + scratch_.first_slope[block]; }
@@ -46,10 +47,11 @@ class Newton {
   void look(bool with_hessian);
   void move(double alpha, bool with_hessian);
   void form_gradient(bool with_hessian);
-  void add_block(const Block& block, const double* slope);
-  void add_general(const Block& block, const double* slope);
+  void add_block(const Block& block, const double* slope, double* g, double* h);
+  void add_general(const Block& block, const double* slope, double* g, double* h);
   void take_back_shift(bool with_hessian);
   bool direction();
+  bool direction_of_few(double* d) const;
   void line_search(double start_slope, double end_slope);
   void shorten(double before);
   double balance_scale();
@@ -70,7 +72,7 @@ class Newton {
 template <int R>
 void Newton<R>::predict() {
   using small::Lanes;
-  Lanes sum[R > 0 ? R : few];
+  Lanes sum[most];
   for (Index j = 0; j < r(); ++j) sum[j].setZero();
   for (std::size_t b = 0; b < problem_.blocks.size(); ++b) {
     const Block& block = problem_.blocks[b];
@@ -94,7 +96,7 @@ void Newton<R>::predict() {
       });
   }
   for (Index j = 0; j < r(); ++j) scratch_.gradient[j] = sum[j].sum();
-  if (direction()) std::copy_n(scratch_.direction.data(), r(), solution_.z.data());
+  direction_of_few(solution_.z.data());
 }
 
 /// After a step that some law bent in: slopes and Hessian of the step to come, in which it goes on straight.
@@ -132,37 +134,43 @@ void Newton<R>::move(double alpha, bool with_hessian) {
 template <int R>
 void Newton<R>::form_gradient(bool with_hessian) {
   const bool forms = with_hessian && r() <= few;
-  double *g = scratch_.gradient.data(), *h = scratch_.hessian.data();
-  for (Index i = 0; i < r(); ++i) g[i] = solution_.z.data()[i];
+  const double* z = solution_.z.data();
   if (forms) {
-    std::fill_n(h, r() * r(), 0.0);
-    for (Index i = 0; i < r(); ++i) h[i * r() + i] = 1;
-    for (std::size_t b = 0; b < problem_.blocks.size(); ++b) add_block(problem_.blocks[b], slope_of(b));
+    double g[most], h[most * most];  // not in memory where their number is known
+    for (Index j = 0; j < r(); ++j) {
+      g[j] = z[j];
+      for (Index i = 0; i < r(); ++i) h[j * r() + i] = i == j ? 1 : 0;
+    }
+    for (std::size_t b = 0; b < problem_.blocks.size(); ++b) add_block(problem_.blocks[b], slope_of(b), g, h);
+    std::copy_n(g, r(), scratch_.gradient.data());
+    std::copy_n(h, r() * r(), scratch_.hessian.data());
   } else {
+    double* g = scratch_.gradient.data();
+    for (Index i = 0; i < r(); ++i) g[i] = z[i];
     small::add_transposed<R>(rows_, r(), column(0), rows_, solution_.force.data(), g);
   }
   if (problem_.shift.size() > 0) take_back_shift(forms);
   size_ = std::sqrt(dot(scratch_.gradient, scratch_.gradient));
 }
 
-/// H += C_block^T k C_block and G += C_block^T p.
+/// h += C_block^T k C_block and g += C_block^T p.
 template <int R>
-void Newton<R>::add_block(const Block& block, const double* slope) {
+void Newton<R>::add_block(const Block& block, const double* slope, double* g, double* h) {
   if constexpr (R > 0)
     if (block.batch.components == 1)
-      return small::gradient_and_gram<R>(block.batch.points, column(0) + block.first, rows_, solution_.force.data() + block.first, slope,
-                                         scratch_.gradient.data(), scratch_.hessian.data());
-  add_general(block, slope);
+      return small::gradient_and_gram<R>(block.batch.points, column(0) + block.first, rows_, solution_.force.data() + block.first, slope, g,
+                                         h);
+  add_general(block, slope, g, h);
 }
 
 /// The same where the slope couples the components: k C_block column by column, and its products with every column.
 template <int R>
-void Newton<R>::add_general(const Block& block, const double* slope) {
+void Newton<R>::add_general(const Block& block, const double* slope, double* g, double* h) {
   const int n = block.batch.points, components = block.batch.components, rows = block.rows();
   double* pull = scratch_.pull.data();
   for (Index j = 0; j < r(); ++j) {
     const double* right = column(j) + block.first;
-    scratch_.gradient[j] += small::dot(rows, right, solution_.force.data() + block.first);
+    g[j] += small::dot(rows, right, solution_.force.data() + block.first);
     std::fill_n(pull, rows, 0.0);
     for (int a = 0; a < components; ++a)
       for (int b = 0; b < components; ++b) {
@@ -171,7 +179,7 @@ void Newton<R>::add_general(const Block& block, const double* slope) {
 #pragma omp simd
         for (int p = 0; p < n; ++p) to[p] += k[p] * from[p];
       }
-    for (Index i = 0; i < r(); ++i) scratch_.hessian(i, j) += small::dot(rows, column(i) + block.first, pull);
+    for (Index i = 0; i < r(); ++i) h[j * r() + i] += small::dot(rows, column(i) + block.first, pull);
   }
 }
 
@@ -193,9 +201,18 @@ void Newton<R>::take_back_shift(bool with_hessian) {
 /// takes both.
 template <int R>
 bool Newton<R>::direction() {
-  if (r() > few) return direction_of_many(problem_, solution_);
-  for (Index i = 0; i < r(); ++i) scratch_.direction.data()[i] = -scratch_.gradient.data()[i];
-  return small::gauss_solve(r(), scratch_.hessian.data(), scratch_.direction.data());
+  return r() > few ? direction_of_many(problem_, solution_) : direction_of_few(scratch_.direction.data());
+}
+
+/// Writes it to d; nothing when H is singular.
+template <int R>
+bool Newton<R>::direction_of_few(double* d) const {
+  double h[most * most], x[most];
+  std::copy_n(scratch_.hessian.data(), r() * r(), h);
+  for (Index i = 0; i < r(); ++i) x[i] = -scratch_.gradient.data()[i];
+  if (!small::gauss_solve_sized<R>(r(), h, x)) return false;
+  for (Index i = 0; i < r(); ++i) d[i] = x[i];
+  return true;
 }
 
 /// Follows origin + alpha * direction by bisection on the directional derivative until it has fallen enough; the last point is left

@@ -54,22 +54,22 @@ Stepper::~Stepper() = default;
 /// The displacement increment: by the linear step, or by the outer Newton around it.
 Outcome Stepper::solve(Level& level) {
   StepSolver* last = level.solver.get();
-  Outcome outcome;
   if (newton_ == nullptr) {
-    outcome = last->solve(right_, now_.displacement, now_.opening, now_.history, increment_);
-  } else {
-    const PlasticNewton::Make soften = [&](const Sparse& d, std::string& why) -> std::unique_ptr<StepSolver> {
-      const Sparse matrix = matrix_of(level) + d;
-      if (options_.monolithic) return make_monolithic(matrix, b_, gap_, frame_of(level));
-      BulkFactor factor(matrix, &b_, bulk_.small, solver_, model_, linear_);
-      why = factor.why();
-      if (!factor.ok()) return nullptr;
-      return std::make_unique<Condensed>(model_, b_, gap_, std::move(factor), frame_of(level), method_);
-    };
-    outcome = newton_->solve({right_, now_.displacement, now_.opening, now_.history, plastic_now_, next_.time}, *last, soften, increment_,
-                             plastic_next_);
-    last = &newton_->last();
+    last_ = &last->problem();
+    solution_ = &last->solution();
+    return last->solve(right_, now_.displacement, now_.opening, now_.history, increment_);
   }
+  const PlasticNewton::Make soften = [&](const Sparse& d, std::string& why) -> std::unique_ptr<StepSolver> {
+    const Sparse matrix = matrix_of(level) + d;
+    if (options_.monolithic) return make_monolithic(matrix, b_, gap_, frame_of(level));
+    BulkFactor factor(matrix, &b_, bulk_.small, solver_, model_, linear_);
+    why = factor.why();
+    if (!factor.ok()) return nullptr;
+    return std::make_unique<Condensed>(model_, b_, gap_, std::move(factor), frame_of(level), method_);
+  };
+  Outcome outcome = newton_->solve({right_, now_.displacement, now_.opening, now_.history, plastic_now_, next_.time}, *last, soften,
+                                   increment_, plastic_next_);
+  last = &newton_->last();
   last_ = &last->problem();
   solution_ = &last->solution();
   return outcome;

@@ -67,6 +67,7 @@ class Stepper {
  private:
   struct Level;
   Level& level(int halving);
+  Level& make_level(int halving);
   bool try_step(Level& level);
   bool substep(int halving);
   void force_at(double time, Vector& force) const;

@@ -42,7 +42,7 @@ void Stepper::book_energies(const Level& level) {
   }
   interface_energy_.update(*last_, next_.opening, next_.history);
   energies_.stored = interface_energy_.stored;
-  energies_.friction += friction_work(*last_, now_, next_);
+  if (!path_) energies_.friction += friction_work(*last_, now_, next_);  // of constraints
   energies_.interface_dissipated = interface_energy_.dissipated + energies_.friction;
   energies_.impact = impact_loss_;
   energies_.residual = energies_.kinetic + energies_.strain + energies_.stored + energies_.interface_dissipated + energies_.plastic +

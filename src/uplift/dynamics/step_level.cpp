@@ -7,9 +7,8 @@
 
 namespace uplift {
 
-Stepper::Level& Stepper::level(int halving) {
+Stepper::Level& Stepper::make_level(int halving) {
   auto& slot = levels_[static_cast<std::size_t>(halving)];
-  if (slot != nullptr) return *slot;
   slot = std::make_unique<Level>();
   Level& made = *slot;
   const Scheme& s = options_.scheme;

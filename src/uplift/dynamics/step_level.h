@@ -21,4 +21,10 @@ struct Stepper::Level {
   bool hopeless = false;  // nor would that of a smaller step be
 };
 
+/// Made when it is needed for the first time.
+inline Stepper::Level& Stepper::level(int halving) {
+  const std::unique_ptr<Level>& made = levels_[static_cast<std::size_t>(halving)];
+  return made != nullptr ? *made : make_level(halving);
+}
+
 }  // namespace uplift

@@ -40,48 +40,8 @@ void cholesky_solve(std::ptrdiff_t n, const double* l, double* b) {
   }
 }
 
-namespace {
-
-/// N > 0: a size that the compiler knows, so that the loops unroll.
-template <int N>
-bool gauss_solve_sized(std::ptrdiff_t size, double* a, double* b) {
-  const std::ptrdiff_t n = N > 0 ? N : size;
-  for (std::ptrdiff_t j = 0; j < n; ++j) {
-    std::ptrdiff_t best = j;
-    for (std::ptrdiff_t i = j + 1; i < n; ++i)
-      if (std::abs(a[j * n + i]) > std::abs(a[j * n + best])) best = i;
-    if (!(std::abs(a[j * n + best]) > 0)) return false;
-    if (best != j) {
-      for (std::ptrdiff_t k = j; k < n; ++k) std::swap(a[k * n + j], a[k * n + best]);
-      std::swap(b[j], b[best]);
-    }
-    for (std::ptrdiff_t i = j + 1; i < n; ++i) {
-      const double factor = a[j * n + i] / a[j * n + j];
-      if (factor == 0) continue;
-      for (std::ptrdiff_t k = j + 1; k < n; ++k) a[k * n + i] -= factor * a[k * n + j];
-      b[i] -= factor * b[j];
-    }
-  }
-  for (std::ptrdiff_t j = n; j-- > 0;) {
-    b[j] /= a[j * n + j];
-    for (std::ptrdiff_t i = 0; i < j; ++i) b[i] -= a[j * n + i] * b[j];
-  }
-  return true;
-}
-
-}  // namespace
-
 bool gauss_solve(std::ptrdiff_t n, double* a, double* b) {
-  switch (n) {
-    case 1:
-      return gauss_solve_sized<1>(n, a, b);
-    case 2:
-      return gauss_solve_sized<2>(n, a, b);
-    case 3:
-      return gauss_solve_sized<3>(n, a, b);
-    default:
-      return gauss_solve_sized<0>(n, a, b);
-  }
+  return gauss_solve_sized<0>(n, a, b);
 }
 
 }  // namespace uplift::small

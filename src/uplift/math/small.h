@@ -1,6 +1,8 @@
 #pragma once
+#include <cmath>
 #include <cstddef>
 #include <type_traits>
+#include <utility>
 
 #include "uplift/math/fixed.h"
 
@@ -16,14 +18,15 @@ inline Eigen::Map<const Lanes> lanes_at(const double* x) {
   return Eigen::Map<const Lanes>(x);
 }
 
-/// Calls add(at) for eight points after another out of n, where at(x) are their numbers in the array x: zeros beyond the last one.
+/// Calls add(at) for eight points after another out of n, where at(x) are their numbers in the array x: beyond the last one zeros, or what
+/// at(x, beyond) says.
 template <class Add>
 inline void for_lanes(std::ptrdiff_t n, const Add& add) {
   std::ptrdiff_t i = 0;
-  for (; i + lanes <= n; i += lanes) add([i](const double* x) { return lanes_at(x + i); });
+  for (; i + lanes <= n; i += lanes) add([i](const double* x, double = 0) { return lanes_at(x + i); });
   if (i == n) return;
-  add([i, n](const double* x) {
-    Lanes rest = Lanes::Zero();
+  add([i, n](const double* x, double beyond = 0) {
+    Lanes rest = Lanes::Constant(beyond);
     for (std::ptrdiff_t k = i; k < n; ++k) rest[k - i] = x[k];
     return rest;
   });
@@ -166,11 +169,39 @@ bool cholesky(std::ptrdiff_t n, double* a);
 void cholesky_solve(std::ptrdiff_t n, const double* l, double* b);
 /// Solves A x = b in place by Gauss elimination with row pivoting; A is destroyed; false when singular.
 bool gauss_solve(std::ptrdiff_t n, double* a, double* b);
+/// The same for a size that the compiler knows (N > 0), so that the loops unroll. The pivots are divided by once, while b may still be
+/// under way.
+template <int N>
+bool gauss_solve_sized(std::ptrdiff_t size, double* a, double* b) {
+  const std::ptrdiff_t n = N > 0 ? N : size;
+  for (std::ptrdiff_t j = 0; j < n; ++j) {
+    std::ptrdiff_t best = j;
+    for (std::ptrdiff_t i = j + 1; i < n; ++i)
+      if (std::abs(a[j * n + i]) > std::abs(a[j * n + best])) best = i;
+    if (!(std::abs(a[j * n + best]) > 0)) return false;
+    if (best != j) {
+      for (std::ptrdiff_t k = j; k < n; ++k) std::swap(a[k * n + j], a[k * n + best]);
+      std::swap(b[j], b[best]);
+    }
+    const double inverse = a[j * n + j] = 1 / a[j * n + j];
+    for (std::ptrdiff_t i = j + 1; i < n; ++i) {
+      const double factor = a[j * n + i] * inverse;
+      for (std::ptrdiff_t k = j + 1; k < n; ++k) a[k * n + i] -= factor * a[k * n + j];
+      b[i] -= factor * b[j];
+    }
+  }
+  for (std::ptrdiff_t j = n; j-- > 0;) {
+    b[j] *= a[j * n + j];
+    for (std::ptrdiff_t i = 0; i < j; ++i) b[i] -= a[j * n + i] * b[j];
+  }
+  return true;
+}
 
 /// One pass over the points: gradient g[r] += sum C[:,r] p and H[r,s] += sum C[:,r] k C[:,s] (full symmetric, column-major R x R), R
 /// columns with stride `rows`.
 template <int R>
-void gradient_and_gram(std::ptrdiff_t n, const double* c, std::ptrdiff_t rows, const double* p, const double* k, double* g, double* h) {
+[[gnu::always_inline]] inline void gradient_and_gram(std::ptrdiff_t n, const double* c, std::ptrdiff_t rows, const double* p,
+                                                     const double* k, double* g, double* h) {
   Lanes sum[R], gram[R][R];  // gram: lower triangle
   for (int s = 0; s < R; ++s) {
     sum[s].setZero();
