@@ -92,8 +92,8 @@ class CliTest(unittest.TestCase):
         path.write_text(text)
         return path
 
-    def uplift(self, *words, expect=0, **options):
-        done = subprocess.run([program(), *map(str, words)], cwd=self.folder, capture_output=True, text=True, timeout=300, **options)
+    def uplift(self, *words, expect=0, timeout=300, **options):
+        done = subprocess.run([program(), *map(str, words)], cwd=self.folder, capture_output=True, text=True, timeout=timeout, **options)
         if expect is not None:
             self.assertEqual(done.returncode, expect, f"{words}\n--- output\n{done.stdout}\n--- errors\n{done.stderr}")
         return done

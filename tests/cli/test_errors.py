@@ -1,5 +1,7 @@
 """Bad input: every mistake is refused before the first step, with the place, what was wanted and what was found."""
 
+import resource
+
 from support import *
 
 
@@ -158,6 +160,27 @@ class BadInput(CliTest):
         self.write(self.replace("width = 3\n", "width = -3\n"))
         self.uplift("run", "case.toml", expect=2)
         self.assertFalse((self.folder / "out").exists())
+
+
+class LittleMemory(CliTest):
+    def test_a_limited_address_space_ends_in_an_error(self):
+        """BLAS wants 134 MB of address space at once, and would ask for it for ever."""
+        self.write(BASE)
+        codes = []
+        for megabytes in range(60, 320, 20):
+            def limit(bytes=megabytes * 10**6):
+                resource.setrlimit(resource.RLIMIT_AS, (bytes, bytes))
+
+            if self.uplift("--version", expect=None, preexec_fn=limit).returncode != 0:
+                continue  # not even its libraries can be loaded
+            done = self.uplift("run", "case.toml", "--quiet", expect=None, timeout=30, preexec_fn=limit)
+            codes.append(done.returncode)
+            if done.returncode != 0:
+                self.assertEqual(done.returncode, 3, f"{megabytes} MB: {done.stderr}")
+                self.assertTrue(done.stderr.startswith("error: wanted more memory than is free: "), done.stderr)
+        if not codes:
+            self.skipTest("the program does not start with a limit on its address space (address sanitizer)")
+        self.assertEqual((codes[0], codes[-1]), (3, 0))
 
 
 if __name__ == "__main__":

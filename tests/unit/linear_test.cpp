@@ -73,6 +73,10 @@ TEST(Solvers, AreInTheirCatalogAndAgree) {
       Matrix same = b.col(2);
       result.factor->solve(same, same);  // in place, another number of columns
       EXPECT_LE((same - exact.col(2)).norm(), 1e-9 * exact.norm()) << entry->name;
+      const Factorisation half = solver->factorise(a.triangularView<upper_triangle>());
+      ASSERT_TRUE(half.factor) << entry->name << half.why;
+      half.factor->solve(b, x);
+      EXPECT_LE((x - exact).norm(), 1e-9 * exact.norm()) << entry->name;
     }
 }
 

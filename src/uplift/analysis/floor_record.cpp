@@ -1,9 +1,16 @@
 #include "uplift/analysis/floor_record.h"
 
+#include <algorithm>
 #include <cassert>
 #include <cmath>
 
 namespace uplift {
+
+bool records_accelerations(const RunPlan& plan) {
+  return !plan.floors.empty() || std::ranges::any_of(plan.requests, [](const Request& request) {
+    return request.kind == Request::Kind::acceleration || request.kind == Request::Kind::absolute_acceleration;
+  });
+}
 
 double floor_record_bytes(const RunPlan& plan) {
   double steps = 0;

@@ -9,6 +9,9 @@ namespace uplift {
 /// What the records of a plan take: 8 bytes for every floor and step.
 double floor_record_bytes(const RunPlan& plan);
 
+/// Accelerations are recorded at every step: of floors or as columns.
+bool records_accelerations(const RunPlan& plan);
+
 /// Keeps the absolute accelerations of the floors of a plan, at every step.
 class FloorRecorder {
  public:

@@ -143,7 +143,7 @@ Recorder::Recorder(const Model& model, const RunPlan& plan, const State& state, 
       views_(views),
       result_(result),
       floors_(model, plan, steps, step, result) {
-  wants_acceleration_ = floors_.any();
+  wants_acceleration_ = records_accelerations(plan);
   const std::size_t expected_rows = static_cast<std::size_t>(steps / plan.every) + 2;
   const bool fresh = result_.table.empty();  // a later dynamic stage goes on in the same table
   if (fresh) {
@@ -157,8 +157,6 @@ Recorder::Recorder(const Model& model, const RunPlan& plan, const State& state, 
     Source source = source_of(request, reduction);
     source.request = &request;
     source.to = recent_.data() + most_.size() * many;
-    wants_acceleration_ =
-        wants_acceleration_ || request.kind == Request::Kind::acceleration || request.kind == Request::Kind::absolute_acceleration;
     if (fresh) result_.peaks.push_back({request.name, request.unit, 0, 0});
     most_.push_back(std::abs(result_.peaks[most_.size()].value));
     (source.place != nullptr ? placed_ : source.vector != nullptr ? entries_ : made_).push_back(std::move(source));

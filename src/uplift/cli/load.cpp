@@ -68,9 +68,7 @@ RunResult run_one(const Built& built, const std::string& label, const Options& o
 
 void forget_matrices(Built& built) {
   Model& model = built.model;
-  for (Sparse* matrix :
-       {&model.stiffness, &model.mass, &model.damping, &model.assembly.stiffness, &model.assembly.mass, &model.assembly.damping})
-    Sparse().swap(*matrix);  // an assignment would keep the memory
+  for (Sparse* matrix : {&model.stiffness, &model.mass, &model.damping}) Sparse().swap(*matrix);  // an assignment would keep the memory
   built.plan.rest.reset();
 }
 
@@ -90,8 +88,8 @@ RunResult run_with_fields(const Loaded& loaded, const Built& built, const std::s
 void write_results(const Options& options, const Loaded& loaded, const Results& results, const ComparisonSummary* compared,
                    ResultFolder& folder) {
   ReportInput input{&loaded.read, &loaded.from, &results.verdict, {}, compared, results.warnings, &results.floors, results.trust};
-  // Beside the report, which takes as long: half of the time of a small run goes into its files.
-  std::future<void> histories = std::async(std::launch::async, [&] {
+  // Beside the report, which takes as long: half of the time of a small run goes into its files. After it where there is no second thread.
+  std::future<void> histories = std::async(std::launch::async | std::launch::deferred, [&] {
     for (const RunResult& run : results.runs)
       if (compared || &run == &results.runs.front())
         folder.write(compared ? "histories/" + run.name + ".csv" : "histories.csv", histories_csv(run));

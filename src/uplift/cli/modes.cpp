@@ -11,15 +11,16 @@ namespace uplift::cli {
 namespace {
 
 /// Share of the model's mass that moves with a mode in a direction: (phi^T M r)^2 / (r^T M r), phi^T M phi = 1.
-double share(const Model& model, const Vector& full_shape, Dof direction) {
+double share(const Model& model, const Sparse& mass, const Vector& full_shape, Dof direction) {
   Vector along = Vector::Zero(model.full_unknowns());
   for (Index node = 0; node < static_cast<Index>(model.nodes.size()); ++node) along[model.at(static_cast<int>(node), direction)] = 1;
-  const Vector inertia = model.assembly.mass * along;
+  const Vector inertia = mass * along;
   const double total = along.dot(inertia), taken = full_shape.dot(inertia);
   return total > 0 ? taken * taken / total : 0;
 }
 
 void print_modes(const Model& model, const std::vector<Mode>& found, std::string_view title) {
+  const Sparse mass = assembled(model, &Local::mass);
   say(title);
   if (found.empty()) say("  none: a massless unknown has no stiffness");
   std::vector<std::vector<std::string>> rows{{"mode", "frequency [Hz]", "period [s]", "mass in x [%]", "mass in y [%]"}};
@@ -27,23 +28,24 @@ void print_modes(const Model& model, const std::vector<Mode>& found, std::string
   for (std::size_t i = 0; i < found.size(); ++i) {
     const Vector shape = model.reduction * found[i].shape;
     const double frequency = found[i].frequency;
-    rows.push_back({fmt::format("{}", i + 1), fmt::format("{:.6g}", frequency),
-                    frequency > 0 ? fmt::format("{:.6g}", 1 / frequency) : "rigid motion",
-                    fmt::format("{:.1f}", 100 * share(model, shape, ux)), fmt::format("{:.1f}", 100 * share(model, shape, uy))});
-    if (model.space.dimension == 3) rows.back().push_back(fmt::format("{:.1f}", 100 * share(model, shape, uz)));
+    rows.push_back(
+        {fmt::format("{}", i + 1), fmt::format("{:.6g}", frequency), frequency > 0 ? fmt::format("{:.6g}", 1 / frequency) : "rigid motion",
+         fmt::format("{:.1f}", 100 * share(model, mass, shape, ux)), fmt::format("{:.1f}", 100 * share(model, mass, shape, uy))});
+    if (model.space.dimension == 3) rows.back().push_back(fmt::format("{:.1f}", 100 * share(model, mass, shape, uz)));
   }
   if (rows.size() > 1) print_table(rows);
 }
 
 void write_modes(JsonWriter& json, const Model& model, const std::vector<Mode>& found) {
+  const Sparse mass = assembled(model, &Local::mass);
   json.begin_array();
   for (const Mode& mode : found) {
     const Vector shape = model.reduction * mode.shape;
     json.begin_object()
         .member("frequency", mode.frequency)
-        .member("mass_share_x", share(model, shape, ux))
-        .member("mass_share_y", share(model, shape, uy));
-    if (model.space.dimension == 3) json.member("mass_share_z", share(model, shape, uz));
+        .member("mass_share_x", share(model, mass, shape, ux))
+        .member("mass_share_y", share(model, mass, shape, uy));
+    if (model.space.dimension == 3) json.member("mass_share_z", share(model, mass, shape, uz));
     json.key("shape").begin_object();
     for (std::size_t node = 0; node < model.nodes.size(); ++node)
       json.key(model.nodes[node].name)

@@ -111,7 +111,7 @@ void BulkFactor::try_out(const Sparse& matrix, const Model& model) {
   counts_->back_solves = before;
   const double size = load.cwiseQuotient(weight).norm(),
                round_off = 64 * std::numeric_limits<double>::epsilon() * weight.cwiseProduct(x).norm();
-  const double rest = (load - matrix * x).cwiseQuotient(weight).norm(), residual = rest / size;
+  const double rest = (load - matrix.selfadjointView<upper_triangle>() * x).cwiseQuotient(weight).norm(), residual = rest / size;
   if (!(rest <= 1e-6 * size + round_off)) {
     why_ = fmt::format("back-solves meet their equations to {:.1e} of the load only", residual);
     return;

@@ -58,8 +58,8 @@ class Bulk {
 /// because results lose digits; above 1e-6, beyond the round-off of A x, the factor is wrong and refused.
 class BulkFactor {
  public:
-  /// `b`: interface rows x free unknowns, whose touched unknowns shall be last; null: in any order. `why` is set (and ok() false) when the
-  /// matrix is not positive definite.
+  /// Of the matrix the upper triangle is read. `b`: interface rows x free unknowns, whose touched unknowns shall be last; null: in any
+  /// order. `why` is set (and ok() false) when the matrix is not positive definite.
   BulkFactor(const Sparse& matrix, const Sparse* b, bool small, const LinearSolver& solver, const Model& model, LinearCounts& counts);
   bool ok() const { return why_.empty(); }
   const std::string& why() const { return why_; }

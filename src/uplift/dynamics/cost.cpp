@@ -31,9 +31,10 @@ BulkCost predict_bulk(const Model& model, const LinearSolver& solver, const Bulk
   {
     const Sparse step = model.stiffness + model.damping + model.mass;
     cost.step = solver.predict(step, touched);
-    cost.step.working_bytes += bytes_of(step);
+    cost.step.working_bytes += bytes_of(step) / 2;
   }
   cost.mass = solver.predict(model.mass + unit, use.impacts ? touched : std::vector<int>());
+  cost.mass.working_bytes += bytes_of(model.mass);
   const auto rows = static_cast<double>(b.rows()), n = static_cast<double>(model.free());
   cost.matrix_bytes = bytes_of(model.stiffness) + bytes_of(model.mass) + bytes_of(model.damping);
   const double pair = 10 * static_cast<double>(model.stiffness.nonZeros()) + 24 * n;  // SymmetricPair: half the entries, 20 bytes each
@@ -41,8 +42,9 @@ BulkCost predict_bulk(const Model& model, const LinearSolver& solver, const Bulk
   const double blocks = interface_blocks(rows, static_cast<double>(cost.touched));
   cost.interface_bytes = (steps + (use.impacts ? 1 : 0)) * blocks;
   const double kept = (use.keeps_mass ? cost.mass.bytes : 0) + steps * cost.step.bytes + cost.interface_bytes + pair + 25 * 8 * n;
-  double more = std::max(kept, cost.step.bytes + cost.mass.bytes + cost.mass.working_bytes);  // the first step size is made first
-  more = std::max(more, (steps > 1 ? kept : cost.step.bytes) + cost.step.working_bytes);
+  double more = std::max(kept, (steps > 1 ? kept : cost.step.bytes) + cost.step.working_bytes);
+  // a factor of M that is kept is made after that of the first step size, one for the acceleration of the beginning alone before it
+  more = std::max(more, (use.keeps_mass ? cost.step.bytes : 0) + cost.mass.bytes + cost.mass.working_bytes);
   more += cost.record_bytes = use.record_bytes;
   give_back_free_memory();
   cost.bytes = std::max(cost.matrix_bytes, resident_memory()) + more;

@@ -94,8 +94,8 @@ StaticOutcome solve_statics(const Model& model, const Bulk& bulk, const Sparse& 
   InterfaceProblem frame = blocks_of(model, behaviours);
   frame.shift = closed_joint(model, behaviours);
   const Vector shift = frame.shift;
-  Sparse matrix = bulk.stiffness_matrix;
-  if (b.rows() > 0) matrix += Sparse(b.transpose() * shift.asDiagonal() * b);
+  Sparse matrix = bulk.stiffness_matrix.triangularView<upper_triangle>();  // all that a factor is made of
+  if (b.rows() > 0) matrix += Sparse(Sparse(b.transpose() * shift.asDiagonal() * b).triangularView<upper_triangle>());
   BulkFactor factor(matrix, &b, bulk.small, solver, model, counts);
   if (!factor.ok()) {
     outcome.why = "static stage: " + factor.why();

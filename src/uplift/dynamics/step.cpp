@@ -6,6 +6,7 @@
 
 #include "uplift/dynamics/monolithic.h"
 #include "uplift/dynamics/step_level.h"
+#include "uplift/linear/memory.h"
 #include "uplift/math/small.h"
 
 namespace uplift {
@@ -29,14 +30,12 @@ Stepper::Stepper(const Model& model, const Bulk& bulk, const Sparse& b, const Ve
       impacts_(impact.acts() && !path_ && b.rows() > 0),
       yielding_(model) {
   still_force_ = options.held != nullptr ? *options.held : Vector(Vector::Zero(bulk.unknowns));
-  // in the order that keeps the peak of memory low: the largest factor, which needs the most room while it is made, comes first
   levels_.resize(static_cast<std::size_t>(options.halvings) + 1);
-  level(0);
-  accelerator_ = std::make_unique<Accelerator>(model, bulk, impacts_ ? &b : nullptr, solver, counts);
-  if (!bulk.small) pair_ = SymmetricPair(bulk.stiffness_matrix, bulk.mass_matrix);
-  if (impacts_ || accelerator_->too_large()) mass_failure_ = accelerator_->why();
-  if (impacts_ && mass_failure_.empty()) {
-    mass_spread_ = std::make_unique<Spread>(accelerator_->spread(b));
+  // Two factors are kept: the one of the step, which needs the most room while it is made, comes first. One that is needed for the
+  // acceleration of the beginning alone comes and goes before it (start).
+  if (path_ || impacts_) level(0);
+  if (impacts_ && accelerator().why().empty()) {
+    mass_spread_ = std::make_unique<Spread>(accelerator().spread(b));
     row_area_.resize(b.rows());
     normals_.reserve(static_cast<std::size_t>(b.rows()));
     tangents_.reserve(static_cast<std::size_t>(b.rows()));
@@ -50,6 +49,14 @@ Stepper::Stepper(const Model& model, const Bulk& bulk, const Sparse& b, const Ve
 }
 
 Stepper::~Stepper() = default;
+
+const Accelerator& Stepper::accelerator() const {
+  if (accelerator_ == nullptr) {
+    accelerator_ = std::make_unique<Accelerator>(model_, bulk_, impacts_ ? &b_ : nullptr, solver_, linear_);
+    if (impacts_ || accelerator_->too_large()) mass_failure_ = accelerator_->why();
+  }
+  return *accelerator_;
+}
 
 /// The displacement increment: by the linear step, or by the outer Newton around it.
 Outcome Stepper::solve(Level& level) {
@@ -103,7 +110,7 @@ void Stepper::acceleration(Vector& result) const {
   balance_.resize(bulk_.unknowns);
   forces_at(now_, balance_);
   result.resize(bulk_.unknowns);
-  accelerator_->solve(balance_, result);
+  accelerator().solve(balance_, result);
 }
 
 void Stepper::start(State state, const Ledger* before) {
@@ -119,12 +126,19 @@ void Stepper::start(State state, const Ledger* before) {
     v->setZero(n);
   contact_.setZero(b_.rows());
   impulse_.setZero(b_.rows());
-  if (before == nullptr || !before->acceleration || path_) {
+  if (path_) {
+    now_.acceleration.setZero(n);
+  } else if (before == nullptr || !before->acceleration) {
     forces_at(now_, work_);
     now_.acceleration.setZero(n);
-    accelerator_->solve(work_, now_.acceleration);
+    accelerator().solve(work_, now_.acceleration);
+    if (!impacts_) accelerator_.reset();  // its factor is large, and the scheme carries accelerations on
   }
-  if (!path_ && !impacts_ && mass_failure_.empty()) accelerator_.reset();  // its factor is large, and the scheme carries accelerations on
+  level(0);
+  if (!bulk_.small) {
+    give_back_free_memory();  // of the factorisation
+    pair_ = SymmetricPair(bulk_.stiffness_matrix, bulk_.mass_matrix);
+  }
   next_ = now_;
   force_at(now_.time, force_now_);
   products(now_.displacement, now_.velocity, stiff_now_, momentum_now_);

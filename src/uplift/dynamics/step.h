@@ -44,8 +44,9 @@ class Stepper {
           const ContactMethod& method, const ImpactRule& impact, const LinearSolver& solver, const StepOptions& options,
           LinearCounts& counts);
   ~Stepper();
-  /// Takes over displacement, velocity, opening and history; the initial acceleration follows from the balance. With the ledger of a stage
-  /// before, energies go on counting, and so does its acceleration when it is the same scheme's.
+  /// Takes over displacement, velocity, opening and history; the initial acceleration follows from the balance (the path average
+  /// needs none: its state has zero). With the ledger of a stage before, energies go on counting, and so does its acceleration when it is
+  /// the same scheme's.
   void start(State state, const Ledger* before = nullptr);
   Ledger ledger() const { return {energies_, initial_energy_, largest_external_, !path_}; }
   /// One step of the nominal size. A part that fails is halved and tried again; false when the smallest part fails too: the state stays
@@ -70,6 +71,8 @@ class Stepper {
   Level& make_level(int halving);
   bool try_step(Level& level);
   bool substep(int halving);
+  /// Its factor of M is large: made when it is first asked for.
+  const Accelerator& accelerator() const;
   void force_at(double time, Vector& force) const;
   void move_gap(double from, double to);
   /// ku = K u and mv = M v, in one pass where the bulk is large.
@@ -96,9 +99,9 @@ class Stepper {
   StepOptions options_;
   LinearCounts& linear_;
   bool path_ = false, impacts_ = false, gap_moves_ = false;
-  SymmetricPair pair_;                        // K and M of large bulks
-  std::unique_ptr<Accelerator> accelerator_;  // null once it is not needed any more
-  std::string mass_failure_;                  // why no step can be taken: no factor of M where one is needed
+  SymmetricPair pair_;                                // K and M of large bulks
+  mutable std::unique_ptr<Accelerator> accelerator_;  // null while it is not needed
+  mutable std::string mass_failure_;                  // why no step can be taken: no factor of M where one is needed
   std::unique_ptr<Spread> mass_spread_;
   Vector row_area_;  // m2, of the point that a row belongs to
   Matrix dense_b_;

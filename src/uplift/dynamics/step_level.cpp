@@ -20,22 +20,23 @@ Stepper::Level& Stepper::make_level(int halving) {
   made.damping_velocity = 1 - s.gamma / s.beta + s.alpha_f / w;
   made.damping_acceleration = dt * (1 - s.gamma / (2 * s.beta));
 
-  const Sparse matrix = matrix_of(made);
   InterfaceProblem frame = frame_of(made);
   if (options_.monolithic) {
-    made.solver = make_monolithic(matrix, b_, gap_, std::move(frame));
+    made.solver = make_monolithic(matrix_of(made), b_, gap_, std::move(frame));
     ++linear_.factorisations;
   } else {
-    BulkFactor factor(matrix, &b_, bulk_.small, solver_, model_, linear_);
+    const Sparse upper = matrix_of(made).triangularView<upper_triangle>();  // half of it, while the factor is made
+    BulkFactor factor(upper, &b_, bulk_.small, solver_, model_, linear_);
     if (!factor.ok()) {
       made.why = factor.why();
       made.hopeless = factor.too_large();
       return made;
     }
     std::unique_ptr<StepSolver> oracle;
-    if (options_.oracle_tolerance > 0) oracle = make_monolithic(matrix, b_, gap_, frame);
+    if (options_.oracle_tolerance > 0) oracle = make_monolithic(matrix_of(made), b_, gap_, frame);
     made.solver = std::make_unique<Condensed>(model_, b_, gap_, std::move(factor), std::move(frame), method_);
-    if (oracle != nullptr) made.solver = make_compared(matrix, std::move(made.solver), std::move(oracle), options_.oracle_tolerance);
+    if (oracle != nullptr)
+      made.solver = make_compared(matrix_of(made), std::move(made.solver), std::move(oracle), options_.oracle_tolerance);
   }
   if (impacts_ && impact_.needs_dynamic()) {
     const Sparse dynamic = bulk_.stiffness_matrix + (4 / (dt * dt)) * bulk_.mass_matrix;

@@ -1,25 +1,11 @@
 #include "uplift/linear/cholmod_common.h"
 
-#include <cstdlib>
-
+#include "uplift/linear/blas.h"
 #include "uplift/linear/memory.h"
 
-extern "C" void openblas_set_num_threads(int count);
-
 namespace uplift {
-namespace {
-
-/// OpenBLAS starts its threads before main(), and they wait by spinning. Linked statically, its constructor comes after this one.
-[[gnu::constructor(101)]] void start_no_threads() {
-  setenv("OPENBLAS_NUM_THREADS", "1", 0);
-}
-
-}  // namespace
 
 Common::Common() {
-  // One thread: results then do not depend on the number of cores, and runs side by side do not fight for them.
-  static const bool single = (openblas_set_num_threads(1), true);
-  static_cast<void>(single);
   cholmod_start(&common);
   common.print = 0;
   common.nmethods = 2;
@@ -82,9 +68,13 @@ FactorCost cost_of(const cholmod_factor& analysed, const cholmod_common& common,
 std::string refusal(const FactorCost& cost) {
   constexpr double small = 16e6;  // bytes, not worth asking the system for
   const double needed = cost.bytes + cost.working_bytes;
-  if (needed < small) return {};
-  give_back_free_memory();  // of the analysis
-  return memory_refusal(needed, available_memory());
+  std::string why;
+  if (needed >= small) {
+    give_back_free_memory();  // of the analysis
+    why = memory_refusal(needed, available_memory());
+  }
+  if (why.empty()) prepare_blas();
+  return why;
 }
 
 std::string why_not_analysed(const cholmod_common& common) {

@@ -39,7 +39,8 @@ Supernodes supernodes(const cholmod_factor& factor);
 
 /// What the numbers will take, after the analysis of a matrix with `entries` entries in one triangle.
 FactorCost cost_of(const cholmod_factor& analysed, const cholmod_common& common, Index entries);
-/// Why the numbers are not made: what they take does not fit into the memory that is left. Empty when it does; a small factor is not asked.
+/// Why the numbers are not made: what they take does not fit into the memory that is left. Empty when it does, and BLAS is ready then; a
+/// small factor is not asked.
 std::string refusal(const FactorCost& cost);
 /// Why there is no analysis.
 std::string why_not_analysed(const cholmod_common& common);

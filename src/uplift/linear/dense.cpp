@@ -38,7 +38,7 @@ class Dense : public LinearSolver {
     const FactorCost cost = predict(a, {});
     if (std::string why = memory_refusal(cost.bytes + cost.working_bytes, available_memory()); !why.empty())
       return {.factor = nullptr, .failed_unknown = -1, .why = std::move(why), .too_large = true};
-    const Matrix full = a;
+    const Matrix full = Matrix(a).selfadjointView<upper_triangle>();
     Cholesky cholesky(full);
     const Vector pivots = cholesky->matrixLLT().diagonal().cwiseAbs2();
     if (cholesky->info() != Success || !((pivots.array() > least_pivot * full.diagonal().array()).all())) {

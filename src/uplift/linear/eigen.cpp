@@ -18,7 +18,7 @@ class EigenFactor : public Factor {
 class EigenSolver : public LinearSolver {
  public:
   Factorisation factorise(const Sparse& a) const override {
-    auto ldlt = std::make_unique<SparseLdlt>(a);
+    auto ldlt = std::make_unique<SparseLdlt>(Sparse(a.transpose()));  // which reads the lower triangle
     const Vector diagonal = ldlt->permutationP() * Vector(a.diagonal());
     const auto& pivots = ldlt->vectorD();
     for (Index k = 0; k < pivots.size(); ++k)

@@ -3,6 +3,8 @@
 #include <algorithm>
 #include <chrono>
 
+#include "uplift/linear/blas.h"
+
 extern "C" void dgemm_(const char* transpose_a, const char* transpose_b, const int* m, const int* n, const int* k, const double* alpha,
                        const double* a, const int* stride_a, const double* b, const int* stride_b, const double* beta, double* c,
                        const int* stride_c);
@@ -27,6 +29,7 @@ double streaming(double bytes) {
 }
 
 double dense_product() {
+  prepare_blas();
   constexpr int n = 256;
   const double one = 1, zero = 0;
   const Matrix a = Matrix::Ones(n, n);

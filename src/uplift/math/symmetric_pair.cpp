@@ -11,6 +11,10 @@ SymmetricPair::SymmetricPair(const Sparse& a, const Sparse& b) {
   const Index n = a.rows();
   diagonal_.assign(static_cast<std::size_t>(n), {0, 0});
   start_.assign(1, 0);
+  start_.reserve(static_cast<std::size_t>(n) + 1);
+  const auto least = static_cast<std::size_t>(std::max(a.nonZeros(), b.nonZeros()) - n) / 2;  // a list that grows is there twice
+  column_.reserve(least);
+  value_.reserve(least);
   for (Index row = 0; row < n; ++row) {
     Sparse::InnerIterator in_a(a, row), in_b(b, row);
     while ((in_a && in_a.row() <= row) || (in_b && in_b.row() <= row)) {

@@ -94,6 +94,9 @@ class ModelBuilder {
     std::string name;
     std::shared_ptr<const TimeFunction> function;
   };
+  struct Full {
+    Sparse stiffness, mass, damping;  // before elimination, without modal damping
+  };
   struct Load {
     std::string name;
     std::vector<std::pair<int, double>> pattern;  // full unknowns
@@ -104,12 +107,13 @@ class ModelBuilder {
 
   std::string name_of(int full_unknown) const;
   void eliminate(Model& model, Matrix& motion_shapes) const;
-  void assemble(Assembly& assembly) const;
+  Full assemble() const;
+  std::vector<int> resisted(const Model& model, const Full& full) const;
   void drop_dead_tangents(const Model& model, const Matrix& motion_shapes);
   void place_interfaces(Model& model);
   void refuse_inside_out(const InterfaceSpec& spec, const Where& where) const;
   std::vector<Vec3> structure_of(const InterfaceSpec& spec, bool upper, std::vector<int>& nodes) const;
-  void make_drives(Model& model, const Matrix& motion_shapes) const;
+  void make_drives(Model& model, const Full& full, const Matrix& motion_shapes) const;
 
   Space space_;
   std::vector<Node> nodes_;

@@ -12,7 +12,7 @@ namespace {
 /// Dead loads - internal forces of elements and interfaces, on the full unknowns: what the constraints must balance.
 Vector unbalanced(const Model& model, const State& state) {
   const Assembly& full = model.assembly;
-  Vector force = -(full.stiffness * model.full(state.displacement, 0, state.time));
+  Vector force = -(assembled(model, &Local::stiffness) * model.full(state.displacement, 0, state.time));
   for (std::size_t i = 0; i < model.drives.size(); ++i)
     if (model.drives[i].dead && full.loads[i].size() > 0) force += model.drives[i].factor(state.time) * full.loads[i];
   if (full.b.rows() > 0) force -= full.b.transpose() * state.force;

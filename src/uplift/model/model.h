@@ -58,13 +58,13 @@ struct GroundAcceleration {
   std::shared_ptr<const TimeFunction> function;
 };
 
-/// What the elimination hides but reactions and the P-Delta effect need: everything on the full unknowns.
+/// What the elimination hides but reactions and the P-Delta effect need: everything on the full unknowns, but for the matrices, which are
+/// large and soon made again (assembled).
 struct Assembly {
-  Sparse stiffness, mass, damping;  // full x full, before elimination, without modal damping
-  Sparse b;                         // interface rows x full unknowns
-  Sparse constraints;               // independent rows g with g . u = prescribed: supports, rigid ties, inextensible beams
-  std::vector<Vector> loads;        // full pattern of drive i; empty for the drives that prescribed motions make
-  Vec3 gravity = Vec3::Zero();      // m/s2
+  Sparse b;                     // interface rows x full unknowns
+  Sparse constraints;           // independent rows g with g . u = prescribed: supports, rigid ties, inextensible beams
+  std::vector<Vector> loads;    // full pattern of drive i; empty for the drives that prescribed motions make
+  Vec3 gravity = Vec3::Zero();  // m/s2
   /// slave's constraint rows start at `row`, one per unknown of a node; offset = slave - master [m]
   struct Tie {
     int slave = 0, row = 0;
@@ -121,6 +121,11 @@ struct Model {
   /// Adds what the prescribed motions do to the openings (rows of all interfaces).
   void add_prescribed_opening(double time, Vector& opening) const;
 };
+
+/// Sum of one matrix of all elements, before elimination: full x full. Damping: with what the elements' own factors beta make of their
+/// stiffness, without the rest of the Rayleigh damping.
+Sparse assembled(Space space, std::size_t nodes, const std::vector<std::unique_ptr<const Element>>& elements, Matrix* Local::*wanted);
+Sparse assembled(const Model& model, Matrix* Local::*wanted);
 
 /// Free unknowns (values or rates) with the smallest weighted norm that give the wanted values of some full unknowns, zero prescribed
 /// motion; for initial conditions. Throws InputError when supports, rigid bodies or inextensible beams make the wanted values impossible.
