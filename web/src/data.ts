@@ -32,6 +32,7 @@ function complete_space(space: Partial<SpaceModel> | null | undefined): SpaceMod
     bodies: space.bodies ?? [],
     masses: space.masses ?? [],
     supports: space.supports ?? [],
+    borders: space.borders ?? [],
     interfaces: space.interfaces ?? [],
     loads: space.loads ?? [],
   };

@@ -297,6 +297,14 @@ export interface SpaceSupport {
   dofs: string[];
 }
 
+/** Faces of the mesh that are held, or through which waves leave. */
+export interface SpaceBorder {
+  name: string;
+  kind: "held" | "absorbing";
+  /** Flat node indices, three per triangle, counter-clockwise from outside. */
+  triangles: number[];
+}
+
 export interface SpaceInterface {
   name: string;
   /** Flat x, y, z of its points, metres. */
@@ -331,6 +339,7 @@ export interface SpaceModel {
   bodies: SpaceBody[];
   masses: SpaceMass[];
   supports: SpaceSupport[];
+  borders: SpaceBorder[];
   interfaces: SpaceInterface[];
   loads: SpaceLoad[];
 }

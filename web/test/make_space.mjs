@@ -152,6 +152,12 @@ function space_model() {
   const stick = Array.from({ length: levels }, (_, k) => stick_first + k);
   const supports = [];
   for (let n = 0; n < block_first; n++) if (nodes[3 * n + 2] === SOIL.z[0]) supports.push({ node: n, dofs: ["ux", "uy", "uz"] });
+  // The sides x = constant absorb.
+  const sides = [];
+  for (let t = 0; t < soil.part.triangles.length; t += 3) {
+    const corners = soil.part.triangles.slice(t, t + 3);
+    if (SOIL.x.some((x) => corners.every((n) => nodes[3 * n] === x))) sides.push(...corners);
+  }
   const space = {
     nodes: nodes.map((v) => round(v, 1e-6)),
     parts: [soil.part, block.part],
@@ -159,6 +165,7 @@ function space_model() {
     bodies: [{ name: "plinth", node: stick_first, corners: outline }],
     masses: [{ node: stick[levels - 1], mass: 30e3 }],
     supports,
+    borders: [{ name: "sides", kind: "absorbing", triangles: sides }],
     interfaces: [raft_face(block.node), footing_face()],
     loads: [{ node: stick[levels - 1], force: [1, 0, 0], label: "F(t), 60 kN" }],
   };

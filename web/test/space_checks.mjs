@@ -58,6 +58,17 @@ async function check_parts(page, check) {
   check.equal((await picture(page)).sum, before, "showing it again gives the picture back");
 }
 
+/** Faces that are held or absorb are marked on a model at rest, and where the reader asks for them. */
+async function check_borders(page, check, moving) {
+  const key = page.locator(".space-layers .key", { hasText: "absorbing faces" });
+  check.equal(await key.getAttribute("aria-pressed"), String(!moving), `absorbing faces are ${moving ? "not marked" : "marked"} at first`);
+  const before = (await picture(page)).sum;
+  await key.click();
+  check.ok((await picture(page)).sum !== before, "their key changes the picture");
+  await key.click();
+  check.equal((await picture(page)).sum, before, "and changes it back");
+}
+
 async function check_time(page, check) {
   const frames = await page.evaluate(() => window.upliftReport.space.frames);
   const moving = await page.evaluate(() => {
@@ -359,6 +370,7 @@ export async function check_space_sample(browser, check, shots) {
   check.equal(await page.evaluate(() => window.upliftReport.space.stage.webgl), true, "the view is drawn by WebGL");
   const groups = { check_space, check_pose, check_map_area, check_directions, check_orbit, check_colours, check_rest_maps };
   for (const [name, body] of Object.entries(groups)) await check.group(name, () => body(page, check));
+  await check.group("check_borders", () => check_borders(page, check, true));
   if (shots) await shoot(page, shots, "space_light");
   await check.group("check_print_and_dark", () => check_print_and_dark(page, check, shots));
   await check.group("check_lost", () => check_lost(page, check));
@@ -370,6 +382,7 @@ export async function check_space_sample(browser, check, shots) {
   await check.group("check_still_model", async () => {
     const bare = await open(browser, pathToFileURL(await space_report((d) => ({ ...d, spaceAnimations: [] }))).href);
     await check_space(bare.page, check);
+    await check_borders(bare.page, check, false);
     check.equal(await bare.page.locator(".space-card .scrub").count(), 0, "a model without motion has no slider");
     check.equal(bare.log.console.length, 0, "and no message");
     await bare.context.close();

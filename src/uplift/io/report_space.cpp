@@ -128,13 +128,17 @@ void write_small_parts(JsonWriter& json, const Case& read, const Built& built, c
         .member("mass", mass.has("mass") ? mass.number("mass") : built.tuned_mass)
         .end_object();
   json.end_array().key("supports").begin_array();
-  for (const Values& support : read.values.tables("support"))
-    if (support.has("node"))
-      json.begin_object()
-          .member("node", drawn.number(built.model.find_node(support.text("node"))))
-          .key("dofs")
-          .texts(support.texts("fixed"))
-          .end_object();
+  const auto write_support = [&](int node, const Values& support) {
+    if (!std::ranges::binary_search(drawn.nodes, node)) return;
+    json.begin_object().member("node", drawn.number(node)).key("dofs").texts(support.texts("fixed")).end_object();
+  };
+  for (const Values& support : read.values.tables("support")) {
+    if (support.has("node")) write_support(built.model.find_node(support.text("node")), support);
+    if (!support.has("group")) continue;
+    const Group& group = read.mesh->mesh.groups.at(support.text("group"));
+    if (group.dimension >= 2) continue;  // faces, see write_borders
+    for (const int node : nodes_of(read.mesh->mesh, group)) write_support(drawn.first_of_mesh + node, support);
+  }
   json.end_array().key("loads").begin_array();
   for (const Values& load : read.values.tables("load")) {
     const char* key = load.has("force") ? "force" : "traction";
@@ -148,6 +152,42 @@ void write_small_parts(JsonWriter& json, const Case& read, const Built& built, c
     json.begin_object().member("node", drawn.number(node)).key("force").numbers(load.numbers(key));
     json.member("label", name_of_load(load)).end_object();
   }
+  json.end_array();
+}
+
+/// Triangles over the faces of a group on the outer surface, counter-clockwise from outside.
+std::vector<int> faces_of(const Mesh& mesh, const Sides& sides, const std::string& group, const Drawn& drawn) {
+  std::vector<int> triangles, nodes;
+  for (const CellId cell : mesh.groups.at(group).cells) {
+    const int side = info(mesh.type(cell)).dimension == 2 ? sides.find(mesh.type(cell), mesh.cell(cell)) : -1;
+    if (side < 0 || sides.twin(side) >= 0) continue;
+    sides.nodes_of(mesh, side, nodes);
+    const auto number = [&](int k) { return drawn.number(drawn.first_of_mesh + nodes[at(k)]); };
+    for (int k = 2; k < info(mesh.type(cell)).corners; ++k) triangles.insert(triangles.end(), {number(0), number(k - 1), number(k)});
+  }
+  return triangles;
+}
+
+/// Faces that supports hold, and absorbing ones; a face that is held in the static stages alone and absorbs then counts as absorbing.
+void write_borders(JsonWriter& json, const Case& read, const Drawn& drawn) {
+  json.key("borders").begin_array();
+  if (!read.mesh) {
+    json.end_array();
+    return;
+  }
+  const Mesh& mesh = read.mesh->mesh;
+  const Sides sides(mesh, full_cells(mesh));
+  std::set<std::string> written;
+  const auto write = [&](const Values& table, const char* kind) {
+    if (!table.has("group") || !written.insert(table.text("group")).second) return;
+    const std::vector<int> triangles = faces_of(mesh, sides, table.text("group"), drawn);
+    if (triangles.empty()) return;
+    json.begin_object().member("name", table.text("group")).member("kind", kind);
+    write_whole(json, "triangles", triangles);
+    json.end_object();
+  };
+  for (const Values& face : read.values.tables("absorbing")) write(face, "absorbing");
+  for (const Values& support : read.values.tables("support")) write(support, "held");
   json.end_array();
 }
 
@@ -262,6 +302,7 @@ void write_model(JsonWriter& json, const Case& read, const Built& built, const D
   json.end_array();
   write_bodies(json, read, built, drawn);
   write_small_parts(json, read, built, drawn);
+  write_borders(json, read, drawn);
   write_interfaces(json, read, built, drawn);
   json.end_object();
 }

@@ -2,13 +2,14 @@
 import { cells_of, type Cell, type Edge } from "./cells";
 import { fit_to, fitted, project, type Direction, type Frame } from "./frame";
 import { rgb, type Rgb } from "./ink";
-import type { Layer, Look } from "./layers";
+import { BORDERS, type Layer, type Look } from "./layers";
 import type { FacePose } from "./pose";
 import { plate_of, sharp_edges, structure_box } from "./shape";
 import { add, cross, dot, point, sub, unit, type Box3, type Vec3 } from "./vector";
 import type { View, ViewInput } from "./view";
 
 const GROUND_OPACITY = 0.62;
+const BORDER_OPACITY = 0.45;
 const SHADE = 0.52;
 const MASS_SIZE = 0.035;
 
@@ -70,6 +71,7 @@ export class FlatView implements View {
       const part = /^part (\d+)$/.exec(layer.key);
       if (part && look.shown(layer.key)) this.add_part(Number(part[1]), layer, look);
     }
+    for (const border of BORDERS) if (look.shown(border.kind)) this.add_borders(border, look);
     if (look.shown("bodies")) space.bodies.forEach((_body, i) => this.add_plate(i, look));
     if (look.shown("gap") && layers.some((layer) => layer.key === "gap")) this.input_.pose.faces.forEach((face, i) => this.add_gap(face, i, look));
     if (look.shown("lines")) this.add_lines(look);
@@ -153,6 +155,27 @@ export class FlatView implements View {
         this.stroke(c, stroke, 0.8);
       },
     });
+  }
+
+  private add_borders({ kind, colour }: (typeof BORDERS)[number], look: Look): void {
+    const { space, pose } = this.input_;
+    const fill = shaded(rgb(colour(look.ink)), 1, BORDER_OPACITY);
+    for (const border of space.borders) {
+      if (border.kind !== kind) continue;
+      for (let t = 0; t < border.triangles.length; t += 3) {
+        const corners = border.triangles.slice(t, t + 3).map((i) => pose.at(i));
+        if (dot(normal_of(corners), this.frame.out) <= 0) continue;
+        // Just before the ground that it covers.
+        this.pieces_.push({
+          depth: this.depth(corners) - BEHIND + 1e-3 * this.size_,
+          paint: (c) => {
+            this.outline(c, corners);
+            c.fillStyle = fill;
+            c.fill();
+          },
+        });
+      }
+    }
   }
 
   private add_plate(index: number, look: Look): void {

@@ -13,6 +13,8 @@ export interface Ink {
   steel: string;
   body: string;
   mass: string;
+  held: string;
+  absorbing: string;
   open: string;
   /** The boundary between open and closed in the maps. */
   boundary: string;
@@ -66,6 +68,8 @@ export const LIGHT: Ink = {
   steel: "#38434d",
   body: "#9fb0be",
   mass: "#38434d",
+  held: "#3d7a4a",
+  absorbing: "#7d53b5",
   open: "#d1570b",
   boundary: "#10161b",
   closed: "#dde4ea",
@@ -87,6 +91,8 @@ export const DARK: Ink = {
   steel: "#d5dce2",
   body: "#7d8f9e",
   mass: "#d5dce2",
+  held: "#6fb880",
+  absorbing: "#b794e6",
   open: "#ff9455",
   boundary: "#ffffff",
   closed: "#2b3239",

@@ -6,8 +6,14 @@ import type { SpaceModel } from "../types";
 // More supports than this would hide the model behind their marks.
 const FEW_SUPPORTS = 40;
 
+/** Faces of the mesh where something is held or leaves; the keys are those of the layers. */
+export const BORDERS = [
+  { kind: "held", name: "held faces", colour: (ink: Ink): string => ink.held },
+  { kind: "absorbing", name: "absorbing faces", colour: (ink: Ink): string => ink.absorbing },
+] as const;
+
 export interface Layer {
-  /** "part 0", "lines", "bodies", "masses", "supports", "loads", "gap", "edges", "reference". */
+  /** "part 0", "lines", "bodies", "masses", "supports", "held", "absorbing", "loads", "gap", "edges", "reference". */
   key: string;
   name: string;
   colour?: (ink: Ink) => string;
@@ -34,6 +40,7 @@ export function layers_of(space: SpaceModel, moving: boolean): Layer[] {
     [space.interfaces.length > 0 && moving, { key: "gap", name: "gap", colour: (ink) => ink.open, shown: true }],
     [space.loads.length > 0, { key: "loads", name: "loads", shown: true }],
     [space.supports.length > 0, { key: "supports", name: "supports", shown: space.supports.length <= FEW_SUPPORTS }],
+    ...BORDERS.map(({ kind, name, colour }): [boolean, Layer] => [space.borders.some((border) => border.kind === kind), { key: kind, name, colour, shown: !moving }]),
     [space.parts.some((part) => part.edges.length > 0), { key: "edges", name: "element edges", shown: true }],
     [moving, { key: "reference", name: "position at rest", shown: true }],
   ];

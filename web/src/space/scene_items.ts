@@ -7,7 +7,7 @@ import { LineMaterial } from "three/examples/jsm/lines/LineMaterial.js";
 import { LineSegments2 } from "three/examples/jsm/lines/LineSegments2.js";
 import { LineSegmentsGeometry } from "three/examples/jsm/lines/LineSegmentsGeometry.js";
 import { rgb, type Ramp } from "./ink";
-import type { Layer, Look } from "./layers";
+import { BORDERS, type Layer, type Look } from "./layers";
 import type { FacePose, Pose } from "./pose";
 import { plate_of, sharp_edges, structure_box } from "./shape";
 import { cross, dot, sub, unit, type Vec3 } from "./vector";
@@ -21,9 +21,10 @@ export interface Item {
   update(pose: Pose, look: Look): void;
 }
 
-// Translucent surfaces come last: the gap, then the ground over it, then the edges of the ground.
-const ORDER = { gap: 1, ground: 2, ground_edges: 3 };
+// Translucent surfaces come last: the gap, then the ground over it, what is marked on its faces, then its edges.
+const ORDER = { gap: 1, ground: 2, border: 3, ground_edges: 4 };
 const GROUND_OPACITY = 0.5;
+const BORDER_OPACITY = 0.4;
 
 const buffer = (array: Float32Array): BufferAttribute => new BufferAttribute(array, 3).setUsage(DynamicDrawUsage);
 
@@ -225,6 +226,13 @@ function gap_item({ skin, upper, lower, opening }: FacePose, largest: () => numb
   };
 }
 
+function border_item(space: SpaceModel, { kind, colour }: (typeof BORDERS)[number], nodes: Nodes): Item {
+  const material = new MeshBasicMaterial({ transparent: true, opacity: BORDER_OPACITY, depthWrite: false });
+  const triangles = space.borders.filter((border) => border.kind === kind).flatMap((border) => border.triangles);
+  const object = always(new Mesh(geometry_of(nodes.position, triangles), material), ORDER.border);
+  return { key: kind, object, update: (_pose, look) => void material.color.set(colour(look.ink)) };
+}
+
 /** Edges, beams and plates where they were before loading. */
 function reference_item(space: SpaceModel, layers: Layer[]): Item {
   const places: number[] = [];
@@ -254,6 +262,7 @@ export function scene_items({ space, pose, layers, largest_opening }: ViewInput)
   if (has("lines")) items.push(lines_item(space));
   if (has("masses")) items.push(masses_item(space));
   if (has("supports")) items.push(supports_item(space, nodes));
+  for (const border of BORDERS) if (has(border.kind)) items.push(border_item(space, border, nodes));
   if (has("gap")) pose.faces.forEach((face, i) => items.push(gap_item(face, () => largest_opening(i))));
   if (has("reference")) items.push(reference_item(space, layers));
   return items;
