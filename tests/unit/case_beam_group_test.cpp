@@ -406,6 +406,20 @@ TEST(CaseBeamGroup, RigidBodiesOfManySolidsAreNoMechanisms) {
   EXPECT_NE(refusal(text, mesh).find("can turn about the point (0, 0) m without resistance"), std::string::npos) << refusal(text, mesh);
 }
 
+TEST(CaseBeamGroup, TopOfAFrameOnAFootingIsItsRoof) {
+  Mesh mesh = mast(4, Cell::line2);
+  mesh.groups.erase("tip");
+  const std::string text =
+      along_lines(1, mast_section) +
+      "[nodes]\nslab = [0, -0.5]\n[[rigid]]\nname = \"slab\"\nnode = \"slab\"\ngroup = \"foot\"\nmass = 1e4\ninertia = 1e4\n"
+      "[[interface]]\nname = \"base\"\nfooting = { body = \"slab\", width = 3, points = 5 }\n"
+      "law = { type = \"springs\", K_n = 1e8, K_t = 1e8, tangential = \"bonded\" }\n" +
+      static_stage;
+  const Built built = build(read_text(text, mesh), RunSpec{});
+  EXPECT_EQ(built.model.nodes[static_cast<std::size_t>(built.top)].position, Vec3(0, height, 0));
+  EXPECT_EQ(built.model.nodes[static_cast<std::size_t>(built.base)].name, "slab");
+}
+
 // ---- what is drawn ----
 
 TEST(CaseBeamGroup, LinesAreStrungTogetherWhereTheyDoNotBranch) {

@@ -97,7 +97,8 @@ class Drawing {
   private beams(): void {
     for (const beam of this.model_.beams) {
       const points = beam.nodes.map((name) => this.at(name)).filter((p): p is Point => p !== null);
-      this.svg.append(titled(s("path", { class: "beam", d: path_of(points) }), `beam ${beam.name}: ${beam.nodes.join(" – ")}`));
+      const nodes = beam.nodes.length > 6 ? [beam.nodes[0], "…", beam.nodes[beam.nodes.length - 1]] : beam.nodes;
+      this.svg.append(titled(s("path", { class: "beam", d: path_of(points) }), `beam ${beam.name}: ${nodes.join(" – ")}`));
       for (let i = 1; i < points.length; i++) this.labels_.block_line(points[i - 1] as Point, points[i] as Point);
     }
   }

@@ -46,7 +46,8 @@ void find_shown_mesh_nodes(const CaseNames& names, Built& built) {
   rename_shown(built.base, "base", built.model);
 }
 
-/// The node of the highest mass (the largest of equally high ones), and the body of the first interface.
+/// The node of the highest mass (the largest of equally high ones), and the body of the first interface. With a mesh, whose cells have
+/// masses of their own, only point masses count.
 void find_shown_nodes(const Case& read, const CaseNames& names, Built& built) {
   double height = -std::numeric_limits<double>::infinity(), largest = 0;
   const auto look = [&](int node, double mass) {
@@ -59,8 +60,8 @@ void find_shown_nodes(const Case& read, const CaseNames& names, Built& built) {
   };
   for (const Values& mass : read.values.tables("mass")) look(names.node(mass, "node"), mass.has("mass") ? mass.number("mass") : 0);
   for (const Values& body : read.values.tables("rigid"))
-    if (body.number("mass") > 0) look(master_of(body, names), body.number("mass"));
-  if (built.top < 0)
+    if (!read.mesh && body.number("mass") > 0) look(master_of(body, names), body.number("mass"));
+  if (built.top < 0 && !read.mesh)
     for (const Values& node : read.values.tables("nodes")) look(names.nodes.find(node.key(), node.where(), node.path()), 0);
   if (!built.facts.empty() && !built.facts[0].body.empty()) built.base = built.model.find_node(built.facts[0].body);
   if (read.mesh) find_shown_mesh_nodes(names, built);
