@@ -21,11 +21,11 @@ class LinearLaw : public InterfaceLaw {
  public:
   explicit LinearLaw(std::vector<double> stiffness) : stiffness_(std::move(stiffness)) {}
   int num_history(int) const override { return 0; }
-  void respond(const Batch& batch, const double*, const double* to, const double*, Reply reply) const override {
+  void respond(const Batch& batch, const double*, const double* to, const double*, const Reply& reply) const override {
     for (int c = 0; c < batch.components; ++c)
       for (int i = 0; i < batch.points; ++i) reply.traction[c * batch.points + i] = stiffness_[c] * to[c * batch.points + i];
   }
-  void mean(const Batch& batch, const double* from, const double* to, const double* old, Reply reply) const override {
+  void mean(const Batch& batch, const double* from, const double* to, const double* old, const Reply& reply) const override {
     respond(batch, from, to, old, reply);
   }
   void energy(const Batch&, const double*, const double*, double*, double*) const override {}

@@ -11,7 +11,7 @@ namespace uplift {
 namespace {
 
 /// Weights whose sums with the openings are the slopes of their best plane, c + theta . (arm x n), for arms in the axes of the mean normal.
-std::array<std::vector<double>, 2> slope_weights(const Interface& interface) {
+std::array<Vector, 2> slope_weights(const Interface& interface) {
   const Vec3 normal = mean_normal(interface);
   const int points = interface.batch.points, slopes = interface.space.dimension - 1;
   Matrix shape(points, slopes);  // opening per slope
@@ -32,8 +32,8 @@ std::array<std::vector<double>, 2> slope_weights(const Interface& interface) {
   if (slopes == 2 && det > 1e-12 * size * size)
     inverse << inertia(1, 1) / det, -inertia(0, 1) / det, -inertia(1, 0) / det, inertia(0, 0) / det;
   const Matrix weights = interface.area.asDiagonal() * shape * inverse;
-  std::array<std::vector<double>, 2> made;
-  for (int k = 0; k < slopes; ++k) made[static_cast<std::size_t>(k)].assign(weights.col(k).begin(), weights.col(k).end());
+  std::array<Vector, 2> made;
+  for (int k = 0; k < slopes; ++k) made[static_cast<std::size_t>(k)] = weights.col(k);
   return made;
 }
 
@@ -55,13 +55,15 @@ InterfaceViewer::InterfaceViewer(const Model& model, double gap_tolerance, const
     layout.points = interface.batch.points;
     layout.components = interface.batch.components;
     layout.space = interface.space;
+    layout.area = interface.area;
+    layout.inverse_area = interface.area.cwiseInverse();
+    layout.along.resize(layout.points);
+    layout.across.resize(layout.points);
     for (int i = 0; i < layout.points; ++i) {
       const auto p = static_cast<std::size_t>(i);
       const Vec3 arm = interface.position[p] - interface.reference;
-      layout.area.push_back(interface.area[i]);
-      layout.inverse_area.push_back(1 / interface.area[i]);
-      layout.along.push_back(arm.dot(local_axis(interface.space, interface.normal[p], 0)));
-      layout.across.push_back(arm.dot(interface.normal[p]));
+      layout.along[i] = arm.dot(local_axis(interface.space, interface.normal[p], 0));
+      layout.across[i] = arm.dot(interface.normal[p]);
     }
     if (interface.space.dimension == 3 || !flat(interface)) layout.resultant_rows = resultant_rows(interface);
     layout.total = interface.area.sum();
@@ -103,7 +105,7 @@ void InterfaceViewer::look(const Vector& opening, const Vector& force, std::vect
     view.least_opening = least.minCoeff();
     view.max_pressure = pressure.maxCoeff();
     view.rotation = {slopes.sum(), 0};
-    if (!layout.slope_weight[1].empty()) view.rotation[1] = small::dot(n, layout.slope_weight[1].data(), gap);
+    if (layout.slope_weight[1].size() > 0) view.rotation[1] = small::dot(n, layout.slope_weight[1].data(), gap);
     if (layout.resultant_rows.size() > 0) {
       std::array<double, 6> sums{};
       for (Index row = 0; row < layout.resultant_rows.cols(); ++row)

@@ -23,8 +23,8 @@ class InterfaceViewer {
  private:
   struct Layout {
     int first = 0, points = 0, components = 0;
-    std::vector<double> area, inverse_area, along, across;  // along t and along n from the reference point [m]
-    std::array<std::vector<double>, 2> slope_weight;
+    Vector area, inverse_area, along, across;  // along t and along n from the reference point [m]
+    std::array<Vector, 2> slope_weight;
     Space space;
     Matrix resultant_rows;  // in space, and where the normals differ; else empty: the sums are then taken directly
     double total = 0;       // m2

@@ -155,7 +155,7 @@ void Newton<R>::form_gradient(bool with_hessian) {
 
 /// h += C_block^T k C_block and g += C_block^T p.
 template <int R>
-void Newton<R>::add_block(const Block& block, const double* slope, double* g, double* h) {
+[[gnu::always_inline]] inline void Newton<R>::add_block(const Block& block, const double* slope, double* g, double* h) {
   if constexpr (R > 0)
     if (block.batch.components == 1)
       return small::gradient_and_gram<R>(block.batch.points, column(0) + block.first, rows_, solution_.force.data() + block.first, slope, g,

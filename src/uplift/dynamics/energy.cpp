@@ -15,7 +15,7 @@ void InterfaceEnergy::update(const InterfaceProblem& problem, const Vector& open
   double lost = 0;
   for (const Block& block : problem.blocks) {
     if (block.law == nullptr) continue;
-    const std::size_t points = static_cast<std::size_t>(block.batch.points);
+    const Index points = block.batch.points;
     if (density_.size() < points) density_.resize(points), lost_.resize(points);
     block.law->energy(block.batch, opening.data() + block.first, history.data() + block.first_history, density_.data(),
                       changed ? lost_.data() : nullptr);

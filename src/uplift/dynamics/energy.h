@@ -25,7 +25,8 @@ class InterfaceEnergy {
   double stored = 0, dissipated = 0;
 
  private:
-  std::vector<double> last_, density_, lost_;
+  std::vector<double> last_;
+  Vector density_, lost_;
 };
 
 /// What the friction of constraints takes in a step [J]: the work of the mean force on the slip of every point, where it is positive (a

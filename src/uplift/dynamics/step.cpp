@@ -30,6 +30,7 @@ Stepper::Stepper(const Model& model, const Bulk& bulk, const Sparse& b, const Ve
       impacts_(impact.acts() && !path_ && b.rows() > 0),
       yielding_(model) {
   still_force_ = options.held != nullptr ? *options.held : Vector(Vector::Zero(bulk.unknowns));
+  model.add_constant_force(still_force_);
   levels_.resize(static_cast<std::size_t>(options.halvings) + 1);
   // Two factors are kept: the one of the step, which needs the most room while it is made, comes first. One that is needed for the
   // acceleration of the beginning alone comes and goes before it (start).
@@ -86,7 +87,7 @@ void Stepper::force_at(double time, Vector& force) const {
   const double* still = still_force_.data();
   double* sum = force.data();
   small::with_size(still_force_.size(), [=](auto count) { std::copy_n(still, static_cast<Eigen::Index>(count), sum); });
-  model_.add_force(time, force);
+  model_.add_varying_force(time, force);
 }
 
 void Stepper::forces_at(const State& state, Vector& result) const {  // f - C v - K u - r - B^T p; r is that of now_

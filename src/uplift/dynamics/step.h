@@ -90,7 +90,7 @@ class Stepper {
   const Bulk& bulk_;
   const Sparse& b_;
   const Vector& still_gap_;  // initial gaps
-  Vector still_force_;       // that do not change in the stage: StepOptions::held [N, N m]
+  Vector still_force_;       // that do not change in the stage: StepOptions::held and the drives that never change [N, N m]
   Vector gap_, gap_step_;    // with the prescribed motions at the end of the step, and their change in the step
   const Behaviours& behaviours_;
   const ContactMethod& method_;

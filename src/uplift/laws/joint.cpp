@@ -17,14 +17,14 @@ class JointLaw final : public InterfaceLaw {
     return normal_->num_history() + (components > 1 ? tangential_->num_history(components - 1) : 0);
   }
 
-  void respond(const Batch& batch, const double* from, const double* to, const double* old, Reply reply) const override {
+  void respond(const Batch& batch, const double* from, const double* to, const double* old, const Reply& reply) const override {
     if (batch.components == 1) return normal_->respond(batch, from, to, old, reply);
     const int normal = batch.normal();
     normal_->respond(one_component(batch), from + normal, to + normal, old, normal_reply(batch, reply));
     tangential_->respond(call(batch, from, to, old, reply));
   }
 
-  void mean(const Batch& batch, const double* from, const double* to, const double* old, Reply reply) const override {
+  void mean(const Batch& batch, const double* from, const double* to, const double* old, const Reply& reply) const override {
     if (batch.components == 1) return normal_->mean(batch, from, to, old, reply);
     const int normal = batch.normal();
     normal_->mean(one_component(batch), from + normal, to + normal, old, normal_reply(batch, reply));

@@ -35,10 +35,10 @@ class InterfaceLaw {
   /// Number of memory variables of a point; all start at zero.
   virtual int num_history(int components) const = 0;
   /// Traction at the end of a step that goes from opening `from` to `to`. In statics and dynamics (`traction = "end"`).
-  virtual void respond(const Batch&, const double* from, const double* to, const double* old, Reply) const = 0;
+  virtual void respond(const Batch&, const double* from, const double* to, const double* old, const Reply&) const = 0;
   /// Path-averaged traction of the step, 1/(to - from) * integral of t d(opening) along the law's own path (THEORY section 4), and its
   /// slope with respect to `to`.
-  virtual void mean(const Batch&, const double* from, const double* to, const double* old, Reply) const = 0;
+  virtual void mean(const Batch&, const double* from, const double* to, const double* old, const Reply&) const = 0;
   /// Energy per area [J/m2] that is stored at this opening and memory, and that was dissipated since the beginning. Either may be null.
   virtual void energy(const Batch&, const double* opening, const double* history, double* stored, double* dissipated) const = 0;
   /// Stiffness of a closed joint in compression [Pa/m], per component (normal last): for k*F_ii, the static base and suggestions.

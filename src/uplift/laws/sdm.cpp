@@ -159,17 +159,21 @@ bool respond_below(const Sdm law, const Step step, double* traction, double* slo
 bool mean_below(const Sdm law, const Step step, const Reply& reply) {
   double *mean = reply.traction, *slope = reply.slope, *now = reply.now, *end = reply.end, *next = reply.next, most = 0;
   Marks bends;
-#pragma omp simd reduction(max : most)
+  std::int64_t any = 0;
+#pragma omp simd reduction(max : most) reduction(| : any)
   for (int i = 0; i < step.count; ++i) {
     const double from = step.from[i], to = step.to[i], j = step.old[i];
     const Average average = law.straight(from, to, j);
     most = larger(most, law.excess(larger(from, to) - j, j));
-    bends.of[i] = law.bends(from, to, j);
+    const std::int64_t bent = law.bends(from, to, j);
+    any |= bent;
+    bends.of[i] = bent;
     mean[i] = average.value;
     slope[i] = next[i] = average.slope;
     now[i] = j;
     end[i] = average.end;
   }
+  if (any == 0) return most > 0;
   bends.for_groups(step.count, [=](int first, int count) {
 #pragma omp simd
     for (int i = first; i < first + count; ++i) {

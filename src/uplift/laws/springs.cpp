@@ -70,13 +70,17 @@ class Springs final : public NormalLaw {
   void average(int count, const double* from, const double* to, double* mean, double* slope, double* end, double* next) const {
     const double stiffness = stiffness_;
     Marks crossing;
-#pragma omp simd
+    std::int64_t any = 0;
+#pragma omp simd reduction(| : any)
     for (int i = 0; i < count; ++i) {
-      crossing.of[i] = (from[i] < 0) != (to[i] < 0);
+      const std::int64_t crosses = (from[i] < 0) != (to[i] < 0);
+      any |= crosses;
+      crossing.of[i] = crosses;
       mean[i] = force(stiffness, 0.5 * (from[i] + to[i]));
       slope[i] = next[i] = to[i] < 0 ? 0.5 * stiffness : 0.0;
       end[i] = force(stiffness, to[i]);
     }
+    if (any == 0) return;
     crossing.for_groups(count, [=](int first, int some) {
 #pragma omp simd
       for (int i = first; i < first + some; ++i) {

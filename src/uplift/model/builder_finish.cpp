@@ -80,7 +80,9 @@ void ModelBuilder::make_drives(Model& model, const Full& full, const Matrix& mot
   const Index unknowns = full.mass.rows();
   const auto one = std::make_shared<const One>();
   const auto add = [&](std::string name, const Vector& pattern, std::shared_ptr<const TimeFunction> function, bool dead) {
-    model.drives.push_back({std::move(name), model.reduction.transpose() * pattern, std::move(function), Drive::Order::value, dead});
+    const bool constant = dynamic_cast<const One*>(function.get()) != nullptr;
+    model.drives.push_back(
+        {std::move(name), model.reduction.transpose() * pattern, std::move(function), Drive::Order::value, dead, constant});
     model.assembly.loads.push_back(pattern);
   };
   if (!gravity_.isZero()) add("gravity", full.mass * translation(space_, gravity_, unknowns), one, true);
@@ -105,7 +107,7 @@ void ModelBuilder::make_drives(Model& model, const Full& full, const Matrix& mot
     for (const auto& [matrix, order] : parts) {
       Vector force = -(model.reduction.transpose() * (*matrix * shape));
       if (force.isZero(0)) continue;
-      model.drives.push_back({motion.name, std::move(force), motion.function, order, false});
+      model.drives.push_back({motion.name, std::move(force), motion.function, order});
       model.assembly.loads.emplace_back();
     }
   }

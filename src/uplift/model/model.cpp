@@ -53,8 +53,20 @@ double Model::ground_acceleration(const Vec3& direction, double time) const {
 }
 
 void Model::add_force(double time, Vector& force) const {
+  add_constant_force(force);
+  add_varying_force(time, force);
+}
+
+void Model::add_constant_force(Vector& force) const {
   for (const Drive& drive : drives)
-    if (const double factor = drive.factor(time); factor != 0) small::add(force.size(), factor, drive.shape.data(), force.data());
+    if (drive.constant) force += drive.shape;
+}
+
+void Model::add_varying_force(double time, Vector& force) const {
+  for (const Drive& drive : drives)
+    if (!drive.constant)
+      if (const double factor = drive.factor(time); factor != 0) small::add(force.size(), factor, drive.shape.data(), force.data());
+  if (feeds.empty()) return;
   Vector values;
   for (const Feed& feed : feeds) {
     feed.functions->values(time, values);

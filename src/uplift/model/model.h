@@ -24,6 +24,7 @@ struct Drive {
   std::shared_ptr<const TimeFunction> function;
   enum class Order { value, rate, acceleration } order = Order::value;  // which derivative multiplies the shape
   bool dead = false;                                                    // gravity and constant loads: applied (in steps) by static stages
+  bool constant = false;                                                // its factor is 1 at all times
   double factor(double time) const;                                     // the function's derivative of this order
 };
 
@@ -118,6 +119,9 @@ struct Model {
   double ground_acceleration(const Vec3& direction, double time) const;
   /// Adds the force of all drives and feeds at a time to `force` (free unknowns).
   void add_force(double time, Vector& force) const;
+  /// Its two parts: of the drives that never change, and all the rest.
+  void add_constant_force(Vector& force) const;
+  void add_varying_force(double time, Vector& force) const;
   /// Adds what the prescribed motions do to the openings (rows of all interfaces).
   void add_prescribed_opening(double time, Vector& opening) const;
 };
