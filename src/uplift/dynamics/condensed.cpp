@@ -88,14 +88,21 @@ void Condensed::free_opening(const Vector& right, const Vector& displacement) {
   small::affine(touched_b_, gap_.data(), touched_value_.data(), problem_.free_opening.data());
 }
 
+/// Nothing touches.
+Outcome Condensed::free_step(const Vector& right, Vector& increment) {
+  factor_.solve(right, increment);
+  Outcome outcome;
+  outcome.converged = true;
+  return outcome;
+}
+
 Outcome Condensed::solve(const Vector& right, const Vector& displacement, const Vector& opening, const std::vector<double>& history,
                          Vector& increment) {
-  if (problem_.rows() == 0) {
-    factor_.solve(right, increment);
-    Outcome outcome;
-    outcome.converged = true;
-    return outcome;
-  }
+  return problem_.rows() == 0 ? free_step(right, increment) : contact_step(right, displacement, opening, history, increment);
+}
+
+Outcome Condensed::contact_step(const Vector& right, const Vector& displacement, const Vector& opening, const std::vector<double>& history,
+                                Vector& increment) {
   free_opening(right, displacement);
   std::copy_n(opening.data(), opening.size(), problem_.from.data());
   std::copy_n(history.data(), history.size(), problem_.old.data());

@@ -54,6 +54,9 @@ class Condensed final : public StepSolver {
 
  private:
   void free_opening(const Vector& right, const Vector& displacement);
+  Outcome free_step(const Vector& right, Vector& increment);
+  Outcome contact_step(const Vector& right, const Vector& displacement, const Vector& opening, const std::vector<double>& history,
+                       Vector& increment);
 
   const Sparse& b_;
   const Vector& gap_;

@@ -179,7 +179,6 @@ void Stepper::products(const Vector& u, const Vector& v, Vector& ku, Vector& mv)
 }
 
 void Stepper::right_hand_side(const Level& level) {
-  const double dt = level.step;
   const double* f0 = force_now_.data();
   const double* f1 = force_next_.data();
   const double* ku = stiff_now_.data();
@@ -187,7 +186,7 @@ void Stepper::right_hand_side(const Level& level) {
   const Eigen::Index n = bulk_.unknowns;
   if (path_) {
     const double* mv = momentum_now_.data();
-    const double inertia = 4 / dt;
+    const double inertia = level.mass_velocity;  // 4/dt
     small::with_size(n, [=](auto count) {
 #pragma omp simd
       for (Eigen::Index i = 0; i < count; ++i) right[i] = f0[i] + f1[i] - 2 * ku[i] + inertia * mv[i];
@@ -229,7 +228,7 @@ bool Stepper::kinematics(const Level& level) {
   double *u1 = next_.displacement.data(), *v1 = next_.velocity.data(), *a1 = next_.acceleration.data();
   double size = 0;
   if (path_) {
-    const double rate = 2 / dt;
+    const double rate = 0.5 * level.mass_velocity;  // 2/dt
     small::with_size(bulk_.unknowns, [=, &size](auto count) {
       double sum = 0;
 #pragma omp simd reduction(+ : sum)
