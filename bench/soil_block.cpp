@@ -191,7 +191,7 @@ void measure(double size, Setup kind) {
       "{:7} nodes {:7} unknowns {:4} points | model {:6.2f} s, gravity {:6.2f} s, factor {:6.2f} s | step {:7.2f} ms (least {:.2f}), "
       "back-solve {:7.2f} ms, ratio {:.2f} | factor {:.1f} MB, peak {:.0f} MB | iterations/step {:.2f}, uplift {:.0f} %, residual {:.1e}\n",
       model.nodes.size(), model.free(), b.rows(), t_model, t_static, t_first, 1e3 * step, 1e3 * steps.front(), 1e3 * solve, step / solve,
-      8e-6 * factor.split()->nonzeros(), static_cast<double>(usage.ru_maxrss) / 1024,
+      8e-6 * factor.split()->nonzeros(), 1.024e-3 * static_cast<double>(usage.ru_maxrss),
       static_cast<double>(stepper.counts().iterations) / steps_of(kind), 100 * open,
       e.residual / std::max(stepper.largest_external(), e.kinetic));
 }

@@ -12,7 +12,7 @@ SymmetricPair::SymmetricPair(const Sparse& a, const Sparse& b) {
   diagonal_.assign(static_cast<std::size_t>(n), {0, 0});
   start_.assign(1, 0);
   start_.reserve(static_cast<std::size_t>(n) + 1);
-  const auto least = static_cast<std::size_t>(std::max(a.nonZeros(), b.nonZeros()) - n) / 2;  // a list that grows is there twice
+  const auto least = static_cast<std::size_t>(std::max({a.nonZeros(), b.nonZeros(), n}) - n) / 2;  // a list that grows is there twice
   column_.reserve(least);
   value_.reserve(least);
   for (Index row = 0; row < n; ++row) {

@@ -10,20 +10,14 @@ namespace uplift {
 
 namespace {
 
-/// Diagonal of T^T A T. What is only round-off of a cancellation becomes a true zero, so that «massless» and «without stiffness» are facts.
+/// Diagonal of T^T A T.
 Vector reduced_diagonal(const Sparse& t, const Sparse& a) {
   Vector diagonal = Vector::Zero(t.cols()), weight = Vector::Zero(t.rows());  // weight: column of T
   for (Index j = 0; j < t.cols(); ++j) {
-    double size = 0;
     for (Sparse::InnerIterator row(t, j); row; ++row) weight[row.row()] = row.value();
     for (Sparse::InnerIterator row(t, j); row; ++row)
-      for (Sparse::InnerIterator entry(a, row.row()); entry; ++entry) {
-        const double value = weight[entry.row()] * entry.value() * row.value();
-        diagonal[j] += value;
-        size += std::abs(value);
-      }
+      for (Sparse::InnerIterator entry(a, row.row()); entry; ++entry) diagonal[j] += weight[entry.row()] * entry.value() * row.value();
     for (Sparse::InnerIterator row(t, j); row; ++row) weight[row.row()] = 0;
-    if (std::abs(diagonal[j]) <= 1e-12 * size) diagonal[j] = 0;
   }
   return diagonal;
 }
@@ -47,9 +41,7 @@ Sparse reduced(const Sparse& t, const Sparse& a) {
     std::ranges::sort(entries);
     result.startVec(j);
     for (const int i : entries) {
-      const double value = i == j ? diagonal[j] : sum[i];
-      const double size = std::sqrt(std::abs(diagonal[i] * diagonal[j]));  // 0: nothing there is more than round-off
-      if (size > 0 && std::abs(value) > 1e-15 * size) result.insertBack(i, j) = value;
+      if (std::abs(sum[i]) > 1e-15 * std::sqrt(std::abs(diagonal[i] * diagonal[j]))) result.insertBack(i, j) = sum[i];
       sum[i] = 0;
       met[static_cast<std::size_t>(i)] = 0;
     }
