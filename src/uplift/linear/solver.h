@@ -37,8 +37,8 @@ struct Factorisation {
   bool too_large = false;  // for the memory that is left
 };
 
-/// Factorises symmetric positive definite matrices; the upper triangle is read, the other one may be missing. A pivot that is only round-off
-/// (smaller than `least_pivot` times the diagonal entry it came from) is a failure: the matrix is singular to working precision.
+/// Factorises symmetric positive definite matrices; the upper triangle is read, the other one may be missing. A pivot that is only
+/// round-off (smaller than `least_pivot` times the diagonal entry it came from) is a failure: the matrix is singular to working precision.
 class LinearSolver {
  public:
   virtual ~LinearSolver() = default;
