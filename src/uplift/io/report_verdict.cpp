@@ -146,7 +146,7 @@ void write_verdict(JsonWriter& json, const ReportInput& input) {
     if (fact.tile) json.begin_object().member("label", fact.label).member("value", fact.value).member("detail", fact.detail).end_object();
   json.end_array();
   std::vector<std::string> paragraphs = verdict.paragraphs;
-  for (const std::string& warning : input.warnings) paragraphs.push_back("Warning: " + warning + ".");
+  for (const std::string& warning : input.warnings) paragraphs.push_back("Warning: " + warning + (warning.ends_with("?") ? "" : "."));
   json.key("paragraphs").texts(paragraphs);
   json.member("run", input.runs.front().result->label);
   json.key("interfaces").begin_array();
