@@ -103,19 +103,21 @@ export class Labels {
     const w = content.length * 7.2 + 2;
     const t = 13;
     const d = away + 3;
-    const sides: [number, number, string][] = [
-      [x + d, y - t / 2, "start"],
-      [x - d - w, y - t / 2, "start"],
-      [x + d * 0.8, y - d * 0.8 - t, "start"],
-      [x - d * 0.8 - w, y - d * 0.8 - t, "start"],
-      [x + d * 0.8, y + d * 0.8, "start"],
-      [x - d * 0.8 - w, y + d * 0.8, "start"],
-      [x - w / 2, y - d - t, "start"],
-      [x - w / 2, y + d, "start"],
+    const right: Point = [x + d, y - t / 2];
+    const sides: Point[] = [
+      right,
+      [x - d - w, y - t / 2],
+      [x + d * 0.8, y - d * 0.8 - t],
+      [x - d * 0.8 - w, y - d * 0.8 - t],
+      [x + d * 0.8, y + d * 0.8],
+      [x - d * 0.8 - w, y + d * 0.8],
+      [x - w / 2, y - d - t],
+      [x - w / 2, y + d],
     ];
-    const free = sides.find(([left, top]) => this.free({ x: left, y: top, w, t })) ?? (sides[0] as [number, number, string]);
-    this.taken_.push({ x: free[0], y: free[1], w, t });
-    return s("text", { class: cls, x: px(free[0] + 1), y: px(free[1] + 10.5) }, content);
+    // where nothing is free it hides something, but stays in the picture
+    const [left, top] = sides.find(([at, up]) => this.free({ x: at, y: up, w, t })) ?? [Math.max(2, Math.min(right[0], this.width_ - 2 - w)), right[1]];
+    this.taken_.push({ x: left, y: top, w, t });
+    return s("text", { class: cls, x: px(left + 1), y: px(top + 10.5) }, content);
   }
 
   private free(r: Rect): boolean {
