@@ -158,7 +158,7 @@ Findings find(const Case& read, const RunSpec& spec, const Built& built) {
     use.impacts = built.plan.method->constrains();
     use.propagates = use.impacts && built.plan.impact->needs_dynamic();
     const Stage* stage = dynamic_stage(built.plan);
-    const bool balanced = stage != nullptr && stage->path_average && stage->scheme.average_acceleration() && !use.impacts;
+    const bool balanced = stage != nullptr && stage->path_average && !use.impacts;
     use.keeps_mass = use.impacts || (balanced && (records_accelerations(built.plan) || found.fields));
     use.record_bytes = found.record_bytes + pictures_bytes(read, built);
     found.bulk = predict_bulk(built.model, *built.plan.solver, use);

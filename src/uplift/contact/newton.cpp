@@ -210,7 +210,7 @@ bool Newton<R>::direction_of_few(double* d) const {
   double h[most * most], x[most];
   std::copy_n(scratch_.hessian.data(), r() * r(), h);
   for (Index i = 0; i < r(); ++i) x[i] = -scratch_.gradient.data()[i];
-  if (!small::gauss_solve_sized<R>(r(), h, x)) return false;
+  if (!small::gauss_solve<R>(r(), h, x)) return false;
   for (Index i = 0; i < r(); ++i) d[i] = x[i];
   return true;
 }

@@ -40,8 +40,4 @@ void cholesky_solve(std::ptrdiff_t n, const double* l, double* b) {
   }
 }
 
-bool gauss_solve(std::ptrdiff_t n, double* a, double* b) {
-  return gauss_solve_sized<0>(n, a, b);
-}
-
 }  // namespace uplift::small

@@ -167,12 +167,10 @@ void add_transposed(std::ptrdiff_t n, std::ptrdiff_t m, const double* a, std::pt
 bool cholesky(std::ptrdiff_t n, double* a);
 /// Solves L L^T x = b in place.
 void cholesky_solve(std::ptrdiff_t n, const double* l, double* b);
-/// Solves A x = b in place by Gauss elimination with row pivoting; A is destroyed; false when singular.
-bool gauss_solve(std::ptrdiff_t n, double* a, double* b);
-/// The same for a size that the compiler knows (N > 0), so that the loops unroll. The pivots are divided by once, while b may still be
-/// under way.
+/// Solves A x = b in place by Gauss elimination with row pivoting; A is destroyed; false when singular. N > 0: a size that the compiler
+/// knows, so that the loops unroll. The pivots are divided by once, while b may still be under way.
 template <int N>
-bool gauss_solve_sized(std::ptrdiff_t size, double* a, double* b) {
+bool gauss_solve(std::ptrdiff_t size, double* a, double* b) {
   const std::ptrdiff_t n = N > 0 ? N : size;
   for (std::ptrdiff_t j = 0; j < n; ++j) {
     std::ptrdiff_t best = j;
