@@ -62,7 +62,8 @@ class Bar {
         impact.mass = &inertia_;
         impact.dynamic = &contact_;  // the trapezoidal rule's matrix is that of eq 5
         impact.b = &b_;
-        impact.normals = {0};
+        const Vector pressed = Vector::Ones(1);
+        impact.pressed = &pressed;
         impact.force = &solution.force;
         impact.velocity_weight = dt_ / 2;
         impulse.setZero();
@@ -146,7 +147,8 @@ struct RockingBlock {
     Impact impact;
     impact.mass = impact.dynamic = &inertia;
     impact.b = &b;
-    impact.normals = {2, 3};
+    const Vector pressed = (Vector(4) << 0, 0, 1, 1).finished();
+    impact.pressed = &pressed;
     if (friction) impact.tangents = {0, 1};
     impact.velocity_weight = 1e-3;
     Vector force = Vector::Zero(4);
@@ -227,7 +229,7 @@ TEST(Impact, redundant_points_under_a_rigid_footing) {
     const Vector force = Vector::Zero(points), area = ConstMap(base.area.data(), points);
     impact.force = &force;
     impact.area = &area;
-    for (int i = 0; i < points; ++i) impact.normals.push_back(i);
+    impact.pressed = &area;
     ImpactScratch scratch;
     for (const double spin : {0.0, 0.2, 0.9, 3.0, -3.0}) {
       Vector v = (Vector(2) << -0.5, spin).finished(), a = Vector::Zero(2), impulse = Vector::Zero(points);
@@ -255,7 +257,8 @@ TEST(Impact, acceleration_is_held_on_closed_rows) {
   Impact impact;
   impact.mass = &block.inertia;
   impact.b = &block.b;
-  impact.normals = {2, 3};
+  const Vector pressed = (Vector(4) << 0, 0, 1, 1).finished();
+  impact.pressed = &pressed;
   impact.velocity_weight = 1e-3;
   Vector force = Vector::Zero(4);
   force[2] = force[3] = -block.mass * 9.81 / 2;
@@ -290,7 +293,8 @@ TEST(Impact, massless_rows_are_left_alone) {
   Impact impact;
   impact.mass = &inertia;
   impact.b = &b;
-  impact.normals = {0, 1};
+  const Vector pressed = Vector::Ones(2);
+  impact.pressed = &pressed;
   impact.force = &force;
   impact.velocity_weight = 1;
   ImpactScratch scratch;

@@ -30,9 +30,11 @@ Corrected apply(const char* rule, const Spread& mass, const Spread& dynamic, con
   impact.area = &boxes.area;
   impact.step = 2e-3;
   impact.velocity_weight = 1e-3;
+  Vector pressed = Vector::Zero(rows);
+  impact.pressed = &pressed;
   for (int p = 0; p < points; ++p)
     if (force[points + p] < 0) {
-      impact.normals.push_back(points + p);
+      pressed[points + p] = boxes.area[points + p];
       if (p % 3 == 0) impact.tangents.push_back(p);
     }
   Corrected result{velocity, acceleration, Vector::Zero(rows)};

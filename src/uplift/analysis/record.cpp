@@ -4,6 +4,7 @@
 #include <cmath>
 #include <utility>
 
+#include "uplift/linear/memory.h"
 #include "uplift/math/small.h"
 
 namespace uplift {
@@ -81,30 +82,27 @@ void InterfaceViewer::look(const Vector& opening, const Vector& force, std::vect
     const double *gap = opening.data() + normal, *p = force.data() + normal;
     const double *area = layout.area.data(), *inverse = layout.inverse_area.data(), *along = layout.along.data();
     const double *slope = layout.slope_weight[0].data(), tolerance = tolerance_;
-    using small::Lanes;
-    const Lanes zero = Lanes::Zero();
-    Lanes axials = zero, moments = zero, slopes = zero, open = zero, pulled = zero, widest = zero, pressure = zero;
-    Lanes least = Lanes::Constant(gap[0]);
-    const auto positive = [](const auto& x) -> Lanes { return (x * 1e300).max(0).min(1); };  // 1 where it is, else 0
-    small::for_lanes(n, [&](const auto& at) {
+    const Lanes zero = 0;
+    Lanes axials = zero, moments = zero, slopes = zero, open = zero, pulled = zero, widest = zero, pressure = zero, least = gap[0];
+    for_lanes(n, [&](const auto& at) {
       const Lanes pull = at(p), here = at(gap), weight = at(area);
       axials += pull;
       moments += at(along) * pull;
       slopes += at(slope) * here;
-      open += positive(here - tolerance) * weight;
-      pulled += positive(pull) * weight;
-      widest = widest.max(here);
-      least = least.min(at(gap, gap[0]));
-      pressure = pressure.max(-pull * at(inverse));
+      open += choose(here > tolerance, weight, zero);
+      pulled += choose(pull > zero, weight, zero);
+      widest = larger(widest, here);
+      least = smaller(least, at(gap, gap[0]));
+      pressure = larger(pressure, -pull * at(inverse));
     });
-    double shear = 0, moment = moments.sum();
+    double shear = 0, moment = sum(moments);
     InterfaceView& view = views[k];
-    view.open_area = std::min(1.0, open.sum() / layout.total);
-    view.tension_area = pulled.sum() / layout.total;
-    view.max_opening = widest.maxCoeff();
-    view.least_opening = least.minCoeff();
-    view.max_pressure = pressure.maxCoeff();
-    view.rotation = {slopes.sum(), 0};
+    view.open_area = std::min(1.0, sum(open) / layout.total);
+    view.tension_area = sum(pulled) / layout.total;
+    view.max_opening = largest(widest);
+    view.least_opening = smallest(least);
+    view.max_pressure = largest(pressure);
+    view.rotation = {sum(slopes), 0};
     if (layout.slope_weight[1].size() > 0) view.rotation[1] = small::dot(n, layout.slope_weight[1].data(), gap);
     if (layout.resultant_rows.size() > 0) {
       std::array<double, 6> sums{};
@@ -120,7 +118,7 @@ void InterfaceViewer::look(const Vector& opening, const Vector& force, std::vect
 #pragma omp simd reduction(+ : shear, moment)
       for (int i = 0; i < n; ++i) shear += t[i], moment -= across[i] * t[i];
     }
-    view.resultant = {.axial = axials.sum(), .shear = shear, .moment = moment};
+    view.resultant = {.axial = sum(axials), .shear = shear, .moment = moment};
   }
 }
 
@@ -152,7 +150,10 @@ Recorder::Recorder(const Model& model, const RunPlan& plan, const State& state, 
     result_.columns = plan.requests;
     result_.table.assign(plan.requests.size() + 1, {});
   }
-  for (std::vector<double>& column : result_.table) column.reserve(column.size() + expected_rows + 2);
+  for (std::vector<double>& column : result_.table) {
+    column.reserve(column.size() + expected_rows + 2);
+    take_pages(column.data() + column.size(), (expected_rows + 2) * sizeof(double));
+  }
   recent_.resize(plan.requests.size() * many);
   const SparseRows reduction(model.reduction);
   for (const Request& request : plan.requests) {
@@ -298,12 +299,12 @@ void Recorder::flush() {
   const std::size_t count = std::exchange(count_, 0);
   for (std::size_t k = 0; k < most_.size(); ++k) {
     const double* recent = recent_.data() + k * many;
-    small::Lanes sizes = small::Lanes::Constant(most_[k]);
-    small::for_lanes(static_cast<std::ptrdiff_t>(count), [&](const auto& at) {
-      const small::Lanes size = at(recent).abs();
-      sizes = (size > sizes).select(size, sizes);  // never what is not a number
+    Lanes sizes = most_[k];
+    for_lanes(static_cast<std::ptrdiff_t>(count), [&](const auto& at) {
+      const Lanes size = absolute(at(recent));
+      sizes = choose(size > sizes, size, sizes);  // never what is not a number
     });
-    const double most = sizes.maxCoeff();
+    const double most = largest(sizes);
     if (most == most_[k]) continue;
     most_[k] = most;
     const double* peak = std::find_if(recent, recent + count, [most](double value) { return std::abs(value) == most; });

@@ -2,6 +2,8 @@
 
 #include <algorithm>
 
+#include "uplift/linear/memory.h"
+
 namespace uplift {
 namespace {
 
@@ -30,6 +32,8 @@ void StepRecord::reserve(std::size_t interfaces, std::size_t count, std::size_t 
   for (std::vector<BasePose>& each : tail) each.reserve(each.size() + in_tail);
   time.reserve(time.size() + count);
   instants.reserve(instants.size() + count * interfaces);
+  take_pages(time.data() + time.size(), count * sizeof(double));
+  take_pages(instants.data() + instants.size(), count * interfaces * sizeof(Instant));
 }
 
 void StepRecord::add(double now, const std::vector<InterfaceView>& views, double gap_tolerance) {

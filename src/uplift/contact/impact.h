@@ -16,10 +16,12 @@ struct Impact {
   const Spread* dynamic = nullptr;  // of K + 4M/dt^2 (eq 5); only for rules that ask for it
   const Matrix* b = nullptr;        // dense B, rows x free (null when large), or
   const Sparse* sparse_b = nullptr;
-  std::vector<int> normals;        // active normal rows (compressed)
+  // all rows: weight of the active normal rows (compressed), 0 elsewhere: the area of the row's point [m2], by which redundant impulses are
+  // shared, or all alike
+  const Vector* pressed = nullptr;
   std::vector<int> tangents;       // sticking tangential rows: equalities
   const Vector* force = nullptr;   // all rows: contact force at the end of the step [N], tension > 0
-  const Vector* area = nullptr;    // all rows: area of the row's point [m2], by which redundant impulses are shared; null: equal shares
+  const Vector* area = nullptr;    // all rows: the same weight, for the tangents; null: all alike
   double velocity_weight = 0;      // gamma * dt [s]: a force p at the end of the step put -velocity_weight * M^-1 B^T p into the velocity
   double step = 0;                 // s: of the step just solved
   double acceleration_weight = 1;  // and -acceleration_weight * M^-1 B^T p into the acceleration

@@ -45,26 +45,31 @@ void row_rates(const Impact& impact, const Vector& v, Index first, Index n, Vect
 bool select_rows(const Impact& impact, Hold hold, ImpactScratch& scratch) {
   const Index rows = impact.mass->factor.rows();
   size_scratch(rows, impact.mass->factor.cols(), scratch);
-  if (impact.normals.empty()) return false;
-  const double* force = impact.force->data();
-  const double* area = impact.area != nullptr ? impact.area->data() : nullptr;
-  for (Vector* vector : {&scratch.limit, &scratch.fixed, &scratch.taken}) std::fill_n(vector->data(), rows, 0.0);
-  int least = impact.normals.front(), most = least;
   const bool take = hold == Hold::inequality;
-  const auto select = [&](const std::vector<int>& list, double* weight) {
-    for (const int row : list) {
-      least = std::min(least, row), most = std::max(most, row);
-      weight[row] = area != nullptr ? area[row] : 1.0;
-      scratch.taken[row] = take ? force[row] : 0;
-    }
-  };
-  select(impact.normals, take ? scratch.limit.data() : scratch.fixed.data());
-  select(impact.tangents, scratch.fixed.data());
+  const double *force = impact.force->data(), *pressed = impact.pressed->data();
+  double *weight = (take ? scratch.limit : scratch.fixed).data(), *other = (take ? scratch.fixed : scratch.limit).data();
+  double* taken = scratch.taken.data();
+  const Lanes zero = 0;
+  Index least = rows, most = -1;  // groups of lanes
+  for_lanes(rows, [&](const auto& at) {
+    const Lanes here = at(pressed);
+    const LaneMask active = here > zero;
+    at.put(weight, here);
+    at.put(other, zero);
+    at.put(taken, take ? choose(active, at(force), zero) : zero);
+    if (any(active)) least = std::min(least, at.first), most = at.first;
+  });
+  if (most < 0) return false;
+  for (const int row : impact.tangents) {
+    least = std::min<Index>(least, row - row % lanes), most = std::max<Index>(most, row - row % lanes);
+    scratch.fixed[row] = impact.area != nullptr ? (*impact.area)[row] : 1.0;
+    taken[row] = take ? force[row] : 0;
+  }
   scratch.any_fixed = !take || !impact.tangents.empty();
   // whole vector registers; with many columns all rows, so that the kernel's work space keeps its size
   const bool all = impact.mass->factor.cols() > 3;
-  scratch.first = all ? 0 : least - least % small::lanes;
-  scratch.count = all ? rows : std::min(rows, most + small::lanes - most % small::lanes) - scratch.first;
+  scratch.first = all ? 0 : least;
+  scratch.count = all ? rows : std::min(rows, most + lanes) - scratch.first;
   return true;
 }
 
@@ -84,7 +89,7 @@ void project_rate(const Impact& impact, const Vector& rate, double weight, Selec
   for (Index k = 0; k < r; ++k) small::add(n, scratch.push[k], c.data() + k * c.rows() + first, target);
   Rows rows{n, r, c.rows(), c.data() + first, target, limit, scratch.any_fixed ? scratch.fixed.data() + first : nullptr, 0, at_rest};
   for (;;) {
-    std::copy_n(limit, n, scratch.held.data() + first);
+    small::copy(n, limit, scratch.held.data() + first);
     const KernelReply reply = solve_rows(rows, scratch.held.data() + first, scratch.y.data(), scratch.rate.data() + first,
                                          scratch.impulse.data() + first, scratch.kernel);
     if (reply.solved()) return;

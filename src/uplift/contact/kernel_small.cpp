@@ -60,11 +60,8 @@ struct Sums {
 
 template <int R>
 void gather(std::ptrdiff_t n, const double* c, std::ptrdiff_t stride, const double* held, const double* target, Sums<R>& sums) {
-  using small::Lanes;
-  Lanes gram[packed<R>], right[R], weight = Lanes::Zero(), square = weight;
-  for (Lanes& sum : gram) sum.setZero();
-  for (Lanes& sum : right) sum.setZero();
-  small::for_lanes(n, [&](const auto& at) {
+  Lanes gram[packed<R>] = {}, right[R] = {}, weight = 0, square = 0;
+  for_lanes(n, [&](const auto& at) {
     const Lanes h = at(held), t = at(target);
     for (int s = 0, entry = 0; s < R; ++s) {
       const Lanes weighted = h * at(c + s * stride);
@@ -74,10 +71,10 @@ void gather(std::ptrdiff_t n, const double* c, std::ptrdiff_t stride, const doub
     weight += h;
     square += t * t;
   });
-  for (int k = 0; k < packed<R>; ++k) sums.gram[k] = gram[k].sum();
-  for (int r = 0; r < R; ++r) sums.right[r] = -right[r].sum();
-  sums.weight = weight.sum();
-  sums.target = square.sum();
+  for (int k = 0; k < packed<R>; ++k) sums.gram[k] = sum(gram[k]);
+  for (int r = 0; r < R; ++r) sums.right[r] = -sum(right[r]);
+  sums.weight = sum(weight);
+  sums.target = sum(square);
 }
 
 struct Look {
@@ -91,30 +88,28 @@ struct Look {
 template <int R>
 Look look(std::ptrdiff_t n, const double* c, std::ptrdiff_t stride, const double* held, const double* limit, const double* target,
           const double* z, const double* y, double gap, double weight, double work, double* opening, double* force, double* next) {
-  const double *c0 = c, *c1 = R > 1 ? c + stride : c, *c2 = R > 2 ? c + 2 * stride : c;
-  const double z0 = z[0], z1 = R > 1 ? z[R > 1 ? 1 : 0] : 0, z2 = R > 2 ? z[R > 2 ? 2 : 0] : 0;
-  const double y0 = y[0], y1 = R > 1 ? y[R > 1 ? 1 : 0] : 0, y2 = R > 2 ? y[R > 2 ? 2 : 0] : 0;
   const double pull = std::sqrt(1e-24 * std::max(work, 0.0) / weight);  // a pressure beyond 1e-12 of the mean one is noticed
-#pragma omp simd
-  for (std::ptrdiff_t i = 0; i < n; ++i) {
-    double o = target[i] + c0[i] * z0, f = c0[i] * y0;
-    if constexpr (R > 1) o += c1[i] * z1, f += c1[i] * y1;
-    if constexpr (R > 2) o += c2[i] * z2, f += c2[i] * y2;
-    const double h = held[i], most = limit[i];
-    opening[i] = o;
-    force[i] = h * (most > 0 && f > 0 ? 0.0 : f);
-    const double kept = f > pull ? 0.0 : most, touching = f < -pull ? most : 0.0;
-    const double taken = o < -gap ? most : o <= gap ? touching : 0.0;
-    next[i] = !(most > 0) ? h : h > 0 ? kept : taken;
-  }
-  using small::Lanes;
-  Lanes closed = Lanes::Zero(), change = Lanes::Zero();
-  small::for_lanes(n, [&](const auto& at) {
-    const Lanes h = at(held);
-    closed = closed.max(at(opening).abs() * (h * 1e300).min(1));
-    change = change.max((at(next) - h).abs());
+  const Lanes zero = 0;
+  Lanes closed = zero;
+  LaneMask changes(false);
+  for_lanes(n, [&](const auto& at) {
+    Lanes o = at(target), f = zero;
+    for (int r = 0; r < R; ++r) {
+      const Lanes column = at(c + r * stride);
+      o += column * z[r], f += column * y[r];
+    }
+    const Lanes h = at(held), most = at(limit);
+    const LaneMask may = most > zero, is_held = h > zero;
+    const Lanes kept = choose(f > pull, zero, most), touching = choose(f < -pull, most, zero);
+    const Lanes taken = choose(o < -gap, most, choose(o <= gap, touching, zero));
+    const Lanes now = choose(may, choose(is_held, kept, taken), h);
+    at.put(opening, o);
+    at.put(force, h * choose(may && f > zero, zero, f));
+    at.put(next, now);
+    closed = larger(closed, choose(is_held, absolute(o), zero));
+    changes = changes || now != h;
   });
-  return {closed.maxCoeff(), change.maxCoeff() > 0};
+  return {largest(closed), any(changes)};
 }
 
 /// right = -sum held c opening: what is left to correct.
@@ -181,7 +176,7 @@ KernelReply active_set(const Rows& rows, double* held, double* z, double* openin
       if (size > 0) reply.residual = std::max(reply.residual, seen.closed / size);
       return reply;
     }
-    std::copy_n(next, n, held);
+    small::copy(n, next, held);
     if (!scratch.visited.note(n, held)) {
       reply.cycles = 1;
       return reply;

@@ -41,6 +41,7 @@ void size_newton(const InterfaceProblem& problem, InterfaceSolution& solution) {
   scratch.slope.setZero(slopes);
   scratch.next.setZero(slopes);
   scratch.gradient.setZero(r);
+  scratch.end_pull.setZero(r);
   scratch.direction.setZero(r);
   scratch.origin.setZero(r);
   if (r <= few) scratch.hessian.setZero(r, r);

@@ -46,6 +46,7 @@ struct InterfaceProblem {
   Vector free_opening;      // m, initial gap included
   Vector from;              // opening at the beginning of the step [m]
   std::vector<double> old;  // memory at the beginning of the step
+  Vector way;               // r: free_opening - from = C way; empty where nobody knows
   int rows() const { return static_cast<int>(factor.rows()); }
 };
 
@@ -81,6 +82,7 @@ struct NewtonScratch {
   Vector next;  // as slope, for the step to come [Pa/m], path average only
   Vector pull;  // rows: k times one column of C, of one block; in the units of slope times those of the factor
   Matrix hessian;
+  Vector end_pull;             // C^T (scale area end) [sqrt(J)], where all was made in one pass (`swept` of the solution)
   bool follows = false;        // the next problem may be guessed from this solution: slope, end and hessian are those of a converged step
   KeptWork direction_of_many;  // more than twelve coordinates
 };
@@ -111,6 +113,8 @@ struct InterfaceSolution {
   Vector opening;              // rows, end of step [m]
   Vector force;                // rows, p as it enters the balance [N]: scale * area * traction, tension > 0
   std::vector<double> now;     // memory at the end of the step
+  bool swept = false;          // the law made all in one pass (laws/sweep.h): its memory stays, and it stores this:
+  double stored = 0;           // J
   std::vector<Status> status;  // per point, all blocks one after another (cones)
   NewtonScratch newton;
   AugmentedScratch augmented;

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <utility>
 
+#include "uplift/math/dense.h"
 #include "uplift/math/small.h"
 
 namespace uplift {
@@ -46,7 +47,7 @@ InterfaceProblem blocks_of(const Model& model, const Behaviours& behaviours) {
   return problem;
 }
 
-Condensed::Condensed(const Model& model, const Sparse& b, const Vector& gap, BulkFactor factor, InterfaceProblem frame,
+Condensed::Condensed(const Model& model, const Sparse& b, const Vector& gap, bool gap_moves, BulkFactor factor, InterfaceProblem frame,
                      const ContactMethod& method)
     : b_(b), gap_(gap), factor_(std::move(factor)), problem_(std::move(frame)), method_(method) {
   if (factor_.split() != nullptr) {
@@ -67,6 +68,11 @@ Condensed::Condensed(const Model& model, const Sparse& b, const Vector& gap, Bul
   for (std::size_t j = 0; j < touched_.size(); ++j)
     for (Sparse::InnerIterator entry(b, touched_[j]); entry; ++entry) touched_b_(entry.row(), static_cast<Eigen::Index>(j)) = entry.value();
   touched_value_.setZero(static_cast<Eigen::Index>(touched_.size()));
+  if (gap_moves || spread_.cols() > 3 || spread_.cols() != touched_value_.size()) return;
+  Matrix touched_spread(spread_.cols(), spread_.cols());
+  for (std::size_t j = 0; j < touched_.size(); ++j) touched_spread.row(static_cast<Eigen::Index>(j)) = spread_.row(touched_[j]);
+  to_way_ = inverse(touched_spread);
+  problem_.way.setZero(spread_.cols());
 }
 
 void Condensed::free_opening(const Vector& right, const Vector& displacement) {
@@ -82,6 +88,10 @@ void Condensed::free_opening(const Vector& right, const Vector& displacement) {
     problem_.free_opening.noalias() = b_ * touched_value_;
     problem_.free_opening += gap_;
     return;
+  }
+  if (to_way_.size() > 0) {
+    for (std::size_t j = 0; j < touched_.size(); ++j) touched_value_[static_cast<Eigen::Index>(j)] = free_[touched_[j]];
+    small::multiply(to_way_, touched_value_.data(), problem_.way.data());
   }
   for (std::size_t j = 0; j < touched_.size(); ++j)
     touched_value_[static_cast<Eigen::Index>(j)] = displacement[touched_[j]] + free_[touched_[j]];
@@ -104,8 +114,8 @@ Outcome Condensed::solve(const Vector& right, const Vector& displacement, const 
 Outcome Condensed::contact_step(const Vector& right, const Vector& displacement, const Vector& opening, const std::vector<double>& history,
                                 Vector& increment) {
   free_opening(right, displacement);
-  std::copy_n(opening.data(), opening.size(), problem_.from.data());
-  std::copy_n(history.data(), history.size(), problem_.old.data());
+  small::copy(opening.size(), opening.data(), problem_.from.data());
+  small::copy(static_cast<Index>(history.size()), history.data(), problem_.old.data());
   Outcome outcome = method_.solve(problem_, solution_);
   factor_.count(std::exchange(solution_.systems, {}));
   if (!outcome.converged) return outcome;

@@ -45,8 +45,10 @@ class StepSolver {
 /// is one back-solve; through any other one back-solve and the kept spread of the interface forces; with a kept inverse no back-solve.
 class Condensed final : public StepSolver {
  public:
-  /// `factor` is that of K_eff (with B^T D B in statics); `frame` has blocks, average, scale, step and shift set.
-  Condensed(const Model& model, const Sparse& b, const Vector& gap, BulkFactor factor, InterfaceProblem frame, const ContactMethod& method);
+  /// `factor` is that of K_eff (with B^T D B in statics); `frame` has blocks, average, scale, step and shift set. `gap_moves`: the gap
+  /// changes from step to step.
+  Condensed(const Model& model, const Sparse& b, const Vector& gap, bool gap_moves, BulkFactor factor, InterfaceProblem frame,
+            const ContactMethod& method);
   Outcome solve(const Vector& right, const Vector& displacement, const Vector& opening, const std::vector<double>& history,
                 Vector& increment) override;
   const InterfaceProblem& problem() const override { return problem_; }
@@ -65,6 +67,7 @@ class Condensed final : public StepSolver {
   Matrix dense_b_, touched_b_;  // small bulks; columns of B that are not empty
   std::vector<int> touched_;
   Matrix spread_;  // X: du = du_free + X z
+  Matrix to_way_;  // inverse of its touched rows where they are as many as its columns and few, and the gap stays: C = B X; else empty
   InterfaceProblem problem_;
   InterfaceSolution solution_;
   const ContactMethod& method_;

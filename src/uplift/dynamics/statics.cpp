@@ -102,7 +102,7 @@ StaticOutcome solve_statics(const Model& model, const Bulk& bulk, const Sparse& 
     return outcome;
   }
   const InterfaceProblem blocks = frame;
-  Condensed condensed(model, b, gap, std::move(factor), std::move(frame), method);
+  Condensed condensed(model, b, gap, false, std::move(factor), std::move(frame), method);
 
   const PlasticBulk yielding(model);
   PlasticNewton newton(yielding, matrix, plastic);
@@ -110,7 +110,7 @@ StaticOutcome solve_statics(const Model& model, const Bulk& bulk, const Sparse& 
     BulkFactor softer(matrix + d, &b, bulk.small, solver, model, counts);
     why = softer.why();
     if (!softer.ok()) return nullptr;
-    return std::make_unique<Condensed>(model, b, gap, std::move(softer), blocks, method);
+    return std::make_unique<Condensed>(model, b, gap, false, std::move(softer), blocks, method);
   };
   PlasticState plastic_now, plastic_next;
   if (yielding.any()) plastic_now = yielding.state(state.bulk_history);

@@ -31,6 +31,7 @@ Stepper::Stepper(const Model& model, const Bulk& bulk, const Sparse& b, const Ve
       yielding_(model) {
   still_force_ = options.held != nullptr ? *options.held : Vector(Vector::Zero(bulk.unknowns));
   model.add_constant_force(still_force_);
+  for (const PrescribedMotion& motion : model.motions) gap_moves_ = gap_moves_ || (motion.opening.size() > 0 && !motion.opening.isZero(0));
   levels_.resize(static_cast<std::size_t>(options.halvings) + 1);
   // Two factors are kept: the one of the step, which needs the most room while it is made, comes first. One that is needed for the
   // acceleration of the beginning alone comes and goes before it (start).
@@ -38,7 +39,7 @@ Stepper::Stepper(const Model& model, const Bulk& bulk, const Sparse& b, const Ve
   if (impacts_ && accelerator().why().empty()) {
     mass_spread_ = std::make_unique<Spread>(accelerator().spread(b));
     row_area_.resize(b.rows());
-    normals_.reserve(static_cast<std::size_t>(b.rows()));
+    pressed_.setZero(b.rows());
     tangents_.reserve(static_cast<std::size_t>(b.rows()));
     Eigen::Index row = 0;
     for (const Interface& interface : model.interfaces)
@@ -46,7 +47,6 @@ Stepper::Stepper(const Model& model, const Bulk& bulk, const Sparse& b, const Ve
     if (bulk.small) dense_b_ = Matrix(b);
   }
   if (yielding_.any()) newton_ = std::make_unique<PlasticNewton>(yielding_, bulk.stiffness_matrix, options.plastic);
-  for (const PrescribedMotion& motion : model.motions) gap_moves_ = gap_moves_ || (motion.opening.size() > 0 && !motion.opening.isZero(0));
 }
 
 Stepper::~Stepper() = default;
@@ -73,7 +73,7 @@ Outcome Stepper::solve(Level& level) {
     BulkFactor factor(matrix, &b_, bulk_.small, solver_, model_, linear_);
     why = factor.why();
     if (!factor.ok()) return nullptr;
-    return std::make_unique<Condensed>(model_, b_, gap_, std::move(factor), frame_of(level), method_);
+    return std::make_unique<Condensed>(model_, b_, gap_, gap_moves_, std::move(factor), frame_of(level), method_);
   };
   Outcome outcome = newton_->solve({right_, now_.displacement, now_.opening, now_.history, plastic_now_, next_.time}, *last, soften,
                                    increment_, plastic_next_);
@@ -277,8 +277,8 @@ bool Stepper::try_step(Level& level) {
     why_ = "the displacement is not finite";
     return false;
   }
-  std::copy_n(solution.opening.data(), solution.opening.size(), next_.opening.data());
-  std::copy_n(solution.now.data(), solution.now.size(), next_.history.data());
+  small::copy(solution.opening.size(), solution.opening.data(), next_.opening.data());
+  small::copy(static_cast<Index>(solution.now.size()), solution.now.data(), next_.history.data());
   if (newton_ != nullptr) next_.bulk_history = plastic_next_.history;
   products(next_.displacement, next_.velocity, stiff_next_, momentum_next_);
   if (path_) {
@@ -287,17 +287,16 @@ bool Stepper::try_step(Level& level) {
         const int points = block.batch.points, first = block.first + c * points;
         const double *end = solution.newton.end.data() + first, *force = solution.force.data() + first, *area = block.area.data();
         double *at_end = next_.force.data() + first, *mean = next_.mean_force.data() + first;
-#pragma omp simd
-        for (int i = 0; i < points; ++i) {
-          at_end[i] = end[i] * area[i];
-          mean[i] = 0.5 * force[i];
-        }
+        for_lanes(points, [=](const auto& at) {
+          at.put(at_end, at(end) * at(area));
+          at.put(mean, 0.5 * at(force));
+        });
       }
   } else {
-    std::copy_n(solution.force.data(), contact_.size(), contact_.data());
+    small::copy(contact_.size(), solution.force.data(), contact_.data());
     if (impacts_) apply_impact(level);
-    std::copy_n(contact_.data(), contact_.size(), next_.force.data());
-    std::copy_n(contact_.data(), contact_.size(), next_.mean_force.data());
+    small::copy(contact_.size(), contact_.data(), next_.force.data());
+    small::copy(contact_.size(), contact_.data(), next_.mean_force.data());
   }
   return true;
 }

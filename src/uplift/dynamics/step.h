@@ -115,7 +115,8 @@ class Stepper {
   mutable Vector product_, balance_;                                                       // work space of forces_at and acceleration
   Vector right_, increment_, work_, work2_, damped_, contact_, impulse_;
   ImpactScratch impact_scratch_;
-  std::vector<int> normals_, tangents_;
+  Vector pressed_;  // rows: area of the normal ones that are pressed, else 0 [m2]
+  std::vector<int> tangents_;
   Energies energies_;
   InterfaceEnergy interface_energy_;
   double impact_loss_ = 0, initial_energy_ = 0, largest_external_ = 0;

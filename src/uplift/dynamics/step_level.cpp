@@ -34,7 +34,7 @@ Stepper::Level& Stepper::make_level(int halving) {
     }
     std::unique_ptr<StepSolver> oracle;
     if (options_.oracle_tolerance > 0) oracle = make_monolithic(matrix_of(made), b_, gap_, frame);
-    made.solver = std::make_unique<Condensed>(model_, b_, gap_, std::move(factor), std::move(frame), method_);
+    made.solver = std::make_unique<Condensed>(model_, b_, gap_, gap_moves_, std::move(factor), std::move(frame), method_);
     if (oracle != nullptr)
       made.solver = make_compared(matrix_of(made), std::move(made.solver), std::move(oracle), options_.oracle_tolerance);
   }

@@ -32,6 +32,8 @@ class JointLaw final : public InterfaceLaw {
     if (reply.next != nullptr) std::copy_n(reply.slope, others(batch), reply.next);
   }
 
+  bool sweep(const Sweep& sweep) const override { return normal_->sweep(sweep); }
+
   void energy(const Batch& batch, const double* opening, const double* history, double* stored, double* dissipated) const override {
     normal_->energy(one_component(batch), opening + batch.normal(), history, stored, dissipated);
     if (batch.components > 1)

@@ -28,6 +28,8 @@ struct Reply {
   double* next = nullptr;      // `mean` only: the slope that a short step onwards will have, for first guesses; in the layout of `slope`
 };
 
+struct Sweep;
+
 /// A traction law: traction from opening, with memory.
 class InterfaceLaw {
  public:
@@ -39,6 +41,9 @@ class InterfaceLaw {
   /// Path-averaged traction of the step, 1/(to - from) * integral of t d(opening) along the law's own path (THEORY section 4), and its
   /// slope with respect to `to`.
   virtual void mean(const Batch&, const double* from, const double* to, const double* old, const Reply&) const = 0;
+  /// `mean` for Newton's method in one pass where there is one component, see sweep.h; false where the law does not offer it for these
+  /// paths.
+  virtual bool sweep(const Sweep&) const { return false; }
   /// Energy per area [J/m2] that is stored at this opening and memory, and that was dissipated since the beginning. Either may be null.
   virtual void energy(const Batch&, const double* opening, const double* history, double* stored, double* dissipated) const = 0;
   /// Stiffness of a closed joint in compression [Pa/m], per component (normal last): for k*F_ii, the static base and suggestions.

@@ -8,6 +8,8 @@
 // fast derives from NormalLaw and writes its loops over the points.
 namespace uplift {
 
+struct Sweep;
+
 /// Memory of one point in a structure of arrays.
 struct Memory {
   const double* first;
@@ -40,6 +42,8 @@ class NormalLaw {
   virtual int num_history() const = 0;
   virtual void respond(const Batch&, const double* from, const double* to, const double* old, const Reply&) const = 0;
   virtual void mean(const Batch&, const double* from, const double* to, const double* old, const Reply&) const = 0;
+  /// `mean` for Newton's method in one pass, see sweep.h; false where the law does not offer it for these paths.
+  virtual bool sweep(const Sweep&) const { return false; }
   virtual void energy(const Batch&, const double* opening, const double* history, double* stored, double* dissipated) const = 0;
   /// Stiffness in compression [Pa/m].
   virtual double stiffness() const = 0;

@@ -3,6 +3,8 @@
 #include <cmath>
 #include <cstdint>
 
+#include "uplift/math/lanes.h"
+
 // Averages along the straight path of one opening, without cancellation: a piecewise linear function f is integrated piece by piece,
 //     1/(to - from) * integral of f = sum over pieces of share * f(middle)
 //     d/d to of it                  = sum over pieces of share * lever * f'(piece)      [= 1/(to - from)^2 * integral of (x - from) f'(x)]
@@ -12,17 +14,6 @@ namespace uplift {
 
 /// A path shorter than this [m] counts as the point `to`: averages are values, and d/d to is half the slope.
 constexpr double shortest_path = 1e-200;
-
-/// As std::min and std::max for numbers by value: these become one vector instruction in loops.
-inline double smaller(double a, double b) {
-  return a < b ? a : b;
-}
-inline double larger(double a, double b) {
-  return a > b ? a : b;
-}
-
-/// Loops over points take so many together: the lanes of the widest vector registers.
-constexpr int lanes = 8;
 
 /// Marks of up to 64 points, as wide as their numbers.
 struct Marks {

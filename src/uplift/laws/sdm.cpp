@@ -4,6 +4,7 @@
 
 #include "uplift/laws/joint.h"
 #include "uplift/laws/path.h"
+#include "uplift/laws/sweep.h"
 #include "uplift/math/exponential.h"
 #include "uplift/math/lambert.h"
 
@@ -24,11 +25,6 @@ namespace {
 /// Traction at a fixed jump and its slope.
 struct Traction {
   double value, slope;
-};
-
-/// Path average at a fixed jump, its derivative with respect to the end of the path, and the traction and its slope there.
-struct Average {
-  double value, slope, end, end_slope;
 };
 
 /// What becomes of a path that may soften.
@@ -59,9 +55,15 @@ struct Sdm {
   double threshold(double j) const { return strength * exponential(-rate * j).value; }
 
   /// Positive when an opening that is `over` beyond the jump may pass the threshold: F_u (1 - a j) is below F_u exp(-a j).
-  double excess(double over, double j) const { return smaller(over, k * over - strength * (1 - rate * j)); }
+  template <class T>
+  [[gnu::always_inline]] T excess(T over, T j) const {
+    return smaller(over, k * over - strength * (1 - rate * j));
+  }
 
-  double closing(double j) const { return k * closure / (closure + k * j); }
+  template <class T>
+  [[gnu::always_inline]] T closing(T j) const {
+    return k * closure / (closure + k * j);
+  }
 
   Traction at(double d, double j) const {
     const double slope = d >= knot && d < j ? closing(j) : k;
@@ -69,31 +71,36 @@ struct Sdm {
   }
 
   /// Whether a path meets a bend of the traction at fixed jump, at the knot or at j.
-  bool bends(double from, double to, double j) const { return ((from < knot) != (to < knot)) | ((from < j) != (to < j)); }
+  template <class T>
+  [[gnu::always_inline]] auto bends(T from, T to, T j) const {
+    return ((from < knot) != (to < knot)) | ((from < j) != (to < j));
+  }
 
   /// Average at fixed jump of a path without a bend: the traction of its middle.
-  Average straight(double from, double to, double j) const {
-    const bool closed = to < knot;
-    const double slope = (!closed & (to < j)) ? closing(j) : k, start = closed ? 0.0 : j;
+  template <class T>
+  [[gnu::always_inline]] Average<T> straight(T from, T to, T j) const {
+    const auto closed = to < knot;
+    const T slope = choose(closed | (to >= j), T(k), closing(j)), start = choose(closed, T(0), j);
     return {slope * (0.5 * (from + to) - start), 0.5 * slope, slope * (to - start), slope};
   }
 
   /// Average at fixed jump of any path, which is that of the three straight pieces below `knot`, from there to j, and above. Places are
   /// measured from `from`.
-  Average average(double from, double to, double j) const {
-    const double way = to - from, low = smaller(way, 0.0), high = larger(way, 0.0), length = std::abs(way);
-    const double held = larger(length, shortest_path), soft = closure + k * j;
-    const double inverse_both = 1 / (held * soft);  // one division for 1/length and the closing stiffness
-    const double inverse = soft * inverse_both, closing_stiffness = k * closure * held * inverse_both;
-    const double start = knot - from, finish = j - from;  // of the closure
-    const double a0 = smaller(low, start), a1 = smaller(high, start), c0 = larger(low, finish), c1 = larger(high, finish);
-    const double b0 = smaller(larger(low, start), finish), b1 = smaller(larger(high, start), finish);
-    const double a = k * (a1 - a0), b = closing_stiffness * (b1 - b0), c = k * (c1 - c0), half = 0.5 * inverse;
-    const double sum = a * (2 * from + (a0 + a1)) + b * ((b0 + b1) - 2 * finish) + c * ((c0 + c1) - 2 * finish);
-    const double levers = std::abs(a * (a0 + a1) + b * (b0 + b1) + c * (c0 + c1));
-    const double slope = to >= knot && to < j ? closing_stiffness : k;
-    const double end = to < knot ? k * to : slope * (to - j);
-    return {length > shortest_path ? sum * half : end, length > shortest_path ? levers * half * inverse : 0.5 * slope, end, slope};
+  template <class T>
+  [[gnu::always_inline]] Average<T> average(T from, T to, T j) const {
+    const T zero = 0, d_c = knot, way = to - from, low = smaller(way, zero), high = larger(way, zero), length = absolute(way);
+    const T held = larger(length, T(shortest_path)), soft = closure + k * j;
+    const T inverse_both = 1 / (held * soft);  // one division for 1/length and the closing stiffness
+    const T inverse = soft * inverse_both, closing_stiffness = k * closure * held * inverse_both;
+    const T start = d_c - from, finish = j - from;  // of the closure
+    const T a0 = smaller(low, start), a1 = smaller(high, start), c0 = larger(low, finish), c1 = larger(high, finish);
+    const T b0 = smaller(larger(low, start), finish), b1 = smaller(larger(high, start), finish);
+    const T a = k * (a1 - a0), b = closing_stiffness * (b1 - b0), c = k * (c1 - c0), half = 0.5 * inverse;
+    const T sum = a * (2 * from + (a0 + a1)) + b * ((b0 + b1) - 2 * finish) + c * ((c0 + c1) - 2 * finish);
+    const T levers = absolute(a * (a0 + a1) + b * (b0 + b1) + c * (c0 + c1));
+    const auto closed = to < d_c, moves = length > T(shortest_path);
+    const T slope = choose(closed | (to >= j), T(k), closing_stiffness), end = slope * (to - choose(closed, zero, j));
+    return {choose(moves, sum * half, end), choose(moves, levers * half * inverse, 0.5 * slope), end, slope};
   }
 
   double stored(double d, double j) const {
@@ -112,6 +119,16 @@ struct Sdm {
   }
 
   double softening_slope(double traction) const { return -k * rate * traction / (k - rate * traction); }
+};
+
+/// The law as sweep_points wants it.
+struct SweptSdm : Sdm {
+  static constexpr bool remembers = true;
+  /// end (d - j) in closure and above; below the knot end d - K d_c j.
+  [[gnu::always_inline]] Lanes twice_stored(Lanes d, Lanes j, Lanes end) const {
+    return end * d - j * choose(d < knot, Lanes(k * knot), end);
+  }
+  [[gnu::always_inline]] LaneMask changes(Lanes from, Lanes to, Lanes j) const { return excess(larger(from, to) - j, j) > 0.0; }
 };
 
 constexpr int block = 64;  // points that are treated together: what is gathered lies on the stack
@@ -163,7 +180,7 @@ bool mean_below(const Sdm law, const Step step, const Reply& reply) {
 #pragma omp simd reduction(max : most) reduction(| : any)
   for (int i = 0; i < step.count; ++i) {
     const double from = step.from[i], to = step.to[i], j = step.old[i];
-    const Average average = law.straight(from, to, j);
+    const Average<double> average = law.straight(from, to, j);
     most = larger(most, law.excess(larger(from, to) - j, j));
     const std::int64_t bent = law.bends(from, to, j);
     any |= bent;
@@ -177,7 +194,7 @@ bool mean_below(const Sdm law, const Step step, const Reply& reply) {
   bends.for_groups(step.count, [=](int first, int count) {
 #pragma omp simd
     for (int i = first; i < first + count; ++i) {
-      const Average average = law.average(step.from[i], step.to[i], step.old[i]);
+      const Average<double> average = law.average(step.from[i], step.to[i], step.old[i]);
       mean[i] = average.value;
       slope[i] = average.slope;
     }
@@ -244,7 +261,7 @@ void mean_beyond(const Sdm law, const Step& step, const Reply& reply) {
     const Softening s = law.soften(from, to, j, limit);
     const double way = to - from, inverse = std::abs(way) > shortest_path ? 1 / way : 0;
     const bool softens = to > s.elastic_end;
-    const Average elastic = law.average(from, s.elastic_end, j);
+    const Average<double> elastic = law.average(from, s.elastic_end, j);
     // q by one Newton step from the jumps' own difference, which has only its last digits wrong
     const double length = to - s.elastic_end, scale = law.rate * limit * law.flexibility;
     const double guess = law.rate * (s.jump - j), drop = exponential(-guess).minus_one;
@@ -300,6 +317,8 @@ class SdmLaw final : public NormalLaw {
       if (mean_below(law_, step, here)) mean_beyond(law_, step, here);
     }
   }
+
+  bool sweep(const Sweep& sweep) const override { return sweep_points(SweptSdm{law_}, sweep); }
 
   void energy(const Batch& batch, const double* opening, const double* history, double* stored, double* dissipated) const override {
     const Sdm law = law_;

@@ -1,5 +1,6 @@
 #include "uplift/laws/joint.h"
 #include "uplift/laws/path.h"
+#include "uplift/laws/sweep.h"
 
 // Tensionless springs, the classic no-tension base: K the stiffness [Pa/m], c the damping in contact [Pa s/m], d the opening, r = (to -
 // from)/step.
@@ -11,6 +12,32 @@
 // parting faces no longer push although the spring is still short. Memory (c > 0 only): the energy taken by the dashpot [J/m2].
 namespace uplift {
 namespace {
+
+/// Without the dashpot, as sweep_points wants it.
+struct SweptSprings {
+  static constexpr bool remembers = false;
+  double stiffness;
+
+  [[gnu::always_inline]] static LaneMask bends(Lanes from, Lanes to, Lanes) { return (from < 0.0) != (to < 0.0); }
+
+  [[gnu::always_inline]] static Lanes twice_stored(Lanes to, Lanes, Lanes end) { return end * to; }
+
+  /// The traction of the middle of the path.
+  [[gnu::always_inline]] Average<Lanes> straight(Lanes from, Lanes to, Lanes) const {
+    const Lanes slope = choose(to < 0.0, Lanes(stiffness), Lanes(0));
+    return {slope * (0.5 * (from + to)), 0.5 * slope, slope * to, slope};
+  }
+
+  [[gnu::always_inline]] Average<Lanes> average(Lanes from, Lanes to, Lanes old) const {
+    const Average<Lanes> point = straight(to, to, old);
+    const Lanes zero = 0, way = to - from, length = absolute(way), inverse = 1 / length;
+    const Lanes a = smaller(smaller(way, zero), -from), b = smaller(larger(way, zero), -from);
+    const Lanes weight = 0.5 * stiffness * (b - a) * inverse;
+    const LaneMask moves = length > shortest_path;
+    return {choose(moves, weight * (2 * from + (a + b)), point.end), choose(moves, weight * absolute(a + b) * inverse, point.slope), point.end,
+            point.end_slope};
+  }
+};
 
 class Springs final : public NormalLaw {
  public:
@@ -38,6 +65,8 @@ class Springs final : public NormalLaw {
               given(reply.slope, spare[0]), given(reply.end, spare[1]), given(reply.next, spare[2]));
     }
   }
+
+  bool sweep(const Sweep& sweep) const override { return damping_ == 0 && sweep_points(SweptSprings{stiffness_}, sweep); }
 
   void energy(const Batch& batch, const double* opening, const double* history, double* stored, double* dissipated) const override {
     const double half = 0.5 * stiffness_;

@@ -1,4 +1,5 @@
 #pragma once
+#include <cstddef>
 #include <string>
 
 // What memory there is, so that a factor is refused before it is made, not killed while it is.
@@ -14,6 +15,10 @@ double resident_memory(const std::string& root = "");
 
 /// Hands pages of the heap that nobody uses back to the system, where the C library can: after an analysis, before what it was made for.
 void give_back_free_memory();
+
+/// Lets the system give real pages to memory that will be written soon, all at once: one after another, when they are first written, costs
+/// twice as much, and as much as two steps of a small model each. The first 2 MB at most, and nothing where the system cannot.
+void take_pages(void* begin, std::size_t bytes);
 
 /// Why a factor that takes `needed` bytes is not made when `available` are left; empty when it fits.
 std::string memory_refusal(double needed, double available);

@@ -5,32 +5,11 @@
 #include <utility>
 
 #include "uplift/math/fixed.h"
+#include "uplift/math/lanes.h"
 
 // Kernels for the few unknowns of an interface under a rigid body and for small bulks: plain loops over contiguous columns that the
 // compiler turns into vector code; Eigen's general products cost more than the arithmetic at these sizes.
 namespace uplift::small {
-
-/// Eight numbers side by side, in vector registers. Sums over points are made of these: what compilers make of a loop with several sums
-/// ends in long chains of single additions.
-using Lanes = Eigen::Array<double, 8, 1>;
-inline constexpr std::ptrdiff_t lanes = 8;
-inline Eigen::Map<const Lanes> lanes_at(const double* x) {
-  return Eigen::Map<const Lanes>(x);
-}
-
-/// Calls add(at) for eight points after another out of n, where at(x) are their numbers in the array x: beyond the last one zeros, or what
-/// at(x, beyond) says.
-template <class Add>
-inline void for_lanes(std::ptrdiff_t n, const Add& add) {
-  std::ptrdiff_t i = 0;
-  for (; i + lanes <= n; i += lanes) add([i](const double* x, double = 0) { return lanes_at(x + i); });
-  if (i == n) return;
-  add([i, n](const double* x, double beyond = 0) {
-    Lanes rest = Lanes::Constant(beyond);
-    for (std::ptrdiff_t k = i; k < n; ++k) rest[k - i] = x[k];
-    return rest;
-  });
-}
 
 /// Calls work(n), with n known to the compiler where it is small: loops over it then have neither a beginning nor an end.
 template <class Work>
@@ -56,19 +35,24 @@ inline void with_size(std::ptrdiff_t n, const Work& work) {
 }
 
 inline double dot(std::ptrdiff_t n, const double* a, const double* b) {
-  double sum = 0;
+  double total = 0;
   std::ptrdiff_t i = 0;
   if (n >= lanes) {
-    Lanes part = Lanes::Zero();
-    for (; i + lanes <= n; i += lanes) part += lanes_at(a + i) * lanes_at(b + i);
-    sum = part.sum();
+    Lanes part = 0;
+    for (; i + lanes <= n; i += lanes) part += WholeLanes{i}(a) * WholeLanes{i}(b);
+    total = uplift::sum(part);
   }
-  for (; i < n; ++i) sum += a[i] * b[i];
-  return sum;
+  for (; i < n; ++i) total += a[i] * b[i];
+  return total;
 }
 
 inline double sum_of_squares(std::ptrdiff_t n, const double* a) {
   return dot(n, a, a);
+}
+
+/// A few numbers: for them the library's copy costs more than the copying.
+inline void copy(std::ptrdiff_t n, const double* from, double* to) {
+  for_lanes(n, [=](const auto& at) { at.put(to, at(from)); });
 }
 
 /// y += factor * x
@@ -154,12 +138,11 @@ void add_transposed(std::ptrdiff_t n, std::ptrdiff_t m, const double* a, std::pt
   if constexpr (R == 0) {
     for (std::ptrdiff_t j = 0; j < m; ++j, a += stride) y[j] += dot(n, a, x);
   } else {
-    Lanes sum[R];
-    for (Lanes& part : sum) part.setZero();
+    Lanes total[R] = {};
     for_lanes(n, [&](const auto& at) {
-      for (int r = 0; r < R; ++r) sum[r] += at(a + r * stride) * at(x);
+      for (int r = 0; r < R; ++r) total[r] += at(a + r * stride) * at(x);
     });
-    for (int r = 0; r < R; ++r) y[r] += sum[r].sum();
+    for (int r = 0; r < R; ++r) y[r] += sum(total[r]);
   }
 }
 
@@ -168,9 +151,18 @@ bool cholesky(std::ptrdiff_t n, double* a);
 /// Solves L L^T x = b in place.
 void cholesky_solve(std::ptrdiff_t n, const double* l, double* b);
 /// Solves A x = b in place by Gauss elimination with row pivoting; A is destroyed; false when singular. N > 0: a size that the compiler
-/// knows, so that the loops unroll. The pivots are divided by once, while b may still be under way.
+/// knows, so that the loops unroll; two unknowns by Cramer's rule, which is as accurate there. The pivots are divided by once, while b may
+/// still be under way.
 template <int N>
-bool gauss_solve(std::ptrdiff_t size, double* a, double* b) {
+[[gnu::always_inline]] inline bool gauss_solve(std::ptrdiff_t size, double* a, double* b) {
+  if constexpr (N == 2) {
+    const double determinant = a[0] * a[3] - a[1] * a[2];
+    if (!(std::abs(determinant) > 0)) return false;
+    const double inverse = 1 / determinant, first = (a[3] * b[0] - a[2] * b[1]) * inverse;
+    b[1] = (a[0] * b[1] - a[1] * b[0]) * inverse;
+    b[0] = first;
+    return true;
+  }
   const std::ptrdiff_t n = N > 0 ? N : size;
   for (std::ptrdiff_t j = 0; j < n; ++j) {
     std::ptrdiff_t best = j;
@@ -200,22 +192,18 @@ bool gauss_solve(std::ptrdiff_t size, double* a, double* b) {
 template <int R>
 [[gnu::always_inline]] inline void gradient_and_gram(std::ptrdiff_t n, const double* c, std::ptrdiff_t rows, const double* p,
                                                      const double* k, double* g, double* h) {
-  Lanes sum[R], gram[R][R];  // gram: lower triangle
-  for (int s = 0; s < R; ++s) {
-    sum[s].setZero();
-    for (int r = s; r < R; ++r) gram[s][r].setZero();
-  }
+  Lanes total[R] = {}, gram[R][R] = {};  // gram: lower triangle
   for_lanes(n, [&](const auto& at) {
     for (int s = 0; s < R; ++s) {
       const Lanes column = at(c + s * rows), weighted = at(k) * column;
-      sum[s] += column * at(p);
+      total[s] += column * at(p);
       for (int r = s; r < R; ++r) gram[s][r] += weighted * at(c + r * rows);
     }
   });
   for (int s = 0; s < R; ++s) {
-    g[s] += sum[s].sum();
+    g[s] += sum(total[s]);
     for (int r = s; r < R; ++r) {
-      const double entry = gram[s][r].sum();
+      const double entry = sum(gram[s][r]);
       h[s * R + r] += entry;
       if (r != s) h[r * R + s] += entry;
     }

@@ -1,0 +1,83 @@
+#pragma once
+#include <cstddef>
+#include <experimental/simd>
+
+// Eight numbers side by side, in vector registers, for loops over the points of an interface. Sums over points are made of these: what
+// compilers make of a loop with several sums ends in long chains of single additions.
+namespace uplift {
+
+using Lanes = std::experimental::simd<double, std::experimental::simd_abi::deduce_t<double, 8>>;
+using LaneMask = Lanes::mask_type;
+inline constexpr std::ptrdiff_t lanes = 8;
+
+[[gnu::always_inline]] inline Lanes larger(Lanes a, Lanes b) {
+  return std::experimental::max(a, b);
+}
+[[gnu::always_inline]] inline Lanes smaller(Lanes a, Lanes b) {
+  return std::experimental::min(a, b);
+}
+[[gnu::always_inline]] inline Lanes absolute(Lanes a) {
+  return std::experimental::abs(a);
+}
+/// a where the mask says so, else b.
+[[gnu::always_inline]] inline Lanes choose(LaneMask mask, Lanes a, Lanes b) {
+  std::experimental::where(mask, b) = a;
+  return b;
+}
+[[gnu::always_inline]] inline bool any(LaneMask mask) {
+  return std::experimental::any_of(mask);
+}
+[[gnu::always_inline]] inline double sum(Lanes a) {
+  return std::experimental::reduce(a);
+}
+[[gnu::always_inline]] inline double largest(Lanes a) {
+  return std::experimental::hmax(a);
+}
+[[gnu::always_inline]] inline double smallest(Lanes a) {
+  return std::experimental::hmin(a);
+}
+
+// The same for one number, so that a formula can be written once for both.
+[[gnu::always_inline]] inline double smaller(double a, double b) {
+  return a < b ? a : b;
+}
+[[gnu::always_inline]] inline double larger(double a, double b) {
+  return a > b ? a : b;
+}
+[[gnu::always_inline]] inline double absolute(double a) {
+  return a < 0 ? -a : a;
+}
+[[gnu::always_inline]] inline double choose(bool mask, double a, double b) {
+  return mask ? a : b;
+}
+
+/// Eight numbers of an array from `first` on.
+struct WholeLanes {
+  std::ptrdiff_t first;
+  [[gnu::always_inline]] Lanes operator()(const double* x, double = 0) const { return {x + first, std::experimental::element_aligned}; }
+  [[gnu::always_inline]] void put(double* y, Lanes value) const { value.copy_to(y + first, std::experimental::element_aligned); }
+};
+
+/// The last ones, fewer than eight: beyond them zeros, or what is asked for.
+struct LastLanes {
+  std::ptrdiff_t first, count;
+  [[gnu::always_inline]] Lanes operator()(const double* x, double beyond = 0) const {
+    alignas(64) double rest[lanes];
+    for (std::ptrdiff_t k = 0; k < lanes; ++k) rest[k] = k < count ? x[first + k] : beyond;
+    return {rest, std::experimental::vector_aligned};
+  }
+  [[gnu::always_inline]] void put(double* y, Lanes value) const {
+    for (std::ptrdiff_t k = 0; k < count; ++k) y[first + k] = value[static_cast<std::size_t>(k)];
+  }
+};
+
+/// Calls work(at) for eight points after another out of n: at(x) are their numbers in the array x (beyond the last point zeros, or what
+/// at(x, beyond) says), at.put(y, value) writes them.
+template <class Work>
+[[gnu::always_inline]] inline void for_lanes(std::ptrdiff_t n, const Work& work) {
+  std::ptrdiff_t i = 0;
+  for (; i + lanes <= n; i += lanes) work(WholeLanes{i});
+  if (i < n) work(LastLanes{i, n - i});
+}
+
+}  // namespace uplift
