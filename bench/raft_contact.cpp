@@ -209,7 +209,7 @@ class March {
     block.batch = Batch{static_cast<int>(system_.area.size()), 3, 0};
     block.law = law;
     block.cone = cone;
-    block.area = system_.area;
+    block.area = ConstMap(system_.area.data(), static_cast<Index>(system_.area.size()));
     problem.blocks.push_back(block);
     problem.factor = compliance_;
     problem.average = average_;
@@ -217,7 +217,7 @@ class March {
     problem.step = step;
     problem.free_opening.setZero(compliance_.rows());
     problem.from.setZero(compliance_.rows());
-    if (law != nullptr) problem.old.assign(static_cast<std::size_t>(law->num_history(3)) * system_.area.size(), 0.0);
+    if (law != nullptr) problem.old.setZero(law->num_history(3) * static_cast<Index>(system_.area.size()));
     return problem;
   }
 

@@ -143,7 +143,7 @@ void measure(double size, Setup kind) {
   State state;
   state.displacement = state.velocity = state.acceleration = Vector::Zero(model.free());
   state.opening = state.force = state.mean_force = Vector::Zero(b.rows());
-  state.history.assign(static_cast<std::size_t>(behaviours.history), 0);
+  state.history.setZero(behaviours.history);
   const StaticOutcome rest = solve_statics(model, bulk, b, gap, behaviours, *method, *solver, 1, state, counts);
   if (!rest.converged) {
     fmt::print("{}\n", rest.why);

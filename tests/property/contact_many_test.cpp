@@ -105,7 +105,7 @@ InterfaceProblem with_penalty(const Own& own, const ContactMethod& penalty, std:
   block.law = law.get();
   block.cone = nullptr;
   block.first_history = static_cast<int>(replaced.old.size());
-  replaced.old.resize(replaced.old.size() + static_cast<std::size_t>(law->num_history(block.batch.components) * block.batch.points), 0.0);
+  replaced.old.conservativeResizeLike(Vector::Zero(replaced.old.size() + law->num_history(block.batch.components) * block.batch.points));
   return replaced;
 }
 
@@ -123,7 +123,7 @@ TEST(ManyPoints, every_end_is_honest) {
         own.laws.push_back(rubbing(name == "sdm" ? "sdm" : "springs", 1e7, draw.friction));
         Block& block = own.add("surface", draw.points, 3, std::vector<double>(static_cast<std::size_t>(draw.points), 1.0));
         block.law = own.laws.back().get();
-        own.problem.old.assign(static_cast<std::size_t>(block.law->num_history(3) * draw.points), 0.0);
+        own.problem.old.setZero(block.law->num_history(3) * draw.points);
         own.problem.average = draw.seed % 2 == 0;
         own.problem.scale = own.problem.average ? 2 : 1;
       } else {
@@ -189,7 +189,7 @@ TEST(PathAveragedFriction, newton_solves_every_step_of_moderate_stiffness) {
           own.laws.push_back(rubbing("springs", stiffness, friction));
           Block& block = own.add("surface", n, components, std::vector<double>(static_cast<std::size_t>(n), 1.0));
           block.law = own.laws.back().get();
-          own.problem.old.assign(static_cast<std::size_t>(block.law->num_history(components) * n), 0.0);
+          own.problem.old.setZero(block.law->num_history(components) * n);
           const Index rows = n * components;
           const Matrix mix = Matrix::NullaryExpr(rows, rows, [&] { return uniform(engine) / std::sqrt(static_cast<double>(rows)); });
           Matrix compliance = mix * mix.transpose();  // of order 1

@@ -62,7 +62,7 @@ Vector rest_of(const Built& built) {
   State state;
   state.displacement = state.velocity = state.acceleration = Vector::Zero(built.model.free());
   state.opening = state.force = state.mean_force = Vector::Zero(b.rows());
-  state.history.assign(static_cast<std::size_t>(behaviours.history), 0);
+  state.history.setZero(behaviours.history);
   const Vector gap = Vector::Zero(b.rows());
   const StaticOutcome rest = solve_statics(built.model, bulk, b, gap, behaviours, *built.plan.method, *built.plan.solver, 5, state, counts);
   EXPECT_TRUE(rest.converged) << rest.why;

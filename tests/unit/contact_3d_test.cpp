@@ -31,7 +31,7 @@ Own surface(const std::string& method_name, int points, double friction, double 
   own.laws.push_back(rubbing_springs(stiffness, friction));
   Block& block = own.add("surface", points, 3, std::vector<double>(static_cast<std::size_t>(points), 1.0));
   block.law = own.laws.back().get();
-  own.problem.old.resize(static_cast<std::size_t>(block.law->num_history(3) * points));
+  own.problem.old.setZero(block.law->num_history(3) * points);
   return own;
 }
 std::unique_ptr<const ContactMethod> chosen(const std::string& name, double stiffness = 1e8) {
@@ -202,7 +202,7 @@ TEST(Surface, exact_methods_agree) {
           own.laws.push_back(rubbing_springs(2e7, 0.5));
           Block& block = own.add("springs", extra, 3, std::vector<double>(static_cast<std::size_t>(extra), 1.0));
           block.law = own.laws.back().get();
-          own.problem.old.resize(static_cast<std::size_t>(block.law->num_history(3) * extra));
+          own.problem.old.setZero(block.law->num_history(3) * extra);
         }
         take(own, data);
         InterfaceSolution solutions[2];

@@ -319,7 +319,7 @@ TEST(Impact, catalog_and_idle) {
     Impact impact;
     impact.mass = impact.dynamic = &block.inertia;
     impact.b = &block.b;
-    impact.force = &force;
+    impact.force = impact.pressed = &force;  // nobody is pressed
     Vector v = (Vector(3) << 1.0, -2.0, 3.0).finished(), a = v, impulse = Vector::Zero(4);
     ImpactScratch scratch;
     rule(name)->apply(impact, v, a, impulse, scratch);

@@ -86,8 +86,8 @@ struct Sample {
     own.laws.push_back(make_part(law_catalog(), values[1]));
     Block& joint = own.add("joint", 2, 1, {1e-300, 1e300});
     joint.law = own.laws.back().get();
-    const int memory = joint.law->num_history(1) * 2;
-    for (int i = 0; i < memory; ++i) own.problem.old.push_back(0.1 / (3 + i));
+    own.problem.old.resize(joint.law->num_history(1) * 2);
+    for (Index i = 0; i < own.problem.old.size(); ++i) own.problem.old[i] = 0.1 / static_cast<double>(3 + i);
     Matrix factor(8, 3);
     for (Index i = 0; i < factor.size(); ++i) factor.data()[i] = std::pow(-1.1, static_cast<double>(i)) * 1e-4 / 3;
     own.set(factor, Vector::LinSpaced(8, -1.0 / 3, 1e-17));
@@ -157,9 +157,11 @@ TEST(ProblemFile, substituted_law_is_stored_as_its_cone) {
   const auto spring = springs(1e9);
   problem.blocks[0].cone = nullptr;
   problem.blocks[0].law = spring.get();
-  const std::size_t memory = static_cast<std::size_t>(spring->num_history(2) * 3);
-  problem.old.insert(problem.old.begin(), memory, 0.7);
-  problem.blocks[1].first_history += static_cast<int>(memory);
+  const int memory = spring->num_history(2) * 3;
+  const Vector own = problem.old;
+  problem.old.resize(memory + own.size());
+  problem.old << Vector::Constant(memory, 0.7), own;
+  problem.blocks[1].first_history += memory;
   const StoredProblem stored = load_problem(save_problem(problem, sample.behaviours, ""), "sample.json");
   EXPECT_NE(stored.problem.blocks[0].cone, nullptr);
   ASSERT_EQ(stored.problem.old.size(), problem.old.size() - memory);
@@ -180,7 +182,7 @@ TEST(ProblemFile, penalty_problem_replays_to_the_same_solution) {
   const auto law = method("penalty", {{"factor", 3.0}})->substitute(*own.cones[0], 0.7 * flexibility(problem, problem.blocks[0]));
   problem.blocks[0].law = law.get();
   problem.blocks[0].cone = nullptr;
-  problem.old.assign(static_cast<std::size_t>(law->num_history(2) * 5), 0.0);
+  problem.old.setZero(law->num_history(2) * 5);
   InterfaceSolution solution;
   Outcome outcome;
   for (const double share : {0.4, 1.0, 0.7}) {  // slides, then comes back: the memory matters

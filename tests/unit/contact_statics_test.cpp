@@ -56,7 +56,7 @@ Rest rest(const std::string& name, bool rubs, double push, double height) {
   State& state = result.state;
   state.displacement = state.velocity = state.acceleration = Vector::Zero(whole.model.free());
   state.opening = state.force = state.mean_force = gap;
-  state.history.assign(static_cast<std::size_t>(behaviours.history), 0.0);
+  state.history.setZero(behaviours.history);
   result.outcome = solve_statics(whole.model, bulk, b, gap, behaviours, *chosen, *solver, 4, state, counts);
   const int normal = rubs ? points : 0;
   for (int i = 0; i < points; ++i) {

@@ -42,26 +42,26 @@ struct Own {
   std::vector<std::unique_ptr<const Cone>> cones;
   std::vector<std::unique_ptr<const InterfaceLaw>> laws;
 
-  Block& add(const std::string& name, int points, int components, std::vector<double> area) {
+  Block& add(const std::string& name, int points, int components, const std::vector<double>& area) {
     Block block;
     block.name = name;
     for (const Block& other : problem.blocks) block.first = other.first + other.rows();
     block.first_history = static_cast<int>(problem.old.size());
     block.batch = Batch{points, components, 0};
-    block.area = std::move(area);
+    block.area = ConstMap(area.data(), static_cast<Index>(area.size()));
     problem.blocks.push_back(std::move(block));
     return problem.blocks.back();
   }
   void add_cone(const std::string& name, int points, int components, double friction, std::vector<double> area = {}) {
     if (area.empty()) area.assign(static_cast<std::size_t>(points), 1.0);
     cones.push_back(cone(friction));
-    add(name, points, components, std::move(area)).cone = cones.back().get();
+    add(name, points, components, area).cone = cones.back().get();
   }
   void add_springs(const std::string& name, int points, double stiffness) {
     laws.push_back(springs(stiffness));
     Block& block = add(name, points, 1, std::vector<double>(static_cast<std::size_t>(points), 1.0));
     block.law = laws.back().get();
-    problem.old.resize(problem.old.size() + static_cast<std::size_t>(block.law->num_history(1) * points));
+    problem.old.conservativeResizeLike(Vector::Zero(problem.old.size() + block.law->num_history(1) * points));
   }
   void set(Matrix factor, Vector free_opening) {
     problem.factor = std::move(factor);

@@ -52,7 +52,7 @@ Rest rest_of(const Built& built, int steps, const PlasticOptions& options) {
   State& state = rest.state;
   state.displacement = state.velocity = state.acceleration = Vector::Zero(built.model.free());
   state.opening = state.force = state.mean_force = gap;
-  state.history.assign(static_cast<std::size_t>(behaviours.history), 0.0);
+  state.history.setZero(behaviours.history);
   rest.outcome =
       solve_statics(built.model, bulk, b, gap, behaviours, *built.plan.method, *built.plan.solver, steps, state, rest.counts, options);
   return rest;

@@ -118,7 +118,7 @@ void Runner::execute() {
     if (motion.opening.size() > 0) start_gap_ += motion.opening * motion.function->value(0);
   state_.opening = start_gap_;
   state_.force = state_.mean_force = Vector::Zero(b_.rows());
-  state_.history.assign(static_cast<std::size_t>(laws_->history), 0.0);
+  state_.history.setZero(laws_->history);
   remember_gaps();
   for (int column = 0; column < b_.outerSize(); ++column) {
     const int unknown = model_.kept[static_cast<std::size_t>(column)];
@@ -203,7 +203,7 @@ void Runner::add_initial_state() {
   state_.displacement += plan_.initial_displacement;
   const Vector from = state_.opening;
   state_.opening += b_ * plan_.initial_displacement;
-  const std::vector<double> old = state_.history;
+  const Vector old = state_.history;
   for (const Block& block : blocks_of(model_, *laws_).blocks) {
     const int points = block.batch.points, normal = block.first + block.batch.normal();
     if (block.law != nullptr) {

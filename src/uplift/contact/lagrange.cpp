@@ -144,7 +144,7 @@ void size_solution(const InterfaceProblem& problem, InterfaceSolution& solution)
   if (solution.status.size() != points) solution.status.assign(points, Status::open);
   solution.opening.setZero(rows);
   if (solution.force.size() != rows) solution.force.setZero(rows);
-  solution.now.assign(problem.old.size(), 0.0);
+  solution.now.setZero(problem.old.size());
   solution.lagrange.held.setZero(rows);
   solution.lagrange.limit.setZero(rows);
 }

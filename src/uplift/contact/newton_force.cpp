@@ -50,7 +50,7 @@ void size_newton(const InterfaceProblem& problem, InterfaceSolution& solution) {
   solution.opening.setZero(rows);
   solution.force.setZero(rows);
   if (solution.z.size() != r) solution.z.setZero(r);
-  solution.now.assign(problem.old.size(), 0.0);
+  solution.now.setZero(problem.old.size());
 }
 
 void evaluate(const InterfaceProblem& problem, const AugmentedForce& augmented, bool with_slope, InterfaceSolution& solution) {

@@ -68,9 +68,9 @@ class PenaltyMethod final : public ContactMethod {
       block.law = laws.back().get();
       block.cone = nullptr;
       block.first_history = static_cast<int>(replaced.old.size());
-      const std::size_t values = static_cast<std::size_t>(block.law->num_history(block.batch.components) * block.batch.points);
-      replaced.old.resize(replaced.old.size() + values);
-      if (block.substitute_memory.size() == values)
+      const Index values = block.law->num_history(block.batch.components) * block.batch.points;
+      replaced.old.conservativeResizeLike(Vector::Zero(replaced.old.size() + values));
+      if (static_cast<Index>(block.substitute_memory.size()) == values)
         std::copy_n(block.substitute_memory.data(), values, replaced.old.data() + block.first_history);
     }
     return solve_by_newton(replaced, {}, options_, solution);

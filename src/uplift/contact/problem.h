@@ -23,7 +23,7 @@ struct Block {
   Batch batch;
   const InterfaceLaw* law = nullptr;  // one of the two
   const Cone* cone = nullptr;
-  std::vector<double> area;  // m2 per point
+  Vector area;  // m2 per point
   // of a stored problem: the law that a method had put in the cone's place (penalty)
   double substitute_stiffness = 0;        // Pa/m
   std::vector<double> substitute_memory;  // at the beginning of the step
@@ -45,7 +45,7 @@ struct InterfaceProblem {
   // what changes from step to step
   Vector free_opening;      // m, initial gap included
   Vector from;              // opening at the beginning of the step [m]
-  std::vector<double> old;  // memory at the beginning of the step
+  Vector old;               // memory at the beginning of the step
   Vector way;               // r: free_opening - from = C way; empty where nobody knows
   int rows() const { return static_cast<int>(factor.rows()); }
 };
@@ -104,7 +104,7 @@ struct LagrangeScratch {
 struct YardstickScratch {
   Vector opening, moved, force, balance;
   Vector traction, slope, end;
-  std::vector<double> now;
+  Vector now;
 };
 
 /// The unknowns of a step, and the work space of the methods (kept from step to step, so that nothing is allocated after the first).
@@ -112,7 +112,7 @@ struct InterfaceSolution {
   Vector z;                    // on entry the first guess
   Vector opening;              // rows, end of step [m]
   Vector force;                // rows, p as it enters the balance [N]: scale * area * traction, tension > 0
-  std::vector<double> now;     // memory at the end of the step
+  Vector now;                  // memory at the end of the step
   bool swept = false;          // the law made all in one pass (laws/sweep.h): its memory stays, and it stores this:
   double stored = 0;           // J
   std::vector<Status> status;  // per point, all blocks one after another (cones)

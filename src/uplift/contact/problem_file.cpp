@@ -115,8 +115,9 @@ class Reader {
     block.name = text(at(object, path, "name"), path + ".name");
     block.batch.points = integer(at(object, path, "points"), path + ".points", 1, 10000000);
     block.batch.components = integer(at(object, path, "components"), path + ".components", 1, 3);
-    block.area = numbers(at(object, path, "area"), path + ".area");
-    if (block.area.size() != static_cast<std::size_t>(block.batch.points))
+    const std::vector<double> areas = numbers(at(object, path, "area"), path + ".area");
+    block.area = ConstMap(areas.data(), static_cast<Index>(areas.size()));
+    if (block.area.size() != block.batch.points)
       refuse(path + ".area", std::to_string(block.batch.points) + " numbers", std::to_string(block.area.size()));
     for (const double area : block.area)
       if (!(area > 0)) refuse(path + ".area", "areas > 0", std::to_string(area));
@@ -138,8 +139,7 @@ class Reader {
     } else {
       stored.laws.push_back(make_part(law_catalog(), values));
       block.law = stored.laws.back().get();
-      problem.old.resize(problem.old.size() +
-                         static_cast<std::size_t>(block.law->num_history(block.batch.components) * block.batch.points));
+      problem.old.resize(problem.old.size() + block.law->num_history(block.batch.components) * block.batch.points);
     }
     problem.blocks.push_back(std::move(block));
   }
@@ -174,8 +174,7 @@ class Reader {
     if (!shift.is_array() || !shift.empty()) problem.shift = vector("shift", rows);
     problem.free_opening = vector("free_opening", rows);
     problem.from = vector("from", rows);
-    const Vector old = vector("old", problem.old.size());
-    problem.old.assign(old.data(), old.data() + old.size());
+    problem.old = vector("old", problem.old.size());
     return stored;
   }
 

@@ -37,13 +37,13 @@ InterfaceProblem blocks_of(const Model& model, const Behaviours& behaviours) {
     block.batch = interface.batch;
     block.law = behaviours.interfaces[i].law;
     block.cone = behaviours.interfaces[i].cone;
-    block.area.assign(interface.area.data(), interface.area.data() + interface.area.size());
+    block.area = interface.area;
     first += block.rows();
     problem.blocks.push_back(std::move(block));
   }
   problem.free_opening.setZero(first);
   problem.from.setZero(first);
-  problem.old.assign(static_cast<std::size_t>(behaviours.history), 0.0);
+  problem.old.setZero(behaviours.history);
   return problem;
 }
 
@@ -106,16 +106,16 @@ Outcome Condensed::free_step(const Vector& right, Vector& increment) {
   return outcome;
 }
 
-Outcome Condensed::solve(const Vector& right, const Vector& displacement, const Vector& opening, const std::vector<double>& history,
+Outcome Condensed::solve(const Vector& right, const Vector& displacement, const Vector& opening, const Vector& history,
                          Vector& increment) {
   return problem_.rows() == 0 ? free_step(right, increment) : contact_step(right, displacement, opening, history, increment);
 }
 
-Outcome Condensed::contact_step(const Vector& right, const Vector& displacement, const Vector& opening, const std::vector<double>& history,
+Outcome Condensed::contact_step(const Vector& right, const Vector& displacement, const Vector& opening, const Vector& history,
                                 Vector& increment) {
   free_opening(right, displacement);
   small::copy(opening.size(), opening.data(), problem_.from.data());
-  small::copy(static_cast<Index>(history.size()), history.data(), problem_.old.data());
+  small::copy(history.size(), history.data(), problem_.old.data());
   Outcome outcome = method_.solve(problem_, solution_);
   factor_.count(std::exchange(solution_.systems, {}));
   if (!outcome.converged) return outcome;

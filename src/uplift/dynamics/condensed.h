@@ -35,7 +35,7 @@ class StepSolver {
  public:
   virtual ~StepSolver() = default;
   /// `displacement`, `opening`, `history` are those of the beginning of the step; `increment` receives du.
-  virtual Outcome solve(const Vector& right, const Vector& displacement, const Vector& opening, const std::vector<double>& history,
+  virtual Outcome solve(const Vector& right, const Vector& displacement, const Vector& opening, const Vector& history,
                         Vector& increment) = 0;
   virtual const InterfaceProblem& problem() const = 0;
   virtual const InterfaceSolution& solution() const = 0;
@@ -49,7 +49,7 @@ class Condensed final : public StepSolver {
   /// changes from step to step.
   Condensed(const Model& model, const Sparse& b, const Vector& gap, bool gap_moves, BulkFactor factor, InterfaceProblem frame,
             const ContactMethod& method);
-  Outcome solve(const Vector& right, const Vector& displacement, const Vector& opening, const std::vector<double>& history,
+  Outcome solve(const Vector& right, const Vector& displacement, const Vector& opening, const Vector& history,
                 Vector& increment) override;
   const InterfaceProblem& problem() const override { return problem_; }
   const InterfaceSolution& solution() const override { return solution_; }
@@ -57,7 +57,7 @@ class Condensed final : public StepSolver {
  private:
   void free_opening(const Vector& right, const Vector& displacement);
   Outcome free_step(const Vector& right, Vector& increment);
-  Outcome contact_step(const Vector& right, const Vector& displacement, const Vector& opening, const std::vector<double>& history,
+  Outcome contact_step(const Vector& right, const Vector& displacement, const Vector& opening, const Vector& history,
                        Vector& increment);
 
   const Sparse& b_;

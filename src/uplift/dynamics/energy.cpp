@@ -1,15 +1,14 @@
 #include "uplift/dynamics/energy.h"
 
 #include <algorithm>
-#include <cstring>
 
 #include "uplift/math/small.h"
 
 namespace uplift {
 
-void InterfaceEnergy::update(const InterfaceProblem& problem, const Vector& opening, const std::vector<double>& history) {
-  const bool changed = last_.size() != history.size() ||
-                       (!history.empty() && std::memcmp(last_.data(), history.data(), history.size() * sizeof(double)) != 0);
+void InterfaceEnergy::update(const InterfaceProblem& problem, const Vector& opening, const Vector& history) {
+  const bool changed =
+      last_.size() != history.size() || !std::equal(last_.data(), last_.data() + last_.size(), history.data());
   if (changed) last_ = history;
   stored = 0;
   double lost = 0;

@@ -21,12 +21,11 @@ struct Energies {
 class InterfaceEnergy {
  public:
   /// Dissipation is summed again only when the memory has changed (for the SDM it costs an exponential per point).
-  void update(const InterfaceProblem& problem, const Vector& opening, const std::vector<double>& history);
+  void update(const InterfaceProblem& problem, const Vector& opening, const Vector& history);
   double stored = 0, dissipated = 0;
 
  private:
-  std::vector<double> last_;
-  Vector density_, lost_;
+  Vector last_, density_, lost_;
 };
 
 /// What the friction of constraints takes in a step [J]: the work of the mean force on the slip of every point, where it is positive (a

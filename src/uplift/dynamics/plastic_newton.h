@@ -35,7 +35,7 @@ class PlasticNewton {
   /// The end of a step: what the bulk remembers at its beginning, and the time of its end.
   struct Step {
     const Vector &right, &displacement, &opening;
-    const std::vector<double>& history;
+    const Vector& history;
     const PlasticState& old;
     double time;
   };

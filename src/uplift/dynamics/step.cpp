@@ -278,7 +278,7 @@ bool Stepper::try_step(Level& level) {
     return false;
   }
   small::copy(solution.opening.size(), solution.opening.data(), next_.opening.data());
-  small::copy(static_cast<Index>(solution.now.size()), solution.now.data(), next_.history.data());
+  small::copy(solution.now.size(), solution.now.data(), next_.history.data());
   if (newton_ != nullptr) next_.bulk_history = plastic_next_.history;
   products(next_.displacement, next_.velocity, stiff_next_, momentum_next_);
   if (path_) {

@@ -142,7 +142,7 @@ struct State {
   Vector opening;                               // interface rows, all interfaces one after another [m], initial gap included
   Vector force;                                 // interface rows, end of step [N], tension > 0
   Vector mean_force;                            // the same, mean over the last step
-  std::vector<double> history;                  // memory of all laws, one flat array
+  Vector history;                               // memory of all laws, one flat array
   std::vector<double> bulk_history;             // memory of all yielding solids, one flat array; empty without any
 
   /// Exchanges the numbers without copying them.
