@@ -124,6 +124,14 @@ struct Sdm {
 /// The law as sweep_points wants it.
 struct SweptSdm : Sdm {
   static constexpr bool remembers = true;
+  /// As that of one point, without the division where no lane needs it.
+  [[gnu::always_inline]] Average<Lanes> straight(Lanes from, Lanes to, Lanes j) const {
+    const LaneMask closed = to < knot, closing_here = !closed && to < j;
+    Lanes slope = k;
+    if (any(closing_here)) slope = choose(closing_here, closing(j), slope);
+    const Lanes start = choose(closed, Lanes(0), j);
+    return {slope * (0.5 * (from + to) - start), 0.5 * slope, slope * (to - start), slope};
+  }
   /// end (d - j) in closure and above; below the knot end d - K d_c j.
   [[gnu::always_inline]] Lanes twice_stored(Lanes d, Lanes j, Lanes end) const {
     return end * d - j * choose(d < knot, Lanes(k * knot), end);
