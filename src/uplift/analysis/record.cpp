@@ -4,7 +4,6 @@
 #include <cmath>
 #include <utility>
 
-#include "uplift/linear/memory.h"
 #include "uplift/math/small.h"
 
 namespace uplift {
@@ -134,7 +133,7 @@ BasePose InterfaceViewer::pose(const State& state, std::size_t interface, const 
 }
 
 Recorder::Recorder(const Model& model, const RunPlan& plan, const State& state, const Energies& energies, const Stepper* stepper,
-                   const std::vector<InterfaceView>& views, long steps, double step, RunResult& result)
+                   const std::vector<InterfaceView>& views, long steps, double step, PageTaker& pages, RunResult& result)
     : model_(model),
       plan_(plan),
       state_(state),
@@ -152,7 +151,7 @@ Recorder::Recorder(const Model& model, const RunPlan& plan, const State& state, 
   }
   for (std::vector<double>& column : result_.table) {
     column.reserve(column.size() + expected_rows + 2);
-    take_pages(column.data() + column.size(), (expected_rows + 2) * sizeof(double));
+    pages.add(column.data() + column.size(), (expected_rows + 2) * sizeof(double));
   }
   recent_.resize(plan.requests.size() * many);
   const SparseRows reduction(model.reduction);

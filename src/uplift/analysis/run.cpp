@@ -184,11 +184,12 @@ void Runner::stand() {
   InterfaceEnergy held;
   held.update(blocks_of(model_, *laws_), state_.opening, state_.history);
   energies.stored = held.stored, energies.interface_dissipated = held.dissipated;
-  result_.steps.reserve(model_.interfaces.size(), 1, 1);
+  PageTaker pages;  // none
+  result_.steps.reserve(model_.interfaces.size(), 1, 1, pages);
   viewer_.look(state_.opening, state_.force, views_);
   note_views(0);
   for (const InterfaceView& view : views_) result_.steps.rest.push_back(view.resultant);
-  Recorder recorder(model_, plan_, state_, energies, nullptr, views_, 0, 0, result_);
+  Recorder recorder(model_, plan_, state_, energies, nullptr, views_, 0, 0, pages, result_);
   recorder.record(true);
   recorder.finish();
   if (plan_.frames > 0) recorder.picture(state_);

@@ -123,7 +123,8 @@ bool Runner::dynamics(const Stage& stage, const Bulk& bulk) {
   stepper.start(std::move(state_), ledger_ ? &*ledger_ : nullptr);
   seen_ = &stepper.state();
   const long steps = std::max(1L, std::lround(stage.duration / stage.step));
-  Recorder recorder(model_, plan_, *seen_, stepper.energies(), &stepper, views_, steps, stage.step, result_);
+  PageTaker pages;
+  Recorder recorder(model_, plan_, *seen_, stepper.energies(), &stepper, views_, steps, stage.step, pages, result_);
   const long picture_every = plan_.frames > 0 ? std::max(1L, steps / plan_.frames) : 0;
   if (!ledger_) initial_scale_ = stepper.energies().kinetic;
   if (!ledger_) round_off_energy_ = 1e-8 * (stepper.energies().strain + stepper.energies().stored);
@@ -137,7 +138,8 @@ bool Runner::dynamics(const Stage& stage, const Bulk& bulk) {
     if (picture_every > 0 && step % picture_every == 0) recorder.picture(*seen_);
   };
   result_.steps.reserve(model_.interfaces.size(), static_cast<std::size_t>(steps) + 1,
-                        static_cast<std::size_t>(std::min(static_cast<double>(steps) + 1, tail_ / stage.step + 2)));
+                        static_cast<std::size_t>(std::min(static_cast<double>(steps) + 1, tail_ / stage.step + 2)), pages);
+  pages.start();
   if (!ledger_) {  // else the end of the stage before is there already
     observe(0);
     show(stage, &stepper, 0, false);

@@ -5,6 +5,7 @@
 #include <vector>
 
 #include "uplift/interface/interface.h"
+#include "uplift/linear/memory.h"
 
 namespace uplift {
 
@@ -51,7 +52,7 @@ class StepRecord {
   };
 
   /// Makes room for instants to come, so many of them in the tail.
-  void reserve(std::size_t interfaces, std::size_t count, std::size_t in_tail);
+  void reserve(std::size_t interfaces, std::size_t count, std::size_t in_tail, PageTaker& pages);
   /// A gap larger than the tolerance [m] is open.
   void add(double time, const std::vector<InterfaceView>& views, double gap_tolerance);
   std::size_t size() const { return time.size(); }

@@ -7,8 +7,8 @@
 #include <limits>
 
 #include "uplift/contact/newton_many.h"
+#include "uplift/contact/newton_swept.h"
 #include "uplift/contact/point_rows.h"
-#include "uplift/laws/sweep.h"
 #include "uplift/math/small.h"
 
 namespace uplift {
@@ -31,7 +31,6 @@ class Newton {
   Outcome solve();
 
  private:
-  static constexpr bool may_sweep = R > 0 && R <= 3;
   static constexpr Index most = R > 0 ? R : few;  // where H is formed
   Index r() const { return R > 0 ? R : r_; }
   const double* column(Index j) const { return problem_.factor.data() + j * rows_; }
@@ -44,8 +43,6 @@ class Newton {
     return sum;
   }
 
-  void lay_out_sweep();
-  bool sweep();
   void predict();
   void go_on();
   void look(bool with_hessian);
@@ -66,27 +63,15 @@ class Newton {
   const NewtonOptions& options_;
   InterfaceSolution& solution_;
   NewtonScratch& scratch_;
-  Sweep sweep_;  // of the one block that can be swept; no points: there is none
   Index r_, rows_;
   double size_ = 0;  // |G| where it was looked at last
 };
 
 /// First guess of a step from the last one: the laws go on linearly from their end-of-step force with their slope there,
 ///     H_end z = -C^T (p_end + k_end (free_opening - from))
-/// which is the solution itself where no law changes its branch. Costs two sums over the points instead of an evaluation of the laws, and
-/// nothing where the sums are there already.
+/// which is the solution itself where no law changes its branch. Costs two sums over the points instead of an evaluation of the laws.
 template <int R>
 void Newton<R>::predict() {
-  if (solution_.swept && problem_.way.size() == r()) {
-    const double *way = problem_.way.data(), *h = scratch_.hessian.data();
-    for (Index j = 0; j < r(); ++j) {
-      double pull = scratch_.end_pull.data()[j] - way[j];
-      for (Index i = 0; i < r(); ++i) pull += h[i * r() + j] * way[i];
-      scratch_.gradient.data()[j] = pull;
-    }
-    direction_of_few(solution_.z.data());
-    return;
-  }
   Lanes total[most] = {};
   for (std::size_t b = 0; b < problem_.blocks.size(); ++b) {
     const Block& block = problem_.blocks[b];
@@ -128,53 +113,9 @@ void Newton<R>::go_on() {
   form_gradient(true);
 }
 
-/// One interface under a rigid footing without friction, path-averaged: its law may do all in one pass.
-template <int R>
-void Newton<R>::lay_out_sweep() {
-  const Block& block = problem_.blocks.front();
-  if (problem_.blocks.size() != 1 || block.batch.components != 1 || block.law == nullptr || !problem_.average || problem_.shift.size() > 0)
-    return;
-  sweep_.points = block.batch.points;
-  sweep_.columns = R;
-  sweep_.z = solution_.z.data();
-  sweep_.factor = problem_.factor.data();
-  sweep_.stride = rows_;
-  sweep_.free = problem_.free_opening.data();
-  sweep_.from = problem_.from.data();
-  sweep_.old = problem_.old.data();
-  sweep_.area = block.area.data();
-  sweep_.scale = problem_.scale;
-  sweep_.opening = solution_.opening.data();
-  sweep_.force = solution_.force.data();
-  sweep_.slope = scratch_.slope.data();
-  sweep_.now = solution_.now.data();
-  sweep_.end = scratch_.end.data();
-  sweep_.next = scratch_.next.data();
-  sweep_.pull = scratch_.gradient.data();
-  sweep_.stiffness = scratch_.hessian.data();
-  sweep_.end_pull = scratch_.end_pull.data();
-  sweep_.stored = &solution_.stored;
-}
-
-template <int R>
-bool Newton<R>::sweep() {
-  solution_.swept = sweep_.points > 0 && problem_.blocks.front().law->sweep(sweep_);
-  if (!solution_.swept) return false;
-  double *g = scratch_.gradient.data(), *h = scratch_.hessian.data();
-  const double* z = solution_.z.data();
-  for (Index j = 0; j < R; ++j) {
-    g[j] += z[j];
-    h[j * R + j] += 1;
-  }
-  size_ = std::sqrt(dot(scratch_.gradient, scratch_.gradient));
-  return true;
-}
-
 /// Forces, G and |G| at solution.z, and the Hessian when wanted.
 template <int R>
 void Newton<R>::look(bool with_hessian) {
-  if constexpr (may_sweep)
-    if (sweep()) return;
   evaluate(problem_, augmented_, true, solution_);
   form_gradient(with_hessian);
 }
@@ -353,7 +294,6 @@ Outcome Newton<R>::solve() {
   const int enough = large ? 1 : patience;
   const double noise = large ? 8 * std::sqrt(static_cast<double>(r())) : 8;
   const bool predictable = problem_.average && r() <= few && augmented_.multiplier == nullptr;
-  if constexpr (may_sweep) lay_out_sweep();
   if (predictable && scratch_.follows) predict();
   scratch_.follows = false;
   look(true);
@@ -399,11 +339,8 @@ Outcome Newton<R>::solve() {
   return outcome;
 }
 
-}  // namespace
-
-Outcome solve_by_newton(const InterfaceProblem& problem, const AugmentedForce& augmented, const NewtonOptions& options,
-                        InterfaceSolution& solution) {
-  size_newton(problem, solution);
+Outcome solve_in_general(const InterfaceProblem& problem, const AugmentedForce& augmented, const NewtonOptions& options,
+                         InterfaceSolution& solution) {
   switch (problem.factor.cols()) {
     case 1:
       return Newton<1>(problem, augmented, options, solution).solve();
@@ -416,6 +353,20 @@ Outcome solve_by_newton(const InterfaceProblem& problem, const AugmentedForce& a
     default:
       return Newton<0>(problem, augmented, options, solution).solve();
   }
+}
+
+}  // namespace
+
+Outcome solve_by_newton(const InterfaceProblem& problem, const AugmentedForce& augmented, const NewtonOptions& options,
+                        InterfaceSolution& solution) {
+  size_newton(problem, solution);
+  Outcome outcome;
+  if (may_sweep(problem) && solve_by_sweeps(problem, options, solution, outcome)) return outcome;
+  const int swept = outcome.iterations;
+  solution.swept = false;
+  outcome = solve_in_general(problem, augmented, options, solution);
+  outcome.iterations += swept;
+  return outcome;
 }
 
 }  // namespace uplift

@@ -82,7 +82,7 @@ struct NewtonScratch {
   Vector next;  // as slope, for the step to come [Pa/m], path average only
   Vector pull;  // rows: k times one column of C, of one block; in the units of slope times those of the factor
   Matrix hessian;
-  Vector end_pull;             // C^T (scale area end) [sqrt(J)], where all was made in one pass (`swept` of the solution)
+  Vector end_pull;             // C^T (scale area end) [sqrt(J)], of a swept solution
   bool follows = false;        // the next problem may be guessed from this solution: slope, end and hessian are those of a converged step
   KeptWork direction_of_many;  // more than twelve coordinates
 };

@@ -11,7 +11,6 @@
 #include <unistd.h>
 
 #include <algorithm>
-#include <cstdint>
 #include <fstream>
 #include <limits>
 
@@ -96,12 +95,22 @@ void give_back_free_memory() {
 #endif
 }
 
-void take_pages([[maybe_unused]] void* begin, [[maybe_unused]] std::size_t bytes) {
-#if defined(MADV_POPULATE_WRITE)
+void PageTaker::add(void* begin, std::size_t bytes) {
   constexpr std::size_t most = std::size_t{2} << 20;
   const auto page = static_cast<std::uintptr_t>(sysconf(_SC_PAGESIZE)), start = reinterpret_cast<std::uintptr_t>(begin);
   const std::uintptr_t first = (start + page - 1) / page * page, end = (start + std::min(bytes, most)) / page * page;
-  if (end > first) madvise(reinterpret_cast<void*>(first), end - first, MADV_POPULATE_WRITE);  // NOLINT(performance-no-int-to-ptr)
+  if (end > first) pieces_.emplace_back(first, end - first);
+}
+
+void PageTaker::start() {
+#if defined(MADV_POPULATE_WRITE)
+  std::size_t total = 0;
+  for (const auto& [first, bytes] : pieces_) total += bytes;
+  if (total < (std::size_t{1} << 18)) return;  // making the thread would take longer
+  thread_ = std::jthread([pieces = std::move(pieces_)] {
+    for (const auto& [first, bytes] : pieces)
+      madvise(reinterpret_cast<void*>(first), bytes, MADV_POPULATE_WRITE);  // NOLINT(performance-no-int-to-ptr)
+  });
 #endif
 }
 

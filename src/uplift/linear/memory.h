@@ -1,6 +1,10 @@
 #pragma once
 #include <cstddef>
+#include <cstdint>
 #include <string>
+#include <thread>
+#include <utility>
+#include <vector>
 
 // What memory there is, so that a factor is refused before it is made, not killed while it is.
 namespace uplift {
@@ -16,9 +20,18 @@ double resident_memory(const std::string& root = "");
 /// Hands pages of the heap that nobody uses back to the system, where the C library can: after an analysis, before what it was made for.
 void give_back_free_memory();
 
-/// Lets the system give real pages to memory that will be written soon, all at once: one after another, when they are first written, costs
-/// twice as much, and as much as two steps of a small model each. The first 2 MB at most, and nothing where the system cannot.
-void take_pages(void* begin, std::size_t bytes);
+/// Lets the system give real pages to memory that will be written soon, in a thread of its own: when each is first written, it costs as much
+/// as two steps of a small model. The first 2 MB of every piece at most; nothing where the system cannot.
+class PageTaker {
+ public:
+  void add(void* begin, std::size_t bytes);
+  /// For what was added.
+  void start();
+
+ private:
+  std::vector<std::pair<std::uintptr_t, std::size_t>> pieces_;
+  std::jthread thread_;  // waited for at the end
+};
 
 /// Why a factor that takes `needed` bytes is not made when `available` are left; empty when it fits.
 std::string memory_refusal(double needed, double available);

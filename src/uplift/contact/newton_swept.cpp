@@ -1,0 +1,145 @@
+#include "uplift/contact/newton_swept.h"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+
+#include "uplift/laws/sweep.h"
+#include "uplift/math/small.h"
+
+namespace uplift {
+namespace {
+
+constexpr int patience = 12;  // iterations after which the general method looks for round-off
+
+/// All that a pass reads and writes.
+Sweep lay_out(const InterfaceProblem& problem, InterfaceSolution& solution) {
+  const Block& block = problem.blocks.front();
+  NewtonScratch& scratch = solution.newton;
+  Sweep sweep;
+  sweep.points = block.batch.points;
+  sweep.columns = problem.factor.cols();
+  sweep.z = solution.z.data();
+  sweep.factor = problem.factor.data();
+  sweep.stride = problem.factor.rows();
+  sweep.free = problem.free_opening.data();
+  sweep.from = problem.from.data();
+  sweep.old = problem.old.data();
+  sweep.area = block.area.data();
+  sweep.scale = problem.scale;
+  sweep.opening = solution.opening.data();
+  sweep.force = solution.force.data();
+  sweep.slope = scratch.slope.data();
+  sweep.now = solution.now.data();
+  sweep.end = scratch.end.data();
+  sweep.next = scratch.next.data();
+  sweep.pull = scratch.gradient.data();
+  sweep.stiffness = scratch.hessian.data();
+  sweep.end_pull = scratch.end_pull.data();
+  sweep.stored = &solution.stored;
+  return sweep;
+}
+
+/// x = -H^-1 x; false when H is singular.
+template <int R>
+[[gnu::always_inline]] inline bool descend(const double* hessian, double* x) {
+  double h[R * R];
+  std::copy_n(hessian, R * R, h);
+  for (int j = 0; j < R; ++j) x[j] = -x[j];
+  return small::gauss_solve<R>(R, h, x);
+}
+
+/// C^T (scale area end), where the last step was not swept.
+template <int R>
+void pull_at_end(const Sweep& sweep) {
+  Lanes pull[R] = {};
+  for_lanes(sweep.points, [&](const auto& at) {
+    const Lanes force = sweep.scale * at(sweep.area) * at(sweep.end);
+    for (int j = 0; j < R; ++j) pull[j] += at(sweep.factor + j * sweep.stride) * force;
+  });
+  for (int j = 0; j < R; ++j) sweep.end_pull[j] = sum(pull[j]);
+}
+
+/// The laws go on linearly from their force at the end of the last step with their slope there:
+///     H z = -C^T (scale area end) - (H - I) way        free_opening - from = C way
+template <int R>
+[[gnu::always_inline]] inline void guess(const Sweep& sweep, const double* way, double* z) {
+  double x[R];
+  for (int j = 0; j < R; ++j) {
+    x[j] = sweep.end_pull[j] - way[j];
+    for (int i = 0; i < R; ++i) x[j] += sweep.stiffness[i * R + j] * way[i];
+  }
+  if (descend<R>(sweep.stiffness, x)) std::copy_n(x, R, z);
+}
+
+/// After a step that the law bent in: H of the step to come, in which it goes on straight.
+template <int R>
+void go_on(const Sweep& sweep) {
+  Lanes gram[R][R] = {};
+  for_lanes(sweep.points, [&](const auto& at) {
+    const Lanes slope = sweep.scale * at(sweep.area) * at(sweep.next);
+    for (int j = 0; j < R; ++j) {
+      const Lanes weighted = slope * at(sweep.factor + j * sweep.stride);
+      for (int i = j; i < R; ++i) gram[j][i] += weighted * at(sweep.factor + i * sweep.stride);
+    }
+  });
+  for (int j = 0; j < R; ++j)
+    for (int i = j; i < R; ++i) sweep.stiffness[j * R + i] = sweep.stiffness[i * R + j] = sum(gram[j][i]) + (i == j ? 1 : 0);
+}
+
+template <int R>
+bool iterate(const InterfaceProblem& problem, const NewtonOptions& options, InterfaceSolution& solution, Outcome& outcome) {
+  const InterfaceLaw& law = *problem.blocks.front().law;
+  NewtonScratch& scratch = solution.newton;
+  const Sweep sweep = lay_out(problem, solution);
+  double* z = solution.z.data();
+  if (scratch.follows) {
+    if (!solution.swept) pull_at_end<R>(sweep);
+    guess<R>(sweep, problem.way.data(), z);
+  }
+  scratch.follows = false;
+  double before = std::numeric_limits<double>::infinity();
+  const int most = std::min(patience, options.most_iterations);
+  for (int iteration = 0; iteration < most; ++iteration) {
+    outcome.iterations = iteration;
+    solution.swept = law.sweep(sweep);
+    if (!solution.swept) return false;
+    double gradient[R], square = 0, reference = 0;  // the largest of |z| and |C^T p|
+    for (int j = 0; j < R; ++j) {
+      const double pull = sweep.pull[j];
+      gradient[j] = z[j] + pull;
+      sweep.stiffness[j * R + j] += 1;
+      square += gradient[j] * gradient[j];
+      reference = larger(reference, larger(absolute(z[j]), absolute(pull)));
+    }
+    const double size = std::sqrt(square);
+    if (size <= options.tolerance * reference || size == 0) {
+      outcome.converged = true;
+      outcome.residual = size / larger(reference, 1e-300);
+      if (iteration > 0) go_on<R>(sweep);
+      scratch.follows = true;
+      return true;
+    }
+    if (!(size <= 0.5 * before) || !descend<R>(sweep.stiffness, gradient)) return false;
+    before = size;
+    for (int j = 0; j < R; ++j) z[j] += gradient[j];
+  }
+  return false;
+}
+
+}  // namespace
+
+bool solve_by_sweeps(const InterfaceProblem& problem, const NewtonOptions& options, InterfaceSolution& solution, Outcome& outcome) {
+  switch (problem.way.size()) {
+    case 1:
+      return iterate<1>(problem, options, solution, outcome);
+    case 2:
+      return iterate<2>(problem, options, solution, outcome);
+    case 3:
+      return iterate<3>(problem, options, solution, outcome);
+    default:
+      return false;
+  }
+}
+
+}  // namespace uplift
