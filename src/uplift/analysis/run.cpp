@@ -188,6 +188,7 @@ void Runner::stand() {
   result_.steps.reserve(model_.interfaces.size(), 1, 1, pages);
   viewer_.look(state_.opening, state_.force, views_);
   note_views(0);
+  sum_up(0);
   for (const InterfaceView& view : views_) result_.steps.rest.push_back(view.resultant);
   Recorder recorder(model_, plan_, state_, energies, nullptr, views_, 0, 0, pages, result_);
   recorder.record(true);
@@ -280,6 +281,7 @@ bool Runner::statics(const Stage& stage, const Sparse* geometric) {
 /// Tells the observer, if there is one, of the present state. Its time is not that of the run.
 void Runner::show(const Stage& stage, const Stepper* stepper, long step, bool last) {
   if (!observe_) return;
+  sum_up(stage.step);
   const auto start = std::chrono::steady_clock::now();
   std::optional<State> resting;
   if (rest_ != nullptr) resting = carried();

@@ -25,26 +25,44 @@ void Runner::note_views(double step) {
   steps.add(seen_->time, views_, plan_.gap_tolerance);
   if (seen_->time >= planned_ - tail_)
     for (std::size_t k = 0; k < views_.size(); ++k) steps.tail[k].push_back(viewer_.pose(*seen_, k, views_[k]));
-  bool open = false, any_contact = views_.empty();
+  nearest_ = views_.empty() ? 0 : std::numeric_limits<double>::infinity();
+  farthest_ = 0;
   for (const InterfaceView& view : views_) {
-    const double time = seen_->time;
+    nearest_ = std::min(nearest_, view.least_opening);
+    farthest_ = std::max(farthest_, view.least_opening);
+  }
+  if (nearest_ > plan_.gap_tolerance) result_.full_loss += step;
+}
+
+/// Peaks and durations of what was noted since this was last called, in a stage with this step.
+void Runner::sum_up(double step) {
+  const StepRecord& steps = result_.steps;
+  const bool plane = model_.space.dimension == 2;
+  for (; summed_up_ < steps.size(); ++summed_up_) {
+    const double time = steps.time[summed_up_];
     const auto note = [time](Peak& peak, double value) {
       if (std::abs(value) > std::abs(peak.value)) peak.value = value, peak.time = time;
     };
-    note(result_.max_uplifted_ratio, view.open_area);
-    note(result_.max_opening, view.max_opening);
-    note(result_.max_base_moment, view.resultant.moment);
-    note(result_.max_base_shear, view.resultant.shear);
-    note(result_.max_pressure, view.max_pressure);
-    result_.max_penetration = std::max(result_.max_penetration, -view.least_opening);
-    open = open || view.open_area > 0;
-    any_contact = any_contact || view.least_opening <= plan_.gap_tolerance;
+    bool open = false;
+    for (std::size_t k = 0; k < steps.extremes.size(); ++k) {
+      const StepRecord::Instant& at = steps.at(summed_up_, k);
+      note(result_.max_uplifted_ratio, at.open_area);
+      note(result_.max_base_moment, plane ? at.moment_1 : std::hypot(at.moment_1, at.moment_2));
+      note(result_.max_base_shear, plane ? at.shear_1 : std::hypot(at.shear_1, at.shear_2));
+      open = open || at.open_area > 0;
+    }
+    if (!open) continue;
+    if (result_.first_uplift < 0) result_.first_uplift = time;
+    if (summed_up_ > 0) result_.time_uplifted += step;
   }
-  if (open) {
-    if (result_.first_uplift < 0) result_.first_uplift = seen_->time;
-    result_.time_uplifted += step;
+  for (const StepRecord::Extremes& most : steps.extremes) {
+    const auto note = [](Peak& peak, const StepRecord::Reached& reached) {
+      if (reached.value > peak.value) peak.value = reached.value, peak.time = reached.time;
+    };
+    note(result_.max_opening, most.max_opening);
+    note(result_.max_pressure, most.max_pressure);
+    result_.max_penetration = std::max(result_.max_penetration, most.penetration.value);
   }
-  if (!any_contact) result_.full_loss += step;
 }
 
 /// Energy created and lost so far; the scale is the largest external work, or the energy at the beginning where no load works. Work of the
@@ -77,7 +95,8 @@ bool Runner::check_limits(const Stepper& stepper) {
                                    model_.unknown_names[static_cast<std::size_t>(unknown)], plan_.rotation_limit, seen_->time);
       return false;
     }
-  return (!rotations_.empty() || surfaces_turn_little()) && surfaces_stay_near();
+  return (!rotations_.empty() || surfaces_turn_little()) &&
+         (plan_.separation_limit <= 0 || farthest_ <= plan_.separation_limit || surfaces_stay_near());
 }
 
 /// Nodes of solids do not turn: there the slope of the opening's best plane is what the building has turned against the soil.
@@ -96,7 +115,6 @@ bool Runner::surfaces_turn_little() {
 
 /// A body may also leave the ground without turning.
 bool Runner::surfaces_stay_near() {
-  if (plan_.separation_limit <= 0) return true;
   for (std::size_t k = 0; k < model_.interfaces.size(); ++k) {
     const Interface& interface = model_.interfaces[k];
     if (!(views_[k].least_opening > plan_.separation_limit)) continue;
@@ -177,6 +195,7 @@ bool Runner::dynamics(const Stage& stage, const Bulk& bulk) {
         (std::chrono::duration<double>(std::chrono::steady_clock::now() - first_done).count() - (shown_ - shown_before)) /
         static_cast<double>(stepper.counts().steps - 1);
   recorder.finish();
+  sum_up(stage.step);
   state_ = stepper.state();
   seen_ = &state_;
   ledger_ = stepper.ledger();

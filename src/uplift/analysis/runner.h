@@ -30,6 +30,7 @@ class Runner {
   bool dynamics(const Stage& stage, const Bulk& bulk);
   void show(const Stage& stage, const Stepper* stepper, long step, bool last);
   void note_views(double step);
+  void sum_up(double step);
   bool check_limits(const Stepper& stepper);
   bool surfaces_turn_little();
   bool surfaces_stay_near();
@@ -55,6 +56,8 @@ class Runner {
   const State* seen_ = &state_;  // the present one, wherever it lives
   std::vector<InterfaceView> views_;
   std::vector<int> rotations_;     // free unknowns that are rotations of bodies on an interface
+  double nearest_ = 0, farthest_ = 0;  // m: least openings of the interfaces, now
+  std::size_t summed_up_ = 0;          // instants of the record that peaks and durations know
   double initial_scale_ = 0;       // J
   std::optional<Ledger> ledger_;   // of the dynamic stage before
   std::optional<Stage> march_;     // that stage, as long as nothing came in between
