@@ -153,12 +153,12 @@ Recorder::Recorder(const Model& model, const RunPlan& plan, const State& state, 
     column.reserve(column.size() + expected_rows + 2);
     pages.add(column.data() + column.size(), (expected_rows + 2) * sizeof(double));
   }
-  recent_.resize(plan.requests.size() * many);
+  recent_.resize(plan.requests.size() * apart);
   const SparseRows reduction(model.reduction);
   for (const Request& request : plan.requests) {
     Source source = source_of(request, reduction);
     source.request = &request;
-    source.to = recent_.data() + most_.size() * many;
+    source.to = recent_.data() + most_.size() * apart;
     if (fresh) result_.peaks.push_back({request.name, request.unit, 0, 0});
     most_.push_back(std::abs(result_.peaks[most_.size()].value));
     (source.place != nullptr ? placed_ : source.vector != nullptr ? entries_ : made_).push_back(std::move(source));
@@ -286,7 +286,9 @@ void Recorder::record(bool row) {
   if (wants_acceleration_ && stepper_ != nullptr) stepper_->acceleration(acceleration_);
   floors_.record(acceleration_, state.time);
   const std::size_t at = count_;
+#pragma GCC unroll 4
   for (const Source& each : placed_) each.to[at] = *each.place;
+#pragma GCC unroll 4
   for (const Source& each : entries_) each.to[at] = each.factor * (state.*each.vector).data()[each.entry];
   for (const Source& each : made_) each.to[at] = made(each);
   time_[at] = state.time;
@@ -297,7 +299,7 @@ void Recorder::record(bool row) {
 void Recorder::flush() {
   const std::size_t count = std::exchange(count_, 0);
   for (std::size_t k = 0; k < most_.size(); ++k) {
-    const double* recent = recent_.data() + k * many;
+    const double* recent = recent_.data() + k * apart;
     Lanes sizes = most_[k];
     for_lanes(static_cast<std::ptrdiff_t>(count), [&](const auto& at) {
       const Lanes size = absolute(at(recent));
@@ -318,7 +320,7 @@ void Recorder::flush() {
     column.insert(column.end(), numbers, numbers + kept);
   };
   append_rows(result_.table.front(), time_.data());
-  for (std::size_t k = 0; k < most_.size(); ++k) append_rows(result_.table[k + 1], recent_.data() + k * many);
+  for (std::size_t k = 0; k < most_.size(); ++k) append_rows(result_.table[k + 1], recent_.data() + k * apart);
 }
 
 void Recorder::picture(const State& state) {

@@ -51,6 +51,7 @@ class Recorder {
 
  private:
   static constexpr std::size_t many = 64;
+  static constexpr std::size_t apart = many + 8;  // not 4096 bytes for every eighth column: the processor would take one for another
   /// Where the number of a column is found, known from the start: one of these.
   struct Source {
     double* to = nullptr;                   // the column in recent_
@@ -76,7 +77,7 @@ class Recorder {
   RunResult& result_;
   FloorRecorder floors_;
   std::vector<Source> placed_, entries_, made_;  // columns of each kind
-  std::vector<double> recent_;                   // the last steps, `many` numbers per column
+  std::vector<double> recent_;                   // the last steps, `many` numbers per column, `apart` from one to the next
   std::array<double, many> time_;                // of the same [s]
   std::array<bool, many> is_row_;
   std::size_t count_ = 0;     // of them
