@@ -28,7 +28,7 @@ class Newton {
         r_(R > 0 ? R : problem.factor.cols()),
         rows_(problem.factor.rows()) {}
 
-  Outcome solve();
+  Outcome solve(int done);
 
  private:
   static constexpr Index most = R > 0 ? R : few;  // where H is formed
@@ -285,7 +285,7 @@ double Newton<R>::balance_scale() {
 }
 
 template <int R>
-Outcome Newton<R>::solve() {
+Outcome Newton<R>::solve(int done) {
   Outcome outcome;
   int patience = 12;         // iterations after which the search turns from the potential to the residual
   constexpr int again = 25;  // when a large problem starts afresh: caught between two branches of a point, as friction can be
@@ -297,7 +297,7 @@ Outcome Newton<R>::solve() {
   if (predictable && scratch_.follows) predict();
   scratch_.follows = false;
   look(true);
-  for (outcome.iterations = 0; outcome.iterations < options_.most_iterations; ++outcome.iterations) {
+  for (outcome.iterations = done; outcome.iterations < options_.most_iterations; ++outcome.iterations) {
     if (!std::isfinite(size_)) {
       outcome.why = "the interface forces are not finite";
       return outcome;
@@ -339,19 +339,20 @@ Outcome Newton<R>::solve() {
   return outcome;
 }
 
-Outcome solve_in_general(const InterfaceProblem& problem, const AugmentedForce& augmented, const NewtonOptions& options,
+/// `done`: iterations that have led to the guess in solution.z.
+Outcome solve_in_general(const InterfaceProblem& problem, const AugmentedForce& augmented, const NewtonOptions& options, int done,
                          InterfaceSolution& solution) {
   switch (problem.factor.cols()) {
     case 1:
-      return Newton<1>(problem, augmented, options, solution).solve();
+      return Newton<1>(problem, augmented, options, solution).solve(done);
     case 2:
-      return Newton<2>(problem, augmented, options, solution).solve();
+      return Newton<2>(problem, augmented, options, solution).solve(done);
     case 3:
-      return Newton<3>(problem, augmented, options, solution).solve();
+      return Newton<3>(problem, augmented, options, solution).solve(done);
     case 6:
-      return Newton<6>(problem, augmented, options, solution).solve();
+      return Newton<6>(problem, augmented, options, solution).solve(done);
     default:
-      return Newton<0>(problem, augmented, options, solution).solve();
+      return Newton<0>(problem, augmented, options, solution).solve(done);
   }
 }
 
@@ -362,11 +363,8 @@ Outcome solve_by_newton(const InterfaceProblem& problem, const AugmentedForce& a
   size_newton(problem, solution);
   Outcome outcome;
   if (may_sweep(problem) && solve_by_sweeps(problem, options, solution, outcome)) return outcome;
-  const int swept = outcome.iterations;
   solution.swept = false;
-  outcome = solve_in_general(problem, augmented, options, solution);
-  outcome.iterations += swept;
-  return outcome;
+  return solve_in_general(problem, augmented, options, outcome.iterations, solution);
 }
 
 }  // namespace uplift

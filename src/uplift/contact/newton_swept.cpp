@@ -40,13 +40,20 @@ Sweep lay_out(const InterfaceProblem& problem, InterfaceSolution& solution) {
   return sweep;
 }
 
-/// x = -H^-1 x; false when H is singular.
+/// x = -H^-1 x; false when H is singular. Without softening H is at least the identity, so that Cramer's rule may solve two equations.
 template <int R>
 [[gnu::always_inline]] inline bool descend(const double* hessian, double* x) {
-  double h[R * R];
-  std::copy_n(hessian, R * R, h);
-  for (int j = 0; j < R; ++j) x[j] = -x[j];
-  return small::gauss_solve<R>(R, h, x);
+  if constexpr (R == 2) {
+    const double determinant = hessian[0] * hessian[3] - hessian[1] * hessian[2], inverse = -1 / determinant, first = x[0];
+    x[0] = (hessian[3] * first - hessian[2] * x[1]) * inverse;
+    x[1] = (hessian[0] * x[1] - hessian[1] * first) * inverse;
+    return determinant > 0;
+  } else {
+    double h[R * R];
+    std::copy_n(hessian, R * R, h);
+    for (int j = 0; j < R; ++j) x[j] = -x[j];
+    return small::gauss_solve<R>(R, h, x);
+  }
 }
 
 /// C^T (scale area end), where the last step was not swept.
@@ -100,8 +107,7 @@ bool iterate(const InterfaceProblem& problem, const NewtonOptions& options, Inte
   scratch.follows = false;
   double before = std::numeric_limits<double>::infinity();
   const int most = std::min(patience, options.most_iterations);
-  for (int iteration = 0; iteration < most; ++iteration) {
-    outcome.iterations = iteration;
+  for (outcome.iterations = 0; outcome.iterations < most; ++outcome.iterations) {
     solution.swept = law.sweep(sweep);
     if (!solution.swept) return false;
     double gradient[R], square = 0, reference = 0;  // the largest of |z| and |C^T p|
@@ -116,7 +122,7 @@ bool iterate(const InterfaceProblem& problem, const NewtonOptions& options, Inte
     if (size <= options.tolerance * reference || size == 0) {
       outcome.converged = true;
       outcome.residual = size / larger(reference, 1e-300);
-      if (iteration > 0) go_on<R>(sweep);
+      if (outcome.iterations > 0) go_on<R>(sweep);
       scratch.follows = true;
       return true;
     }

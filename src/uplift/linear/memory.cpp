@@ -13,6 +13,7 @@
 #include <algorithm>
 #include <fstream>
 #include <limits>
+#include <system_error>
 
 #include "uplift/base/text.h"
 
@@ -99,18 +100,22 @@ void PageTaker::add(void* begin, std::size_t bytes) {
   constexpr std::size_t most = std::size_t{2} << 20;
   const auto page = static_cast<std::uintptr_t>(sysconf(_SC_PAGESIZE)), start = reinterpret_cast<std::uintptr_t>(begin);
   const std::uintptr_t first = (start + page - 1) / page * page, end = (start + std::min(bytes, most)) / page * page;
-  if (end > first) pieces_.emplace_back(first, end - first);
+  pieces_.emplace_back(first, end > first ? end - first : 0);
 }
 
 void PageTaker::start() {
 #if defined(MADV_POPULATE_WRITE)
   std::size_t total = 0;
   for (const auto& [first, bytes] : pieces_) total += bytes;
-  if (total < (std::size_t{1} << 18)) return;  // making the thread would take longer
-  thread_ = std::jthread([pieces = std::move(pieces_)] {
-    for (const auto& [first, bytes] : pieces)
-      madvise(reinterpret_cast<void*>(first), bytes, MADV_POPULATE_WRITE);  // NOLINT(performance-no-int-to-ptr)
-  });
+  if (total < (std::size_t{1} << 20)) return;  // too little to be worth a thread
+  try {
+    thread_ = std::jthread([pieces = std::move(pieces_)] {
+      for (const auto& [first, bytes] : pieces)
+        madvise(reinterpret_cast<void*>(first), bytes, MADV_POPULATE_WRITE);  // NOLINT(performance-no-int-to-ptr)
+    });
+  } catch (const std::system_error&) {
+    // no thread: pages come one after another
+  }
 #endif
 }
 

@@ -151,18 +151,9 @@ bool cholesky(std::ptrdiff_t n, double* a);
 /// Solves L L^T x = b in place.
 void cholesky_solve(std::ptrdiff_t n, const double* l, double* b);
 /// Solves A x = b in place by Gauss elimination with row pivoting; A is destroyed; false when singular. N > 0: a size that the compiler
-/// knows, so that the loops unroll; two unknowns by Cramer's rule, which is as accurate there. The pivots are divided by once, while b may
-/// still be under way.
+/// knows, so that the loops unroll. The pivots are divided by once, while b may still be under way.
 template <int N>
-[[gnu::always_inline]] inline bool gauss_solve(std::ptrdiff_t size, double* a, double* b) {
-  if constexpr (N == 2) {
-    const double determinant = a[0] * a[3] - a[1] * a[2];
-    if (!(std::abs(determinant) > 0)) return false;
-    const double inverse = 1 / determinant, first = (a[3] * b[0] - a[2] * b[1]) * inverse;
-    b[1] = (a[0] * b[1] - a[1] * b[0]) * inverse;
-    b[0] = first;
-    return true;
-  }
+bool gauss_solve(std::ptrdiff_t size, double* a, double* b) {
   const std::ptrdiff_t n = N > 0 ? N : size;
   for (std::ptrdiff_t j = 0; j < n; ++j) {
     std::ptrdiff_t best = j;
