@@ -38,17 +38,22 @@ void Runner::note_views(double step) {
 void Runner::sum_up(double step) {
   const StepRecord& steps = result_.steps;
   const bool plane = model_.space.dimension == 2;
+  const auto length = [plane](double first, double second) { return plane ? first : std::hypot(first, second); };
+  double ratio = result_.max_uplifted_ratio.value, moment = std::abs(result_.max_base_moment.value),
+         shear = std::abs(result_.max_base_shear.value);
+  const auto note = [](double& most, double value, Peak& peak, double time) {
+    if (!(std::abs(value) > most)) return;
+    most = std::abs(value);
+    peak.value = value, peak.time = time;
+  };
   for (; summed_up_ < steps.size(); ++summed_up_) {
     const double time = steps.time[summed_up_];
-    const auto note = [time](Peak& peak, double value) {
-      if (std::abs(value) > std::abs(peak.value)) peak.value = value, peak.time = time;
-    };
     bool open = false;
     for (std::size_t k = 0; k < steps.extremes.size(); ++k) {
       const StepRecord::Instant& at = steps.at(summed_up_, k);
-      note(result_.max_uplifted_ratio, at.open_area);
-      note(result_.max_base_moment, plane ? at.moment_1 : std::hypot(at.moment_1, at.moment_2));
-      note(result_.max_base_shear, plane ? at.shear_1 : std::hypot(at.shear_1, at.shear_2));
+      note(ratio, at.open_area, result_.max_uplifted_ratio, time);
+      note(moment, length(at.moment_1, at.moment_2), result_.max_base_moment, time);
+      note(shear, length(at.shear_1, at.shear_2), result_.max_base_shear, time);
       open = open || at.open_area > 0;
     }
     if (!open) continue;
@@ -56,11 +61,11 @@ void Runner::sum_up(double step) {
     if (summed_up_ > 0) result_.time_uplifted += step;
   }
   for (const StepRecord::Extremes& most : steps.extremes) {
-    const auto note = [](Peak& peak, const StepRecord::Reached& reached) {
+    const auto take = [](Peak& peak, const StepRecord::Reached& reached) {
       if (reached.value > peak.value) peak.value = reached.value, peak.time = reached.time;
     };
-    note(result_.max_opening, most.max_opening);
-    note(result_.max_pressure, most.max_pressure);
+    take(result_.max_opening, most.max_opening);
+    take(result_.max_pressure, most.max_pressure);
     result_.max_penetration = std::max(result_.max_penetration, most.penetration.value);
   }
 }

@@ -7,6 +7,7 @@
 #include "uplift/base/text.h"
 #include "uplift/cli/commands.h"
 #include "uplift/cli/console.h"
+#include "uplift/linear/memory.h"
 
 // The one file that knows CLI11: declares the commands and turns errors into exit codes.
 namespace {
@@ -201,6 +202,7 @@ int program(int count, char** words) {
 }  // namespace
 
 int main(int count, char** words) {
+  uplift::prepare_heap();
   try {
     return program(count, words);
   } catch (const uplift::InputError& error) {

@@ -360,9 +360,9 @@ Outcome solve_in_general(const InterfaceProblem& problem, const AugmentedForce& 
 
 Outcome solve_by_newton(const InterfaceProblem& problem, const AugmentedForce& augmented, const NewtonOptions& options,
                         InterfaceSolution& solution) {
-  size_newton(problem, solution);
   Outcome outcome;
-  if (may_sweep(problem) && solve_by_sweeps(problem, options, solution, outcome)) return outcome;
+  if (may_sweep(problem, solution) && solve_by_sweeps(problem, options, solution, outcome)) return outcome;
+  size_newton(problem, solution);
   solution.swept = false;
   return solve_in_general(problem, augmented, options, outcome.iterations, solution);
 }

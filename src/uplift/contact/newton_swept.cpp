@@ -4,7 +4,6 @@
 #include <cmath>
 #include <limits>
 
-#include "uplift/laws/sweep.h"
 #include "uplift/math/small.h"
 
 namespace uplift {
@@ -98,7 +97,7 @@ template <int R>
 bool iterate(const InterfaceProblem& problem, const NewtonOptions& options, InterfaceSolution& solution, Outcome& outcome) {
   const InterfaceLaw& law = *problem.blocks.front().law;
   NewtonScratch& scratch = solution.newton;
-  const Sweep sweep = lay_out(problem, solution);
+  const Sweep& sweep = scratch.sweep;
   double* z = solution.z.data();
   if (scratch.follows) {
     if (!solution.swept) pull_at_end<R>(sweep);
@@ -134,6 +133,19 @@ bool iterate(const InterfaceProblem& problem, const NewtonOptions& options, Inte
 }
 
 }  // namespace
+
+bool may_sweep(const InterfaceProblem& problem, InterfaceSolution& solution) {
+  const Sweep& sweep = solution.newton.sweep;
+  if (problem.way.size() == 0) return false;
+  if (sweep.z == solution.z.data() && sweep.stored == &solution.stored && sweep.free == problem.free_opening.data())
+    return true;  // the same two as before
+  if (!problem.average || problem.shift.size() > 0 || problem.blocks.size() != 1 || problem.blocks.front().batch.components != 1 ||
+      problem.blocks.front().law == nullptr)
+    return false;
+  size_newton(problem, solution);
+  solution.newton.sweep = lay_out(problem, solution);
+  return true;
+}
 
 bool solve_by_sweeps(const InterfaceProblem& problem, const NewtonOptions& options, InterfaceSolution& solution, Outcome& outcome) {
   switch (problem.way.size()) {

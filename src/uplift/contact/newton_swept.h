@@ -6,12 +6,10 @@
 // model, so that it counts every pass; where it does not get through at once, the general method goes on.
 namespace uplift {
 
-inline bool may_sweep(const InterfaceProblem& problem) {
-  return problem.way.size() > 0 && problem.average && problem.shift.size() == 0 && problem.blocks.size() == 1 &&
-         problem.blocks.front().batch.components == 1 && problem.blocks.front().law != nullptr;
-}
+/// Whether it suits the problem; if so, the solution is sized and the pass laid out. Condensed problems keep their arrays from step to step.
+bool may_sweep(const InterfaceProblem&, InterfaceSolution&);
 
-/// For problems that may_sweep, sized. False when the law does not offer a pass for these paths or when the residual does not fall by half:
+/// For problems that may_sweep. False when the law does not offer a pass for these paths or when the residual does not fall by half:
 /// solution.z is then the best guess so far, and `outcome` counts the iterations.
 bool solve_by_sweeps(const InterfaceProblem&, const NewtonOptions&, InterfaceSolution&, Outcome&);
 

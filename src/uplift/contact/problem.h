@@ -5,6 +5,7 @@
 
 #include "uplift/contact/kernel.h"
 #include "uplift/interface/interface.h"
+#include "uplift/laws/sweep.h"
 #include "uplift/math/linalg.h"
 
 // The interface problem of one step. With the linear bulk condensed, the step is
@@ -75,6 +76,7 @@ class KeptWork {
 
 /// Work space of Newton's method, sized once.
 struct NewtonScratch {
+  Sweep sweep;   // laid out for this solution and the problem that it was last asked for, where that can be swept
   Vector slope;  // per block (components x components x points), blocks one after another [N/m]
   std::vector<int> first_slope;
   Vector gradient, direction, origin;

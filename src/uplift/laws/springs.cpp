@@ -1,6 +1,6 @@
 #include "uplift/laws/joint.h"
 #include "uplift/laws/path.h"
-#include "uplift/laws/sweep.h"
+#include "uplift/laws/sweep_points.h"
 
 // Tensionless springs, the classic no-tension base: K the stiffness [Pa/m], c the damping in contact [Pa s/m], d the opening, r = (to -
 // from)/step.

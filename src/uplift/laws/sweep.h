@@ -1,5 +1,5 @@
 #pragma once
-#include "uplift/math/lanes.h"
+#include <cstddef>
 
 // What Newton's method asks of a step, in one pass over the points of an interface that only opens and closes: openings from the
 // coordinates z, path-averaged forces and slopes of the law, and their sums C^T p and C^T k C. A law offers it for the points whose memory
@@ -23,71 +23,5 @@ struct Sweep {
   double* end_pull = nullptr;                      // C^T (scale area end) (R)
   double* stored = nullptr;                        // energy of the law at the end [J]
 };
-
-/// A path that meets no bend of the law, and any other one: what a law for `sweep_points` answers, for all lanes together.
-template <class T>
-struct Average {
-  T value, slope;          // path average, its derivative with respect to the end of the path
-  T end, end_slope;        // traction and its slope there
-};
-
-/// Law: `Average straight(from, to, old)` for paths without a bend, `bends(from, to, old)`, `Average average(from, to, old)` for any path,
-/// `twice_stored(to, old, end)` the energy at the end [J/m2], and `changes(from, to, old)`, true where the memory may not stay. False where that is so: what was made is of no use then.
-template <int R, class Law>
-[[gnu::always_inline]] inline bool sweep_points(const Law law, const Sweep sweep) {
-  Lanes pull[R] = {}, end_pull[R] = {}, gram[R][R] = {}, stored = 0;
-  LaneMask changed(false);
-  for_lanes(sweep.points, [&](const auto& at) __attribute__((always_inline)) {
-    Lanes column[R], to = at(sweep.free);
-    for (int r = 0; r < R; ++r) {
-      column[r] = at(sweep.factor + r * sweep.stride);
-      to += column[r] * sweep.z[r];
-    }
-    const Lanes from = at(sweep.from);
-    Lanes old = 0;
-    if constexpr (Law::remembers) {
-      old = at(sweep.old);
-      changed = changed || law.changes(from, to, old);
-      at.put(sweep.now, old);
-    }
-    Average<Lanes> path = law.straight(from, to, old);
-    if (any(law.bends(from, to, old))) path = law.average(from, to, old);
-    const Lanes area = at(sweep.area), weight = sweep.scale * area;
-    const Lanes force = weight * path.value, slope = weight * path.slope, end = weight * path.end;
-    stored += area * law.twice_stored(to, old, path.end);
-    at.put(sweep.opening, to);
-    at.put(sweep.force, force);
-    at.put(sweep.slope, slope);
-    at.put(sweep.end, path.end);
-    at.put(sweep.next, 0.5 * path.end_slope);
-    for (int s = 0; s < R; ++s) {
-      const Lanes weighted = slope * column[s];
-      pull[s] += column[s] * force;
-      end_pull[s] += column[s] * end;
-      for (int r = s; r < R; ++r) gram[s][r] += weighted * column[r];
-    }
-  });
-  for (int s = 0; s < R; ++s) {
-    sweep.pull[s] = sum(pull[s]);
-    sweep.end_pull[s] = sum(end_pull[s]);
-    for (int r = s; r < R; ++r) sweep.stiffness[s * R + r] = sweep.stiffness[r * R + s] = sum(gram[s][r]);
-  }
-  *sweep.stored = 0.5 * sum(stored);
-  return !any(changed);
-}
-
-template <class Law>
-bool sweep_points(const Law& law, const Sweep& sweep) {
-  switch (sweep.columns) {
-    case 1:
-      return sweep_points<1>(law, sweep);
-    case 2:
-      return sweep_points<2>(law, sweep);
-    case 3:
-      return sweep_points<3>(law, sweep);
-    default:
-      return false;
-  }
-}
 
 }  // namespace uplift

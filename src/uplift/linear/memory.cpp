@@ -90,6 +90,14 @@ double resident_memory(const std::string& root) {
   return 1024 * number_after(root + "/proc/self/status", "VmRSS:");
 }
 
+void prepare_heap() {
+#if defined(__GLIBC__)
+  mallopt(M_TOP_PAD, 2 << 20);
+  mallopt(M_MMAP_THRESHOLD, 4 << 20);
+  mallopt(M_TRIM_THRESHOLD, 8 << 20);
+#endif
+}
+
 void give_back_free_memory() {
 #if defined(__GLIBC__)
   malloc_trim(0);

@@ -17,6 +17,10 @@ double available_memory(const std::string& root = "");
 /// Real memory that this process holds now [bytes]; 0 where the system does not tell.
 double resident_memory(const std::string& root = "");
 
+/// For a whole program, before it allocates much: the heap grows by 2 MB at a time, and blocks of 4 MB and more are not part of it, so that
+/// they go back to the system when they are freed. Where the C library can.
+void prepare_heap();
+
 /// Hands pages of the heap that nobody uses back to the system, where the C library can: after an analysis, before what it was made for.
 void give_back_free_memory();
 
