@@ -4,7 +4,7 @@
 
 #include "uplift/laws/joint.h"
 #include "uplift/laws/path.h"
-#include "uplift/laws/sweep.h"
+#include "uplift/laws/sweep_points.h"
 #include "uplift/math/exponential.h"
 #include "uplift/math/lambert.h"
 
