@@ -77,8 +77,7 @@ RC_GTEST_PROP(Impact, reflection_keeps_the_kinetic_energy, ()) {
   ImpactScratch scratch;
   rule("reflect")->apply(setup.impact, after, acceleration, impulse, scratch);
   RC_ASSERT(std::abs(setup.energy(after) - setup.energy(setup.v)) <= 1e-9 * setup.energy(setup.v));
-  for (const int row : setup.normals)
-    RC_ASSERT(std::abs((setup.b.row(row) * (after + setup.v))(0)) <= 1e-7 * (setup.b * setup.v).norm());
+  for (const int row : setup.normals) RC_ASSERT(std::abs((setup.b.row(row) * (after + setup.v))(0)) <= 1e-7 * (setup.b * setup.v).norm());
 }
 
 RC_GTEST_PROP(Impact, held_rows_have_no_acceleration_into_the_ground, ()) {

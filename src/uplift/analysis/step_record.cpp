@@ -2,7 +2,6 @@
 
 #include <algorithm>
 
-
 namespace uplift {
 namespace {
 
@@ -44,8 +43,8 @@ void StepRecord::add(double now, const std::vector<InterfaceView>& views, double
     const InterfaceView& view = views[k];
     const Resultant& sum = view.resultant;
     const bool plane = sum.shear_1 == 0 && sum.shear_2 == 0 && sum.moment_1 == 0 && sum.moment_2 == 0;
-    instants.push_back({sum.axial, plane ? sum.shear : sum.shear_1, sum.shear_2, plane ? sum.moment : sum.moment_1, sum.moment_2,
-                        view.open_area});
+    instants.push_back(
+        {sum.axial, plane ? sum.shear : sum.shear_1, sum.shear_2, plane ? sum.moment : sum.moment_1, sum.moment_2, view.open_area});
     Extremes& most = extremes[k];
     note(most.max_opening, view.max_opening, now);
     note(most.max_pressure, view.max_pressure, now);

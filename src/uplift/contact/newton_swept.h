@@ -6,7 +6,8 @@
 // model, so that it counts every pass; where it does not get through at once, the general method goes on.
 namespace uplift {
 
-/// Whether it suits the problem; if so, the solution is sized and the pass laid out. Condensed problems keep their arrays from step to step.
+/// Whether it suits the problem; if so, the solution is sized and the pass laid out. Condensed problems keep their arrays from step to
+/// step.
 bool may_sweep(const InterfaceProblem&, InterfaceSolution&);
 
 /// For problems that may_sweep. False when the law does not offer a pass for these paths or when the residual does not fall by half:

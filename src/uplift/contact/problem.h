@@ -44,10 +44,10 @@ struct InterfaceProblem {
   double scale = 1;  // weight of the interface force in the scheme's balance: 2 with the path average, else 1
   double step = 0;   // s; 0 in statics
   // what changes from step to step
-  Vector free_opening;      // m, initial gap included
-  Vector from;              // opening at the beginning of the step [m]
-  Vector old;               // memory at the beginning of the step
-  Vector way;               // r: free_opening - from = C way; empty where nobody knows
+  Vector free_opening;  // m, initial gap included
+  Vector from;          // opening at the beginning of the step [m]
+  Vector old;           // memory at the beginning of the step
+  Vector way;           // r: free_opening - from = C way; empty where nobody knows
   int rows() const { return static_cast<int>(factor.rows()); }
 };
 

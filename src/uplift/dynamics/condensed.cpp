@@ -106,8 +106,7 @@ Outcome Condensed::free_step(const Vector& right, Vector& increment) {
   return outcome;
 }
 
-Outcome Condensed::solve(const Vector& right, const Vector& displacement, const Vector& opening, const Vector& history,
-                         Vector& increment) {
+Outcome Condensed::solve(const Vector& right, const Vector& displacement, const Vector& opening, const Vector& history, Vector& increment) {
   return problem_.rows() == 0 ? free_step(right, increment) : contact_step(right, displacement, opening, history, increment);
 }
 

@@ -49,16 +49,14 @@ class Condensed final : public StepSolver {
   /// changes from step to step.
   Condensed(const Model& model, const Sparse& b, const Vector& gap, bool gap_moves, BulkFactor factor, InterfaceProblem frame,
             const ContactMethod& method);
-  Outcome solve(const Vector& right, const Vector& displacement, const Vector& opening, const Vector& history,
-                Vector& increment) override;
+  Outcome solve(const Vector& right, const Vector& displacement, const Vector& opening, const Vector& history, Vector& increment) override;
   const InterfaceProblem& problem() const override { return problem_; }
   const InterfaceSolution& solution() const override { return solution_; }
 
  private:
   void free_opening(const Vector& right, const Vector& displacement);
   Outcome free_step(const Vector& right, Vector& increment);
-  Outcome contact_step(const Vector& right, const Vector& displacement, const Vector& opening, const Vector& history,
-                       Vector& increment);
+  Outcome contact_step(const Vector& right, const Vector& displacement, const Vector& opening, const Vector& history, Vector& increment);
 
   const Sparse& b_;
   const Vector& gap_;

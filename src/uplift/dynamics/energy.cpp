@@ -7,8 +7,7 @@
 namespace uplift {
 
 void InterfaceEnergy::update(const InterfaceProblem& problem, const Vector& opening, const Vector& history) {
-  const bool changed =
-      last_.size() != history.size() || !std::equal(last_.data(), last_.data() + last_.size(), history.data());
+  const bool changed = last_.size() != history.size() || !std::equal(last_.data(), last_.data() + last_.size(), history.data());
   if (changed) last_ = history;
   stored = 0;
   double lost = 0;

@@ -32,8 +32,7 @@ class Monolithic final : public StepSolver {
     for (const Block& block : problem_.blocks) points_ += static_cast<std::size_t>(block.batch.points);
   }
 
-  Outcome solve(const Vector& right, const Vector& displacement, const Vector& opening, const Vector& history,
-                Vector& increment) override {
+  Outcome solve(const Vector& right, const Vector& displacement, const Vector& opening, const Vector& history, Vector& increment) override {
     problem_.from = opening;
     problem_.old = history;
     solution_.now = history;
@@ -352,8 +351,7 @@ class Compared final : public StepSolver {
   Compared(const Sparse& matrix, std::unique_ptr<StepSolver> solver, std::unique_ptr<StepSolver> oracle, double tolerance)
       : matrix_(matrix), solver_(std::move(solver)), oracle_(std::move(oracle)), tolerance_(tolerance) {}
 
-  Outcome solve(const Vector& right, const Vector& displacement, const Vector& opening, const Vector& history,
-                Vector& increment) override {
+  Outcome solve(const Vector& right, const Vector& displacement, const Vector& opening, const Vector& history, Vector& increment) override {
     Outcome outcome = solver_->solve(right, displacement, opening, history, increment);
     if (!outcome.converged) return outcome;
     other_.resize(increment.size());

@@ -27,6 +27,12 @@ struct Traction {
   double value, slope;
 };
 
+/// Path average at a fixed jump, its derivative with respect to the end of the path, and the traction and its slope there.
+template <class T>
+struct Average {
+  T value, slope, end, end_slope;
+};
+
 /// What becomes of a path that may soften.
 struct Softening {
   double elastic_end;  // where the part at fixed jump ends [m]
@@ -98,7 +104,7 @@ struct Sdm {
     const T a = k * (a1 - a0), b = closing_stiffness * (b1 - b0), c = k * (c1 - c0), half = 0.5 * inverse;
     const T sum = a * (2 * from + (a0 + a1)) + b * ((b0 + b1) - 2 * finish) + c * ((c0 + c1) - 2 * finish);
     const T levers = absolute(a * (a0 + a1) + b * (b0 + b1) + c * (c0 + c1));
-    const auto closed = to < d_c, moves = length > T(shortest_path);
+    const auto closed = to<d_c, moves = length> T(shortest_path);
     const T slope = choose(closed | (to >= j), T(k), closing_stiffness), end = slope * (to - choose(closed, zero, j));
     return {choose(moves, sum * half, end), choose(moves, levers * half * inverse, 0.5 * slope), end, slope};
   }

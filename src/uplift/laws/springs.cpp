@@ -13,6 +13,11 @@
 namespace uplift {
 namespace {
 
+/// Path average, its derivative with respect to the end of the path, and the traction and its slope there.
+struct Average {
+  Lanes value, slope, end, end_slope;
+};
+
 /// Without the dashpot, as sweep_points wants it.
 struct SweptSprings {
   static constexpr bool remembers = false;
@@ -23,19 +28,19 @@ struct SweptSprings {
   [[gnu::always_inline]] static Lanes twice_stored(Lanes to, Lanes, Lanes end) { return end * to; }
 
   /// The traction of the middle of the path.
-  [[gnu::always_inline]] Average<Lanes> straight(Lanes from, Lanes to, Lanes) const {
+  [[gnu::always_inline]] Average straight(Lanes from, Lanes to, Lanes) const {
     const Lanes slope = choose(to < 0.0, Lanes(stiffness), Lanes(0));
     return {slope * (0.5 * (from + to)), 0.5 * slope, slope * to, slope};
   }
 
-  [[gnu::always_inline]] Average<Lanes> average(Lanes from, Lanes to, Lanes old) const {
-    const Average<Lanes> point = straight(to, to, old);
+  [[gnu::always_inline]] Average average(Lanes from, Lanes to, Lanes old) const {
+    const Average point = straight(to, to, old);
     const Lanes zero = 0, way = to - from, length = absolute(way), inverse = 1 / length;
     const Lanes a = smaller(smaller(way, zero), -from), b = smaller(larger(way, zero), -from);
     const Lanes weight = 0.5 * stiffness * (b - a) * inverse;
     const LaneMask moves = length > shortest_path;
-    return {choose(moves, weight * (2 * from + (a + b)), point.end), choose(moves, weight * absolute(a + b) * inverse, point.slope), point.end,
-            point.end_slope};
+    return {choose(moves, weight * (2 * from + (a + b)), point.end), choose(moves, weight * absolute(a + b) * inverse, point.slope),
+            point.end, point.end_slope};
   }
 };
 
@@ -66,7 +71,9 @@ class Springs final : public NormalLaw {
     }
   }
 
-  bool sweep(const Sweep& sweep) const override { return damping_ == 0 && sweep_points(SweptSprings{stiffness_}, sweep); }
+  bool sweep(const Sweep& sweep) const override {
+    return damping_ == 0 && sweep_points(SweptSprings{stiffness_}, sweep);
+  }
 
   void energy(const Batch& batch, const double* opening, const double* history, double* stored, double* dissipated) const override {
     const double half = 0.5 * stiffness_;

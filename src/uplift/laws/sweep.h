@@ -6,7 +6,8 @@
 // stays (NormalLaw::sweep); everything else goes through `mean`, in passes one after another.
 namespace uplift {
 
-/// The arrays of one interface with one component, n numbers each, and what is asked for. With t the path-averaged traction and k its slope,
+/// The arrays of one interface with one component, n numbers each, and what is asked for. With t the path-averaged traction and k its
+/// slope,
 ///     opening = free + C z      force = scale area t      slope = scale area k
 struct Sweep {
   std::ptrdiff_t points = 0;
@@ -18,10 +19,10 @@ struct Sweep {
   double scale = 1;
   // made
   double *opening = nullptr, *force = nullptr, *slope = nullptr, *now = nullptr;
-  double *end = nullptr, *next = nullptr;          // as in Reply
-  double *pull = nullptr, *stiffness = nullptr;    // C^T force (R); C^T slope C (R x R)
-  double* end_pull = nullptr;                      // C^T (scale area end) (R)
-  double* stored = nullptr;                        // energy of the law at the end [J]
+  double *end = nullptr, *next = nullptr;        // as in Reply
+  double *pull = nullptr, *stiffness = nullptr;  // C^T force (R); C^T slope C (R x R)
+  double* end_pull = nullptr;                    // C^T (scale area end) (R)
+  double* stored = nullptr;                      // energy of the law at the end [J]
 };
 
 }  // namespace uplift

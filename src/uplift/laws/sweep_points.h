@@ -5,49 +5,45 @@
 // The pass itself, for laws that write their formulas for eight points at once.
 namespace uplift {
 
-/// A path that meets no bend of the law, and any other one: what a law for `sweep_points` answers, for all lanes together.
-template <class T>
-struct Average {
-  T value, slope;          // path average, its derivative with respect to the end of the path
-  T end, end_slope;        // traction and its slope there
-};
-
-/// Law: `Average straight(from, to, old)` for paths without a bend, `bends(from, to, old)`, `Average average(from, to, old)` for any path,
-/// `twice_stored(to, old, end)` the energy at the end [J/m2], and `changes(from, to, old)`, true where the memory may not stay. False where that is so: what was made is of no use then.
+/// Of a law, for eight points together: `straight(from, to, old)` the averages of paths without a bend, `bends(from, to, old)`,
+/// `average(from, to, old)` those of any path; both with the members value, slope (path average and its derivative with respect to `to`),
+/// end and end_slope (traction and slope at `to`). `twice_stored(to, old, end)`: twice the energy at the end [J/m2]. `remembers`: there is
+/// one memory value, and `changes(from, to, old)` is true where it may not stay. False where that is so: what was made is of no use then.
 template <int R, class Law>
 [[gnu::always_inline]] inline bool sweep_points(const Law law, const Sweep sweep) {
   Lanes pull[R] = {}, end_pull[R] = {}, gram[R][R] = {}, stored = 0;
   LaneMask changed(false);
-  for_lanes(sweep.points, [&](const auto& at) __attribute__((always_inline)) {
-    Lanes column[R], to = at(sweep.free);
-    for (int r = 0; r < R; ++r) {
-      column[r] = at(sweep.factor + r * sweep.stride);
-      to += column[r] * sweep.z[r];
-    }
-    const Lanes from = at(sweep.from);
-    Lanes old = 0;
-    if constexpr (Law::remembers) {
-      old = at(sweep.old);
-      changed = changed || law.changes(from, to, old);
-      at.put(sweep.now, old);
-    }
-    Average<Lanes> path = law.straight(from, to, old);
-    if (any(law.bends(from, to, old))) path = law.average(from, to, old);
-    const Lanes area = at(sweep.area), weight = sweep.scale * area;
-    const Lanes force = weight * path.value, slope = weight * path.slope, end = weight * path.end;
-    stored += area * law.twice_stored(to, old, path.end);
-    at.put(sweep.opening, to);
-    at.put(sweep.force, force);
-    at.put(sweep.slope, slope);
-    at.put(sweep.end, path.end);
-    at.put(sweep.next, 0.5 * path.end_slope);
-    for (int s = 0; s < R; ++s) {
-      const Lanes weighted = slope * column[s];
-      pull[s] += column[s] * force;
-      end_pull[s] += column[s] * end;
-      for (int r = s; r < R; ++r) gram[s][r] += weighted * column[r];
-    }
-  });
+  for_lanes(
+      sweep.points, [&](const auto& at) __attribute__((always_inline)) {
+        Lanes column[R], to = at(sweep.free);
+        for (int r = 0; r < R; ++r) {
+          column[r] = at(sweep.factor + r * sweep.stride);
+          to += column[r] * sweep.z[r];
+        }
+        const Lanes from = at(sweep.from);
+        Lanes old = 0;
+        if constexpr (Law::remembers) {
+          old = at(sweep.old);
+          changed = changed || law.changes(from, to, old);
+          at.put(sweep.now, old);
+        }
+        auto path = law.straight(from, to, old);
+        if (any(law.bends(from, to, old))) path = law.average(from, to, old);
+        const Lanes area = at(sweep.area), weight = sweep.scale * area;
+        const Lanes force = weight * path.value, slope = weight * path.slope, end = weight * path.end;
+        stored += area * law.twice_stored(to, old, path.end);
+        at.put(sweep.opening, to);
+        at.put(sweep.force, force);
+        at.put(sweep.slope, slope);
+        at.put(sweep.end, path.end);
+        at.put(sweep.next, 0.5 * path.end_slope);
+        for (int s = 0; s < R; ++s) {
+          const Lanes weighted = slope * column[s];
+          pull[s] += column[s] * force;
+          end_pull[s] += column[s] * end;
+          for (int r = s; r < R; ++r) gram[s][r] += weighted * column[r];
+        }
+      });
   for (int s = 0; s < R; ++s) {
     sweep.pull[s] = sum(pull[s]);
     sweep.end_pull[s] = sum(end_pull[s]);

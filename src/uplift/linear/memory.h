@@ -24,8 +24,8 @@ void prepare_heap();
 /// Hands pages of the heap that nobody uses back to the system, where the C library can: after an analysis, before what it was made for.
 void give_back_free_memory();
 
-/// Lets the system give real pages to memory that will be written soon, in a thread of its own: when each is first written, it costs as much
-/// as two steps of a small model. The first 2 MB of every piece at most; nothing where the system cannot.
+/// Lets the system give real pages to memory that will be written soon, in a thread of its own: when each is first written, it costs as
+/// much as two steps of a small model. The first 2 MB of every piece at most; nothing where the system cannot.
 class PageTaker {
  public:
   void add(void* begin, std::size_t bytes);
