@@ -146,14 +146,15 @@ TEST(Sweep, StepsAreThoseOfTheGeneralMethod) {
       int passes = 0;
       for (int step = 0; step < 400; ++step) {
         const double phase = 0.05 * step;
-        const Vector way = (Vector(2) << 0.3 * std::sin(1.7 * phase) + 0.02, std::sin(phase)).finished();
+        const Vector way = (Vector(2) << 0.3 * std::sin(2 * phase) - 0.5, std::sin(phase)).finished();
         own.problem.way = way;
         own.problem.free_opening = plain.free_opening = own.problem.from + factor * way;
         const Outcome one = solve_by_newton(own.problem, {}, {}, swept), other = solve_by_newton(plain, {}, {}, general);
         ASSERT_TRUE(one.converged) << law.name << ", step " << step << ": " << one.why;
         ASSERT_TRUE(other.converged) << law.name << ", step " << step << ": " << other.why;
         ASSERT_LE((swept.z - general.z).norm(), 1e-9 * (1 + general.z.norm())) << law.name << ", step " << step;
-        ASSERT_LE(yardstick(own.problem, swept), 1e-9) << law.name << ", step " << step;
+        // where nearly all is open, round-off of the openings is much of the little force that is left, in either
+        ASSERT_LE(yardstick(own.problem, swept), 1e-11 + 3 * yardstick(plain, general)) << law.name << ", step " << step;
         passes += swept.swept ? 1 : 0;
         EXPECT_FALSE(general.swept);
         own.problem.from = plain.from = general.opening;
