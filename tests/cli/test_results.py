@@ -20,7 +20,7 @@ class Results(CliTest):
         (run,) = summary["runs"]
         self.assertEqual(run["status"], "completed")
         self.assertEqual(run["steps"], 500)
-        for key in ("name", "retries", "wall_seconds", "factorisations", "back_solves"):
+        for key in ("name", "retries", "wall_seconds", "step_seconds", "factorisations", "back_solves"):
             self.assertIn(key, run)
         for key in ("max_uplifted_ratio", "max_opening", "max_base_moment", "max_base_shear", "max_pressure", "energy_created", "energy_lost"):
             self.assertEqual(set(run[key]), {"value", "time", "unit"}, key)

@@ -27,7 +27,7 @@ void write_run(JsonWriter& json, const RunResult& run, const Agreement* agreemen
       .member("back_solves", run.counts.back_solves)
       .member("interface_systems_factored", run.counts.systems.factored)
       .member("interface_systems_iterated", run.counts.systems.iterated);
-  json.member("wall_seconds", run.wall).member("end_time", run.end_time);
+  json.member("wall_seconds", run.wall).member("step_seconds", run.step_seconds).member("end_time", run.end_time);
   write_peak(json, "max_uplifted_ratio", run.max_uplifted_ratio);
   write_peak(json, "max_opening", run.max_opening);
   write_peak(json, "max_base_moment", run.max_base_moment);
