@@ -59,6 +59,7 @@ class PenaltyMethod final : public ContactMethod {
     if (std::none_of(problem.blocks.begin(), problem.blocks.end(), [](const Block& block) { return block.cone != nullptr; }))
       return solve_by_newton(problem, {}, options_, solution);
     InterfaceProblem replaced = problem;
+    replaced.way.resize(0);  // its arrays do not stay where they are from step to step
     std::vector<std::unique_ptr<const InterfaceLaw>> laws;
     for (Block& block : replaced.blocks) {
       if (block.cone == nullptr) continue;

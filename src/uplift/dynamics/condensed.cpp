@@ -72,7 +72,10 @@ Condensed::Condensed(const Model& model, const Sparse& b, const Vector& gap, boo
   Matrix touched_spread(spread_.cols(), spread_.cols());
   for (std::size_t j = 0; j < touched_.size(); ++j) touched_spread.row(static_cast<Eigen::Index>(j)) = spread_.row(touched_[j]);
   to_way_ = inverse(touched_spread);
-  problem_.way.setZero(spread_.cols());
+  if (to_way_.allFinite())
+    problem_.way.setZero(spread_.cols());
+  else
+    to_way_.resize(0, 0);
 }
 
 void Condensed::free_opening(const Vector& right, const Vector& displacement) {
