@@ -25,13 +25,13 @@ void Runner::note_views(double step) {
   steps.add(seen_->time, views_, plan_.gap_tolerance);
   if (seen_->time >= planned_ - tail_)
     for (std::size_t k = 0; k < views_.size(); ++k) steps.tail[k].push_back(viewer_.pose(*seen_, k, views_[k]));
-  nearest_ = views_.empty() ? 0 : std::numeric_limits<double>::infinity();
+  double nearest = views_.empty() ? 0 : std::numeric_limits<double>::infinity();
   farthest_ = 0;
   for (const InterfaceView& view : views_) {
-    nearest_ = std::min(nearest_, view.least_opening);
+    nearest = std::min(nearest, view.least_opening);
     farthest_ = std::max(farthest_, view.least_opening);
   }
-  if (nearest_ > plan_.gap_tolerance) result_.full_loss += step;
+  if (nearest > plan_.gap_tolerance) result_.full_loss += step;
 }
 
 /// Peaks and durations of what was noted since this was last called, in a stage with this step.

@@ -55,15 +55,15 @@ class Runner {
   State state_;                  // between stages
   const State* seen_ = &state_;  // the present one, wherever it lives
   std::vector<InterfaceView> views_;
-  std::vector<int> rotations_;         // free unknowns that are rotations of bodies on an interface
-  double nearest_ = 0, farthest_ = 0;  // m: least openings of the interfaces, now
-  std::size_t summed_up_ = 0;          // instants of the record that peaks and durations know
-  double initial_scale_ = 0;           // J
-  std::optional<Ledger> ledger_;       // of the dynamic stage before
-  std::optional<Stage> march_;         // that stage, as long as nothing came in between
-  double round_off_energy_ = 0;        // J: less than this is nothing
-  double planned_ = 0, tail_ = 0;      // s: of the dynamic stages; at their end the base's pose is kept for this long
-  double shown_ = 0;                   // s: taken by the observer
+  std::vector<int> rotations_;     // free unknowns that are rotations of bodies on an interface
+  double farthest_ = 0;            // m: largest of the interfaces' least openings, now
+  std::size_t summed_up_ = 0;      // instants of the record that peaks and durations know
+  double initial_scale_ = 0;       // J
+  std::optional<Ledger> ledger_;   // of the dynamic stage before
+  std::optional<Stage> march_;     // that stage, as long as nothing came in between
+  double round_off_energy_ = 0;    // J: less than this is nothing
+  double planned_ = 0, tail_ = 0;  // s: of the dynamic stages; at their end the base's pose is kept for this long
+  double shown_ = 0;               // s: taken by the observer
 };
 
 }  // namespace uplift

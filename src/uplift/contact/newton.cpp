@@ -287,7 +287,7 @@ double Newton<R>::balance_scale() {
 template <int R>
 Outcome Newton<R>::solve(int done) {
   Outcome outcome;
-  int patience = 12;         // iterations after which the search turns from the potential to the residual
+  int patience = patience_of_newton;
   constexpr int again = 25;  // when a large problem starts afresh: caught between two branches of a point, as friction can be
   // where an iteration is expensive, round-off counts as converged at once; sums over many columns have more of it
   const bool large = R == 0 && PointRows::suits(problem_);

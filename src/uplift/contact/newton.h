@@ -25,6 +25,9 @@ struct NewtonOptions {
   int most_iterations = 60;
 };
 
+/// Iterations after which the search turns from the potential to the residual, and round-off counts as converged.
+inline constexpr int patience_of_newton = 12;
+
 /// Solves in place from the guess in `solution.z`; fills opening, force, now.
 Outcome solve_by_newton(const InterfaceProblem&, const AugmentedForce&, const NewtonOptions&, InterfaceSolution&);
 

@@ -9,34 +9,30 @@
 namespace uplift {
 namespace {
 
-constexpr int patience = 12;  // iterations after which the general method looks for round-off
-
 /// All that a pass reads and writes.
 Sweep lay_out(const InterfaceProblem& problem, InterfaceSolution& solution) {
   const Block& block = problem.blocks.front();
   NewtonScratch& scratch = solution.newton;
-  Sweep sweep;
-  sweep.points = block.batch.points;
-  sweep.columns = problem.factor.cols();
-  sweep.z = solution.z.data();
-  sweep.factor = problem.factor.data();
-  sweep.stride = problem.factor.rows();
-  sweep.free = problem.free_opening.data();
-  sweep.from = problem.from.data();
-  sweep.old = problem.old.data();
-  sweep.area = block.area.data();
-  sweep.scale = problem.scale;
-  sweep.opening = solution.opening.data();
-  sweep.force = solution.force.data();
-  sweep.slope = scratch.slope.data();
-  sweep.now = solution.now.data();
-  sweep.end = scratch.end.data();
-  sweep.next = scratch.next.data();
-  sweep.pull = scratch.gradient.data();
-  sweep.stiffness = scratch.hessian.data();
-  sweep.end_pull = scratch.end_pull.data();
-  sweep.stored = &solution.stored;
-  return sweep;
+  return {.points = block.batch.points,
+          .columns = problem.factor.cols(),
+          .z = solution.z.data(),
+          .factor = problem.factor.data(),
+          .stride = problem.factor.rows(),
+          .free = problem.free_opening.data(),
+          .from = problem.from.data(),
+          .old = problem.old.data(),
+          .area = block.area.data(),
+          .scale = problem.scale,
+          .opening = solution.opening.data(),
+          .force = solution.force.data(),
+          .slope = scratch.slope.data(),
+          .now = solution.now.data(),
+          .end = scratch.end.data(),
+          .next = scratch.next.data(),
+          .pull = scratch.gradient.data(),
+          .stiffness = scratch.hessian.data(),
+          .end_pull = scratch.end_pull.data(),
+          .stored = &solution.stored};
 }
 
 /// x = -H^-1 x; false when H is singular. Without softening H is at least the identity, so that Cramer's rule may solve two equations.
@@ -105,7 +101,7 @@ bool iterate(const InterfaceProblem& problem, const NewtonOptions& options, Inte
   }
   scratch.follows = false;
   double before = std::numeric_limits<double>::infinity();
-  const int most = std::min(patience, options.most_iterations);
+  const int most = std::min(patience_of_newton, options.most_iterations);
   for (outcome.iterations = 0; outcome.iterations < most; ++outcome.iterations) {
     solution.swept = law.sweep(sweep);
     if (!solution.swept) return false;

@@ -82,11 +82,18 @@ struct Sdm {
     return ((from < knot) != (to < knot)) | ((from < j) != (to < j));
   }
 
+  /// The slope of points of which those marked close; no division where there are none.
+  [[gnu::always_inline]] double closing_if(bool here, double j) const { return here ? closing(j) : k; }
+  [[gnu::always_inline]] Lanes closing_if(LaneMask here, Lanes j) const {
+    const Lanes open = k;
+    return any(here) ? choose(here, closing(j), open) : open;
+  }
+
   /// Average at fixed jump of a path without a bend: the traction of its middle.
   template <class T>
   [[gnu::always_inline]] Average<T> straight(T from, T to, T j) const {
     const auto closed = to < knot;
-    const T slope = choose(closed | (to >= j), T(k), closing(j)), start = choose(closed, T(0), j);
+    const T slope = closing_if((!closed) & (to < j), j), start = choose(closed, T(0), j);
     return {slope * (0.5 * (from + to) - start), 0.5 * slope, slope * (to - start), slope};
   }
 
@@ -104,7 +111,8 @@ struct Sdm {
     const T a = k * (a1 - a0), b = closing_stiffness * (b1 - b0), c = k * (c1 - c0), half = 0.5 * inverse;
     const T sum = a * (2 * from + (a0 + a1)) + b * ((b0 + b1) - 2 * finish) + c * ((c0 + c1) - 2 * finish);
     const T levers = absolute(a * (a0 + a1) + b * (b0 + b1) + c * (c0 + c1));
-    const auto closed = to<d_c, moves = length> T(shortest_path);
+    const auto closed = to < d_c;
+    const auto moves = length > shortest_path;
     const T slope = choose(closed | (to >= j), T(k), closing_stiffness), end = slope * (to - choose(closed, zero, j));
     return {choose(moves, sum * half, end), choose(moves, levers * half * inverse, 0.5 * slope), end, slope};
   }
@@ -130,15 +138,8 @@ struct Sdm {
 /// The law as sweep_points wants it.
 struct SweptSdm : Sdm {
   static constexpr bool remembers = true;
-  /// As that of one point, without the division where no lane needs it.
-  [[gnu::always_inline]] Average<Lanes> straight(Lanes from, Lanes to, Lanes j) const {
-    const LaneMask closed = to < knot, closing_here = !closed && to < j;
-    Lanes slope = k;
-    if (any(closing_here)) slope = choose(closing_here, closing(j), slope);
-    const Lanes start = choose(closed, Lanes(0), j);
-    return {slope * (0.5 * (from + to) - start), 0.5 * slope, slope * (to - start), slope};
-  }
-  /// end (d - j) in closure and above; below the knot end d - K d_c j.
+  /// Twice `stored` from the traction t = end, without a division: t (d - j) in closure and above; below the knot t d - K d_c j, because
+  /// k_c (d_c - j) = K d_c there.
   [[gnu::always_inline]] Lanes twice_stored(Lanes d, Lanes j, Lanes end) const {
     return end * d - j * choose(d < knot, Lanes(k * knot), end);
   }

@@ -9,6 +9,7 @@ namespace uplift {
 /// The arrays of one interface with one component, n numbers each, and what is asked for. With t the path-averaged traction and k its
 /// slope,
 ///     opening = free + C z      force = scale area t      slope = scale area k
+/// Units as in InterfaceProblem: openings m, forces N, tractions Pa, z sqrt(J), C m/sqrt(J), areas m2.
 struct Sweep {
   std::ptrdiff_t points = 0;
   std::ptrdiff_t columns = 0;  // R, number of coordinates: 1 to 3
@@ -19,9 +20,9 @@ struct Sweep {
   double scale = 1;
   // made
   double *opening = nullptr, *force = nullptr, *slope = nullptr, *now = nullptr;
-  double *end = nullptr, *next = nullptr;        // as in Reply
-  double *pull = nullptr, *stiffness = nullptr;  // C^T force (R); C^T slope C (R x R)
-  double* end_pull = nullptr;                    // C^T (scale area end) (R)
+  double *end = nullptr, *next = nullptr;        // as in Reply [Pa], [Pa/m]
+  double *pull = nullptr, *stiffness = nullptr;  // C^T force [sqrt(J)] (R); C^T slope C (R x R)
+  double* end_pull = nullptr;                    // C^T (scale area end) [sqrt(J)] (R)
   double* stored = nullptr;                      // energy of the law at the end [J]
 };
 

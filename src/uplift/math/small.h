@@ -39,7 +39,10 @@ inline double dot(std::ptrdiff_t n, const double* a, const double* b) {
   std::ptrdiff_t i = 0;
   if (n >= lanes) {
     Lanes part = 0;
-    for (; i + lanes <= n; i += lanes) part += WholeLanes{i}(a)*WholeLanes{i}(b);
+    for (; i + lanes <= n; i += lanes) {
+      const WholeLanes at{i};
+      part += at(a) * at(b);
+    }
     total = uplift::sum(part);
   }
   for (; i < n; ++i) total += a[i] * b[i];
