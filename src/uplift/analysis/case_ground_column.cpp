@@ -106,7 +106,7 @@ FreeField::FreeField(const std::vector<ColumnLayer>& layers, const ColumnWave& w
     StepOptions options;
     options.scheme = stage.scheme;
     options.step = stage.step;
-    options.path_average = false;
+    options.path_average = stage.scheme.filtered();
     Stepper stepper(model, bulk, b, gap, laws, method, impact, solver, options, counts);
     if (ledger) ledger->acceleration = before->scheme == stage.scheme;
     stepper.start(std::move(state), ledger ? &*ledger : nullptr);

@@ -81,13 +81,16 @@ struct PointQuantity {
 };
 
 std::vector<PointQuantity> point_quantities(Space space) {
-  std::vector<PointQuantity> made{
-      {"opening", Column::opening, -1, "m"}, {"traction", Column::traction, -1, "Pa"}, {"mean_traction", Column::mean_traction, -1, "Pa"}};
+  std::vector<PointQuantity> made{{"opening", Column::opening, -1, "m"},
+                                  {"traction", Column::traction, -1, "Pa"},
+                                  {"mean_traction", Column::traction, -1, "Pa"},
+                                  {"end_traction", Column::end_traction, -1, "Pa"}};
   for (int k = 0; k < space.dimension - 1; ++k) {
     const std::string number = space.dimension == 2 ? "" : fmt::format("_{}", k + 1);
     made.push_back({"slip" + number, Column::opening, k, "m"});
     made.push_back({"shear_traction" + number, Column::traction, k, "Pa"});
-    made.push_back({"mean_shear_traction" + number, Column::mean_traction, k, "Pa"});
+    made.push_back({"mean_shear_traction" + number, Column::traction, k, "Pa"});
+    made.push_back({"end_shear_traction" + number, Column::end_traction, k, "Pa"});
   }
   return made;
 }
@@ -226,6 +229,11 @@ void add_requests(const Case& read, Built& built) {
     for (const Quantity& quantity : energy_quantities)
       requests.push_back(make(quantity.kind, fmt::format("energy.{}", quantity.word), quantity.unit));
     if (PlasticBulk(model).any()) requests.push_back(make(Column::plastic, "energy.plastic", "J"));
+    const auto filters = [](const Stage& stage) { return stage.type == Stage::Type::dynamics && stage.scheme.filtered(); };
+    if (!built.plan.method->constrains() && std::ranges::any_of(built.plan.stages, filters)) {
+      requests.push_back(make(Column::algorithmic, "energy.algorithmic", "J"));
+      requests.push_back(make(Column::filter, "energy.filter", "J"));
+    }
   }
 }
 

@@ -43,12 +43,13 @@ FloorRecorder::FloorRecorder(const Model& model, const RunPlan& plan, long steps
   }
 }
 
-void FloorRecorder::record(const Vector& acceleration, double time) {
+void FloorRecorder::record(const Vector& acceleration, double from, double to) {
+  const auto mean = [=](const auto& value) { return 0.5 * (value(from) + value(to)); };
   for (std::size_t k = 0; k < sources_.size(); ++k) {
     double sum = 0;
     for (const auto& [unknown, share] : sources_[k].unknowns) sum += share * acceleration[unknown];
-    for (const auto& [function, share] : sources_[k].supports) sum += share * function->acceleration(time);
-    for (const auto& [function, share] : sources_[k].ground) sum += share * function->value(time);
+    for (const auto& [function, share] : sources_[k].supports) sum += share * mean([&](double t) { return function->acceleration(t); });
+    for (const auto& [function, share] : sources_[k].ground) sum += share * mean([&](double t) { return function->value(t); });
     result_.floors[k].acceleration.push_back(sum);
   }
 }

@@ -18,8 +18,8 @@ class FloorRecorder {
   /// For so many steps [s] of a dynamic stage, whose room is taken here; a later stage goes on in the same records.
   FloorRecorder(const Model& model, const RunPlan& plan, long steps, double step, RunResult& result);
   bool any() const { return !sources_.empty(); }
-  /// `acceleration`: of the free unknowns at this time, relative to the moving frame where there is one.
-  void record(const Vector& acceleration, double time);
+  /// `acceleration`: of the free unknowns, mean from one time to another (or at one time), relative to the moving frame where there is one.
+  void record(const Vector& acceleration, double from, double to);
 
  private:
   /// Along the floor's direction: shares of the free unknowns, of moved supports and of the ground.

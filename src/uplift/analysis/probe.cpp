@@ -10,11 +10,11 @@ namespace uplift {
 InterfaceProblem probe(const Model& model, const Bulk& bulk, const Sparse& b, const Stage& stage, const LinearSolver& solver,
                        LinearCounts& counts, std::string& why) {
   const Scheme& s = stage.scheme;
-  const double w = 1 - s.alpha_f, dt = stage.step;
+  const double w = 1 - s.alpha_f, dt = stage.step * s.stretch();
   const Sparse matrix =
       bulk.stiffness_matrix + s.gamma / (s.beta * dt) * bulk.damping_matrix + (1 - s.alpha_m) / (w * s.beta * dt * dt) * bulk.mass_matrix;
   InterfaceProblem problem = blocks_of(model, Behaviours(model, NoContact(), nullptr));
-  problem.step = dt;
+  problem.step = stage.step;
   BulkFactor factor(matrix, &b, bulk.small, solver, model, counts);
   if (!factor.ok()) {
     why = factor.why();

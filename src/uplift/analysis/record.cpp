@@ -164,6 +164,7 @@ Recorder::Recorder(const Model& model, const RunPlan& plan, const State& state, 
     (source.place != nullptr ? placed_ : source.vector != nullptr ? entries_ : made_).push_back(std::move(source));
   }
   if (stepper_ == nullptr) acceleration_ = Vector::Zero(model.free());
+  before_ = state.time;
 }
 
 Recorder::Source Recorder::source_of(const Request& request, const SparseRows& reduction) const {
@@ -200,9 +201,9 @@ Recorder::Source Recorder::source_of(const Request& request, const SparseRows& r
     case What::opening:
       return row_of(&State::opening, false);
     case What::traction:
-      return row_of(&State::force, true);
-    case What::mean_traction:
       return row_of(&State::mean_force, true);
+    case What::end_traction:
+      return row_of(&State::force, true);
     case What::rotation:
       return {.place = model_.space.dimension == 2 ? &view->rotation[0] : nullptr};
     case What::rotation_1:
@@ -249,8 +250,17 @@ Recorder::Source Recorder::source_of(const Request& request, const SparseRows& r
       return {.place = &energies_.residual};
     case What::plastic:
       return {.place = &energies_.plastic};
+    case What::algorithmic:
+      return {.place = &energies_.algorithmic};
+    case What::filter:
+      return {.place = &energies_.filter};
   }
   return {};
+}
+
+/// Acceleration of the relative frame along the axis of the request [m/s2].
+double Recorder::ground(const Request& request, double time) const {
+  return model_.ground_acceleration(model_.space.axis(model_.space.index_of(request.unknown)), time);
 }
 
 double Recorder::made(const Source& source) const {
@@ -258,7 +268,9 @@ double Recorder::made(const Source& source) const {
   const Request& request = *source.request;
   const State& state = state_;
   const auto sum = [&](const Vector& q, int derivative) {
-    if (source.moved) return model_.full(request.unknown, q, derivative, state.time);
+    if (source.moved)
+      return 0.5 * (model_.full(request.unknown, q, derivative, derivative == 2 ? before_ : state.time) +
+                    model_.full(request.unknown, q, derivative, state.time));
     double total = 0;
     for (const auto& [unknown, factor] : source.terms) total += factor * q[unknown];
     return total;
@@ -271,7 +283,7 @@ double Recorder::made(const Source& source) const {
     case What::acceleration:
       return sum(acceleration_, 2);
     case What::absolute_acceleration:
-      return sum(acceleration_, 2) + model_.ground_acceleration(model_.space.axis(model_.space.index_of(request.unknown)), state.time);
+      return sum(acceleration_, 2) + 0.5 * (ground(request, before_) + ground(request, state.time));
     case What::rotation: {
       const std::array<double, 2>& slope = views_[static_cast<std::size_t>(request.interface)].rotation;
       return std::hypot(slope[0], slope[1]);
@@ -284,14 +296,15 @@ double Recorder::made(const Source& source) const {
 void Recorder::record(bool row) {
   const State& state = state_;
   if (wants_acceleration_ && stepper_ != nullptr) stepper_->acceleration(acceleration_);
-  floors_.record(acceleration_, state.time);
+  if (stepper_ == nullptr || !stepper_->path_averaged()) before_ = state.time;
+  floors_.record(acceleration_, before_, state.time);
   const std::size_t at = count_;
 #pragma GCC unroll 4
   for (const Source& each : placed_) each.to[at] = *each.place;
 #pragma GCC unroll 4
   for (const Source& each : entries_) each.to[at] = each.factor * (state.*each.vector).data()[each.entry];
   for (const Source& each : made_) each.to[at] = made(each);
-  time_[at] = state.time;
+  time_[at] = before_ = state.time;
   is_row_[at] = row;
   if (++count_ == many) flush();
 }
@@ -336,7 +349,7 @@ void Recorder::picture(const State& state) {
   for (const Interface& interface : model_.interfaces) {
     for (int i = 0; i < interface.batch.points; ++i, ++point) {
       frame.opening[point] = state.opening[first + interface.batch.normal() + i];
-      frame.pressure[point] = std::max(0.0, -state.force[first + interface.batch.normal() + i] / interface.area[i]);
+      frame.pressure[point] = std::max(0.0, -state.mean_force[first + interface.batch.normal() + i] / interface.area[i]);
     }
     first += interface.rows();
   }

@@ -16,7 +16,7 @@ class InterfaceViewer {
  public:
   /// `bases`: nodes of the upper side of every interface, or empty.
   InterfaceViewer(const Model& model, double gap_tolerance, const std::vector<std::vector<int>>& bases = {});
-  /// `force` is the end-of-step force per row [N].
+  /// `force` [N] per row: the mean over the step.
   void look(const Vector& opening, const Vector& force, std::vector<InterfaceView>& views) const;
   /// How an interface stands; `view` is what look() saw of it.
   BasePose pose(const State& state, std::size_t interface, const InterfaceView& view) const;
@@ -66,6 +66,7 @@ class Recorder {
   };
   Source source_of(const Request& request, const SparseRows& reduction) const;
   double made(const Source& source) const;
+  double ground(const Request& request, double time) const;
   void flush();
 
   const Model& model_;
@@ -82,6 +83,7 @@ class Recorder {
   std::array<bool, many> is_row_;
   std::size_t count_ = 0;     // of them
   std::vector<double> most_;  // per column: size of its peak
+  double before_ = 0;         // s: accelerations are the mean from here to the present time
   bool wants_acceleration_ = false;
   Vector acceleration_;
 };

@@ -166,7 +166,7 @@ void Runner::remember_gaps() {
 
 /// What the verdict holds the rest of the run against.
 void Runner::note_rest() {
-  viewer_.look(state_.opening, state_.force, views_);
+  viewer_.look(state_.opening, state_.mean_force, views_);
   for (std::size_t k = 0; k < views_.size(); ++k) {
     result_.steps.rest.push_back(views_[k].resultant);
     result_.steps.rest_poses.push_back(viewer_.pose(state_, k, views_[k]));
@@ -186,7 +186,7 @@ void Runner::stand() {
   energies.stored = held.stored, energies.interface_dissipated = held.dissipated;
   PageTaker pages;  // none
   result_.steps.reserve(model_.interfaces.size(), 1, 1, pages);
-  viewer_.look(state_.opening, state_.force, views_);
+  viewer_.look(state_.opening, state_.mean_force, views_);
   note_views(0);
   sum_up(0);
   for (const InterfaceView& view : views_) result_.steps.rest.push_back(view.resultant);

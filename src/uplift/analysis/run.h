@@ -25,7 +25,7 @@ struct Stage {
   double duration = 0;  // s
   double step = 0;      // s
   Scheme scheme;
-  bool path_average = true;  // traction laws; average acceleration only
+  bool path_average = true;  // traction laws; average acceleration only, filtered or not
   bool p_delta = false;      // constant geometric stiffness of the preceding static state
   int halvings = 8;          // a step that fails is halved at most so often
 };
@@ -38,8 +38,8 @@ struct Request {
     acceleration,           // full unknown
     absolute_acceleration,  // of a translation: with the ground's in the relative frame
     opening,
-    traction,
-    mean_traction,  // interface, point, component (normal last)
+    traction,      // interface, point, component (normal last): mean over the step, the force that did its work
+    end_traction,  // the same at the end of the step
     axial,
     shear,
     moment,
@@ -62,7 +62,9 @@ struct Request {
     impact,
     external,
     residual,
-    plastic  // energies [J]
+    plastic,
+    algorithmic,
+    filter  // energies [J]
   } kind = Kind::displacement;
   std::string name, unit;
   int unknown = 0;                              // full unknown

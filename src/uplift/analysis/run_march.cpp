@@ -70,14 +70,16 @@ void Runner::sum_up(double step) {
   }
 }
 
-/// Energy created and lost so far; the scale is the largest external work, or the energy at the beginning where no load works. Work of the
-/// dead loads over 1e-10 m, and 1e-8 of the energy that the static state stores (of which the gate takes a hundredth), are round-off: a
-/// structure that only stands there has created nothing.
+/// Energy created and lost by the computation so far (lost: by the filters of the scheme, and what the balance lacks); the scale is the
+/// largest external work, or the energy at the beginning where no load works. Work of the dead loads over 1e-10 m, and 1e-8 of the energy
+/// that the static state stores (of which the gate takes a hundredth), are round-off: a structure that only stands there has created
+/// nothing.
 void Runner::finish_energy(const Stepper& stepper) {
   const Energies& energies = stepper.energies();
   const double created = energies.residual + std::max(0.0, -energies.impact);
   if (created > result_.energy_created) result_.energy_created = created, result_.energy_created_time = seen_->time;
-  if (-energies.residual > result_.energy_lost) result_.energy_lost = -energies.residual, result_.energy_lost_time = seen_->time;
+  const double lost = energies.algorithmic - std::min(0.0, energies.residual);
+  if (lost > result_.energy_lost) result_.energy_lost = lost, result_.energy_lost_time = seen_->time;
   result_.energy_scale = std::max(stepper.largest_external(), initial_scale_);
   if (result_.energy_scale <= 0) result_.energy_scale = stepper.initial_energy();
   result_.energy_scale = std::max(result_.energy_scale, round_off_energy_);
@@ -155,7 +157,7 @@ bool Runner::dynamics(const Stage& stage, const Bulk& bulk) {
   for (const Drive& drive : model_.drives)
     if (drive.dead) round_off_energy_ += 1e-10 * drive.shape.lpNorm<1>() * std::abs(drive.function->value(seen_->time));
   const auto observe = [&](long step) {
-    viewer_.look(seen_->opening, seen_->force, views_);
+    viewer_.look(seen_->opening, seen_->mean_force, views_);
     note_views(step == 0 ? 0 : stage.step);
     recorder.record(step % plan_.every == 0 || step == steps);
     if (picture_every > 0 && step % picture_every == 0) recorder.picture(*seen_);

@@ -32,6 +32,7 @@ struct ImpactScratch {
   KernelScratch kernel;
   Vector target, limit, fixed, held;  // rows: B v without the contact force, weights of the rows (kernel.h)
   Vector rate, taken, impulse;        // rows: B v corrected, force that was taken out, total impulse
+  Vector total;                       // rows: total impulse of the velocity, where the acceleration is projected too
   Vector y, push;                     // r
   Index first = 0, count = 0;         // range of rows that holds the active ones
   bool any_fixed = false;             // some rows are held both ways
@@ -45,6 +46,8 @@ class ImpactRule {
   /// True when the force of the displacement solve alone is not the contact force: the correction's impulse / dt is added to it (reflect,
   /// propagate).
   virtual bool force_includes_impulse() const { return false; }
+  /// True when the acceleration is projected too: the scratch then holds the force that belongs to it, and the impulse of the velocity.
+  virtual bool holds_acceleration() const { return false; }
   /// Corrects velocity and acceleration of the free unknowns in place. `impulse` (rows, N s, compression negative) receives what the
   /// correction put in.
   virtual void apply(const Impact&, Vector& velocity, Vector& acceleration, Vector& impulse, ImpactScratch&) const = 0;

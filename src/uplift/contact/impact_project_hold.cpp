@@ -5,11 +5,13 @@ namespace {
 
 class ProjectHold final : public ImpactRule {
  public:
+  bool holds_acceleration() const override { return true; }
   void apply(const Impact& impact, Vector& velocity, Vector& acceleration, Vector& impulse, ImpactScratch& scratch) const override {
     if (!select_rows(impact, Hold::inequality, scratch)) return;
     project_rate(impact, velocity, impact.velocity_weight, Select::all, scratch);
     correct(impact, 1, velocity, scratch);
     add_impulse(impact, 1, impulse, scratch);
+    scratch.total = scratch.impulse;
     project_rate(impact, acceleration, impact.acceleration_weight, Select::held, scratch);
     correct(impact, 1, acceleration, scratch);
   }

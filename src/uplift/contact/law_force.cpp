@@ -31,6 +31,10 @@ void to_force(const InterfaceProblem& problem, const Block& block, double* force
 void law_force(const InterfaceProblem& problem, const Block& block, const double* opening, const Reply& reply) {
   Batch batch = block.batch;
   batch.step = problem.step;
+  if (problem.filter.acts()) {
+    batch.coefficient = problem.filter.coefficient.data() + block.first;
+    batch.lag = problem.filter.lag.data() + block.first;
+  }
   const double *from = problem.from.data() + block.first, *to = opening + block.first;
   const double* old = problem.old.data() + block.first_history;
   if (problem.average)

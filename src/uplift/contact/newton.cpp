@@ -44,6 +44,7 @@ class Newton {
   }
 
   void predict();
+  void add_lag(Lanes* total);
   void go_on();
   void look(bool with_hessian);
   void move(double alpha, bool with_hessian);
@@ -69,7 +70,8 @@ class Newton {
 
 /// First guess of a step from the last one: the laws go on linearly from their end-of-step force with their slope there,
 ///     H_end z = -C^T (p_end + k_end (free_opening - from))
-/// which is the solution itself where no law changes its branch. Costs two sums over the points instead of an evaluation of the laws.
+/// which is the solution itself where no law changes its branch (with a joint filter less scale area c d_f). Costs two sums over the points
+/// instead of an evaluation of the laws.
 template <int R>
 void Newton<R>::predict() {
   Lanes total[most] = {};
@@ -94,11 +96,29 @@ void Newton<R>::predict() {
         for (Index j = 0; j < r(); ++j) total[j] += at(column(j) + block.first + a * n) * force;
       });
   }
+  if (problem_.filter.acts()) add_lag(total);
   for (Index j = 0; j < r(); ++j) scratch_.gradient[j] = sum(total[j]);
   direction_of_few(solution_.z.data());
 }
 
-/// After a step that some law bent in: slopes and Hessian of the step to come, in which it goes on straight.
+/// What the joint filter's memory pulls at the start of the step, -scale area c d_f.
+template <int R>
+void Newton<R>::add_lag(Lanes* total) {
+  for (const Block& block : problem_.blocks) {
+    const double* area = block.area.data();
+    for (int a = 0; a < block.batch.components; ++a) {
+      const int first = block.first + a * block.batch.points;
+      const double *coefficient = problem_.filter.coefficient.data() + first, *lag = problem_.filter.lag.data() + first;
+      for_lanes(block.batch.points, [&](const auto& at) {
+        const Lanes force = problem_.scale * at(area) * larger(at(coefficient), Lanes(0)) * at(lag);
+        for (Index j = 0; j < r(); ++j) total[j] -= at(column(j) + first) * force;
+      });
+    }
+  }
+}
+
+/// After a step that some law bent in: slopes and Hessian of the step to come, in which it goes on straight. A joint filter in contact
+/// makes the slope larger by 1 + 2 b, which scale is smaller by.
 template <int R>
 void Newton<R>::go_on() {
   for (std::size_t b = 0; b < problem_.blocks.size(); ++b) {
@@ -108,7 +128,7 @@ void Newton<R>::go_on() {
     const double *next = scratch_.next.data() + scratch_.first_slope[b], *area = block.area.data();
     for (int c = 0; c < components * components; ++c)
 #pragma omp simd
-      for (int i = 0; i < n; ++i) slope[c * n + i] = problem_.scale * area[i] * next[c * n + i];
+      for (int i = 0; i < n; ++i) slope[c * n + i] = 2 * area[i] * next[c * n + i];
   }
   form_gradient(true);
 }

@@ -49,6 +49,7 @@ void size_newton(const InterfaceProblem& problem, InterfaceSolution& solution) {
   scratch.pull.setZero(rows);
   solution.opening.setZero(rows);
   solution.force.setZero(rows);
+  if (problem.filter.acts()) solution.plain.setZero(rows);
   if (solution.z.size() != r) solution.z.setZero(r);
   solution.now.setZero(problem.old.size());
 }
@@ -62,7 +63,8 @@ void evaluate(const InterfaceProblem& problem, const AugmentedForce& augmented, 
     if (block.law != nullptr) {
       Reply reply{solution.force.data() + block.first, slope, solution.now.data() + block.first_history};
       if (problem.average) reply.end = solution.newton.end.data() + block.first;
-      if (problem.average && with_slope) reply.next = solution.newton.next.data() + first_slope;
+      if (problem.average && (with_slope || problem.filter.acts())) reply.next = solution.newton.next.data() + first_slope;
+      if (problem.filter.acts()) reply.plain = solution.plain.data() + block.first;
       law_force(problem, block, solution.opening.data(), reply);
     } else {
       cone_force(problem, block, augmented, slope, solution);

@@ -23,6 +23,8 @@ Sweep lay_out(const InterfaceProblem& problem, InterfaceSolution& solution) {
           .old = problem.old.data(),
           .area = block.area.data(),
           .scale = problem.scale,
+          .coefficient = problem.filter.acts() ? problem.filter.coefficient.data() : nullptr,
+          .lag = problem.filter.lag.data(),
           .opening = solution.opening.data(),
           .force = solution.force.data(),
           .slope = scratch.slope.data(),
@@ -32,6 +34,7 @@ Sweep lay_out(const InterfaceProblem& problem, InterfaceSolution& solution) {
           .pull = scratch.gradient.data(),
           .stiffness = scratch.hessian.data(),
           .end_pull = scratch.end_pull.data(),
+          .plain = solution.plain.data(),
           .stored = &solution.stored};
 }
 
@@ -62,8 +65,19 @@ void pull_at_end(const Sweep& sweep) {
   for (int j = 0; j < R; ++j) sweep.end_pull[j] = sum(pull[j]);
 }
 
+/// What the joint filter's memory adds to it, C^T (-scale area c d_f).
+template <int R>
+void add_lag(const Sweep& sweep) {
+  Lanes pull[R] = {};
+  for_lanes(sweep.points, [&](const auto& at) {
+    const Lanes force = sweep.scale * at(sweep.area) * larger(at(sweep.coefficient), Lanes(0)) * at(sweep.lag);
+    for (int j = 0; j < R; ++j) pull[j] += at(sweep.factor + j * sweep.stride) * force;
+  });
+  for (int j = 0; j < R; ++j) sweep.end_pull[j] -= sum(pull[j]);
+}
+
 /// The laws go on linearly from their force at the end of the last step with their slope there:
-///     H z = -C^T (scale area end) - (H - I) way        free_opening - from = C way
+///     H z = -C^T (scale area (end - c d_f)) - (H - I) way        free_opening - from = C way
 template <int R>
 [[gnu::always_inline]] inline void guess(const Sweep& sweep, const double* way, double* z) {
   double x[R];
@@ -79,7 +93,7 @@ template <int R>
 void go_on(const Sweep& sweep) {
   Lanes gram[R][R] = {};
   for_lanes(sweep.points, [&](const auto& at) {
-    const Lanes slope = sweep.scale * at(sweep.area) * at(sweep.next);
+    const Lanes slope = 2 * at(sweep.area) * at(sweep.next);  // see Newton::go_on
     for (int j = 0; j < R; ++j) {
       const Lanes weighted = slope * at(sweep.factor + j * sweep.stride);
       for (int i = j; i < R; ++i) gram[j][i] += weighted * at(sweep.factor + i * sweep.stride);
@@ -97,6 +111,7 @@ bool iterate(const InterfaceProblem& problem, const NewtonOptions& options, Inte
   double* z = solution.z.data();
   if (scratch.follows) {
     if (!solution.swept) pull_at_end<R>(sweep);
+    if (sweep.coefficient != nullptr) add_lag<R>(sweep);
     guess<R>(sweep, problem.way.data(), z);
   }
   scratch.follows = false;

@@ -25,10 +25,15 @@ double balance(const InterfaceProblem& problem, const InterfaceSolution& solutio
 /// Largest difference between the force and that of the law, N.
 double law_error(const InterfaceProblem& problem, const Block& block, const InterfaceSolution& solution, YardstickScratch& scratch) {
   scratch.now.resize(problem.old.size());
-  for (Vector* v : {&scratch.traction, &scratch.end}) v->resize(problem.rows());
-  scratch.slope.resize(3 * problem.rows());
+  for (Vector* v : {&scratch.traction, &scratch.end, &scratch.plain}) v->resize(problem.rows());
+  for (Vector* v : {&scratch.slope, &scratch.next}) v->resize(3 * problem.rows());
   law_force(problem, block, solution.opening.data(),
-            {scratch.traction.data(), scratch.slope.data(), scratch.now.data(), scratch.end.data()});
+            {.traction = scratch.traction.data(),
+             .slope = scratch.slope.data(),
+             .now = scratch.now.data(),
+             .end = scratch.end.data(),
+             .next = scratch.next.data(),
+             .plain = scratch.plain.data()});
   double worst = 0;
   for (int i = 0; i < block.rows(); ++i) worst = std::max(worst, std::abs(solution.force[block.first + i] - scratch.traction[i]));
   return worst;

@@ -34,6 +34,13 @@ struct Block {
 /// How the linear problems of interfaces with many independent rows are solved, see PointRows.
 enum class InterfaceSolver : signed char { automatic, direct, krylov };
 
+/// Joint filter of the scheme of filtered energy decay (laws/filter.h), frozen for one step. Without a gain there is none.
+struct JointFilterInput {
+  double gain = 0;          // b of the scheme
+  Vector coefficient, lag;  // rows: c [Pa/m], d_f [m]
+  bool acts() const { return gain > 0; }
+};
+
 /// Frozen: everything that a method may know about one step. It can be written to a file and solved again by any method.
 struct InterfaceProblem {
   std::vector<Block> blocks;
@@ -41,13 +48,14 @@ struct InterfaceProblem {
   Vector shift;          // D: rows [N/m]; empty in dynamics
   bool average = false;  // path-averaged traction: p = scale * area * mean(from -> opening)
   InterfaceSolver solver = InterfaceSolver::automatic;
-  double scale = 1;  // weight of the interface force in the scheme's balance: 2 with the path average, else 1
+  double scale = 1;  // weight of the interface force in the scheme's balance: with the path average 2/(1 + 2 b), else 1
   double step = 0;   // s; 0 in statics
   // what changes from step to step
   Vector free_opening;  // m, initial gap included
   Vector from;          // opening at the beginning of the step [m]
   Vector old;           // memory at the beginning of the step
   Vector way;           // r: free_opening - from = C way; empty where nobody knows
+  JointFilterInput filter;
   int rows() const { return static_cast<int>(factor.rows()); }
 };
 
@@ -105,7 +113,7 @@ struct LagrangeScratch {
 /// Work space of the yardstick.
 struct YardstickScratch {
   Vector opening, moved, force, balance;
-  Vector traction, slope, end;
+  Vector traction, slope, end, next, plain;
   Vector now;
 };
 
@@ -114,6 +122,7 @@ struct InterfaceSolution {
   Vector z;                    // on entry the first guess
   Vector opening;              // rows, end of step [m]
   Vector force;                // rows, p as it enters the balance [N]: scale * area * traction, tension > 0
+  Vector plain;                // rows, with a joint filter: path average of the law alone [Pa]
   Vector now;                  // memory at the end of the step
   bool swept = false;          // the law made all in one pass (laws/sweep.h): its memory stays, and it stores this:
   double stored = 0;           // J

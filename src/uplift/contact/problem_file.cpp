@@ -7,6 +7,7 @@
 
 // A stored interface problem is one JSON object:
 //   format "uplift interface problem 1", reason, average, scale, step [s], factor (rows of C), shift, free_opening, from, old, and blocks:
+//   (with the scheme of filtered energy decay: filter_gain, filter_coefficient [Pa/m], filter_lag [m])
 //   name, points, components, area, behaviour {type, parameters}, and substitute {stiffness [Pa/m], memory} where a method had put a law in
 //   the place of the cone. Doubles are written so that they read back to the same bits; numbers that
 //   are not finite (a failed step may hold some) are the words "nan", "inf", "-inf".
@@ -175,6 +176,11 @@ class Reader {
     problem.free_opening = vector("free_opening", rows);
     problem.from = vector("from", rows);
     problem.old = vector("old", problem.old.size());
+    if (json_.contains("filter_gain")) {
+      problem.filter.gain = number(json_["filter_gain"], "filter_gain");
+      problem.filter.coefficient = vector("filter_coefficient", rows);
+      problem.filter.lag = vector("filter_lag", rows);
+    }
     return stored;
   }
 
@@ -221,6 +227,11 @@ std::string save_problem(const InterfaceProblem& problem, const std::vector<cons
   json["free_opening"] = to_json(problem.free_opening);
   json["from"] = to_json(problem.from);
   json["old"] = to_json(old.data(), old.size());
+  if (problem.filter.acts()) {
+    json["filter_gain"] = to_json(problem.filter.gain);
+    json["filter_coefficient"] = to_json(problem.filter.coefficient);
+    json["filter_lag"] = to_json(problem.filter.lag);
+  }
   // one key a line, one row of the factor a line: readable, and it can be compared
   std::string text = "{";
   for (const auto& [key, value] : json.items()) {

@@ -41,6 +41,7 @@ Bulk::Bulk(const Model& model, const Sparse* geometric)
       stiffness_matrix(geometric != nullptr ? second_order_ : model.stiffness),
       mass_matrix(model.mass),
       damping_matrix(model.damping),
+      geometric(geometric),
       stiffness(stiffness_matrix, small),
       mass(mass_matrix, small),
       damping(damping_matrix, small) {

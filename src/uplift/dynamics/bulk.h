@@ -46,6 +46,7 @@ class Bulk {
   int unknowns = 0;
   bool small = false;
   const Sparse &stiffness_matrix, &mass_matrix, &damping_matrix;
+  const Sparse* geometric;  // part of stiffness_matrix that the axial forces make; null: none. It must stay alive
   BulkMatrix stiffness, mass, damping;
   std::vector<char> massless;  // per free unknown
 };

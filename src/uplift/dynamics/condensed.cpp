@@ -109,15 +109,15 @@ Outcome Condensed::free_step(const Vector& right, Vector& increment) {
   return outcome;
 }
 
-Outcome Condensed::solve(const Vector& right, const Vector& displacement, const Vector& opening, const Vector& history, Vector& increment) {
-  return problem_.rows() == 0 ? free_step(right, increment) : contact_step(right, displacement, opening, history, increment);
+Outcome Condensed::solve(const Vector& right, const StepStart& start, Vector& increment) {
+  return problem_.rows() == 0 ? free_step(right, increment) : contact_step(right, start, increment);
 }
 
-Outcome Condensed::contact_step(const Vector& right, const Vector& displacement, const Vector& opening, const Vector& history,
-                                Vector& increment) {
-  free_opening(right, displacement);
-  small::copy(opening.size(), opening.data(), problem_.from.data());
-  small::copy(history.size(), history.data(), problem_.old.data());
+Outcome Condensed::contact_step(const Vector& right, const StepStart& start, Vector& increment) {
+  free_opening(right, start.displacement);
+  small::copy(start.opening.size(), start.opening.data(), problem_.from.data());
+  small::copy(start.history.size(), start.history.data(), problem_.old.data());
+  if (start.filter != nullptr) problem_.filter = *start.filter;
   Outcome outcome = method_.solve(problem_, solution_);
   factor_.count(std::exchange(solution_.systems, {}));
   if (!outcome.converged) return outcome;

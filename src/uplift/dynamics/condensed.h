@@ -30,13 +30,18 @@ struct Behaviours {
 /// The blocks of an interface problem (no compliance yet).
 InterfaceProblem blocks_of(const Model& model, const Behaviours& behaviours);
 
+/// The beginning of a step.
+struct StepStart {
+  const Vector &displacement, &opening, &history;
+  const JointFilterInput* filter = nullptr;  // null: none
+};
+
 /// Solves one step for the displacement increment. Owned by a run; its problem and solution hold the last step.
 class StepSolver {
  public:
   virtual ~StepSolver() = default;
-  /// `displacement`, `opening`, `history` are those of the beginning of the step; `increment` receives du.
-  virtual Outcome solve(const Vector& right, const Vector& displacement, const Vector& opening, const Vector& history,
-                        Vector& increment) = 0;
+  /// `increment` receives du.
+  virtual Outcome solve(const Vector& right, const StepStart& start, Vector& increment) = 0;
   virtual const InterfaceProblem& problem() const = 0;
   virtual const InterfaceSolution& solution() const = 0;
 };
@@ -49,14 +54,14 @@ class Condensed final : public StepSolver {
   /// changes from step to step.
   Condensed(const Model& model, const Sparse& b, const Vector& gap, bool gap_moves, BulkFactor factor, InterfaceProblem frame,
             const ContactMethod& method);
-  Outcome solve(const Vector& right, const Vector& displacement, const Vector& opening, const Vector& history, Vector& increment) override;
+  Outcome solve(const Vector& right, const StepStart& start, Vector& increment) override;
   const InterfaceProblem& problem() const override { return problem_; }
   const InterfaceSolution& solution() const override { return solution_; }
 
  private:
   void free_opening(const Vector& right, const Vector& displacement);
   Outcome free_step(const Vector& right, Vector& increment);
-  Outcome contact_step(const Vector& right, const Vector& displacement, const Vector& opening, const Vector& history, Vector& increment);
+  Outcome contact_step(const Vector& right, const StepStart& start, Vector& increment);
 
   const Sparse& b_;
   const Vector& gap_;

@@ -7,14 +7,16 @@
 namespace uplift {
 
 /// Energies [J] since the beginning of the first dynamic stage:
-///   residual = kinetic + strain + stored + interface_dissipated + plastic + damping + impact - external - (mechanical energy at the
-///   beginning)
+///   residual = kinetic + strain + stored + filter + interface_dissipated + plastic + damping + impact + algorithmic - external
+///              - (mechanical energy at the beginning)
 /// which is zero to round-off for the average acceleration rule with path-averaged tractions. A positive residual is energy that the method
 /// created.
 struct Energies {
   double kinetic = 0, strain = 0, stored = 0, interface_dissipated = 0, damping = 0, impact = 0, external = 0, residual = 0;
-  double plastic = 0;   // dissipated by yielding solids; their strain energy is the recoverable one
-  double friction = 0;  // under constraints; a part of interface_dissipated
+  double algorithmic = 0;  // dissipated by the scheme's filters (filtered energy decay)
+  double filter = 0;       // stored in them: of order (omega h)^2 of the energy of a motion
+  double plastic = 0;      // dissipated by yielding solids; their strain energy is the recoverable one
+  double friction = 0;     // under constraints; a part of interface_dissipated
 };
 
 /// What the interfaces' laws hold and have dissipated [J]; cones hold nothing, and what their friction takes is friction_work().

@@ -29,14 +29,22 @@ class Monolithic final : public StepSolver {
     solution_.force.setZero(b.rows());
     solution_.opening.setZero(b.rows());
     solution_.newton.end.setZero(b.rows());
-    for (const Block& block : problem_.blocks) points_ += static_cast<std::size_t>(block.batch.points);
+    solution_.plain.setZero(b.rows());
+    int slopes = 0;
+    for (const Block& block : problem_.blocks) {
+      points_ += static_cast<std::size_t>(block.batch.points);
+      solution_.newton.first_slope.push_back(slopes);
+      slopes += block.batch.points * block.batch.components * block.batch.components;
+    }
+    solution_.newton.next.setZero(slopes);
   }
 
-  Outcome solve(const Vector& right, const Vector& displacement, const Vector& opening, const Vector& history, Vector& increment) override {
-    problem_.from = opening;
-    problem_.old = history;
-    solution_.now = history;
-    origin_ = gap_ + b_ * displacement;
+  Outcome solve(const Vector& right, const StepStart& start, Vector& increment) override {
+    problem_.from = start.opening;
+    problem_.old = start.history;
+    if (start.filter != nullptr) problem_.filter = *start.filter;
+    solution_.now = start.history;
+    origin_ = gap_ + b_ * start.displacement;
     Outcome outcome;
     for (const Contact guess : {Contact::open, Contact::stick}) {
       contact_.assign(points_, guess);
@@ -77,32 +85,25 @@ class Monolithic final : public StepSolver {
   /// Law forces and their full slope matrix dP/d opening (rows x rows) at the present opening.
   void law_forces(Matrix& slope) {
     slope.setZero(b_.rows(), b_.rows());
-    for (const Block& block : problem_.blocks) {
+    for (std::size_t b = 0; b < problem_.blocks.size(); ++b) {
+      const Block& block = problem_.blocks[b];
       if (block.law == nullptr) continue;
       const int n = block.batch.points, components = block.batch.components;
       std::vector<double> k(static_cast<std::size_t>(n * components * components));
-      Batch batch = block.batch;
-      batch.step = problem_.step;
       Reply reply;
       reply.traction = solution_.force.data() + block.first;
       reply.slope = k.data();
       reply.now = solution_.now.data() + block.first_history;
-      const double *from = problem_.from.data() + block.first, *to = solution_.opening.data() + block.first;
-      const double* old = problem_.old.data() + block.first_history;
       if (problem_.average) {
         reply.end = solution_.newton.end.data() + block.first;
-        block.law->mean(batch, from, to, old, reply);
-      } else {
-        block.law->respond(batch, from, to, old, reply);
+        reply.next = solution_.newton.next.data() + solution_.newton.first_slope[b];
+        reply.plain = solution_.plain.data() + block.first;
       }
-      for (int i = 0; i < n; ++i) {
-        const double weight = problem_.scale * block.area[static_cast<std::size_t>(i)];
-        for (int r = 0; r < components; ++r) {
-          solution_.force[block.first + r * n + i] *= weight;
+      law_force(problem_, block, solution_.opening.data(), reply);
+      for (int i = 0; i < n; ++i)
+        for (int r = 0; r < components; ++r)
           for (int c = 0; c < components; ++c)
-            slope(block.first + r * n + i, block.first + c * n + i) = weight * k[static_cast<std::size_t>((r * components + c) * n + i)];
-        }
-      }
+            slope(block.first + r * n + i, block.first + c * n + i) = k[static_cast<std::size_t>((r * components + c) * n + i)];
     }
   }
 
@@ -351,14 +352,14 @@ class Compared final : public StepSolver {
   Compared(const Sparse& matrix, std::unique_ptr<StepSolver> solver, std::unique_ptr<StepSolver> oracle, double tolerance)
       : matrix_(matrix), solver_(std::move(solver)), oracle_(std::move(oracle)), tolerance_(tolerance) {}
 
-  Outcome solve(const Vector& right, const Vector& displacement, const Vector& opening, const Vector& history, Vector& increment) override {
-    Outcome outcome = solver_->solve(right, displacement, opening, history, increment);
+  Outcome solve(const Vector& right, const StepStart& start, Vector& increment) override {
+    Outcome outcome = solver_->solve(right, start, increment);
     if (!outcome.converged) return outcome;
     other_.resize(increment.size());
-    const Outcome check = oracle_->solve(right, displacement, opening, history, other_);
+    const Outcome check = oracle_->solve(right, start, other_);
     if (!check.converged) outcome.why = check.why;
     const double difference = energy_norm(other_ - increment),
-                 size = std::max(energy_norm(displacement + increment), energy_norm(increment));
+                 size = std::max(energy_norm(start.displacement + increment), energy_norm(increment));
     if (check.converged && difference > tolerance_ * size)
       outcome.why = fmt::format("the oracle's step differs by {:.2e} of the displacement", difference / size);
     outcome.converged = outcome.why.empty();

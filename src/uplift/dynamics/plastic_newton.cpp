@@ -47,7 +47,7 @@ void PlasticNewton::mix() {
 /// Goes over to the tangent of the present state. A tangent that is not positive definite (no associated flow, or no strength left) gets a
 /// share of the elastic stiffness back.
 bool PlasticNewton::soften(const Step& step, const Make& make, const Vector& increment, const PlasticState& now) {
-  const Sparse full = bulk_.softening(step.displacement + increment, step.time, step.old.history, now);
+  const Sparse full = step.weight * bulk_.softening(step.start.displacement + increment, step.time, step.old.history, now);
   std::string why;
   for (const double share : {1.0, 0.9, 0.5}) {
     const Sparse softening = share * full;
@@ -78,25 +78,25 @@ Outcome PlasticNewton::solve(const Step& step, StepSolver& elastic, const Make& 
   residuals_.clear();
   given_before_.clear();
   change_before_.clear();
-  given_ = step.right - step.old.force;
+  given_ = step.right - step.weight * step.old.force;
   Vector moved;
   int since = 0;  // iterations with the present factor
   const bool may_soften = options_.newton != PlasticOptions::Newton::modified;
   for (int iteration = 0; iteration < options_.iterations; ++iteration) {
-    const Outcome inner = last_->solve(given_, step.displacement, step.opening, step.history, increment);
+    const Outcome inner = last_->solve(given_, step.start, increment);
     outcome.iterations += inner.iterations;
     outcome.cycles += inner.cycles;
     if (!inner.converged) {
       outcome.why = inner.why;
       return outcome;
     }
-    moved = step.displacement + increment;
+    moved = step.start.displacement + increment;
     if (!moved.allFinite()) break;
     if (const BulkResponse response = bulk_.respond(moved, step.time, step.old.history, now, size_); !response.converged) {
       outcome.why = response.why;
       return outcome;
     }
-    change_ = step.right - now.force - given_;  // y of this state less the one that led to it
+    change_ = step.right - step.weight * now.force - given_;  // y of this state less the one that led to it
     if (softening_.size() > 0) change_ += softening_ * increment;
     const double size = weight_.cwiseProduct(size_).norm(), rest = weight_.cwiseProduct(change_).norm();
     residuals_.push_back(size > 0 ? rest / size : 0);
@@ -109,7 +109,7 @@ Outcome PlasticNewton::solve(const Step& step, StepSolver& elastic, const Make& 
       since = 0;
       given_before_.clear();
       change_before_.clear();
-      given_ = step.right - now.force + softening_ * increment;
+      given_ = step.right - step.weight * now.force + softening_ * increment;
       continue;
     }
     given_before_.push_back(given_);

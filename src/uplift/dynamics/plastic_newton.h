@@ -8,12 +8,12 @@
 #include "uplift/dynamics/plastic_bulk.h"
 
 // The outer Newton of a step with yielding solids:
-//     K_eff du + r(u0 + du) + B^T P = R       r: what yielding adds to the internal force of the linear bulk
+//     K_eff du + w r(u0 + du) + B^T P = R     r: what yielding adds to the internal force of the linear bulk, w its weight in the scheme
 // Every iteration solves a whole linear step with the same interface inside,
-//     (K_eff + D) du + B^T P = y,             y = R - r(u_k) + D du_k
-// with D = 0 (modified Newton: the elastic factor that is there anyway) or D = consistent tangent - elastic stiffness. The change of y from
-// one iteration to the next is the residual of the whole balance. Modified iterations are accelerated by Anderson's mixing (Walker & Ni,
-// SIAM J. Numer. Anal. 49 (2011) 1715-1735).
+//     (K_eff + D) du + B^T P = y,             y = R - w r(u_k) + D du_k
+// with D = 0 (modified Newton: the elastic factor that is there anyway) or D = w (consistent tangent - elastic stiffness). The change of y
+// from one iteration to the next is the residual of the whole balance. Modified iterations are accelerated by Anderson's mixing (Walker &
+// Ni, SIAM J. Numer. Anal. 49 (2011) 1715-1735).
 namespace uplift {
 
 struct PlasticOptions {
@@ -34,10 +34,11 @@ class PlasticNewton {
   PlasticNewton(const PlasticBulk& bulk, const Sparse& stiffness, const PlasticOptions& options);
   /// The end of a step: what the bulk remembers at its beginning, and the time of its end.
   struct Step {
-    const Vector &right, &displacement, &opening;
-    const Vector& history;
+    const Vector& right;
+    const StepStart& start;
     const PlasticState& old;
     double time;
+    double weight = 1;  // w
   };
   /// `increment` and `now` receive the end of the step.
   Outcome solve(const Step& step, StepSolver& elastic, const Make& make, Vector& increment, PlasticState& now);

@@ -10,10 +10,17 @@ namespace uplift {
 ///   a1 = (u1 - u0 - dt v0)/(beta dt^2) - (1/(2 beta) - 1) a0        v1 = v0 + dt ((1 - gamma) a0 + gamma a1)
 ///   M [(1-am) a1 + am a0] + C [(1-af) v1 + af v0] + K [(1-af) u1 + af u0] + B^T [(1-af) p1 + af p0] = (1-af) f1 + af f0
 /// (Chung & Hulbert 1993; HHT-alpha: am = 0, af = -alpha; Newmark: am = af = 0). A scheme is coefficients.
+///
+/// Filtered energy decay is the midpoint form of the trapezoidal rule with passive filters on the increments of displacement, velocity and
+/// joint opening (docs/theory, section 3): `gain` b and `pole` a of the filter. A gain of zero is the trapezoidal rule.
 struct Scheme {
   double beta = 0.25, gamma = 0.5, alpha_m = 0, alpha_f = 0;
+  double pole = 0, gain = 0;
   bool operator==(const Scheme&) const = default;
-  /// The trapezoidal rule: the path-averaged traction closes the energy balance exactly with it and only with it.
+  bool filtered() const { return gain > 0; }
+  /// The step that the matrix K + 2/h C + 4/h^2 M belongs to, over the time step: 1 + 2 b.
+  double stretch() const { return 1 + 2 * gain; }
+  /// The trapezoidal rule, filtered or not: the path-averaged traction closes the energy balance exactly with it and only with it.
   bool average_acceleration() const { return beta == 0.25 && gamma == 0.5 && alpha_m == 0 && alpha_f == 0; }
 };
 

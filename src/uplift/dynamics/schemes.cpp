@@ -8,11 +8,33 @@ namespace uplift {
 const Entry<Scheme>& entry_scheme_average_acceleration() {
   static const Entry<Scheme> entry{
       {.name = "average_acceleration",
-       .summary = "trapezoidal rule; no numerical damping; the only scheme with the energy-exact path-averaged traction",
+       .summary = "trapezoidal rule; no numerical damping; conserves energy exactly with the path-averaged traction",
        .equations = "beta = 1/4, gamma = 1/2",
        .source = "Newmark 1959; THEORY section 4",
        .params = {}},
       [](const Values&) { return std::make_unique<const Scheme>(); }};
+  return entry;
+}
+
+const Entry<Scheme>& entry_scheme_energy_decay() {
+  static const Entry<Scheme> entry{
+      {.name = "energy_decay",
+       .summary =
+           "filtered energy decay: the trapezoidal rule with the path-averaged traction and passive filters, which damp what the step "
+           "does not resolve (bulk and joint); second order, never creates energy, exact energy balance",
+       .equations = "M dv/h + C du/h + K (u0 + u1)/2 + K y_u + B^T W t = (f0 + f1)/2,   du/h = (v0 + v1)/2 + y_v\n"
+                    "y = b (d - d_f),   d_f <- a d_f + (1 - a) d   for d = du, dv and the opening increment of every point in contact\n"
+                    "a = (1 - 3 rho)/(3 - rho),   b = (1 - rho)^2/(2 (3 - rho)(1 + rho))\n"
+                    "a point that closes in the step takes the traction at its end",
+       .source = "docs/theory, section 3; eigenvalues of the linear part: Jansen, Whiting & Hulbert 2000",
+       .params = {number("rho", "1", "spectral radius at infinite frequency; 1 is average_acceleration").between(0, 1).standard(0.5)}},
+      [](const Values& values) -> std::unique_ptr<const Scheme> {
+        const double rho = values.number("rho");
+        Scheme scheme;
+        scheme.pole = (1 - 3 * rho) / (3 - rho);
+        scheme.gain = (1 - rho) * (1 - rho) / (2 * (3 - rho) * (1 + rho));
+        return std::make_unique<const Scheme>(scheme);
+      }};
   return entry;
 }
 

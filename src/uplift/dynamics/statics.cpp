@@ -125,9 +125,9 @@ StaticOutcome solve_statics(const Model& model, const Bulk& bulk, const Sparse& 
     bulk.stiffness.multiply(state.displacement, product);
     Vector right = to * dead - product;
     if (b.rows() > 0) right -= b.transpose() * (shift.cwiseProduct(state.opening)).eval();
-    const Outcome step = yielding.any() ? newton.solve({right, state.displacement, state.opening, state.history, plastic_now, state.time},
-                                                       condensed, soften, increment, plastic_next)
-                                        : condensed.solve(right, state.displacement, state.opening, state.history, increment);
+    const StepStart start{state.displacement, state.opening, state.history};
+    const Outcome step = yielding.any() ? newton.solve({right, start, plastic_now, state.time}, condensed, soften, increment, plastic_next)
+                                        : condensed.solve(right, start, increment);
     const StepSolver& last = yielding.any() ? newton.last() : condensed;
     outcome.newton = newton.residuals();
     outcome.iterations += step.iterations;
@@ -174,6 +174,7 @@ StaticOutcome solve_statics(const Model& model, const Bulk& bulk, const Sparse& 
     if (!go(static_cast<double>(k) / steps, static_cast<double>(k + 1) / steps, 0)) return outcome;
   state.velocity.setZero();
   state.acceleration.setZero();
+  state.filter = {};
   outcome.converged = state.displacement.allFinite();
   if (!outcome.converged) outcome.why = "static stage: the displacement is not finite";
   return outcome;

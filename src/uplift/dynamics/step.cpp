@@ -27,11 +27,14 @@ Stepper::Stepper(const Model& model, const Bulk& bulk, const Sparse& b, const Ve
       options_(options),
       linear_(counts),
       path_(options.path_average && options.scheme.average_acceleration() && !method.constrains()),
+      filtered_(path_ && options.scheme.filtered()),
       impacts_(impact.acts() && !path_ && b.rows() > 0),
       yielding_(model) {
   still_force_ = options.held != nullptr ? *options.held : Vector(Vector::Zero(bulk.unknowns));
   model.add_constant_force(still_force_);
   for (const PrescribedMotion& motion : model.motions) gap_moves_ = gap_moves_ || (motion.opening.size() > 0 && !motion.opening.isZero(0));
+  if (!filtered_) options_.scheme.gain = 0;  // constraints: the trapezoidal rule, whose impacts have rules of their own
+  if (filtered_ && b.rows() > 0) joint_filter_ = std::make_unique<JointFilter>(model, behaviours, options.scheme);
   levels_.resize(static_cast<std::size_t>(options.halvings) + 1);
   // Two factors are kept: the one of the step, which needs the most room while it is made, comes first. One that is needed for the
   // acceleration of the beginning alone comes and goes before it (start).
@@ -40,6 +43,7 @@ Stepper::Stepper(const Model& model, const Bulk& bulk, const Sparse& b, const Ve
     mass_spread_ = std::make_unique<Spread>(accelerator().spread(b));
     row_area_.resize(b.rows());
     pressed_.setZero(b.rows());
+    impact_impulse_.setZero(b.rows());
     tangents_.reserve(static_cast<std::size_t>(b.rows()));
     Eigen::Index row = 0;
     for (const Interface& interface : model.interfaces)
@@ -62,10 +66,12 @@ const Accelerator& Stepper::accelerator() const {
 /// The displacement increment: by the linear step, or by the outer Newton around it.
 Outcome Stepper::solve(Level& level) {
   StepSolver* last = level.solver.get();
+  StepStart start{now_.displacement, now_.opening, now_.history};
+  if (joint_filter_ != nullptr) start.filter = &joint_filter_->begin(now_, filter_shrink(level));
   if (newton_ == nullptr) {
     last_ = &last->problem();
     solution_ = &last->solution();
-    return last->solve(right_, now_.displacement, now_.opening, now_.history, increment_);
+    return last->solve(right_, start, increment_);
   }
   const PlasticNewton::Make soften = [&](const Sparse& d, std::string& why) -> std::unique_ptr<StepSolver> {
     const Sparse matrix = matrix_of(level) + d;
@@ -75,8 +81,8 @@ Outcome Stepper::solve(Level& level) {
     if (!factor.ok()) return nullptr;
     return std::make_unique<Condensed>(model_, b_, gap_, gap_moves_, std::move(factor), frame_of(level), method_);
   };
-  Outcome outcome = newton_->solve({right_, now_.displacement, now_.opening, now_.history, plastic_now_, next_.time}, *last, soften,
-                                   increment_, plastic_next_);
+  Outcome outcome =
+      newton_->solve({right_, start, plastic_now_, next_.time, 1 / options_.scheme.stretch()}, *last, soften, increment_, plastic_next_);
   last = &newton_->last();
   last_ = &last->problem();
   solution_ = &last->solution();
@@ -104,14 +110,12 @@ void Stepper::forces_at(const State& state, Vector& result) const {  // f - C v 
 }
 
 void Stepper::acceleration(Vector& result) const {
-  if (!path_) {
+  if (!path_)
     result = now_.acceleration;
-    return;
-  }
-  balance_.resize(bulk_.unknowns);
-  forces_at(now_, balance_);
-  result.resize(bulk_.unknowns);
-  accelerator().solve(balance_, result);
+  else if (counts_.steps == 0)
+    result.setZero(bulk_.unknowns);
+  else
+    result = (now_.velocity - velocity_before_) / options_.step;
 }
 
 void Stepper::start(State state, const Ledger* before) {
@@ -133,6 +137,7 @@ void Stepper::start(State state, const Ledger* before) {
     forces_at(now_, work_);
     now_.acceleration.setZero(n);
     accelerator().solve(work_, now_.acceleration);
+    if (impacts_) hold_initial_acceleration();
     if (!impacts_) accelerator_.reset();  // its factor is large, and the scheme carries accelerations on
   }
   level(0);
@@ -140,6 +145,11 @@ void Stepper::start(State state, const Ledger* before) {
     give_back_free_memory();  // of the factorisation
     pair_ = SymmetricPair(bulk_.stiffness_matrix, bulk_.mass_matrix);
   }
+  if (path_) velocity_before_ = now_.velocity;
+  if (filtered_)
+    begin_filters();
+  else
+    now_.filter = {};
   next_ = now_;
   force_at(now_.time, force_now_);
   products(now_.displacement, now_.velocity, stiff_now_, momentum_now_);
@@ -152,8 +162,10 @@ void Stepper::start(State state, const Ledger* before) {
   energies_.stored = interface_energy_.stored;
   energies_.interface_dissipated = interface_energy_.dissipated + energies_.friction;
   impact_loss_ = energies_.impact;
+  if (!filtered_) energies_.algorithmic += std::exchange(energies_.filter, 0);  // another scheme forgets what the filters hold
   const double total = energies_.kinetic + energies_.strain + energies_.stored + energies_.interface_dissipated;
-  origin_ = total + energies_.plastic + energies_.damping + energies_.impact - energies_.external - energies_.residual;
+  origin_ = total + energies_.filter + energies_.plastic + energies_.damping + energies_.impact + energies_.algorithmic -
+            energies_.external - energies_.residual;
   initial_energy_ = before != nullptr ? before->initial_energy : total;
   largest_external_ = before != nullptr ? before->largest_external : 0;
 }
@@ -184,6 +196,18 @@ void Stepper::right_hand_side(const Level& level) {
   const double* ku = stiff_now_.data();
   double* right = right_.data();
   const Eigen::Index n = bulk_.unknowns;
+  if (filtered_) {
+    const double *mv = momentum_now_.data(), *filtered_stiff = filtered_stiff_.data(), *filtered_momentum = filtered_momentum_.data();
+    const double w = 1 / options_.scheme.stretch(), remembered = options_.scheme.gain * filter_shrink(level), inertia = level.mass_velocity;
+    small::with_size(n, [=](auto count) {
+#pragma omp simd
+      for (Eigen::Index i = 0; i < count; ++i)
+        right[i] =
+            w * (f0[i] + f1[i] - 2 * (ku[i] - remembered * filtered_stiff[i]) + inertia * (mv[i] - remembered * filtered_momentum[i]));
+    });
+    if (newton_ != nullptr) right_ -= w * plastic_now_.force;
+    return;
+  }
   if (path_) {
     const double* mv = momentum_now_.data();
     const double inertia = level.mass_velocity;  // 4/dt
@@ -227,6 +251,21 @@ bool Stepper::kinematics(const Level& level) {
   const double *u0 = now_.displacement.data(), *v0 = now_.velocity.data(), *a0 = now_.acceleration.data();
   double *u1 = next_.displacement.data(), *v1 = next_.velocity.data(), *a1 = next_.acceleration.data();
   double size = 0;
+  if (filtered_) {
+    const double *filtered = now_.filter.velocity.data(), remembered = s.gain * filter_shrink(level), rate = 1 / dt,
+                 inverse = 2 / s.stretch();
+    small::with_size(bulk_.unknowns, [=, &size](auto count) {
+      double sum = 0;
+#pragma omp simd reduction(+ : sum)
+      for (Eigen::Index i = 0; i < count; ++i) {
+        u1[i] = u0[i] + du[i];
+        v1[i] = v0[i] + inverse * (rate * du[i] - v0[i] + remembered * filtered[i]);
+        sum += du[i] * du[i];
+      }
+      size = sum;
+    });
+    return std::isfinite(size);
+  }
   if (path_) {
     const double rate = 0.5 * level.mass_velocity;  // 2/dt
     small::with_size(bulk_.unknowns, [=, &size](auto count) {
@@ -282,14 +321,15 @@ bool Stepper::try_step(Level& level) {
   if (newton_ != nullptr) next_.bulk_history = plastic_next_.history;
   products(next_.displacement, next_.velocity, stiff_next_, momentum_next_);
   if (path_) {
-    for (const Block& block : last_->blocks)  // end-of-step tractions are what is reported
+    const double to_mean = 1 / last_->scale;
+    for (const Block& block : last_->blocks)
       for (int c = 0; c < block.batch.components; ++c) {
         const int points = block.batch.points, first = block.first + c * points;
         const double *end = solution.newton.end.data() + first, *force = solution.force.data() + first, *area = block.area.data();
         double *at_end = next_.force.data() + first, *mean = next_.mean_force.data() + first;
         for_lanes(points, [=](const auto& at) {
           at.put(at_end, at(end) * at(area));
-          at.put(mean, 0.5 * at(force));
+          at.put(mean, to_mean * at(force));
         });
       }
   } else {
@@ -310,6 +350,10 @@ bool Stepper::substep(int halving) {
     force_now_.swap(force_next_);
     stiff_now_.swap(stiff_next_);
     momentum_now_.swap(momentum_next_);
+    if (filtered_) {
+      filtered_stiff_.swap(work_);
+      filtered_momentum_.swap(work2_);
+    }
     if (newton_ != nullptr) std::swap(plastic_now_, plastic_next_);
     counts_.deepest = std::max(counts_.deepest, halving);
     return true;
@@ -321,6 +365,7 @@ bool Stepper::substep(int halving) {
 }
 
 bool Stepper::advance() {
+  if (path_) small::copy(velocity_before_.size(), now_.velocity.data(), velocity_before_.data());
   if (!substep(0)) return false;
   now_.time = start_time_ + static_cast<double>(++counts_.steps) * options_.step;  // not summed: no round-off grows in a long run
   return true;

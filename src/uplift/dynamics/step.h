@@ -7,6 +7,7 @@
 #include "uplift/contact/impact.h"
 #include "uplift/dynamics/condensed.h"
 #include "uplift/dynamics/energy.h"
+#include "uplift/dynamics/joint_filter.h"
 #include "uplift/dynamics/plastic_newton.h"
 #include "uplift/dynamics/scheme.h"
 #include "uplift/math/symmetric_pair.h"
@@ -17,7 +18,7 @@ namespace uplift {
 struct StepOptions {
   Scheme scheme;
   double step = 0;           // s
-  bool path_average = true;  // only with the average acceleration rule and a method that does not constrain
+  bool path_average = true;  // only with the average acceleration rule (filtered or not) and a method that does not constrain
   int halvings = 8;
   bool monolithic = false;       // the oracle: Newton on all unknowns instead of the condensed step
   double oracle_tolerance = 0;   // > 0: every condensed step is also taken by the oracle; a larger relative difference fails it
@@ -58,12 +59,15 @@ class Stepper {
   const std::string& why() const { return why_; }
   /// The interface problem of the last try.
   const InterfaceProblem* problem() const { return last_; }
-  /// Acceleration from the balance at the end of the step, with end-of-step tractions [m/s2].
+  /// Acceleration [m/s2]: with the path average the mean over the step, (v1 - v0)/dt, which converges with the step where a stiff joint
+  /// makes the acceleration at its end alternate (zero before the first step); else that of the scheme at the end of the step.
   void acceleration(Vector& result) const;
   bool path_averaged() const { return path_; }
   /// Largest external work met [J], for the scale of the energy error.
   double largest_external() const { return largest_external_; }
   double initial_energy() const { return initial_energy_; }
+  /// Momentum that impacts of constraints transferred in the last step, per interface row [N s], compression < 0; empty without impacts.
+  const Vector& impact_impulse() const { return impact_impulse_; }
 
  private:
   struct Level;
@@ -78,11 +82,19 @@ class Stepper {
   /// ku = K u and mv = M v, in one pass where the bulk is large.
   void products(const Vector& u, const Vector& v, Vector& ku, Vector& mv) const;
   void right_hand_side(const Level& level);
+  double filter_shrink(const Level& level) const;
+  void begin_filters();
+  void advance_filters(const Level& level);
   bool kinematics(const Level& level);
   Sparse matrix_of(const Level& level) const;
   InterfaceProblem frame_of(const Level& level) const;
   Outcome solve(Level& level);
+  bool select_pressed(const std::vector<Block>& blocks, const Vector& forces);
+  Impact impact_data(const Vector& force) const;
+  double closing_loss() const;
   void apply_impact(Level& level);
+  void separate_impulse(const Impact& data);
+  void hold_initial_acceleration();
   void book_energies(const Level& level);
   void forces_at(const State& state, Vector& result) const;
 
@@ -98,7 +110,7 @@ class Stepper {
   const LinearSolver& solver_;
   StepOptions options_;
   LinearCounts& linear_;
-  bool path_ = false, impacts_ = false, gap_moves_ = false;
+  bool path_ = false, filtered_ = false, impacts_ = false, gap_moves_ = false;
   SymmetricPair pair_;                                // K and M of large bulks
   mutable std::unique_ptr<Accelerator> accelerator_;  // null while it is not needed
   mutable std::string mass_failure_;                  // why no step can be taken: no factor of M where one is needed
@@ -110,12 +122,17 @@ class Stepper {
   PlasticBulk yielding_;
   std::unique_ptr<PlasticNewton> newton_;  // null without yielding solids
   PlasticState plastic_now_, plastic_next_;
+  std::unique_ptr<JointFilter> joint_filter_;  // null without filters or interfaces
+  Vector filtered_stiff_, filtered_momentum_;  // K d_u, M d_v of now_
+  Vector velocity_before_;                     // at the beginning of the nominal step; path average
   State now_, next_;
   Vector force_now_, force_next_, stiff_now_, stiff_next_, momentum_now_, momentum_next_;  // f, K u, M v
   mutable Vector product_, balance_;                                                       // work space of forces_at and acceleration
   Vector right_, increment_, work_, work2_, damped_, contact_, impulse_;
   ImpactScratch impact_scratch_;
-  Vector pressed_;  // rows: area of the normal ones that are pressed, else 0 [m2]
+  Vector impact_impulse_;     // rows: momentum that impacts transferred in the step [N s]
+  double closed_gap_ = 1e-9;  // m: what closes from a smaller gap is no impact
+  Vector pressed_;            // rows: area of the normal ones that are pressed, else 0 [m2]
   std::vector<int> tangents_;
   Energies energies_;
   InterfaceEnergy interface_energy_;

@@ -2,24 +2,24 @@
 #include <cmath>
 #include <utility>
 
+#include "uplift/contact/impact_projection.h"
 #include "uplift/dynamics/step_level.h"
 #include "uplift/math/small.h"
 
 namespace uplift {
 
-/// Velocity, acceleration and contact force of a step are corrected by the rule of impact, for the points that are pressed at its end:
-/// those of constraints, or of stiff laws where there is no constraint.
-void Stepper::apply_impact(Level& level) {
-  const InterfaceProblem& problem = *last_;
-  const double nothing = 1e-12 * contact_.cwiseAbs().maxCoeff();
-  const bool constrained = std::ranges::any_of(problem.blocks, [](const Block& block) { return block.cone != nullptr; });
+/// The rows that take part in an impact: normal rows of constraints that are pressed (or, where there is no constraint, those of stiff
+/// laws), and the tangential rows of points that stick. False when nothing is pressed.
+bool Stepper::select_pressed(const std::vector<Block>& blocks, const Vector& forces) {
+  const double nothing = 1e-12 * forces.cwiseAbs().maxCoeff();
+  const bool constrained = std::ranges::any_of(blocks, [](const Block& block) { return block.cone != nullptr; });
   bool any_pressed = false;
-  pressed_.setZero();
+  pressed_.setZero(forces.size());
   tangents_.clear();
-  for (const Block& block : problem.blocks) {
+  for (const Block& block : blocks) {
     if (constrained && block.cone == nullptr) continue;  // a law beside constraints gives way
     const int n = block.batch.points, normal = block.first + block.batch.normal();
-    const double *force = contact_.data() + normal, *area = row_area_.data() + normal;
+    const double *force = forces.data() + normal, *area = row_area_.data() + normal;
     double* weight = pressed_.data() + normal;
     LaneMask some(false);
     for_lanes(n, [&](const auto& at) {
@@ -33,25 +33,51 @@ void Stepper::apply_impact(Level& level) {
     for (int i = 0; i < n; ++i) {
       if (!(weight[i] > 0)) continue;
       double tangential = 0;  // the norm of both directions: a point that slides along a slanted line does not stick in either
-      for (int c = 0; c < block.batch.components - 1; ++c) tangential = std::hypot(tangential, contact_[block.first + c * n + i]);
+      for (int c = 0; c < block.batch.components - 1; ++c) tangential = std::hypot(tangential, forces[block.first + c * n + i]);
       if (!(tangential < friction * -force[i] * (1 - 1e-9))) continue;
       for (int c = 0; c < block.batch.components - 1; ++c) tangents_.push_back(block.first + c * n + i);
     }
   }
-  if (!any_pressed) return;
-  const double weight = (1 - options_.scheme.alpha_f) / (1 - options_.scheme.alpha_m);
+  return any_pressed;
+}
+
+/// What does not change from step to step; the caller swaps the sticking rows in and out.
+Impact Stepper::impact_data(const Vector& force) const {
   Impact data;
   data.mass = mass_spread_.get();
-  data.dynamic = level.dynamic.get();
   data.b = bulk_.small ? &dense_b_ : nullptr;
   data.sparse_b = &b_;
   data.pressed = &pressed_;
+  data.force = &force;
+  data.area = &row_area_;
+  return data;
+}
+
+/// Work that the constraints take from the motion where a gap closes in the step, 1/2 p_1 g_0: with the trapezoidal rule this part of the
+/// loss of an impact stands beside the projection of the velocity, and their sum does not depend on the step (docs/theory, section 5).
+double Stepper::closing_loss() const {
+  double loss = 0;
+  for (const Block& block : last_->blocks) {
+    if (block.cone == nullptr) continue;
+    const int normal = block.first + block.batch.normal();
+    for (int i = normal; i < normal + block.batch.points; ++i)
+      if (now_.opening[i] > 0 && contact_[i] < 0) loss -= 0.5 * contact_[i] * now_.opening[i];
+  }
+  return loss;
+}
+
+/// Velocity, acceleration and contact force of a step are corrected by the rule of impact, for the points that are pressed at its end.
+void Stepper::apply_impact(Level& level) {
+  impact_impulse_.setZero();
+  if (!select_pressed(last_->blocks, contact_)) return;
+  impact_loss_ += closing_loss();
+  const double weight = (1 - options_.scheme.alpha_f) / (1 - options_.scheme.alpha_m);
+  Impact data = impact_data(contact_);
+  data.dynamic = level.dynamic.get();
   std::swap(data.tangents, tangents_);
-  data.force = &contact_;
   data.step = level.step;
   data.velocity_weight = options_.scheme.gamma * level.step * weight;
   data.acceleration_weight = weight;
-  data.area = &row_area_;
   const double before = 0.5 * small::dot(next_.velocity.size(), next_.velocity.data(), momentum_next_.data());
   impulse_.setZero();
   impact_.apply(data, next_.velocity, next_.acceleration, impulse_, impact_scratch_);
@@ -60,6 +86,36 @@ void Stepper::apply_impact(Level& level) {
   impact_loss_ += before - 0.5 * small::dot(next_.velocity.size(), next_.velocity.data(), momentum_next_.data());
   if (impact_.force_includes_impulse())
     for (Eigen::Index i = 0; i < contact_.size(); ++i) contact_[i] += impulse_[i] / level.step;
+  if (impact_.holds_acceleration()) separate_impulse(data);
+}
+
+/// In a step in which a gap closes, the contact force contains the momentum that the impact transfers, over the step: it grows as 1/dt. The
+/// force that balances the accelerations after the impact is reported instead, and the rest as an impulse [N s].
+void Stepper::separate_impulse(const Impact& data) {
+  bool closes = false;
+  for (Eigen::Index i = 0; i < pressed_.size() && !closes; ++i) closes = pressed_[i] > 0 && now_.opening[i] > closed_gap_;
+  if (!closes) return;
+  const ImpactScratch& scratch = impact_scratch_;
+  for (Eigen::Index i = scratch.first; i < scratch.first + scratch.count; ++i) {
+    const double smooth = scratch.impulse[i] / data.acceleration_weight;
+    impact_impulse_[i] = scratch.total[i] - data.velocity_weight * smooth;
+    contact_[i] = smooth;
+  }
+}
+
+/// The acceleration at the beginning with the contact forces that belong to it: those of the stage before hold another load. Closed points
+/// stay closed or open (inequality), sticking ones stick.
+void Stepper::hold_initial_acceleration() {
+  const std::vector<Block> blocks = blocks_of(model_, behaviours_).blocks;
+  if (mass_spread_ == nullptr || !select_pressed(blocks, now_.force)) return;
+  Impact data = impact_data(now_.force);
+  std::swap(data.tangents, tangents_);
+  if (!select_rows(data, Hold::inequality, impact_scratch_)) return;
+  project_rate(data, now_.acceleration, 1, Select::all, impact_scratch_);
+  correct(data, 1, now_.acceleration, impact_scratch_);
+  for (Eigen::Index i = impact_scratch_.first; i < impact_scratch_.first + impact_scratch_.count; ++i)
+    now_.force[i] = now_.mean_force[i] = impact_scratch_.impulse[i];
+  std::swap(data.tangents, tangents_);
 }
 
 }  // namespace uplift

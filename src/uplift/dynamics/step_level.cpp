@@ -12,7 +12,8 @@ Stepper::Level& Stepper::make_level(int halving) {
   slot = std::make_unique<Level>();
   Level& made = *slot;
   const Scheme& s = options_.scheme;
-  const double dt = made.step = options_.step / std::pow(2.0, halving), w = 1 - s.alpha_f;
+  made.step = options_.step / std::pow(2.0, halving);
+  const double dt = made.step * s.stretch(), w = 1 - s.alpha_f;
   made.damping = s.gamma / (s.beta * dt);
   made.mass = (1 - s.alpha_m) / (w * s.beta * dt * dt);
   made.mass_velocity = (1 - s.alpha_m) / (w * s.beta * dt);
@@ -49,13 +50,19 @@ Stepper::Level& Stepper::make_level(int halving) {
 }
 
 Sparse Stepper::matrix_of(const Level& level) const {
-  return bulk_.stiffness_matrix + level.damping * bulk_.damping_matrix + level.mass * bulk_.mass_matrix;
+  const Sparse linear = bulk_.stiffness_matrix + level.damping * bulk_.damping_matrix + level.mass * bulk_.mass_matrix;
+  if (!filtered_ || bulk_.geometric == nullptr) return linear;
+  return linear - (1 - 1 / options_.scheme.stretch()) * *bulk_.geometric;  // the geometric stiffness is not filtered
 }
 
 InterfaceProblem Stepper::frame_of(const Level& level) const {
   InterfaceProblem frame = blocks_of(model_, behaviours_);
   frame.average = path_;
-  frame.scale = path_ ? 2 : 1;
+  frame.scale = path_ ? 2 / options_.scheme.stretch() : 1;
+  if (filtered_) {
+    frame.filter.gain = options_.scheme.gain;
+    frame.filter.coefficient = frame.filter.lag = Vector::Zero(b_.rows());
+  }
   frame.step = level.step;
   return frame;
 }

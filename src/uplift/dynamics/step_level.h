@@ -9,7 +9,8 @@ namespace uplift {
 /// Everything that depends on the size of the step. The right-hand side of the displacement increment is
 ///   R = f1 + f0 af/w - K u0/w - B^T p0 af/w + M (mass_velocity v0 + mass_acceleration a0) - C (damping_velocity v0 + damping_acceleration
 ///   a0)
-/// with w = 1 - af, and for the path average, in the midpoint form,   R = f0 + f1 - 2 K u0 + (4/dt) M v0.
+/// with w = 1 - af, and for the path average, in the midpoint form with the filters of the scheme (b: gain, h_e = (1 + 2 b) dt),
+///   R = (f0 + f1 - 2 K (u0 - b d_u) + (4/h_e) M (v0 - b d_v))/(1 + 2 b)
 struct Stepper::Level {
   double step = 0;
   double mass = 0, damping = 0;  // K_eff = K + damping C + mass M

@@ -128,7 +128,7 @@ void InterfaceFrames::add_point(const Surface& surface, const State& state, int 
   for (int c = 0; c < components; ++c) {
     const int row = surface.first_row + c * interface.batch.points + point;
     const Vec3 axis = direction(interface, point, c);
-    const double stress = state.force[row] / interface.area[point];
+    const double stress = state.mean_force[row] / interface.area[point];
     traction += stress * axis;
     if (c == components - 1) {
       opening = state.opening[row];

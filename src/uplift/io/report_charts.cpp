@@ -106,6 +106,7 @@ Chart ledger_chart(const ReportRun& run) {
        {Term{Column::external, "external work"}, Term{Column::kinetic, "kinetic"}, Term{Column::strain, "strain"},
         Term{Column::stored, "stored in the interface"}, Term{Column::interface_dissipated, "dissipated by the interface"},
         Term{Column::plastic, "dissipated by yielding solids"}, Term{Column::damping, "damping"}, Term{Column::impact, "impacts"},
+        Term{Column::algorithmic, "dissipated by the time scheme"}, Term{Column::filter, "stored in the filters of the scheme"},
         Term{Column::residual, "residual"}}) {
     add_history(chart, run, term.kind, 0, 1);
     if (!chart.curves.empty() && chart.curves.back().label == run.result->label) {

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <utility>
 
+#include "uplift/laws/filter.h"
 #include "uplift/laws/tangential.h"
 
 namespace uplift {
@@ -25,9 +26,11 @@ class JointLaw final : public InterfaceLaw {
   }
 
   void mean(const Batch& batch, const double* from, const double* to, const double* old, const Reply& reply) const override {
-    if (batch.components == 1) return normal_->mean(batch, from, to, old, reply);
     const int normal = batch.normal();
-    normal_->mean(one_component(batch), from + normal, to + normal, old, normal_reply(batch, reply));
+    const Reply part = batch.components == 1 ? reply : normal_reply(batch, reply);
+    normal_->mean(one_component(batch), from + normal, to + normal, old, part);
+    if (batch.coefficient != nullptr) filter(batch, from + normal, to + normal, part);
+    if (batch.components == 1) return;
     tangential_->mean(call(batch, from, to, old, reply));
     if (reply.next != nullptr) std::copy_n(reply.slope, others(batch), reply.next);
   }
@@ -48,6 +51,20 @@ class JointLaw final : public InterfaceLaw {
  private:
   static Batch one_component(const Batch& batch) { return {batch.points, 1, batch.step}; }
 
+  /// The normal part of the joint filter, on the reply of the normal law.
+  void filter(const Batch& batch, const double* from, const double* to, const Reply& part) const {
+    const double *coefficient = batch.coefficient + batch.normal(), *lag = batch.lag + batch.normal();
+    const bool tension = normal_->carries_tension();
+    for (int i = 0; i < batch.points; ++i) {
+      const double plain = part.traction[i], slope = part.slope != nullptr ? part.slope[i] : 0;
+      const Filtered<double> made =
+          filter_normal(plain, slope, part.end[i], 2 * part.next[i], to[i] - from[i], coefficient[i], lag[i], tension);
+      part.plain[i] = plain;
+      part.traction[i] = made.value;
+      if (part.slope != nullptr) part.slope[i] = made.slope;
+    }
+  }
+
   /// The normal part of the reply; the rest of the slope becomes zero.
   static Reply normal_reply(const Batch& batch, const Reply& reply) {
     Reply part = reply;
@@ -58,6 +75,7 @@ class JointLaw final : public InterfaceLaw {
       part.slope += others(batch);
     }
     if (reply.next != nullptr) part.next += others(batch);
+    if (reply.plain != nullptr) part.plain += batch.normal();
     return part;
   }
 

@@ -13,8 +13,11 @@ namespace uplift {
 /// The batch that one call handles.
 struct Batch {
   int points = 0;
-  int components = 2;                                       // 1: normal only, 2: (t, n), 3: (t1, t2, n)
-  double step = 0;                                          // s; 0 in statics (rates are zero then)
+  int components = 2;  // 1: normal only, 2: (t, n), 3: (t1, t2, n)
+  double step = 0;     // s; 0 in statics (rates are zero then)
+  // Joint filter of the scheme of filtered energy decay (laws/filter.h); null: none. All components, for `mean` only.
+  const double* coefficient = nullptr;  // c of every row [Pa/m]; negative on a normal row: the point is open at the start of the step
+  const double* lag = nullptr;          // d_f of every row [m]
   int normal() const { return (components - 1) * points; }  // offset of the normal component
 };
 
@@ -26,6 +29,7 @@ struct Reply {
   double* now = nullptr;       // memory at the end of the step
   double* end = nullptr;       // `mean` only: traction at the end of the step [Pa]
   double* next = nullptr;      // `mean` only: the slope that a short step onwards will have, for first guesses; in the layout of `slope`
+  double* plain = nullptr;     // with a joint filter: the path average of the law alone, without the filter [Pa]; `end`, `next` are needed
 };
 
 struct Sweep;

@@ -308,6 +308,7 @@ class SdmLaw final : public NormalLaw {
   explicit SdmLaw(const Sdm& law) : law_(law) {}
   int num_history() const override { return 1; }
   double stiffness() const override { return law_.k; }
+  bool carries_tension() const override { return law_.strength > 0; }
 
   void respond(const Batch& batch, const double* from, const double* to, const double* old, const Reply& reply) const override {
     for (int first = 0; first < batch.points; first += block) {
@@ -333,7 +334,7 @@ class SdmLaw final : public NormalLaw {
     }
   }
 
-  bool sweep(const Sweep& sweep) const override { return sweep_points(SweptSdm{law_}, sweep); }
+  bool sweep(const Sweep& sweep) const override { return sweep_points(SweptSdm{law_}, sweep, law_.strength > 0); }
 
   void energy(const Batch& batch, const double* opening, const double* history, double* stored, double* dissipated) const override {
     const Sdm law = law_;

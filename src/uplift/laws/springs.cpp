@@ -49,6 +49,7 @@ class Springs final : public NormalLaw {
   Springs(double stiffness, double damping) : stiffness_(stiffness), damping_(damping) {}
   int num_history() const override { return damping_ > 0 ? 1 : 0; }
   double stiffness() const override { return stiffness_; }
+  bool carries_tension() const override { return false; }
 
   void respond(const Batch& batch, const double* from, const double* to, const double* old, const Reply& reply) const override {
     if (damping_ > 0) return viscous(batch, from, to, old, reply, false);
@@ -72,7 +73,7 @@ class Springs final : public NormalLaw {
   }
 
   bool sweep(const Sweep& sweep) const override {
-    return damping_ == 0 && sweep_points(SweptSprings{stiffness_}, sweep);
+    return damping_ == 0 && sweep_points(SweptSprings{stiffness_}, sweep, false);
   }
 
   void energy(const Batch& batch, const double* opening, const double* history, double* stored, double* dissipated) const override {

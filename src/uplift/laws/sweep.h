@@ -18,11 +18,13 @@ struct Sweep {
   std::ptrdiff_t stride = 0;                     // between the columns of C
   const double *free = nullptr, *from = nullptr, *old = nullptr, *area = nullptr;
   double scale = 1;
+  const double *coefficient = nullptr, *lag = nullptr;  // joint filter (laws/filter.h); null: none
   // made
   double *opening = nullptr, *force = nullptr, *slope = nullptr, *now = nullptr;
   double *end = nullptr, *next = nullptr;        // as in Reply [Pa], [Pa/m]
   double *pull = nullptr, *stiffness = nullptr;  // C^T force [sqrt(J)] (R); C^T slope C (R x R)
   double* end_pull = nullptr;                    // C^T (scale area end) [sqrt(J)] (R)
+  double* plain = nullptr;                       // with a joint filter: path average of the law alone [Pa]
   double* stored = nullptr;                      // energy of the law at the end [J]
 };
 

@@ -1,4 +1,5 @@
 #pragma once
+#include "uplift/laws/filter.h"
 #include "uplift/laws/sweep.h"
 #include "uplift/math/lanes.h"
 
@@ -9,8 +10,9 @@ namespace uplift {
 /// `average(from, to, old)` those of any path; both with the members value, slope (path average and its derivative with respect to `to`),
 /// end and end_slope (traction and slope at `to`). `twice_stored(to, old, end)`: twice the energy at the end [J/m2]. `remembers`: there is
 /// one memory value, and `changes(from, to, old)` is true where it may not stay. False where that is so: what was made is of no use then.
-template <int R, class Law>
-[[gnu::always_inline]] inline bool sweep_points(const Law law, const Sweep sweep) {
+/// `filters`: with the joint filter; `tension`: the law carries tension.
+template <int R, bool filters, class Law>
+[[gnu::always_inline]] inline bool sweep_points(const Law law, const Sweep sweep, bool tension) {
   Lanes pull[R] = {}, end_pull[R] = {}, gram[R][R] = {}, stored = 0;
   LaneMask changed(false);
   for_lanes(
@@ -29,6 +31,12 @@ template <int R, class Law>
         }
         auto path = law.straight(from, to, old);
         if (any(law.bends(from, to, old))) path = law.average(from, to, old);
+        if constexpr (filters) {
+          at.put(sweep.plain, path.value);
+          const Filtered<Lanes> made = filter_normal(path.value, path.slope, path.end, path.end_slope, Lanes(to - from),
+                                                     Lanes(at(sweep.coefficient)), Lanes(at(sweep.lag)), tension);
+          path.value = made.value, path.slope = made.slope;
+        }
         const Lanes area = at(sweep.area), weight = sweep.scale * area;
         const Lanes force = weight * path.value, slope = weight * path.slope, end = weight * path.end;
         stored += area * law.twice_stored(to, old, path.end);
@@ -53,18 +61,23 @@ template <int R, class Law>
   return !any(changed);
 }
 
-template <class Law>
-bool sweep_points(const Law& law, const Sweep& sweep) {
+template <bool filters, class Law>
+bool sweep_columns(const Law& law, const Sweep& sweep, bool tension) {
   switch (sweep.columns) {
     case 1:
-      return sweep_points<1>(law, sweep);
+      return sweep_points<1, filters>(law, sweep, tension);
     case 2:
-      return sweep_points<2>(law, sweep);
+      return sweep_points<2, filters>(law, sweep, tension);
     case 3:
-      return sweep_points<3>(law, sweep);
+      return sweep_points<3, filters>(law, sweep, tension);
     default:
       return false;
   }
+}
+
+template <class Law>
+bool sweep_points(const Law& law, const Sweep& sweep, bool tension) {
+  return sweep.coefficient != nullptr ? sweep_columns<true>(law, sweep, tension) : sweep_columns<false>(law, sweep, tension);
 }
 
 }  // namespace uplift

@@ -40,6 +40,43 @@ struct Answer {
   Plane by_x, by_y, by_normal;
 };
 
+/// A bound of the shear [Pa] and its derivative with respect to the normal opening [Pa/m].
+struct Bound {
+  double value = HUGE_VAL, slope = 0;
+};
+
+/// Adds theta y, y = c (way - lag), the joint filter of the scheme (laws/filter.h), with the largest theta <= 1 that keeps the traction on
+/// or within the bound.
+void add_filter(const TangentialCall& call, int i, const Bound& bound, Answer& answer) {
+  const Batch& batch = call.batch;
+  if (batch.coefficient == nullptr) return;
+  const int n = batch.points, tangents = batch.components - 1;
+  put(answer.traction, tangents, n, i, call.reply.plain);
+  const double c = batch.coefficient[i];
+  if (!(c > 0)) return;
+  const Plane way = plane(call.to, tangents, n, i) - plane(call.from, tangents, n, i), y = c * (way - plane(batch.lag, tangents, n, i));
+  const Plane plain = answer.traction, whole = plain + y;
+  if (size(whole) <= bound.value) {
+    answer.traction = whole;
+    answer.by_x.x += c;
+    answer.by_y.y += c;
+    return;
+  }
+  // |plain + theta y| = bound, where plain itself is within it: the larger root
+  const double a = dot(y, y), b = dot(plain, y), outside = std::min(dot(plain, plain) - bound.value * bound.value, 0.0);
+  const double root = std::sqrt(std::max(b * b - a * outside, 0.0));
+  const double theta = std::clamp(b > 0 ? -outside / (b + root) : (root - b) / a, 0.0, 1.0);
+  answer.traction = plain + theta * y;
+  const double rate = dot(answer.traction, y);
+  if (!(rate > 1e-14 * bound.value * size(y))) return;
+  const auto change = [&](const Plane& direct, double bound_moved) {  // d traction = direct + y d theta stays on the bound
+    return direct + (bound.value * bound_moved - dot(answer.traction, direct)) / rate * y;
+  };
+  answer.by_x = change(answer.by_x + Plane{theta * c, 0}, 0);
+  answer.by_y = change(answer.by_y + Plane{0, theta * c}, 0);
+  answer.by_normal = change(answer.by_normal, bound.slope);
+}
+
 void put(const Answer& answer, const TangentialCall& call, int i) {
   const int n = call.batch.points, components = call.batch.components, tangents = components - 1;
   put(answer.traction, tangents, n, i, call.reply.traction);
@@ -62,6 +99,7 @@ class NoShear final : public TangentialPart {
   void mean(const TangentialCall& call) const override {
     respond(call);
     if (call.reply.end != nullptr) std::fill_n(call.reply.end, call.batch.normal(), 0.0);
+    if (call.reply.plain != nullptr) std::fill_n(call.reply.plain, call.batch.normal(), 0.0);
   }
   void add_energy(const Batch&, const NormalLaw&, const double*, const double*, const double*, double*, double*) const override {}
 };
@@ -82,6 +120,14 @@ class Bonded final : public TangentialPart {
     put_slope(call, 0.5 * stiffness_);
     if (call.reply.end != nullptr)
       for (int i = 0; i < call.batch.normal(); ++i) call.reply.end[i] = stiffness_ * call.to[i];
+    if (call.batch.coefficient == nullptr) return;
+    const int n = call.batch.points, tangents = call.batch.components - 1;
+    for (int i = 0; i < n; ++i) {
+      const double half = 0.5 * stiffness_;
+      Answer answer{plane(call.reply.traction, tangents, n, i), {half, 0}, {0, half}, {}};
+      add_filter(call, i, {}, answer);
+      put(answer, call, i);
+    }
   }
 
   void add_energy(const Batch& batch, const NormalLaw&, const double* opening, const double*, const double*, double* stored,
@@ -131,8 +177,8 @@ class WithSlip : public TangentialPart {
   };
   /// Share of K e that is transferred at normal opening d.
   virtual double transfer(const NormalLaw& normal, double d, Memory normal_history) const = 0;
-  virtual State one(const TangentialCall& call, int i, const Plane& from, const Plane& to, const Plane& slip, bool average,
-                    Answer& answer) const = 0;
+  virtual State one(const TangentialCall& call, int i, const Plane& from, const Plane& to, const Plane& slip, bool average, Answer& answer,
+                    Bound& bound) const = 0;
 
   double stiffness_;  // Pa/m
 
@@ -141,8 +187,10 @@ class WithSlip : public TangentialPart {
     const int n = call.batch.points, tangents = call.batch.components - 1;
     for (int i = 0; i < n; ++i) {
       Answer answer;
-      const State state =
-          one(call, i, plane(call.from, tangents, n, i), plane(call.to, tangents, n, i), plane(call.old, tangents, n, i), average, answer);
+      Bound bound;
+      const State state = one(call, i, plane(call.from, tangents, n, i), plane(call.to, tangents, n, i), plane(call.old, tangents, n, i),
+                              average, answer, bound);
+      if (average) add_filter(call, i, bound, answer);
       put(answer, call, i);
       if (average && call.reply.end != nullptr) put(state.end, tangents, n, i, call.reply.end);
       if (call.now == nullptr) continue;
@@ -164,8 +212,8 @@ class OpenFree final : public WithSlip {
     return 1 - normal.surface(0, d, d, normal_history).openness.end;
   }
 
-  State one(const TangentialCall& call, int i, const Plane& from, const Plane& to, const Plane& slip, bool average,
-            Answer& answer) const override {
+  State one(const TangentialCall& call, int i, const Plane& from, const Plane& to, const Plane& slip, bool average, Answer& answer,
+            Bound&) const override {
     const int normal = call.batch.normal();
     const Along o =
         call.normal.surface(call.batch.step, call.from[normal + i], call.to[normal + i], {call.normal_old + i, call.batch.points}).openness;
@@ -212,8 +260,8 @@ class CoulombShear final : public WithSlip {
  protected:
   double transfer(const NormalLaw&, double, Memory) const override { return 1; }
 
-  State one(const TangentialCall& call, int i, const Plane& from, const Plane& to, const Plane& slip, bool average,
-            Answer& answer) const override {
+  State one(const TangentialCall& call, int i, const Plane& from, const Plane& to, const Plane& slip, bool average, Answer& answer,
+            Bound& bound) const override {
     const int normal = call.batch.normal(), last = call.batch.components * call.batch.components - 1;
     Surface surface;
     if (cohesion_ > 0 || average)
@@ -221,7 +269,7 @@ class CoulombShear final : public WithSlip {
     const double pull = call.reply.traction[normal + i];
     const double bond = average ? surface.damage.mean : surface.damage.end;
     const double bond_slope = average ? surface.damage.mean_slope : surface.damage.end_slope;
-    Bound bound{cohesion_ * (1 - bond) - friction_ * std::min(pull, 0.0), 0};
+    bound = {cohesion_ * (1 - bond) - friction_ * std::min(pull, 0.0), 0};
     if (call.reply.slope != nullptr)
       bound.slope = -cohesion_ * bond_slope - (pull < 0 ? friction_ * call.reply.slope[last * call.batch.points + i] : 0);
 
@@ -234,10 +282,6 @@ class CoulombShear final : public WithSlip {
   }
 
  private:
-  struct Bound {
-    double value, slope;  // Pa, d/d normal opening [Pa/m]
-  };
-
   /// n (n . v) taken off v, times factor
   static Plane across(double factor, const Plane& n, const Plane& v) { return factor * (v - dot(n, v) * n); }
 

@@ -12,6 +12,7 @@
 //               traction stays continuous (e shrinks by (1 - o_old)/(1 - o_new), which dissipates too); fully open, s follows d. No cycle
 //               creates energy.
 //   coulomb     |t| <= bound = cohesion (1 - damage) - friction min(t_n, 0), t = K e, slip along t.
+// The joint filter of the scheme (laws/filter.h) is added to the path average of every part, for coulomb up to the bound.
 // Source: THEORY section 3; the energy argument is that of each update's docstring.
 namespace uplift {
 

@@ -135,15 +135,31 @@ Sparse assembled(const Model& model, Matrix* Local::*wanted);
 /// motion; for initial conditions. Throws InputError when supports, rigid bodies or inextensible beams make the wanted values impossible.
 Vector free_values(const Model& model, const std::vector<std::pair<int, double>>& wanted, const Where& where);
 
+/// What the scheme of filtered energy decay remembers (dynamics/joint_filter.h); empty with other schemes.
+struct FilterMemory {
+  double step = 0;                // s that the filtered increments belong to; 0: nothing is remembered
+  Vector displacement, velocity;  // filtered increments of the free unknowns
+  Vector opening;                 // interface rows: filtered increments [m]
+  Vector coefficient;             // and their coefficients [Pa/m]
+  Vector tangent;                 // interface rows: slope of the law at the present opening [Pa/m]
+
+  void swap(FilterMemory& other) noexcept {
+    std::swap(step, other.step);
+    displacement.swap(other.displacement), velocity.swap(other.velocity), opening.swap(other.opening);
+    coefficient.swap(other.coefficient), tangent.swap(other.tangent);
+  }
+};
+
 /// Everything that changes: a value. Copy to go back, move to accept.
 struct State {
   double time = 0;                              // s
   Vector displacement, velocity, acceleration;  // free unknowns; m, m/s, m/s2
   Vector opening;                               // interface rows, all interfaces one after another [m], initial gap included
   Vector force;                                 // interface rows, end of step [N], tension > 0
-  Vector mean_force;                            // the same, mean over the last step
+  Vector mean_force;                            // the same, mean over the last step: what did the work of the step, and what is reported
   Vector history;                               // memory of all laws, one flat array
   std::vector<double> bulk_history;             // memory of all yielding solids, one flat array; empty without any
+  FilterMemory filter;
 
   /// Exchanges the numbers without copying them.
   void swap(State& other) noexcept {
@@ -151,6 +167,7 @@ struct State {
     displacement.swap(other.displacement), velocity.swap(other.velocity), acceleration.swap(other.acceleration);
     opening.swap(other.opening), force.swap(other.force), mean_force.swap(other.mean_force);
     history.swap(other.history), bulk_history.swap(other.bulk_history);
+    filter.swap(other.filter);
   }
 };
 

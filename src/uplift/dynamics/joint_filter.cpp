@@ -1,0 +1,99 @@
+#include "uplift/dynamics/joint_filter.h"
+
+#include "uplift/math/lanes.h"
+
+namespace uplift {
+
+JointFilter::JointFilter(const Model& model, const Behaviours& behaviours, const Scheme& scheme)
+    : blocks_(blocks_of(model, behaviours)), pole_(scheme.pole), gain_(scheme.gain) {
+  Eigen::Index rows = 0;
+  for (const Block& block : blocks_.blocks) {
+    Part part{.first = block.first, .points = block.batch.points, .components = block.batch.components, .area = block.area};
+    if (block.law != nullptr) block.law->closed_stiffness(part.components, part.stiffness);
+    rows += block.rows();
+    parts_.push_back(std::move(part));
+  }
+  input_.gain = gain_;
+  input_.coefficient.setZero(rows);
+  input_.lag.setZero(rows);
+}
+
+void JointFilter::look(const State& now, Vector& tangent) const {
+  tangent.setZero(now.opening.size());
+  for (const Block& block : blocks_.blocks) {
+    if (block.law == nullptr) continue;
+    const int n = block.batch.points, components = block.batch.components;
+    Vector traction(block.rows()), end(block.rows()), slope(block.rows() * components), next(block.rows() * components),
+        memory(block.law->num_history(components) * n);
+    const double* at = now.opening.data() + block.first;
+    next.setZero();
+    block.law->mean(block.batch, at, at, now.history.data() + block.first_history,
+                    {.traction = traction.data(), .slope = slope.data(), .now = memory.data(), .end = end.data(), .next = next.data()});
+    for (int c = 0; c < components; ++c) tangent.segment(block.first + c * n, n) = 2 * next.segment((c * components + c) * n, n);
+  }
+}
+
+const JointFilterInput& JointFilter::begin(const State& now, double shrink) {
+  const FilterMemory& memory = now.filter;
+  for (const Part& part : parts_) {
+    const int normal = part.first + (part.components - 1) * part.points;
+    const double* contact = memory.tangent.data() + normal;
+    for (int c = part.components - 1; c >= 0; --c) {
+      const int first = part.first + c * part.points;
+      const bool is_normal = first == normal;
+      const double *tangent = memory.tangent.data() + first, *filtered = memory.opening.data() + first,
+                   *before = memory.coefficient.data() + first;
+      double *coefficient = input_.coefficient.data() + first, *lag = input_.lag.data() + first;
+      const double gain = gain_, closed = 0.5 * part.stiffness[part.components - 1], stuck = 0.5 * part.stiffness[c];
+      for_lanes(part.points, [&](const auto& at) {
+        const Lanes zero = 0, slope = at(tangent);
+        const LaneMask touches = at(contact) >= closed;
+        const Lanes here = is_normal ? choose(touches, gain * slope, Lanes(-1))
+                                     : choose(touches || (slope >= stuck && slope > zero), Lanes(2 * gain * stuck), zero);
+        const LaneMask acts = here > zero;
+        const Lanes ratio = smaller(Lanes(1), at(before) / choose(acts, here, Lanes(1)));
+        at.put(coefficient, here);
+        at.put(lag, choose(acts, shrink * at(filtered) * std::experimental::sqrt(ratio), zero));
+      });
+    }
+  }
+  return input_;
+}
+
+void JointFilter::end(const InterfaceProblem& problem, const InterfaceSolution& solution, const State& now, State& next) {
+  const double loss = 0.5 * (1 + pole_), store = 0.5 / (1 - pole_), pole = pole_, keep = 1 - pole_;
+  Lanes dissipated = 0, storage = 0;
+  for (std::size_t b = 0; b < parts_.size(); ++b) {
+    const Part& part = parts_[b];
+    const double* area = part.area.data();
+    for (int c = 0; c < part.components; ++c) {
+      const int n = part.points, first = part.first + c * n;
+      const double *coefficient = input_.coefficient.data() + first, *lag = input_.lag.data() + first,
+                   *plain = solution.plain.data() + first, *force = solution.force.data() + first, *to = solution.opening.data() + first,
+                   *from = now.opening.data() + first, *before = now.filter.coefficient.data() + first,
+                   *filtered = now.filter.opening.data() + first,
+                   *slope = solution.newton.next.data() + solution.newton.first_slope[b] + (c * part.components + c) * n;
+      double *coefficient_next = next.filter.coefficient.data() + first, *filtered_next = next.filter.opening.data() + first,
+             *tangent = next.filter.tangent.data() + first;
+      const double scale = 1 / problem.scale;
+      for_lanes(n, [&](const auto& at) {
+        const Lanes zero = 0, one = 1, way = at(to) - at(from), ahead = way - at(lag), weight = at(area, 1.0), here = at(coefficient);
+        const Lanes added = scale * at(force) / weight - at(plain), wanted = here * ahead;
+        const LaneMask acts = here > zero, moves = acts && wanted != zero;
+        Lanes share = added / choose(moves, wanted, one);  // theta
+        share = choose(share < 1 - 1e-6, larger(share, zero), one);
+        const Lanes kept = choose(acts, choose(moves, share, one) * here, zero);  // theta c
+        const Lanes stored_before = at(before) * at(filtered) * at(filtered), stored_used = kept * at(lag) * at(lag);
+        dissipated += weight * (loss * kept * ahead * ahead + store * (stored_before - stored_used) + choose(acts, zero, added * way));
+        const Lanes filtered_now = choose(acts, pole * at(lag) + keep * way, zero);
+        storage += weight * store * kept * filtered_now * filtered_now;
+        at.put(coefficient_next, kept);
+        at.put(filtered_next, filtered_now);
+        at.put(tangent, 2 * at(slope));
+      });
+    }
+  }
+  dissipated_ = sum(dissipated), storage_ = sum(storage);
+}
+
+}  // namespace uplift

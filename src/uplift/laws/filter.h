@@ -1,0 +1,38 @@
+#pragma once
+#include <cmath>
+
+#include "uplift/laws/law.h"
+#include "uplift/math/lanes.h"
+
+// The joint's part of the scheme of filtered energy decay (docs/theory, section 3). With the opening increment d of the step and what the
+// filter remembers, d_f, a point that is in contact at the start of the step has, besides the path average t of its law, the traction
+//     y = c (d - d_f)      c = b * stiffness at the start of the step [Pa/m]
+// as far as it adds neither tension to a law without tension nor shear beyond the bound of friction. A point that is open at the start
+// takes the traction at the end of the step where that dissipates: (t_end - t) d >= 0. Both terms only dissipate, and both vanish to second
+// order in smooth motion.
+namespace uplift {
+
+/// A normal traction with its slope with respect to the end of the path, as numbers or as lanes. `tension`: the law carries tension.
+template <class Number>
+struct Filtered {
+  Number value, slope;
+};
+
+/// `plain`, `slope`: path average; `end`, `end_slope`: at the end of the step; `way`: opening increment.
+template <class Number>
+[[gnu::always_inline]] inline Filtered<Number> filter_normal(Number plain, Number slope, Number end, Number end_slope, Number way,
+                                                             Number coefficient, Number lag, bool tension) {
+  const Number zero = 0;
+  const auto open = coefficient < zero;
+  const Number pushed = plain + coefficient * (way - lag);
+  Filtered<Number> closed{pushed, slope + coefficient};
+  if (!tension) {
+    const auto cut = pushed > zero;
+    closed = {choose(cut, zero, pushed), choose(cut, zero, closed.slope)};
+  }
+  const auto jumps = (end - plain) * way >= zero;
+  const Filtered<Number> closing{choose(jumps, end, plain), choose(jumps, end_slope, slope)};
+  return {choose(open, closing.value, closed.value), choose(open, closing.slope, closed.slope)};
+}
+
+}  // namespace uplift
