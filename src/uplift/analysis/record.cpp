@@ -296,7 +296,7 @@ double Recorder::made(const Source& source) const {
 void Recorder::record(bool row) {
   const State& state = state_;
   if (wants_acceleration_ && stepper_ != nullptr) stepper_->acceleration(acceleration_);
-  if (stepper_ == nullptr || !stepper_->path_averaged()) before_ = state.time;
+  if (stepper_ == nullptr || !stepper_->averages_acceleration()) before_ = state.time;
   floors_.record(acceleration_, before_, state.time);
   const std::size_t at = count_;
 #pragma GCC unroll 4

@@ -110,12 +110,18 @@ void Stepper::forces_at(const State& state, Vector& result) const {  // f - C v 
 }
 
 void Stepper::acceleration(Vector& result) const {
-  if (!path_)
+  if (!path_) {
     result = now_.acceleration;
-  else if (counts_.steps == 0)
-    result.setZero(bulk_.unknowns);
-  else
+    return;
+  }
+  result.resize(bulk_.unknowns);
+  if (averages_acceleration() && counts_.steps > 0) {
     result = (now_.velocity - velocity_before_) / options_.step;
+    return;
+  }
+  balance_.resize(bulk_.unknowns);
+  forces_at(now_, balance_);
+  accelerator().solve(balance_, result);
 }
 
 void Stepper::start(State state, const Ledger* before) {

@@ -59,9 +59,11 @@ class Stepper {
   const std::string& why() const { return why_; }
   /// The interface problem of the last try.
   const InterfaceProblem* problem() const { return last_; }
-  /// Acceleration [m/s2]: with the path average the mean over the step, (v1 - v0)/dt, which converges with the step where a stiff joint
-  /// makes the acceleration at its end alternate (zero before the first step); else that of the scheme at the end of the step.
+  /// Acceleration [m/s2]: with the path average at an interface the mean over the step, (v1 - v0)/dt, which converges with the step where a
+  /// stiff joint makes that at its end alternate; else that at the end of the step (and before the first one), from the balance or the
+  /// scheme.
   void acceleration(Vector& result) const;
+  bool averages_acceleration() const { return path_ && b_.rows() > 0; }
   bool path_averaged() const { return path_; }
   /// Largest external work met [J], for the scale of the energy error.
   double largest_external() const { return largest_external_; }
@@ -91,7 +93,7 @@ class Stepper {
   Outcome solve(Level& level);
   bool select_pressed(const std::vector<Block>& blocks, const Vector& forces);
   Impact impact_data(const Vector& force) const;
-  double closing_loss() const;
+  double contact_work() const;
   void apply_impact(Level& level);
   void separate_impulse(const Impact& data);
   void hold_initial_acceleration();

@@ -53,24 +53,25 @@ Impact Stepper::impact_data(const Vector& force) const {
   return data;
 }
 
-/// Work that the constraints take from the motion where a gap closes in the step, 1/2 p_1 g_0: with the trapezoidal rule this part of the
-/// loss of an impact stands beside the projection of the velocity, and their sum does not depend on the step (docs/theory, section 5).
-double Stepper::closing_loss() const {
-  double loss = 0;
+/// Work that the pressures of constraints take from the motion in the step, 1/2 (p_0 + p_1) dg. It is zero where a point stays closed;
+/// where a gap closes it is the part of the impact's loss that the projection of the velocity does not see, where one opens a little is
+/// given back. The sum with the projection does not depend on the step (docs/theory, section 5).
+double Stepper::contact_work() const {
+  double work = 0;
   for (const Block& block : last_->blocks) {
     if (block.cone == nullptr) continue;
     const int normal = block.first + block.batch.normal();
     for (int i = normal; i < normal + block.batch.points; ++i)
-      if (now_.opening[i] > 0 && contact_[i] < 0) loss -= 0.5 * contact_[i] * now_.opening[i];
+      work += 0.5 * (now_.force[i] + contact_[i]) * (next_.opening[i] - now_.opening[i]);
   }
-  return loss;
+  return work;
 }
 
 /// Velocity, acceleration and contact force of a step are corrected by the rule of impact, for the points that are pressed at its end.
 void Stepper::apply_impact(Level& level) {
   impact_impulse_.setZero();
+  impact_loss_ += contact_work();
   if (!select_pressed(last_->blocks, contact_)) return;
-  impact_loss_ += closing_loss();
   const double weight = (1 - options_.scheme.alpha_f) / (1 - options_.scheme.alpha_m);
   Impact data = impact_data(contact_);
   data.dynamic = level.dynamic.get();
@@ -96,10 +97,19 @@ void Stepper::separate_impulse(const Impact& data) {
   for (Eigen::Index i = 0; i < pressed_.size() && !closes; ++i) closes = pressed_[i] > 0 && now_.opening[i] > closed_gap_;
   if (!closes) return;
   const ImpactScratch& scratch = impact_scratch_;
-  for (Eigen::Index i = scratch.first; i < scratch.first + scratch.count; ++i) {
-    const double smooth = scratch.impulse[i] / data.acceleration_weight;
-    impact_impulse_[i] = scratch.total[i] - data.velocity_weight * smooth;
-    contact_[i] = smooth;
+  for (const Block& block : last_->blocks) {
+    const int n = block.batch.points, normal = block.first + block.batch.normal();
+    for (int i = 0; i < n; ++i) {
+      if (!(pressed_[normal + i] > 0)) continue;
+      const auto smooth = [&](int row) { return scratch.impulse[row] / data.acceleration_weight; };
+      const double share = smooth(normal + i) / contact_[normal + i];
+      for (int c = 0; c < block.batch.components; ++c) {
+        const int row = block.first + c * n + i;
+        const bool held = row == normal + i || scratch.fixed[row] > 0;  // a point that slips keeps its ratio of shear to pressure
+        impact_impulse_[row] = held ? scratch.total[row] - data.velocity_weight * smooth(row) : 0;
+        contact_[row] = held ? smooth(row) : share * contact_[row];
+      }
+    }
   }
 }
 
