@@ -40,7 +40,7 @@ class Drawing {
   private readonly nodes_: Map<string, ModelNode>;
   private readonly labels_ = new Labels(WIDTH, HEIGHT);
   private readonly ground_ends_: { face: Interface; end: Point }[] = [];
-  private readonly solid_names_: { at: Point; name: string }[] = [];
+  private readonly solid_names_: { low: Point; high: Point; name: string }[] = [];
   private readonly wanted_: WantedLabel[] = [];
   private readonly text_ = s("g", { class: "labels" });
 
@@ -79,8 +79,7 @@ class Drawing {
     outlines.forEach((part, i) => {
       const points = (lines[i] as Point[][]).flat();
       const [xs, ys] = [points.map((p) => p[0]), points.map((p) => p[1])];
-      const left: Point = [Math.min(...xs) + 4, (Math.min(...ys) + Math.max(...ys)) / 2];
-      if (points.length > 0) this.solid_names_.push({ at: left, name: part.name });
+      if (points.length > 0) this.solid_names_.push({ low: [Math.min(...xs), Math.min(...ys)], high: [Math.max(...xs), Math.max(...ys)], name: part.name });
     });
   }
 
@@ -248,7 +247,7 @@ class Drawing {
       const count = face.points.length === 1 ? "1 point" : `${face.points.length} points`;
       this.wanted_.push({ anchor: end, away: 10, content: `${face.name}: ${count}`, cls: "face-name", rank: 1 });
     }
-    const solids = this.solid_names_.map(({ at, name }) => this.labels_.place_inside(at, name, "solid-name"));
+    const solids = this.solid_names_.map(({ low, high, name }) => this.labels_.place_inside(low, high, name, "solid-name"));
     const others = this.wanted_
       .sort((a, b) => a.rank - b.rank)
       .map(({ anchor, away, content, cls }) => this.labels_.place(anchor, away, content, cls));

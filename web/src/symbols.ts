@@ -123,14 +123,19 @@ export class Labels {
     return null;
   }
 
-  /** A label that starts at a position inside of an area, or the nearest free one below or above it. */
-  place_inside([x, y]: Point, content: string, cls: string): SVGElement | null {
+  /** A label inside of a rectangle from `low` to `high`: at its left, middle or right, as near to half of its height as is free. */
+  place_inside(low: Point, high: Point, content: string, cls: string): SVGElement | null {
     const w = content.length * CHARACTER + 2;
-    for (const farther of [0, 14, -14, 28, -28, 42, -42, 56, -56]) {
-      const box = { x, y: y + farther - LINE / 2, w, t: LINE };
-      if (!this.free(box)) continue;
-      this.taken_.push(box);
-      return s("text", { class: cls, x: px(box.x + 1), y: px(box.y + 10.5) }, content);
+    const spare = high[0] - low[0] - w;
+    const middle = (low[1] + high[1]) / 2;
+    const reach = (high[1] - low[1] - LINE) / 2;
+    for (let farther = 0; spare >= 0 && farther <= Math.max(0, reach); farther += 6) {
+      for (const y of farther > 0 ? [middle + farther, middle - farther] : [middle]) {
+        const box = [0.03, 0.5, 0.97, 0.27, 0.73].map((share) => ({ x: low[0] + share * spare, y: y - LINE / 2, w, t: LINE })).find((r) => this.free(r));
+        if (!box) continue;
+        this.taken_.push(box);
+        return s("text", { class: cls, x: px(box.x + 1), y: px(box.y + 10.5) }, content);
+      }
     }
     return null;
   }

@@ -29,9 +29,13 @@ function level_sign(level: VerdictLevel): SVGElement {
   return s("svg", { class: "sign", viewBox: "0 0 24 24", width: 34, height: 34, "aria-hidden": "true" }, s("path", { d: LEVEL_SIGN[level] }));
 }
 
-/** Keeps a number and its unit on one line. */
+/** Typography of a sentence from the program: minus signs, units as everywhere on the page, a number and its unit on one line. */
 function tied(text: string): string {
-  return text.replace(/(^|[ (])-(?=\d)/g, "$1\u2212").replace(/(\d) (?=(?:%|[µmkMG]?(?:m|s|g|N|Pa|J|Hz|rad|t)(?![a-z])))/g, "$1\u00a0");
+  return text
+    .replace(/(^|[ (])-(?=\d)/g, "$1\u2212")
+    .replace(/(\d [kMG]?N) m(?![a-z])/g, "$1·m")
+    .replace(/(\d k?m\/s)2\b/g, "$1²")
+    .replace(/(\d) (?=(?:%|[µmkMG]?(?:m|s|g|N|Pa|J|Hz|rad|t)(?![a-z])))/g, "$1\u00a0");
 }
 
 /** A value with no more decimals than its remaining variation justifies. */
