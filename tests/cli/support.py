@@ -1,5 +1,6 @@
 """Runs the program as a user does. The path of the binary is the first argument of the test program."""
 
+import base64
 import json
 import os
 import pathlib
@@ -8,6 +9,7 @@ import subprocess
 import sys
 import tempfile
 import unittest
+import zlib
 
 _program = ""
 
@@ -111,6 +113,13 @@ class CliTest(unittest.TestCase):
         return json.loads(text)
 
 
+def report_of(folder):
+    """The data of a report page: zlib, then base64, in a script element."""
+    page = (folder / "report.html").read_text()
+    packed = re.search(r'<script id="uplift-data" type="application/json">(.*?)</script>', page, re.S).group(1)
+    return json.loads(zlib.decompress(base64.b64decode(packed)))
+
+
 def main():
     global _program
     if len(sys.argv) < 2 or not os.access(sys.argv[1], os.X_OK):
@@ -119,4 +128,4 @@ def main():
     unittest.main(module="__main__", verbosity=2)
 
 
-__all__ = ["BASE", "program", "CliTest", "json", "line_of", "main", "pathlib", "re", "subprocess", "os"]
+__all__ = ["BASE", "program", "CliTest", "json", "line_of", "main", "pathlib", "re", "report_of", "subprocess", "os"]

@@ -14,7 +14,7 @@ class Records(CliTest):
         done = self.uplift("motion", "quake.csv")
         self.assertRegex(done.stdout, r"PGA \[m/s2\].*D5-95 \[s\].*Housner")
         folder = self.folder / "out/motion_quake"
-        self.assertIn("uplift-report-1", (folder / "report.html").read_text())
+        self.assertEqual(report_of(folder)["format"], "uplift-report-1")
         found = self.summary("out/motion_quake")
         # 1 m/s2 at 2 Hz for 10 whole periods: Arias = pi/(2 g) T/2, CAV = 2 T/pi
         numbers, motion = found["intensities"][0], found["motions"][0]
@@ -72,7 +72,7 @@ class Records(CliTest):
             north, east = (cells[f"three {name} PSA 5 % [m/s2]"] for name in ("NS", "EW"))
             self.assertGreaterEqual(cells["RotD100 PSA 5 % [m/s2]"], max(north, east))
             self.assertLessEqual(cells["RotD100 PSA 5 % [m/s2]"], math.hypot(north, east))
-        self.assertIn("of three NS and three EW", (self.folder / "three/report.html").read_text())
+        self.assertIn("of three NS and three EW", json.dumps(report_of(self.folder / "three")))
         self.uplift("motion", "slanting.csv", "--frequencies", "1,10", "-o", "slanting")
         self.assertNotIn("RotD", (self.folder / "slanting/spectra.csv").read_text())
 
@@ -175,7 +175,7 @@ class Compared(CliTest):
         table = found["over_motions"][0]
         self.assertEqual([row["motion"] for row in table["motions"]], ["weak shaking", "strong shaking"])
         self.assertGreater(table["motions"][1]["peaks"]["ratio"], table["motions"][0]["peaks"]["ratio"])
-        page = (self.folder / "out/report.html").read_text()
+        page = json.dumps(report_of(self.folder / "out"))
         self.assertIn("This page shows the hardest of 2 motions, strong shaking.", page)
         for name in ("run-weak", "bonded-weak", "run-strong", "bonded-strong"):
             self.assertTrue((self.folder / f"out/histories/{name}.csv").exists())

@@ -111,11 +111,6 @@ class Example(CliTest):
         self.assertAlmostEqual(told["weight"] / (200 * 400 * 9.81), 1, places=9)
 
 
-def report_of(folder):
-    page = (folder / "report.html").read_text()
-    return json.loads(re.search(r'<script id="uplift-data" type="application/json">(.*?)</script>', page, re.S).group(1).replace("<\\/", "</"))
-
-
 class MeshFile(CliTest):
     def run_block(self, text=BLOCK):
         self.write(gmsh(4, 8, 4), "soil.msh")

@@ -1,22 +1,18 @@
-// The animation card of a plane model: the stage, moved by the player.
+// The animation card of a plane model: drawing and player.
 import { h, s } from "./dom";
 import { round_down } from "./geometry";
-import { largest_opening, open_part, Player, type Track } from "./player";
+import { largest_opening, Player, uplifted_ratio, type Track } from "./player";
 import { largest_motion, Stage } from "./stage";
 import type { Runs } from "./runs";
 import type { Animation, Model } from "./types";
 
-/** Part of the area that is open (opening > 0) in a frame, over all interfaces. */
-function uplifted_ratio(model: Model, animation: Animation, frame: number): number {
-  return open_part(model.interfaces.map((face) => ({ area: face.points.map((p) => p.area), opening: animation.openings[face.name]?.[frame] })));
-}
-
 function track(model: Model, animation: Animation, size: number): Track {
   const motion = largest_motion(animation);
+  const faces = model.interfaces.map((face) => ({ name: face.name, area: face.points.map((p) => p.area) }));
   return {
     run: animation.run,
     time: animation.time,
-    ratio: animation.time.map((_t, i) => uplifted_ratio(model, animation, i)),
+    ratio: animation.time.map((_t, i) => uplifted_ratio(faces, animation, i)),
     opening: animation.time.map((_t, i) => largest_opening(animation.openings, i)),
     factor: motion > 0 ? round_down((0.16 * size) / motion) : 1,
   };
@@ -78,8 +74,8 @@ export class AnimationCard {
       h("ul", { class: "keys" },
         key("pt-contact", "M0 -4A4 4 0 1 0 0 4A4 4 0 1 0 0 -4Z", "in contact"),
         key("pt-open", "M0 -5L5 0L0 5L-5 0Z", "open"),
-        pressures ? key("push-key", "M0 6V-5M-3 -1L0 -5L3 -1", "pressure on the upper side") : null),
-      h("figcaption", {}, "Displacements, rotation and gap are multiplied by the same factor; grey lines show the position before loading. The band above the slider is the uplifted ratio."),
+        pressures ? key("push-key", "M0 6V-5M-3 -1L0 -5L3 -1", "pressure on the upper face") : null),
+      h("figcaption", {}, "Displacements, rotations and gaps are magnified by the same factor. Grey lines show the position before loading. The band above the slider shows the uplifted share of the area over time; the animation starts at its peak."),
     );
   }
 }

@@ -124,8 +124,8 @@ export class ChartCard {
       { class: "tools" },
       this.reset_,
       this.wide_,
-      h("button", { type: "button", class: "tool-csv", title: "Numbers of this figure, SI", onclick: () => download(`${name}.csv`, "text/csv", this.csv()) }, "CSV"),
-      h("button", { type: "button", class: "tool-svg", title: "This figure as a drawing", onclick: () => download(`${name}.svg`, "image/svg+xml", this.svg()) }, "SVG"),
+      h("button", { type: "button", class: "tool-csv", title: "Download the values of this figure in SI units", onclick: () => download(`${name}.csv`, "text/csv", this.csv()) }, "CSV"),
+      h("button", { type: "button", class: "tool-svg", title: "Download this figure as a drawing", onclick: () => download(`${name}.svg`, "image/svg+xml", this.svg()) }, "SVG"),
     );
     return h(
       "figure",
@@ -173,7 +173,7 @@ export class ChartCard {
             type: "button",
             class: "key",
             "aria-pressed": String(this.model.visible(curve)),
-            title: "Click: hide or show. Shift-click: only this curve.",
+            title: "Click to hide or show this curve. Shift-click to show only this curve.",
             onclick: (event) => this.toggle(curve, (event as MouseEvent).shiftKey),
           },
           swatch(curve.slot, curve.dash, dash_of(curve, true)),
@@ -219,8 +219,8 @@ export class ChartCard {
     const clipped = this.model.clipped();
     this.note_.hidden = clipped.length === 0 && !this.model.full;
     if (this.note_.hidden) return;
-    const told = clipped.length > 2 ? `${clipped.length} failed curves leave this range.` : clipped.map((c) => this.leaves(c)).join(" ");
-    const text = this.model.full ? "Full range, failed runs included." : told;
+    const told = clipped.length > 2 ? `${clipped.length} curves of failed runs leave this range.` : clipped.map((c) => this.leaves(c)).join(" ");
+    const text = this.model.full ? "Full range including failed runs." : told;
     const flip = (): void => {
       this.model.full = !this.model.full;
       this.plot_?.reset();
@@ -228,7 +228,7 @@ export class ChartCard {
     };
     this.note_.replaceChildren(
       h("span", {}, text),
-      h("button", { type: "button", onclick: flip }, this.model.full ? "Range of the sound runs" : "Show full range"),
+      h("button", { type: "button", onclick: flip }, this.model.full ? "Range without failed runs" : "Show full range"),
     );
   }
 

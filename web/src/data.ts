@@ -1,5 +1,5 @@
 // Reads the JSON document out of the page and fills what an older or shorter document leaves out.
-import { FORMAT, type Model, type Report, type SpaceModel } from "./types";
+import { FORMAT, type Model, type QuantisedFrames, type Report, type SpaceAnimation, type SpaceModel } from "./types";
 
 export type ReadResult =
   | { kind: "report"; report: Report }
@@ -38,6 +38,26 @@ function complete_space(space: Partial<SpaceModel> | null | undefined): SpaceMod
   };
 }
 
+/** Values of all frames, see QuantisedFrames. */
+function frames_of(given: number[][] | QuantisedFrames): number[][] {
+  if (Array.isArray(given)) return given;
+  const { unit, stride, differences } = given;
+  let levels: number[] = [];
+  return differences.map((row) => {
+    const changes: number[] = [];
+    row.forEach((difference, i) => changes.push(difference + (i >= stride ? (changes[i - stride] as number) : 0)));
+    levels = changes.map((change, i) => change + (levels[i] ?? 0));
+    return levels.map((level) => level * unit);
+  });
+}
+
+/** The program writes fields with many values as quantised frames; the rest of the page sees plain numbers. */
+function complete_animation(raw: SpaceAnimation): SpaceAnimation {
+  const fields = (all: Record<string, number[][]>): Record<string, number[][]> =>
+    Object.fromEntries(Object.entries(all).map(([name, frames]) => [name, frames_of(frames)]));
+  return { ...raw, displacement: frames_of(raw.displacement), openings: fields(raw.openings), pressures: fields(raw.pressures) };
+}
+
 function complete(raw: Partial<Report>): Report {
   const verdict = raw.verdict;
   return {
@@ -67,18 +87,29 @@ function complete(raw: Partial<Report>): Report {
     model: complete_model(raw.model),
     animations: raw.animations ?? [],
     space: complete_space(raw.space),
-    spaceAnimations: raw.spaceAnimations ?? [],
+    spaceAnimations: (raw.spaceAnimations ?? []).map(complete_animation),
   };
 }
 
-/** The report held by the page, or why there is none. */
-export function read_report(): ReadResult {
-  const text = document.getElementById("uplift-data")?.textContent?.trim() ?? "";
-  // The untouched placeholder is a comment, which no JSON document starts with.
-  if (text === "" || text.startsWith("/*")) return { kind: "empty" };
+/** The bytes of a zlib stream in base64, as text. */
+async function inflated(base64: string): Promise<string> {
+  const bytes = Uint8Array.from(atob(base64), (character) => character.charCodeAt(0));
+  const stream = new Blob([bytes]).stream().pipeThrough(new DecompressionStream("deflate"));
+  return new Response(stream).text();
+}
+
+/** The report held by the page, or why there is none. The program writes compressed data; plain JSON serves as well. */
+export async function read_report(): Promise<ReadResult> {
+  const held = document.getElementById("uplift-data")?.textContent?.trim() ?? "";
+  // The untouched placeholder is a comment, which neither JSON nor base64 starts with.
+  if (held === "" || held.startsWith("/*")) return { kind: "empty" };
+  const plain = held.startsWith("{");
+  if (!plain && typeof DecompressionStream === "undefined") {
+    return { kind: "error", message: "This browser cannot decompress the data of the report. Please use a version from 2023 or later (Chrome 80, Firefox 113, Safari 16.4)." };
+  }
   let raw: Partial<Report>;
   try {
-    raw = JSON.parse(text) as Partial<Report>;
+    raw = JSON.parse(plain ? held : await inflated(held)) as Partial<Report>;
   } catch (error) {
     return { kind: "error", message: `The data of this report cannot be read: ${(error as Error).message}` };
   }

@@ -1,5 +1,8 @@
 // Numbers and units as people read them. Data stay SI; only what is shown is scaled (m to mm, N to kN).
 
+/** Gaps, displacements and rotations below this (m, rad) are smaller than the precision of a run and are shown as 0. */
+export const NEGLIGIBLE = 1e-9;
+
 const SUPERSCRIPT: Record<string, string> = {
   "-": "⁻", "0": "⁰", "1": "¹", "2": "²", "3": "³", "4": "⁴", "5": "⁵", "6": "⁶", "7": "⁷", "8": "⁸", "9": "⁹",
 };
@@ -73,6 +76,14 @@ export function pick_scale(largest: number, unit: string | undefined): Scale {
   if (largest < 1e-4) return largest < 1e-7 ? scaled(1e-9, "n") : scaled(1e-6, "µ");
   if (largest < 0.1) return scaled(1e-3, "m");
   return { factor: 1, unit: base };
+}
+
+/** A value with its unit in the prefix that suits `largest`: "1.79 MN·m". Lengths and angles below the precision of a run read "0 mm". */
+export function quantity_text(value: number, unit: string | undefined, largest = Math.abs(value), digits = 3): string {
+  const base = pretty_unit(unit);
+  if ((base === "m" || base === "rad") && Math.abs(value) < NEGLIGIBLE) return `0\u00a0m${base}`;
+  const scale = pick_scale(largest, unit);
+  return number(value / scale.factor, digits) + (scale.unit ? `\u00a0${scale.unit}` : "");
 }
 
 /** "Base moment" and "kN·m" to "Base moment (kN·m)". */

@@ -19,7 +19,7 @@ import type { Chart, Report, Section } from "./types";
 // Charts are drawn when they come this near to the screen.
 const NEAR = "500px";
 
-// The section of the state after the shock stands right behind the verdict.
+// The section of the residual state follows the verdict.
 const REST = "rest";
 
 /** Figures that are drawn late, and differently in print. */
@@ -68,14 +68,14 @@ function chart_parts(report: Report, cards: ChartCard[]): Part[] {
   });
 }
 
-/** What is left at the end: table, profile or map of the gap. */
+/** The residual state: table, profiles or maps of the interfaces. */
 function after_shock(report: Report, cards: ChartCard[], maps: RestMaps | null): Part[] {
   const table = rest_table(report.verdict);
   const mine = cards.filter(({ model }) => model.chart.section === REST);
   if (!table && mine.length === 0 && !maps) return [];
   const section = report.sections.find(({ id }) => id === REST);
   const text = section?.text ? h("p", { class: "section-text" }, section.text) : null;
-  return [part("after-shock", section?.title ?? "After the shock", text, table, h("div", { class: "grid" }, ...mine.map((c) => c.element), maps?.element ?? null))];
+  return [part("after-shock", section?.title ?? "Residual state", text, table, h("div", { class: "grid" }, ...mine.map((c) => c.element), maps?.element ?? null))];
 }
 
 function contents(parts: Part[]): HTMLElement {
@@ -134,7 +134,7 @@ function show_report(host: HTMLElement, report: Report): void {
   document.title = `${report.title} – uplift`;
   const themes = new ThemeSwitch();
   const runs = new Runs(run_names(report), failed_runs(report));
-  // Whose choice a figure is says something only where there are several answers.
+  // The origin of a figure is shown only where figures have different origins.
   const say_origin = new Set(report.charts.map((chart) => chart.origin)).size > 1;
   const charts = in_page_order(report).map((chart, i) => new ChartCard(chart, runs, i + 1, say_origin));
   const tables = report.tables.map((table) => new TableCard(table, runs));
@@ -154,7 +154,7 @@ function show_report(host: HTMLElement, report: Report): void {
     ...(space_card ? [part("space-model", space_card.frames > 0 ? "Model and motion" : "Model", space_card.element)] : []),
     ...figures,
     ...(choices.length > 0 ? [part("choices", "Choices", choices_card(choices))] : []),
-    part("case", "How to repeat this", repeat_card(report)),
+    part("case", "How to reproduce the results", repeat_card(report)),
   ];
   const toc = contents(parts);
   // The bar of runs sticks to the top while the figures pass, so both share one box.
@@ -173,18 +173,18 @@ function show_report(host: HTMLElement, report: Report): void {
   window.upliftReport = inspection(report, "", charts, tables, animation, space_card);
 }
 
-function start(): void {
+async function start(): Promise<void> {
   install_palette();
   const host = document.getElementById("report") as HTMLElement;
-  const result = read_report();
+  const result = await read_report();
   if (result.kind === "report") {
     show_report(host, result.report);
     return;
   }
   new ThemeSwitch();
-  const message = result.kind === "empty" ? "This page holds no data. The program fills it when a case is run: uplift compare CASE." : result.message;
+  const message = result.kind === "empty" ? "This page contains no data. The program fills it when it runs a case: uplift compare CASE." : result.message;
   host.append(empty_page(message));
   window.upliftReport = inspection(null, message);
 }
 
-start();
+void start();

@@ -9,6 +9,8 @@ const WIDTH = 440;
 const HEIGHT = 390;
 const NORMAL = 18;
 const ABSORBER = 26;
+const LOAD_GAP = 15;
+const LOAD_LENGTH = 40;
 const MAX_NAMED_NODES = 40;
 
 /** 52 000 kg as "52 t". */
@@ -22,6 +24,15 @@ function titled<E extends SVGElement>(element: E, title: string): E {
   return element;
 }
 
+/** A label to place; those of a lower rank first, because they get the best positions and must not be left out. */
+interface WantedLabel {
+  anchor: Point;
+  away: number;
+  content: string;
+  cls: string;
+  rank: number;
+}
+
 class Drawing {
   readonly svg = s("svg", { viewBox: `0 0 ${WIDTH} ${HEIGHT}`, class: "model-svg", role: "img", "aria-label": "Drawing of the model" });
   private readonly model_: Model;
@@ -29,12 +40,16 @@ class Drawing {
   private readonly nodes_: Map<string, ModelNode>;
   private readonly labels_ = new Labels(WIDTH, HEIGHT);
   private readonly ground_ends_: { face: Interface; end: Point }[] = [];
+  private readonly solid_names_: { low: Point; high: Point; name: string }[] = [];
+  private readonly wanted_: WantedLabel[] = [];
   private readonly text_ = s("g", { class: "labels" });
 
   constructor(model: Model) {
     this.model_ = model;
     this.nodes_ = node_map(model);
-    this.map_ = new Map2(model_box(model), WIDTH, HEIGHT, { left: 78, right: 78, top: 30, bottom: 56 });
+    // Loads that act downwards stand above their node.
+    const top = model.loads.some((load) => load.fy < 0) ? LOAD_GAP + LOAD_LENGTH + 22 : 30;
+    this.map_ = new Map2(model_box(model), WIDTH, HEIGHT, { left: 78, right: 78, top, bottom: 56 });
     this.mesh();
     this.ground();
     this.bodies();
@@ -46,8 +61,8 @@ class Drawing {
     this.interfaces();
     this.loads();
     this.nodes();
-    this.interface_names();
     this.svg.append(this.text_, this.scale_bar());
+    this.write_labels();
   }
 
   private at(name: string | null | undefined): Point | null {
@@ -64,8 +79,7 @@ class Drawing {
     outlines.forEach((part, i) => {
       const points = (lines[i] as Point[][]).flat();
       const [xs, ys] = [points.map((p) => p[0]), points.map((p) => p[1])];
-      const left: Point = [Math.min(...xs) + 4, (Math.min(...ys) + Math.max(...ys)) / 2 + 4];
-      if (points.length > 0) this.text_.append(s("text", { x: px(left[0]), y: px(left[1]), class: "solid-name" }, part.name));
+      if (points.length > 0) this.solid_names_.push({ low: [Math.min(...xs), Math.min(...ys)], high: [Math.max(...xs), Math.max(...ys)], name: part.name });
     });
   }
 
@@ -124,7 +138,7 @@ class Drawing {
       const right = this.model_.outlines.length > 0 && at[0] > this.map_.middle[0] + 1 && !item.dofs.includes("uy");
       if (right) symbol.setAttribute("transform", `translate(${px(2 * at[0])} 0) scale(-1 1)`);
       if (item.staticsOnly) symbol.classList.add("statics-only");
-      const when = item.staticsOnly ? " in static stages alone" : "";
+      const when = item.staticsOnly ? " in static stages only" : "";
       this.svg.append(titled(symbol, `support at ${item.node}: ${item.dofs.join(", ")} blocked${when}`));
       this.labels_.block(at, 14);
     }
@@ -153,8 +167,8 @@ class Drawing {
         }
         done += size;
       }
-      const says = [`absorbing face ${face.group}`, face.freeField ? "follows level ground" : "", face.incident ? "a wave comes in" : ""];
-      this.svg.append(titled(group, says.filter((text) => text !== "").join("; ")));
+      const parts = [`absorbing face ${face.group}`, face.freeField ? "with free-field column" : "", face.incident ? "with incident wave" : ""];
+      this.svg.append(titled(group, parts.filter((text) => text !== "").join("; ")));
     }
   }
 
@@ -185,7 +199,7 @@ class Drawing {
       let last: Point | null = null;
       face.points.forEach((p: InterfacePoint, i) => {
         const at = this.map_.at(p.x, p.y);
-        const title = `${face.name}, point ${i + 1}: x ${number(p.x)} m, y ${number(p.y)} m, area ${number(p.area)} m²${owner ? `, upper side on ${owner}` : ""}`;
+        const title = `${face.name}, point ${i + 1}: x ${number(p.x)} m, y ${number(p.y)} m, area ${number(p.area)} m²${owner ? `, upper face on ${owner}` : ""}`;
         const g = titled(s("g", { class: "face" }, s("circle", { cx: px(at[0]), cy: px(at[1]), r: 2.4 })), title);
         // Normals of many points would merge into a block; leave room between them.
         if (!last || Math.hypot(at[0] - last[0], at[1] - last[1]) >= 12) {
@@ -206,11 +220,10 @@ class Drawing {
       const size = Math.hypot(load.fx, load.fy);
       if (!at || size === 0) continue;
       const [ux, uy] = [load.fx / size, -load.fy / size];
-      const gap = 15;
-      const tail: Point = [at[0] - ux * (gap + 40), at[1] - uy * (gap + 40)];
-      this.svg.append(titled(arrow(tail, [at[0] - ux * gap, at[1] - uy * gap], 9, "load"), `load at ${load.node}: ${load.label}`));
+      const tail: Point = [at[0] - ux * (LOAD_GAP + LOAD_LENGTH), at[1] - uy * (LOAD_GAP + LOAD_LENGTH)];
+      this.svg.append(titled(arrow(tail, [at[0] - ux * LOAD_GAP, at[1] - uy * LOAD_GAP], 9, "load"), `load at ${load.node}: ${load.label}`));
       this.labels_.block_line(tail, at);
-      this.text_.append(this.labels_.place(tail, 2, load.label, "load-name"));
+      this.wanted_.push({ anchor: tail, away: 2, content: load.label, cls: "load-name", rank: 0 });
     }
   }
 
@@ -224,16 +237,21 @@ class Drawing {
       this.svg.append(titled(s("circle", { class: "node", cx: px(at[0]), cy: px(at[1]), r: mass ? 1.8 : 3 }), title));
       this.labels_.block(at, 3);
       const label = mass ? `${node.name}  ${mass_text(mass.mass)}` : node.name;
-      if (named) this.text_.append(this.labels_.place(at, mass ? 14 : 5, label, "node-name"));
+      if (named || mass) this.wanted_.push({ anchor: at, away: mass ? 14 : 5, content: label, cls: "node-name", rank: mass ? 0 : 2 });
     }
   }
 
-  // Last, because the ends of the ground lines are what is most easily left free.
-  private interface_names(): void {
+  // Last, when all symbols are drawn.
+  private write_labels(): void {
     for (const { face, end } of this.ground_ends_) {
       const count = face.points.length === 1 ? "1 point" : `${face.points.length} points`;
-      this.text_.append(this.labels_.place(end, 10, `${face.name}: ${count}`, "face-name"));
+      this.wanted_.push({ anchor: end, away: 10, content: `${face.name}: ${count}`, cls: "face-name", rank: 1 });
     }
+    const solids = this.solid_names_.map(({ low, high, name }) => this.labels_.place_inside(low, high, name, "solid-name"));
+    const others = this.wanted_
+      .sort((a, b) => a.rank - b.rank)
+      .map(({ anchor, away, content, cls }) => this.labels_.place(anchor, away, content, cls));
+    this.text_.append(...[...solids, ...others].filter((text) => text !== null));
   }
 
   private scale_bar(): SVGElement {
@@ -242,6 +260,7 @@ class Drawing {
     const y = HEIGHT - 18;
     const d = `M20 ${y - 4}V${y + 4}M20 ${y}H${px(20 + length)}M${px(20 + length)} ${y - 4}V${y + 4}`;
     const text = metres < 1 ? `${number(metres * 1000, 1)} mm` : `${metres} m`;
+    this.labels_.block_line([20, y], [28 + length + 7 * text.length, y]);
     return s("g", { class: "scale-bar" }, s("path", { d }), s("text", { x: px(28 + length), y: y + 4 }, text));
   }
 }
@@ -261,18 +280,18 @@ function legend(model: Model): HTMLElement {
     model.springs.some((i) => i.kind === "dashpot") ? legend_item(spring([2, 11], [28, 11], "dashpot"), "dashpot") : null,
     model.absorbing.length > 0
       ? legend_item(s("g", { class: "absorbing" }, s("path", { class: "face-line", d: "M3 3V19" }), spring([3, 11], [28, 11], "dashpot")),
-        `absorbing face${model.absorbing.some((face) => face.incident) ? `; a wave comes in through ${model.absorbing.filter((face) => face.incident).map((face) => face.group).join(", ")}` : ""}`)
+        `absorbing face${model.absorbing.some((face) => face.incident) ? `; incident wave through ${model.absorbing.filter((face) => face.incident).map((face) => face.group).join(", ")}` : ""}`)
       : null,
     model.supports.some((item) => item.staticsOnly)
-      ? legend_item(s("g", { class: "support statics-only" }, s("path", { d: "M15 3L7 17H23Z" })), "support of the static stages alone")
+      ? legend_item(s("g", { class: "support statics-only" }, s("path", { d: "M15 3L7 17H23Z" })), "support in static stages only")
       : null,
     model.loads.length > 0 ? legend_item(arrow([3, 11], [27, 11], 8, "load"), "load") : null,
   ];
   if (model.interfaces.length > 0) {
     const mark = s("g", { class: "face" }, s("circle", { cx: 15, cy: 18, r: 2.4 }), arrow([15, 18], [15, 2], 6, "normal"));
-    items.push(legend_item(mark, "interface point, normal n from the lower to the upper side"));
+    items.push(legend_item(mark, "interface point, normal n from the lower to the upper face"));
   }
-  const signs = h("p", { class: "signs" }, h("b", {}, "opening > 0"), " the sides part along n; ", h("b", {}, "tension > 0"), " pulls the upper side back, against n.");
+  const signs = h("p", { class: "signs" }, h("b", {}, "opening > 0"), " the faces separate along n; ", h("b", {}, "tension > 0"), " pulls the upper face against n.");
   return h("div", { class: "model-legend" }, h("ul", {}, ...items), model.interfaces.length > 0 ? signs : null);
 }
 

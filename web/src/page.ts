@@ -1,4 +1,4 @@
-// The parts of the page that are words: head, choices, case, foot, and pages without data.
+// The parts of the page that are text: head, choices, case, and pages without data.
 import { origin_chip } from "./chart";
 import { h } from "./dom";
 import type { ThemeSwitch } from "./theme";
@@ -49,7 +49,7 @@ function choice_table(choices: Choice[]): HTMLElement {
     h("table", {}, h("thead", {}, h("tr", {}, ...heads)), h("tbody", {}, ...rows)));
 }
 
-/** What the paper gives and what this program chose; what the user typed stands behind it, closed when it is long. */
+/** Values with a stated origin; those that the user typed follow in a closed box when there are many. */
 export function choices_card(choices: Choice[]): HTMLElement {
   const typed = choices.filter((choice) => choice.origin === "user" && !choice.note);
   const others = choices.filter((choice) => !typed.includes(choice));
@@ -59,7 +59,7 @@ export function choices_card(choices: Choice[]): HTMLElement {
     "figure",
     { class: "card table-card choices" },
     shown.length > 0 ? choice_table(shown) : null,
-    apart ? h("details", {}, h("summary", {}, `${typed.length} values as the case file gives them`), choice_table(typed)) : null,
+    apart ? h("details", {}, h("summary", {}, `${typed.length} values from the case file`), choice_table(typed)) : null,
   );
 }
 
@@ -80,7 +80,7 @@ function step(...words: (Node | string)[]): HTMLElement {
   return h("li", {}, ...words);
 }
 
-/** Program, files with their hashes, commands, and the case with every default: enough to get these results again. */
+/** Program, files with their hashes, command, and the case with all default values: what is needed to reproduce the results. */
 export function repeat_card(report: Report): HTMLElement {
   const { case: from, command } = report;
   const lines: [string, string][] = [
@@ -103,19 +103,19 @@ export function repeat_card(report: Report): HTMLElement {
     h("dl", { class: "pairs" }, ...lines.filter(([, v]) => v !== "").flatMap(([k, v]) => [h("dt", {}, k), h("dd", {}, h("code", {}, v))])),
     from.resolved
       ? h("ol", { class: "repeat" },
-          step("Take the same program: ", code("uplift --version"), ` says ${report.version}.`),
-          step("Check the files: ", code(`sha256sum ${files.join(" ")}`), " gives the hashes above."),
+          step("Use the same program: ", code("uplift --version"), ` prints ${report.version}.`),
+          step("Check the files: ", code(`sha256sum ${files.join(" ")}`), " must print the hashes above."),
           step("Run ", code(command), "."),
-          step("Without the files: save the resolved case below as ", code("case.toml"), " and run ", code(`uplift ${subcommand} case.toml`),
-            ". It holds every default that this version filled in, so a later version with other defaults takes the same ones", (from.inputs ?? []).length > 0 ? "; it still reads the input files." : "."))
+          step("Without the files, save the resolved case below as ", code("case.toml"), " and run ", code(`uplift ${subcommand} case.toml`),
+            ". It contains all default values of this version, so that a later version uses the same ones", (from.inputs ?? []).length > 0 ? ". The input files are still needed." : "."))
       : null,
     from.resolved
-      ? h("details", { class: "in-print" }, h("summary", {}, "Resolved case: every default filled in"), h("div", { class: "source" }, button, source))
+      ? h("details", { class: "in-print" }, h("summary", {}, "Resolved case with all default values"), h("div", { class: "source" }, button, source))
       : null,
   );
 }
 
-/** A page that has nothing to show says why. */
+/** A page without data states the reason. */
 export function empty_page(message: string): HTMLElement {
   return h(
     "main",

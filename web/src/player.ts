@@ -1,7 +1,7 @@
-// What moves a picture through time: run, scrub slider with the history of the uplifted ratio, play, speed, magnification.
-// The picture itself belongs to the card, which is told the frame and the factor.
+// Controls of an animation: run, time slider with the history of the uplifted share, play, speed, magnification.
+// The card draws the model; the player passes it the frame and the magnification factor.
 import { h, s, px } from "./dom";
-import { fixed, number, pick_scale } from "./format";
+import { fixed, NEGLIGIBLE, number, pick_scale } from "./format";
 import type { Runs } from "./runs";
 
 // The variation selector asks for text: some systems would draw a coloured picture.
@@ -22,18 +22,28 @@ export interface Track {
   factor: number;
 }
 
-/** Part of the area with opening > 0. A point without an area counts as one. */
-export function open_part(faces: { area: number[]; opening: number[] | undefined }[]): number {
-  let open = 0;
-  let all = 0;
-  for (const { area, opening } of faces) {
-    area.forEach((given, i) => {
-      const part = given > 0 ? given : 1;
-      all += part;
-      if ((opening?.[i] ?? 0) > 0) open += part;
-    });
-  }
-  return all > 0 ? open / all : 0;
+/** Part of the area that is open. A point without an area counts as one. */
+export function open_part(area: number[], opening: number[] | undefined): number {
+  const parts = area.map((given) => (given > 0 ? given : 1));
+  const open = parts.reduce((sum, part, i) => ((opening?.[i] ?? 0) > NEGLIGIBLE ? sum + part : sum), 0);
+  return parts.length > 0 ? open / parts.reduce((sum, part) => sum + part, 0) : 0;
+}
+
+interface Moving {
+  openings: Record<string, number[][]>;
+  uplifted?: Record<string, number[]>;
+}
+
+/** Uplifted share of an interface in a frame: as the run counted it, else counted by points. */
+export function uplifted_share(face: { name: string; area: number[] }, animation: Moving, frame: number): number {
+  return animation.uplifted?.[face.name]?.[frame] ?? open_part(face.area, animation.openings[face.name]?.[frame]);
+}
+
+/** Uplifted share of all interfaces together. */
+export function uplifted_ratio(faces: { name: string; area: number[] }[], animation: Moving, frame: number): number {
+  const size = (face: { area: number[] }): number => face.area.reduce((sum, part) => sum + part, 0) || 1;
+  const all = faces.reduce((sum, face) => sum + size(face), 0);
+  return all > 0 ? faces.reduce((sum, face) => sum + size(face) * uplifted_share(face, animation, frame), 0) / all : 0;
 }
 
 /** The largest opening of a frame over all interfaces, at least 0. */
@@ -75,7 +85,7 @@ export class Player {
     this.speed_ = h("select", { "aria-label": "Speed" }, ...SPEEDS.map((v) => h("option", { value: v }, `${v}× real time`)));
     this.readouts = h("div", { class: "readouts" },
       h("div", {}, h("span", {}, "time"), this.time_out_),
-      h("div", {}, h("span", {}, "uplifted (by gap)"), this.ratio_out_),
+      h("div", {}, h("span", {}, "uplifted area"), this.ratio_out_),
       h("div", {}, h("span", {}, "largest opening"), this.opening_out_));
     this.timeline = h("div", { class: "timeline" }, this.strip_, this.scrub_);
     this.controls = h("div", { class: "controls" },
@@ -108,7 +118,7 @@ export class Player {
     return this.playing_;
   }
 
-  /** Listens and shows the first run at its worst instant. Space plays and stops anywhere in the card. */
+  /** Attaches the listeners and shows the first run at its largest uplift. The space bar plays and pauses anywhere in the card. */
   start(card: HTMLElement): void {
     this.play_.addEventListener("click", () => this.toggle());
     this.scrub_.addEventListener("input", () => {
@@ -148,10 +158,12 @@ export class Player {
     this.set_frame(this.worst_frame());
   }
 
-  // The instant that answers the question: the largest opening, else the first frame.
+  // The largest uplifted share, which the verdict states; of several such frames the one with the largest opening; else the first frame.
   private worst_frame(): number {
-    const { opening } = this.track;
-    return opening.reduce((worst, value, i) => (value > (opening[worst] as number) ? i : worst), 0);
+    const { opening, ratio } = this.track;
+    const worse = (a: number, b: number): boolean =>
+      ratio[a] !== ratio[b] ? (ratio[a] as number) > (ratio[b] as number) : (opening[a] as number) > (opening[b] as number);
+    return opening.reduce((worst, _value, i) => (worse(i, worst) ? i : worst), 0);
   }
 
   private set_factor(factor: number): void {
@@ -203,7 +215,7 @@ export class Player {
     this.scrub_.value = String(this.frame_);
     this.time_out_.textContent = time;
     this.ratio_out_.textContent = percent;
-    this.opening_out_.textContent = opening > 0 ? `${number(opening / scale.factor, 3)} ${scale.unit}` : "closed";
+    this.opening_out_.textContent = opening > NEGLIGIBLE ? `${number(opening / scale.factor, 3)} ${scale.unit}` : "in contact";
     this.scrub_.setAttribute("aria-valuetext", `${time}, ${percent} uplifted`);
     const x = px((STRIP_WIDTH * this.frame_) / Math.max(1, this.frames - 1));
     this.strip_now_.setAttribute("d", `M${x} 0V${STRIP_HEIGHT}`);

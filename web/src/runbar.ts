@@ -1,4 +1,4 @@
-// The bar that shows and hides runs in every figure at once; it stays in sight while figures scroll.
+// The bar that shows and hides runs in all figures at once; it stays visible while figures scroll.
 import { swatch } from "./chart";
 import { h } from "./dom";
 import { DASHES, FAILED_DASH, SLOTS } from "./palette";
@@ -32,6 +32,6 @@ export function run_bar(runs: Runs): HTMLElement {
     chips,
     h("span", { class: "run-bar-tools" },
       h("button", { type: "button", onclick: () => runs.set_hidden(runs.names, false) }, "All"),
-      failed.length > 0 && failed.length < runs.names.length ? h("button", { type: "button", onclick: only_sound }, "Sound only") : null),
+      failed.length > 0 && failed.length < runs.names.length ? h("button", { type: "button", onclick: only_sound }, "Without failed runs") : null),
   );
 }

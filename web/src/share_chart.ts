@@ -52,7 +52,7 @@ export function share_chart(base: BaseVerdict): HTMLElement | null {
     const sum = base.lost.reduce((m, [a, b]) => m + b - a, 0);
     const shown = base.lost.slice(0, SHOWN).map(([a, b]) => `${number(a, 4)} to ${number(b, 4)} s`).join(", ");
     const more = base.lost.length > SHOWN ? " and later" : "";
-    words.push(`without any contact ${base.lost.length === 1 ? "once" : `${base.lost.length} times`}, ${seconds(sum)} in all (${shown}${more})`);
+    words.push(`full loss of contact ${base.lost.length === 1 ? "once" : `${base.lost.length} times`}, ${seconds(sum)} in total (${shown}${more})`);
   }
   return h("figure", { class: "share-chart" },
     h("figcaption", {}, h("b", {}, "Uplifted area over time"), words.length > 0 ? ` · ${words.join(" · ")}` : ""), drawing);

@@ -51,7 +51,7 @@ export function spectrum_chart(chart: Chart): HTMLElement | null {
   const key = (kind: string, words: string): HTMLElement =>
     h("span", {}, s("svg", { viewBox: "0 0 22 8", width: 22, height: 8, "aria-hidden": "true" }, s("path", { class: `spectrum is-${kind}`, d: "M0 4H22" })), words);
   const peak = (series: Series): string => number(Math.max(...series.y.map((a) => a ?? 0)), 3);
-  const words = { raw: "uplifting", bonded: "bonded", broadened: "broadened" };
+  const words = { raw: "with uplift", bonded: "bonded", broadened: "broadened" };
   const named = (kind: keyof typeof words, series: Series): string => (kind === "broadened" && /envelope/.test(series.label) ? series.label.replace(/ by .*/, "") : words[kind]);
   return h("figure", { class: "share-chart spectrum-chart" },
     h("figcaption", {}, h("b", {}, chart.title.replace(": floor spectrum", "")), ` · ${chart.y.label.toLowerCase()} (${pretty_unit(chart.y.unit)})`),

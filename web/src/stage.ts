@@ -2,6 +2,7 @@
 // Rotations are those of the small-displacement model: a body moves by u + rz × r, so that the drawn gap is the
 // computed opening times the factor.
 import { s, px } from "./dom";
+import { NEGLIGIBLE } from "./format";
 import { carrier, contact_line, Map2, model_box, node_map, ordered_indices, outline_of, type Box, type Point } from "./geometry";
 import { arrow, hatched, path_of } from "./symbols";
 import type { Animation, Interface, InterfacePoint, Model, ModelNode, Motion } from "./types";
@@ -224,8 +225,8 @@ export class Stage {
       lower.push([x - p.nx * by, y + p.ny * by]);
       const mark = parts.points[i];
       mark?.setAttribute("transform", `translate(${px(x)} ${px(y)})`);
-      mark?.setAttribute("d", opening > 0 ? OPEN : CONTACT);
-      mark?.setAttribute("class", opening > 0 ? "pt-open" : "pt-contact");
+      mark?.setAttribute("d", opening > NEGLIGIBLE ? OPEN : CONTACT);
+      mark?.setAttribute("class", opening > NEGLIGIBLE ? "pt-open" : "pt-contact");
       this.add_pressure(parts.pressure, p, [x, y], pressures[i] ?? 0);
     }
     parts.gap.setAttribute("d", path_of([...upper, ...lower.reverse()], true));

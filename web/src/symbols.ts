@@ -68,6 +68,13 @@ export function support([x, y]: Point, dofs: string[]): SVGElement {
   return g;
 }
 
+// Of a label in the units of the drawing: height of its line, width of a character (an upper bound for the sans-serif fonts of browsers).
+const LINE = 13;
+const CHARACTER = 6.6;
+// How much farther from its anchor a label may stand, and from where on a line leads to it.
+const DISTANCES = [0, 8, 18, 30, 44, 60];
+const LEADER = 8;
+
 interface Rect {
   x: number;
   y: number;
@@ -98,26 +105,53 @@ export class Labels {
     }
   }
 
-  /** A label beside an anchor, `away` units from it. */
-  place([x, y]: Point, away: number, content: string, cls: string): SVGElement {
-    const w = content.length * 7.2 + 2;
-    const t = 13;
-    const d = away + 3;
-    const right: Point = [x + d, y - t / 2];
-    const sides: Point[] = [
-      right,
-      [x - d - w, y - t / 2],
-      [x + d * 0.8, y - d * 0.8 - t],
-      [x - d * 0.8 - w, y - d * 0.8 - t],
+  /**
+   * A label near an anchor, at least `away` units from it. Farther away a thin line leads to it. Nothing where no position is free: the
+   * symbol's tooltip holds the same text.
+   */
+  place(anchor: Point, away: number, content: string, cls: string): SVGElement | null {
+    const w = content.length * CHARACTER + 2;
+    for (const farther of DISTANCES) {
+      const box = this.candidates(anchor, away + 3 + farther, w).find((r) => this.free(r));
+      if (!box) continue;
+      this.taken_.push(box);
+      const text = s("text", { class: cls, x: px(box.x + 1), y: px(box.y + 10.5) }, content);
+      if (farther < LEADER) return text;
+      const end: Point = [Math.max(box.x, Math.min(anchor[0], box.x + w)), Math.max(box.y, Math.min(anchor[1], box.y + LINE))];
+      return s("g", {}, s("path", { class: "leader", d: path_of([anchor, end]) }), text);
+    }
+    return null;
+  }
+
+  /** A label inside of a rectangle from `low` to `high`: at its left, middle or right, as near to half of its height as is free. */
+  place_inside(low: Point, high: Point, content: string, cls: string): SVGElement | null {
+    const w = content.length * CHARACTER + 2;
+    const spare = high[0] - low[0] - w;
+    const middle = (low[1] + high[1]) / 2;
+    const reach = (high[1] - low[1] - LINE) / 2;
+    for (let farther = 0; spare >= 0 && farther <= Math.max(0, reach); farther += 6) {
+      for (const y of farther > 0 ? [middle + farther, middle - farther] : [middle]) {
+        const box = [0.03, 0.5, 0.97, 0.27, 0.73].map((share) => ({ x: low[0] + share * spare, y: y - LINE / 2, w, t: LINE })).find((r) => this.free(r));
+        if (!box) continue;
+        this.taken_.push(box);
+        return s("text", { class: cls, x: px(box.x + 1), y: px(box.y + 10.5) }, content);
+      }
+    }
+    return null;
+  }
+
+  private candidates([x, y]: Point, d: number, w: number): Rect[] {
+    const corners: Point[] = [
+      [x + d, y - LINE / 2],
+      [x - d - w, y - LINE / 2],
+      [x + d * 0.8, y - d * 0.8 - LINE],
+      [x - d * 0.8 - w, y - d * 0.8 - LINE],
       [x + d * 0.8, y + d * 0.8],
       [x - d * 0.8 - w, y + d * 0.8],
-      [x - w / 2, y - d - t],
+      [x - w / 2, y - d - LINE],
       [x - w / 2, y + d],
     ];
-    // where nothing is free it hides something, but stays in the picture
-    const [left, top] = sides.find(([at, up]) => this.free({ x: at, y: up, w, t })) ?? [Math.max(2, Math.min(right[0], this.width_ - 2 - w)), right[1]];
-    this.taken_.push({ x: left, y: top, w, t });
-    return s("text", { class: cls, x: px(left + 1), y: px(top + 10.5) }, content);
+    return corners.map(([left, top]) => ({ x: left, y: top, w, t: LINE }));
   }
 
   private free(r: Rect): boolean {

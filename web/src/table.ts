@@ -48,6 +48,8 @@ export class TableCard {
   private readonly runs_: Runs;
   private readonly shown_: Shown[];
   private readonly body_ = h("tbody");
+  private readonly box_ = h("div", { class: "table-box", tabindex: 0, role: "region" });
+  private readonly cut_note_ = h("p", { class: "cut-note", hidden: true }, "Scroll sideways for the remaining columns.");
   private readonly heads_: HTMLTableCellElement[] = [];
   private order_: Order = null;
 
@@ -57,6 +59,14 @@ export class TableCard {
     this.shown_ = table.columns.map((column) => this.prepare(column));
     this.element = this.build();
     this.fill();
+    new ResizeObserver(() => this.mark_cut()).observe(this.box_);
+  }
+
+  /** Tells when columns lie beyond the right edge. */
+  private mark_cut(): void {
+    const cut = this.box_.scrollWidth > this.box_.clientWidth + 1;
+    this.element.classList.toggle("is-cut", cut);
+    this.cut_note_.hidden = !cut;
   }
 
   get row_count(): number {
@@ -98,15 +108,14 @@ export class TableCard {
     const { table } = this;
     const heads = this.shown_.map(({ column, scale }) => this.head(column, scale));
     const save = (): void => download(`${file_name(table.id)}.csv`, "text/csv", table_csv(table));
+    this.box_.setAttribute("aria-label", table.title);
+    this.box_.append(h("table", {}, h("thead", {}, h("tr", {}, ...heads)), this.body_));
     return h(
       "figure",
       { class: "card table-card", id: `table-${table.id}` },
       h("header", {}, h("h3", {}, table.title), h("div", { class: "tools" }, h("button", { type: "button", class: "tool-csv", onclick: save }, "CSV"))),
-      h(
-        "div",
-        { class: "table-box", tabindex: 0, role: "region", "aria-label": table.title },
-        h("table", {}, h("thead", {}, h("tr", {}, ...heads)), this.body_),
-      ),
+      this.box_,
+      this.cut_note_,
       table.caption ? h("figcaption", {}, table.caption) : null,
     );
   }
@@ -171,7 +180,7 @@ export class TableCard {
     const value = row[column.key];
     const tag = first ? "th" : "td";
     const props = { class: `is-${column.kind}`, ...(first ? { scope: "row" } : {}) };
-    if (value === null || value === undefined || value === "") return h(tag, { ...props, title: "no value" }, "–");
+    if (value === null || value === undefined || value === "" || value === "-") return h(tag, { ...props, title: "No value" }, "–");
     if (column.kind === "status") return h(tag, props, status_chip(String(value)));
     if (is_number(value)) {
       const exact = `${value}${column.unit ? ` ${column.unit}` : ""}`;

@@ -260,6 +260,8 @@ export interface Animation {
   openings: Record<string, number[][]>;
   /** Same shape, pascal, > 0 in compression. */
   pressures?: Record<string, number[][]>;
+  /** Per interface, per frame: uplifted share of the area as the run counts it. Without it the page counts the open points. */
+  uplifted?: Record<string, number[]>;
 }
 
 /** Surface of a group of solids. Its cells are triangles, counter-clockwise seen from outside. */
@@ -344,6 +346,17 @@ export interface SpaceModel {
   loads: SpaceLoad[];
 }
 
+/** Values of all frames in a compact form; data.ts turns them into plain numbers before the page uses them. */
+export interface QuantisedFrames {
+  /** SI value of one level. */
+  unit: number;
+  /** Distance of neighbours in a frame: 3 for the displacements of nodes. */
+  stride: number;
+  /** Per frame: change of the levels since the frame before, minus the change of the neighbour `stride` entries earlier. */
+  differences: number[][];
+}
+
+/** The program writes `displacement`, `openings` and `pressures` as QuantisedFrames. */
 export interface SpaceAnimation {
   run: string;
   time: number[];
@@ -357,6 +370,8 @@ export interface SpaceAnimation {
   pressures: Record<string, number[][]>;
   /** Same shape, metres, magnitude. */
   slips?: Record<string, number[][]>;
+  /** Per interface, per frame: uplifted share of the area as the run counts it. Without it the page counts the open points. */
+  uplifted?: Record<string, number[]>;
 }
 
 export interface Report {

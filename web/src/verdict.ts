@@ -1,7 +1,7 @@
-// The first page: does it uplift, and so what? Headline, uplifted share over time, the bonded run beside, the user's limits, and what a
-// linear tension ratio would have said.
+// The first page: headline, uplifted share over time, comparison with the bonded model, the criteria of the case, and the estimate from
+// the tension ratio of a linear analysis.
 import { h, s, type Child } from "./dom";
-import { fixed, number, pick_scale } from "./format";
+import { fixed, NEGLIGIBLE, number, pick_scale, quantity_text } from "./format";
 import { share_chart } from "./share_chart";
 import { spectrum_chart } from "./spectrum_chart";
 import type { BaseVerdict, Chart, Criterion, CriterionState, FloorChange, Verdict, VerdictLevel, VerdictRow } from "./types";
@@ -10,12 +10,12 @@ const LEVEL_WORD: Record<VerdictLevel, string> = {
   none: "No uplift",
   uplift: "Uplift",
   overturned: "Overturned",
-  separated: "Left the ground",
+  separated: "Contact lost",
   failed: "Run failed",
   motion: "Ground motion",
 };
 
-// A tick, a lifted edge, a toppled block, a block in the air, a cross, a shaken line: shape tells the level without colour.
+// A tick, a lifted edge, a toppled block, a separated block, a cross, a seismogram: the shape shows the level without colour.
 const LEVEL_SIGN: Record<VerdictLevel, string> = {
   none: "M5 12.5L10 17.5L19 7",
   uplift: "M3 20H21M4 17L20 10M20 10V5M17.5 7.5L20 5L22.5 7.5",
@@ -29,21 +29,16 @@ function level_sign(level: VerdictLevel): SVGElement {
   return s("svg", { class: "sign", viewBox: "0 0 24 24", width: 34, height: 34, "aria-hidden": "true" }, s("path", { d: LEVEL_SIGN[level] }));
 }
 
-/** Keeps a number and its unit on one line. */
+/** Typography of a sentence from the program: minus signs, units as everywhere on the page, a number and its unit on one line. */
 function tied(text: string): string {
-  return text.replace(/(^|[ (])-(?=\d)/g, "$1\u2212").replace(/(\d) (?=(?:%|[µmkMG]?(?:m|s|g|N|Pa|J|Hz|rad|t)(?![a-z])))/g, "$1\u00a0");
+  return text
+    .replace(/(^|[ (])-(?=\d)/g, "$1\u2212")
+    .replace(/(\d [kMG]?N) m(?![a-z])/g, "$1·m")
+    .replace(/(\d k?m\/s)2\b/g, "$1²")
+    .replace(/(\d) (?=(?:%|[µmkMG]?(?:m|s|g|N|Pa|J|Hz|rad|t)(?![a-z])))/g, "$1\u00a0");
 }
 
-/** "1.79 MN·m" in the prefix of the larger of both; shares in per cent. */
-export function spoken(value: number, unit: string, largest = Math.abs(value)): string {
-  const scale = pick_scale(largest, unit);
-  return number(value / scale.factor, 3) + (scale.unit ? `\u00a0${scale.unit}` : "");
-}
-
-// Metres, radians, shares: less is nothing beside the precision of a run.
-const NOTHING = 1e-9;
-
-/** A value with no more decimals than make sense beside a range in which it still moves. */
+/** A value with no more decimals than its remaining variation justifies. */
 function within(value: number, swing: number, unit: string, largest: number): string {
   const scale = pick_scale(largest, unit);
   const places = (size: number, digits: number): number => Math.max(0, digits - 1 - Math.floor(Math.log10(size)));
@@ -69,17 +64,17 @@ function beside_table(base: BaseVerdict): HTMLElement | null {
     const largest = Math.max(Math.abs(value), Math.abs(other ?? 0));
     return h("tr", {},
       h("th", { scope: "row" }, label),
-      h("td", { title: time === undefined ? null : `at ${number(time, 4)} s` }, spoken(value, unit, largest)),
-      bonded ? h("td", {}, other === undefined ? "–" : spoken(other, unit, largest)) : null,
+      h("td", { title: time === undefined ? null : `at ${number(time, 4)} s` }, quantity_text(value, unit, largest)),
+      bonded ? h("td", {}, other === undefined ? "–" : quantity_text(other, unit, largest)) : null,
       bonded ? h("td", { class: "change" }, other === undefined ? "–" : change(value, other)) : null);
   };
-  const heads = bonded ? ["", "Uplifting", "Bonded", "Change"] : ["", "Largest"];
+  const heads = bonded ? ["", "With uplift", "Bonded", "Change"] : ["", "Largest"];
   return h("table", { class: "beside" },
     h("thead", {}, h("tr", {}, ...heads.map((text) => h("th", { scope: "col" }, text)))),
     h("tbody", {}, ...base.beside.map(row)));
 }
 
-/** Three bars: what a linear analysis sees, what that stands for, what happened. */
+/** Three bars: tension ratio of the linear analysis, uplift estimated from it, uplift computed. */
 function tension_bars(base: BaseVerdict): HTMLElement | null {
   const { linear } = base;
   if (!linear || (linear.tension <= 0 && linear.computed <= 0)) return null;
@@ -87,11 +82,11 @@ function tension_bars(base: BaseVerdict): HTMLElement | null {
     h("div", { class: `bar bar-${kind}` },
       h("span", { class: "bar-label" }, label),
       h("span", { class: "bar-track" }, share === null ? null : h("i", { style: `width:${Math.min(100, 100 * share).toFixed(1)}%` })),
-      h("b", {}, share === null ? "no answer" : percent(share)));
+      h("b", {}, share === null ? "not applicable" : percent(share)));
   return h("div", { class: "tension" },
-    h("h3", {}, "Linear tension ratio beside what happened"),
-    bar("linear", "tension, bonded run", linear.tension),
-    bar("predicted", "uplift by equal energy", linear.predicted),
+    h("h3", {}, "Tension ratio of the linear analysis and uplift"),
+    bar("linear", "tension, bonded model", linear.tension),
+    bar("predicted", "uplift estimated", linear.predicted),
     bar("computed", "uplift computed", linear.computed));
 }
 
@@ -103,12 +98,12 @@ function criterion_row(criterion: Criterion): HTMLElement {
   return h("li", { class: `criterion is-${state.replace(" ", "-")}` },
     h("span", { class: "state" }, h("i", { "aria-hidden": "true" }, STATE_SIGN[state]), ` ${state}`),
     h("span", { class: "what" }, label + (criterion.interface ? ` (${criterion.interface})` : "")),
-    h("span", { class: "value" }, value === null ? "not computed" : spoken(value, unit, largest), `, limit ${atLeast ? "≥" : "≤"} ${spoken(limit, unit, largest)}`),
+    h("span", { class: "value" }, value === null ? "not computed" : quantity_text(value, unit, largest), `, limit ${atLeast ? "≥" : "≤"} ${quantity_text(limit, unit, largest)}`),
     h("span", { class: "by" }, source));
 }
 
 function criteria_list(criteria: Criterion[]): HTMLElement {
-  if (criteria.length === 0) return h("p", { class: "no-criteria" }, "No criteria are set: ", h("code", {}, "[[verdict.criterion]]"), " in the case file holds limits against these numbers.");
+  if (criteria.length === 0) return h("p", { class: "no-criteria" }, "The case sets no criteria. A table ", h("code", {}, "[[verdict.criterion]]"), " in the case file sets a limit for a result.");
   const met = criteria.filter((c) => c.state === "met").length;
   return h("div", { class: "criteria" },
     h("h3", {}, `Criteria of the case: ${met} of ${criteria.length} met`),
@@ -121,7 +116,7 @@ function most_changed(floors: FloorChange[]): FloorChange | undefined {
   return floors.reduce<FloorChange | undefined>((best, each) => (best && size(best) >= size(each) ? best : each), undefined);
 }
 
-/** Floors in rows, frequency bands in columns; beside it the spectrum that changes most. */
+/** Floors in rows, frequency bands in columns; next to the table the spectrum that changes most. */
 function floor_block(floors: FloorChange[], charts: Chart[]): HTMLElement | null {
   if (floors.length === 0) return null;
   const bands = [...new Set(floors.flatMap((floor) => floor.bands.map(({ band }) => band)))];
@@ -133,7 +128,7 @@ function floor_block(floors: FloorChange[], charts: Chart[]): HTMLElement | null
   const most = most_changed(floors);
   const chart = most ? charts.find((each) => each.id === `floor_${most.floor}_${number(100 * most.damping, 4).replace(/\.?0+$/, "")}`) : undefined;
   return h("div", { class: "floors" },
-    h("h3", {}, "Floor spectra beside the bonded base: change of the peak in each band of frequency (Hz)"),
+    h("h3", {}, "Floor spectra compared with the bonded model: change of the peak in each frequency band (Hz)"),
     h("div", { class: "floors-columns" },
       h("div", { class: "floors-box", tabindex: 0, role: "region", "aria-label": "Change of the floor spectra" },
         h("table", { class: "beside" },
@@ -173,23 +168,23 @@ export function verdict_card(verdict: Verdict, charts: Chart[]): HTMLElement {
   );
 }
 
-/** What is left: one table over all interfaces. Null when the run did not come to rest. */
+/** Residual values of all interfaces in one table. Null when the run has none. */
 export function rest_table(verdict: Verdict): HTMLElement | null {
   const bases = verdict.interfaces.filter((base) => base.rest.length > 0);
   if (bases.length === 0) return null;
   const value = ({ value: v, unit, label, swing }: VerdictRow, largest: number): string =>
-    label === "Uplifted area" ? percent(v) : swing !== undefined && swing >= NOTHING ? within(v, swing, unit, largest) : spoken(Math.abs(v) < NOTHING ? 0 : v, unit, largest);
+    label === "Uplifted area" ? percent(v) : swing !== undefined && swing >= NEGLIGIBLE ? within(v, swing, unit, largest) : quantity_text(v, unit, largest);
   const rows = bases.flatMap((base) =>
     base.rest.map((row) => {
       const largest = Math.max(Math.abs(row.value), row.swing ?? 0);
       return h("tr", {},
         h("th", { scope: "row" }, bases.length > 1 ? `${row.label} (${base.name})` : row.label),
         h("td", {}, value(row, largest)),
-        h("td", {}, row.swing === undefined || row.swing < NOTHING ? "–" : `± ${value({ ...row, value: row.swing }, largest)}`));
+        h("td", {}, row.swing === undefined || row.swing < NEGLIGIBLE ? "–" : `± ${value({ ...row, value: row.swing }, largest)}`));
     }));
   return h("figure", { class: "card rest-card" },
     h("table", { class: "beside" },
-      h("thead", {}, h("tr", {}, ...["Left at the end", "Mean of the last tenth", "Still moves by"].map((text) => h("th", { scope: "col" }, text)))),
+      h("thead", {}, h("tr", {}, ...["Residual value", "Mean of the last tenth of the run", "Remaining variation"].map((text) => h("th", { scope: "col" }, text)))),
       h("tbody", {}, ...rows)),
-    h("figcaption", {}, "Rotation, settlement (downwards positive) and slip count from the state before the shaking."));
+    h("figcaption", {}, "Rotation, settlement (positive downwards) and slip are relative to the state before the shaking."));
 }

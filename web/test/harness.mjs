@@ -4,6 +4,7 @@ import { mkdtemp, readFile, writeFile } from "node:fs/promises";
 import { tmpdir } from "node:os";
 import { join } from "node:path";
 import { fileURLToPath } from "node:url";
+import { deflateSync } from "node:zlib";
 
 const root = fileURLToPath(new URL("..", import.meta.url));
 const FLAGS = [
@@ -16,11 +17,17 @@ const NO_WEBGL = ["--disable-gpu", "--disable-3d-apis"];
 
 export const DENSE_SAMPLES = 20000;
 
-/** The template with a document in it, as the program writes it. */
+/** The template with a document in it as plain JSON. */
 export async function inject(document) {
   const template = await readFile(join(root, "dist/report.html"), "utf8");
   const json = typeof document === "string" ? document : JSON.stringify(document);
   return template.replace("/*UPLIFT_DATA*/", () => json.replace(/<\//g, "<\\/"));
+}
+
+/** The template with compressed data, as the program writes it. */
+export async function inject_packed(document) {
+  const template = await readFile(join(root, "dist/report.html"), "utf8");
+  return template.replace("/*UPLIFT_DATA*/", () => deflateSync(JSON.stringify(document)).toString("base64"));
 }
 
 /** A history with many more samples than pixels, to exercise the drawing by pixel columns. */

@@ -6,7 +6,7 @@
 import { mkdir, readFile } from "node:fs/promises";
 import { join, resolve } from "node:path";
 import { pathToFileURL } from "node:url";
-import { Checks, DENSE_SAMPLES, inject, open, sample_report, start_browser, write_page } from "./harness.mjs";
+import { Checks, DENSE_SAMPLES, inject, inject_packed, open, sample_report, space_report, start_browser, write_page } from "./harness.mjs";
 import { check_space, check_space_sample } from "./space_checks.mjs";
 
 const args = process.argv.slice(2);
@@ -275,10 +275,15 @@ async function check_uplift_readout(page) {
       animation.set_frame(frame);
       let open = 0;
       let all = 0;
-      for (const [name, list] of Object.entries(areas)) list.forEach((a, i) => ((all += a), (open += source.openings[name][frame][i] > 0 ? a : 0)));
+      for (const [name, list] of Object.entries(areas)) {
+        const counted = list.reduce((sum, a, i) => sum + (source.openings[name][frame][i] > 1e-9 ? a : 0), 0);
+        const area = list.reduce((sum, a) => sum + a, 0);
+        all += area;
+        open += source.uplifted ? area * source.uplifted[name][frame] : counted;
+      }
       if (Math.abs(animation.ratio - open / all) > 1e-12) return false;
       const marks = document.querySelectorAll(".stage .pt-open").length;
-      if (marks !== Object.entries(source.openings).flatMap(([, f]) => f[frame]).filter((g) => g > 0).length) return false;
+      if (marks !== Object.entries(source.openings).flatMap(([, f]) => f[frame]).filter((g) => g > 1e-9).length) return false;
     }
     return true;
   });
@@ -402,9 +407,91 @@ async function check_phone() {
   await context.close();
 }
 
+/** Nothing is cut off on a desktop screen: tables show their last column, tiles hold their text, labels of the model are apart. */
+async function check_layout() {
+  for (const width of [1400, 1000, 400]) {
+    const { context, page } = await open(browser, url, { viewport: { width, height: 1000 } });
+    await page.evaluate(() => window.upliftReport.renderAll());
+    await page.waitForTimeout(200);
+    const found = await page.evaluate(() => {
+      const cut = (e) => e.scrollWidth > e.clientWidth + 1;
+      const name = (e) => `${e.className} in ${e.closest("[id]")?.id}`;
+      const tables = [...document.querySelectorAll(".table-box, .floors-box")].filter(cut);
+      const labels = [...document.querySelectorAll("#model-drawing > svg text")].map((text) => ({ text: text.textContent, box: text.getBBox() }));
+      const [, , w, h] = document.querySelector("#model-drawing > svg")?.getAttribute("viewBox").split(" ").map(Number) ?? [0, 0, 0, 0];
+      const meet = (a, b) => a.x < b.x + b.width && b.x < a.x + a.width && a.y + 1 < b.y + b.height && b.y + 1 < a.y + a.height;
+      return {
+        page: document.documentElement.scrollWidth - document.documentElement.clientWidth,
+        tables: tables.map(name),
+        untold: tables.filter((e) => e.matches(".table-card .table-box") && !e.closest(".choices") && e.parentElement.querySelector(".cut-note")?.hidden !== false).map(name),
+        tiles: [...document.querySelectorAll(".fact, .fact *, .readouts > div, .run-chips, .beside th, .beside td, .criterion > *")].filter(cut).map(name),
+        overlaps: labels.flatMap((a, i) => labels.slice(i + 1).filter((b) => meet(a.box, b.box)).map((b) => `${a.text} / ${b.text}`)),
+        outside: labels.filter(({ box }) => box.x < 0 || box.y < 0 || box.x + box.width > w || box.y + box.height > h).map(({ text }) => text),
+      };
+    });
+    check.ok(found.page <= 0, `the page is not wider than ${width} px`, `${found.page} px too wide`);
+    if (width === 1400) check.equal(found.tables.length, 0, `all tables show their last column at ${width} px (${found.tables.join("; ")})`);
+    check.equal(found.untold.length, 0, `a table that is cut at ${width} px says so (${found.untold.join("; ")})`);
+    check.equal(found.tiles.length, 0, `tiles hold their text at ${width} px (${found.tiles.join("; ")})`);
+    check.equal(found.overlaps.length, 0, `labels of the model do not overlap (${found.overlaps.join("; ")})`);
+    check.equal(found.outside.length, 0, `labels of the model lie inside the drawing (${found.outside.join("; ")})`);
+    await context.close();
+  }
+}
+
+/** The animation starts at the largest uplift, and with the share that the verdict states (one interface). */
+async function check_first_frame() {
+  const { context, page } = await open(browser, url);
+  const { ratio, largest, stated } = await page.evaluate(() => {
+    const { animation, space, report: data } = window.upliftReport;
+    const player = animation ?? space;
+    const source = (animation ? data.animations : data.spaceAnimations)[0];
+    const interfaces = (data.model ?? data.space)?.interfaces ?? [];
+    if (!player || player.frames === 0 || interfaces.length !== 1) return { ratio: 0, largest: 0, stated: null };
+    const shares = source.uplifted?.[interfaces[0].name];
+    return { ratio: player.ratio, largest: shares ? Math.max(...shares) : player.ratio, stated: shares ? Math.max(0, ...(data.verdict.interfaces[0]?.share ?? [])) : null };
+  });
+  check.ok(ratio >= largest - 1e-9, "the animation starts at the largest uplift", `${ratio} of ${largest}`);
+  if (stated !== null && stated > 0) check.ok(Math.abs(ratio - stated) < 1e-4, "which is the one that the verdict states", `${ratio}, ${stated}`);
+  await context.close();
+}
+
+/** Compressed data and quantised frames are read as what they were made of. */
+async function check_packed() {
+  const values = [[0, 1e-3, 0, 5e-4, 0, -2e-3], [1e-3, 2e-3, -1e-3, 0, 0, 1e-3], [0, 0, 0, 1e-3, 5e-4, 0]];
+  const unit = 5e-4;
+  const levels = values.map((row) => row.map((v) => Math.round(v / unit)));
+  const changes = levels.map((row, f) => row.map((v, i) => v - (f > 0 ? levels[f - 1][i] : 0)));
+  const differences = changes.map((row) => row.map((v, i) => v - (i >= 3 ? row[i - 3] : 0)));
+  const document = { format: "uplift-report-1", title: "Packed ✓", spaceAnimations: [{ run: "r", time: [0, 1, 2], displacement: { unit, stride: 3, differences }, openings: {}, pressures: {} }] };
+  const { context, page, log } = await open(browser, pathToFileURL(await write_page(await inject_packed(document))).href);
+  check.equal(await page.locator("h1").innerText(), "Packed ✓", "compressed data are read");
+  const read = await page.evaluate(() => window.upliftReport.report.spaceAnimations[0].displacement);
+  check.ok(read.every((row, f) => row.every((v, i) => Math.abs(v - values[f][i]) < 1e-15)), "quantised frames are read", JSON.stringify(read));
+  check.equal(log.console.length + log.network.length, 0, "without a message or a request");
+  await context.close();
+}
+
+/** Where nothing opens there is no map of gaps: it would be an empty grey area. */
+async function check_closed_maps() {
+  const closed = (document) => {
+    for (const animation of document.spaceAnimations) {
+      for (const frames of Object.values(animation.openings)) frames.forEach((row) => row.fill(1e-13));
+      delete animation.slips;
+    }
+    return document;
+  };
+  const { context, page } = await open(browser, pathToFileURL(await space_report(closed)).href);
+  await page.evaluate(() => window.upliftReport.renderAll());
+  check.equal(await page.locator(".plan-gap").count(), 0, "a base in contact has no map of gaps");
+  check.ok(/in contact everywhere/.test(await page.locator("#space .plan-readout").first().innerText()), "but says that it is in contact");
+  check.ok(!/\b0 nm|\b0\.0+ nm/.test(await page.locator("main").innerText()), "no length reads 0 nm");
+  await context.close();
+}
+
 async function check_other_pages() {
   const states = [
-    [await write_page(await readFile(new URL("../dist/report.html", import.meta.url), "utf8")), /holds no data/, "the template says that it has no data"],
+    [await write_page(await readFile(new URL("../dist/report.html", import.meta.url), "utf8")), /contains no data/, "the template says that it has no data"],
     [await write_page(await inject("{ not json")), /cannot be read/, "unreadable data are named"],
     [await write_page(await inject({ format: "uplift-report-99" })), /uplift-report-99/, "a foreign format is named"],
   ];
@@ -417,7 +504,7 @@ async function check_other_pages() {
   const bare = await open(browser, pathToFileURL(await write_page(await inject({ format: "uplift-report-1", title: "Bare" }))).href);
   check.ok(/Bare/.test(await bare.page.locator("h1").innerText()) && bare.log.console.length === 0, "a document with a title only is shown");
   await bare.context.close();
-  for (const [level, word] of [["motion", "GROUND MOTION"], ["separated", "LEFT THE GROUND"]]) {
+  for (const [level, word] of [["motion", "GROUND MOTION"], ["separated", "CONTACT LOST"]]) {
     const other = await open(browser, pathToFileURL(await write_page(await inject({ format: "uplift-report-1", title: "Level", verdict: { level, headline: "h" } }))).href);
     check.equal(await other.page.locator(".verdict-level").innerText(), word, `the level ${level} has its words`);
     check.ok((await other.page.locator(".sign path").getAttribute("d")) && other.log.console.length === 0, `the level ${level} has its sign`);
@@ -475,7 +562,11 @@ await check.group("check_space", () => check_space(page, check));
 await check.group("check_theme", () => check_theme(page));
 await check.group("check_print", () => check_print(page));
 await check.group("check_phone", check_phone);
+await check.group("check_layout", check_layout);
+await check.group("check_first_frame", check_first_frame);
 await check.group("check_other_pages", check_other_pages);
+await check.group("check_packed", check_packed);
+await check.group("check_closed_maps", check_closed_maps);
 if (!given) await check.group("check_space_sample", () => check_space_sample(browser, check, shots));
 check.equal(log.console.length, 0, `no error or warning in the console (${log.console[0] ?? ""})`);
 check.equal(log.network.length, 0, `no request beyond the file (${log.network[0] ?? ""})`);

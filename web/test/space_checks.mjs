@@ -313,7 +313,7 @@ async function check_pictures(path, check, shots) {
   await page.evaluate(() => window.upliftReport.renderAll());
   check.equal(await page.evaluate(() => window.upliftReport.space.stage.webgl), false, "no WebGL in this browser");
   check.equal(await page.evaluate(() => window.upliftScene !== undefined), false, "and three.js is not run");
-  check.ok(/no WebGL/.test(await page.locator(".space-note").innerText()), "the page says why there are pictures");
+  check.ok(/WebGL is not available/.test(await page.locator(".space-note").innerText()), "the page says why there are pictures");
   await check_space(page, check);
   await check_map_area(page, check);
   await check_directions(page, check);

@@ -143,6 +143,8 @@ Recorder::Recorder(const Model& model, const RunPlan& plan, const State& state, 
       result_(result),
       floors_(model, plan, steps, step, result) {
   wants_acceleration_ = records_accelerations(plan);
+  for (const Frame& frame : result.frames)
+    for (const double share : frame.uplifted) peak_uplift_ = std::max(peak_uplift_, share);
   const std::size_t expected_rows = static_cast<std::size_t>(steps / plan.every) + 2;
   const bool fresh = result_.table.empty();  // a later dynamic stage goes on in the same table
   if (fresh) {
@@ -336,7 +338,26 @@ void Recorder::flush() {
   for (std::size_t k = 0; k < most_.size(); ++k) append_rows(result_.table[k + 1], recent_.data() + k * apart);
 }
 
+void Recorder::finish() {
+  flush();
+  if (peak_frame_.displacement.size() == 0) return;
+  const auto next = std::ranges::lower_bound(result_.frames, peak_frame_.time, {}, &Frame::time);
+  if (next == result_.frames.end() || next->time != peak_frame_.time) result_.frames.insert(next, std::move(peak_frame_));
+}
+
 void Recorder::picture(const State& state) {
+  result_.frames.push_back(frame_of(state));
+}
+
+void Recorder::note_largest_uplift() {
+  double largest = peak_uplift_;
+  for (const InterfaceView& view : views_) largest = std::max(largest, view.open_area);
+  if (!(largest > peak_uplift_)) return;
+  peak_uplift_ = largest;
+  peak_frame_ = frame_of(state_);
+}
+
+Frame Recorder::frame_of(const State& state) const {
   Frame frame;
   frame.time = state.time;
   frame.displacement = model_.reduction * state.displacement;
@@ -353,7 +374,8 @@ void Recorder::picture(const State& state) {
     }
     first += interface.rows();
   }
-  result_.frames.push_back(std::move(frame));
+  for (const InterfaceView& view : views_) frame.uplifted.push_back(view.open_area);
+  return frame;
 }
 
 }  // namespace uplift

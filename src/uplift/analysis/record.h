@@ -44,10 +44,13 @@ class Recorder {
            const std::vector<InterfaceView>& views, long steps, double step, PageTaker& pages, RunResult& result);
   /// Notes the numbers of every column; they become a row of the table when `row` is set. Peaks and rows are made for many steps at a time.
   void record(bool row);
-  /// Peaks and rows of the last steps; nothing is recorded after it.
-  void finish() { flush(); }
-  /// Keeps a picture for the animation.
+  /// Peaks and rows of the last steps, and the frame of the largest uplift; nothing is recorded after it.
+  void finish();
+  /// Keeps a frame for the animation.
   void picture(const State& state);
+  /// Keeps the state as a frame when a larger share of an interface is uplifted than ever before. The frames at regular times miss a short
+  /// peak, and the animation starts at the peak.
+  void note_largest_uplift();
 
  private:
   static constexpr std::size_t many = 64;
@@ -67,6 +70,7 @@ class Recorder {
   Source source_of(const Request& request, const SparseRows& reduction) const;
   double made(const Source& source) const;
   double ground(const Request& request, double time) const;
+  Frame frame_of(const State& state) const;
   void flush();
 
   const Model& model_;
@@ -86,6 +90,8 @@ class Recorder {
   double before_ = 0;         // s: accelerations are the mean from here to the present time
   bool wants_acceleration_ = false;
   Vector acceleration_;
+  Frame peak_frame_;        // at the largest uplift of this stage, when it is larger than in the frames of the earlier stages
+  double peak_uplift_ = 0;  // largest share over all interfaces and steps
 };
 
 }  // namespace uplift

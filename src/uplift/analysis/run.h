@@ -132,8 +132,9 @@ struct Counts {
 
 struct Frame {
   double time = 0;
-  Vector displacement;       // full unknowns
-  Vector opening, pressure;  // normal rows of all interfaces [m], [Pa] compression > 0
+  Vector displacement;           // full unknowns
+  Vector opening, pressure;      // normal rows of all interfaces [m], [Pa] compression > 0
+  std::vector<double> uplifted;  // share of the area of every interface
 };
 
 /// Absolute acceleration of a floor at every step of the dynamic stages, from their beginning, whatever the output's `every` is.

@@ -160,6 +160,7 @@ bool Runner::dynamics(const Stage& stage, const Bulk& bulk) {
     viewer_.look(seen_->opening, seen_->mean_force, views_);
     note_views(step == 0 ? 0 : stage.step);
     recorder.record(step % plan_.every == 0 || step == steps);
+    if (picture_every > 0) recorder.note_largest_uplift();
     if (picture_every > 0 && step % picture_every == 0) recorder.picture(*seen_);
   };
   result_.steps.reserve(model_.interfaces.size(), static_cast<std::size_t>(steps) + 1,

@@ -16,8 +16,9 @@ using uplift::cli::Declared;
 using uplift::cli::Options;
 
 constexpr const char* exit_codes =
-    "Exit codes: 0 done, 2 bad input, 3 numerical failure (a run failed, or created energy beyond its limit, or a generated motion missed\n"
-    "its spectrum; results are kept and marked), 130 interrupted by Ctrl-C (files hold what was computed), 1 a bug.";
+    "Exit codes: 0 success, 2 bad input, 3 numerical failure (a run failed or exceeded its limit of spurious energy, or a generated "
+    "motion\n"
+    "does not fit its spectrum; results are kept and marked), 130 interrupted by Ctrl-C (the files contain what was computed), 1 a bug.";
 
 struct Choices {
   Options options;
@@ -34,85 +35,87 @@ CLI::App* add(CLI::App& app, const char* name, const char* summary, const char* 
 }
 
 void take_case(CLI::App* command, Options& options) {
-  command->add_option("case", options.file, "case file (TOML), or a folder with a case.toml")->required();
+  command->add_option("case", options.file, "case file (TOML), or folder that contains case.toml")->required();
 }
 void take_output(CLI::App* command, Options& options) {
   command->add_option("-o,--out", options.out,
-                      "folder of the results; default out/NAME. Earlier results there move to NAME.1, NAME.2, ...");
+                      "folder for the results (default out/NAME); earlier results are moved to NAME.1, NAME.2, ...");
   command->add_flag("-q,--quiet", options.quiet, "print errors only");
 }
 void take_json(CLI::App* command, Options& options) {
-  command->add_flag("--json", options.json, "print JSON for machines");
+  command->add_flag("--json", options.json, "print the result as JSON");
 }
 
 void declare_motion(CLI::App& app, Choices& given) {
   uplift::cli::MotionOptions& motion = given.motion;
   CLI::App* command =
-      add(app, "motion", "ground motions: peaks, intensities and spectra of records, processing, generation to a target spectrum",
+      add(app, "motion", "analyse ground motions (peaks, intensities, spectra), process them, or generate them for a target spectrum",
           "  uplift motion RSN8883.AT2 --damping 0.02,0.05 --frequencies rg_1_122\n"
           "  uplift motion quake.csv --unit cm/s2 --process \"baseline\" --process \"bandpass low=0.1 high=25\"\n"
           "  uplift motion --generate rg_1_60 pga=\"0.3 g_n\" duration=20 seed=7\n"
           "  uplift motion --generate eurocode_8 --generate eurocode_8 --generate \"eurocode_8 direction=vertical\" a_g=2 ground=C");
   command->add_option("words", motion.files,
-                      "files of recorded motions; with --generate: KEY=VALUE of the target and of the generation "
+                      "files of recorded motions; with --generate: parameters KEY=VALUE of the target and of the generation "
                       "(uplift describe target; uplift describe section generate)");
-  command->add_option("--unit", motion.record.unit, "unit of the numbers in the file, when it does not state it (g, cm/s2, m/s, ...)");
-  command->add_option("--step", motion.record.step, "time step [s] of files without times, or of the generated motion");
-  command->add_option("--format", motion.record.format, "format of the file, instead of the one found by content");
-  command->add_option("--column", motion.record.column, "name or number of the column of a table");
-  command->add_option("--process", motion.process, "a processing step: \"NAME KEY=VALUE ...\"; may be repeated (uplift describe process)")
+  command->add_option("--unit", motion.record.unit, "unit of the values if the file does not state it (g, cm/s2, m/s, ...)");
+  command->add_option("--step", motion.record.step, "time step [s] of a file without times, or of the generated motion");
+  command->add_option("--format", motion.record.format, "format of the file; by default it is recognised by the content");
+  command->add_option("--column", motion.record.column, "name or number of the column in a table");
+  command->add_option("--process", motion.process, "processing step \"NAME KEY=VALUE ...\"; can be repeated (see uplift describe process)")
       ->allow_extra_args(false)
       ->take_all();
-  command->add_option("--generate", motion.generate, "a target spectrum: \"NAME KEY=VALUE ...\"; repeated: independent components")
+  command
+      ->add_option("--generate", motion.generate,
+                   "target spectrum \"NAME KEY=VALUE ...\"; repeat it for statistically independent components")
       ->allow_extra_args(false)
       ->take_all();
-  command->add_option("--damping", motion.dampings, "damping ratios of the response spectra, with commas between them")
+  command->add_option("--damping", motion.dampings, "damping ratios of the response spectra, separated by commas")
       ->delimiter(',')
       ->allow_extra_args(false)
       ->check(CLI::Range(0.0, 0.99));
   command->add_option("--frequencies", motion.frequencies,
-                      "frequencies [Hz] of the response spectra: a list with commas, FROM:TO:COUNT (equally spaced in the logarithm) or "
-                      "rg_1_122 (the 75 of Regulatory Guide 1.122); default 0.1:100:300");
+                      "frequencies [Hz] of the response spectra: a list separated by commas, FROM:TO:COUNT (logarithmic spacing), or "
+                      "rg_1_122 (the 75 frequencies of Regulatory Guide 1.122); default 0.1:100:300");
   take_output(command, given.options);
   take_json(command, given.options);
 }
 
 void declare(CLI::App& app, Choices& given) {
   Options& options = given.options;
-  CLI::App* command = add(app, "new", "write a commented case to start from", "  uplift new tower          writes tower/case.toml");
-  command->add_option("name", given.name, "folder to make")->required();
+  CLI::App* command = add(app, "new", "write a commented case as a starting point", "  uplift new tower          writes tower/case.toml");
+  command->add_option("name", given.name, "folder to create")->required();
 
-  command = add(app, "check", "validate a case and say what will be computed, without running it",
+  command = add(app, "check", "validate a case and print what a run would compute",
                 "  uplift check tower/case.toml\n  uplift check examples/01_oscillator --json");
   take_case(command, options);
   take_json(command, options);
 
   command =
-      add(app, "run", "run a case: its model, and the same model with a bonded base beside it",
+      add(app, "run", "run a case and, for comparison, the same model with a bonded base",
           "  uplift run tower/case.toml\n  uplift run tower --out results/tower --quiet\n  uplift run tower --json | python3 -m json.tool");
   take_case(command, options);
   take_output(command, options);
   take_json(command, options);
 
-  command = add(app, "compare", "run all variants of a case side by side", "  uplift compare examples/01_oscillator/case.toml");
+  command = add(app, "compare", "run all variants of a case and compare them", "  uplift compare examples/01_oscillator/case.toml");
   take_case(command, options);
   take_output(command, options);
   take_json(command, options);
 
-  command =
-      add(app, "trust", "repeat a run with half the step, other stiffness, tolerance, method and mesh: how far its numbers can be trusted",
-          "  uplift trust tower/case.toml\n  uplift trust examples/05_bridge_pier --json");
+  command = add(app, "trust",
+                "estimate the reliability of the results: repeat a run with half the step, other stiffness, tolerance, method and mesh",
+                "  uplift trust tower/case.toml\n  uplift trust examples/05_bridge_pier --json");
   take_case(command, options);
   take_output(command, options);
   take_json(command, options);
 
-  command = add(app, "modes", "natural frequencies and shapes, bonded and with the base free",
+  command = add(app, "modes", "compute natural frequencies and mode shapes, with the base bonded and with the base free",
                 "  uplift modes tower\n  uplift modes tower --count 10 --json");
   take_case(command, options);
   command->add_option("-n,--count", given.modes, "number of modes")->check(CLI::Range(1, 1000));
   take_json(command, options);
 
-  command = add(app, "describe", "equations, parameters, units and sources of every part, and the tables of a case file",
+  command = add(app, "describe", "print equations, parameters, units and sources of every part, and the tables of a case file",
                 "  uplift describe\n  uplift describe law\n  uplift describe law sdm\n  uplift describe section interface.footing");
   command->add_option("family", given.family, "law, method, impact, scheme, function, process, target, solver or section");
   command->add_option("name", given.name, "name of the part or table");
@@ -121,8 +124,8 @@ void declare(CLI::App& app, Choices& given) {
 
   command = add(app, "replay", "solve a stored interface problem alone, with any method",
                 "  uplift replay out/tower/problem_run.json --method lagrange\n  uplift replay out/tower/problem_run.json --all");
-  command->add_option("file", options.file, "problem_*.json, written when a step failed")->required();
-  command->add_option("-m,--method", given.method, "contact method (see uplift describe method)");
+  command->add_option("file", options.file, "file problem_*.json, which a run writes when a step fails")->required();
+  command->add_option("-m,--method", given.method, "contact method, see uplift describe method");
   command->add_flag("--all", given.all, "compare all methods");
   take_json(command, options);
 
@@ -162,12 +165,12 @@ int dispatch(const CLI::App& app, const Choices& given) {
   return cli::completion(given.shell, declared(app));
 }
 
-/// A word of the command line so that it can be copied back: in quotes when it holds a blank.
+/// A word of the command line as it can be typed again: in quotes when it contains a blank.
 std::string as_typed(const std::string& word) {
   return word.find(' ') == std::string::npos ? word : fmt::format("\"{}\"", word);
 }
 
-/// A first word that is no command is named, before CLI11 only says that one is missing.
+/// Reports an unknown command by its name; CLI11 would only report that a command is missing.
 void check_command(const CLI::App& app, const std::string& word) {
   if (word.empty() || word.front() == '-') return;
   std::vector<std::string> names;
@@ -177,9 +180,9 @@ void check_command(const CLI::App& app, const std::string& word) {
                            uplift::nearest_name(word, names));
 }
 
-/// Parses the command line and runs the command; what it throws is told to the user by main.
+/// Parses the command line and runs the command; main reports its exceptions.
 int program(int count, char** words) {
-  CLI::App app{"uplift: does a structure lift off its base in an earthquake, and what does that do to it?", "uplift"};
+  CLI::App app{"uplift: analysis of the uplift of foundations in earthquakes and of its consequences for the structure", "uplift"};
   app.require_subcommand(1);
   app.set_version_flag("--version", UPLIFT_VERSION);
   app.footer(
@@ -209,8 +212,7 @@ int main(int count, char** words) {
     uplift::cli::complain(fmt::format("error: {}", error.what()));
     return uplift::cli::Exit::bad_input;
   } catch (const std::bad_alloc&) {
-    uplift::cli::complain(
-        "error: wanted more memory than is free: coarsen the mesh, make the model smaller, or run it on a machine with more memory");
+    uplift::cli::complain("error: not enough memory. Coarsen the mesh, reduce the model, or use a machine with more memory.");
     return uplift::cli::Exit::numerical_failure;
   } catch (const std::exception& error) {
     uplift::cli::complain(fmt::format("internal error: {}", error.what()));

@@ -13,9 +13,9 @@ namespace {
 constexpr const char* template_text =
     R"TOML(# A case for uplift. Numbers may carry units ("5 m", "20000 MPa"); a bare number is SI (m, kg, s, N, Pa, rad).
 # x points right, y points up, rotations are counter-clockwise. An opening is positive, a tension is positive.
-# What every key means: `uplift describe section beam`, `uplift describe law sdm`, ...
+# `uplift describe section beam`, `uplift describe law sdm`, ... explain every key.
 title = "{0}"
-description = "A slender tower on a footing that may lift off."
+description = "A slender tower on a footing that may uplift."
 
 # ---- the structure ----
 
@@ -27,7 +27,7 @@ base = ["0 m", "0 m"]
 name = "shaft"
 nodes = ["base", "top"]
 E = "30 GPa"
-I = "0.5 m4"                          # no A: the beam does not change its length
+I = "0.5 m4"                          # without A the beam is inextensible
 
 [[mass]]
 node = "top"
@@ -54,15 +54,15 @@ name = "soil"
 [interface.footing]                   # joint points under a rigid footing
 body = "base"
 width = "4 m"
-thickness = "4 m"                     # out of the plane
+thickness = "4 m"                     # perpendicular to the plane of the model
 points = 21
 
 [interface.law]                       # other laws: `uplift describe law`
-type = "sdm"                          # strong discontinuity: opens, and closes again
-K_n = "50 MPa/m"                      # stiffness of the closed joint per area (subgrade modulus)
+type = "sdm"                          # strong discontinuity method: opens and closes again
+K_n = "50 MPa/m"                      # stiffness per area of the joint in contact (subgrade modulus)
 F_u = "1 kPa"                         # tensile strength
-G_f = "0.1 J/m2"                      # energy to open a unit area
-F_c = "-0.5 kPa"                      # closure stress: small beside the bearing pressure
+G_f = "0.1 J/m2"                      # fracture energy per area
+F_c = "-0.5 kPa"                      # closure stress: small compared with the bearing pressure
 tangential = "none"
 
 # ---- the loads ----
@@ -75,13 +75,13 @@ shape = {{ type = "half_sine", duration = "0.3 s" }}
 name = "wind gust"
 node = "top"
 force = ["300 kN", 0]
-function = "pulse"                    # without a function a load is constant and part of the static stage
+function = "pulse"                    # a load without a function is constant and acts from the static stage on
 
-# An earthquake instead of the gust: a recorded motion, which drives the ground under its name.
+# An earthquake instead of the gust: a recorded motion, used as a function by its name.
 # [[record]]
 # name = "quake"
-# file = "quake.at2"                  # its unit and step are read from it; keys for files that do not say: `uplift describe section record`
-#                                     # or made for a spectrum: generate = {{ target = {{ type = "rg_1_60", pga = "2 m/s2" }}, seed = 1 }}
+# file = "quake.at2"                  # unit and step are read from the file; if it does not state them, see `uplift describe section record`
+#                                     # or generated for a spectrum: generate = {{ target = {{ type = "rg_1_60", pga = "2 m/s2" }}, seed = 1 }}
 #
 # [[ground_acceleration]]
 # direction = [1, 0]
@@ -89,7 +89,7 @@ function = "pulse"                    # without a function a load is constant an
 
 # ---- the analysis ----
 
-[damping]                             # of the structure; it never acts across an open interface
+[damping]                             # of the structure; it does not act across an open interface
 rayleigh = [{{ frequency = "1 Hz", ratio = 0.02 }}, {{ frequency = "10 Hz", ratio = 0.02 }}]
 
 [[stage]]                             # first the weight ...
@@ -101,9 +101,9 @@ duration = "5 s"
 step = "1 ms"
 
 [output]
-every = 1                             # record every step; motion of top and base, forces and energies come by themselves
+every = 1                             # record every step; motion of top and base, forces and energies are included automatically
 
-[[output.history]]                    # and what else is wanted
+[[output.history]]                    # further quantities
 interface = "soil"
 point = 1
 quantity = "opening"
@@ -131,7 +131,7 @@ int new_case(const std::string& name) {
   std::error_code error;
   if (fs::exists(file, error)) throw InputError({file.string(), 0}, "", "the name of a new case", "a case that exists already");
   fs::create_directories(folder, error);
-  if (error) throw InputError({folder.string(), 0}, "", "a folder that can be made", error.message());
+  if (error) throw InputError({folder.string(), 0}, "", "a folder that can be created", error.message());
   std::string title = folder.filename().empty() ? folder.parent_path().filename().string() : folder.filename().string();
   for (char& c : title)
     if (c == '"' || c == '\\') c = '_';

@@ -2,6 +2,8 @@
 
 #include <fmt/format.h>
 
+#include "uplift/io/base64.h"
+#include "uplift/io/deflate.h"
 #include "uplift/io/report_motions.h"
 
 namespace uplift {
@@ -15,7 +17,7 @@ void write_section(JsonWriter& json, const char* id, std::string_view title, std
 
 std::string floors_text(const ReportInput& input) {
   std::string text =
-      "What equipment on a floor feels: largest pseudo-acceleration of a damped oscillator of each frequency that stands there.";
+      "Response spectra of the floor accelerations: the largest pseudo-acceleration of equipment with a given frequency and damping.";
   std::string names;
   for (const ReportRun& run : input.runs)
     if (run.built->plan.method->constrains() && !run.spec->bonded && run.result->group == input.runs.front().result->group)
@@ -25,31 +27,34 @@ std::string floors_text(const ReportInput& input) {
 }
 
 void write_sections(JsonWriter& json, const ReportInput& input) {
-  constexpr std::string_view law = "The law of the interface, driven through openings and closings.";
+  constexpr std::string_view law = "Response of the interface law to a sequence of openings and closings.";
   json.begin_array();
   if (statics_alone(input.runs.front().built->plan)) {
-    write_section(json, "rest", "Under the constant loads", "How the base stands at the end of the static stages.");
+    write_section(json, "rest", "State under the static loads", "State of the base at the end of the static stages.");
     write_section(json, "law", "Interface law", law);
     json.end_array();
     return;
   }
-  write_section(json, "rest", "After the shock", "How the base stands when the run ends, beside how it stood before.");
-  write_section(json, "loads", "Loads", "What acts on the structure.");
+  write_section(json, "rest", "Residual state", "State of the base at the end of the run, compared with the state before the shaking.");
+  write_section(json, "loads", "Loads", "Loads on the structure over time.");
   if (!motions_of(input.runs).empty())
-    write_section(json, "motions", "Ground motions", "Recorded and generated motions that drive the model.");
-  write_section(json, "response", "Response", "Motion of the top and of the base.");
-  write_section(json, "interface", "Interface",
-                "What the interface carries and how far it opens. Uplifted area is counted by gap, never by zero pressure.");
+    write_section(json, "motions", "Ground motions", "Recorded and generated ground motions that excite the model.");
+  write_section(json, "response", "Response", "Displacements and velocities of the top and of the base.");
+  write_section(
+      json, "interface", "Interface",
+      "Forces in the interface and its opening. The uplifted area is the area with a gap; zero pressure alone does not count as uplift.");
   if (has_floors(input)) write_section(json, "floors", "Floor spectra", floors_text(input));
   if (input.compared && input.runs.size() > 1 && input.runs.back().result->group != input.runs.front().result->group)
     write_section(
         json, "others", "Other dampings and motions",
-        "The same variants with the other dampings and motions of the case; without damping nothing hides an error of the velocity.");
+        "The same variants with the other dampings and motions of the case. Without damping, numerical errors of the velocity remain "
+        "visible.");
   if (input.trust && !input.trust->spectra.empty())
     write_section(json, "trust", "Trust bands of the floor spectra",
-                  "Every spectrum over all runs in which one choice of the computation was changed.");
+                  "Range of each floor spectrum over all runs in which one computational choice was changed.");
   write_section(json, "energy", "Energy",
-                "Every step keeps a balance of energy. What it does not explain was created (or lost) by the computation.");
+                "The energy balance is evaluated at every step. Its residual is the numerical energy error: energy that the computation "
+                "created (positive) or lost (negative).");
   write_section(json, "law", "Interface law", law);
   json.end_array();
 }
@@ -98,16 +103,11 @@ std::string report_page(const std::string& json) {
   const std::string_view page = report_template();
   const std::size_t at = page.find(placeholder);
   if (page.empty() || at == page.npos) return {};
+  const std::string packed = deflated(json);
   std::string out;
-  out.reserve(page.size() + json.size() + 1024);
+  out.reserve(page.size() + base64_length(packed.size()));
   out += page.substr(0, at);
-  // "</" inside the data would end the script element that holds them.
-  std::size_t from = 0;
-  for (std::size_t slash; (slash = json.find("</", from)) != json.npos; from = slash + 2) {
-    out.append(json, from, slash - from);
-    out += "<\\/";
-  }
-  out.append(json, from);
+  append_base64(out, packed);
   out += page.substr(at + placeholder.size());
   return out;
 }

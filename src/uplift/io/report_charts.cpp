@@ -85,7 +85,8 @@ Chart energy_error_chart(const char* id, const char* section, const std::string&
   Chart chart{id,
               section,
               title,
-              "Residual of the energy balance over the largest external work. Zero is right; above zero the computation created energy.",
+              "Residual of the energy balance divided by the largest external work. It should be zero; a positive value means that the "
+              "computation created energy.",
               {"Time", "s"},
               {"Energy error", "1"},
               {}};
@@ -95,9 +96,13 @@ Chart energy_error_chart(const char* id, const char* section, const std::string&
 }
 
 Chart ledger_chart(const ReportRun& run) {
-  Chart chart{
-      "energy_ledger", "energy", "Energy ledger: " + run.result->label, "Where the energy is. The residual must be zero.", {"Time", "s"},
-      {"Energy", "J"}, {}};
+  Chart chart{"energy_ledger",
+              "energy",
+              "Energy ledger: " + run.result->label,
+              "Terms of the energy balance over time. The residual should be zero.",
+              {"Time", "s"},
+              {"Energy", "J"},
+              {}};
   struct Term {
     Column kind;
     const char* label;
@@ -120,7 +125,7 @@ Chart ledger_chart(const ReportRun& run) {
 
 /// The loads of the case over time: the sum of the forces of each, on a node or on faces.
 Chart load_chart(const Case& read, const ReportRun& run) {
-  Chart chart{"loads", "loads", "Loads", "Forces on nodes and faces.", {"Time", "s"}, {"Force", "N"}, {}};
+  Chart chart{"loads", "loads", "Loads", "Resultant force of each load on nodes and faces.", {"Time", "s"}, {"Force", "N"}, {}};
   const Model& model = run.built->model;
   const auto along = [&](int axis) {
     return axis == model.space.up() ? "vertical" : model.space.dimension == 2 ? "horizontal" : axis == 0 ? "along x" : "along y";
@@ -156,11 +161,11 @@ Chart load_chart(const Case& read, const ReportRun& run) {
 Chart sweep_chart(const ComparisonSummary& compared) {
   Chart chart{"stiffness_sweep",
               "energy",
-              "Energy created against the stiffness of the joint",
-              "Largest energy created over the energy put in, for the traction at the end of the step and the path-averaged traction; "
-              "values below 1e-16 are drawn there.",
+              "Spurious energy against the stiffness of the joint",
+              "Largest spurious energy divided by the external work, for the end-of-step traction and the path-averaged traction. "
+              "Values below 1e-16 are drawn at 1e-16.",
               {"Stiffness ratio k F", "1", true},
-              {"Energy created", "1", true},
+              {"Spurious energy", "1", true},
               {}};
   Curve path{"path average", "", {}, {}, false, false}, end{"end of step", "", {}, {}, true, false};
   for (const SweepRow& row : compared.sweep) {
@@ -177,6 +182,12 @@ Chart sweep_chart(const ComparisonSummary& compared) {
 std::string about(const Built& built) {
   if (built.model.space.dimension == 2) return "Counter-clockwise positive.";
   return fmt::format("About the {} axis, right-handed.", built.sway == ux ? "y" : "x");
+}
+
+/// Sign of the base moment of a horizontal force at the top that acts in the positive direction: its lever arm points upwards, and the
+/// axis of the moment is z in the plane, y for a sway along x, x for a sway along y.
+double sign_of_moment(const Built& built) {
+  return built.model.space.dimension == 3 && built.sway == ux ? 1 : -1;
 }
 
 /// Motion of the top and of the base for some runs, in the order of the paper's figures 5 and 6.
@@ -201,13 +212,13 @@ std::vector<View> motion_views(const Built& built) {
 }
 
 std::vector<View> interface_views(const Built& built) {
-  return {{"base_moment", "interface", "Base moment", "Moment of the interface about its middle. " + about(built), "Moment", "N m",
+  return {{"base_moment", "interface", "Base moment", "Moment of the interface about its centre. " + about(built), "Moment", "N m",
            built.base_moment(), 0, 1},
           {"base_axial", "interface", "Vertical force of the base", "Compression is negative.", "Force", "N", Column::axial, 0, 1},
-          {"base_shear", "interface", "Base shear", "Shear of the interface.", "Force", "N", Column::shear, 0, 1},
-          {"uplifted_ratio", "interface", "Uplifted share of the base", "Share of the area with an open gap.", "Uplifted share", "1",
+          {"base_shear", "interface", "Base shear", "Shear force in the interface.", "Force", "N", Column::shear, 0, 1},
+          {"uplifted_ratio", "interface", "Uplifted area of the base", "Share of the area with a gap.", "Uplifted share", "1",
            Column::uplifted_ratio, 0, 1},
-          {"max_opening", "interface", "Largest gap", "Largest opening of all points.", "Gap", "m", Column::max_opening, 0, 1},
+          {"max_opening", "interface", "Largest gap", "Largest opening of all interface points.", "Gap", "m", Column::max_opening, 0, 1},
           {"max_pressure", "interface", "Largest pressure", "Largest pressure of all points, at the end of each step.", "Pressure", "Pa",
            Column::max_pressure, 0, 1}};
 }
@@ -219,22 +230,23 @@ void write_loops(JsonWriter& json, const ReportInput& input, const std::vector<R
     const double height =
         built.model.nodes[static_cast<std::size_t>(built.top)].position[built.model.space.up()] - reference[built.model.space.up()];
     if (height > 0)
-      write_chart(json, *input.read,
-                  loop_chart({"force_displacement",
-                              "response",
-                              "Force and displacement",
-                              fmt::format("Base moment over the height of {:g} m (the horizontal force at the top that it amounts to) "
-                                          "against the displacement of the top.",
-                                          height),
-                              {"Displacement of the top", "m"},
-                              {"Moment / height", "N"},
-                              {}},
-                             runs, {Column::displacement, built.top_sway()}, {built.base_moment(), 0}, 1 / height));
+      write_chart(
+          json, *input.read,
+          loop_chart({"force_displacement",
+                      "response",
+                      "Force against displacement",
+                      fmt::format("Equivalent horizontal force at the top, positive in the direction of positive displacement: base "
+                                  "moment divided by the height of {:g} m.",
+                                  height),
+                      {"Displacement of the top", "m"},
+                      {"Equivalent force", "N"},
+                      {}},
+                     runs, {Column::displacement, built.top_sway()}, {built.base_moment(), 0}, sign_of_moment(built) / height));
   }
   write_chart(json, *input.read,
               loop_chart({"moment_rotation",
                           "interface",
-                          "Moment and rotation",
+                          "Moment against rotation",
                           "Base moment against the rotation of the interface.",
                           {"Rotation", "rad"},
                           {"Moment", "N m"},

@@ -59,7 +59,7 @@ Chart spectrum_chart(const ReportInput& input, const FloorRequest& floor, std::s
     chart.curves.push_back(spectrum_curve(run.result->label, run.result->label, input.floors->runs[i].floors[k].raw[d]));
     chart.curves.back().dash = run.spec->bonded;
   }
-  chart.caption = "Raw; the bonded run dashed.";
+  chart.caption = "Raw spectra; the bonded model is dashed.";
   if (const FloorEnvelope* all = motion_envelope(input)) {
     const FloorChange& change = all->beside[k][d];
     chart.curves.push_back({"envelope of the bonded runs", "", change.frequencies, change.bonded, true, false});
@@ -82,8 +82,8 @@ Chart spectrum_chart(const ReportInput& input, const FloorRequest& floor, std::s
 Chart ratio_chart(const ReportInput& input, const FloorRequest& floor, std::size_t k) {
   Chart chart{"floor_ratio_" + floor.name,
               "floors",
-              floor.name + ": floor spectrum beside the bonded base" + shown_group(input),
-              "Raw spectrum over that of the bonded run; above 1 uplift makes it worse for equipment of this frequency.",
+              floor.name + ": floor spectrum relative to the bonded model" + shown_group(input),
+              "Raw spectrum divided by that of the bonded model. Above 1, uplift increases the demand on equipment of this frequency.",
               {"Frequency", "Hz", true},
               {"Ratio to bonded", "1"},
               {}};
@@ -101,8 +101,8 @@ Chart ratio_chart(const ReportInput& input, const FloorRequest& floor, std::size
   if (const FloorEnvelope* all = motion_envelope(input)) {
     const FloorChange& change = all->beside[k].front();
     chart.curves.push_back(
-        {fmt::format("envelope of {} runs over that of the bonded runs, {} damping", all->runs, percent_of_damping(change.damping)), "",
-         change.frequencies, change.ratio, true, false});
+        {fmt::format("envelope of {} runs divided by that of the bonded runs, {} damping", all->runs, percent_of_damping(change.damping)),
+         "", change.frequencies, change.ratio, true, false});
   }
   std::erase_if(chart.curves, [](const Curve& curve) { return curve.x.empty(); });
   return chart;
@@ -142,15 +142,15 @@ void write_floor_table(JsonWriter& json, const ReportInput& input) {
   json.begin_object().member("id", "floors").member("title", "Floor spectra").member("rowGroup", "floor");
   json.member(
       "caption",
-      "Zero period: largest absolute acceleration of the floor, what rigid equipment feels; then the largest pseudo-acceleration. By "
-      "bands of frequency: change of the largest value in the band beside the bonded run.");
+      "Zero period: largest absolute acceleration of the floor, which is the demand on rigid equipment. Peak: largest "
+      "pseudo-acceleration and its frequency. Frequency bands: change of the largest value in the band compared with the bonded model.");
   json.key("columns").begin_array();
   write_column(json, {"run", "Run", "", "text", 0});
   if (grouped) write_column(json, {"group", "Case", "", "text", 0});
   for (const TableColumn& column : {TableColumn{"damping", "Damping", "", "percent", 2},
                                     {"rigid", "Zero period", "m/s2", "number", 4},
                                     {"peak", "Peak", "m/s2", "number", 4},
-                                    {"at", "at", "Hz", "number", 3}})
+                                    {"at", "Peak at", "Hz", "number", 3}})
     write_column(json, column);
   const bool beside = std::ranges::any_of(input.floors->runs, [](const FloorRun& run) { return !run.beside.empty(); });
   for (const FrequencyBand& band : frequency_bands(plan.floor_bands)) {

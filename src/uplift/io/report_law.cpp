@@ -31,14 +31,13 @@ double shown_closing(const Values& law, const InterfaceLaw& driven, double openi
 }  // namespace
 
 Chart law_chart(const ReportRun& run) {
-  Chart chart{
-      "law",
-      "law",
-      "Interface law",
-      "Normal traction while the interface is opened and closed three times, each time farther; dashed: the largest opening so far.",
-      {"Opening", "m"},
-      {"Traction", "Pa"},
-      {}};
+  Chart chart{"law",
+              "law",
+              "Interface law",
+              "Normal traction while the interface opens and closes three times, each time farther. Dashed: largest opening so far.",
+              {"Opening", "m"},
+              {"Traction", "Pa"},
+              {}};
   if (run.built->model.interfaces.empty()) return chart;
   const Interface& interface = run.built->model.interfaces.front();
   if (!interface.law) return chart;
@@ -72,7 +71,7 @@ Chart law_chart(const ReportRun& run) {
   const double bottom = *least, top = *most;
   chart.curves.push_back(std::move(path));
   for (std::size_t i = 0; i < reached.size(); ++i)
-    chart.curves.push_back({"[u]max after opening " + std::to_string(i + 1),
+    chart.curves.push_back({"largest opening, cycle " + std::to_string(i + 1),
                             "",
                             {reached[i], reached[i]},
                             {0.25 * bottom, top > 0 ? top : -0.25 * bottom},

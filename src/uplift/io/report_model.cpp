@@ -271,6 +271,26 @@ void write_points(JsonWriter& json, const Built& built, const RunResult& result,
 
 }  // namespace
 
+void write_uplifted(JsonWriter& json, const Model& model, const std::vector<const Frame*>& frames) {
+  json.key("uplifted").begin_object();
+  for (std::size_t k = 0; k < model.interfaces.size(); ++k) {
+    json.key(model.interfaces[k].name).begin_array();
+    for (const Frame* frame : frames) json.value(frame->uplifted[k]);
+    json.end_array();
+  }
+  json.end_object();
+}
+
+double uplifted_share(const Model& model, const Frame& frame) {
+  double open = 0, all = 0;
+  for (std::size_t k = 0; k < model.interfaces.size(); ++k) {
+    const double area = model.interfaces[k].area.sum();
+    open += frame.uplifted[k] * area;
+    all += area;
+  }
+  return all > 0 ? open / all : 0;
+}
+
 std::set<int> nodes_used(const Case& read, const Built& built) {
   std::set<int> nodes;
   for (const char* kind : {"mass", "support", "load"})
@@ -324,6 +344,9 @@ void write_animations(JsonWriter& json, const ReportInput& input) {
     write_points(json, *run.built, *run.result, &Frame::opening);
     json.key("pressures");
     write_points(json, *run.built, *run.result, &Frame::pressure);
+    std::vector<const Frame*> all;
+    for (const Frame& frame : frames) all.push_back(&frame);
+    write_uplifted(json, run.built->model, all);
     json.end_object();
   }
   json.end_array();

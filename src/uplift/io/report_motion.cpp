@@ -39,7 +39,7 @@ Chart history_chart(const ShownMotion& shown, std::size_t number, MotionKind kin
   Chart chart{fmt::format("{}_{}", word, number),
               fmt::format("motion_{}", number),
               static_cast<char>(word.front() - 'a' + 'A') + word.substr(1),
-              was_processed(shown) ? "Solid: after the processing; dashed: before." : "",
+              was_processed(shown) ? "Solid: after processing. Dashed: before." : "",
               {"Time", "s"},
               {"Ground " + word, std::string(unit_of(kind))},
               {}};
@@ -67,14 +67,14 @@ Chart spectrum_chart(const ShownMotion& shown, std::size_t number, const MotionR
   Chart chart{fmt::format("spectrum_{}", number),
               fmt::format("motion_{}", number),
               "Response spectra",
-              "Pseudo-acceleration of oscillators.",
+              "Pseudo-acceleration of damped oscillators.",
               {"Frequency", "Hz", true},
               {"Pseudo-acceleration", "m/s2"},
               {}};
   for (const Spectrum& spectrum : spectra_of(shown.now, report.frequencies, dampings))
     chart.curves.push_back(spectrum_curve(spectrum, percent(spectrum.damping) + " damping", false));
   if (was_processed(shown)) {
-    chart.caption += " Dashed: before the processing.";
+    chart.caption += " Dashed: before processing.";
     chart.curves.push_back(spectrum_curve(spectra_of(shown.first, report.frequencies, {dampings.front()}).front(),
                                           percent(dampings.front()) + ", before", true));
   }
@@ -86,7 +86,7 @@ Chart fit_chart(const SpectrumFit& fit, std::size_t number) {
   Chart chart{fmt::format("fit_{}", number),
               fmt::format("motion_{}", number),
               "Fit to the target",
-              fmt::format("{} damping: mean error {:.2f} %, nowhere below {:.1f} % of the target.", percent(fit.damping),
+              fmt::format("{} damping. Mean error {:.2f} %; smallest ratio to the target {:.1f} %.", percent(fit.damping),
                           100 * fit.mean_error, 100 * fit.least_ratio),
               {"Frequency", "Hz", true},
               {"Pseudo-acceleration", "m/s2"},
@@ -117,9 +117,9 @@ Chart together_chart(const MotionReport& report) {
   for (const ShownMotion& shown : report.motions)
     chart.curves.push_back(spectrum_curve(spectra_of(shown.now, report.frequencies, {damping}).front(), shown.now.name, false));
   if (report.rotated) {
-    chart.caption +=
-        fmt::format(" RotD50 and RotD100: median and largest over all directions of {}, if these are horizontal and at right angles.",
-                    report.rotated_names);
+    chart.caption += fmt::format(
+        " RotD50 and RotD100: median and largest value over all directions of {}, provided that these are horizontal and perpendicular.",
+        report.rotated_names);
     chart.curves.push_back(spectrum_curve(report.rotated->median, "RotD50", true));
     chart.curves.push_back(spectrum_curve(report.rotated->largest, "RotD100", true));
   }
@@ -128,10 +128,10 @@ Chart together_chart(const MotionReport& report) {
 
 void write_fits(JsonWriter& json, const MotionReport& report) {
   json.begin_object().member("id", "fits").member("title", "Fit to the target spectra");
-  json.member(
-      "caption",
-      "Over the band of the fit: mean of |ratio - 1|, smallest and largest ratio of the motion's spectrum to the target. Bounds: mean "
-      "error 5 %, smallest ratio 90 %.");
+  json.member("caption",
+              "Over the frequency band of the fit: mean of |ratio − 1|, smallest ratio, mean ratio and largest error of the motion's "
+              "spectrum relative "
+              "to the target. Limits: mean error 5 %, smallest ratio 90 %.");
   json.key("columns").begin_array();
   for (const TableColumn& column : {TableColumn{"name", "Motion", "", "text", 0},
                                     {"status", "Fit", "", "text", 0},
@@ -147,7 +147,7 @@ void write_fits(JsonWriter& json, const MotionReport& report) {
   for (const ShownMotion& shown : report.motions) {
     if (!shown.fit) continue;
     const SpectrumFit& fit = *shown.fit;
-    json.begin_object().member("name", shown.now.name).member("status", fit.good() ? "good" : "beyond its bounds");
+    json.begin_object().member("name", shown.now.name).member("status", fit.good() ? "within the limits" : "outside the limits");
     json.member("damping", fit.damping).member("from", fit.frequencies.front()).member("to", fit.frequencies.back());
     json.member("mean", fit.mean_error).member("least", fit.least_ratio).member("average", fit.mean_ratio);
     json.member("largest", fit.largest_error).end_object();
@@ -169,8 +169,9 @@ void write_correlations(JsonWriter& json, const MotionReport& report) {
 
 void write_correlation_table(JsonWriter& json, const MotionReport& report) {
   json.begin_object().member("id", "correlations").member("title", "Correlation of the motions");
-  json.member("caption",
-              "Correlation coefficient at equal times; independent motions have at most 0.16 (US NRC Standard Review Plan 3.7.1).");
+  json.member(
+      "caption",
+      "Correlation coefficient at equal times. Motions count as statistically independent up to 0.16 (US NRC Standard Review Plan 3.7.1).");
   json.key("columns").begin_array();
   write_column(json, {"first", "Motion", "", "text", 0});
   write_column(json, {"second", "Motion", "", "text", 0});
@@ -188,14 +189,14 @@ void write_facts(JsonWriter& json, const MotionReport& report) {
   };
   const std::string of = report.motions.size() > 1 ? "of " + shown.now.name : "";
   json.key("facts").begin_array();
-  fact("Peak acceleration", fmt::format("{:.3g} m/s2", intensity.pga),
+  fact("Peak acceleration", fmt::format("{:.3g} m/s²", intensity.pga),
        fmt::format("{:.3g} g{}", intensity.pga / standard_gravity, of.empty() ? "" : ", " + of));
   fact("Peak velocity", fmt::format("{:.3g} m/s", intensity.pgv), of);
   fact("Peak displacement", fmt::format("{:.3g} m", intensity.pgd), of);
-  fact("Strong part", fmt::format("{:.3g} s", intensity.significant_duration()), "5 % to 95 % of the Arias intensity");
+  fact("Strong-motion duration", fmt::format("{:.3g} s", intensity.significant_duration()), "5 % to 95 % of the Arias intensity");
   if (shown.fit)
     fact("Fit", fmt::format("{:.2g} %", 100 * shown.fit->mean_error),
-         fmt::format("mean error; nowhere below {:.1f} % of the target", 100 * shown.fit->least_ratio));
+         fmt::format("mean error; smallest ratio {:.1f} % of the target", 100 * shown.fit->least_ratio));
   json.end_array();
 }
 
@@ -227,7 +228,7 @@ bool any_fit(const MotionReport& report) {
 void write_tables(JsonWriter& json, const MotionReport& report) {
   const Histories histories = histories_of(report);
   json.key("tables").begin_array();
-  write_motion_numbers(json, histories, "As they are now.");
+  write_motion_numbers(json, histories, "After processing.");
   if (any_fit(report)) write_fits(json, report);
   if (report.motions.size() > 1) write_correlation_table(json, report);
   write_motion_origins(json, histories);
@@ -251,7 +252,7 @@ std::string motion_report_json(const MotionReport& report) {
   const auto section = [&](const std::string& id, const std::string& title) {
     json.begin_object().member("id", id).member("title", title).member("text", "").end_object();
   };
-  if (report.motions.size() > 1) section("together", "Side by side");
+  if (report.motions.size() > 1) section("together", "Comparison");
   for (std::size_t i = 0; i < report.motions.size(); ++i) section(fmt::format("motion_{}", i + 1), report.motions[i].now.name);
   json.end_array().key("charts").begin_array();
   const auto write = [&](const Chart& chart) { write_chart(json, chart, origin, chart.caption); };

@@ -24,14 +24,13 @@ Motion acceleration_of(const MotionHistory& history) {
 
 /// Title of a table over motions: the variant, and the damping when there are several.
 std::string title_of(const MotionTable& table) {
-  return "Over the motions: " + table.run + (table.damping.empty() ? "" : ", " + table.damping);
+  return "Statistics over the motions: " + table.run + (table.damping.empty() ? "" : ", " + table.damping);
 }
 
 void write_over_motions_table(JsonWriter& json, const MotionTable& table, std::size_t number) {
   json.begin_object().member("id", fmt::format("over_motions_{}", number)).member("title", title_of(table));
   json.member("caption",
-              fmt::format("Largest magnitudes. Envelope, mean and spread (standard deviation of the sample) of the {} of {} runs "
-                          "that were completed.",
+              fmt::format("Largest magnitudes. Envelope, mean and standard deviation of the sample, over the {} completed runs of {}.",
                           table.counted, table.rows.size()));
   json.key("columns").begin_array();
   write_column(json, {"motion", "Motion", "", "text", 0});
@@ -49,7 +48,7 @@ void write_over_motions_table(JsonWriter& json, const MotionTable& table, std::s
   for (const MotionTable::Row& each : table.rows) row(each.motion, to_string(each.status), each.peaks);
   row("envelope", "", table.envelope);
   row("mean", "", table.mean);
-  row("spread", "", table.spread);
+  row("standard deviation", "", table.spread);
   json.end_array().end_object();
 }
 
@@ -58,7 +57,7 @@ Chart motion_chart(const Histories& motions, MotionKind kind) {
   Chart chart{"motion_" + word,
               "motions",
               title + " of the ground",
-              "The motions that drive the model, before their amplitudes.",
+              "Ground motions of the model, without the amplitude factors of the case.",
               {"Time", "s"},
               {title, std::string(unit_of(kind))},
               {}};
@@ -173,11 +172,12 @@ void write_over_motions(JsonWriter& json, const std::vector<MotionTable>& tables
 
 void write_motion_numbers(JsonWriter& json, const Histories& motions, std::string_view caption) {
   json.begin_object().member("id", "motions").member("title", "Motions");
-  json.member("caption",
-              fmt::format("{} PGV and PGD by exact integration of the acceleration, which is straight between its points; Arias: pi/(2 g) "
-                          "times the integral of a²; D5-95: from 5 % to 95 % of it; CAV: integral of |a|; Housner: integral of the "
-                          "pseudo-velocity, 5 % damping, over periods from 0.1 s to 2.5 s.",
-                          caption));
+  json.member(
+      "caption",
+      fmt::format("{} PGV and PGD: exact integration of the acceleration, which is linear between its samples. Arias: π/(2 g) times the "
+                  "integral of a². D5-95: time from 5 % to 95 % of the Arias intensity. CAV: integral of |a|. Housner: integral of "
+                  "the pseudo-velocity with 5 % damping over periods from 0.1 s to 2.5 s.",
+                  caption));
   json.key("columns").begin_array();
   for (const TableColumn& column : {TableColumn{"name", "Motion", "", "text", 0},
                                     {"station", "Station", "", "text", 0},
@@ -207,8 +207,8 @@ void write_motion_numbers(JsonWriter& json, const Histories& motions, std::strin
 }
 
 void write_motion_origins(JsonWriter& json, const Histories& motions) {
-  json.begin_object().member("id", "motion_origins").member("title", "Where the motions come from");
-  json.member("caption", "File with its SHA-256, the factor from its numbers to SI, what was mended when it was read, every step since.");
+  json.begin_object().member("id", "motion_origins").member("title", "Sources of the motions");
+  json.member("caption", "Files with SHA-256, factors to SI units, repairs made on reading, and all processing steps.");
   json.key("columns").begin_array();
   for (const TableColumn& column : {TableColumn{"what", "What", "", "text", 0}, {"value", "Value", "", "text", 0}})
     write_column(json, column);
@@ -225,7 +225,7 @@ void write_motion_origins(JsonWriter& json, const Histories& motions) {
     if (!motion.unit.empty()) row("unit", fmt::format("{}, times {:.8g}", motion.unit, motion.factor));
     if (motion.azimuth) row("azimuth", fmt::format("{:.4g} degrees, clockwise from north", *motion.azimuth * 180 / std::numbers::pi));
     for (const std::string& repair : motion.repairs)
-      for (const std::string& line : lines_of(repair)) row("mended", line);
+      for (const std::string& line : lines_of(repair)) row("repaired", line);
     for (std::size_t i = 0; i < motion.processing.size(); ++i)
       for (const std::string& line : lines_of(motion.processing[i])) row(fmt::format("step {}", i + 1), line);
   }
@@ -237,7 +237,7 @@ void write_motion_tables(JsonWriter& json, const ReportInput& input) {
     for (std::size_t i = 0; i < input.compared->motions.size(); ++i) write_over_motions_table(json, input.compared->motions[i], i + 1);
   const Histories motions = motions_of(input.runs);
   if (motions.empty()) return;
-  write_motion_numbers(json, motions, "As they drive the model.");
+  write_motion_numbers(json, motions, "As applied to the model.");
   write_motion_origins(json, motions);
 }
 

@@ -23,6 +23,10 @@ void write_charts(JsonWriter& json, const ReportInput& input);
 std::set<int> nodes_used(const Case& read, const Built& built);
 void write_model(JsonWriter& json, const Case& read, const Built& built);
 void write_animations(JsonWriter& json, const ReportInput& input);
+/// The member "uplifted": share of the area in every frame, by interface.
+void write_uplifted(JsonWriter& json, const Model& model, const std::vector<const Frame*>& frames);
+/// Uplifted share of the area of all interfaces.
+double uplifted_share(const Model& model, const Frame& frame);
 /// The same two for a model in space: the members "space" and "spaceAnimations".
 void write_space(JsonWriter& json, const ReportInput& input);
 

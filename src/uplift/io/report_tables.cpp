@@ -33,10 +33,10 @@ void write_run_row(JsonWriter& json, const ReportInput& input, std::size_t i) {
 }
 
 void write_runs(JsonWriter& json, const ReportInput& input) {
-  json.begin_object().member("id", "runs").member("title", input.compared ? "All runs side by side" : "Runs");
-  std::string caption = "Largest magnitudes. Energy created: by the computation, over the energy put in.";
+  json.begin_object().member("id", "runs").member("title", input.compared ? "Comparison of all runs" : "Runs");
+  std::string caption = "Largest magnitudes. Spurious energy: energy created by the computation, divided by the external work.";
   if (input.compared)
-    caption += fmt::format(" Sound runs agree when their peaks of {} lie within {:g} % of the median of their group.",
+    caption += fmt::format(" Runs agree when their peaks of {} lie within {:g} % of the median of the completed runs of their group.",
                            fmt::join(input.compared->columns, ", "), 100 * input.compared->band);
   json.member("caption", caption).key("columns").begin_array();
   for (const TableColumn& column : {TableColumn{"run", "Run", "", "text", 0}, {"status", "Status", "", "status", 0}})
@@ -46,15 +46,15 @@ void write_runs(JsonWriter& json, const ReportInput& input) {
     write_column(json, {"deviation", "Deviation", "", "percent", 2});
   }
   for (const TableColumn& column : {TableColumn{"top", "Top motion", "m", "number", 4},
-                                    {"top_time", "at", "s", "number", 4},
+                                    {"top_time", "at time", "s", "number", 4},
                                     {"ratio", "Uplifted", "", "percent", 3},
                                     {"opening", "Gap", "m", "number", 4},
                                     {"moment", "Base moment", "N m", "number", 4},
                                     {"pressure", "Pressure", "Pa", "number", 4},
-                                    {"created", "Energy created", "", "percent", 3}})
+                                    {"created", "Spurious energy", "", "percent", 3}})
     write_column(json, column);
   write_column(json, {"retries", "Retries", "", "number", 6});
-  write_column(json, {"per_step", "Time a step (microseconds)", "", "number", 3});
+  write_column(json, {"per_step", "Time per step (µs)", "", "number", 3});
   json.end_array().key("rows").begin_array();
   for (std::size_t i = 0; i < input.runs.size(); ++i) write_run_row(json, input, i);
   json.end_array();
@@ -64,16 +64,17 @@ void write_runs(JsonWriter& json, const ReportInput& input) {
 
 void write_sweep(JsonWriter& json, const std::vector<SweepRow>& rows) {
   if (rows.empty()) return;
-  json.begin_object().member("id", "sweep").member("title", "Energy created against the stiffness of the joint");
+  json.begin_object().member("id", "sweep").member("title", "Spurious energy against the stiffness of the joint");
   json.member("caption",
-              "Largest energy created over the energy put in; the stiffness ratio is that of the stiffest point at the time step.")
+              "Largest spurious energy divided by the external work. The stiffness ratio k F belongs to the stiffest interface point and "
+              "the time step.")
       .key("columns")
       .begin_array();
   for (const TableColumn& column : {TableColumn{"ratio", "k F", "", "number", 3},
                                     {"path", "Path average", "", "percent", 3},
-                                    {"path_status", "", "", "status", 0},
+                                    {"path_status", "Status", "", "status", 0},
                                     {"end", "End of step", "", "percent", 3},
-                                    {"end_status", "", "", "status", 0}})
+                                    {"end_status", "Status", "", "status", 0}})
     write_column(json, column);
   json.end_array().key("rows").begin_array();
   for (const SweepRow& row : rows)

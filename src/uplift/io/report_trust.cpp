@@ -19,18 +19,21 @@ void write_heads(JsonWriter& json, std::initializer_list<std::pair<const char*, 
 /// How far each spectrum speaks, by choice.
 void write_trust_reaches(JsonWriter& json, const TrustAnswer& answer) {
   if (answer.spectra.empty()) return;
-  json.begin_object().member("id", "trust_reaches").member("title", "How far the floor spectra speak").member("rowGroup", "floor");
+  json.begin_object()
+      .member("id", "trust_reaches")
+      .member("title", "Reliable frequency range of the floor spectra")
+      .member("rowGroup", "floor");
   json.member(
       "caption",
       fmt::format(
-          "Up to the stated frequency no repetition with the changed choice differs from the case by more than {} of the raw curve; a "
-          "peak that only moves counts in full, which is what broadened spectra are made for. Elements and step: what they can "
-          "carry, ten nodes a wavelength and ten steps a period. Above the broadened curve: by how much the raw curve of a "
-          "repetition rises above the broadened one of the case, and where.",
+          "Up to the stated frequency, no repetition with the changed choice differs from the case by more than {} of the raw curve. A "
+          "peak that shifts in frequency counts in full; broadened spectra cover such shifts. Elements and step: frequency that they "
+          "resolve, with ten nodes per wavelength and ten steps per period. Above broadened: largest excess of the raw curve of a "
+          "repetition over the broadened curve of the case, and its frequency.",
           percent(answer.accepted)));
   json.key("columns").begin_array();
   write_column(json, {"damping", "Damping", "", "percent", 2});
-  write_column(json, {"to", "Speaks to", "Hz", "number", 3});
+  write_column(json, {"to", "Reliable to", "Hz", "number", 3});
   std::vector<std::string> choices;
   for (const TrustSpectrum::Reach& reach : answer.spectra.front().reaches) choices.push_back(reach.choice);
   for (const std::string& choice : choices) write_column(json, {choice.c_str(), choice.c_str(), "Hz", "number", 3});
@@ -50,19 +53,19 @@ void write_trust_reaches(JsonWriter& json, const TrustAnswer& answer) {
 }  // namespace
 
 void write_trust_tables(JsonWriter& json, const TrustAnswer& answer) {
-  json.begin_object().member("id", "trust").member("title", "How far the numbers can be trusted");
-  json.member(
-      "caption",
-      "Every number of the verdict over all runs in which one choice of the computation was changed. Band: half of what lies between least "
-      "and most, over the value; numbers that are shares, changes or residuals themselves have least and most only. "
-      "Moved most by: the choice whose change is farthest from the case as it stands.");
-  write_heads(json, {{"number", "Number"},
+  json.begin_object().member("id", "trust").member("title", "Trust bands of the results");
+  json.member("caption",
+              "Range of each result of the verdict over all runs in which one computational choice was changed. Band: half of the range "
+              "divided by the "
+              "value; results that are themselves shares, changes or residuals have a smallest and a largest value only. "
+              "Most sensitive to: the choice with the largest deviation from the case.");
+  write_heads(json, {{"number", "Result"},
                      {"of", "Interface"},
-                     {"value", "As in the case"},
-                     {"least", "Least"},
-                     {"most", "Most"},
+                     {"value", "Case"},
+                     {"least", "Smallest"},
+                     {"most", "Largest"},
                      {"band", "Band"},
-                     {"by", "Moved most by"}});
+                     {"by", "Most sensitive to"}});
   json.key("rows").begin_array();
   for (const TrustBand& band : answer.bands) {
     const std::optional<double> share = band.share();
@@ -74,8 +77,8 @@ void write_trust_tables(JsonWriter& json, const TrustAnswer& answer) {
   json.end_array().end_object();
   write_trust_reaches(json, answer);
 
-  json.begin_object().member("id", "trust_runs").member("title", "What was changed");
-  json.member("caption", "One choice at a time; a run that failed counts for no band.");
+  json.begin_object().member("id", "trust_runs").member("title", "Changed computational choices");
+  json.member("caption", "One choice is changed at a time. Failed runs do not count for the bands.");
   write_heads(json, {{"choice", "Choice"}, {"label", "Changed to"}, {"status", "Status"}, {"why", "Why"}});
   json.key("rows").begin_array();
   for (const TrustRun& run : answer.runs) {
@@ -98,14 +101,14 @@ std::vector<Chart> trust_charts(const TrustAnswer& answer) {
     Chart chart{fmt::format("trust_{}_{:g}", each.floor, 100 * each.damping),
                 "trust",
                 fmt::format("Floor {}, {} damping", each.floor, percent(each.damping)),
-                each.limited_by.empty() ? fmt::format("All runs lie within {} of the case at every frequency.", percent(answer.accepted))
-                                        : fmt::format("Speaks to {:.3g} Hz, limited by the {}.", each.speaks_to, each.limited_by),
+                each.limited_by.empty() ? fmt::format("All runs lie within {} of the case at all frequencies.", percent(answer.accepted))
+                                        : fmt::format("Reliable up to {:.3g} Hz, limited by the {}.", each.speaks_to, each.limited_by),
                 {"Frequency", "Hz", true},
                 {"Pseudo-acceleration", "m/s2"},
                 {}};
-    chart.curves.push_back({"as in the case", "as in the case", each.frequencies, each.value, false, false});
-    chart.curves.push_back({"least of all runs", "", each.frequencies, each.least, true, false});
-    chart.curves.push_back({"most of all runs", "", each.frequencies, each.most, true, false});
+    chart.curves.push_back({"case", "case", each.frequencies, each.value, false, false});
+    chart.curves.push_back({"smallest of all runs", "", each.frequencies, each.least, true, false});
+    chart.curves.push_back({"largest of all runs", "", each.frequencies, each.most, true, false});
     charts.push_back(std::move(chart));
   }
   return charts;

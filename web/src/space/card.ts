@@ -1,7 +1,7 @@
 // The card of a model in three dimensions: the view, the maps of its interfaces, and the player that moves both.
 import { h } from "../dom";
 import { round_down } from "../geometry";
-import { largest_opening, open_part, Player, type Track } from "../player";
+import { largest_opening, Player, uplifted_ratio, type Track } from "../player";
 import type { Runs } from "../runs";
 import type { ThemeSwitch } from "../theme";
 import type { SpaceAnimation, SpaceModel } from "../types";
@@ -31,11 +31,10 @@ interface Peaks {
 }
 
 function track(space: SpaceModel, animation: SpaceAnimation, size: number, motion: number): Track {
-  const ratio = (frame: number): number => open_part(space.interfaces.map((face) => ({ area: face.area, opening: animation.openings[face.name]?.[frame] })));
   return {
     run: animation.run,
     time: animation.time,
-    ratio: animation.time.map((_t, i) => ratio(i)),
+    ratio: animation.time.map((_t, i) => uplifted_ratio(space.interfaces, animation, i)),
     opening: animation.time.map((_t, i) => largest_opening(animation.openings, i)),
     factor: motion > 0 ? round_down((DRAWN * size) / motion) : 1,
   };
@@ -120,7 +119,7 @@ export class SpaceCard {
     this.maps_.append(...this.faces_.map((face) => face.element));
     const beside = this.faces_.length === 1;
     const words = player
-      ? "Displacements and gap are multiplied by the same factor. The maps show computed values: the line parts open from closed, and every run has the same colours. The band above the slider is the uplifted ratio."
+      ? "Displacements and gaps are magnified by the same factor. The maps show computed values with the same colour scale for every run; the line separates the areas that are open from those in contact. The band above the slider shows the uplifted share of the area over time; the animation starts at its peak."
       : null;
     return h(
       "figure",

@@ -1,7 +1,7 @@
 // The maps of one interface side by side, what they say in numbers, and the values under the pointer.
 import { h } from "../dom";
-import { fixed, number, pick_scale } from "../format";
-import { open_part } from "../player";
+import { fixed, NEGLIGIBLE, number, quantity_text } from "../format";
+import { uplifted_share } from "../player";
 import type { Ink } from "./ink";
 import { PlanMap } from "./map";
 import { range_of, type Quantity, type Range } from "./raster";
@@ -14,11 +14,6 @@ const FRAMES: Record<Quantity, (animation: SpaceAnimation, name: string) => numb
 };
 
 const UNITS: Record<Quantity, string> = { gap: "m", pressure: "Pa", slip: "m" };
-
-function with_unit(value: number, unit: string): string {
-  const scale = pick_scale(Math.abs(value), unit);
-  return `${number(value / scale.factor, 3)} ${scale.unit}`;
-}
 
 export class FaceMaps {
   readonly element: HTMLElement;
@@ -35,7 +30,10 @@ export class FaceMaps {
   constructor(face: SpaceInterface, animations: SpaceAnimation[], sound: SpaceAnimation[]) {
     this.face = face;
     this.animation_ = animations[0] as SpaceAnimation;
-    const quantities = (["gap", "pressure", "slip"] as Quantity[]).filter((q) => animations.some((a) => FRAMES[q](a, face.name)));
+    // A map without any value would be an empty grey area: the summary below the maps says "in contact everywhere".
+    const has_values = (q: Quantity): boolean =>
+      animations.some((a) => (FRAMES[q](a, face.name) ?? []).some((frame) => frame.some((v) => (q === "pressure" ? v !== 0 : v > NEGLIGIBLE))));
+    const quantities = (["gap", "pressure", "slip"] as Quantity[]).filter(has_values);
     const range = (q: Quantity): Range => {
       const found = range_of(sound.flatMap((a) => (FRAMES[q](a, face.name) ?? []).flat()));
       // Closed points may lie a little below zero: no part of the scale of gaps.
@@ -49,9 +47,9 @@ export class FaceMaps {
     this.listen();
   }
 
-  /** Part of the area with opening > 0 at the shown instant. */
+  /** Uplifted share of the area at the instant shown. */
   get open_share(): number {
-    return open_part([{ area: this.face.area, opening: this.values("gap") }]);
+    return uplifted_share(this.face, this.animation_, this.frame_);
   }
 
   resize(density: number): void {
@@ -85,9 +83,9 @@ export class FaceMaps {
 
   private summary(): string {
     const gap = Math.max(0, ...this.values("gap"));
-    const words = [gap > 0 ? `largest gap ${with_unit(gap, "m")}` : "closed everywhere"];
-    if (this.values("pressure").length > 0) words.push(`largest pressure ${with_unit(this.largest("pressure"), "Pa")}`);
-    if (this.values("slip").length > 0) words.push(`largest slip ${with_unit(this.largest("slip"), "m")}`);
+    const words = [gap > NEGLIGIBLE ? `largest gap ${quantity_text(gap, "m")}` : "in contact everywhere"];
+    if (this.values("pressure").length > 0) words.push(`largest pressure ${quantity_text(this.largest("pressure"), "Pa")}`);
+    if (this.values("slip").length > 0) words.push(`largest slip ${quantity_text(this.largest("slip"), "m")}`);
     return words.join(", ");
   }
 
@@ -95,7 +93,7 @@ export class FaceMaps {
     const [s, t] = this.face.axes;
     const values = this.maps.map(({ quantity: q }) => {
       const value = this.values(q)[i] ?? 0;
-      return q === "gap" && !(value > 0) ? "closed" : `${q} ${with_unit(value, UNITS[q])}`;
+      return q === "gap" && !(value > NEGLIGIBLE) ? "in contact" : `${q} ${quantity_text(value, UNITS[q])}`;
     });
     return `${s} ${fixed(this.face.plan[2 * i] ?? 0, 2)} m, ${t} ${fixed(this.face.plan[2 * i + 1] ?? 0, 2)} m: ${values.join(", ")}`;
   }

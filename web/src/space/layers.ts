@@ -8,7 +8,7 @@ const FEW_SUPPORTS = 40;
 
 /** Faces of the mesh where something is held or leaves; the keys are those of the layers. */
 export const BORDERS = [
-  { kind: "held", name: "held faces", colour: (ink: Ink): string => ink.held },
+  { kind: "held", name: "supported faces", colour: (ink: Ink): string => ink.held },
   { kind: "absorbing", name: "absorbing faces", colour: (ink: Ink): string => ink.absorbing },
 ] as const;
 
@@ -42,7 +42,7 @@ export function layers_of(space: SpaceModel, moving: boolean): Layer[] {
     [space.supports.length > 0, { key: "supports", name: "supports", shown: space.supports.length <= FEW_SUPPORTS }],
     ...BORDERS.map(({ kind, name, colour }): [boolean, Layer] => [space.borders.some((border) => border.kind === kind), { key: kind, name, colour, shown: !moving }]),
     [space.parts.some((part) => part.edges.length > 0), { key: "edges", name: "element edges", shown: true }],
-    [moving, { key: "reference", name: "position at rest", shown: true }],
+    [moving, { key: "reference", name: "undeformed position", shown: true }],
   ];
   for (const [present, layer] of rest) if (present) layers.push(layer);
   return layers;

@@ -1,4 +1,4 @@
-// The maps of every interface at the last picture of a run: how the base stands after the shock.
+// The maps of every interface in the last frame of a run: the state of the base after the shaking.
 import { h } from "../dom";
 import type { ThemeSwitch } from "../theme";
 import type { SpaceAnimation, SpaceModel } from "../types";
@@ -13,18 +13,19 @@ export class RestMaps {
 
   /** `animation` needs at least one frame. */
   constructor(space: SpaceModel, animation: SpaceAnimation, themes: ThemeSwitch) {
-    // The colours span this state alone: a residual gap is small beside those of the shaking.
+    // The colours cover this state only: a residual gap is small compared with the gaps during the shaking.
     const last = animation.time.length - 1;
     const end = <T>(frames: T[] | undefined): T[] => (frames && frames[last] !== undefined ? [frames[last] as T] : []);
     const ended = (all: Record<string, number[][]>): Record<string, number[][]> => Object.fromEntries(Object.entries(all).map(([name, frames]) => [name, end(frames)]));
     const still: SpaceAnimation = { ...animation, time: [animation.time[last] ?? 0], displacement: end(animation.displacement), openings: ended(animation.openings), pressures: ended(animation.pressures) };
+    if (animation.uplifted) still.uplifted = Object.fromEntries(Object.entries(animation.uplifted).map(([name, shares]) => [name, end(shares)]));
     if (animation.slips) still.slips = ended(animation.slips);
     this.ink_ = ink_of(themes.theme);
     this.faces_ = space.interfaces.map((face) => new FaceMaps(face, [still], [still]));
     this.element = h("figure", { class: "card is-wide rest-maps" },
-      h("header", {}, h("h3", {}, "Gap map at the end")),
+      h("header", {}, h("h3", {}, "Base at the end of the run")),
       h("div", { class: "space-maps" }, ...this.faces_.map((face) => face.element)),
-      h("figcaption", {}, `The last picture of the run “${animation.run}”, in colours of its own range.`));
+      h("figcaption", {}, `Last frame of the run “${animation.run}”. The colour scale covers the values of this frame only.`));
     themes.on_change((theme) => {
       this.ink_ = ink_of(theme);
       this.draw();

@@ -15,13 +15,13 @@ import type { SpaceModel } from "../types";
 
 const MAX_DENSITY = 2;
 type Side = "3D" | "x" | "y" | "z";
-const SIDES: [Side, string][] = [["3D", "from above, towards the side that lifts most"], ["x", "against the x axis"], ["y", "along the y axis"], ["z", "from above"]];
+const SIDES: [Side, string][] = [["3D", "oblique, towards the corner with the largest uplift"], ["x", "along the negative x axis"], ["y", "along the positive y axis"], ["z", "from above"]];
 const STRAIGHT: Record<"x" | "y" | "z", Direction> = {
   x: { out: [1, 0, 0], up: [0, 0, 1] },
   y: { out: [0, -1, 0], up: [0, 0, 1] },
   z: { out: [0, 0, 1], up: [0, 1, 0] },
 };
-const HELP = "Model in three dimensions. Arrow keys turn it, with shift they move it; plus and minus zoom, F fits.";
+const HELP = "Model in three dimensions. Arrow keys rotate the view, with Shift they move it. Plus and minus zoom, F fits the model.";
 
 /** Runs the bundle of the WebGL view, which the page holds as text. */
 function load_scene(): MakeScene | null {
@@ -51,7 +51,7 @@ export class SpaceStage {
   /** Which parts are shown, and how they are coloured. */
   readonly options: HTMLElement;
   readonly note = h("p", { class: "chart-offer space-note", hidden: true });
-  readonly hint = h("span", { class: "space-hint", hidden: true }, "Drag to turn, with the right button to move; after a click into the picture the wheel zooms. On a touch screen turn sideways and zoom with two fingers. ");
+  readonly hint = h("span", { class: "space-hint", hidden: true }, "Drag to rotate, drag with the right button to move. After a click into the view the wheel zooms. On a touch screen, drag sideways to rotate and pinch to zoom. ");
   readonly pose: Pose;
   private readonly space_: SpaceModel;
   private readonly events_: StageEvents;
@@ -59,7 +59,7 @@ export class SpaceStage {
   private readonly overlay_ = new Overlay();
   private readonly still_ = h("canvas", { class: "space-still", "aria-hidden": "true" });
   private readonly legend_ = h("div", { class: "space-legend", hidden: true });
-  private readonly chips_ = h("div", { class: "legend space-layers", role: "group", "aria-label": "Shown parts" });
+  private readonly chips_ = h("div", { class: "legend space-layers", role: "group", "aria-label": "Visible parts" });
   private readonly translucent_ = h("input", { type: "checkbox", checked: true });
   private readonly colour_ = h("select", { "aria-label": "Colours" }, h("option", { value: "part" }, "by part"), h("option", { value: "displacement" }, "by displacement"));
   private view_: View | null = null;
@@ -74,7 +74,7 @@ export class SpaceStage {
     this.pose = new Pose(space);
     this.layers_ = layers_of(space, moving);
     const sides = SIDES.map(([side, title]) => h("button", { type: "button", title: `View ${title}`, onclick: () => this.aim(side) }, side));
-    const fit = h("button", { type: "button", title: "Fit the shown parts into the picture", onclick: () => this.aim(null) }, "Fit");
+    const fit = h("button", { type: "button", title: "Fit the visible parts into the view", onclick: () => this.aim(null) }, "Fit");
     this.element = h("div", { class: "space-stage" }, this.still_, this.overlay_.svg, this.legend_, h("div", { class: "space-sides", role: "group", "aria-label": "Direction of view" }, ...sides, fit));
     this.options = h("div", { class: "space-options" },
       this.chips_,
@@ -183,7 +183,7 @@ export class SpaceStage {
     if (view) this.prepare_webgl(view);
     this.note.hidden = view !== null;
     this.hint.hidden = view === null;
-    this.note.textContent = "This browser offers no WebGL here, so the model is drawn as pictures from four fixed directions. Time, parts and maps work as usual.";
+    this.note.textContent = "WebGL is not available in this browser. The model is drawn from four fixed directions; time, parts and maps work as usual.";
     this.element.classList.toggle("is-free", view !== null);
     this.resize(true);
   }
