@@ -33,7 +33,8 @@ inline std::vector<std::vector<double>> rows_of(const std::string& path) {
 /// El Centro 1940 NS in g, 0.02 s. The record begins one step after rest.
 inline std::vector<double> el_centro() {
   std::vector<double> values{0};
-  for (const std::vector<double>& row : rows_of(support::data_file("records/elcentro.dat"))) values.insert(values.end(), row.begin(), row.end());
+  for (const std::vector<double>& row : rows_of(support::data_file("records/elcentro.dat")))
+    values.insert(values.end(), row.begin(), row.end());
   return values;
 }
 
