@@ -70,6 +70,29 @@ class Check(CliTest):
         self.assertIn("create energy without bound", self.uplift("check", self.write(text).name).stdout)
 
 
+    def test_lists_where_the_points_of_an_interface_lie(self):
+        name = self.write(BASE).name
+        self.assertIn("1 (-1.5, 0), 2 (-1.2, 0), 3 (-0.9, 0)", self.uplift("check", name).stdout)
+        position = json.loads(self.uplift("check", name, "--json").stdout)["interfaces"][0]["positions"]
+        for k in range(11):
+            self.assertAlmostEqual(position["x"][k], -1.5 + 0.3 * k, delta=1e-12)
+            self.assertAlmostEqual(position["area"][k], 0.15 if k in (0, 10) else 0.3, delta=1e-12)
+        self.uplift("run", name, "-o", "out")
+        summary = json.loads((self.folder / "out/summary.json").read_text())
+        self.assertEqual(summary["interfaces"][0]["positions"], position)
+
+    def test_another_scheme_takes_the_traction_at_the_end_of_the_step(self):
+        name = self.write(BASE.replace('type = "dynamic"', 'type = "dynamic"\nscheme = { type = "hht", alpha = -0.1 }')).name
+        checked = self.uplift("check", name).stdout
+        self.assertNotIn('take traction = "path"', checked)
+        self.uplift("run", name, "-o", "out")
+        resolved = (self.folder / "out/case.resolved.toml").read_text()
+        self.assertEqual(re.findall('traction = "(.*)"', resolved)[-1], "end")
+        self.write(BASE)
+        self.uplift("run", name, "-o", "path")
+        self.assertEqual(re.findall('traction = "(.*)"', (self.folder / "path/case.resolved.toml").read_text())[-1], "path")
+
+
 class Modes(CliTest):
     def test_table_and_shapes(self):
         self.write(BASE)
@@ -103,6 +126,14 @@ class Describe(CliTest):
         text = self.uplift("describe", "law", "sdm").stdout
         for part in ("equations", "K_n", "Pa/m", "F_u", "G_f", "J/m2", "source", "eqs"):
             self.assertIn(part, text)
+
+    def test_parameters_of_the_parts_of_a_section(self):
+        text = self.uplift("describe", "section", "record.process").stdout
+        self.assertRegex(text, r"bandpass +low \[Hz\], high \[Hz\], order = 4, keep_padding = false")
+        self.assertIn("more: uplift describe process", text)
+
+    def test_project_alone_creates_energy(self):
+        self.assertIn("162 %", self.uplift("describe", "impact", "project").stdout)
 
     def test_nearest_name(self):
         done = self.uplift("describe", "law", "sdn", expect=2)

@@ -111,6 +111,16 @@ class Example(CliTest):
         self.assertAlmostEqual(told["weight"] / (200 * 400 * 9.81), 1, places=9)
 
 
+    def test_a_held_face_stops_the_waves_that_move_along_its_held_direction(self):
+        text = EXAMPLE.read_text()
+        whole = re.search(r'\[\[support\]\]\ngroup = "soil_bottom"\n.*\n.*\n', text).group(0)
+        support = '[[support]]\ngroup = "soil_bottom"\nfixed = ["{}"]\nstages = "{}"\n'
+        for held, other, stopped in (("uy", "ux", False), ("ux", "uy", True)):
+            name = self.write(text.replace(whole, support.format(held, "all") + support.format(other, "static"))).name
+            warned = "the incident SV wave, which moves along ux, does not come in there" in self.uplift("check", name).stdout
+            self.assertEqual(warned, stopped, held)
+
+
 class MeshFile(CliTest):
     def run_block(self, text=BLOCK):
         self.write(gmsh(4, 8, 4), "soil.msh")

@@ -1,5 +1,7 @@
 #include <gtest/gtest.h>
+#include <sys/socket.h>
 #include <sys/stat.h>
+#include <sys/un.h>
 #include <unistd.h>
 
 #include <filesystem>
@@ -84,11 +86,17 @@ TEST_F(FileTest, AMissingFileNamesTheNearest) {
   EXPECT_EQ(error_of_reading(folder / "cases"), place + "/cases: wanted a file, found a folder");
 }
 
-TEST_F(FileTest, AFileWithoutPermissionIsAnError) {
-  if (::geteuid() == 0) GTEST_SKIP() << "root may read everything";
-  write_file_atomically(folder / "a.txt", "x");
-  fs::permissions(folder / "a.txt", fs::perms::none);
-  EXPECT_EQ(error_of_reading(folder / "a.txt"), (folder / "a.txt").string() + ": wanted a file that may be read, found Permission denied");
+// A socket is there, but nobody can open it, not even root, whom permissions do not stop.
+TEST_F(FileTest, AFileThatCannotBeOpenedIsAnError) {
+  const fs::path path = folder / "a";
+  sockaddr_un address{};
+  address.sun_family = AF_UNIX;
+  ASSERT_LT(path.string().size(), sizeof address.sun_path);
+  path.string().copy(address.sun_path, sizeof address.sun_path - 1);
+  const int socket = ::socket(AF_UNIX, SOCK_STREAM, 0);
+  ASSERT_EQ(::bind(socket, reinterpret_cast<const sockaddr*>(&address), sizeof address), 0);
+  EXPECT_EQ(error_of_reading(path), path.string() + ": wanted a file that may be read, found No such device or address");
+  ::close(socket);
 }
 
 // Source: FIPS 180-4 examples (NIST, "SHA256.pdf"), and the long messages of the same collection.

@@ -98,7 +98,7 @@ TEST(ResponseSpectrum, ElCentroOfTheReference) {
   const std::vector<double> record = el_centro();
   ASSERT_GE(record.size(), 1559U);
   EXPECT_NEAR(largest(record), 0.31882, 1e-12);
-  const auto rows = rows_of(shared_file("reference/elcentro_spectrum.csv"));
+  const auto rows = rows_of(support::data_file("reference/elcentro_spectrum.csv"));
   ASSERT_EQ(rows.size(), 61U);
   std::vector<double> frequencies;
   for (const auto& row : rows) frequencies.push_back(1 / row[0]);
@@ -340,7 +340,7 @@ TEST(FloorSpectrum, ElCentroOnAnOscillatorOf5Hz) {
   }
   EXPECT_NEAR(largest(floor), 0.823915, 1e-6);
 
-  const auto rows = rows_of(shared_file("reference/floor_spectrum_elcentro_5Hz.csv"));
+  const auto rows = rows_of(support::data_file("reference/floor_spectrum_elcentro_5Hz.csv"));
   std::vector<double> frequencies;
   for (const auto& row : rows) frequencies.push_back(row[0]);
   const Spectrum raw = response_spectra(floor, step, frequencies, {0.02}, Kind::psa)[0];

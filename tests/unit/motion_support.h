@@ -6,16 +6,13 @@
 #include <string>
 #include <vector>
 
+#include "data_support.h"
 #include "uplift/motion/processing.h"
 
 // Motions and files that the tests of the motion layer share.
 namespace uplift {
 
 inline constexpr double in_g = 9.80665;
-
-inline std::string shared_file(const std::string& path) {
-  return std::string(UPLIFT_SHARED_DIR) + "/" + path;
-}
 
 /// All numbers of a text file; lines that begin with # or a letter are left out.
 inline std::vector<std::vector<double>> rows_of(const std::string& path) {
@@ -36,7 +33,8 @@ inline std::vector<std::vector<double>> rows_of(const std::string& path) {
 /// El Centro 1940 NS in g, 0.02 s. The record begins one step after rest.
 inline std::vector<double> el_centro() {
   std::vector<double> values{0};
-  for (const std::vector<double>& row : rows_of(shared_file("records/elcentro.dat"))) values.insert(values.end(), row.begin(), row.end());
+  for (const std::vector<double>& row : rows_of(support::data_file("records/elcentro.dat")))
+    values.insert(values.end(), row.begin(), row.end());
   return values;
 }
 

@@ -16,7 +16,7 @@ using std::numbers::pi;
 constexpr double b = 1.5, weight = 1e6, bed = 2e8;
 
 struct Footing {
-  std::string law = "{ type = \"springs\", K_n = 2e8, tangential = \"none\" }", method, rule = "nodal";
+  std::string law = "{ type = \"springs\", K_n = 2e8, tangential = \"none\" }", method, rule = "nodal", bed;
   int points = 101;
   double thickness = 1, rotation = 0;
 
@@ -29,11 +29,11 @@ struct Footing {
         "[[support]]\nnode = \"base\"\nfixed = [\"ux\"]\n[[function]]\nname = \"held\"\nshape = { type = \"constant\" }\n"
         "[[motion]]\nnode = \"base\"\ndirection = \"rz\"\namplitude = %.17g\nfunction = \"held\"\n"
         "[[interface]]\nname = \"soil\"\nlaw = %s\nfooting = { body = \"base\", width = 3, points = %d, rule = \"%s\", thickness = %.17g "
-        "}\n"
+        "%s}\n"
         "[[load]]\nnode = \"base\"\nforce = [0, -1e6]\n[[stage]]\ntype = \"static\"\nsteps = 1\n"
         "[[stage]]\ntype = \"dynamic\"\nduration = 1e-6\nstep = 1e-6\n[energy]\ncreated_limit = 1e9\n[limits]\nrotation = "
         "1\n[output]\nframes = 0\n",
-        method.c_str(), rotation, law.c_str(), points, rule.c_str(), thickness);
+        method.c_str(), rotation, law.c_str(), points, rule.c_str(), thickness, bed.c_str());
     return out;
   }
 };
@@ -58,7 +58,8 @@ TEST(Footing, TwoSprings) {
     EXPECT_NEAR(std::abs(a.moment), weight * b * std::min(x, 1.0), 1e-9 * weight) << x;
     EXPECT_NEAR(a.axial, -weight, 1e-9 * weight);
     EXPECT_NEAR(a.jump, x > 1 ? 2 * b * (x - 1) * theta_u : 0, 1e-12) << x;
-    EXPECT_NEAR(a.uplifted, x > 1 ? 0.5 : 0, 1e-12);
+    // the opening is linear between the springs: 2 b (x - 1) theta_u on one side, -2 b theta_u on the other
+    EXPECT_NEAR(a.uplifted, x > 1 ? 1 - 1 / x : 0, 1e-6);
   }
 }
 
@@ -79,10 +80,8 @@ TEST(Footing, WinklerStrip) {
     EXPECT_NEAR(1 - a.uplifted, root, 1.0 / 1600) << x;
     EXPECT_NEAR(a.jump, x > 1 ? 2 * b * x * theta_u * (1 - root) : 0, 1e-5 * b * x * theta_u) << x;
     EXPECT_NEAR(a.toe / mean, x > 1 ? 2 / root : 1 + x, 1e-4) << x;
-    if (!table.empty()) {
-      EXPECT_NEAR(interpolate(table["theta/theta_u"], table["M/Mu"], x), moment, 2e-3);
-      EXPECT_NEAR(interpolate(table["theta/theta_u"], table["p_toe/p_mean"], x), x > 1 ? 2 / root : 1 + x, 2e-2);
-    }
+    EXPECT_NEAR(interpolate(table["theta/theta_u"], table["M/Mu"], x), moment, 2e-3);
+    EXPECT_NEAR(interpolate(table["theta/theta_u"], table["p_toe/p_mean"], x), x > 1 ? 2 / root : 1 + x, 2e-2);
   }
 }
 
@@ -105,6 +104,40 @@ TEST(Footing, OrderOfTheQuadrature) {
     for (int i = 0; i < 4 && std::string(rule) == "nodal"; ++i)
       EXPECT_NEAR(error[static_cast<std::size_t>(i)], stated[i], 0.04 * stated[i]);
   }
+}
+
+// Claim: uplifted share 1 - sqrt(theta_u/theta) and toe pressure 2 W/(2 b) sqrt(theta/theta_u) on tensionless springs, with every rule and
+// several numbers of points: order 2, less than 0.6/n^2 and 1/n^2; with 21 nodal points and the edge of the contact at one of them 0.30.
+TEST(Footing, UpliftedShareAndToePressure) {
+  const double theta_u = weight / (2 * bed * b * b), mean = weight / (2 * b);
+  for (const char* rule : {"nodal", "midpoint", "gauss"})
+    for (const double x : {1.2, 1 / 0.49, 3.7})
+      for (const int cells : {10, 20, 40, 80}) {
+        Footing footing;
+        footing.rule = rule;
+        footing.points = cells + (footing.rule == "nodal");
+        footing.rotation = x * theta_u;
+        const Answer a = answer(footing);
+        const double share = 1 - std::sqrt(1 / x), toe = 2 * mean * std::sqrt(x);
+        EXPECT_LT(std::abs(a.uplifted - share), 0.6 / (cells * cells)) << rule << " " << cells << " " << x << ": " << a.uplifted;
+        EXPECT_LT(std::abs(a.toe / toe - 1), 1.0 / (cells * cells)) << rule << " " << cells << " " << x << ": " << a.toe / toe;
+        if (footing.points == 21 && share > 0.29 && share < 0.31) EXPECT_NEAR(a.uplifted, 0.3, 1e-4);
+      }
+}
+
+// Claim: the same share where the bed lies under constraints, whose openings never get below zero: 3/n^2.
+TEST(Footing, UpliftedShareOfConstraintsOnABed) {
+  const double theta_u = weight / (2 * bed * b * b);
+  for (const double x : {1.2, 1 / 0.49, 3.7})
+    for (const int cells : {10, 20, 40, 80}) {
+      Footing footing;
+      footing.law = "\"unilateral\"";
+      footing.bed = ", bed = { stiffness = 2e8, mass = 1 }";
+      footing.points = cells + 1;
+      footing.rotation = x * theta_u;
+      const Answer a = answer(footing);
+      EXPECT_LT(std::abs(a.uplifted - (1 - std::sqrt(1 / x))), 3.0 / (cells * cells)) << cells << " " << x << ": " << a.uplifted;
+    }
 }
 
 // Claim: penalty with k_w per area gives the springs' answer (1e-9); so does the SDM with F_u = 0 and a vanishing closure stress, 1e-9 of

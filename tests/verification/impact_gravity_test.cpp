@@ -86,8 +86,8 @@ TEST(BouncingBar, OnePeriod) {
   }
   EXPECT_NEAR(inner / steps, 0, 0.015 * 500);
   for (const double i : impulse) EXPECT_NEAR(i, 800.0 / 3, 0.01 * 800 / 3);
-  if (!exact.empty())  // the formula above is the curve of the file
-    for (std::size_t i = 0; i < exact["t"].size(); ++i) EXPECT_NEAR(exact_mean(exact["t"][i]), exact["u_mean"][i], 1e-8);
+  // the formula above is the curve of the file
+  for (std::size_t i = 0; i < exact["t"].size(); ++i) EXPECT_NEAR(exact_mean(exact["t"][i]), exact["u_mean"][i], 1e-8);
 }
 
 // Claim: the mean height over the first period converges to the exact one: below 4 % of 5 m at n = 200 (what is missing went into ringing

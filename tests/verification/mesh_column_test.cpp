@@ -151,7 +151,6 @@ const std::vector<Layer> ground{{6, 150, 1700, 3e-3}, {10, 250, 1850, 2e-3}, {8,
 TEST(MeshColumn, TheTransferMatrixGivesTheClosedForm) {
   EXPECT_NEAR(std::abs(transfer({{20, 200, 1900, 0}, {5, 800, 2200, 0}}, 2 * pi * 2.5)), 4.631579, 5e-7);
   const Reference table = reference("soil_column_transfer.csv");
-  if (table.empty()) return;
   const std::vector<double>& f = table["f_Hz"];
   for (std::size_t i = 0; i < f.size(); i += 7)
     EXPECT_NEAR(std::abs(transfer({{20, 200, 1900, 0}, {5, 800, 2200, 0}}, 2 * pi * f[i])), table["elastic_rock_undamped"][i], 1e-9);

@@ -155,7 +155,6 @@ struct PlaneWave {
 
 TEST(SolidsWaves, ReflectionAtOtherAnglesIsThatOfThePlaneWaveAlgebra) {
   const Reference csv = reference("lysmer_reflection.csv");
-  if (csv.empty()) GTEST_SKIP() << "no reference folder";
   for (const auto& [nu, tag] : {std::pair{0.25, std::string("nu0.25")}, std::pair{1.0 / 3, std::string("nu0.333")}}) {
     const ElasticMaterial material{1e6, nu, 1500};
     const double vp = material.p_wave_speed(), vs = material.s_wave_speed();

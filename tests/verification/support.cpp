@@ -8,6 +8,7 @@
 #include <sstream>
 #include <stdexcept>
 
+#include "data_support.h"
 #include "uplift/analysis/case.h"
 #include "uplift/io/toml.h"
 
@@ -59,7 +60,7 @@ const std::vector<double>& Reference::operator[](std::string_view name) const {
 
 Reference reference(const std::string& file) {
   Reference result;
-  std::ifstream in(std::string(UPLIFT_SHARED_DIR) + "/reference/" + file);
+  std::ifstream in(support::data_file("reference/" + file));
   std::string line, cell;
   while (std::getline(in, line)) {
     while (!line.empty() && line.back() == '\r') line.pop_back();
@@ -77,6 +78,7 @@ Reference reference(const std::string& file) {
       result.columns[k].push_back(end == cell.c_str() ? std::nan("") : value);  // a word, as the name of a scheme
     }
   }
+  if (result.columns.empty() || result.columns.front().empty()) throw std::runtime_error("no table in " + file);
   return result;
 }
 

@@ -26,13 +26,12 @@ struct History {
 /// Runs the case (its first run, without variants and without the bonded model). Throws InputError.
 History run_text(const std::string& toml);
 
-/// Columns of a file of the reference folder, by name; empty when the folder is not there.
+/// Columns of a file of tests/data/reference, by name. A file that is missing or empty is an error.
 struct Reference {
   std::vector<std::string> names;
   std::vector<std::vector<double>> columns;
   std::vector<std::string> words;  // the first column as text
   const std::vector<double>& operator[](std::string_view name) const;
-  bool empty() const { return columns.empty(); }
 };
 Reference reference(const std::string& file);
 

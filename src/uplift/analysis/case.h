@@ -71,13 +71,14 @@ bool compares(const Case&);
 
 /// What the report and the verdict want to know of an interface beyond the model.
 struct InterfaceFacts {
-  std::string name, body;         // body: node that carries the upper side; empty when there is none
-  std::vector<Place> corners;     // m, of a footing; without: the nodes of the upper side say how far it goes
-  double friction = -1;           // coefficient; negative: none stated
-  double cohesion = 0;            // Pa: shear strength without pressure
-  double area = 0;                // m2
-  double tension = 0;             // Pa: tensile strength of the law, 0 without
-  std::vector<int> upper, lower;  // nodes of either side, each once
+  std::string name, body;                // body: node that carries the upper side; empty when there is none
+  std::vector<Place> corners;            // m, of a footing; without: the nodes of the upper side say how far it goes
+  double friction = -1;                  // coefficient; negative: none stated
+  double cohesion = 0;                   // Pa: shear strength without pressure
+  double area = 0;                       // m2
+  double tension = 0;                    // Pa: tensile strength of the law, 0 without
+  std::vector<int> upper, lower;         // nodes of either side, each once
+  std::shared_ptr<const Facets> facets;  // the surface between the points; null for node pairs on their own
 };
 
 /// Nodes of the model along beams, one after another, as they are drawn.

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <filesystem>
 
+#include "uplift/analysis/case_decided.h"
 #include "uplift/analysis/case_ground.h"
 #include "uplift/analysis/case_output.h"
 #include "uplift/analysis/case_sections.h"
@@ -104,6 +105,19 @@ Stage stage_of(const Values& table, const RunSpec& spec) {
   stage.path_average = wanted && stage.scheme.average_acceleration();
   return stage;
 }
+
+}  // namespace
+
+DecidedTexts decided_texts(const Case& read) {
+  DecidedTexts decided;
+  for (const Values& stage : read.values.tables("stage"))
+    if (stage.text("type") != "static" && !stage.given("traction") &&
+        stage_of(stage, {}).path_average != (stage.text("traction") == "path"))
+      decided[stage.path("traction")] = "end";
+  return decided;
+}
+
+namespace {
 
 void add_stages(const Case& read, const RunSpec& spec, RunPlan& plan) {
   for (const Values& table : read.values.tables("stage")) plan.stages.push_back(stage_of(table, spec));
@@ -369,7 +383,7 @@ Built build(const Case& read, const RunSpec& spec) {
   plan.rotation_limit = root.table("limits").number("rotation");
   plan.separation_limit = separation_limit(root.table("limits"), built.model);
   plan.gap_tolerance = root.table("limits").number("gap_tolerance");
-  for (const InterfaceFacts& facts : built.facts) plan.bases.push_back(facts.upper);
+  for (const InterfaceFacts& facts : built.facts) plan.bases.push_back(facts.upper), plan.facets.push_back(facts.facets);
   plan.every = root.table("output").integer("every");
   plan.frames = spec.pictures ? root.table("output").integer("frames") : 0;
   plan.frames = std::min(plan.frames, std::max(2, most_pictured / std::max(1, built.model.full_unknowns())));

@@ -5,7 +5,7 @@
 
 #include "uplift/analysis/case_model.h"
 #include "uplift/elements/discrete.h"
-#include "uplift/interface/face_joint.h"
+#include "uplift/interface/facets.h"
 
 // Where the joints of an interface stand, and the elastic bed under a footing.
 namespace uplift {
@@ -71,6 +71,8 @@ Joint footing_joint(const Values& interface, const Values& table, bool rigid_gro
   footing.rule = rule == "nodal" ? FootingRule::nodal : rule == "midpoint" ? FootingRule::midpoint : FootingRule::gauss;
   Joint joint;
   joint.points = footing_points(footing, table.where("points"));
+  joint.facts.facets = std::make_shared<Facets>(names.space.dimension == 3 ? rectangle_facets(footing, joint.points)
+                                                                           : line_facets(joint.points, footing.thickness));
   joint.facts.body = names.nodes[footing.body];
   joint.facts.corners = footing_corners(footing);
   joint.reference = footing.centre;
@@ -94,15 +96,17 @@ std::vector<int> nodes_of_side(const std::vector<JointPoint>& points, std::vecto
   return nodes;
 }
 
-std::vector<JointPoint> surface_points(const Values& interface, const Values& surface, const std::vector<FacePair>& open,
-                                       const CaseNames& names) {
+void add_surface(const Values& interface, const Values& surface, const std::vector<FacePair>& open, const CaseNames& names, Joint& joint) {
   const FaceQuadrature quadrature = surface.text("quadrature") == "nodal" ? FaceQuadrature::nodal : FaceQuadrature::gauss;
-  std::vector<JointPoint> points =
-      face_points(names.solids->mesh(), open, quadrature, thickness_of(*names.solids, open, surface), interface.number("gap"));
-  for (JointPoint& point : points)
+  const Mesh& mesh = names.solids->mesh();
+  const double thickness = thickness_of(*names.solids, open, surface);
+  FaceJoints joints = face_joints(mesh, open, quadrature, thickness, interface.number("gap"));
+  joint.facts.facets =
+      std::make_shared<Facets>(mesh.dimension == 3 ? face_facets(mesh, open, quadrature, joints) : line_facets(joints.points, thickness));
+  joint.points = std::move(joints.points);
+  for (JointPoint& point : joint.points)
     for (auto* side : {&point.upper, &point.lower})
       for (auto& [node, shape] : *side) node += names.first_of_mesh;
-  return points;
 }
 
 }  // namespace
@@ -125,8 +129,9 @@ Joint make_joint(const Values& interface, const std::vector<FacePair>& open, boo
                    line->integer("nodes_per_element"), line->text("quadrature") == "nodal" ? LineQuadrature::nodal : LineQuadrature::gauss,
                    line->number("thickness"),          interface.number("gap")};
     joint.points = line_points(made, line->where());
+    joint.facts.facets = std::make_shared<Facets>(line_facets(joint.points, made.thickness));
   }
-  if (surface) joint.points = surface_points(interface, *surface, open, names);
+  if (surface) add_surface(interface, *surface, open, names, joint);
   joint.facts.upper = nodes_of_side(joint.points, &JointPoint::upper);
   joint.facts.lower = nodes_of_side(joint.points, &JointPoint::lower);
   for (const JointPoint& point : joint.points) joint.facts.area += point.area;

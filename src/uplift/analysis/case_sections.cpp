@@ -118,7 +118,9 @@ const Section& stage_section() {
                                 number("step", "s", "dynamic: time step").positive().optional(),
                                 part("scheme", schemes, "dynamic: time integration").standard("average_acceleration"),
                                 choice("traction", {"path", "end"},
-                                       "traction laws: path-averaged traction (closes the energy balance), or that at the end of the step")
+                                       "traction laws: path-averaged traction (closes the energy balance; average_acceleration only, other "
+                                       "schemes take \"end\"), or "
+                                       "that at the end of the step")
                                     .standard("path"),
                                 flag("p_delta", "add the constant geometric stiffness of the preceding static state").standard(false),
                                 integer("halvings", "a step that fails is halved at most so often").between(0, 30).standard(8.0)}};

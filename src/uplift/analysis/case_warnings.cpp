@@ -4,6 +4,7 @@
 #include <array>
 #include <cmath>
 
+#include "uplift/analysis/case_ground.h"
 #include "uplift/analysis/case_mesh.h"
 #include "uplift/analysis/floor_spectra.h"
 #include "uplift/analysis/wording.h"
@@ -55,19 +56,32 @@ void warn_sides(const Case& read, std::vector<std::string>& said) {
                       each.where().file, each.where().line, each.text("group")));
 }
 
-/// Absorbing faces on which a support holds the nodes in the dynamic stages too: nothing goes out or comes in there.
+/// Absorbing faces on which a support holds the nodes in the dynamic stages too: what would move along a held direction neither goes out
+/// nor comes in there. An incident wave that moves along the others is none of its business.
 void warn_held_faces(const Case& read, const Built& built, std::vector<std::string>& said) {
   const int dimension = built.model.space.dimension;
   for (const Values& face : read.values.tables("absorbing"))
     for (const Values& support : read.values.tables("support")) {
       if (!support.has("group") || support.text("group") != face.text("group") || support.text("stages") != "all") continue;
       const std::vector<std::string>& fixed = support.texts("fixed");
-      const auto held = std::ranges::count_if(fixed, [](const std::string& unknown) { return unknown.starts_with("u"); });
-      const bool comes_in = face.has("incident");
-      if (comes_in || held == dimension)
-        said.push_back(fmt::format("{}:{}: {} is held in the dynamic stages too: no wave {} there; take stages = \"static\"",
-                                   support.where().file, support.where().line, face.text("group"),
-                                   comes_in ? "comes in or leaves" : "leaves"));
+      const Values* incident = table_if(face, "incident");
+      const Vec3 motion = incident ? incident_motion(*incident, built.model.space) : Vec3::Zero();
+      std::string held, stopped;
+      int count = 0;
+      for (int k = 0; k < dimension; ++k) {
+        const std::string unknown = std::array{"ux", "uy", "uz"}[static_cast<std::size_t>(k)];
+        if (std::ranges::find(fixed, unknown) == fixed.end()) continue;
+        ++count;
+        held += (held.empty() ? "" : ", ") + unknown;
+        if (std::abs(motion[k]) > 1e-9) stopped += (stopped.empty() ? "" : ", ") + unknown;
+      }
+      const std::string place = fmt::format("{}:{}: {} is held along {} in the dynamic stages too: ", support.where().file,
+                                            support.where().line, face.text("group"), held);
+      if (!stopped.empty())
+        said.push_back(fmt::format("{}the incident {} wave, which moves along {}, does not come in there; take stages = \"static\"", place,
+                                   incident->text("wave"), stopped));
+      else if (count == dimension)
+        said.push_back(place + "no wave leaves there; take stages = \"static\"");
     }
 }
 
@@ -140,10 +154,12 @@ void warn_method(const Case& read, const RunSpec& spec, const Built& built, std:
     double largest = 0;
     for (const StiffnessRatio& ratio : stiffness_ratios(built.model, *stage, *built.plan.solver)) largest = std::max(largest, ratio.most);
     if (largest > 0.05)
-      said.push_back(
-          fmt::format("traction at the end of the step with a stiff joint (k F_ii = {:.3g}): this creates energy; take traction = "
-                      "\"path\", or an impact rule",
-                      largest));
+      said.push_back(fmt::format(
+          "traction at the end of the step with a stiff joint (k F_ii = {:.3g}): this creates energy; take {}, or an "
+          "impact rule",
+          largest,
+          stage->scheme.average_acceleration() ? "traction = \"path\""
+                                               : "scheme = \"average_acceleration\", which has the path average of the traction"));
   }
 }
 

@@ -66,7 +66,7 @@ Runner::Runner(const Model& model, const RunPlan& plan, const std::vector<const 
       observe_(observe),
       b_(stack_interfaces(model)),
       gap_(stack_gaps(model)),
-      viewer_(model, plan.gap_tolerance, plan.bases),
+      viewer_(model, plan.gap_tolerance, plan.bases, plan.facets),
       rest_(plan.rest.get()),
       views_(model.interfaces.size()) {
   result_.name = plan.name;

@@ -16,6 +16,7 @@
 namespace uplift {
 
 class Stepper;
+struct Facets;
 
 // ---- what is to be done ----
 
@@ -100,7 +101,8 @@ struct RunPlan {
   double rotation_limit = 0.15;      // rad: beyond the small-displacement model: overturned
   // m, beyond the initial gap: an interface that is open everywhere by more is as far beyond that model: separated. 0: no limit
   double separation_limit = 0;
-  double gap_tolerance = 1e-9;          // m: a gap larger than this counts as uplifted
+  double gap_tolerance = 1e-9;                        // m: a gap larger than this counts as uplifted
+  std::vector<std::shared_ptr<const Facets>> facets;  // of every interface, see InterfaceFacts; may be empty
   std::vector<std::vector<int>> bases;  // nodes of the upper side of every interface, whose settlement and tilt are kept; may be empty
   bool expected_to_fail = false;
   int frames = 0;                                 // pictures kept for the animation (0: none)

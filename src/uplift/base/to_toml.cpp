@@ -3,6 +3,7 @@
 #include <cassert>
 
 #include "uplift/base/declare.h"
+#include "uplift/base/resolved.h"
 #include "uplift/base/text.h"
 
 // Checked values as TOML: plain keys first, then the tables, in the order of the declaration.
@@ -45,11 +46,14 @@ bool bare_part(const Values& values) {
 
 class Writer {
  public:
+  explicit Writer(const DecidedTexts& decided) : decided_(decided) {}
   void write(const Values& values, const std::string& header) {
     if (!values.type().empty()) line("type", escaped(values.type()), {});
     for (const Field& field : fields_of(values)) {
       if (!values.has(field.name)) continue;
-      if (const std::string value = plain(values, field); !value.empty()) line(field.name, value, field.unit);
+      const auto decided = decided_.find(values.path(field.name));
+      const std::string value = decided != decided_.end() ? escaped(decided->second) : plain(values, field);
+      if (!value.empty()) line(field.name, value, field.unit);
     }
     for (const Field& field : fields_of(values))
       if (values.has(field.name)) tables(values, field, header.empty() ? key_text(field.name) : header + "." + key_text(field.name));
@@ -57,6 +61,8 @@ class Writer {
   std::string text;
 
  private:
+  const DecidedTexts& decided_;
+
   void line(std::string_view key, const std::string& value, std::string_view unit) {
     const bool comment = !unit.empty() && unit != "1" && value.front() != '"';
     text += fmt::format("{} = {}{}{}\n", key_text(key), value, comment ? "  # " : "", comment ? unit : "");
@@ -125,7 +131,11 @@ class Writer {
 }  // namespace
 
 std::string to_toml(const Values& values) {
-  Writer writer;
+  return to_toml(values, {});
+}
+
+std::string to_toml(const Values& values, const DecidedTexts& decided) {
+  Writer writer(decided);
   writer.write(values, "");
   return writer.text;
 }

@@ -12,6 +12,7 @@
 #include "uplift/cli/load.h"
 #include "uplift/dynamics/cost.h"
 #include "uplift/io/field_run.h"
+#include "uplift/io/interface_points.h"
 #include "uplift/io/json_writer.h"
 #include "uplift/io/report_motions.h"
 #include "uplift/mesh/quality.h"
@@ -198,6 +199,7 @@ void print(const Loaded& loaded, const Built& built, const Findings& found, cons
     const Interface& interface = model.interfaces[k];
     line("interface " + interface.name, fmt::format("{} points, {}, area {:.4g} m2{}", interface.batch.points, interface.behaviour,
                                                     interface.area.sum(), interface.batch.components == 1 ? ", normal only" : ""));
+    line("  points", points_text(interface));
     if (k < found.ratios.size() && found.ratios[k].most > 0)
       line("  k F_ii at the time step", fmt::format("{:.3g} to {:.3g}", found.ratios[k].least, found.ratios[k].most));
     if (k < found.ratios.size()) line("  compliance F_ii", fmt::format("up to {:.3g} m/N", found.ratios[k].compliance));
@@ -265,6 +267,7 @@ void write(const Loaded& loaded, const Built& built, const Findings& found, cons
         .member("behaviour", interface.behaviour)
         .member("points", interface.batch.points)
         .member("area", interface.area.sum());
+    write_points(json.key("positions"), interface);
     if (k < found.ratios.size())
       json.member("k_F_least", found.ratios[k].least)
           .member("k_F_most", found.ratios[k].most)

@@ -147,6 +147,24 @@ std::string head_of(const Place& place) {
   return place.kind == Kind::tables ? "[[" + place.path + "]]" : "[" + place.path + "]";
 }
 
+/// The parts that a key takes, with their parameters and defaults, and where more is said of them.
+void print_choices(const Field& field) {
+  std::vector<std::vector<std::string>> rows;
+  for (const PartInfo* part : field.parts()) {
+    std::string keys;
+    for (const Field& key : part->params) {
+      keys += (keys.empty() ? "" : ", ") + std::string(key.name);
+      if (key.unit != "1" && !key.unit.empty()) keys += fmt::format(" [{}]", key.unit);
+      if (const std::string standard = standard_text(key); !standard.empty()) keys += " = " + standard;
+    }
+    rows.push_back({"  " + std::string(part->name), keys.empty() ? "no parameters" : keys});
+  }
+  say(fmt::format("\n{} = {{ type = ..., ... }}: one of these, with their parameters and defaults", field.name));
+  print_table(rows);
+  for (const Family& family : families())
+    if (family.parts.data() == field.parts().data()) say(fmt::format("more: uplift describe {} {}", family.name, field.parts()[0]->name));
+}
+
 int describe_section(const std::string& name) {
   std::vector<std::string> known;
   for (const Place& place : places()) {
@@ -155,12 +173,8 @@ int describe_section(const std::string& name) {
     if (place.path != name && last != name) continue;
     say(fmt::format("section {}: {}\n{}\n", place.path, place.section->meaning, head_of(place)));
     print_fields(place.section->fields);
-    for (const Field& field : place.section->fields) {
-      if (!field.parts) continue;
-      std::string names;
-      for (const PartInfo* part : field.parts()) names += (names.empty() ? "" : ", ") + std::string(part->name);
-      say(fmt::format("\n{}: one of {}", field.name, names));
-    }
+    for (const Field& field : place.section->fields)
+      if (field.parts) print_choices(field);
     return Exit::done;
   }
   throw InputError({"uplift describe section", 0}, "", "a table of the case file", "\"" + name + "\"", nearest_name(name, known));

@@ -7,6 +7,7 @@
 #include <filesystem>
 #include <future>
 
+#include "uplift/analysis/case_decided.h"
 #include "uplift/base/file.h"
 #include "uplift/cli/console.h"
 #include "uplift/io/field_run.h"
@@ -44,7 +45,7 @@ Loaded load(const Options& options) {
   from.case_file = file;
   from.case_hash = sha256(read_file(file));
   for (const std::string& input : input_files(loaded.read)) from.inputs.emplace_back(input, sha256(read_file(input)));
-  from.resolved = to_toml(loaded.read.values);
+  from.resolved = to_toml(loaded.read.values, decided_texts(loaded.read));
   return loaded;
 }
 

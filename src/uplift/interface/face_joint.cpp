@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <map>
 
+#include "uplift/interface/face_order.h"
 #include "uplift/mesh/cell_quadrature.h"
 #include "uplift/mesh/cell_shapes.h"
 
@@ -24,20 +25,22 @@ std::vector<std::pair<int, double>> side(std::span<const int> nodes, const CellS
 class Pairs {
  public:
   explicit Pairs(std::vector<JointPoint>& points) : points_(points) {}
-  void add(int lower, int upper, const JointPoint& point) {
-    std::vector<std::size_t>& here = known_[{lower, upper}];
-    for (const std::size_t k : here)
-      if (points_[k].normal.dot(point.normal) > same_normal) {
-        points_[k].area += point.area;
-        return;
+  /// The number of the point.
+  int add(int lower, int upper, const JointPoint& point) {
+    std::vector<int>& here = known_[{lower, upper}];
+    for (const int k : here)
+      if (JointPoint& known = points_[static_cast<std::size_t>(k)]; known.normal.dot(point.normal) > same_normal) {
+        known.area += point.area;
+        return k;
       }
-    here.push_back(points_.size());
+    here.push_back(static_cast<int>(points_.size()));
     points_.push_back(point);
+    return here.back();
   }
 
  private:
   std::vector<JointPoint>& points_;
-  std::map<std::pair<int, int>, std::vector<std::size_t>> known_;
+  std::map<std::pair<int, int>, std::vector<int>> known_;
 };
 
 /// What a node has of a bilinear face, int N_a n dA [m2]: that of the corner alone, det J times the weight, would not balance a uniform
@@ -54,17 +57,19 @@ Vec3 share_of_corner(Cell cell, std::size_t corner, const std::vector<Vec3>& pos
 
 }  // namespace
 
-std::vector<JointPoint> face_points(const Mesh& mesh, const std::vector<FacePair>& faces, FaceQuadrature quadrature, double thickness,
-                                    double gap) {
-  std::vector<JointPoint> points;
+FaceJoints face_joints(const Mesh& mesh, const std::vector<FacePair>& faces, FaceQuadrature quadrature, double thickness, double gap) {
+  FaceJoints joints;
+  std::vector<JointPoint>& points = joints.points;
   Pairs pairs(points);
   std::vector<Vec3> positions;
   for (const FacePair& face : faces) {
+    std::vector<int>& numbers = joints.of_face.emplace_back();
     const Cell cell = mesh.type(face.lower);
     const std::span<const int> lower = mesh.cell(face.lower), upper = mesh.cell(face.upper);
     if (std::ranges::equal(lower, upper)) continue;  // all nodes where the surface ends: nothing can part
     const int degree = info(cell).linear == cell ? 1 : 2;
     const CellRule rule = quadrature == FaceQuadrature::nodal ? nodal_rule(cell) : cell_rule(cell, 2 * degree);
+    numbers.assign(rule.point.size(), -1);
     positions.clear();
     for (const int node : lower) positions.push_back(mesh.nodes[static_cast<std::size_t>(node)]);
     for (std::size_t i = 0; i < rule.point.size(); ++i) {
@@ -79,13 +84,21 @@ std::vector<JointPoint> face_points(const Mesh& mesh, const std::vector<FacePair
       point.lower = side(lower, shape);
       point.upper = side(upper, shape);
       const bool at_node = quadrature == FaceQuadrature::nodal && i < lower.size();
-      if (!at_node)
+      if (!at_node) {
+        numbers[i] = static_cast<int>(points.size());
         points.push_back(point);
-      else if (lower[i] != upper[i])
-        pairs.add(lower[i], upper[i], point);
+      } else if (lower[i] != upper[i]) {
+        numbers[i] = pairs.add(lower[i], upper[i], point);
+      }
     }
   }
-  return points;
+  renumber(mesh.dimension == 2 ? order_along_lines(mesh, faces, quadrature, joints) : order_in_rows(points), joints);
+  return joints;
+}
+
+std::vector<JointPoint> face_points(const Mesh& mesh, const std::vector<FacePair>& faces, FaceQuadrature quadrature, double thickness,
+                                    double gap) {
+  return face_joints(mesh, faces, quadrature, thickness, gap).points;
 }
 
 }  // namespace uplift

@@ -18,6 +18,17 @@ enum class FaceQuadrature {
 /// On curved and distorted faces, too, a uniform pressure is met exactly with the Gauss rule: the sum of area * normal * N_a is the
 /// integral of N_a over the vector of area. With the nodal rule that holds on faces with parallel sides; the sum over all points of area *
 /// normal, the resultant of the pressure, is exact on every face.
+///
+/// Points are numbered along the line in the plane, from its end with the smaller x (then the smaller y), one line after another. In space
+/// they are numbered in rows: those of an upward normal first, then each further direction of the normal; within them by rows of growing t2
+/// (local_axis), along each row by growing t1.
+struct FaceJoints {
+  std::vector<JointPoint> points;
+  /// For each face the number of the point at each point of its rule (nodal: its nodes first); -1 where there is none.
+  std::vector<std::vector<int>> of_face;
+};
+FaceJoints face_joints(const Mesh& mesh, const std::vector<FacePair>& faces, FaceQuadrature quadrature, double thickness, double gap);
+/// Its points alone.
 std::vector<JointPoint> face_points(const Mesh& mesh, const std::vector<FacePair>& faces, FaceQuadrature quadrature, double thickness,
                                     double gap);
 

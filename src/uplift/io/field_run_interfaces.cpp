@@ -1,6 +1,5 @@
 #include <algorithm>
 #include <cassert>
-#include <map>
 
 #include "uplift/analysis/case_mesh.h"
 #include "uplift/interface/face_joint.h"
@@ -18,69 +17,40 @@ Vec3 direction(const Interface& interface, int point, int component) {
   return component_axis(interface.space, interface.normal[static_cast<std::size_t>(point)], component, interface.batch.components);
 }
 
-/// The joint points at the pairs of a face's nodes: where a pair has several, for a corner, that with the face's own normal.
-class PairPoints {
- public:
-  explicit PairPoints(const std::vector<JointPoint>& points) : points_(points) {
-    for (std::size_t i = 0; i < points.size(); ++i)
-      if (points[i].lower.size() == 1) at_[{points[i].lower[0].first, points[i].upper[0].first}].push_back(static_cast<int>(i));
-  }
-  std::vector<Terms> places(const Mesh& mesh, const FacePair& face) const {
-    const std::span<const int> lower = mesh.cell(face.lower), upper = mesh.cell(face.upper);
-    std::vector<Terms> terms(lower.size());
-    for (const JointPoint& own : face_points(mesh, {face}, FaceQuadrature::nodal, 1, 0)) {
-      if (own.lower.size() != 1) continue;  // the centre of a face of second degree
-      const auto a = static_cast<std::size_t>(std::ranges::find(lower, own.lower[0].first) - lower.begin());
-      const std::vector<int>& here = at_.at({lower[a], upper[a]});
-      const auto fit = [&](int i) { return points_[static_cast<std::size_t>(i)].normal.dot(own.normal); };
-      terms[a] = {{*std::ranges::max_element(here, {}, fit), 1.0}};
-    }
-    return terms;
-  }
-
- private:
-  const std::vector<JointPoint>& points_;
-  std::map<std::pair<int, int>, std::vector<int>> at_;  // by lower and upper node
-};
-
-/// From the Gauss points of a face, the first of which has the number `first`, to its nodes: the least-squares fit of the shape functions,
-/// weighted with the areas, so that the integral over the face is kept: (S^T A S) v = S^T A f.
-std::vector<Terms> fitted_places(const Mesh& mesh, const FacePair& face, const std::vector<JointPoint>& own, int first) {
-  const std::span<const int> lower = mesh.cell(face.lower);
+/// From the Gauss points of a face to its nodes: the least-squares fit of the shape functions, weighted with the areas, so that the
+/// integral over the face is kept: (S^T A S) v = S^T A f.
+std::vector<Terms> fitted_places(std::span<const int> lower, const FaceJoints& joints, const std::vector<int>& own) {
   if (own.empty()) return std::vector<Terms>(lower.size());  // all its nodes are inside the continuum
   Matrix shape = Matrix::Zero(static_cast<Index>(own.size()), static_cast<Index>(lower.size()));
   Vector area(static_cast<Index>(own.size()));
   for (std::size_t i = 0; i < own.size(); ++i) {
-    area[static_cast<Index>(i)] = own[i].area;
-    for (const auto& [node, value] : own[i].lower) shape(static_cast<Index>(i), std::ranges::find(lower, node) - lower.begin()) = value;
+    const JointPoint& point = joints.points[static_cast<std::size_t>(own[i])];
+    area[static_cast<Index>(i)] = point.area;
+    for (const auto& [node, value] : point.lower) shape(static_cast<Index>(i), std::ranges::find(lower, node) - lower.begin()) = value;
   }
   const Matrix weighted = shape.transpose() * area.asDiagonal();
   const Matrix fit = PivotedLdlt(weighted * shape).solve(weighted);
   std::vector<Terms> terms(lower.size());
   for (std::size_t a = 0; a < terms.size(); ++a)
-    for (std::size_t i = 0; i < own.size(); ++i)
-      terms[a].emplace_back(first + static_cast<int>(i), fit(static_cast<Index>(a), static_cast<Index>(i)));
+    for (std::size_t i = 0; i < own.size(); ++i) terms[a].emplace_back(own[i], fit(static_cast<Index>(a), static_cast<Index>(i)));
   return terms;
 }
 
+/// For every node of every face what stands there, made of the joint points.
 std::vector<Terms> places_of(const Mesh& mesh, const std::vector<FacePair>& faces, FaceQuadrature quadrature,
                              [[maybe_unused]] int joint_points) {
   std::vector<Terms> places;
-  const auto add = [&](const std::vector<Terms>& more) { places.insert(places.end(), more.begin(), more.end()); };
-  const std::vector<JointPoint> all = face_points(mesh, faces, quadrature, 1, 0);
-  assert(static_cast<int>(all.size()) == joint_points);
-  const PairPoints pairs(all);
-  int first = 0;
-  for (const FacePair& face : faces) {
-    if (quadrature == FaceQuadrature::nodal) {
-      add(pairs.places(mesh, face));
-    } else {
-      const std::vector<JointPoint> own = face_points(mesh, {face}, quadrature, 1, 0);
-      add(fitted_places(mesh, face, own, first));
-      first += static_cast<int>(own.size());
-    }
+  const FaceJoints joints = face_joints(mesh, faces, quadrature, 1, 0);
+  assert(static_cast<int>(joints.points.size()) == joint_points);
+  for (std::size_t f = 0; f < faces.size(); ++f) {
+    const std::span<const int> lower = mesh.cell(faces[f].lower);
+    const std::vector<int>& own = joints.of_face[f];
+    std::vector<Terms> here(lower.size());
+    if (quadrature == FaceQuadrature::gauss) here = fitted_places(lower, joints, own);
+    for (std::size_t a = 0; quadrature == FaceQuadrature::nodal && a < lower.size() && !own.empty(); ++a)
+      if (own[a] >= 0) here[a] = {{own[a], 1.0}};
+    places.insert(places.end(), here.begin(), here.end());
   }
-  assert(quadrature == FaceQuadrature::nodal || first == joint_points);
   return places;
 }
 

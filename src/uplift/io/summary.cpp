@@ -1,6 +1,7 @@
 #include "uplift/io/summary.h"
 
 #include "uplift/io/floors.h"
+#include "uplift/io/interface_points.h"
 #include "uplift/io/json_writer.h"
 #include "uplift/io/report_motions.h"
 #include "uplift/io/verdict_json.h"
@@ -83,6 +84,14 @@ std::string summary_json(const SummaryInput& input) {
   for (const auto& [file, hash] : from.inputs) json.begin_object().member("file", file).member("sha256", hash).end_object();
   json.end_array();
   write_motions(json, motions);
+  json.key("interfaces").begin_array();
+  for (std::size_t k = 0; built != nullptr && k < built->model.interfaces.size(); ++k) {
+    const Interface& interface = built->model.interfaces[k];
+    json.begin_object().member("name", interface.name).member("points", interface.batch.points);
+    write_points(json.key("positions"), interface);
+    json.end_object();
+  }
+  json.end_array();
   json.key("runs").begin_array();
   for (std::size_t i = 0; i < runs.size(); ++i)
     write_run(json, runs[i], compared ? &compared->agreement[i] : nullptr, floors && floors->any() ? &floors->runs[i] : nullptr);

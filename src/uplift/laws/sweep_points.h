@@ -3,10 +3,10 @@
 #include "uplift/laws/sweep.h"
 #include "uplift/math/lanes.h"
 
-// The pass itself, for laws that write their formulas for eight points at once.
+// The pass itself, for laws that write their formulas for one register of points.
 namespace uplift {
 
-/// Of a law, for eight points together: `straight(from, to, old)` the averages of paths without a bend, `bends(from, to, old)`,
+/// Of a law, for the points of one register: `straight(from, to, old)` the averages of paths without a bend, `bends(from, to, old)`,
 /// `average(from, to, old)` those of any path; both with the members value, slope (path average and its derivative with respect to `to`),
 /// end and end_slope (traction and slope at `to`). `twice_stored(to, old, end)`: twice the energy at the end [J/m2]. `remembers`: there is
 /// one memory value, and `changes(from, to, old)` is true where it may not stay. False where that is so: what was made is of no use then.

@@ -2,13 +2,14 @@
 #include <cstddef>
 #include <experimental/simd>
 
-// Eight numbers side by side, in vector registers, for loops over the points of an interface. Sums over points are made of these: what
-// compilers make of a loop with several sums ends in long chains of single additions.
+// One vector register of numbers, for loops over the points of an interface: 8 numbers with AVX-512, 4 with AVX2, 2 with SSE2. A fixed
+// width would be emulated by calls where the registers are narrower. Sums over points are made of these: what compilers make of a loop
+// with several sums ends in long chains of single additions.
 namespace uplift {
 
-using Lanes = std::experimental::simd<double, std::experimental::simd_abi::deduce_t<double, 8>>;
+using Lanes = std::experimental::native_simd<double>;
 using LaneMask = Lanes::mask_type;
-inline constexpr std::ptrdiff_t lanes = 8;
+inline constexpr std::ptrdiff_t lanes = Lanes::size();
 
 [[gnu::always_inline]] inline Lanes larger(Lanes a, Lanes b) {
   return std::experimental::max(a, b);
@@ -51,14 +52,14 @@ inline constexpr std::ptrdiff_t lanes = 8;
   return mask ? a : b;
 }
 
-/// Eight numbers of an array from `first` on.
+/// The numbers of an array from `first` on that fill one register.
 struct WholeLanes {
   std::ptrdiff_t first;
   [[gnu::always_inline]] Lanes operator()(const double* x, double = 0) const { return {x + first, std::experimental::element_aligned}; }
   [[gnu::always_inline]] void put(double* y, Lanes value) const { value.copy_to(y + first, std::experimental::element_aligned); }
 };
 
-/// The last ones, fewer than eight: beyond them zeros, or what is asked for.
+/// The last numbers, which do not fill a register: zeros follow them, or the value `beyond`.
 struct LastLanes {
   std::ptrdiff_t first, count;
   [[gnu::always_inline]] Lanes operator()(const double* x, double beyond = 0) const {
@@ -71,8 +72,8 @@ struct LastLanes {
   }
 };
 
-/// Calls work(at) for eight points after another out of n: at(x) are their numbers in the array x (beyond the last point zeros, or what
-/// at(x, beyond) says), at.put(y, value) writes them.
+/// Calls work(at) for n points, one register of them after another: at(x) are their numbers in the array x (beyond the last point zeros, or
+/// what at(x, beyond) says), at.put(y, value) writes them.
 template <class Work>
 [[gnu::always_inline]] inline void for_lanes(std::ptrdiff_t n, const Work& work) {
   std::ptrdiff_t i = 0;
