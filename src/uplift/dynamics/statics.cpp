@@ -16,6 +16,8 @@ Vector closed_joint(const Model& model, const Behaviours& behaviours) {
   double largest = 0;
   for (int i = 0; i < model.free(); ++i) largest = std::max(largest, model.stiffness.coeff(i, i));
   if (largest <= 0) largest = 1e9;
+  // A joint far stiffer than the structure would leave nothing of the structure's stiffness in the factored sum once it is taken back.
+  constexpr double stiffest = 1e3;
   int first = 0;
   for (std::size_t i = 0; i < model.interfaces.size(); ++i) {
     const Interface& interface = model.interfaces[i];
@@ -26,7 +28,7 @@ Vector closed_joint(const Model& model, const Behaviours& behaviours) {
       for (int p = 0; p < n; ++p) {
         double& value = result[first + c * n + p];
         if (behaviours.interfaces[i].law != nullptr)
-          value = stiffness[c] * interface.area[p];
+          value = std::min(stiffness[c] * interface.area[p], stiffest * largest);
         else if (c == components - 1 || behaviours.interfaces[i].cone->friction() > 0)
           value = largest / n;
       }
