@@ -8,6 +8,8 @@
 #include "text_support.h"
 #include "tower_case.h"
 #include "uplift/analysis/case.h"
+#include "uplift/contact/method.h"
+#include "uplift/contact/unheld.h"
 #include "uplift/io/toml.h"
 #include "uplift/mesh/box.h"
 #include "uplift/model/hinges.h"
@@ -64,6 +66,17 @@ TEST(StiffJoints, WhatOverturnsIsToldSo) {
   const RunResult result = run_text(stiff_tower("5e16", 1.2 * 1.5 * 9.81 * 34000 / 5));
   EXPECT_EQ(result.status, RunStatus::failed);
   EXPECT_NE(result.reason.find("overturns"), std::string::npos) << result.reason;
+}
+
+TEST(StiffJoints, TheStoredProblemOfAStepThatRanAwayShowsIt) {
+  // the interface problem alone has a solution, at infinity: the closed joint that was taken back is all that is balanced
+  const RunResult result = run_text(stiff_tower("1e8", 1.2 * 1.5 * 9.81 * 34000 / 5));
+  ASSERT_EQ(result.status, RunStatus::failed);
+  const StoredProblem stored = load_problem(result.problem, "problem.json");
+  const Values values = check_part(Raw{std::string("lagrange"), {"test", 0}, ""}, contact_methods());
+  InterfaceSolution solution;
+  ASSERT_TRUE(make_part(method_catalog(), values)->solve(stored.problem, solution).converged);
+  EXPECT_NE(unheld_motion(stored.problem, solution, runaway_ratio).find("overturns"), std::string::npos);
 }
 
 // ---- buckling ----
