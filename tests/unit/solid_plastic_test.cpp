@@ -217,6 +217,54 @@ TEST(SolidPlastic, ApexIsTheCotangentOfFriction) {
     }
 }
 
+/// Mean stress and accumulated strain at a volume strain theta by the equation of the apex alone, solved by bisection:
+/// p_trial - K v = (xi/eta) (c + H e), e = xi v/eta_bar, in the unknown e so that a flow without volume change needs no case of its own.
+std::array<double, 2> apex_by_bisection(const DruckerPragerParameters& p, double theta) {
+  const auto slope = [](double angle) { return 6 * std::sin(angle) / (std::sqrt(3.0) * (3 - std::sin(angle))); };
+  const double eta = slope(p.friction), eta_bar = slope(p.dilation), bulk = p.elastic.bulk();
+  const double xi = 6 * std::cos(p.friction) / (std::sqrt(3.0) * (3 - std::sin(p.friction)));
+  const auto over = [&](double e) { return bulk * theta - bulk * eta_bar / xi * e - xi / eta * (p.cohesion + p.hardening * e); };
+  double low = 0, high = 1;
+  for (int i = 0; i < 200; ++i) (over(0.5 * (low + high)) > 0 ? low : high) = 0.5 * (low + high);
+  return {bulk * (theta - eta_bar / xi * low), low};
+}
+
+TEST(SolidPlastic, ApexWithHardeningIsContinuousInTheDilatancyAngle) {
+  DruckerPragerParameters p = soil();
+  p.hardening = 2e6;
+  const double theta = 4 * p.cohesion / std::tan(p.friction) / p.elastic.bulk();
+  Strain strain = Strain::Zero();
+  strain.head<3>().setConstant(theta / 3);
+  double last = 0, last_angle = 0;
+  for (const double angle : {0.0, 1e-6, 1e-3, 0.1, 1.0}) {
+    p.dilation = angle * degree;
+    History old{}, now{};
+    Mat6 tangent;
+    const Stress stress = DruckerPrager(p).respond(strain, old, now, &tangent);
+    const auto [mean, accumulated] = apex_by_bisection(p, theta);
+    EXPECT_NEAR(stress[0], mean, 1e-10 * mean) << angle;
+    EXPECT_NEAR(now[6], accumulated, 1e-10 * accumulated) << angle;
+    EXPECT_NEAR(stress[0], DruckerPrager(p).apex(now[6]), 1e-10 * mean) << angle;
+    if (angle == 0) {  // the volume stays elastic, and so does its stiffness
+      EXPECT_NEAR(stress[0], p.elastic.bulk() * theta, 1e-12 * stress[0]);
+      EXPECT_NEAR(now[0], 0, 1e-15);
+      EXPECT_NEAR(tangent(0, 0), p.elastic.bulk(), 1e-12 * p.elastic.bulk());
+    } else {  // |dp/d eta_bar| <= K eta (p_trial - p_apex)/(xi^2 H), and eta_bar <= 1.16 angle
+      const double xi = 6 * std::cos(p.friction) / (std::sqrt(3.0) * (3 - std::sin(p.friction)));
+      const double eta = 6 * std::sin(p.friction) / (std::sqrt(3.0) * (3 - std::sin(p.friction)));
+      const double rate = p.elastic.bulk() * eta * p.elastic.bulk() * theta / (xi * xi * p.hardening);
+      EXPECT_LE(std::abs(stress[0] - last), rate * 1.2 * (p.dilation - last_angle)) << angle;
+    }
+    last = stress[0], last_angle = p.dilation;
+  }
+  p.hardening = 0;  // without hardening the apex stays, whatever the angle
+  for (const double angle : {0.0, 1e-6, 1.0}) {
+    p.dilation = angle * degree;
+    History old{}, now{};
+    EXPECT_NEAR(DruckerPrager(p).respond(strain, old, now, nullptr)[0], p.cohesion / std::tan(p.friction), 1e-10 * p.cohesion) << angle;
+  }
+}
+
 TEST(SolidPlastic, FrictionlessSoilIsVonMises) {
   DruckerPragerParameters p = soil();
   p.friction = p.dilation = 0;

@@ -26,6 +26,12 @@ std::optional<double> shear_of(const Values& beam) {
   return beam.number("E") / (2 * (1 + beam.number("poisson"))) * beam.number("shear_area");
 }
 
+/// Whether the cross-sections have rotary inertia: those of lumped masses always, since the rotations of the nodes would be massless
+/// otherwise; consistent masses with the theory that has it (Timoshenko).
+bool turns_with_inertia(BeamSection::Mass mass, bool timoshenko) {
+  return mass == BeamSection::Mass::lumped || (mass == BeamSection::Mass::consistent && timoshenko);
+}
+
 BeamSection plane_section(const Values& beam) {
   for (const char* key : {"I_y", "I_z", "J", "up"})
     if (beam.has(key)) fail(beam, key, "I alone in a plane model", fmt::format("{}", key));
@@ -34,10 +40,9 @@ BeamSection plane_section(const Values& beam) {
   section.bending = beam.number("E") * beam.number("I");
   if (beam.has("A")) section.axial = beam.number("E") * beam.number("A");
   add_beam_mass(beam, section);
-  if (const auto shear = shear_of(beam)) {
-    section.shear = *shear;
-    if (section.mass != BeamSection::Mass::none) section.rotary_per_length = beam.number("density") * beam.number("I");
-  }
+  const auto shear = shear_of(beam);
+  if (shear) section.shear = *shear;
+  if (turns_with_inertia(section.mass, shear.has_value())) section.rotary_per_length = beam.number("density") * beam.number("I");
   return section;
 }
 
@@ -53,12 +58,11 @@ SpaceBeamSection space_section(const Values& beam) {
   if (beam.has("A")) section.axial = young * beam.number("A");
   add_beam_mass(beam, section);
   if (section.mass != BeamSection::Mass::none) section.polar = beam.number("density") * (about_y + about_z);
-  if (const auto shear = shear_of(beam)) {
-    section.shear_y = section.shear_z = *shear;
-    if (section.mass != BeamSection::Mass::none) {
-      section.rotary_y = beam.number("density") * about_y;
-      section.rotary_z = beam.number("density") * about_z;
-    }
+  const auto shear = shear_of(beam);
+  if (shear) section.shear_y = section.shear_z = *shear;
+  if (turns_with_inertia(section.mass, shear.has_value())) {
+    section.rotary_y = beam.number("density") * about_y;
+    section.rotary_z = beam.number("density") * about_z;
   }
   return section;
 }

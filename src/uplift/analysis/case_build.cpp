@@ -358,7 +358,7 @@ Built build(const Case& read, const RunSpec& spec) {
   built.model = make_model(read, spec, tuned, nullptr, names, built);
   const bool released = any_released(root);
   const bool rests = std::ranges::any_of(built.plan.stages, [](const Stage& stage) { return stage.type == Stage::Type::statics; });
-  if (!released) check_static(built.model, !rests);
+  if (!released && rests) check_static(built.model);
   if (dynamic_stage(built.plan)) check_dynamic(built.model);
   built.motions = motions_used(root, read.records, spec.motion);
 
@@ -376,6 +376,9 @@ Built build(const Case& read, const RunSpec& spec) {
     check_static(*plan.rest);
   }
   add_method(read, spec, built);
+  if (const Stage* stage = dynamic_stage(plan);
+      stage != nullptr && plan.impact->acts() && (!stage->path_average || plan.method->constrains()))
+    check_impulses(built.model);
   add_initial(read, names, built);
   find_shown(read, names, built);
   plan.created_limit = root.table("energy").number("created_limit");

@@ -189,7 +189,7 @@ std::shared_ptr<const CaseMesh> mesh_of_case(const Values& root, const std::stri
     const Where where = mesh->where("file");
     made->from = (std::filesystem::path(file).parent_path() / mesh->text("file")).lexically_normal().string();
     made->mesh = read_mesh(made->from, where, mesh->has("name") ? mesh->text("name") : "");
-    check_mesh(made->mesh, where);
+    check_mesh(made->mesh, {made->from, 0});
     if (!beams_alone(root)) check_solid(made->mesh, *mesh);
   } else {
     made->from = "soil_box";

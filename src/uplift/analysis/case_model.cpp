@@ -100,7 +100,7 @@ void add_masses(const Values& root, ModelBuilder& builder, CaseNames& names, con
   }
   Names bodies("rigid body");
   for (const Values& body : root.tables("rigid")) {
-    bodies.add(body, "name");
+    if (body.has("name")) bodies.add(body, "name");
     const int master = master_of(body, names);
     for (const int slave : names.nodes_of(body, "slaves")) {
       if (slave == master) fail(body, "slaves", "nodes other than the master", "\"" + names.nodes[master] + "\"");

@@ -22,7 +22,8 @@ const Section& beam_section() {
   static const Section s{
       "beam",
       "a straight beam between two nodes, or the lines of a group of the mesh. Beams that share a node are rigidly connected. Solids hold "
-      "no rotation: a beam that ends at their node is hinged there, unless it runs on along their edges or a [[rigid]] group holds it",
+      "no rotation: a beam that ends at their node is hinged there, unless a [[rigid]] group clamps it or it runs on along their edges "
+      "(softer)",
       Fields{
           text("name", "name; inner nodes of a subdivided beam are called NAME.1, NAME.2, ..., of the n-th line of a group NAME.n.1, ..."),
           texts("nodes", "the two end nodes; or give group").optional(),
@@ -40,7 +41,11 @@ const Section& beam_section() {
           choice("theory", {"euler_bernoulli", "timoshenko"}, "bending only, or with shear").standard("euler_bernoulli"),
           number("poisson", "1", "Poisson's ratio (shear modulus of a Timoshenko beam)").between(0, 0.5).standard(0.3),
           number("shear_area", "m2", "effective shear area of a Timoshenko beam").positive().optional(),
-          choice("mass", {"none", "consistent", "lumped"}, "mass matrix of the beam").standard("none"),
+          choice(
+              "mass", {"none", "consistent", "lumped"},
+              "mass matrix of the beam. consistent: with rotary inertia of the cross-section for theory = \"timoshenko\"; lumped: half of "
+              "the mass and of the rotary inertia density x I x length at each end")
+              .standard("none"),
           number("density", "kg/m3", "density; needed unless mass = \"none\", and then A too").positive().optional(),
           integer("elements", "number of equal elements, of a group between two nodes of the mesh").between(1, 10000).standard(1.0),
           number("damping_beta", "s", "stiffness-proportional damping factor of this beam alone").nonnegative().standard(0.0)}};
@@ -84,7 +89,8 @@ const Section& dashpot_section() {
 const Section& rigid_section() {
   static const Section s{
       "rigid", "a rigid body (a footing): its nodes follow the master node exactly",
-      Fields{text("name", "name"), text("node", "master node; absent: the node of group that is nearest to its middle").optional(),
+      Fields{text("name", "name of the body, for messages").optional(),
+             text("node", "master node; absent: the node of group that is nearest to its middle").optional(),
              texts("slaves", "further nodes of the body").optional(),
              text("group", "group of the mesh whose nodes belong to the body too: a rigid raft of solids, or the foot of a tower of beams")
                  .optional(),

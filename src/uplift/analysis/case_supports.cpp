@@ -66,7 +66,7 @@ void add_supports(const Values& root, ModelBuilder& builder, const CaseNames& na
         const Unknown unknown(node, dof_of(word, support, "fixed", names.space, turns));
         const auto motion = group ? moved.find(unknown) : moved.end();
         if (motion != moved.end() && motion->second != support.text("group")) continue;
-        if (!group || held.insert(unknown).second) builder.fix(node, unknown.second, support.where("fixed"));
+        if (!group || held.insert(unknown).second) builder.fix(node, unknown.second, support.where("fixed"), group);
       }
   }
   for (const Values& motion : root.tables("motion")) {

@@ -172,6 +172,20 @@ void warn_hinges(const Built& built, std::vector<std::string>& said) {
         named_places(built.model, hinged)));
 }
 
+/// Between its nodes in the solids a beam bends as on hinged supports.
+void warn_embedded_feet(const Built& built, std::vector<std::string>& said) {
+  const std::vector<EmbeddedFoot> feet = embedded_feet(built.model);
+  if (feet.empty()) return;
+  const auto softer = [](const EmbeddedFoot& foot) { return 3 * foot.flexibility / foot.free_length; };
+  const EmbeddedFoot& worst = *std::ranges::max_element(feet, {}, softer);
+  said.push_back(fmt::format(
+      "{} run on into solids, along {} of {} at {}: that foot turns by {:.3g} m x M/(E I) more than a clamped one, so that a cantilever of "
+      "its free length, {}, moves {} further; a [[rigid]] plate under the foot clamps it, and smaller cells reduce the error in proportion",
+      feet.size() == 1 ? "a beam" : fmt::format("{} beams", feet.size()),
+      worst.cells == 1 ? "one cell" : fmt::format("{} cells", worst.cells), spoken(worst.cell, "m"),
+      named_places(built.model, {worst.node}), worst.flexibility, spoken(worst.free_length, "m"), percent(softer(worst))));
+}
+
 }  // namespace
 
 namespace {
@@ -240,6 +254,7 @@ std::vector<std::string> warnings(const Case& read, const RunSpec& spec, const B
   warn_held_faces(read, built, said);
   warn_sides_exchanged(read, built, said);
   warn_hinges(built, said);
+  warn_embedded_feet(built, said);
   warn_step(built, said);
   warn_floors(spec, built, said);
   warn_method(read, spec, built, said);

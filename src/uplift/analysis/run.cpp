@@ -5,6 +5,7 @@
 #include <chrono>
 #include <utility>
 
+#include "uplift/analysis/buckling.h"
 #include "uplift/analysis/probe.h"
 #include "uplift/analysis/runner.h"
 #include "uplift/dynamics/plastic_bulk.h"
@@ -231,6 +232,13 @@ void Runner::add_initial_state() {
 bool Runner::second_order() {
   const Model& resting = rest_ != nullptr ? *rest_ : model_;
   geometric_ = std::make_unique<Sparse>(geometric_stiffness(resting, state_, model_.reduction));
+  if (const auto share = buckling_share(model_, *geometric_, *plan_.solver)) {
+    fail(fmt::format("P-delta: the structure buckles under {:.4g} times its dead loads: with the whole of them K + K_g is not positive "
+                     "definite, even with all interfaces bonded",
+                     *share),
+         nullptr);
+    return false;
+  }
   if (state_.displacement.isZero(0)) return true;
   Stage again;
   again.type = Stage::Type::statics;

@@ -6,6 +6,7 @@
 #include "uplift/cli/console.h"
 #include "uplift/cli/load.h"
 #include "uplift/contact/method.h"
+#include "uplift/contact/unheld.h"
 #include "uplift/io/json_writer.h"
 
 namespace uplift::cli {
@@ -33,6 +34,11 @@ Answer solve(const InterfaceProblem& problem, const std::string& name) {
   answer.residual = answer.solution.opening.size() == problem.rows() && answer.solution.force.size() == problem.rows()
                         ? yardstick(problem, answer.solution)
                         : INFINITY;
+  if (answer.outcome.converged && problem.shift.size() > 0)  // of a static step: what has run away is no equilibrium of the structure
+    if (std::string why = unheld_motion(problem, answer.solution, runaway_ratio); !why.empty()) {
+      answer.outcome.converged = false;
+      answer.outcome.why = std::move(why);
+    }
   return answer;
 }
 

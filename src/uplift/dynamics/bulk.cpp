@@ -75,6 +75,11 @@ BulkFactor::BulkFactor(const Sparse& matrix, const Sparse* b, bool small, const 
 }
 
 void BulkFactor::factorise(const Sparse& matrix, const Sparse* b, const LinearSolver& solver, const Model& model) {
+  if (matrix.rows() == 0) {  // every unknown is prescribed
+    small_ = true;
+    inverse_.resize(0, 0);
+    return;
+  }
   if (!small_ && b != nullptr) {
     last_ = touched_unknowns(*b);
     if (!last_.empty()) {

@@ -7,6 +7,8 @@
 #include <functional>
 #include <limits>
 
+#include "uplift/contact/unheld.h"
+
 namespace uplift {
 
 Vector closed_joint(const Model& model, const Behaviours& behaviours) {
@@ -16,6 +18,8 @@ Vector closed_joint(const Model& model, const Behaviours& behaviours) {
   double largest = 0;
   for (int i = 0; i < model.free(); ++i) largest = std::max(largest, model.stiffness.coeff(i, i));
   if (largest <= 0) largest = 1e9;
+  // A joint far stiffer than the structure would leave nothing of the structure's stiffness in the factored sum once it is taken back.
+  constexpr double stiffest = 1e3;
   int first = 0;
   for (std::size_t i = 0; i < model.interfaces.size(); ++i) {
     const Interface& interface = model.interfaces[i];
@@ -26,7 +30,7 @@ Vector closed_joint(const Model& model, const Behaviours& behaviours) {
       for (int p = 0; p < n; ++p) {
         double& value = result[first + c * n + p];
         if (behaviours.interfaces[i].law != nullptr)
-          value = stiffness[c] * interface.area[p];
+          value = std::min(stiffness[c] * interface.area[p], stiffest * largest);
         else if (c == components - 1 || behaviours.interfaces[i].cone->friction() > 0)
           value = largest / n;
       }
@@ -52,26 +56,6 @@ bool in_balance(const Bulk& bulk, const Vector& load, const Vector& reaction, co
   return lost <= 1e-3 * size && unbalanced.cwiseAbs().maxCoeff() <= 1e-6 * size + lost;
 }
 
-/// Which way a structure went that nothing held, by the interface whose points moved most. A movement counts when it is more than `far`
-/// times the one that all joints closed would allow.
-std::string way_out(const InterfaceProblem& problem, const InterfaceSolution& solution, double far) {
-  const Vector moved = (solution.opening - problem.from).cwiseAbs();
-  const double least = far * (problem.free_opening - problem.from).cwiseAbs().maxCoeff();
-  double most = 0;
-  std::string text;
-  for (const Block& block : problem.blocks) {
-    const int normal = block.batch.normal();
-    const double along = normal > 0 ? moved.segment(block.first, normal).maxCoeff() : 0;
-    const double apart = moved.segment(block.first + normal, block.batch.points).maxCoeff();
-    const double larger = std::max(along, apart);
-    if (!(larger > most && larger > least)) continue;
-    most = larger;
-    text = apart > least ? fmt::format("overturns: nothing holds the structure down on '{}', it turns over or lifts off", block.name)
-                         : fmt::format("slides: nothing holds the structure along '{}'", block.name);
-  }
-  return text;
-}
-
 /// Why a load step has no solution: a small share of the closed joint is left as springs, with which every load has an equilibrium, and the
 /// movement shows what these springs alone hold. Empty when it is not that.
 std::string diagnose(const InterfaceProblem& problem, const ContactMethod& method) {
@@ -79,7 +63,7 @@ std::string diagnose(const InterfaceProblem& problem, const ContactMethod& metho
   for (const double share : {1e-6, 1e-4}) {
     held.shift = (1 - share) * problem.shift;
     InterfaceSolution solution;
-    if (method.solve(held, solution).converged) return way_out(held, solution, 5e-3 / share);
+    if (method.solve(held, solution).converged) return unheld_motion(held, solution, 5e-3 / share);
   }
   return {};
 }
@@ -140,7 +124,7 @@ StaticOutcome solve_statics(const Model& model, const Bulk& bulk, const Sparse& 
       if (b.rows() > 0) reaction.noalias() = b.transpose() * last.solution().force;
       right -= reaction;
       if (!in_balance(bulk, to * dead, reaction, moved, right)) {
-        why = b.rows() > 0 ? way_out(last.problem(), last.solution(), 1e3) : "";
+        why = b.rows() > 0 ? unheld_motion(last.problem(), last.solution(), runaway_ratio) : "";
         if (why.empty()) why = "the balance of the structure is not met";
       }
     } else if (b.rows() > 0 && depth >= 8) {

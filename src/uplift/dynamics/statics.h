@@ -23,8 +23,8 @@ StaticOutcome solve_statics(const Model& model, const Bulk& bulk, const Sparse& 
                             const ContactMethod& method, const LinearSolver& solver, int steps, State& state, LinearCounts& counts,
                             const PlasticOptions& plastic = {});
 
-/// Stiffness D of the closed joints [N/m per row]: area * closed stiffness of a law; for a cone the largest diagonal of K (any positive
-/// value is exact).
+/// Stiffness D of the closed joints [N/m per row]: area * closed stiffness of a law, at most 1000 times the largest diagonal of K; for a
+/// cone the largest diagonal of K. Any positive value is exact.
 Vector closed_joint(const Model& model, const Behaviours& behaviours);
 
 }  // namespace uplift

@@ -135,13 +135,17 @@ double DruckerPrager::return_to_cone(const Trial& trial, double gamma, Stress& s
 }
 
 double DruckerPrager::return_to_apex(const Trial& trial, Stress& stress, Mat6* tangent) const {
-  const double bulk = parameters_.elastic.bulk();
-  const double per_volume = xi_ / (eta_bar_ > 0 ? eta_bar_ : eta_);
-  const double softer = bulk + per_volume * xi_ / eta_ * parameters_.hardening;
-  const double volume = (trial.mean - apex(trial.accumulated)) / softer;
-  stress = (trial.mean - bulk * volume) * unit();
-  if (tangent) *tangent = bulk * (1 - bulk / softer) * unit() * unit().transpose();
-  return trial.accumulated + per_volume * volume;
+  const double bulk = parameters_.elastic.bulk(), past = trial.mean - apex(trial.accumulated);
+  const double hardening = xi_ * xi_ * parameters_.hardening, volumetric = bulk * eta_ * eta_bar_;
+  if (hardening == 0 && volumetric == 0) {  // any e fits: that of associated flow
+    stress = (trial.mean - past) * unit();
+    if (tangent) tangent->setZero();
+    return trial.accumulated + xi_ / eta_ * past / bulk;
+  }
+  const double share = hardening / (volumetric + hardening);  // of the excess mean stress that the hardening carries
+  stress = (trial.mean - (1 - share) * past) * unit();
+  if (tangent) *tangent = bulk * share * unit() * unit().transpose();
+  return trial.accumulated + eta_ * xi_ * past / (volumetric + hardening);
 }
 
 double DruckerPrager::stored_energy(const Strain& strain, std::span<const double> history) const {

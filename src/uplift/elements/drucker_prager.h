@@ -24,9 +24,10 @@ void check_drucker_prager(const DruckerPragerParameters& parameters, const Where
 /// and 8.3):
 ///   yield      sqrt(J2) + eta p - xi c <= 0,   p = tr(stress)/3 (tension > 0),   c = c0 + H e
 ///   flow       plastic strain rate = gamma' d(sqrt(J2) + eta_bar p)/d stress,    e' = xi gamma'
-///   return     to the cone: sqrt(J2) = trial - G dgamma, p = trial - K eta_bar dgamma; where that would pass the apex, to p = xi c/eta
-///   with the
-///              plastic volume strain dv and de = (xi/eta_bar) dv (xi/eta where the flow keeps the volume). Linear hardening: no iteration.
+///   return     to the cone: sqrt(J2) = trial - G dgamma, p = trial - K eta_bar dgamma; where that would pass the apex, to the apex
+///              p = xi c/eta with de = eta xi (p_trial - p_apex)/(K eta eta_bar + xi^2 H) and the plastic volume strain (eta_bar/xi) de.
+///              This is continuous in eta_bar: for eta_bar = 0 and H > 0 the volume stays elastic and the apex follows p_trial
+///              (docs/theory, section 9). Linear hardening: no iteration.
 /// The update is implicit (backward Euler), the tangent consistent with it; not symmetric when psi < phi.
 class DruckerPrager {
  public:

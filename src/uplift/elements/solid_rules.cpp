@@ -40,30 +40,9 @@ Matrix extrapolation(Cell cell, const SolidRule& rule) {
   return at_nodes * Cholesky(at_points.transpose() * at_points).solve(at_points.transpose());
 }
 
-/// Degrees of the rules of K and M; see Solid.
-std::array<int, 2> degrees(Cell cell) {
-  switch (cell) {
-    case Cell::tri3:
-    case Cell::tet4:
-      return {1, 2};
-    case Cell::tri6:
-    case Cell::tet10:
-      return {2, 4};
-    case Cell::wedge6:
-      return {2, 2};
-    case Cell::quad4:
-    case Cell::hex8:
-      return {3, 3};
-    case Cell::wedge15:
-      return {4, 4};
-    default:
-      return {5, 5};
-  }
-}
-
 SolidTables make_tables(Cell cell) {
   if (info(cell).dimension < 2) return {};
-  const auto [stiffness, mass] = degrees(cell);
+  const auto [stiffness, mass] = solid_degrees(cell);
   SolidTables tables{
       tabulate(cell, cell_rule(cell, stiffness)), tabulate(cell, cell_rule(cell, mass)), tabulate(cell, {{cell_centre(cell)}, {1}}), {}};
   tables.to_nodes = extrapolation(cell, tables.stiffness);

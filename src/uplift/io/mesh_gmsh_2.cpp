@@ -31,10 +31,12 @@ int read_tags(GmshCursor& at, std::int64_t count) {
   return physical;
 }
 
-void add_element(GmshCursor& at, std::int64_t tags, const GmshType& type, const GmshNodes& nodes, GmshGroups& groups, Mesh& mesh) {
+void add_element(GmshCursor& at, int number, std::int64_t tags, const GmshType& type, const GmshNodes& nodes, GmshGroups& groups,
+                 Mesh& mesh) {
   const int group = groups.find(info(type.cell).dimension, read_tags(at, tags));
   CellBlock& block = mesh.block(type.cell);
   if (group >= 0) groups.add(group, {static_cast<int>(&block - mesh.blocks.data()), block.count()});
+  block.file_number.push_back(number);
   read_gmsh_cell(at, false, type, nodes, block);
 }
 
@@ -53,8 +55,8 @@ std::int64_t read_binary_run(GmshCursor& at, const GmshNodes& nodes, GmshGroups&
   at.check_count(count, "a number of elements", numbers, 4 * numbers);
   if (count == 0) at.fail("at least one element", "0");
   for (int i = 0; i < count; ++i) {
-    at.integer("the number of an element");
-    add_element(at, tags, type, nodes, groups, mesh);
+    const int number = at.integer("the number of an element");
+    add_element(at, number, tags, type, nodes, groups, mesh);
   }
   return count;
 }
@@ -79,9 +81,11 @@ std::vector<int> number_each_once(CellBlock& block) {
       continue;
     }
     std::copy(begin(static_cast<int>(i)), end(static_cast<int>(i)), begin(kept));
+    block.file_number[static_cast<std::size_t>(kept)] = block.file_number[i];
     number[i] = kept++;
   }
   block.nodes.resize(static_cast<std::size_t>(kept) * n);
+  block.file_number.resize(static_cast<std::size_t>(kept));
   return number;
 }
 
@@ -118,9 +122,9 @@ void read_gmsh_elements_2(GmshCursor at, const GmshNodes& nodes, GmshGroups& gro
     if (read != count) at.fail(std::to_string(count) + " elements in all, as the section begins", std::to_string(read));
   } else {
     for (auto left = count; left > 0; --left) {
-      at.integer("the number of an element");
+      const int number = at.integer("the number of an element");
       const GmshType& type = wanted_gmsh_type(at.integer("a type of elements"), at);
-      add_element(at, tag_count(at), type, nodes, groups, mesh);
+      add_element(at, number, tag_count(at), type, nodes, groups, mesh);
     }
   }
   at.finish("$EndElements after the last element");

@@ -102,7 +102,7 @@ void read_gmsh_elements_4(GmshCursor at, const GmshNodes& nodes, const GmshEntit
     const auto known = entities.find({dimension, entity});
     const int number = static_cast<int>(&block - mesh.blocks.data());
     for (auto left = count; left > 0; --left) {
-      at.size("the tag of an element");
+      block.file_number.push_back(at.size("the tag of an element"));
       if (known != entities.end())
         for (const int group : known->second) groups.add(group, {number, block.count()});
       read_gmsh_cell(at, true, type, nodes, block);

@@ -5,6 +5,7 @@
 #include <array>
 #include <cmath>
 #include <map>
+#include <numeric>
 
 #include "uplift/base/text.h"
 #include "uplift/io/mesh_draft.h"
@@ -201,6 +202,21 @@ class MedMesh {
                      std::to_string(column[i]) + " in cell " + std::to_string(i + 1));
         to[i * n + k] = column[i] - 1;
       }
+    }
+    number_cells(path, type.cell, count);
+  }
+
+  /// The numbers that the file gives its cells; without any they count from 1 within their type.
+  void number_cells(const std::string& path, Cell cell, std::size_t count) {
+    std::vector<std::int64_t>& numbers = parts_.block(cell).file_number;
+    const std::string stated = path + "/NUM";
+    if (file_.has(stated)) {
+      const std::vector<int> read = file_.integers(stated);
+      if (read.size() != count) file_.fail(stated, fmt::format("{} numbers, one for each cell", count), std::to_string(read.size()));
+      numbers.assign(read.begin(), read.end());
+    } else {
+      numbers.resize(count);
+      std::iota(numbers.begin(), numbers.end(), 1);
     }
   }
 

@@ -8,7 +8,7 @@
 #include <type_traits>
 
 // A letter, then numbers as they lie in memory; lists are a count (8 bytes) and their items:
-//   M dimension, nodes, count of blocks, (type, nodes) each, count of groups, (name, dimension, cells, nodes) each, E
+//   M dimension, nodes, count of blocks, (type, nodes, numbers in the file) each, count of groups, (name, dimension, cells, nodes) each, E
 //   W file, line, path, wanted, found
 namespace uplift {
 namespace {
@@ -77,6 +77,8 @@ CellBlock unpack_block(Unpacker& from, const Mesh& mesh) {
   const auto type = from.one<std::int32_t>();
   require(type >= 0 && type < num_cell_types);
   CellBlock block{static_cast<Cell>(type), from.list<std::vector<int>>()};
+  block.file_number = from.list<std::vector<std::int64_t>>();
+  require(block.file_number.empty() || block.file_number.size() == static_cast<std::size_t>(block.count()));
   require(mesh.find_block(block.cell) < 0 && block.nodes.size() % static_cast<std::size_t>(info(block.cell).nodes) == 0);
   const auto count = static_cast<int>(mesh.nodes.size());
   require(std::ranges::all_of(block.nodes, [count](int node) { return node >= 0 && node < count; }));
@@ -133,7 +135,8 @@ Mesh unpack_mesh(Unpacker& from) {
 std::string message_of(const Mesh& mesh) {
   Packer to(mesh_mark);
   std::size_t bytes = 4096 + mesh.nodes.size() * sizeof(Coordinate);
-  for (const CellBlock& block : mesh.blocks) bytes += block.nodes.size() * sizeof(int);
+  for (const CellBlock& block : mesh.blocks)
+    bytes += block.nodes.size() * sizeof(int) + block.file_number.size() * sizeof(std::int64_t) + 64;
   for (const auto& [name, group] : mesh.groups) bytes += group.cells.size() * sizeof(CellId) + group.nodes.size() * sizeof(int);
   to.reserve(bytes);
   to.one(static_cast<std::int32_t>(mesh.dimension));
@@ -143,6 +146,7 @@ std::string message_of(const Mesh& mesh) {
   for (const CellBlock& block : mesh.blocks) {
     to.one(static_cast<std::int32_t>(block.cell));
     to.list(block.nodes);
+    to.list(block.file_number);
   }
   to.one(static_cast<std::uint64_t>(mesh.groups.size()));
   for (const auto& [name, group] : mesh.groups) {

@@ -132,6 +132,26 @@ CellRule cell_rule(Cell cell, int degree) {
   }
 }
 
+std::array<int, 2> solid_degrees(Cell cell) {
+  switch (cell) {
+    case Cell::tri3:
+    case Cell::tet4:
+      return {1, 2};
+    case Cell::tri6:
+    case Cell::tet10:
+      return {2, 4};
+    case Cell::wedge6:
+      return {2, 2};
+    case Cell::quad4:
+    case Cell::hex8:
+      return {3, 3};
+    case Cell::wedge15:
+      return {4, 4};
+    default:
+      return {5, 5};
+  }
+}
+
 CellRule nodal_rule(Cell cell) {
   assert(info(cell).dimension <= 2);
   CellRule rule;

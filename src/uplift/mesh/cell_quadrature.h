@@ -1,4 +1,5 @@
 #pragma once
+#include <array>
 #include <vector>
 
 #include "uplift/math/linalg.h"
@@ -18,6 +19,9 @@ struct CellRule {
 /// 405-408); tets: 1, 4, 14 points for degrees 1, 2, 5 (Walkington, CMU report 00-NA-006 (2000)); above 5 products of Gauss rules on the
 /// collapsed square or cube (Stroud 1971). All points are inside.
 CellRule cell_rule(Cell cell, int degree);
+
+/// Degrees of the rules with which solids integrate their stiffness and their mass (elements/solid.h).
+std::array<int, 2> solid_degrees(Cell cell);
 
 /// The rule of joints and of diagonal matrices, for points, lines and surface cells. Points 0 ... nodes - 1 are the nodes in their order.
 ///   line2, quad4   trapezoidal (degree 1 in each direction)      line3, quad9   Simpson (degree 3 in each direction)

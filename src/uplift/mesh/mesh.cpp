@@ -5,6 +5,7 @@
 
 #include "uplift/base/text.h"
 #include "uplift/math/linalg.h"
+#include "uplift/mesh/jacobian.h"
 
 namespace uplift {
 namespace {
@@ -135,6 +136,32 @@ void check_cells(const Mesh& mesh, const Where& where) {
              (count > 1 ? ", and " + std::to_string(count - 1) + " more such cells" : ""));
 }
 
+/// Where the Jacobian of a cell is not positive, in words.
+std::string inverted_text(const Mesh& mesh, CellId id, const LeastJacobian& least) {
+  const bool corner = least.corner >= 0;
+  return describe_cell(mesh, id) + " with a scaled Jacobian of " + shortest(std::round(least.value * 1e4) / 1e4) +
+         (corner ? " at its corner " + std::to_string(least.corner + 1) + " at " : " at the integration point ") +
+         point_text(least.position) + " m";
+}
+
+/// A cell that is folded or turned over in part would get a negative stiffness there.
+void check_jacobians(const Mesh& mesh, const Where& where) {
+  constexpr double zero = 1e-12;
+  int count = 0;
+  std::string found;
+  for (int b = 0; b < static_cast<int>(mesh.blocks.size()); ++b) {
+    if (info(mesh.blocks[static_cast<std::size_t>(b)].cell).dimension != mesh.dimension) continue;
+    for (int i = 0; i < mesh.blocks[static_cast<std::size_t>(b)].count(); ++i) {
+      const LeastJacobian least = least_jacobian(mesh, {b, i});
+      if (!(least.value > zero) && count++ == 0) found = inverted_text(mesh, {b, i}, least);
+    }
+  }
+  if (count == 0) return;
+  refuse(where, "cells with a positive Jacobian at every corner and integration point",
+         found + (count > 1 ? ", and " + std::to_string(count - 1) + " more such cells" : "") +
+             "; such a cell is folded or turned over in part");
+}
+
 }  // namespace
 
 CellBlock& Mesh::block(Cell cell) {
@@ -183,13 +210,17 @@ std::string describe_cell(const Mesh& mesh, CellId id) {
   Vec3 centre = Vec3::Zero();
   for (const int node : mesh.cell(id).first(static_cast<std::size_t>(type.corners)))
     centre += mesh.nodes[static_cast<std::size_t>(node)] / type.corners;
-  const std::string shape(type.name);
+  const CellBlock& block = mesh.blocks[static_cast<std::size_t>(id.block)];
+  std::string shape(type.name);
+  if (!block.file_number.empty())
+    shape += ", number " + std::to_string(block.file_number[static_cast<std::size_t>(id.index)]) + " in the mesh file,";
   for (const auto& [name, group] : mesh.groups) {
     const auto at = std::lower_bound(group.cells.begin(), group.cells.end(), id);
     if (at == group.cells.end() || *at != id) continue;
     return "cell " + std::to_string(at - group.cells.begin() + 1) + " of group " + in_quotes(name) + " (" + shape + " at " +
            point_text(centre) + ")";
   }
+  if (!block.file_number.empty()) return "the cell " + shape + " at " + point_text(centre) + ", in no group";
   return shape + " " + std::to_string(id.index + 1) + " (at " + point_text(centre) + ", in no group)";
 }
 
@@ -199,6 +230,7 @@ void check_mesh(const Mesh& mesh, const Where& where) {
   check_blocks(mesh, where);
   for (const auto& [name, group] : mesh.groups) check_group(mesh, name, group, where);
   check_cells(mesh, where);
+  check_jacobians(mesh, where);
 }
 
 }  // namespace uplift

@@ -1,4 +1,5 @@
 #pragma once
+#include <cstdint>
 #include <map>
 #include <string>
 #include <vector>
@@ -18,7 +19,8 @@ struct CellId {
 /// All cells of one type.
 struct CellBlock {
   Cell cell = Cell::point;
-  std::vector<int> nodes;  // cell after cell
+  std::vector<int> nodes;                      // cell after cell
+  std::vector<std::int64_t> file_number = {};  // of each cell in the mesh file; empty for a mesh from elsewhere
   int count() const { return static_cast<int>(nodes.size()) / info(cell).nodes; }
   std::span<const int> operator[](int index) const {
     const auto n = static_cast<std::size_t>(info(cell).nodes);
@@ -53,12 +55,14 @@ std::vector<int> nodes_of(const Mesh& mesh, const Group& group);
 /// surface in a plane mesh, is inside out.
 double signed_size(const Mesh& mesh, CellId id);
 
-/// "cell 12 of group "soil_1" (hex8 at (1, 2, -3))" for messages: counted from 1 in the first group that has it, else in its block.
+/// "cell 12 of group "soil_1" (hex8 at (1, 2, -3))" for messages: counted from 1 in the first group that has it, else in its block. For a
+/// cell from a file its number there follows the type: "(hex8, number 571 in the mesh file, at (1, 2, -3))".
 std::string describe_cell(const Mesh& mesh, CellId id);
 
 /// Throws InputError unless the mesh is whole: blocks and groups refer to nodes and cells that are there, groups hold cells of one
-/// dimension in ascending order, coordinates are finite (in a plane mesh all z equal), no cell has a node twice, and every cell has a
-/// positive size (see signed_size; less than 1e-12 of longest edge to the power of the dimension counts as zero).
+/// dimension in ascending order, coordinates are finite (in a plane mesh all z equal), no cell has a node twice, every cell has a
+/// positive size (see signed_size; less than 1e-12 of longest edge to the power of the dimension counts as zero), and the Jacobian of every
+/// cell of full dimension is positive where the program uses it (see least_jacobian).
 void check_mesh(const Mesh& mesh, const Where& where);
 
 }  // namespace uplift

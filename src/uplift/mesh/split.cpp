@@ -292,6 +292,7 @@ OpenedSurface open_surface(Mesh& mesh, const Cut& cut, const std::string& name, 
     CellBlock& block = mesh.blocks[at(face.cell.block)];
     const CellId lip{face.cell.block, block.count()};
     block.nodes.resize(block.nodes.size() + lists[f].size());
+    if (!block.file_number.empty()) block.file_number.push_back(block.file_number[at(face.cell.index)]);
     write_lip(mesh, cut, lists[f], face.lower, face.cell);
     write_lip(mesh, cut, lists[f], face.upper, lip);
     surface.faces.push_back({face.cell, lip});

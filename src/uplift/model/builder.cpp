@@ -28,18 +28,18 @@ void ModelBuilder::add_element(std::unique_ptr<const Element> element, Where) {
   elements_.push_back(std::move(element));
 }
 
-void ModelBuilder::fix(int node, Dof dof, Where where) {
-  supports_.push_back({node, dof, -1, std::move(where)});
+void ModelBuilder::fix(int node, Dof dof, Where where, bool repeats) {
+  supports_.push_back({node, dof, -1, std::move(where), repeats});
 }
 
 void ModelBuilder::prescribe(int node, Dof dof, std::shared_ptr<const TimeFunction> motion, std::string name, Where where) {
-  supports_.push_back({node, dof, static_cast<int>(motions_.size()), std::move(where)});
+  supports_.push_back({node, dof, static_cast<int>(motions_.size()), std::move(where), false});
   motions_.push_back({std::move(name), std::move(motion)});
 }
 
 void ModelBuilder::prescribe(const std::vector<int>& nodes, Dof dof, std::shared_ptr<const TimeFunction> motion, std::string name,
                              const Where& where) {
-  for (const int node : nodes) supports_.push_back({node, dof, static_cast<int>(motions_.size()), where});
+  for (const int node : nodes) supports_.push_back({node, dof, static_cast<int>(motions_.size()), where, nodes.size() > 1});
   motions_.push_back({std::move(name), std::move(motion)});
 }
 

@@ -40,11 +40,12 @@ class ModelBuilder {
   /// Returns the number of the node; its full unknowns are space().at(number, ...). `alias`: see Node.
   int add_node(std::string name, Place position, Where where, std::string alias = {});
   void add_element(std::unique_ptr<const Element> element, Where where);
-  /// The unknown stays zero.
-  void fix(int node, Dof dof, Where where);
+  /// The unknown stays zero. `repeats`: a support that follows from other constraints is left out instead of refused (a plane of symmetry
+  /// that holds several nodes of a rigid body).
+  void fix(int node, Dof dof, Where where, bool repeats = false);
   /// The unknown follows a function [m, rad].
   void prescribe(int node, Dof dof, std::shared_ptr<const TimeFunction> motion, std::string name, Where where);
-  /// The same motion of several nodes.
+  /// The same motion of several nodes. Those whose motion follows from the others are left out.
   void prescribe(const std::vector<int>& nodes, Dof dof, std::shared_ptr<const TimeFunction> motion, std::string name, const Where& where);
   /// Both nodes have the same value of one unknown. A tie that follows from other constraints is left out.
   void tie_equal(int a, int b, Dof dof, Where where);
@@ -74,6 +75,7 @@ class ModelBuilder {
     Dof dof;
     int motion;  // -1: fixed
     Where where;
+    bool repeats;
   };
   struct Pair {
     int first, second;  // master, slave or ends of a link

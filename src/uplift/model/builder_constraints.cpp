@@ -96,7 +96,7 @@ void ModelBuilder::eliminate(Model& model, Matrix& motion_shapes) const {
     Elimination::Row row{{{unknown, 1}}, {}};
     if (support.motion >= 0) row.motions[support.motion] = 1;
     list.add(row, unknown, fmt::format("a {} of {}", support.motion < 0 ? "support" : "prescribed motion", name_of(unknown)), "", names,
-             support.where);
+             support.where, support.repeats);
   }
   for (const Equal& tie : equals_) {
     const int a = space_.at(tie.first, tie.dof), b = space_.at(tie.second, tie.dof);

@@ -8,64 +8,11 @@
 #include "uplift/math/dense.h"
 #include "uplift/math/sparse_solvers.h"
 #include "uplift/model/hinges.h"
-#include "uplift/model/rigid_pieces.h"
+#include "uplift/model/rigid_parts.h"
 
 namespace uplift {
 
 namespace {
-
-/// Stiffness (with dashpots_hold also damping) of the elements, full unknowns. Solids that a rigid motion of their piece carries along
-/// whole are left out: they do not resist it, and would only leave their round-off.
-Sparse resisting_elements(const Model& model, const std::vector<int>& pieces, bool dashpots_hold) {
-  const Space space = model.space;
-  const std::vector<int> kept = kept_translations(model);
-  std::vector<Triplet> entries;
-  for (const auto& element : model.elements) {
-    const auto nodes = element->nodes();
-    const int each = element->unknowns_per_node();
-    const auto whole = [&](int node) { return pieces[node] >= 0 && kept[node] == space.dimension; };
-    if (is_solid(*element) && std::ranges::all_of(nodes, whole)) continue;
-    Matrix stiffness, damping;
-    element->form({.stiffness = &stiffness, .damping = dashpots_hold ? &damping : nullptr});
-    if (dashpots_hold) stiffness += damping;  // only the rank counts
-    const auto unknown = [&](Index i) { return space.unknowns() * nodes[i / each] + static_cast<int>(i % each); };
-    for (Index j = 0; j < stiffness.cols(); ++j)
-      for (Index i = 0; i < stiffness.rows(); ++i)
-        if (stiffness(i, j) != 0) entries.emplace_back(unknown(i), unknown(j), stiffness(i, j));
-  }
-  Sparse matrix(model.full_unknowns(), model.full_unknowns());
-  matrix.setFromTriplets(entries.begin(), entries.end());
-  return matrix;
-}
-
-/// What resists each of some motions (columns, free unknowns), with all joints closed. Only the rank matters: a cone's stiffness is any
-/// number that fits. Diagonal entries that are round-off of a cancellation, and their rows, are zero.
-Sparse resistance(const Model& model, const Sparse& motions, const Sparse& elements) {
-  const Sparse full = model.reduction * motions;
-  Sparse sum = full.transpose() * elements * full;
-  const Sparse sizes = full.transpose().cwiseAbs() * elements.cwiseAbs() * full.cwiseAbs();
-  const Vector size = sizes.diagonal(), diagonal = sum.diagonal();
-  const auto nothing = [&](Index i) { return diagonal[i] <= 1e-13 * size[i]; };
-  sum.prune([&](Index i, Index j, double) { return !nothing(i) && !nothing(j); });
-  const double typical = std::max(diagonal.size() > 0 ? diagonal.maxCoeff() : 0.0, 1.0);
-  for (const Interface& face : model.interfaces) {
-    const int components = face.batch.components, points = face.batch.points;
-    std::vector<double> closed(components, 0.0);
-    if (face.law) {
-      face.law->closed_stiffness(components, closed.data());
-    } else {
-      closed.back() = typical / face.area.sum();
-      if (face.cone->friction() > 0) std::fill(closed.begin(), closed.end(), closed.back());
-    }
-    Vector stiffness(face.rows());
-    for (int c = 0; c < components; ++c) stiffness.segment(c * points, points) = closed[c] * face.area;
-    Sparse openings = face.b * motions;
-    const double largest = openings.nonZeros() > 0 ? openings.coeffs().abs().maxCoeff() : 0.0;
-    openings.prune([&](Index, Index, double value) { return std::abs(value) > 1e-13 * largest; });
-    sum += Sparse(openings.transpose() * stiffness.asDiagonal() * openings);
-  }
-  return sum;
-}
 
 /// Diagonal scaling to ones, so that pivots can be compared; unknowns without stiffness get a one that never couples.
 Sparse unit_diagonal(const Sparse& a, Vector& scale, std::vector<int>& empty) {
@@ -81,23 +28,6 @@ Sparse unit_diagonal(const Sparse& a, Vector& scale, std::vector<int>& empty) {
     }
   }
   return scale.asDiagonal() * result * scale.asDiagonal();
-}
-
-/// A motion without resistance, in the unknowns of the matrix; empty when there is none: inverse iteration on the singular matrix.
-Vector null_motion(const Sparse& a) {
-  Vector scale;
-  std::vector<int> empty;
-  const Sparse scaled = unit_diagonal(a, scale, empty);
-  if (!empty.empty()) return Vector::Unit(a.rows(), empty.front());
-  Sparse shifted = scaled;
-  constexpr double shift = 1e-13;
-  for (Index i = 0; i < shifted.rows(); ++i) shifted.coeffRef(i, i) += shift;
-  const SparseLdlt ldlt(shifted);
-  if (ldlt.info() == Success && ldlt.vectorD().minCoeff() > 1e-10) return {};
-  Vector x = Vector::LinSpaced(a.rows(), 1, 2);
-  for (int pass = 0; pass < 4; ++pass) x = ldlt.solve(x.eval()).normalized();
-  if (x.dot(scaled * x) > 1e-12) return {};  // a soft structure, not a loose one
-  return scale.cwiseProduct(x);
 }
 
 /// Translation and rotation of every node.
@@ -202,16 +132,13 @@ std::vector<int> blocks(const Sparse& a) {
 
 }  // namespace
 
-std::string loose_part(const Model& model, bool dashpots_hold) {
-  if (model.free() == 0) return {};
-  const std::vector<int> pieces = solid_pieces(model);
-  const Sparse rigid = rigid_motions(model, pieces);
-  const Vector motion = null_motion(resistance(model, rigid, resisting_elements(model, pieces, dashpots_hold)));
-  return motion.size() == 0 ? std::string() : describe(model, rigid * motion);
+std::string loose_part(const Model& model, Resistance resistance) {
+  const Vector motion = unresisted_motion(model, resistance);
+  return motion.size() == 0 ? std::string() : describe(model, motion);
 }
 
-void check_static(const Model& model, bool dashpots_hold) {
-  const std::string loose = loose_part(model, dashpots_hold);
+void check_static(const Model& model) {
+  const std::string loose = loose_part(model, Resistance::stiffness);
   if (loose.empty()) return;
   const std::vector<int> hinged = hinges(model);
   throw InputError(place_of(model), "", "a structure that stands when all its interfaces are closed",
@@ -219,17 +146,24 @@ void check_static(const Model& model, bool dashpots_hold) {
                                hinged.empty() ? "" : "; beams end in hinges of solids: " + named_places(model, hinged)));
 }
 
-void check_dynamic(const Model& model) {
+namespace {
+
+/// Throws where an interface touches an unknown without mass that `refused` names.
+template <class Refused>
+void require_mass(const Model& model, const Refused& refused) {
   for (std::size_t k = 0; k < model.interfaces.size(); ++k) {
     const Sparse& b = model.interfaces[k].b;
     for (int i = 0; i < model.free(); ++i)
       for (Sparse::InnerIterator entry(b, i); entry; ++entry)
-        if (entry.value() != 0 && !(model.mass.coeff(i, i) > 0))
+        if (entry.value() != 0 && !(model.mass.coeff(i, i) > 0) && refused(model.interfaces[k], i))
           throw InputError(model.assembly.interface_where[k], "interface." + model.interfaces[k].name,
                            "a mass on everything that the interface touches",
                            fmt::format("zero mass where mass is needed: {} has none", model.unknown_names[i]));
   }
-  if (model.free() == 0) return;
+}
+
+/// Throws where the mass matrix is singular although not massless.
+void check_masses(const Model& model) {
   Vector scale;
   std::vector<int> massless;
   // a motion without kinetic energy moves no node of a massive solid: those need not be looked at
@@ -259,6 +193,22 @@ void check_dynamic(const Model& model) {
             "zero mass where mass is needed: a motion of {} without kinetic energy (a point mass off its node needs an inertia > 0)",
             fmt::join(members, ", ")));
   }
+}
+
+}  // namespace
+
+void check_impulses(const Model& model) {
+  require_mass(model, [](const Interface&, int) { return true; });
+}
+
+void check_dynamic(const Model& model) {
+  if (model.free() == 0) return;
+  const Vector released = unresisted_motion(model, Resistance::dynamic_open);
+  require_mass(model, [&](const Interface& face, int i) { return face.cone != nullptr || (released.size() > 0 && released[i] != 0); });
+  check_masses(model);
+  if (released.size() > 0)
+    throw InputError(place_of(model), "", "a stiffness, a mass or a dashpot against every motion",
+                     describe(model, released) + " without any of them while the interfaces are open");
 }
 
 }  // namespace uplift

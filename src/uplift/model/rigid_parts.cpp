@@ -1,0 +1,119 @@
+#include "uplift/model/rigid_parts.h"
+
+#include <algorithm>
+#include <array>
+#include <map>
+#include <numeric>
+#include <utility>
+
+#include "uplift/elements/beam.h"
+#include "uplift/elements/solid.h"
+#include "uplift/elements/space_beam.h"
+
+namespace uplift {
+
+namespace {
+
+const Solid* solid_of(const Element& element) {
+  return dynamic_cast<const Solid*>(&element);
+}
+
+bool has_mass(const Solid& solid) {
+  return solid.section().mass != SolidSection::Mass::none && solid.section().material.density > 0;
+}
+
+/// Sets of elements that are merged step by step.
+class Sets {
+ public:
+  explicit Sets(std::size_t count) : parent_(count) { std::iota(parent_.begin(), parent_.end(), 0); }
+  int root(int i) {
+    while (parent_[i] != i) i = parent_[i] = parent_[parent_[i]];
+    return i;
+  }
+  void merge(int a, int b) { parent_[root(a)] = root(b); }
+
+ private:
+  std::vector<int> parent_;
+};
+
+using Side = std::pair<std::array<int, 4>, int>;  // corners, ascending; element
+
+/// Solids with a common side are merged.
+void merge_solids(const Model& model, Sets& sets) {
+  std::vector<Side> sides;
+  for (int e = 0; e < static_cast<int>(model.elements.size()); ++e) {
+    const Solid* solid = solid_of(*model.elements[e]);
+    if (solid == nullptr) continue;
+    const auto nodes = solid->nodes();
+    const CellInfo& type = info(solid->cell());
+    for (int s = 0; s < static_cast<int>(type.sides.size()); ++s) {
+      std::array<int, 4> corners{-1, -1, -1, -1};
+      const auto side = side_of(solid->cell(), s);
+      for (int c = 0; c < info(type.sides[s]).corners; ++c) corners[c] = nodes[side[c]];
+      std::ranges::sort(corners);
+      sides.emplace_back(corners, e);
+    }
+  }
+  std::ranges::sort(sides);
+  for (std::size_t i = 1; i < sides.size(); ++i)
+    if (sides[i].first == sides[i - 1].first) sets.merge(sides[i].second, sides[i - 1].second);
+}
+
+/// Beams with a common node are merged.
+void merge_beams(const Model& model, Sets& sets) {
+  std::vector<int> first(model.nodes.size(), -1);
+  for (int e = 0; e < static_cast<int>(model.elements.size()); ++e) {
+    if (!is_beam(*model.elements[e])) continue;
+    for (const int node : model.elements[e]->nodes()) {
+      if (first[node] < 0) first[node] = e;
+      sets.merge(e, first[node]);
+    }
+  }
+}
+
+}  // namespace
+
+bool is_solid(const Element& element) {
+  return solid_of(element) != nullptr;
+}
+
+bool is_beam(const Element& element) {
+  return dynamic_cast<const Beam*>(&element) != nullptr || dynamic_cast<const SpaceBeam*>(&element) != nullptr;
+}
+
+std::vector<RigidPart> rigid_parts(const Model& model) {
+  Sets sets(model.elements.size());
+  merge_solids(model, sets);
+  merge_beams(model, sets);
+  std::vector<RigidPart> parts;
+  std::map<int, std::size_t> number;
+  for (int e = 0; e < static_cast<int>(model.elements.size()); ++e) {
+    const Element& element = *model.elements[e];
+    const Solid* solid = solid_of(element);
+    if (solid == nullptr && !is_beam(element)) continue;
+    const auto [at, fresh] = number.try_emplace(sets.root(e), parts.size());
+    if (fresh) parts.emplace_back();
+    RigidPart& part = parts[at->second];
+    part.nodes.insert(part.nodes.end(), element.nodes().begin(), element.nodes().end());
+    part.beams = solid == nullptr;
+    part.massive = part.massive || (solid != nullptr && has_mass(*solid));
+  }
+  for (RigidPart& part : parts) {
+    std::ranges::sort(part.nodes);
+    part.nodes.erase(std::ranges::unique(part.nodes).begin(), part.nodes.end());
+    for (const int node : part.nodes) part.middle += model.nodes[node].position / static_cast<double>(part.nodes.size());
+  }
+  return parts;
+}
+
+std::vector<char> moved_by_solid_mass(const Model& model) {
+  std::vector<char> massive(model.nodes.size(), 0);
+  for (const auto& element : model.elements)
+    if (const Solid* solid = solid_of(*element); solid != nullptr && has_mass(*solid))
+      for (const int node : element->nodes()) massive[node] = 1;
+  std::vector<char> moved(model.free(), 0);
+  for (int i = 0; i < model.free(); ++i) moved[i] = massive[model.space.node_of(model.kept[i])] && !model.space.is_rotation(model.kept[i]);
+  return moved;
+}
+
+}  // namespace uplift
