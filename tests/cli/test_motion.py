@@ -168,7 +168,7 @@ class Compared(CliTest):
         self.uplift("compare", "case.toml", "-o", "out", "-q")
         found = self.summary("out")
         self.assertEqual(found["verdict"]["run"], "run-strong")
-        self.assertRegex(found["verdict"]["headline"], r"The base uplifts: .* \(strong shaking, the hardest of 2 motions\)")
+        self.assertRegex(found["verdict"]["headline"], r"The base uplifts: .* \(strong shaking, the most demanding of 2 motions\)")
         self.assertEqual(found["verdict"]["criteria"][0]["result"], "not met")
         self.assertEqual([run["name"] for run in found["runs"]], ["run-strong", "bonded-strong", "run-weak", "bonded-weak"])
         # the table keeps the user's order; its peaks are those of the runs

@@ -156,6 +156,11 @@ Recorder::Recorder(const Model& model, const RunPlan& plan, const State& state, 
     pages.add(column.data() + column.size(), (expected_rows + 2) * sizeof(double));
   }
   recent_.resize(plan.requests.size() * apart);
+  const auto moves_base = [](const Request& request) {
+    return request.kind == Request::Kind::settlement || request.kind == Request::Kind::tilt_1 || request.kind == Request::Kind::tilt_2;
+  };
+  if (std::ranges::any_of(plan.requests, moves_base))
+    for (std::size_t k = 0; k < plan.bases.size(); ++k) bases_.emplace_back(model, model.interfaces[k], plan.bases[k]);
   const SparseRows reduction(model.reduction);
   for (const Request& request : plan.requests) {
     Source source = source_of(request, reduction);
@@ -251,6 +256,10 @@ Recorder::Source Recorder::source_of(const Request& request, const SparseRows& r
       return {.place = &energies_.residual};
     case What::plastic:
       return {.place = &energies_.plastic};
+    case What::settlement:
+    case What::tilt_1:
+    case What::tilt_2:
+      return {};
   }
   return {};
 }
@@ -277,6 +286,13 @@ double Recorder::made(const Source& source) const {
     case What::rotation: {
       const std::array<double, 2>& slope = views_[static_cast<std::size_t>(request.interface)].rotation;
       return std::hypot(slope[0], slope[1]);
+    }
+    case What::settlement:
+    case What::tilt_1:
+    case What::tilt_2: {
+      BasePose pose;
+      bases_[static_cast<std::size_t>(request.interface)].look(state, pose);
+      return request.kind == What::settlement ? pose.settlement : request.kind == What::tilt_1 ? pose.tilt_1 : pose.tilt_2;
     }
     default:
       return 0;
