@@ -176,7 +176,7 @@ class Compared(CliTest):
         self.assertEqual([row["motion"] for row in table["motions"]], ["weak shaking", "strong shaking"])
         self.assertGreater(table["motions"][1]["peaks"]["ratio"], table["motions"][0]["peaks"]["ratio"])
         page = json.dumps(report_of(self.folder / "out"))
-        self.assertIn("This page shows the hardest of 2 motions, strong shaking.", page)
+        self.assertIn("This page shows the most demanding of 2 motions, strong shaking.", page)
         for name in ("run-weak", "bonded-weak", "run-strong", "bonded-strong"):
             self.assertTrue((self.folder / f"out/histories/{name}.csv").exists())
 

@@ -107,7 +107,8 @@ TEST(VerdictRoles, WallsCarryTheirShareOfForceAndMoment) {
     EXPECT_EQ(find_number(said.numbers, "min_overturning_safety"), nullptr);
     share += value(said.numbers, "share_of_horizontal_force");
   }
-  EXPECT_NEAR(value(interface_of(numbers, "underside").numbers, "max_shear"), (1 - share) * force, 1e-9 * force);
+  EXPECT_NEAR(value(interface_of(numbers, "underside").numbers, "max_shear"), std::abs(1 - share) * force,
+              1e-9 * force);  // it may turn back
   EXPECT_NEAR(value(interface_of(numbers, "underside").numbers, "max_moment"), std::abs(base_k * 8 * hand.theta), 1e-3);
   // the wall that the block leaves: its upper pair moves farthest
   EXPECT_NEAR(value(interface_of(numbers, "left").numbers, "max_opening"), hand.u - 3 * hand.theta, 1e-12);
@@ -253,7 +254,7 @@ TEST(VerdictRoles, SlopesUpTo45DegreesAreBases) {
         "[[support]]\nnode = \"base\"\nfixed = [\"rz\"]\n[[interface]]\nname = \"soil\"\npairs = { upper = [\"base\"], area "
         "= 1, normal = [" +
         std::to_string(std::sin(angle)) + ", " + std::to_string(std::cos(angle)) +
-        "] }\nlaw = { type = \"springs\", K_n = 1e6, K_t = 1e6 }\n[[stage]]\ntype = \"static\"\n");
+        "] }\nlaw = { type = \"elastic\", K_n = 1e6, K_t = 1e6 }\n[[stage]]\ntype = \"static\"\n");
     EXPECT_EQ(built.facts.front().role, degrees < 45 ? Role::base : Role::wall) << degrees;
   }
 }

@@ -354,7 +354,8 @@ void Recorder::picture(const State& state) {
 
 void Recorder::note_largest_uplift() {
   double largest = peak_uplift_;
-  for (const InterfaceView& view : views_) largest = std::max(largest, view.open_area);
+  for (std::size_t k = 0; k < views_.size(); ++k)
+    if (plan_.is_wall.empty() || !plan_.is_wall[k]) largest = std::max(largest, views_[k].open_area);
   if (!(largest > peak_uplift_)) return;
   peak_uplift_ = largest;
   peak_frame_ = frame_of(state_);

@@ -139,13 +139,13 @@ void say_uplift(const Built& built, const RunResult& run, Verdict& verdict) {
 }
 
 /// What walls carry of the moment of the foundation: "; the walls carry 24 % of the total 5.4 MN m".
-std::string carried_by_walls(const Verdict& verdict) {
+std::string carried_by_walls(const Verdict& verdict, const std::string& unit) {
   const VerdictNumber* total = find_number(verdict.numbers.whole, "max_total_moment");
   double share = 0;
   bool known = false;
   for (const InterfaceVerdict& said : verdict.numbers.interfaces)
     if (const VerdictNumber* each = find_number(said.numbers, "share_of_base_moment")) share += each->value, known = true;
-  return total && known ? fmt::format("; the walls carry {} of the total {}", percent(share), spoken(total->value, "N m")) : "";
+  return total && known ? fmt::format("; the walls carry {} of the total {}{}", percent(share), spoken(total->value, "N m"), unit) : "";
 }
 
 std::string compared(const VerdictNumber& number) {
@@ -158,7 +158,7 @@ void say_forces(const Built& built, const RunResult& run, Verdict& verdict) {
       verdict.numbers.bases() == 1 ? find_number(verdict.numbers.interfaces.front().numbers, "max_moment") : nullptr;
   verdict.facts.push_back({"Base moment" + per_metre(built), spoken(std::abs(run.max_base_moment.value), "N m"),
                            fmt::format("{}, at {}{}", moment ? compared(*moment) : "largest", spoken(run.max_base_moment.time, "s"),
-                                       carried_by_walls(verdict))});
+                                       carried_by_walls(verdict, per_metre(built)))});
   for (const InterfaceVerdict& said : bases_of(verdict)) {
     const std::string of = of_interface(verdict, said);
     say(find_number(said.numbers, "max_eccentricity"), "Eccentricity e/B" + of, "largest of M/N over the width", verdict);
@@ -209,8 +209,8 @@ void say_walls(Verdict& verdict) {
     for (const auto& [name, label] : {std::pair{"max_opening", "Largest gap of "},
                                       {"max_slip", "Largest slip of "},
                                       {"max_toe_pressure", "Largest pressure of "},
-                                      {"share_of_horizontal_force", "Share of the horizontal force of "},
-                                      {"share_of_base_moment", "Share of the base moment of "}})
+                                      {"share_of_horizontal_force", "Share of horizontal force, "},
+                                      {"share_of_base_moment", "Share of base moment, "}})
       say(find_number(said.numbers, name), label + said.name, "", verdict);
   }
 }
@@ -269,6 +269,7 @@ void say_consequence(const FloorRun* floors, Verdict& verdict) {
     add("base moment", find_number(verdict.numbers.interfaces.front().numbers, "max_moment"));
     add("base shear", find_number(verdict.numbers.interfaces.front().numbers, "max_shear"));
   }
+  add("moment of base and walls", find_number(verdict.numbers.whole, "max_total_moment"));
   add("top motion", find_number(verdict.numbers.whole, "max_top_motion"));
   if (const std::string range = floors ? range_of_bands(*floors) : ""; !range.empty()) {
     parts.push_back("floor spectra " + range);

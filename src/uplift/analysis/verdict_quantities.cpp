@@ -13,7 +13,7 @@ namespace {
 
 constexpr bool whole = false, at_least = true, wall_too = true;
 
-constexpr std::array<VerdictQuantity, 39> quantities{{
+constexpr std::array<VerdictQuantity, 38> quantities{{
     {"max_top_motion", "m", "largest horizontal motion of the top, over all directions", "top motion", whole},
     {"change_of_top_motion", "1", "change of the motion of the top compared with the bonded reference run", "change of top motion", whole},
     {"max_drift", "m", "largest horizontal motion of the top relative to the base, rotation of the base included", "drift of the top",
