@@ -235,14 +235,15 @@ void say_tension(Verdict& verdict) {
 
 void say_residual(Verdict& verdict) {
   for (const InterfaceVerdict& said : bases_of(verdict))
-    for (const auto& [name, label] : {std::pair{"residual_rotation", "Rotation left at the end"},
-                                      {"residual_settlement", "Settlement left at the end"},
-                                      {"residual_slip", "Slip left at the end"}}) {
+    for (const auto& [name, label] : {std::pair{"residual_rotation", "Residual rotation"},
+                                      {"residual_settlement", "Residual settlement"},
+                                      {"residual_slip", "Residual slip"}}) {
       const VerdictNumber* left = find_number(said.numbers, name);
       if (!left) continue;
       const std::string swing = swing_text(*left);
-      verdict.facts.push_back({label + of_interface(verdict, said), text_of(*left),
-                               swing.empty() ? "at rest" : fmt::format("mean of the last tenth; it still moves by +-{}", swing), false});
+      verdict.facts.push_back(
+          {label + of_interface(verdict, said), text_of(*left),
+           swing.empty() ? "at rest" : fmt::format("mean of the last tenth of the run, remaining variation +-{}", swing), false});
     }
 }
 
