@@ -81,7 +81,7 @@ class BadInput(CliTest):
     def test_unknown_history_quantity(self):
         text = BASE + '[[output.history]]\ninterface = "soil"\nquantity = "momnt"\n'
         self.refused(text, f'{{file}}:{line_of(text, "momnt")}: output.history[0].quantity: wanted a quantity of an interface: axial, shear, moment, rotation, '
-                           'uplifted_ratio, max_opening, max_pressure, found "momnt" (did you mean "moment"?)')
+                           'settlement, tilt, uplifted_ratio, max_opening, max_pressure, found "momnt" (did you mean "moment"?)')
 
     def test_point_beyond_the_interface(self):
         text = BASE + '[[output.history]]\ninterface = "soil"\npoint = 12\nquantity = "opening"\n'

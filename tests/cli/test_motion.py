@@ -168,7 +168,7 @@ class Compared(CliTest):
         self.uplift("compare", "case.toml", "-o", "out", "-q")
         found = self.summary("out")
         self.assertEqual(found["verdict"]["run"], "run-strong")
-        self.assertRegex(found["verdict"]["headline"], r"The base uplifts: .* \(strong shaking, the hardest of 2 motions\)")
+        self.assertRegex(found["verdict"]["headline"], r"The base uplifts: .* \(strong shaking, the most demanding of 2 motions\)")
         self.assertEqual(found["verdict"]["criteria"][0]["result"], "not met")
         self.assertEqual([run["name"] for run in found["runs"]], ["run-strong", "bonded-strong", "run-weak", "bonded-weak"])
         # the table keeps the user's order; its peaks are those of the runs
@@ -176,7 +176,7 @@ class Compared(CliTest):
         self.assertEqual([row["motion"] for row in table["motions"]], ["weak shaking", "strong shaking"])
         self.assertGreater(table["motions"][1]["peaks"]["ratio"], table["motions"][0]["peaks"]["ratio"])
         page = json.dumps(report_of(self.folder / "out"))
-        self.assertIn("This page shows the hardest of 2 motions, strong shaking.", page)
+        self.assertIn("This page shows the most demanding of 2 motions, strong shaking.", page)
         for name in ("run-weak", "bonded-weak", "run-strong", "bonded-strong"):
             self.assertTrue((self.folder / f"out/histories/{name}.csv").exists())
 

@@ -133,13 +133,18 @@ source = "specification, 4.2"
         blocks = {}
         for group, run, floor, damping, frequency, raw, broad, bonded, ratio in rows:
             blocks[run, floor, float(damping), float(frequency)] = [float(cell) if cell else None for cell in (raw, broad, bonded, ratio)]
+        # a bonded value below a thousandth of the largest floor acceleration counts as that: the foot hardly moves up and down while bonded
+        least = 1e-3 * max(abs(floor["zero_period_acceleration"]["value"]) for run in self.summary("r")["runs"] for floor in run["floor_spectra"])
         for (run, *at), (raw, broad, bonded, ratio) in blocks.items():
             self.assertGreaterEqual(broad, raw * (1 - 1e-9))
             if run == "bonded":
                 self.assertEqual((bonded, ratio), (None, None))
                 continue
             self.assertEqual(bonded, blocks["bonded", *at][0])
-            self.assertAlmostEqual(ratio, raw / bonded, delta=2e-9 * ratio)
+            if max(raw, bonded) > least:
+                self.assertAlmostEqual(ratio, raw / max(bonded, least), delta=2e-9 * ratio)
+            else:
+                self.assertIsNone(ratio)
         run, bonded = self.summary("r")["runs"]
         spectra = run["floor_spectra"][0]["spectra"]
         self.assertEqual([each["damping"] for each in spectra], [0.02, 0.05])
@@ -230,7 +235,7 @@ class Failures(CliTest):
     def test_static_stages_alone_show_how_it_stands(self):
         self.write(BASE.split('[[stage]]\ntype = "dynamic"')[0])
         done = self.uplift("run", "case.toml", "-o", "r")
-        self.assertIn("Under its constant loads the base is closed", done.stdout)
+        self.assertIn("Under its constant loads the base is in full contact", done.stdout)
         self.assertIn("completed: static stages in", done.stdout)
         # 1 MN on 3 m2 of 2e8 Pa/m
         (head, row) = (self.folder / "r" / "histories.csv").read_text().splitlines()
@@ -248,7 +253,7 @@ class Failures(CliTest):
         pulled = BASE.replace("force = [3e5, 0]", "force = [0, 1e7]").replace("duration = 0.1", "duration = 3").replace("duration = 0.5", "duration = 3")
         self.write(pulled)
         done = self.uplift("run", "case.toml", "-o", "r")
-        self.assertIn("It leaves the ground", done.stdout)
+        self.assertIn("Full loss of contact: at", done.stdout)
         (run,) = self.summary("r")["runs"]
         self.assertEqual(run["status"], "separated")
         self.assertLess(run["end_time"], 3)
@@ -257,7 +262,7 @@ class Failures(CliTest):
         self.write(BASE.replace("force = [3e5, 0]", "force = [9e6, 0]").replace("duration = 0.5", "duration = 3"))
         done = self.uplift("run", "case.toml", "-o", "r")
         self.assertEqual(self.summary("r")["runs"][0]["status"], "overturned")
-        self.assertIn("overturns", done.stdout)
+        self.assertIn("Overturning: the rotation exceeds", done.stdout)
 
 
 class Trust(CliTest):

@@ -52,6 +52,16 @@ TEST_F(MotionCase, RunsTheCaseAndTheBondedModelWithEach) {
   EXPECT_TRUE(runs[1].bonded && runs[3].bonded);
 }
 
+TEST_F(MotionCase, TheMotionOfTheCaseIsAmongThem) {
+  const std::string further = third + "[[compare.motion]]\nname = \"two\"\nreplace = [\"ex\"]\nby = [\"strong\"]\n";
+  const Case file = read(tower(quick, moving_frame) + further);
+  const std::vector<RunSpec> runs = comparison_of_case(file).runs;
+  EXPECT_EQ(names_of(runs, &RunSpec::name), (Texts{"run", "bonded", "run-two", "bonded-two"}));
+  EXPECT_EQ(names_of(runs, &RunSpec::motion_label), (Texts{"motion of the case", "motion of the case", "two", "two"}));
+  EXPECT_EQ(runs[0].motion, nullptr);
+  EXPECT_TRUE(runs[0].pictures && runs[1].pictures && !runs[2].pictures);
+}
+
 TEST_F(MotionCase, RunsEveryVariantWithEveryDampingAndMotion) {
   const Case file =
       read(tower(quick, moving_frame) + two_motions +
@@ -147,10 +157,10 @@ TEST(HardestMotion, ComesBeforeTheOthers) {
                           .spread = {}};
   EXPECT_EQ(
       said_over_motions({under("a", small, 1), under("b", large, 2)}, table),
-      "This page shows the hardest of 2 motions, b. Over the 2 of them that were completed, in the mean and at most: uplifted 25 % and "
-      "30 %, gap 3.00 mm and 4.00 mm. Of 2 criteria are not met: 1 under a, 2 under b.");
+      "This page shows the most demanding of 2 motions, b. Mean and maximum over the 2 completed runs: uplifted 25 % and 30 %, gap 3.00 mm "
+      "and 4.00 mm. Criteria that are not met, of 2: 1 under a, 2 under b.");
   EXPECT_TRUE(said_over_motions({under("a", small, 0), under("b", large, 0)}, table)
-                  .ends_with("No criterion is broken under any of the 2 motions."));
+                  .ends_with("All criteria are met under each of the 2 motions."));
 }
 
 TEST_F(MotionCase, OneCompletedRunHasNoSpread) {

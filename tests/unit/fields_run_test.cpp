@@ -124,15 +124,18 @@ TEST_P(FieldsOfARun, InterfaceCarriesWhatItsJointsCarry) {
   const std::size_t width = quadratic ? 3 : 2;
   const std::vector<double> share = quadratic ? std::vector{1. / 6, 1. / 6, 4. / 6} : std::vector{.5, .5};  // exact for this degree
 
-  const Interface& joint = written.built.model.interfaces[0];
   const State& last = written.states.back();
   Vec3 wanted = Vec3::Zero(), found = Vec3::Zero();
   double squeezed = 0, squeezed_found = 0;
-  for (int i = 0; i < joint.batch.points; ++i) {
-    const double nx = joint.normal[static_cast<std::size_t>(i)][0], ny = joint.normal[static_cast<std::size_t>(i)][1];
-    const double t = last.force[i], n = last.force[joint.batch.points + i];
-    wanted += Vec3(t * ny + n * nx, n * ny - t * nx, 0);  // t = (ny, -nx)
-    squeezed -= n;
+  int first = 0;
+  for (const Interface& joint : written.built.model.interfaces) {  // of base and walls
+    for (int i = 0; i < joint.batch.points; ++i) {
+      const double nx = joint.normal[static_cast<std::size_t>(i)][0], ny = joint.normal[static_cast<std::size_t>(i)][1];
+      const double t = last.force[first + i], n = last.force[first + joint.batch.points + i];
+      wanted += Vec3(t * ny + n * nx, n * ny - t * nx, 0);  // t = (ny, -nx)
+      squeezed -= n;
+    }
+    first += joint.rows();
   }
   const std::string frame = "/frames/000005/interfaces/points/";
   const auto traction = file.numbers(frame + "traction"), pressure = file.numbers(frame + "pressure");

@@ -24,9 +24,9 @@ TEST(FloorSpectra, Bands) {
 }
 
 /// By hand: a frequency on an edge belongs to the band above it; a band without frequencies says nothing; where the bonded floor rests
-/// there is no ratio.
+/// there is no ratio without a threshold.
 TEST(FloorSpectra, ChangeOfBands) {
-  const std::vector<FloorChange> changes = floor_change(floor_of({3, 2, 6, 5, 1}), floor_of({0, 4, 3, 10, 1}), {2, 5, 6, 7});
+  const std::vector<FloorChange> changes = floor_change(floor_of({3, 2, 6, 5, 1}), floor_of({0, 4, 3, 10, 1}), {2, 5, 6, 7}, 0);
   ASSERT_EQ(changes.size(), 1U);
   EXPECT_EQ(changes[0].frequencies, (std::vector<double>{2, 4, 8, 16}));
   EXPECT_EQ(changes[0].ratio, (std::vector<double>{0.5, 2, 0.5, 1}));
@@ -37,6 +37,22 @@ TEST(FloorSpectra, ChangeOfBands) {
   EXPECT_EQ(changes[0].bands[0].most, 2);
   EXPECT_DOUBLE_EQ(changes[0].bands[1].change, -0.5);
   EXPECT_EQ(changes[0].bands[1].band.from, 7);
+}
+
+/// A direction that is not excited has no ratio; where one of the runs is excited the other counts as the threshold at least.
+TEST(FloorSpectra, NoiseIsNotCompared) {
+  const FloorSpectra noise = floor_of({1e-14, 3e-15, 2e-14, 1e-15, 1e-13}, 1e-14), excited = floor_of({3, 2, 6, 5, 1}, 2);
+  const double least = least_excitation({noise, excited}, {noise});
+  EXPECT_DOUBLE_EQ(least, 2e-3);
+  const FloorChange nothing = floor_change(noise, floor_of({2e-15, 1e-14, 1e-14, 4e-15, 1e-14}), {2, 5}, least).front();
+  EXPECT_TRUE(nothing.bands.empty());
+  EXPECT_TRUE(nothing.ratio.empty());
+  const FloorChange arises = floor_change(excited, noise, {2, 5}, least).front();
+  ASSERT_EQ(arises.bands.size(), 3U);
+  EXPECT_DOUBLE_EQ(arises.bands[2].change, 5 / 2e-3 - 1);
+  const FloorChange vanishes = floor_change(noise, excited, {2, 5}, least).front();
+  ASSERT_EQ(vanishes.bands.size(), 3U);
+  EXPECT_NEAR(vanishes.bands[0].change, -1, 1e-12);
 }
 
 TEST(FloorSpectra, EnvelopeOfRuns) {

@@ -47,12 +47,13 @@ export function share_chart(base: BaseVerdict): HTMLElement | null {
     ...base.lost.map(([a, b]) => s("path", { class: "lost", d: `M${px(x(a))} ${TOP}V${HEIGHT - BOTTOM}H${px(Math.max(x(b), x(a) + 1))}V${TOP}Z` })),
     ...above.map((each) => s("path", { class: "threshold", d: `M${LEFT} ${px(y(each.threshold))}H${WIDTH - RIGHT}` })),
     s("circle", { class: "peak", cx: px(x(time[peak] as number)), cy: px(y(largest)), r: 3.5 }));
-  const words = above.map((each) => `above ${fixed(100 * each.threshold, 0)} % for ${seconds(each.duration)}`);
+  const words = above.map((each) => each.text ?? `above ${fixed(100 * each.threshold, 0)} % for ${seconds(each.duration)}`);
   if (base.lost.length > 0) {
     const sum = base.lost.reduce((m, [a, b]) => m + b - a, 0);
     const shown = base.lost.slice(0, SHOWN).map(([a, b]) => `${number(a, 4)} to ${number(b, 4)} s`).join(", ");
     const more = base.lost.length > SHOWN ? " and later" : "";
-    words.push(`full loss of contact ${base.lost.length === 1 ? "once" : `${base.lost.length} times`}, ${seconds(sum)} in total (${shown}${more})`);
+    const lost = base.lostText ?? `full loss of contact ${base.lost.length === 1 ? "once" : `${base.lost.length} times`}, ${seconds(sum)} in total`;
+    words.push(`${lost} (${shown}${more})`);
   }
   return h("figure", { class: "share-chart" },
     h("figcaption", {}, h("b", {}, "Uplifted area over time"), words.length > 0 ? ` · ${words.join(" · ")}` : ""), drawing);

@@ -36,22 +36,31 @@ export interface VerdictRow {
   bonded?: number;
   /** Half of the range in which a residual still moves. */
   swing?: number;
+  /** The same numbers as the program prints them; without them the page formats the values itself. */
+  text?: string;
+  bondedText?: string;
+  changeText?: string;
+  swingText?: string;
 }
 
 /** What is said of one interface. */
 export interface BaseVerdict {
   name: string;
+  /** A base, or a wall beside the structure; absent: a base. */
+  role?: "base" | "wall";
   /** Uplifted share of the area over time. */
   time: number[];
   share: number[];
   /** Thresholds that the user gave, and for how many seconds the share is above. */
-  above: { threshold: number; duration: number }[];
+  above: { threshold: number; duration: number; text?: string }[];
   /** Intervals without any contact, seconds. */
   lost: [number, number][];
+  /** How often and how long there is no contact. */
+  lostText?: string;
   beside: VerdictRow[];
   rest: VerdictRow[];
   /** Shares: what pulls in the bonded run, the uplift that stands for by equal energy (null: no answer), what was computed. */
-  linear?: { tension: number; predicted: number | null; computed: number };
+  linear?: { tension: number; predicted: number | null; computed: number; tensionText?: string; predictedText?: string; computedText?: string };
 }
 
 export type CriterionState = "met" | "not met" | "undetermined";
@@ -62,6 +71,8 @@ export interface Criterion {
   state: CriterionState;
   value: number | null;
   limit: number;
+  valueText?: string;
+  limitText?: string;
   unit: string;
   atLeast: boolean;
   source: string;
@@ -71,7 +82,9 @@ export interface Criterion {
 export interface FloorChange {
   floor: string;
   damping: number;
-  bands: { band: string; change_percent: number }[];
+  bands: { band: string; change_percent: number; change?: string }[];
+  /** Why there are no bands. */
+  note?: string;
 }
 
 export interface Verdict {

@@ -59,16 +59,17 @@ function change(value: number, bonded: number): string {
 
 function beside_table(base: BaseVerdict): HTMLElement | null {
   if (base.beside.length === 0) return null;
+  const wall = base.role === "wall";
   const bonded = base.beside.some((row) => row.bonded !== undefined);
-  const row = ({ label, value, unit, time, bonded: other }: VerdictRow): HTMLElement => {
+  const row = ({ label, value, unit, time, bonded: other, text, bondedText, changeText }: VerdictRow): HTMLElement => {
     const largest = Math.max(Math.abs(value), Math.abs(other ?? 0));
     return h("tr", {},
       h("th", { scope: "row" }, label),
-      h("td", { title: time === undefined ? null : `at ${number(time, 4)} s` }, quantity_text(value, unit, largest)),
-      bonded ? h("td", {}, other === undefined ? "–" : quantity_text(other, unit, largest)) : null,
-      bonded ? h("td", { class: "change" }, other === undefined ? "–" : change(value, other)) : null);
+      h("td", { title: time === undefined ? null : `at ${number(time, 4)} s` }, text === undefined ? quantity_text(value, unit, largest) : tied(text)),
+      bonded ? h("td", {}, other === undefined ? "–" : bondedText === undefined ? quantity_text(other, unit, largest) : tied(bondedText)) : null,
+      bonded ? h("td", { class: "change" }, other === undefined ? "–" : changeText === undefined ? change(value, other) : tied(changeText)) : null);
   };
-  const heads = bonded ? ["", "With uplift", "Bonded", "Change"] : ["", "Largest"];
+  const heads = bonded ? ["", "With uplift", "Bonded", "Change"] : [wall ? "Wall" : "", "Largest"];
   return h("table", { class: "beside" },
     h("thead", {}, h("tr", {}, ...heads.map((text) => h("th", { scope: "col" }, text)))),
     h("tbody", {}, ...base.beside.map(row)));
@@ -78,27 +79,27 @@ function beside_table(base: BaseVerdict): HTMLElement | null {
 function tension_bars(base: BaseVerdict): HTMLElement | null {
   const { linear } = base;
   if (!linear || (linear.tension <= 0 && linear.computed <= 0)) return null;
-  const bar = (kind: string, label: string, share: number | null): HTMLElement =>
+  const bar = (kind: string, label: string, share: number | null, text?: string): HTMLElement =>
     h("div", { class: `bar bar-${kind}` },
       h("span", { class: "bar-label" }, label),
       h("span", { class: "bar-track" }, share === null ? null : h("i", { style: `width:${Math.min(100, 100 * share).toFixed(1)}%` })),
-      h("b", {}, share === null ? "not applicable" : percent(share)));
+      h("b", {}, share === null ? "not applicable" : text === undefined ? percent(share) : tied(text)));
   return h("div", { class: "tension" },
     h("h3", {}, "Tension ratio of the linear analysis and uplift"),
-    bar("linear", "tension, bonded model", linear.tension),
-    bar("predicted", "uplift estimated", linear.predicted),
-    bar("computed", "uplift computed", linear.computed));
+    bar("linear", "tension, bonded model", linear.tension, linear.tensionText),
+    bar("predicted", "uplift estimated", linear.predicted, linear.predictedText),
+    bar("computed", "uplift computed", linear.computed, linear.computedText));
 }
 
 const STATE_SIGN: Record<CriterionState, string> = { met: "✓", "not met": "✕", undetermined: "?" };
 
 function criterion_row(criterion: Criterion): HTMLElement {
-  const { state, label, value, limit, unit, atLeast, source } = criterion;
+  const { state, label, value, limit, unit, atLeast, source, valueText, limitText } = criterion;
   const largest = Math.max(Math.abs(limit), Math.abs(value ?? 0));
   return h("li", { class: `criterion is-${state.replace(" ", "-")}` },
     h("span", { class: "state" }, h("i", { "aria-hidden": "true" }, STATE_SIGN[state]), ` ${state}`),
     h("span", { class: "what" }, label + (criterion.interface ? ` (${criterion.interface})` : "")),
-    h("span", { class: "value" }, value === null ? "not computed" : quantity_text(value, unit, largest), `, limit ${atLeast ? "≥" : "≤"} ${quantity_text(limit, unit, largest)}`),
+    h("span", { class: "value" }, value === null ? "not computed" : tied(valueText ?? quantity_text(value, unit, largest)), `, limit ${atLeast ? "≥" : "≤"} ${tied(limitText ?? quantity_text(limit, unit, largest))}`),
     h("span", { class: "by" }, source));
 }
 
@@ -123,7 +124,7 @@ function floor_block(floors: FloorChange[], charts: Chart[]): HTMLElement | null
   const short = (band: string): string => band.replace(/ Hz$/, "").replace("below ", "< ").replace("above ", "> ").replace(" to ", "–");
   const cell = (floor: FloorChange, band: string): HTMLElement => {
     const found = floor.bands.find((each) => each.band === band);
-    return h("td", {}, found ? change(1 + found.change_percent / 100, 1) : "–");
+    return h("td", {}, found ? (found.change === undefined ? change(1 + found.change_percent / 100, 1) : tied(found.change)) : "–");
   };
   const most = most_changed(floors);
   const chart = most ? charts.find((each) => each.id === `floor_${most.floor}_${number(100 * most.damping, 4).replace(/\.?0+$/, "")}`) : undefined;
@@ -135,14 +136,15 @@ function floor_block(floors: FloorChange[], charts: Chart[]): HTMLElement | null
           h("thead", {}, h("tr", {}, h("th", { scope: "col" }, "Floor, damping"), ...bands.map((band) => h("th", { scope: "col", title: band }, short(band))))),
           h("tbody", {}, ...floors.map((floor) =>
             h("tr", { class: floor === most && chart ? "is-drawn" : null },
-              h("th", { scope: "row" }, `${floor.floor}, ${number(100 * floor.damping, 2)}\u00a0%`), ...bands.map((band) => cell(floor, band))))))),
+              h("th", { scope: "row" }, `${floor.floor}, ${number(100 * floor.damping, 2)}\u00a0%`),
+              ...(floor.note ? [h("td", { colspan: Math.max(1, bands.length) }, floor.note)] : bands.map((band) => cell(floor, band)))))))),
       chart ? spectrum_chart(chart) : null));
 }
 
 function base_block(base: BaseVerdict, many: boolean): HTMLElement {
   const chart = share_chart(base);
   return h("div", { class: "base-verdict" },
-    many ? h("h3", { class: "base-name" }, base.name) : null,
+    many ? h("h3", { class: "base-name" }, base.role === "wall" ? `${base.name} (wall)` : base.name) : null,
     h("div", { class: "base-columns" },
       h("div", {}, chart, tension_bars(base)),
       beside_table(base)));
@@ -179,12 +181,12 @@ export function rest_table(verdict: Verdict): HTMLElement | null {
       const largest = Math.max(Math.abs(row.value), row.swing ?? 0);
       return h("tr", {},
         h("th", { scope: "row" }, bases.length > 1 ? `${row.label} (${base.name})` : row.label),
-        h("td", {}, value(row, largest)),
-        h("td", {}, row.swing === undefined || row.swing < NEGLIGIBLE ? "–" : `± ${value({ ...row, value: row.swing }, largest)}`));
+        h("td", {}, row.text === undefined ? value(row, largest) : tied(row.text)),
+        h("td", {}, row.swing === undefined || row.swing < NEGLIGIBLE ? "–" : `± ${row.swingText === undefined ? value({ ...row, value: row.swing }, largest) : tied(row.swingText)}`));
     }));
   return h("figure", { class: "card rest-card" },
     h("table", { class: "beside" },
       h("thead", {}, h("tr", {}, ...["Residual value", "Mean of the last tenth of the run", "Remaining variation"].map((text) => h("th", { scope: "col" }, text)))),
       h("tbody", {}, ...rows)),
-    h("figcaption", {}, "Rotation, settlement (positive downwards) and slip are relative to the state before the shaking."));
+    h("figcaption", {}, "Rotation (in the plane positive counter-clockwise), settlement (positive downwards) and slip are relative to the state before the shaking."));
 }

@@ -9,7 +9,7 @@
 #include "uplift/analysis/run.h"
 #include "uplift/analysis/verdict_quantities.h"
 #include "uplift/base/declare.h"
-#include "uplift/mesh/mesh.h"
+#include "uplift/mesh/split.h"
 
 // From the checked case file to something that can be run.
 namespace uplift {
@@ -49,7 +49,8 @@ struct RunSpec {
   std::optional<double> step, duration;   // s, of the dynamic stages
   std::optional<double> stiffness_ratio;  // the law's stiffness is chosen so that the largest k F_ii is this
   std::string stiffness_parameter;        // parameter of the law that is the stiffness
-  const Values* motion = nullptr;         // [[compare.motion]]: records that take the place of others
+  const Values* motion = nullptr;         // [[compare.motion]]: records that take the place of others; null: the case's own
+  std::string motion_label;               // of a comparison over motions; empty: none
   bool bonded = false;                    // elastic interfaces that never open, as stiff as the closed joint
   bool rigid_ground = false;              // elastic beds are left out
   bool expected_to_fail = false;
@@ -69,15 +70,23 @@ Comparison comparison_of_case(const Case&);
 /// Whether a case has something to compare: variants, or other motions.
 bool compares(const Case&);
 
+/// What an interface is to the structure: a base below it, which may lift off, or a wall beside it.
+enum class Role { base, wall };
+std::string_view to_string(Role);
+
 /// What the report and the verdict want to know of an interface beyond the model.
 struct InterfaceFacts {
-  std::string name, body;                // body: node that carries the upper side; empty when there is none
-  std::vector<Place> corners;            // m, of a footing; without: the nodes of the upper side say how far it goes
-  double friction = -1;                  // coefficient; negative: none stated
-  double cohesion = 0;                   // Pa: shear strength without pressure
-  double area = 0;                       // m2
-  double tension = 0;                    // Pa: tensile strength of the law, 0 without
-  std::vector<int> upper, lower;         // nodes of either side, each once
+  std::string name, body;         // body: node that carries the upper side; empty when there is none
+  std::vector<Place> corners;     // m, of a footing; without: the nodes of the upper side say how far it goes
+  double friction = -1;           // coefficient; negative: none stated
+  double cohesion = 0;            // Pa: shear strength without pressure
+  double area = 0;                // m2
+  double tension = 0;             // Pa: tensile strength of the law, 0 without
+  std::vector<int> upper, lower;  // nodes of either side, each once
+  Role role = Role::base;
+  double depth = 0;             // m out of the plane; 0 in space and for isolated pairs, which have only an area
+  std::vector<FacePair> faces;  // of the mesh, opened along it
+  bool nodal = true;            // its points stand at node pairs; of faces only
   std::shared_ptr<const Facets> facets;  // the surface between the points; null for node pairs on their own
 };
 
@@ -107,7 +116,7 @@ struct Built {
   RunPlan plan;
   std::vector<const Values*> behaviours;               // one per interface: law or cone as in the case file
   std::vector<std::unique_ptr<const Values>> derived;  // behaviours made here (bonded, swept)
-  std::vector<InterfaceFacts> facts;                   // one per interface
+  std::vector<InterfaceFacts> facts;                   // one per interface, bases first
   VerdictWishes wishes;                                // thresholds and criteria
   std::vector<MotionUse> motions;                      // records that drive it
   std::vector<std::string> notes;                      // what was chosen automatically (tuned mass, scaled penalty)
@@ -127,6 +136,10 @@ struct Built {
   Request::Kind base_rotation() const;
   /// The model with all supports, those of static stages alone too.
   const Model& at_rest() const { return plan.rest ? *plan.rest : model; }
+  /// Number of interfaces that are bases; they come first. All interfaces of a model without any base count as such in sums over bases.
+  std::size_t bases() const;
+  /// A model in the plane in which every interface is 1 m deep: its forces are per metre.
+  bool is_strip() const;
 };
 
 /// Makes the model and the plan of one run. Throws InputError (dangling or duplicate names, mechanisms, contradictions).

@@ -6,6 +6,7 @@
 #include "uplift/analysis/case_decided.h"
 #include "uplift/analysis/case_ground.h"
 #include "uplift/analysis/case_output.h"
+#include "uplift/analysis/case_roles.h"
 #include "uplift/analysis/case_sections.h"
 #include "uplift/analysis/case_shown.h"
 #include "uplift/analysis/case_verdict.h"
@@ -51,21 +52,21 @@ Values bonded_behaviour(const Values& like, const std::vector<double>& stiffness
 }
 
 /// The law or cone of an interface in this run.
-const Values& behaviour_of(const Values& interface, const RunSpec& spec) {
-  const bool replaced = spec.law && (spec.interface.empty() || spec.interface == interface.text("name"));
-  return replaced ? *spec.law : interface.part("law");
+const Values& behaviour_of(const InterfacePart& part, const RunSpec& spec) {
+  const bool replaced = spec.law && (spec.interface.empty() || spec.interface == part.name);
+  return replaced ? *spec.law : part.table->part("law");
 }
 
 /// `like`: the interfaces get the components that they have in this model; null: as many as their law and supports leave.
 void add_interfaces(const Case& read, const RunSpec& spec, const Model* like, ModelBuilder& builder, CaseNames& names, Built& built) {
   if (like) builder.keep_tangents();
-  for (const Values& interface : read.values.tables("interface")) {
-    const auto number = static_cast<std::size_t>(names.interfaces.add(interface, "name"));
-    Joint joint = make_joint(interface, read.mesh ? read.mesh->open[number] : std::vector<FacePair>(), spec.rigid_ground, builder, names);
-    const Values& behaviour = behaviour_of(interface, spec);
+  std::vector<InterfacePart> parts = interface_parts(read, spec.rigid_ground, builder, names);
+  for (InterfacePart& part : parts) {
+    Joint& joint = part.joint;
+    const Values& behaviour = behaviour_of(part, spec);
     InterfaceSpec made;
-    made.name = interface.text("name");
-    made.components = like ? like->interfaces[number].batch.components : components_of(behaviour, names.space);
+    made.name = part.name;
+    made.components = like ? like->interfaces[built.facts.size()].batch.components : components_of(behaviour, names.space);
     made.points = std::move(joint.points);
     made.reference = joint.reference;
     made.behaviour = behaviour.type();
@@ -76,7 +77,7 @@ void add_interfaces(const Case& read, const RunSpec& spec, const Model* like, Mo
     if (behaviour.items().contains("F_u") && behaviour.has("F_u")) joint.facts.tension = behaviour.number("F_u");
     built.facts.push_back(std::move(joint.facts));
     built.behaviours.push_back(&behaviour);
-    builder.add_interface(std::move(made), interface.where());
+    builder.add_interface(std::move(made), part.table->where());
   }
   if (spec.law && !spec.interface.empty()) names.interfaces.find(spec.interface, spec.law->where(), spec.law->path());
 }
@@ -339,11 +340,36 @@ double separation_limit(const Values& limits, const Model& model) {
   return limits.number("rotation") * (base > 0 ? base : extent(nodes));
 }
 
+/// Tells of interfaces that were divided by their normals.
+void note_divided(Built& built) {
+  for (const InterfaceFacts& walls : built.facts)
+    for (const InterfaceFacts& base : built.facts)
+      if (walls.name == base.name + " walls" && walls.role == Role::wall)
+        built.notes.push_back(
+            fmt::format("the interface \"{}\" has faces of a base ({:.4g} m2) and of walls ({:.4g} m2): the walls are the "
+                        "interface \"{}\"",
+                        base.name, base.area, walls.area, walls.name));
+}
+
 InterfaceSolver interface_solver(const std::string& word) {
   return word == "direct" ? InterfaceSolver::direct : word == "krylov" ? InterfaceSolver::krylov : InterfaceSolver::automatic;
 }
 
 }  // namespace
+
+std::string_view to_string(Role role) {
+  return role == Role::base ? "base" : "wall";
+}
+
+std::size_t Built::bases() const {
+  const auto count = static_cast<std::size_t>(std::ranges::count(facts, Role::base, &InterfaceFacts::role));
+  return count > 0 ? count : facts.size();
+}
+
+bool Built::is_strip() const {
+  return model.space.dimension == 2 && !facts.empty() &&
+         std::ranges::all_of(facts, [](const InterfaceFacts& each) { return each.depth == 1; });
+}
 
 Built build(const Case& read, const RunSpec& spec) {
   const Values& root = read.values;
@@ -387,12 +413,14 @@ Built build(const Case& read, const RunSpec& spec) {
   plan.separation_limit = separation_limit(root.table("limits"), built.model);
   plan.gap_tolerance = root.table("limits").number("gap_tolerance");
   for (const InterfaceFacts& facts : built.facts) plan.bases.push_back(facts.upper), plan.facets.push_back(facts.facets);
+  for (std::size_t k = 0; k < built.facts.size(); ++k) plan.is_wall.push_back(k >= built.bases());
+  note_divided(built);
   plan.every = root.table("output").integer("every");
   plan.frames = spec.pictures ? root.table("output").integer("frames") : 0;
   plan.frames = std::min(plan.frames, std::max(2, most_pictured / std::max(1, built.model.full_unknowns())));
   add_requests(read, built);
   if (!spec.stiffness_ratio) add_floors(read, built);
-  built.wishes = verdict_wishes(root, built.model);
+  built.wishes = verdict_wishes(root, built);
   if (const Values* compare = table_if(root, "compare")) check_columns(*compare, "agree_on", plan.requests);
   return built;
 }

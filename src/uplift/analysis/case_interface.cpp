@@ -109,6 +109,15 @@ void add_surface(const Values& interface, const Values& surface, const std::vect
       for (auto& [node, shape] : *side) node += names.first_of_mesh;
 }
 
+/// See InterfaceFacts::depth.
+double depth_of(const Values& interface, const std::vector<FacePair>& open, const CaseNames& names) {
+  if (names.space.dimension == 3) return 0;
+  for (const char* kind : {"footing", "line"})
+    if (const Values* table = table_if(interface, kind)) return table->number("thickness");
+  const Values* surface = table_if(interface, "surface");
+  return surface ? thickness_of(*names.solids, open, *surface) : 0;
+}
+
 }  // namespace
 
 Joint make_joint(const Values& interface, const std::vector<FacePair>& open, bool rigid_ground, ModelBuilder& builder, CaseNames& names) {
@@ -132,12 +141,25 @@ Joint make_joint(const Values& interface, const std::vector<FacePair>& open, boo
     joint.facts.facets = std::make_shared<Facets>(line_facets(joint.points, made.thickness));
   }
   if (surface) add_surface(interface, *surface, open, names, joint);
-  joint.facts.upper = nodes_of_side(joint.points, &JointPoint::upper);
-  joint.facts.lower = nodes_of_side(joint.points, &JointPoint::lower);
-  for (const JointPoint& point : joint.points) joint.facts.area += point.area;
-  if (!footing) joint.reference = middle_of(joint);
+  if (surface) joint.facts.faces = open, joint.facts.nodal = surface->text("quadrature") == "nodal";
+  joint.facts.depth = depth_of(interface, open, names);
+  const Place reference = joint.reference;
+  joint = with_points(joint, joint.points);
+  if (footing) joint.reference = reference;
   joint.facts.name = interface.text("name");
   return joint;
+}
+
+Joint with_points(const Joint& joint, std::vector<JointPoint> points) {
+  Joint made{std::move(points), joint.facts, {}};
+  made.facts.upper = nodes_of_side(made.points, &JointPoint::upper);
+  made.facts.lower = nodes_of_side(made.points, &JointPoint::lower);
+  made.facts.area = 0;
+  for (const JointPoint& point : made.points) made.facts.area += point.area;
+  made.reference = middle_of(made);
+  if (joint.facts.facets && made.points.size() != joint.points.size())  // a line that was divided
+    made.facts.facets = std::make_shared<Facets>(line_facets(made.points, joint.facts.depth));
+  return made;
 }
 
 int components_of(const Values& behaviour, Space space) {

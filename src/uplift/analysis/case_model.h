@@ -83,5 +83,7 @@ Joint make_joint(const Values& interface, const std::vector<FacePair>& open, boo
 
 /// Number of local components that a law or cone needs: 1 when it has no tangential part, else all of the space.
 int components_of(const Values& behaviour, Space space);
+/// The same joint with some of its points alone.
+Joint with_points(const Joint& joint, std::vector<JointPoint> points);
 
 }  // namespace uplift

@@ -54,10 +54,17 @@ std::vector<Quantity> interface_quantities(Space space) {
                                  Quantity{"torsion", Column::torsion, "N m"}, Quantity{"rotation_1", Column::rotation_1, "rad"},
                                  Quantity{"rotation_2", Column::rotation_2, "rad"}})
       made.push_back(each);
+  made.push_back({"settlement", Column::settlement, "m"});
+  if (space.dimension == 2) made.push_back({"tilt", Column::tilt_1, "rad"});
+  if (space.dimension == 3) made.push_back({"tilt_1", Column::tilt_1, "rad"}), made.push_back({"tilt_2", Column::tilt_2, "rad"});
   for (const Quantity& each : {Quantity{"uplifted_ratio", Column::uplifted_ratio, "1"}, Quantity{"max_opening", Column::max_opening, "m"},
                                Quantity{"max_pressure", Column::max_pressure, "Pa"}})
     made.push_back(each);
   return made;
+}
+/// Motions of the base above an interface.
+bool is_base_motion(Column kind) {
+  return kind == Column::settlement || kind == Column::tilt_1 || kind == Column::tilt_2;
 }
 /// Those that need a tangential part of the interface.
 bool is_shear(Column kind) {
@@ -207,9 +214,12 @@ void add_requests(const Case& read, Built& built) {
       top = {"ux", "uy", "uz", "vx", "vy"}, base = {"ux", "uy", "uz", "rx", "ry", "rz", "vz"}, base_too = {"rx", "ry", "rz", "vz"};
     if (built.top >= 0) add_node(model, built.top, top, requests);
     if (built.base >= 0) add_node(model, built.base, built.base != built.top ? base : base_too, requests);
+    // the drift of the top needs the tilt of the base, which nodes of solids do not have
+    const bool nodes_turn_not = built.top >= 0 && built.base >= 0 && !moves(model, built.base_turn());
     for (std::size_t k = 0; k < model.interfaces.size(); ++k)
       for (const Quantity& quantity : interface_quantities(model.space)) {
         if (is_shear(quantity.kind) && model.interfaces[k].batch.components == 1) continue;
+        if (is_base_motion(quantity.kind) && !(nodes_turn_not && k == 0 && quantity.kind != Column::settlement)) continue;
         requests.push_back(make(quantity.kind, fmt::format("{}.{}", model.interfaces[k].name, quantity.word), quantity.unit));
         requests.back().interface = static_cast<int>(k);
       }

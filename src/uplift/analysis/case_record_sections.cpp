@@ -44,8 +44,9 @@ const Section& record_section() {
 const Section& compare_motion_section() {
   static const Section s{
       "motion",
-      "for `uplift compare`: every variant, or the case itself when there are none, and the bonded model with other motions; the report "
-      "is about the hardest of them for the first variant, with the mean and the envelope of all",
+      "for `uplift compare`: a further motion. Every variant, or the case itself when there are none, and the bonded model are run with "
+      "the motion of the case and with every further one. The report shows the most demanding of them for the first variant, with the mean "
+      "and the envelope of all. A table that replaces every name by itself only gives the motion of the case a name and a label",
       {text("name", "name, part of the names of the runs"), text("label", "as shown").optional(),
        texts("replace", "names of records or functions that drive the case"),
        texts("by", "names of the records that take their places, in the same order")}};

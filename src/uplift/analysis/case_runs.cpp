@@ -1,5 +1,6 @@
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <cctype>
 
 #include "uplift/analysis/case.h"
@@ -93,6 +94,29 @@ std::vector<RunSpec> with_each(const std::vector<RunSpec>& plain, const std::vec
   return made;
 }
 
+/// Whether a [[compare.motion]] stands for the case's own records: every name is replaced by itself.
+bool is_own_motion(const Values& motion) {
+  return motion.texts("replace") == motion.texts("by");
+}
+
+/// Every run under the case's own motion and under every further one. The own motion is left out where a [[compare.motion]] names it.
+std::vector<RunSpec> with_motions(const std::vector<RunSpec>& plain, const std::vector<Values>& motions) {
+  if (motions.empty()) return plain;
+  std::vector<RunSpec> made;
+  const bool named = std::ranges::any_of(motions, is_own_motion);
+  for (RunSpec spec : plain)
+    if (!named) {
+      spec.group = spec.motion_label = "motion of the case";
+      made.push_back(std::move(spec));
+    }
+  for (RunSpec spec : with_each(plain, motions, "motion of the comparison", &RunSpec::motion)) {
+    spec.motion_label = spec.motion->text(spec.motion->has("label") ? "label" : "name");
+    spec.pictures = spec.pictures && named;
+    made.push_back(std::move(spec));
+  }
+  return made;
+}
+
 bool undamped(const Values& damping) {
   return damping.number("alpha") == 0 && damping.number("beta") == 0 && damping.numbers("modal").empty() &&
          damping.tables("rayleigh").empty();
@@ -135,7 +159,7 @@ Comparison comparison_of_case(const Case& read) {
   if (compare) {
     const std::vector<Values>& motions = compare->tables("motion");
     for (const Values& motion : motions) check_motion(root, motion);
-    made.runs = with_each(made.runs, motions, "motion of the comparison", &RunSpec::motion);
+    made.runs = with_motions(made.runs, motions);
     made.runs = with_each(made.runs, compare->tables("damping"), "damping case", &RunSpec::damping);
   }
   if (compare && compare->has("stiffness_sweep")) {

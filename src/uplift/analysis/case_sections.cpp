@@ -70,11 +70,17 @@ const Section& line_section() {
 const Section& interface_section() {
   static const Section s{
       "interface", "a surface that may open: exactly one of footing, pairs, line and surface says where",
-      Fields{text("name", "name"), table("footing", footing_section(), "under a rigid footing").optional(),
-             table("pairs", pairs_section(), "isolated points").optional(), table("line", line_section(), "along a line").optional(),
-             table("surface", surface_section(), "along faces (edges) inside the mesh").optional(),
-             number("gap", "m", "initial gap of every point").standard(0.0),
-             part("law", interface_behaviours, "what it does: a traction law or a cone (contact by constraint)")}};
+      Fields{
+          text("name", "name"), table("footing", footing_section(), "under a rigid footing").optional(),
+          table("pairs", pairs_section(), "isolated points").optional(), table("line", line_section(), "along a line").optional(),
+          table("surface", surface_section(), "along faces (edges) inside the mesh").optional(),
+          number("gap", "m", "initial gap of every point").standard(0.0),
+          choice("role", {"base", "wall"},
+                 "base: carries the structure and may lift off; uplift, eccentricity, safeties and the headline are those of bases. wall: "
+                 "stands beside it. Absent: by the normals, base within 45 degrees of the direction of gravity (of the vertical axis "
+                 "without gravity); a surface with faces of both kinds is divided, the walls of \"soil\" become \"soil walls\"")
+              .optional(),
+          part("law", interface_behaviours, "what it does: a traction law or a cone (contact by constraint)")}};
   return s;
 }
 
@@ -161,7 +167,8 @@ const Section& history_section() {
              integer("point", "point of the interface, from 1").between(1, 1000000).optional(),
              text("quantity",
                   "node: ux uy rz, vx vy vrz, ax ay arz, and the absolute accelerations abs_ax abs_ay, which are others than ax ay under a "
-                  "ground acceleration; interface: axial shear moment rotation uplifted_ratio max_opening max_pressure; "
+                  "ground acceleration; interface: axial shear moment rotation uplifted_ratio max_opening max_pressure, and "
+                  "settlement tilt of the upper side (in space tilt_1 tilt_2, about x and y); "
                   "point: opening slip traction shear_traction mean_traction mean_shear_traction. In space: all three axes; also shear_1 "
                   "shear_2 moment_1 moment_2 torsion rotation_1 rotation_2, and slip_1 slip_2 ... of a point")}};
   return s;
@@ -254,12 +261,12 @@ const Section& sweep_section() {
 const Section& compare_section() {
   static const Section s{
       "compare", "how variants are compared",
-      Fields{number("band", "1", "sound runs agree when their peaks differ from the median by less").positive().standard(0.02),
-             texts("agree_on", "columns whose peaks are compared; absent: motion of the top, rotation and opening of the interface")
-                 .optional(),
-             tables("damping", damping_case_section(), "every variant is run with each of these"),
-             tables("motion", compare_motion_section(), "every variant is run with each of these"),
-             table("stiffness_sweep", sweep_section(), "a table of energy error against stiffness").optional()}};
+      Fields{
+          number("band", "1", "runs that passed all checks agree when they differ from their median by less").positive().standard(0.02),
+          texts("agree_on", "columns whose peaks are compared; absent: every number of the verdict").optional(),
+          tables("damping", damping_case_section(), "every variant is run with each of these"),
+          tables("motion", compare_motion_section(), "further motions: every variant is run with each of these and with that of the case"),
+          table("stiffness_sweep", sweep_section(), "a table of energy error against stiffness").optional()}};
   return s;
 }
 

@@ -3,6 +3,7 @@
 #include <fmt/format.h>
 
 #include "uplift/analysis/case_names.h"
+#include "uplift/base/text.h"
 #include "uplift/base/units.h"
 
 // Thresholds and criteria: they come from the user, with their source; the program knows none.
@@ -24,11 +25,25 @@ const Section& criterion_section() {
             "number of the verdict: those of summary.json, for example max_uplifted_ratio, max_opening, toe_pressure_ratio, "
             "max_eccentricity, min_overturning_safety, min_sliding_safety, residual_rotation, residual_slip, residual_settlement"),
        limit_field(), text("source", "where the limit comes from: code and clause, client, judgement"),
-       text("interface", "interface that it is for; absent: every one").optional()}};
+       text("interface", "interface that it is for; absent: every base, for numbers of walls alone every wall").optional()}};
   return s;
 }
 
-Criterion criterion_of(const Values& table, const Names& interfaces) {
+/// A wall has no safety against overturning, a base no share of what the walls carry.
+void check_role(const Values& table, const Criterion& criterion, const Built& built) {
+  const auto index = static_cast<std::size_t>(criterion.interface);
+  const bool wall = index >= built.bases();
+  const VerdictQuantity& asked = *criterion.quantity;
+  if (wall ? asked.of_wall : asked.of_base) return;
+  std::vector<std::string_view> names;
+  for (const VerdictQuantity& each : verdict_quantities())
+    if (each.of_interface && (wall ? each.of_wall : each.of_base)) names.push_back(each.name);
+  fail(table, "quantity",
+       fmt::format("a number of a {} (\"{}\" is one): {}", wall ? "wall" : "base", built.facts[index].name, fmt::join(names, ", ")),
+       in_quotes(asked.name));
+}
+
+Criterion criterion_of(const Values& table, const Names& interfaces, const Built& built) {
   Criterion criterion;
   const std::string& name = table.text("quantity");
   criterion.quantity = find_verdict_quantity(name);
@@ -48,6 +63,7 @@ Criterion criterion_of(const Values& table, const Names& interfaces) {
   if (table.has("interface")) {
     if (!criterion.quantity->of_interface) fail(table, "interface", "no interface: \"" + name + "\" belongs to the whole run", "one");
     criterion.interface = interfaces.find(table, "interface");
+    check_role(table, criterion, built);
   }
   return criterion;
 }
@@ -63,14 +79,14 @@ const Section& verdict_section() {
   return s;
 }
 
-VerdictWishes verdict_wishes(const Values& root, const Model& model) {
+VerdictWishes verdict_wishes(const Values& root, const Built& built) {
   VerdictWishes wishes;
   if (!root.has("verdict")) return wishes;
   const Values& verdict = root.table("verdict");
   wishes.thresholds = verdict.numbers("uplifted_ratio_thresholds");
   Names interfaces("interface");
-  for (const Interface& interface : model.interfaces) interfaces.add(interface.name, {}, {});
-  for (const Values& table : verdict.tables("criterion")) wishes.criteria.push_back(criterion_of(table, interfaces));
+  for (const Interface& interface : built.model.interfaces) interfaces.add(interface.name, {}, {});
+  for (const Values& table : verdict.tables("criterion")) wishes.criteria.push_back(criterion_of(table, interfaces, built));
   return wishes;
 }
 

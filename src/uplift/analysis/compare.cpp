@@ -1,11 +1,12 @@
 #include "uplift/analysis/compare.h"
 
+#include <fmt/format.h>
+
 #include <algorithm>
 #include <cmath>
 #include <map>
 
 #include "uplift/analysis/verdict.h"
-#include "uplift/model/builder.h"
 
 namespace uplift {
 namespace {
@@ -16,16 +17,48 @@ double median(std::vector<double> values) {
   return values.size() % 2 == 1 ? values[half] : (values[half - 1] + values[half]) / 2;
 }
 
-std::vector<std::size_t> compared_columns(const RunResult& result, const std::vector<std::string>& names, int sway, int turn) {
-  std::vector<std::size_t> chosen;
-  for (std::size_t k = 0; k < result.columns.size(); ++k) {
-    const Request& column = result.columns[k];
-    const bool named = std::find(names.begin(), names.end(), column.name) != names.end();
-    const bool motion = column.kind == Request::Kind::displacement && (column.unknown == sway || column.unknown == turn);
-    const bool standard = motion || (column.kind == Request::Kind::max_opening && column.interface == 0);
-    if (names.empty() ? standard : named) chosen.push_back(k);
-  }
-  return chosen;
+/// A value that is compared; differences are relative to the median, at least to `least`.
+struct Compared {
+  std::string name;
+  double value = 0, least = 0;
+};
+
+std::vector<Compared> peaks_of(const RunResult& result, const std::vector<std::string>& columns) {
+  std::vector<Compared> made;
+  for (std::size_t k = 0; k < result.columns.size(); ++k)
+    if (std::ranges::find(columns, result.columns[k].name) != columns.end())
+      made.push_back({result.columns[k].name, std::abs(result.peaks[k].value), 0});
+  return made;
+}
+
+/// What a number of the verdict is a part of.
+double least_of(const VerdictNumber& number, const std::vector<VerdictNumber>& same, const InterfaceVerdict* of, const RunResult& run) {
+  const VerdictQuantity& quantity = *number.quantity;
+  const auto value_of = [&](const char* name) {
+    const VerdictNumber* found = find_number(same, name);
+    return found ? found->value : 0;
+  };
+  if (quantity.unit == "s") return run.end_time;
+  if (quantity.name.starts_with("share_of")) return 1;
+  if (quantity.name == "residual_uplifted_ratio") return value_of("max_uplifted_ratio");
+  if (!quantity.name.starts_with("residual")) return number.least;
+  const std::optional<double> width = of ? std::optional(std::max(of->width[0], of->width[1])) : std::nullopt;
+  if (quantity.unit == "rad") return width.value_or(0) > 0 ? value_of("max_opening") / *width : 0;
+  return value_of("max_opening");
+}
+
+std::vector<Compared> numbers_of_verdict(const Built& built, const RunResult& run) {
+  const VerdictNumbers numbers = numbers_of(built, run, nullptr);
+  std::vector<Compared> made;
+  const auto take = [&](const std::vector<VerdictNumber>& some, const InterfaceVerdict* of) {
+    const std::string behind = of && numbers.interfaces.size() > 1 ? " of " + of->name : "";
+    for (const VerdictNumber& number : some)
+      if (number.quantity->name != "max_penetration" && std::isfinite(number.value))
+        made.push_back({std::string(number.quantity->name) + behind, number.value, least_of(number, some, of, run)});
+  };
+  take(numbers.whole, nullptr);
+  for (const InterfaceVerdict& each : numbers.interfaces) take(each.numbers, &each);
+  return made;
 }
 
 }  // namespace
@@ -48,40 +81,37 @@ std::string_view to_string(Agreement::Word word) {
   return "";
 }
 
-std::vector<Agreement> agreement(const std::vector<RunResult>& results, const std::vector<RunSpec>& specs,
-                                 const std::vector<std::string>& columns, double band, int sway, int turn) {
-  std::map<std::string, std::map<std::size_t, std::vector<double>>> peaks;  // group, column: magnitudes
-  for (std::size_t i = 0; i < results.size(); ++i)
+std::vector<Agreement> agreement(const std::vector<RunResult>& results, const std::vector<RunSpec>& specs, const std::deque<Built>& built,
+                                 const std::vector<std::string>& columns, double band) {
+  std::vector<std::vector<Compared>> values;
+  std::map<std::string, std::map<std::string, std::vector<double>>> sound;  // by group and name
+  for (std::size_t i = 0; i < results.size(); ++i) {
+    const bool counts = !specs[i].bonded && results[i].status != RunStatus::failed;
+    values.push_back(!counts           ? std::vector<Compared>()
+                     : columns.empty() ? numbers_of_verdict(built[i], results[i])
+                                       : peaks_of(results[i], columns));
     if (is_sound(results[i], specs[i]))
-      for (const std::size_t k : compared_columns(results[i], columns, sway, turn))
-        peaks[results[i].group][k].push_back(std::abs(results[i].peaks[k].value));
+      for (const Compared& each : values[i]) sound[results[i].group][each.name].push_back(each.value);
+  }
   std::vector<Agreement> made(results.size());
   for (std::size_t i = 0; i < results.size(); ++i) {
     if (specs[i].bonded) continue;
-    if (results[i].status == RunStatus::failed) {
-      made[i].word = Agreement::Word::failed;
-      continue;
-    }
-    for (const std::size_t k : compared_columns(results[i], columns, sway, turn)) {
-      const std::vector<double>& sound_peaks = peaks[results[i].group][k];
-      if (sound_peaks.empty()) continue;
-      const double middle = median(sound_peaks);
-      const double deviation = std::abs(std::abs(results[i].peaks[k].value) - middle) / std::max(middle, 1e-300);
+    if (results[i].status == RunStatus::failed) made[i].word = Agreement::Word::failed;
+    for (const Compared& each : values[i]) {
+      const std::vector<double>& others = sound[results[i].group][each.name];
+      if (others.empty()) continue;
+      const double middle = median(others);
+      const double deviation = std::abs(each.value - middle) / std::max({std::abs(middle), each.least, 1e-300});
       if (made[i].word == Agreement::Word::not_counted) made[i].word = Agreement::Word::agrees;
-      if (deviation >= made[i].deviation) {
-        made[i].deviation = deviation;
-        made[i].column = results[i].columns[k].name;
-      }
+      if (deviation >= made[i].deviation) made[i].deviation = deviation, made[i].column = each.name;
     }
     if (made[i].word == Agreement::Word::agrees && !(made[i].deviation <= band)) made[i].word = Agreement::Word::differs;
   }
   return made;
 }
 
-std::vector<std::string> compared_names(const RunResult& result, const std::vector<std::string>& columns, int sway, int turn) {
-  std::vector<std::string> names;
-  for (const std::size_t k : compared_columns(result, columns, sway, turn)) names.push_back(result.columns[k].name);
-  return names;
+std::string compared_text(const std::vector<std::string>& columns) {
+  return columns.empty() ? "all numbers of the verdict" : fmt::format("their peaks of {}", fmt::join(columns, ", "));
 }
 
 double created_share(const RunResult& result) {

@@ -1,4 +1,5 @@
 #pragma once
+#include <deque>
 #include <string>
 #include <vector>
 
@@ -9,22 +10,23 @@ namespace uplift {
 /// Completed, not expected to fail, and not the bonded model.
 bool is_sound(const RunResult& result, const RunSpec& spec);
 
-/// How one run stands beside the others of its group (same damping).
+/// How one run compares with the others of its group (same damping, same motion).
 struct Agreement {
   enum class Word { agrees, differs, failed, not_counted } word = Word::not_counted;
   double deviation = 0;  // largest |peak - median|/median over the compared columns
-  std::string column;    // where it occurs
+  std::string column;    // column or number of the verdict where it occurs
 };
 std::string_view to_string(Agreement::Word);
 
-/// Compares the peaks of all sound runs of each group with their median.
-/// `columns`: names of the compared columns; empty: motion `sway` (full unknown) of the top, rotation `turn` of the base and largest
-/// opening of the first interface.
-std::vector<Agreement> agreement(const std::vector<RunResult>& results, const std::vector<RunSpec>& specs,
-                                 const std::vector<std::string>& columns, double band, int sway, int turn);
+/// Compares the runs of each group that passed all checks with their median.
+/// `columns`: names of the columns whose peaks are compared; empty: every number of the verdict but those that belong to the method rather
+/// than to the structure (the closure of the joint). A difference is taken relative to the median, or to what the number is a part of where
+/// that is larger: noise to its threshold, times to the duration, residuals to the largest motion, shares to one.
+std::vector<Agreement> agreement(const std::vector<RunResult>& results, const std::vector<RunSpec>& specs, const std::deque<Built>& built,
+                                 const std::vector<std::string>& columns, double band);
 
-/// Names of the compared columns, as agreement() chooses them.
-std::vector<std::string> compared_names(const RunResult& result, const std::vector<std::string>& columns, int sway, int turn);
+/// What agreement() compares, in words.
+std::string compared_text(const std::vector<std::string>& columns);
 
 /// One row of the stiffness sweep: energy created relative to the energy put in.
 struct SweepRow {

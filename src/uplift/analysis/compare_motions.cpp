@@ -17,7 +17,7 @@ using Quantity = MotionTable::Quantity;
 /// What is compared of a run, with its value.
 std::vector<std::pair<Quantity, double>> peaks_of(const RunSpec& spec, const Built& built, const RunResult& run) {
   std::vector<std::pair<Quantity, double>> peaks;
-  const Peak* top = top_motion(built, run);
+  const std::optional<Peak> top = top_motion(built, run);
   if (top) peaks.emplace_back(Quantity{"top", "Top motion", "m"}, std::abs(top->value));
   if (built.facts.empty()) return peaks;
   if (!spec.bonded) {
@@ -81,8 +81,8 @@ std::string criteria_over_motions(const std::vector<JudgedMotion>& judged) {
   std::vector<std::string> broken;
   for (const JudgedMotion& each : judged)
     if (const auto number = not_met(each); number > 0) broken.push_back(fmt::format("{} under {}", number, each.motion));
-  if (broken.empty()) return fmt::format(" No criterion is broken under any of the {} motions.", judged.size());
-  return fmt::format(" Of {} criteria are not met: {}.", count, fmt::join(broken, ", "));
+  if (broken.empty()) return fmt::format(" All criteria are met under each of the {} motions.", judged.size());
+  return fmt::format(" Criteria that are not met, of {}: {}.", count, fmt::join(broken, ", "));
 }
 
 }  // namespace
@@ -96,9 +96,8 @@ std::size_t hardest(const std::vector<JudgedMotion>& judged) {
 }
 
 std::string said_over_motions(const std::vector<JudgedMotion>& judged, const MotionTable& table) {
-  std::string text = fmt::format("This page shows the hardest of {} motions, {}.", judged.size(), judged[hardest(judged)].motion);
-  if (table.counted > 0)
-    text += fmt::format(" Over the {} of them that were completed, in the mean and at most: {}.", table.counted, mean_and_largest(table));
+  std::string text = fmt::format("This page shows the most demanding of {} motions, {}.", judged.size(), judged[hardest(judged)].motion);
+  if (table.counted > 0) text += fmt::format(" Mean and maximum over the {} completed runs: {}.", table.counted, mean_and_largest(table));
   return text + criteria_over_motions(judged);
 }
 
@@ -108,7 +107,7 @@ std::vector<MotionTable> motion_tables(const std::vector<RunSpec>& specs, const 
   std::vector<std::pair<std::string, const Values*>> keys;  // label and damping of a table
   for (std::size_t i = 0; i < results.size(); ++i) {
     const RunSpec& spec = specs[i];
-    if (!spec.motion) continue;
+    if (spec.motion_label.empty()) continue;
     const std::pair key(spec.label, spec.damping);
     const auto place = std::ranges::find(keys, key) - keys.begin();
     const auto peaks = peaks_of(spec, built[i], results[i]);
@@ -119,7 +118,7 @@ std::vector<MotionTable> motion_tables(const std::vector<RunSpec>& specs, const 
       if (spec.damping && spec.damping->items().contains("name")) made.damping = shown(*spec.damping);
       for (const auto& [quantity, value] : peaks) made.quantities.push_back(quantity);
     }
-    MotionTable::Row row{shown(*spec.motion), results[i].status, {}};
+    MotionTable::Row row{spec.motion_label, results[i].status, {}};
     for (const auto& [quantity, value] : peaks) row.peaks.push_back(value);
     tables[static_cast<std::size_t>(place)].rows.push_back(std::move(row));
   }

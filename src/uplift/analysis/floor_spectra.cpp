@@ -7,6 +7,7 @@
 #include <cmath>
 
 #include "uplift/analysis/compare.h"
+#include "uplift/analysis/verdict_numbers.h"
 
 namespace uplift {
 namespace {
@@ -16,7 +17,7 @@ void broaden(FloorSpectra& floor, double share) {
   for (const Spectrum& raw : floor.raw) floor.broadened.push_back(broadened(raw, share));
 }
 
-FloorChange change_of(const Spectrum& raw, const Spectrum& bonded, const std::vector<FrequencyBand>& bands) {
+FloorChange compare(const Spectrum& raw, const Spectrum& bonded, const std::vector<FrequencyBand>& bands, double least) {
   FloorChange change;
   change.damping = raw.damping;
   for (const FrequencyBand& band : bands) {
@@ -24,17 +25,19 @@ FloorChange change_of(const Spectrum& raw, const Spectrum& bonded, const std::ve
     double largest = 0, bonded_largest = 0;
     for (std::size_t i = 0; i < raw.frequencies.size(); ++i) {
       const double f = raw.frequencies[i];
-      if (f < band.from || (band.to && f >= *band.to) || !(bonded.values[i] > 0)) continue;
+      const std::optional<double> moved = change_of(raw.values[i], bonded.values[i], least);
+      if (f < band.from || (band.to && f >= *band.to) || !moved) continue;
       change.frequencies.push_back(f);
       change.bonded.push_back(bonded.values[i]);
-      change.ratio.push_back(raw.values[i] / bonded.values[i]);
+      change.ratio.push_back(1 + *moved);
       made.least = std::min(made.least, change.ratio.back());
       made.most = std::max(made.most, change.ratio.back());
       largest = std::max(largest, raw.values[i]);
       bonded_largest = std::max(bonded_largest, bonded.values[i]);
     }
-    if (!(bonded_largest > 0)) continue;
-    made.change = largest / bonded_largest - 1;
+    const std::optional<double> moved = change_of(largest, bonded_largest, least);
+    if (!moved) continue;
+    made.change = *moved;
     change.bands.push_back(made);
   }
   return change;
@@ -73,8 +76,12 @@ void add_envelopes(const RunPlan& plan, const std::vector<RunResult>& results, c
     FloorEnvelope made{dampings.size() > 1 ? label_of(*damping) : "", static_cast<int>(sound.size()), {}, {}};
     for (std::size_t k = 0; k < plan.floors.size(); ++k) {
       made.floors.push_back(over_runs(answers.runs, sound, k, plan.floors[k].broadening));
-      if (!bonded.empty()) made.beside.push_back(floor_change(made.floors[k], over_runs(answers.runs, bonded, k, 0), plan.floor_bands));
     }
+    std::vector<FloorSpectra> references;
+    for (std::size_t k = 0; k < plan.floors.size() && !bonded.empty(); ++k) references.push_back(over_runs(answers.runs, bonded, k, 0));
+    const double least = least_excitation(made.floors, references);
+    for (std::size_t k = 0; k < references.size(); ++k)
+      made.beside.push_back(floor_change(made.floors[k], references[k], plan.floor_bands, least));
     if (!made.floors.empty()) answers.envelopes.push_back(std::move(made));
   }
 }
@@ -119,10 +126,18 @@ std::vector<FloorSpectra> floor_spectra(const RunPlan& plan, const RunResult& re
   return made;
 }
 
-std::vector<FloorChange> floor_change(const FloorSpectra& floor, const FloorSpectra& bonded, const std::vector<double>& bands) {
+std::vector<FloorChange> floor_change(const FloorSpectra& floor, const FloorSpectra& bonded, const std::vector<double>& bands,
+                                      double least) {
   std::vector<FloorChange> changes;
-  for (std::size_t d = 0; d < floor.raw.size(); ++d) changes.push_back(change_of(floor.raw[d], bonded.raw[d], frequency_bands(bands)));
+  for (std::size_t d = 0; d < floor.raw.size(); ++d) changes.push_back(compare(floor.raw[d], bonded.raw[d], frequency_bands(bands), least));
   return changes;
+}
+
+double least_excitation(const std::vector<FloorSpectra>& floors, const std::vector<FloorSpectra>& bonded) {
+  double largest = 0;
+  for (const std::vector<FloorSpectra>* some : {&floors, &bonded})
+    for (const FloorSpectra& floor : *some) largest = std::max(largest, std::abs(floor.zero_period.value));
+  return noise_share * largest;
 }
 
 FloorSpectra floor_envelope(const std::vector<const FloorSpectra*>& floors, double broadening) {
@@ -145,9 +160,10 @@ FloorAnswers floor_answers(const RunPlan& plan, const std::vector<RunResult>& re
   for (std::size_t i = 0; i < results.size(); ++i) {
     const int bonded = bonded_of(results[i].group, results, specs);
     if (bonded < 0 || specs[i].bonded) continue;
-    for (std::size_t k = 0; k < answers.runs[i].floors.size(); ++k)
-      answers.runs[i].beside.push_back(
-          floor_change(answers.runs[i].floors[k], answers.runs[static_cast<std::size_t>(bonded)].floors[k], plan.floor_bands));
+    const std::vector<FloorSpectra>&floors = answers.runs[i].floors, &references = answers.runs[static_cast<std::size_t>(bonded)].floors;
+    const double least = least_excitation(floors, references);
+    for (std::size_t k = 0; k < floors.size(); ++k)
+      answers.runs[i].beside.push_back(floor_change(floors[k], references[k], plan.floor_bands, least));
   }
   add_envelopes(plan, results, specs, answers);
   return answers;

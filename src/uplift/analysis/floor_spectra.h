@@ -28,10 +28,10 @@ std::string to_string(const FrequencyBand&);
 /// The bands that frequencies part, ascending [Hz]: one more than these.
 std::vector<FrequencyBand> frequency_bands(const std::vector<double>& edges);
 
-/// A floor beside that of the bonded run, for one damping.
+/// A floor compared with that of the bonded run, for one damping. Empty where neither floor is excited.
 struct FloorChange {
   double damping = 0;
-  std::vector<double> frequencies;    // Hz: those at which the bonded floor is excited
+  std::vector<double> frequencies;    // Hz: those at which either floor is excited
   std::vector<double> bonded, ratio;  // m/s2; raw over bonded
   struct Band {
     FrequencyBand band;
@@ -68,8 +68,12 @@ inline constexpr std::string_view floors_of_constraints =
 
 /// Spectra of the floors that a run has recorded; none of a failed run.
 std::vector<FloorSpectra> floor_spectra(const RunPlan& plan, const RunResult& result);
-/// One floor beside the same floor of another run, per damping. `bands`: frequencies that part them, ascending [Hz].
-std::vector<FloorChange> floor_change(const FloorSpectra& floor, const FloorSpectra& bonded, const std::vector<double>& bands);
+/// One floor compared with the same floor of another run, per damping. `bands`: frequencies that part them, ascending [Hz]. Values are
+/// compared where one of the two exceeds `least` [m/s2]; a smaller bonded value then counts as `least`.
+std::vector<FloorChange> floor_change(const FloorSpectra& floor, const FloorSpectra& bonded, const std::vector<double>& bands,
+                                      double least);
+/// That threshold for two runs: noise_share of the largest acceleration of all their floors, in all directions [m/s2].
+double least_excitation(const std::vector<FloorSpectra>& floors, const std::vector<FloorSpectra>& bonded);
 /// The same floor of several runs, one at least; broadened by this share where it is > 0.
 FloorSpectra floor_envelope(const std::vector<const FloorSpectra*>& floors, double broadening);
 /// All of this for the runs of a command. The plan is that of any of them: they ask for the same floors.

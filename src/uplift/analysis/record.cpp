@@ -228,6 +228,11 @@ Recorder::Recorder(const Model& model, const RunPlan& plan, const State& state, 
     pages.add(column.data() + column.size(), (expected_rows + 2) * sizeof(double));
   }
   recent_.resize(plan.requests.size() * apart);
+  const auto moves_base = [](const Request& request) {
+    return request.kind == Request::Kind::settlement || request.kind == Request::Kind::tilt_1 || request.kind == Request::Kind::tilt_2;
+  };
+  if (std::ranges::any_of(plan.requests, moves_base))
+    for (std::size_t k = 0; k < plan.bases.size(); ++k) bases_.emplace_back(model, model.interfaces[k], plan.bases[k]);
   const SparseRows reduction(model.reduction);
   for (const Request& request : plan.requests) {
     Source source = source_of(request, reduction);
@@ -328,6 +333,10 @@ Recorder::Source Recorder::source_of(const Request& request, const SparseRows& r
       return {.place = &energies_.algorithmic};
     case What::filter:
       return {.place = &energies_.filter};
+    case What::settlement:
+    case What::tilt_1:
+    case What::tilt_2:
+      return {};
   }
   return {};
 }
@@ -361,6 +370,13 @@ double Recorder::made(const Source& source) const {
     case What::rotation: {
       const std::array<double, 2>& slope = views_[static_cast<std::size_t>(request.interface)].rotation;
       return std::hypot(slope[0], slope[1]);
+    }
+    case What::settlement:
+    case What::tilt_1:
+    case What::tilt_2: {
+      BasePose pose;
+      bases_[static_cast<std::size_t>(request.interface)].look(state, pose);
+      return request.kind == What::settlement ? pose.settlement : request.kind == What::tilt_1 ? pose.tilt_1 : pose.tilt_2;
     }
     default:
       return 0;
@@ -423,7 +439,8 @@ void Recorder::picture(const State& state) {
 
 void Recorder::note_largest_uplift() {
   double largest = peak_uplift_;
-  for (const InterfaceView& view : views_) largest = std::max(largest, view.open_area);
+  for (std::size_t k = 0; k < views_.size(); ++k)
+    if (plan_.is_wall.empty() || !plan_.is_wall[k]) largest = std::max(largest, views_[k].open_area);
   if (!(largest > peak_uplift_)) return;
   peak_uplift_ = largest;
   peak_frame_ = frame_of(state_);

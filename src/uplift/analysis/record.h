@@ -92,6 +92,7 @@ class Recorder {
   RunResult& result_;
   FloorRecorder floors_;
   std::vector<Source> placed_, entries_, made_;  // columns of each kind
+  std::vector<BaseMotion> bases_;                // of every interface, when a column is about the motion of a base; else empty
   std::vector<double> recent_;                   // the last steps, `many` numbers per column, `apart` from one to the next
   std::array<double, many> time_;                // of the same [s]
   std::array<bool, many> is_row_;

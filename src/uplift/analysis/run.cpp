@@ -2,6 +2,7 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <chrono>
 #include <utility>
 
@@ -70,6 +71,7 @@ Runner::Runner(const Model& model, const RunPlan& plan, const std::vector<const 
       viewer_(model, plan.gap_tolerance, plan.bases, plan.facets),
       rest_(plan.rest.get()),
       views_(model.interfaces.size()) {
+  has_walls_ = std::ranges::any_of(plan.is_wall, [](char wall) { return wall != 0; });
   result_.name = plan.name;
   result_.label = plan.label;
   result_.group = plan.group;
@@ -188,7 +190,7 @@ void Runner::stand() {
   PageTaker pages;  // none
   result_.steps.reserve(model_.interfaces.size(), 1, 1, pages);
   viewer_.look(state_.opening, state_.mean_force, views_);
-  note_views(0);
+  note_views();
   sum_up(0);
   for (const InterfaceView& view : views_) result_.steps.rest.push_back(view.resultant);
   Recorder recorder(model_, plan_, state_, energies, nullptr, views_, 0, 0, pages, result_);

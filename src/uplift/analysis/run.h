@@ -65,7 +65,10 @@ struct Request {
     residual,
     plastic,
     algorithmic,
-    filter  // energies [J]
+    filter,  // energies [J]
+    settlement,
+    tilt_1,
+    tilt_2  // of the base above an interface: BasePose [m, rad]
   } kind = Kind::displacement;
   std::string name, unit;
   int unknown = 0;                              // full unknown
@@ -103,6 +106,7 @@ struct RunPlan {
   double separation_limit = 0;
   double gap_tolerance = 1e-9;                        // m: a gap larger than this counts as uplifted
   std::vector<std::shared_ptr<const Facets>> facets;  // of every interface, see InterfaceFacts; may be empty
+  std::vector<char> is_wall;            // per interface: not a base, left out of what is said of the bases; empty: all are bases
   std::vector<std::vector<int>> bases;  // nodes of the upper side of every interface, whose settlement and tilt are kept; may be empty
   bool expected_to_fail = false;
   int frames = 0;                                 // pictures kept for the animation (0: none)

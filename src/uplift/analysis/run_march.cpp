@@ -20,18 +20,15 @@ double sum_round_off(const Sparse& stiffness, const Vector& displacement) {
 
 }  // namespace
 
-void Runner::note_views(double step) {
+void Runner::note_views() {
   StepRecord& steps = result_.steps;
   steps.add(seen_->time, views_, plan_.gap_tolerance);
   if (seen_->time >= planned_ - tail_)
     for (std::size_t k = 0; k < views_.size(); ++k) steps.tail[k].push_back(viewer_.pose(*seen_, k, views_[k]));
-  double nearest = views_.empty() ? 0 : std::numeric_limits<double>::infinity();
   farthest_ = 0;
-  for (const InterfaceView& view : views_) {
-    nearest = std::min(nearest, view.least_opening);
-    farthest_ = std::max(farthest_, view.least_opening);
-  }
-  if (nearest > plan_.gap_tolerance) result_.full_loss += step;
+  for (std::size_t k = 0; k < views_.size(); ++k)
+    if (!is_wall(k)) farthest_ = std::max(farthest_, views_[k].least_opening);
+  if (has_walls_) steps.add_slip(model_.interfaces, seen_->opening, plan_.is_wall);
 }
 
 /// Peaks and durations of what was noted since this was last called, in a stage with this step.
@@ -50,6 +47,7 @@ void Runner::sum_up(double step) {
     const double time = steps.time[summed_up_];
     bool open = false;
     for (std::size_t k = 0; k < steps.extremes.size(); ++k) {
+      if (is_wall(k)) continue;
       const StepRecord::Instant& at = steps.at(summed_up_, k);
       note(ratio, at.open_area, result_.max_uplifted_ratio, time);
       note(moment, length(at.moment_1, at.moment_2), result_.max_base_moment, time);
@@ -60,14 +58,18 @@ void Runner::sum_up(double step) {
     if (result_.first_uplift < 0) result_.first_uplift = time;
     if (summed_up_ > 0) result_.time_uplifted += step;
   }
-  for (const StepRecord::Extremes& most : steps.extremes) {
+  for (std::size_t k = 0; k < steps.extremes.size(); ++k) {
+    const StepRecord::Extremes& most = steps.extremes[k];
+    result_.max_penetration = std::max(result_.max_penetration, most.penetration.value);
+    if (is_wall(k)) continue;
     const auto take = [](Peak& peak, const StepRecord::Reached& reached) {
       if (reached.value > peak.value) peak.value = reached.value, peak.time = reached.time;
     };
     take(result_.max_opening, most.max_opening);
     take(result_.max_pressure, most.max_pressure);
-    result_.max_penetration = std::max(result_.max_penetration, most.penetration.value);
   }
+  result_.full_loss = 0;
+  for (const Interval& interval : steps.full_loss(plan_.is_wall)) result_.full_loss += interval.to - interval.from;
 }
 
 /// Energy created and lost by the computation so far (lost: by the filters of the scheme, and what the balance lacks); the scale is the
@@ -109,6 +111,7 @@ bool Runner::check_limits(const Stepper& stepper) {
 /// Nodes of solids do not turn: there the slope of the opening's best plane is what the building has turned against the soil.
 bool Runner::surfaces_turn_little() {
   for (std::size_t k = 0; k < model_.interfaces.size(); ++k) {
+    if (is_wall(k)) continue;
     const std::array<double, 2>& slope = views_[k].rotation;
     if (!(std::hypot(slope[0], slope[1]) > plan_.rotation_limit)) continue;
     result_.status = RunStatus::overturned;
@@ -124,6 +127,7 @@ bool Runner::surfaces_turn_little() {
 bool Runner::surfaces_stay_near() {
   for (std::size_t k = 0; k < model_.interfaces.size(); ++k) {
     const Interface& interface = model_.interfaces[k];
+    if (is_wall(k)) continue;
     if (!(views_[k].least_opening > plan_.separation_limit)) continue;
     if (!(views_[k].least_opening - interface.gap.maxCoeff() > plan_.separation_limit)) continue;
     result_.status = RunStatus::separated;
@@ -158,7 +162,7 @@ bool Runner::dynamics(const Stage& stage, const Bulk& bulk) {
     if (drive.dead) round_off_energy_ += 1e-10 * drive.shape.lpNorm<1>() * std::abs(drive.function->value(seen_->time));
   const auto observe = [&](long step) {
     viewer_.look(seen_->opening, seen_->mean_force, views_);
-    note_views(step == 0 ? 0 : stage.step);
+    note_views();
     recorder.record(step % plan_.every == 0 || step == steps);
     if (picture_every > 0) recorder.note_largest_uplift();
     if (picture_every > 0 && step % picture_every == 0) recorder.picture(*seen_);

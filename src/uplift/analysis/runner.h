@@ -29,7 +29,8 @@ class Runner {
   void release();
   bool dynamics(const Stage& stage, const Bulk& bulk);
   void show(const Stage& stage, const Stepper* stepper, long step, bool last);
-  void note_views(double step);
+  void note_views();
+  bool is_wall(std::size_t interface) const { return has_walls_ && plan_.is_wall[interface]; }
   void sum_up(double step);
   bool check_limits(const Stepper& stepper);
   bool surfaces_turn_little();
@@ -56,7 +57,8 @@ class Runner {
   const State* seen_ = &state_;  // the present one, wherever it lives
   std::vector<InterfaceView> views_;
   std::vector<int> rotations_;     // free unknowns that are rotations of bodies on an interface
-  double farthest_ = 0;            // m: largest of the interfaces' least openings, now
+  bool has_walls_ = false;         // some interface is no base
+  double farthest_ = 0;            // m: largest of the bases' least openings, now
   std::size_t summed_up_ = 0;      // instants of the record that peaks and durations know
   double initial_scale_ = 0;       // J
   std::optional<Ledger> ledger_;   // of the dynamic stage before

@@ -1,6 +1,8 @@
 #include "uplift/analysis/step_record.h"
 
 #include <algorithm>
+#include <cmath>
+#include <utility>
 
 namespace uplift {
 namespace {
@@ -43,8 +45,8 @@ void StepRecord::add(double now, const std::vector<InterfaceView>& views, double
     const InterfaceView& view = views[k];
     const Resultant& sum = view.resultant;
     const bool plane = sum.shear_1 == 0 && sum.shear_2 == 0 && sum.moment_1 == 0 && sum.moment_2 == 0;
-    instants.push_back(
-        {sum.axial, plane ? sum.shear : sum.shear_1, sum.shear_2, plane ? sum.moment : sum.moment_1, sum.moment_2, view.open_area});
+    instants.push_back({sum.axial, plane ? sum.shear : sum.shear_1, sum.shear_2, plane ? sum.moment : sum.moment_1, sum.moment_2,
+                        view.open_area, sum.torsion});
     Extremes& most = extremes[k];
     note(most.max_opening, view.max_opening, now);
     note(most.max_pressure, view.max_pressure, now);
@@ -53,6 +55,35 @@ void StepRecord::add(double now, const std::vector<InterfaceView>& views, double
     note_loss(most, view.least_opening, gap_tolerance, first, first ? now : time.back(), now);
   }
   time.push_back(now);
+}
+
+void StepRecord::add_slip(const std::vector<Interface>& interfaces, const Vector& opening, const std::vector<char>& is_wall) {
+  Index first = 0;
+  for (std::size_t k = 0; k < interfaces.size(); ++k) {
+    const Index points = interfaces[k].batch.points, tangents = interfaces[k].batch.components - 1;
+    for (Index i = 0; is_wall[k] && tangents > 0 && i < points; ++i) {
+      const double one = opening[first + i], two = tangents > 1 ? opening[first + points + i] : 0;
+      note(extremes[k].max_slip, std::hypot(one, two), time.back());
+    }
+    first += interfaces[k].rows();
+  }
+}
+
+std::vector<Interval> StepRecord::full_loss(const std::vector<char>& is_wall) const {
+  std::optional<std::vector<Interval>> all;  // intersection over the bases
+  for (std::size_t k = 0; k < extremes.size(); ++k) {
+    if (!is_wall.empty() && is_wall[k]) continue;
+    if (!all) {
+      all = extremes[k].full_loss;
+      continue;
+    }
+    std::vector<Interval> common;
+    for (const Interval& a : *all)
+      for (const Interval& b : extremes[k].full_loss)
+        if (const Interval both{std::max(a.from, b.from), std::min(a.to, b.to)}; both.from < both.to) common.push_back(both);
+    all = std::move(common);
+  }
+  return all.value_or(std::vector<Interval>{});
 }
 
 }  // namespace uplift

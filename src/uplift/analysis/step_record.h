@@ -40,6 +40,7 @@ class StepRecord {
   struct Instant {
     double axial = 0, shear_1 = 0, shear_2 = 0, moment_1 = 0, moment_2 = 0;  // N, N m; in the plane shear_1 and moment_1
     double open_area = 0;
+    double torsion = 0;  // N m, space only
   };
   struct Reached {
     double value = 0, time = 0;
@@ -47,6 +48,7 @@ class StepRecord {
   /// Of one interface: largest values, and when there was no contact at all.
   struct Extremes {
     Reached max_opening, max_pressure, tension_area, penetration;
+    Reached max_slip;  // of walls: length of the tangential opening
     std::vector<Interval> full_loss;
     double least_opening = 0;  // at the last instant
   };
@@ -55,6 +57,10 @@ class StepRecord {
   void reserve(std::size_t interfaces, std::size_t count, std::size_t in_tail, PageTaker& pages);
   /// A gap larger than the tolerance [m] is open.
   void add(double time, const std::vector<InterfaceView>& views, double gap_tolerance);
+  /// The slip [m] of the walls at the last instant: `is_wall` says which interfaces are walls.
+  void add_slip(const std::vector<Interface>& interfaces, const Vector& opening, const std::vector<char>& is_wall);
+  /// Times [s] in which none of the interfaces that are no walls has any contact.
+  std::vector<Interval> full_loss(const std::vector<char>& is_wall) const;
   std::size_t size() const { return time.size(); }
   const Instant& at(std::size_t step, std::size_t interface) const { return instants[step * extremes.size() + interface]; }
 

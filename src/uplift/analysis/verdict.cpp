@@ -4,28 +4,16 @@
 
 #include <algorithm>
 #include <cmath>
+#include <span>
 #include <utility>
 
 #include "uplift/analysis/verdict_standing.h"
 #include "uplift/analysis/wording.h"
-#include "uplift/model/builder.h"
 
 namespace uplift {
 namespace {
 
-using Column = Request::Kind;
-
 constexpr double round_off = 1e-9;  // of the energy put in: below, nothing was created that a ledger in double precision can tell
-
-int find_index(const RunResult& result, Request::Kind kind, int of) {
-  for (std::size_t k = 0; k < result.columns.size(); ++k) {
-    const Request& column = result.columns[k];
-    const bool node =
-        kind == Column::displacement || kind == Column::velocity || kind == Column::acceleration || kind == Column::absolute_acceleration;
-    if (column.kind == kind && (node ? column.unknown : column.interface) == of) return static_cast<int>(k);
-  }
-  return -1;
-}
 
 /// "0.687" at "1.45 s"; eccentricities and safeties have no unit.
 std::string at(const VerdictNumber& number) {
@@ -36,25 +24,103 @@ std::string at(const VerdictNumber& number) {
 void say(const VerdictNumber* number, const std::string& label, std::string detail, Verdict& verdict, bool tile = false) {
   if (!number) return;
   if (number->time) detail += (detail.empty() ? "" : ", ") + at(*number);
-  verdict.facts.push_back({label, said(*number->quantity, number->value), std::move(detail), tile});
+  verdict.facts.push_back({label, text_of(*number), std::move(detail), tile});
 }
 
 std::string of_interface(const Verdict& verdict, const InterfaceVerdict& said) {
-  return verdict.numbers.interfaces.size() > 1 ? " of " + said.name : "";
+  return verdict.numbers.bases() > 1 ? " of " + said.name : "";
+}
+
+std::span<const InterfaceVerdict> bases_of(const Verdict& verdict) {
+  return std::span(verdict.numbers.interfaces).first(verdict.numbers.bases());
+}
+
+bool has_base(const Built& built) {
+  return std::ranges::any_of(built.facts, [](const InterfaceFacts& each) { return each.role == Role::base; });
+}
+
+/// Forces of a strip are those of one metre of it.
+std::string per_metre(const Built& built) {
+  return built.is_strip() ? " per metre" : "";
+}
+
+/// "1.2 s to 1.35 s, 2.1 s to 2.2 s and 3 more": when an interval lasts.
+std::string times_of(const std::vector<Interval>& intervals) {
+  constexpr std::size_t most = 3;
+  std::vector<std::string> parts;
+  for (const Interval& each : intervals)
+    if (parts.size() < most) parts.push_back(fmt::format("{} to {}", spoken(each.from, "s"), spoken(each.to, "s")));
+  const std::string more = intervals.size() > most ? fmt::format(" and {} more", intervals.size() - most) : "";
+  return fmt::format("{}{}", fmt::join(parts, ", "), more);
+}
+
+double full_loss_of(const Verdict& verdict) {
+  const VerdictNumber* lost = find_number(verdict.numbers.whole, "full_loss_of_contact");
+  return lost ? lost->value : 0;
+}
+
+/// The headline of a run that came to its end (or was interrupted).
+std::string headline_of(const Built& built, const RunResult& run, const Verdict& verdict) {
+  if (built.facts.empty()) return "A linear run without an interface";
+  const char* what = has_base(built) ? "base" : "interface";
+  if (!(run.max_uplifted_ratio.value > 0)) return fmt::format("The {} does not {}", what, has_base(built) ? "uplift" : "open");
+  if (const double lost = full_loss_of(verdict); lost > 0)
+    return fmt::format("Full loss of contact: the {} has no contact for {} in total, the gap reaches {}", what, spoken(lost, "s"),
+                       spoken(run.max_opening.value, "m"));
+  return fmt::format("The {} {}: up to {} of its area, by up to {}", what, has_base(built) ? "uplifts" : "opens",
+                     percent(run.max_uplifted_ratio.value), spoken(run.max_opening.value, "m"));
+}
+
+/// Level, headline and what an extraordinary end means.
+void say_outcome(const Built& built, const RunResult& run, Verdict& verdict) {
+  using Level = Verdict::Level;
+  const std::string end = spoken(run.end_time, "s");
+  if (run.status == RunStatus::failed) {
+    verdict.level = Level::failed;
+    verdict.headline = "The run failed: " + run.reason;
+    verdict.paragraphs.push_back(fmt::format("The values up to {} are shown and marked; they are not a result.", end));
+  } else if (run.status == RunStatus::overturned) {
+    verdict.level = Level::overturned;
+    verdict.headline = fmt::format("Overturning: the rotation exceeds {} at {}", spoken(built.plan.rotation_limit, "rad"), end);
+    verdict.paragraphs.push_back(
+        fmt::format("The run ended because {}. Beyond this rotation (limits.rotation) the small-displacement model is not valid: the "
+                    "structure overturns or comes close to it. All values are those reached until then.",
+                    run.reason));
+  } else if (run.status == RunStatus::separated) {
+    verdict.level = Level::separated;
+    verdict.headline = fmt::format("Full loss of contact: at {} the base is open everywhere by more than {}", end,
+                                   spoken(built.plan.separation_limit, "m"));
+    verdict.paragraphs.push_back(
+        "The run ended because the whole base left the ground by more than limits.separation. Beyond this gap the small-displacement model "
+        "is not valid; it cannot tell whether and where the structure comes down. All values are those reached until then.");
+  } else {
+    verdict.level = run.max_uplifted_ratio.value > 0 ? Level::uplift : Level::none;
+    verdict.headline = headline_of(built, run, verdict);
+  }
+  if (run.status == RunStatus::interrupted) verdict.headline += fmt::format(" (interrupted at {})", end);
+}
+
+void say_full_loss(Verdict& verdict) {
+  const std::vector<Interval>& intervals = verdict.numbers.full_loss;
+  if (intervals.empty()) return;
+  verdict.facts.push_back({"Full loss of contact", spoken(full_loss_of(verdict), "s"), times_of(intervals), true});
+  verdict.paragraphs.push_back(fmt::format(
+      "During a full loss of contact no force acts between base and ground: the structure moves freely, and the next contact is "
+      "an impact. This happens {} for {} in total ({}).",
+      intervals.size() == 1 ? "once" : fmt::format("{} times", intervals.size()), spoken(full_loss_of(verdict), "s"), times_of(intervals)));
 }
 
 void say_uplift(const Built& built, const RunResult& run, Verdict& verdict) {
-  const double duration = run.end_time;
   if (built.facts.empty()) {
-    verdict.paragraphs.push_back("The model has no interface: a linear analysis, which cannot say whether anything lifts off.");
+    verdict.paragraphs.push_back("The model has no interface: a linear analysis, which cannot tell whether anything uplifts.");
     return;
   }
   if (run.max_uplifted_ratio.value <= 0) {
-    verdict.paragraphs.push_back(
-        "No point of any interface opened: a linear analysis of the bonded model would have been enough for these loads.");
+    verdict.paragraphs.push_back(fmt::format("No point of any {} opened: a linear analysis of the bonded model is enough for these loads.",
+                                             has_base(built) ? "base" : "interface"));
     return;
   }
-  for (const InterfaceVerdict& said : verdict.numbers.interfaces) {
+  for (const InterfaceVerdict& said : bases_of(verdict)) {
     const std::string of = of_interface(verdict, said);
     say(find_number(said.numbers, "max_uplifted_ratio"), "Uplifted area" + of, "largest; counted by gap", verdict, true);
     say(find_number(said.numbers, "max_opening"), "Largest gap" + of, "", verdict, true);
@@ -62,24 +128,38 @@ void say_uplift(const Built& built, const RunResult& run, Verdict& verdict) {
       verdict.facts.push_back(
           {fmt::format("Uplifted above {}{}", percent(above.threshold), of), spoken(above.duration, "s"), "threshold of the case", false});
   }
-  std::string text =
-      fmt::format("The base first opens at {}. A gap stands open during {} of {} ({}).", spoken(run.first_uplift, "s"),
-                  spoken(run.time_uplifted, "s"), spoken(duration, "s"), percent(duration > 0 ? run.time_uplifted / duration : 0));
-  text += run.full_loss > 0 ? fmt::format(" All contact is lost during {} in total.", spoken(run.full_loss, "s"))
-                            : " Contact is never lost altogether.";
+  std::string text = fmt::format("The {} first opens at {}. A gap is open during {} of {} ({}).", has_base(built) ? "base" : "interface",
+                                 spoken(run.first_uplift, "s"), spoken(run.time_uplifted, "s"), spoken(run.end_time, "s"),
+                                 percent(run.end_time > 0 ? run.time_uplifted / run.end_time : 0));
+  if (verdict.numbers.full_loss.empty()) text += " There is no full loss of contact.";
   if (run.max_penetration > built.plan.gap_tolerance)
-    text += fmt::format(" Where it is closed the joint is pressed together by at most {}.", spoken(run.max_penetration, "m"));
+    text += fmt::format(" Maximum joint closure in the contact zone: {}.", spoken(run.max_penetration, "m"));
   verdict.paragraphs.push_back(std::move(text));
+  say_full_loss(verdict);
+}
+
+/// What walls carry of the moment of the foundation: "; the walls carry 24 % of the total 5.4 MN m".
+std::string carried_by_walls(const Verdict& verdict, const std::string& unit) {
+  const VerdictNumber* total = find_number(verdict.numbers.whole, "max_total_moment");
+  double share = 0;
+  bool known = false;
+  for (const InterfaceVerdict& said : verdict.numbers.interfaces)
+    if (const VerdictNumber* each = find_number(said.numbers, "share_of_base_moment")) share += each->value, known = true;
+  return total && known ? fmt::format("; the walls carry {} of the total {}{}", percent(share), spoken(total->value, "N m"), unit) : "";
+}
+
+std::string compared(const VerdictNumber& number) {
+  return number.change ? change_text(*number.change) + " compared with the bonded model" : "largest";
 }
 
 void say_forces(const Built& built, const RunResult& run, Verdict& verdict) {
   if (built.facts.empty()) return;
   const VerdictNumber* moment =
-      verdict.numbers.interfaces.size() == 1 ? find_number(verdict.numbers.interfaces.front().numbers, "max_moment") : nullptr;
-  const std::string change = moment && moment->bonded ? beside(moment->value, *moment->bonded) + " beside the bonded base" : "largest";
-  verdict.facts.push_back({"Base moment", spoken(std::abs(run.max_base_moment.value), "N m"),
-                           fmt::format("{}, at {}", change, spoken(run.max_base_moment.time, "s"))});
-  for (const InterfaceVerdict& said : verdict.numbers.interfaces) {
+      verdict.numbers.bases() == 1 ? find_number(verdict.numbers.interfaces.front().numbers, "max_moment") : nullptr;
+  verdict.facts.push_back({"Base moment" + per_metre(built), spoken(std::abs(run.max_base_moment.value), "N m"),
+                           fmt::format("{}, at {}{}", moment ? compared(*moment) : "largest", spoken(run.max_base_moment.time, "s"),
+                                       carried_by_walls(verdict, per_metre(built)))});
+  for (const InterfaceVerdict& said : bases_of(verdict)) {
     const std::string of = of_interface(verdict, said);
     say(find_number(said.numbers, "max_eccentricity"), "Eccentricity e/B" + of, "largest of M/N over the width", verdict);
     say(find_number(said.numbers, "min_overturning_safety"), "Safety against overturning" + of, "least, about the toe", verdict);
@@ -90,88 +170,113 @@ void say_forces(const Built& built, const RunResult& run, Verdict& verdict) {
   }
 }
 
-void say_beside_bonded(const Built& built, const RunResult& run, const RunResult& bonded, Verdict& verdict) {
-  if (bonded.status != RunStatus::completed) {
-    verdict.paragraphs.push_back(
-        fmt::format("The bonded model could not be run to the end ({}): there is nothing to compare with.", bonded.reason));
-    return;
-  }
-  std::string text;
-  if (bonded.max_base_moment.value != 0)
-    text += fmt::format("Beside the bonded base, the largest base moment is {} ({} instead of {})",
-                        beside(run.max_base_moment.value, bonded.max_base_moment.value), spoken(std::abs(run.max_base_moment.value), "N m"),
-                        spoken(std::abs(bonded.max_base_moment.value), "N m"));
-  const VerdictNumber* top = find_number(verdict.numbers.whole, "max_top_motion");
-  if (top && top->bonded) {
-    text += fmt::format("{} the largest motion of {} is {} ({} instead of {})", text.empty() ? "Beside the bonded base," : ", and",
-                        built.model.nodes[static_cast<std::size_t>(built.top)].name, beside(top->value, *top->bonded),
-                        spoken(top->value, "m"), spoken(*top->bonded, "m"));
-    verdict.facts.push_back(
-        {"Top motion", spoken(top->value, "m"), fmt::format("{} beside the bonded base, {}", beside(top->value, *top->bonded), at(*top))});
-  }
-  if (!text.empty()) verdict.paragraphs.push_back(text + ".");
+void say_top(Verdict& verdict) {
+  const auto fact = [&](const char* name, const char* label, const std::string& detail, bool tile) {
+    const VerdictNumber* number = find_number(verdict.numbers.whole, name);
+    if (!number) return;
+    const std::string change = number->change ? compared(*number) + ", " : "";
+    verdict.facts.push_back({label, spoken(number->value, "m"), change + detail + at(*number), tile});
+  };
+  fact("max_top_motion", "Top motion", "", true);
+  fact("max_drift", "Drift of the top", "relative to the base, ", false);
+  fact("max_drift_without_rotation", "Drift without base rotation", "deformation of the structure, ", false);
 }
 
-/// The linear tension ratio beside what happened.
-void say_tension(Verdict& verdict) {
+void say_compared(const Built& built, const RunResult& bonded, Verdict& verdict) {
+  if (bonded.status != RunStatus::completed) {
+    verdict.paragraphs.push_back(
+        fmt::format("The bonded reference run did not reach its end ({}): there is nothing to compare with.", bonded.reason));
+    return;
+  }
+  std::vector<std::string> parts;
+  const auto add = [&parts](const std::string& what, const VerdictNumber* number, std::string_view unit) {
+    if (!number || !number->bonded) return;
+    const std::string change = number->change ? change_text(*number->change) : "no excitation in this direction";
+    parts.push_back(fmt::format("{}: {} ({} instead of {})", what, change, spoken(number->value, unit), spoken(*number->bonded, unit)));
+  };
+  for (const InterfaceVerdict& said : bases_of(verdict))
+    add("largest base moment" + of_interface(verdict, said) + per_metre(built), find_number(said.numbers, "max_moment"), "N m");
+  if (built.top >= 0)
+    add(fmt::format("largest motion of {}", built.model.nodes[static_cast<std::size_t>(built.top)].name),
+        find_number(verdict.numbers.whole, "max_top_motion"), "m");
+  if (!parts.empty()) verdict.paragraphs.push_back(fmt::format("Compared with the bonded model, {}.", fmt::join(parts, "; ")));
+}
+
+/// What the walls of the foundation do.
+void say_walls(Verdict& verdict) {
   for (const InterfaceVerdict& said : verdict.numbers.interfaces) {
+    if (said.role != Role::wall) continue;
+    for (const auto& [name, label] : {std::pair{"max_opening", "Largest gap of "},
+                                      {"max_slip", "Largest slip of "},
+                                      {"max_toe_pressure", "Largest pressure of "},
+                                      {"share_of_horizontal_force", "Share of horizontal force, "},
+                                      {"share_of_base_moment", "Share of base moment, "}})
+      say(find_number(said.numbers, name), label + said.name, "", verdict);
+  }
+}
+
+/// The linear tension ratio compared with what happened.
+void say_tension(Verdict& verdict) {
+  for (const InterfaceVerdict& said : bases_of(verdict)) {
     const VerdictNumber *pulls = find_number(said.numbers, "linear_tension_ratio"),
                         *uplift = find_number(said.numbers, "predicted_uplifted_ratio"),
                         *happened = find_number(said.numbers, "max_uplifted_ratio");
     if (!pulls || !happened || pulls->value <= 0) continue;
     std::string text =
-        fmt::format("A linear analysis sees tension on {} of the base{}. ", percent(pulls->value), of_interface(verdict, said));
-    text += uplift ? fmt::format("By equal energy that stands for an uplift of {} (strip on Winkler springs); {} was computed.",
+        fmt::format("A linear analysis finds tension on {} of the base{}. ", percent(pulls->value), of_interface(verdict, said));
+    text += uplift ? fmt::format("By equal energy this corresponds to an uplift of {} (strip on Winkler springs); {} was computed.",
                                  percent(uplift->value), percent(happened->value))
-                   : fmt::format("From one half on no uplift can be told from it; {} was computed.", percent(happened->value));
+                   : fmt::format(
+                         "The estimate of the uplift by equal energy does not apply for tension ratios of 0.5 or more; {} was computed.",
+                         percent(happened->value));
     verdict.paragraphs.push_back(std::move(text));
   }
 }
 
 void say_residual(Verdict& verdict) {
-  for (const InterfaceVerdict& said : verdict.numbers.interfaces)
-    for (const auto& [name, label] : {std::pair{"residual_rotation", "Rotation left at the end"},
-                                      {"residual_settlement", "Settlement left at the end"},
-                                      {"residual_slip", "Slip left at the end"}}) {
+  for (const InterfaceVerdict& said : bases_of(verdict))
+    for (const auto& [name, label] : {std::pair{"residual_rotation", "Residual rotation"},
+                                      {"residual_settlement", "Residual settlement"},
+                                      {"residual_slip", "Residual slip"}}) {
       const VerdictNumber* left = find_number(said.numbers, name);
       if (!left) continue;
-      const std::string_view unit = left->quantity->unit;
-      const double nothing = nothing_beside(unit), swing = left->swing.value_or(0);
-      const bool moves = swing >= nothing;
+      const std::string swing = swing_text(*left);
       verdict.facts.push_back(
-          {label + of_interface(verdict, said),
-           moves ? spoken_within(left->value, swing, unit) : spoken(std::abs(left->value) < nothing ? 0 : left->value, unit),
-           moves ? fmt::format("mean of the last tenth; it still moves by +-{}", spoken_within(swing, swing, unit)) : "at rest", false});
+          {label + of_interface(verdict, said), text_of(*left),
+           swing.empty() ? "at rest" : fmt::format("mean of the last tenth of the run, remaining variation +-{}", swing), false});
     }
 }
 
-/// "-1.5 to +2.1 %": how far the bands of all floors and dampings change beside the bonded run.
+/// "-1.5 to +2.1 %": how far the bands of all floors and dampings change compared with the bonded run.
 std::string range_of_bands(const FloorRun& floors) {
   double least = INFINITY, most = -INFINITY;
   for (const std::vector<FloorChange>& floor : floors.beside)
     for (const FloorChange& change : floor)
       for (const FloorChange::Band& band : change.bands) least = std::min(least, band.change), most = std::max(most, band.change);
   if (!(least <= most)) return "";
-  const auto shown = [](double share) { return fmt::format("{:+.{}f}", 100 * share, std::abs(share) < 0.0995 ? 1 : 0); };
-  return fmt::format("{} to {} %", shown(least), shown(most));
+  const std::string from = change_text(least), to = change_text(most);
+  if (from == to) return to;
+  const bool both = from.ends_with(" %") && to.ends_with(" %");
+  return fmt::format("{} to {}", both ? from.substr(0, from.size() - 2) : from, to);
 }
 
-/// What the uplift does: forces, motion and floors beside the bonded base, then the user's limits.
+/// What the uplift changes: forces, motion and floors compared with the bonded model, then the user's limits.
 void say_consequence(const FloorRun* floors, Verdict& verdict) {
   std::vector<std::string> parts;
   const auto add = [&parts](const char* what, const VerdictNumber* number) {
-    if (number && number->bonded.value_or(0) != 0) parts.push_back(fmt::format("{} {}", what, beside(number->value, *number->bonded)));
+    if (number && number->change) parts.push_back(fmt::format("{} {}", what, change_text(*number->change)));
   };
-  if (!verdict.numbers.interfaces.empty()) {
+  if (verdict.numbers.bases() > 0) {
     add("base moment", find_number(verdict.numbers.interfaces.front().numbers, "max_moment"));
     add("base shear", find_number(verdict.numbers.interfaces.front().numbers, "max_shear"));
   }
+  add("moment of base and walls", find_number(verdict.numbers.whole, "max_total_moment"));
   add("top motion", find_number(verdict.numbers.whole, "max_top_motion"));
   if (const std::string range = floors ? range_of_bands(*floors) : ""; !range.empty()) {
     parts.push_back("floor spectra " + range);
-    verdict.facts.push_back({"Floor spectra", range, "peaks of the bands, beside the bonded base"});
+    verdict.facts.push_back({"Floor spectra", range, "peaks of the bands, compared with the bonded model"});
   }
-  if (!parts.empty()) verdict.consequence = fmt::format("Beside the bonded base: {}.", fmt::join(parts, ", "));
+  if (!parts.empty()) verdict.consequence = fmt::format("Compared with the bonded model: {}.", fmt::join(parts, ", "));
   const auto& criteria = verdict.numbers.criteria;
   if (criteria.empty()) return;
   const auto met = std::ranges::count(criteria, CriterionResult::State::met, &CriterionResult::state);
@@ -218,60 +323,19 @@ std::string_view to_string(Verdict::Level level) {
   return "";
 }
 
-const std::vector<double>* find_column(const RunResult& result, Request::Kind kind, int of) {
-  const int index = find_index(result, kind, of);
-  return index < 0 || static_cast<std::size_t>(index) + 1 >= result.table.size() ? nullptr
-                                                                                 : &result.table[static_cast<std::size_t>(index) + 1];
-}
-
-const Peak* top_motion(const Built& built, const RunResult& result) {
-  const Peak* largest = nullptr;
-  for (int axis = 0; built.top >= 0 && axis < built.model.space.dimension; ++axis) {
-    if (axis == built.model.space.up()) continue;
-    const Peak* peak = find_peak(result, Column::displacement, built.model.at(built.top, built.model.space.dof(axis)));
-    if (peak && (!largest || std::abs(peak->value) > std::abs(largest->value))) largest = peak;
-  }
-  return largest;
-}
-
-const Peak* find_peak(const RunResult& result, Request::Kind kind, int of) {
-  const int index = find_index(result, kind, of);
-  return index < 0 || static_cast<std::size_t>(index) >= result.peaks.size() ? nullptr : &result.peaks[static_cast<std::size_t>(index)];
-}
-
 Verdict judge(const Built& built, const RunResult& run, const RunResult* bonded, const FloorRun* floors) {
   if (statics_alone(built.plan) && run.status == RunStatus::completed) return judge_standing(built, run);
   Verdict verdict;
-  if (run.status == RunStatus::failed) {
-    verdict.level = Verdict::Level::failed;
-    verdict.headline = "The run failed: " + run.reason;
-    verdict.paragraphs.push_back(
-        fmt::format("What was computed up to {} is shown and marked; it is not a result.", spoken(run.end_time, "s")));
-  } else if (run.status == RunStatus::overturned) {
-    verdict.level = Verdict::Level::overturned;
-    verdict.headline =
-        fmt::format("It overturns: at {} the rotation passes {}", spoken(run.end_time, "s"), spoken(built.plan.rotation_limit, "rad"));
-    verdict.paragraphs.push_back("Beyond this rotation the small-displacement model says nothing; the run ended there.");
-  } else if (run.status == RunStatus::separated) {
-    verdict.level = Verdict::Level::separated;
-    verdict.headline = fmt::format("It leaves the ground: at {} the base is open everywhere by more than {}", spoken(run.end_time, "s"),
-                                   spoken(built.plan.separation_limit, "m"));
-    verdict.paragraphs.push_back(
-        "Beyond this gap the small-displacement model says nothing, nor whether and where the structure comes down; the run ended there.");
-  } else if (run.max_uplifted_ratio.value > 0) {
-    verdict.level = Verdict::Level::uplift;
-    verdict.headline = fmt::format("The base uplifts: up to {} of its area, by up to {}", percent(run.max_uplifted_ratio.value),
-                                   spoken(run.max_opening.value, "m"));
-  } else {
-    verdict.headline = built.facts.empty() ? "A linear run without an interface" : "The base does not uplift";
-  }
-  if (run.status == RunStatus::interrupted) verdict.headline += fmt::format(" (interrupted at {})", spoken(run.end_time, "s"));
-  if (run.status == RunStatus::failed && run.counts.steps == 0) return verdict;
-  verdict.numbers = numbers_of(built, run, bonded);
+  const bool nothing = run.status == RunStatus::failed && run.counts.steps == 0;
+  if (!nothing) verdict.numbers = numbers_of(built, run, bonded);
+  say_outcome(built, run, verdict);
+  if (nothing) return verdict;
   say_uplift(built, run, verdict);
   say_forces(built, run, verdict);
-  if (bonded) say_beside_bonded(built, run, *bonded, verdict);
+  say_top(verdict);
+  if (bonded) say_compared(built, *bonded, verdict);
   say_consequence(floors, verdict);
+  say_walls(verdict);
   say_tension(verdict);
   say_residual(verdict);
   say_energy(built, run, verdict);

@@ -43,9 +43,13 @@ void add_results(const Criterion& criterion, VerdictNumbers& numbers) {
     numbers.criteria.push_back(result_of(criterion, numbers.whole, ""));
     return;
   }
+  // Without an interface a criterion is for all bases; for all walls where its quantity is one of walls alone.
+  const auto concerned = [&](std::size_t k) {
+    if (criterion.interface >= 0) return criterion.interface == static_cast<int>(k);
+    return numbers.interfaces[k].role == Role::base ? criterion.quantity->of_base : !criterion.quantity->of_base;
+  };
   for (std::size_t k = 0; k < numbers.interfaces.size(); ++k)
-    if (criterion.interface < 0 || criterion.interface == static_cast<int>(k))
-      numbers.criteria.push_back(result_of(criterion, numbers.interfaces[k].numbers, numbers.interfaces[k].name));
+    if (concerned(k)) numbers.criteria.push_back(result_of(criterion, numbers.interfaces[k].numbers, numbers.interfaces[k].name));
 }
 
 }  // namespace uplift

@@ -6,8 +6,10 @@
 #include <utility>
 
 #include "uplift/analysis/base_shape.h"
-#include "uplift/analysis/verdict.h"
 #include "uplift/analysis/verdict_criteria.h"
+#include "uplift/analysis/verdict_foundation.h"
+#include "uplift/analysis/verdict_motion.h"
+#include "uplift/analysis/wording.h"
 
 namespace uplift {
 namespace {
@@ -28,8 +30,14 @@ class Base {
       const Resultant& sum = run.steps.rest[index];
       const bool plane = interface.space.dimension == 2;
       rest = thrust_of(interface.space, sum.axial, plane ? sum.moment : sum.moment_1, sum.moment_2);
-    } else if (built.facts.size() == 1) {
+    } else if (built.bases() == 1) {
       rest.force = built.weight;
+    }
+    for (std::size_t i = 0; i < run.steps.size(); ++i) {
+      const StepRecord::Instant &now = at(i), &first = at(0);
+      const double force = std::hypot(now.axial, shear(i)),
+                   change = std::hypot(now.axial - first.axial, now.shear_1 - first.shear_1, now.shear_2 - first.shear_2);
+      least_force = std::max({least_force, noise_share * change, round_off_share * force});
     }
   }
 
@@ -49,7 +57,7 @@ class Base {
   double sliding(std::size_t step) const {
     if (facts.friction < 0 || interface.batch.components == 1 || !carries(step)) return nothing;
     const double holds = -facts.friction * at(step).axial + facts.cohesion * facts.area * (1 - at(step).open_area);
-    return shear(step) > 0 ? holds / shear(step) : nothing;
+    return shear(step) > least_force ? holds / shear(step) : nothing;
   }
 
   const RunResult& run;
@@ -58,6 +66,7 @@ class Base {
   const InterfaceFacts& facts;
   BaseShape shape;
   Thrust rest;
+  double least_force = 0;  // N: less is noise
 };
 
 /// The largest magnitude of a quantity over the steps, or the least value; nothing when it is nowhere finite.
@@ -164,6 +173,7 @@ void add_residuals(const Base& base, std::vector<VerdictNumber>& numbers) {
   const auto left = [&](const char* name, double BasePose::*of) { return residual(tail, name, of, rest.*of); };
   const auto length = [&](const char* name, double BasePose::*one, double BasePose::*two) {
     const VerdictNumber a = left(name, one), b = left(name, two);
+    if (base.interface.space.dimension == 2) return a;  // with its sign, which is that of the history
     return VerdictNumber{a.quantity, std::hypot(a.value, b.value), {}, {}, std::hypot(*a.swing, *b.swing)};
   };
   numbers.push_back(length("residual_rotation", &BasePose::tilt_1, &BasePose::tilt_2));
@@ -173,23 +183,34 @@ void add_residuals(const Base& base, std::vector<VerdictNumber>& numbers) {
   numbers.push_back(residual(tail, "residual_uplifted_ratio", &BasePose::open_area, 0));
 }
 
+/// Below this a number of a base is noise, in its own unit.
+double least_of(const VerdictQuantity& quantity, const Base& base) {
+  if (quantity.unit == "N") return base.least_force;
+  if (quantity.unit == "N m") return base.least_force * std::max(base.shape.width[0], base.shape.width[1]);
+  return quantity.name.starts_with("max_eccentricity") ? noise_share : 0;
+}
+
 /// What a base carries, of a bonded run too.
 InterfaceVerdict carried_by(const Base& base) {
   InterfaceVerdict said;
   add_pressure(base, said);
   add_forces(base, said.numbers);
+  for (VerdictNumber& number : said.numbers) number.least = least_of(*number.quantity, base);
   return said;
 }
 
-/// The numbers of the bonded run beside those of the same name, and what has changed.
+/// The numbers of the bonded run for those of the same name, and what has changed.
 void add_bonded(const Base& base, const Base& bonded, std::vector<VerdictNumber>& numbers) {
-  const InterfaceVerdict beside = carried_by(bonded);
+  const InterfaceVerdict reference = carried_by(bonded);
   for (VerdictNumber& number : numbers)
-    if (const VerdictNumber* other = find_number(beside.numbers, number.quantity->name)) number.bonded = other->value;
+    if (const VerdictNumber* other = find_number(reference.numbers, number.quantity->name)) {
+      number.bonded = other->value;
+      number.change = change_of(number.value, other->value, std::max(number.least, other->least));
+    }
   for (const auto& [name, of] :
        {std::pair{"change_of_shear", "max_shear"}, {"change_of_moment", "max_moment"}, {"change_of_compression", "max_compression"}}) {
     const VerdictNumber* number = find_number(numbers, of);
-    if (number && number->bonded.value_or(0) != 0) add(numbers, name, number->value / *number->bonded - 1);
+    if (number && number->change) add(numbers, name, *number->change);
   }
   const StepRecord::Reached& pulls = bonded.extremes().tension_area;
   add(numbers, "linear_tension_ratio", pulls);
@@ -197,14 +218,68 @@ void add_bonded(const Base& base, const Base& bonded, std::vector<VerdictNumber>
     add(numbers, "predicted_uplifted_ratio", *uplift);
 }
 
-void add_top(const Built& built, const RunResult& run, const RunResult* bonded, std::vector<VerdictNumber>& numbers) {
-  const Peak* motion = top_motion(built, run);
-  if (!motion) return;
-  add(numbers, "max_top_motion", std::abs(motion->value), motion->time);
-  const Peak* beside = bonded ? top_motion(built, *bonded) : nullptr;
-  if (!beside || beside->value == 0) return;
-  numbers.back().bonded = std::abs(beside->value);
-  add(numbers, "change_of_top_motion", std::abs(motion->value / beside->value) - 1);
+/// A number of the run as a whole, with that of the bonded run.
+void add_whole(std::vector<VerdictNumber>& numbers, std::string_view name, const std::optional<Peak>& peak,
+               const std::optional<Peak>& bonded, double least) {
+  if (!peak) return;
+  add(numbers, name, std::abs(peak->value), peak->time);
+  numbers.back().least = least;
+  if (!bonded) return;
+  numbers.back().bonded = std::abs(bonded->value);
+  numbers.back().change = change_of(std::abs(peak->value), std::abs(bonded->value), least);
+}
+
+void add_motions(const Built& built, const RunResult& run, const RunResult* bonded, std::vector<VerdictNumber>& numbers) {
+  const double least = noise_share * std::max(range_of_top(built, run), bonded ? range_of_top(built, *bonded) : 0);
+  const auto add_motion = [&](std::string_view name, const auto& of) {
+    add_whole(numbers, name, of(run), bonded ? of(*bonded) : std::nullopt, least);
+  };
+  add_motion("max_top_motion", [&](const RunResult& each) { return top_motion(built, each); });
+  if (!numbers.empty() && numbers.back().change) add(numbers, "change_of_top_motion", *numbers.back().change);
+  add_motion("max_drift", [&](const RunResult& each) { return largest_drift(built, each, Drift::with_rotation); });
+  add_motion("max_drift_without_rotation", [&](const RunResult& each) { return largest_drift(built, each, Drift::without_rotation); });
+}
+
+/// What bases and walls carry together, and the shares of the walls.
+void add_foundation(const Built& built, const RunResult& run, const RunResult* bonded, VerdictNumbers& numbers) {
+  if (built.bases() == built.facts.size() || run.steps.size() == 0) return;
+  const FoundationForces forces = foundation_forces(built, run), beside = bonded ? foundation_forces(built, *bonded) : FoundationForces();
+  const double least = std::max(forces.least, beside.least);
+  const auto peak = [](const StepRecord::Reached& reached) { return Peak{"", "", reached.value, reached.time}; };
+  const auto reference = [&](const StepRecord::Reached& reached) { return bonded ? std::optional(peak(reached)) : std::nullopt; };
+  const auto width = numbers.interfaces.front().width;
+  const double least_moment = least * std::max(width[0], width[1]);
+  add_whole(numbers.whole, "max_total_shear", peak(forces.shear), reference(beside.shear), least);
+  add_whole(numbers.whole, "max_total_moment", peak(forces.moment), reference(beside.moment), least_moment);
+  for (std::size_t k = built.bases(); k < built.facts.size(); ++k) {
+    std::vector<VerdictNumber>& wall = numbers.interfaces[k].numbers;
+    if (forces.shear.value > least) add(wall, "share_of_horizontal_force", forces.share_of_shear[k], forces.shear.time);
+    if (forces.moment.value > least_moment) add(wall, "share_of_base_moment", forces.share_of_moment[k], forces.moment.time);
+  }
+}
+
+/// A wall beside the structure.
+InterfaceVerdict wall_of(const StepRecord::Extremes& most, const Interface& interface) {
+  InterfaceVerdict said;
+  said.role = Role::wall;
+  add(said.numbers, "max_opening", most.max_opening);
+  if (interface.batch.components > 1) add(said.numbers, "max_slip", most.max_slip);
+  add(said.numbers, "max_toe_pressure", most.max_pressure);
+  add(said.numbers, "max_penetration", most.penetration);
+  return said;
+}
+
+/// A base: uplift, forces, safeties, what is left.
+InterfaceVerdict base_of(const Built& built, const RunResult& run, const RunResult* bonded, std::size_t number) {
+  const Base base(built, run, number);
+  InterfaceVerdict said = carried_by(base);
+  if (base.pressed()) said.weight = base.rest.force, said.mean_pressure = base.rest.force / base.facts.area;
+  said.width = base.shape.width;
+  add_uplift(base, built.wishes, said);
+  add_full_loss(base, said);
+  add_residuals(base, said.numbers);
+  if (bonded) add_bonded(base, Base(built, *bonded, number), said.numbers);
+  return said;
 }
 
 void in_order(std::vector<VerdictNumber>& numbers) {
@@ -216,6 +291,18 @@ void in_order(std::vector<VerdictNumber>& numbers) {
 const VerdictNumber* find_number(const std::vector<VerdictNumber>& numbers, std::string_view name) {
   const auto found = std::ranges::find_if(numbers, [&](const VerdictNumber& number) { return number.quantity->name == name; });
   return found == numbers.end() ? nullptr : &*found;
+}
+
+std::string swing_text(const VerdictNumber& number) {
+  const std::string_view unit = number.quantity->unit;
+  const double swing = number.swing.value_or(0);
+  if (!(swing > 0) || swing < nothing_beside(unit)) return "";
+  return is_share(*number.quantity) ? percent(swing) : spoken_within(swing, swing, unit);
+}
+
+std::string text_of(const VerdictNumber& number) {
+  const bool moves = !swing_text(number).empty() && !is_share(*number.quantity);
+  return moves ? spoken_within(number.value, *number.swing, number.quantity->unit) : said(*number.quantity, number.value);
 }
 
 std::optional<double> uplift_of_tension(double t) {
@@ -251,23 +338,31 @@ std::vector<double> base_history(const Built& built, const RunResult& run, std::
   return history;
 }
 
+std::optional<double> change_of(double value, double reference, double least) {
+  if (!std::isfinite(value) || !std::isfinite(reference) || value < 0 || reference < 0) return std::nullopt;
+  const double from = std::max(reference, least);
+  return std::max(value, reference) > least && from > 0 ? std::optional(value / from - 1) : std::nullopt;
+}
+
 VerdictNumbers numbers_of(const Built& built, const RunResult& run, const RunResult* bonded) {
   VerdictNumbers numbers;
   if (bonded && (bonded->status != RunStatus::completed || run.status != RunStatus::completed)) bonded = nullptr;
-  add_top(built, run, bonded, numbers.whole);
+  add_motions(built, run, bonded, numbers.whole);
   for (std::size_t k = 0; k < built.facts.size() && run.steps.size() > 0; ++k) {
-    const Base base(built, run, k);
-    InterfaceVerdict said = carried_by(base);
+    const bool is_base = k < built.bases();
+    InterfaceVerdict said = is_base ? base_of(built, run, bonded, k) : wall_of(run.steps.extremes[k], built.model.interfaces[k]);
     said.name = built.facts[k].name;
-    if (base.pressed()) said.weight = base.rest.force, said.mean_pressure = base.rest.force / base.facts.area;
-    said.width = base.shape.width;
-    add_uplift(base, built.wishes, said);
-    add_full_loss(base, said);
-    add_residuals(base, said.numbers);
-    if (bonded) add_bonded(base, Base(built, *bonded, k), said.numbers);
-    in_order(said.numbers);
     numbers.interfaces.push_back(std::move(said));
   }
+  if (!numbers.interfaces.empty()) {
+    numbers.full_loss = run.steps.full_loss(built.plan.is_wall);
+    double sum = 0;
+    for (const Interval& each : numbers.full_loss) sum += each.to - each.from;
+    add(numbers.whole, "full_loss_of_contact", sum);
+  }
+  add_foundation(built, run, bonded, numbers);
+  in_order(numbers.whole);
+  for (InterfaceVerdict& said : numbers.interfaces) in_order(said.numbers);
   for (const Criterion& criterion : built.wishes.criteria) add_results(criterion, numbers);
   for (CriterionResult& result : numbers.criteria)  // a run that did not get to its end has not shown that a limit is kept
     if (run.status != RunStatus::completed && result.state == CriterionResult::State::met)

@@ -11,16 +11,24 @@
 namespace uplift {
 namespace {
 
-constexpr bool whole = false, at_least = true;
+constexpr bool whole = false, at_least = true, wall_too = true;
 
-constexpr std::array<VerdictQuantity, 30> quantities{{
-    {"max_top_motion", "m", "largest horizontal motion of the top, in space of either axis", "top motion", whole},
-    {"change_of_top_motion", "1", "change of the motion of the top against the bonded run", "change of top motion", whole},
+constexpr std::array<VerdictQuantity, 38> quantities{{
+    {"max_top_motion", "m", "largest horizontal motion of the top, over all directions", "top motion", whole},
+    {"change_of_top_motion", "1", "change of the motion of the top compared with the bonded reference run", "change of top motion", whole},
+    {"max_drift", "m", "largest horizontal motion of the top relative to the base, rotation of the base included", "drift of the top",
+     whole},
+    {"max_drift_without_rotation", "m", "the same without the rotation of the base: deformation of the structure", "drift without rotation",
+     whole},
+    {"max_total_shear", "N", "largest horizontal force of bases and walls together", "total horizontal force", whole},
+    {"max_total_moment", "N m", "largest moment of bases and walls together about the middle of the base", "total moment", whole},
+    {"full_loss_of_contact", "s", "time with full loss of contact: no base has any contact", "full loss of contact", whole},
     {"max_uplifted_ratio", "1", "largest share of the area with a gap", "uplifted area"},
     {"uplifted_time", "s", "time with a gap anywhere", "time with a gap"},
     {"first_uplift", "s", "when a gap opens first", "first opening"},
-    {"max_opening", "m", "largest gap", "largest gap"},
-    {"max_toe_pressure", "Pa", "largest pressure of all points", "largest pressure"},
+    {"max_opening", "m", "largest gap", "largest gap", true, false, true, wall_too},
+    {"max_slip", "m", "largest slip", "largest slip", true, false, false, wall_too},
+    {"max_toe_pressure", "Pa", "largest pressure of all points", "largest pressure", true, false, true, wall_too},
     {"toe_pressure_ratio", "1", "largest pressure over the static mean W/A", "pressure over static mean"},
     {"max_eccentricity", "1", "largest eccentricity over the width, e/B", "eccentricity e/B"},
     {"max_eccentricity_1", "1", "in space: largest eccentricity along t1 over the width", "e/B along t1"},
@@ -31,20 +39,25 @@ constexpr std::array<VerdictQuantity, 30> quantities{{
     {"full_loss_time", "s", "time without any contact", "time without contact"},
     {"longest_full_loss", "s", "longest interval without any contact", "longest loss of contact"},
     {"max_shear", "N", "largest base shear", "base shear"},
-    {"change_of_shear", "1", "change of the base shear against the bonded run", "change of base shear"},
+    {"change_of_shear", "1", "change of the base shear compared with the bonded reference run", "change of base shear"},
     {"max_moment", "N m", "largest base moment", "base moment"},
-    {"change_of_moment", "1", "change of the base moment against the bonded run", "change of base moment"},
+    {"change_of_moment", "1", "change of the base moment compared with the bonded reference run", "change of base moment"},
     {"max_compression", "N", "largest compression of the base", "largest compression"},
-    {"change_of_compression", "1", "change of the largest compression against the bonded run", "change of compression"},
+    {"change_of_compression", "1", "change of the largest compression compared with the bonded reference run", "change of compression"},
     {"min_compression", "N", "least compression of the base", "least compression", true, at_least},
     {"linear_tension_ratio", "1", "largest share of the area that pulls in the bonded run", "tension area, bonded run"},
     {"predicted_uplifted_ratio", "1", "uplift that this share stands for by equal energy, Winkler strip", "uplift by equal energy"},
-    {"residual_rotation", "rad", "tilt that is left at the end", "tilt left"},
-    {"residual_settlement", "m", "settlement that is left at the end", "settlement left"},
-    {"residual_slip", "m", "slip that is left at the end", "slip left"},
-    {"residual_opening", "m", "largest gap at the end", "gap left"},
-    {"residual_uplifted_ratio", "1", "share of the area with a gap at the end", "uplifted area left"},
-    {"max_penetration", "m", "largest compression of the joint where it is closed (interpenetration)", "compression of the joint"},
+    {"residual_rotation", "rad", "residual rotation of the base", "residual rotation"},
+    {"residual_settlement", "m", "residual settlement of the base", "residual settlement"},
+    {"residual_slip", "m", "residual slip", "residual slip"},
+    {"residual_opening", "m", "residual largest gap", "residual gap"},
+    {"residual_uplifted_ratio", "1", "residual share of the area with a gap", "residual uplifted area"},
+    {"max_penetration", "m", "largest compression of the joint where it is closed (interpenetration)", "compression of the joint", true,
+     false, true, wall_too},
+    {"share_of_horizontal_force", "1", "share of the total horizontal force that the walls carry when it is largest",
+     "share of horizontal force", true, false, false, wall_too},
+    {"share_of_base_moment", "1", "share of the total moment that the walls carry when it is largest", "share of base moment", true, false,
+     false, wall_too},
 }};
 
 }  // namespace
@@ -54,7 +67,8 @@ std::span<const VerdictQuantity> verdict_quantities() {
 }
 
 bool is_share(const VerdictQuantity& quantity) {
-  return quantity.name.starts_with("change_of") || quantity.name.ends_with("uplifted_ratio") || quantity.name == "linear_tension_ratio";
+  return quantity.name.starts_with("change_of") || quantity.name.starts_with("share_of") || quantity.name.ends_with("uplifted_ratio") ||
+         quantity.name == "linear_tension_ratio";
 }
 
 bool near_zero(const VerdictQuantity& quantity) {

@@ -11,6 +11,7 @@ struct VerdictQuantity {
   std::string_view brief;    // a few words for tables
   bool of_interface = true;  // else of the run as a whole
   bool at_least = false;     // a criterion asks for at least its limit; else for at most
+  bool of_base = true, of_wall = false;
 };
 /// All of them, in the order in which they are shown.
 std::span<const VerdictQuantity> verdict_quantities();

@@ -3,6 +3,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <cmath>
 
 #include "uplift/analysis/wording.h"
 
@@ -14,6 +15,7 @@ struct Said {
 };
 constexpr Said numbers[] = {{"max_uplifted_ratio", "Uplifted area"},
                             {"max_opening", "Largest gap"},
+                            {"max_slip", "Largest slip"},
                             {"max_toe_pressure", "Largest pressure"},
                             {"residual_settlement", "Settlement"},
                             {"residual_rotation", "Rotation"},
@@ -22,7 +24,9 @@ constexpr Said numbers[] = {{"max_uplifted_ratio", "Uplifted area"},
                             {"max_shear", "Base shear"},
                             {"max_moment", "Base moment"},
                             {"max_eccentricity", "Eccentricity e/B"},
-                            {"min_sliding_safety", "Safety against sliding"}};
+                            {"min_sliding_safety", "Safety against sliding"},
+                            {"share_of_horizontal_force", "Share of the horizontal force"},
+                            {"share_of_base_moment", "Share of the base moment"}};
 
 /// What is nothing but round-off beside what the base carries is not worth a line.
 bool counts(const InterfaceVerdict& said, const VerdictNumber& number) {
@@ -30,8 +34,8 @@ bool counts(const InterfaceVerdict& said, const VerdictNumber& number) {
   const std::string_view name = number.quantity->name;
   if (name == "max_shear") return number.value > little * said.weight;
   if (name == "max_moment") return number.value > little * said.weight * std::max(said.width[0], said.width[1]);
-  if (name == "max_eccentricity" || name == "residual_rotation") return number.value > little;
-  if (name == "residual_slip") return number.value > 1e-3 * little;
+  if (name == "max_eccentricity" || name == "residual_rotation") return std::abs(number.value) > little;
+  if (name == "residual_slip") return std::abs(number.value) > 1e-3 * little;
   if (name == "min_sliding_safety") return number.value < 1 / little;
   return true;
 }
@@ -58,13 +62,13 @@ Verdict judge_standing(const Built& built, const RunResult& run) {
   const bool open = run.max_uplifted_ratio.value > 0;
   if (open) verdict.level = Verdict::Level::uplift;
   verdict.headline = built.facts.empty() ? "A static run without an interface"
-                     : open              ? fmt::format("Under its constant loads the base stands open: {} of its area, by up to {}",
+                     : open              ? fmt::format("Under its constant loads the base is open: {} of its area, by up to {}",
                                                        percent(run.max_uplifted_ratio.value), spoken(run.max_opening.value, "m"))
-                                         : "Under its constant loads the base is closed";
+                                         : "Under its constant loads the base is in full contact";
+  const bool several = verdict.numbers.bases() > 1;
   for (const InterfaceVerdict& said : verdict.numbers.interfaces)
-    say(said, verdict.numbers.interfaces.size() > 1 ? " of " + said.name : "", verdict);
-  verdict.paragraphs.push_back(
-      "The case has static stages alone: all numbers are of the state at their end, and nothing is said of an earthquake.");
+    say(said, several || said.role == Role::wall ? " of " + said.name : "", verdict);
+  verdict.paragraphs.push_back("The case has static stages alone: all numbers are those of the state at their end, not of an earthquake.");
   for (const std::string& note : run.notes) verdict.paragraphs.push_back(note);
   return verdict;
 }

@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <array>
+#include <cctype>
 #include <cmath>
 
 namespace uplift {
@@ -41,11 +42,24 @@ Prefix prefix_of(double magnitude, std::string_view unit) {
 
 }  // namespace
 
+std::string unit_text(std::string_view unit) {
+  static constexpr std::array<const char*, 3> raised{"²", "³", "⁴"};
+  std::string text;
+  for (std::size_t i = 0; i < unit.size(); ++i) {
+    const bool power = i > 0 && std::isalpha(static_cast<unsigned char>(unit[i - 1])) && unit[i] >= '2' && unit[i] <= '4';
+    if (power)
+      text += raised[static_cast<std::size_t>(unit[i] - '2')];
+    else
+      text += unit[i];
+  }
+  return text;
+}
+
 std::string spoken(double value, std::string_view unit) {
   if (!std::isfinite(value)) return "not finite";
   if (unit == "1") return digits(value);
   const Prefix prefix = prefix_of(std::abs(value), unit);
-  return fmt::format("{} {}{}", digits(value / prefix.factor), prefix.text, unit);
+  return fmt::format("{} {}{}", digits(value / prefix.factor), prefix.text, unit_text(unit));
 }
 
 std::string spoken_within(double value, double resolution, std::string_view unit) {
@@ -57,22 +71,23 @@ std::string spoken_within(double value, double resolution, std::string_view unit
   if (shown != 0) decimals = std::min(decimals, decimals_of(std::max(std::abs(shown), resolution / prefix.factor), 3));
   std::string text = fmt::format("{:.{}f}", shown, decimals);
   if (text.starts_with('-') && text.find_first_not_of("-0.") == text.npos) text.erase(0, 1);
-  return unit == "1" ? text : fmt::format("{} {}{}", text, prefix.text, unit);
+  return unit == "1" ? text : fmt::format("{} {}{}", text, prefix.text, unit_text(unit));
 }
 
 std::string percent(double fraction) {
   if (std::abs(fraction) >= 10) return fmt::format("{:.3g} times", fraction);
   const double value = 100 * fraction;
   if (std::abs(value) < 0.05 && value != 0) return fmt::format("{:.2g} %", value);
-  return fmt::format("{:.{}f} %", value, std::abs(value) < 10 ? 1 : 0);
+  const int decimals = std::abs(value) < 9.95 ? 1 : 0;
+  const double power = decimals == 1 ? 10 : 1;
+  return fmt::format("{:.{}f} %", std::round(value * power) / power, decimals);
 }
 
-std::string beside(double value, double reference) {
-  const double ratio = std::abs(value) / std::abs(reference);
-  if (!std::isfinite(ratio)) return "not comparable";
-  if (std::abs(ratio - 1) < 0.005) return "the same";
-  if (ratio >= 2) return fmt::format("{} times as large", digits(ratio));
-  return fmt::format("{} {}", percent(std::abs(ratio - 1)), ratio > 1 ? "more" : "less");
+std::string change_text(double change) {
+  if (!std::isfinite(change)) return "not comparable";
+  if (std::abs(change) < 0.0005) return "unchanged";
+  if (change >= 9) return digits(1 + change) + " times as large";
+  return (change > 0 ? "+" : "") + percent(change);
 }
 
 }  // namespace uplift

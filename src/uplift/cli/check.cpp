@@ -197,8 +197,9 @@ void print(const Loaded& loaded, const Built& built, const Findings& found, cons
   if (loaded.read.mesh) print_mesh(loaded.read, found);
   for (std::size_t k = 0; k < model.interfaces.size(); ++k) {
     const Interface& interface = model.interfaces[k];
-    line("interface " + interface.name, fmt::format("{} points, {}, area {:.4g} m2{}", interface.batch.points, interface.behaviour,
-                                                    interface.area.sum(), interface.batch.components == 1 ? ", normal only" : ""));
+    line("interface " + interface.name,
+         fmt::format("{}, {} points, {}, area {:.4g} m2{}", to_string(built.facts[k].role), interface.batch.points, interface.behaviour,
+                     interface.area.sum(), interface.batch.components == 1 ? ", normal only" : ""));
     line("  points", points_text(interface));
     if (k < found.ratios.size() && found.ratios[k].most > 0)
       line("  k F_ii at the time step", fmt::format("{:.3g} to {:.3g}", found.ratios[k].least, found.ratios[k].most));
@@ -264,6 +265,7 @@ void write(const Loaded& loaded, const Built& built, const Findings& found, cons
     const Interface& interface = built.model.interfaces[k];
     json.begin_object()
         .member("name", interface.name)
+        .member("role", to_string(built.facts[k].role))
         .member("behaviour", interface.behaviour)
         .member("points", interface.batch.points)
         .member("area", interface.area.sum());

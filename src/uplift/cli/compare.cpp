@@ -29,7 +29,7 @@ void print_runs(const Results& results, const ComparisonSummary& compared) {
       group = run.group;
       if (!group.empty()) say((i > 0 ? "\n" : "") + group);
     }
-    const Peak* motion = top_motion(results.built[i], run);
+    const std::optional<Peak> motion = top_motion(results.built[i], run);
     const Agreement& agreement = compared.agreement[i];
     const bool counted = agreement.word == Agreement::Word::agrees || agreement.word == Agreement::Word::differs;
     const bool bonded = results.specs[i].bonded;  // it stretches instead of opening
@@ -144,7 +144,7 @@ OverMotions show_hardest(const Loaded& loaded, const Options& options, const std
   }
   if (judged.size() < 2) return {};
   const std::size_t worst = hardest(judged);
-  OverMotions said{fmt::format(" ({}, the hardest of {} motions)", judged[worst].motion, judged.size()),
+  OverMotions said{fmt::format(" ({}, the most demanding of {} motions)", judged[worst].motion, judged.size()),
                    said_over_motions(judged, tables.front())};
   bring_forward(loaded, options, places[worst], results);
   return said;
@@ -171,8 +171,8 @@ int compare(const Options& options) {
   compared.band = compare ? compare->number("band") : 0.02;
   const std::vector<std::string> columns = compare ? compare->texts("agree_on") : std::vector<std::string>{};
   const Built& first = results.built.front();
-  compared.columns = compared_names(results.runs.front(), columns, first.top_sway(), first.base_turn());
-  compared.agreement = agreement(results.runs, results.specs, columns, compared.band, first.top_sway(), first.base_turn());
+  compared.columns = columns;
+  compared.agreement = agreement(results.runs, results.specs, results.built, columns, compared.band);
   compared.sweep = sweep_table(swept.specs, swept.runs);
   results.floors = floor_answers(first.plan, results.runs, results.specs);
   results.verdict = judge(results.built.front(), results.runs.front(), bonded_beside(results, 0), &results.floors.runs.front());
@@ -188,8 +188,8 @@ int compare(const Options& options) {
     print_runs(results, compared);
     print_over_motions(compared);
     print_sweep(compared);
-    say(fmt::format("\nsound runs agree when their peaks of {} lie within {} of the median of their group",
-                    fmt::join(compared.columns, ", "), percent(compared.band)));
+    say(fmt::format("\nruns that passed all checks agree when {} lie within {} of the median of their group",
+                    compared_text(compared.columns), percent(compared.band)));
     say(fmt::format("verdict ({}): {}", results.runs.front().label, results.verdict.headline));
     if (!results.verdict.consequence.empty()) say(results.verdict.consequence);
     say(fmt::format("results: {}/report.html", folder.path()));

@@ -64,19 +64,18 @@ double number_or(const Values& behaviour, std::string_view key, double otherwise
 InterfaceFrames::InterfaceFrames(const Case& read, const Built& built) : model_(&built.model), gap_tolerance_(built.plan.gap_tolerance) {
   std::vector<OpenedSurface> faces;
   int row = 0;
-  const std::vector<Values>& tables = read.values.tables("interface");
-  for (std::size_t k = 0; k < tables.size(); ++k) {
+  for (std::size_t k = 0; k < built.facts.size(); ++k) {
     const Interface& interface = model_->interfaces[k];
-    if (tables[k].has("surface")) {
-      const bool nodal = tables[k].table("surface").text("quadrature") == "nodal";
+    const InterfaceFacts& facts = built.facts[k];
+    if (!facts.faces.empty()) {
       const Values& behaviour = *built.behaviours[k];
       Surface surface{static_cast<int>(k), row, -1, 0, interface.behaviour != "elastic", {}};
       surface.friction = number_or(behaviour, "friction", -1);
       surface.cohesion = number_or(behaviour, "cohesion", 0);
       surface.places =
-          places_of(read.mesh->mesh, read.mesh->open[k], nodal ? FaceQuadrature::nodal : FaceQuadrature::gauss, interface.batch.points);
+          places_of(read.mesh->mesh, facts.faces, facts.nodal ? FaceQuadrature::nodal : FaceQuadrature::gauss, interface.batch.points);
       surfaces_.push_back(std::move(surface));
-      faces.push_back({interface.name, read.mesh->open[k], {}});
+      faces.push_back({interface.name, facts.faces, {}});
     }
     row += interface.rows();
   }

@@ -235,11 +235,11 @@ std::string carrier(const Drawn& drawn, const Built& built, std::size_t interfac
   return nearest < 0 ? "" : built.model.nodes[static_cast<std::size_t>(nearest)].name;
 }
 
-void write_interfaces(JsonWriter& json, const Drawn& drawn, const Case& read, const Built& built) {
+void write_interfaces(JsonWriter& json, const Drawn& drawn, const Built& built) {
   json.begin_array();
   for (std::size_t k = 0; k < built.model.interfaces.size(); ++k) {
     const Interface& interface = built.model.interfaces[k];
-    const bool surface = read.mesh && !read.mesh->open[k].empty();
+    const bool surface = !built.facts[k].faces.empty();
     json.begin_object().member("name", interface.name);
     if (surface) json.member("opened", true);
     if (!built.facts[k].body.empty()) json.member("body", shown_name(built, built.facts[k].body));
@@ -322,7 +322,7 @@ void write_model(JsonWriter& json, const Case& read, const Built& built) {
   write_absorbing(json, read);
   if (read.mesh) write_outline(json, drawn, read, built);
   json.key("interfaces");
-  write_interfaces(json, drawn, read, built);
+  write_interfaces(json, drawn, built);
   write_loads(json, drawn, read, built);
   json.end_object();
 }

@@ -216,14 +216,14 @@ class PointAt {
 
 /// Triangles between the points of an interface: over the faces of an opened surface, over the grid of a footing. Empty where the points do
 /// not stand at corners.
-std::vector<int> triangles_of(const Case& read, const Interface& joint, std::size_t number) {
+std::vector<int> triangles_of(const Case& read, const Interface& joint, const InterfaceFacts& facts) {
   std::vector<int> triangles;
   const auto add_polygon = [&](const std::vector<int>& corners) {
     for (std::size_t k = 2; k < corners.size(); ++k) triangles.insert(triangles.end(), {corners[0], corners[k - 1], corners[k]});
   };
-  if (read.mesh) {
+  if (!facts.faces.empty()) {
     const PointAt point_at(joint);
-    for (const FacePair& face : read.mesh->open[number]) {
+    for (const FacePair& face : facts.faces) {
       std::vector<int> corners;
       for (int k = 0; k < info(read.mesh->mesh.type(face.lower)).corners; ++k)
         corners.push_back(point_at(read.mesh->mesh.nodes[at(read.mesh->mesh.cell(face.lower)[at(k)])]));
@@ -279,7 +279,7 @@ void write_interfaces(JsonWriter& json, const Case& read, const Built& built, co
     json.key("plan").numbers(plan).key("axes").texts({axis_name(s, "s"), axis_name(t, "t")});
     json.key("normal").numbers(std::array<double, 3>{normal.x(), normal.y(), normal.z()});
     json.key("area").numbers(std::span<const double>(joint.area.data(), at(joint.batch.points)));
-    write_whole(json, "triangles", triangles_of(read, joint, k));
+    write_whole(json, "triangles", triangles_of(read, joint, built.facts[k]));
     if (footing_of(read, joint)) {
       json.member("body", bodies++);
     } else if (const std::vector<int> nodes = carriers(joint, built.facts[k], built, drawn); !nodes.empty()) {

@@ -15,7 +15,7 @@ void write_run_row(JsonWriter& json, const ReportInput& input, std::size_t i) {
   json.begin_object().member("group", run.group).member("run", run.label).member("name", run.name);
   json.member("status",
               std::string(to_string(run.status)) + (run.expected_to_fail && run.status == RunStatus::failed ? " (expected)" : ""));
-  const Peak* top = top_motion(built, run);
+  const std::optional<Peak> top = top_motion(built, run);
   if (top) json.member("top", std::abs(top->value)).member("top_time", top->time);
   if (!input.runs[i].spec->bonded)  // a bonded base stretches instead of opening
     json.member("ratio", run.max_uplifted_ratio.value)
@@ -36,8 +36,8 @@ void write_runs(JsonWriter& json, const ReportInput& input) {
   json.begin_object().member("id", "runs").member("title", input.compared ? "Comparison of all runs" : "Runs");
   std::string caption = "Largest magnitudes. Spurious energy: energy created by the computation, divided by the external work.";
   if (input.compared)
-    caption += fmt::format(" Runs agree when their peaks of {} lie within {:g} % of the median of the completed runs of their group.",
-                           fmt::join(input.compared->columns, ", "), 100 * input.compared->band);
+    caption += fmt::format(" Runs that passed all checks agree when {} lie within {:g} % of the median of their group.",
+                           compared_text(input.compared->columns), 100 * input.compared->band);
   json.member("caption", caption).key("columns").begin_array();
   for (const TableColumn& column : {TableColumn{"run", "Run", "", "text", 0}, {"status", "Status", "", "status", 0}})
     write_column(json, column);

@@ -1,7 +1,10 @@
+#include <fmt/format.h>
+
 #include <algorithm>
 #include <cmath>
 #include <utility>
 
+#include "uplift/analysis/wording.h"
 #include "uplift/io/report_parts.h"
 #include "uplift/io/verdict_json.h"
 
@@ -24,14 +27,29 @@ constexpr Row forces[] = {{"max_shear", "Base shear"},
                           {"max_eccentricity", "Eccentricity e/B"},
                           {"min_overturning_safety", "Safety against overturning"},
                           {"min_sliding_safety", "Safety against sliding"}};
+constexpr Row of_walls[] = {{"max_opening", "Largest gap"},
+                            {"max_slip", "Largest slip"},
+                            {"max_toe_pressure", "Largest pressure"},
+                            {"share_of_horizontal_force", "Share of the horizontal force"},
+                            {"share_of_base_moment", "Share of the base moment"}};
+constexpr Row of_run[] = {{"max_top_motion", "Motion of the top"},
+                          {"max_drift", "Drift of the top"},
+                          {"max_drift_without_rotation", "Drift without base rotation"},
+                          {"max_total_shear", "Horizontal force, base and walls"},
+                          {"max_total_moment", "Moment, base and walls"}};
 constexpr Row residuals[] = {{"residual_rotation", "Rotation"},
                              {"residual_settlement", "Settlement"},
                              {"residual_slip", "Slip"},
                              {"residual_opening", "Largest gap"},
                              {"residual_uplifted_ratio", "Uplifted area"}};
 
-void write_number(JsonWriter& json, const char* label, const VerdictNumber& number) {
+/// Values with the texts that stand for them on the page: rounded once, by the program.
+void write_number(JsonWriter& json, const std::string& label, const VerdictNumber& number) {
   json.begin_object().member("label", label).member("value", number.value).member("unit", number.quantity->unit);
+  json.member("text", text_of(number));
+  if (number.bonded) json.member("bondedText", said(*number.quantity, *number.bonded));
+  if (number.bonded) json.member("changeText", number.change ? change_text(*number.change) : "no excitation in this direction");
+  if (const std::string swing = swing_text(number); !swing.empty()) json.member("swingText", swing);
   if (number.time) json.member("time", *number.time);
   if (number.bonded) json.member("bonded", *number.bonded);
   if (number.swing) json.member("swing", *number.swing);
@@ -39,9 +57,12 @@ void write_number(JsonWriter& json, const char* label, const VerdictNumber& numb
 }
 
 template <class Rows>
-void write_rows(JsonWriter& json, const Rows& rows, const std::vector<VerdictNumber>& numbers) {
+void write_rows(JsonWriter& json, const Rows& rows, const std::vector<VerdictNumber>& numbers, bool strip = false) {
   for (const Row& row : rows)
-    if (const VerdictNumber* number = find_number(numbers, row.name)) write_number(json, row.label, *number);
+    if (const VerdictNumber* number = find_number(numbers, row.name)) {
+      const bool force = number->quantity->unit == "N" || number->quantity->unit == "N m";
+      write_number(json, std::string(row.label) + (strip && force ? " per metre" : ""), *number);
+    }
 }
 
 void write_tension(JsonWriter& json, const InterfaceVerdict& said) {
@@ -49,7 +70,9 @@ void write_tension(JsonWriter& json, const InterfaceVerdict& said) {
                       *uplift = find_number(said.numbers, "predicted_uplifted_ratio"),
                       *happened = find_number(said.numbers, "max_uplifted_ratio");
   if (!pulls || !happened) return;
-  json.key("linear").begin_object().member("tension", pulls->value).key("predicted");
+  json.key("linear").begin_object().member("tension", pulls->value).member("tensionText", text_of(*pulls));
+  if (uplift) json.member("predictedText", text_of(*uplift));
+  json.member("computedText", text_of(*happened)).key("predicted");
   if (uplift)
     json.value(uplift->value);
   else
@@ -62,22 +85,41 @@ void write_interface(JsonWriter& json, const ReportInput& input, std::size_t k) 
   const InterfaceVerdict& said = numbers.interfaces[k];
   const ReportRun& run = input.runs.front();
   if (statics_alone(run.built->plan)) {  // its facts say all
-    json.begin_object().member("name", said.name);
+    json.begin_object().member("name", said.name).member("role", to_string(said.role));
     for (const char* key : {"time", "share", "above", "lost", "beside", "rest"}) json.key(key).begin_array().end_array();
     json.end_object();
     return;
   }
+  if (said.role == Role::wall) {
+    json.begin_object().member("name", said.name).member("role", to_string(said.role));
+    for (const char* key : {"time", "share", "above", "lost", "rest"}) json.key(key).begin_array().end_array();
+    json.key("beside").begin_array();
+    write_rows(json, of_walls, said.numbers);
+    json.end_array().end_object();
+    return;
+  }
   std::vector<double> time = run.result->steps.time, share = base_history(*run.built, *run.result, k, BaseHistory::uplifted_ratio);
   thin_history(time, share, points_of_history);
-  json.begin_object().member("name", said.name).key("time").numbers(time).key("share").numbers(share);
+  json.begin_object().member("name", said.name).member("role", to_string(said.role));
+  json.key("time").numbers(time).key("share").numbers(share);
   json.key("above").begin_array();
   for (const InterfaceVerdict::Above& above : said.above)
-    json.begin_object().member("threshold", above.threshold).member("duration", above.duration).end_object();
+    json.begin_object()
+        .member("threshold", above.threshold)
+        .member("duration", above.duration)
+        .member("text", fmt::format("above {} for {}", percent(above.threshold), spoken(above.duration, "s")))
+        .end_object();
   json.end_array().key("lost").begin_array();
   for (const Interval& interval : said.full_loss) json.numbers(std::vector<double>{interval.from, interval.to});
-  json.end_array().key("beside").begin_array();
-  if (const VerdictNumber* top = find_number(numbers.whole, "max_top_motion"); top && k == 0) write_number(json, "Motion of the top", *top);
-  write_rows(json, forces, said.numbers);
+  json.end_array();
+  if (const VerdictNumber* lost = find_number(said.numbers, "full_loss_time"); lost && lost->value > 0)
+    json.member("lostText",
+                fmt::format("full loss of contact {}, {} in total",
+                            said.full_loss.size() == 1 ? "once" : fmt::format("{} times", said.full_loss.size()), text_of(*lost)));
+  json.key("beside").begin_array();
+  const bool strip = run.built->is_strip();
+  if (k == 0) write_rows(json, of_run, numbers.whole, strip);
+  write_rows(json, forces, said.numbers, strip);
   json.end_array().key("rest").begin_array();
   write_rows(json, residuals, said.numbers);
   json.end_array();
@@ -94,6 +136,8 @@ void write_criterion(JsonWriter& json, const CriterionResult& result) {
     json.value(*result.value * (share ? 100 : 1));
   else
     json.null();
+  json.member("valueText", result.value ? said(quantity, *result.value) : "not computed");
+  json.member("limitText", said(quantity, result.criterion.limit));
   json.member("limit", result.criterion.limit * (share ? 100 : 1)).member("unit", share ? "%" : quantity.unit);
   json.member("atLeast", quantity.at_least);
   json.member("source", result.criterion.source).end_object();
@@ -173,7 +217,7 @@ std::vector<Chart> rest_charts(const ReportRun& run) {
   Vector widest = Vector::Zero(interface.batch.points);
   for (const Frame& frame : frames) widest = widest.cwiseMax(frame.opening.head(interface.batch.points));
   Chart gap = profile("rest_gap", "Gap along the base",
-                      "At the end of the run, beside the widest gap of each point in the pictures of the animation.", "Gap", "m");
+                      "At the end of the run, compared with the widest gap of each point in the frames of the animation.", "Gap", "m");
   Chart pressure = profile("rest_pressure", "Pressure along the base", "At the beginning and at the end of the run.", "Pressure", "Pa");
   if (stands) {
     gap.caption = pressure.caption = "Under the constant loads.";

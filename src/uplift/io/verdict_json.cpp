@@ -4,6 +4,7 @@
 #include <cmath>
 #include <utility>
 
+#include "uplift/analysis/wording.h"
 #include "uplift/io/report_parts.h"
 
 namespace uplift {
@@ -16,7 +17,8 @@ void write_numbers(JsonWriter& json, const std::vector<VerdictNumber>& numbers) 
     if (number.time) json.member("time", *number.time);
     if (number.swing) json.member("swing", *number.swing);
     if (number.bonded) json.member("bonded", *number.bonded);
-    if (number.bonded && *number.bonded != 0) json.member("change_percent", 100 * (number.value / *number.bonded - 1));
+    if (number.change) json.member("change_percent", 100 * *number.change);
+    if (number.bonded && !number.change) json.member("change_note", "no excitation in this direction");
     json.end_object();
   }
   json.end_object();
@@ -46,7 +48,11 @@ void write_over_time(JsonWriter& json, const Built& built, const RunResult& run,
 }
 
 void write_interface(JsonWriter& json, const InterfaceVerdict& said) {
-  json.begin_object().member("name", said.name);
+  json.begin_object().member("name", said.name).member("role", to_string(said.role));
+  if (said.role == Role::wall) {
+    write_numbers(json.key("numbers"), said.numbers);
+    return;
+  }
   json.key("static_force").begin_object().member("value", said.weight).member("unit", "N").end_object();
   json.key("mean_pressure").begin_object().member("value", said.mean_pressure).member("unit", "Pa").end_object();
   json.key("width").begin_object().key("value").numbers(said.width).member("unit", "m").end_object();
@@ -83,8 +89,14 @@ void write_floor_changes(JsonWriter& json, const FloorAnswers* floors) {
     for (const FloorChange& change : run.beside[k]) {
       json.begin_object().member("floor", run.floors[k].name).member("damping", change.damping).key("bands").begin_array();
       for (const FloorChange::Band& band : change.bands)
-        json.begin_object().member("band", to_string(band.band)).member("change_percent", 100 * band.change).end_object();
-      json.end_array().end_object();
+        json.begin_object()
+            .member("band", to_string(band.band))
+            .member("change_percent", 100 * band.change)
+            .member("change", change_text(band.change))
+            .end_object();
+      json.end_array();
+      if (change.bands.empty()) json.member("note", "no excitation in this direction");
+      json.end_object();
     }
   json.end_array();
 }
@@ -94,12 +106,17 @@ void write_verdict_numbers(JsonWriter& json, const Verdict& verdict, const std::
   json.begin_object().member("level", to_string(verdict.level)).member("headline", verdict.headline);
   json.member("consequence", verdict.consequence);
   json.member("run", runs.empty() ? "" : runs.front().name);
-  json.key("numbers");
+  json.member("per_metre", built && built->is_strip());
+  json.key("full_loss_of_contact").begin_array();
+  for (const Interval& each : verdict.numbers.full_loss)
+    json.begin_object().member("from", each.from).member("to", each.to).member("unit", "s").end_object();
+  json.end_array().key("numbers");
   write_numbers(json, verdict.numbers.whole);
   json.key("interfaces").begin_array();
   for (std::size_t k = 0; k < verdict.numbers.interfaces.size(); ++k) {
     write_interface(json, verdict.numbers.interfaces[k]);
-    if (built && !runs.empty() && runs.front().steps.size() > 0) write_over_time(json, *built, runs.front(), k);
+    const bool is_base = verdict.numbers.interfaces[k].role == Role::base;
+    if (is_base && built && !runs.empty() && runs.front().steps.size() > 0) write_over_time(json, *built, runs.front(), k);
     json.end_object();
   }
   json.end_array().key("criteria").begin_array();
