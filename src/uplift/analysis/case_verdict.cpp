@@ -24,11 +24,28 @@ const Section& criterion_section() {
             "number of the verdict: those of summary.json, for example max_uplifted_ratio, max_opening, toe_pressure_ratio, "
             "max_eccentricity, min_overturning_safety, min_sliding_safety, residual_rotation, residual_slip, residual_settlement"),
        limit_field(), text("source", "where the limit comes from: code and clause, client, judgement"),
-       text("interface", "interface that it is for; absent: every one").optional()}};
+       text("interface", "interface that it is for; absent: every one").optional(),
+       text("beam", "beam that it is for, of the quantities of beams; absent: every one with a [[output.beam_envelope]]").optional()}};
   return s;
 }
 
-Criterion criterion_of(const Values& table, const Names& interfaces) {
+/// The quantities of beams need an envelope.
+void check_beam(const Values& table, const RunPlan& plan, Criterion& criterion) {
+  if (!criterion.quantity->of_beam) {
+    if (table.has("beam")) fail(table, "beam", fmt::format("no beam: \"{}\" is no quantity of beams", criterion.quantity->name), "one");
+    return;
+  }
+  if (plan.envelopes.empty()) fail(table, "quantity", "a [[output.beam_envelope]], for the section forces of beams", "none");
+  if (!table.has("beam")) return;
+  Names beams("beam with an envelope");
+  for (const EnvelopeRequest& envelope : plan.envelopes) {
+    const std::string name = envelope.beam.substr(0, envelope.beam.find(", line "));
+    if (!beams.has(name)) beams.add(name, {}, {});
+  }
+  criterion.beam = beams[beams.find(table, "beam")];
+}
+
+Criterion criterion_of(const Values& table, const Names& interfaces, const Built& built) {
   Criterion criterion;
   const std::string& name = table.text("quantity");
   criterion.quantity = find_verdict_quantity(name);
@@ -45,6 +62,7 @@ Criterion criterion_of(const Values& table, const Names& interfaces) {
   criterion.source = table.text("source");
   if (criterion.source.find_first_not_of(" \t\n") == std::string::npos)
     fail(table, "source", "where the limit comes from", "an empty text");
+  check_beam(table, built.plan, criterion);
   if (table.has("interface")) {
     if (!criterion.quantity->of_interface) fail(table, "interface", "no interface: \"" + name + "\" belongs to the whole run", "one");
     criterion.interface = interfaces.find(table, "interface");
@@ -63,14 +81,14 @@ const Section& verdict_section() {
   return s;
 }
 
-VerdictWishes verdict_wishes(const Values& root, const Model& model) {
+VerdictWishes verdict_wishes(const Values& root, const Built& built) {
   VerdictWishes wishes;
   if (!root.has("verdict")) return wishes;
   const Values& verdict = root.table("verdict");
   wishes.thresholds = verdict.numbers("uplifted_ratio_thresholds");
   Names interfaces("interface");
-  for (const Interface& interface : model.interfaces) interfaces.add(interface.name, {}, {});
-  for (const Values& table : verdict.tables("criterion")) wishes.criteria.push_back(criterion_of(table, interfaces));
+  for (const Interface& interface : built.model.interfaces) interfaces.add(interface.name, {}, {});
+  for (const Values& table : verdict.tables("criterion")) wishes.criteria.push_back(criterion_of(table, interfaces, built));
   return wishes;
 }
 

@@ -133,7 +133,8 @@ BasePose InterfaceViewer::pose(const State& state, std::size_t interface, const 
 }
 
 Recorder::Recorder(const Model& model, const RunPlan& plan, const State& state, const Energies& energies, const Stepper* stepper,
-                   const std::vector<InterfaceView>& views, long steps, double step, PageTaker& pages, RunResult& result)
+                   const std::vector<InterfaceView>& views, const ForceStage& stage, long steps, double step, PageTaker& pages,
+                   RunResult& result)
     : model_(model),
       plan_(plan),
       state_(state),
@@ -145,6 +146,7 @@ Recorder::Recorder(const Model& model, const RunPlan& plan, const State& state, 
   wants_acceleration_ = records_accelerations(plan);
   for (const Frame& frame : result.frames)
     for (const double share : frame.uplifted) peak_uplift_ = std::max(peak_uplift_, share);
+  if (asks_for_forces(plan)) forces_ = std::make_unique<ForceRecorder>(stage, plan, stepper, state, result);
   const std::size_t expected_rows = static_cast<std::size_t>(steps / plan.every) + 2;
   const bool fresh = result_.table.empty();  // a later dynamic stage goes on in the same table
   if (fresh) {
@@ -175,7 +177,12 @@ Recorder::Source Recorder::source_of(const Request& request, const SparseRows& r
     Source source{.vector = vector};
     for (SparseRows::InnerIterator entry(reduction, request.unknown); entry; ++entry)
       source.terms.emplace_back(static_cast<int>(entry.col()), entry.value());
-    for (const PrescribedMotion& motion : model_.motions) source.moved = source.moved || motion.shape[request.unknown] != 0;
+    if (request.below >= 0)
+      for (SparseRows::InnerIterator entry(reduction, request.below); entry; ++entry)
+        source.terms.emplace_back(static_cast<int>(entry.col()), -entry.value());
+    for (const PrescribedMotion& motion : model_.motions)
+      source.moved = source.moved || motion.shape[request.unknown] != 0 || (request.below >= 0 && motion.shape[request.below] != 0);
+    for (auto& [unknown, factor] : source.terms) factor *= request.factor;
     if (source.moved || source.terms.size() != 1)
       source.vector = nullptr;
     else
@@ -251,6 +258,8 @@ Recorder::Source Recorder::source_of(const Request& request, const SparseRows& r
       return {.place = &energies_.residual};
     case What::plastic:
       return {.place = &energies_.plastic};
+    case What::force:
+      return {.place = forces_->value(request)};
   }
   return {};
 }
@@ -260,7 +269,10 @@ double Recorder::made(const Source& source) const {
   const Request& request = *source.request;
   const State& state = state_;
   const auto sum = [&](const Vector& q, int derivative) {
-    if (source.moved) return model_.full(request.unknown, q, derivative, state.time);
+    if (source.moved) {
+      const double below = request.below >= 0 ? model_.full(request.below, q, derivative, state.time) : 0;
+      return request.factor * (model_.full(request.unknown, q, derivative, state.time) - below);
+    }
     double total = 0;
     for (const auto& [unknown, factor] : source.terms) total += factor * q[unknown];
     return total;
@@ -287,6 +299,7 @@ void Recorder::record(bool row) {
   const State& state = state_;
   if (wants_acceleration_ && stepper_ != nullptr) stepper_->acceleration(acceleration_);
   floors_.record(acceleration_, state.time);
+  if (forces_) forces_->record();
   const std::size_t at = count_;
 #pragma GCC unroll 4
   for (const Source& each : placed_) each.to[at] = *each.place;

@@ -7,6 +7,7 @@
 
 #include "uplift/analysis/base_shape.h"
 #include "uplift/analysis/verdict.h"
+#include "uplift/analysis/verdict_beams.h"
 #include "uplift/analysis/verdict_criteria.h"
 
 namespace uplift {
@@ -255,6 +256,8 @@ VerdictNumbers numbers_of(const Built& built, const RunResult& run, const RunRes
   VerdictNumbers numbers;
   if (bonded && (bonded->status != RunStatus::completed || run.status != RunStatus::completed)) bonded = nullptr;
   add_top(built, run, bonded, numbers.whole);
+  add_storeys(run, bonded, numbers.whole);
+  numbers.beams = beam_verdicts(run, bonded);
   for (std::size_t k = 0; k < built.facts.size() && run.steps.size() > 0; ++k) {
     const Base base(built, run, k);
     InterfaceVerdict said = carried_by(base);

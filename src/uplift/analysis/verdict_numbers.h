@@ -39,9 +39,16 @@ struct CriterionResult {
 };
 std::string_view to_string(CriterionResult::State);
 
+/// The largest section forces of a beam whose envelope was asked for.
+struct BeamVerdict {
+  std::string name;
+  std::vector<VerdictNumber> numbers;
+};
+
 struct VerdictNumbers {
   std::vector<VerdictNumber> whole;  // of the run
   std::vector<InterfaceVerdict> interfaces;
+  std::vector<BeamVerdict> beams;
   std::vector<CriterionResult> criteria;
 };
 

@@ -13,7 +13,7 @@ namespace {
 
 constexpr bool whole = false, at_least = true;
 
-constexpr std::array<VerdictQuantity, 30> quantities{{
+constexpr std::array<VerdictQuantity, 38> quantities{{
     {"max_top_motion", "m", "largest horizontal motion of the top, in space of either axis", "top motion", whole},
     {"change_of_top_motion", "1", "change of the motion of the top against the bonded run", "change of top motion", whole},
     {"max_uplifted_ratio", "1", "largest share of the area with a gap", "uplifted area"},
@@ -45,6 +45,17 @@ constexpr std::array<VerdictQuantity, 30> quantities{{
     {"residual_opening", "m", "largest gap at the end", "gap left"},
     {"residual_uplifted_ratio", "1", "share of the area with a gap at the end", "uplifted area left"},
     {"max_penetration", "m", "largest compression of the joint where it is closed (interpenetration)", "compression of the joint"},
+    {"max_beam_compression", "N", "largest compression in a beam with an envelope", "compression of the beam", whole, false, true},
+    {"max_beam_tension", "N", "largest tension in a beam", "tension of the beam", whole, false, true},
+    {"max_beam_shear", "N", "largest shear force in a beam, in space of both axes together", "shear of the beam", whole, false, true},
+    {"change_of_beam_shear", "1", "change of the largest shear force compared with the bonded run", "change of beam shear", whole, false,
+     true},
+    {"max_beam_moment", "N m", "largest bending moment in a beam, in space of both axes together", "moment of the beam", whole, false,
+     true},
+    {"change_of_beam_moment", "1", "change of the largest bending moment compared with the bonded run", "change of beam moment", whole,
+     false, true},
+    {"max_storey_shear", "N", "largest of the storey shears that are recorded", "storey shear", whole},
+    {"max_drift_ratio", "1", "largest of the drift ratios that are recorded", "drift ratio", whole},
 }};
 
 }  // namespace

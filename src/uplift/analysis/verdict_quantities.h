@@ -11,6 +11,7 @@ struct VerdictQuantity {
   std::string_view brief;    // a few words for tables
   bool of_interface = true;  // else of the run as a whole
   bool at_least = false;     // a criterion asks for at least its limit; else for at most
+  bool of_beam = false;      // of a beam with a [[output.beam_envelope]]
 };
 /// All of them, in the order in which they are shown.
 std::span<const VerdictQuantity> verdict_quantities();
