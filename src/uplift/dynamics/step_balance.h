@@ -4,7 +4,7 @@
 namespace uplift {
 
 /// The motion and the interface forces that the scheme balanced in its last step, M a + C v + K u + B^T p = f. Forces that are derived from
-/// them are in equilibrium with the masses and the joint to round-off; end-of-step values would not be (docs/theory, section 11).
+/// them are in equilibrium with the masses and the joint to round-off; end-of-step values would not be (docs/theory, section 13).
 ///
 /// Average acceleration with path-averaged tractions: the means over the step, u = (u0 + u1)/2, v = (u1 - u0)/dt, a = (v1 - v0)/dt,
 /// f = (f0 + f1)/2 and the mean joint force. Other schemes: their own weights, (1 - alpha_f) of the end for u, v, f and p, (1 - alpha_m)

@@ -22,7 +22,7 @@ struct BeamSection {
 /// The section forces at one position of a beam as linear functions of its end unknowns, global axes:
 ///   stiffness (u + beta v) + N0 geometric u + mass (a + alpha v)
 /// with the absolute acceleration less that of gravity, Rayleigh's alpha and beta and the axial force N0 of P-Delta (docs/theory, section
-/// 11). Rows: what the part beyond the section, towards b, exerts on the part before it, in local axes. Plane: N, V, M; space: N, V_y, V_z,
+/// 13). Rows: what the part beyond the section, towards b, exerts on the part before it, in local axes. Plane: N, V, M; space: N, V_y, V_z,
 /// T, M_y, M_z. Tension > 0; V along the local axes; T and M right-handed about them, so that dM_z/dx = -V_y and M_z = E I w''.
 struct SectionRows {
   Matrix stiffness, geometric, mass;
