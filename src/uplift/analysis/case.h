@@ -94,7 +94,8 @@ struct InterfaceFacts {
 struct BeamLine {
   std::string name;  // of the beam
   std::vector<int> nodes;
-  bool of_group = false;  // of a group of the mesh: its inner nodes are the program's
+  bool of_group = false;                   // of a group of the mesh: its inner nodes are the program's
+  int first_element = 0, end_element = 0;  // elements of the model that the beam, all its lines, is made of
 };
 
 /// A limit that the user sets for a number of the verdict.
@@ -103,6 +104,7 @@ struct Criterion {
   double limit = 0;    // in the quantity's unit
   std::string source;  // where the limit comes from, in the user's words
   int interface = -1;  // -1: all
+  std::string beam;    // of the quantities of beams; empty: every beam with an envelope
 };
 /// What the case asks of the verdict.
 struct VerdictWishes {

@@ -161,12 +161,16 @@ void add_beams(const Values& root, ModelBuilder& builder, CaseNames& names) {
   BeamCells cells(root, names.solids.get());
   for (const Values& beam : root.tables("beam")) {
     beams.add(beam, "name");
-    if (first_of_two(beam, "nodes", "group")) {
-      names.beams.push_back({beam.text("name"), add_between(beam, builder, names), false});
-      continue;
-    }
-    names.mesh_for(beam);
-    for (std::vector<int>& line : add_along(beam, cells, builder, names)) names.beams.push_back({beam.text("name"), std::move(line), true});
+    const int first = builder.num_elements();
+    const bool between = first_of_two(beam, "nodes", "group");
+    if (!between) names.mesh_for(beam);
+    std::vector<std::vector<int>> lines;
+    if (between)
+      lines.push_back(add_between(beam, builder, names));
+    else
+      lines = add_along(beam, cells, builder, names);
+    for (std::vector<int>& line : lines)
+      names.beams.push_back({beam.text("name"), std::move(line), !between, first, builder.num_elements()});
   }
 }
 

@@ -418,7 +418,7 @@ Built build(const Case& read, const RunSpec& spec) {
   plan.every = root.table("output").integer("every");
   plan.frames = spec.pictures ? root.table("output").integer("frames") : 0;
   plan.frames = std::min(plan.frames, std::max(2, most_pictured / std::max(1, built.model.full_unknowns())));
-  add_requests(read, built);
+  add_requests(read, names, built);
   if (!spec.stiffness_ratio) add_floors(read, built);
   built.wishes = verdict_wishes(root, built);
   if (const Values* compare = table_if(root, "compare")) check_columns(*compare, "agree_on", plan.requests);

@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <array>
 
+#include "uplift/analysis/case_forces.h"
 #include "uplift/analysis/case_model.h"
 #include "uplift/dynamics/plastic_bulk.h"
 
@@ -165,12 +166,15 @@ int nearest_node(const Values& table, const std::string& what, Built& built) {
   return nearest;
 }
 
-Request asked_request(const Values& history, Built& built, const Names& nodes, const Names& interfaces) {
+Request asked_request(const Values& history, Built& built, const CaseNames& names, const Names& nodes, const Names& interfaces) {
   const std::string name = history.has("name") ? history.text("name") : "";
+  if (history.has("beam") || history.has("level") || history.has("group")) return force_request(history, built, names);
   const int given = history.has("node") + history.has("at") + history.has("interface");
-  if (given != 1) fail(history, "", "exactly one of node, at and interface", given == 0 ? "none" : fmt::format("{}", given));
+  if (given != 1)
+    fail(history, "", "exactly one of node, at, interface, beam, level and group", given == 0 ? "none" : fmt::format("{}", given));
   if (!history.has("interface")) {
     const int node = asked_node(history, history.text("quantity"), nodes, built);
+    if (history.has("below") || is_constraint_force(history.text("quantity"))) return force_request(history, built, names, node);
     return node_request(built.model, node, find_quantity(node_quantities(built.model.space), history, "a node"), name);
   }
   const int interface = interfaces.find(history, "interface");
@@ -203,7 +207,7 @@ void check_columns(const Values& table, std::string_view key, const std::vector<
   for (const std::string& name : table.texts(key)) columns.find(name, table.where(key), table.path(key));
 }
 
-void add_requests(const Case& read, Built& built) {
+void add_requests(const Case& read, const CaseNames& names, Built& built) {
   const Values& output = read.values.table("output");
   std::vector<Request>& requests = built.plan.requests;
   const Model& model = built.model;
@@ -229,12 +233,13 @@ void add_requests(const Case& read, Built& built) {
   for (const Interface& interface : model.interfaces) interfaces.add(interface.name, {}, {});
   for (const Request& request : requests) columns.add(request.name, {}, {});
   for (const Values& history : output.tables("history")) {
-    Request request = asked_request(history, built, nodes, interfaces);
+    Request request = asked_request(history, built, names, nodes, interfaces);
     const bool there = std::any_of(requests.begin(), requests.end(), [&](const Request& other) { return other.name == request.name; });
     if (there && !history.has("name")) continue;  // one of the automatic ones
     columns.add(request.name, history.where(), history.path());
     requests.push_back(std::move(request));
   }
+  add_envelopes(output, built);
   if (output.flag("energies")) {
     for (const Quantity& quantity : energy_quantities)
       requests.push_back(make(quantity.kind, fmt::format("energy.{}", quantity.word), quantity.unit));

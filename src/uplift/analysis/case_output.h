@@ -4,8 +4,10 @@
 
 namespace uplift {
 
+struct CaseNames;  // analysis/case_model.h
+
 /// The columns of the output: the automatic ones, then those that the case asks for. Sets plan.requests; uses top, base and facts.
-void add_requests(const Case&, Built&);
+void add_requests(const Case&, const CaseNames& names, Built&);
 /// The floors whose spectra the case asks for. Sets plan.floors and plan.floor_bands; uses the plan's stages.
 void add_floors(const Case&, Built&);
 /// The node of `node`, or the one nearest to `at`, which is noted for `what`; InputError when neither or both are given.

@@ -161,16 +161,36 @@ const Section& limits_section() {
 
 const Section& history_section() {
   static const Section s{
-      "history", "a column of the output: of a node, of an interface, or of one of its points",
+      "history", "a column of the output: of a node, a group, an interface or one of its points, a beam, or a storey",
       Fields{text("name", "name of the column; absent: made from the rest").optional(), text("node", "node").optional(),
              vector("at", "m", "instead of node: the node nearest to this place").optional(), text("interface", "interface").optional(),
              integer("point", "point of the interface, from 1").between(1, 1000000).optional(),
+             text("beam", "beam whose section force is wanted, at position or at").optional(),
+             number("position", "m", "distance of the section from the first node of the beam").nonnegative().optional(),
+             text("group", "group of the mesh whose reactions are summed").optional(),
+             number("level", "m", "height of a horizontal cut through all beams, for the storey shear").optional(),
+             text("below", "for the drift of node: the node below, whose displacement is subtracted").optional(),
              text("quantity",
                   "node: ux uy rz, vx vy vrz, ax ay arz, and the absolute accelerations abs_ax abs_ay, which are others than ax ay under a "
                   "ground acceleration; interface: axial shear moment rotation uplifted_ratio max_opening max_pressure, and "
                   "settlement tilt of the upper side (in space tilt_1 tilt_2, about x and y); "
                   "point: opening slip traction shear_traction mean_traction mean_shear_traction. In space: all three axes; also shear_1 "
-                  "shear_2 moment_1 moment_2 torsion rotation_1 rotation_2, and slip_1 slip_2 ... of a point")}};
+                  "shear_2 moment_1 moment_2 torsion rotation_1 rotation_2, and slip_1 slip_2 ... of a point. beam: axial shear moment, in "
+                  "space also shear_y shear_z torsion moment_y moment_z; level: storey_shear, in space storey_shear_x storey_shear_y; node "
+                  "and below: drift_x drift_ratio_x (drift_y ...); node or group: reaction_x reaction_y reaction_moment (in space "
+                  "reaction_mx ...) of supports and prescribed motions, tie_x ... of ties and rigid bodies. Forces are those that the time "
+                  "scheme balances: with the path-averaged traction the mean over the step that ends at the time of the row")}};
+  return s;
+}
+
+const Section& envelope_section() {
+  static const Section s{
+      "beam_envelope",
+      "largest and smallest section forces along a beam over all steps, with their times, compared with those of the bonded run",
+      Fields{text("beam", "name of the beam"),
+             integer("sections", "least number of sections along each line of the beam, besides its beginning")
+                 .between(1, 10000)
+                 .standard(20.0)}};
   return s;
 }
 
@@ -223,6 +243,7 @@ const Section& output_section() {
           flag("energies", "all energies").standard(true),
           integer("frames", "pictures of the animation; 0: none").between(0, 5000).standard(240.0),
           tables("history", history_section(), "further columns"), tables("floor_spectrum", floor_section(), "floor spectra"),
+          tables("beam_envelope", envelope_section(), "envelopes of section forces"),
           numbers("floor_bands", "Hz",
                   "frequencies that part the bands in which floor spectra are compared with those of the bonded run; absent: 2, 5, 10, 20")
               .optional(),

@@ -25,7 +25,8 @@ const Section& criterion_section() {
             "number of the verdict: those of summary.json, for example max_uplifted_ratio, max_opening, toe_pressure_ratio, "
             "max_eccentricity, min_overturning_safety, min_sliding_safety, residual_rotation, residual_slip, residual_settlement"),
        limit_field(), text("source", "where the limit comes from: code and clause, client, judgement"),
-       text("interface", "interface that it is for; absent: every base, for numbers of walls alone every wall").optional()}};
+       text("interface", "interface that it is for; absent: every base, for numbers of walls alone every wall").optional(),
+       text("beam", "beam that it is for, of the quantities of beams; absent: every one with a [[output.beam_envelope]]").optional()}};
   return s;
 }
 
@@ -41,6 +42,22 @@ void check_role(const Values& table, const Criterion& criterion, const Built& bu
   fail(table, "quantity",
        fmt::format("a number of a {} (\"{}\" is one): {}", wall ? "wall" : "base", built.facts[index].name, fmt::join(names, ", ")),
        in_quotes(asked.name));
+}
+
+/// The quantities of beams need an envelope.
+void check_beam(const Values& table, const RunPlan& plan, Criterion& criterion) {
+  if (!criterion.quantity->of_beam) {
+    if (table.has("beam")) fail(table, "beam", fmt::format("no beam: \"{}\" is no quantity of beams", criterion.quantity->name), "one");
+    return;
+  }
+  if (plan.envelopes.empty()) fail(table, "quantity", "a [[output.beam_envelope]], for the section forces of beams", "none");
+  if (!table.has("beam")) return;
+  Names beams("beam with an envelope");
+  for (const EnvelopeRequest& envelope : plan.envelopes) {
+    const std::string name = envelope.beam.substr(0, envelope.beam.find(", line "));
+    if (!beams.has(name)) beams.add(name, {}, {});
+  }
+  criterion.beam = beams[beams.find(table, "beam")];
 }
 
 Criterion criterion_of(const Values& table, const Names& interfaces, const Built& built) {
@@ -60,6 +77,7 @@ Criterion criterion_of(const Values& table, const Names& interfaces, const Built
   criterion.source = table.text("source");
   if (criterion.source.find_first_not_of(" \t\n") == std::string::npos)
     fail(table, "source", "where the limit comes from", "an empty text");
+  check_beam(table, built.plan, criterion);
   if (table.has("interface")) {
     if (!criterion.quantity->of_interface) fail(table, "interface", "no interface: \"" + name + "\" belongs to the whole run", "one");
     criterion.interface = interfaces.find(table, "interface");

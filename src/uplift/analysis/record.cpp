@@ -205,7 +205,8 @@ BasePose InterfaceViewer::pose(const State& state, std::size_t interface, const 
 }
 
 Recorder::Recorder(const Model& model, const RunPlan& plan, const State& state, const Energies& energies, const Stepper* stepper,
-                   const std::vector<InterfaceView>& views, long steps, double step, PageTaker& pages, RunResult& result)
+                   const std::vector<InterfaceView>& views, const ForceStage& stage, long steps, double step, PageTaker& pages,
+                   RunResult& result)
     : model_(model),
       plan_(plan),
       state_(state),
@@ -217,6 +218,7 @@ Recorder::Recorder(const Model& model, const RunPlan& plan, const State& state, 
   wants_acceleration_ = records_accelerations(plan);
   for (const Frame& frame : result.frames)
     for (const double share : frame.uplifted) peak_uplift_ = std::max(peak_uplift_, share);
+  if (asks_for_forces(plan)) forces_ = std::make_unique<ForceRecorder>(stage, plan, stepper, state, result);
   const std::size_t expected_rows = static_cast<std::size_t>(steps / plan.every) + 2;
   const bool fresh = result_.table.empty();  // a later dynamic stage goes on in the same table
   if (fresh) {
@@ -253,7 +255,12 @@ Recorder::Source Recorder::source_of(const Request& request, const SparseRows& r
     Source source{.vector = vector};
     for (SparseRows::InnerIterator entry(reduction, request.unknown); entry; ++entry)
       source.terms.emplace_back(static_cast<int>(entry.col()), entry.value());
-    for (const PrescribedMotion& motion : model_.motions) source.moved = source.moved || motion.shape[request.unknown] != 0;
+    if (request.below >= 0)
+      for (SparseRows::InnerIterator entry(reduction, request.below); entry; ++entry)
+        source.terms.emplace_back(static_cast<int>(entry.col()), -entry.value());
+    for (const PrescribedMotion& motion : model_.motions)
+      source.moved = source.moved || motion.shape[request.unknown] != 0 || (request.below >= 0 && motion.shape[request.below] != 0);
+    for (auto& [unknown, factor] : source.terms) factor *= request.factor;
     if (source.moved || source.terms.size() != 1)
       source.vector = nullptr;
     else
@@ -337,6 +344,8 @@ Recorder::Source Recorder::source_of(const Request& request, const SparseRows& r
     case What::tilt_1:
     case What::tilt_2:
       return {};
+    case What::force:
+      return {.place = forces_->value(request)};
   }
   return {};
 }
@@ -351,9 +360,13 @@ double Recorder::made(const Source& source) const {
   const Request& request = *source.request;
   const State& state = state_;
   const auto sum = [&](const Vector& q, int derivative) {
-    if (source.moved)
-      return 0.5 * (model_.full(request.unknown, q, derivative, derivative == 2 ? before_ : state.time) +
-                    model_.full(request.unknown, q, derivative, state.time));
+    if (source.moved) {
+      const auto at = [&](double time) {
+        const double below = request.below >= 0 ? model_.full(request.below, q, derivative, time) : 0;
+        return request.factor * (model_.full(request.unknown, q, derivative, time) - below);
+      };
+      return derivative == 2 ? 0.5 * (at(before_) + at(state.time)) : at(state.time);
+    }
     double total = 0;
     for (const auto& [unknown, factor] : source.terms) total += factor * q[unknown];
     return total;
@@ -388,6 +401,7 @@ void Recorder::record(bool row) {
   if (wants_acceleration_ && stepper_ != nullptr) stepper_->acceleration(acceleration_);
   if (stepper_ == nullptr || !stepper_->averages_acceleration()) before_ = state.time;
   floors_.record(acceleration_, before_, state.time);
+  if (forces_) forces_->record();
   const std::size_t at = count_;
 #pragma GCC unroll 4
   for (const Source& each : placed_) each.to[at] = *each.place;

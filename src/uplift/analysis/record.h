@@ -5,6 +5,7 @@
 
 #include "uplift/analysis/base_motion.h"
 #include "uplift/analysis/floor_record.h"
+#include "uplift/analysis/force_record.h"
 #include "uplift/analysis/run.h"
 #include "uplift/dynamics/step.h"
 #include "uplift/interface/facets.h"
@@ -51,7 +52,7 @@ class Recorder {
   /// For so many steps [s] of a dynamic stage: room is made for all of them. `views` holds what the interfaces look like whenever record is
   /// called; it keeps its place, as the state and the energies do. `stepper` says what the accelerations are; null: at rest.
   Recorder(const Model& model, const RunPlan& plan, const State& state, const Energies& energies, const Stepper* stepper,
-           const std::vector<InterfaceView>& views, long steps, double step, PageTaker& pages, RunResult& result);
+           const std::vector<InterfaceView>& views, const ForceStage& stage, long steps, double step, PageTaker& pages, RunResult& result);
   /// Notes the numbers of every column; they become a row of the table when `row` is set. Peaks and rows are made for many steps at a time.
   void record(bool row);
   /// Peaks and rows of the last steps, and the frame of the largest uplift; nothing is recorded after it.
@@ -91,6 +92,7 @@ class Recorder {
   const std::vector<InterfaceView>& views_;
   RunResult& result_;
   FloorRecorder floors_;
+  std::unique_ptr<ForceRecorder> forces_;        // null where no forces are asked for
   std::vector<Source> placed_, entries_, made_;  // columns of each kind
   std::vector<BaseMotion> bases_;                // of every interface, when a column is about the motion of a base; else empty
   std::vector<double> recent_;                   // the last steps, `many` numbers per column, `apart` from one to the next

@@ -86,6 +86,7 @@ Runner::Runner(const Model& model, const RunPlan& plan, const std::vector<const 
 RunResult Runner::go() {
   const auto start = std::chrono::steady_clock::now();
   execute();
+  if (std::string text = result_.equilibrium.warning(); !text.empty()) result_.notes.push_back(std::move(text));
   result_.wall = std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count() - shown_;
   result_.counts.factorisations = linear_.factorisations;
   if (!linear_.notice.empty()) result_.notes.push_back(linear_.notice);
@@ -193,9 +194,13 @@ void Runner::stand() {
   note_views();
   sum_up(0);
   for (const InterfaceView& view : views_) result_.steps.rest.push_back(view.resultant);
-  Recorder recorder(model_, plan_, state_, energies, nullptr, views_, 0, 0, pages, result_);
+  Recorder recorder(model_, plan_, state_, energies, nullptr, views_, {model_}, 0, 0, pages, result_);
   recorder.record(true);
   recorder.finish();
+  const Vector still = Vector::Zero(model_.free());
+  EquilibriumCheck equilibrium(ForceStage{model_});
+  equilibrium.note(StepBalance::of_state(state_, still));
+  equilibrium.finish(result_.equilibrium);
   if (plan_.frames > 0) recorder.picture(state_);
 }
 
@@ -233,7 +238,8 @@ void Runner::add_initial_state() {
 /// The geometric stiffness of the present static state, and equilibrium with it.
 bool Runner::second_order() {
   const Model& resting = rest_ != nullptr ? *rest_ : model_;
-  geometric_ = std::make_unique<Sparse>(geometric_stiffness(resting, state_, model_.reduction));
+  second_order_ = uplift::second_order(resting, state_);
+  geometric_ = std::make_unique<Sparse>(model_.reduction.transpose() * second_order_.stiffness * model_.reduction);
   if (const auto share = buckling_share(model_, *geometric_, *plan_.solver)) {
     fail(fmt::format("P-delta: the structure buckles under {:.4g} times its dead loads: with the whole of them K + K_g is not positive "
                      "definite, even with all interfaces bonded",
@@ -241,11 +247,14 @@ bool Runner::second_order() {
          nullptr);
     return false;
   }
+  for (const PrescribedMotion& motion : model_.motions)
+    if (Vector force = -(model_.reduction.transpose() * (second_order_.stiffness * motion.shape)); !force.isZero(0))
+      second_order_drives_.push_back({motion.name, std::move(force), motion.function});
   if (state_.displacement.isZero(0)) return true;
   Stage again;
   again.type = Stage::Type::statics;
   if (rest_ == nullptr) return statics(again, geometric_.get());
-  const Sparse geometric = geometric_stiffness(resting, state_);
+  const Sparse geometric = resting.reduction.transpose() * second_order_.stiffness * resting.reduction;
   return statics(again, &geometric);
 }
 
@@ -286,6 +295,10 @@ bool Runner::statics(const Stage& stage, const Sparse* geometric) {
     return false;
   }
   return true;
+}
+
+ForceStage Runner::force_stage(const Stage& stage) const {
+  return {model_, stage.p_delta ? &second_order_ : nullptr, held_.size() > 0 ? &held_ : nullptr};
 }
 
 /// Tells the observer, if there is one, of the present state. Its time is not that of the run.

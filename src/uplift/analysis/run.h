@@ -6,6 +6,8 @@
 #include <string>
 #include <vector>
 
+#include "uplift/analysis/beam_envelope.h"
+#include "uplift/analysis/equilibrium.h"
 #include "uplift/analysis/step_record.h"
 #include "uplift/contact/impact.h"
 #include "uplift/contact/method.h"
@@ -68,10 +70,15 @@ struct Request {
     filter,  // energies [J]
     settlement,
     tilt_1,
-    tilt_2  // of the base above an interface: BasePose [m, rad]
+    tilt_2,  // of the base above an interface: BasePose [m, rad]
+    force    // inside the structure or of its constraints, see `force` below
   } kind = Kind::displacement;
   std::string name, unit;
   int unknown = 0;                              // full unknown
+  int below = -1;                               // full unknown whose displacement is subtracted (drift); -1: none
+  double factor = 1;                            // of the difference
+  bool storey = false;                          // the force is a storey shear
+  std::shared_ptr<const ForceQuantity> force;   // kind `force`
   int interface = 0, point = 0, component = 0;  // `rotation` of an interface: slope of the opening's best plane [rad]
 };
 
@@ -98,10 +105,11 @@ struct RunPlan {
   std::vector<Request> requests;
   std::vector<FloorRequest> floors;  // with these, all dynamic stages have the same step
   std::vector<double> floor_bands;   // Hz, ascending: what parts the bands in which floor spectra are compared
-  int every = 1;                     // record every n-th step
-  double created_limit = 0.01;       // of the external work; a run that creates more fails
-  bool stop_at_limit = false;        // else it goes on to the end and is marked
-  double rotation_limit = 0.15;      // rad: beyond the small-displacement model: overturned
+  std::vector<EnvelopeRequest> envelopes;
+  int every = 1;                 // record every n-th step
+  double created_limit = 0.01;   // of the external work; a run that creates more fails
+  bool stop_at_limit = false;    // else it goes on to the end and is marked
+  double rotation_limit = 0.15;  // rad: beyond the small-displacement model: overturned
   // m, beyond the initial gap: an interface that is open everywhere by more is as far beyond that model: separated. 0: no limit
   double separation_limit = 0;
   double gap_tolerance = 1e-9;                        // m: a gap larger than this counts as uplifted
@@ -162,6 +170,8 @@ struct RunResult {
   std::vector<std::vector<double>> table;  // table[0]: time [s], table[1 + k]: column k
   std::vector<Peak> peaks;                 // one per column
   std::vector<FloorRecord> floors;         // one per floor of the plan
+  std::vector<BeamEnvelope> envelopes;     // one per envelope of the plan
+  Equilibrium equilibrium;                 // of the whole model, at a few instants
   StepRecord steps;                        // what the verdict is made of
   Peak max_uplifted_ratio, max_opening, max_base_moment, max_base_shear, max_pressure;
   double time_uplifted = 0;                                                                   // s with a gap open anywhere

@@ -147,13 +147,18 @@ bool Runner::dynamics(const Stage& stage, const Bulk& bulk) {
   options.monolithic = plan_.monolithic;
   options.oracle_tolerance = plan_.oracle_tolerance;
   if (held_.size() > 0) options.held = &held_;
+  if (stage.p_delta && !second_order_drives_.empty()) options.second_order = &second_order_drives_;
   if (ledger_ && !(march_ && march_->p_delta == stage.p_delta && march_->scheme == stage.scheme)) ledger_->acceleration = false;
   Stepper stepper(model_, bulk, b_, gap_, *laws_, *plan_.method, *plan_.impact, *plan_.solver, options, linear_);
   stepper.start(std::move(state_), ledger_ ? &*ledger_ : nullptr);
   seen_ = &stepper.state();
   const long steps = std::max(1L, std::lround(stage.duration / stage.step));
   PageTaker pages;
-  Recorder recorder(model_, plan_, *seen_, stepper.energies(), &stepper, views_, steps, stage.step, pages, result_);
+  const ForceStage force_stage = this->force_stage(stage);
+  Recorder recorder(model_, plan_, *seen_, stepper.energies(), &stepper, views_, force_stage, steps, stage.step, pages, result_);
+  EquilibriumCheck equilibrium(force_stage);
+  constexpr long checks = 4;  // of the equilibrium in a stage
+  long next_check = 1;
   const long picture_every = plan_.frames > 0 ? std::max(1L, steps / plan_.frames) : 0;
   if (!ledger_) initial_scale_ = stepper.energies().kinetic;
   if (!ledger_) round_off_energy_ = 1e-8 * (stepper.energies().strain + stepper.energies().stored);
@@ -188,6 +193,7 @@ bool Runner::dynamics(const Stage& stage, const Bulk& bulk) {
     }
     finish_energy(stepper);
     observe(step);
+    if (step * checks >= next_check * steps) equilibrium.note(stepper.balance({})), ++next_check;
     go_on = check_limits(stepper);
     if (step == 1) first_done = std::chrono::steady_clock::now(), shown_before = shown_;
     if (watch_ && step % between == 0 && go_on) {
@@ -207,6 +213,7 @@ bool Runner::dynamics(const Stage& stage, const Bulk& bulk) {
         (std::chrono::duration<double>(std::chrono::steady_clock::now() - first_done).count() - (shown_ - shown_before)) /
         static_cast<double>(stepper.counts().steps - 1);
   recorder.finish();
+  equilibrium.finish(result_.equilibrium);
   sum_up(stage.step);
   state_ = stepper.state();
   seen_ = &state_;

@@ -28,6 +28,7 @@ class Runner {
   State carried() const;
   void release();
   bool dynamics(const Stage& stage, const Bulk& bulk);
+  ForceStage force_stage(const Stage& stage) const;
   void show(const Stage& stage, const Stepper* stepper, long step, bool last);
   void note_views();
   bool is_wall(std::size_t interface) const { return has_walls_ && plan_.is_wall[interface]; }
@@ -51,10 +52,12 @@ class Runner {
   LinearCounts linear_;
   std::unique_ptr<Behaviours> laws_;
   std::unique_ptr<Sparse> geometric_;
-  const Model* rest_;            // the static stages' model before the first dynamic stage; null: model_
-  Vector held_;                  // what released supports have borne, on the free unknowns [N, N m]
-  State state_;                  // between stages
-  const State* seen_ = &state_;  // the present one, wherever it lives
+  SecondOrder second_order_;                // the same before elimination
+  std::vector<Drive> second_order_drives_;  // what it makes of the prescribed motions
+  const Model* rest_;                       // the static stages' model before the first dynamic stage; null: model_
+  Vector held_;                             // what released supports have borne, on the free unknowns [N, N m]
+  State state_;                             // between stages
+  const State* seen_ = &state_;             // the present one, wherever it lives
   std::vector<InterfaceView> views_;
   std::vector<int> rotations_;     // free unknowns that are rotations of bodies on an interface
   bool has_walls_ = false;         // some interface is no base

@@ -39,6 +39,12 @@ std::string_view to_string(CriterionResult::State state) {
 }
 
 void add_results(const Criterion& criterion, VerdictNumbers& numbers) {
+  if (criterion.quantity->of_beam) {
+    for (const BeamVerdict& beam : numbers.beams)
+      if (criterion.beam.empty() || beam.name == criterion.beam || beam.name.starts_with(criterion.beam + ", line "))
+        numbers.criteria.push_back(result_of(criterion, beam.numbers, beam.name));
+    return;
+  }
   if (!criterion.quantity->of_interface) {
     numbers.criteria.push_back(result_of(criterion, numbers.whole, ""));
     return;

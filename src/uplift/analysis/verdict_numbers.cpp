@@ -6,6 +6,7 @@
 #include <utility>
 
 #include "uplift/analysis/base_shape.h"
+#include "uplift/analysis/verdict_beams.h"
 #include "uplift/analysis/verdict_criteria.h"
 #include "uplift/analysis/verdict_foundation.h"
 #include "uplift/analysis/verdict_motion.h"
@@ -348,6 +349,8 @@ VerdictNumbers numbers_of(const Built& built, const RunResult& run, const RunRes
   VerdictNumbers numbers;
   if (bonded && (bonded->status != RunStatus::completed || run.status != RunStatus::completed)) bonded = nullptr;
   add_motions(built, run, bonded, numbers.whole);
+  add_storeys(run, bonded, numbers.whole);
+  numbers.beams = beam_verdicts(run, bonded);
   for (std::size_t k = 0; k < built.facts.size() && run.steps.size() > 0; ++k) {
     const bool is_base = k < built.bases();
     InterfaceVerdict said = is_base ? base_of(built, run, bonded, k) : wall_of(run.steps.extremes[k], built.model.interfaces[k]);

@@ -44,11 +44,18 @@ struct CriterionResult {
 };
 std::string_view to_string(CriterionResult::State);
 
+/// The largest section forces of a beam whose envelope was asked for.
+struct BeamVerdict {
+  std::string name;
+  std::vector<VerdictNumber> numbers;
+};
+
 struct VerdictNumbers {
   std::vector<VerdictNumber> whole;          // of the run
   std::vector<InterfaceVerdict> interfaces;  // bases first
   std::vector<Interval> full_loss;           // no base has any contact
   std::size_t bases() const { return static_cast<std::size_t>(std::ranges::count(interfaces, Role::base, &InterfaceVerdict::role)); }
+  std::vector<BeamVerdict> beams;
   std::vector<CriterionResult> criteria;
 };
 

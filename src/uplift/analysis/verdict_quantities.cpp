@@ -11,9 +11,9 @@
 namespace uplift {
 namespace {
 
-constexpr bool whole = false, at_least = true, wall_too = true;
+constexpr bool whole = false, at_least = true, wall_too = true, of_beam = true;
 
-constexpr std::array<VerdictQuantity, 38> quantities{{
+constexpr std::array<VerdictQuantity, 46> quantities{{
     {"max_top_motion", "m", "largest horizontal motion of the top, over all directions", "top motion", whole},
     {"change_of_top_motion", "1", "change of the motion of the top compared with the bonded reference run", "change of top motion", whole},
     {"max_drift", "m", "largest horizontal motion of the top relative to the base, rotation of the base included", "drift of the top",
@@ -58,6 +58,19 @@ constexpr std::array<VerdictQuantity, 38> quantities{{
      "share of horizontal force", true, false, false, wall_too},
     {"share_of_base_moment", "1", "share of the total moment that the walls carry when it is largest", "share of base moment", true, false,
      false, wall_too},
+    {"max_beam_compression", "N", "largest compression in a beam with an envelope", "compression of the beam", whole, false, true, false,
+     of_beam},
+    {"max_beam_tension", "N", "largest tension in a beam", "tension of the beam", whole, false, true, false, of_beam},
+    {"max_beam_shear", "N", "largest shear force in a beam, in space of both axes together", "shear of the beam", whole, false, true, false,
+     of_beam},
+    {"change_of_beam_shear", "1", "change of the largest shear force compared with the bonded run", "change of beam shear", whole, false,
+     true},
+    {"max_beam_moment", "N m", "largest bending moment in a beam, in space of both axes together", "moment of the beam", whole, false,
+     true},
+    {"change_of_beam_moment", "1", "change of the largest bending moment compared with the bonded run", "change of beam moment", whole,
+     false, true},
+    {"max_storey_shear", "N", "largest of the storey shears that are recorded", "storey shear", whole},
+    {"max_drift_ratio", "1", "largest of the drift ratios that are recorded", "drift ratio", whole},
 }};
 
 }  // namespace

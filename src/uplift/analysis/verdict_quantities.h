@@ -12,6 +12,7 @@ struct VerdictQuantity {
   bool of_interface = true;  // else of the run as a whole
   bool at_least = false;     // a criterion asks for at least its limit; else for at most
   bool of_base = true, of_wall = false;
+  bool of_beam = false;  // of a beam with a [[output.beam_envelope]]
 };
 /// All of them, in the order in which they are shown.
 std::span<const VerdictQuantity> verdict_quantities();

@@ -38,6 +38,7 @@ int run(const Options& options) {
   results.floors = floor_answers(results.built.front().plan, results.runs, results.specs);
   const RunResult& main = results.runs.front();
   results.verdict = judge(results.built.front(), main, results.runs.size() > 1 ? &results.runs[1] : nullptr, &results.floors.runs.front());
+  if (std::string text = main.equilibrium.warning(); !text.empty()) results.warnings.push_back(std::move(text));
   write_results(options, loaded, results, nullptr, folder);
 
   if (options.json) {

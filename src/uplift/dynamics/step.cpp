@@ -94,6 +94,8 @@ void Stepper::force_at(double time, Vector& force) const {
   double* sum = force.data();
   small::with_size(still_force_.size(), [=](auto count) { std::copy_n(still, static_cast<Eigen::Index>(count), sum); });
   model_.add_varying_force(time, force);
+  if (options_.second_order != nullptr)
+    for (const Drive& drive : *options_.second_order) force += drive.factor(time) * drive.shape;
 }
 
 void Stepper::forces_at(const State& state, Vector& result) const {  // f - C v - K u - r - B^T p; r is that of now_
@@ -122,6 +124,12 @@ void Stepper::acceleration(Vector& result) const {
   balance_.resize(bulk_.unknowns);
   forces_at(now_, balance_);
   accelerator().solve(balance_, result);
+}
+
+StepBalance Stepper::balance(const Vector& start) const {
+  if (!(last_step_ > 0)) return StepBalance::of_state(now_, start);
+  if (path_) return StepBalance::mean(next_, now_, last_step_, options_.scheme.gain);
+  return StepBalance::weighted(next_, now_, options_.scheme.alpha_f, options_.scheme.alpha_m);
 }
 
 void Stepper::start(State state, const Ledger* before) {
@@ -362,6 +370,7 @@ bool Stepper::substep(int halving) {
     }
     if (newton_ != nullptr) std::swap(plastic_now_, plastic_next_);
     counts_.deepest = std::max(counts_.deepest, halving);
+    last_step_ = now.step;
     return true;
   }
   impact_loss_ = impact_before;

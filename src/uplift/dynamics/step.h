@@ -10,6 +10,7 @@
 #include "uplift/dynamics/joint_filter.h"
 #include "uplift/dynamics/plastic_newton.h"
 #include "uplift/dynamics/scheme.h"
+#include "uplift/dynamics/step_balance.h"
 #include "uplift/math/symmetric_pair.h"
 
 namespace uplift {
@@ -23,6 +24,8 @@ struct StepOptions {
   bool monolithic = false;       // the oracle: Newton on all unknowns instead of the condensed step
   double oracle_tolerance = 0;   // > 0: every condensed step is also taken by the oracle; a larger relative difference fails it
   const Vector* held = nullptr;  // constant forces beside those of the model [N, N m], free unknowns: what released supports have borne
+  // What prescribed motions do through the geometric stiffness of P-Delta; null: nothing
+  const std::vector<Drive>* second_order = nullptr;
   PlasticOptions plastic;
 };
 
@@ -64,6 +67,8 @@ class Stepper {
   /// scheme.
   void acceleration(Vector& result) const;
   bool averages_acceleration() const { return path_ && b_.rows() > 0; }
+  /// The motion and forces that the last step balanced; valid until the next step. `start` is the acceleration before the first step.
+  StepBalance balance(const Vector& start) const;
   bool path_averaged() const { return path_; }
   /// Largest external work met [J], for the scale of the energy error.
   double largest_external() const { return largest_external_; }
@@ -140,6 +145,7 @@ class Stepper {
   InterfaceEnergy interface_energy_;
   double impact_loss_ = 0, initial_energy_ = 0, largest_external_ = 0;
   double start_time_ = 0;  // s
+  double last_step_ = 0;   // s: of the last part that succeeded; next_ is the state before it
   double origin_ = 0;      // J: what the balance is measured from; the initial energy unless a static stage came in between
   StepCounts counts_;
   std::string why_;

@@ -84,16 +84,70 @@ Vector Beam::end_forces(const Vector& displacement) const {
   return local_stiffness() * (axes_ * displacement);
 }
 
-void Beam::geometric(double axial, Matrix& stiffness) const {
+/// For an axial force of 1 N.
+Matrix Beam::local_geometric() const {
   Mat4 bending = Mat4::Zero();
   const Quadrature gauss = gauss_legendre(3);  // exact: the integrand has degree 4
   for (int i = 0; i < gauss.point.size(); ++i) {
     const BeamShape shape = beam_shape((1 + gauss.point[i]) / 2, length_, section_.shear_ratio(length_));
-    bending += axial * length_ * gauss.weight[i] / 2 * shape.slope * shape.slope.transpose();
+    bending += length_ * gauss.weight[i] / 2 * shape.slope * shape.slope.transpose();
   }
   Matrix local = Matrix::Zero(6, 6);
   add_bending(bending, local);
-  stiffness = to_global(local);
+  return local;
+}
+
+void Beam::geometric(double axial, Matrix& stiffness) const {
+  stiffness = axial * to_global(local_geometric());
+}
+
+namespace {
+
+/// N, V, M at a distance x from a that balance the end forces at a alone, from the rows (fx, fy, m) of these.
+Matrix beyond(const Matrix& at_a, double x) {
+  Matrix rows = -at_a;
+  rows.row(2) += x * at_a.row(1);
+  return rows;
+}
+
+}  // namespace
+
+/// Force of inertia [N], and its moment about the section [N m], of the part from a to the section, per acceleration of the ends (local
+/// axes).
+Matrix Beam::inertia_before(double xi) const {
+  Matrix rows = Matrix::Zero(3, 6);
+  if (section_.mass == BeamSection::Mass::lumped) {
+    const Matrix mass = local_mass();
+    if (xi > 0) rows += mass.topRows(3), rows.row(2) -= xi * length_ * mass.row(1);
+    if (xi >= 1) rows += mass.bottomRows(3);
+  }
+  if (section_.mass != BeamSection::Mass::consistent) return rows;
+  const Quadrature gauss = gauss_legendre(3);  // exact: the integrand has degree 4
+  for (int i = 0; i < gauss.point.size(); ++i) {
+    const double at = xi * (1 + gauss.point[i]) / 2, part = gauss.weight[i] / 2 * xi * length_;
+    const double mass = part * section_.mass_per_length, rotary = part * section_.rotary_per_length;
+    const BeamShape shape = beam_shape(at, length_, section_.shear_ratio(length_));
+    rows(0, 0) += mass * (1 - at);
+    rows(0, 3) += mass * at;
+    for (int k = 0; k < 4; ++k) {
+      rows(1, bending_rows[k]) += mass * shape.deflection[k];
+      rows(2, bending_rows[k]) += mass * (at - xi) * length_ * shape.deflection[k] + rotary * shape.rotation[k];
+    }
+  }
+  return rows;
+}
+
+SectionRows Beam::section(double xi) const {
+  const double x = xi * length_;
+  const Matrix geometric = local_geometric();
+  SectionRows rows{.stiffness = beyond(local_stiffness().topRows(3), x),
+                   .geometric = beyond(geometric.topRows(3), x),
+                   .mass = beyond(local_mass().topRows(3), x) + inertia_before(xi)};
+  const BeamShape shape = beam_shape(xi, length_, section_.shear_ratio(length_));
+  for (int k = 0; k < 4; ++k) rows.geometric(2, bending_rows[k]) += shape.deflection[k];  // the axial force at its lever w(x) - w(a)
+  rows.geometric(2, bending_rows[0]) -= 1;
+  for (Matrix* each : {&rows.stiffness, &rows.geometric, &rows.mass}) *each = (*each * axes_).eval();
+  return rows;
 }
 
 }  // namespace uplift

@@ -113,6 +113,45 @@ Vector SpaceBeam::end_forces(const Vector& displacement) const {
   return local_stiffness() * to_local(displacement);
 }
 
+namespace {
+
+/// N, V_y, V_z, T, M_y, M_z from the N, V, M of the two planes; the moment of the plane x-z turns about -y.
+Matrix both_sections(const Matrix& xy, const Matrix& xz) {
+  Matrix rows = Matrix::Zero(6, unknowns);
+  for (int k = 0; k < 6; ++k) {
+    rows(0, rows_xy[k]) += xy(0, k);
+    rows(1, rows_xy[k]) += xy(1, k);
+    rows(5, rows_xy[k]) += xy(2, k);
+    rows(2, rows_xz[k]) += signs_xz[k] * xz(1, k);
+    rows(4, rows_xz[k]) -= signs_xz[k] * xz(2, k);
+  }
+  return rows;
+}
+
+}  // namespace
+
+SectionRows SpaceBeam::section(double xi) const {
+  const SectionRows xy = xy_.section(xi), xz = xz_.section(xi);
+  SectionRows rows{.stiffness = both_sections(xy.stiffness, xz.stiffness),
+                   .geometric = both_sections(xy.geometric, xz.geometric),
+                   .mass = both_sections(xy.mass, xz.mass)};
+  rows.stiffness(3, turn_a) = -torsion_;
+  rows.stiffness(3, turn_b) = torsion_;
+  const double polar = polar_inertia_;
+  if (mass_ == BeamSection::Mass::consistent) {  // less what lies before the section: the integral of 1 - s and s from 0 to xi
+    rows.mass(3, turn_a) = polar * (-1.0 / 3 + xi - xi * xi / 2);
+    rows.mass(3, turn_b) = polar * (-1.0 / 6 + xi * xi / 2);
+  }
+  if (mass_ == BeamSection::Mass::lumped) {
+    if (xi <= 0) rows.mass(3, turn_a) = -polar / 2;
+    if (xi >= 1) rows.mass(3, turn_b) = polar / 2;
+  }
+  Matrix axes = Matrix::Zero(unknowns, unknowns);
+  for (int i = 0; i < unknowns; i += 3) axes.block<3, 3>(i, i) = axes_;
+  for (Matrix* each : {&rows.stiffness, &rows.geometric, &rows.mass}) *each = (*each * axes).eval();
+  return rows;
+}
+
 double SpaceBeam::axial_force(const Vector& displacement) const {
   const Vector local = to_local(displacement);
   Vector stretch = Vector::Zero(6);

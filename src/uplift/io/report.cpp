@@ -26,11 +26,17 @@ std::string floors_text(const ReportInput& input) {
   return text;
 }
 
+void write_beams_section(JsonWriter& json, const ReportInput& input) {
+  if (!input.runs.front().result->envelopes.empty())
+    write_section(json, "beams", "Section forces of beams", "Envelopes along the beams, compared with those of the bonded reference run.");
+}
+
 void write_sections(JsonWriter& json, const ReportInput& input) {
   constexpr std::string_view law = "Response of the interface law to a sequence of openings and closings.";
   json.begin_array();
   if (statics_alone(input.runs.front().built->plan)) {
     write_section(json, "rest", "State under the static loads", "State of the base at the end of the static stages.");
+    write_beams_section(json, input);
     write_section(json, "law", "Interface law", law);
     json.end_array();
     return;
@@ -43,6 +49,7 @@ void write_sections(JsonWriter& json, const ReportInput& input) {
   write_section(
       json, "interface", "Interface",
       "Forces in the interface and its opening. The uplifted area is the area with a gap; zero pressure alone does not count as uplift.");
+  write_beams_section(json, input);
   if (has_floors(input)) write_section(json, "floors", "Floor spectra", floors_text(input));
   if (input.compared && input.runs.size() > 1 && input.runs.back().result->group != input.runs.front().result->group)
     write_section(

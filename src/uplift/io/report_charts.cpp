@@ -338,6 +338,7 @@ void write_charts(JsonWriter& json, const ReportInput& input) {
   json.begin_array();
   if (statics_alone(built.plan)) {  // one instant: nothing over time
     for (const Chart& chart : rest_charts(input.runs.front())) write_chart(json, *input.read, chart);
+    for (const Chart& chart : beam_charts(runs)) write_chart(json, *input.read, chart);
     write_chart(json, *input.read, law_chart(input.runs.front()));
     json.end_array();
     return;
@@ -349,6 +350,7 @@ void write_charts(JsonWriter& json, const ReportInput& input) {
   for (const Chart& chart : safety_charts(runs)) write_chart(json, *input.read, chart);
   for (const Chart& chart : rest_charts(runs.front())) write_chart(json, *input.read, chart);
   write_loops(json, input, runs);
+  for (const Chart& chart : beam_charts(runs)) write_chart(json, *input.read, chart);
   write_floor_charts(json, input);
   if (input.trust)
     for (const Chart& chart : trust_charts(*input.trust)) write_chart(json, *input.read, chart);

@@ -64,6 +64,8 @@ Chart law_chart(const ReportRun& run);
 
 /// The base before and after: gap and pressure along the first interface, plane models with pictures.
 std::vector<Chart> rest_charts(const ReportRun& run);
+/// Section forces along the beams whose envelopes were asked for.
+std::vector<Chart> beam_charts(const std::vector<ReportRun>& runs);
 /// Eccentricity and safeties of the first interface over time.
 std::vector<Chart> safety_charts(const std::vector<ReportRun>& runs);
 

@@ -1,6 +1,7 @@
 #include "uplift/io/summary.h"
 
 #include "uplift/io/floors.h"
+#include "uplift/io/forces_json.h"
 #include "uplift/io/interface_points.h"
 #include "uplift/io/json_writer.h"
 #include "uplift/io/report_motions.h"
@@ -63,6 +64,8 @@ void write_run(JsonWriter& json, const RunResult& run, const Agreement* agreemen
         .member("deviation", agreement->deviation)
         .member("column", agreement->column)
         .end_object();
+  if (!run.envelopes.empty()) write_envelopes(json.key("beam_envelopes"), run.envelopes);
+  if (!run.equilibrium.instants.empty()) write_equilibrium(json.key("equilibrium"), run.equilibrium);
   json.key("notes").texts(run.notes);
   json.end_object();
 }

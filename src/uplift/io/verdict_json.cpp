@@ -69,7 +69,10 @@ void write_interface(JsonWriter& json, const InterfaceVerdict& said) {
 
 void write_criterion(JsonWriter& json, const CriterionResult& result) {
   const VerdictQuantity& quantity = *result.criterion.quantity;
-  json.begin_object().member("quantity", quantity.name).member("interface", result.interface).member("result", to_string(result.state));
+  json.begin_object()
+      .member("quantity", quantity.name)
+      .member(quantity.of_beam ? "beam" : "interface", result.interface)
+      .member("result", to_string(result.state));
   json.key("value");
   if (result.value)
     json.value(*result.value);
@@ -119,7 +122,17 @@ void write_verdict_numbers(JsonWriter& json, const Verdict& verdict, const std::
     if (is_base && built && !runs.empty() && runs.front().steps.size() > 0) write_over_time(json, *built, runs.front(), k);
     json.end_object();
   }
-  json.end_array().key("criteria").begin_array();
+  json.end_array();
+  if (!verdict.numbers.beams.empty()) {
+    json.key("beams").begin_array();
+    for (const BeamVerdict& beam : verdict.numbers.beams) {
+      json.begin_object().member("name", beam.name).key("numbers");
+      write_numbers(json, beam.numbers);
+      json.end_object();
+    }
+    json.end_array();
+  }
+  json.key("criteria").begin_array();
   for (const CriterionResult& result : verdict.numbers.criteria) write_criterion(json, result);
   json.end_array().key("floors");
   write_floor_changes(json, floors);

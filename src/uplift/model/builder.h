@@ -40,6 +40,7 @@ class ModelBuilder {
   /// Returns the number of the node; its full unknowns are space().at(number, ...). `alias`: see Node.
   int add_node(std::string name, Place position, Where where, std::string alias = {});
   void add_element(std::unique_ptr<const Element> element, Where where);
+  int num_elements() const { return static_cast<int>(elements_.size()); }
   /// The unknown stays zero. `repeats`: a support that follows from other constraints is left out instead of refused (a plane of symmetry
   /// that holds several nodes of a rigid body).
   void fix(int node, Dof dof, Where where, bool repeats = false);

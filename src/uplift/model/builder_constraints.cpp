@@ -38,6 +38,8 @@ class ConstraintList {
     return rows_++;
   }
 
+  int rows() const { return rows_; }
+
   Sparse matrix(int unknowns) const {
     Sparse matrix(rows_, unknowns);
     matrix.setFromTriplets(entries_.begin(), entries_.end());
@@ -91,6 +93,7 @@ void ModelBuilder::eliminate(Model& model, Matrix& motion_shapes) const {
       if (i == 0) model.assembly.ties.push_back({s, number, r});
     }
   }
+  model.assembly.first_support = list.rows();
   for (const Support& support : supports_) {
     const int unknown = space_.at(support.node, support.dof);
     Elimination::Row row{{{unknown, 1}}, {}};
@@ -98,10 +101,12 @@ void ModelBuilder::eliminate(Model& model, Matrix& motion_shapes) const {
     list.add(row, unknown, fmt::format("a {} of {}", support.motion < 0 ? "support" : "prescribed motion", name_of(unknown)), "", names,
              support.where, support.repeats);
   }
+  model.assembly.first_equal = list.rows();
   for (const Equal& tie : equals_) {
     const int a = space_.at(tie.first, tie.dof), b = space_.at(tie.second, tie.dof);
     list.add({{{a, -1}, {b, 1}}, {}}, b, fmt::format("a tie of {} to {}", name_of(a), name_of(b)), "", names, tie.where, true);
   }
+  model.assembly.first_link = list.rows();
   for (const Pair& link : links_) {
     const int a = link.first, b = link.second;
     const Vec3 e = (nodes_[b].position - nodes_[a].position).normalized();

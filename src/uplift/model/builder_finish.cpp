@@ -89,6 +89,7 @@ void ModelBuilder::make_drives(Model& model, const Full& full, const Matrix& mot
     Sparse pattern(unknowns, feed.functions);
     pattern.setFromTriplets(feed.pattern.begin(), feed.pattern.end());
     model.feeds.push_back({feed.name, model.reduction.transpose() * pattern, feed.values});
+    model.assembly.feeds.push_back(std::move(pattern));
   }
   for (Index k = 0; k < motion_shapes.cols(); ++k) {
     const Motion& motion = motions_[k];
@@ -163,7 +164,12 @@ Model ModelBuilder::finish() {
     first += face.rows();
   }
   make_drives(model, full, motion_shapes);
-  if (!damping_.modal.empty()) model.damping += modal_damping(model, damping_.modal, damping_.modal_count, {});
+  model.assembly.mass_damping = damping_.alpha;
+  model.assembly.stiffness_damping = damping_.beta;
+  if (!damping_.modal.empty()) {
+    model.assembly.modal_damping = modal_damping(model, damping_.modal, damping_.modal_count, {});
+    model.damping += model.assembly.modal_damping;
+  }
   model.grounds = grounds_;
   model.nodes = std::move(nodes_);
   model.elements = std::move(elements_);

@@ -15,6 +15,11 @@ class TimeFunction {
   virtual double acceleration(double time) const = 0;
 };
 
+/// The function itself (0), its first (1) or second (2) derivative.
+inline double derivative_of(const TimeFunction& function, int derivative, double time) {
+  return derivative == 0 ? function.value(time) : derivative == 1 ? function.rate(time) : function.acceleration(time);
+}
+
 /// 1 at all times: what has no function of its own.
 class One final : public TimeFunction {
  public:

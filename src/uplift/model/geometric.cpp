@@ -99,6 +99,11 @@ Sparse geometric_stiffness(const Model& model, const State& state) {
 }
 
 Sparse geometric_stiffness(const Model& model, const State& state, const Sparse& reduction) {
+  return reduction.transpose() * second_order(model, state).stiffness * reduction;
+}
+
+SecondOrder second_order(const Model& model, const State& state) {
+  SecondOrder made;
   const Assembly& full = model.assembly;
   const Vector displacement = model.full(state.displacement, 0, state.time), constraint = constraint_forces(model, state);
   const Space space = model.space;
@@ -122,6 +127,7 @@ Sparse geometric_stiffness(const Model& model, const State& state, const Sparse&
         link_tension.erase(link);
       }
     }
+    made.axial.push_back(axial);
     Matrix stiffness;
     element->geometric(axial, stiffness);
     entries.add_element(nodes, each, stiffness);
@@ -132,7 +138,8 @@ Sparse geometric_stiffness(const Model& model, const State& state, const Sparse&
   // the tie's force on the slave balances everything else that acts on it
   for (const Assembly::Tie& tie : full.ties) entries.add_rotation(tie.slave, -force_of(constraint, tie.row, space), tie.offset);
   for (const Assembly::Arm& arm : full.arms) entries.add_rotation(arm.node, arm_force(model, state, arm), arm.offset);
-  return reduction.transpose() * entries.matrix(model.full_unknowns()) * reduction;
+  made.stiffness = entries.matrix(model.full_unknowns());
+  return made;
 }
 
 }  // namespace uplift

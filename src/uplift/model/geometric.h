@@ -3,6 +3,13 @@
 
 namespace uplift {
 
+/// The second order of a static state before elimination.
+struct SecondOrder {
+  Sparse stiffness;           // full x full
+  std::vector<double> axial;  // N, of every element, tension > 0; that of an inextensible beam included
+};
+SecondOrder second_order(const Model& model, const State& state);
+
 /// Constant geometric stiffness of a static state (P-Delta), free x free [N/m, N, N m], to be added to the model's stiffness.
 ///
 /// Two parts, both second order in the displacements from the state:

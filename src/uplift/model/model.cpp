@@ -7,14 +7,6 @@
 
 namespace uplift {
 
-namespace {
-
-double derivative_of(const TimeFunction& function, int derivative, double time) {
-  return derivative == 0 ? function.value(time) : derivative == 1 ? function.rate(time) : function.acceleration(time);
-}
-
-}  // namespace
-
 double Drive::factor(double time) const {
   return derivative_of(*function, static_cast<int>(order), time);
 }

@@ -84,6 +84,11 @@ struct Assembly {
   };
   std::vector<Arm> arms;
   std::vector<Where> interface_where;
+  // Rows of `constraints` from here on: rigid ties come first, then supports and prescribed motions, equal ties, inextensible beams.
+  int first_support = 0, first_equal = 0, first_link = 0;
+  std::vector<Sparse> feeds;                       // full pattern of feed i
+  double mass_damping = 0, stiffness_damping = 0;  // Rayleigh: alpha [1/s], beta [s]
+  Sparse modal_damping;                            // free x free, part of Model::damping; empty without
 };
 
 /// What is built once, checked once and never changes; shared by every thread.

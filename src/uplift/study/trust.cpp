@@ -104,7 +104,9 @@ std::vector<Repetition> compute_all(const std::vector<Case>& cases, const std::v
 std::optional<double> number_in(const Repetition& outcome, const VerdictQuantity& quantity, const std::string& interface) {
   const std::vector<VerdictNumber>* numbers = interface.empty() ? &outcome.numbers.whole : nullptr;
   for (const InterfaceVerdict& each : outcome.numbers.interfaces)
-    if (!interface.empty() && each.name == interface) numbers = &each.numbers;
+    if (!interface.empty() && !quantity.of_beam && each.name == interface) numbers = &each.numbers;
+  for (const BeamVerdict& each : outcome.numbers.beams)
+    if (quantity.of_beam && each.name == interface) numbers = &each.numbers;
   const VerdictNumber* found = numbers && outcome.run.counts() ? find_number(*numbers, quantity.name) : nullptr;
   if (!found || !std::isfinite(found->value)) return std::nullopt;
   return found->value;
@@ -137,6 +139,7 @@ std::vector<TrustBand> bands_of(const std::vector<Repetition>& repetitions) {
   };
   take(repetitions.front().numbers.whole, "");
   for (const InterfaceVerdict& each : repetitions.front().numbers.interfaces) take(each.numbers, each.name);
+  for (const BeamVerdict& each : repetitions.front().numbers.beams) take(each.numbers, each.name);
   return bands;
 }
 

@@ -22,7 +22,7 @@ struct TrustRun {
 /// A number of the verdict with its band.
 struct TrustBand {
   const VerdictQuantity* quantity = nullptr;
-  std::string interface;                      // empty: of the run
+  std::string interface;                      // or beam; empty: of the run
   double value = 0;                           // of the case as it stands
   double least = 0, most = 0;                 // over all runs that count, the case's own included
   double swing = 0;                           // half of the range in which a residual of the case still moves; 0 for other numbers

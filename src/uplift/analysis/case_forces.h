@@ -1,0 +1,19 @@
+#pragma once
+#include <string>
+
+#include "uplift/analysis/case.h"
+#include "uplift/analysis/case_names.h"
+
+// Section forces, storey shears, drifts and reactions that a case asks for.
+namespace uplift {
+
+struct CaseNames;  // analysis/case_model.h
+
+/// Whether the quantity is a force of supports, ties or rigid bodies on a node.
+bool is_constraint_force(const std::string& quantity);
+/// The column of a history of a beam, a level, a group, or of the node that was found for it. Throws InputError.
+Request force_request(const Values& history, const Built& built, const CaseNames& names, int node = -1);
+/// Sets plan.envelopes.
+void add_envelopes(const Values& output, Built& built);
+
+}  // namespace uplift

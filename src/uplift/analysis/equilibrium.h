@@ -1,0 +1,52 @@
+#pragma once
+#include <memory>
+#include <string>
+#include <vector>
+
+#include "uplift/elements/space.h"
+
+namespace uplift {
+
+struct ForceStage;
+class StepBalance;
+
+/// Equilibrium of the whole model at a few instants of a run.
+struct Equilibrium {
+  /// Force [N] and moment about the middle of the nodes [N m].
+  struct Sum {
+    Vec3 force = Vec3::Zero(), moment = Vec3::Zero();
+  };
+  /// Sums over the model. They act on the structure, so that together they are zero: inertia -M a, damping -C v with the absorbing
+  /// boundaries, springs to the ground and other parts whose internal forces have a resultant, interfaces whose sides lie apart, the second
+  /// order of P-Delta, applied forces with gravity, ground acceleration and waves, and what supports, prescribed motions and ties bear.
+  struct Instant {
+    double time = 0;  // s
+    Sum inertia, damping, internal, joint, second_order, applied, reactions, residual;
+  };
+  std::vector<Instant> instants;
+  double residual = 0;  // largest residual force or moment, over the largest of the other sums at any of the instants
+  double time = 0;      // s: of that instant
+  /// What an engineer should know about a residual that is no round-off; empty up to 1e-6.
+  std::string warning() const;
+};
+
+/// Collects instants during a stage and sums up their forces at its end, element by element: nothing large is made.
+class EquilibriumCheck {
+ public:
+  explicit EquilibriumCheck(const ForceStage& stage);
+  ~EquilibriumCheck();
+  void note(const StepBalance& balance);
+  /// Adds the instants to those of earlier stages.
+  void finish(Equilibrium& equilibrium);
+
+ private:
+  struct Snapshot;
+  void add_elements();
+  void add_forces(Snapshot& at) const;
+
+  std::unique_ptr<const ForceStage> stage_;
+  Vec3 centre_ = Vec3::Zero();
+  std::vector<Snapshot> snapshots_;
+};
+
+}  // namespace uplift
