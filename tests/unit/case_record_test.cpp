@@ -203,7 +203,7 @@ TEST_F(RecordCase, WarnsOfStepsThatDoNotFit) {
   EXPECT_EQ(said("0.005", "the record \"ex\" lasts 6.00 s, the dynamic stages 3.00 s"), 1);
   EXPECT_EQ(said("0.005", "stops with a jerk"), 0);
   const double last = write_record("ex.txt", 0.02, 101, 1).back();
-  EXPECT_EQ(said("0.005", fmt::format("the record \"ex\" ends at 2.00 s with {:.3f} m/s2, and the run goes on to 3.00 s", last)), 1);
+  EXPECT_EQ(said("0.005", fmt::format("the record \"ex\" ends at 2.00 s with {:.3f} m/s², and the run goes on to 3.00 s", last)), 1);
 }
 
 /// A prescribed displacement drifts away with the velocity that is left.
