@@ -118,16 +118,16 @@ void EquilibriumCheck::add_elements() {
   }
 }
 
-void EquilibriumCheck::add_forces(Snapshot& at) const {
+void EquilibriumCheck::add_forces(const ForceModel& forces, Snapshot& at) const {
   const Model& model = stage_->model;
-  const auto sum_up = [&](const Vector& forces, Equilibrium::Sum& sum) {
-    for (Index i = 0; i < forces.size(); ++i)
-      if (forces[i] != 0)
-        add(forces[i], model.space, model.nodes[static_cast<std::size_t>(model.space.node_of(i))].position - centre_, i, sum);
+  const auto sum_up = [&](const Vector& values, Equilibrium::Sum& sum) {
+    for (Index i = 0; i < values.size(); ++i)
+      if (values[i] != 0)
+        add(values[i], model.space, model.nodes[static_cast<std::size_t>(model.space.node_of(i))].position - centre_, i, sum);
   };
-  const auto put = [&](const Vector& forces, Equilibrium::Sum& sum) {  // internal forces
-    at.unbalanced += forces;
-    sum_up(-forces, sum);
+  const auto put = [&](const Vector& internal, Equilibrium::Sum& sum) {
+    at.unbalanced += internal;
+    sum_up(-internal, sum);
   };
   if (stage_->held != nullptr && stage_->held->size() > 0)
     for (Index i = 0; i < model.free(); ++i) {
@@ -144,7 +144,7 @@ void EquilibriumCheck::add_forces(Snapshot& at) const {
     for (Index i = 0; i < damped.size(); ++i) full[model.kept[static_cast<std::size_t>(i)]] = damped[i];
     put(full, at.sums.damping);
   }
-  const Vector reactions = ForceModel(*stage_).constraint_forces(at.unbalanced);
+  const Vector reactions = forces.constraint_forces(at.unbalanced);
   sum_up(reactions, at.sums.reactions);
   sum_up(reactions - at.unbalanced, at.sums.residual);
 }
@@ -152,8 +152,9 @@ void EquilibriumCheck::add_forces(Snapshot& at) const {
 void EquilibriumCheck::finish(Equilibrium& equilibrium) {
   if (snapshots_.empty()) return;
   add_elements();
+  const ForceModel forces(*stage_);
   for (Snapshot& at : snapshots_) {
-    add_forces(at);
+    add_forces(forces, at);
     equilibrium.instants.push_back(at.sums);
   }
   snapshots_.clear();

@@ -7,6 +7,7 @@
 
 namespace uplift {
 
+class ForceModel;
 struct ForceStage;
 class StepBalance;
 
@@ -42,7 +43,7 @@ class EquilibriumCheck {
  private:
   struct Snapshot;
   void add_elements();
-  void add_forces(Snapshot& at) const;
+  void add_forces(const ForceModel& forces, Snapshot& at) const;
 
   std::unique_ptr<const ForceStage> stage_;
   Vec3 centre_ = Vec3::Zero();
