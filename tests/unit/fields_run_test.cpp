@@ -131,7 +131,7 @@ TEST_P(FieldsOfARun, InterfaceCarriesWhatItsJointsCarry) {
   for (const Interface& joint : written.built.model.interfaces) {  // of base and walls
     for (int i = 0; i < joint.batch.points; ++i) {
       const double nx = joint.normal[static_cast<std::size_t>(i)][0], ny = joint.normal[static_cast<std::size_t>(i)][1];
-      const double t = last.force[first + i], n = last.force[first + joint.batch.points + i];
+      const double t = last.mean_force[first + i], n = last.mean_force[first + joint.batch.points + i];
       wanted += Vec3(t * ny + n * nx, n * ny - t * nx, 0);  // t = (ny, -nx)
       squeezed -= n;
     }

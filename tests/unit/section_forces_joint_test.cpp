@@ -132,7 +132,7 @@ function = "shake"
 
 TEST(SectionForces, FootOfAPierPlusTheInertiaOfItsFootingIsWhatTheJointCarries) {
   std::string text =
-      support::replaced(rocking, "LAW", "law = { type = \"springs\", K_n = 1e8, K_t = 1e8, tangential = \"elastic\" }") + shaking;
+      support::replaced(rocking, "LAW", "law = { type = \"springs\", K_n = 1e8, K_t = 1e8, tangential = \"bonded\" }") + shaking;
   for (const char* word : {"axial", "shear", "moment"})
     text += history(fmt::format("beam = \"pier\"\nposition = 0\nquantity = \"{}\"", word));
   text += node_histories({"base"}, {"vx", "vy", "vrz"});

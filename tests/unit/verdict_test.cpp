@@ -65,7 +65,8 @@ Built footing() {
   Built built;
   built.model.nodes = {{"top", Vec2(0, 5)}};
   built.top = 0;
-  built.facts = {{"soil", "base", {}, 0.5, 0, 3, 0, {}, {}}};
+  InterfaceFacts& facts = built.facts.emplace_back();
+  facts.name = "soil", facts.body = "base", facts.friction = 0.5, facts.area = 3;
   built.weight = 1e6;
   built.plan.stages.emplace_back().type = Stage::Type::dynamics;
   return built;

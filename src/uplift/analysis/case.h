@@ -84,9 +84,9 @@ struct InterfaceFacts {
   double tension = 0;             // Pa: tensile strength of the law, 0 without
   std::vector<int> upper, lower;  // nodes of either side, each once
   Role role = Role::base;
-  double depth = 0;             // m out of the plane; 0 in space and for isolated pairs, which have only an area
-  std::vector<FacePair> faces;  // of the mesh, opened along it
-  bool nodal = true;            // its points stand at node pairs; of faces only
+  double depth = 0;                      // m out of the plane; 0 in space and for isolated pairs, which have only an area
+  std::vector<FacePair> faces;           // of the mesh, opened along it
+  bool nodal = true;                     // its points stand at node pairs; of faces only
   std::shared_ptr<const Facets> facets;  // the surface between the points; null for node pairs on their own
 };
 
@@ -108,6 +108,7 @@ struct Criterion {
 };
 /// What the case asks of the verdict.
 struct VerdictWishes {
+  double window = 0;               // s, see StepRecord::average
   std::vector<double> thresholds;  // of the uplifted share: how long it is above
   std::vector<Criterion> criteria;
 };

@@ -421,6 +421,7 @@ Built build(const Case& read, const RunSpec& spec) {
   add_requests(read, names, built);
   if (!spec.stiffness_ratio) add_floors(read, built);
   built.wishes = verdict_wishes(root, built);
+  plan.window = built.wishes.window;
   if (const Values* compare = table_if(root, "compare")) check_columns(*compare, "agree_on", plan.requests);
   return built;
 }

@@ -93,14 +93,21 @@ const Section& verdict_section() {
       "verdict",
       "what the verdict is asked; thresholds and limits are the user's, none is built in",
       {numbers("uplifted_ratio_thresholds", "1", "shares of the area: for how long the uplifted share is above").between(0, 1).optional(),
+       number("window", "s",
+              "forces, moments and pressures of the verdict are means over this time (or over the step where that is longer), so that the "
+              "peak of an impact does not depend on the step; the default passes motions up to 10 Hz within 2 %")
+           .nonnegative()
+           .standard(0.01),
        tables("criterion", criterion_section(), "limits")}};
   return s;
 }
 
 VerdictWishes verdict_wishes(const Values& root, const Built& built) {
   VerdictWishes wishes;
+  wishes.window = 0.01;
   if (!root.has("verdict")) return wishes;
   const Values& verdict = root.table("verdict");
+  wishes.window = verdict.number("window");
   wishes.thresholds = verdict.numbers("uplifted_ratio_thresholds");
   Names interfaces("interface");
   for (const Interface& interface : built.model.interfaces) interfaces.add(interface.name, {}, {});

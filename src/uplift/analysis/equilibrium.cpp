@@ -76,7 +76,7 @@ void EquilibriumCheck::note(const StepBalance& balance) {
   at.applied = Vector::Zero(model.full_unknowns());
   const double begin = balance.share_of_begin();
   for (std::size_t i = 0; i < model.drives.size(); ++i)
-    if (model.assembly.loads[i].size() > 0)
+    if (i < model.assembly.loads.size() && model.assembly.loads[i].size() > 0)
       at.applied += balance.value(*model.drives[i].function, static_cast<int>(model.drives[i].order)) * model.assembly.loads[i];
   for (std::size_t i = 0; i < model.feeds.size(); ++i) {
     Vector last, first;

@@ -86,6 +86,7 @@ Runner::Runner(const Model& model, const RunPlan& plan, const std::vector<const 
 RunResult Runner::go() {
   const auto start = std::chrono::steady_clock::now();
   execute();
+  result_.steps.average(plan_.window);
   if (std::string text = result_.equilibrium.warning(); !text.empty()) result_.notes.push_back(std::move(text));
   result_.wall = std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count() - shown_;
   result_.counts.factorisations = linear_.factorisations;

@@ -112,6 +112,7 @@ struct RunPlan {
   double rotation_limit = 0.15;  // rad: beyond the small-displacement model: overturned
   // m, beyond the initial gap: an interface that is open everywhere by more is as far beyond that model: separated. 0: no limit
   double separation_limit = 0;
+  double window = 0;                                  // s: forces of the verdict are means over it, or over the step where that is longer
   double gap_tolerance = 1e-9;                        // m: a gap larger than this counts as uplifted
   std::vector<std::shared_ptr<const Facets>> facets;  // of every interface, see InterfaceFacts; may be empty
   std::vector<char> is_wall;            // per interface: not a base, left out of what is said of the bases; empty: all are bases

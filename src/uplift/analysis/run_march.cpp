@@ -31,6 +31,20 @@ void Runner::note_views() {
   if (has_walls_) steps.add_slip(model_.interfaces, seen_->opening, plan_.is_wall);
 }
 
+/// Momentum that impacts of constraints transferred in the last step, of each interface.
+void Runner::note_impulses(const Stepper& stepper) {
+  const Vector& impulse = stepper.impact_impulse();
+  if (impulse.size() == 0) return;
+  Index first = 0;
+  for (std::size_t k = 0; k < model_.interfaces.size(); ++k) {
+    const Batch& batch = model_.interfaces[k].batch;
+    const double sum = -impulse.segment(first + batch.normal(), batch.points).sum();
+    StepRecord::Reached& most = result_.steps.extremes[k].impulse;
+    if (sum > most.value) most = {sum, seen_->time};
+    first += batch.points * batch.components;
+  }
+}
+
 /// Peaks and durations of what was noted since this was last called, in a stage with this step.
 void Runner::sum_up(double step) {
   const StepRecord& steps = result_.steps;
@@ -168,6 +182,7 @@ bool Runner::dynamics(const Stage& stage, const Bulk& bulk) {
   const auto observe = [&](long step) {
     viewer_.look(seen_->opening, seen_->mean_force, views_);
     note_views();
+    note_impulses(stepper);
     recorder.record(step % plan_.every == 0 || step == steps);
     if (picture_every > 0) recorder.note_largest_uplift();
     if (picture_every > 0 && step % picture_every == 0) recorder.picture(*seen_);

@@ -33,6 +33,7 @@ class Runner {
   void note_views();
   bool is_wall(std::size_t interface) const { return has_walls_ && plan_.is_wall[interface]; }
   void sum_up(double step);
+  void note_impulses(const Stepper& stepper);
   bool check_limits(const Stepper& stepper);
   bool surfaces_turn_little();
   bool surfaces_stay_near();

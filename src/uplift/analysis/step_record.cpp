@@ -1,6 +1,7 @@
 #include "uplift/analysis/step_record.h"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <utility>
 
@@ -46,7 +47,7 @@ void StepRecord::add(double now, const std::vector<InterfaceView>& views, double
     const Resultant& sum = view.resultant;
     const bool plane = sum.shear_1 == 0 && sum.shear_2 == 0 && sum.moment_1 == 0 && sum.moment_2 == 0;
     instants.push_back({sum.axial, plane ? sum.shear : sum.shear_1, sum.shear_2, plane ? sum.moment : sum.moment_1, sum.moment_2,
-                        view.open_area, sum.torsion});
+                        view.open_area, sum.torsion, view.max_pressure});
     Extremes& most = extremes[k];
     note(most.max_opening, view.max_opening, now);
     note(most.max_pressure, view.max_pressure, now);
@@ -55,6 +56,42 @@ void StepRecord::add(double now, const std::vector<InterfaceView>& views, double
     note_loss(most, view.least_opening, gap_tolerance, first, first ? now : time.back(), now);
   }
   time.push_back(now);
+}
+
+void StepRecord::average(double window) {
+  const std::size_t count = size(), interfaces = extremes.size();
+  if (count < 2) return;
+  using Part = double Instant::*;
+  constexpr std::array<Part, 7> parts{&Instant::axial,    &Instant::shear_1, &Instant::shear_2, &Instant::moment_1,
+                                      &Instant::moment_2, &Instant::torsion, &Instant::pressure};
+  std::vector<double> integral(count);  // from the first instant; every value is the mean of the step before its instant
+  for (std::size_t k = 0; k < interfaces; ++k) {
+    Extremes& most = extremes[k];
+    for (std::size_t i = 0; i < count; ++i) {
+      const Instant& now = at(i, k);
+      most.step_shear = std::max(most.step_shear, std::hypot(now.shear_1, now.shear_2));
+      most.step_moment = std::max(most.step_moment, std::hypot(now.moment_1, now.moment_2));
+      most.step_compression = std::max(most.step_compression, -now.axial);
+      most.step_pressure = std::max(most.step_pressure, now.pressure);
+    }
+    for (const Part part : parts) {
+      const auto value = [&](std::size_t i) -> double& { return instants[i * interfaces + k].*part; };
+      for (std::size_t i = 1; i < count; ++i) integral[i] = integral[i - 1] + value(i) * (time[i] - time[i - 1]);
+      const double first = value(0);
+      std::size_t begin = 1;  // step in which the window begins
+      for (std::size_t i = 1; i < count; ++i) {
+        const double from = time[i] - window;
+        if (time[i] - time[i - 1] >= window) continue;
+        while (time[begin] < from) ++begin;
+        const double before = from < time[0] ? first * (from - time[0])
+                                             : integral[begin] - (integral[begin] - integral[begin - 1]) * (time[begin] - from) /
+                                                                     (time[begin] - time[begin - 1]);
+        value(i) = (integral[i] - before) / window;
+      }
+    }
+    most.max_pressure = {};
+    for (std::size_t i = 0; i < count; ++i) note(most.max_pressure, at(i, k).pressure, time[i]);
+  }
 }
 
 void StepRecord::add_slip(const std::vector<Interface>& interfaces, const Vector& opening, const std::vector<char>& is_wall) {

@@ -40,7 +40,8 @@ class StepRecord {
   struct Instant {
     double axial = 0, shear_1 = 0, shear_2 = 0, moment_1 = 0, moment_2 = 0;  // N, N m; in the plane shear_1 and moment_1
     double open_area = 0;
-    double torsion = 0;  // N m, space only
+    double torsion = 0;   // N m, space only
+    double pressure = 0;  // Pa, largest
   };
   struct Reached {
     double value = 0, time = 0;
@@ -51,6 +52,9 @@ class StepRecord {
     Reached max_slip;  // of walls: length of the tangential opening
     std::vector<Interval> full_loss;
     double least_opening = 0;  // at the last instant
+    Reached impulse;           // N s: momentum that an impact of constraints transferred in one step
+    // Largest means over one step of what average() replaces by means over the window; 0 before it.
+    double step_shear = 0, step_moment = 0, step_compression = 0, step_pressure = 0;  // N, N m, N, Pa
   };
 
   /// Makes room for instants to come, so many of them in the tail.
@@ -61,6 +65,10 @@ class StepRecord {
   void add_slip(const std::vector<Interface>& interfaces, const Vector& opening, const std::vector<char>& is_wall);
   /// Times [s] in which none of the interfaces that are no walls has any contact.
   std::vector<Interval> full_loss(const std::vector<char>& is_wall) const;
+  /// Replaces forces, moments and pressures by their mean over the time `window` [s] that ends at each instant: where an impact is shorter
+  /// than the step, a mean over the step depends on the step, the momentum in the window does not. Before the first instant they are those
+  /// of the first.
+  void average(double window);
   std::size_t size() const { return time.size(); }
   const Instant& at(std::size_t step, std::size_t interface) const { return instants[step * extremes.size() + interface]; }
 

@@ -300,7 +300,7 @@ void say_energy(const Built& built, const RunResult& run, Verdict& verdict) {
     if (end.damping > 1e-6 * scale) text += fmt::format(" Damping took {}.", percent(end.damping / scale));
     if (end.interface_dissipated > 1e-6 * scale) text += fmt::format(" The interface took {}.", percent(end.interface_dissipated / scale));
     if (std::abs(end.impact) > 1e-6 * scale) text += fmt::format(" Impacts took {}.", percent(end.impact / scale));
-    if (lost > 0.001 && lost > created) text += fmt::format(" {} vanished by numerical damping.", percent(lost));
+    if (lost > 0.001 && lost > created) text += fmt::format(" The time scheme dissipated {}.", percent(lost));
   }
   verdict.paragraphs.push_back(std::move(text));
 }

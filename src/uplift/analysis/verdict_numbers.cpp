@@ -156,6 +156,17 @@ void add_forces(const Base& base, std::vector<VerdictNumber>& numbers) {
   add(numbers, extreme(base, "min_compression", compression, true));
 }
 
+/// Largest means over one step, where the numbers are means over the window; and the impulse of impacts.
+void add_step_peaks(const StepRecord::Extremes& most, std::vector<VerdictNumber>& numbers) {
+  for (const auto& [name, peak] : {std::pair{"max_shear", most.step_shear},
+                                   {"max_moment", most.step_moment},
+                                   {"max_compression", most.step_compression},
+                                   {"max_toe_pressure", most.step_pressure}})
+    for (VerdictNumber& number : numbers)
+      if (number.quantity->name == name && peak > 0) number.step_peak = peak;
+  if (most.impulse.value > 0) add(numbers, "max_impulse", most.impulse);
+}
+
 /// Mean over the last tenth of the planned time less the value at rest, and half of the range over which it moves there.
 VerdictNumber residual(const std::vector<BasePose>& tail, std::string_view name, double BasePose::*of, double rest) {
   double sum = 0, least = INFINITY, most = -INFINITY;
@@ -196,6 +207,7 @@ InterfaceVerdict carried_by(const Base& base) {
   InterfaceVerdict said;
   add_pressure(base, said);
   add_forces(base, said.numbers);
+  add_step_peaks(base.extremes(), said.numbers);
   for (VerdictNumber& number : said.numbers) number.least = least_of(*number.quantity, base);
   return said;
 }

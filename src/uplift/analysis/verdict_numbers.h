@@ -14,11 +14,12 @@ namespace uplift {
 struct VerdictNumber {
   const VerdictQuantity* quantity = nullptr;
   double value = 0;
-  std::optional<double> time = {};    // s, where it is reached
-  std::optional<double> bonded = {};  // the same number of the bonded reference run
-  std::optional<double> swing = {};   // half of the range in which a residual still moves
-  std::optional<double> change = {};  // relative to it: 0.1 is 10 % more; nothing where both are noise
-  double least = 0;                   // in the unit of the quantity: a value below it is noise
+  std::optional<double> time = {};       // s, where it is reached
+  std::optional<double> bonded = {};     // the same number of the bonded reference run
+  std::optional<double> swing = {};      // half of the range in which a residual still moves
+  std::optional<double> change = {};     // relative to it: 0.1 is 10 % more; nothing where both are noise
+  std::optional<double> step_peak = {};  // largest mean over one step, of numbers that are means over the window
+  double least = 0;                      // in the unit of the quantity: a value below it is noise
 };
 
 /// What is said of one interface.

@@ -13,7 +13,7 @@ namespace {
 
 constexpr bool whole = false, at_least = true, wall_too = true, of_beam = true;
 
-constexpr std::array<VerdictQuantity, 46> quantities{{
+constexpr std::array<VerdictQuantity, 47> quantities{{
     {"max_top_motion", "m", "largest horizontal motion of the top, over all directions", "top motion", whole},
     {"change_of_top_motion", "1", "change of the motion of the top compared with the bonded reference run", "change of top motion", whole},
     {"max_drift", "m", "largest horizontal motion of the top relative to the base, rotation of the base included", "drift of the top",
@@ -44,6 +44,7 @@ constexpr std::array<VerdictQuantity, 46> quantities{{
     {"change_of_moment", "1", "change of the base moment compared with the bonded reference run", "change of base moment"},
     {"max_compression", "N", "largest compression of the base", "largest compression"},
     {"change_of_compression", "1", "change of the largest compression compared with the bonded reference run", "change of compression"},
+    {"max_impulse", "N s", "largest momentum that an impact of constraints transfers in one step", "impulse of an impact"},
     {"min_compression", "N", "least compression of the base", "least compression", true, at_least},
     {"linear_tension_ratio", "1", "largest share of the area that pulls in the bonded run", "tension area, bonded run"},
     {"predicted_uplifted_ratio", "1", "uplift that this share stands for by equal energy, Winkler strip", "uplift by equal energy"},

@@ -16,8 +16,8 @@ namespace {
 void print_runs(const Results& results, const ComparisonSummary& compared) {
   std::string group = "\n";
   std::vector<std::vector<std::string>> rows;
-  const std::vector<std::string> head{"run",         "status",         "top motion", "uplifted", "gap",
-                                      "base moment", "energy created", "agreement",  "deviation"};
+  const std::vector<std::string> head{"run",         "status",         "top motion",  "uplifted",  "gap",
+                                      "base moment", "energy created", "energy lost", "agreement", "deviation"};
   const auto flush = [&] {
     if (rows.size() > 1) print_table(rows);
     rows = {head};
@@ -36,7 +36,8 @@ void print_runs(const Results& results, const ComparisonSummary& compared) {
     rows.push_back({run.label, status_text(run), motion ? spoken(std::abs(motion->value), "m") : "-",
                     bonded ? "-" : percent(run.max_uplifted_ratio.value),
                     bonded ? "-" : said(*find_verdict_quantity("max_opening"), run.max_opening.value),
-                    spoken(std::abs(run.max_base_moment.value), "N m"), percent(created_share(run)), std::string(to_string(agreement.word)),
+                    spoken(std::abs(run.max_base_moment.value), "N m"), percent(created_share(run)),
+                    percent(run.energy_scale > 0 ? run.energy_lost / run.energy_scale : 0), std::string(to_string(agreement.word)),
                     counted ? percent(agreement.deviation) : "-"});
   }
   flush();

@@ -34,14 +34,14 @@ Sparse second_order(const Model& model, const Sparse* geometric) {
 
 }  // namespace
 
-Bulk::Bulk(const Model& model, const Sparse* geometric)
-    : second_order_(second_order(model, geometric)),
+Bulk::Bulk(const Model& model, const Sparse* axial)
+    : second_order_(second_order(model, axial)),
       unknowns(model.free()),
       small(model.free() <= small_bulk),
-      stiffness_matrix(geometric != nullptr ? second_order_ : model.stiffness),
+      stiffness_matrix(axial != nullptr ? second_order_ : model.stiffness),
       mass_matrix(model.mass),
       damping_matrix(model.damping),
-      geometric(geometric),
+      geometric(axial),
       stiffness(stiffness_matrix, small),
       mass(mass_matrix, small),
       damping(damping_matrix, small) {

@@ -19,7 +19,7 @@ Vector closed_joint(const Model& model, const Behaviours& behaviours) {
   for (int i = 0; i < model.free(); ++i) largest = std::max(largest, model.stiffness.coeff(i, i));
   if (largest <= 0) largest = 1e9;
   // A joint far stiffer than the structure would leave nothing of the structure's stiffness in the factored sum once it is taken back.
-  constexpr double stiffest = 1e3;
+  constexpr double stiffest = 1e6;
   int first = 0;
   for (std::size_t i = 0; i < model.interfaces.size(); ++i) {
     const Interface& interface = model.interfaces[i];
@@ -46,6 +46,7 @@ namespace {
 /// the loads, is not. `unbalanced` is that difference; what round-off makes of K u does not count, unless it is so much that nothing can be
 /// told.
 bool in_balance(const Bulk& bulk, const Vector& load, const Vector& reaction, const Vector& displacement, const Vector& unbalanced) {
+  if (unbalanced.size() == 0) return true;
   if (!unbalanced.allFinite()) return false;
   double size = 0, round_off = 0;
   for (int i = 0; i < bulk.unknowns; ++i) {

@@ -101,6 +101,7 @@ class Stepper {
   double contact_work() const;
   void apply_impact(Level& level);
   void separate_impulse(const Impact& data);
+  void separate_impulse_of_friction(const Block& block, const Impact& data);
   void hold_initial_acceleration();
   void book_energies(const Level& level);
   void forces_at(const State& state, Vector& result) const;

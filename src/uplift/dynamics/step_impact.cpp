@@ -99,18 +99,28 @@ void Stepper::separate_impulse(const Impact& data) {
   const ImpactScratch& scratch = impact_scratch_;
   for (const Block& block : last_->blocks) {
     const int n = block.batch.points, normal = block.first + block.batch.normal();
+    if (block.cone != nullptr && block.cone->friction() > 0) {
+      separate_impulse_of_friction(block, data);
+      continue;
+    }
     for (int i = 0; i < n; ++i) {
       if (!(pressed_[normal + i] > 0)) continue;
-      const auto smooth = [&](int row) { return scratch.impulse[row] / data.acceleration_weight; };
-      const double share = smooth(normal + i) / contact_[normal + i];
-      for (int c = 0; c < block.batch.components; ++c) {
-        const int row = block.first + c * n + i;
-        const bool held = row == normal + i || scratch.fixed[row] > 0;  // a point that slips keeps its ratio of shear to pressure
-        impact_impulse_[row] = held ? scratch.total[row] - data.velocity_weight * smooth(row) : 0;
-        contact_[row] = held ? smooth(row) : share * contact_[row];
-      }
+      const double smooth = scratch.impulse[normal + i] / data.acceleration_weight;
+      impact_impulse_[normal + i] = scratch.total[normal + i] - data.velocity_weight * smooth;
+      contact_[normal + i] = smooth;
     }
   }
+}
+
+/// How friction distributes a force over redundant points is not unique, its sum is: all forces keep their ratios.
+void Stepper::separate_impulse_of_friction(const Block& block, const Impact& data) {
+  const int n = block.batch.points, normal = block.first + block.batch.normal();
+  const double pressure = contact_.segment(normal, n).sum(),
+               smooth = impact_scratch_.impulse.segment(normal, n).sum() / data.acceleration_weight;
+  const double share = pressure < 0 ? smooth / pressure : 1;
+  const Vector total = impact_scratch_.total.segment(normal, n);
+  contact_.segment(block.first, block.rows()) *= share;
+  impact_impulse_.segment(normal, n) = total - data.velocity_weight * contact_.segment(normal, n);
 }
 
 /// The acceleration at the beginning with the contact forces that belong to it: those of the stage before hold another load. Closed points

@@ -13,8 +13,8 @@ struct Facets {
     double area;                // m2, in the plane any multiple of it
   };
   int num_points = 0, dimension = 2;
-  std::vector<Corner> corners;  // that are no points: extrapolated linearly
-  std::vector<Piece> pieces;
+  std::vector<Corner> corners = {};  // that are no points: extrapolated linearly
+  std::vector<Piece> pieces = {};
   bool at_edge = false;  // the corners bound the whole surface: pressures may be extrapolated to them
 };
 

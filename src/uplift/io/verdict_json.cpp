@@ -15,6 +15,7 @@ void write_numbers(JsonWriter& json, const std::vector<VerdictNumber>& numbers) 
   for (const VerdictNumber& number : numbers) {
     json.key(number.quantity->name).begin_object().member("value", number.value).member("unit", number.quantity->unit);
     if (number.time) json.member("time", *number.time);
+    if (number.step_peak) json.member("peak_of_step_mean", *number.step_peak);
     if (number.swing) json.member("swing", *number.swing);
     if (number.bonded) json.member("bonded", *number.bonded);
     if (number.change) json.member("change_percent", 100 * *number.change);
