@@ -150,6 +150,9 @@ void EquilibriumCheck::add_forces(const ForceModel& forces, Snapshot& at) const 
 }
 
 void EquilibriumCheck::finish(Equilibrium& equilibrium) {
+  // The rows of a rigid body are coupled by its reference node: their forces cost the third power of its size.
+  constexpr std::size_t most_tied = 250;
+  if (stage_->model.assembly.ties.size() > most_tied) snapshots_.clear();
   if (snapshots_.empty()) return;
   add_elements();
   const ForceModel forces(*stage_);

@@ -82,8 +82,7 @@ void Runner::sum_up(double step) {
     take(result_.max_opening, most.max_opening);
     take(result_.max_pressure, most.max_pressure);
   }
-  result_.full_loss = 0;
-  for (const Interval& interval : steps.full_loss(plan_.is_wall)) result_.full_loss += interval.to - interval.from;
+  result_.full_loss = steps.full_loss_time(plan_.is_wall);
 }
 
 /// Energy created and lost by the computation so far (lost: by the filters of the scheme, and what the balance lacks); the scale is the

@@ -106,6 +106,18 @@ void StepRecord::add_slip(const std::vector<Interface>& interfaces, const Vector
   }
 }
 
+double StepRecord::full_loss_time(const std::vector<char>& is_wall) const {
+  const auto common = [&](const auto& self, std::size_t k, double from, double to, bool any) -> double {  // of the interfaces from k on
+    while (k < extremes.size() && !is_wall.empty() && is_wall[k]) ++k;
+    if (k == extremes.size()) return any ? to - from : 0;
+    double sum = 0;
+    for (const Interval& each : extremes[k].full_loss)
+      if (each.from < to && each.to > from) sum += self(self, k + 1, std::max(from, each.from), std::min(to, each.to), true);
+    return sum;
+  };
+  return common(common, 0, -HUGE_VAL, HUGE_VAL, false);
+}
+
 std::vector<Interval> StepRecord::full_loss(const std::vector<char>& is_wall) const {
   std::optional<std::vector<Interval>> all;  // intersection over the bases
   for (std::size_t k = 0; k < extremes.size(); ++k) {

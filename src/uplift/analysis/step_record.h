@@ -65,6 +65,8 @@ class StepRecord {
   void add_slip(const std::vector<Interface>& interfaces, const Vector& opening, const std::vector<char>& is_wall);
   /// Times [s] in which none of the interfaces that are no walls has any contact.
   std::vector<Interval> full_loss(const std::vector<char>& is_wall) const;
+  /// Their sum [s].
+  double full_loss_time(const std::vector<char>& is_wall) const;
   /// Replaces forces, moments and pressures by their mean over the time `window` [s] that ends at each instant: where an impact is shorter
   /// than the step, a mean over the step depends on the step, the momentum in the window does not. Before the first instant they are those
   /// of the first.

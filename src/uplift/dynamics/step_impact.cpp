@@ -118,9 +118,8 @@ void Stepper::separate_impulse_of_friction(const Block& block, const Impact& dat
   const double pressure = contact_.segment(normal, n).sum(),
                smooth = impact_scratch_.impulse.segment(normal, n).sum() / data.acceleration_weight;
   const double share = pressure < 0 ? smooth / pressure : 1;
-  const Vector total = impact_scratch_.total.segment(normal, n);
-  contact_.segment(block.first, block.rows()) *= share;
-  impact_impulse_.segment(normal, n) = total - data.velocity_weight * contact_.segment(normal, n);
+  for (int i = block.first; i < block.first + block.rows(); ++i) contact_[i] *= share;
+  for (int i = normal; i < normal + n; ++i) impact_impulse_[i] = impact_scratch_.total[i] - data.velocity_weight * contact_[i];
 }
 
 /// The acceleration at the beginning with the contact forces that belong to it: those of the stage before hold another load. Closed points

@@ -10,14 +10,15 @@
 namespace uplift {
 namespace {
 
-/// Shape functions of a cell type at its corners, then at the integration points of solids.
+/// Shape functions of a cell type at its corners where its edges are straight, then at the integration points of solids. At a corner of a
+/// cell with curved edges nothing is evaluated: two of them may meet there on a smooth boundary.
 using Samples = std::vector<CellShape>;
 
 Samples make_samples(Cell cell) {
   Samples samples;
   const CellInfo& type = info(cell);
   if (type.dimension < 2) return samples;
-  for (const auto& local : cell_nodes(cell).first(static_cast<std::size_t>(type.corners)))
+  for (const auto& local : cell_nodes(cell).first(cell == type.linear ? static_cast<std::size_t>(type.corners) : 0))
     samples.push_back(cell_shape(cell, {local[0], local[1], local[2]}));
   for (const int degree : solid_degrees(cell))
     for (const Vec3& local : cell_rule(cell, degree).point) samples.push_back(cell_shape(cell, local));
@@ -56,7 +57,7 @@ LeastJacobian least_jacobian(const Mesh& mesh, CellId id) {
     const double here = scaled_determinant(samples[i], positions, type.dimension);
     if (!(here >= value)) value = here, least = i;
   }
-  const int corner = least < static_cast<std::size_t>(type.corners) ? static_cast<int>(least) : -1;
+  const int corner = type.cell == type.linear && least < static_cast<std::size_t>(type.corners) ? static_cast<int>(least) : -1;
   return {value, corner, cell_position(samples[least], positions)};
 }
 

@@ -9,7 +9,8 @@ struct LeastJacobian {
   int corner = -1;   // of the cell, from 0; -1: at an integration point
   Vec3 position = Vec3::Zero();  // m
 };
-/// At the corners and at the points where solids integrate their stiffness and their mass. For a cell of the mesh's dimension.
+/// At the corners of a cell with straight edges, and at the points where solids integrate their stiffness and their mass. For a cell of the
+/// mesh's dimension.
 LeastJacobian least_jacobian(const Mesh& mesh, CellId id);
 
 }  // namespace uplift
