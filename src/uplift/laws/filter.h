@@ -12,27 +12,21 @@
 // order in smooth motion.
 namespace uplift {
 
-/// A normal traction with its slope with respect to the end of the path, as numbers or as lanes. `tension`: the law carries tension.
+/// Changes a normal traction and its slope with respect to the end of the path, as numbers or as lanes, from the path average of the law to
+/// that with the filter. `end`, `end_slope`: at the end of the step; `way`: opening increment; `tension`: the law carries tension.
 template <class Number>
-struct Filtered {
-  Number value, slope;
-};
-
-/// `plain`, `slope`: path average; `end`, `end_slope`: at the end of the step; `way`: opening increment.
-template <class Number>
-[[gnu::always_inline]] inline Filtered<Number> filter_normal(Number plain, Number slope, Number end, Number end_slope, Number way,
-                                                             Number coefficient, Number lag, bool tension) {
+[[gnu::always_inline]] inline void filter_normal(Number& value, Number& slope, Number end, Number end_slope, Number way, Number coefficient,
+                                                 Number lag, bool tension) {
   const Number zero = 0;
   const auto open = coefficient < zero;
-  const Number pushed = plain + coefficient * (way - lag);
-  Filtered<Number> closed{pushed, slope + coefficient};
+  Number closed = value + coefficient * (way - lag), closed_slope = slope + coefficient;
   if (!tension) {
-    const auto cut = pushed > zero;
-    closed = {choose(cut, zero, pushed), choose(cut, zero, closed.slope)};
+    const auto cut = closed > zero;
+    closed = choose(cut, zero, closed), closed_slope = choose(cut, zero, closed_slope);
   }
-  const auto jumps = (end - plain) * way >= zero;
-  const Filtered<Number> closing{choose(jumps, end, plain), choose(jumps, end_slope, slope)};
-  return {choose(open, closing.value, closed.value), choose(open, closing.slope, closed.slope)};
+  const auto jumps = (end - value) * way >= zero;
+  value = choose(open, choose(jumps, end, value), closed);
+  slope = choose(open, choose(jumps, end_slope, slope), closed_slope);
 }
 
 }  // namespace uplift

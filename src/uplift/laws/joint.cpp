@@ -56,12 +56,11 @@ class JointLaw final : public InterfaceLaw {
     const double *coefficient = batch.coefficient + batch.normal(), *lag = batch.lag + batch.normal();
     const bool tension = normal_->carries_tension();
     for (int i = 0; i < batch.points; ++i) {
-      const double plain = part.traction[i], slope = part.slope != nullptr ? part.slope[i] : 0;
-      const Filtered<double> made =
-          filter_normal(plain, slope, part.end[i], 2 * part.next[i], to[i] - from[i], coefficient[i], lag[i], tension);
-      part.plain[i] = plain;
-      part.traction[i] = made.value;
-      if (part.slope != nullptr) part.slope[i] = made.slope;
+      double value = part.traction[i], slope = part.slope != nullptr ? part.slope[i] : 0;
+      part.plain[i] = value;
+      filter_normal(value, slope, part.end[i], 2 * part.next[i], to[i] - from[i], coefficient[i], lag[i], tension);
+      part.traction[i] = value;
+      if (part.slope != nullptr) part.slope[i] = slope;
     }
   }
 

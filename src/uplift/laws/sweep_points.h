@@ -33,9 +33,8 @@ template <int R, bool filters, class Law>
         if (any(law.bends(from, to, old))) path = law.average(from, to, old);
         if constexpr (filters) {
           at.put(sweep.plain, path.value);
-          const Filtered<Lanes> made = filter_normal(path.value, path.slope, path.end, path.end_slope, Lanes(to - from),
-                                                     Lanes(at(sweep.coefficient)), Lanes(at(sweep.lag)), tension);
-          path.value = made.value, path.slope = made.slope;
+          filter_normal(path.value, path.slope, path.end, path.end_slope, Lanes(to - from), Lanes(at(sweep.coefficient)),
+                        Lanes(at(sweep.lag)), tension);
         }
         const Lanes area = at(sweep.area), weight = sweep.scale * area;
         const Lanes force = weight * path.value, slope = weight * path.slope, end = weight * path.end;
