@@ -204,7 +204,7 @@ TEST_F(Folder, RefusesAPlaceThatCannotBeMade) {
 // That the data decode to the same document is tested from outside: report_of() in tests/cli/support.py.
 TEST(ReportPage, HoldsCompressedDataInPlaceOfThePlaceholder) {
   std::string json = "{\"a\":\"</script>\",\"numbers\":[";
-  for (int i = 0; i < 20000; ++i) json += std::to_string(i % 7) + ",";
+  for (int i = 0; i < 2000000; ++i) json += std::to_string(i % 7) + ",";  // 4 MB: smaller ones are stored as they are
   json += "0]}";
   const std::string page = report_page(json);
   if (report_template().empty()) {

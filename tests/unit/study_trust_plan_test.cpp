@@ -64,13 +64,13 @@ const std::string springs = R"({ type = "springs", K_n = "200 MPa/m", tangential
 
 TEST(TrustPlan, StepStiffnessToleranceMethod) {
   const Planned tested = planned(tower(springs));
-  ASSERT_EQ(tested.plan.changes.size(), 5u);
+  ASSERT_EQ(tested.plan.changes.size(), 6u);
   const Case half = changed(tested, "step_half");
   EXPECT_DOUBLE_EQ(half.values.tables("stage")[1].number("step"), 1e-3);
   EXPECT_EQ(half.values.table("output").integer("every"), 2) << "columns keep their instants";
   EXPECT_DOUBLE_EQ(law_of(half).number("K_n"), 2e8);
-  EXPECT_DOUBLE_EQ(law_of(changed(tested, "stiffer")).number("K_n"), 2e9);
-  EXPECT_DOUBLE_EQ(law_of(changed(tested, "softer")).number("K_n"), 2e7);
+  EXPECT_DOUBLE_EQ(law_of(changed(tested, "stiffer")).number("K_n"), 4e8) << "on fixed ground the joint is the soil";
+  EXPECT_DOUBLE_EQ(law_of(changed(tested, "softer")).number("K_n"), 1e8);
   EXPECT_EQ(law_of(changed(tested, "stiffer")).text("tangential"), "none");
   const Case tight = changed(tested, "tighter");
   EXPECT_DOUBLE_EQ(tight.values.part("method").number("tolerance"), 1e-13);
@@ -89,11 +89,31 @@ TEST(TrustPlan, SdmThatWouldSnapBackIsNotMadeSofter) {
   const Planned tested = planned(tower(R"({ type = "sdm", K_n = "2 GPa/m", F_u = "10 kPa", G_f = 0.1, F_c = -1e3, tangential = "none" })"));
   EXPECT_NE(reason(tested, "joint stiffness, softer").find("F_u2/G_f = 1e+09 Pa/m"), std::string::npos)
       << reason(tested, "joint stiffness, softer");
-  EXPECT_DOUBLE_EQ(law_of(changed(tested, "stiffer")).number("K_n"), 2e10);
+  EXPECT_DOUBLE_EQ(law_of(changed(tested, "stiffer")).number("K_n"), 4e9);
   const Case other = changed(tested, "other_scheme");
   EXPECT_EQ(other.values.tables("stage")[1].part("scheme").type(), "generalised_alpha");
   EXPECT_EQ(other.values.tables("stage")[1].text("traction"), "end");
   EXPECT_EQ(other.values.tables("stage")[0].text("traction"), "path") << "the static stage stays";
+}
+
+TEST(TrustPlan, AJointAboveElasticGroundIsAChoiceOfTheComputation) {
+  std::string text = tower(springs);
+  text.insert(text.find("[[stage]]"), "[interface.footing.bed]\nstiffness = 2e7\n");
+  const Planned tested = planned(text);
+  EXPECT_DOUBLE_EQ(law_of(changed(tested, "stiffer")).number("K_n"), 2e9);
+  EXPECT_DOUBLE_EQ(law_of(changed(tested, "softer")).number("K_n"), 2e7);
+  const Planned stated = planned(text + "[trust]\nstiffness_factor = 3\n");
+  EXPECT_DOUBLE_EQ(law_of(changed(stated, "stiffer")).number("K_n"), 6e8);
+}
+
+TEST(TrustPlan, FootingsGetTwiceAsManyStrips) {
+  const auto points = [](const Planned& tested) {
+    return changed(tested, "more_points").values.tables("interface").front().table("footing").integer("points");
+  };
+  EXPECT_EQ(points(planned(tower(springs))), 21) << "10 strips between 11 points become 20";
+  std::string text = tower(springs);
+  text.insert(text.find("points = 11"), "rule = \"midpoint\"\n");
+  EXPECT_EQ(points(planned(text)), 22) << "11 strips become 22";
 }
 
 TEST(TrustPlan, ConstraintsChangeTheMethod) {

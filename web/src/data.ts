@@ -79,6 +79,7 @@ function complete(raw: Partial<Report>): Report {
       interfaces: verdict?.interfaces ?? [],
       criteria: verdict?.criteria ?? [],
       floors: verdict?.floors ?? [],
+      stepCheck: verdict?.stepCheck,
     },
     choices: raw.choices ?? [],
     tables: raw.tables ?? [],

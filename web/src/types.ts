@@ -23,6 +23,8 @@ export interface Fact {
   label: string;
   value: string;
   detail?: string;
+  /** By how much the value changes with twice the step. */
+  stepChange?: string;
 }
 
 /** A number of the verdict, SI. */
@@ -41,6 +43,8 @@ export interface VerdictRow {
   bondedText?: string;
   changeText?: string;
   swingText?: string;
+  /** By how much the number changes with twice the step. */
+  stepText?: string;
 }
 
 /** What is said of one interface. */
@@ -99,6 +103,13 @@ export interface Verdict {
   interfaces: BaseVerdict[];
   criteria: Criterion[];
   floors: FloorChange[];
+  /** How far the numbers depend on the time step; absent for static stages alone. */
+  stepCheck?: StepCheck;
+}
+
+export interface StepCheck {
+  result: "not made" | "converged" | "not converged";
+  sentence: string;
 }
 
 export interface Choice {

@@ -61,15 +61,17 @@ function beside_table(base: BaseVerdict): HTMLElement | null {
   if (base.beside.length === 0) return null;
   const wall = base.role === "wall";
   const bonded = base.beside.some((row) => row.bonded !== undefined);
-  const row = ({ label, value, unit, time, bonded: other, text, bondedText, changeText }: VerdictRow): HTMLElement => {
+  const checked = base.beside.some((row) => row.stepText !== undefined);
+  const row = ({ label, value, unit, time, bonded: other, text, bondedText, changeText, stepText }: VerdictRow): HTMLElement => {
     const largest = Math.max(Math.abs(value), Math.abs(other ?? 0));
     return h("tr", {},
       h("th", { scope: "row" }, label),
       h("td", { title: time === undefined ? null : `at ${number(time, 4)} s` }, text === undefined ? quantity_text(value, unit, largest) : tied(text)),
+      checked ? h("td", { class: "step-change" }, tied(stepText ?? "–")) : null,
       bonded ? h("td", {}, other === undefined ? "–" : bondedText === undefined ? quantity_text(other, unit, largest) : tied(bondedText)) : null,
       bonded ? h("td", { class: "change" }, other === undefined ? "–" : changeText === undefined ? change(value, other) : tied(changeText)) : null);
   };
-  const heads = bonded ? ["", "With uplift", "Bonded", "Change"] : [wall ? "Wall" : "", "Largest"];
+  const heads = [bonded || !wall ? "" : "Wall", bonded ? "With uplift" : "Largest", ...(checked ? ["Twice the step"] : []), ...(bonded ? ["Bonded", "Change"] : [])];
   return h("table", { class: "beside" },
     h("thead", {}, h("tr", {}, ...heads.map((text) => h("th", { scope: "col" }, text)))),
     h("tbody", {}, ...base.beside.map(row)));
@@ -150,9 +152,14 @@ function base_block(base: BaseVerdict, many: boolean): HTMLElement {
       beside_table(base)));
 }
 
+/** How far the numbers depend on the time step: a warning where they do, or where nobody looked. */
+function step_check({ stepCheck }: Verdict): HTMLElement | null {
+  return stepCheck ? h("p", { class: `step-check is-${stepCheck.result.replace(" ", "-")}` }, tied(stepCheck.sentence)) : null;
+}
+
 export function verdict_card(verdict: Verdict, charts: Chart[]): HTMLElement {
   const facts = verdict.facts.map((fact) =>
-    h("div", { class: "fact" }, h("dt", {}, fact.label), h("dd", {}, h("b", {}, tied(fact.value)), fact.detail ? h("small", {}, tied(fact.detail)) : null)),
+    h("div", { class: "fact" }, h("dt", {}, fact.label), h("dd", {}, h("b", {}, tied(fact.value)), fact.stepChange ? h("span", { class: "step-change", title: "Change with twice the step" }, tied(fact.stepChange)) : null, fact.detail ? h("small", {}, tied(fact.detail)) : null)),
   );
   const many = verdict.interfaces.length > 1;
   const blocks: Child[] = verdict.interfaces.map((base) => base_block(base, many));
@@ -161,7 +168,7 @@ export function verdict_card(verdict: Verdict, charts: Chart[]): HTMLElement {
     { class: `verdict verdict-${verdict.level}`, id: "verdict", "aria-label": "Verdict" },
     h("div", { class: "verdict-head" },
       level_sign(verdict.level),
-      h("div", {}, h("p", { class: "verdict-level" }, LEVEL_WORD[verdict.level] ?? verdict.level), h("h2", {}, tied(verdict.headline)), verdict.consequence ? h("p", { class: "so-what" }, tied(verdict.consequence)) : null)),
+      h("div", {}, h("p", { class: "verdict-level" }, LEVEL_WORD[verdict.level] ?? verdict.level), h("h2", {}, tied(verdict.headline)), verdict.consequence ? h("p", { class: "so-what" }, tied(verdict.consequence)) : null, step_check(verdict))),
     facts.length > 0 ? h("dl", { class: "facts" }, ...facts) : null,
     ...blocks,
     floor_block(verdict.floors ?? [], charts),

@@ -47,6 +47,7 @@ struct RunSpec {
   const Values* damping = nullptr;
   std::optional<bool> path_average;
   std::optional<double> step, duration;   // s, of the dynamic stages
+  double step_factor = 1;                 // of the steps of the dynamic stages
   std::optional<double> stiffness_ratio;  // the law's stiffness is chosen so that the largest k F_ii is this
   std::string stiffness_parameter;        // parameter of the law that is the stiffness
   const Values* motion = nullptr;         // [[compare.motion]]: records that take the place of others; null: the case's own
@@ -59,6 +60,10 @@ struct RunSpec {
 
 /// What `uplift run` does: the case itself, then (unless it says bonded = false) the bonded model.
 std::vector<RunSpec> runs_of_case(const Case&);
+
+/// The companions of runs_of_case(): the same runs with twice the step, which tell how far the numbers depend on it. None where the case
+/// does not ask for them, and without a dynamic stage of at least four steps.
+std::vector<RunSpec> companions_of_case(const Case&);
 
 /// What `uplift compare` does: every variant (the case itself when there are none) and the bonded model, with every damping and every
 /// motion; and the runs of the stiffness sweep.

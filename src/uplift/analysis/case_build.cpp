@@ -92,7 +92,7 @@ Stage stage_of(const Values& table, const RunSpec& spec) {
   for (const char* key : {"duration", "step"})
     if (!table.has(key)) fail(table, "", fmt::format("{} of a dynamic stage", key), "none");
   stage.duration = spec.duration.value_or(table.number("duration"));
-  stage.step = spec.step.value_or(table.number("step"));
+  stage.step = spec.step_factor * spec.step.value_or(table.number("step"));
   if (stage.step > stage.duration)
     fail(table, "step", fmt::format("a step shorter than the duration of {:g} s", stage.duration), fmt::format("{:g} s", stage.step));
   const Values& scheme = spec.scheme ? *spec.scheme : table.part("scheme");

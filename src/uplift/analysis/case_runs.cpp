@@ -133,6 +133,26 @@ std::vector<RunSpec> runs_of_case(const Case& read) {
   return runs;
 }
 
+std::vector<RunSpec> companions_of_case(const Case& read) {
+  constexpr double least_steps = 4;
+  bool long_enough = false;
+  for (const Values& stage : read.values.tables("stage")) {
+    if (stage.text("type") == "static" || !stage.has("duration") || !stage.has("step")) continue;
+    long_enough = stage.number("duration") >= least_steps * stage.number("step");
+    if (!long_enough) break;
+  }
+  const bool wanted = !read.values.has("verdict") || read.values.table("verdict").flag("step_check");
+  if (!wanted || !long_enough) return {};
+  std::vector<RunSpec> runs = runs_of_case(read);
+  for (RunSpec& spec : runs) {
+    spec.name += "-coarse";
+    spec.label += ", twice the step";
+    spec.step_factor = 2;
+    spec.pictures = false;
+  }
+  return runs;
+}
+
 bool compares(const Case& read) {
   const Values& root = read.values;
   return !root.tables("variant").empty() || (root.has("compare") && !root.table("compare").tables("motion").empty());

@@ -295,10 +295,10 @@ const Section& trust_section() {
   static const Section s{
       "trust", "for `uplift trust`: how far each choice of the computation is changed",
       Fields{number("stiffness_factor", "1",
-                    "joints are computed this many times as stiff and as soft too; 1: not changed. Where the joint is the soil itself, "
-                    "give what the soil's stiffness is uncertain by")
+                    "joints are computed this many times as stiff and as soft too; 1: not changed; absent: 10, and 2 for a footing on "
+                    "fixed ground, whose joint is the soil itself: the factor is then what the stiffness of the soil is uncertain by")
                  .between(1, 1e6)
-                 .standard(10.0),
+                 .optional(),
              number("mesh_factor", "1", "sizes of a made mesh are multiplied by this; 1: not changed").between(0.1, 1).standard(0.7),
              number("spectrum_band", "1", "a floor spectrum speaks up to the frequency where its runs differ by more than this share")
                  .positive()

@@ -98,6 +98,11 @@ const Section& verdict_section() {
               "peak of an impact does not depend on the step; the default passes motions up to 10 Hz within 2 %")
            .nonnegative()
            .standard(0.01),
+       flag("step_check",
+            "`uplift run` also runs the case with twice the step, and states by how much every number of the verdict changes: a third of "
+            "the "
+            "total time")
+           .standard(true),
        tables("criterion", criterion_section(), "limits")}};
   return s;
 }

@@ -6,6 +6,7 @@
 
 #include "uplift/analysis/case_ground.h"
 #include "uplift/analysis/case_mesh.h"
+#include "uplift/analysis/content_warning.h"
 #include "uplift/analysis/floor_spectra.h"
 #include "uplift/analysis/wording.h"
 #include "uplift/model/damping.h"
@@ -258,6 +259,7 @@ std::vector<std::string> warnings(const Case& read, const RunSpec& spec, const B
   warn_step(built, said);
   warn_floors(spec, built, said);
   warn_method(read, spec, built, said);
+  warn_content(read, built, said);
   warn_motions(built.motions, built.plan.stages, said);
   return said;
 }

@@ -4,6 +4,7 @@
 #include <string>
 #include <vector>
 
+#include "uplift/analysis/interface_viewer.h"
 #include "uplift/analysis/record.h"
 #include "uplift/analysis/run.h"
 #include "uplift/dynamics/step.h"

@@ -24,7 +24,7 @@ std::string at(const VerdictNumber& number) {
 void say(const VerdictNumber* number, const std::string& label, std::string detail, Verdict& verdict, bool tile = false) {
   if (!number) return;
   if (number->time) detail += (detail.empty() ? "" : ", ") + at(*number);
-  verdict.facts.push_back({label, text_of(*number), std::move(detail), tile});
+  verdict.facts.push_back({label, text_of(*number), std::move(detail), tile, step_change_text(*number)});
 }
 
 std::string of_interface(const Verdict& verdict, const InterfaceVerdict& said) {
@@ -158,7 +158,8 @@ void say_forces(const Built& built, const RunResult& run, Verdict& verdict) {
       verdict.numbers.bases() == 1 ? find_number(verdict.numbers.interfaces.front().numbers, "max_moment") : nullptr;
   verdict.facts.push_back({"Base moment" + per_metre(built), spoken(std::abs(run.max_base_moment.value), "N m"),
                            fmt::format("{}, at {}{}", moment ? compared(*moment) : "largest", spoken(run.max_base_moment.time, "s"),
-                                       carried_by_walls(verdict, per_metre(built)))});
+                                       carried_by_walls(verdict, per_metre(built))),
+                           true, moment ? step_change_text(*moment) : ""});
   for (const InterfaceVerdict& said : bases_of(verdict)) {
     const std::string of = of_interface(verdict, said);
     say(find_number(said.numbers, "max_eccentricity"), "Eccentricity e/B" + of, "largest of M/N over the width", verdict);
@@ -175,7 +176,7 @@ void say_top(Verdict& verdict) {
     const VerdictNumber* number = find_number(verdict.numbers.whole, name);
     if (!number) return;
     const std::string change = number->change ? compared(*number) + ", " : "";
-    verdict.facts.push_back({label, spoken(number->value, "m"), change + detail + at(*number), tile});
+    verdict.facts.push_back({label, spoken(number->value, "m"), change + detail + at(*number), tile, step_change_text(*number)});
   };
   fact("max_top_motion", "Top motion", "", true);
   fact("max_drift", "Drift of the top", "relative to the base, ", false);
@@ -243,7 +244,8 @@ void say_residual(Verdict& verdict) {
       const std::string swing = swing_text(*left);
       verdict.facts.push_back(
           {label + of_interface(verdict, said), text_of(*left),
-           swing.empty() ? "at rest" : fmt::format("mean of the last tenth of the run, remaining variation +-{}", swing), false});
+           swing.empty() ? "at rest" : fmt::format("mean of the last tenth of the run, remaining variation +-{}", swing), false,
+           step_change_text(*left)});
     }
 }
 
@@ -323,13 +325,15 @@ std::string_view to_string(Verdict::Level level) {
   return "";
 }
 
-Verdict judge(const Built& built, const RunResult& run, const RunResult* bonded, const FloorRun* floors) {
+Verdict judge(const Built& built, const RunResult& run, const RunResult* bonded, const FloorRun* floors, const Companion* companion) {
   if (statics_alone(built.plan) && run.status == RunStatus::completed) return judge_standing(built, run);
   Verdict verdict;
   const bool nothing = run.status == RunStatus::failed && run.counts.steps == 0;
   if (!nothing) verdict.numbers = numbers_of(built, run, bonded);
+  if (!nothing && companion) verdict.step_check = check_step(built, run, *companion, verdict.numbers);
   say_outcome(built, run, verdict);
   if (nothing) return verdict;
+  if (verdict.step_check.state == StepCheck::State::not_converged) verdict.headline += " (not converged)";
   say_uplift(built, run, verdict);
   say_forces(built, run, verdict);
   say_top(verdict);

@@ -3,6 +3,7 @@
 #include <vector>
 
 #include "uplift/analysis/floor_spectra.h"
+#include "uplift/analysis/step_check.h"
 #include "uplift/analysis/verdict_motion.h"
 #include "uplift/analysis/verdict_numbers.h"
 
@@ -16,16 +17,19 @@ struct Verdict {
   std::string consequence;  // what that changes: compared with the bonded run and the user's limits; empty when there is neither
   struct Fact {
     std::string label, value, detail;
-    bool tile = true;  // shown large on the report's first page; else it stands in a table there
+    bool tile = true;              // shown large on the report's first page; else it stands in a table there
+    std::string step_change = {};  // "±0.3 %": how far the step still moves it; empty: unknown
   };
   std::vector<Fact> facts;
   std::vector<std::string> paragraphs;
   VerdictNumbers numbers;
+  StepCheck step_check;
 };
 std::string_view to_string(Verdict::Level);
 
-/// `bonded`: the same model with interfaces that never open, or null. `floors`: those of the run, or null. Limits are those of the case:
-/// none is built in.
-Verdict judge(const Built& built, const RunResult& run, const RunResult* bonded, const FloorRun* floors = nullptr);
+/// `bonded`: the same model with interfaces that never open, or null. `floors`: those of the run, or null. `companion`: the case with twice
+/// the step, or null. Limits are those of the case: none is built in.
+Verdict judge(const Built& built, const RunResult& run, const RunResult* bonded, const FloorRun* floors = nullptr,
+              const Companion* companion = nullptr);
 
 }  // namespace uplift

@@ -19,7 +19,9 @@ struct VerdictNumber {
   std::optional<double> swing = {};      // half of the range in which a residual still moves
   std::optional<double> change = {};     // relative to it: 0.1 is 10 % more; nothing where both are noise
   std::optional<double> step_peak = {};  // largest mean over one step, of numbers that are means over the window
-  double least = 0;                      // in the unit of the quantity: a value below it is noise
+  // With twice the step, and by how much that changes the number, relative to what check_step() compares it with
+  std::optional<double> coarse = {}, step_change = {};
+  double least = 0;  // in the unit of the quantity: a value below it is noise
 };
 
 /// What is said of one interface.

@@ -83,6 +83,13 @@ std::string percent(double fraction) {
   return fmt::format("{:.{}f} %", std::round(value * power) / power, decimals);
 }
 
+double rounded_down(double value) {
+  const double power = std::pow(10, std::floor(std::log10(value)));
+  for (const double factor : {5.0, 2.0})
+    if (factor * power <= value * (1 + 1e-12)) return factor * power;
+  return power;
+}
+
 std::string change_text(double change) {
   if (!std::isfinite(change)) return "not comparable";
   if (std::abs(change) < 0.0005) return "unchanged";

@@ -13,6 +13,8 @@ std::string spoken(double value, std::string_view unit);
 std::string spoken_within(double value, double resolution, std::string_view unit);
 /// "69 %", "1.2 %", and "46 times" from ten on; a fraction is given. Halves are rounded away from zero.
 std::string percent(double fraction);
+/// One, two or five times a power of ten, not above the value: 0.002 of 0.0047. A positive number is given.
+double rounded_down(double value);
 /// A relative change: "+40 %", "-52 %", "unchanged", and from ten times on "12.4 times as large".
 std::string change_text(double change);
 

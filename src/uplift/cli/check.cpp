@@ -6,6 +6,7 @@
 
 #include "uplift/analysis/case_mesh.h"
 #include "uplift/analysis/floor_record.h"
+#include "uplift/analysis/step_suggestion.h"
 #include "uplift/analysis/wording.h"
 #include "uplift/base/text.h"
 #include "uplift/cli/console.h"
@@ -24,11 +25,12 @@ namespace {
 struct Findings {
   std::vector<double> fixed, bonded, base_free;  // Hz
   std::vector<StiffnessRatio> ratios;
-  double suggested_step = 0;    // s
-  double seconds_per_step = 0;  // measured over the first steps
-  long steps = 0;               // of one run
-  InterfaceSystems systems;     // of the first steps
-  std::string trial_failure;    // why the first steps failed; empty when they did not
+  double suggested_step = 0;      // s
+  std::vector<StepBound> bounds;  // of the step, the smallest first
+  double seconds_per_step = 0;    // measured over the first steps
+  long steps = 0;                 // of one run
+  InterfaceSystems systems;       // of the first steps
+  std::string trial_failure;      // why the first steps failed; empty when they did not
   std::vector<std::string> warnings;
   struct Solid {
     GroupQuality quality;
@@ -114,14 +116,6 @@ std::vector<double> frequencies(const std::vector<Mode>& found) {
   return values;
 }
 
-/// One, two or five times a power of ten, not above the value.
-double round_down(double value) {
-  const double power = std::pow(10, std::floor(std::log10(value)));
-  for (const double factor : {5.0, 2.0})
-    if (factor * power <= value * (1 + 1e-12)) return factor * power;
-  return power;
-}
-
 /// The first steps of the run: do the static stages converge, and what does a step cost?
 void try_steps(Findings& found, const Built& built) {
   RunPlan plan = built.plan;
@@ -174,10 +168,8 @@ Findings find(const Case& read, const RunSpec& spec, const Built& built) {
     found.base_free = frequencies(uplift::modes(built.at_rest().stiffness, built.at_rest().mass, 5));
   }
   if (const Stage* stage = dynamic_stage(built.plan)) found.ratios = stiffness_ratios(built.model, *stage, *built.plan.solver);
-  double fastest = 0;
-  for (const double frequency : found.bonded)
-    if (frequency < 50) fastest = std::max(fastest, frequency);
-  if (fastest > 0) found.suggested_step = round_down(1 / (20 * fastest));
+  if (dynamic_stage(built.plan)) found.bounds = step_bounds(read, built, found.bonded);
+  if (!found.bounds.empty()) found.suggested_step = rounded_down(found.bounds.front().step);
   try_steps(found, built);
   found.warnings = warnings(read, spec, built);
   return found;
@@ -223,8 +215,7 @@ void print(const Loaded& loaded, const Built& built, const Findings& found, cons
   if (stage) {
     line("time step", fmt::format("{} ({} steps)", spoken(stage->step, "s"), found.steps));
     if (found.suggested_step > 0)
-      line("suggested step, at most",
-           fmt::format("{} (twenty a period of the bonded modes below 50 Hz)", spoken(found.suggested_step, "s")));
+      line("suggested step, at most", fmt::format("{} ({})", spoken(found.suggested_step, "s"), found.bounds.front().reason));
   }
   if (found.seconds_per_step > 0)
     line("cost", fmt::format("about {} a step, {} a run", spoken(found.seconds_per_step, "s"),
@@ -309,6 +300,9 @@ void write(const Loaded& loaded, const Built& built, const Findings& found, cons
   json.member("interface_solver", loaded.read.values.text("interface_solver"))
       .member("interface_systems_factored", found.systems.factored)
       .member("interface_systems_iterated", found.systems.iterated);
+  json.key("step_bounds").begin_array();
+  for (const StepBound& bound : found.bounds) json.begin_object().member("step", bound.step).member("reason", bound.reason).end_object();
+  json.end_array();
   json.key("runs")
       .texts(runs)
       .key("notes")

@@ -11,11 +11,12 @@ namespace uplift::cli {
 enum Exit { done = 0, internal_error = 1, bad_input = 2, numerical_failure = 3, interrupted = 130 };
 
 struct Options {
-  std::string file;     // case file, or stored problem
-  std::string out;      // folder of the results; empty: out/NAME
-  bool json = false;    // for machines
-  bool quiet = false;   // nothing but errors
-  std::string command;  // the command line, for the report
+  std::string file;            // case file, or stored problem
+  std::string out;             // folder of the results; empty: out/NAME
+  bool json = false;           // for machines
+  bool quiet = false;          // nothing but errors
+  bool no_step_check = false;  // `run`: without the companion with twice the step
+  std::string command;         // the command line, for the report
 };
 
 int new_case(const std::string& name);

@@ -95,6 +95,7 @@ void declare(CLI::App& app, Choices& given) {
           "  uplift run tower/case.toml\n  uplift run tower --out results/tower --quiet\n  uplift run tower --json | python3 -m json.tool");
   take_case(command, options);
   take_output(command, options);
+  command->add_flag("--no-step-check", options.no_step_check, "do not run the case with twice the step to estimate the error of the step");
   take_json(command, options);
 
   command = add(app, "compare", "run all variants of a case and compare them", "  uplift compare examples/01_oscillator/case.toml");

@@ -1,5 +1,10 @@
 #include <fmt/format.h>
 
+#include <algorithm>
+#include <deque>
+#include <future>
+
+#include "uplift/analysis/result_warnings.h"
 #include "uplift/analysis/wording.h"
 #include "uplift/base/file.h"
 #include "uplift/cli/console.h"
@@ -7,6 +12,14 @@
 
 namespace uplift::cli {
 namespace {
+
+/// With the columns: what, value, how far the step still moves it, when and beside what.
+void say_facts(const std::vector<Verdict::Fact>& facts) {
+  const bool checked = std::ranges::any_of(facts, [](const Verdict::Fact& fact) { return !fact.step_change.empty(); });
+  for (const Verdict::Fact& fact : facts)
+    say(checked ? fmt::format("  {:<34} {:<14} {:<10} {}", fact.label, fact.value, fact.step_change, fact.detail)
+                : fmt::format("  {:<34} {:<14} {}", fact.label, fact.value, fact.detail));
+}
 
 /// "criterion not met: max_opening of soil 13.7 mm, limit 10.0 mm (client)".
 void say_criteria(const std::vector<CriterionResult>& results) {
@@ -19,6 +32,49 @@ void say_criteria(const std::vector<CriterionResult>& results) {
   }
 }
 
+/// The runs with twice the step: beside the others where they are small, after them where memory counts.
+class CompanionRuns {
+ public:
+  CompanionRuns(const Loaded& loaded, const Options& options) : loaded_(loaded), options_(options) {
+    if (!options.no_step_check) specs_ = companions_of_case(loaded.read);
+  }
+  /// Begins to compute a case that is small.
+  void begin(const Built& base) {
+    constexpr int small_model = 3000;  // free unknowns
+    if (!specs_.empty() && base.model.free() <= small_model)
+      beside_ = std::async(std::launch::async | std::launch::deferred, [this] { compute(true); });
+  }
+  /// What the verdict is compared with; null when nothing was computed.
+  const Companion* finish() {
+    if (beside_.valid())
+      beside_.get();
+    else if (!interrupt_asked())
+      compute(false);
+    if (runs_.empty()) return nullptr;
+    companion_ = {&built_.front(), &runs_.front(), runs_.size() > 1 ? &runs_[1] : nullptr};
+    return &companion_;
+  }
+
+ private:
+  void compute(bool silent) {
+    for (const RunSpec& spec : specs_) {
+      built_.push_back(build(loaded_.read, spec));
+      const Built& built = built_.back();
+      runs_.push_back(silent ? uplift::run(built.model, built.plan, built.behaviours, [](const Progress&) { return !interrupt_asked(); })
+                             : run_one(built, spec.label, options_));
+      forget_matrices(built_.back());
+    }
+  }
+
+  const Loaded& loaded_;
+  const Options& options_;
+  std::vector<RunSpec> specs_;
+  std::deque<Built> built_;
+  std::vector<RunResult> runs_;
+  std::future<void> beside_;
+  Companion companion_;
+};
+
 }  // namespace
 
 int run(const Options& options) {
@@ -27,18 +83,22 @@ int run(const Options& options) {
   ResultFolder folder(result_path(options, loaded.read));
   std::vector<std::string> fields;
   catch_interrupts();
+  CompanionRuns companions(loaded, options);
   for (const RunSpec& spec : runs_of_case(loaded.read)) {
     if (interrupt_asked() && !results.runs.empty()) break;
     results.specs.push_back(spec);
     results.built.push_back(build(loaded.read, spec));
+    if (results.runs.empty()) companions.begin(results.built.front());
     if (results.runs.empty()) results.warnings = warnings(loaded.read, spec, results.built.front());
     results.runs.push_back(run_with_fields(loaded, results.built.back(), spec.label, options, folder, fields));
     forget_matrices(results.built.back());
   }
   results.floors = floor_answers(results.built.front().plan, results.runs, results.specs);
   const RunResult& main = results.runs.front();
-  results.verdict = judge(results.built.front(), main, results.runs.size() > 1 ? &results.runs[1] : nullptr, &results.floors.runs.front());
-  if (std::string text = main.equilibrium.warning(); !text.empty()) results.warnings.push_back(std::move(text));
+  const Companion* companion = main.status == RunStatus::failed ? nullptr : companions.finish();
+  results.verdict =
+      judge(results.built.front(), main, results.runs.size() > 1 ? &results.runs[1] : nullptr, &results.floors.runs.front(), companion);
+  for (std::string& warning : result_warnings(main, results.verdict.numbers)) results.warnings.push_back(std::move(warning));
   write_results(options, loaded, results, nullptr, folder);
 
   if (options.json) {
@@ -47,7 +107,8 @@ int run(const Options& options) {
     for (const std::string& warning : results.warnings) complain("warning: " + warning);
     say(results.verdict.headline);
     if (!results.verdict.consequence.empty()) say(results.verdict.consequence);
-    for (const Verdict::Fact& fact : results.verdict.facts) say(fmt::format("  {:<34} {:<14} {}", fact.label, fact.value, fact.detail));
+    say(results.verdict.step_check.sentence());
+    say_facts(results.verdict.facts);
     say_criteria(results.verdict.numbers.criteria);
     const double per_step = main.counts.steps > 0 ? 1e6 * main.wall / static_cast<double>(main.counts.steps) : 0;
     if (statics_alone(results.built.front().plan))

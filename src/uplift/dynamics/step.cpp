@@ -39,16 +39,9 @@ Stepper::Stepper(const Model& model, const Bulk& bulk, const Sparse& b, const Ve
   // Two factors are kept: the one of the step, which needs the most room while it is made, comes first. One that is needed for the
   // acceleration of the beginning alone comes and goes before it (start).
   if (path_ || impacts_) level(0);
-  if (impacts_ && accelerator().why().empty()) {
-    mass_spread_ = std::make_unique<Spread>(accelerator().spread(b));
-    row_area_.resize(b.rows());
-    pressed_.setZero(b.rows());
+  if (impacts_) {
+    prepare_impacts();
     impact_impulse_.setZero(b.rows());
-    tangents_.reserve(static_cast<std::size_t>(b.rows()));
-    Eigen::Index row = 0;
-    for (const Interface& interface : model.interfaces)
-      for (int i = 0; i < interface.rows(); ++i) row_area_[row++] = interface.area[i % interface.batch.points];
-    if (bulk.small) dense_b_ = Matrix(b);
   }
   if (yielding_.any()) newton_ = std::make_unique<PlasticNewton>(yielding_, bulk.stiffness_matrix, options.plastic);
 }
@@ -151,8 +144,11 @@ void Stepper::start(State state, const Ledger* before) {
     forces_at(now_, work_);
     now_.acceleration.setZero(n);
     accelerator().solve(work_, now_.acceleration);
-    if (impacts_) hold_initial_acceleration();
-    if (!impacts_) accelerator_.reset();  // its factor is large, and the scheme carries accelerations on
+    hold_initial_acceleration();
+    if (!impacts_) {  // the factor is large, and the scheme carries accelerations on
+      mass_spread_.reset();
+      accelerator_.reset();
+    }
   }
   level(0);
   if (!bulk_.small) {

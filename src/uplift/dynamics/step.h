@@ -69,7 +69,6 @@ class Stepper {
   bool averages_acceleration() const { return path_ && b_.rows() > 0; }
   /// The motion and forces that the last step balanced; valid until the next step. `start` is the acceleration before the first step.
   StepBalance balance(const Vector& start) const;
-  bool path_averaged() const { return path_; }
   /// Largest external work met [J], for the scale of the energy error.
   double largest_external() const { return largest_external_; }
   double initial_energy() const { return initial_energy_; }
@@ -96,6 +95,7 @@ class Stepper {
   Sparse matrix_of(const Level& level) const;
   InterfaceProblem frame_of(const Level& level) const;
   Outcome solve(Level& level);
+  void prepare_impacts();
   bool select_pressed(const std::vector<Block>& blocks, const Vector& forces);
   Impact impact_data(const Vector& force) const;
   double contact_work() const;

@@ -8,6 +8,19 @@
 
 namespace uplift {
 
+/// How impulses spread through the mass matrix, and work space; nothing when it cannot be factorised.
+void Stepper::prepare_impacts() {
+  if (!accelerator().why().empty()) return;
+  mass_spread_ = std::make_unique<Spread>(accelerator().spread(b_));
+  row_area_.resize(b_.rows());
+  pressed_.setZero(b_.rows());
+  tangents_.reserve(static_cast<std::size_t>(b_.rows()));
+  Eigen::Index row = 0;
+  for (const Interface& interface : model_.interfaces)
+    for (int i = 0; i < interface.rows(); ++i) row_area_[row++] = interface.area[i % interface.batch.points];
+  if (bulk_.small) dense_b_ = Matrix(b_);
+}
+
 /// The rows that take part in an impact: normal rows of constraints that are pressed (or, where there is no constraint, those of stiff
 /// laws), and the tangential rows of points that stick. False when nothing is pressed.
 bool Stepper::select_pressed(const std::vector<Block>& blocks, const Vector& forces) {
@@ -98,8 +111,9 @@ void Stepper::separate_impulse(const Impact& data) {
   if (!closes) return;
   const ImpactScratch& scratch = impact_scratch_;
   for (const Block& block : last_->blocks) {
+    if (block.cone == nullptr) continue;  // the force of a law follows from its opening
     const int n = block.batch.points, normal = block.first + block.batch.normal();
-    if (block.cone != nullptr && block.cone->friction() > 0) {
+    if (block.cone->friction() > 0) {
       separate_impulse_of_friction(block, data);
       continue;
     }
@@ -122,18 +136,23 @@ void Stepper::separate_impulse_of_friction(const Block& block, const Impact& dat
   for (int i = normal; i < normal + n; ++i) impact_impulse_[i] = impact_scratch_.total[i] - data.velocity_weight * contact_[i];
 }
 
-/// The acceleration at the beginning with the contact forces that belong to it: those of the stage before hold another load. Closed points
-/// stay closed or open (inequality), sticking ones stick.
+/// The acceleration at the beginning with the contact forces of constraints that belong to it: those of the stage before hold another load.
+/// Closed points stay closed or open (inequality), sticking ones stick.
 void Stepper::hold_initial_acceleration() {
   const std::vector<Block> blocks = blocks_of(model_, behaviours_).blocks;
+  if (std::ranges::none_of(blocks, [](const Block& block) { return block.cone != nullptr; })) return;
+  if (mass_spread_ == nullptr) prepare_impacts();
   if (mass_spread_ == nullptr || !select_pressed(blocks, now_.force)) return;
   Impact data = impact_data(now_.force);
   std::swap(data.tangents, tangents_);
-  if (!select_rows(data, Hold::inequality, impact_scratch_)) return;
-  project_rate(data, now_.acceleration, 1, Select::all, impact_scratch_);
-  correct(data, 1, now_.acceleration, impact_scratch_);
-  for (Eigen::Index i = impact_scratch_.first; i < impact_scratch_.first + impact_scratch_.count; ++i)
-    now_.force[i] = now_.mean_force[i] = impact_scratch_.impulse[i];
+  if (select_rows(data, Hold::inequality, impact_scratch_)) {
+    project_rate(data, now_.acceleration, 1, Select::all, impact_scratch_);
+    correct(data, 1, now_.acceleration, impact_scratch_);
+    const auto take = [this](Eigen::Index row) { now_.force[row] = now_.mean_force[row] = impact_scratch_.impulse[row]; };
+    for (Eigen::Index row = 0; row < pressed_.size(); ++row)
+      if (pressed_[row] > 0) take(row);
+    for (const int row : data.tangents) take(row);
+  }
   std::swap(data.tangents, tangents_);
 }
 

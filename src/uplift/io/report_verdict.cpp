@@ -47,6 +47,7 @@ constexpr Row residuals[] = {{"residual_rotation", "Rotation"},
 void write_number(JsonWriter& json, const std::string& label, const VerdictNumber& number) {
   json.begin_object().member("label", label).member("value", number.value).member("unit", number.quantity->unit);
   json.member("text", text_of(number));
+  if (number.coarse) json.member("stepText", step_change_text(number));
   if (number.bonded) json.member("bondedText", said(*number.quantity, *number.bonded));
   if (number.bonded) json.member("changeText", number.change ? change_text(*number.change) : "no excitation in this direction");
   if (const std::string swing = swing_text(number); !swing.empty()) json.member("swingText", swing);
@@ -185,9 +186,17 @@ void write_verdict(JsonWriter& json, const ReportInput& input) {
   const Verdict& verdict = *input.verdict;
   json.begin_object().member("level", to_string(verdict.level)).member("headline", verdict.headline);
   json.member("consequence", verdict.consequence);
+  if (!statics_alone(input.runs.front().built->plan)) {
+    json.key("stepCheck");
+    write_step_check(json, verdict.step_check);
+  }
   json.key("facts").begin_array();
   for (const Verdict::Fact& fact : verdict.facts)
-    if (fact.tile) json.begin_object().member("label", fact.label).member("value", fact.value).member("detail", fact.detail).end_object();
+    if (fact.tile) {
+      json.begin_object().member("label", fact.label).member("value", fact.value).member("detail", fact.detail);
+      if (!fact.step_change.empty()) json.member("stepChange", fact.step_change);
+      json.end_object();
+    }
   json.end_array();
   std::vector<std::string> paragraphs = verdict.paragraphs;
   for (const std::string& warning : input.warnings) paragraphs.push_back("Warning: " + warning + (warning.ends_with("?") ? "" : "."));

@@ -16,6 +16,8 @@ void write_numbers(JsonWriter& json, const std::vector<VerdictNumber>& numbers) 
     json.key(number.quantity->name).begin_object().member("value", number.value).member("unit", number.quantity->unit);
     if (number.time) json.member("time", *number.time);
     if (number.step_peak) json.member("peak_of_step_mean", *number.step_peak);
+    if (number.coarse) json.member("at_twice_the_step", *number.coarse);
+    if (number.step_change) json.member("step_change_percent", 100 * *number.step_change);
     if (number.swing) json.member("swing", *number.swing);
     if (number.bonded) json.member("bonded", *number.bonded);
     if (number.change) json.member("change_percent", 100 * *number.change);
@@ -86,6 +88,17 @@ void write_criterion(JsonWriter& json, const CriterionResult& result) {
 
 }  // namespace
 
+void write_step_check(JsonWriter& json, const StepCheck& check) {
+  json.begin_object().member("result", to_string(check.state)).member("sentence", check.sentence());
+  if (check.coarse_step > 0) json.member("step", check.step).member("coarse_step", check.coarse_step).member("unit", "s");
+  if (check.quantity) {
+    json.member("largest_change_percent", 100 * check.largest).member("quantity", check.quantity->name);
+    if (!check.of.empty()) json.member("of", check.of);
+  }
+  if (check.sufficient_step > 0) json.member("sufficient_step", check.sufficient_step);
+  json.end_object();
+}
+
 void write_floor_changes(JsonWriter& json, const FloorAnswers* floors) {
   json.begin_array();
   const FloorRun none, &run = floors && !floors->runs.empty() ? floors->runs.front() : none;
@@ -109,6 +122,8 @@ void write_verdict_numbers(JsonWriter& json, const Verdict& verdict, const std::
                            const Built* built) {
   json.begin_object().member("level", to_string(verdict.level)).member("headline", verdict.headline);
   json.member("consequence", verdict.consequence);
+  json.key("step_check");
+  write_step_check(json, verdict.step_check);
   json.member("run", runs.empty() ? "" : runs.front().name);
   json.member("per_metre", built && built->is_strip());
   json.key("full_loss_of_contact").begin_array();

@@ -9,6 +9,8 @@ namespace uplift {
 /// what becomes of the floor spectra of the first run. `floors` may be null; without `built`, the first run's, nothing is said over time.
 void write_verdict_numbers(JsonWriter& json, const Verdict& verdict, const std::vector<RunResult>& runs, const FloorAnswers* floors,
                            const Built* built);
+/// The object `step_check`: how far the numbers depend on the step.
+void write_step_check(JsonWriter& json, const StepCheck& check);
 /// Change of every floor spectrum of the first run against the bonded one in each frequency band, in per cent; an empty array without.
 void write_floor_changes(JsonWriter& json, const FloorAnswers* floors);
 

@@ -8,6 +8,8 @@ namespace uplift {
 namespace {
 
 constexpr double least_tolerance = 1e-13;  // below, round-off decides
+constexpr double of_joint = 10;            // the stiffness of a joint is a choice of the computation, which should not matter
+constexpr double of_soil = 2;              // that of the soil is a property, which is hardly known better than within this factor
 
 bool has_number(const Values& part, std::string_view key) {
   return part.items().contains(key) && part.has(key);
@@ -38,6 +40,7 @@ class Planner {
       leave_out("interface", "the case has no interface");
     } else {
       change_stiffness();
+      add_points();
       tighten();
       change_method();
     }
@@ -67,16 +70,24 @@ class Planner {
     add("step_half", "time step", fmt::format("half the time step, {:g} ms", 1e3 * smallest), std::move(edits));
   }
 
+  /// A law of a footing on fixed ground is the soil itself.
+  double factor_of(const Values& interface) const {
+    if (trust_.has("stiffness_factor")) return trust_.number("stiffness_factor");
+    return interface.has("footing") && !interface.table("footing").has("bed") ? of_soil : of_joint;
+  }
+
   void change_stiffness() {
-    const double factor = trust_.number("stiffness_factor");
-    if (factor == 1) return leave_out("joint stiffness", "stiffness_factor = 1");
+    if (trust_.has("stiffness_factor") && trust_.number("stiffness_factor") == 1)
+      return leave_out("joint stiffness", "stiffness_factor = 1");
     const bool penalty = method_of(root_) == "penalty";
     for (const bool stiffer : {true, false}) {
-      const double by = stiffer ? factor : 1 / factor;
       std::vector<CaseEdit> edits;
+      std::vector<double> factors;
       const std::vector<Values>& interfaces = root_.tables("interface");
       for (std::size_t k = 0; k < interfaces.size(); ++k) {
         const Values& law = interfaces[k].part("law");
+        const double factor = factor_of(interfaces[k]), by = stiffer ? factor : 1 / factor;
+        if (has_number(law, "K_n")) factors.push_back(factor);
         for (const char* key : {"K_n", "K_t"})
           if (has_number(law, key)) edits.push_back({law_path(k) + "." + key, by * law.number(key)});
         // the SDM asks for K_n > F_u^2/G_f, and the others soften no faster than they are stiff
@@ -90,12 +101,36 @@ class Planner {
       if (penalty) {
         const Values& method = root_.part("method");
         const char* key = method.has("stiffness") ? "stiffness" : "factor";
-        edits.push_back({std::string("method.") + key, by * method.number(key)});
+        const double factor = trust_.has("stiffness_factor") ? trust_.number("stiffness_factor") : of_joint;
+        factors.push_back(factor);
+        edits.push_back({std::string("method.") + key, (stiffer ? factor : 1 / factor) * method.number(key)});
       }
       if (edits.empty()) return leave_out("joint stiffness", "constraints are rigid");
-      add(stiffer ? "stiffer" : "softer", "joint stiffness", fmt::format("joint {:g} times as {}", factor, stiffer ? "stiff" : "soft"),
+      const auto [least, most] = std::ranges::minmax(factors);
+      const std::string times = least == most ? fmt::format("{:g}", most) : fmt::format("{:g} or {:g}", least, most);
+      add(stiffer ? "stiffer" : "softer", "joint stiffness", fmt::format("joint {} times as {}", times, stiffer ? "stiff" : "soft"),
           std::move(edits));
     }
+  }
+
+  /// Every strip between the points of a footing is halved.
+  void add_points() {
+    std::vector<CaseEdit> edits;
+    std::string label;
+    const std::vector<Values>& interfaces = root_.tables("interface");
+    for (std::size_t k = 0; k < interfaces.size(); ++k) {
+      if (!interfaces[k].has("footing")) continue;
+      const Values& footing = interfaces[k].table("footing");
+      const bool on_edges = footing.text("rule") == "nodal";
+      for (const char* key : {"points", "points_across"}) {
+        if (!has_number(footing, key)) continue;
+        const std::int64_t points = footing.integer(key), finer = on_edges && points > 1 ? 2 * points - 1 : 2 * points;
+        edits.push_back({fmt::format("interface[{}].footing.{}", k, key), finer});
+        label += fmt::format("{}{} instead of {}", label.empty() ? "" : ", ", finer, points);
+      }
+    }
+    if (edits.empty()) return leave_out("points of the footing", "no interface is a footing");
+    add("more_points", "points of the footing", label + " points", std::move(edits));
   }
 
   void tighten() {

@@ -1,0 +1,74 @@
+#include "uplift/analysis/content_warning.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+
+#include "uplift/analysis/case_mesh.h"
+#include "uplift/analysis/wording.h"
+#include "uplift/math/fourier.h"
+#include "uplift/mesh/quality.h"
+
+namespace uplift {
+namespace {
+
+constexpr double points_per_wavelength = 10, accepted_energy = 0.05;
+
+/// The solid that carries the lowest frequency.
+struct Reach {
+  std::string group;
+  double frequency = INFINITY;  // Hz
+};
+
+Reach least_reach(const Case& read) {
+  const CaseSolids materials(read.values, *read.mesh);
+  const std::vector<GroupQuality> qualities = quality_by_group(read.mesh->mesh);
+  Reach least;
+  for (const CaseSolids::Solid& solid : materials.solids()) {
+    const auto quality = std::ranges::find(qualities, solid.table->text("group"), &GroupQuality::name);
+    if (quality == qualities.end() || !(solid.section.material.density > 0)) continue;
+    const double reach = highest_frequency(*quality, solid.section.material.s_wave_speed(), points_per_wavelength);
+    if (reach < least.frequency) least = {quality->name, reach};
+  }
+  return least;
+}
+
+}  // namespace
+
+double energy_above(const TimeFunction& function, int derivative, double duration, double frequency) {
+  const double step = std::min(duration / 16, 0.05 / frequency);                              // ten samples a period of twice the frequency
+  std::vector<double> values(fourier_length(2 * static_cast<std::size_t>(duration / step)));  // zeros behind it: it does not wrap around
+  for (std::size_t i = 0; 2 * i < values.size(); ++i) values[i] = derivative_of(function, derivative, step * static_cast<double>(i));
+  const auto transform = fourier(values);
+  double all = 0, above = 0;
+  for (std::size_t k = 0; k < transform.size(); ++k) {
+    const double energy = std::norm(transform[k]);
+    all += energy;
+    if (static_cast<double>(k) > frequency * step * static_cast<double>(values.size())) above += energy;
+  }
+  return all > 0 ? above / all : 0;
+}
+
+void warn_content(const Case& read, const Built& built, std::vector<std::string>& said) {
+  double duration = 0;
+  for (const Stage& stage : built.plan.stages)
+    if (stage.type == Stage::Type::dynamics) duration += stage.duration;
+  if (!read.mesh || !(duration > 0)) return;
+  const Reach reach = least_reach(read);
+  if (!std::isfinite(reach.frequency)) return;
+  double most = accepted_energy;
+  const Drive* worst = nullptr;
+  for (const Drive& drive : built.model.drives) {
+    if (drive.constant || drive.dead || !drive.function) continue;
+    const double above = energy_above(*drive.function, static_cast<int>(drive.order), duration, reach.frequency);
+    if (above > most) most = above, worst = &drive;
+  }
+  if (worst)
+    said.push_back(
+        fmt::format("the cells of \"{}\" carry shear waves up to {} (ten nodes a wavelength), and {} of the energy of the load \"{}\" lies "
+                    "above: refine the mesh there, or filter the motion",
+                    reach.group, spoken(reach.frequency, "Hz"), percent(most), worst->name));
+}
+
+}  // namespace uplift

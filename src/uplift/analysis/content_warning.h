@@ -1,0 +1,16 @@
+#pragma once
+#include <string>
+#include <vector>
+
+#include "uplift/analysis/case.h"
+
+namespace uplift {
+
+/// Share of the energy of a function of time, the integral of its square, above a frequency [Hz]; over `duration` [s].
+double energy_above(const TimeFunction& function, int derivative, double duration, double frequency);
+
+/// Warns of solids whose cells carry shear waves up to a frequency (ten nodes a wavelength) above which a load has more than a twentieth of
+/// its energy.
+void warn_content(const Case& read, const Built& built, std::vector<std::string>& said);
+
+}  // namespace uplift

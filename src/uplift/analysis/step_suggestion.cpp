@@ -1,0 +1,108 @@
+#include "uplift/analysis/step_suggestion.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+
+#include "uplift/analysis/case_mesh.h"
+#include "uplift/analysis/wording.h"
+
+namespace uplift {
+namespace {
+
+constexpr double steps_a_period = 20, highest_of_structure = 50;  // Hz
+constexpr double steps_a_period_of_joint = 8,
+                 highest_of_joint = 300;  // Hz: above, the joint acts as a constraint, which needs no resolution
+constexpr double accepted_difference = 0.01, least_step = 1e-5, most_step = 0.1;
+
+/// Modes of the structure, and those in which it bounces on the closed joint.
+void bound_by_modes(const std::vector<double>& bonded, std::vector<StepBound>& bounds) {
+  double structure = 0, joint = 0;
+  for (const double frequency : bonded) {
+    if (frequency < highest_of_structure)
+      structure = std::max(structure, frequency);
+    else if (frequency < highest_of_joint)
+      joint = std::max(joint, frequency);
+  }
+  if (structure > 0)
+    bounds.push_back(
+        {1 / (steps_a_period * structure), fmt::format("twenty steps a period of the bonded mode of {}", spoken(structure, "Hz"))});
+  if (joint > 0)
+    bounds.push_back(
+        {1 / (steps_a_period_of_joint * joint), fmt::format("eight steps a period of the bonded mode of {}", spoken(joint, "Hz"))});
+}
+
+/// A wave shall not cross more than one face of the interface in a step, on the softer side: what a contact that opens or closes sends out
+/// is not resolved otherwise.
+void bound_by_contact_mesh(const Case& read, const Built& built, std::vector<StepBound>& bounds) {
+  if (!read.mesh) return;
+  const CaseSolids solids(read.values, *read.mesh);
+  for (std::size_t k = 0; k < built.facts.size(); ++k) {
+    double speed = 0;
+    for (const FacePair& faces : built.facts[k].faces)
+      for (const CellId side : {faces.lower, faces.upper})
+        if (const CaseSolids::Solid* solid = solids.beside(side); solid && solid->section.material.density > 0) {
+          const double here = solid->section.material.p_wave_speed();
+          speed = speed > 0 ? std::min(speed, here) : here;
+        }
+    const Interface& interface = built.model.interfaces[k];
+    if (!(speed > 0)) continue;
+    const double face = interface.area.sum() / static_cast<double>(built.facts[k].faces.size());
+    const double size = interface.space.dimension == 3 ? std::sqrt(face) : face / built.facts[k].depth;
+    bounds.push_back({size / speed, fmt::format("waves of {} cross a face of \"{}\", {}, in one step", spoken(speed, "m/s"), interface.name,
+                                                spoken(size, "m"))});
+  }
+}
+
+double duration_of(const RunPlan& plan) {
+  double duration = 0;
+  for (const Stage& stage : plan.stages)
+    if (stage.type == Stage::Type::dynamics) duration += stage.duration;
+  return duration;
+}
+
+void bound_by_loads(const Built& built, std::vector<StepBound>& bounds) {
+  double smallest = most_step;
+  const Drive* fastest = nullptr;
+  for (const Drive& drive : built.model.drives) {
+    if (drive.constant || drive.dead || !drive.function) continue;
+    const double step = step_that_resolves(*drive.function, static_cast<int>(drive.order), duration_of(built.plan), smallest);
+    if (step < smallest) smallest = step, fastest = &drive;
+  }
+  if (fastest)
+    bounds.push_back({smallest, fmt::format("straight lines between the steps follow the load \"{}\" within 1 %", fastest->name)});
+}
+
+}  // namespace
+
+double step_that_resolves(const TimeFunction& function, int derivative, double duration, double most) {
+  constexpr int inner = 4;  // places in a step where the difference is taken
+  for (double step = most; step > least_step * (1 + 1e-9); step = rounded_down(0.6 * step)) {
+    double difference = 0, size = 0;
+    const long steps = std::max(1L, std::lround(duration / step));
+    double left = derivative_of(function, derivative, 0);
+    for (long i = 0; i < steps; ++i) {
+      const double start = static_cast<double>(i) * step, right = derivative_of(function, derivative, start + step);
+      for (int k = 0; k < inner; ++k) {
+        const double share = (k + 0.5) / inner, value = derivative_of(function, derivative, start + share * step);
+        difference += std::abs(value - (left + share * (right - left)));
+        size += std::abs(value);
+      }
+      left = right;
+    }
+    if (difference <= accepted_difference * size) return step;
+  }
+  return least_step;
+}
+
+std::vector<StepBound> step_bounds(const Case& read, const Built& built, const std::vector<double>& bonded) {
+  std::vector<StepBound> bounds;
+  bound_by_modes(bonded, bounds);
+  bound_by_contact_mesh(read, built, bounds);
+  bound_by_loads(built, bounds);
+  std::ranges::stable_sort(bounds, {}, &StepBound::step);
+  return bounds;
+}
+
+}  // namespace uplift

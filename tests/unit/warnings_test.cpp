@@ -1,0 +1,67 @@
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <numbers>
+
+#include "uplift/analysis/content_warning.h"
+#include "uplift/analysis/result_warnings.h"
+#include "uplift/analysis/step_suggestion.h"
+
+namespace uplift {
+namespace {
+
+/// Sum of sines of 2 Hz and 8 Hz with these amplitudes, over whole periods.
+class TwoSines final : public TimeFunction {
+ public:
+  TwoSines(double slow, double fast) : slow_(slow), fast_(fast) {}
+  double value(double t) const override { return slow_ * std::sin(4 * std::numbers::pi * t) + fast_ * std::sin(16 * std::numbers::pi * t); }
+  double rate(double) const override { return 0; }
+  double acceleration(double) const override { return 0; }
+
+ private:
+  double slow_, fast_;
+};
+
+TEST(Content, EnergyOfASumOfSines) {
+  EXPECT_NEAR(energy_above(TwoSines(1, 1), 0, 20, 4), 0.5, 0.01);
+  EXPECT_NEAR(energy_above(TwoSines(3, 1), 0, 20, 4), 0.1, 0.01);
+  EXPECT_NEAR(energy_above(TwoSines(1, 1), 0, 20, 1), 1, 0.01);
+  EXPECT_NEAR(energy_above(TwoSines(1, 1), 0, 20, 12), 0, 0.01);
+  EXPECT_EQ(energy_above(TwoSines(0, 0), 0, 20, 4), 0);
+}
+
+/// Straight lines differ from a sine by (w h)^2/8 of its value at most, and by w^2 h^2/12 on average: 0.01 at w h = 0.346.
+TEST(StepSuggestion, LoadsAreResolvedToOneHundredth) {
+  const double period = 0.125, exact = 0.3464 * period / (2 * std::numbers::pi);  // 6.9 ms
+  EXPECT_GT(exact, 5e-3);
+  EXPECT_LT(exact, 1e-2);
+  EXPECT_DOUBLE_EQ(step_that_resolves(TwoSines(0, 1), 0, 10, 0.1), 5e-3);
+  EXPECT_DOUBLE_EQ(step_that_resolves(TwoSines(0, 1), 0, 10, 2e-3), 2e-3);
+  EXPECT_DOUBLE_EQ(step_that_resolves(TwoSines(1, 0), 0, 10, 0.1), 2e-2) << "four times as slow: 28 ms";
+}
+
+/// A run of 10 s.
+RunResult run_of_ten_seconds() {
+  RunResult run;
+  run.steps.time = {0, 5, 10};
+  return run;
+}
+
+TEST(ResultWarnings, LatePeaks) {
+  const RunResult run = run_of_ten_seconds();
+  VerdictNumbers numbers;
+  InterfaceVerdict& base = numbers.interfaces.emplace_back();
+  base.name = "soil";
+  base.numbers = {{find_verdict_quantity("max_moment"), 1e6, 8.9}, {find_verdict_quantity("max_opening"), 0.01, 8.0}};
+  EXPECT_TRUE(result_warnings(run, numbers).empty());
+  base.numbers.front().time = 9.5;
+  ASSERT_EQ(result_warnings(run, numbers).size(), 1u);
+  EXPECT_EQ(result_warnings(run, numbers).front(),
+            "largest values are reached in the last tenth of the run (base moment of soil at 9.50 s): a longer run may exceed them");
+  RunResult failed = run_of_ten_seconds();
+  failed.status = RunStatus::failed;
+  EXPECT_TRUE(result_warnings(failed, numbers).empty());
+}
+
+}  // namespace
+}  // namespace uplift
