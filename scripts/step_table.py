@@ -3,8 +3,9 @@
 
     python3 scripts/step_table.py build/release/uplift examples/02_building_on_soil/case.toml
 
-The runs are made one after the other in a temporary copy of the folder of the case. The last column is the change from the first
-step to the last one. `--scheme energy_decay` replaces the scheme of the dynamic stages, `--only NAME,NAME` selects rows."""
+The runs are made one after the other in a temporary copy of the folder of the case. The last column is the difference of the first
+step from the last one. Changes compared with the bonded run and rows of zeros are left out. `--scheme energy_decay` replaces the scheme
+of the dynamic stages."""
 import argparse
 import json
 import math
@@ -49,7 +50,7 @@ def run(program, folder, case, text):
         numbers |= {(part["name"], name): (n["value"], n["unit"]) for name, n in part["numbers"].items()}
     for name in ("energy_created", "energy_lost"):
         numbers[("", name)] = (100 * first[name]["value"] / first["energy_scale"], "%")
-    numbers[("", "iterations per step")] = (first["iterations"] / first["steps"], "1")
+    numbers[("", "iterations of a step")] = (first["iterations"] / first["steps"], "1")
     return numbers
 
 
@@ -58,9 +59,15 @@ def cell(number):
         return "-"
     value, unit = number
     if unit in ("1", "%", "s") or value == 0:
-        return f"{value:.4g}" + ("" if unit == "1" else f" {unit}")
+        return f"{value:.4g}".replace("-", "−", value < 0) + ("" if unit == "1" else f" {unit}")
     scale, prefix = next((p for p in PREFIXES if abs(value) >= 0.9995 * p[0]), PREFIXES[-1])
-    return f"{value / scale:.4g} {prefix}{unit}"
+    return f"{value / scale:.4g} {prefix}{unit}".replace("-", "−")
+
+
+def difference(name, first, last):
+    if not first or not last or not last[0] or "energy" in name or "iterations" in name:
+        return "-"
+    return f"{100 * (first[0] / last[0] - 1):+.2f} %".replace("+0.00", "0.00").replace("-0.00", "0.00").replace("-", "−")
 
 
 def main():
@@ -69,7 +76,6 @@ def main():
     options.add_argument("case", type=pathlib.Path)
     options.add_argument("--factors", default="1,0.5,0.25", help="of the step of the case")
     options.add_argument("--scheme", help="of the dynamic stages, instead of that of the case")
-    options.add_argument("--only", help="names of the rows, separated by commas")
     given = options.parse_args()
     columns = {}
     with tempfile.TemporaryDirectory() as name:
@@ -79,15 +85,15 @@ def main():
             text, step = with_step(given.case.read_text(), float(factor), given.scheme)
             columns[f"{1e3 * step:.4g} ms"] = run(given.program.resolve(), folder, given.case.name, text)
     runs = list(columns.values())
+    names = dict.fromkeys(key for numbers in runs for key in numbers)
     parts = {part for numbers in runs for part, name in numbers if part}
-    print("| number | " + " | ".join(columns) + " | first compared with last |\n|---|" + "---|" * (len(runs) + 1))
-    for key in dict.fromkeys(key for numbers in runs for key in numbers):
-        if given.only and key[1] not in given.only.split(","):
+    print("| number | " + " | ".join(columns) + " | difference |\n|---|" + "---|" * (len(runs) + 1))
+    for part, name in names:
+        numbers = [numbers.get((part, name)) for numbers in runs]
+        if name.startswith("change_of") or not any(number and number[0] for number in numbers):
             continue
-        first, last = runs[0].get(key), runs[-1].get(key)
-        moved = f"{100 * (first[0] / last[0] - 1):+.2f} %" if first and last and last[0] and last[1] != "%" else "-"
-        title = key[1] if len(parts) < 2 or not key[0] else f"{key[0]}: {key[1]}"
-        print(f"| {title} | " + " | ".join(cell(numbers.get(key)) for numbers in runs) + f" | {moved.replace('-', '−') if moved != '-' else moved} |")
+        title = name if len(parts) < 2 or not part else f"{part}: {name}"
+        print(f"| {title} | " + " | ".join(map(cell, numbers)) + f" | {difference(name, numbers[0], numbers[-1])} |")
 
 
 main()
