@@ -305,7 +305,7 @@ class Dynamic(CliTest):
         self.run_it('events = true\nquantities = ["displacement"]\ngroups = ["block"]\nprecision = "float64"\n')
         frames = frames_of(self.folder / "r/fields/run.pvd")
         run = self.summary("r")["runs"][0]
-        wanted = sorted({run["first_uplift"], run["max_opening"]["time"], run["max_pressure"]["time"], 0.5})
+        wanted = sorted({run["first_uplift"], run["max_opening"]["time"], run["max_step_pressure"]["time"], 0.5})
         self.assertEqual(len(wanted), 4)
         self.assertEqual(len(frames), 4)
         for (when, blocks), time in zip(frames, wanted):
@@ -313,7 +313,7 @@ class Dynamic(CliTest):
             self.assertEqual(set(blocks), {"block", "interfaces"})
             self.assertEqual(list(blocks["block"].at_points), ["displacement [m]"])
         at = lambda time: next(blocks["interfaces"].at_points for when, blocks in frames if abs(when - time) < 1e-9)
-        gap, pressure = run["max_opening"], run["max_pressure"]
+        gap, pressure = run["max_opening"], run["max_step_pressure"]
         self.assertAlmostEqual(max(at(gap["time"])["opening [m]"])[0] / gap["value"], 1, places=9)
         self.assertAlmostEqual(max(at(pressure["time"])["pressure [Pa]"])[0] / pressure["value"], 1, places=9)
         self.assertEqual(self.told["frames"], 4)

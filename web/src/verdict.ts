@@ -159,7 +159,7 @@ function step_check({ stepCheck }: Verdict): HTMLElement | null {
 
 export function verdict_card(verdict: Verdict, charts: Chart[]): HTMLElement {
   const facts = verdict.facts.map((fact) =>
-    h("div", { class: "fact" }, h("dt", {}, fact.label), h("dd", {}, h("b", {}, tied(fact.value)), fact.stepChange ? h("span", { class: "step-change", title: "Change with twice the step" }, tied(fact.stepChange)) : null, fact.detail ? h("small", {}, tied(fact.detail)) : null)),
+    h("div", { class: "fact" }, h("dt", {}, fact.label), h("dd", {}, h("b", {}, tied(fact.value)), fact.stepChange ? h("small", { class: "step-change" }, tied(`twice the step: ${fact.stepChange}`)) : null, fact.detail ? h("small", {}, tied(fact.detail)) : null)),
   );
   const many = verdict.interfaces.length > 1;
   const blocks: Child[] = verdict.interfaces.map((base) => base_block(base, many));
@@ -183,17 +183,19 @@ export function rest_table(verdict: Verdict): HTMLElement | null {
   if (bases.length === 0) return null;
   const value = ({ value: v, unit, label, swing }: VerdictRow, largest: number): string =>
     label === "Uplifted area" ? percent(v) : swing !== undefined && swing >= NEGLIGIBLE ? within(v, swing, unit, largest) : quantity_text(v, unit, largest);
+  const checked = bases.some((base) => base.rest.some((row) => row.stepText !== undefined));
   const rows = bases.flatMap((base) =>
     base.rest.map((row) => {
       const largest = Math.max(Math.abs(row.value), row.swing ?? 0);
       return h("tr", {},
         h("th", { scope: "row" }, bases.length > 1 ? `${row.label} (${base.name})` : row.label),
         h("td", {}, row.text === undefined ? value(row, largest) : tied(row.text)),
+        checked ? h("td", { class: "step-change" }, tied(row.stepText ?? "–")) : null,
         h("td", {}, row.swing === undefined || row.swing < NEGLIGIBLE ? "–" : `± ${row.swingText === undefined ? value({ ...row, value: row.swing }, largest) : tied(row.swingText)}`));
     }));
   return h("figure", { class: "card rest-card" },
     h("table", { class: "beside" },
-      h("thead", {}, h("tr", {}, ...["Residual value", "Mean of the last tenth of the run", "Remaining variation"].map((text) => h("th", { scope: "col" }, text)))),
+      h("thead", {}, h("tr", {}, ...["Residual value", "Mean of the last tenth of the run", ...(checked ? ["Twice the step"] : []), "Remaining variation"].map((text) => h("th", { scope: "col" }, text)))),
       h("tbody", {}, ...rows)),
     h("figcaption", {}, "Rotation (in the plane positive counter-clockwise), settlement (positive downwards) and slip are relative to the state before the shaking."));
 }

@@ -184,6 +184,8 @@ async function check_verdict(page) {
   for (const [i, base] of interfaces.entries()) {
     const block = card.locator(".base-verdict").nth(i);
     check.equal(await block.locator("table.beside tbody tr").count(), base.beside.length, "every number stands beside the bonded run");
+    const moved = base.beside.filter((row) => row.stepText !== undefined);
+    if (moved.length > 0) check.equal(await block.locator("table.beside .step-change").count(), base.beside.length, "every number says how far the step moves it");
     const opens = base.share.some((v) => v > 0);
     check.equal(await block.locator(".share-chart").count(), opens ? 1 : 0, "a base that opens shows its uplifted share over time");
     if (opens) check.equal(await block.locator(".share-chart .threshold").count(), base.above.length, "with a line for each threshold");

@@ -41,6 +41,27 @@ bool statics_alone(const RunPlan& plan) {
   return !plan.stages.empty() && dynamic_stage(plan) == nullptr;
 }
 
+bool is_step_mean(Request::Kind kind) {
+  using enum Request::Kind;
+  switch (kind) {
+    case acceleration:
+    case absolute_acceleration:
+    case traction:
+    case axial:
+    case shear:
+    case moment:
+    case shear_1:
+    case shear_2:
+    case moment_1:
+    case moment_2:
+    case torsion:
+    case max_pressure:
+      return true;
+    default:
+      return false;
+  }
+}
+
 std::string RunResult::created_percent() const {
   return energy_scale > 0 ? fmt::format("{:.3g} %", 100 * energy_created / energy_scale) : "0 %";
 }
@@ -87,13 +108,33 @@ RunResult Runner::go() {
   const auto start = std::chrono::steady_clock::now();
   execute();
   result_.steps.average(plan_.window);
-  if (std::string text = result_.equilibrium.warning(); !text.empty()) result_.notes.push_back(std::move(text));
+  take_window_peaks();
   result_.wall = std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count() - shown_;
   result_.counts.factorisations = linear_.factorisations;
   if (!linear_.notice.empty()) result_.notes.push_back(linear_.notice);
   result_.counts.back_solves = linear_.back_solves;
   result_.counts.systems = linear_.systems;
   return std::move(result_);
+}
+
+/// Largest forces of the bases as means over the window, which the verdict shows.
+void Runner::take_window_peaks() {
+  const StepRecord& steps = result_.steps;
+  result_.max_step_pressure = result_.max_pressure;
+  for (Peak* peak : {&result_.max_base_moment, &result_.max_base_shear, &result_.max_pressure}) peak->value = peak->time = 0;
+  const auto note = [](Peak& peak, double value, double time) {
+    if (std::abs(value) > std::abs(peak.value)) peak.value = value, peak.time = time;
+  };
+  const bool plane = model_.space.dimension == 2;
+  for (std::size_t k = 0; k < steps.extremes.size(); ++k) {
+    if (is_wall(k)) continue;
+    for (std::size_t i = 0; i < steps.size(); ++i) {
+      const StepRecord::Instant& now = steps.at(i, k);
+      note(result_.max_base_moment, plane ? now.moment_1 : std::hypot(now.moment_1, now.moment_2), steps.time[i]);
+      note(result_.max_base_shear, plane ? now.shear_1 : std::hypot(now.shear_1, now.shear_2), steps.time[i]);
+    }
+    note(result_.max_pressure, steps.extremes[k].max_pressure.value, steps.extremes[k].max_pressure.time);
+  }
 }
 
 void Runner::fail(std::string why, const InterfaceProblem* problem) {

@@ -82,6 +82,9 @@ struct Request {
   int interface = 0, point = 0, component = 0;  // `rotation` of an interface: slope of the opening's best plane [rad]
 };
 
+/// Whether a column of this kind is the mean over the step before its instant where RunResult::step_means; else it belongs to the instant.
+bool is_step_mean(Request::Kind kind);
+
 /// A floor whose response spectra are wanted, from its absolute acceleration.
 struct FloorRequest {
   std::string name;
@@ -174,7 +177,10 @@ struct RunResult {
   std::vector<BeamEnvelope> envelopes;     // one per envelope of the plan
   Equilibrium equilibrium;                 // of the whole model, at a few instants
   StepRecord steps;                        // what the verdict is made of
-  Peak max_uplifted_ratio, max_opening, max_base_moment, max_base_shear, max_pressure;
+  bool step_means = false;                 // forces of interfaces and accelerations are means over the step before their instant
+  Peak max_uplifted_ratio, max_opening;
+  Peak max_base_moment, max_base_shear, max_pressure;                                         // of the bases, means over RunPlan::window
+  Peak max_step_pressure;                                                                     // mean over one step
   double time_uplifted = 0;                                                                   // s with a gap open anywhere
   double first_uplift = -1;                                                                   // s; -1: never
   double full_loss = 0;                                                                       // s without any contact

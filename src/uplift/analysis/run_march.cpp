@@ -165,6 +165,7 @@ bool Runner::dynamics(const Stage& stage, const Bulk& bulk) {
   Stepper stepper(model_, bulk, b_, gap_, *laws_, *plan_.method, *plan_.impact, *plan_.solver, options, linear_);
   stepper.start(std::move(state_), ledger_ ? &*ledger_ : nullptr);
   seen_ = &stepper.state();
+  result_.step_means = result_.step_means || stepper.averages_acceleration();
   const long steps = std::max(1L, std::lround(stage.duration / stage.step));
   PageTaker pages;
   const ForceStage force_stage = this->force_stage(stage);

@@ -39,6 +39,7 @@ class Runner {
   bool surfaces_turn_little();
   bool surfaces_stay_near();
   void finish_energy(const Stepper& stepper);
+  void take_window_peaks();
   void fail(std::string why, const InterfaceProblem* problem);
 
   const Model& model_;

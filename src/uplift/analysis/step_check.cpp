@@ -49,6 +49,7 @@ double reference(const VerdictNumber& number, double other, const Scale& scale) 
   const VerdictQuantity& quantity = *number.quantity;
   const double size = std::max({std::abs(number.value), std::abs(other), number.least, nothing_beside(quantity.unit)});
   if (quantity.name.starts_with("change_of")) return 1 + std::max(number.value, other);
+  if (quantity.name == "residual_uplifted_ratio") return 1;  // gaps of micrometres count: beside the whole area
   if (is_share(quantity)) return std::max(size, least_share);
   if (quantity.name == "min_compression") return std::max(size, scale.compression);
   if (quantity.name.starts_with("max_eccentricity")) return std::max(size, least_eccentricity);

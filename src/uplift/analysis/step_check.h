@@ -35,10 +35,10 @@ std::string_view to_string(StepCheck::State);
 inline constexpr double accepted_step_change = 0.05;
 
 /// Adds to every number its value and its change with twice the step; numbers that one of the two runs lacks have none. A change is
-/// relative to the larger of the two values; of shares of an area to at least 0.1, of eccentricities to at least 0.01, of residual values
-/// to at least a twentieth of the largest motion and to their remaining variation, of the least compression to the largest; safeties are
-/// compared by their inverse, with at least 0.1, and changes beside the bonded run by 1 + change. Durations, instants and the compression
-/// of the joint are stated but decide nothing.
+/// relative to the larger of the two values; of shares of an area to at least 0.1 (to the whole area for the residual one), of
+/// eccentricities to at least 0.01, of residual values to at least a twentieth of the largest motion and to their remaining variation, of
+/// the least compression to the largest; safeties are compared by their inverse, with at least 0.1, and changes beside the bonded run by 1
+/// + change. Durations, instants and the compression of the joint are stated but decide nothing.
 StepCheck check_step(const Built& built, const RunResult& run, const Companion& companion, VerdictNumbers& numbers);
 /// The comparison alone: fills the rest of a check whose steps are known.
 void compare_steps(VerdictNumbers& numbers, const VerdictNumbers& coarse, StepCheck& check);

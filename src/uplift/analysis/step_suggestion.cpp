@@ -14,6 +14,7 @@ namespace {
 constexpr double steps_a_period = 20, highest_of_structure = 50;  // Hz
 constexpr double steps_a_period_of_joint = 8,
                  highest_of_joint = 300;  // Hz: above, the joint acts as a constraint, which needs no resolution
+constexpr double highest_of_floors = 33;  // Hz: above, the spectrum of an earthquake is that of the peak
 constexpr double accepted_difference = 0.01, least_step = 1e-5, most_step = 0.1;
 
 /// Modes of the structure, and those in which it bounces on the closed joint.
@@ -53,6 +54,16 @@ void bound_by_contact_mesh(const Case& read, const Built& built, std::vector<Ste
     bounds.push_back({size / speed, fmt::format("waves of {} cross a face of \"{}\", {}, in one step", spoken(speed, "m/s"), interface.name,
                                                 spoken(size, "m"))});
   }
+}
+
+/// Floor spectra ask for more than the forces: the period error of the scheme, (w h)^2/12, moves their peaks.
+void bound_by_floors(const RunPlan& plan, std::vector<StepBound>& bounds) {
+  double highest = 0;
+  for (const FloorRequest& floor : plan.floors)
+    if (!floor.frequencies.empty()) highest = std::max(highest, std::min(floor.frequencies.back(), highest_of_floors));
+  if (highest > 0)
+    bounds.push_back(
+        {1 / (steps_a_period * highest), fmt::format("twenty steps a period of the floor spectra at {}", spoken(highest, "Hz"))});
 }
 
 double duration_of(const RunPlan& plan) {
@@ -100,6 +111,7 @@ std::vector<StepBound> step_bounds(const Case& read, const Built& built, const s
   std::vector<StepBound> bounds;
   bound_by_modes(bonded, bounds);
   bound_by_contact_mesh(read, built, bounds);
+  bound_by_floors(built.plan, bounds);
   bound_by_loads(built, bounds);
   std::ranges::stable_sort(bounds, {}, &StepBound::step);
   return bounds;

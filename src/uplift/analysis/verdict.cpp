@@ -289,6 +289,9 @@ void say_energy(const Built& built, const RunResult& run, Verdict& verdict) {
   const double scale = run.energy_scale;
   const double created = scale > 0 ? run.energy_created / scale : 0, lost = scale > 0 ? run.energy_lost / scale : 0;
   const bool too_much = created > built.plan.created_limit;
+  constexpr double least_loss = 0.001;
+  if (lost > least_loss && lost > created)
+    verdict.facts.push_back({"Energy lost by the scheme", percent(lost), "of the same: what the step does not resolve", lost > 0.05});
   verdict.facts.push_back({"Energy created by the computation", created < round_off ? "none" : percent(created),
                            fmt::format("of {}; limit {}", spoken(scale, "J"), percent(built.plan.created_limit)), too_much});
   std::string text =
@@ -302,7 +305,7 @@ void say_energy(const Built& built, const RunResult& run, Verdict& verdict) {
     if (end.damping > 1e-6 * scale) text += fmt::format(" Damping took {}.", percent(end.damping / scale));
     if (end.interface_dissipated > 1e-6 * scale) text += fmt::format(" The interface took {}.", percent(end.interface_dissipated / scale));
     if (std::abs(end.impact) > 1e-6 * scale) text += fmt::format(" Impacts took {}.", percent(end.impact / scale));
-    if (lost > 0.001 && lost > created) text += fmt::format(" The time scheme dissipated {}.", percent(lost));
+    if (lost > least_loss && lost > created) text += fmt::format(" The time scheme dissipated {}.", percent(lost));
   }
   verdict.paragraphs.push_back(std::move(text));
 }

@@ -14,7 +14,8 @@ bool finite_row(const RunResult& result, std::size_t row) {
 
 std::string histories_csv(const RunResult& result) {
   std::string text = "time [s]";
-  for (const Request& column : result.columns) text += "," + column.name + " [" + column.unit + "]";
+  for (const Request& column : result.columns)
+    text += "," + column.name + " [" + column.unit + (result.step_means && is_step_mean(column.kind) ? "; mean of the step]" : "]");
   text += '\n';
   const std::size_t rows = result.table.empty() ? 0 : result.table[0].size();
   std::vector<char> line(result.table.size() * (number_room + 1));

@@ -35,6 +35,7 @@ void write_run(JsonWriter& json, const RunResult& run, const Agreement* agreemen
   write_peak(json, "max_base_moment", run.max_base_moment);
   write_peak(json, "max_base_shear", run.max_base_shear);
   write_peak(json, "max_pressure", run.max_pressure);
+  write_peak(json, "max_step_pressure", run.max_step_pressure);
   json.member("first_uplift", run.first_uplift).member("time_uplifted", run.time_uplifted).member("full_loss_of_contact", run.full_loss);
   json.member("max_penetration", run.max_penetration);
   write_peak(json, "energy_created", run.energy_created, run.energy_created_time, "J");
