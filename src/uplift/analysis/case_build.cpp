@@ -10,6 +10,7 @@
 #include "uplift/analysis/case_sections.h"
 #include "uplift/analysis/case_shown.h"
 #include "uplift/analysis/case_verdict.h"
+#include "uplift/analysis/wording.h"
 #include "uplift/base/text.h"
 #include "uplift/model/check.h"
 #include "uplift/model/tuned_mass.h"
@@ -57,11 +58,23 @@ const Values& behaviour_of(const InterfacePart& part, const RunSpec& spec) {
   return replaced ? *spec.law : part.table->part("law");
 }
 
+/// States by how much the water lightens a base: pressures, eccentricities and safety factors refer to the rest.
+void note_water(const InterfacePart& part, Built& built) {
+  double force = 0, most = 0;  // N, Pa
+  for (const JointPoint& point : part.joint.points) force += point.water * point.area, most = std::max(most, point.water);
+  if (most > 0)
+    built.notes.push_back(
+        fmt::format("the water in the joint \"{}\" pushes with {} over {:.4g} m2 (at most {}); contact pressures are effective ones, in "
+                    "addition to it",
+                    part.name, spoken(force, "N"), part.joint.facts.area, spoken(most, "Pa")));
+}
+
 /// `like`: the interfaces get the components that they have in this model; null: as many as their law and supports leave.
 void add_interfaces(const Case& read, const RunSpec& spec, const Model* like, ModelBuilder& builder, CaseNames& names, Built& built) {
   if (like) builder.keep_tangents();
   std::vector<InterfacePart> parts = interface_parts(read, spec.rigid_ground, builder, names);
   for (InterfacePart& part : parts) {
+    note_water(part, built);
     Joint& joint = part.joint;
     const Values& behaviour = behaviour_of(part, spec);
     InterfaceSpec made;
@@ -145,29 +158,6 @@ void add_method(const Case& read, const RunSpec& spec, Built& built) {
   built.plan.impact = make_part(impact_catalog(), impact ? *impact : standard);
 }
 
-/// Initial displacements and velocities of the free unknowns.
-void add_initial(const Case& read, const CaseNames& names, Built& built) {
-  std::vector<std::pair<int, double>> displacement, velocity;
-  Where where;
-  for (const Values& initial : read.values.tables("initial")) {
-    where = initial.where();
-    const int node = names.node(initial, "node");
-    const Space space = names.space;
-    const auto put = [&](std::vector<std::pair<int, double>>& wanted, const char* vector, const char* scalar, const char* three) {
-      const Vec3 along = initial.has(vector) ? Vec3(vector_of(initial, vector, space)) : Vec3(Vec3::Zero());
-      const Vec3 about = about_axes(initial, scalar, three, false, space);
-      for (int i = 0; i < space.unknowns(); ++i) {
-        const bool turns = space.is_rotation(i), given = turns ? initial.has(scalar) || initial.has(three) : initial.has(vector);
-        if (given) wanted.emplace_back(space.unknowns() * node + i, (turns ? about : along).dot(space.axis(i)));
-      }
-    };
-    put(displacement, "displacement", "rotation", "rotations");
-    put(velocity, "velocity", "angular_velocity", "angular_velocities");
-  }
-  if (!displacement.empty()) built.plan.initial_displacement = free_values(built.model, displacement, where);
-  if (!velocity.empty()) built.plan.initial_velocity = free_values(built.model, velocity, where);
-}
-
 /// The mass that a tuned point mass gets: that of the structure without it, see tuned_mass.
 std::vector<double> tuned_masses(const Case& read, const RunSpec& spec) {
   const Values* tuned = nullptr;
@@ -239,6 +229,22 @@ void check_release(const Values& root, const RunPlan& plan) {
       fail(tables[k], "type", "no static stage after a dynamic one, where supports hold in static stages alone", "one");
     if (stage.p_delta && !first->p_delta)
       fail(tables[k], "p_delta", "p_delta from the first dynamic stage on, where supports hold in static stages alone", "p_delta later");
+  }
+}
+
+/// The geometric stiffness of the arms from a body to its joint contains the forces of the contact but not the thrust of the water, which
+/// has no share in it where the body lies in the joint.
+void check_second_order_water(const Values& root) {
+  for (const Values& stage : root.tables("stage")) {
+    if (!stage.flag("p_delta")) continue;
+    for (const Values& interface : root.tables("interface")) {
+      const Values* footing = interface.has("water") ? table_if(interface, "footing") : nullptr;
+      if (!footing || !footing->has("offset")) continue;
+      fail(stage, "p_delta",
+           fmt::format("without p_delta, or no offset of the footing with water: a body {} in the middle of the underside",
+                       in_quotes(footing->text("body"))),
+           fmt::format("an offset in the interface {}", in_quotes(interface.text("name"))));
+    }
   }
 }
 
@@ -381,6 +387,7 @@ Built build(const Case& read, const RunSpec& spec) {
     built.notes.push_back(fmt::format("the tuned mass is {:.10g} kg", built.tuned_mass));
   }
   add_stages(read, spec, built.plan);
+  check_second_order_water(root);
   built.model = make_model(read, spec, tuned, nullptr, names, built);
   const bool released = any_released(root);
   const bool rests = std::ranges::any_of(built.plan.stages, [](const Stage& stage) { return stage.type == Stage::Type::statics; });
@@ -405,7 +412,7 @@ Built build(const Case& read, const RunSpec& spec) {
   if (const Stage* stage = dynamic_stage(plan);
       stage != nullptr && plan.impact->acts() && (!stage->path_average || plan.method->constrains()))
     check_impulses(built.model);
-  add_initial(read, names, built);
+  add_initial(root, names, built);
   find_shown(read, names, built);
   plan.created_limit = root.table("energy").number("created_limit");
   plan.stop_at_limit = root.table("energy").flag("stop_at_limit");
