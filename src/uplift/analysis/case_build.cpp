@@ -10,7 +10,7 @@
 #include "uplift/analysis/case_sections.h"
 #include "uplift/analysis/case_shown.h"
 #include "uplift/analysis/case_verdict.h"
-#include "uplift/analysis/wording.h"
+#include "uplift/analysis/case_water.h"
 #include "uplift/base/text.h"
 #include "uplift/model/check.h"
 #include "uplift/model/tuned_mass.h"
@@ -58,23 +58,12 @@ const Values& behaviour_of(const InterfacePart& part, const RunSpec& spec) {
   return replaced ? *spec.law : part.table->part("law");
 }
 
-/// States by how much the water lightens a base: pressures, eccentricities and safety factors refer to the rest.
-void note_water(const InterfacePart& part, Built& built) {
-  double force = 0, most = 0;  // N, Pa
-  for (const JointPoint& point : part.joint.points) force += point.water * point.area, most = std::max(most, point.water);
-  if (most > 0)
-    built.notes.push_back(
-        fmt::format("the water in the joint \"{}\" pushes with {} over {:.4g} m2 (at most {}); contact pressures are effective ones, in "
-                    "addition to it",
-                    part.name, spoken(force, "N"), part.joint.facts.area, spoken(most, "Pa")));
-}
-
 /// `like`: the interfaces get the components that they have in this model; null: as many as their law and supports leave.
 void add_interfaces(const Case& read, const RunSpec& spec, const Model* like, ModelBuilder& builder, CaseNames& names, Built& built) {
   if (like) builder.keep_tangents();
   std::vector<InterfacePart> parts = interface_parts(read, spec.rigid_ground, builder, names);
   for (InterfacePart& part : parts) {
-    note_water(part, built);
+    if (std::string note = note_of_water(part); !note.empty()) built.notes.push_back(std::move(note));
     Joint& joint = part.joint;
     const Values& behaviour = behaviour_of(part, spec);
     InterfaceSpec made;
@@ -229,22 +218,6 @@ void check_release(const Values& root, const RunPlan& plan) {
       fail(tables[k], "type", "no static stage after a dynamic one, where supports hold in static stages alone", "one");
     if (stage.p_delta && !first->p_delta)
       fail(tables[k], "p_delta", "p_delta from the first dynamic stage on, where supports hold in static stages alone", "p_delta later");
-  }
-}
-
-/// The geometric stiffness of the arms from a body to its joint contains the forces of the contact but not the thrust of the water, which
-/// has no share in it where the body lies in the joint.
-void check_second_order_water(const Values& root) {
-  for (const Values& stage : root.tables("stage")) {
-    if (!stage.flag("p_delta")) continue;
-    for (const Values& interface : root.tables("interface")) {
-      const Values* footing = interface.has("water") ? table_if(interface, "footing") : nullptr;
-      if (!footing || !footing->has("offset")) continue;
-      fail(stage, "p_delta",
-           fmt::format("without p_delta, or no offset of the footing with water: a body {} in the middle of the underside",
-                       in_quotes(footing->text("body"))),
-           fmt::format("an offset in the interface {}", in_quotes(interface.text("name"))));
-    }
   }
 }
 

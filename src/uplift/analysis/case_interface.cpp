@@ -4,6 +4,7 @@
 #include <cmath>
 
 #include "uplift/analysis/case_model.h"
+#include "uplift/analysis/case_water.h"
 #include "uplift/elements/discrete.h"
 #include "uplift/interface/facets.h"
 

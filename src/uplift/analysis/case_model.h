@@ -88,9 +88,8 @@ struct Joint {
 /// `open`: the faces that the mesh was opened at for it.
 Joint make_joint(const Values& interface, const std::vector<FacePair>& open, bool rigid_ground, ModelBuilder& builder, CaseNames& names);
 
-/// Initial gaps that come from the geometry or from a table, and the pressure of the water in the joint; of points with both sides.
+/// Initial gaps that come from the geometry or from a table; of points with both sides.
 void set_gaps(const Values& interface, std::vector<JointPoint>& points, const CaseNames& names);
-void set_water(const Values& interface, std::vector<JointPoint>& points, const CaseNames& names);
 
 /// Number of local components that a law or cone needs: 1 when it has no tangential part, else all of the space.
 int components_of(const Values& behaviour, Space space);

@@ -5,7 +5,7 @@
 #include "uplift/analysis/case_model.h"
 #include "uplift/analysis/profile.h"
 
-// Initial gaps and the pressure of the water at the points of an interface.
+// Initial gaps at the points of an interface.
 namespace uplift {
 namespace {
 
@@ -51,23 +51,6 @@ void set_gaps(const Values& interface, std::vector<JointPoint>& points, const Ca
   if (!table) return;
   const Profile profile(*table, "gaps", names.space);
   for (JointPoint& point : points) point.gap += profile.at(point.position);
-}
-
-void set_water(const Values& interface, std::vector<JointPoint>& points, const CaseNames& names) {
-  const Values* water = table_if(interface, "water");
-  if (!water) return;
-  const bool by_level = first_of_two(*water, "level", "head");
-  const int up = names.space.up();
-  double most = 0;
-  for (JointPoint& point : points) {
-    const double head = by_level ? water->number("level") - point.position[up] : water->number("head");
-    point.water = water->number("unit_weight") * std::max(0.0, head);
-    most = std::max(most, point.water);
-  }
-  if (by_level && !(most > 0))
-    fail(*water, "level", "a level above the lowest point of the interface",
-         fmt::format("{:g} m, with all points at {:.6g} m or higher", water->number("level"),
-                     std::ranges::min(points, {}, [&](const JointPoint& point) { return point.position[up]; }).position[up]));
 }
 
 }  // namespace uplift
