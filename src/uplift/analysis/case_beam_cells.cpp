@@ -16,9 +16,12 @@ void BeamCells::check_use(const Values& beam, CellId cell) const {
       fail(beam, "group", "lines that are beams alone", name(cell) + ", " + use);
   };
   for (const Values& interface : root_.tables("interface"))
-    if (const Values* surface = table_if(interface, "surface"))
-      for (const char* lip : {"", "_upper"})
-        refuse_in(surface->text("group") + lip, "where the interface " + in_quotes(interface.text("name")) + " opens");
+    if (const Values* surface = table_if(interface, "surface")) {
+      const bool opened = surface->has("group");
+      for (const std::string& group :
+           {surface->text(opened ? "group" : "lower_group"), opened ? surface->text("group") + "_upper" : surface->text("upper_group")})
+        refuse_in(group, "where the interface " + in_quotes(interface.text("name")) + " opens");
+    }
   for (const Values& face : root_.tables("absorbing"))
     refuse_in(face.text("group"), "which is absorbing too (" + in_quotes(face.text("group")) + ")");
 }

@@ -10,6 +10,7 @@
 #include "uplift/analysis/case_sections.h"
 #include "uplift/analysis/case_shown.h"
 #include "uplift/analysis/case_verdict.h"
+#include "uplift/analysis/case_water.h"
 #include "uplift/base/text.h"
 #include "uplift/model/check.h"
 #include "uplift/model/tuned_mass.h"
@@ -62,6 +63,7 @@ void add_interfaces(const Case& read, const RunSpec& spec, const Model* like, Mo
   if (like) builder.keep_tangents();
   std::vector<InterfacePart> parts = interface_parts(read, spec.rigid_ground, builder, names);
   for (InterfacePart& part : parts) {
+    if (std::string note = note_of_water(part); !note.empty()) built.notes.push_back(std::move(note));
     Joint& joint = part.joint;
     const Values& behaviour = behaviour_of(part, spec);
     InterfaceSpec made;
@@ -143,29 +145,6 @@ void add_method(const Case& read, const RunSpec& spec, Built& built) {
   const Values standard =
       check_part(Raw{std::string(cone && !spec.bonded ? "project_hold" : "none"), root.where(), "impact"}, impact_rules());
   built.plan.impact = make_part(impact_catalog(), impact ? *impact : standard);
-}
-
-/// Initial displacements and velocities of the free unknowns.
-void add_initial(const Case& read, const CaseNames& names, Built& built) {
-  std::vector<std::pair<int, double>> displacement, velocity;
-  Where where;
-  for (const Values& initial : read.values.tables("initial")) {
-    where = initial.where();
-    const int node = names.node(initial, "node");
-    const Space space = names.space;
-    const auto put = [&](std::vector<std::pair<int, double>>& wanted, const char* vector, const char* scalar, const char* three) {
-      const Vec3 along = initial.has(vector) ? Vec3(vector_of(initial, vector, space)) : Vec3(Vec3::Zero());
-      const Vec3 about = about_axes(initial, scalar, three, false, space);
-      for (int i = 0; i < space.unknowns(); ++i) {
-        const bool turns = space.is_rotation(i), given = turns ? initial.has(scalar) || initial.has(three) : initial.has(vector);
-        if (given) wanted.emplace_back(space.unknowns() * node + i, (turns ? about : along).dot(space.axis(i)));
-      }
-    };
-    put(displacement, "displacement", "rotation", "rotations");
-    put(velocity, "velocity", "angular_velocity", "angular_velocities");
-  }
-  if (!displacement.empty()) built.plan.initial_displacement = free_values(built.model, displacement, where);
-  if (!velocity.empty()) built.plan.initial_velocity = free_values(built.model, velocity, where);
 }
 
 /// The mass that a tuned point mass gets: that of the structure without it, see tuned_mass.
@@ -381,6 +360,7 @@ Built build(const Case& read, const RunSpec& spec) {
     built.notes.push_back(fmt::format("the tuned mass is {:.10g} kg", built.tuned_mass));
   }
   add_stages(read, spec, built.plan);
+  check_second_order_water(root);
   built.model = make_model(read, spec, tuned, nullptr, names, built);
   const bool released = any_released(root);
   const bool rests = std::ranges::any_of(built.plan.stages, [](const Stage& stage) { return stage.type == Stage::Type::statics; });
@@ -405,7 +385,7 @@ Built build(const Case& read, const RunSpec& spec) {
   if (const Stage* stage = dynamic_stage(plan);
       stage != nullptr && plan.impact->acts() && (!stage->path_average || plan.method->constrains()))
     check_impulses(built.model);
-  add_initial(read, names, built);
+  add_initial(root, names, built);
   find_shown(read, names, built);
   plan.created_limit = root.table("energy").number("created_limit");
   plan.stop_at_limit = root.table("energy").flag("stop_at_limit");

@@ -4,12 +4,18 @@
 #include <cmath>
 
 #include "uplift/analysis/case_model.h"
+#include "uplift/analysis/case_water.h"
 #include "uplift/elements/discrete.h"
 #include "uplift/interface/facets.h"
 
 // Where the joints of an interface stand, and the elastic bed under a footing.
 namespace uplift {
 namespace {
+
+/// m; zero where the gap is that of the geometry.
+double uniform_gap(const Values& interface) {
+  return interface.is_word("gap") ? 0 : interface.number("gap");
+}
 
 std::vector<SideNode> side(const Values& table, std::string_view key, const CaseNames& names) {
   std::vector<SideNode> nodes;
@@ -66,7 +72,7 @@ Joint footing_joint(const Values& interface, const Values& table, bool rigid_gro
     footing.azimuth = table.number("azimuth");
     footing.thickness = 1;
   }
-  footing.gap = interface.number("gap");
+  footing.gap = uniform_gap(interface);
   const std::string& rule = table.text("rule");
   footing.rule = rule == "nodal" ? FootingRule::nodal : rule == "midpoint" ? FootingRule::midpoint : FootingRule::gauss;
   Joint joint;
@@ -100,7 +106,7 @@ void add_surface(const Values& interface, const Values& surface, const std::vect
   const FaceQuadrature quadrature = surface.text("quadrature") == "nodal" ? FaceQuadrature::nodal : FaceQuadrature::gauss;
   const Mesh& mesh = names.solids->mesh();
   const double thickness = thickness_of(*names.solids, open, surface);
-  FaceJoints joints = face_joints(mesh, open, quadrature, thickness, interface.number("gap"));
+  FaceJoints joints = face_joints(mesh, open, quadrature, thickness, uniform_gap(interface));
   joint.facts.facets =
       std::make_shared<Facets>(mesh.dimension == 3 ? face_facets(mesh, open, quadrature, joints) : line_facets(joints.points, thickness));
   joint.points = std::move(joints.points);
@@ -131,18 +137,20 @@ Joint make_joint(const Values& interface, const std::vector<FacePair>& open, boo
   if (footing) joint = footing_joint(interface, *footing, rigid_ground, builder, names);
   if (pairs)
     joint.points = pair_points(side(*pairs, "upper", names), side(*pairs, "lower", names), normal_of(*pairs, names.space),
-                               pairs->number("area"), interface.number("gap"), names.space, pairs->where());
+                               pairs->number("area"), uniform_gap(interface), names.space, pairs->where());
   if (line) {
     if (names.space.dimension == 3) fail(*line, "", "footing, pairs or surface in a model in space", "line");
     LineJoint made{side(*line, "upper", names),        side(*line, "lower", names),
                    line->integer("nodes_per_element"), line->text("quadrature") == "nodal" ? LineQuadrature::nodal : LineQuadrature::gauss,
-                   line->number("thickness"),          interface.number("gap")};
+                   line->number("thickness"),          uniform_gap(interface)};
     joint.points = line_points(made, line->where());
     joint.facts.facets = std::make_shared<Facets>(line_facets(joint.points, made.thickness));
   }
   if (surface) add_surface(interface, *surface, open, names, joint);
   if (surface) joint.facts.faces = open, joint.facts.nodal = surface->text("quadrature") == "nodal";
   joint.facts.depth = depth_of(interface, open, names);
+  set_gaps(interface, joint.points, names);
+  set_water(interface, joint.points, names);
   const Place reference = joint.reference;
   joint = with_points(joint, joint.points);
   if (footing) joint.reference = reference;

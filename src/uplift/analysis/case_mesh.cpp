@@ -13,6 +13,7 @@
 #include "uplift/mesh/absent_group.h"
 #include "uplift/mesh/cell_quadrature.h"
 #include "uplift/mesh/cell_shapes.h"
+#include "uplift/mesh/facing.h"
 #include "uplift/mesh/soil_box.h"
 
 namespace uplift {
@@ -60,13 +61,25 @@ Mesh make_soil_box(const Values& box) {
   return soil_box(made, box.where(), box.path() + ".");
 }
 
+/// Whether the faces of a surface are drawn apart; either two groups of them are named, or one at which the mesh is opened.
+bool drawn_apart(const Values& surface) {
+  const bool apart = surface.has("lower_group") && surface.has("upper_group"), opened = surface.has("group") && surface.has("lower");
+  const int given = surface.has("lower_group") + surface.has("upper_group") + surface.has("group") + surface.has("lower");
+  if (given != 2 || !(apart || opened))
+    fail(surface, "", "group and lower, or lower_group and upper_group",
+         given == 0  ? "none of them"
+         : given < 2 ? "one of them"
+                     : fmt::format("{} of them", given));
+  return apart;
+}
+
 /// Groups of interfaces whose surfaces have the same lower side, in the order of the case.
 std::vector<std::vector<std::size_t>> opened_together(const std::vector<Values>& interfaces) {
   std::vector<std::vector<std::size_t>> together;
   std::vector<std::vector<std::string>> sides;
   for (std::size_t k = 0; k < interfaces.size(); ++k) {
     const Values* surface = table_if(interfaces[k], "surface");
-    if (!surface) continue;
+    if (!surface || drawn_apart(*surface)) continue;
     std::vector<std::string> lower = surface->texts("lower");
     std::ranges::sort(lower);
     const auto same = std::ranges::find(sides, lower);
@@ -89,6 +102,9 @@ void open_surfaces(const std::vector<Values>& interfaces, CaseMesh& made) {
     std::vector<OpenedSurface> opened = split(made.mesh, surfaces, first.texts("lower"), first.where("group"));
     for (std::size_t i = 0; i < together.size(); ++i) made.open[together[i]] = std::move(opened[i].faces);
   }
+  for (std::size_t k = 0; k < interfaces.size(); ++k)
+    if (const Values* surface = table_if(interfaces[k], "surface"); surface && drawn_apart(*surface))
+      made.open[k] = facing_pairs(made.mesh, surface->text("lower_group"), surface->text("upper_group"), surface->where("upper_group"));
 }
 
 const Group& group_named(const Mesh& mesh, const Values& table, std::string_view key, const std::string& what) {
@@ -226,6 +242,13 @@ CaseSolids::CaseSolids(const Values& root, const CaseMesh& from) : mesh_(&from.m
 const CaseSolids::Solid* CaseSolids::beside(CellId edge) const {
   const int side = sides_.find(mesh_->type(edge), mesh_->cell(edge));
   return side < 0 ? nullptr : &solids_[at(solid_of_[at(side / Sides::stride)])];
+}
+
+std::vector<int> CaseSolids::outward_nodes(CellId edge) const {
+  const int side = sides_.find(mesh_->type(edge), mesh_->cell(edge));
+  std::vector<int> nodes;
+  if (side >= 0 && sides_.twin(side) < 0) sides_.nodes_of(*mesh_, side, nodes);
+  return nodes;
 }
 
 Vec3 CaseSolids::centre_beside(CellId edge) const {

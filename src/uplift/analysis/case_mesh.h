@@ -40,6 +40,8 @@ class CaseSolids {
   const std::vector<Solid>& solids() const { return solids_; }
   /// Of the cell that has this edge; null for an edge of none.
   const Solid* beside(CellId edge) const;
+  /// Nodes of such an edge, numbered with the normal out of its cell; empty for an edge between two cells.
+  std::vector<int> outward_nodes(CellId edge) const;
   /// Mean place of the nodes of the cell that has this edge, which must be one.
   Vec3 centre_beside(CellId edge) const;
   /// Nodes of the group named under `key`.

@@ -164,9 +164,13 @@ const Section& tie_section() {
 
 const Section& surface_section() {
   static const Section s{
-      "surface", "edges (faces) inside the mesh, which is opened there",
-      Fields{text("group", "group of edges (faces)"),
-             texts("lower", "groups of cells of the lower side (soil); all other cells are the upper side"),
+      "surface",
+      "edges (faces) inside the mesh, which is opened there (group and lower), or two groups of edges (faces) that are drawn apart and lie "
+      "opposite to each other node by node (lower_group and upper_group)",
+      Fields{text("group", "group of edges (faces) at which the mesh is opened").optional(),
+             texts("lower", "groups of cells of the lower side (soil); all other cells are the upper side").optional(),
+             text("lower_group", "group of edges (faces) on the surface of the lower side, instead of group").optional(),
+             text("upper_group", "group of edges (faces) of the upper side opposite to lower_group").optional(),
              choice("quadrature", {"nodal", "gauss"}, "where the joint points stand: at the pairs of nodes, or at Gauss points")
                  .standard("nodal"),
              number("thickness", "m", "length out of the plane (plane meshes); absent: that of the solids (the smaller one)")

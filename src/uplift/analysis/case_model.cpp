@@ -117,39 +117,6 @@ void add_masses(const Values& root, ModelBuilder& builder, CaseNames& names, con
   }
 }
 
-using Pattern = std::vector<std::pair<int, double>>;
-
-/// Along the translations, or about the rotations.
-void add_force(int node, const Vec3& force, bool moment, Space space, Pattern& pattern) {
-  for (int i = 0; i < space.unknowns(); ++i)
-    if (const double value = force.dot(space.axis(i)); space.is_rotation(i) == moment && value != 0)
-      pattern.emplace_back(space.unknowns() * node + i, value);
-}
-
-Pattern node_load(const Values& load, int node, Space space) {
-  if (load.has("traction")) fail(load, "traction", "force or moment on a node", "a traction");
-  if (!load.has("force") && !load.has("moment") && !load.has("moments")) fail(load, "", "force or moment", "neither");
-  Pattern pattern;
-  if (load.has("force")) add_force(node, vector_of(load, "force", space), false, space, pattern);
-  add_force(node, about_axes(load, "moment", "moments", false, space), true, space, pattern);
-  return pattern;
-}
-
-/// Consistent forces of a uniform traction on edges or faces of the mesh.
-Pattern edge_load(const Values& load, const CaseNames& names) {
-  for (const char* key : {"moment", "moments"})
-    if (load.has(key)) fail(load, key, "force or traction on a group", "a moment");
-  const bool traction = first_of_two(load, "traction", "force");
-  const CaseSolids& solids = names.mesh_for(load);
-  const std::vector<std::pair<int, double>> areas = tributary_areas(solids, solids.edges(load, "group"));
-  double area = 0;
-  for (const auto& [node, share] : areas) area += share;
-  const Vec3 per_area = vector_of(load, traction ? "traction" : "force", names.space) / (traction ? 1 : area);
-  Pattern pattern;
-  for (const auto& [node, share] : areas) add_force(names.first_of_mesh + node, share * per_area, false, names.space, pattern);
-  return pattern;
-}
-
 }  // namespace
 
 int master_of(const Values& body, const CaseNames& names) {
@@ -274,26 +241,6 @@ void add_structure(const Values& root, ModelBuilder& builder, CaseNames& names, 
         dashpot.where());
   }
   add_supports(root, builder, names, at_rest);
-}
-
-std::string name_of_load(const Values& load) {
-  return load.has("name") ? load.text("name") : "load on " + load.text(load.has("node") ? "node" : "group");
-}
-
-void add_loads(const Values& root, ModelBuilder& builder, const CaseNames& names) {
-  for (const Values& load : root.tables("load")) {
-    std::vector<std::pair<int, double>> pattern =
-        first_of_two(load, "node", "group") ? node_load(load, names.node(load, "node"), names.space) : edge_load(load, names);
-    builder.add_load(name_of_load(load), std::move(pattern), names.function(load), !load.has("function"), load.where());
-  }
-  if (const Values* gravity = table_if(root, "gravity"); gravity && gravity->has("acceleration"))
-    builder.set_gravity(vector_of(*gravity, "acceleration", names.space), gravity->where());
-  for (const Values& ground : root.tables("ground_acceleration")) {
-    const std::string name = ground.has("name") ? ground.text("name") : "ground acceleration";
-    builder.add_ground_acceleration(vector_of(ground, "direction", names.space),
-                                    std::make_shared<Scaled>(ground.number("amplitude"), names.function(ground, MotionKind::acceleration)),
-                                    name, ground.where());
-  }
 }
 
 BulkDamping bulk_damping(const Values& damping) {

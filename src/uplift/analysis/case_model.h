@@ -1,6 +1,7 @@
 #pragma once
 #include <map>
 #include <memory>
+#include <set>
 #include <string>
 #include <vector>
 
@@ -57,8 +58,12 @@ void add_absorbing(const Values& root, ModelBuilder& builder, const CaseNames& n
 std::shared_ptr<const TimeFunction> scaled(double factor, std::shared_ptr<const TimeFunction> function);
 /// As stated, else from what it acts on.
 std::string name_of_load(const Values& load);
+/// The force [N] that a load puts on the whole model when its function is 1.
+Vec3 resultant_of_load(const Values& load, const Model& model);
 /// Functions, then records.
 void add_functions(const Case& read, CaseNames& names);
+/// Nodes of beams: those of the mesh that have rotations.
+std::set<int> beam_nodes(const CaseNames& names);
 /// Beams between nodes and along groups of the mesh.
 void add_beams(const Values& root, ModelBuilder& builder, CaseNames& names);
 /// The master node of a rigid body: as named, else the node of its group that is nearest to the group's middle.
@@ -70,6 +75,8 @@ void add_supports(const Values& root, ModelBuilder& builder, const CaseNames& na
 /// Whether supports hold in static stages alone.
 bool any_released(const Values& root);
 void add_loads(const Values& root, ModelBuilder& builder, const CaseNames& names);
+/// Initial displacements and velocities of the free unknowns; after the model is made.
+void add_initial(const Values& root, const CaseNames& names, Built& built);
 BulkDamping bulk_damping(const Values& damping);
 
 /// Joint points of an interface with its lower nodes; with an elastic bed (unless `rigid_ground`) these are made here.
@@ -80,6 +87,9 @@ struct Joint {
 };
 /// `open`: the faces that the mesh was opened at for it.
 Joint make_joint(const Values& interface, const std::vector<FacePair>& open, bool rigid_ground, ModelBuilder& builder, CaseNames& names);
+
+/// Initial gaps that come from the geometry or from a table; of points with both sides.
+void set_gaps(const Values& interface, std::vector<JointPoint>& points, const CaseNames& names);
 
 /// Number of local components that a law or cone needs: 1 when it has no tangential part, else all of the space.
 int components_of(const Values& behaviour, Space space);

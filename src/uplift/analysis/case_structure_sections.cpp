@@ -1,5 +1,6 @@
 #include "uplift/analysis/case_structure_sections.h"
 
+#include "uplift/analysis/profile.h"
 #include "uplift/model/function.h"
 
 namespace uplift {
@@ -148,24 +149,36 @@ const Section& function_section() {
 const Section& load_section() {
   static const Section s{
       "load", "a load on a node or on faces (edges) of the mesh; without a function it is constant and applied by the static stages",
-      Fields{text("name", "name; absent: made from the node or group").optional(), text("node", "node; or give group").optional(),
-             text("group", "group of faces (edges) of the mesh").optional(),
-             vector("force", "N", "force; on a group: the whole force, spread evenly over its area").optional(),
-             vector("traction", "Pa", "force per area of a group").optional(),
-             number("moment", "N m", "moment on a node, counter-clockwise (about z)").optional(),
-             numbers("moments", "N m", "in space: moments on a node about x, y, z, instead of moment", 3).optional(),
-             text("function", "name of the function of time that multiplies it; absent: constant").optional()}};
+      Fields{
+          text("name", "name; absent: made from the node or group").optional(), text("node", "node; or give group").optional(),
+          text("group", "group of faces (edges) of the mesh").optional(),
+          vector("force", "N", "force; on a group: the whole force, spread evenly over its area").optional(),
+          vector("traction", "Pa", "force per area of a group").optional(),
+          number("pressure", "Pa",
+                 "pressure on a group that bounds a solid: above 0 it pushes onto the surface, against its outward normal. Its direction "
+                 "and its area do not change when the surface moves")
+              .optional(),
+          table("profile", load_profile_section(), "factors of pressure or traction over a coordinate; absent: uniform").optional(),
+          number("moment", "N m", "moment on a node, counter-clockwise (about z)").optional(),
+          numbers("moments", "N m", "in space: moments on a node about x, y, z, instead of moment", 3).optional(),
+          text("function", "name of the function of time that multiplies it; absent: constant").optional()}};
   return s;
 }
 
 const Section& initial_section() {
   static const Section s{
-      "initial", "state of a node at the beginning of the first dynamic stage, added to that of the static stages",
-      Fields{text("node", "node"), vector("displacement", "m", "displacement").optional(),
+      "initial",
+      "state of a node or of a group of the mesh at the beginning of the first dynamic stage, added to that of the static stages. A group "
+      "moves as a rigid body. Values that supports, prescribed motions, rigid bodies or inextensible beams do not allow are refused; "
+      "unknowns that no value determines get the smallest possible values",
+      Fields{text("node", "node; or give group").optional(), text("group", "group of the mesh: all its nodes").optional(),
+             vector("displacement", "m", "displacement").optional(),
              number("rotation", "rad", "rotation, counter-clockwise (about z)").optional(),
              numbers("rotations", "rad", "in space: about x, y, z, instead of rotation", 3).optional(),
              vector("velocity", "m/s", "velocity").optional(), number("angular_velocity", "rad/s", "angular velocity (about z)").optional(),
-             numbers("angular_velocities", "rad/s", "in space: about x, y, z, instead of angular_velocity", 3).optional()}};
+             numbers("angular_velocities", "rad/s", "in space: about x, y, z, instead of angular_velocity", 3).optional(),
+             vector("centre", "m", "of a group that rotates: the point about which it does; absent: the mean position of its nodes")
+                 .optional()}};
   return s;
 }
 

@@ -40,13 +40,13 @@ std::map<Unknown, std::string> moved_by_groups(const Values& root, const CaseNam
   return moved;
 }
 
+}  // namespace
+
 std::set<int> beam_nodes(const CaseNames& names) {
   std::set<int> nodes;
   for (const BeamLine& line : names.beams) nodes.insert(line.nodes.begin(), line.nodes.end());
   return nodes;
 }
-
-}  // namespace
 
 bool any_released(const Values& root) {
   return std::ranges::any_of(root.tables("support"), is_released);

@@ -89,9 +89,17 @@ void warn_held_faces(const Case& read, const Built& built, std::vector<std::stri
 void warn_sides_exchanged(const Case& read, const Built& built, std::vector<std::string>& said) {
   const std::vector<Values>& interfaces = read.values.tables("interface");
   if (interfaces.size() != 1 || !interfaces.front().has("surface") || !(built.weight < 0)) return;
+  if (interfaces.front().has("water") || !interfaces.front().table("surface").has("lower")) return;  // see warn_floating
   const Values& surface = interfaces.front().table("surface");
   said.push_back(fmt::format("{}:{}: the dead load of {} pulls the upper side off the lower one: does `lower` name the side that bears?",
                              surface.where("lower").file, surface.where("lower").line, spoken(-built.weight, "N")));
+}
+
+void warn_floating(const Case& read, const Built& built, std::vector<std::string>& said) {
+  const std::vector<Values>& interfaces = read.values.tables("interface");
+  if (built.weight > 0 || std::ranges::none_of(interfaces, [](const Values& interface) { return interface.has("water"); })) return;
+  said.push_back(fmt::format("the water pressure exceeds the dead load on \"{}\" by {}: the structure floats", built.facts.front().name,
+                             spoken(-built.weight, "N")));
 }
 
 /// THEORY section 3: a closure stress above 1 % of the bearing pressure resists the closing of gaps noticeably.
@@ -254,6 +262,7 @@ std::vector<std::string> warnings(const Case& read, const RunSpec& spec, const B
   warn_sides(read, said);
   warn_held_faces(read, built, said);
   warn_sides_exchanged(read, built, said);
+  warn_floating(read, built, said);
   warn_hinges(built, said);
   warn_embedded_feet(built, said);
   warn_step(built, said);

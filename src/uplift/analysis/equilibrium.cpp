@@ -167,6 +167,8 @@ void EquilibriumCheck::finish(Equilibrium& equilibrium) {
       force = std::max(force, largest(sum->force)), moment = std::max(moment, largest(sum->moment));
   double size = 0;
   for (const Node& node : stage_->model.nodes) size = std::max(size, (node.position - centre_).norm());
+  for (const Interface& interface : stage_->model.interfaces)  // of a single body, whose only node is the centre
+    for (const Place& place : interface.position) size = std::max(size, (place - centre_).norm());
   moment = std::max(moment, force * size);  // forces through the middle have no moment to compare with
   equilibrium.residual = 0;
   for (const Equilibrium::Instant& at : equilibrium.instants) {

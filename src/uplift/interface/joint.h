@@ -16,6 +16,7 @@ struct JointPoint {
   Place normal{0, 1};                             // from lower to upper
   double area = 0;                                // m2, > 0
   double gap = 0;                                 // m, initial
+  double water = 0;                               // Pa: pressure of the water in the joint, on both faces
   std::vector<std::pair<int, double>> upper;      // node, shape function
   std::vector<std::pair<int, double>> lower;      // empty: fixed ground
   bool rigid_upper = false, rigid_lower = false;  // the node's rotation acts too, through the offset position - node

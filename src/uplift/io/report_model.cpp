@@ -192,13 +192,13 @@ void write_absorbing(JsonWriter& json, const Case& read) {
 void write_loads(JsonWriter& json, const Drawn& drawn, const Case& read, const Built& built) {
   json.key("loads").begin_array();
   for (const Values& load : read.values.tables("load")) {
-    const char* key = load.has("force") ? "force" : "traction";
-    if (!load.has(key)) continue;
+    const std::vector<double> force = drawn_force(load, built.model);
+    if (force.empty()) continue;
     std::string node = load.has("node") ? shown_name(built, load.text("node")) : "";
     if (load.has("group"))
       if (const std::vector<int> nodes = drawn_of_group(drawn, read, load.text("group"), 1000); !nodes.empty())
         node = name_of_mesh_node(drawn, built, nodes[nodes.size() / 2]);
-    json.begin_object().member("node", node).member("fx", load.numbers(key)[0]).member("fy", load.numbers(key)[1]);
+    json.begin_object().member("node", node).member("fx", force[0]).member("fy", force[1]);
     json.member("label", name_of_load(load)).end_object();
   }
   json.end_array();
@@ -289,6 +289,14 @@ double uplifted_share(const Model& model, const Frame& frame) {
     all += area;
   }
   return all > 0 ? open / all : 0;
+}
+
+std::vector<double> drawn_force(const Values& load, const Model& model) {
+  for (const char* key : {"force", "traction"})
+    if (load.has(key)) return load.numbers(key);
+  if (!load.has("pressure")) return {};
+  const Vec3 sum = resultant_of_load(load, model);
+  return {sum.data(), sum.data() + model.space.dimension};
 }
 
 std::set<int> nodes_used(const Case& read, const Built& built) {

@@ -21,6 +21,8 @@ void write_tables(JsonWriter& json, const ReportInput& input);
 void write_charts(JsonWriter& json, const ReportInput& input);
 /// Nodes of the model that masses, supports, loads, springs, dashpots and footings stand on: they are drawn.
 std::set<int> nodes_used(const Case& read, const Built& built);
+/// The force of a load as it is drawn: as the case states it, of a pressure its resultant; empty for a moment.
+std::vector<double> drawn_force(const Values& load, const Model& model);
 void write_model(JsonWriter& json, const Case& read, const Built& built);
 void write_animations(JsonWriter& json, const ReportInput& input);
 /// The member "uplifted": share of the area in every frame, by interface.

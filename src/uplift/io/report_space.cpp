@@ -146,15 +146,15 @@ void write_small_parts(JsonWriter& json, const Case& read, const Built& built, c
   }
   json.end_array().key("loads").begin_array();
   for (const Values& load : read.values.tables("load")) {
-    const char* key = load.has("force") ? "force" : "traction";
-    if (!load.has(key)) continue;
+    const std::vector<double> force = drawn_force(load, built.model);
+    if (force.empty()) continue;
     int node = load.has("node") ? built.model.find_node(load.text("node")) : -1;
     if (load.has("group") && read.mesh) {
       const std::vector<int> nodes = nodes_of(read.mesh->mesh, read.mesh->mesh.groups.at(load.text("group")));
       node = drawn.first_of_mesh + nodes[nodes.size() / 2];
     }
     if (!std::ranges::binary_search(drawn.nodes, node)) continue;
-    json.begin_object().member("node", drawn.number(node)).key("force").numbers(load.numbers(key));
+    json.begin_object().member("node", drawn.number(node)).key("force").numbers(force);
     json.member("label", name_of_load(load)).end_object();
   }
   json.end_array();

@@ -114,6 +114,7 @@ class ModelBuilder {
   std::vector<int> resisted(const Model& model, const Full& full) const;
   void drop_dead_tangents(const Model& model, const Matrix& motion_shapes);
   void place_interfaces(Model& model);
+  Vector water_load(const Model& model, std::size_t interface) const;  // full unknowns
   void refuse_inside_out(const InterfaceSpec& spec, const Where& where) const;
   std::vector<Vec3> structure_of(const InterfaceSpec& spec, bool upper, std::vector<int>& nodes) const;
   void make_drives(Model& model, const Full& full, const Matrix& motion_shapes) const;

@@ -78,6 +78,9 @@ void ModelBuilder::make_drives(Model& model, const Full& full, const Matrix& mot
     model.assembly.loads.push_back(pattern);
   };
   if (!gravity_.isZero()) add("gravity", full.mass * translation(space_, gravity_, unknowns), one, true);
+  for (std::size_t k = 0; k < interfaces_.size(); ++k)
+    if (std::ranges::any_of(interfaces_[k].points, [](const JointPoint& point) { return point.water != 0; }))
+      add("water pressure in " + interfaces_[k].name, water_load(model, k), one, true);
   for (const Load& load : loads_) {
     Vector pattern = Vector::Zero(unknowns);
     for (const auto& [unknown, value] : load.pattern) pattern[unknown] += value;

@@ -86,6 +86,17 @@ void ModelBuilder::place_interfaces(Model& model) {
   model.assembly.interface_where = interface_where_;
 }
 
+/// The water in a joint pushes both faces apart: with p = -u A at every point its load is -B^T p.
+Vector ModelBuilder::water_load(const Model& model, std::size_t interface) const {
+  Index first = 0;
+  for (std::size_t k = 0; k < interface; ++k) first += model.interfaces[k].rows();
+  const Interface& face = model.interfaces[interface];
+  Vector thrust = Vector::Zero(model.assembly.b.rows());
+  for (int i = 0; i < face.batch.points; ++i)
+    thrust[first + face.batch.normal() + i] = interfaces_[interface].points[static_cast<std::size_t>(i)].water * face.area[i];
+  return model.assembly.b.transpose() * thrust;
+}
+
 /// Places of what hangs together with one side, through elements and rigid bodies: nodes and centres of masses.
 std::vector<Vec3> ModelBuilder::structure_of(const InterfaceSpec& spec, bool upper, std::vector<int>& nodes) const {
   std::vector<std::vector<int>> neighbours(nodes_.size());

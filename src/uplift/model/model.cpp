@@ -1,8 +1,5 @@
 #include "uplift/model/model.h"
 
-#include <fmt/format.h>
-
-#include "uplift/math/dense.h"
 #include "uplift/math/small.h"
 
 namespace uplift {
@@ -68,27 +65,6 @@ void Model::add_varying_force(double time, Vector& force) const {
 
 void Model::add_prescribed_opening(double time, Vector& opening) const {
   for (const PrescribedMotion& motion : motions) opening += motion.function->value(time) * motion.opening;
-}
-
-Vector free_values(const Model& model, const std::vector<std::pair<int, double>>& wanted, const Where& where) {
-  Matrix rows = Matrix::Zero(static_cast<Index>(wanted.size()), model.free());
-  Vector values(static_cast<Index>(wanted.size()));
-  for (Index i = 0; i < values.size(); ++i) {
-    values[i] = wanted[i].second;
-    for (Sparse::InnerIterator entry(model.expansion, wanted[i].first); entry; ++entry) rows(i, entry.row()) = entry.value();
-  }
-  if (wanted.empty()) return Vector::Zero(model.free());
-  const Vector q = CompleteQr(rows).solve(values);
-  const Vector error = rows * q - values;
-  Index worst = 0;
-  if (error.cwiseAbs().maxCoeff(&worst) > 1e-9 * values.cwiseAbs().maxCoeff()) {
-    const int unknown = wanted[worst].first;
-    throw InputError(where, "initial", "values that supports, rigid bodies and inextensible beams allow",
-                     fmt::format("{} = {:g} at {}.{}, where only {:g} is possible together with the other values", "value", values[worst],
-                                 model.nodes[model.space.node_of(unknown)].name, to_string(model.space.dof(model.space.index_of(unknown))),
-                                 values[worst] + error[worst]));
-  }
-  return q;
 }
 
 }  // namespace uplift

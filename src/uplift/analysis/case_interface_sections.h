@@ -1,0 +1,9 @@
+#pragma once
+#include "uplift/base/declare.h"
+
+namespace uplift {
+
+/// [[interface]] with everything below it.
+const Section& interface_section();
+
+}  // namespace uplift
