@@ -14,7 +14,7 @@ class Results(CliTest):
         done = self.uplift("run", "tower")  # a folder stands for its case.toml
         folder = self.folder / "out" / "tower"
         self.assertIn("out/tower/report.html", done.stdout)
-        self.assertEqual({p.name for p in folder.iterdir()} - {"report.html"}, {"histories.csv", "summary.json", "case.resolved.toml"})
+        self.assertEqual({p.name for p in folder.iterdir()} - {"report.html"}, {"histories.csv", "load_steps.csv", "summary.json", "case.resolved.toml"})
         summary = self.summary("out/tower")
         self.assertEqual(summary["case"]["sha256"], hashlib.sha256(case.read_bytes()).hexdigest())
         (run,) = summary["runs"]
@@ -236,22 +236,33 @@ class Failures(CliTest):
         done = self.uplift("replay", "r/problem_run.json", "--json", expect=3)
         self.assertIn("overturns", json.loads(done.stdout)["reason"])
 
+    def test_a_static_stage_that_fails_keeps_its_load_steps(self):
+        self.write(BASE.replace('[[stage]]', '[[load]]\nname = "push"\nnode = "top"\nforce = [9e6, 0]\n[[stage]]', 1))
+        self.uplift("run", "case.toml", "-o", "r", expect=3)
+        (head, *rows) = (self.folder / "r" / "load_steps.csv").read_text().splitlines()
+        self.assertTrue(head.startswith("load_factor [1],"))
+        self.assertEqual(len(rows), self.summary("r")["runs"][0]["load_steps"] + 1)
+
     def test_static_stages_alone_show_how_it_stands(self):
         self.write(BASE.split('[[stage]]\ntype = "dynamic"')[0])
         done = self.uplift("run", "case.toml", "-o", "r")
         self.assertIn("Under its constant loads the base is in full contact", done.stdout)
         self.assertIn("completed: static stages in", done.stdout)
         # 1 MN on 3 m2 of 2e8 Pa/m
-        (head, row) = (self.folder / "r" / "histories.csv").read_text().splitlines()
-        values = dict(zip(head.split(","), row.split(",")))
-        self.assertAlmostEqual(float(values["base.uy [m]"]) * 2e8 * 3 / -1e6, 1, places=9)
+        (head, *rows) = (self.folder / "r" / "histories.csv").read_text().splitlines()
+        self.assertEqual(len(rows), self.summary("r")["runs"][0]["load_steps"] + 1)
+        for row in rows:
+            values = dict(zip(head.split(","), map(float, row.split(","))))
+            self.assertAlmostEqual(values["base.uy [m]"] * 2e8 * 3 / -1e6, values["load_factor [1]"], places=9)
+        self.assertEqual(values["load_factor [1]"], 1)
+        self.assertFalse((self.folder / "r" / "load_steps.csv").exists())
         numbers = self.summary("r")["verdict"]["interfaces"][0]["numbers"]
         self.assertAlmostEqual(numbers["max_toe_pressure"]["value"] / (1e6 / 3), 1, places=9)
         self.assertAlmostEqual(numbers["residual_settlement"]["value"] * 2e8 * 3 / 1e6, 1, places=9)
         page = self.folder / "r" / "report.html"
         if page.exists():
             report = report_of(page.parent)
-            self.assertLessEqual({"rest_gap", "rest_pressure"}, {chart["id"] for chart in report["charts"]})
+            self.assertLessEqual({"rest_gap", "rest_pressure", "base_displacement"}, {chart["id"] for chart in report["charts"]})
 
     def test_leaving_the_ground_is_an_outcome_not_a_failure(self):
         pulled = BASE.replace("force = [3e5, 0]", "force = [0, 1e7]").replace("duration = 0.1", "duration = 3").replace("duration = 0.5", "duration = 3")

@@ -75,7 +75,7 @@ BaseMotion::BaseMotion(const Model& model, const Interface& interface, const std
 double BaseMotion::value(const Sum& sum, const State& state) {
   double total = 0;
   for (const auto& [unknown, weight] : sum.terms) total += weight * state.displacement[unknown];
-  for (const auto& [function, weight] : sum.functions) total += weight * function->value(state.time);
+  for (const auto& [function, weight] : sum.functions) total += state.load_factor * weight * function->value(state.time);
   return total;
 }
 

@@ -177,7 +177,7 @@ std::vector<DrivenBy> motions_wanted(const Values& root) {
   std::vector<DrivenBy> wanted;
   for (const Values& ground : root.tables("ground_acceleration")) wanted.push_back({&ground, MotionKind::acceleration});
   for (const Values& motion : root.tables("motion"))
-    wanted.push_back({&motion, MotionKind::displacement, motion.text("direction").front() == 'r'});
+    if (motion.has("function")) wanted.push_back({&motion, MotionKind::displacement, motion.text("direction").front() == 'r'});
   for (const Values& absorbing : root.tables("absorbing"))
     if (const Values* incident = table_if(absorbing, "incident")) wanted.push_back({incident, MotionKind::velocity});
   return wanted;

@@ -50,8 +50,13 @@ const Section& damping_case_section() {
 
 const Section& stage_section() {
   static const Section s{"stage", "a stage of the analysis; displacements and interface states are handed over to the next one",
-                         Fields{choice("type", {"static", "dynamic"}, "static: weight and constant loads, in steps; dynamic: everything"),
-                                integer("steps", "static: number of equal load steps").between(1, 1000000).standard(10.0),
+                         Fields{choice("type", {"static", "dynamic"},
+                                       "static: weight, constant loads and prescribed motions, in load steps; dynamic: everything"),
+                                integer("steps",
+                                        "static: number of equal load steps, each of which is recorded (histories.csv where all stages are "
+                                        "static, else load_steps.csv)")
+                                    .between(1, 1000000)
+                                    .standard(10.0),
                                 number("duration", "s", "dynamic: duration").positive().optional(),
                                 number("step", "s", "dynamic: time step").positive().optional(),
                                 part("scheme", schemes, "dynamic: time integration").standard("average_acceleration"),

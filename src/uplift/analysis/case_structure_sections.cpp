@@ -115,12 +115,15 @@ const Section& support_section() {
 
 const Section& motion_section() {
   static const Section s{
-      "motion", "a prescribed motion of one unknown of a node or of a group of the mesh: amplitude x function",
+      "motion",
+      "a prescribed motion of one unknown of a node or of a group of the mesh: amplitude x function. The first static stage applies its "
+      "value at t = 0 in proportion to the load factor",
       Fields{text("name", "name").optional(), text("node", "node; or give group").optional(),
              text("group", "group of the mesh: all its nodes").optional(),
              text("direction", "unknown that is moved: ux, uy or rz; in space ux, uy, uz, rx, ry or rz; of a group a translation"),
              number("amplitude", "1", "m (or rad for rotations) that the function multiplies").standard(1.0),
-             text("function", "name of the function of time")}};
+             text("function", "name of the function of time; absent: constant, for example a settlement, applied by the first static stage")
+                 .optional()}};
   return s;
 }
 

@@ -74,6 +74,9 @@ void add_supports(const Values& root, ModelBuilder& builder, const CaseNames& na
     const std::string name = motion.has("name") ? motion.text("name") : "motion of " + motion.text(motion.has("node") ? "node" : "group");
     const Dof dof = dof_of(motion.text("direction"), motion, "direction", names.space, motion.has("node"));
     const bool turns = motion.text("direction").front() == 'r';
+    const std::vector<Values>& stages = root.tables("stage");
+    if (!motion.has("function") && !stages.empty() && stages.front().text("type") != "static")
+      fail(motion, "function", "the name of a function, or a static stage first, which applies a motion without a function", "neither");
     auto function = names.function(motion, turns ? std::nullopt : std::optional(MotionKind::displacement));
     builder.prescribe(nodes, dof, scaled(motion.number("amplitude"), std::move(function)), name, motion.where());
   }

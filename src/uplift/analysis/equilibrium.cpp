@@ -14,6 +14,7 @@ struct EquilibriumCheck::Snapshot {
   Vector unbalanced;  // M a + C v + K u + B^T p - f, full unknowns
   Vector applied;     // f
   Vector yielding;
+  double largest_reaction = 0;  // N: on one unknown
   Equilibrium::Instant sums;
 };
 
@@ -69,16 +70,19 @@ void EquilibriumCheck::note(const StepBalance& balance) {
   at.velocity = model.reduction * at.free_velocity;
   at.acceleration = model.reduction * acceleration;
   for (const PrescribedMotion& motion : model.motions) {
-    at.displacement += balance.value(*motion.function, 0) * motion.shape;
-    at.velocity += balance.value(*motion.function, 1) * motion.shape;
-    at.acceleration += balance.value(*motion.function, 2) * motion.shape;
+    at.displacement += balance.motion(*motion.function, 0) * motion.shape;
+    at.velocity += balance.motion(*motion.function, 1) * motion.shape;
+    at.acceleration += balance.motion(*motion.function, 2) * motion.shape;
   }
   at.applied = Vector::Zero(model.full_unknowns());
   const double begin = balance.share_of_begin();
-  for (std::size_t i = 0; i < model.drives.size(); ++i)
+  for (std::size_t i = 0; i < model.drives.size(); ++i) {
+    const Drive& drive = model.drives[i];
     if (i < model.assembly.loads.size() && model.assembly.loads[i].size() > 0)
-      at.applied += balance.value(*model.drives[i].function, static_cast<int>(model.drives[i].order)) * model.assembly.loads[i];
-  for (std::size_t i = 0; i < model.feeds.size(); ++i) {
+      at.applied += (drive.constant ? balance.load_factor() : balance.value(*drive.function, static_cast<int>(drive.order))) *
+                    model.assembly.loads[i];
+  }
+  for (std::size_t i = 0; balance.moves() && i < model.feeds.size(); ++i) {
     Vector last, first;
     model.feeds[i].functions->values(balance.after().time, last);
     model.feeds[i].functions->values(balance.before().time, first);
@@ -145,6 +149,8 @@ void EquilibriumCheck::add_forces(const ForceModel& forces, Snapshot& at) const 
     put(full, at.sums.damping);
   }
   const Vector reactions = forces.constraint_forces(at.unbalanced);
+  for (Index i = 0; i < reactions.size(); ++i)
+    if (!model.space.is_rotation(model.space.index_of(i))) at.largest_reaction = std::max(at.largest_reaction, std::abs(reactions[i]));
   sum_up(reactions, at.sums.reactions);
   sum_up(reactions - at.unbalanced, at.sums.residual);
 }
@@ -156,12 +162,13 @@ void EquilibriumCheck::finish(Equilibrium& equilibrium) {
   if (snapshots_.empty()) return;
   add_elements();
   const ForceModel forces(*stage_);
+  double force = 0, moment = 0;
   for (Snapshot& at : snapshots_) {
     add_forces(forces, at);
+    force = std::max(force, at.largest_reaction);  // of supports that settle the reactions cancel each other
     equilibrium.instants.push_back(at.sums);
   }
   snapshots_.clear();
-  double force = 0, moment = 0;
   for (const Equilibrium::Instant& at : equilibrium.instants)
     for (const Equilibrium::Sum* sum : {&at.inertia, &at.damping, &at.internal, &at.joint, &at.second_order, &at.applied, &at.reactions})
       force = std::max(force, largest(sum->force)), moment = std::max(moment, largest(sum->moment));

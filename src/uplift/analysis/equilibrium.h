@@ -25,7 +25,7 @@ struct Equilibrium {
     Sum inertia, damping, internal, joint, second_order, applied, reactions, residual;
   };
   std::vector<Instant> instants;
-  double residual = 0;  // largest residual force or moment, over the largest of the other sums at any of the instants
+  double residual = 0;  // largest residual force or moment, over the largest of the other sums and reactions at any of the instants
   double time = 0;      // s: of that instant
   /// What an engineer should know about a residual that is no round-off; empty up to 1e-6.
   std::string warning() const;

@@ -30,7 +30,7 @@ const double* ForceRecorder::value(const Request& request) const {
 }
 
 void ForceRecorder::record() {
-  const StepBalance balance = stepper_ != nullptr ? stepper_->balance(start_) : StepBalance::of_state(state_, start_);
+  const StepBalance balance = stepper_ != nullptr ? stepper_->balance(start_) : StepBalance::at_rest(state_, start_);
   meter_->measure(balance, values_);
   std::size_t next = first_of_envelopes_;
   for (BeamEnvelope& envelope : result_.envelopes)

@@ -196,8 +196,8 @@ ForceMeter::ForceMeter(const ForceModel& model, const std::vector<const ForceQua
   term_values_.resize(terms_.size());
 }
 
-int ForceMeter::term(const TimeFunction& function, int derivative) {
-  const std::pair wanted(&function, derivative);
+int ForceMeter::term(const TimeFunction& function, int derivative, bool of_motion) {
+  const Term wanted{&function, derivative, of_motion};
   const auto found = std::ranges::find(terms_, wanted);
   if (found != terms_.end()) return static_cast<int>(found - terms_.begin());
   terms_.push_back(wanted);
@@ -210,7 +210,8 @@ std::vector<ForceMeter::Entry> ForceMeter::on_free(const Weights& full, int deri
     for (Sparse::InnerIterator entry(model_.expansion, unknown); entry; ++entry)
       sums[static_cast<int>(entry.row())] += weight * entry.value();
     for (const PrescribedMotion& motion : model_.motions)
-      if (const double shape = motion.shape[unknown]; shape != 0) row.terms.push_back({term(*motion.function, derivative), weight * shape});
+      if (const double shape = motion.shape[unknown]; shape != 0)
+        row.terms.push_back({term(*motion.function, derivative, true), weight * shape});
   }
   std::vector<Entry> entries;
   for (const auto& [index, factor] : sums) entries.push_back({index, factor});
@@ -226,7 +227,7 @@ ForceMeter::Row ForceMeter::compiled(const ForceRow& given) {
   for (const auto& [index, factor] : given.joint) row.joint.push_back({index, factor});
   if (yielding_.any())
     for (const auto& [index, factor] : given.yielding) row.yielding.push_back({index, factor});
-  for (const ForceRow::Term& each : given.terms) row.terms.push_back({term(*each.function, each.derivative), each.factor});
+  for (const ForceRow::Term& each : given.terms) row.terms.push_back({term(*each.function, each.derivative, false), each.factor});
   row.feeds = given.feeds;
   row.constant = given.constant;
   any_yielding_ = any_yielding_ || !row.yielding.empty();
@@ -235,14 +236,17 @@ ForceMeter::Row ForceMeter::compiled(const ForceRow& given) {
 }
 
 void ForceMeter::measure(const StepBalance& balance, std::vector<double>& values) const {
-  for (std::size_t k = 0; k < terms_.size(); ++k) term_values_[k] = balance.value(*terms_[k].first, terms_[k].second);
+  for (std::size_t k = 0; k < terms_.size(); ++k) {
+    const auto& [function, derivative, of_motion] = terms_[k];
+    term_values_[k] = of_motion ? balance.motion(*function, derivative) : balance.value(*function, derivative);
+  }
   const double begin = balance.share_of_begin();
   Vector yielding;
   if (any_yielding_) {
     yielding = (1 - begin) * yielding_.state(balance.after().bulk_history).full;
     if (begin != 0) yielding += begin * yielding_.state(balance.before().bulk_history).full;
   }
-  std::vector<Vector> fed(any_feeds_ ? model_.feeds.size() : 0);
+  std::vector<Vector> fed(any_feeds_ && balance.moves() ? model_.feeds.size() : 0);
   for (std::size_t k = 0; k < fed.size(); ++k) {
     Vector last, first;
     model_.feeds[k].functions->values(balance.after().time, last);
@@ -250,14 +254,15 @@ void ForceMeter::measure(const StepBalance& balance, std::vector<double>& values
     fed[k] = (1 - begin) * last + begin * first;
   }
   const auto value_of = [&](const Row& row) {
-    double sum = row.constant;
+    double sum = balance.load_factor() * row.constant;
     for (const auto& [i, factor] : row.displacement) sum += factor * balance.displacement(i);
     for (const auto& [i, factor] : row.velocity) sum += factor * balance.velocity(i);
     for (const auto& [i, factor] : row.acceleration) sum += factor * balance.acceleration(i);
     for (const auto& [i, factor] : row.joint) sum += factor * balance.force(i);
     for (const auto& [i, factor] : row.yielding) sum += factor * yielding[i];
     for (const auto& [i, factor] : row.terms) sum += factor * term_values_[static_cast<std::size_t>(i)];
-    for (const auto& [feed, factors] : row.feeds) sum += factors.dot(fed[feed]);
+    if (!fed.empty())
+      for (const auto& [feed, factors] : row.feeds) sum += factors.dot(fed[feed]);
     return sum;
   };
   values.resize(first_row_.size() - 1);

@@ -117,13 +117,20 @@ class ForceMeter {
     double constant = 0;
   };
   Row compiled(const ForceRow& row);
-  int term(const TimeFunction& function, int derivative);
+  /// `of_motion`: it moves supports, else it is a load.
+  int term(const TimeFunction& function, int derivative, bool of_motion);
   std::vector<Entry> on_free(const Weights& full, int derivative, Row& row);
 
   const Model& model_;
   PlasticBulk yielding_;
   bool any_yielding_ = false, any_feeds_ = false;
-  std::vector<std::pair<const TimeFunction*, int>> terms_;
+  struct Term {
+    const TimeFunction* function;
+    int derivative;
+    bool of_motion;
+    bool operator==(const Term&) const = default;
+  };
+  std::vector<Term> terms_;
   std::vector<Row> rows_;
   std::vector<std::size_t> first_row_;  // of every quantity, and the end
   mutable std::vector<double> term_values_;

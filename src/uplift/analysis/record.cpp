@@ -168,13 +168,14 @@ double Recorder::made(const Source& source) const {
   using What = Request::Kind;
   const Request& request = *source.request;
   const State& state = state_;
+  const bool rests = stepper_ == nullptr;
   const auto sum = [&](const Vector& q, int derivative) {
     if (source.moved) {
-      const auto at = [&](double time) {
-        const double below = request.below >= 0 ? model_.full(request.below, q, derivative, time) : 0;
-        return request.factor * (model_.full(request.unknown, q, derivative, time) - below);
+      const auto at = [&](MotionInstant instant) {
+        const double below = request.below >= 0 ? model_.full(request.below, q, derivative, instant) : 0;
+        return request.factor * (model_.full(request.unknown, q, derivative, instant) - below);
       };
-      return derivative == 2 ? 0.5 * (at(before_) + at(state.time)) : at(state.time);
+      return derivative == 2 ? 0.5 * (at(before_) + at(state.time)) : at(state.instant());
     }
     double total = 0;
     for (const auto& [unknown, factor] : source.terms) total += factor * q[unknown];
@@ -184,11 +185,11 @@ double Recorder::made(const Source& source) const {
     case What::displacement:
       return sum(state.displacement, 0);
     case What::velocity:
-      return sum(state.velocity, 1);
+      return rests ? 0 : sum(state.velocity, 1);
     case What::acceleration:
-      return sum(acceleration_, 2);
+      return rests ? 0 : sum(acceleration_, 2);
     case What::absolute_acceleration:
-      return sum(acceleration_, 2) + 0.5 * (ground(request, before_) + ground(request, state.time));
+      return rests ? 0 : sum(acceleration_, 2) + 0.5 * (ground(request, before_) + ground(request, state.time));
     case What::rotation: {
       const std::array<double, 2>& slope = views_[static_cast<std::size_t>(request.interface)].rotation;
       return std::hypot(slope[0], slope[1]);
@@ -205,7 +206,7 @@ double Recorder::made(const Source& source) const {
   }
 }
 
-void Recorder::record(bool row) {
+void Recorder::record(bool row, double abscissa) {
   const State& state = state_;
   if (wants_acceleration_ && stepper_ != nullptr) stepper_->acceleration(acceleration_);
   if (stepper_ == nullptr || !stepper_->averages_acceleration()) before_ = state.time;
@@ -217,7 +218,8 @@ void Recorder::record(bool row) {
 #pragma GCC unroll 4
   for (const Source& each : entries_) each.to[at] = each.factor * (state.*each.vector).data()[each.entry];
   for (const Source& each : made_) each.to[at] = made(each);
-  time_[at] = before_ = state.time;
+  time_[at] = abscissa;
+  before_ = state.time;
   is_row_[at] = row;
   if (++count_ == many) flush();
 }
@@ -273,7 +275,8 @@ Frame Recorder::frame_of(const State& state) const {
   Frame frame;
   frame.time = state.time;
   frame.displacement = model_.reduction * state.displacement;
-  for (const PrescribedMotion& motion : model_.motions) frame.displacement += motion.shape * motion.function->value(state.time);
+  for (const PrescribedMotion& motion : model_.motions)
+    frame.displacement += motion.shape * (state.load_factor * motion.function->value(state.time));
   int points = 0;
   for (const Interface& interface : model_.interfaces) points += interface.batch.points;
   frame.opening.resize(points);

@@ -20,7 +20,9 @@ class Recorder {
   Recorder(const Model& model, const RunPlan& plan, const State& state, const Energies& energies, const Stepper* stepper,
            const std::vector<InterfaceView>& views, const ForceStage& stage, long steps, double step, PageTaker& pages, RunResult& result);
   /// Notes the numbers of every column; they become a row of the table when `row` is set. Peaks and rows are made for many steps at a time.
-  void record(bool row);
+  void record(bool row) { record(row, state_.time); }
+  /// The same in a static stage: `abscissa` takes the place of the time.
+  void record(bool row, double abscissa);
   /// Peaks and rows of the last steps, and the frame of the largest uplift; nothing is recorded after it.
   void finish();
   /// Keeps a frame for the animation.

@@ -6,12 +6,8 @@
 #include <chrono>
 #include <utility>
 
-#include "uplift/analysis/buckling.h"
 #include "uplift/analysis/probe.h"
 #include "uplift/analysis/runner.h"
-#include "uplift/dynamics/plastic_bulk.h"
-#include "uplift/dynamics/statics.h"
-#include "uplift/model/geometric.h"
 
 namespace uplift {
 
@@ -159,27 +155,30 @@ void Runner::execute() {
 
   const Eigen::Index n = rest_ != nullptr ? rest_->free() : model_.free();
   state_.displacement = state_.velocity = state_.acceleration = Vector::Zero(n);
-  start_gap_ = gap_;
-  for (const PrescribedMotion& motion : model_.motions)
-    if (motion.opening.size() > 0) start_gap_ += motion.opening * motion.function->value(0);
-  state_.opening = start_gap_;
+  if (!plan_.stages.empty() && plan_.stages.front().type == Stage::Type::statics) state_.load_factor = 0;
+  state_.opening = gap_;
+  if (state_.load_factor > 0) model_.add_prescribed_opening(0, state_.opening);
   state_.force = state_.mean_force = Vector::Zero(b_.rows());
   state_.history.setZero(laws_->history);
   remember_gaps();
-  for (int column = 0; column < b_.outerSize(); ++column) {
-    const int unknown = model_.kept[static_cast<std::size_t>(column)];
-    if (Sparse::InnerIterator(b_, column) && model_.space.is_rotation(unknown)) rotations_.push_back(column);
-  }
-
   for (const Stage& stage : plan_.stages) planned_ += stage.type == Stage::Type::dynamics ? stage.duration : 0;
   if (dynamic != nullptr) tail_ = 0.1 * planned_ + 0.5 * dynamic->step;
 
+  run_stages();
+  result_.end_time = state_.time;
+  if (statics_alone(plan_))
+    stand();
+  else
+    result_.load_steps = std::move(load_steps_.table);
+}
+
+/// Ends at the first stage that fails or ends the run.
+void Runner::run_stages() {
   bool moving = false;
   for (const Stage& stage : plan_.stages) {
     if (stage.type == Stage::Type::statics) {
       march_.reset();
-      if (!statics(stage, nullptr)) return;
-      show(stage, nullptr, stage.steps, true);
+      if (!statics(stage)) return;
       continue;
     }
     if (stage.p_delta && geometric_ == nullptr && !second_order()) return;
@@ -187,12 +186,11 @@ void Runner::execute() {
     if (!std::exchange(moving, true)) {
       if (&stage != plan_.stages.data()) note_rest();
       add_initial_state();
+      rotations_ = rotations_on_interfaces(model_, b_);
     }
     const Bulk stage_bulk(model_, geometric_.get());
     if (!dynamics(stage, stage_bulk)) return;
   }
-  result_.end_time = state_.time;
-  if (statics_alone(plan_)) stand();
 }
 
 /// A joint with an initial gap was broken before the analysis: its law remembers an opening from zero to that gap (the SDM's jump is the
@@ -208,42 +206,6 @@ void Runner::remember_gaps() {
     reply.now = state_.history.data() + block.first_history;
     block.law->respond(block.batch, closed.data(), gap.data(), blocks.old.data() + block.first_history, reply);
   }
-}
-
-/// What the verdict holds the rest of the run against.
-void Runner::note_rest() {
-  viewer_.look(state_.opening, state_.mean_force, views_);
-  for (std::size_t k = 0; k < views_.size(); ++k) {
-    result_.steps.rest.push_back(views_[k].resultant);
-    result_.steps.rest_poses.push_back(viewer_.pose(state_, k, views_[k]));
-  }
-}
-
-/// Static stages alone: how the structure stands at their end is the result, one row of it. What the verdict calls left is then measured
-/// from the unloaded structure.
-void Runner::stand() {
-  if (rest_ != nullptr) state_ = carried();
-  Energies& energies = result_.final_energy;
-  energies.strain = 0.5 * state_.displacement.dot(model_.stiffness * state_.displacement);
-  if (const PlasticBulk yielding(model_); yielding.any())
-    energies.strain += yielding.energy(state_.displacement, state_.time, yielding.state(state_.bulk_history));
-  InterfaceEnergy held;
-  held.update(blocks_of(model_, *laws_), state_.opening, state_.history);
-  energies.stored = held.stored, energies.interface_dissipated = held.dissipated;
-  PageTaker pages;  // none
-  result_.steps.reserve(model_.interfaces.size(), 1, 1, pages);
-  viewer_.look(state_.opening, state_.mean_force, views_);
-  note_views();
-  sum_up(0);
-  for (const InterfaceView& view : views_) result_.steps.rest.push_back(view.resultant);
-  Recorder recorder(model_, plan_, state_, energies, nullptr, views_, {model_}, 0, 0, pages, result_);
-  recorder.record(true);
-  recorder.finish();
-  const Vector still = Vector::Zero(model_.free());
-  EquilibriumCheck equilibrium(ForceStage{model_});
-  equilibrium.note(StepBalance::of_state(state_, still));
-  equilibrium.finish(result_.equilibrium);
-  if (plan_.frames > 0) recorder.picture(state_);
 }
 
 /// The initial state of the first dynamic stage comes on top of what the static stages left: laws answer the change of the openings, a
@@ -275,68 +237,6 @@ void Runner::add_initial_state() {
       }
   }
   state_.mean_force = state_.force;
-}
-
-/// The geometric stiffness of the present static state, and equilibrium with it.
-bool Runner::second_order() {
-  const Model& resting = rest_ != nullptr ? *rest_ : model_;
-  second_order_ = uplift::second_order(resting, state_);
-  geometric_ = std::make_unique<Sparse>(model_.reduction.transpose() * second_order_.stiffness * model_.reduction);
-  if (const auto share = buckling_share(model_, *geometric_, *plan_.solver)) {
-    fail(fmt::format("P-delta: the structure buckles under {:.4g} times its dead loads: with the whole of them K + K_g is not positive "
-                     "definite, even with all interfaces bonded",
-                     *share),
-         nullptr);
-    return false;
-  }
-  for (const PrescribedMotion& motion : model_.motions)
-    if (Vector force = -(model_.reduction.transpose() * (second_order_.stiffness * motion.shape)); !force.isZero(0))
-      second_order_drives_.push_back({motion.name, std::move(force), motion.function});
-  if (state_.displacement.isZero(0)) return true;
-  Stage again;
-  again.type = Stage::Type::statics;
-  if (rest_ == nullptr) return statics(again, geometric_.get());
-  const Sparse geometric = resting.reduction.transpose() * second_order_.stiffness * resting.reduction;
-  return statics(again, &geometric);
-}
-
-/// The state of the model with all supports on the free unknowns of the one without those of static stages alone: the same displacements.
-State Runner::carried() const {
-  State state = state_;
-  const Vector full = rest_->full(state_.displacement, 0, state_.time);
-  const Eigen::Index n = model_.free();
-  state.displacement.resize(n);
-  for (Eigen::Index i = 0; i < n; ++i) state.displacement[i] = full[model_.kept[static_cast<std::size_t>(i)]];
-  state.velocity = state.acceleration = Vector::Zero(n);
-  return state;
-}
-
-/// Goes over to the model without these supports. What is missing for equilibrium, r = K u + B^T p - f, is what they have borne; from now
-/// on it is a constant load, so that nothing moves when nothing shakes (docs/theory, eq 22).
-void Runner::release() {
-  state_ = carried();
-  held_ = model_.stiffness * state_.displacement;
-  if (geometric_ != nullptr) held_ += *geometric_ * state_.displacement;
-  if (const PlasticBulk yielding(model_); yielding.any()) held_ += yielding.state(state_.bulk_history).force;
-  if (b_.rows() > 0) held_ += b_.transpose() * state_.force;
-  for (const Drive& drive : model_.drives)
-    if (drive.dead) held_ -= drive.factor(state_.time) * drive.shape;
-  rest_ = nullptr;
-}
-
-bool Runner::statics(const Stage& stage, const Sparse* geometric) {
-  const Model& resting = rest_ != nullptr ? *rest_ : model_;
-  const Sparse b = rest_ != nullptr ? stack_interfaces(*rest_) : b_;
-  const Bulk bulk(resting, geometric);
-  const StaticOutcome outcome =
-      solve_statics(resting, bulk, b, start_gap_, *laws_, *plan_.method, *plan_.solver, stage.steps, state_, linear_);
-  result_.counts.retries += outcome.retries;
-  result_.counts.iterations += outcome.iterations;
-  if (!outcome.converged) {
-    fail(outcome.why, outcome.failed ? &*outcome.failed : nullptr);
-    return false;
-  }
-  return true;
 }
 
 ForceStage Runner::force_stage(const Stage& stage) const {

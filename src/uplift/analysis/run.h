@@ -24,7 +24,7 @@ struct Facets;
 
 struct Stage {
   enum class Type { statics, dynamics } type = Type::dynamics;
-  int steps = 1;        // statics: equal load steps of the dead loads
+  int steps = 1;        // statics: equal load steps
   double duration = 0;  // s
   double step = 0;      // s
   Scheme scheme;
@@ -143,7 +143,7 @@ struct Peak {
 };
 
 struct Counts {
-  long steps = 0, retries = 0, iterations = 0, cycles = 0;
+  long steps = 0, load_steps = 0, retries = 0, iterations = 0, cycles = 0;  // load_steps: of the static stages, those that converged
   long factorisations = 0, back_solves = 0;
   InterfaceSystems systems;
 };
@@ -171,13 +171,17 @@ struct RunResult {
   double step_seconds = 0;       // s of computing for a step of the last dynamic stage, its first step (which makes the factor) left out
   double end_time = 0;           // s reached
   std::vector<Request> columns;  // as requested; the table below has time first
-  std::vector<std::vector<double>> table;  // table[0]: time [s], table[1 + k]: column k
-  std::vector<Peak> peaks;                 // one per column
-  std::vector<FloorRecord> floors;         // one per floor of the plan
-  std::vector<BeamEnvelope> envelopes;     // one per envelope of the plan
-  Equilibrium equilibrium;                 // of the whole model, at a few instants
-  StepRecord steps;                        // what the verdict is made of
-  bool step_means = false;                 // forces of interfaces and accelerations are means over the step before their instant
+  // table[0]: time [s], table[1 + k]: column k. Of static stages alone it holds their load steps: load_steps is then empty.
+  std::vector<std::vector<double>> table;
+  // Static stages before or between dynamic ones: load_steps[0] is the load factor (1 at the end of the first static stage, 2 at the end of
+  // the second one), load_steps[1 + k] column k. Empty without static stages.
+  std::vector<std::vector<double>> load_steps;
+  std::vector<Peak> peaks;              // one per column
+  std::vector<FloorRecord> floors;      // one per floor of the plan
+  std::vector<BeamEnvelope> envelopes;  // one per envelope of the plan
+  Equilibrium equilibrium;              // of the whole model, at a few instants
+  StepRecord steps;                     // what the verdict is made of
+  bool step_means = false;              // forces of interfaces and accelerations are means over the step before their instant
   Peak max_uplifted_ratio, max_opening;
   Peak max_base_moment, max_base_shear, max_pressure;                                         // of the bases, means over RunPlan::window
   Peak max_step_pressure;                                                                     // mean over one step
@@ -203,7 +207,7 @@ using Watch = std::function<bool(const Progress&)>;
 /// A state that a run has reached. Everything ends with the call.
 struct Moment {
   const State& state;
-  const Stepper* stepper;   // of a dynamic stage, for accelerations; null at the end of a static stage
+  const Stepper* stepper;   // of a dynamic stage, for accelerations; null at the end of a static stage or where it failed
   const RunResult& so_far;  // peaks and counts up to here
   std::size_t stage;        // of the plan
   long step;                // of the stage, from 0

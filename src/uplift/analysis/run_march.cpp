@@ -25,10 +25,14 @@ void Runner::note_views() {
   steps.add(seen_->time, views_, plan_.gap_tolerance);
   if (seen_->time >= planned_ - tail_)
     for (std::size_t k = 0; k < views_.size(); ++k) steps.tail[k].push_back(viewer_.pose(*seen_, k, views_[k]));
+  find_farthest();
+  if (has_walls_) steps.add_slip(model_.interfaces, seen_->opening, plan_.is_wall);
+}
+
+void Runner::find_farthest() {
   farthest_ = 0;
   for (std::size_t k = 0; k < views_.size(); ++k)
     if (!is_wall(k)) farthest_ = std::max(farthest_, views_[k].least_opening);
-  if (has_walls_) steps.add_slip(model_.interfaces, seen_->opening, plan_.is_wall);
 }
 
 /// Momentum that impacts of constraints transferred in the last step, of each interface.
@@ -100,6 +104,11 @@ void Runner::finish_energy(const Stepper& stepper) {
   result_.energy_scale = std::max(result_.energy_scale, round_off_energy_);
 }
 
+/// The present instant in messages.
+std::string Runner::when() const {
+  return static_share_ ? fmt::format("{:.4g} % of the static load", 100 * *static_share_) : fmt::format("t = {:.6g} s", seen_->time);
+}
+
 /// False when the run ends here: not finite, far beyond the energy limit, or moved beyond the small-displacement model.
 bool Runner::check_limits(const Stepper& stepper) {
   const Energies& energies = stepper.energies();
@@ -110,14 +119,19 @@ bool Runner::check_limits(const Stepper& stepper) {
   const bool creates = result_.energy_scale > 0 && result_.energy_created > plan_.created_limit * result_.energy_scale;
   if (creates && (plan_.stop_at_limit || result_.energy_created > 1e6 * result_.energy_scale)) return false;
   if (creates) return true;
-  for (int unknown : rotations_)
+  return moves_little(model_, rotations_);
+}
+
+/// False when a body or a surface has moved beyond the small-displacement model: then the status says so.
+bool Runner::moves_little(const Model& model, const std::vector<int>& rotations) {
+  for (int unknown : rotations)
     if (std::abs(seen_->displacement[unknown]) > plan_.rotation_limit) {
       result_.status = RunStatus::overturned;
-      result_.reason = fmt::format("{} passed {:.3g} rad at t = {:.6g} s, the limit of the small-displacement model",
-                                   model_.unknown_names[static_cast<std::size_t>(unknown)], plan_.rotation_limit, seen_->time);
+      result_.reason = fmt::format("{} passed {:.3g} rad at {}, the limit of the small-displacement model",
+                                   model.unknown_names[static_cast<std::size_t>(unknown)], plan_.rotation_limit, when());
       return false;
     }
-  return (!rotations_.empty() || surfaces_turn_little()) &&
+  return (!rotations.empty() || surfaces_turn_little()) &&
          (plan_.separation_limit <= 0 || farthest_ <= plan_.separation_limit || surfaces_stay_near());
 }
 
@@ -128,9 +142,8 @@ bool Runner::surfaces_turn_little() {
     const std::array<double, 2>& slope = views_[k].rotation;
     if (!(std::hypot(slope[0], slope[1]) > plan_.rotation_limit)) continue;
     result_.status = RunStatus::overturned;
-    result_.reason =
-        fmt::format("'{}' passed a slope of {:.3g} rad between its sides at t = {:.6g} s, the limit of the small-displacement model",
-                    model_.interfaces[k].name, plan_.rotation_limit, seen_->time);
+    result_.reason = fmt::format("'{}' passed a slope of {:.3g} rad between its sides at {}, the limit of the small-displacement model",
+                                 model_.interfaces[k].name, plan_.rotation_limit, when());
     return false;
   }
   return true;
@@ -144,8 +157,8 @@ bool Runner::surfaces_stay_near() {
     if (!(views_[k].least_opening > plan_.separation_limit)) continue;
     if (!(views_[k].least_opening - interface.gap.maxCoeff() > plan_.separation_limit)) continue;
     result_.status = RunStatus::separated;
-    result_.reason = fmt::format("'{}' is open everywhere by more than {:.3g} m at t = {:.6g} s, the limit of the small-displacement model",
-                                 interface.name, plan_.separation_limit, seen_->time);
+    result_.reason = fmt::format("'{}' is open everywhere by more than {:.3g} m at {}, the limit of the small-displacement model",
+                                 interface.name, plan_.separation_limit, when());
     return false;
   }
   return true;

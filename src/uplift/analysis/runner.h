@@ -11,8 +11,8 @@
 
 namespace uplift {
 
-/// One run: the state, what is watched, what is written. Used by run() alone: the stages are in run.cpp, the march through a dynamic one in
-/// run_march.cpp.
+/// One run: the state, what is watched, what is written. Used by run() alone: the stages are in run.cpp, a static one in run_statics.cpp,
+/// the march through a dynamic one in run_march.cpp.
 class Runner {
  public:
   Runner(const Model& model, const RunPlan& plan, const std::vector<const Values*>& behaviours, const Watch& watch, const Observe& observe);
@@ -20,12 +20,17 @@ class Runner {
 
  private:
   void execute();
+  void run_stages();
   void remember_gaps();
   void note_rest();
   void stand();
   void add_initial_state();
-  bool statics(const Stage& stage, const Sparse* geometric);
+  bool statics(const Stage& stage);
+  bool solve(const Stage& stage, const Sparse* geometric, const std::vector<Drive>* second_order,
+             const std::function<bool(double)>& after_step);
+  Energies static_energies(const Model& resting) const;
   bool second_order();
+  std::vector<Drive> second_order_drives(const Model& model) const;
   State carried() const;
   void release();
   bool dynamics(const Stage& stage, const Bulk& bulk);
@@ -36,6 +41,9 @@ class Runner {
   void sum_up(double step);
   void note_impulses(const Stepper& stepper);
   bool check_limits(const Stepper& stepper);
+  void find_farthest();
+  std::string when() const;
+  bool moves_little(const Model& model, const std::vector<int>& rotations);
   bool surfaces_turn_little();
   bool surfaces_stay_near();
   void finish_energy(const Stepper& stepper);
@@ -49,20 +57,22 @@ class Runner {
   const Observe& observe_;
   const Sparse b_;
   const Vector gap_;
-  Vector start_gap_;  // with the prescribed motions at time 0
   InterfaceViewer viewer_;
   RunResult result_;
+  RunResult load_steps_;  // table of the static stages
   LinearCounts linear_;
   std::unique_ptr<Behaviours> laws_;
   std::unique_ptr<Sparse> geometric_;
   SecondOrder second_order_;                // the same before elimination
   std::vector<Drive> second_order_drives_;  // what it makes of the prescribed motions
   const Model* rest_;                       // the static stages' model before the first dynamic stage; null: model_
+  int static_stages_ = 0;                   // that are over
+  std::optional<double> static_share_;      // of the present static stage that is reached
   Vector held_;                             // what released supports have borne, on the free unknowns [N, N m]
   State state_;                             // between stages
   const State* seen_ = &state_;             // the present one, wherever it lives
   std::vector<InterfaceView> views_;
-  std::vector<int> rotations_;     // free unknowns that are rotations of bodies on an interface
+  std::vector<int> rotations_;     // of the dynamic stages: rotations_on_interfaces
   bool has_walls_ = false;         // some interface is no base
   double farthest_ = 0;            // m: largest of the bases' least openings, now
   std::size_t summed_up_ = 0;      // instants of the record that peaks and durations know
@@ -73,5 +83,8 @@ class Runner {
   double planned_ = 0, tail_ = 0;  // s: of the dynamic stages; at their end the base's pose is kept for this long
   double shown_ = 0;               // s: taken by the observer
 };
+
+/// Free unknowns that are rotations of bodies on an interface; `b` is that of the model's interfaces.
+std::vector<int> rotations_on_interfaces(const Model& model, const Sparse& b);
 
 }  // namespace uplift

@@ -74,22 +74,24 @@ std::string headline_of(const Built& built, const RunResult& run, const Verdict&
 /// Level, headline and what an extraordinary end means.
 void say_outcome(const Built& built, const RunResult& run, Verdict& verdict) {
   using Level = Verdict::Level;
-  const std::string end = spoken(run.end_time, "s");
+  const bool in_statics = statics_alone(built.plan) || run.steps.size() == 0;
+  const std::string end = spoken(run.end_time, "s"), when = in_statics ? "under the static loads" : "at " + end;
   if (run.status == RunStatus::failed) {
     verdict.level = Level::failed;
     verdict.headline = "The run failed: " + run.reason;
-    verdict.paragraphs.push_back(fmt::format("The values up to {} are shown and marked; they are not a result.", end));
+    verdict.paragraphs.push_back(in_statics ? "The load steps up to the last equilibrium are kept; they are not a result."
+                                            : fmt::format("The values up to {} are shown and marked; they are not a result.", end));
   } else if (run.status == RunStatus::overturned) {
     verdict.level = Level::overturned;
-    verdict.headline = fmt::format("Overturning: the rotation exceeds {} at {}", spoken(built.plan.rotation_limit, "rad"), end);
+    verdict.headline = fmt::format("Overturning: the rotation exceeds {} {}", spoken(built.plan.rotation_limit, "rad"), when);
     verdict.paragraphs.push_back(
         fmt::format("The run ended because {}. Beyond this rotation (limits.rotation) the small-displacement model is not valid: the "
                     "structure overturns or comes close to it. All values are those reached until then.",
                     run.reason));
   } else if (run.status == RunStatus::separated) {
     verdict.level = Level::separated;
-    verdict.headline = fmt::format("Full loss of contact: at {} the base is open everywhere by more than {}", end,
-                                   spoken(built.plan.separation_limit, "m"));
+    verdict.headline =
+        fmt::format("Full loss of contact: {} the base is open everywhere by more than {}", when, spoken(built.plan.separation_limit, "m"));
     verdict.paragraphs.push_back(
         "The run ended because the whole base left the ground by more than limits.separation. Beyond this gap the small-displacement model "
         "is not valid; it cannot tell whether and where the structure comes down. All values are those reached until then.");
@@ -331,7 +333,7 @@ std::string_view to_string(Verdict::Level level) {
 Verdict judge(const Built& built, const RunResult& run, const RunResult* bonded, const FloorRun* floors, const Companion* companion) {
   if (statics_alone(built.plan) && run.status == RunStatus::completed) return judge_standing(built, run);
   Verdict verdict;
-  const bool nothing = run.status == RunStatus::failed && run.counts.steps == 0;
+  const bool nothing = run.status != RunStatus::completed && run.counts.steps == 0;
   if (!nothing) verdict.numbers = numbers_of(built, run, bonded);
   if (!nothing && companion) verdict.step_check = check_step(built, run, *companion, verdict.numbers);
   say_outcome(built, run, verdict);

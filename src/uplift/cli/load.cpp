@@ -91,9 +91,13 @@ void write_results(const Options& options, const Loaded& loaded, const Results& 
   ReportInput input{&loaded.read, &loaded.from, &results.verdict, {}, compared, results.warnings, &results.floors, results.trust};
   // Beside the report, which takes as long: half of the time of a small run goes into its files. After it where there is no second thread.
   std::future<void> histories = std::async(std::launch::async | std::launch::deferred, [&] {
-    for (const RunResult& run : results.runs)
-      if (compared || &run == &results.runs.front())
-        folder.write(compared ? "histories/" + run.name + ".csv" : "histories.csv", histories_csv(run));
+    for (std::size_t i = 0; i < (compared ? results.runs.size() : 1); ++i) {
+      const RunResult& run = results.runs[i];
+      const RunPlan& plan = results.built[i].plan;
+      const auto file = [&](const std::string& name) { return name + (compared ? "/" + run.name : "") + ".csv"; };
+      folder.write(file("histories"), histories_csv(run, statics_alone(plan) ? load_factor_column : time_column));
+      if (!run.load_steps.empty()) folder.write(file("load_steps"), load_steps_csv(run, plan.requests));
+    }
   });
   for (std::size_t i = 0; i < results.runs.size(); ++i) {
     const RunResult& run = results.runs[i];

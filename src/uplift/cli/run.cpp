@@ -112,7 +112,8 @@ int run(const Options& options) {
     say_criteria(results.verdict.numbers.criteria);
     const double per_step = main.counts.steps > 0 ? 1e6 * main.wall / static_cast<double>(main.counts.steps) : 0;
     if (statics_alone(results.built.front().plan))
-      say(fmt::format("{}: static stages in {}, {} retries", status_text(main), spoken(main.wall, "s"), main.counts.retries));
+      say(fmt::format("{}: static stages in {}, {} load steps, {} retries", status_text(main), spoken(main.wall, "s"),
+                      main.counts.load_steps, main.counts.retries));
     else
       say(fmt::format("{}: {} steps in {} ({:.2f} microseconds a step), {} retries", status_text(main), main.counts.steps,
                       spoken(main.wall, "s"), per_step, main.counts.retries));

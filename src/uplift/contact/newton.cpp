@@ -313,7 +313,7 @@ Outcome Newton<R>::solve(int done) {
   const bool large = R == 0 && PointRows::suits(problem_);
   const int enough = large ? 1 : patience;
   const double noise = large ? 8 * std::sqrt(static_cast<double>(r())) : 8;
-  const bool predictable = problem_.average && r() <= few && augmented_.multiplier == nullptr;
+  const bool predictable = problem_.average && r() <= few && augmented_.multiplier == nullptr && problem_.shift.size() == 0;
   if (predictable && scratch_.follows) predict();
   scratch_.follows = false;
   look(true);

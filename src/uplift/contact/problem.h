@@ -45,7 +45,7 @@ struct JointFilterInput {
 struct InterfaceProblem {
   std::vector<Block> blocks;
   Matrix factor;         // C: rows x r [m/sqrt(J)]
-  Vector shift;          // D: rows [N/m]; empty in dynamics
+  Vector shift;          // D: rows [N/m]; in dynamics empty, unless interfaces alone hold a massless unknown
   bool average = false;  // path-averaged traction: p = scale * area * mean(from -> opening)
   InterfaceSolver solver = InterfaceSolver::automatic;
   double scale = 1;  // weight of the interface force in the scheme's balance: with the path average 2/(1 + 2 b), else 1

@@ -44,6 +44,8 @@ class StepSolver {
   virtual Outcome solve(const Vector& right, const StepStart& start, Vector& increment) = 0;
   virtual const InterfaceProblem& problem() const = 0;
   virtual const InterfaceSolution& solution() const = 0;
+  /// The next solve does not begin at the last solution, which led nowhere.
+  virtual void forget() {}
 };
 
 /// The condensed step: the free response, the small interface problem, and what its forces add. Through a split factor (SplitResponse) that
@@ -57,6 +59,7 @@ class Condensed final : public StepSolver {
   Outcome solve(const Vector& right, const StepStart& start, Vector& increment) override;
   const InterfaceProblem& problem() const override { return problem_; }
   const InterfaceSolution& solution() const override { return solution_; }
+  void forget() override { solution_ = {}; }
 
  private:
   void free_opening(const Vector& right, const Vector& displacement);

@@ -51,9 +51,9 @@ PlasticState PlasticBulk::state(std::vector<double> history) const {
   return made;
 }
 
-BulkResponse PlasticBulk::respond(const Vector& displacement, double time, const std::vector<double>& old, PlasticState& now,
+BulkResponse PlasticBulk::respond(const Vector& displacement, MotionInstant at, const std::vector<double>& old, PlasticState& now,
                                   Vector& size) const {
-  const Vector full = model_.full(displacement, 0, time);
+  const Vector full = model_.full(displacement, 0, at);
   Vector sizes = Vector::Zero(full.size()), force;
   now.history.resize(history_);
   for (const One& one : solids_) {
@@ -71,8 +71,8 @@ BulkResponse PlasticBulk::respond(const Vector& displacement, double time, const
   return {};
 }
 
-Sparse PlasticBulk::softening(const Vector& displacement, double time, const std::vector<double>& old, const PlasticState& now) const {
-  const Vector full = model_.full(displacement, 0, time);
+Sparse PlasticBulk::softening(const Vector& displacement, MotionInstant at, const std::vector<double>& old, const PlasticState& now) const {
+  const Vector full = model_.full(displacement, 0, at);
   std::vector<Triplet> entries;
   std::vector<double> unused;
   Vector force;
@@ -97,8 +97,8 @@ Sparse PlasticBulk::softening(const Vector& displacement, double time, const std
   return model_.expansion * assembled * model_.reduction;
 }
 
-double PlasticBulk::energy(const Vector& displacement, double time, const PlasticState& state) const {
-  return model_.full(displacement, 0, time).dot(state.full) + state.energy;
+double PlasticBulk::energy(const Vector& displacement, MotionInstant at, const PlasticState& state) const {
+  return model_.full(displacement, 0, at).dot(state.full) + state.energy;
 }
 
 double PlasticBulk::dissipated(const Vector& from, double before, const PlasticState& old, const Vector& to, double after,

@@ -32,12 +32,12 @@ class PlasticNewton {
   using Make = std::function<std::unique_ptr<StepSolver>(const Sparse& d, std::string& why)>;
   /// `stiffness`: its diagonal weighs the unknowns in norms, so that units play no part.
   PlasticNewton(const PlasticBulk& bulk, const Sparse& stiffness, const PlasticOptions& options);
-  /// The end of a step: what the bulk remembers at its beginning, and the time of its end.
+  /// The end of a step: what the bulk remembers at its beginning, and the instant of its end.
   struct Step {
     const Vector& right;
     const StepStart& start;
     const PlasticState& old;
-    double time;
+    MotionInstant at;
     double weight = 1;  // w
   };
   /// `increment` and `now` receive the end of the step.

@@ -4,8 +4,9 @@
 
 #include <algorithm>
 #include <cmath>
-#include <functional>
 #include <limits>
+#include <memory>
+#include <utility>
 
 #include "uplift/contact/unheld.h"
 
@@ -41,20 +42,9 @@ Vector closed_joint(const Model& model, const Behaviours& behaviours) {
 
 namespace {
 
-/// A structure that nothing holds has no equilibrium, but the balance of an interface problem is relative to its own forces, the closed
-/// joint that is taken back among them: it is met at infinity by every method. The balance of the whole structure, f - K u - B^T p against
-/// the loads, is not. `unbalanced` is that difference; what round-off makes of K u does not count, unless it is so much that nothing can be
-/// told.
-bool in_balance(const Bulk& bulk, const Vector& load, const Vector& reaction, const Vector& displacement, const Vector& unbalanced) {
-  if (unbalanced.size() == 0) return true;
-  if (!unbalanced.allFinite()) return false;
-  double size = 0, round_off = 0;
-  for (int i = 0; i < bulk.unknowns; ++i) {
-    size = std::max({size, std::abs(load[i]), std::abs(reaction[i])});
-    round_off = std::max(round_off, std::abs(bulk.stiffness_matrix.coeff(i, i) * displacement[i]));
-  }
-  const double lost = 64 * std::numeric_limits<double>::epsilon() * round_off;
-  return lost <= 1e-3 * size && unbalanced.cwiseAbs().maxCoeff() <= 1e-6 * size + lost;
+/// Largest entry.
+double size_of(const Vector& v) {
+  return v.size() > 0 ? v.cwiseAbs().maxCoeff() : 0;
 }
 
 /// Why a load step has no solution: a small share of the closed joint is left as springs, with which every load has an equilibrium, and the
@@ -69,100 +59,204 @@ std::string diagnose(const InterfaceProblem& problem, const ContactMethod& metho
   return {};
 }
 
+/// One static stage.
+class LoadSteps {
+ public:
+  LoadSteps(const Model& model, const Bulk& bulk, const Sparse& b, const Vector& gap, const Behaviours& behaviours,
+            const ContactMethod& method, const LinearSolver& solver, const StaticOptions& options, State& state, LinearCounts& counts);
+  StaticOutcome run();
+
+ private:
+  BulkFactor factor(const Sparse& matrix) const { return {matrix, &b_, bulk_.small, solver_, model_, counts_}; }
+  std::unique_ptr<StepSolver> condensed(BulkFactor made) const {
+    return std::make_unique<Condensed>(model_, b_, gap_, !motion_.isZero(0), std::move(made), blocks_, method_);
+  }
+  void find_loads();
+  double load_factor(double share) const { return share < 1 ? first_factor_ + share * (1 - first_factor_) : 1; }
+  bool go(double from, double to, int depth);
+  std::string solve(double to, int depth);
+  bool in_balance(const Vector& unbalanced, const Vector& moved) const;
+  void accept(double to);
+
+  const Model& model_;
+  const Bulk& bulk_;
+  const Sparse& b_;
+  const Vector& still_gap_;
+  const ContactMethod& method_;
+  const LinearSolver& solver_;
+  const StaticOptions& options_;
+  State& state_;
+  LinearCounts& counts_;
+  const PlasticBulk yielding_;
+  const double first_factor_;   // load factor at the beginning
+  Vector gap_, motion_;         // rows: gap of the present load step, and what the prescribed motions open [m]
+  Vector first_load_, change_;  // N: internal force at the beginning, and what the stage adds to it
+  InterfaceProblem blocks_;
+  Sparse matrix_;  // upper triangle of K + B^T D B: all that a factor is made of
+  std::unique_ptr<StepSolver> linear_;
+  std::unique_ptr<PlasticNewton> newton_;
+  const StepSolver* last_ = nullptr;  // solver of the last load step
+  PlasticState plastic_now_, plastic_next_;
+  Vector load_, product_, reaction_, moved_, increment_;
+  StaticOutcome outcome_;
+};
+
+LoadSteps::LoadSteps(const Model& model, const Bulk& bulk, const Sparse& b, const Vector& gap, const Behaviours& behaviours,
+                     const ContactMethod& method, const LinearSolver& solver, const StaticOptions& options, State& state,
+                     LinearCounts& counts)
+    : model_(model),
+      bulk_(bulk),
+      b_(b),
+      still_gap_(gap),
+      method_(method),
+      solver_(solver),
+      options_(options),
+      state_(state),
+      counts_(counts),
+      yielding_(model),
+      first_factor_(state.load_factor),
+      gap_(gap),
+      motion_(Vector::Zero(gap.size())),
+      blocks_(blocks_of(model, behaviours)) {
+  blocks_.shift = closed_joint(model, behaviours);
+  matrix_ = bulk.stiffness_matrix.triangularView<upper_triangle>();
+  if (b.rows() > 0) matrix_ += Sparse(Sparse(b.transpose() * blocks_.shift.asDiagonal() * b).triangularView<upper_triangle>());
+  if (yielding_.any()) {
+    newton_ = std::make_unique<PlasticNewton>(yielding_, matrix_, options.plastic);
+    plastic_now_ = yielding_.state(state.bulk_history);
+  }
+  product_ = reaction_ = increment_ = Vector::Zero(bulk.unknowns);
+  find_loads();
+}
+
+void LoadSteps::find_loads() {
+  bulk_.stiffness.multiply(state_.displacement, product_);
+  first_load_ = product_;
+  if (yielding_.any()) first_load_ += plastic_now_.force;
+  if (b_.rows() > 0) first_load_ += b_.transpose() * state_.force;
+  change_ = -first_load_;
+  for (const Drive& drive : model_.drives)
+    if (drive.is_static()) change_ += drive.factor(state_.time) * drive.shape;
+  if (options_.second_order != nullptr)
+    for (const Drive& drive : *options_.second_order) change_ += drive.factor(state_.time) * drive.shape;
+  model_.add_prescribed_opening(state_.time, motion_);
+}
+
+/// A structure that nothing holds has no equilibrium, but the balance of an interface problem is relative to its own forces, the closed
+/// joint that is taken back among them: it is met at infinity by every method. The balance of the whole structure, f - K u - B^T p against
+/// the loads, is not. `unbalanced` is that difference; what round-off makes of K u does not count, unless it is so much that nothing can be
+/// told. A stage without loads is measured against the forces at its beginning.
+bool LoadSteps::in_balance(const Vector& unbalanced, const Vector& moved) const {
+  if (!unbalanced.allFinite()) return false;
+  const double size = std::max({size_of(load_), size_of(reaction_), size_of(first_load_)});
+  double round_off = 0;
+  for (int i = 0; i < bulk_.unknowns; ++i) round_off = std::max(round_off, std::abs(bulk_.stiffness_matrix.coeff(i, i) * moved[i]));
+  const double lost = 64 * std::numeric_limits<double>::epsilon() * round_off;
+  return lost <= 1e-3 * size && size_of(unbalanced) <= 1e-6 * size + lost;
+}
+
+/// Solves for a share of the stage; why there is no equilibrium, or empty.
+std::string LoadSteps::solve(double to, int depth) {
+  gap_ = still_gap_ + load_factor(to) * motion_;
+  load_ = first_load_ + to * change_;
+  bulk_.stiffness.multiply(state_.displacement, product_);
+  Vector right = to * change_ + (first_load_ - product_);
+  if (b_.rows() > 0) {  // what the closed joint bears without any increment
+    const Vector opening = state_.opening + (load_factor(to) - state_.load_factor) * motion_;
+    right -= b_.transpose() * blocks_.shift.cwiseProduct(opening).eval();
+  }
+  const StepStart start{state_.displacement, state_.opening, state_.history};
+  Outcome step;
+  last_ = linear_.get();
+  if (yielding_.any()) {
+    const PlasticNewton::Make soften = [this](const Sparse& d, std::string& why) -> std::unique_ptr<StepSolver> {
+      BulkFactor softer = factor(matrix_ + d);
+      why = softer.why();
+      return softer.ok() ? condensed(std::move(softer)) : nullptr;
+    };
+    step = newton_->solve({right, start, plastic_now_, {state_.time, load_factor(to)}}, *linear_, soften, increment_, plastic_next_);
+    last_ = &newton_->last();
+    outcome_.newton = newton_->residuals();
+  } else {
+    step = linear_->solve(right, start, increment_);
+  }
+  outcome_.iterations += step.iterations;
+  if (!step.converged) {
+    const std::string found = b_.rows() > 0 && depth >= options_.halvings ? diagnose(last_->problem(), method_) : "";
+    return found.empty() ? step.why : found + "; " + step.why;
+  }
+  moved_ = state_.displacement + increment_;
+  bulk_.stiffness.multiply(moved_, product_);
+  Vector unbalanced = load_ - product_;
+  if (yielding_.any()) unbalanced -= plastic_next_.force;
+  if (b_.rows() > 0) reaction_.noalias() = b_.transpose() * last_->solution().force;
+  unbalanced -= reaction_;
+  if (in_balance(unbalanced, moved_)) return {};
+  const std::string unheld = b_.rows() > 0 ? unheld_motion(last_->problem(), last_->solution(), runaway_ratio) : "";
+  return unheld.empty() ? "the balance of the structure is not met" : unheld;
+}
+
+void LoadSteps::accept(double to) {
+  state_.displacement = moved_;
+  state_.load_factor = load_factor(to);
+  if (b_.rows() > 0) {
+    const InterfaceSolution& solution = last_->solution();
+    state_.opening = solution.opening;
+    state_.force = state_.mean_force = solution.force;
+    state_.history = solution.now;
+  }
+  if (yielding_.any()) {
+    std::swap(plastic_now_, plastic_next_);
+    state_.bulk_history = plastic_now_.history;
+  }
+  outcome_.reached = to;
+  ++outcome_.steps;
+}
+
+/// From one share of the stage to another, halved when it fails.
+bool LoadSteps::go(double from, double to, int depth) {
+  std::string why = solve(to, depth);
+  if (why.empty() && !moved_.allFinite()) why = "the displacement is not finite";
+  if (why.empty()) {
+    accept(to);
+    return !options_.after_step || options_.after_step(to);
+  }
+  outcome_.why = fmt::format("static stage, {:.3g} % of the load: {}", 100 * to, why);
+  if (depth < options_.halvings) {
+    linear_->forget();
+    ++outcome_.retries;
+    const double middle = 0.5 * (from + to);
+    return go(from, middle, depth + 1) && go(middle, to, depth + 1);
+  }
+  outcome_.why += fmt::format(" (equilibrium up to {:.4g} % of the load)", 100 * outcome_.reached);
+  outcome_.failed = last_->problem();
+  return false;
+}
+
+StaticOutcome LoadSteps::run() {
+  BulkFactor made = factor(matrix_);
+  if (!made.ok()) {
+    outcome_.why = "static stage: " + made.why();
+    return std::move(outcome_);
+  }
+  linear_ = condensed(std::move(made));
+  bool all = true;
+  for (int k = 0; k < options_.steps && all; ++k)
+    all = go(static_cast<double>(k) / options_.steps, static_cast<double>(k + 1) / options_.steps, 0);
+  state_.velocity.setZero();
+  state_.acceleration.setZero();
+  state_.filter = {};
+  outcome_.converged = all;
+  if (!outcome_.failed) outcome_.why.clear();  // of a load step that was halved
+  return std::move(outcome_);
+}
+
 }  // namespace
 
 StaticOutcome solve_statics(const Model& model, const Bulk& bulk, const Sparse& b, const Vector& gap, const Behaviours& behaviours,
-                            const ContactMethod& method, const LinearSolver& solver, int steps, State& state, LinearCounts& counts,
-                            const PlasticOptions& plastic) {
-  StaticOutcome outcome;
-  const Eigen::Index n = bulk.unknowns;
-  InterfaceProblem frame = blocks_of(model, behaviours);
-  frame.shift = closed_joint(model, behaviours);
-  const Vector shift = frame.shift;
-  Sparse matrix = bulk.stiffness_matrix.triangularView<upper_triangle>();  // all that a factor is made of
-  if (b.rows() > 0) matrix += Sparse(Sparse(b.transpose() * shift.asDiagonal() * b).triangularView<upper_triangle>());
-  BulkFactor factor(matrix, &b, bulk.small, solver, model, counts);
-  if (!factor.ok()) {
-    outcome.why = "static stage: " + factor.why();
-    return outcome;
-  }
-  const InterfaceProblem blocks = frame;
-  Condensed condensed(model, b, gap, false, std::move(factor), std::move(frame), method);
-
-  const PlasticBulk yielding(model);
-  PlasticNewton newton(yielding, matrix, plastic);
-  const PlasticNewton::Make soften = [&](const Sparse& d, std::string& why) -> std::unique_ptr<StepSolver> {
-    BulkFactor softer(matrix + d, &b, bulk.small, solver, model, counts);
-    why = softer.why();
-    if (!softer.ok()) return nullptr;
-    return std::make_unique<Condensed>(model, b, gap, false, std::move(softer), blocks, method);
-  };
-  PlasticState plastic_now, plastic_next;
-  if (yielding.any()) plastic_now = yielding.state(state.bulk_history);
-
-  Vector dead = Vector::Zero(n), increment = Vector::Zero(n), product = Vector::Zero(n), moved = Vector::Zero(n),
-         reaction = Vector::Zero(n);
-  for (const Drive& drive : model.drives)
-    if (drive.dead) dead += drive.shape * drive.function->value(state.time);
-
-  // from one share of the load to another, halved when it fails
-  const std::function<bool(double, double, int)> go = [&](double from, double to, int depth) {
-    bulk.stiffness.multiply(state.displacement, product);
-    Vector right = to * dead - product;
-    if (b.rows() > 0) right -= b.transpose() * (shift.cwiseProduct(state.opening)).eval();
-    const StepStart start{state.displacement, state.opening, state.history};
-    const Outcome step = yielding.any() ? newton.solve({right, start, plastic_now, state.time}, condensed, soften, increment, plastic_next)
-                                        : condensed.solve(right, start, increment);
-    const StepSolver& last = yielding.any() ? newton.last() : condensed;
-    outcome.newton = newton.residuals();
-    outcome.iterations += step.iterations;
-    std::string why = step.why;
-    if (step.converged) {
-      moved = state.displacement + increment;
-      bulk.stiffness.multiply(moved, product);
-      right = to * dead - product;
-      if (yielding.any()) right -= plastic_next.force;
-      if (b.rows() > 0) reaction.noalias() = b.transpose() * last.solution().force;
-      right -= reaction;
-      if (!in_balance(bulk, to * dead, reaction, moved, right)) {
-        why = b.rows() > 0 ? unheld_motion(last.problem(), last.solution(), runaway_ratio) : "";
-        if (why.empty()) why = "the balance of the structure is not met";
-      }
-    } else if (b.rows() > 0 && depth >= 8) {
-      if (const std::string found = diagnose(last.problem(), method); !found.empty()) why = found + "; " + why;
-    }
-    if (!why.empty()) {
-      outcome.why = fmt::format("static stage, {:.3g} % of the load: {}", 100 * to, why);
-      if (depth >= 8) {
-        outcome.failed = last.problem();
-        return false;
-      }
-      ++outcome.retries;
-      const double middle = 0.5 * (from + to);
-      return go(from, middle, depth + 1) && go(middle, to, depth + 1);
-    }
-    state.displacement = moved;
-    if (b.rows() > 0) {
-      state.opening = last.solution().opening;
-      state.force = last.solution().force;
-      state.mean_force = state.force;
-      state.history = last.solution().now;
-    }
-    if (yielding.any()) {
-      std::swap(plastic_now, plastic_next);
-      state.bulk_history = plastic_now.history;
-    }
-    ++outcome.steps;
-    return true;
-  };
-  for (int k = 0; k < steps; ++k)
-    if (!go(static_cast<double>(k) / steps, static_cast<double>(k + 1) / steps, 0)) return outcome;
-  state.velocity.setZero();
-  state.acceleration.setZero();
-  state.filter = {};
-  outcome.converged = state.displacement.allFinite();
-  if (!outcome.converged) outcome.why = "static stage: the displacement is not finite";
-  return outcome;
+                            const ContactMethod& method, const LinearSolver& solver, const StaticOptions& options, State& state,
+                            LinearCounts& counts) {
+  return LoadSteps(model, bulk, b, gap, behaviours, method, solver, options, state, counts).run();
 }
 
 }  // namespace uplift

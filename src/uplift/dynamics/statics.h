@@ -1,27 +1,44 @@
 #pragma once
+#include <functional>
 #include <optional>
 #include <string>
+#include <vector>
 
 #include "uplift/dynamics/condensed.h"
 #include "uplift/dynamics/plastic_newton.h"
 
 namespace uplift {
 
+/// How a static stage proceeds.
+struct StaticOptions {
+  int steps = 1;                                     // equal load steps
+  int halvings = 8;                                  // a load step that fails is halved at most so often
+  const std::vector<Drive>* second_order = nullptr;  // what prescribed motions do through the geometric stiffness of P-Delta; null: nothing
+  PlasticOptions plastic = {};
+  // Called with the share of the stage that is reached, after every load step that converged, halved ones too; false ends the stage there.
+  std::function<bool(double share)> after_step = {};
+};
+
 struct StaticOutcome {
-  bool converged = false;
+  bool converged = false;  // all load steps
+  double reached = 0;      // share of the stage up to which there is equilibrium
   int steps = 0, retries = 0, iterations = 0;
-  std::string why;
+  std::string why;                         // empty where after_step has ended the stage
   std::optional<InterfaceProblem> failed;  // the interface problem of the load step that failed
   std::vector<double> newton;  // residuals of the outer Newton in the last load step, of the forces' size; empty without yielding solids
 };
 
-/// Equilibrium under the dead loads, applied in equal steps from `state` on: K u + B^T p(B u) = f. K alone is singular for a structure that
-/// rests on contact: the factored matrix is K + B^T D B with the closed joint's stiffness D, taken back in the interface problem (THEORY
-/// section 6). Solids that can yield are iterated on around that (dynamics/plastic_newton.h). A load step that fails is halved. Velocity
-/// and acceleration of the state become zero.
+/// Equilibrium under the dead loads and the prescribed motions at the state's time: K u + B^T p(B u + gap) = f. The right-hand side goes in
+/// equal steps from the internal force of `state` to f, so that a second static stage does not unload the structure. With the load factor
+/// of `state` below 1 the motions, in the yielding solids and the openings too, rise in proportion with it.
+///
+/// K alone is singular for a structure that rests on contact: the factored matrix is K + B^T D B with the closed joint's stiffness D, taken
+/// back in the interface problem (docs/theory, section 4). Solids that can yield are iterated on around that (dynamics/plastic_newton.h). A
+/// load step that fails is halved; when the smallest one fails too, `state` is the last equilibrium. Velocity and acceleration of the state
+/// become zero. `gap`: initial gaps, without those of the motions.
 StaticOutcome solve_statics(const Model& model, const Bulk& bulk, const Sparse& b, const Vector& gap, const Behaviours& behaviours,
-                            const ContactMethod& method, const LinearSolver& solver, int steps, State& state, LinearCounts& counts,
-                            const PlasticOptions& plastic = {});
+                            const ContactMethod& method, const LinearSolver& solver, const StaticOptions& options, State& state,
+                            LinearCounts& counts);
 
 /// Stiffness D of the closed joints [N/m per row]: area * closed stiffness of a law, at most 1000 times the largest diagonal of K; for a
 /// cone the largest diagonal of K. Any positive value is exact.

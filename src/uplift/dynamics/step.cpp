@@ -4,6 +4,7 @@
 #include <cmath>
 #include <utility>
 
+#include "uplift/contact/unheld.h"
 #include "uplift/dynamics/monolithic.h"
 #include "uplift/dynamics/step_level.h"
 #include "uplift/linear/memory.h"
@@ -35,6 +36,7 @@ Stepper::Stepper(const Model& model, const Bulk& bulk, const Sparse& b, const Ve
   for (const PrescribedMotion& motion : model.motions) gap_moves_ = gap_moves_ || (motion.opening.size() > 0 && !motion.opening.isZero(0));
   if (!filtered_) options_.scheme.gain = 0;  // constraints: the trapezoidal rule, whose impacts have rules of their own
   if (filtered_ && b.rows() > 0) joint_filter_ = std::make_unique<JointFilter>(model, behaviours, options.scheme);
+  if (!options.monolithic) shift_ = stiffness_for_massless();
   levels_.resize(static_cast<std::size_t>(options.halvings) + 1);
   // Two factors are kept: the one of the step, which needs the most room while it is made, comes first. One that is needed for the
   // acceleration of the beginning alone comes and goes before it (start).
@@ -314,6 +316,7 @@ bool Stepper::try_step(Level& level) {
   force_at(next_.time, force_next_);
   if (gap_moves_) move_gap(now_.time, next_.time);
   right_hand_side(level);
+  if (shift_.size() > 0) right_ -= b_.transpose() * shift_.cwiseProduct(gap_ + b_ * now_.displacement).eval();
   const Outcome outcome = solve(level);
   counts_.iterations += outcome.iterations;
   counts_.cycles += outcome.cycles;
@@ -322,6 +325,10 @@ bool Stepper::try_step(Level& level) {
     return false;
   }
   const InterfaceSolution& solution = *solution_;
+  if (shift_.size() > 0) {
+    why_ = unheld_motion(*last_, solution, runaway_ratio);
+    if (!why_.empty()) return false;
+  }
   if (!kinematics(level)) {
     why_ = "the displacement is not finite";
     return false;

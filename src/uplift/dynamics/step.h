@@ -88,6 +88,7 @@ class Stepper {
   /// ku = K u and mv = M v, in one pass where the bulk is large.
   void products(const Vector& u, const Vector& v, Vector& ku, Vector& mv) const;
   void right_hand_side(const Level& level);
+  Vector stiffness_for_massless() const;
   double filter_shrink(const Level& level) const;
   void begin_filters();
   void advance_filters(const Level& level);
@@ -125,6 +126,7 @@ class Stepper {
   std::unique_ptr<Spread> mass_spread_;
   Vector row_area_;  // m2, of the point that a row belongs to
   Matrix dense_b_;
+  Vector shift_;  // rows: D of the interface problem [N/m], for unknowns without mass that interfaces alone hold; empty without them
   std::vector<std::unique_ptr<Level>> levels_;
 
   PlasticBulk yielding_;

@@ -11,7 +11,14 @@ namespace uplift {
 /// for a.
 class StepBalance {
  public:
-  /// One state, for example before the first step; `acceleration` (free unknowns) must stay alive.
+  /// A state at rest: of the loads only the constant ones act and the prescribed motions, both by the state's load factor. `still` (free
+  /// unknowns, zero) must stay alive.
+  static StepBalance at_rest(const State& state, const Vector& still) {
+    StepBalance made{state, state, still, still, 0, 0};
+    made.rests_ = true;
+    return made;
+  }
+  /// One state of a dynamic stage, for example before the first step; `acceleration` (free unknowns) must stay alive.
   static StepBalance of_state(const State& state, const Vector& acceleration) { return {state, state, acceleration, acceleration, 0, 0}; }
   /// A step of length `step` [s] of the average acceleration rule with path-averaged tractions.
   /// `gain` of a scheme with filters, b: the stiffness then acts on (u0 + u1)/2 + b (u1 - u0 - d_u).
@@ -46,11 +53,21 @@ class StepBalance {
     if (step_ > 0) return after_->mean_force[row];
     return of_begin_ * before_->force[row] + of_end_ * after_->force[row];
   }
-  /// A function of time, or a derivative of it.
+  /// A load's function of time, or a derivative of it.
   double value(const TimeFunction& function, int derivative) const {
+    if (rests_) return 0;
     const double end = of_end_ * derivative_of(function, derivative, after_->time);
     return of_begin_ == 0 ? end : end + of_begin_ * derivative_of(function, derivative, before_->time);
   }
+  /// Displacement (derivative 0), velocity or acceleration that a prescribed motion has for a shape of 1.
+  double motion(const TimeFunction& function, int derivative) const {
+    if (!rests_) return value(function, derivative);
+    return derivative == 0 ? after_->load_factor * function.value(after_->time) : 0;
+  }
+  /// Share of the constant loads.
+  double load_factor() const { return rests_ ? after_->load_factor : 1; }
+  /// Loads that are functions of time act.
+  bool moves() const { return !rests_; }
   double time() const { return of_begin_ * before_->time + of_end_ * after_->time; }
   double share_of_begin() const { return of_begin_; }
   const State& before() const { return *before_; }
@@ -71,6 +88,7 @@ class StepBalance {
   double of_begin_, of_end_, first_share_;
   double step_ = 0;                  // > 0: means over a step
   double gain_ = 0, lag_share_ = 1;  // of the filters of the scheme
+  bool rests_ = false;
 };
 
 }  // namespace uplift

@@ -4,6 +4,8 @@
 #include <utility>
 
 #include "uplift/dynamics/monolithic.h"
+#include "uplift/dynamics/statics.h"
+#include "uplift/model/mechanism.h"
 
 namespace uplift {
 
@@ -49,8 +51,20 @@ Stepper::Level& Stepper::make_level(int halving) {
   return made;
 }
 
+/// Unknowns without mass that nothing but the laws of interfaces holds make K_eff singular: like in a static stage, the closed joint is
+/// factored with it and taken back in the interface problem.
+Vector Stepper::stiffness_for_massless() const {
+  Vector touching = Vector::Zero(b_.rows());
+  for (int column = 0; column < b_.outerSize(); ++column)
+    if (bulk_.massless[static_cast<std::size_t>(column)] != 0)
+      for (Sparse::InnerIterator entry(b_, column); entry; ++entry) touching[entry.row()] = 1;
+  if (touching.isZero(0) || unresisted_motion(model_, Resistance::dynamic_open).size() == 0) return {};
+  return touching.cwiseProduct(closed_joint(model_, behaviours_));
+}
+
 Sparse Stepper::matrix_of(const Level& level) const {
-  const Sparse linear = bulk_.stiffness_matrix + level.damping * bulk_.damping_matrix + level.mass * bulk_.mass_matrix;
+  Sparse linear = bulk_.stiffness_matrix + level.damping * bulk_.damping_matrix + level.mass * bulk_.mass_matrix;
+  if (shift_.size() > 0) linear += b_.transpose() * shift_.asDiagonal() * b_;
   if (!filtered_ || bulk_.geometric == nullptr) return linear;
   return linear - (1 - 1 / options_.scheme.stretch()) * *bulk_.geometric;  // the geometric stiffness is not filtered
 }
@@ -64,6 +78,7 @@ InterfaceProblem Stepper::frame_of(const Level& level) const {
     frame.filter.coefficient = frame.filter.lag = Vector::Zero(b_.rows());
   }
   frame.step = level.step;
+  frame.shift = shift_;
   return frame;
 }
 

@@ -113,7 +113,7 @@ void FieldRun::see(const Moment& moment) {
 }
 
 void FieldRun::see_static(const Moment& moment) {
-  if (is_dynamic(plan_, moment.stage + 1)) return;
+  if (is_dynamic(plan_, moment.stage + 1) && moment.so_far.status == RunStatus::completed) return;
   std::size_t later = moment.stage;
   bool first = true;
   for (std::size_t s = 0; s < moment.stage; ++s) first = first && is_static(plan_, s);

@@ -27,7 +27,8 @@ std::optional<FieldForecast> field_forecast(const Case& read, const Built& built
 /// but, with events, the states of the largest gap and of the largest pressure.
 /// Times of the frames [s]: those of the states. Where several static stages come before the dynamic ones, the last of them ends at 0,
 /// those before it at -1, -2, ...; the end of a static stage from which a dynamic one starts is that one's first frame. A static stage
-/// between dynamic ones stands half a step after the end of the one before.
+/// between dynamic ones stands half a step after the end of the one before. Of a static stage that ended the run the last equilibrium is
+/// kept.
 class FieldRun {
  public:
   /// The folder must live as long. Throws InputError as field_forecast(), and where the disk has less room than the files will take.

@@ -161,7 +161,7 @@ FieldFrame RunFrames::of(const State& state, const Vector* acceleration, double 
   std::array<Vector, 3> full;
   for (int d = 0; d < 3; ++d) {
     const auto k = static_cast<std::size_t>(d);
-    full[k] = free[k] ? model_->full(*free[k], d, state.time) : Vector::Zero(model_->full_unknowns());
+    full[k] = free[k] ? model_->full(*free[k], d, state.instant()) : Vector::Zero(model_->full_unknowns());
   }
   const InterfaceFrames::JointValues joint = interfaces_.at(state);
   const auto at_lips = [&](FieldKind kind, const std::vector<double>& values) { return at_points(interfaces_.mesh(), kind, values); };

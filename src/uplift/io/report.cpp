@@ -36,6 +36,8 @@ void write_sections(JsonWriter& json, const ReportInput& input) {
   json.begin_array();
   if (statics_alone(input.runs.front().built->plan)) {
     write_section(json, "rest", "State under the static loads", "State of the base at the end of the static stages.");
+    write_section(json, "response", "Response", "Displacements of the top and of the base at every load step.");
+    write_section(json, "interface", "Interface", "Forces in the interface and its opening at every load step.");
     write_beams_section(json, input);
     write_section(json, "law", "Interface law", law);
     json.end_array();

@@ -55,7 +55,8 @@ void add_history(Chart& chart, const ReportRun& run, Column kind, int of, double
 }
 
 Chart history_chart(const View& view, const std::vector<ReportRun>& runs) {
-  Chart chart{view.id, view.section, view.title, view.caption, {"Time", "s"}, {view.label, view.unit}, {}};
+  const Axis along = statics_alone(runs.front().built->plan) ? Axis{"Load factor", "1"} : Axis{"Time", "s"};
+  Chart chart{view.id, view.section, view.title, view.caption, along, {view.label, view.unit}, {}};
   const bool gap = view.kind == Column::uplifted_ratio || view.kind == Column::max_opening;
   for (const ReportRun& run : runs)
     if (!gap || !run.spec->bonded) add_history(chart, run, view.kind, view.of, view.factor);  // a bonded base stretches instead of opening
@@ -336,7 +337,11 @@ void write_charts(JsonWriter& json, const ReportInput& input) {
     other = "all others";
   }
   json.begin_array();
-  if (statics_alone(built.plan)) {  // one instant: nothing over time
+  if (statics_alone(built.plan)) {  // nothing over time
+    for (const View& view : motion_views(built))
+      if (view.kind != Column::velocity) write_chart(json, *input.read, history_chart(view, runs));
+    for (const View& view : interface_views(built)) write_chart(json, *input.read, history_chart(view, runs));
+    if (!built.facts.empty()) write_loops(json, input, runs);
     for (const Chart& chart : rest_charts(input.runs.front())) write_chart(json, *input.read, chart);
     for (const Chart& chart : beam_charts(runs)) write_chart(json, *input.read, chart);
     write_chart(json, *input.read, law_chart(input.runs.front()));

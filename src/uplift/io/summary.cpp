@@ -23,7 +23,10 @@ void write_run(JsonWriter& json, const RunResult& run, const Agreement* agreemen
   json.member("name", run.name).member("label", run.label).member("group", run.group);
   json.member("status", to_string(run.status)).member("reason", run.reason);
   json.member("expected", run.expected_to_fail ? "may_fail" : "completes");
-  json.member("steps", run.counts.steps).member("retries", run.counts.retries).member("iterations", run.counts.iterations);
+  json.member("steps", run.counts.steps)
+      .member("load_steps", run.counts.load_steps)
+      .member("retries", run.counts.retries)
+      .member("iterations", run.counts.iterations);
   json.member("cycles", run.counts.cycles)
       .member("factorisations", run.counts.factorisations)
       .member("back_solves", run.counts.back_solves)

@@ -103,7 +103,7 @@ void ModelBuilder::make_drives(Model& model, const Full& full, const Matrix& mot
     for (const auto& [matrix, order] : parts) {
       Vector force = -(model.reduction.transpose() * (*matrix * shape));
       if (force.isZero(0)) continue;
-      model.drives.push_back({motion.name, std::move(force), motion.function, order});
+      model.drives.push_back({motion.name, std::move(force), motion.function, order, false, false, true});
       model.assembly.loads.emplace_back();
     }
   }

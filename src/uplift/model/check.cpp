@@ -203,12 +203,12 @@ void check_impulses(const Model& model) {
 
 void check_dynamic(const Model& model) {
   if (model.free() == 0) return;
-  const Vector released = unresisted_motion(model, Resistance::dynamic_open);
-  require_mass(model, [&](const Interface& face, int i) { return face.cone != nullptr || (released.size() > 0 && released[i] != 0); });
+  require_mass(model, [](const Interface& face, int) { return face.cone != nullptr; });
   check_masses(model);
-  if (released.size() > 0)
-    throw InputError(place_of(model), "", "a stiffness, a mass or a dashpot against every motion",
-                     describe(model, released) + " without any of them while the interfaces are open");
+  const Vector unresisted = unresisted_motion(model, Resistance::dynamic);
+  if (unresisted.size() > 0)
+    throw InputError(place_of(model), "", "a stiffness, a mass, a dashpot or an interface against every motion",
+                     describe(model, unresisted) + " without any of them");
 }
 
 }  // namespace uplift

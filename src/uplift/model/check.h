@@ -5,10 +5,10 @@
 
 namespace uplift {
 
-/// Throws InputError when a dynamic run is impossible: a motion has neither stiffness nor mass nor damping while the interfaces are open,
+/// Throws InputError when a dynamic run is impossible: a motion has neither stiffness nor mass nor damping even with all interfaces closed,
 /// an unknown that a constraint touches has no mass (its acceleration after an impact would be undefined), or the mass matrix is singular
 /// although not massless (a point mass off its node without inertia). Names node and direction. Massless unknowns are fine when they have
-/// stiffness, under traction laws too, and bodies that nothing holds are free to move.
+/// stiffness or a traction law holds them, and bodies that nothing holds are free to move.
 void check_dynamic(const Model& model);
 
 /// Throws InputError when an impact rule cannot act: an unknown that an interface touches has no mass.

@@ -20,17 +20,18 @@ int Model::find_node(std::string_view name) const {
   return -1;
 }
 
-double Model::full(int full_unknown, const Vector& q, int derivative, double time) const {
+double Model::full(int full_unknown, const Vector& q, int derivative, MotionInstant at) const {
   double value = 0;
   for (Sparse::InnerIterator entry(expansion, full_unknown); entry; ++entry) value += entry.value() * q[entry.row()];
   for (const PrescribedMotion& motion : motions)
-    if (motion.shape[full_unknown] != 0) value += motion.shape[full_unknown] * derivative_of(*motion.function, derivative, time);
+    if (motion.shape[full_unknown] != 0)
+      value += at.share * motion.shape[full_unknown] * derivative_of(*motion.function, derivative, at.time);
   return value;
 }
 
-Vector Model::full(const Vector& q, int derivative, double time) const {
+Vector Model::full(const Vector& q, int derivative, MotionInstant at) const {
   Vector value = reduction * q;
-  for (const PrescribedMotion& motion : motions) value += motion.shape * derivative_of(*motion.function, derivative, time);
+  for (const PrescribedMotion& motion : motions) value += motion.shape * (at.share * derivative_of(*motion.function, derivative, at.time));
   return value;
 }
 

@@ -25,7 +25,10 @@ struct Drive {
   enum class Order { value, rate, acceleration } order = Order::value;  // which derivative multiplies the shape
   bool dead = false;                                                    // gravity and constant loads: applied (in steps) by static stages
   bool constant = false;                                                // its factor is 1 at all times
+  bool of_motion = false;                                               // what a prescribed motion does to the free unknowns
   double factor(double time) const;                                     // the function's derivative of this order
+  /// Static stages apply it, by the load factor.
+  bool is_static() const { return dead || (of_motion && order == Order::value); }
 };
 
 /// Many functions of time at once.
@@ -41,6 +44,12 @@ struct Feed {
   std::string name;
   Sparse pattern;  // free unknowns x functions
   std::shared_ptr<const TimeFunctions> functions;
+};
+
+/// What prescribed motions are evaluated for: a time, and the share of them that a static stage has applied so far.
+struct MotionInstant {
+  MotionInstant(double at, double of_motions = 1) : time(at), share(of_motions) {}  // NOLINT(google-explicit-constructor)
+  double time, share;
 };
 
 /// Motion of supported unknowns: full displacement += shape * function(t).
@@ -117,9 +126,9 @@ struct Model {
   int rows() const;                                                // interface rows, of all interfaces
   int find_node(std::string_view name) const;                      // -1 when absent
   /// Full displacement (derivative 0), velocity (1) or acceleration (2) of one full unknown from the free ones.
-  double full(int full_unknown, const Vector& q, int derivative, double time) const;
+  double full(int full_unknown, const Vector& q, int derivative, MotionInstant at) const;
   /// All full unknowns at once.
-  Vector full(const Vector& q, int derivative, double time) const;
+  Vector full(const Vector& q, int derivative, MotionInstant at) const;
   /// Acceleration of the relative frame along a direction [m/s2].
   double ground_acceleration(const Vec3& direction, double time) const;
   /// Adds the force of all drives and feeds at a time to `force` (free unknowns).
@@ -165,6 +174,9 @@ struct State {
   Vector history;                               // memory of all laws, one flat array
   std::vector<double> bulk_history;             // memory of all yielding solids, one flat array; empty without any
   FilterMemory filter;
+  double load_factor = 1;  // share of the dead loads and prescribed motions that act; below 1 only in the first static stage
+
+  MotionInstant instant() const { return {time, load_factor}; }
 
   /// Exchanges the numbers without copying them.
   void swap(State& other) noexcept {
@@ -173,6 +185,7 @@ struct State {
     opening.swap(other.opening), force.swap(other.force), mean_force.swap(other.mean_force);
     history.swap(other.history), bulk_history.swap(other.bulk_history);
     filter.swap(other.filter);
+    std::swap(load_factor, other.load_factor);
   }
 };
 
