@@ -57,6 +57,7 @@ class Oscillator(CliTest):
         text = text[: text.index("# ---- the variants ----")]
         bed = re.search(r"\[interface\.footing\.bed\].*?\n\n", text, re.S).group(0)
         text = text.replace(bed, "").replace("points = 21", "points = 200").replace('rule = "nodal"', 'rule = "midpoint"')
+        text = re.sub(r"\[damping\].*?\n\n", "", text, flags=re.S)
         law = re.search(r"\[interface\.law\].*?\n\n", text, re.S).group(0)
         text = text.replace(law, '[interface.law]\ntype = "springs"\nK_n = "2e8 Pa/m"\ntangential = "none"\n\n')
         text = text.replace('duration = "3 s"', 'duration = "1 s"').replace('step = "1 ms"', 'step = "0.5 ms"')

@@ -43,5 +43,56 @@ class Steps(CliTest):
         self.assertRegex(moment[2], r"^ (−|\+)?\d\.\d\d % $")
 
 
+class StepCheck(CliTest):
+    """`uplift run` with its companion at twice the step."""
+
+    def run_with(self, step, *options, more=""):
+        self.write(BASE.replace("step = 1e-3", f"step = {step}") + more)
+        done = self.uplift("run", "case.toml", "-o", "r", *options)
+        return done.stdout, self.summary("r")["verdict"]
+
+    def test_the_companion_is_the_run_with_twice_the_step(self):
+        _, fine = self.run_with(1e-3)
+        _, coarse = self.run_with(2e-3, "--no-step-check")
+        self.assertEqual((fine["step_check"]["step"], fine["step_check"]["coarse_step"]), (1e-3, 2e-3))
+        for name, number in fine["interfaces"][0]["numbers"].items():
+            self.assertEqual(number["at_twice_the_step"], coarse["interfaces"][0]["numbers"][name]["value"], name)
+            if name == "max_moment":
+                larger = max(number["value"], number["at_twice_the_step"])
+                self.assertAlmostEqual(number["step_change_percent"], 100 * abs(number["value"] - number["at_twice_the_step"]) / larger, places=9)
+
+    def test_a_coarse_step_is_not_converged_and_the_step_that_is_named_is_sufficient(self):
+        text, verdict = self.run_with(10e-3)
+        check = verdict["step_check"]
+        self.assertEqual(check["result"], "not converged")
+        self.assertGreater(check["largest_change_percent"], 5)
+        self.assertIn("(not converged)", text.splitlines()[0])
+        self.assertIn("(not converged)", verdict["headline"])
+        self.assertIn("Not converged: with twice the step (20.0 ms instead of 10.0 ms)", text)
+        text, verdict = self.run_with(check["sufficient_step"])
+        self.assertEqual(verdict["step_check"]["result"], "converged", verdict["step_check"])
+        self.assertNotIn("not converged", text)
+
+    def test_it_can_be_switched_off(self):
+        for options, more in (((), "[verdict]\nstep_check = false\n"), (("--no-step-check",), "")):
+            text, verdict = self.run_with(10e-3, *options, more=more)
+            self.assertEqual(verdict["step_check"]["result"], "not made")
+            self.assertIn("Error of the time step: not examined.", text)
+            self.assertNotIn("not converged", verdict["headline"])
+            self.assertIn("not examined", report_of(self.folder / "r")["verdict"]["stepCheck"]["sentence"])
+
+    def test_check_says_what_limits_the_step(self):
+        self.write(BASE)
+        found = json.loads(self.uplift("check", "case.toml", "--json").stdout)
+        bounds = found["step_bounds"]
+        self.assertEqual([bound["step"] for bound in bounds], sorted(bound["step"] for bound in bounds))
+        self.assertLessEqual(found["suggested_step"], bounds[0]["step"])
+        slow, fast = found["frequencies_bonded"][0], [f for f in found["frequencies_bonded"] if 50 < f < 300]
+        expected = [1 / (20 * max(f for f in found["frequencies_bonded"] if f < 50))] + [1 / (8 * f) for f in fast[-1:]]
+        for step in expected:
+            self.assertTrue(any(abs(bound["step"] / step - 1) < 1e-9 for bound in bounds), (step, bounds, slow))
+        self.assertIn(bounds[0]["reason"], self.uplift("check", "case.toml").stdout)
+
+
 if __name__ == "__main__":
     main()
