@@ -111,6 +111,23 @@ TEST(StepCheck, NamesTheNumberThatChangesMostAndTheStep) {
   EXPECT_EQ(step_change_text(numbers.whole.front()), "\u00b10.2 %");
 }
 
+/// Twenty steps of 2 ms a period: up to 25 Hz. The value at 10 Hz counts beside a tenth of the peak, 1 m/s2.
+TEST(StepCheck, FloorSpectra) {
+  FloorSpectra fine, coarse;
+  fine.name = "roof";
+  fine.raw = {{Spectrum::Kind::psa, 0.05, {5, 10, 30}, {10, 0.5, 4}}};
+  coarse.raw = {{Spectrum::Kind::psa, 0.05, {5, 10, 30}, {10.2, 0.7, 8}}};
+  StepCheck check;
+  check.step = 1e-3, check.coarse_step = 2e-3;
+  compare_floors({fine}, {coarse}, check);
+  EXPECT_DOUBLE_EQ(check.floors, 0.2);
+  EXPECT_DOUBLE_EQ(check.floors_to, 10) << "the last frequency below 25 Hz";
+  EXPECT_EQ(check.state, StepCheck::State::not_converged);
+  EXPECT_EQ(check.sentence(),
+            "Not converged: with twice the step (2.00 ms instead of 1.00 ms) floor spectrum of roof changes by 20 %; a step "
+            "of 0.200 ms is expected to be sufficient.");
+}
+
 TEST(StepCheck, NobodyLooked) {
   EXPECT_EQ(StepCheck().sentence(), "Error of the time step: not examined.");
   EXPECT_EQ(to_string(StepCheck().state), "not made");
@@ -123,11 +140,11 @@ TEST(StepCheck, ACompanionThatEndsDifferentlyShowsThatTheStepDecides) {
   RunResult run, coarse;
   coarse.status = RunStatus::overturned;
   VerdictNumbers numbers = numbers_with({number("max_moment", 1e6)});
-  const StepCheck check = check_step(built, run, {&coarse_built, &coarse}, numbers);
+  const StepCheck check = check_step(built, run, nullptr, {&coarse_built, &coarse}, numbers);
   EXPECT_EQ(check.state, StepCheck::State::not_converged);
   EXPECT_EQ(check.sentence(), "Not converged: with twice the step the run ends early (overturned) (2.00 ms instead of 1.00 ms).");
   coarse.status = RunStatus::interrupted;
-  EXPECT_EQ(check_step(built, run, {&coarse_built, &coarse}, numbers).state, StepCheck::State::not_made);
+  EXPECT_EQ(check_step(built, run, nullptr, {&coarse_built, &coarse}, numbers).state, StepCheck::State::not_made);
 }
 
 TEST(Wording, RoundsDownToOneTwoOrFive) {

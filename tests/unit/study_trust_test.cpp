@@ -69,7 +69,7 @@ std::size_t place(const TrustAnswer& answer, std::string_view name) {
 TEST(Trust, BandsHoldEveryRun) {
   const TrustAnswer answer = answered(rocking, 1).answer;
   ASSERT_TRUE(answer.complete);
-  ASSERT_EQ(answer.runs.size(), 5u);
+  ASSERT_EQ(answer.runs.size(), 6u);
   for (const TrustRun& run : answer.runs) EXPECT_TRUE(run.counts()) << run.label << ": " << run.reason;
   ASSERT_GT(answer.bands.size(), 15u);
   for (const TrustBand& each : answer.bands) {
@@ -96,7 +96,7 @@ TEST(Trust, BandsHoldEveryRun) {
 /// The step of 1 ms is fine beside the periods, the SDM without strength is the same law as the springs, and the tolerance is far below
 /// either: what matters is the stiffness, by the statics of a Winkler strip.
 TEST(Trust, TellsWhatMatters) {
-  const TrustAnswer answer = answered(rocking, 1).answer;
+  const TrustAnswer answer = answered(rocking + "[trust]\nstiffness_factor = 10\n", 1).answer;
   const TrustBand& moment = band(answer, "max_moment");
   const auto moved = [&](const char* name) { return std::abs(*moment.values[place(answer, name)] - moment.value) / moment.value; };
   EXPECT_LT(moved("step_half"), 2e-3);
@@ -111,9 +111,11 @@ TEST(Trust, TellsWhatMatters) {
 
   // without the stiffness among the choices the spectrum speaks further, and what is left is small
   const TrustAnswer fixed = answered(rocking + "[trust]\nstiffness_factor = 1\n", 1).answer;
-  EXPECT_EQ(fixed.runs.size(), 3u);
+  EXPECT_EQ(fixed.runs.size(), 4u);
   EXPECT_GT(fixed.spectra.front().speaks_to, answer.spectra.front().speaks_to);
-  EXPECT_LT(*band(fixed, "max_moment").share(), 2e-3);
+  // the trapezoidal rule on n strips makes the rocking stiffness 2/n2 too large: 0.5 % with twenty strips, 0.125 % with forty; 0.2 % are the
+  // step's, as above
+  EXPECT_LT(*band(fixed, "max_moment").share(), (0.00375 + 2e-3) / 2);
   // what is a share, a change or a residual has its band from ... to, and no half of it over the value
   for (const char* name : {"max_uplifted_ratio", "change_of_moment", "residual_rotation", "first_uplift"})
     EXPECT_FALSE(band(answer, name).share().has_value()) << name;
@@ -122,7 +124,7 @@ TEST(Trust, TellsWhatMatters) {
 /// A spectrum speaks as far as the shortest reach; what the step can carry, ten steps a period, is among them.
 TEST(Trust, ASpectrumSpeaksAsFarAsItsShortestReach) {
   const TrustSpectrum spectrum = answered(rocking, 1).answer.spectra.front();
-  ASSERT_EQ(spectrum.reaches.size(), 5u);  // step, stiffness, tolerance, method; and what the step carries
+  ASSERT_EQ(spectrum.reaches.size(), 6u);  // step, stiffness, points, tolerance, method; and what the step carries
   EXPECT_EQ(spectrum.reaches.front().to, spectrum.speaks_to);
   EXPECT_EQ(spectrum.reaches.front().choice, spectrum.limited_by);
   EXPECT_TRUE(std::ranges::is_sorted(spectrum.reaches, {}, &TrustSpectrum::Reach::to));

@@ -3,6 +3,7 @@
 
 #include <cmath>
 
+#include "uplift/analysis/interface_viewer.h"
 #include "verdict_support.h"
 
 namespace uplift {

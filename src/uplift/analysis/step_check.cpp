@@ -10,10 +10,11 @@
 namespace uplift {
 namespace {
 
-constexpr double least_share = 0.1;          // of an area, and of an inverse safety: below it a change is no matter
-constexpr double least_motion = 0.05;        // of the largest motion
-constexpr double least_eccentricity = 0.01;  // of the width
-constexpr double least_length = 1e-3;        // of the largest motion: gaps and compressions of the joint
+constexpr double least_share = 0.1;                            // of an area, and of an inverse safety: below it a change is no matter
+constexpr double least_motion = 0.05;                          // of the largest motion
+constexpr double steps_per_period = 20, least_spectrum = 0.1;  // of floor spectra; least value beside their peak
+constexpr double least_eccentricity = 0.01;                    // of the width
+constexpr double least_length = 1e-3;                          // of the largest motion: gaps and compressions of the joint
 
 double longest_step(const RunPlan& plan) {
   double step = 0;
@@ -97,6 +98,12 @@ std::string how_it_ended(const RunResult& run) {
   return run.status == RunStatus::failed ? "fails: " + run.reason : fmt::format("ends early ({})", to_string(run.status));
 }
 
+void judge(StepCheck& check) {
+  const bool moves = check.largest > accepted_step_change;
+  check.state = moves ? StepCheck::State::not_converged : StepCheck::State::converged;
+  check.sufficient_step = moves ? rounded_down(check.step * accepted_step_change / check.largest) : 0;
+}
+
 /// Relative to the larger of both values, 0.3 %.
 std::string change_in_words(const VerdictNumber& number, double difference) {
   const double size = std::max(std::abs(number.value), std::abs(*number.coarse));
@@ -129,12 +136,28 @@ void compare_steps(VerdictNumbers& numbers, const VerdictNumbers& coarse, StepCh
     compare(said.numbers, numbers_named(coarse.interfaces, said.name), said.name, here, check);
   }
   for (BeamVerdict& beam : numbers.beams) compare(beam.numbers, numbers_named(coarse.beams, beam.name), beam.name, scale, check);
-  check.state = check.largest > accepted_step_change ? StepCheck::State::not_converged : StepCheck::State::converged;
-  if (check.state == StepCheck::State::not_converged)
-    check.sufficient_step = rounded_down(check.step * accepted_step_change / check.largest);
+  judge(check);
 }
 
-StepCheck check_step(const Built& built, const RunResult& run, const Companion& companion, VerdictNumbers& numbers) {
+void compare_floors(const std::vector<FloorSpectra>& floors, const std::vector<FloorSpectra>& coarse, StepCheck& check) {
+  const double to = 1 / (steps_per_period * check.coarse_step);
+  for (std::size_t k = 0; k < std::min(floors.size(), coarse.size()); ++k)
+    for (std::size_t d = 0; d < std::min(floors[k].raw.size(), coarse[k].raw.size()); ++d) {
+      const Spectrum &fine = floors[k].raw[d], &other = coarse[k].raw[d];
+      const double peak = fine.values.empty() ? 0 : *std::ranges::max_element(fine.values);
+      for (std::size_t f = 0; f < std::min(fine.values.size(), other.values.size()) && fine.frequencies[f] <= to && peak > 0; ++f) {
+        check.floors_to = std::max(check.floors_to, fine.frequencies[f]);
+        const double size = std::max({fine.values[f], other.values[f], least_spectrum * peak});
+        const double change = std::abs(fine.values[f] - other.values[f]) / size;
+        check.floors = std::max(check.floors, change);
+        if (change > check.largest) check.largest = change, check.quantity = nullptr, check.of = floors[k].name;
+      }
+    }
+  judge(check);
+}
+
+StepCheck check_step(const Built& built, const RunResult& run, const FloorRun* floors, const Companion& companion,
+                     VerdictNumbers& numbers) {
   StepCheck check;
   check.step = longest_step(built.plan);
   check.coarse_step = longest_step(companion.built->plan);
@@ -146,6 +169,7 @@ StepCheck check_step(const Built& built, const RunResult& run, const Companion& 
     check.reason = "with twice the step the run " + how_it_ended(*companion.run);
   } else {
     compare_steps(numbers, numbers_of(*companion.built, *companion.run, companion.bonded), check);
+    if (floors) compare_floors(floors->floors, floor_spectra(companion.built->plan, *companion.run), check);
   }
   return check;
 }
@@ -154,7 +178,9 @@ std::string StepCheck::sentence() const {
   if (state == State::not_made) return "Error of the time step: not examined" + (reason.empty() ? "" : " (" + reason + ")") + ".";
   const std::string steps = fmt::format("{} instead of {}", spoken(coarse_step, "s"), spoken(step, "s"));
   if (!reason.empty()) return fmt::format("Not converged: {} ({}).", reason, steps);
-  const std::string which = !quantity ? "" : fmt::format("{}{}", quantity->brief, of.empty() ? "" : " of " + of);
+  const std::string which = !quantity    ? (of.empty() ? "" : "floor spectrum of " + of)
+                            : of.empty() ? std::string(quantity->brief)
+                                         : fmt::format("{} of {}", quantity->brief, of);
   if (state == State::converged)
     return fmt::format("Converged: with twice the step ({}) no number of the verdict changes by more than {}{}.", steps, percent(largest),
                        which.empty() ? "" : " (" + which + ")");

@@ -1,6 +1,7 @@
 #pragma once
 #include <string>
 
+#include "uplift/analysis/floor_spectra.h"
 #include "uplift/analysis/verdict_numbers.h"
 
 namespace uplift {
@@ -22,8 +23,9 @@ struct StepCheck {
   } state = State::not_made;
   double step = 0, coarse_step = 0;           // s: longest of the dynamic stages, of the run and of the companion
   double largest = 0;                         // change of the number that changes most, relative to its reference
-  const VerdictQuantity* quantity = nullptr;  // that number, null: none changes
-  std::string of;                             // its interface or beam; empty: of the whole run
+  const VerdictQuantity* quantity = nullptr;  // that number, null: none changes, or a floor spectrum changes most
+  std::string of;                             // its interface, beam or floor; empty: of the whole run
+  double floors = 0, floors_to = 0;           // largest change of a floor spectrum, up to this frequency [Hz]; 0 Hz: there is none
   double sufficient_step = 0;                 // s: where an error proportional to the step is accepted_step_change; 0 where unknown
   std::string reason;                         // why it was not made, or how the companion ended
   /// One sentence for the terminal and the first page.
@@ -39,9 +41,13 @@ inline constexpr double accepted_step_change = 0.05;
 /// eccentricities to at least 0.01, of residual values to at least a twentieth of the largest motion and to their remaining variation, of
 /// the least compression to the largest; safeties are compared by their inverse, with at least 0.1, and changes beside the bonded run by 1
 /// + change. Durations, instants and the compression of the joint are stated but decide nothing.
-StepCheck check_step(const Built& built, const RunResult& run, const Companion& companion, VerdictNumbers& numbers);
+/// `floors`: the spectra of the run, or null; they are compared up to the frequency with twenty steps of the companion a period, relative
+/// to the larger value, which counts as at least a tenth of the peak of the spectrum.
+StepCheck check_step(const Built& built, const RunResult& run, const FloorRun* floors, const Companion& companion, VerdictNumbers& numbers);
 /// The comparison alone: fills the rest of a check whose steps are known.
 void compare_steps(VerdictNumbers& numbers, const VerdictNumbers& coarse, StepCheck& check);
+/// The same for the spectra of floors, in the same order.
+void compare_floors(const std::vector<FloorSpectra>& floors, const std::vector<FloorSpectra>& coarse, StepCheck& check);
 
 /// "±0.3 %", of instants "±0.02 s"; empty without a companion.
 std::string step_change_text(const VerdictNumber&);

@@ -14,7 +14,7 @@ namespace {
 constexpr double steps_a_period = 20, highest_of_structure = 50;  // Hz
 constexpr double steps_a_period_of_joint = 8,
                  highest_of_joint = 300;  // Hz: above, the joint acts as a constraint, which needs no resolution
-constexpr double highest_of_floors = 33;  // Hz: above, the spectrum of an earthquake is that of the peak
+constexpr double steps_a_period_of_floors = 40, highest_of_floors = 33;  // Hz: above, the spectrum of an earthquake is that of the peak
 constexpr double accepted_difference = 0.01, least_step = 1e-5, most_step = 0.1;
 
 /// Modes of the structure, and those in which it bounces on the closed joint.
@@ -63,7 +63,7 @@ void bound_by_floors(const RunPlan& plan, std::vector<StepBound>& bounds) {
     if (!floor.frequencies.empty()) highest = std::max(highest, std::min(floor.frequencies.back(), highest_of_floors));
   if (highest > 0)
     bounds.push_back(
-        {1 / (steps_a_period * highest), fmt::format("twenty steps a period of the floor spectra at {}", spoken(highest, "Hz"))});
+        {1 / (steps_a_period_of_floors * highest), fmt::format("forty steps a period of the floor spectra at {}", spoken(highest, "Hz"))});
 }
 
 double duration_of(const RunPlan& plan) {

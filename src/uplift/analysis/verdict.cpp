@@ -278,7 +278,10 @@ void say_consequence(const FloorRun* floors, Verdict& verdict) {
   add("top motion", find_number(verdict.numbers.whole, "max_top_motion"));
   if (const std::string range = floors ? range_of_bands(*floors) : ""; !range.empty()) {
     parts.push_back("floor spectra " + range);
-    verdict.facts.push_back({"Floor spectra", range, "peaks of the bands, compared with the bonded model"});
+    const StepCheck& check = verdict.step_check;
+    const std::string with = check.floors_to > 0 ? fmt::format("; change with twice the step up to {}", spoken(check.floors_to, "Hz")) : "";
+    verdict.facts.push_back({"Floor spectra", range, "peaks of the bands, compared with the bonded model" + with, true,
+                             check.floors_to > 0 ? "\u00b1" + percent(check.floors) : ""});
   }
   if (!parts.empty()) verdict.consequence = fmt::format("Compared with the bonded model: {}.", fmt::join(parts, ", "));
   const auto& criteria = verdict.numbers.criteria;
@@ -335,7 +338,7 @@ Verdict judge(const Built& built, const RunResult& run, const RunResult* bonded,
   Verdict verdict;
   const bool nothing = run.status != RunStatus::completed && run.counts.steps == 0;
   if (!nothing) verdict.numbers = numbers_of(built, run, bonded);
-  if (!nothing && companion) verdict.step_check = check_step(built, run, *companion, verdict.numbers);
+  if (!nothing && companion) verdict.step_check = check_step(built, run, floors, *companion, verdict.numbers);
   say_outcome(built, run, verdict);
   if (nothing) return verdict;
   if (verdict.step_check.state == StepCheck::State::not_converged) verdict.headline += " (not converged)";

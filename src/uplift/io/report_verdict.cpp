@@ -37,6 +37,10 @@ constexpr Row of_run[] = {{"max_top_motion", "Motion of the top"},
                           {"max_drift_without_rotation", "Drift without base rotation"},
                           {"max_total_shear", "Horizontal force, base and walls"},
                           {"max_total_moment", "Moment, base and walls"}};
+constexpr Row of_beams[] = {{"max_beam_moment", "Moment of "},
+                            {"max_beam_shear", "Shear of "},
+                            {"max_beam_compression", "Compression of "},
+                            {"max_beam_tension", "Tension of "}};
 constexpr Row residuals[] = {{"residual_rotation", "Rotation"},
                              {"residual_settlement", "Settlement"},
                              {"residual_slip", "Slip"},
@@ -121,6 +125,10 @@ void write_interface(JsonWriter& json, const ReportInput& input, std::size_t k) 
   const bool strip = run.built->is_strip();
   if (k == 0) write_rows(json, of_run, numbers.whole, strip);
   write_rows(json, forces, said.numbers, strip);
+  if (k == 0)
+    for (const BeamVerdict& beam : numbers.beams)
+      for (const Row& row : of_beams)
+        if (const VerdictNumber* number = find_number(beam.numbers, row.name)) write_number(json, row.label + beam.name, *number);
   json.end_array().key("rest").begin_array();
   write_rows(json, residuals, said.numbers);
   json.end_array();

@@ -91,10 +91,12 @@ void write_criterion(JsonWriter& json, const CriterionResult& result) {
 void write_step_check(JsonWriter& json, const StepCheck& check) {
   json.begin_object().member("result", to_string(check.state)).member("sentence", check.sentence());
   if (check.coarse_step > 0) json.member("step", check.step).member("coarse_step", check.coarse_step).member("unit", "s");
-  if (check.quantity) {
-    json.member("largest_change_percent", 100 * check.largest).member("quantity", check.quantity->name);
+  if (check.largest > 0) {
+    json.member("largest_change_percent", 100 * check.largest);
+    json.member("quantity", check.quantity ? check.quantity->name : "floor_spectrum");
     if (!check.of.empty()) json.member("of", check.of);
   }
+  if (check.floors_to > 0) json.member("floor_spectra_change_percent", 100 * check.floors).member("floor_spectra_to", check.floors_to);
   if (check.sufficient_step > 0) json.member("sufficient_step", check.sufficient_step);
   json.end_object();
 }
