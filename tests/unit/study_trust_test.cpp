@@ -113,8 +113,8 @@ TEST(Trust, TellsWhatMatters) {
   const TrustAnswer fixed = answered(rocking + "[trust]\nstiffness_factor = 1\n", 1).answer;
   EXPECT_EQ(fixed.runs.size(), 4u);
   EXPECT_GT(fixed.spectra.front().speaks_to, answer.spectra.front().speaks_to);
-  // the trapezoidal rule on n strips makes the rocking stiffness 2/n2 too large: 0.5 % with twenty strips, 0.125 % with forty; 0.2 % are the
-  // step's, as above
+  // the trapezoidal rule on n strips makes the rocking stiffness 2/n2 too large: 0.5 % with twenty strips, 0.125 % with forty; 0.2 % are
+  // the step's, as above
   EXPECT_LT(*band(fixed, "max_moment").share(), (0.00375 + 2e-3) / 2);
   // what is a share, a change or a residual has its band from ... to, and no half of it over the value
   for (const char* name : {"max_uplifted_ratio", "change_of_moment", "residual_rotation", "first_uplift"})
