@@ -282,6 +282,24 @@ class Failures(CliTest):
         self.assertIn("Overturning: the rotation exceeds", done.stdout)
 
 
+class Beams(CliTest):
+    def test_section_forces_in_the_verdict(self):
+        """A massless column of 5 m under a mass without rotary inertia: the moment at its foot is 5 m times the shear, in the bonded run too."""
+        self.write(BASE.replace("bonded = false", "bonded = true") + '[[output.beam_envelope]]\nbeam = "column"\n')
+        self.uplift("run", "case.toml", "-o", "r")
+        (beam,) = self.summary("r")["verdict"]["beams"]
+        numbers = beam["numbers"]
+        moment, shear = numbers["max_beam_moment"], numbers["max_beam_shear"]
+        self.assertAlmostEqual(moment["value"] / (5 * shear["value"]), 1, places=9)
+        self.assertAlmostEqual(moment["bonded"] / (5 * shear["bonded"]), 1, places=9)
+        self.assertAlmostEqual(moment["change_percent"], 100 * (moment["value"] / moment["bonded"] - 1), places=9)
+        self.assertAlmostEqual(numbers["change_of_beam_moment"]["value"], moment["value"] / moment["bonded"] - 1, places=12)
+        self.assertEqual(numbers["max_beam_tension"]["value"], 0)
+        self.assertGreaterEqual(numbers["max_beam_compression"]["value"], 1e6)
+        rows = [row["label"] for row in report_of(self.folder / "r")["verdict"]["interfaces"][0]["beside"]]
+        self.assertEqual(rows[-3:], ["Moment of column", "Shear of column", "Compression of column"])
+
+
 class Trust(CliTest):
     def test_bands_of_a_run(self):
         self.write(BASE.replace("bonded = false", "bonded = true"))

@@ -14,12 +14,17 @@ struct Reached {
   }
 };
 
-void add_number(std::vector<VerdictNumber>& numbers, std::string_view name, const Reached& reached, const Reached* bonded) {
+/// `least`: a smaller number is noise.
+void add_number(std::vector<VerdictNumber>& numbers, std::string_view name, const Reached& reached, const Reached* bonded, double least) {
   VerdictNumber number;
   number.quantity = find_verdict_quantity(name);
   number.value = reached.value;
   number.time = reached.time;
-  if (bonded != nullptr) number.bonded = bonded->value;
+  number.least = least;
+  if (bonded != nullptr) {
+    number.bonded = bonded->value;
+    number.change = change_of(reached.value, bonded->value, least);
+  }
   numbers.push_back(number);
 }
 
@@ -33,6 +38,16 @@ Reached largest(const BeamEnvelope& envelope, std::string_view component, int si
     if (sign <= 0) reached.add(-range.least, range.least_time);
   }
   return reached;
+}
+
+/// Largest range over time of the forces of any section [N].
+double range_of_forces(const BeamEnvelope& envelope) {
+  double most = 0;
+  for (std::size_t s = 0; s < envelope.sections.size(); ++s)
+    for (std::size_t k = 0; k < envelope.components.size(); ++k)
+      if (const std::string& name = envelope.components[k]; name.starts_with("axial") || name.starts_with("shear"))
+        most = std::max(most, envelope.at(s, k).most - envelope.at(s, k).least);
+  return most;
 }
 
 /// Largest peak of the columns that `wanted` accepts; nothing without any.
@@ -55,12 +70,14 @@ std::vector<BeamVerdict> beam_verdicts(const RunResult& run, const RunResult* bo
     const BeamEnvelope& envelope = run.envelopes[k];
     const BeamEnvelope* other = bonded != nullptr && k < bonded->envelopes.size() ? &bonded->envelopes[k] : nullptr;
     BeamVerdict verdict{envelope.beam, {}};
+    const double least = noise_share * std::max(range_of_forces(envelope), other != nullptr ? range_of_forces(*other) : 0);
+    const double length = envelope.sections.empty() ? 0 : envelope.sections.back().along - envelope.sections.front().along;
     const auto add = [&](std::string_view name, std::string_view change, std::string_view component, int sign) {
       const Reached reached = largest(envelope, component, sign);
       const Reached reference = other != nullptr ? largest(*other, component, sign) : Reached{};
-      add_number(verdict.numbers, name, reached, other != nullptr ? &reference : nullptr);
-      if (!change.empty() && reference.value > 0)
-        add_number(verdict.numbers, change, {reached.value / reference.value - 1, reached.time}, nullptr);
+      add_number(verdict.numbers, name, reached, other != nullptr ? &reference : nullptr, component == "moment" ? least * length : least);
+      const std::optional<double> changed = verdict.numbers.back().change;
+      if (!change.empty() && changed) add_number(verdict.numbers, change, {*changed, reached.time}, nullptr, 0);
     };
     add("max_beam_compression", "", "axial", -1);
     add("max_beam_tension", "", "axial", 1);
@@ -76,7 +93,7 @@ void add_storeys(const RunResult& run, const RunResult* bonded, std::vector<Verd
     const std::optional<Reached> reached = largest_peak(run, wanted);
     if (!reached) return;
     const std::optional<Reached> other = bonded != nullptr ? largest_peak(*bonded, wanted) : std::nullopt;
-    add_number(numbers, name, *reached, other ? &*other : nullptr);
+    add_number(numbers, name, *reached, other ? &*other : nullptr, 0);
   };
   add("max_storey_shear", [](const Request& column) { return column.storey; });
   add("max_drift_ratio", [](const Request& column) { return column.below >= 0 && column.unit == "1"; });

@@ -128,7 +128,9 @@ void write_interface(JsonWriter& json, const ReportInput& input, std::size_t k) 
   if (k == 0)
     for (const BeamVerdict& beam : numbers.beams)
       for (const Row& row : of_beams)
-        if (const VerdictNumber* number = find_number(beam.numbers, row.name)) write_number(json, row.label + beam.name, *number);
+        if (const VerdictNumber* number = find_number(beam.numbers, row.name);
+            number && (number->value != 0 || number->bonded.value_or(0) != 0))
+          write_number(json, row.label + beam.name, *number);
   json.end_array().key("rest").begin_array();
   write_rows(json, residuals, said.numbers);
   json.end_array();
