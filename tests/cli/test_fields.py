@@ -217,6 +217,96 @@ class Static(CliTest):
         self.assertEqual([when for when, blocks in frames_of(self.folder / "r/fields/run.pvd")], [-1, 0])
 
 
+# A mast of 8 m of four lines, the first of which is drawn downwards.
+MAST = """\
+title = "mast"
+bonded = false
+[mesh]
+file = "mast.msh"
+[[beam]]
+name = "mast"
+group = "mast lines"
+elements = 2
+E = 3e10
+poisson = 0.2
+I = 0.02
+A = 0.3
+mass = "consistent"
+density = 2500
+[[support]]
+node = "foot"
+fixed = ["ux", "uy", "rz"]
+[[load]]
+node = "tip"
+force = [3e4, 0]
+[gravity]
+acceleration = [0, -10]
+[[stage]]
+type = "static"
+[[stage]]
+type = "dynamic"
+duration = 0.1
+step = 0.01
+[output.fields]
+precision = "float64"
+"""
+MAST_MESH = """\
+$MeshFormat
+2.2 0 8
+$EndMeshFormat
+$PhysicalNames
+3
+0 2 "foot"
+0 3 "tip"
+1 1 "mast lines"
+$EndPhysicalNames
+$Nodes
+5
+1 0 0 0
+2 0 2 0
+3 0 4 0
+4 0 6 0
+5 0 8 0
+$EndNodes
+$Elements
+6
+1 15 2 2 1 1
+2 15 2 3 2 5
+3 1 2 1 1 2 1
+4 1 2 1 1 2 3
+5 1 2 1 1 3 4
+6 1 2 1 1 4 5
+$EndElements
+"""
+
+
+class Beams(CliTest):
+    def test_section_forces_of_a_mast(self):
+        """A load of 30 kN across its tip, and its own weight of 7.5 kN/m: the same at rest and in a dynamic stage where nothing moves."""
+        self.write(MAST_MESH, "mast.msh")
+        for elements in (1, 2, 3):
+            self.write(MAST.replace("elements = 2", f"elements = {elements}"))
+            self.uplift("run", "case.toml", "-o", "r")
+            frames = frames_of(self.folder / "r/fields/run.pvd")
+            self.assertGreater(len(frames), 5)
+            for when, blocks in frames:
+                mast = blocks["mast lines"]
+                for k, (a, b) in enumerate(mast.cells):
+                    height = (mast.points[a][1] + mast.points[b][1]) / 2
+                    sign = 1 if mast.points[b][1] > mast.points[a][1] else -1
+                    at = {name: value[k][0] for name, value in mast.at_cells.items()}
+                    self.assertAlmostEqual(at["axial [N]"], -7500 * (8 - height), delta=1e-6)
+                    self.assertAlmostEqual(at["shear [N]"], -3e4, delta=1e-6)
+                    self.assertAlmostEqual(at["moment [N m]"], -sign * 3e4 * (8 - height), delta=1e-6)
+
+    def test_section_forces_can_be_left_out(self):
+        self.write(MAST_MESH, "mast.msh")
+        self.write(MAST.replace("[output.fields]", '[output.fields]\nquantities = ["displacement"]'))
+        self.uplift("run", "case.toml", "-o", "r")
+        for when, blocks in frames_of(self.folder / "r/fields/run.pvd"):
+            self.assertEqual(set(blocks["mast lines"].at_cells), {"group"})
+
+
 class Dynamic(CliTest):
     def run_it(self, fields, *, extra="", command=("run", "case.toml", "-o", "r")):
         self.write(ROCKING + extra + "[output.fields]\n" + fields)
@@ -348,7 +438,7 @@ class Errors(CliTest):
         self.refused(text, f"{{file}}:{line_of(text, key)}: {message}")
 
     def test_what_is_not_there(self):
-        self.refuse('quantities = ["stres"]\n', "quantities =", 'output.fields.quantities: wanted "displacement", "velocity", "acceleration" or "stress", found "stres" (did you mean "stress"?)')
+        self.refuse('quantities = ["stres"]\n', "quantities =", 'output.fields.quantities: wanted "displacement", "velocity", "acceleration", "stress" or "section_forces", found "stres" (did you mean "stress"?)')
         self.refuse('groups = ["blok"]\n', "groups =", 'output.fields.groups: wanted "soil_1" or "block", found "blok" (did you mean "block"?)')
         self.refuse("", "[output.fields]", "output.fields: wanted a [mesh], on which fields are written, found none", text=BASE)
 

@@ -399,7 +399,7 @@ TEST(FieldRun, ANumberThatIsNotFiniteIsNotedAndNotWritten) {
     RunResult result = run(built.model, built.plan, built.behaviours, {}, [&](const Moment& moment) {
       State damaged = moment.state;
       if (moment.step == 3 || moment.step == 4) damaged.displacement[7] = std::nan("");
-      fields.see({damaged, moment.stepper, moment.so_far, moment.stage, moment.step, moment.last});
+      fields.see({damaged, moment.stepper, moment.so_far, moment.stage, moment.step, moment.last, moment.forces});
     });
     fields.finish(result);
     EXPECT_EQ(fields.frames(), 11 - 2);

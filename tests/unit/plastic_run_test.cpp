@@ -129,7 +129,7 @@ TEST(PlasticRun, UniaxialCompressionHardensByTheClosedForm) {
       ASSERT_TRUE(rest.outcome.converged) << rest.outcome.why;
       EXPECT_NEAR(settlement(made.built, rest.state), expected, 1e-8 * -expected) << psi;
       const RunFrames frames(made.read->values.table("output").table("fields"), *made.read, made.built);
-      const std::vector<double> stress = frames.of(rest.state, nullptr, 0).blocks.front().points.front().values;
+      const std::vector<double> stress = frames.of(rest.state, nullptr, {}, 0).blocks.front().points.front().values;
       for (std::size_t i = 0; i < stress.size(); ++i) EXPECT_NEAR(stress[i], i % 6 == 2 ? -q : 0, 1e-8 * q);
     }
   }

@@ -40,6 +40,22 @@ TEST(StepSuggestion, LoadsAreResolvedToOneHundredth) {
   EXPECT_DOUBLE_EQ(step_that_resolves(TwoSines(1, 0), 0, 10, 0.1), 2e-2) << "four times as slow: 28 ms";
 }
 
+/// 1 between two instants, else 0.
+class Pulse final : public TimeFunction {
+ public:
+  double value(double t) const override { return t > 0.041 && t < 0.059 ? 1 : 0; }
+  double rate(double) const override { return 0; }
+  double acceleration(double) const override { return 0; }
+};
+
+TEST(StepSuggestion, APulseBetweenTheStepsIsNotMissed) {
+  EXPECT_NEAR(unresolved_share(Pulse(), 0, 10, 0.02), 1, 1e-12) << "zero at 40 and 60 ms";
+  EXPECT_NEAR(unresolved_share(Pulse(), 0, 10, 0.1), 1, 1e-12);
+  // a jump in the middle of a step: the line is off by a quarter of the step on average, for both jumps of 18 ms
+  EXPECT_LT(unresolved_share(Pulse(), 0, 10, 1e-3), 2 * 0.5e-3 / 0.018 + 0.01);
+  EXPECT_LT(step_that_resolves(Pulse(), 0, 10, 0.1), 1e-3);
+}
+
 /// A run of 10 s.
 RunResult run_of_ten_seconds() {
   RunResult run;

@@ -12,20 +12,16 @@
 #include "uplift/elements/space_beam.h"
 
 namespace uplift {
-namespace {
 
-using Part = SectionForces::Part;
-
-/// Section forces in the order of SectionRows.
-struct Component {
-  std::string_view word, unit;
-  double reversed;  // its sign in an element that runs against its line
-};
-std::vector<Component> components_in(Space space) {
+std::vector<SectionComponent> section_components(Space space) {
   if (space.dimension == 2) return {{"axial", "N", 1}, {"shear", "N", 1}, {"moment", "N m", -1}};
   return {{"axial", "N", 1},     {"shear_y", "N", 1},    {"shear_z", "N", -1},
           {"torsion", "N m", 1}, {"moment_y", "N m", 1}, {"moment_z", "N m", -1}};
 }
+
+namespace {
+
+using Part = SectionForces::Part;
 
 /// What can be asked of a section: a component, or in space the length of two of them.
 struct SectionWord {
@@ -34,7 +30,7 @@ struct SectionWord {
 };
 std::vector<SectionWord> section_words(Space space) {
   std::vector<SectionWord> words;
-  for (const Component& each : components_in(space)) words.push_back({each.word, each.unit, {static_cast<int>(words.size())}});
+  for (const SectionComponent& each : section_components(space)) words.push_back({each.word, each.unit, {static_cast<int>(words.size())}});
   if (space.dimension == 3) {
     words.push_back({"shear", "N", {1, 2}});
     words.push_back({"moment", "N m", {4, 5}});
@@ -69,7 +65,7 @@ std::vector<Stretch> stretches(const Model& model, const BeamLine& line) {
 
 /// The section forces named by a word at a share of a stretch.
 std::shared_ptr<const ForceQuantity> section(const Stretch& stretch, double share, const SectionWord& word, Space space) {
-  const std::vector<Component> components = components_in(space);
+  const std::vector<SectionComponent> components = section_components(space);
   std::vector<std::vector<Part>> rows;
   for (const int k : word.components) {
     Vector weights = Vector::Zero(static_cast<Index>(components.size()));

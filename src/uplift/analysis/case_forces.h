@@ -9,6 +9,13 @@ namespace uplift {
 
 struct CaseNames;  // analysis/case_model.h
 
+/// Section forces in the order of SectionRows.
+struct SectionComponent {
+  std::string_view word, unit;
+  double reversed;  // its sign in an element that runs against its line
+};
+std::vector<SectionComponent> section_components(Space space);
+
 /// Whether the quantity is a force of supports, ties or rigid bodies on a node.
 bool is_constraint_force(const std::string& quantity);
 /// The column of a history of a beam, a level, a group, or of the node that was found for it. Throws InputError.

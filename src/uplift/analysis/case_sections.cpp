@@ -35,7 +35,10 @@ Fields damping_fields() {
 }
 
 const Section& damping_section() {
-  static const Section s{"damping", "damping of the structure; it never acts across an interface", damping_fields()};
+  static const Section s{
+      "damping",
+      "damping of the structure, none across an interface; mass-proportional and modal damping also act on rocking and on free flight",
+      damping_fields()};
   return s;
 }
 
@@ -164,7 +167,10 @@ const Section& fields_section() {
                  .optional(),
              integer("every", "every n-th step").between(1, 1000000000).optional(),
              flag("events", "first uplift, largest gap, largest pressure").standard(false),
-             texts("quantities", "any of displacement, velocity, acceleration, stress (of solids); absent: all").optional(),
+             texts("quantities",
+                   "any of displacement, velocity, acceleration, stress (of solids), section_forces (in the middle of the lines of beams); "
+                   "absent: all")
+                 .optional(),
              texts("groups", "groups with a [[solid]] or a [[beam]]; absent: all").optional(),
              choice("precision", {"float32", "float64"}, "how values are stored: 7 or 16 digits").standard("float32"),
              flag("variants", "of the runs of `uplift compare` too").standard(false)}};

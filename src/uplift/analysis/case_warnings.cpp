@@ -8,6 +8,7 @@
 #include "uplift/analysis/case_mesh.h"
 #include "uplift/analysis/content_warning.h"
 #include "uplift/analysis/floor_spectra.h"
+#include "uplift/analysis/step_suggestion.h"
 #include "uplift/analysis/wording.h"
 #include "uplift/model/damping.h"
 #include "uplift/model/hinges.h"
@@ -131,6 +132,51 @@ void warn_step(const Built& built, std::vector<std::string>& said) {
     said.push_back(
         fmt::format("the step of {} is coarse for the mode at {:.3g} Hz (bonded base): take at most {} for twenty steps a period",
                     spoken(stage->step, "s"), fastest, spoken(1 / (20 * fastest), "s")));
+}
+
+/// The scheme sees the loads at the steps only.
+void warn_loads(const Built& built, std::vector<std::string>& said) {
+  constexpr double accepted = 0.1;
+  const Stage* stage = dynamic_stage(built.plan);
+  if (!stage) return;
+  double duration = 0;
+  for (const Stage& each : built.plan.stages)
+    if (each.type == Stage::Type::dynamics) duration += each.duration;
+  for (const Drive& drive : built.model.drives) {
+    if (drive.constant || drive.dead || !drive.function) continue;
+    const double share = unresolved_share(*drive.function, static_cast<int>(drive.order), duration, stage->step);
+    if (share > accepted)
+      said.push_back(fmt::format("steps of {} do not follow the load \"{}\": straight lines between them differ from it by {} on average",
+                                 spoken(stage->step, "s"), drive.name, percent(share)));
+  }
+}
+
+/// Bases without mass follow the loads in balance; the trapezoidal rule gives them velocities that alternate.
+void warn_massless(const Built& built, std::vector<std::string>& said) {
+  const Model& model = built.model;
+  if (!dynamic_stage(built.plan)) return;
+  std::string names;
+  for (int i = 0; i < model.free(); ++i) {
+    const int node = model.space.node_of(model.kept[static_cast<std::size_t>(i)]);
+    const bool base = std::ranges::any_of(
+        built.facts, [&](const InterfaceFacts& facts) { return std::ranges::find(facts.upper, node) != facts.upper.end(); });
+    if (base && model.mass.coeff(i, i) == 0 && names.size() < 60)
+      names += (names.empty() ? "" : ", ") + model.unknown_names[static_cast<std::size_t>(i)];
+  }
+  if (!names.empty())
+    said.push_back(fmt::format(
+        "no mass at {}: displacements and forces are those of the balance, but velocities, accelerations and floor spectra mean "
+        "nothing there, and without contact nothing may determine the motion; give it a mass",
+        names));
+}
+
+/// A static stage knows no velocities.
+void warn_stop(const Built& built, std::vector<std::string>& said) {
+  const std::vector<Stage>& stages = built.plan.stages;
+  for (std::size_t k = 1; k < stages.size(); ++k)
+    if (stages[k].type == Stage::Type::statics && stages[k - 1].type == Stage::Type::dynamics)
+      said.push_back(
+          fmt::format("stage {} is static after a dynamic one: the structure is stopped there, and its kinetic energy is lost", k + 1));
 }
 
 /// Ten steps a period, as for any response by steps; and the shocks of rigid ground.
@@ -266,6 +312,9 @@ std::vector<std::string> warnings(const Case& read, const RunSpec& spec, const B
   warn_hinges(built, said);
   warn_embedded_feet(built, said);
   warn_step(built, said);
+  warn_loads(built, said);
+  warn_massless(built, said);
+  warn_stop(built, said);
   warn_floors(spec, built, said);
   warn_method(read, spec, built, said);
   warn_content(read, built, said);

@@ -250,7 +250,8 @@ void Runner::show(const Stage& stage, const Stepper* stepper, long step, bool la
   const auto start = std::chrono::steady_clock::now();
   std::optional<State> resting;
   if (rest_ != nullptr) resting = carried();
-  observe_({resting ? *resting : *seen_, stepper, result_, static_cast<std::size_t>(&stage - plan_.stages.data()), step, last});
+  const ForceStage forces = force_stage(stage);
+  observe_({resting ? *resting : *seen_, stepper, result_, static_cast<std::size_t>(&stage - plan_.stages.data()), step, last, forces});
   shown_ += std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
 }
 

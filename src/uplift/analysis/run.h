@@ -19,6 +19,7 @@ namespace uplift {
 
 class Stepper;
 struct Facets;
+struct ForceStage;
 
 // ---- what is to be done ----
 
@@ -207,11 +208,12 @@ using Watch = std::function<bool(const Progress&)>;
 /// A state that a run has reached. Everything ends with the call.
 struct Moment {
   const State& state;
-  const Stepper* stepper;   // of a dynamic stage, for accelerations; null at the end of a static stage or where it failed
-  const RunResult& so_far;  // peaks and counts up to here
-  std::size_t stage;        // of the plan
-  long step;                // of the stage, from 0
-  bool last;                // of the stage, also when the run ends here
+  const Stepper* stepper;    // of a dynamic stage, for accelerations; null at the end of a static stage or where it failed
+  const RunResult& so_far;   // peaks and counts up to here
+  std::size_t stage;         // of the plan
+  long step;                 // of the stage, from 0
+  bool last;                 // of the stage, also when the run ends here
+  const ForceStage& forces;  // what the forces inside the structure depend on beside the state
 };
 /// Sees the end of every static stage, the state at the beginning of the first dynamic one, and every step.
 using Observe = std::function<void(const Moment&)>;

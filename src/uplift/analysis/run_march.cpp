@@ -213,8 +213,7 @@ bool Runner::dynamics(const Stage& stage, const Bulk& bulk) {
   double shown_before = shown_;
   for (long step = 1; step <= steps && go_on; ++step) {
     if (!stepper.advance()) {
-      fail(fmt::format("step at t = {:.6g} s failed down to dt = {:.3g} s: {}", seen_->time, stage.step / std::pow(2, stage.halvings),
-                       stepper.why()),
+      fail(fmt::format("step at t = {:.6g} s failed down to dt = {:.3g} s: {}", seen_->time, stepper.failed_step(), stepper.why()),
            stepper.problem());
       show(stage, &stepper, step - 1, true);
       break;

@@ -87,24 +87,27 @@ void bound_by_loads(const Built& built, std::vector<StepBound>& bounds) {
 
 }  // namespace
 
-double step_that_resolves(const TimeFunction& function, int derivative, double duration, double most) {
-  constexpr int inner = 4;  // places in a step where the difference is taken
-  for (double step = most; step > least_step * (1 + 1e-9); step = rounded_down(0.6 * step)) {
-    double difference = 0, size = 0;
-    const long steps = std::max(1L, std::lround(duration / step));
-    double left = derivative_of(function, derivative, 0);
-    for (long i = 0; i < steps; ++i) {
-      const double start = static_cast<double>(i) * step, right = derivative_of(function, derivative, start + step);
-      for (int k = 0; k < inner; ++k) {
-        const double share = (k + 0.5) / inner, value = derivative_of(function, derivative, start + share * step);
-        difference += std::abs(value - (left + share * (right - left)));
-        size += std::abs(value);
-      }
-      left = right;
-    }
-    if (difference <= accepted_difference * size) return step;
+double unresolved_share(const TimeFunction& function, int derivative, double duration, double step) {
+  constexpr double most_samples = 2e5;
+  const double fine = std::max({least_step, duration / most_samples, step / 1000});
+  const auto count = std::max(1L, std::lround(duration / fine));
+  double difference = 0, size = 0, begin = 0, left = derivative_of(function, derivative, 0),
+         right = derivative_of(function, derivative, step);
+  for (long i = 0; i < count; ++i) {
+    const double time = (static_cast<double>(i) + 0.5) * fine;
+    while (time > begin + step) begin += step, left = right, right = derivative_of(function, derivative, begin + step);
+    const double value = derivative_of(function, derivative, time), share = (time - begin) / step;
+    difference += std::abs(value - (left + share * (right - left)));
+    size += std::abs(value);
   }
-  return least_step;
+  return size > 0 ? difference / size : 0;
+}
+
+double step_that_resolves(const TimeFunction& function, int derivative, double duration, double most) {
+  double step = most;
+  while (step > least_step * (1 + 1e-9) && unresolved_share(function, derivative, duration, step) > accepted_difference)
+    step = rounded_down(0.6 * step);
+  return std::max(step, least_step);
 }
 
 std::vector<StepBound> step_bounds(const Case& read, const Built& built, const std::vector<double>& bonded) {

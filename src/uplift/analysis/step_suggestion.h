@@ -17,8 +17,11 @@ struct StepBound {
 /// of the examples were found to be within 3 % of those with an eighth of the step, in nine of ten cases (docs/guide).
 std::vector<StepBound> step_bounds(const Case& read, const Built& built, const std::vector<double>& bonded);
 
-/// Largest step of 1, 2 or 5 times a power of ten, `most` or smaller, at which straight lines between the values at the steps differ from
-/// the function by at most a hundredth of its mean magnitude, on average over `duration` [s]. Never below 1e-5 s.
+/// By how much straight lines between the values at the steps differ from a function on average over `duration` [s], relative to its mean
+/// magnitude; 1 for a pulse between two steps, which they miss.
+double unresolved_share(const TimeFunction& function, int derivative, double duration, double step);
+
+/// Largest step of 1, 2 or 5 times a power of ten, `most` or smaller, at which this share is at most 0.01. Never below 1e-5 s.
 double step_that_resolves(const TimeFunction& function, int derivative, double duration, double most);
 
 }  // namespace uplift

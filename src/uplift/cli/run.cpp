@@ -107,7 +107,7 @@ int run(const Options& options) {
     for (const std::string& warning : results.warnings) complain("warning: " + warning);
     say(results.verdict.headline);
     if (!results.verdict.consequence.empty()) say(results.verdict.consequence);
-    say(results.verdict.step_check.sentence());
+    if (!statics_alone(results.built.front().plan)) say(results.verdict.step_check.sentence());
     say_facts(results.verdict.facts);
     say_criteria(results.verdict.numbers.criteria);
     const double per_step = main.counts.steps > 0 ? 1e6 * main.wall / static_cast<double>(main.counts.steps) : 0;
@@ -122,6 +122,11 @@ int run(const Options& options) {
   }
   if (main.status == RunStatus::interrupted) {
     if (!options.quiet) complain(fmt::format("interrupted at t = {:g} s: the files hold everything up to there", main.end_time));
+    return Exit::interrupted;
+  }
+  if (interrupt_asked()) {
+    if (!options.quiet)
+      complain("interrupted: the bonded run or the run with twice the step is not complete; what is compared with it is missing");
     return Exit::interrupted;
   }
   if (main.status == RunStatus::failed) {

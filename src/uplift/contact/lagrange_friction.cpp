@@ -14,6 +14,9 @@
 namespace uplift {
 namespace {
 
+/// One point at a time, many points take long, and what they have not found by then they seldom find.
+constexpr int most_single_changes = 500;
+
 class Frictional final : public MethodWork {
  public:
   Outcome solve(const InterfaceProblem& problem, const LagrangeOptions& options, InterfaceSolution& solution) {
@@ -34,7 +37,7 @@ class Frictional final : public MethodWork {
     if (!step_.finite()) return fail("the interface forces are not finite");
     ++outcome_.cycles;
     step_.guess_from_free_opening();
-    if (settle(50 + 8 * static_cast<int>(step_.points().size()), true) && confirmed()) return finish();
+    if (settle(std::min(50 + 8 * static_cast<int>(step_.points().size()), most_single_changes), true) && confirmed()) return finish();
     ++outcome_.cycles;
     if (raise_friction() && confirmed()) return finish();
     ++outcome_.cycles;

@@ -1,5 +1,7 @@
 #include "uplift/dynamics/step.h"
 
+#include <fmt/format.h>
+
 #include <algorithm>
 #include <cmath>
 #include <utility>
@@ -11,6 +13,12 @@
 #include "uplift/math/small.h"
 
 namespace uplift {
+namespace {
+
+/// A step that has taken so many is given up, whatever halvings are left: it would take minutes, and seldom arrives.
+constexpr long most_iterations_of_a_step = 8000;
+
+}  // namespace
 
 Stepper::Stepper(const Model& model, const Bulk& bulk, const Sparse& b, const Vector& gap, const Behaviours& behaviours,
                  const ContactMethod& method, const ImpactRule& impact, const LinearSolver& solver, const StepOptions& options,
@@ -377,12 +385,18 @@ bool Stepper::substep(int halving) {
     return true;
   }
   impact_loss_ = impact_before;
+  failed_step_ = now.step;
   if (now.hopeless || !mass_failure_.empty() || halving >= options_.halvings) return false;
+  if (const long spent = counts_.iterations - iterations_before_; spent > most_iterations_of_a_step) {
+    why_ += fmt::format("; given up after {} iterations of the interface in one step", spent);
+    return false;
+  }
   ++counts_.retries;
   return substep(halving + 1) && substep(halving + 1);
 }
 
 bool Stepper::advance() {
+  iterations_before_ = counts_.iterations;
   if (path_) small::copy(velocity_before_.size(), now_.velocity.data(), velocity_before_.data());
   if (!substep(0)) return false;
   now_.time = start_time_ + static_cast<double>(++counts_.steps) * options_.step;  // not summed: no round-off grows in a long run

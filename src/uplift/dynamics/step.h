@@ -69,6 +69,8 @@ class Stepper {
   bool averages_acceleration() const { return path_ && b_.rows() > 0; }
   /// The motion and forces that the last step balanced; valid until the next step. `start` is the acceleration before the first step.
   StepBalance balance(const Vector& start) const;
+  /// Length of the last step that failed [s].
+  double failed_step() const { return failed_step_; }
   /// Largest external work met [J], for the scale of the energy error.
   double largest_external() const { return largest_external_; }
   double initial_energy() const { return initial_energy_; }
@@ -119,6 +121,8 @@ class Stepper {
   const LinearSolver& solver_;
   StepOptions options_;
   LinearCounts& linear_;
+  double failed_step_ = 0;
+  long iterations_before_ = 0;  // of the interface, before this step
   bool path_ = false, filtered_ = false, impacts_ = false, gap_moves_ = false;
   SymmetricPair pair_;                                // K and M of large bulks
   mutable std::unique_ptr<Accelerator> accelerator_;  // null while it is not needed

@@ -109,7 +109,7 @@ void FieldRun::see(const Moment& moment) {
   if (!moment.last && (every_ == 0 || moment.step % every_ != 0)) return;
   Vector acceleration;
   moment.stepper->acceleration(acceleration);
-  write(moment.state, &acceleration, moment.state.time);
+  write(moment.state, &acceleration, section_forces(moment, &acceleration), moment.state.time);
 }
 
 void FieldRun::see_static(const Moment& moment) {
@@ -119,19 +119,19 @@ void FieldRun::see_static(const Moment& moment) {
   for (std::size_t s = 0; s < moment.stage; ++s) first = first && is_static(plan_, s);
   if (first) {
     while (is_static(plan_, later + 1)) ++later;
-    return write(moment.state, nullptr, moment.state.time - static_cast<double>(later - moment.stage));
+    return write(moment.state, nullptr, section_forces(moment, nullptr), moment.state.time - static_cast<double>(later - moment.stage));
   }
   double step = 0;
   for (std::size_t s = 0; s < moment.stage; ++s)
     if (is_dynamic(plan_, s)) step = plan_.stages[s].step;
-  write(moment.state, nullptr, moment.state.time + step / 2);
+  write(moment.state, nullptr, section_forces(moment, nullptr), moment.state.time + step / 2);
 }
 
 void FieldRun::see_events(const Moment& moment) {
   if (moment.so_far.first_uplift >= 0 && !std::exchange(uplifted_, true)) {
     Vector acceleration;
     moment.stepper->acceleration(acceleration);
-    write(moment.state, &acceleration, moment.state.time);
+    write(moment.state, &acceleration, section_forces(moment, &acceleration), moment.state.time);
   }
   keep(gap_, moment.so_far.max_opening.value, moment);
   keep(pressure_, moment.so_far.max_pressure.value, moment);
@@ -142,11 +142,24 @@ void FieldRun::keep(Kept& kept, double value, const Moment& moment) {
   kept.largest = value;
   kept.state = moment.state;
   moment.stepper->acceleration(kept.acceleration);
+  kept.section_forces = section_forces(moment, &kept.acceleration);
 }
 
-void FieldRun::write(const State& state, const Vector* acceleration, double time) {
+std::vector<double> FieldRun::section_forces(const Moment& moment, const Vector* acceleration) {
+  std::vector<double> values;
+  if (frames_->section_forces().empty()) return values;
+  if (meter_ == nullptr || metered_ != moment.stage) {
+    meter_ = std::make_unique<const ForceMeter>(ForceModel(moment.forces), frames_->section_forces());
+    metered_ = moment.stage;
+  }
+  const Vector still = Vector::Zero(moment.state.displacement.size());
+  meter_->measure(acceleration ? StepBalance::of_state(moment.state, *acceleration) : StepBalance::at_rest(moment.state, still), values);
+  return values;
+}
+
+void FieldRun::write(const State& state, const Vector* acceleration, const std::vector<double>& section_forces, double time) {
   if (times_.contains(time)) return;
-  const FieldFrame frame = frames_->of(state, acceleration, time);
+  const FieldFrame frame = frames_->of(state, acceleration, section_forces, time);
   const std::optional<FieldTrouble> trouble = vtu_ ? vtu_->write(frame) : xdmf_->write(frame);
   if (!trouble) {
     times_.insert(time);
@@ -157,7 +170,7 @@ void FieldRun::write(const State& state, const Vector* acceleration, double time
 
 void FieldRun::finish(RunResult& result) {
   for (const Kept* kept : {&gap_, &pressure_})
-    if (kept->largest > 0) write(kept->state, &kept->acceleration, kept->state.time);
+    if (kept->largest > 0) write(kept->state, &kept->acceleration, kept->section_forces, kept->state.time);
   if (vtu_) vtu_->finish();
   if (xdmf_) xdmf_->finish(into(folder_));
   if (left_out_ > 0)

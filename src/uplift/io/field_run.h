@@ -11,6 +11,7 @@
 // Field output of a run, as [output.fields] of a case asks for it.
 namespace uplift {
 
+class ForceMeter;
 class RunFrames;  // io/field_run_frames.h
 
 /// What the files of one run will take.
@@ -49,11 +50,14 @@ class FieldRun {
     double largest = 0;  // of what the event is about
     State state;
     Vector acceleration;
+    std::vector<double> section_forces;
   };
   void see_static(const Moment& moment);
   void see_events(const Moment& moment);
   void keep(Kept& kept, double value, const Moment& moment);
-  void write(const State& state, const Vector* acceleration, double time);
+  /// Section forces of the beams at this moment.
+  std::vector<double> section_forces(const Moment& moment, const Vector* acceleration);
+  void write(const State& state, const Vector* acceleration, const std::vector<double>& section_forces, double time);
 
   const RunPlan& plan_;
   ResultFolder& folder_;
@@ -63,7 +67,9 @@ class FieldRun {
   std::unique_ptr<const RunFrames> frames_;
   std::optional<VtuWriter> vtu_;
   std::optional<XdmfWriter> xdmf_;
-  std::set<double> times_;  // s, of the frames that are written
+  std::set<double> times_;                   // s, of the frames that are written
+  std::unique_ptr<const ForceMeter> meter_;  // of the section forces, for one stage
+  std::size_t metered_ = 0;                  // that stage
   Kept gap_, pressure_;
   int left_out_ = 0;
   std::string trouble_;  // of the first frame that was left out

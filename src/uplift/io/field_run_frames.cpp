@@ -48,6 +48,11 @@ std::vector<std::string> wanted_groups(const Values& fields, const Case& read) {
   return known;
 }
 
+const Values& beam_of(const Case& read, const std::string& group) {
+  return *std::ranges::find_if(read.values.tables("beam"),
+                               [&](const Values& beam) { return beam.has("group") && beam.text("group") == group; });
+}
+
 /// The elements of every solid of the case. They were made solid after solid, cell after cell.
 std::vector<std::vector<const Solid*>> elements_of(const CaseSolids& solids, const Model& model) {
   std::vector<const Solid*> all;
@@ -68,7 +73,7 @@ std::vector<std::vector<const Solid*>> elements_of(const CaseSolids& solids, con
 
 RunFrames::RunFrames(const Values& fields, const Case& read, const Built& built)
     : model_(&built.model), quantities_(fields.texts("quantities")), interfaces_(with_mesh(fields, read), built) {
-  const std::vector<std::string> known{"displacement", "velocity", "acceleration", "stress"};
+  const std::vector<std::string> known{"displacement", "velocity", "acceleration", "stress", "section_forces"};
   for (const std::string& quantity : quantities_)
     if (std::ranges::find(known, quantity) == known.end()) fail(fields, "quantities", known, quantity);
   const CaseSolids solids(read.values, *read.mesh);
@@ -82,7 +87,10 @@ RunFrames::RunFrames(const Values& fields, const Case& read, const Built& built)
     mark.meanings = groups;
     const auto solid =
         std::ranges::find(solids.solids(), groups[k], [](const CaseSolids::Solid& each) { return each.table->text("group"); });
-    if (solid == solids.solids().end()) continue;  // a beam: these come last
+    if (solid == solids.solids().end()) {  // a beam: these come last
+      if (wants("section_forces")) beams_.add(beam_of(read, groups[k]), solids, built, blocks_.back());
+      continue;
+    }
     solids_.push_back(elements[static_cast<std::size_t>(solid - solids.solids().begin())]);
     assert(blocks_.back().cell == solid->cells);
   }
@@ -102,7 +110,7 @@ bool RunFrames::wants(std::string_view quantity) const {
   return quantities_.empty() || std::ranges::find(quantities_, quantity) != quantities_.end();
 }
 
-FieldFrame RunFrames::empty() const {
+FieldFrame RunFrames::empty(const std::vector<double>& section_forces) const {
   FieldFrame frame;
   for (std::size_t b = 0; b < blocks_.size(); ++b) {
     std::vector<FieldValues>& points = frame.blocks.emplace_back().points;
@@ -110,6 +118,8 @@ FieldFrame RunFrames::empty() const {
       if (wants(motion.name)) points.push_back(field(motion.name, motion.unit, FieldKind::vector));
     if (b < solids_.size()) {
       if (wants("stress")) points.push_back(field("stress", "Pa", FieldKind::tensor));
+    } else if (b - solids_.size() < beams_.beams()) {
+      frame.blocks.back().cells = beams_.fields(b - solids_.size(), section_forces);
     } else if (&blocks_[b] == &blocks_.back() && !interfaces_.mesh().face.empty()) {
       points.push_back(field("opening", "m", FieldKind::scalar));
       points.push_back(field("slip", "m", FieldKind::vector));
@@ -156,7 +166,7 @@ std::vector<double> RunFrames::stress(std::size_t block, const Vector& full, con
   return sum;
 }
 
-FieldFrame RunFrames::of(const State& state, const Vector* acceleration, double time) const {
+FieldFrame RunFrames::of(const State& state, const Vector* acceleration, const std::vector<double>& section_forces, double time) const {
   const std::array<const Vector*, 3> free{&state.displacement, acceleration ? &state.velocity : nullptr, acceleration};
   std::array<Vector, 3> full;
   for (int d = 0; d < 3; ++d) {
@@ -165,7 +175,7 @@ FieldFrame RunFrames::of(const State& state, const Vector* acceleration, double 
   }
   const InterfaceFrames::JointValues joint = interfaces_.at(state);
   const auto at_lips = [&](FieldKind kind, const std::vector<double>& values) { return at_points(interfaces_.mesh(), kind, values); };
-  FieldFrame frame = empty();
+  FieldFrame frame = empty(section_forces);
   frame.time = time;
   for (std::size_t b = 0; b < blocks_.size(); ++b)
     for (FieldValues& field : frame.blocks[b].points) {

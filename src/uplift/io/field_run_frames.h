@@ -1,10 +1,13 @@
 #pragma once
 #include <map>
+#include <memory>
 #include <string_view>
 #include <utility>
 #include <vector>
 
 #include "uplift/analysis/case.h"
+#include "uplift/analysis/case_mesh.h"
+#include "uplift/analysis/force_rows.h"
 #include "uplift/elements/solid.h"
 #include "uplift/io/fields.h"
 
@@ -46,16 +49,36 @@ class InterfaceFrames {
   std::vector<Surface> surfaces_;
 };
 
+/// Section forces in the middle of every line of a run's beams, in the direction of the line (docs/theory, section 13).
+class BeamFrames {
+ public:
+  /// Takes the beam of a group; `block` is its mesh.
+  void add(const Values& beam, const CaseSolids& solids, const Built& built, const FieldMesh& block);
+  std::size_t beams() const { return first_.size(); }
+  /// Component after component, of all lines of all beams; for a ForceMeter.
+  const std::vector<const ForceQuantity*>& quantities() const { return quantities_; }
+  /// Names of the components, and their values where `values` (one per quantity) are not empty.
+  std::vector<FieldValues> fields(std::size_t beam, const std::vector<double>& values) const;
+
+ private:
+  Space space_;
+  std::vector<std::size_t> first_, lines_;  // of each beam: its first quantity, its lines
+  std::vector<std::unique_ptr<const ForceQuantity>> held_;
+  std::vector<const ForceQuantity*> quantities_;
+};
+
 /// The frames of a run: a block for each solid, one for each beam of a group, and one for the faces of all interfaces, "interfaces".
 class RunFrames {
  public:
   /// `fields` is [output.fields]. Throws InputError: no mesh, quantities and groups that are not there.
   RunFrames(const Values& fields, const Case& read, const Built& built);
   const std::vector<FieldMesh>& blocks() const { return blocks_; }
-  /// Names and kinds alone.
-  FieldFrame empty() const;
+  /// Names and kinds, and section forces where there are any; no other values.
+  FieldFrame empty(const std::vector<double>& section_forces = {}) const;
+  /// Forces in the beams that `of` wants the values of.
+  const std::vector<const ForceQuantity*>& section_forces() const { return beams_.quantities(); }
   /// Acceleration [free unknowns]; null: nothing moves. `time` is the frame's.
-  FieldFrame of(const State& state, const Vector* acceleration, double time) const;
+  FieldFrame of(const State& state, const Vector* acceleration, const std::vector<double>& section_forces, double time) const;
 
  private:
   bool wants(std::string_view quantity) const;
@@ -68,6 +91,7 @@ class RunFrames {
   std::vector<std::vector<const Solid*>> solids_;      // of the first blocks, in the order of their cells
   std::map<const Solid*, std::size_t> first_history_;  // of the solids that can yield: where the state remembers them
   InterfaceFrames interfaces_;
+  BeamFrames beams_;                    // of the blocks behind those of the solids
   std::size_t stride_ = 0, first_ = 0;  // unknowns of a node; the first of the mesh's first node
   int dimension_ = 2;
 };

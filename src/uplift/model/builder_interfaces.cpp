@@ -134,13 +134,15 @@ void ModelBuilder::refuse_inside_out(const InterfaceSpec& spec, const Where& whe
     if ((point.normal.normalized() - n).norm() > 1e-9) return;  // not plane: the sides are not that easily told
     middle += point.position / static_cast<double>(spec.points.size());
   }
+  double extent = 0;  // of the interface: beside it the place of a single node on its plane is round-off
+  for (const JointPoint& point : spec.points) extent = std::max(extent, (point.position - middle).norm());
   std::vector<int> upper_nodes, lower_nodes;
   const std::vector<Vec3> upper = structure_of(spec, true, upper_nodes), lower = structure_of(spec, false, lower_nodes);
   std::ranges::sort(upper_nodes);
   for (const int node : lower_nodes)
     if (std::ranges::binary_search(upper_nodes, node)) return;  // both sides hang together
   for (const bool is_upper : {true, false}) {
-    double least = 0, most = 0, size = 0;
+    double least = 0, most = 0, size = extent;
     for (const Vec3& place : is_upper ? upper : lower) {
       size = std::max(size, (place - middle).norm());
       const double height = (is_upper ? 1 : -1) * (place - middle).dot(n);
