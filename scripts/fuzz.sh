@@ -12,7 +12,7 @@ command -v ccache >/dev/null && clang="ccache $clang"
 read -ra hdf5 <<<"$(pkg-config --cflags --libs hdf5-serial)"
 flags=(-std=c++20 -g -O1 -fsanitize=address,undefined -fno-sanitize-recover=all -DUPLIFT_VERSION='"fuzz"' -Isrc -Ifuzz -isystem /usr/include/eigen3)
 base=(src/uplift/base/{error,text,file}.cpp)
-mesh=("${base[@]}" src/uplift/mesh/{cells,mesh}.cpp src/uplift/io/mesh_draft.cpp)
+mesh=("${base[@]}" src/uplift/mesh/{cells,mesh,jacobian,cell_shapes,cell_quadrature}.cpp src/uplift/math/{shapes,quadrature}.cpp src/uplift/io/mesh_draft.cpp)
 sources() {
   case "$1" in
     gmsh) printf '%s\n' "${mesh[@]}" src/uplift/io/mesh_gmsh*.cpp ;;
