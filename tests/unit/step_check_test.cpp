@@ -111,6 +111,13 @@ TEST(StepCheck, NamesTheNumberThatChangesMostAndTheStep) {
   EXPECT_EQ(step_change_text(numbers.whole.front()), "\u00b10.2 %");
 }
 
+TEST(StepCheck, NothingThatStaysNothingDoesNotChange) {
+  EXPECT_EQ(change_of_one("max_shear", 0, 0), 0);
+  EXPECT_EQ(change_of_one("change_of_moment", -1, -1), 0) << "no moment at all, with both steps";
+  EXPECT_NEAR(change_of_one("change_of_moment", -1, -0.99), 0.01 / 0.1, 1e-12);
+  EXPECT_EQ(change_of_one("min_overturning_safety", 0, 0), 0);
+}
+
 /// Twenty steps of 2 ms a period: up to 25 Hz. The value at 10 Hz counts beside a tenth of the peak, 1 m/s2.
 TEST(StepCheck, FloorSpectra) {
   FloorSpectra fine, coarse;

@@ -158,10 +158,10 @@ void warn_massless(const Built& built, std::vector<std::string>& said) {
   std::string names;
   for (int i = 0; i < model.free(); ++i) {
     const int node = model.space.node_of(model.kept[static_cast<std::size_t>(i)]);
+    if (model.mass.coeff(i, i) != 0) continue;
     const bool base = std::ranges::any_of(
         built.facts, [&](const InterfaceFacts& facts) { return std::ranges::find(facts.upper, node) != facts.upper.end(); });
-    if (base && model.mass.coeff(i, i) == 0 && names.size() < 60)
-      names += (names.empty() ? "" : ", ") + model.unknown_names[static_cast<std::size_t>(i)];
+    if (base && names.size() < 60) names += (names.empty() ? "" : ", ") + model.unknown_names[static_cast<std::size_t>(i)];
   }
   if (!names.empty())
     said.push_back(fmt::format(

@@ -52,24 +52,14 @@ void Runner::note_impulses(const Stepper& stepper) {
 /// Peaks and durations of what was noted since this was last called, in a stage with this step.
 void Runner::sum_up(double step) {
   const StepRecord& steps = result_.steps;
-  const bool plane = model_.space.dimension == 2;
-  const auto length = [plane](double first, double second) { return plane ? first : std::hypot(first, second); };
-  double ratio = result_.max_uplifted_ratio.value, moment = std::abs(result_.max_base_moment.value),
-         shear = std::abs(result_.max_base_shear.value);
-  const auto note = [](double& most, double value, Peak& peak, double time) {
-    if (!(std::abs(value) > most)) return;
-    most = std::abs(value);
-    peak.value = value, peak.time = time;
-  };
+  Peak& ratio = result_.max_uplifted_ratio;
   for (; summed_up_ < steps.size(); ++summed_up_) {
     const double time = steps.time[summed_up_];
     bool open = false;
     for (std::size_t k = 0; k < steps.extremes.size(); ++k) {
       if (is_wall(k)) continue;
       const StepRecord::Instant& at = steps.at(summed_up_, k);
-      note(ratio, at.open_area, result_.max_uplifted_ratio, time);
-      note(moment, length(at.moment_1, at.moment_2), result_.max_base_moment, time);
-      note(shear, length(at.shear_1, at.shear_2), result_.max_base_shear, time);
+      if (at.open_area > ratio.value) ratio.value = at.open_area, ratio.time = time;
       open = open || at.open_area > 0;
     }
     if (!open) continue;

@@ -14,7 +14,6 @@ constexpr double least_share = 0.1;                            // of an area, an
 constexpr double least_motion = 0.05;                          // of the largest motion
 constexpr double steps_per_period = 20, least_spectrum = 0.1;  // of floor spectra; least value beside their peak
 constexpr double least_eccentricity = 0.01;                    // of the width
-constexpr double least_length = 1e-3;                          // of the largest motion: gaps and compressions of the joint
 
 double longest_step(const RunPlan& plan) {
   double step = 0;
@@ -49,7 +48,7 @@ bool decides(const VerdictQuantity& quantity) {
 double reference(const VerdictNumber& number, double other, const Scale& scale) {
   const VerdictQuantity& quantity = *number.quantity;
   const double size = std::max({std::abs(number.value), std::abs(other), number.least, nothing_beside(quantity.unit)});
-  if (quantity.name.starts_with("change_of")) return 1 + std::max(number.value, other);
+  if (quantity.name.starts_with("change_of")) return std::max(1 + std::max(number.value, other), least_share);
   if (quantity.name == "residual_uplifted_ratio") return 1;  // gaps of micrometres count: beside the whole area
   if (is_share(quantity)) return std::max(size, least_share);
   if (quantity.name == "min_compression") return std::max(size, scale.compression);
@@ -62,9 +61,10 @@ double reference(const VerdictNumber& number, double other, const Scale& scale) 
 double change_of_step(const VerdictNumber& number, double other, const Scale& scale) {
   if (is_safety(*number.quantity)) {
     const double here = 1 / number.value, there = 1 / other;
+    if (number.value == other) return 0;
     return std::abs(here - there) / std::max({std::abs(here), std::abs(there), least_share});
   }
-  return std::abs(number.value - other) / reference(number, other, scale);
+  return number.value == other ? 0 : std::abs(number.value - other) / reference(number, other, scale);  // of two zeros too
 }
 
 /// Compares the numbers of one table; keeps the one that changes most.

@@ -13,8 +13,8 @@ struct StepBound {
 };
 
 /// What limits the time step of a case with a dynamic stage, the smallest first; empty when nothing does. `bonded`: its lowest natural
-/// frequencies with the interfaces closed [Hz]. The numbers of steps are those at which the forces of the verdict of random structures and
-/// of the examples were found to be within 3 % of those with an eighth of the step, in nine of ten cases (docs/guide).
+/// frequencies with the interfaces closed [Hz]. The numbers of steps are those at which the forces of the verdict of random structures
+/// were found to be within 3 % of those with an eighth of the step, in nine of ten cases (docs/guide).
 std::vector<StepBound> step_bounds(const Case& read, const Built& built, const std::vector<double>& bonded);
 
 /// By how much straight lines between the values at the steps differ from a function on average over `duration` [s], relative to its mean
