@@ -139,15 +139,11 @@ void warn_loads(const Built& built, std::vector<std::string>& said) {
   constexpr double accepted = 0.1;
   const Stage* stage = dynamic_stage(built.plan);
   if (!stage) return;
-  double duration = 0;
-  for (const Stage& each : built.plan.stages)
-    if (each.type == Stage::Type::dynamics) duration += each.duration;
-  for (const Drive& drive : built.model.drives) {
-    if (drive.constant || drive.dead || !drive.function) continue;
-    const double share = unresolved_share(*drive.function, static_cast<int>(drive.order), duration, stage->step);
+  for (const Drive* drive : varying_loads(built.model)) {
+    const double share = unresolved_share(*drive->function, static_cast<int>(drive->order), dynamic_duration(built.plan), stage->step);
     if (share > accepted)
       said.push_back(fmt::format("steps of {} do not follow the load \"{}\": straight lines between them differ from it by {} on average",
-                                 spoken(stage->step, "s"), drive.name, percent(share)));
+                                 spoken(stage->step, "s"), drive->name, percent(share)));
   }
 }
 

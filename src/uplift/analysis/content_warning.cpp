@@ -6,6 +6,7 @@
 #include <cmath>
 
 #include "uplift/analysis/case_mesh.h"
+#include "uplift/analysis/step_suggestion.h"
 #include "uplift/analysis/wording.h"
 #include "uplift/math/fourier.h"
 #include "uplift/mesh/quality.h"
@@ -13,28 +14,23 @@
 namespace uplift {
 namespace {
 
-constexpr double points_per_wavelength = 10, accepted_energy = 0.05;
+constexpr double accepted_energy = 0.05;
 
-/// The solid that carries the lowest frequency.
-struct Reach {
-  std::string group;
-  double frequency = INFINITY;  // Hz
-};
+}  // namespace
 
-Reach least_reach(const Case& read) {
+MeshReach lowest_reach(const Case& read) {
+  MeshReach lowest;
+  if (!read.mesh) return lowest;
   const CaseSolids materials(read.values, *read.mesh);
   const std::vector<GroupQuality> qualities = quality_by_group(read.mesh->mesh);
-  Reach least;
   for (const CaseSolids::Solid& solid : materials.solids()) {
     const auto quality = std::ranges::find(qualities, solid.table->text("group"), &GroupQuality::name);
     if (quality == qualities.end() || !(solid.section.material.density > 0)) continue;
-    const double reach = highest_frequency(*quality, solid.section.material.s_wave_speed(), points_per_wavelength);
-    if (reach < least.frequency) least = {quality->name, reach};
+    const double reach = highest_frequency(*quality, solid.section.material.s_wave_speed(), nodes_per_wavelength);
+    if (reach < lowest.frequency) lowest = {quality->name, reach};
   }
-  return least;
+  return lowest;
 }
-
-}  // namespace
 
 double energy_above(const TimeFunction& function, int derivative, double duration, double frequency) {
   const double step = std::min(duration / 16, 0.05 / frequency);                              // ten samples a period of twice the frequency
@@ -51,18 +47,14 @@ double energy_above(const TimeFunction& function, int derivative, double duratio
 }
 
 void warn_content(const Case& read, const Built& built, std::vector<std::string>& said) {
-  double duration = 0;
-  for (const Stage& stage : built.plan.stages)
-    if (stage.type == Stage::Type::dynamics) duration += stage.duration;
-  if (!read.mesh || !(duration > 0)) return;
-  const Reach reach = least_reach(read);
-  if (!std::isfinite(reach.frequency)) return;
+  const double duration = dynamic_duration(built.plan);
+  const MeshReach reach = lowest_reach(read);
+  if (!(duration > 0) || !std::isfinite(reach.frequency)) return;
   double most = accepted_energy;
   const Drive* worst = nullptr;
-  for (const Drive& drive : built.model.drives) {
-    if (drive.constant || drive.dead || !drive.function) continue;
-    const double above = energy_above(*drive.function, static_cast<int>(drive.order), duration, reach.frequency);
-    if (above > most) most = above, worst = &drive;
+  for (const Drive* drive : varying_loads(built.model)) {
+    const double above = energy_above(*drive->function, static_cast<int>(drive->order), duration, reach.frequency);
+    if (above > most) most = above, worst = drive;
   }
   if (worst)
     said.push_back(

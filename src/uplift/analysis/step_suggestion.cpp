@@ -66,26 +66,32 @@ void bound_by_floors(const RunPlan& plan, std::vector<StepBound>& bounds) {
         {1 / (steps_a_period_of_floors * highest), fmt::format("forty steps a period of the floor spectra at {}", spoken(highest, "Hz"))});
 }
 
-double duration_of(const RunPlan& plan) {
-  double duration = 0;
-  for (const Stage& stage : plan.stages)
-    if (stage.type == Stage::Type::dynamics) duration += stage.duration;
-  return duration;
-}
-
 void bound_by_loads(const Built& built, std::vector<StepBound>& bounds) {
   double smallest = most_step;
   const Drive* fastest = nullptr;
-  for (const Drive& drive : built.model.drives) {
-    if (drive.constant || drive.dead || !drive.function) continue;
-    const double step = step_that_resolves(*drive.function, static_cast<int>(drive.order), duration_of(built.plan), smallest);
-    if (step < smallest) smallest = step, fastest = &drive;
+  for (const Drive* drive : varying_loads(built.model)) {
+    const double step = step_that_resolves(*drive->function, static_cast<int>(drive->order), dynamic_duration(built.plan), smallest);
+    if (step < smallest) smallest = step, fastest = drive;
   }
   if (fastest)
     bounds.push_back({smallest, fmt::format("straight lines between the steps follow the load \"{}\" within 1 %", fastest->name)});
 }
 
 }  // namespace
+
+std::vector<const Drive*> varying_loads(const Model& model) {
+  std::vector<const Drive*> found;
+  for (const Drive& drive : model.drives)
+    if (!drive.constant && !drive.dead && drive.function) found.push_back(&drive);
+  return found;
+}
+
+double dynamic_duration(const RunPlan& plan) {
+  double duration = 0;
+  for (const Stage& stage : plan.stages)
+    if (stage.type == Stage::Type::dynamics) duration += stage.duration;
+  return duration;
+}
 
 double unresolved_share(const TimeFunction& function, int derivative, double duration, double step) {
   constexpr double most_samples = 2e5;

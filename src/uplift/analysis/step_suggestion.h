@@ -17,6 +17,11 @@ struct StepBound {
 /// were found to be within 3 % of those with an eighth of the step, in nine of ten cases (docs/guide).
 std::vector<StepBound> step_bounds(const Case& read, const Built& built, const std::vector<double>& bonded);
 
+/// Loads and motions that are functions of time.
+std::vector<const Drive*> varying_loads(const Model& model);
+/// Of the dynamic stages together [s].
+double dynamic_duration(const RunPlan& plan);
+
 /// By how much straight lines between the values at the steps differ from a function on average over `duration` [s], relative to its mean
 /// magnitude; 1 for a pulse between two steps, which they miss.
 double unresolved_share(const TimeFunction& function, int derivative, double duration, double step);

@@ -5,6 +5,7 @@
 #include <cmath>
 
 #include "uplift/analysis/case_mesh.h"
+#include "uplift/analysis/content_warning.h"
 #include "uplift/analysis/floor_record.h"
 #include "uplift/analysis/step_suggestion.h"
 #include "uplift/analysis/wording.h"
@@ -45,7 +46,6 @@ struct Findings {
   double record_bytes = 0;       // floors at every step
 };
 
-constexpr double points_per_wavelength = 10;
 constexpr int small_model = 3000, quick_modes = 30'000;  // unknowns: nothing to foresee below; only the bonded modes beyond
 constexpr double trial_seconds = 5;
 
@@ -58,7 +58,7 @@ void look_at_mesh(const Case& read, Findings& found) {
     for (const GroupQuality& quality : qualities) {
       if (quality.name != solid.table->text("group")) continue;
       const double speed = solid.section.material.density > 0 ? solid.section.material.s_wave_speed() : 0;
-      found.solids.push_back({quality, speed, speed > 0 ? highest_frequency(quality, speed, points_per_wavelength) : 0});
+      found.solids.push_back({quality, speed, speed > 0 ? highest_frequency(quality, speed, nodes_per_wavelength) : 0});
     }
   for (const Values& beam : read.values.tables("beam"))
     for (const GroupQuality& quality : qualities)

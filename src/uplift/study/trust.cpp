@@ -8,14 +8,13 @@
 #include <numeric>
 #include <thread>
 
-#include "uplift/analysis/case_mesh.h"
+#include "uplift/analysis/content_warning.h"
 #include "uplift/analysis/wording.h"
-#include "uplift/mesh/quality.h"
 
 namespace uplift {
 namespace {
 
-constexpr double points_per_wavelength = 10, steps_per_period = 10;
+constexpr double steps_per_period = 10;
 
 /// What is kept of a repetition: numbers and spectra, not its model.
 struct Repetition {
@@ -150,16 +149,8 @@ using Reach = TrustSpectrum::Reach;
 /// What the model itself can carry: shear waves with ten nodes a wavelength in every group of a mesh, ten steps a period.
 std::vector<Reach> resolutions(const Case& read, const RunPlan& plan) {
   std::vector<Reach> found;
-  if (read.mesh) {
-    const CaseSolids materials(read.values, *read.mesh);
-    const std::vector<GroupQuality> qualities = quality_by_group(read.mesh->mesh);
-    double least = INFINITY;
-    for (const CaseSolids::Solid& solid : materials.solids())
-      for (const GroupQuality& quality : qualities)
-        if (quality.name == solid.table->text("group") && solid.section.material.density > 0)
-          least = std::min(least, highest_frequency(quality, solid.section.material.s_wave_speed(), points_per_wavelength));
-    if (std::isfinite(least)) found.push_back({"size of the elements", least});
-  }
+  if (const MeshReach reach = lowest_reach(read); std::isfinite(reach.frequency))
+    found.push_back({"size of the elements", reach.frequency});
   double step = 0;
   for (const Stage& stage : plan.stages)
     if (stage.type == Stage::Type::dynamics) step = std::max(step, stage.step);
