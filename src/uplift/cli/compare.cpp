@@ -181,7 +181,8 @@ int compare(const Options& options) {
   if (!over.paragraph.empty()) results.verdict.paragraphs.insert(results.verdict.paragraphs.begin(), over.paragraph);
   add_motion_warnings(results);
   for (const RunResult& run : results.runs)
-    if (const std::string text = run.equilibrium.warning(); !text.empty()) results.warnings.push_back(run.label + ": " + text);
+    if (const std::string text = run.equilibrium.warning(); !text.empty() && run.status != RunStatus::failed)
+      results.warnings.push_back(run.label + ": " + text);
   write_results(options, loaded, results, &compared, folder);
 
   if (options.json) {

@@ -209,7 +209,8 @@ void write_verdict(JsonWriter& json, const ReportInput& input) {
     }
   json.end_array();
   std::vector<std::string> paragraphs = verdict.paragraphs;
-  for (const std::string& warning : input.warnings) paragraphs.push_back("Warning: " + warning + (warning.ends_with("?") ? "" : "."));
+  for (const std::string& warning : input.warnings)
+    paragraphs.push_back("Warning: " + warning + (warning.ends_with("?") || warning.ends_with(".") ? "" : "."));
   json.key("paragraphs").texts(paragraphs);
   json.member("run", input.runs.front().result->label);
   json.key("interfaces").begin_array();
