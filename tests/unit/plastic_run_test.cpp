@@ -333,20 +333,22 @@ TEST(PlasticSolid, YieldedForceAndEnergyAreWhatTheLinearSolidLacks) {
     const NonlinearSolid solid(kind.cell, first_numbers(info(kind.cell).nodes), std::make_shared<const std::vector<Vec3>>(positions),
                                section_of(kind), law);
     std::uniform_real_distribution<double> uniform(-1e-3, 1e-3);
+    NonlinearSolid::Scratch scratch;
     Vector u0(solid.unknowns()), u1(solid.unknowns()), f0, f1;
     const std::vector<double> natural(static_cast<std::size_t>(solid.num_history()), 0.0);
     std::vector<double> old = natural, now = natural;
     for (int draw = 0; draw < 20 && !(solid.has_yielded(old) && solid.yields(old, now)); ++draw) {  // one that yields twice
       for (double& x : u0) x = uniform(random);
       for (double& x : u1) x = 3 * uniform(random);
-      ASSERT_TRUE(solid.respond(u0, natural, old, f0, nullptr).converged);
-      ASSERT_TRUE(solid.respond(u1, old, now, f1, nullptr).converged);
+      ASSERT_TRUE(solid.respond(u0, natural, old, scratch, f0, nullptr).converged);
+      ASSERT_TRUE(solid.respond(u1, old, now, scratch, f1, nullptr).converged);
     }
     ASSERT_TRUE(solid.yields(old, now)) << kind.name;
     EXPECT_FALSE(solid.has_yielded(natural));
     Matrix k;
     solid.form({&k, nullptr, nullptr});
-    const NonlinearSolid::Yielded part = solid.yielded(now);
+    NonlinearSolid::Yielded part;
+    solid.find_yielded(now, scratch, part);
     EXPECT_LE((k * u1 + part.force - f1).norm(), 1e-10 * f1.norm()) << kind.name;
     const double stored = solid.stored_energy(u1, now);
     EXPECT_NEAR(u1.dot(k * u1) / 2 + u1.dot(part.force) + part.energy, stored, 1e-10 * stored) << kind.name;

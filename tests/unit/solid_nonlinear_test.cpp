@@ -54,9 +54,10 @@ TEST(SolidNonlinear, BelowYieldItIsTheLinearSolid) {
     const Vector u = random_displacement(solid.unknowns(), 1e-4, random);
     const std::vector<double> old(static_cast<std::size_t>(solid.num_history()), 0.0);
     std::vector<double> now(old.size());
+    NonlinearSolid::Scratch scratch;
     Vector force;
     Matrix tangent, k;
-    const BulkResponse outcome = solid.respond(u, old, now, force, &tangent);
+    const BulkResponse outcome = solid.respond(u, old, now, scratch, force, &tangent);
     ASSERT_TRUE(outcome.converged) << kind.name << outcome.why;
     solid.form({&k, nullptr, nullptr});
     EXPECT_LE((tangent - k).norm(), 1.001e-9 * k.norm()) << kind.name;  // the share of the elastic stiffness that every tangent has
@@ -76,14 +77,15 @@ TEST(SolidNonlinear, TangentIsTheFiniteDifferenceOfTheForce) {
       const int n = solid.unknowns(), d = solid.dimension();
       // pressed, then sheared at random: the cone everywhere
       const Vector pressed = linear_field(positions, d, -1e-4 * Mat3::Identity());
+      NonlinearSolid::Scratch scratch;
       Vector u, force, up, down;
       Matrix tangent;
       const std::vector<double> natural(static_cast<std::size_t>(solid.num_history()), 0.0);
       std::vector<double> old = natural, now = natural;
       for (int draw = 0; draw < 20 && !(accumulated(solid, now) > accumulated(solid, old)); ++draw) {  // one that yields twice
         u = pressed + random_displacement(n, 2e-3, random);
-        ASSERT_TRUE(solid.respond(0.6 * u, natural, old, force, nullptr).converged) << kind.name;
-        ASSERT_TRUE(solid.respond(u, old, now, force, &tangent).converged) << kind.name;
+        ASSERT_TRUE(solid.respond(0.6 * u, natural, old, scratch, force, nullptr).converged) << kind.name;
+        ASSERT_TRUE(solid.respond(u, old, now, scratch, force, &tangent).converged) << kind.name;
       }
       ASSERT_GT(accumulated(solid, now), accumulated(solid, old)) << kind.name;
       const double h = 1e-9;
@@ -99,9 +101,9 @@ TEST(SolidNonlinear, TangentIsTheFiniteDifferenceOfTheForce) {
         };
         const auto here = status(now);
         std::vector<double> other = now;
-        solid.respond(u + h * Vector::Unit(n, k), old, other, up, nullptr);
+        solid.respond(u + h * Vector::Unit(n, k), old, other, scratch, up, nullptr);
         const bool same_up = status(other) == here;
-        solid.respond(u - h * Vector::Unit(n, k), old, other, down, nullptr);
+        solid.respond(u - h * Vector::Unit(n, k), old, other, scratch, down, nullptr);
         if (!same_up || status(other) != here) continue;  // a kink lies between
         ++compared;
         EXPECT_LE(((up - down) / (2 * h) - tangent.col(k)).norm(), 1e-6 * tangent.norm()) << kind.name << ", unknown " << k;
@@ -125,8 +127,9 @@ TEST(SolidNonlinear, UniformStrainGivesThePointsStress) {
     Strain strain;
     strain << g(0, 0), g(1, 1), g(2, 2), g(0, 1) + g(1, 0), g(1, 2) + g(2, 1), g(2, 0) + g(0, 2);
     std::vector<double> old(static_cast<std::size_t>(solid.num_history()), 0.0), now = old;
+    NonlinearSolid::Scratch scratch;
     Vector force;
-    ASSERT_TRUE(solid.respond(linear_field(positions, d, g), old, now, force, nullptr).converged) << kind.name;
+    ASSERT_TRUE(solid.respond(linear_field(positions, d, g), old, now, scratch, force, nullptr).converged) << kind.name;
     ASSERT_GT(accumulated(solid, now), 0) << kind.name;
     const std::vector<double> zero(DruckerPrager::num_history, 0.0);
     std::vector<double> point(DruckerPrager::num_history);
@@ -152,11 +155,12 @@ TEST(SolidNonlinear, RigidMotionsOfAYieldedElementChangeNothing) {
     const int d = solid.dimension();
     const Vector u = linear_field(positions, d, -1e-3 * Mat3::Identity()) + random_displacement(solid.unknowns(), 1e-3, random);
     std::vector<double> old(static_cast<std::size_t>(solid.num_history()), 0.0), now = old;
+    NonlinearSolid::Scratch scratch;
     Vector force, moved;
-    ASSERT_TRUE(solid.respond(u, old, now, force, nullptr).converged) << kind.name;
+    ASSERT_TRUE(solid.respond(u, old, now, scratch, force, nullptr).converged) << kind.name;
     Vector far = u;
     for (Index a = 0; a < far.size(); a += d) far[a] += 0.5, far[a + 1] -= 0.3;
-    ASSERT_TRUE(solid.respond(far, old, now, moved, nullptr).converged) << kind.name;
+    ASSERT_TRUE(solid.respond(far, old, now, scratch, moved, nullptr).converged) << kind.name;
     EXPECT_LE((moved - force).norm(), 1e-10 * force.norm()) << kind.name;
     for (int i = 0; i < d; ++i) {
       double sum = 0;
@@ -180,13 +184,14 @@ TEST(SolidNonlinear, WorkIsStoredEnergyAndDissipation) {
     const NonlinearSolid solid = yielding(kind, positions, p);
     const Vector a = random_displacement(solid.unknowns(), 2e-3, random), b = random_displacement(solid.unknowns(), 1e-3, random);
     std::vector<double> old(static_cast<std::size_t>(solid.num_history()), 0.0), now = old;
+    NonlinearSolid::Scratch scratch;
     Vector force = Vector::Zero(solid.unknowns()), before = force, u = Vector::Zero(solid.unknowns());
     std::vector<Stress> stress_before(static_cast<std::size_t>(solid.num_points()), Stress::Zero());
     double work = 0, dissipated = 0;
     for (int step = 1; step <= 60; ++step) {
       const double t = 2 * std::numbers::pi * step / 60;
       const Vector next = (1 - std::cos(t)) / 2 * a + std::sin(t) * b;
-      ASSERT_TRUE(solid.respond(next, old, now, force, nullptr).converged) << kind.name << step;
+      ASSERT_TRUE(solid.respond(next, old, now, scratch, force, nullptr).converged) << kind.name << step;
       work += (force + before).dot(next - u) / 2;
       const auto stress = solid.point_stress(next, now);
       for (std::size_t i = 0; i < stress.size(); ++i) {
@@ -215,9 +220,10 @@ TEST(SolidNonlinear, APointWithoutStiffnessAtTheApexIsNoObstacle) {
     const int d = solid.dimension();
     const Vector u = linear_field(positions, d, 5e-3 * Mat3::Identity()) + random_displacement(solid.unknowns(), 1e-4, random);
     std::vector<double> old(static_cast<std::size_t>(solid.num_history()), 0.0), now = old;
+    NonlinearSolid::Scratch scratch;
     Vector force;
     Matrix tangent;
-    const BulkResponse outcome = solid.respond(u, old, now, force, &tangent);
+    const BulkResponse outcome = solid.respond(u, old, now, scratch, force, &tangent);
     ASSERT_TRUE(outcome.converged) << kind.name << outcome.why;
     ASSERT_TRUE(tangent.allFinite()) << kind.name;
     const double expected = p.cohesion / std::tan(p.friction);

@@ -6,6 +6,7 @@
 #include "uplift/analysis/content_warning.h"
 #include "uplift/analysis/result_warnings.h"
 #include "uplift/analysis/step_suggestion.h"
+#include "uplift/io/toml.h"
 
 namespace uplift {
 namespace {
@@ -31,6 +32,59 @@ TEST(Content, EnergyOfASumOfSines) {
 }
 
 /// Straight lines differ from a sine by (w h)^2/8 of its value at most, and by w^2 h^2/12 on average: 0.01 at w h = 0.346.
+// Square cells of 1 m with shear waves of 200 m/s carry 200 / (10 x 1 m) = 20 Hz.
+TEST(Content, LoadsAndFloorSpectraAboveTheReachOfTheMesh) {
+  const auto warned = [](const std::string& pulse, const std::string& frequencies) {
+    const Case read = check_case(read_toml_text(R"(title = "soil"
+[mesh.soil_box.soil]
+width = 4
+size = 1
+[[mesh.soil_box.soil.layers]]
+thickness = 2
+size = 1
+[[solid]]
+group = "soil_1"
+shear_wave_speed = 200
+poisson = 0.3
+density = 2000
+[[support]]
+group = "soil_bottom"
+fixed = ["ux", "uy"]
+[[function]]
+name = "pulse"
+shape = { type = "ricker", frequency = )" + pulse +
+                                                    R"( }
+[[ground_acceleration]]
+name = "earthquake"
+direction = [1, 0]
+function = "pulse"
+[[stage]]
+type = "dynamic"
+duration = 2
+step = 1e-3
+[[output.floor_spectrum]]
+name = "surface"
+at = [0, 0]
+direction = [1, 0]
+frequencies = )" + frequencies,
+                                                "case.toml"),
+                                 "case.toml");
+    const RunSpec spec = runs_of_case(read).front();
+    std::vector<std::string> said;
+    warn_content(read, build(read, spec), said);
+    return said;
+  };
+  EXPECT_TRUE(warned("3", "[5, 19]").empty());
+  const std::vector<std::string> floors = warned("3", "[5, 25]");
+  ASSERT_EQ(floors.size(), 1u);
+  EXPECT_NE(floors.front().find("floor spectra go up to 25.0 Hz, but the cells of \"soil_1\" carry shear waves up to 20.0 Hz"),
+            std::string::npos)
+      << floors.front();
+  const std::vector<std::string> load = warned("20", "[5, 19]");
+  ASSERT_EQ(load.size(), 1u);
+  EXPECT_NE(load.front().find("the cells of \"soil_1\" carry shear waves up to 20.0 Hz"), std::string::npos) << load.front();
+}
+
 TEST(StepSuggestion, LoadsAreResolvedToOneHundredth) {
   const double period = 0.125, exact = 0.3464 * period / (2 * std::numbers::pi);  // 6.9 ms
   EXPECT_GT(exact, 5e-3);

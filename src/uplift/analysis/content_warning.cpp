@@ -61,6 +61,15 @@ void warn_content(const Case& read, const Built& built, std::vector<std::string>
         fmt::format("the cells of \"{}\" carry shear waves up to {} (ten nodes a wavelength), and {} of the energy of the load \"{}\" lies "
                     "above: refine the mesh there, or filter the motion",
                     reach.group, spoken(reach.frequency, "Hz"), percent(most), worst->name));
+  double highest = 0;
+  for (const FloorRequest& floor : built.plan.floors)
+    if (!floor.frequencies.empty()) highest = std::max(highest, floor.frequencies.back());
+  if (highest > reach.frequency)
+    said.push_back(
+        fmt::format("floor spectra go up to {}, but the cells of \"{}\" carry shear waves up to {} only (ten nodes a wavelength): above, "
+                    "the spectra miss "
+                    "what the soil transmits; refine the mesh there, or use the spectra up to this frequency",
+                    spoken(highest, "Hz"), reach.group, spoken(reach.frequency, "Hz")));
 }
 
 }  // namespace uplift

@@ -20,7 +20,7 @@ MeshReach lowest_reach(const Case& read);
 double energy_above(const TimeFunction& function, int derivative, double duration, double frequency);
 
 /// Warns of solids whose cells carry shear waves up to a frequency (ten nodes a wavelength) above which a load has more than a twentieth of
-/// its energy.
+/// its energy, or up to which floor spectra are asked for.
 void warn_content(const Case& read, const Built& built, std::vector<std::string>& said);
 
 }  // namespace uplift

@@ -13,33 +13,33 @@ PlasticBulk::PlasticBulk(const Model& model) : model_(model) {
   if (any()) spread_ = model.expansion.cwiseAbs();
 }
 
-Vector PlasticBulk::of_element(const NonlinearSolid& solid, const Vector& full) const {
-  Vector result(solid.unknowns());
+void PlasticBulk::of_element(const NonlinearSolid& solid, const Vector& full, Vector& result) const {
+  result.resize(solid.unknowns());
   const int each = solid.unknowns_per_node();
   Index i = 0;
   for (const int node : solid.nodes())
     for (int c = 0; c < each; ++c) result[i++] = full[model_.space.unknowns() * node + c];
-  return result;
 }
 
 std::span<const double> PlasticBulk::history_of(const One& one, const std::vector<double>& all) const {
   return std::span(all).subspan(one.first, static_cast<std::size_t>(one.solid->num_history()));
 }
 
-void PlasticBulk::gather(PlasticState& state) const {
+void PlasticBulk::clear(PlasticState& state) const {
   state.full.setZero(model_.full_unknowns());
   state.energy = 0;
-  for (const One& one : solids_) {
-    const auto history = history_of(one, state.history);
-    if (!one.solid->has_yielded(history)) continue;
-    const NonlinearSolid::Yielded part = one.solid->yielded(history);
-    const int each = one.solid->unknowns_per_node();
-    Index i = 0;
-    for (const int node : one.solid->nodes())
-      for (int c = 0; c < each; ++c) state.full[model_.space.unknowns() * node + c] += part.force[i++];
-    state.energy += part.energy;
-  }
-  state.force = model_.expansion * state.full;
+}
+
+void PlasticBulk::add_yielded(const One& one, PlasticState& state) const {
+  const auto history = history_of(one, state.history);
+  if (!one.solid->has_yielded(history)) return;
+  NonlinearSolid::Yielded& part = scratch_.yielded;
+  one.solid->find_yielded(history, scratch_.points, part);
+  const int each = one.solid->unknowns_per_node();
+  Index i = 0;
+  for (const int node : one.solid->nodes())
+    for (int c = 0; c < each; ++c) state.full[model_.space.unknowns() * node + c] += part.force[i++];
+  state.energy += part.energy;
 }
 
 PlasticState PlasticBulk::state(std::vector<double> history) const {
@@ -47,26 +47,33 @@ PlasticState PlasticBulk::state(std::vector<double> history) const {
   made.history = std::move(history);
   if (made.history.empty()) made.history.assign(history_, 0.0);
   assert(made.history.size() == history_);
-  gather(made);
+  clear(made);
+  for (const One& one : solids_) add_yielded(one, made);
+  made.force = model_.expansion * made.full;
   return made;
 }
 
 BulkResponse PlasticBulk::respond(const Vector& displacement, MotionInstant at, const std::vector<double>& old, PlasticState& now,
                                   Vector& size) const {
   const Vector full = model_.full(displacement, 0, at);
-  Vector sizes = Vector::Zero(full.size()), force;
+  Vector& sizes = scratch_.sizes;
+  sizes.setZero(full.size());
   now.history.resize(history_);
+  clear(now);
   for (const One& one : solids_) {
+    of_element(*one.solid, full, scratch_.displacement);
     const auto count = static_cast<std::size_t>(one.solid->num_history());
-    const BulkResponse response = one.solid->respond(of_element(*one.solid, full), history_of(one, old),
-                                                     std::span(now.history).subspan(one.first, count), force, nullptr);
+    const BulkResponse response =
+        one.solid->respond(scratch_.displacement, history_of(one, old), std::span(now.history).subspan(one.first, count), scratch_.points,
+                           scratch_.force, nullptr);
     if (!response.converged) return response;
     const int each = one.solid->unknowns_per_node();
     Index i = 0;
     for (const int node : one.solid->nodes())
-      for (int c = 0; c < each; ++c) sizes[model_.space.unknowns() * node + c] += std::abs(force[i++]);
+      for (int c = 0; c < each; ++c) sizes[model_.space.unknowns() * node + c] += std::abs(scratch_.force[i++]);
+    add_yielded(one, now);
   }
-  gather(now);
+  now.force = model_.expansion * now.full;
   size = spread_ * sizes;
   return {};
 }
@@ -75,13 +82,13 @@ Sparse PlasticBulk::softening(const Vector& displacement, MotionInstant at, cons
   const Vector full = model_.full(displacement, 0, at);
   std::vector<Triplet> entries;
   std::vector<double> unused;
-  Vector force;
   Matrix tangent, elastic;
   for (const One& one : solids_) {
     const auto before = history_of(one, old);
     if (!one.solid->yields(before, history_of(one, now.history))) continue;
     unused.assign(before.begin(), before.end());
-    if (!one.solid->respond(of_element(*one.solid, full), before, unused, force, &tangent).converged) continue;
+    of_element(*one.solid, full, scratch_.displacement);
+    if (!one.solid->respond(scratch_.displacement, before, unused, scratch_.points, scratch_.force, &tangent).converged) continue;
     one.solid->form({&elastic, nullptr, nullptr});
     tangent = (0.5 * (tangent + tangent.transpose()) - elastic).eval();
     const auto nodes = one.solid->nodes();
@@ -104,10 +111,14 @@ double PlasticBulk::energy(const Vector& displacement, MotionInstant at, const P
 double PlasticBulk::dissipated(const Vector& from, double before, const PlasticState& old, const Vector& to, double after,
                                const PlasticState& now) const {
   const Vector u0 = model_.full(from, 0, before), u1 = model_.full(to, 0, after);
+  Vector from_element, to_element;
   double sum = 0;
   for (const One& one : solids_) {
     const auto was = history_of(one, old.history), is = history_of(one, now.history);
-    if (one.solid->yields(was, is)) sum += one.solid->dissipated(of_element(*one.solid, u0), was, of_element(*one.solid, u1), is);
+    if (!one.solid->yields(was, is)) continue;
+    of_element(*one.solid, u0, from_element);
+    of_element(*one.solid, u1, to_element);
+    sum += one.solid->dissipated(from_element, was, to_element, is);
   }
   return sum;
 }

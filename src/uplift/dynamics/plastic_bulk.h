@@ -43,14 +43,23 @@ class PlasticBulk {
     const NonlinearSolid* solid;
     std::size_t first;  // of its history
   };
-  Vector of_element(const NonlinearSolid& solid, const Vector& full) const;
+  void of_element(const NonlinearSolid& solid, const Vector& full, Vector& result) const;
   std::span<const double> history_of(const One& one, const std::vector<double>& all) const;
-  void gather(PlasticState& state) const;
+  /// Adds what the history of a solid adds to the linear bulk, where it has ever yielded.
+  void add_yielded(const One& one, PlasticState& state) const;
+  void clear(PlasticState& state) const;
 
   const Model& model_;
   std::vector<One> solids_;
   std::size_t history_ = 0;
   Sparse spread_;  // |T|^T: free x full
+  /// Room for one element at a time. An object of this class serves one thread.
+  struct Scratch {
+    NonlinearSolid::Scratch points;
+    NonlinearSolid::Yielded yielded;
+    Vector displacement, force, sizes;
+  };
+  mutable Scratch scratch_;
 };
 
 }  // namespace uplift

@@ -81,6 +81,7 @@ void check_drucker_prager(const DruckerPragerParameters& p, const Where& where, 
 
 DruckerPrager::DruckerPrager(const DruckerPragerParameters& parameters)
     : parameters_(parameters),
+      elastic_(elastic_matrix(parameters.elastic)),
       eta_(cone_slope(parameters.friction, parameters.fit)),
       eta_bar_(cone_slope(parameters.dilation, parameters.fit)),
       xi_(cohesion_factor(parameters.friction, parameters.fit)) {}
@@ -96,14 +97,13 @@ double DruckerPrager::apex(double accumulated) const {
 
 Stress DruckerPrager::respond(const Strain& strain, std::span<const double> old, std::span<double> now, Mat6* tangent) const {
   assert(old.size() >= num_history && now.size() >= num_history);
-  const double shear = parameters_.elastic.shear(), bulk = parameters_.elastic.bulk();
-  const Mat6 elastic = elastic_matrix(parameters_.elastic);
-  Stress stress = elastic * (strain - ConstMap(old.data(), 6));
+  Stress stress = elastic_ * (strain - ConstMap(old.data(), 6));
   const double over = yield(stress, old[6]);
   std::copy_n(old.begin(), num_history, now.begin());
-  if (tangent) *tangent = elastic;
+  if (tangent) *tangent = elastic_;
   if (over <= 0) return stress;
 
+  const double shear = parameters_.elastic.shear(), bulk = parameters_.elastic.bulk();
   const Stress s = deviator(stress);
   const Trial trial{s, root_j2(s), mean(stress), old[6]};
   const double gamma = over / (shear + bulk * eta_ * eta_bar_ + xi_ * xi_ * parameters_.hardening);
@@ -150,7 +150,7 @@ double DruckerPrager::return_to_apex(const Trial& trial, Stress& stress, Mat6* t
 
 double DruckerPrager::stored_energy(const Strain& strain, std::span<const double> history) const {
   const Strain recoverable = strain - ConstMap(history.data(), 6);
-  return recoverable.dot(elastic_matrix(parameters_.elastic) * recoverable) / 2;
+  return recoverable.dot(elastic_ * recoverable) / 2;
 }
 
 }  // namespace uplift

@@ -41,6 +41,7 @@ class DruckerPrager {
   Stress respond(const Strain& strain, std::span<const double> old, std::span<double> now, Mat6* tangent) const;
   /// sqrt(J2) + eta p - xi c [Pa]; at most zero (round-off) for every stress that respond returns.
   double yield(const Stress& stress, double accumulated) const;
+  const Mat6& elastic() const { return elastic_; }
   /// Recoverable (elastic) energy [J/m3] of a state. All plastic work counts as dissipated; it is never negative.
   double stored_energy(const Strain& strain, std::span<const double> history) const;
   /// Mean stress of the apex [Pa], tension > 0; infinite without friction.
@@ -52,6 +53,7 @@ class DruckerPrager {
   double return_to_apex(const Trial& trial, Stress& stress, Mat6* tangent) const;
 
   DruckerPragerParameters parameters_;
+  Mat6 elastic_;
   double eta_, eta_bar_, xi_;
 };
 

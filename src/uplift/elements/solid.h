@@ -68,6 +68,7 @@ class Solid : public Element {
   int num_modes() const;  // incompatible bubbles
   /// Gradients of the shape functions, then of the bubbles, at the integration points.
   std::vector<PointGradient> gradients() const;
+  void find_gradients(std::vector<PointGradient>& all) const;
   /// Nodal values from values at the integration points, as in node_stress.
   std::vector<Stress> extrapolate(const std::vector<Stress>& at_points) const;
 

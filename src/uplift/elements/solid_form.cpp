@@ -279,16 +279,21 @@ void Solid::form_mass(Matrix& out) const {
 }
 
 std::vector<PointGradient> Solid::gradients() const {
+  std::vector<PointGradient> all;
+  find_gradients(all);
+  return all;
+}
+
+void Solid::find_gradients(std::vector<PointGradient>& all) const {
   const Positions at = gather(nodes_, *coordinates_);
   const SolidTables& tables = solid_tables(cell_);
   const double thickness = dimension_ == 2 ? section_.thickness : 1;
-  std::vector<PointGradient> all(static_cast<std::size_t>(tables.stiffness.points()));
+  all.resize(static_cast<std::size_t>(tables.stiffness.points()));
   with_sizes(cell_, section_.incompatible_modes, [&]<int Dim, int Nodes, int Modes>() {
     const Centre centre = map_centre<Dim, Nodes, Modes>(at, tables);
     for (std::size_t p = 0; p < all.size(); ++p)
       point_gradient<Dim, Nodes, Modes>(at, tables.stiffness, static_cast<int>(p), centre, thickness, all[p]);
   });
-  return all;
 }
 
 }  // namespace uplift

@@ -5,8 +5,8 @@
 #include <cassert>
 #include <cmath>
 
-#include "uplift/elements/solid_rules.h"
 #include "uplift/math/dense.h"
+#include "uplift/math/small.h"
 
 namespace uplift {
 
@@ -15,6 +15,16 @@ namespace {
 /// A point at the apex has no stiffness at all: this share of the elastic one, added to every tangent, keeps matrices regular.
 constexpr double least_elastic_share = 1e-9;
 
+/// strain_of(., Dim a + i) = strain of a unit displacement i of function first + a.
+void find_strain_columns(const PointGradient& at, int dimension, int first, int count, Matrix& strain_of) {
+  for (int c = 0; c < dimension * count; ++c) {
+    const Vec3 unit = Vec3::Unit(c % dimension);
+    Strain column = Strain::Zero();
+    add_strain(at, dimension, first + c / dimension, 1, unit.data(), column);
+    strain_of.col(c) = column;
+  }
+}
+
 SolidSection with_material(SolidSection section, const ElasticMaterial& material) {
   section.material = material;
   return section;
@@ -22,20 +32,14 @@ SolidSection with_material(SolidSection section, const ElasticMaterial& material
 
 }  // namespace
 
-/// The integration points during one update.
-struct NonlinearSolid::Points {
-  std::vector<PointGradient> gradient;
-  std::vector<Stress> stress;
-  std::vector<Mat6> tangent;
-  Vector mode_force;  // N: zero when the modes are in balance
-  double scale = 0;   // N: what mode_force is compared with
-};
-
 double NonlinearSolid::mode_gradient(const PointGradient& at) const {
   double sum = 0;
   for (int i = 0; i < dimension(); ++i)
-    for (int k = 0; k < num_modes(); ++k) sum = std::hypot(sum, at.g[i][static_cast<int>(nodes().size()) + k]);
-  return sum;
+    for (int k = 0; k < num_modes(); ++k) {
+      const double g = at.g[i][static_cast<int>(nodes().size()) + k];
+      sum += g * g;
+    }
+  return std::sqrt(sum);
 }
 
 double NonlinearSolid::node_gradient(const PointGradient& at) const {
@@ -49,10 +53,17 @@ NonlinearSolid::NonlinearSolid(Cell cell, std::span<const int> nodes, Coordinate
                                const DruckerPragerParameters& law)
     : Solid(cell, nodes, std::move(coordinates), with_material(section, law.elastic)), law_(law) {
   assert(dimension() == 3 || section.plane == PlaneState::strain);
+  if (num_modes() == 0) return;
+  Scratch elastic;
+  find_gradients(elastic.gradient);
+  elastic.tangent.assign(elastic.gradient.size(), law_.elastic());
+  const Matrix k = full_tangent(elastic, 0);
+  mode_flexibility_ = inverse(k.bottomRightCorner(num_amplitudes(), num_amplitudes()));
+  modes_of_nodes_ = -mode_flexibility_ * k.bottomLeftCorner(num_amplitudes(), unknowns());
 }
 
 int NonlinearSolid::num_history() const {
-  return first_amplitude() + dimension() * num_modes();
+  return first_amplitude() + num_amplitudes();
 }
 
 Strain NonlinearSolid::strain(const PointGradient& at, const Vector& displacement, const double* amplitudes) const {
@@ -63,59 +74,76 @@ Strain NonlinearSolid::strain(const PointGradient& at, const Vector& displacemen
   return strain;
 }
 
-void NonlinearSolid::evaluate(const Vector& displacement, std::span<const double> old, std::span<double> now, Points& points) const {
+void NonlinearSolid::evaluate(const Vector& displacement, std::span<const double> old, std::span<double> now, Scratch& scratch) const {
   constexpr auto size = static_cast<std::size_t>(DruckerPrager::num_history);
-  const int count = static_cast<int>(nodes().size());
   const double* amplitudes = now.data() + first_amplitude();
-  points.mode_force.setZero(dimension() * num_modes());
-  points.scale = 0;
-  // round-off of the strain under a large rigid motion: 1e-13 of this is a few last digits of the displacement
-  const double noise =
-      0.01 * law_.parameters().elastic.constrained() * displacement.cwiseAbs().maxCoeff() * node_gradient(points.gradient.front());
-  for (std::size_t p = 0; p < points.gradient.size(); ++p) {
-    const PointGradient& at = points.gradient[p];
-    points.stress[p] =
-        law_.respond(strain(at, displacement, amplitudes), old.subspan(size * p, size), now.subspan(size * p, size), &points.tangent[p]);
-    if (num_modes() == 0) continue;
-    add_force(at, dimension(), count, num_modes(), points.stress[p], points.mode_force.data());
-    points.scale += at.volume * mode_gradient(at) * (points.stress[p].norm() + noise);
-  }
+  for (std::size_t p = 0; p < scratch.gradient.size(); ++p)
+    scratch.stress[p] = law_.respond(strain(scratch.gradient[p], displacement, amplitudes), old.subspan(size * p, size),
+                                     now.subspan(size * p, size), &scratch.tangent[p]);
+  scratch.mode_force.setZero(num_amplitudes());
+  if (num_modes() > 0)
+    for (std::size_t p = 0; p < scratch.gradient.size(); ++p)
+      add_force(scratch.gradient[p], dimension(), static_cast<int>(nodes().size()), num_modes(), scratch.stress[p],
+                scratch.mode_force.data());
 }
 
-Matrix NonlinearSolid::full_tangent(const Points& points, double elastic_share, int first) const {
-  const Mat6 elastic = elastic_share * elastic_matrix(law_.parameters().elastic);
-  const int d = dimension(), functions = static_cast<int>(nodes().size()) + num_modes() - first;
+Matrix NonlinearSolid::full_tangent(const Scratch& scratch, double elastic_share) const {
+  const int d = dimension(), functions = static_cast<int>(nodes().size()) + num_modes();
   Matrix k = Matrix::Zero(d * functions, d * functions), strain_of(6, d * functions);
-  for (std::size_t p = 0; p < points.gradient.size(); ++p) {
-    const PointGradient& at = points.gradient[p];
-    for (int c = 0; c < d * functions; ++c) {
-      const Vec3 unit = Vec3::Unit(c % d);
-      Strain column = Strain::Zero();
-      add_strain(at, d, first + c / d, 1, unit.data(), column);
-      strain_of.col(c) = column;
-    }
-    k += at.volume * strain_of.transpose() * ((points.tangent[p] + elastic) * strain_of);
+  for (std::size_t p = 0; p < scratch.gradient.size(); ++p) {
+    const PointGradient& at = scratch.gradient[p];
+    find_strain_columns(at, d, 0, functions, strain_of);
+    k += at.volume * strain_of.transpose() * ((scratch.tangent[p] + elastic_share * law_.elastic()) * strain_of);
   }
   return k;
 }
 
+void NonlinearSolid::find_mode_tangent(Scratch& scratch, double elastic_share) const {
+  const int n = num_amplitudes();
+  scratch.mode_strain.resize(6, n);
+  scratch.mode_stress.resize(6, n);
+  scratch.mode_stiffness.setZero(n, n);
+  for (std::size_t p = 0; p < scratch.gradient.size(); ++p) {
+    const PointGradient& at = scratch.gradient[p];
+    find_strain_columns(at, dimension(), static_cast<int>(nodes().size()), num_modes(), scratch.mode_strain);
+    const Mat6 tangent = at.volume * (scratch.tangent[p] + elastic_share * law_.elastic());
+    scratch.mode_stress.noalias() = tangent.lazyProduct(scratch.mode_strain);
+    scratch.mode_stiffness.noalias() += scratch.mode_strain.transpose().lazyProduct(scratch.mode_stress);
+  }
+}
+
+// No force works on the modes: K_aa a + K_au u - int G^T D e dV = 0 with the plastic strains e.
+void NonlinearSolid::add_plastic_amplitudes(std::span<const double> history, const Scratch& scratch, double* amplitudes) const {
+  const int n = num_amplitudes();
+  double force[3 * 3] = {};
+  for (std::size_t p = 0; p < scratch.gradient.size(); ++p)
+    add_force(scratch.gradient[p], dimension(), static_cast<int>(nodes().size()), num_modes(),
+              law_.elastic() * ConstMap(history.data() + DruckerPrager::num_history * p, 6), force);
+  Map(amplitudes, n).noalias() += mode_flexibility_.lazyProduct(ConstMap(force, n));
+}
+
 BulkResponse NonlinearSolid::balance_modes(const Vector& displacement, std::span<const double> old, std::span<double> now,
-                                           Points& points) const {
-  const Index n = dimension() * num_modes();
-  const auto first = static_cast<std::size_t>(first_amplitude());
-  std::copy(old.begin() + static_cast<std::ptrdiff_t>(first), old.end(), now.begin() + static_cast<std::ptrdiff_t>(first));
-  Map amplitudes(now.data() + first, n);
-  evaluate(displacement, old, now, points);
+                                           Scratch& scratch) const {
+  const int n = num_amplitudes();
+  Map amplitudes(now.data() + first_amplitude(), n);
+  // round-off of the strain under a large rigid motion: 1e-13 of this is a few last digits of the displacement
+  const double noise =
+      0.01 * law_.parameters().elastic.constrained() * displacement.cwiseAbs().maxCoeff() * node_gradient(scratch.gradient.front());
   double share = least_elastic_share, floor = least_elastic_share;
   for (int iteration = 0; iteration < 200; ++iteration) {
-    const double rest = points.mode_force.norm();
-    if (rest <= 1e-13 * points.scale) return {};
-    amplitudes -= PartialLu(full_tangent(points, share, static_cast<int>(nodes().size()))).solve(points.mode_force);
-    evaluate(displacement, old, now, points);
-    if (points.mode_force.norm() < rest) {
+    double scale = 0;  // N
+    for (std::size_t p = 0; p < scratch.gradient.size(); ++p)
+      scale += scratch.gradient[p].volume * mode_gradient(scratch.gradient[p]) * (scratch.stress[p].norm() + noise);
+    const double rest = scratch.mode_force.norm();
+    if (rest <= 1e-13 * scale) return {};
+    find_mode_tangent(scratch, share);
+    if (!small::gauss_solve<0>(n, scratch.mode_stiffness.data(), scratch.mode_force.data())) break;
+    amplitudes -= scratch.mode_force;
+    evaluate(displacement, old, now, scratch);
+    if (scratch.mode_force.norm() < rest) {
       share = std::max(share / 2, floor);
     } else {
-      if (rest <= 1e-10 * points.scale) return {};  // round-off
+      if (rest <= 1e-10 * scale) return {};  // round-off
       share = std::clamp(4 * share, 0.01, 2.0);
       floor = std::clamp(2 * floor, 1e-3, 0.5);
     }
@@ -123,23 +151,26 @@ BulkResponse NonlinearSolid::balance_modes(const Vector& displacement, std::span
   return {false, "the incompatible modes of a yielding solid element find no balance in 200 iterations"};
 }
 
-BulkResponse NonlinearSolid::respond(const Vector& displacement, std::span<const double> old, std::span<double> now, Vector& force,
-                                     Matrix* tangent) const {
+BulkResponse NonlinearSolid::respond(const Vector& displacement, std::span<const double> old, std::span<double> now, Scratch& scratch,
+                                     Vector& force, Matrix* tangent) const {
   assert(displacement.size() == unknowns());
   assert(static_cast<int>(old.size()) == num_history() && static_cast<int>(now.size()) == num_history());
-  const auto count = static_cast<std::size_t>(num_points());
-  Points points{gradients(), std::vector<Stress>(count), std::vector<Mat6>(count), {}};
+  find_gradients(scratch.gradient);
+  scratch.stress.resize(scratch.gradient.size());
+  scratch.tangent.resize(scratch.gradient.size());
   BulkResponse outcome;
-  if (num_modes() > 0)
-    outcome = balance_modes(displacement, old, now, points);
-  else
-    evaluate(displacement, old, now, points);
+  if (num_modes() > 0) {
+    Map(now.data() + first_amplitude(), num_amplitudes()).noalias() = modes_of_nodes_.lazyProduct(displacement);
+    if (has_yielded(old)) add_plastic_amplitudes(old, scratch, now.data() + first_amplitude());
+  }
+  evaluate(displacement, old, now, scratch);
+  if (num_modes() > 0 && yields(old, now)) outcome = balance_modes(displacement, old, now, scratch);
 
   force.setZero(unknowns());
-  for (std::size_t p = 0; p < count; ++p)
-    add_force(points.gradient[p], dimension(), 0, static_cast<int>(nodes().size()), points.stress[p], force.data());
+  for (std::size_t p = 0; p < scratch.gradient.size(); ++p)
+    add_force(scratch.gradient[p], dimension(), 0, static_cast<int>(nodes().size()), scratch.stress[p], force.data());
   if (!tangent) return outcome;
-  const Matrix k = full_tangent(points, least_elastic_share);
+  const Matrix k = full_tangent(scratch, least_elastic_share);
   const Index keep = unknowns(), modes = k.rows() - keep;
   *tangent = k.topLeftCorner(keep, keep);
   if (modes > 0)
@@ -191,32 +222,24 @@ bool NonlinearSolid::yields(std::span<const double> old, std::span<const double>
 // With the amplitudes of the linear solid taken off, the modes a answer the plastic strains e alone: int G^T D (G a - e) dV = 0. The stress
 // s = D (G a - e) is what yielding adds to the linear one, which is in balance with the modes as s is; so the mixed terms of the energy are
 // those with the nodes.
-NonlinearSolid::Yielded NonlinearSolid::yielded(std::span<const double> history) const {
+void NonlinearSolid::find_yielded(std::span<const double> history, Scratch& scratch, Yielded& made) const {
   const int count = static_cast<int>(nodes().size()), d = dimension();
-  const Mat6 elastic = elastic_matrix(law_.parameters().elastic);
-  Points points{gradients(), {}, std::vector<Mat6>(static_cast<std::size_t>(num_points()), Mat6::Zero()), {}};
-  const auto plastic = [&](std::size_t p) { return ConstMap(history.data() + DruckerPrager::num_history * p, 6); };
-  Vector amplitudes = Vector::Zero(d * num_modes());
-  if (num_modes() > 0) {
-    for (std::size_t p = 0; p < points.gradient.size(); ++p)
-      add_force(points.gradient[p], d, count, num_modes(), elastic * plastic(p), amplitudes.data());
-    amplitudes = PartialLu(full_tangent(points, 1, count)).solve(amplitudes).eval();
-  }
-  Yielded made;
+  find_gradients(scratch.gradient);
+  double amplitudes[3 * 3] = {};
+  if (num_modes() > 0) add_plastic_amplitudes(history, scratch, amplitudes);
   made.force.setZero(unknowns());
-  for (std::size_t p = 0; p < points.gradient.size(); ++p) {
-    const PointGradient& at = points.gradient[p];
-    Strain strain = -plastic(p);
-    add_strain(at, d, count, num_modes(), amplitudes.data(), strain);
-    const Stress stress = elastic * strain;
+  made.energy = 0;
+  for (std::size_t p = 0; p < scratch.gradient.size(); ++p) {
+    const PointGradient& at = scratch.gradient[p];
+    Strain strain = -ConstMap(history.data() + DruckerPrager::num_history * p, 6);
+    add_strain(at, d, count, num_modes(), amplitudes, strain);
+    const Stress stress = law_.elastic() * strain;
     add_force(at, d, 0, count, stress, made.force.data());
     made.energy += at.volume * stress.dot(strain) / 2;
   }
-  return made;
 }
 
 double NonlinearSolid::dissipated(const Vector& from, std::span<const double> old, const Vector& to, std::span<const double> now) const {
-  const Mat6 elastic = elastic_matrix(law_.parameters().elastic);
   double sum = 0;
   std::size_t first = 0;
   for (const PointGradient& at : gradients()) {
@@ -224,7 +247,7 @@ double NonlinearSolid::dissipated(const Vector& from, std::span<const double> ol
     first += DruckerPrager::num_history;
     const Strain recoverable =
         strain(at, from, old.data() + first_amplitude()) + strain(at, to, now.data() + first_amplitude()) - before - after;
-    sum += at.volume * (elastic * recoverable).dot(after - before) / 2;
+    sum += at.volume * (law_.elastic() * recoverable).dot(after - before) / 2;
   }
   return sum;
 }

@@ -3,6 +3,7 @@
 
 #include "uplift/elements/drucker_prager.h"
 #include "uplift/elements/solid.h"
+#include "uplift/elements/solid_rules.h"
 
 namespace uplift {
 
@@ -14,19 +15,29 @@ struct BulkResponse {
 
 /// Solid of Drucker-Prager material: plane strain and three dimensions. `form` gives the elastic stiffness (the first tangent), the mass
 /// and so on; the outer Newton calls `respond`. The incompatible modes stay inside the element: their amplitudes are part of the history,
-/// and respond solves for them so that no force works on them: Newton's method with a share of the elastic stiffness that grows when a step
-/// does not help (the kinks between elastic, cone and apex) and fades when it does.
+/// and respond solves for them so that no force works on them. Where no point yields they are linear in the displacements and the plastic
+/// strains; else by Newton's method with a share of the elastic stiffness that grows when a step does not help (the kinks between elastic,
+/// cone and apex) and fades when it does.
 class NonlinearSolid : public Solid {
  public:
   /// section.material is not looked at: the elastic part is law.elastic. Plane stress is not available (assertion).
   NonlinearSolid(Cell cell, std::span<const int> nodes, Coordinates coordinates, SolidSection section, const DruckerPragerParameters& law);
+
+  /// Room for the integration points of one element during an update. Updates allocate nothing once it has served the largest element.
+  struct Scratch {
+    std::vector<PointGradient> gradient;
+    std::vector<Stress> stress;
+    std::vector<Mat6> tangent;
+    Vector mode_force;  // N: zero when the modes are in balance
+    Matrix mode_strain, mode_stress, mode_stiffness;
+  };
 
   /// Numbers that the element remembers; all zero in the natural state: DruckerPrager::num_history of every integration point, then the
   /// amplitudes of the modes [m].
   int num_history() const;
   /// Internal force [N] and consistent tangent [N/m] (null: not wanted) for nodal displacements [m], from the history of the last accepted
   /// state; fills `now`. The tangent is not symmetric when the flow is not associated.
-  BulkResponse respond(const Vector& displacement, std::span<const double> old, std::span<double> now, Vector& force,
+  BulkResponse respond(const Vector& displacement, std::span<const double> old, std::span<double> now, Scratch& scratch, Vector& force,
                        Matrix* tangent) const;
 
   /// Stress at the integration points and at the nodes of a state.
@@ -42,7 +53,7 @@ class NonlinearSolid : public Solid {
     Vector force;       // N
     double energy = 0;  // J
   };
-  Yielded yielded(std::span<const double> history) const;
+  void find_yielded(std::span<const double> history, Scratch& scratch, Yielded& made) const;
   /// True when a point has ever yielded; when one has between two histories.
   bool has_yielded(std::span<const double> history) const;
   bool yields(std::span<const double> old, std::span<const double> now) const;
@@ -51,17 +62,23 @@ class NonlinearSolid : public Solid {
   double dissipated(const Vector& from, std::span<const double> old, const Vector& to, std::span<const double> now) const;
 
  private:
-  struct Points;
   Strain strain(const PointGradient& at, const Vector& displacement, const double* amplitudes) const;
-  void evaluate(const Vector& displacement, std::span<const double> old, std::span<double> now, Points& points) const;
-  /// Of the nodes and the modes; of those from function `first` on.
-  Matrix full_tangent(const Points& points, double elastic_share, int first = 0) const;
+  void evaluate(const Vector& displacement, std::span<const double> old, std::span<double> now, Scratch& scratch) const;
+  /// Of the nodes and the modes.
+  Matrix full_tangent(const Scratch& scratch, double elastic_share) const;
+  /// Of the modes alone, into scratch.mode_stiffness.
+  void find_mode_tangent(Scratch& scratch, double elastic_share) const;
+  /// Adds the amplitudes that the plastic strains cause by themselves in an elastic element; scratch.gradient is that of the element.
+  void add_plastic_amplitudes(std::span<const double> history, const Scratch& scratch, double* amplitudes) const;
   double mode_gradient(const PointGradient& at) const;  // 1/m: size of the bubbles' gradients
   double node_gradient(const PointGradient& at) const;  // 1/m: largest of the nodes
-  BulkResponse balance_modes(const Vector& displacement, std::span<const double> old, std::span<double> now, Points& points) const;
+  BulkResponse balance_modes(const Vector& displacement, std::span<const double> old, std::span<double> now, Scratch& scratch) const;
+  int num_amplitudes() const { return dimension() * num_modes(); }
   int first_amplitude() const { return DruckerPrager::num_history * num_points(); }
 
   DruckerPrager law_;
+  Matrix modes_of_nodes_;    // amplitudes of the elastic element for nodal displacements: -K_aa^-1 K_au
+  Matrix mode_flexibility_;  // m/N: K_aa^-1 of the elastic element
 };
 
 }  // namespace uplift

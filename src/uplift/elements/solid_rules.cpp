@@ -50,7 +50,6 @@ SolidTables make_tables(Cell cell) {
 }
 
 /// Places of the strains (xx, yy, zz, xy, yz, zx) in a symmetric tensor.
-constexpr int voigt[3][3] = {{0, 3, 5}, {3, 1, 4}, {5, 4, 2}};
 
 }  // namespace
 
@@ -68,18 +67,40 @@ int num_bubbles(Cell cell) {
 }
 
 void add_strain(const PointGradient& at, int dimension, int first, int count, const double* u, Strain& strain) {
-  for (int a = 0; a < count; ++a)
-    for (int i = 0; i < dimension; ++i)
-      for (int j = 0; j < dimension; ++j) strain[voigt[i][j]] += at.g[j][first + a] * u[dimension * a + i];
+  const double *x = at.g[0] + first, *y = at.g[1] + first, *z = at.g[2] + first;
+  if (dimension == 2) {
+    for (int a = 0; a < count; ++a, u += 2) {
+      strain[0] += x[a] * u[0];
+      strain[1] += y[a] * u[1];
+      strain[3] += y[a] * u[0] + x[a] * u[1];
+    }
+    return;
+  }
+  for (int a = 0; a < count; ++a, u += 3) {
+    strain[0] += x[a] * u[0];
+    strain[1] += y[a] * u[1];
+    strain[2] += z[a] * u[2];
+    strain[3] += y[a] * u[0] + x[a] * u[1];
+    strain[4] += z[a] * u[1] + y[a] * u[2];
+    strain[5] += z[a] * u[0] + x[a] * u[2];
+  }
 }
 
 void add_force(const PointGradient& at, int dimension, int first, int count, const Stress& stress, double* force) {
-  for (int a = 0; a < count; ++a)
-    for (int i = 0; i < dimension; ++i) {
-      double sum = 0;
-      for (int j = 0; j < dimension; ++j) sum += stress[voigt[i][j]] * at.g[j][first + a];
-      force[dimension * a + i] += at.volume * sum;
+  const double *x = at.g[0] + first, *y = at.g[1] + first, *z = at.g[2] + first;
+  const Stress s = at.volume * stress;
+  if (dimension == 2) {
+    for (int a = 0; a < count; ++a, force += 2) {
+      force[0] += s[0] * x[a] + s[3] * y[a];
+      force[1] += s[3] * x[a] + s[1] * y[a];
     }
+    return;
+  }
+  for (int a = 0; a < count; ++a, force += 3) {
+    force[0] += s[0] * x[a] + s[3] * y[a] + s[5] * z[a];
+    force[1] += s[3] * x[a] + s[1] * y[a] + s[4] * z[a];
+    force[2] += s[5] * x[a] + s[4] * y[a] + s[2] * z[a];
+  }
 }
 
 }  // namespace uplift
