@@ -5,7 +5,9 @@
 #include <cstdlib>
 
 #include "../property/oracle_models.h"
+#include "../unit/solid_support.h"
 #include "uplift/dynamics/bulk.h"
+#include "uplift/elements/solid_nonlinear.h"
 
 // What a run costs in operations that can be counted: factorisations, back-solves, allocations.
 namespace {
@@ -154,6 +156,42 @@ TEST(Counters, NoAllocationOfFloors) {
     whole.plan.floors = {floor};
     EXPECT_EQ(allocated_by_steps(whole, {rule}), 0) << rule;
     EXPECT_GT(whole.run().floors.front().acceleration.size(), 500U);
+  }
+}
+
+/// Updates of yielding solids use the room that the first one took: elastic ones, those on the cone and those at the apex.
+TEST(Counters, NoAllocationOfYieldingSolids) {
+  if (!can_count) GTEST_SKIP() << "allocations cannot be counted under the address sanitizer";
+  DruckerPragerParameters law;
+  law.elastic = {5e7, 0.3, 1900};
+  law.cohesion = 1e4;
+  law.friction = 0.5;
+  law.dilation = 0.1;
+  for (const Cell cell : {Cell::quad4, Cell::hex8, Cell::tet10}) {
+    std::vector<int> nodes;
+    auto positions = std::make_shared<std::vector<Vec3>>();
+    for (int a = 0; a < info(cell).nodes; ++a) nodes.push_back(a), positions->push_back(local_node(cell, a));
+    const NonlinearSolid solid(cell, nodes, positions, SolidSection{}, law);
+    std::vector<double> natural(static_cast<std::size_t>(solid.num_history()), 0.0), old = natural, now = natural;
+    NonlinearSolid::Scratch scratch;
+    NonlinearSolid::Yielded yielded;
+    Vector force, wave(solid.unknowns());
+    for (Index i = 0; i < wave.size(); ++i) wave[i] = std::sin(2.0 * static_cast<double>(i + 1));
+    for (std::size_t a = 0; a < positions->size(); ++a)  // sheared
+      wave[solid.dimension() * static_cast<Index>(a)] += 3 * (*positions)[a].y();
+    ASSERT_TRUE(solid.respond(wave * 1e-2, natural, old, scratch, force, nullptr).converged);
+    ASSERT_TRUE(solid.has_yielded(old));
+    solid.find_yielded(old, scratch, yielded);
+    for (const double size : {0.0, 1e-6, 3e-3, 3e-2, -3e-2}) {
+      const Vector displacement = size * wave;
+      allocations = 0;
+      counting = true;
+      const bool good = solid.respond(displacement, old, now, scratch, force, nullptr).converged;
+      solid.find_yielded(now, scratch, yielded);
+      counting = false;
+      EXPECT_TRUE(good);
+      EXPECT_EQ(allocations, 0) << info(cell).name << ", " << size;
+    }
   }
 }
 
