@@ -30,16 +30,12 @@ void PlasticBulk::clear(PlasticState& state) const {
   state.energy = 0;
 }
 
-void PlasticBulk::add_yielded(const One& one, PlasticState& state) const {
-  const auto history = history_of(one, state.history);
-  if (!one.solid->has_yielded(history)) return;
-  NonlinearSolid::Yielded& part = scratch_.yielded;
-  one.solid->find_yielded(history, scratch_.points, part);
-  const int each = one.solid->unknowns_per_node();
+void PlasticBulk::add_yielded(const NonlinearSolid& solid, PlasticState& state) const {
+  const int each = solid.unknowns_per_node();
   Index i = 0;
-  for (const int node : one.solid->nodes())
-    for (int c = 0; c < each; ++c) state.full[model_.space.unknowns() * node + c] += part.force[i++];
-  state.energy += part.energy;
+  for (const int node : solid.nodes())
+    for (int c = 0; c < each; ++c) state.full[model_.space.unknowns() * node + c] += scratch_.yielded.force[i++];
+  state.energy += scratch_.yielded.energy;
 }
 
 PlasticState PlasticBulk::state(std::vector<double> history) const {
@@ -48,7 +44,12 @@ PlasticState PlasticBulk::state(std::vector<double> history) const {
   if (made.history.empty()) made.history.assign(history_, 0.0);
   assert(made.history.size() == history_);
   clear(made);
-  for (const One& one : solids_) add_yielded(one, made);
+  for (const One& one : solids_) {
+    const auto history_of_one = history_of(one, made.history);
+    if (!one.solid->has_yielded(history_of_one)) continue;
+    one.solid->find_yielded(history_of_one, scratch_.points, scratch_.yielded);
+    add_yielded(*one.solid, made);
+  }
   made.force = model_.expansion * made.full;
   return made;
 }
@@ -62,16 +63,17 @@ BulkResponse PlasticBulk::respond(const Vector& displacement, MotionInstant at, 
   clear(now);
   for (const One& one : solids_) {
     of_element(*one.solid, full, scratch_.displacement);
-    const auto count = static_cast<std::size_t>(one.solid->num_history());
+    const auto history = std::span(now.history).subspan(one.first, static_cast<std::size_t>(one.solid->num_history()));
     const BulkResponse response =
-        one.solid->respond(scratch_.displacement, history_of(one, old), std::span(now.history).subspan(one.first, count), scratch_.points,
-                           scratch_.force, nullptr);
+        one.solid->respond(scratch_.displacement, history_of(one, old), history, scratch_.points, scratch_.force, nullptr);
     if (!response.converged) return response;
     const int each = one.solid->unknowns_per_node();
     Index i = 0;
     for (const int node : one.solid->nodes())
       for (int c = 0; c < each; ++c) sizes[model_.space.unknowns() * node + c] += std::abs(scratch_.force[i++]);
-    add_yielded(one, now);
+    if (!one.solid->has_yielded(history)) continue;
+    one.solid->find_yielded_again(history, scratch_.points, scratch_.yielded);
+    add_yielded(*one.solid, now);
   }
   now.force = model_.expansion * now.full;
   size = spread_ * sizes;

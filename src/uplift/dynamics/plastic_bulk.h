@@ -45,8 +45,8 @@ class PlasticBulk {
   };
   void of_element(const NonlinearSolid& solid, const Vector& full, Vector& result) const;
   std::span<const double> history_of(const One& one, const std::vector<double>& all) const;
-  /// Adds what the history of a solid adds to the linear bulk, where it has ever yielded.
-  void add_yielded(const One& one, PlasticState& state) const;
+  /// Adds the part scratch_.yielded of a solid.
+  void add_yielded(const NonlinearSolid& solid, PlasticState& state) const;
   void clear(PlasticState& state) const;
 
   const Model& model_;

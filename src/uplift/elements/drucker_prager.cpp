@@ -39,7 +39,7 @@ double cohesion_factor(double angle, DruckerPragerParameters::Fit fit) {
 }
 
 double mean(const Stress& stress) {
-  return stress.head<3>().sum() / 3;
+  return (stress[0] + stress[1] + stress[2]) / 3;
 }
 
 Stress deviator(const Stress& stress) {
@@ -49,7 +49,7 @@ Stress deviator(const Stress& stress) {
 }
 
 double root_j2(const Stress& s) {
-  return std::sqrt(s.head<3>().squaredNorm() / 2 + s.tail<3>().squaredNorm());
+  return std::sqrt((s[0] * s[0] + s[1] * s[1] + s[2] * s[2]) / 2 + s[3] * s[3] + s[4] * s[4] + s[5] * s[5]);
 }
 
 /// The unit tensor as a stress; its outer product with itself.

@@ -15,16 +15,6 @@ namespace {
 /// A point at the apex has no stiffness at all: this share of the elastic one, added to every tangent, keeps matrices regular.
 constexpr double least_elastic_share = 1e-9;
 
-/// strain_of(., Dim a + i) = strain of a unit displacement i of function first + a.
-void find_strain_columns(const PointGradient& at, int dimension, int first, int count, Matrix& strain_of) {
-  for (int c = 0; c < dimension * count; ++c) {
-    const Vec3 unit = Vec3::Unit(c % dimension);
-    Strain column = Strain::Zero();
-    add_strain(at, dimension, first + c / dimension, 1, unit.data(), column);
-    strain_of.col(c) = column;
-  }
-}
-
 SolidSection with_material(SolidSection section, const ElasticMaterial& material) {
   section.material = material;
   return section;
@@ -35,7 +25,7 @@ SolidSection with_material(SolidSection section, const ElasticMaterial& material
 double NonlinearSolid::mode_gradient(const PointGradient& at) const {
   double sum = 0;
   for (int i = 0; i < dimension(); ++i)
-    for (int k = 0; k < num_modes(); ++k) {
+    for (int k = 0; k < modes_; ++k) {
       const double g = at.g[i][static_cast<int>(nodes().size()) + k];
       sum += g * g;
     }
@@ -51,7 +41,10 @@ double NonlinearSolid::node_gradient(const PointGradient& at) const {
 
 NonlinearSolid::NonlinearSolid(Cell cell, std::span<const int> nodes, Coordinates coordinates, SolidSection section,
                                const DruckerPragerParameters& law)
-    : Solid(cell, nodes, std::move(coordinates), with_material(section, law.elastic)), law_(law) {
+    : Solid(cell, nodes, std::move(coordinates), with_material(section, law.elastic)),
+      law_(law),
+      points_(num_points()),
+      modes_(num_modes()) {
   assert(dimension() == 3 || section.plane == PlaneState::strain);
   if (num_modes() == 0) return;
   Scratch elastic;
@@ -70,45 +63,51 @@ Strain NonlinearSolid::strain(const PointGradient& at, const Vector& displacemen
   const int count = static_cast<int>(nodes().size());
   Strain strain = Strain::Zero();
   add_strain(at, dimension(), 0, count, displacement.data(), strain);
-  add_strain(at, dimension(), count, num_modes(), amplitudes, strain);
+  add_strain(at, dimension(), count, modes_, amplitudes, strain);
   return strain;
 }
 
-void NonlinearSolid::evaluate(const Vector& displacement, std::span<const double> old, std::span<double> now, Scratch& scratch) const {
+void NonlinearSolid::evaluate(const Vector& displacement, std::span<const double> old, std::span<double> now, bool tangents,
+                              Scratch& scratch) const {
   constexpr auto size = static_cast<std::size_t>(DruckerPrager::num_history);
   const double* amplitudes = now.data() + first_amplitude();
   for (std::size_t p = 0; p < scratch.gradient.size(); ++p)
     scratch.stress[p] = law_.respond(strain(scratch.gradient[p], displacement, amplitudes), old.subspan(size * p, size),
-                                     now.subspan(size * p, size), &scratch.tangent[p]);
+                                     now.subspan(size * p, size), tangents ? &scratch.tangent[p] : nullptr);
   scratch.mode_force.setZero(num_amplitudes());
-  if (num_modes() > 0)
+  if (modes_ > 0)
     for (std::size_t p = 0; p < scratch.gradient.size(); ++p)
-      add_force(scratch.gradient[p], dimension(), static_cast<int>(nodes().size()), num_modes(), scratch.stress[p],
-                scratch.mode_force.data());
+      add_force(scratch.gradient[p], dimension(), static_cast<int>(nodes().size()), modes_, scratch.stress[p], scratch.mode_force.data());
 }
 
 Matrix NonlinearSolid::full_tangent(const Scratch& scratch, double elastic_share) const {
-  const int d = dimension(), functions = static_cast<int>(nodes().size()) + num_modes();
+  const int d = dimension(), functions = static_cast<int>(nodes().size()) + modes_;
   Matrix k = Matrix::Zero(d * functions, d * functions), strain_of(6, d * functions);
   for (std::size_t p = 0; p < scratch.gradient.size(); ++p) {
     const PointGradient& at = scratch.gradient[p];
-    find_strain_columns(at, d, 0, functions, strain_of);
+    for (int c = 0; c < d * functions; ++c) {
+      const Vec3 unit = Vec3::Unit(c % d);
+      Strain column = Strain::Zero();
+      add_strain(at, d, c / d, 1, unit.data(), column);
+      strain_of.col(c) = column;
+    }
     k += at.volume * strain_of.transpose() * ((scratch.tangent[p] + elastic_share * law_.elastic()) * strain_of);
   }
   return k;
 }
 
 void NonlinearSolid::find_mode_tangent(Scratch& scratch, double elastic_share) const {
-  const int n = num_amplitudes();
-  scratch.mode_strain.resize(6, n);
-  scratch.mode_stress.resize(6, n);
+  constexpr int voigt[3][3] = {{0, 3, 5}, {3, 1, 4}, {5, 4, 2}};
+  const int first = static_cast<int>(nodes().size()), n = num_amplitudes(), d = dimension();
   scratch.mode_stiffness.setZero(n, n);
   for (std::size_t p = 0; p < scratch.gradient.size(); ++p) {
     const PointGradient& at = scratch.gradient[p];
-    find_strain_columns(at, dimension(), static_cast<int>(nodes().size()), num_modes(), scratch.mode_strain);
-    const Mat6 tangent = at.volume * (scratch.tangent[p] + elastic_share * law_.elastic());
-    scratch.mode_stress.noalias() = tangent.lazyProduct(scratch.mode_strain);
-    scratch.mode_stiffness.noalias() += scratch.mode_strain.transpose().lazyProduct(scratch.mode_stress);
+    const Mat6 tangent = scratch.tangent[p] + elastic_share * law_.elastic();
+    for (int c = 0; c < n; ++c) {
+      Stress stress = at.g[0][first + c / d] * tangent.col(voigt[c % d][0]);
+      for (int j = 1; j < d; ++j) stress += at.g[j][first + c / d] * tangent.col(voigt[c % d][j]);
+      add_force(at, d, first, modes_, stress, scratch.mode_stiffness.col(c).data());
+    }
   }
 }
 
@@ -117,7 +116,7 @@ void NonlinearSolid::add_plastic_amplitudes(std::span<const double> history, con
   const int n = num_amplitudes();
   double force[3 * 3] = {};
   for (std::size_t p = 0; p < scratch.gradient.size(); ++p)
-    add_force(scratch.gradient[p], dimension(), static_cast<int>(nodes().size()), num_modes(),
+    add_force(scratch.gradient[p], dimension(), static_cast<int>(nodes().size()), modes_,
               law_.elastic() * ConstMap(history.data() + DruckerPrager::num_history * p, 6), force);
   Map(amplitudes, n).noalias() += mode_flexibility_.lazyProduct(ConstMap(force, n));
 }
@@ -136,10 +135,11 @@ BulkResponse NonlinearSolid::balance_modes(const Vector& displacement, std::span
       scale += scratch.gradient[p].volume * mode_gradient(scratch.gradient[p]) * (scratch.stress[p].norm() + noise);
     const double rest = scratch.mode_force.norm();
     if (rest <= 1e-13 * scale) return {};
+    if (iteration == 0) evaluate(displacement, old, now, true, scratch);  // the first response came without tangents
     find_mode_tangent(scratch, share);
     if (!small::gauss_solve<0>(n, scratch.mode_stiffness.data(), scratch.mode_force.data())) break;
     amplitudes -= scratch.mode_force;
-    evaluate(displacement, old, now, scratch);
+    evaluate(displacement, old, now, true, scratch);
     if (scratch.mode_force.norm() < rest) {
       share = std::max(share / 2, floor);
     } else {
@@ -159,12 +159,12 @@ BulkResponse NonlinearSolid::respond(const Vector& displacement, std::span<const
   scratch.stress.resize(scratch.gradient.size());
   scratch.tangent.resize(scratch.gradient.size());
   BulkResponse outcome;
-  if (num_modes() > 0) {
+  if (modes_ > 0) {
     Map(now.data() + first_amplitude(), num_amplitudes()).noalias() = modes_of_nodes_.lazyProduct(displacement);
     if (has_yielded(old)) add_plastic_amplitudes(old, scratch, now.data() + first_amplitude());
   }
-  evaluate(displacement, old, now, scratch);
-  if (num_modes() > 0 && yields(old, now)) outcome = balance_modes(displacement, old, now, scratch);
+  evaluate(displacement, old, now, tangent != nullptr, scratch);
+  if (modes_ > 0 && yields(old, now)) outcome = balance_modes(displacement, old, now, scratch);
 
   force.setZero(unknowns());
   for (std::size_t p = 0; p < scratch.gradient.size(); ++p)
@@ -206,13 +206,13 @@ double NonlinearSolid::stored_energy(const Vector& displacement, std::span<const
 }
 
 bool NonlinearSolid::has_yielded(std::span<const double> history) const {
-  for (int p = 0; p < num_points(); ++p)
+  for (int p = 0; p < points_; ++p)
     if (history[static_cast<std::size_t>(DruckerPrager::num_history * p + 6)] > 0) return true;
   return false;
 }
 
 bool NonlinearSolid::yields(std::span<const double> old, std::span<const double> now) const {
-  for (int p = 0; p < num_points(); ++p) {
+  for (int p = 0; p < points_; ++p) {
     const auto at = static_cast<std::size_t>(DruckerPrager::num_history * p + 6);
     if (now[at] > old[at]) return true;
   }
@@ -223,16 +223,20 @@ bool NonlinearSolid::yields(std::span<const double> old, std::span<const double>
 // s = D (G a - e) is what yielding adds to the linear one, which is in balance with the modes as s is; so the mixed terms of the energy are
 // those with the nodes.
 void NonlinearSolid::find_yielded(std::span<const double> history, Scratch& scratch, Yielded& made) const {
-  const int count = static_cast<int>(nodes().size()), d = dimension();
   find_gradients(scratch.gradient);
+  find_yielded_again(history, scratch, made);
+}
+
+void NonlinearSolid::find_yielded_again(std::span<const double> history, const Scratch& scratch, Yielded& made) const {
+  const int count = static_cast<int>(nodes().size()), d = dimension();
   double amplitudes[3 * 3] = {};
-  if (num_modes() > 0) add_plastic_amplitudes(history, scratch, amplitudes);
+  if (modes_ > 0) add_plastic_amplitudes(history, scratch, amplitudes);
   made.force.setZero(unknowns());
   made.energy = 0;
   for (std::size_t p = 0; p < scratch.gradient.size(); ++p) {
     const PointGradient& at = scratch.gradient[p];
     Strain strain = -ConstMap(history.data() + DruckerPrager::num_history * p, 6);
-    add_strain(at, d, count, num_modes(), amplitudes, strain);
+    add_strain(at, d, count, modes_, amplitudes, strain);
     const Stress stress = law_.elastic() * strain;
     add_force(at, d, 0, count, stress, made.force.data());
     made.energy += at.volume * stress.dot(strain) / 2;

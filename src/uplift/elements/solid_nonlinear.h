@@ -29,7 +29,7 @@ class NonlinearSolid : public Solid {
     std::vector<Stress> stress;
     std::vector<Mat6> tangent;
     Vector mode_force;  // N: zero when the modes are in balance
-    Matrix mode_strain, mode_stress, mode_stiffness;
+    Matrix mode_stiffness;
   };
 
   /// Numbers that the element remembers; all zero in the natural state: DruckerPrager::num_history of every integration point, then the
@@ -54,6 +54,8 @@ class NonlinearSolid : public Solid {
     double energy = 0;  // J
   };
   void find_yielded(std::span<const double> history, Scratch& scratch, Yielded& made) const;
+  /// The same of a history that `respond` has just found with this scratch.
+  void find_yielded_again(std::span<const double> history, const Scratch& scratch, Yielded& made) const;
   /// True when a point has ever yielded; when one has between two histories.
   bool has_yielded(std::span<const double> history) const;
   bool yields(std::span<const double> old, std::span<const double> now) const;
@@ -63,7 +65,7 @@ class NonlinearSolid : public Solid {
 
  private:
   Strain strain(const PointGradient& at, const Vector& displacement, const double* amplitudes) const;
-  void evaluate(const Vector& displacement, std::span<const double> old, std::span<double> now, Scratch& scratch) const;
+  void evaluate(const Vector& displacement, std::span<const double> old, std::span<double> now, bool tangents, Scratch& scratch) const;
   /// Of the nodes and the modes.
   Matrix full_tangent(const Scratch& scratch, double elastic_share) const;
   /// Of the modes alone, into scratch.mode_stiffness.
@@ -73,10 +75,11 @@ class NonlinearSolid : public Solid {
   double mode_gradient(const PointGradient& at) const;  // 1/m: size of the bubbles' gradients
   double node_gradient(const PointGradient& at) const;  // 1/m: largest of the nodes
   BulkResponse balance_modes(const Vector& displacement, std::span<const double> old, std::span<double> now, Scratch& scratch) const;
-  int num_amplitudes() const { return dimension() * num_modes(); }
-  int first_amplitude() const { return DruckerPrager::num_history * num_points(); }
+  int num_amplitudes() const { return dimension() * modes_; }
+  int first_amplitude() const { return DruckerPrager::num_history * points_; }
 
   DruckerPrager law_;
+  int points_, modes_;
   Matrix modes_of_nodes_;    // amplitudes of the elastic element for nodal displacements: -K_aa^-1 K_au
   Matrix mode_flexibility_;  // m/N: K_aa^-1 of the elastic element
 };
