@@ -219,7 +219,7 @@ std::vector<View> interface_views(const Built& built) {
           {"base_shear", "interface", "Base shear", "Shear force in the interface.", "Force", "N", Column::shear, 0, 1},
           {"uplifted_ratio", "interface", "Uplifted area of the base", "Share of the area with a gap.", "Uplifted share", "1",
            Column::uplifted_ratio, 0, 1},
-          {"max_opening", "interface", "Largest gap", "Largest opening of all interface points.", "Gap", "m", Column::max_opening, 0, 1},
+          {"max_opening", "interface", "Largest gap", "Largest opening of the interface, up to its edges.", "Gap", "m", Column::max_opening, 0, 1},
           {"max_pressure", "interface", "Largest pressure", "Largest pressure of all points, at the end of each step.", "Pressure", "Pa",
            Column::max_pressure, 0, 1}};
 }
