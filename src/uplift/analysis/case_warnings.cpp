@@ -168,11 +168,11 @@ void warn_massless(const Built& built, std::vector<std::string>& said) {
 
 /// A static stage knows no velocities.
 void warn_stop(const Built& built, std::vector<std::string>& said) {
-  const std::vector<Stage>& stages = built.plan.stages;
-  for (std::size_t k = 1; k < stages.size(); ++k)
-    if (stages[k].type == Stage::Type::statics && stages[k - 1].type == Stage::Type::dynamics)
-      said.push_back(
-          fmt::format("stage {} is static after a dynamic one: the structure is stopped there, and its kinetic energy is lost", k + 1));
+  for (const std::size_t k : stopping_stages(built.plan))
+    said.push_back(
+        fmt::format("stage {} is static after a dynamic one: the structure is stopped there, and the energy that this takes is booked as "
+                    "energy.stop",
+                    k + 1));
 }
 
 /// Ten steps a period, as for any response by steps; and the shocks of rigid ground.

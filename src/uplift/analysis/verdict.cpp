@@ -299,14 +299,20 @@ void say_energy(const Built& built, const RunResult& run, Verdict& verdict) {
     verdict.facts.push_back({"Energy lost by the scheme", percent(lost), "of the same: what the step does not resolve", lost > 0.05});
   verdict.facts.push_back({"Energy created by the computation", created < round_off ? "none" : percent(created),
                            fmt::format("of {}; limit {}", spoken(scale, "J"), percent(built.plan.created_limit)), too_much});
+  const Energies& end = run.final_energy;
+  if (end.stop != 0 && scale > 0)
+    verdict.facts.push_back({"Energy taken by static stages", spoken(end.stop, "J"),
+                             fmt::format("{} of the same: they stop the structure after a dynamic stage", percent(end.stop / scale)),
+                             false});
   std::string text =
       too_much ? fmt::format("The computation created {} of the energy put in ({} at {}): these results are not to be used.",
                              percent(created), spoken(run.energy_created, "J"), spoken(run.energy_created_time, "s"))
       : created < round_off
           ? "The energy balance closes: the computation created none of the energy put in."
           : fmt::format("The energy balance closes: the computation created at most {} of the energy put in.", percent(created));
-  const Energies& end = run.final_energy;
   if (scale > 0) {
+    if (end.stop != 0)
+      text += fmt::format(" Static stages after dynamic ones stopped the structure and took {}.", percent(end.stop / scale));
     if (end.damping > 1e-6 * scale) text += fmt::format(" Damping took {}.", percent(end.damping / scale));
     if (end.interface_dissipated > 1e-6 * scale) text += fmt::format(" The interface took {}.", percent(end.interface_dissipated / scale));
     if (std::abs(end.impact) > 1e-6 * scale) text += fmt::format(" Impacts took {}.", percent(end.impact / scale));
