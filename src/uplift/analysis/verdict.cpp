@@ -264,6 +264,14 @@ std::string range_of_bands(const FloorRun& floors) {
   return fmt::format("{} to {}", both ? from.substr(0, from.size() - 2) : from, to);
 }
 
+/// Why the case was not run with twice the step, where that is not the user's choice.
+std::string reason_of_no_companion(const RunPlan& plan) {
+  for (const Stage& stage : plan.stages)
+    if (stage.type == Stage::Type::dynamics && stage.duration < least_steps_to_compare * stage.step)
+      return fmt::format("a dynamic stage has fewer than {:g} steps", least_steps_to_compare);
+  return "";
+}
+
 /// What the uplift changes: forces, motion and floors compared with the bonded model, then the user's limits.
 void say_consequence(const FloorRun* floors, Verdict& verdict) {
   std::vector<std::string> parts;
@@ -345,6 +353,7 @@ Verdict judge(const Built& built, const RunResult& run, const RunResult* bonded,
   const bool nothing = run.status != RunStatus::completed && run.counts.steps == 0;
   if (!nothing) verdict.numbers = numbers_of(built, run, bonded);
   if (!nothing && companion) verdict.step_check = check_step(built, run, floors, *companion, verdict.numbers);
+  if (!companion) verdict.step_check.reason = reason_of_no_companion(built.plan);
   say_outcome(built, run, verdict);
   if (nothing) return verdict;
   if (verdict.step_check.state == StepCheck::State::not_converged) verdict.headline += " (not converged)";
