@@ -53,6 +53,16 @@ TEST(IdleInput, LoadsWithAFunctionInStaticStagesAlone) {
   EXPECT_FALSE(warns(footing + weight + "[[load]]\nnode = \"base\"\nforce = [1e4, 0]\n" + statics, "has no effect"));
 }
 
+TEST(IdleInput, AMotionThatIsZeroInStaticStages) {
+  const auto moved = [](const std::string& shape) {
+    return "[[function]]\nname = \"f\"\nshape = { type = \"harmonic\", frequency = 2" + shape +
+           " }\n[[motion]]\nnode = \"base\"\ndirection = \"uy\"\namplitude = -1e-3\nfunction = \"f\"\n";
+  };
+  EXPECT_TRUE(warns(footing + moved("") + statics, "has no effect: static stages apply the value that its function has at t = 0"));
+  EXPECT_FALSE(warns(footing + moved("") + statics + dynamics, "has no effect"));
+  EXPECT_FALSE(warns(footing + "[[motion]]\nnode = \"base\"\ndirection = \"uy\"\namplitude = -1e-3\n" + statics, "has no effect"));
+}
+
 TEST(IdleInput, WeightThatComesSuddenly) {
   EXPECT_TRUE(warns(footing + weight + dynamics, "the weight acts suddenly at t = 0"));
   EXPECT_FALSE(warns(footing + weight + statics + dynamics, "suddenly"));

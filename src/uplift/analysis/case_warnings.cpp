@@ -86,6 +86,12 @@ void warn_idle_functions(const Case& read, const Built& built, std::vector<std::
             fmt::format("{}:{}: this [[{}]] has no effect: it has a function of time, and static stages apply constant loads "
                         "alone; leave the function out, or add a dynamic stage",
                         table.where().file, table.where().line, name));
+  for (const PrescribedMotion& motion : built.model.motions)
+    if (motion.function->value(0) == 0)
+      said.push_back(
+          fmt::format("the prescribed motion \"{}\" has no effect: static stages apply the value that its function has at t = 0, "
+                      "which is 0",
+                      motion.name));
 }
 
 /// Without a static stage the weight acts suddenly: twice the settlement, and uplift on the rebound.

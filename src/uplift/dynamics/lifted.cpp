@@ -2,6 +2,8 @@
 
 #include <fmt/format.h>
 
+#include <utility>
+
 #include "uplift/math/dense.h"
 #include "uplift/model/check.h"
 #include "uplift/model/mechanism.h"
@@ -45,7 +47,7 @@ Vector lengths(const Model& model) {
 }  // namespace
 
 Lifted keep_undetermined(const Model& model, const Sparse& b, const InterfaceProblem& problem, const InterfaceSolution& solution,
-                         const Vector& increment) {
+                         const Vector& increment, LooseMotions& loose) {
   std::vector<const Block*> lifted;
   for (const Block& block : problem.blocks)
     if (lost_contact(block, problem, solution)) lifted.push_back(&block);
@@ -66,7 +68,8 @@ Lifted keep_undetermined(const Model& model, const Sparse& b, const InterfacePro
       holds[static_cast<std::size_t>(block->first + row)] = slope[(component * components + component) * points + row % points] > 0;
     }
   }
-  const Matrix motions = unresisted_motions(model, holds);
+  if (loose.holds != holds) loose.motions = unresisted_motions(model, holds), loose.holds = std::move(holds);
+  const Matrix& motions = loose.motions;
   if (motions.cols() == 0) return {};
   const Vector length = lengths(model);
   const Matrix scaled = length.asDiagonal() * motions;

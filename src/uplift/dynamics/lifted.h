@@ -13,8 +13,13 @@ struct Lifted {
   Vector increment, opening, force, history;  // in place of those of the load step; empty where the equilibrium is unique
   std::string notice;                         // which motions these are, in words
 };
+/// What is kept from load step to load step.
+struct LooseMotions {
+  std::vector<char> holds;  // interface rows
+  Matrix motions;           // free unknowns: what they do not hold, see unresisted_motions
+};
 /// `increment`: displacement of a load step with this solution of the interfaces.
 Lifted keep_undetermined(const Model& model, const Sparse& b, const InterfaceProblem& problem, const InterfaceSolution& solution,
-                         const Vector& increment);
+                         const Vector& increment, LooseMotions& loose);
 
 }  // namespace uplift

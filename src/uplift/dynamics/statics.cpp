@@ -104,7 +104,8 @@ class LoadSteps {
   PlasticState plastic_now_, plastic_next_;
   Vector load_, product_, reaction_, moved_, increment_;
   Vector opening_, force_, history_;  // of the interfaces at the end of the load step
-  std::string not_unique_;            // see StaticOutcome
+  LooseMotions loose_;
+  std::string not_unique_;  // see StaticOutcome
   StaticProgress progress_;
   StaticOutcome outcome_;
 };
@@ -215,7 +216,7 @@ void LoadSteps::take_solution() {
   const InterfaceSolution& solution = last_->solution();
   opening_ = solution.opening, force_ = solution.force, history_ = solution.now;
   if (yielding_.any()) return;
-  Lifted lifted = keep_undetermined(model_, b_, last_->problem(), solution, increment_);
+  Lifted lifted = keep_undetermined(model_, b_, last_->problem(), solution, increment_, loose_);
   if (lifted.notice.empty()) return;
   moved_ = state_.displacement + lifted.increment;
   opening_.swap(lifted.opening), force_.swap(lifted.force), history_.swap(lifted.history);
