@@ -23,7 +23,7 @@ bool Runner::statics(const Stage& stage) {
   const std::vector<int> rotations = rotations_on_interfaces(resting, rest_ != nullptr ? stack_interfaces(*rest_) : b_);
   PageTaker pages;  // none
   const Energies before = ledger_ ? ledger_->energies : static_energies_;
-  Energies energies;
+  Energies energies = before;
   Recorder recorder(resting, plan_, state_, energies, nullptr, views_, {resting}, stage.steps, 0, pages, load_steps_);
   const auto record = [&](const StaticProgress& progress) {
     energies = static_energies(resting, before, progress);
