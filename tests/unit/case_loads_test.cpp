@@ -201,6 +201,11 @@ TEST(CaseLoads, PressureThatMakesNoSenseIsRefused) {
             std::string::npos);
   EXPECT_NE(refusal(profile + "{ along = \"y\", positions = [0, 1, 2], factors = [1, 0] }\n").find("as many factors as positions (3)"),
             std::string::npos);
+  EXPECT_EQ(refusal(profile + "{ along = \"y\", positions = [2, 5], factors = [1, 0] }\n"), "accepted");
+  EXPECT_NE(refusal(profile + "{ along = \"y\", positions = [3, 5], factors = [1, 0] }\n")
+                .find("load[0].profile.positions: wanted positions that reach the surface, which lies from y = 0 to 2 m, found 3 to 5 m"),
+            std::string::npos)
+      << refusal(profile + "{ along = \"y\", positions = [3, 5], factors = [1, 0] }\n");
   EXPECT_NE(refusal(profile + "{ along = \"y\", positions = [0, 0], factors = [1, 0] }\n").find("positions in ascending order"),
             std::string::npos);
   EXPECT_NE(refusal(profile + "{ along = \"z\", positions = [0, 1], factors = [1, 0] }\n").find("x, y or distance in a plane model"),

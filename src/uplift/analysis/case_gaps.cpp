@@ -50,6 +50,9 @@ void set_gaps(const Values& interface, std::vector<JointPoint>& points, const Ca
   const Values* table = table_if(interface, "gap_profile");
   if (!table) return;
   const Profile profile(*table, "gaps", names.space);
+  std::vector<Vec3> places;
+  for (const JointPoint& point : points) places.push_back(point.position);
+  profile.require_overlap(*table, places);
   for (JointPoint& point : points) point.gap += profile.at(point.position);
 }
 

@@ -59,7 +59,13 @@ Pattern surface_load(const Values& load, const CaseNames& names) {
   const Values* table = table_if(load, "profile");
   if (table && key == "force") fail(*table, "", "profile with pressure or traction", "profile with force");
   std::optional<Profile> profile;
-  if (table) profile.emplace(*table, "factors", names.space);
+  if (table) {
+    profile.emplace(*table, "factors", names.space);
+    std::vector<Vec3> places;
+    for (const CellId face : faces)
+      for (const int node : solids.mesh().cell(face)) places.push_back(solids.mesh().nodes[static_cast<std::size_t>(node)]);
+    profile->require_overlap(*table, places);
+  }
   Pattern pattern;
   if (key == "pressure") {
     check_outer(load, solids, faces);

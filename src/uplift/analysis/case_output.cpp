@@ -244,6 +244,7 @@ void add_requests(const Case& read, const CaseNames& names, Built& built) {
     for (const Quantity& quantity : energy_quantities)
       requests.push_back(make(quantity.kind, fmt::format("energy.{}", quantity.word), quantity.unit));
     if (PlasticBulk(model).any()) requests.push_back(make(Column::plastic, "energy.plastic", "J"));
+    if (!stopping_stages(built.plan).empty()) requests.push_back(make(Column::stop, "energy.stop", "J"));
     const auto filters = [](const Stage& stage) { return stage.type == Stage::Type::dynamics && stage.scheme.filtered(); };
     if (!built.plan.method->constrains() && std::ranges::any_of(built.plan.stages, filters)) {
       requests.push_back(make(Column::algorithmic, "energy.algorithmic", "J"));

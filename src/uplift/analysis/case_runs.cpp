@@ -5,6 +5,7 @@
 
 #include "uplift/analysis/case.h"
 #include "uplift/analysis/case_names.h"
+#include "uplift/analysis/step_check.h"
 
 // Which runs a case stands for: itself, its variants, its dampings, its stiffness sweep.
 namespace uplift {
@@ -134,11 +135,10 @@ std::vector<RunSpec> runs_of_case(const Case& read) {
 }
 
 std::vector<RunSpec> companions_of_case(const Case& read) {
-  constexpr double least_steps = 4;
   bool long_enough = false;
   for (const Values& stage : read.values.tables("stage")) {
     if (stage.text("type") == "static" || !stage.has("duration") || !stage.has("step")) continue;
-    long_enough = stage.number("duration") >= least_steps * stage.number("step");
+    long_enough = stage.number("duration") >= least_steps_to_compare * stage.number("step");
     if (!long_enough) break;
   }
   const bool wanted = !read.values.has("verdict") || read.values.table("verdict").flag("step_check");

@@ -36,15 +36,86 @@ constexpr std::array<Magnitude, 12> usual{{{"beam", "E", "Pa", 1e8, 1e12, "concr
                                            {"stage", "step", "s", 1e-7, 0.5, "1 ms is 0.001 s"},
                                            {"stage", "duration", "s", 1e-4, 1e5, "in seconds"}}};
 
+constexpr Magnitude water_weight{"water", "unit_weight", "N/m3", 9e3, 1.3e4, "water has 9810 N/m3; 9.81 kN/m3 is meant for 9.81"};
+
+void warn_magnitude(const Values& table, const Magnitude& each, std::vector<std::string>& said) {
+  if (!table.given(each.key)) return;
+  const double value = table.number(each.key);
+  if (value != 0 && (value < each.least || value > each.most))
+    said.push_back(fmt::format("{}:{}: {} = {:g} {} is unusual for a structure ({}); is the unit right?", table.where(each.key).file,
+                               table.where(each.key).line, table.path(each.key), value, each.unit, each.hint));
+}
+
 void warn_magnitudes(const Case& read, std::vector<std::string>& said) {
   for (const Magnitude& each : usual)
-    for (const Values& table : read.values.tables(each.table)) {
-      if (!table.given(each.key)) continue;
-      const double value = table.number(each.key);
-      if (value != 0 && (value < each.least || value > each.most))
-        said.push_back(fmt::format("{}:{}: {} = {:g} {} is unusual for a structure ({}); is the unit right?", table.where(each.key).file,
-                                   table.where(each.key).line, table.path(each.key), value, each.unit, each.hint));
-    }
+    for (const Values& table : read.values.tables(each.table)) warn_magnitude(table, each, said);
+  for (const Values& interface : read.values.tables("interface"))
+    if (const Values* water = table_if(interface, "water")) warn_magnitude(*water, water_weight, said);
+}
+
+/// Largest distance between nodes and points of interfaces, in one direction [m].
+double extent(const Model& model) {
+  Vec3 least = model.nodes.front().position, most = least;
+  const auto take = [&](const Vec3& place) { least = least.cwiseMin(place), most = most.cwiseMax(place); };
+  for (const Node& node : model.nodes) take(node.position);
+  for (const Interface& interface : model.interfaces)
+    for (const Vec3& place : interface.position) take(place);
+  return (most - least).maxCoeff();
+}
+
+/// Gaps are small beside a structure.
+void warn_gaps(const Built& built, std::vector<std::string>& said) {
+  constexpr double most = 0.1;
+  if (built.model.nodes.empty()) return;
+  const double size = extent(built.model);
+  for (const Interface& interface : built.model.interfaces)
+    if (const double gap = interface.gap.maxCoeff(); size > 0 && gap > most * size)
+      said.push_back(
+          fmt::format("interface \"{}\": an initial gap of {} in a model of {} will hardly close (joints have gaps of "
+                      "millimetres to centimetres); is the unit right?",
+                      interface.name, spoken(gap, "m"), spoken(size, "m")));
+}
+
+/// Static stages apply what is constant, and motions as they are at t = 0.
+void warn_idle_functions(const Case& read, const Built& built, std::vector<std::string>& said) {
+  if (!statics_alone(built.plan)) return;
+  for (const char* name : {"load", "ground_acceleration"})
+    for (const Values& table : read.values.tables(name))
+      if (table.has("function"))
+        said.push_back(
+            fmt::format("{}:{}: this [[{}]] has no effect: it has a function of time, and static stages apply constant loads "
+                        "alone; leave the function out, or add a dynamic stage",
+                        table.where().file, table.where().line, name));
+  for (const PrescribedMotion& motion : built.model.motions)
+    if (motion.function->value(0) == 0)
+      said.push_back(
+          fmt::format("the prescribed motion \"{}\" has no effect: static stages apply the value that its function has at t = 0, "
+                      "which is 0",
+                      motion.name));
+}
+
+/// Without a static stage the weight acts suddenly: twice the settlement, and uplift on the rebound.
+void warn_sudden_weight(const Built& built, std::vector<std::string>& said) {
+  const std::vector<Stage>& stages = built.plan.stages;
+  if (stages.empty() || stages.front().type == Stage::Type::statics || built.plan.initial_displacement.size() > 0) return;
+  const double weight = built.model.assembly.gravity.norm();
+  const bool falls = std::ranges::any_of(built.model.drives, [](const Drive& drive) { return drive.dead && !drive.shape.isZero(0); });
+  if (weight > 0 && falls)
+    said.push_back(
+        "the weight acts suddenly at t = 0, because no static stage comes before the dynamic one: the structure oscillates about its "
+        "equilibrium with twice the settlement; put a [[stage]] with type = \"static\" first");
+}
+
+/// Steps are equal, so that a stage has a whole number of them.
+void warn_duration(const Built& built, std::vector<std::string>& said) {
+  for (std::size_t k = 0; k < built.plan.stages.size(); ++k) {
+    const Stage& stage = built.plan.stages[k];
+    if (stage.type != Stage::Type::dynamics) continue;
+    const double steps = stage.duration / stage.step, whole = std::max(1.0, std::round(steps));
+    if (std::abs(steps - whole) > 1e-6 * whole)
+      said.push_back(fmt::format("stage {}: the duration of {} is no whole number of steps of {}; the stage has {:g} and ends after {}",
+                                 k + 1, spoken(stage.duration, "s"), spoken(stage.step, "s"), whole, spoken(whole * stage.step, "s")));
+  }
 }
 
 /// Absorbing sides take the ground beside the model to be at rest.
@@ -168,11 +239,11 @@ void warn_massless(const Built& built, std::vector<std::string>& said) {
 
 /// A static stage knows no velocities.
 void warn_stop(const Built& built, std::vector<std::string>& said) {
-  const std::vector<Stage>& stages = built.plan.stages;
-  for (std::size_t k = 1; k < stages.size(); ++k)
-    if (stages[k].type == Stage::Type::statics && stages[k - 1].type == Stage::Type::dynamics)
-      said.push_back(
-          fmt::format("stage {} is static after a dynamic one: the structure is stopped there, and its kinetic energy is lost", k + 1));
+  for (const std::size_t k : stopping_stages(built.plan))
+    said.push_back(
+        fmt::format("stage {} is static after a dynamic one: the structure is stopped there, and the energy that this takes is booked as "
+                    "energy.stop",
+                    k + 1));
 }
 
 /// Ten steps a period, as for any response by steps; and the shocks of rigid ground.
@@ -300,6 +371,10 @@ std::vector<Mode> fixed_base_modes(const Model& model, int count) {
 std::vector<std::string> warnings(const Case& read, const RunSpec& spec, const Built& built) {
   std::vector<std::string> said;
   warn_magnitudes(read, said);
+  warn_gaps(built, said);
+  warn_idle_functions(read, built, said);
+  warn_sudden_weight(built, said);
+  warn_duration(built, said);
   warn_closure(built, said);
   warn_sides(read, said);
   warn_held_faces(read, built, said);

@@ -82,7 +82,8 @@ InterfaceViewer::InterfaceViewer(const Model& model, double gap_tolerance, const
     layout.bonded = interface.behaviour == "elastic";
     if (const std::size_t k = layouts_.size(); k < facets.size() && facets[k] != nullptr) {
       layout.share = PositiveShare(*facets[k]);
-      if (facets[k]->at_edge) layout.edge = facets[k]->corners;
+      layout.corners = facets[k]->corners;
+      layout.at_edge = facets[k]->at_edge;
       value_.setZero(std::max(value_.size(), layout.share.room()));
     }
     layouts_.push_back(std::move(layout));
@@ -128,7 +129,7 @@ double InterfaceViewer::tension_share(const Layout& layout, const double* force)
 /// The largest pressure at the edges of the base that no point reaches: linear from the points next to them, where these are in contact.
 double InterfaceViewer::edge_pressure(const Layout& layout, const double* force) {
   double most = 0;
-  for (const Facets::Corner& corner : layout.edge) {
+  for (const Facets::Corner& corner : layout.corners) {
     double traction = 0;
     bool contact = true;
     for (const auto& [point, weight] : corner) {
@@ -136,6 +137,21 @@ double InterfaceViewer::edge_pressure(const Layout& layout, const double* force)
       contact = contact && force[point] < 0;
     }
     if (contact) most = larger(most, -traction);
+  }
+  return most;
+}
+
+/// The largest opening at corners that no point reaches: linear from the points next to them, where these are open.
+double InterfaceViewer::edge_opening(const Layout& layout, const double* gap) const {
+  double most = 0;
+  for (const Facets::Corner& corner : layout.corners) {
+    double opening = 0;
+    bool open = true;
+    for (const auto& [point, weight] : corner) {
+      opening += weight * gap[point];
+      open = open && gap[point] > tolerance_;
+    }
+    if (open) most = larger(most, opening);
   }
   return most;
 }
@@ -171,7 +187,10 @@ void InterfaceViewer::look(const Vector& opening, const Vector& force, std::vect
     const auto in_parts = [&](double share) { return !layout.share.empty() && share > 0 && share < whole; };
     if (in_parts(view.open_area)) view.open_area = open_share(layout, gap, p, view);
     if (layout.bonded && in_parts(view.tension_area)) view.tension_area = tension_share(layout, p);
-    if (!layout.edge.empty()) view.max_pressure = std::max(view.max_pressure, edge_pressure(layout, p));
+    if (!layout.corners.empty()) {
+      if (layout.at_edge) view.max_pressure = std::max(view.max_pressure, edge_pressure(layout, p));
+      if (view.max_opening > tolerance) view.max_opening = std::max(view.max_opening, edge_opening(layout, gap));
+    }
     view.rotation = {sum(slopes), 0};
     if (layout.slope_weight[1].size() > 0) view.rotation[1] = small::dot(n, layout.slope_weight[1].data(), gap);
     if (layout.resultant_rows.size() > 0) {

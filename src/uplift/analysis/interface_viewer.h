@@ -27,16 +27,18 @@ class InterfaceViewer {
     Vector area, inverse_area, along, across;  // along t and along n from the reference point [m]
     std::array<Vector, 2> slope_weight;
     Space space;
-    Matrix resultant_rows;             // in space, and where the normals differ; else empty: the sums are then taken directly
-    double total = 0;                  // m2
-    PositiveShare share;               // empty: points count as a whole
-    double stiffness = 0;              // Pa/m of the closed joint; infinite for constraints
-    bool bonded = false;               // it may pull: the tension share is asked for
-    std::vector<Facets::Corner> edge;  // corners to which pressures are extrapolated
+    Matrix resultant_rows;                // in space, and where the normals differ; else empty: the sums are then taken directly
+    double total = 0;                     // m2
+    PositiveShare share;                  // empty: points count as a whole
+    double stiffness = 0;                 // Pa/m of the closed joint; infinite for constraints
+    bool bonded = false;                  // it may pull: the tension share is asked for
+    std::vector<Facets::Corner> corners;  // of the surface that are no points: openings are extrapolated to them
+    bool at_edge = false;                 // pressures too
   };
   double open_share(const Layout& layout, const double* gap, const double* force, const InterfaceView& view);
   double tension_share(const Layout& layout, const double* force);
   static double edge_pressure(const Layout& layout, const double* force);
+  double edge_opening(const Layout& layout, const double* gap) const;
   std::vector<Layout> layouts_;
   std::vector<BaseMotion> bases_;
   double tolerance_;

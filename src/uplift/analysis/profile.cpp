@@ -59,6 +59,16 @@ double Profile::at(const Vec3& position) const {
   return (1 - share) * values_[i - 1] + share * values_[i];
 }
 
+void Profile::require_overlap(const Values& table, const std::vector<Vec3>& places) const {
+  const auto [nearest, farthest] = std::ranges::minmax(places, {}, [&](const Vec3& place) { return coordinate(place); });
+  const double from = axis_ < 0 ? 0 : coordinate(nearest), to = coordinate(farthest);  // the distance may be least inside a face
+  const double margin = 1e-6 * (to - from);
+  if (positions_.front() <= to + margin && positions_.back() >= from - margin) return;
+  const std::string along = axis_ < 0 ? "at distances" : fmt::format("from {} =", static_cast<char>('x' + axis_));
+  fail(table, "positions", fmt::format("positions that reach the surface, which lies {} {:.4g} to {:.4g} m", along, from, to),
+       fmt::format("{:.4g} to {:.4g} m", positions_.front(), positions_.back()));
+}
+
 bool Profile::bends_within(const std::vector<Vec3>& places) const {
   if (axis_ < 0) return true;  // the distance itself is not linear
   const auto [least, most] = std::ranges::minmax(places, {}, [&](const Vec3& place) { return coordinate(place); });

@@ -13,6 +13,8 @@ class Profile {
   /// `values`: the key of the values in the table. Throws InputError.
   Profile(const Values& table, std::string_view values, Space space);
   double at(const Vec3& position) const;
+  /// Throws InputError (at `table`, the profile's) when all positions lie on one side of these places: the profile would do nothing.
+  void require_overlap(const Values& table, const std::vector<Vec3>& places) const;
   /// Whether the slope changes between the least and the largest coordinate of these places.
   bool bends_within(const std::vector<Vec3>& places) const;
 

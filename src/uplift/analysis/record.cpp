@@ -149,6 +149,8 @@ Recorder::Source Recorder::source_of(const Request& request, const SparseRows& r
       return {.place = &energies_.algorithmic};
     case What::filter:
       return {.place = &energies_.filter};
+    case What::stop:
+      return {.place = &energies_.stop};
     case What::settlement:
     case What::tilt_1:
     case What::tilt_2:

@@ -29,7 +29,7 @@ std::string late_peaks(const RunResult& run, const VerdictNumbers& numbers) {
 
 std::vector<std::string> result_warnings(const RunResult& run, const VerdictNumbers& numbers) {
   std::vector<std::string> said;
-  for (std::string text : {run.equilibrium.warning(), late_peaks(run, numbers)})
+  for (std::string text : {run.not_unique, run.equilibrium.warning(), late_peaks(run, numbers)})
     if (!text.empty()) said.push_back(std::move(text));
   return said;
 }

@@ -37,6 +37,13 @@ bool statics_alone(const RunPlan& plan) {
   return !plan.stages.empty() && dynamic_stage(plan) == nullptr;
 }
 
+std::vector<std::size_t> stopping_stages(const RunPlan& plan) {
+  std::vector<std::size_t> found;
+  for (std::size_t k = 1; k < plan.stages.size(); ++k)
+    if (plan.stages[k].type == Stage::Type::statics && plan.stages[k - 1].type == Stage::Type::dynamics) found.push_back(k);
+  return found;
+}
+
 bool is_step_mean(Request::Kind kind) {
   using enum Request::Kind;
   switch (kind) {
@@ -122,15 +129,25 @@ void Runner::take_window_peaks() {
     if (std::abs(value) > std::abs(peak.value)) peak.value = value, peak.time = time;
   };
   const bool plane = model_.space.dimension == 2;
+  double force = 0, moment = 0;  // N, N m: what is to be told from round-off
   for (std::size_t k = 0; k < steps.extremes.size(); ++k) {
     if (is_wall(k)) continue;
+    double arm = 0;
+    for (const Place& place : model_.interfaces[k].position) arm = std::max(arm, (place - model_.interfaces[k].reference).norm());
     for (std::size_t i = 0; i < steps.size(); ++i) {
       const StepRecord::Instant& now = steps.at(i, k);
       note(result_.max_base_moment, plane ? now.moment_1 : std::hypot(now.moment_1, now.moment_2), steps.time[i]);
       note(result_.max_base_shear, plane ? now.shear_1 : std::hypot(now.shear_1, now.shear_2), steps.time[i]);
+      const double size = std::hypot(now.axial, now.shear_1, now.shear_2);
+      force = std::max(force, size), moment = std::max(moment, arm * size);
     }
     note(result_.max_pressure, steps.extremes[k].max_pressure.value, steps.extremes[k].max_pressure.time);
   }
+  constexpr double round_off = 1e-9, least = 1e-9;  // share of it; N, N m
+  if (std::abs(result_.max_base_shear.value) < std::max(round_off * force, least))
+    result_.max_base_shear.value = result_.max_base_shear.time = 0;
+  if (std::abs(result_.max_base_moment.value) < std::max(round_off * moment, least))
+    result_.max_base_moment.value = result_.max_base_moment.time = 0;
 }
 
 void Runner::fail(std::string why, const InterfaceProblem* problem) {

@@ -68,7 +68,8 @@ struct Request {
     residual,
     plastic,
     algorithmic,
-    filter,  // energies [J]
+    filter,
+    stop,  // energies [J]
     settlement,
     tilt_1,
     tilt_2,  // of the base above an interface: BasePose [m, rad]
@@ -131,6 +132,8 @@ struct RunPlan {
 const Stage* dynamic_stage(const RunPlan&);
 /// There are stages, and none of them is dynamic: how the structure stands at their end is the result.
 bool statics_alone(const RunPlan&);
+/// Static stages that follow a dynamic one at once: positions in the plan.
+std::vector<std::size_t> stopping_stages(const RunPlan&);
 
 // ---- what came out ----
 
@@ -196,6 +199,7 @@ struct RunResult {
   Energies final_energy;
   std::vector<Frame> frames;
   std::string problem;             // the interface problem of the failed step, JSON text
+  std::string not_unique;          // why the equilibrium of the last static stage is one of several; empty where it is the only one
   std::vector<std::string> notes;  // what the engineer should know: cycles treated, halvings, warnings of laws
 };
 

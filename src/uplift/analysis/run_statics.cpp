@@ -22,30 +22,36 @@ bool Runner::statics(const Stage& stage) {
   const Model& resting = rest_ != nullptr ? *rest_ : model_;
   const std::vector<int> rotations = rotations_on_interfaces(resting, rest_ != nullptr ? stack_interfaces(*rest_) : b_);
   PageTaker pages;  // none
-  Energies energies;
+  const Energies before = ledger_ ? ledger_->energies : static_energies_;
+  Energies energies = before;
   Recorder recorder(resting, plan_, state_, energies, nullptr, views_, {resting}, stage.steps, 0, pages, load_steps_);
-  const auto record = [&](double share) {
-    energies = static_energies(resting);
+  const auto record = [&](const StaticProgress& progress) {
+    energies = static_energies(resting, before, progress);
     viewer_.look(state_.opening, state_.mean_force, views_);
-    recorder.record(true, static_stages_ + share);
+    recorder.record(true, static_stages_ + progress.share);
   };
-  if (state_.load_factor == 0) record(0);
-  const bool solved = solve(stage, nullptr, nullptr, [&](double share) {
-    record(share);
-    static_share_ = share;
+  if (state_.load_factor == 0) {
+    unloaded_energy_ = static_energies(resting, before, {}).sum();
+    record({});
+  }
+  const bool solved = solve(stage, nullptr, nullptr, [&](const StaticProgress& progress) {
+    record(progress);
+    static_share_ = progress.share;
     find_farthest();
     return moves_little(resting, rotations);
   });
   static_share_.reset();
   recorder.finish();
   ++static_stages_;
+  static_energies_ = energies;
+  if (ledger_) result_.final_energy = ledger_->energies = energies;
   show(stage, nullptr, stage.steps, true);
   return solved;
 }
 
 /// Solves a static stage; false when there is no equilibrium, or when `after_step` has ended it.
 bool Runner::solve(const Stage& stage, const Sparse* geometric, const std::vector<Drive>* second_order,
-                   const std::function<bool(double)>& after_step) {
+                   const std::function<bool(const StaticProgress&)>& after_step) {
   const Model& resting = rest_ != nullptr ? *rest_ : model_;
   const Sparse b = rest_ != nullptr ? stack_interfaces(*rest_) : b_;
   const Bulk bulk(resting, geometric);
@@ -54,18 +60,29 @@ bool Runner::solve(const Stage& stage, const Sparse* geometric, const std::vecto
   result_.counts.load_steps += outcome.steps;
   result_.counts.retries += outcome.retries;
   result_.counts.iterations += outcome.iterations;
+  result_.not_unique = outcome.not_unique;
   if (!outcome.why.empty()) fail(outcome.why, outcome.failed ? &*outcome.failed : nullptr);
   return outcome.converged;
 }
 
-Energies Runner::static_energies(const Model& resting) const {
-  Energies energies;
+/// At this point of a static stage that begins with the energies `before`. After a dynamic stage it stops the structure, which is no motion
+/// that a ledger could follow: what this takes (or what the way to rest needs) is booked as a term of its own.
+Energies Runner::static_energies(const Model& resting, const Energies& before, const StaticProgress& progress) const {
+  Energies energies = before;
+  energies.kinetic = energies.filter = 0;
+  energies.external += progress.work;
+  energies.plastic += progress.dissipated;
+  energies.friction += progress.friction;
   energies.strain = 0.5 * state_.displacement.dot(resting.stiffness * state_.displacement);
   if (const PlasticBulk yielding(resting); yielding.any())
     energies.strain += yielding.energy(state_.displacement, state_.instant(), yielding.state(state_.bulk_history));
   InterfaceEnergy interfaces;
   interfaces.update(blocks_of(model_, *laws_), state_.opening, state_.history);
-  energies.stored = interfaces.stored, energies.interface_dissipated = interfaces.dissipated;
+  energies.stored = interfaces.stored, energies.interface_dissipated = interfaces.dissipated + energies.friction;
+  if (ledger_)
+    energies.stop += before.sum() - energies.sum();
+  else
+    energies.residual = energies.sum() - unloaded_energy_;
   return energies;
 }
 
@@ -89,7 +106,7 @@ void Runner::stand() {
     equilibrium.finish(result_.equilibrium);
   }
   if (rest_ != nullptr) state_ = carried();
-  result_.final_energy = static_energies(model_);
+  result_.final_energy = static_energies_;
   PageTaker pages;  // none
   result_.steps.reserve(model_.interfaces.size(), 1, 1, pages);
   viewer_.look(state_.opening, state_.mean_force, views_);

@@ -7,6 +7,7 @@
 #include "uplift/analysis/interface_viewer.h"
 #include "uplift/analysis/record.h"
 #include "uplift/analysis/run.h"
+#include "uplift/dynamics/statics.h"
 #include "uplift/dynamics/step.h"
 
 namespace uplift {
@@ -27,8 +28,8 @@ class Runner {
   void add_initial_state();
   bool statics(const Stage& stage);
   bool solve(const Stage& stage, const Sparse* geometric, const std::vector<Drive>* second_order,
-             const std::function<bool(double)>& after_step);
-  Energies static_energies(const Model& resting) const;
+             const std::function<bool(const StaticProgress&)>& after_step);
+  Energies static_energies(const Model& resting, const Energies& before, const StaticProgress& progress) const;
   bool second_order();
   std::vector<Drive> second_order_drives(const Model& model) const;
   State carried() const;
@@ -77,6 +78,8 @@ class Runner {
   double farthest_ = 0;            // m: largest of the bases' least openings, now
   std::size_t summed_up_ = 0;      // instants of the record that peaks and durations know
   double initial_scale_ = 0;       // J
+  Energies static_energies_;       // at the end of the static stages before the first dynamic one
+  double unloaded_energy_ = 0;     // J: Energies::sum of the unloaded structure
   std::optional<Ledger> ledger_;   // of the dynamic stage before
   std::optional<Stage> march_;     // that stage, as long as nothing came in between
   double round_off_energy_ = 0;    // J: less than this is nothing

@@ -33,6 +33,9 @@ struct StepCheck {
 };
 std::string_view to_string(StepCheck::State);
 
+/// A dynamic stage with fewer steps than this is not run with twice the step.
+inline constexpr double least_steps_to_compare = 4;
+
 /// Share of its reference by which a number may change when the step is doubled.
 inline constexpr double accepted_step_change = 0.05;
 

@@ -264,6 +264,14 @@ std::string range_of_bands(const FloorRun& floors) {
   return fmt::format("{} to {}", both ? from.substr(0, from.size() - 2) : from, to);
 }
 
+/// Why the case was not run with twice the step, where that is not the user's choice.
+std::string reason_of_no_companion(const RunPlan& plan) {
+  for (const Stage& stage : plan.stages)
+    if (stage.type == Stage::Type::dynamics && stage.duration < least_steps_to_compare * stage.step)
+      return fmt::format("a dynamic stage has fewer than {:g} steps", least_steps_to_compare);
+  return "";
+}
+
 /// What the uplift changes: forces, motion and floors compared with the bonded model, then the user's limits.
 void say_consequence(const FloorRun* floors, Verdict& verdict) {
   std::vector<std::string> parts;
@@ -299,14 +307,20 @@ void say_energy(const Built& built, const RunResult& run, Verdict& verdict) {
     verdict.facts.push_back({"Energy lost by the scheme", percent(lost), "of the same: what the step does not resolve", lost > 0.05});
   verdict.facts.push_back({"Energy created by the computation", created < round_off ? "none" : percent(created),
                            fmt::format("of {}; limit {}", spoken(scale, "J"), percent(built.plan.created_limit)), too_much});
+  const Energies& end = run.final_energy;
+  if (end.stop != 0 && scale > 0)
+    verdict.facts.push_back({"Energy taken by static stages", spoken(end.stop, "J"),
+                             fmt::format("{} of the same: they stop the structure after a dynamic stage", percent(end.stop / scale)),
+                             false});
   std::string text =
       too_much ? fmt::format("The computation created {} of the energy put in ({} at {}): these results are not to be used.",
                              percent(created), spoken(run.energy_created, "J"), spoken(run.energy_created_time, "s"))
       : created < round_off
           ? "The energy balance closes: the computation created none of the energy put in."
           : fmt::format("The energy balance closes: the computation created at most {} of the energy put in.", percent(created));
-  const Energies& end = run.final_energy;
   if (scale > 0) {
+    if (end.stop != 0)
+      text += fmt::format(" Static stages after dynamic ones stopped the structure and took {}.", percent(end.stop / scale));
     if (end.damping > 1e-6 * scale) text += fmt::format(" Damping took {}.", percent(end.damping / scale));
     if (end.interface_dissipated > 1e-6 * scale) text += fmt::format(" The interface took {}.", percent(end.interface_dissipated / scale));
     if (std::abs(end.impact) > 1e-6 * scale) text += fmt::format(" Impacts took {}.", percent(end.impact / scale));
@@ -339,6 +353,7 @@ Verdict judge(const Built& built, const RunResult& run, const RunResult* bonded,
   const bool nothing = run.status != RunStatus::completed && run.counts.steps == 0;
   if (!nothing) verdict.numbers = numbers_of(built, run, bonded);
   if (!nothing && companion) verdict.step_check = check_step(built, run, floors, *companion, verdict.numbers);
+  if (!companion) verdict.step_check.reason = reason_of_no_companion(built.plan);
   say_outcome(built, run, verdict);
   if (nothing) return verdict;
   if (verdict.step_check.state == StepCheck::State::not_converged) verdict.headline += " (not converged)";

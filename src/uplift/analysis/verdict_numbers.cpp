@@ -39,6 +39,7 @@ class Base {
       const double force = std::hypot(now.axial, shear(i)),
                    change = std::hypot(now.axial - first.axial, now.shear_1 - first.shear_1, now.shear_2 - first.shear_2);
       least_force = std::max({least_force, noise_share * change, round_off_share * force});
+      largest_force = std::max(largest_force, force);
     }
   }
 
@@ -67,7 +68,8 @@ class Base {
   const InterfaceFacts& facts;
   BaseShape shape;
   Thrust rest;
-  double least_force = 0;  // N: less is noise
+  double least_force = 0;    // N: less is noise
+  double largest_force = 0;  // N
 };
 
 /// The largest magnitude of a quantity over the steps, or the least value; nothing when it is nowhere finite.
@@ -202,12 +204,22 @@ double least_of(const VerdictQuantity& quantity, const Base& base) {
   return quantity.name.starts_with("max_eccentricity") ? noise_share : 0;
 }
 
+/// What is left of forces that cancel is round-off: none.
+void clear_round_off(const Base& base, std::vector<VerdictNumber>& numbers) {
+  const double force = round_off_share * base.largest_force, moment = force * std::max(base.shape.width[0], base.shape.width[1]);
+  for (VerdictNumber& number : numbers) {
+    const double least = number.quantity->unit == "N" ? force : number.quantity->unit == "N m" ? moment : 0;
+    if (std::abs(number.value) < least) number.value = 0, number.time.reset();
+  }
+}
+
 /// What a base carries, of a bonded run too.
 InterfaceVerdict carried_by(const Base& base) {
   InterfaceVerdict said;
   add_pressure(base, said);
   add_forces(base, said.numbers);
   add_step_peaks(base.extremes(), said.numbers);
+  clear_round_off(base, said.numbers);
   for (VerdictNumber& number : said.numbers) number.least = least_of(*number.quantity, base);
   return said;
 }

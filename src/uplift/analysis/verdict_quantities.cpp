@@ -90,7 +90,7 @@ bool near_zero(const VerdictQuantity& quantity) {
 }
 
 double nothing_beside(std::string_view unit) {
-  if (unit == "m" || unit == "rad") return 1e-9;
+  if (unit == "m" || unit == "rad" || unit == "N" || unit == "N m" || unit == "N s" || unit == "Pa") return 1e-9;
   return unit == "1" ? 1e-6 : 0;
 }
 

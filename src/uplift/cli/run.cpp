@@ -32,6 +32,11 @@ void say_criteria(const std::vector<CriterionResult>& results) {
   }
 }
 
+/// "1 step", "2 steps".
+std::string counted(long count, const char* one, const char* several) {
+  return fmt::format("{} {}", count, count == 1 ? one : several);
+}
+
 /// The runs with twice the step: beside the others where they are small, after them where memory counts.
 class CompanionRuns {
  public:
@@ -112,11 +117,11 @@ int run(const Options& options) {
     say_criteria(results.verdict.numbers.criteria);
     const double per_step = main.counts.steps > 0 ? 1e6 * main.wall / static_cast<double>(main.counts.steps) : 0;
     if (statics_alone(results.built.front().plan))
-      say(fmt::format("{}: static stages in {}, {} load steps, {} retries", status_text(main), spoken(main.wall, "s"),
-                      main.counts.load_steps, main.counts.retries));
+      say(fmt::format("{}: static stages in {}, {}, {}", status_text(main), spoken(main.wall, "s"),
+                      counted(main.counts.load_steps, "load step", "load steps"), counted(main.counts.retries, "retry", "retries")));
     else
-      say(fmt::format("{}: {} steps in {} ({:.2f} microseconds a step), {} retries", status_text(main), main.counts.steps,
-                      spoken(main.wall, "s"), per_step, main.counts.retries));
+      say(fmt::format("{}: {} in {} ({:.2f} microseconds a step), {}", status_text(main), counted(main.counts.steps, "step", "steps"),
+                      spoken(main.wall, "s"), per_step, counted(main.counts.retries, "retry", "retries")));
     say(fmt::format("results: {}/report.html", folder.path()));
     for (const std::string& list : fields) say(fmt::format("fields: {}/{} (for ParaView)", folder.path(), list));
   }

@@ -6,17 +6,22 @@
 
 namespace uplift {
 
-/// Energies [J] since the beginning of the first dynamic stage:
-///   residual = kinetic + strain + stored + filter + interface_dissipated + plastic + damping + impact + algorithmic - external
+/// Energies [J] since the beginning of the first dynamic stage; in static stages before it since the unloaded structure:
+///   residual = kinetic + strain + stored + filter + interface_dissipated + plastic + damping + impact + algorithmic + stop - external
 ///              - (mechanical energy at the beginning)
 /// which is zero to round-off for the average acceleration rule with path-averaged tractions. A positive residual is energy that the method
-/// created.
+/// created; in static stages the external work is a trapezoidal sum over the load steps, whose error it is.
 struct Energies {
   double kinetic = 0, strain = 0, stored = 0, interface_dissipated = 0, damping = 0, impact = 0, external = 0, residual = 0;
   double algorithmic = 0;  // dissipated by the scheme's filters (filtered energy decay)
   double filter = 0;       // stored in them: of order (omega h)^2 of the energy of a motion
   double plastic = 0;      // dissipated by yielding solids; their strain energy is the recoverable one
   double friction = 0;     // under constraints; a part of interface_dissipated
+  double stop = 0;         // taken by static stages after dynamic ones, which stop the structure where it is
+  /// All that the external work has become, less this work.
+  double sum() const {
+    return kinetic + strain + stored + filter + interface_dissipated + plastic + damping + impact + algorithmic + stop - external;
+  }
 };
 
 /// What the interfaces' laws hold and have dissipated [J]; cones hold nothing, and what their friction takes is friction_work().

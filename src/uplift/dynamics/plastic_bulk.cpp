@@ -110,7 +110,7 @@ double PlasticBulk::energy(const Vector& displacement, MotionInstant at, const P
   return model_.full(displacement, 0, at).dot(state.full) + state.energy;
 }
 
-double PlasticBulk::dissipated(const Vector& from, double before, const PlasticState& old, const Vector& to, double after,
+double PlasticBulk::dissipated(const Vector& from, MotionInstant before, const PlasticState& old, const Vector& to, MotionInstant after,
                                const PlasticState& now) const {
   const Vector u0 = model_.full(from, 0, before), u1 = model_.full(to, 0, after);
   Vector from_element, to_element;
@@ -125,10 +125,12 @@ double PlasticBulk::dissipated(const Vector& from, double before, const PlasticS
   return sum;
 }
 
-double PlasticBulk::support_work(double before, const PlasticState& old, double after, const PlasticState& now) const {
+double PlasticBulk::support_work(MotionInstant before, const PlasticState& old, MotionInstant after, const PlasticState& now) const {
   double work = 0;
-  for (const PrescribedMotion& motion : model_.motions)
-    work += 0.5 * (old.full + now.full).dot(motion.shape) * (motion.function->value(after) - motion.function->value(before));
+  for (const PrescribedMotion& motion : model_.motions) {
+    const auto moved = [&](const MotionInstant& at) { return at.share * motion.function->value(at.time); };
+    work += 0.5 * (old.full + now.full).dot(motion.shape) * (moved(after) - moved(before));
+  }
   return work;
 }
 

@@ -33,10 +33,10 @@ class PlasticBulk {
   /// Of a state: recoverable energy less u.(K u)/2 of the linear bulk [J].
   double energy(const Vector& displacement, MotionInstant at, const PlasticState& state) const;
   /// Work of the mean stress on the plastic strain of a step [J].
-  double dissipated(const Vector& from, double before, const PlasticState& old, const Vector& to, double after,
+  double dissipated(const Vector& from, MotionInstant before, const PlasticState& old, const Vector& to, MotionInstant after,
                     const PlasticState& now) const;
   /// Work that moving supports do on the forces of yielding in a step [J].
-  double support_work(double before, const PlasticState& old, double after, const PlasticState& now) const;
+  double support_work(MotionInstant before, const PlasticState& old, MotionInstant after, const PlasticState& now) const;
 
  private:
   struct One {

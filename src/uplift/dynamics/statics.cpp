@@ -9,6 +9,8 @@
 #include <utility>
 
 #include "uplift/contact/unheld.h"
+#include "uplift/dynamics/energy.h"
+#include "uplift/dynamics/lifted.h"
 
 namespace uplift {
 
@@ -76,6 +78,8 @@ class LoadSteps {
   bool go(double from, double to, int depth);
   std::string solve(double to, int depth);
   bool in_balance(const Vector& unbalanced, const Vector& moved) const;
+  void take_solution();
+  void book(double to);
   void accept(double to);
 
   const Model& model_;
@@ -91,6 +95,7 @@ class LoadSteps {
   const double first_factor_;   // load factor at the beginning
   Vector gap_, motion_;         // rows: gap of the present load step, and what the prescribed motions open [m]
   Vector first_load_, change_;  // N: internal force at the beginning, and what the stage adds to it
+  Vector dead_load_;            // N: the static loads at the load factor 1
   InterfaceProblem blocks_;
   Sparse matrix_;  // upper triangle of K + B^T D B: all that a factor is made of
   std::unique_ptr<StepSolver> linear_;
@@ -98,6 +103,10 @@ class LoadSteps {
   const StepSolver* last_ = nullptr;  // solver of the last load step
   PlasticState plastic_now_, plastic_next_;
   Vector load_, product_, reaction_, moved_, increment_;
+  Vector opening_, force_, history_;  // of the interfaces at the end of the load step
+  LooseMotions loose_;
+  std::string not_unique_;  // see StaticOutcome
+  StaticProgress progress_;
   StaticOutcome outcome_;
 };
 
@@ -134,21 +143,24 @@ void LoadSteps::find_loads() {
   first_load_ = product_;
   if (yielding_.any()) first_load_ += plastic_now_.force;
   if (b_.rows() > 0) first_load_ += b_.transpose() * state_.force;
-  change_ = -first_load_;
+  dead_load_ = Vector::Zero(bulk_.unknowns);
   for (const Drive& drive : model_.drives)
-    if (drive.is_static()) change_ += drive.factor(state_.time) * drive.shape;
+    if (drive.is_static()) dead_load_ += drive.factor(state_.time) * drive.shape;
   if (options_.second_order != nullptr)
-    for (const Drive& drive : *options_.second_order) change_ += drive.factor(state_.time) * drive.shape;
+    for (const Drive& drive : *options_.second_order) dead_load_ += drive.factor(state_.time) * drive.shape;
+  change_ = dead_load_ - first_load_;
   model_.add_prescribed_opening(state_.time, motion_);
 }
 
 /// A structure that nothing holds has no equilibrium, but the balance of an interface problem is relative to its own forces, the closed
 /// joint that is taken back among them: it is met at infinity by every method. The balance of the whole structure, f - K u - B^T p against
 /// the loads, is not. `unbalanced` is that difference; what round-off makes of K u does not count, unless it is so much that nothing can be
-/// told. A stage without loads is measured against the forces at its beginning.
+/// told. A stage without loads is measured against the forces at its beginning, and against those of the interfaces, which may balance each
+/// other: a footing that supports press down has a moment of none.
 bool LoadSteps::in_balance(const Vector& unbalanced, const Vector& moved) const {
   if (!unbalanced.allFinite()) return false;
-  const double size = std::max({size_of(load_), size_of(reaction_), size_of(first_load_)});
+  double size = std::max({size_of(load_), size_of(reaction_), size_of(first_load_)});
+  if (b_.rows() > 0) size = std::max(size, size_of(b_.cwiseAbs().transpose() * force_.cwiseAbs()));
   double round_off = 0;
   for (int i = 0; i < bulk_.unknowns; ++i) round_off = std::max(round_off, std::abs(bulk_.stiffness_matrix.coeff(i, i) * moved[i]));
   const double lost = 64 * std::numeric_limits<double>::epsilon() * round_off;
@@ -185,31 +197,63 @@ std::string LoadSteps::solve(double to, int depth) {
     const std::string found = b_.rows() > 0 && depth >= options_.halvings ? diagnose(last_->problem(), method_) : "";
     return found.empty() ? step.why : found + "; " + step.why;
   }
-  moved_ = state_.displacement + increment_;
+  take_solution();
   bulk_.stiffness.multiply(moved_, product_);
   Vector unbalanced = load_ - product_;
   if (yielding_.any()) unbalanced -= plastic_next_.force;
-  if (b_.rows() > 0) reaction_.noalias() = b_.transpose() * last_->solution().force;
+  if (b_.rows() > 0) reaction_.noalias() = b_.transpose() * force_;
   unbalanced -= reaction_;
   if (in_balance(unbalanced, moved_)) return {};
   const std::string unheld = b_.rows() > 0 ? unheld_motion(last_->problem(), last_->solution(), runaway_ratio) : "";
   return unheld.empty() ? "the balance of the structure is not met" : unheld;
 }
 
+/// What the solver has found for a load step, without motions that nothing determines.
+void LoadSteps::take_solution() {
+  moved_ = state_.displacement + increment_;
+  not_unique_.clear();
+  if (b_.rows() == 0) return;
+  const InterfaceSolution& solution = last_->solution();
+  opening_ = solution.opening, force_ = solution.force, history_ = solution.now;
+  if (yielding_.any()) return;
+  Lifted lifted = keep_undetermined(model_, b_, last_->problem(), solution, increment_, loose_);
+  if (lifted.notice.empty()) return;
+  moved_ = state_.displacement + lifted.increment;
+  opening_.swap(lifted.opening), force_.swap(lifted.force), history_.swap(lifted.history);
+  not_unique_ = std::move(lifted.notice);
+}
+
+/// Adds a load step to the work done.
+void LoadSteps::book(double to) {
+  const double before = state_.load_factor, after = load_factor(to);
+  progress_.work += 0.5 * (before + after) * dead_load_.dot(moved_ - state_.displacement);
+  if (yielding_.any()) {
+    const MotionInstant from = state_.instant(), now{state_.time, after};
+    progress_.work += yielding_.support_work(from, plastic_now_, now, plastic_next_);
+    progress_.dissipated += yielding_.dissipated(state_.displacement, from, plastic_now_, moved_, now, plastic_next_);
+  }
+  if (b_.rows() == 0) return;
+  progress_.work += 0.5 * (after - before) * motion_.dot(state_.force + force_);
+  State next;
+  next.opening = opening_, next.force = force_;
+  progress_.friction += friction_work(last_->problem(), state_, next);
+}
+
 void LoadSteps::accept(double to) {
+  book(to);
   state_.displacement = moved_;
   state_.load_factor = load_factor(to);
   if (b_.rows() > 0) {
-    const InterfaceSolution& solution = last_->solution();
-    state_.opening = solution.opening;
-    state_.force = state_.mean_force = solution.force;
-    state_.history = solution.now;
+    state_.opening = opening_;
+    state_.force = state_.mean_force = force_;
+    state_.history = history_;
   }
+  outcome_.not_unique = not_unique_;
   if (yielding_.any()) {
     std::swap(plastic_now_, plastic_next_);
     state_.bulk_history = plastic_now_.history;
   }
-  outcome_.reached = to;
+  outcome_.reached = progress_.share = to;
   ++outcome_.steps;
 }
 
@@ -219,7 +263,7 @@ bool LoadSteps::go(double from, double to, int depth) {
   if (why.empty() && !moved_.allFinite()) why = "the displacement is not finite";
   if (why.empty()) {
     accept(to);
-    return !options_.after_step || options_.after_step(to);
+    return !options_.after_step || options_.after_step(progress_);
   }
   outcome_.why = fmt::format("static stage, {:.3g} % of the load: {}", 100 * to, why);
   if (depth < options_.halvings) {

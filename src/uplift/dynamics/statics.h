@@ -9,14 +9,23 @@
 
 namespace uplift {
 
+/// What a static stage has reached.
+struct StaticProgress {
+  double share = 0;  // of the stage
+  // J: trapezoidal sums over its load steps, exact where all forces are proportional to the displacements
+  double work = 0;        // of the dead loads and, as in the ledger (docs/theory, eq 20), of the moving supports
+  double dissipated = 0;  // by yielding solids
+  double friction = 0;    // under constraints
+};
+
 /// How a static stage proceeds.
 struct StaticOptions {
   int steps = 1;                                     // equal load steps
   int halvings = 8;                                  // a load step that fails is halved at most so often
   const std::vector<Drive>* second_order = nullptr;  // what prescribed motions do through the geometric stiffness of P-Delta; null: nothing
   PlasticOptions plastic = {};
-  // Called with the share of the stage that is reached, after every load step that converged, halved ones too; false ends the stage there.
-  std::function<bool(double share)> after_step = {};
+  // Called after every load step that converged, halved ones too; false ends the stage there.
+  std::function<bool(const StaticProgress&)> after_step = {};
 };
 
 struct StaticOutcome {
@@ -24,6 +33,7 @@ struct StaticOutcome {
   double reached = 0;      // share of the stage up to which there is equilibrium
   int steps = 0, retries = 0, iterations = 0;
   std::string why;                         // empty where after_step has ended the stage
+  std::string not_unique;                  // why the last equilibrium is one of several; empty where it is the only one
   std::optional<InterfaceProblem> failed;  // the interface problem of the load step that failed
   std::vector<double> newton;  // residuals of the outer Newton in the last load step, of the forces' size; empty without yielding solids
 };

@@ -183,10 +183,9 @@ void Stepper::start(State state, const Ledger* before) {
   energies_.interface_dissipated = interface_energy_.dissipated + energies_.friction;
   impact_loss_ = energies_.impact;
   if (!filtered_) energies_.algorithmic += std::exchange(energies_.filter, 0);  // another scheme forgets what the filters hold
-  const double total = energies_.kinetic + energies_.strain + energies_.stored + energies_.interface_dissipated;
-  origin_ = total + energies_.filter + energies_.plastic + energies_.damping + energies_.impact + energies_.algorithmic -
-            energies_.external - energies_.residual;
-  initial_energy_ = before != nullptr ? before->initial_energy : total;
+  origin_ = energies_.sum() - energies_.residual;
+  initial_energy_ =
+      before != nullptr ? before->initial_energy : energies_.kinetic + energies_.strain + energies_.stored + energies_.interface_dissipated;
   largest_external_ = before != nullptr ? before->largest_external : 0;
 }
 

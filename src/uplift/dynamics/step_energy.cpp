@@ -49,8 +49,7 @@ void Stepper::book_energies(const Level& level) {
   energies_.interface_dissipated = interface_energy_.dissipated + energies_.friction;
   energies_.impact = impact_loss_;
   if (filtered_) advance_filters(level);
-  energies_.residual = energies_.kinetic + energies_.strain + energies_.stored + energies_.filter + energies_.interface_dissipated +
-                       energies_.plastic + energies_.damping + energies_.impact + energies_.algorithmic - energies_.external - origin_;
+  energies_.residual = energies_.sum() - origin_;
   largest_external_ = std::max(largest_external_, std::abs(energies_.external));
 }
 

@@ -112,8 +112,8 @@ Chart ledger_chart(const ReportRun& run) {
        {Term{Column::external, "external work"}, Term{Column::kinetic, "kinetic"}, Term{Column::strain, "strain"},
         Term{Column::stored, "stored in the interface"}, Term{Column::interface_dissipated, "dissipated by the interface"},
         Term{Column::plastic, "dissipated by yielding solids"}, Term{Column::damping, "damping"}, Term{Column::impact, "impacts"},
-        Term{Column::algorithmic, "dissipated by the time scheme"}, Term{Column::filter, "stored in the filters of the scheme"},
-        Term{Column::residual, "residual"}}) {
+        Term{Column::stop, "taken by static stages"}, Term{Column::algorithmic, "dissipated by the time scheme"},
+        Term{Column::filter, "stored in the filters of the scheme"}, Term{Column::residual, "residual"}}) {
     add_history(chart, run, term.kind, 0, 1);
     if (!chart.curves.empty() && chart.curves.back().label == run.result->label) {
       chart.curves.back().label = term.label;
@@ -219,7 +219,8 @@ std::vector<View> interface_views(const Built& built) {
           {"base_shear", "interface", "Base shear", "Shear force in the interface.", "Force", "N", Column::shear, 0, 1},
           {"uplifted_ratio", "interface", "Uplifted area of the base", "Share of the area with a gap.", "Uplifted share", "1",
            Column::uplifted_ratio, 0, 1},
-          {"max_opening", "interface", "Largest gap", "Largest opening of all interface points.", "Gap", "m", Column::max_opening, 0, 1},
+          {"max_opening", "interface", "Largest gap", "Largest opening of the interface, up to its edges.", "Gap", "m", Column::max_opening,
+           0, 1},
           {"max_pressure", "interface", "Largest pressure", "Largest pressure of all points, at the end of each step.", "Pressure", "Pa",
            Column::max_pressure, 0, 1}};
 }

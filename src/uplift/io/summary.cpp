@@ -51,6 +51,7 @@ void write_run(JsonWriter& json, const RunResult& run, const Agreement* agreemen
       .member("stored", end.stored)
       .member("interface_dissipated", end.interface_dissipated);
   if (end.plastic != 0) json.member("plastic", end.plastic);
+  if (end.stop != 0) json.member("stop", end.stop);
   if (end.algorithmic != 0) json.member("algorithmic", end.algorithmic).member("filter", end.filter);
   json.member("damping", end.damping)
       .member("impact", end.impact)

@@ -75,7 +75,9 @@ Vec3 turn_of(const Model& model, const Motions& motions, const std::vector<int>&
   return CompleteQr(inertia).solve(spin);
 }
 
-std::string describe(const Model& model, const Vector& motion) {
+}  // namespace
+
+std::string describe_motion(const Model& model, const Vector& motion) {
   const Motions motions = motions_of(model, model.reduction * motion);
   const auto& [u, theta] = motions;
   double size = 1e-3, largest = 0;
@@ -112,6 +114,8 @@ std::string describe(const Model& model, const Vector& motion) {
   return fmt::format("{} can move, most of all {}", who, model.unknown_names[most]);
 }
 
+namespace {
+
 Where place_of(const Model& model) {
   return model.assembly.interface_where.empty() ? Where{} : model.assembly.interface_where.front();
 }
@@ -134,7 +138,7 @@ std::vector<int> blocks(const Sparse& a) {
 
 std::string loose_part(const Model& model, Resistance resistance) {
   const Vector motion = unresisted_motion(model, resistance);
-  return motion.size() == 0 ? std::string() : describe(model, motion);
+  return motion.size() == 0 ? std::string() : describe_motion(model, motion);
 }
 
 void check_static(const Model& model) {
@@ -208,7 +212,7 @@ void check_dynamic(const Model& model) {
   const Vector unresisted = unresisted_motion(model, Resistance::dynamic);
   if (unresisted.size() > 0)
     throw InputError(place_of(model), "", "a stiffness, a mass, a dashpot or an interface against every motion",
-                     describe(model, unresisted) + " without any of them");
+                     describe_motion(model, unresisted) + " without any of them");
 }
 
 }  // namespace uplift

@@ -21,5 +21,7 @@ void check_static(const Model& model);
 /// How the model can move without resistance with its interfaces closed, in words ("\"top\", \"base\" can move along (1, 0)"); empty when
 /// it cannot.
 std::string loose_part(const Model& model, Resistance resistance = Resistance::stiffness);
+/// A motion of the free unknowns in the same words.
+std::string describe_motion(const Model& model, const Vector& motion);
 
 }  // namespace uplift

@@ -25,8 +25,8 @@ double extent(const Model& model) {
 /// Unknowns: the free unknowns of the model, then the rigid motions of each part.
 class Equations {
  public:
-  Equations(const Model& model, Resistance resistance)
-      : model_(model), parts_(rigid_parts(model)), each_(model.space.unknowns()), follows_(model.free(), -1) {
+  Equations(const Model& model, Resistance resistance, const std::vector<char>* holds = nullptr)
+      : model_(model), holds_(holds), parts_(rigid_parts(model)), each_(model.space.unknowns()), follows_(model.free(), -1) {
     const bool dynamic = resistance != Resistance::stiffness;
     collect_other_rows(dynamic);
     if (resistance != Resistance::dynamic_open) collect_interface_rows();
@@ -35,13 +35,14 @@ class Equations {
     add_part_rows();
   }
 
-  Vector motion() const {
+  std::vector<Vector> motions(std::size_t most) const {
     Elimination elimination(scales(), 0);
     for (const auto& [row, preferred] : rows_) elimination.add(row, preferred);
     const std::vector<int> kept = elimination.kept();
-    for (std::size_t c = 0; c < kept.size(); ++c)
-      if (kept[c] >= model_.free() || follows_[kept[c]] < 0) return expand(elimination.reduction().col(static_cast<Index>(c)));
-    return {};
+    std::vector<Vector> found;
+    for (std::size_t c = 0; c < kept.size() && found.size() < most; ++c)
+      if (kept[c] >= model_.free() || follows_[kept[c]] < 0) found.push_back(expand(elimination.reduction().col(static_cast<Index>(c))));
+    return found;
   }
 
  private:
@@ -99,6 +100,7 @@ class Equations {
   }
 
   void collect_interface_rows() {
+    std::size_t first = 0;
     for (const Interface& face : model_.interfaces) {
       const int components = face.batch.components, points = face.batch.points;
       std::vector<double> closed(components, 0.0);
@@ -110,11 +112,12 @@ class Equations {
       }
       const SparseRows openings = face.b;
       for (int r = 0; r < face.rows(); ++r) {
-        if (!(closed[r / points] > 0)) continue;
+        if (holds_ != nullptr ? (*holds_)[first + static_cast<std::size_t>(r)] == 0 : !(closed[r / points] > 0)) continue;
         Row row;
         for (SparseRows::InnerIterator entry(openings, r); entry; ++entry) row.unknowns[static_cast<int>(entry.col())] = entry.value();
         if (!row.unknowns.empty()) rows_.emplace_back(std::move(row), -1);
       }
+      first += static_cast<std::size_t>(face.rows());
     }
   }
 
@@ -178,6 +181,7 @@ class Equations {
   }
 
   const Model& model_;
+  const std::vector<char>* holds_;  // of every interface row; null: those with a closed stiffness
   std::vector<RigidPart> parts_;
   int each_;
   std::vector<int> follows_;               // of each free unknown: the part that it follows; -1: it has its own equations
@@ -188,7 +192,16 @@ class Equations {
 
 Vector unresisted_motion(const Model& model, Resistance resistance) {
   if (model.free() == 0) return {};
-  return Equations(model, resistance).motion();
+  const std::vector<Vector> found = Equations(model, resistance).motions(1);
+  return found.empty() ? Vector() : found.front();
+}
+
+Matrix unresisted_motions(const Model& model, const std::vector<char>& holds) {
+  std::vector<Vector> found;
+  if (model.free() > 0) found = Equations(model, Resistance::stiffness, &holds).motions(static_cast<std::size_t>(model.free()));
+  Matrix motions(model.free(), static_cast<Index>(found.size()));
+  for (std::size_t k = 0; k < found.size(); ++k) motions.col(static_cast<Index>(k)) = found[k];
+  return motions;
 }
 
 }  // namespace uplift

@@ -14,5 +14,7 @@ enum class Resistance { stiffness, dynamic, dynamic_open };
 /// one linear equation, and Gauss-Jordan elimination finds the solutions. Only the geometry enters, and no stiffness: the answer depends
 /// neither on the number of cells nor on how soft the structure is.
 Vector unresisted_motion(const Model& model, Resistance resistance);
+/// All motions, as columns, that neither stiffness nor these interface rows resist (of all interfaces one after another; 0: does not hold).
+Matrix unresisted_motions(const Model& model, const std::vector<char>& holds);
 
 }  // namespace uplift
