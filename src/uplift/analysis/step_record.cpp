@@ -69,8 +69,8 @@ void StepRecord::average(double window) {
     Extremes& most = extremes[k];
     for (std::size_t i = 0; i < count; ++i) {
       const Instant& now = at(i, k);
-      most.step_shear = std::max(most.step_shear, std::hypot(now.shear_1, now.shear_2));
-      most.step_moment = std::max(most.step_moment, std::hypot(now.moment_1, now.moment_2));
+      most.step_shear = std::max(most.step_shear, std::sqrt(now.shear_1 * now.shear_1 + now.shear_2 * now.shear_2));
+      most.step_moment = std::max(most.step_moment, std::sqrt(now.moment_1 * now.moment_1 + now.moment_2 * now.moment_2));
       most.step_compression = std::max(most.step_compression, -now.axial);
       most.step_pressure = std::max(most.step_pressure, now.pressure);
     }
