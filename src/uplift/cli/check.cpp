@@ -7,6 +7,7 @@
 #include "uplift/analysis/case_mesh.h"
 #include "uplift/analysis/content_warning.h"
 #include "uplift/analysis/floor_record.h"
+#include "uplift/analysis/history_forecast.h"
 #include "uplift/analysis/step_suggestion.h"
 #include "uplift/analysis/wording.h"
 #include "uplift/base/text.h"
@@ -43,6 +44,7 @@ struct Findings {
   int pieces = 0;                   // of the opened mesh
   std::optional<FieldForecast> fields;
   std::optional<BulkCost> bulk;  // of a large bulk
+  HistoryForecast histories;     // of one run
   double record_bytes = 0;       // floors at every step
 };
 
@@ -147,6 +149,7 @@ Findings find(const Case& read, const RunSpec& spec, const Built& built) {
   look_at_mesh(read, found);
   found.fields = field_forecast(read, built);
   found.record_bytes = floor_record_bytes(built.plan);
+  found.histories = forecast_histories(built.plan, built.model.interfaces.size());
   const int unknowns = built.model.free();
   if (unknowns > small_model) {
     BulkUse use;
@@ -227,6 +230,8 @@ void print(const Loaded& loaded, const Built& built, const Findings& found, cons
   if (found.bulk)
     line("memory", fmt::format("about {}, {} of it the factor of a step; {} are free", spoken_bytes(found.bulk->bytes),
                                spoken_bytes(found.bulk->step.bytes), spoken_bytes(found.bulk->available)));
+  line("histories", fmt::format("{:.0f} rows x {:.0f} columns a run: {} in memory, about {} on disk", found.histories.rows,
+                                found.histories.columns, spoken_bytes(found.histories.memory), spoken_bytes(found.histories.disk)));
   if (found.record_bytes > 0)
     line("floor spectra", fmt::format("{} at every step: {} a run",
                                       built.plan.floors.size() == 1 ? "one record" : fmt::format("{} records", built.plan.floors.size()),
@@ -275,6 +280,13 @@ void write(const Loaded& loaded, const Built& built, const Findings& found, cons
         .member("factor_bytes", found.bulk->step.bytes)
         .member("available_bytes", found.bulk->available)
         .end_object();
+  json.key("histories")
+      .begin_object()
+      .member("rows", static_cast<long>(found.histories.rows))
+      .member("columns", static_cast<long>(found.histories.columns))
+      .member("memory_bytes", static_cast<long>(found.histories.memory))
+      .member("disk_bytes", static_cast<long>(found.histories.disk))
+      .end_object();
   if (found.record_bytes > 0)
     json.key("floor_spectra")
         .begin_object()

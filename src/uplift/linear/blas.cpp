@@ -3,19 +3,22 @@
 #include <sys/mman.h>
 
 #include <cstddef>
-#include <cstdlib>
 #include <new>
 
 extern "C" void openblas_set_num_threads(int count);
+/// The number of threads that OpenBLAS starts before main(); 0: it asks the environment and the system. Null in a shared OpenBLAS.
+extern "C" [[gnu::weak]] int blas_num_threads;
 extern "C" void dpotrf_(const char* triangle, const int* n, double* a, const int* stride, int* info);
 
 namespace uplift {
 
 namespace {
 
-/// OpenBLAS starts its threads before main(), and they wait by spinning. Linked statically, its constructor comes after this one.
+/// OpenBLAS starts its threads before main(): they wait by spinning, and where the system refuses them memory they try for ever, also at
+/// the end of the program. openblas_set_num_threads() comes too late for them. Linked statically, the constructor of OpenBLAS comes after
+/// this.
 [[gnu::constructor(101)]] void start_no_threads() {
-  setenv("OPENBLAS_NUM_THREADS", "1", 0);
+  if (&blas_num_threads != nullptr) blas_num_threads = 1;
 }
 
 bool take_work_space() {
