@@ -3,6 +3,7 @@
 import csv
 import pty
 import resource
+import shutil
 import signal
 import time
 
@@ -149,6 +150,22 @@ class FullDisk(RobustTest):
         rows = (kept / "histories.csv").read_text().splitlines()
         self.assertEqual(len(rows), 1 + 501)  # the head, the beginning and 500 steps
         self.assertFalse((self.folder / "r").exists())
+
+    def test_fields_that_cannot_be_written(self):
+        box = ('[mesh.soil_box]\nsoil = { width = 20, size = 2, layers = [{ thickness = 4, size = 2 }] }\nblock = { width = 4, height = 4, size = 1 }\n'
+               + "".join(f'[[solid]]\ngroup = "{group}"\nE = 1e9\npoisson = 0.3\ndensity = 2000\n' for group in ("soil_1", "block"))
+               + '[[support]]\ngroup = "soil_bottom"\nfixed = ["ux", "uy"]\n[[interface]]\nname = "base"\n'
+               'surface = { group = "interface", lower = ["soil_1"] }\nlaw = { type = "springs", K_n = 1e9, K_t = 1e9, tangential = "bonded" }\n'
+               '[gravity]\nacceleration = [0, -9.81]\n[[stage]]\ntype = "static"\n[[stage]]\ntype = "dynamic"\nduration = 0.1\nstep = 1e-3\n')
+        for form in ("vtu", "xdmf"):
+            with self.subTest(form=form):
+                self.write(f'title = "test"\nbonded = false\n{box}[output.fields]\nformat = "{form}"\nevery = 5\n')
+                done = self.run_with_files_up_to(5000)
+                self.assertEqual(done.returncode, 128 + signal.SIGXFSZ, done.stderr)
+                self.assertIn("error: r/fields/", done.stderr)
+                (kept,) = self.folder.glob("r.part-*")
+                self.assertIn("histories.csv", [path.name for path in kept.iterdir()])
+                shutil.rmtree(kept)
 
     def test_earlier_results_stay(self):
         self.write(BASE)

@@ -87,7 +87,7 @@ void add_interfaces(const Case& read, const RunSpec& spec, const Model* like, Mo
 
 /// With the place that asks for the path average: a stage, a variant or the stiffness sweep.
 [[noreturn]] void fail_traction(const Values& stage, const RunSpec& spec) {
-  const char* wanted = "the path average of the traction with the average acceleration alone; with this scheme traction = \"end\"";
+  const char* wanted = "traction = \"end\" with this scheme (the path average belongs to the average acceleration)";
   if (spec.stiffness_ratio)
     throw InputError(spec.law->where(), "compare.stiffness_sweep",
                      "stages with the average acceleration: the sweep compares both tractions", in_quotes(stage.part("scheme").type()));

@@ -163,8 +163,8 @@ void FieldRun::write(const State& state, const Vector* acceleration, const std::
   std::optional<FieldTrouble> trouble;
   try {
     trouble = vtu_ ? vtu_->write(frame) : xdmf_->write(frame);
-  } catch (const InputError& error) {
-    return stop_writing(error);
+  } catch (const InputError&) {
+    return stop_writing();
   }
   if (!trouble) {
     times_.insert(time);
@@ -173,9 +173,9 @@ void FieldRun::write(const State& state, const Vector* acceleration, const std::
   if (left_out_++ == 0) trouble_ = fmt::format("{} at t = {:.6g} s", trouble->reason, time);
 }
 
-void FieldRun::stop_writing(const InputError& error) {
+void FieldRun::stop_writing() {
   disk_refused_ = true;
-  folder_.note_failure(list_, error.what());
+  folder_.note_failure(list_, "the system refused a part of its data (a full disk, or a file that is too large)");
 }
 
 void FieldRun::finish(RunResult& result) {
@@ -184,8 +184,8 @@ void FieldRun::finish(RunResult& result) {
   try {
     if (vtu_) vtu_->finish();
     if (xdmf_ && !disk_refused_) xdmf_->finish(into(folder_));
-  } catch (const InputError& error) {
-    stop_writing(error);
+  } catch (const InputError&) {
+    stop_writing();
   }
   if (left_out_ > 0)
     result.notes.push_back(fmt::format("{} of the fields {} left out: {}", left_out_ == 1 ? "a frame" : fmt::format("{} frames", left_out_),

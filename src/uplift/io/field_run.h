@@ -57,7 +57,7 @@ class FieldRun {
   void keep(Kept& kept, double value, const Moment& moment);
   /// Section forces of the beams at this moment.
   std::vector<double> section_forces(const Moment& moment, const Vector* acceleration);
-  void stop_writing(const InputError& error);
+  void stop_writing();
   void write(const State& state, const Vector* acceleration, const std::vector<double>& section_forces, double time);
 
   const RunPlan& plan_;
