@@ -329,6 +329,16 @@ class Inputs(RobustTest):
         self.assertEqual(threads, 1)
 
 
+class Energy(RobustTest):
+    def test_lost_energy_is_a_warning(self):
+        for step, warned in (("2e-2", True), ("1e-3", False)):
+            self.write(BASE.replace('type = "dynamic"', 'type = "dynamic"\nscheme = { type = "generalised_alpha", rho = 0 }').replace("1e-3", step))
+            err = self.uplift("run", "case.toml", "-o", "r").stderr
+            (run,) = self.summary("r")["runs"]
+            self.assertEqual(run["energy_lost"]["value"] > 0.05 * run["energy_scale"], warned)
+            self.assertEqual("warning: the time scheme lost " in err, warned)
+
+
 class Places(RobustTest):
     def test_messages_have_a_place(self):
         bare = BASE[:BASE.index("[[stage]]")]

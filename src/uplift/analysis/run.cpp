@@ -124,9 +124,10 @@ void Runner::check_tables() {
       const auto bad = std::ranges::find_if_not(column, [](double value) { return std::isfinite(value); });
       if (bad == column.end() || result_.status == RunStatus::failed) continue;
       result_.status = RunStatus::failed;
-      result_.reason = fmt::format("{} is not finite at {} = {:.6g}", plan_.requests[k - 1].name,
-                                   table == &result_.table && !statics_alone(plan_) ? "t [s]" : "load factor",
-                                   table->front()[static_cast<std::size_t>(bad - column.begin())]);
+      const double at = table->front()[static_cast<std::size_t>(bad - column.begin())];
+      const bool over_time = table == &result_.table && !statics_alone(plan_);
+      result_.reason = fmt::format("{} is not finite at {}", plan_.requests[k - 1].name,
+                                   over_time ? fmt::format("t = {:.6g} s", at) : fmt::format("the load factor {:.6g}", at));
     }
 }
 

@@ -18,6 +18,7 @@
 #include "uplift/io/interface_points.h"
 #include "uplift/io/json_writer.h"
 #include "uplift/io/report_motions.h"
+#include "uplift/linear/memory.h"
 #include "uplift/mesh/quality.h"
 
 namespace uplift::cli {
@@ -144,6 +145,18 @@ double pictures_bytes(const Case& read, const Built& built) {
   return 8 * numbers * built.plan.frames * static_cast<double>(runs_of_case(read).size());
 }
 
+/// `uplift run` keeps the histories of all its runs until they are written; those with twice the step have half of them.
+std::string history_warning(const Case& read, const HistoryForecast& one) {
+  constexpr double small = 1e8;  // bytes
+  const double all =
+      one.memory * (static_cast<double>(runs_of_case(read).size()) + 0.5 * static_cast<double>(companions_of_case(read).size()));
+  const double available = all > small ? available_memory() : all;
+  if (all <= available) return {};
+  return fmt::format(
+      "the histories of all runs together take {} of memory, {} are available: take a larger step or `every`, or leave runs out",
+      spoken_bytes(all), spoken_bytes(available));
+}
+
 Findings find(const Case& read, const RunSpec& spec, const Built& built) {
   Findings found;
   look_at_mesh(read, found);
@@ -175,6 +188,7 @@ Findings find(const Case& read, const RunSpec& spec, const Built& built) {
   if (!found.bounds.empty()) found.suggested_step = rounded_down(found.bounds.front().step);
   try_steps(found, built);
   found.warnings = warnings(read, spec, built);
+  if (std::string warning = history_warning(read, found.histories); !warning.empty()) found.warnings.push_back(std::move(warning));
   return found;
 }
 

@@ -56,8 +56,17 @@ std::string result_path(const Options& options, const Case& read) {
   return (fs::path("out") / name).string();
 }
 
-OutputFolder::OutputFolder(const Options& options, const std::string& path) : ResultFolder(path) {
+namespace {
+
+/// Signals are caught before there is a folder that they could leave behind.
+const std::string& with_signals_caught(const std::string& path) {
   catch_interrupts();
+  return path;
+}
+
+}  // namespace
+
+OutputFolder::OutputFolder(const Options& options, const std::string& path) : ResultFolder(with_signals_caught(path)) {
   if (options.quiet) return;
   for (const std::string& folder : abandoned())
     complain(fmt::format("note: {}/ holds the files of a command that was killed; delete it when it is not needed", folder));
