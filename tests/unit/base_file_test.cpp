@@ -86,8 +86,8 @@ TEST_F(FileTest, AMissingFileNamesTheNearest) {
   EXPECT_EQ(error_of_reading(folder / "cases"), place + "/cases: wanted a file, found a folder");
 }
 
-// A socket is there, but nobody can open it, not even root, whom permissions do not stop.
-TEST_F(FileTest, AFileThatCannotBeOpenedIsAnError) {
+// Reading a socket, a pipe or a device might never end.
+TEST_F(FileTest, WhatIsNoRegularFileIsAnError) {
   const fs::path path = folder / "a";
   sockaddr_un address{};
   address.sun_family = AF_UNIX;
@@ -95,7 +95,8 @@ TEST_F(FileTest, AFileThatCannotBeOpenedIsAnError) {
   path.string().copy(address.sun_path, sizeof address.sun_path - 1);
   const int socket = ::socket(AF_UNIX, SOCK_STREAM, 0);
   ASSERT_EQ(::bind(socket, reinterpret_cast<const sockaddr*>(&address), sizeof address), 0);
-  EXPECT_EQ(error_of_reading(path), path.string() + ": wanted a file that may be read, found No such device or address");
+  EXPECT_EQ(error_of_reading(path),
+            path.string() + ": wanted a regular file, found a pipe, a device or a socket (write its content to a file first)");
   ::close(socket);
 }
 

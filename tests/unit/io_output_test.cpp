@@ -111,6 +111,12 @@ RunResult small_result() {
   return result;
 }
 
+TEST(Histories, QuoteTheirHead) {
+  RunResult result = small_result();
+  result.columns[0].name = "moment, \"top\"";
+  EXPECT_EQ(histories_csv(result), "time [s],\"moment, \"\"top\"\" [m]\"\n0,0\n0.5,-0.002\n");
+}
+
 TEST(Histories, HaveUnitsAndNoRowThatIsNotFinite) {
   EXPECT_EQ(histories_csv(small_result()), "time [s],top.ux [m]\n0,0\n0.5,-0.002\n");
 }
@@ -161,9 +167,46 @@ TEST_F(Folder, AppearsOnlyWhenItIsFinished) {
   EXPECT_EQ(read_file(path("out/r/a/b.txt")), "text");
 }
 
-TEST_F(Folder, LeavesNothingWhenItIsNotFinished) {
-  { ResultFolder(path("r")).write("a.txt", "text"); }
+TEST_F(Folder, LeavesNothingWithoutFiles) {
+  { ResultFolder(path("r")).place("fields/run.h5"); }
   EXPECT_TRUE(std::filesystem::is_empty(root_));
+}
+
+TEST_F(Folder, KeepsFilesWhenItIsNotFinished) {
+  std::string work;
+  {
+    ResultFolder folder(path("r"));
+    folder.write("a.txt", "text");
+    EXPECT_TRUE(folder.has_files());
+    work = folder.working_path();
+  }
+  EXPECT_EQ(read_file(work + "/a.txt"), "text");
+  ResultFolder next(path("r"));  // of the same process: its folder has another name
+  EXPECT_NE(next.working_path(), work);
+}
+
+TEST_F(Folder, WritesWhatItCanAndReportsTheRest) {
+  ResultFolder folder(path("r"));
+  std::filesystem::create_directories(std::filesystem::path(folder.working_path()) / "taken");
+  folder.write("taken", "a folder has this name");
+  folder.write("histories.csv", "text");
+  try {
+    folder.finish();
+    FAIL();
+  } catch (const OutputError& error) {
+    EXPECT_EQ(std::string(error.what()), path("r/taken") + ": cannot write the file: Is a directory");
+  }
+  EXPECT_EQ(read_file(folder.working_path() + "/histories.csv"), "text");
+  EXPECT_FALSE(std::filesystem::exists(path("r")));
+}
+
+TEST_F(Folder, ResolvesLinksAndDots) {
+  std::filesystem::create_directories(root_ / "disk");
+  std::filesystem::create_symlink("disk", path("link"));
+  EXPECT_EQ(ResultFolder(path("link")).path(), std::filesystem::canonical(root_ / "disk").string());
+  EXPECT_EQ(ResultFolder(path("disk/.")).path(), path("disk"));
+  EXPECT_EQ(ResultFolder(path("disk/")).path(), path("disk"));
+  EXPECT_EQ(ResultFolder(path("link/r/")).path(), path("link/r"));
 }
 
 TEST_F(Folder, MovesEarlierResultsAside) {

@@ -55,8 +55,8 @@ std::vector<double> equal_times(double from = 0) {
 }
 
 TEST(RecordRefusals, StepAndNumberOfPoints) {
-  EXPECT_EQ(refusal(ramp("NPTS= 25, DT= 0 SEC")), "file:4: wanted a time step > 0 s, found 0 s");
-  EXPECT_EQ(refusal(ramp("NPTS= 25, DT= -.01 SEC")), "file:4: wanted a time step > 0 s, found -0.01 s");
+  EXPECT_EQ(refusal(ramp("NPTS= 25, DT= 0 SEC")), "file:4: wanted a time step from 1e-07 s to 1e+06 s, found 0 s");
+  EXPECT_EQ(refusal(ramp("NPTS= 25, DT= -.01 SEC")), "file:4: wanted a time step from 1e-07 s to 1e+06 s, found -0.01 s");
   EXPECT_EQ(refusal(ramp("NPTS= 1000000000, DT= .01 SEC")), "file:4: wanted 1000000000 points, as announced here, found 25");
   EXPECT_EQ(refusal(ramp("NPTS= 20, DT= .01 SEC")), "file:4: wanted 20 points, as announced here, found 25");
   EXPECT_EQ(refusal(ramp("NPTS= 1, DT= .01 SEC")), "file:4: wanted at least two points, found 1");
@@ -64,7 +64,7 @@ TEST(RecordRefusals, StepAndNumberOfPoints) {
   EXPECT_EQ(refusal(ramp("NPTS= 25, DT= UNKNOWN")),
             "file:4: wanted the number of points and the step, as in \"NPTS= 4000, DT= .005 SEC\", found \"NPTS= 25, DT= UNKNOWN\"");
   EXPECT_EQ(refusal("0.5\n", {.unit = "g", .step = 0.01}), "file:1: wanted at least two points, found one");
-  EXPECT_EQ(refusal("0.5\n0.6\n", {.unit = "g", .step = 0.0}), "step: wanted a time step > 0 s, found 0 s");
+  EXPECT_EQ(refusal("0.5\n0.6\n", {.unit = "g", .step = 0.0}), "step: wanted a time step from 1e-07 s to 1e+06 s, found 0 s");
   EXPECT_EQ(refusal("0.5\n0.6\n", {.unit = "g"}),
             "file: wanted the time step of a file without times (give it, as in step = 0.01), found none");
 }

@@ -1,6 +1,8 @@
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <cmath>
+#include <limits>
 #include <string>
 
 #include "uplift/analysis/verdict.h"
@@ -54,6 +56,19 @@ type = "dynamic"
 duration = 1
 step = 1e-3
 )";
+
+// The energies of this run are finite; one of its columns is not.
+TEST(RunEnds, AColumnThatIsNotFiniteIsAFailure) {
+  const Case file = check_case(read_toml_text(thrown, "case.toml"), "case.toml");
+  Built built = build(file, runs_of_case(file).front());
+  const auto column = std::ranges::find(built.plan.requests, std::string("body.uy"), &Request::name);
+  ASSERT_NE(column, built.plan.requests.end());
+  EXPECT_NE(run(built.model, built.plan, built.behaviours).status, RunStatus::failed);
+  column->factor = std::numeric_limits<double>::quiet_NaN();
+  const RunResult result = run(built.model, built.plan, built.behaviours);
+  EXPECT_EQ(result.status, RunStatus::failed);
+  EXPECT_EQ(result.reason, "body.uy is not finite at t = 0 s");
+}
 
 TEST(RunEnds, ABodyThatLeavesTheGroundWithoutTurningIsSeparated) {
   const std::string text = thrown;

@@ -11,6 +11,7 @@
 #include "uplift/analysis/case_shown.h"
 #include "uplift/analysis/case_verdict.h"
 #include "uplift/analysis/case_water.h"
+#include "uplift/analysis/history_forecast.h"
 #include "uplift/base/text.h"
 #include "uplift/model/check.h"
 #include "uplift/model/tuned_mass.h"
@@ -84,6 +85,16 @@ void add_interfaces(const Case& read, const RunSpec& spec, const Model* like, Mo
   if (spec.law && !spec.interface.empty()) names.interfaces.find(spec.interface, spec.law->where(), spec.law->path());
 }
 
+/// With the place that asks for the path average: a stage, a variant or the stiffness sweep.
+[[noreturn]] void fail_traction(const Values& stage, const RunSpec& spec) {
+  const char* wanted = "traction = \"end\" with this scheme (the path average belongs to the average acceleration)";
+  if (spec.stiffness_ratio)
+    throw InputError(spec.law->where(), "compare.stiffness_sweep",
+                     "stages with the average acceleration: the sweep compares both tractions", in_quotes(stage.part("scheme").type()));
+  if (spec.path_average) throw InputError(stage.where("scheme"), "variant \"" + spec.name + "\"", wanted, "traction = \"path\"");
+  fail(stage, "traction", wanted, "\"path\"");
+}
+
 Stage stage_of(const Values& table, const RunSpec& spec) {
   Stage stage;
   stage.type = table.text("type") == "static" ? Stage::Type::statics : Stage::Type::dynamics;
@@ -103,8 +114,7 @@ Stage stage_of(const Values& table, const RunSpec& spec) {
   // otherwise.
   const bool wanted = spec.path_average.value_or(table.text("traction") == "path");
   const bool stated = spec.path_average.has_value() || table.given("traction");
-  if (wanted && stated && !stage.scheme.average_acceleration())
-    fail(table, "traction", "traction = \"end\" with this scheme (the path average belongs to the average acceleration)", "\"path\"");
+  if (wanted && stated && !stage.scheme.average_acceleration()) fail_traction(table, spec);
   stage.path_average = wanted && stage.scheme.average_acceleration();
   return stage;
 }
@@ -166,7 +176,7 @@ std::vector<double> tuned_masses(const Case& read, const RunSpec& spec) {
   add_structure(read.values, builder, names, {0.0}, true);
   add_interfaces(read, spec, nullptr, builder, names, without);
   const Model model = builder.finish();
-  check_static(model);  // a loose body is named as such, not as a mass that cannot be tuned
+  check_static(model, read.values.where());  // a loose body is named as such, not as a mass that cannot be tuned
   return {tuned_mass(model, names.node(*tuned, "node"), tuned->number("tuned_frequency"), tuned->where("tuned_frequency"))};
 }
 
@@ -364,8 +374,8 @@ Built build(const Case& read, const RunSpec& spec) {
   built.model = make_model(read, spec, tuned, nullptr, names, built);
   const bool released = any_released(root);
   const bool rests = std::ranges::any_of(built.plan.stages, [](const Stage& stage) { return stage.type == Stage::Type::statics; });
-  if (!released && rests) check_static(built.model);
-  if (dynamic_stage(built.plan)) check_dynamic(built.model);
+  if (!released && rests) check_static(built.model, root.where());
+  if (dynamic_stage(built.plan)) check_dynamic(built.model, root.where());
   built.motions = motions_used(root, read.records, spec.motion);
 
   RunPlan& plan = built.plan;
@@ -379,7 +389,7 @@ Built build(const Case& read, const RunSpec& spec) {
   if (released) {
     check_release(root, plan);
     plan.rest = resting_model(read, spec, tuned, built);
-    check_static(*plan.rest);
+    check_static(*plan.rest, root.where());
   }
   add_method(read, spec, built);
   if (const Stage* stage = dynamic_stage(plan);
@@ -403,6 +413,7 @@ Built build(const Case& read, const RunSpec& spec) {
   built.wishes = verdict_wishes(root, built);
   plan.window = built.wishes.window;
   if (const Values* compare = table_if(root, "compare")) check_columns(*compare, "agree_on", plan.requests);
+  check_history_memory(read, built);
   return built;
 }
 

@@ -10,6 +10,7 @@
 
 #include "uplift/analysis/case_model.h"
 #include "uplift/base/text.h"
+#include "uplift/linear/memory.h"
 #include "uplift/mesh/absent_group.h"
 #include "uplift/mesh/cell_quadrature.h"
 #include "uplift/mesh/cell_shapes.h"
@@ -58,7 +59,9 @@ Mesh make_soil_box(const Values& box) {
     fail(box, "cell",
          made.dimension == 2 ? "a cell of the plane (soil.length makes the mesh one in space)" : "a cell of space, for example hex8",
          in_quotes(box.text("cell")));
-  return soil_box(made, box.where(), box.path() + ".");
+  // At least: stiffness and mass of one node for each element, with 3 x 81 or 2 x 18 numbers of 12 bytes each; the factor takes more.
+  const double bytes = made.dimension == 3 ? 6000 : 900;
+  return soil_box(made, box.where(), box.path() + ".", available_memory() / bytes);
 }
 
 /// Whether the faces of a surface are drawn apart; either two groups of them are named, or one at which the mesh is opened.

@@ -144,6 +144,12 @@ std::shared_ptr<const TimeFunction> scaled(double factor, std::shared_ptr<const 
   return std::make_shared<Scaled>(factor, std::move(function));
 }
 
+bool CaseNames::is_record(const Values& table) const {
+  if (!table.has("function")) return false;
+  const std::string& name = name_taken(instead, table.text("function"));
+  return functions_made[static_cast<std::size_t>(functions.find(name, table.where("function"), table.path("function")))] == nullptr;
+}
+
 std::shared_ptr<const TimeFunction> CaseNames::function(const Values& table, std::optional<MotionKind> kind) const {
   if (!table.has("function")) return std::make_shared<One>();
   const std::string& name = name_taken(instead, table.text("function"));

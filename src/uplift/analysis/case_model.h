@@ -20,7 +20,9 @@ struct CaseNames {
   std::vector<Place> positions;                                     // of the nodes
   std::vector<std::shared_ptr<const TimeFunction>> functions_made;  // then the records: null
   const std::vector<CaseRecord>* records = nullptr;
-  const Values* instead = nullptr;           // [[compare.motion]] of the run; null: as in the case
+  const Values* instead = nullptr;  // [[compare.motion]] of the run; null: as in the case
+  /// Whether the function of a table is a record, which has a unit.
+  bool is_record(const Values& table) const;
   double share = 0;                          // of the displacements of records, see MotionFunction
   std::shared_ptr<const CaseSolids> solids;  // null without a mesh
   int first_of_mesh = 0;                     // node of the model that the mesh's first node is

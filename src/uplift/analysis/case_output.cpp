@@ -7,6 +7,7 @@
 
 #include "uplift/analysis/case_forces.h"
 #include "uplift/analysis/case_model.h"
+#include "uplift/base/text.h"
 #include "uplift/dynamics/plastic_bulk.h"
 
 namespace uplift {
@@ -233,10 +234,12 @@ void add_requests(const Case& read, const CaseNames& names, Built& built) {
   for (const Interface& interface : model.interfaces) interfaces.add(interface.name, {}, {});
   for (const Request& request : requests) columns.add(request.name, {}, {});
   for (const Values& history : output.tables("history")) {
+    if (history.has("name")) check_name(history.text("name"), "the column", history.where("name"), history.path("name"));
     Request request = asked_request(history, built, names, nodes, interfaces);
     const bool there = std::any_of(requests.begin(), requests.end(), [&](const Request& other) { return other.name == request.name; });
     if (there && !history.has("name")) continue;  // one of the automatic ones
-    columns.add(request.name, history.where(), history.path());
+    if (request.name == "time") fail(history, "name", "a name other than that of the first column", in_quotes(request.name));
+    columns.add(request.name, history.where("name"), history.path("name"));
     requests.push_back(std::move(request));
   }
   add_envelopes(output, built);

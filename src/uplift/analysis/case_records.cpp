@@ -139,6 +139,7 @@ std::vector<CaseRecord> read_records(const Values& root) {
     Motion motion = record.has("file") ? read_record(record) : std::move(generated[i]);
     motion.name = record.text("name");
     for (const Values& step : record.tables("process")) motion = make_part(process_catalog(), step.part("do"))->apply(std::move(motion));
+    check_values(motion, record.where(), record.path());
     made.push_back({motion.name, std::make_shared<const MotionHistory>(std::make_shared<const Motion>(std::move(motion)))});
   }
   return made;

@@ -45,6 +45,10 @@ RunSpec bonded_run(const Case& read) {
 
 /// Names become file names: nothing that a shell or a file system would take amiss.
 void check_file_name(const Values& table) {
+  constexpr std::size_t most = 64;  // of a variant, a damping and a motion: together they name a file, of at most 255 characters
+  if (table.text("name").size() > most)
+    fail(table, "name", fmt::format("a name of at most {} characters (it names files; `label` may be longer)", most),
+         fmt::format("{} characters", table.text("name").size()));
   for (const char c : table.text("name"))
     if (!std::isalnum(static_cast<unsigned char>(c)) && c != '_' && c != '-' && c != '.')
       fail(table, "name", "letters, digits, '_', '-' and '.' (it names files; `label` may be anything)", "\"" + table.text("name") + "\"");

@@ -113,6 +113,15 @@ const Section& support_section() {
   return s;
 }
 
+Field amplitude_field() {
+  Field field = text("amplitude",
+                     "what the function, which has no unit, is multiplied by: a length, or an angle for a rotation, as 0.02, \"2 cm\" or "
+                     "\"3 mrad\" (a bare number is in m or rad); of a record, which is a motion itself, a factor without a unit")
+                    .standard("1");
+  field.unit = "*";
+  return field;
+}
+
 const Section& motion_section() {
   static const Section s{
       "motion",
@@ -121,18 +130,20 @@ const Section& motion_section() {
       Fields{text("name", "name").optional(), text("node", "node; or give group").optional(),
              text("group", "group of the mesh: all its nodes").optional(),
              text("direction", "unknown that is moved: ux, uy or rz; in space ux, uy, uz, rx, ry or rz; of a group a translation"),
-             number("amplitude", "1", "m (or rad for rotations) that the function multiplies").standard(1.0),
+             amplitude_field(),
              text("function", "name of the function of time; absent: constant, for example a settlement, applied by the first static stage")
                  .optional()}};
   return s;
 }
 
 const Section& ground_section() {
-  static const Section s{"ground_acceleration",
-                         "acceleration of the whole ground: inertia forces -M r a(t) in the frame that moves with it",
-                         Fields{text("name", "name").optional(), vector("direction", "1", "direction"),
-                                number("amplitude", "m/s2", "acceleration that the function multiplies").standard(1.0),
-                                text("function", "name of the function of time")}};
+  static const Section s{
+      "ground_acceleration", "acceleration of the whole ground: inertia forces -M r a(t) in the frame that moves with it",
+      Fields{
+          text("name", "name").optional(), vector("direction", "1", "direction"),
+          number("amplitude", "m/s2", "acceleration that the function multiplies; of a record, which is an acceleration itself, a factor")
+              .standard(1.0),
+          text("function", "name of the function of time")}};
   return s;
 }
 

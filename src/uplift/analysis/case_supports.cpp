@@ -6,6 +6,7 @@
 
 #include "uplift/analysis/case_model.h"
 #include "uplift/base/text.h"
+#include "uplift/base/units.h"
 
 // Supports and prescribed motions of a case.
 namespace uplift {
@@ -38,6 +39,17 @@ std::map<Unknown, std::string> moved_by_groups(const Values& root, const CaseNam
     for (const int node : names.node_or_group(motion)) moved.emplace(Unknown(node, dof), motion.text("group"));
   }
   return moved;
+}
+
+/// A length or an angle for a function, which has no unit; a factor for a record, which is a displacement.
+double amplitude_of(const Values& motion, bool turns, const CaseNames& names) {
+  const char* unit = names.is_record(motion) ? "1" : turns ? "rad" : "m";
+  const Quantity amplitude = parse_quantity(motion.text("amplitude"), unit);
+  if (!amplitude.ok) fail(motion, "amplitude", quantity_name(unit), amplitude.found, amplitude.nearest);
+  constexpr double most = 1e10;
+  if (std::abs(amplitude.value) > most)
+    fail(motion, "amplitude", quantity_name(unit) + fmt::format(" of at most {:g}", most), in_quotes(motion.text("amplitude")));
+  return amplitude.value;
 }
 
 }  // namespace
@@ -78,7 +90,7 @@ void add_supports(const Values& root, ModelBuilder& builder, const CaseNames& na
     if (!motion.has("function") && !stages.empty() && stages.front().text("type") != "static")
       fail(motion, "function", "the name of a function, or a static stage first, which applies a motion without a function", "neither");
     auto function = names.function(motion, turns ? std::nullopt : std::optional(MotionKind::displacement));
-    builder.prescribe(nodes, dof, scaled(motion.number("amplitude"), std::move(function)), name, motion.where());
+    builder.prescribe(nodes, dof, scaled(amplitude_of(motion, turns, names), std::move(function)), name, motion.where());
   }
 }
 

@@ -86,7 +86,7 @@ std::vector<Agreement> agreement(const std::vector<RunResult>& results, const st
   std::vector<std::vector<Compared>> values;
   std::map<std::string, std::map<std::string, std::vector<double>>> sound;  // by group and name
   for (std::size_t i = 0; i < results.size(); ++i) {
-    const bool counts = !specs[i].bonded && results[i].status != RunStatus::failed;
+    const bool counts = !specs[i].bonded && results[i].status != RunStatus::failed && results[i].status != RunStatus::interrupted;
     values.push_back(!counts           ? std::vector<Compared>()
                      : columns.empty() ? numbers_of_verdict(built[i], results[i])
                                        : peaks_of(results[i], columns));

@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <chrono>
+#include <cmath>
 #include <utility>
 
 #include "uplift/analysis/probe.h"
@@ -110,6 +111,7 @@ Runner::Runner(const Model& model, const RunPlan& plan, const std::vector<const 
 RunResult Runner::go() {
   const auto start = std::chrono::steady_clock::now();
   execute();
+  check_tables();
   result_.steps.average(plan_.window);
   take_window_peaks();
   result_.wall = std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count() - shown_;
@@ -118,6 +120,22 @@ RunResult Runner::go() {
   result_.counts.back_solves = linear_.back_solves;
   result_.counts.systems = linear_.systems;
   return std::move(result_);
+}
+
+/// A run with a number in its tables that is not finite has failed, also where its energies are finite.
+void Runner::check_tables() {
+  for (const std::vector<std::vector<double>>* table : {&result_.table, &result_.load_steps})
+    for (std::size_t k = 1; k < table->size(); ++k) {
+      const std::vector<double>& column = (*table)[k];
+      if (std::isfinite(ConstMap(column.data(), std::ssize(column)).sum())) continue;  // finds them fast, and a few sums too large
+      const auto bad = std::ranges::find_if_not(column, [](double value) { return std::isfinite(value); });
+      if (bad == column.end() || result_.status == RunStatus::failed) continue;
+      result_.status = RunStatus::failed;
+      const double at = table->front()[static_cast<std::size_t>(bad - column.begin())];
+      const bool over_time = table == &result_.table && !statics_alone(plan_);
+      result_.reason = fmt::format("{} is not finite at {}", plan_.requests[k - 1].name,
+                                   over_time ? fmt::format("t = {:.6g} s", at) : fmt::format("the load factor {:.6g}", at));
+    }
 }
 
 /// Largest forces of the bases as means over the window, which the verdict shows.

@@ -48,6 +48,7 @@ class Runner {
   bool surfaces_turn_little();
   bool surfaces_stay_near();
   void finish_energy(const Stepper& stepper);
+  void check_tables();
   void take_window_peaks();
   void fail(std::string why, const InterfaceProblem* problem);
 

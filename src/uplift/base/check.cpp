@@ -1,3 +1,5 @@
+#include <fmt/format.h>
+
 #include <algorithm>
 #include <cassert>
 #include <cmath>
@@ -54,6 +56,16 @@ bool within(const Field& field, double value) {
   return above && below;
 }
 
+/// A thousand times beyond what an engineer means. Products of such numbers leave the range of a double.
+void check_magnitude(const Raw& raw, const Field& field, double value, const std::string& shown) {
+  const double most = field.unit == "m" ? 1e10 : 1e30, least = 1e-30;
+  const std::string unit = field.unit.empty() || field.unit == "1" ? "" : " " + std::string(field.unit);
+  if (std::abs(value) > most)
+    throw InputError(raw.where, raw.path, std::string(dimension_name(field.unit)) + fmt::format(" of at most {:g}", most) + unit, shown);
+  if (field.least_excluded && field.least == 0 && value < least)
+    throw InputError(raw.where, raw.path, std::string(dimension_name(field.unit)) + fmt::format(" of at least {:g}", least) + unit, shown);
+}
+
 /// A number in SI: bare, or a text with a unit.
 double number_of(const Raw& raw, const Field& field) {
   double value = 0;
@@ -75,7 +87,9 @@ double number_of(const Raw& raw, const Field& field) {
   }
   const bool dimensionless = field.unit.empty() || field.unit == "1";
   const std::string shown = shortest(value) + (dimensionless ? "" : " " + std::string(field.unit));
-  if (!std::isfinite(value) || !within(field, value)) refuse(raw, field, found.empty() ? shown : found + " (" + shown + ")");
+  const std::string in_words = found.empty() ? shown : found + " (" + shown + ")";
+  if (!std::isfinite(value) || !within(field, value)) refuse(raw, field, in_words);
+  check_magnitude(raw, field, value, in_words);
   return value;
 }
 

@@ -8,16 +8,25 @@
 namespace uplift {
 namespace {
 
+/// Keys and names of the input may be of any length.
+std::string shortened(const std::string& text) {
+  constexpr std::size_t most = 300;
+  if (text.size() <= most) return text;
+  std::size_t end = most;
+  while (end > 0 && (static_cast<unsigned char>(text[end]) & 0xC0) == 0x80) --end;  // no character is cut in two
+  return text.substr(0, end) + "...";
+}
+
 std::string message(const Where& where, const std::string& path, const std::string& wanted, const std::string& found,
                     const std::string& nearest) {
   std::string place = where.file;
   if (where.line > 0) place += (place.empty() ? "line " : ":") + std::to_string(where.line);
   std::string what;
   if (!wanted.empty()) what = "wanted " + wanted;
-  if (!found.empty()) what += (what.empty() ? "found " : ", found ") + found;
+  if (!found.empty()) what += (what.empty() ? "found " : ", found ") + shortened(found);
   if (!nearest.empty()) what += (what.empty() ? "did you mean " : " (did you mean ") + in_quotes(nearest) + (what.empty() ? "?" : "?)");
   std::string out;
-  for (const std::string& part : {place, path, what}) {
+  for (const std::string& part : {shortened(place), shortened(path), what}) {
     if (part.empty()) continue;
     if (!out.empty()) out += ": ";
     out += part;

@@ -5,6 +5,7 @@
 
 #include <cerrno>
 #include <cstdio>
+#include <cstdlib>
 #include <fstream>
 #include <string>
 #include <system_error>
@@ -79,11 +80,19 @@ class Draft {
 
 }  // namespace
 
-std::string read_file(const fs::path& path) {
+std::string read_file(const fs::path& path, double most) {
   std::error_code error;
   const fs::file_status status = fs::status(path, error);
   if (status.type() == fs::file_type::not_found) missing(path);
   if (fs::is_directory(status)) throw InputError({path.string(), 0}, "", "a file", "a folder");
+  if (!error && !fs::is_regular_file(status))
+    throw InputError({path.string(), 0}, "", "a regular file", "a pipe, a device or a socket (write its content to a file first)");
+  if (const char* raised = std::getenv("UPLIFT_MAX_FILE_MB")) most = leading_number(raised).value;
+  const double size = static_cast<double>(fs::file_size(path, error));
+  if (!error && size > 1e6 * most)
+    throw InputError({path.string(), 0}, "",
+                     "a file of at most " + spoken_bytes(1e6 * most) + " (the environment variable UPLIFT_MAX_FILE_MB raises this limit)",
+                     spoken_bytes(size));
   std::ifstream in(path, std::ios::binary);
   if (!in) throw InputError({path.string(), 0}, "", "a file that may be read", std::error_code(errno, std::generic_category()).message());
   std::string text{std::istreambuf_iterator<char>(in), std::istreambuf_iterator<char>()};

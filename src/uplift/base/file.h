@@ -5,8 +5,12 @@
 
 namespace uplift {
 
-/// The whole file, byte for byte. Throws InputError with the reason; when there is no such file, with the nearest name in its folder.
-std::string read_file(const std::filesystem::path& path);
+inline constexpr double usual_file_limit = 2000;  // MB
+
+/// The whole file, byte for byte. Throws InputError with the reason: when there is no such file, with the nearest name in its folder; when
+/// it is no regular file (reading a pipe or /dev/zero might never end); and when it has more than `most` MB. The environment variable
+/// UPLIFT_MAX_FILE_MB replaces that limit.
+std::string read_file(const std::filesystem::path& path, double most = usual_file_limit);
 
 /// Writes a file so that a reader finds the old text or the new one and never a part: beside it first, then renamed. The folder must exist.
 /// Throws std::filesystem::filesystem_error with the reason; an older file is kept then.

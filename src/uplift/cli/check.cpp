@@ -7,6 +7,7 @@
 #include "uplift/analysis/case_mesh.h"
 #include "uplift/analysis/content_warning.h"
 #include "uplift/analysis/floor_record.h"
+#include "uplift/analysis/history_forecast.h"
 #include "uplift/analysis/step_suggestion.h"
 #include "uplift/analysis/wording.h"
 #include "uplift/base/text.h"
@@ -17,6 +18,7 @@
 #include "uplift/io/interface_points.h"
 #include "uplift/io/json_writer.h"
 #include "uplift/io/report_motions.h"
+#include "uplift/linear/memory.h"
 #include "uplift/mesh/quality.h"
 
 namespace uplift::cli {
@@ -43,6 +45,7 @@ struct Findings {
   int pieces = 0;                   // of the opened mesh
   std::optional<FieldForecast> fields;
   std::optional<BulkCost> bulk;  // of a large bulk
+  HistoryForecast histories;     // of one run
   double record_bytes = 0;       // floors at every step
 };
 
@@ -142,11 +145,24 @@ double pictures_bytes(const Case& read, const Built& built) {
   return 8 * numbers * built.plan.frames * static_cast<double>(runs_of_case(read).size());
 }
 
+/// `uplift run` keeps the histories of all its runs until they are written; those with twice the step have half of them.
+std::string history_warning(const Case& read, const HistoryForecast& one) {
+  constexpr double small = 1e8;  // bytes
+  const double all =
+      one.memory * (static_cast<double>(runs_of_case(read).size()) + 0.5 * static_cast<double>(companions_of_case(read).size()));
+  const double available = all > small ? available_memory() : all;
+  if (all <= available) return {};
+  return fmt::format(
+      "the histories of all runs together take {} of memory, {} are available: take a larger step or `every`, or leave runs out",
+      spoken_bytes(all), spoken_bytes(available));
+}
+
 Findings find(const Case& read, const RunSpec& spec, const Built& built) {
   Findings found;
   look_at_mesh(read, found);
   found.fields = field_forecast(read, built);
   found.record_bytes = floor_record_bytes(built.plan);
+  found.histories = forecast_histories(built.plan, built.model.interfaces.size());
   const int unknowns = built.model.free();
   if (unknowns > small_model) {
     BulkUse use;
@@ -172,6 +188,7 @@ Findings find(const Case& read, const RunSpec& spec, const Built& built) {
   if (!found.bounds.empty()) found.suggested_step = rounded_down(found.bounds.front().step);
   try_steps(found, built);
   found.warnings = warnings(read, spec, built);
+  if (std::string warning = history_warning(read, found.histories); !warning.empty()) found.warnings.push_back(std::move(warning));
   return found;
 }
 
@@ -227,6 +244,8 @@ void print(const Loaded& loaded, const Built& built, const Findings& found, cons
   if (found.bulk)
     line("memory", fmt::format("about {}, {} of it the factor of a step; {} are free", spoken_bytes(found.bulk->bytes),
                                spoken_bytes(found.bulk->step.bytes), spoken_bytes(found.bulk->available)));
+  line("histories", fmt::format("{:.0f} rows x {:.0f} columns a run: {} in memory, about {} on disk", found.histories.rows,
+                                found.histories.columns, spoken_bytes(found.histories.memory), spoken_bytes(found.histories.disk)));
   if (found.record_bytes > 0)
     line("floor spectra", fmt::format("{} at every step: {} a run",
                                       built.plan.floors.size() == 1 ? "one record" : fmt::format("{} records", built.plan.floors.size()),
@@ -275,6 +294,13 @@ void write(const Loaded& loaded, const Built& built, const Findings& found, cons
         .member("factor_bytes", found.bulk->step.bytes)
         .member("available_bytes", found.bulk->available)
         .end_object();
+  json.key("histories")
+      .begin_object()
+      .member("rows", static_cast<long>(found.histories.rows))
+      .member("columns", static_cast<long>(found.histories.columns))
+      .member("memory_bytes", static_cast<long>(found.histories.memory))
+      .member("disk_bytes", static_cast<long>(found.histories.disk))
+      .end_object();
   if (found.record_bytes > 0)
     json.key("floor_spectra")
         .begin_object()

@@ -8,7 +8,8 @@
 namespace uplift::cli {
 
 /// Exit codes, as documented by `uplift --help`.
-enum Exit { done = 0, internal_error = 1, bad_input = 2, numerical_failure = 3, interrupted = 130 };
+/// A command that a signal ended returns 128 + the number of the signal instead.
+enum Exit { done = 0, internal_error = 1, bad_input = 2, numerical_failure = 3, output_error = 4 };
 
 struct Options {
   std::string file;            // case file, or stored problem

@@ -67,9 +67,11 @@ void print_over_motions(const ComparisonSummary& compared) {
       for (std::size_t k = 0; k < values.size(); ++k) row.push_back(shown(values[k], table.quantities[k].unit));
     };
     for (const MotionTable::Row& row : table.rows) add(row.motion, to_string(row.status), row.peaks);
-    add("envelope", "", table.envelope);
-    add("mean", "", table.mean);
-    add("spread", "", table.spread);
+    if (table.counted > 0) {
+      add("envelope", "", table.envelope);
+      add("mean", "", table.mean);
+      add("spread", "", table.spread);
+    }
     print_table(rows);
   }
 }
@@ -158,10 +160,9 @@ int compare(const Options& options) {
   const Comparison comparison = comparison_of_case(loaded.read);
   const std::size_t total = comparison.runs.size() + comparison.sweep.size();
   Results results, swept;
-  ResultFolder folder(result_path(options, loaded.read));
+  OutputFolder folder(options, result_path(options, loaded.read));
   const Values& output = loaded.read.values.table("output");
   const bool with_fields = output.has("fields") && output.table("fields").flag("variants");
-  catch_interrupts();
   run_all(loaded, options, comparison.runs, 0, total, with_fields ? &folder : nullptr, results);
   run_all(loaded, options, comparison.sweep, comparison.runs.size(), total, nullptr, swept);
 
@@ -186,7 +187,7 @@ int compare(const Options& options) {
   write_results(options, loaded, results, &compared, folder);
 
   if (options.json) {
-    fmt::print("{}", read_file(folder.path() + "/summary.json"));
+    print_text(read_file(folder.path() + "/summary.json"));
   } else if (!options.quiet) {
     for (const std::string& warning : results.warnings) complain("warning: " + warning);
     print_runs(results, compared);
@@ -200,8 +201,8 @@ int compare(const Options& options) {
   }
   if (interrupt_asked()) {
     if (!options.quiet)
-      complain(fmt::format("interrupted: the files hold the {} runs that were begun", results.runs.size() + swept.runs.size()));
-    return Exit::interrupted;
+      complain(fmt::format("{}: the files hold the {} runs that were begun", interrupt_text(), results.runs.size() + swept.runs.size()));
+    return interrupt_exit_code();
   }
   bool failed = false;
   for (const RunResult& run : results.runs)

@@ -7,24 +7,37 @@
 #include <algorithm>
 #include <atomic>
 #include <cctype>
+#include <cerrno>
 #include <csignal>
 #include <cstdio>
 #include <cstdlib>
+#include <cstring>
+#include <utility>
 
 #include "uplift/analysis/wording.h"
+#include "uplift/io/files.h"
 
 namespace uplift::cli {
 namespace {
 
-/// Set by the signal handler, which can reach nothing but a variable of static storage.
-std::atomic<bool>& interrupt_flag() {
-  static std::atomic<bool> flag{false};
-  return flag;
+/// The signal that asked for the end (0: none). The handler can reach nothing but a variable of static storage.
+std::atomic<int>& interrupt_signal() {
+  static std::atomic<int> number{0};
+  return number;
 }
 
-extern "C" void on_interrupt(int) {
-  interrupt_flag().store(true);
-  std::signal(SIGINT, SIG_DFL);
+/// SIGXFSZ keeps its handler: every further write to the file raises it again, and fails.
+extern "C" void on_interrupt(int number) {
+  int none = 0;
+  interrupt_signal().compare_exchange_strong(none, number);
+  if (number != SIGXFSZ) std::signal(number, SIG_DFL);
+}
+
+constexpr std::pair<int, const char*> ending_signals[] = {
+    {SIGINT, "SIGINT"}, {SIGTERM, "SIGTERM"}, {SIGHUP, "SIGHUP"}, {SIGQUIT, "SIGQUIT"}, {SIGXFSZ, "SIGXFSZ"}};
+
+void put(std::FILE* to, std::string_view text) {
+  std::fwrite(text.data(), 1, text.size(), to);
 }
 
 /// Length of a UTF-8 text in characters.
@@ -44,11 +57,18 @@ int terminal_width() {
 
 }  // namespace
 
+void print_text(std::string_view text) {
+  put(stdout, text);
+  if (std::ferror(stdout) != 0) throw OutputError(fmt::format("cannot write to standard output: {}", std::strerror(errno)));
+}
 void say(std::string_view line) {
-  fmt::print(stdout, "{}\n", line);
+  print_text(fmt::format("{}\n", line));
+}
+void finish_output() {
+  if (std::fflush(stdout) != 0) throw OutputError(fmt::format("cannot write to standard output: {}", std::strerror(errno)));
 }
 void complain(std::string_view line) {
-  fmt::print(stderr, "{}\n", line);
+  put(stderr, fmt::format("{}\n", line));
 }
 
 bool on_terminal() {
@@ -57,12 +77,25 @@ bool on_terminal() {
 }
 
 void catch_interrupts() {
-  interrupt_flag();  // made here, not in the handler
-  std::signal(SIGINT, on_interrupt);
+  interrupt_signal();  // made here, not in the handler
+  for (const auto& [number, name] : ending_signals)
+    if (std::signal(number, on_interrupt) == SIG_IGN && number == SIGHUP) std::signal(number, SIG_IGN);
+  std::signal(SIGPIPE, SIG_IGN);
 }
 
 bool interrupt_asked() {
-  return interrupt_flag().load();
+  return interrupt_signal().load() != 0;
+}
+
+int interrupt_exit_code() {
+  return 128 + interrupt_signal().load();
+}
+
+std::string interrupt_text() {
+  const int asked = interrupt_signal().load();
+  for (const auto& [number, name] : ending_signals)
+    if (number == asked && number != SIGINT) return fmt::format("interrupted ({})", name);
+  return "interrupted";
 }
 
 void print_table(const std::vector<std::vector<std::string>>& rows) {
@@ -86,7 +119,7 @@ void print_table(const std::vector<std::vector<std::string>>& rows) {
 ProgressLine::ProgressLine(std::string label, bool quiet) : label_(std::move(label)), quiet_(quiet), terminal_(on_terminal()) {}
 
 ProgressLine::~ProgressLine() {
-  if (drawn_) fmt::print(stderr, "\r\033[K");
+  if (drawn_) put(stderr, "\r\033[K");
 }
 
 bool ProgressLine::operator()(const Progress& progress) {
@@ -107,7 +140,7 @@ bool ProgressLine::operator()(const Progress& progress) {
     return true;
   }
   line.resize(std::min(line.size(), static_cast<std::size_t>(terminal_width() - 1)));
-  fmt::print(stderr, "\r\033[K{}", line);
+  put(stderr, "\r\033[K" + line);
   std::fflush(stderr);
   drawn_ = true;
   return true;

@@ -8,16 +8,25 @@
 
 namespace uplift::cli {
 
-/// One line on standard output.
+/// One line on standard output. Throws OutputError when it cannot be written.
 void say(std::string_view line);
-/// One line on standard error.
+/// A text on standard output as it stands, the same.
+void print_text(std::string_view text);
+/// Writes out what standard output still holds. Throws OutputError when it cannot be written.
+void finish_output();
+/// One line on standard error. When that cannot be written, nobody can be told.
 void complain(std::string_view line);
 /// True when standard error is a terminal that can redraw a line.
 bool on_terminal();
 
-/// From now on Ctrl-C asks for an orderly end instead of killing the process; a second one kills it.
+/// From now on SIGINT (Ctrl-C), SIGTERM, SIGHUP, SIGQUIT and SIGXFSZ (file too large) ask for an orderly end instead of killing the
+/// process; a second one kills it. SIGHUP stays ignored under nohup, and a closed pipe is an output error.
 void catch_interrupts();
 bool interrupt_asked();
+/// 128 + the number of the signal that asked for the end, as a shell reports it.
+int interrupt_exit_code();
+/// "interrupted", or "interrupted (SIGTERM)" for another signal than Ctrl-C.
+std::string interrupt_text();
 
 /// Aligned columns; the first row is the head. Numbers (cells that start with a digit or a sign) stand to the right.
 void print_table(const std::vector<std::vector<std::string>>& rows);

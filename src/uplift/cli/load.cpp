@@ -56,6 +56,27 @@ std::string result_path(const Options& options, const Case& read) {
   return (fs::path("out") / name).string();
 }
 
+namespace {
+
+/// Signals are caught before there is a folder that they could leave behind.
+const std::string& with_signals_caught(const std::string& path) {
+  catch_interrupts();
+  return path;
+}
+
+}  // namespace
+
+OutputFolder::OutputFolder(const Options& options, const std::string& path) : ResultFolder(with_signals_caught(path)) {
+  if (options.quiet) return;
+  for (const std::string& folder : abandoned())
+    complain(fmt::format("note: {}/ holds the files of a command that was killed; delete it when it is not needed", folder));
+}
+
+OutputFolder::~OutputFolder() {
+  if (!finished() && has_files())
+    complain(fmt::format("the results are not complete; the files that were written are in {}/", working_path()));
+}
+
 std::string status_text(const RunResult& result) {
   std::string text(to_string(result.status));
   if (result.expected_to_fail && result.status == RunStatus::failed) text += " (expected)";

@@ -22,6 +22,16 @@ MeshReader mesh_reader();
 /// Where results go: options.out, or out/NAME with the case's folder (for case.toml) or file name.
 std::string result_path(const Options& options, const Case& read);
 
+/// The folder of the results of a command, and what the user is told of it. From its making on, signals end the command in order.
+class OutputFolder : public ResultFolder {
+ public:
+  OutputFolder(const Options& options, const std::string& path);
+  OutputFolder(const OutputFolder&) = delete;
+  OutputFolder& operator=(const OutputFolder&) = delete;
+  /// Says where the files are that were written before the command had to end.
+  ~OutputFolder();
+};
+
 /// Everything that a command computed, ready to be written.
 struct Results {
   std::vector<RunSpec> specs;

@@ -2,11 +2,13 @@
 
 #include <CLI/CLI.hpp>
 #include <algorithm>
+#include <sstream>
 
 #include "uplift/base/error.h"
 #include "uplift/base/text.h"
 #include "uplift/cli/commands.h"
 #include "uplift/cli/console.h"
+#include "uplift/io/files.h"
 #include "uplift/linear/memory.h"
 
 // The one file that knows CLI11: declares the commands and turns errors into exit codes.
@@ -18,7 +20,8 @@ using uplift::cli::Options;
 constexpr const char* exit_codes =
     "Exit codes: 0 success, 2 bad input, 3 numerical failure (a run failed or exceeded its limit of spurious energy, or a generated "
     "motion\n"
-    "does not fit its spectrum; results are kept and marked), 130 interrupted by Ctrl-C (the files contain what was computed), 1 a bug.";
+    "does not fit its spectrum; results are kept and marked), 4 the output could not be written (a full disk; what was written is kept),\n"
+    "128 + n ended by signal n, as 130 by Ctrl-C or 143 by SIGTERM (the files contain what was computed), 1 a bug.";
 
 struct Choices {
   Options options;
@@ -198,9 +201,22 @@ int program(int count, char** words) {
   try {
     app.parse(count, words);
   } catch (const CLI::ParseError& error) {
-    return app.exit(error) == 0 ? uplift::cli::Exit::done : uplift::cli::Exit::bad_input;
+    std::ostringstream text, complaint;
+    const int code = app.exit(error, text, complaint);
+    uplift::cli::print_text(text.str());
+    constexpr std::size_t most = 600;  // an argument may be of any length
+    std::string line = complaint.str();
+    if (line.size() > most) line = line.substr(0, most) + "...";
+    while (line.ends_with('\n')) line.pop_back();
+    if (!line.empty()) uplift::cli::complain(line);
+    return code == 0 ? uplift::cli::Exit::done : uplift::cli::Exit::bad_input;
   }
   return dispatch(app, given);
+}
+
+int output_failed(const std::string& message) {
+  uplift::cli::complain("error: " + message);
+  return uplift::cli::interrupt_asked() ? uplift::cli::interrupt_exit_code() : uplift::cli::Exit::output_error;
 }
 
 }  // namespace
@@ -208,10 +224,14 @@ int program(int count, char** words) {
 int main(int count, char** words) {
   uplift::prepare_heap();
   try {
-    return program(count, words);
+    const int code = program(count, words);
+    uplift::cli::finish_output();
+    return code;
   } catch (const uplift::InputError& error) {
     uplift::cli::complain(fmt::format("error: {}", error.what()));
     return uplift::cli::Exit::bad_input;
+  } catch (const uplift::OutputError& error) {
+    return output_failed(error.what());
   } catch (const std::bad_alloc&) {
     uplift::cli::complain("error: not enough memory. Coarsen the mesh, reduce the model, or use a machine with more memory.");
     return uplift::cli::Exit::numerical_failure;

@@ -10,6 +10,7 @@
 #include "uplift/base/text.h"
 #include "uplift/cli/commands.h"
 #include "uplift/cli/console.h"
+#include "uplift/cli/load.h"
 #include "uplift/io/files.h"
 #include "uplift/io/report.h"
 #include "uplift/io/report_motion.h"
@@ -159,7 +160,10 @@ void process(std::vector<ShownMotion>& shown, const std::vector<std::string>& st
   const std::string place = "uplift motion --process";
   for (const std::string& step : steps) {
     const auto made = make_part(process_catalog(), check_part(table_of(part_of(step, place), place), motion_processes()));
-    for (ShownMotion& each : shown) each.now = made->apply(std::move(each.now));
+    for (ShownMotion& each : shown) {
+      each.now = made->apply(std::move(each.now));
+      check_values(each.now, {place, 0}, step);
+    }
   }
 }
 
@@ -251,11 +255,15 @@ void write(const MotionReport& report, const Options& options, ResultFolder& fol
 int motion(const Options& options, const MotionOptions& given) {
   std::vector<std::unique_ptr<const TargetSpectrum>> targets;
   GenerateOptions generating;
+  for (const double damping : given.dampings)
+    if (!(damping >= 0 && damping <= 0.99))  // the range check of the command line lets "nan" pass
+      throw InputError({"uplift motion --damping", 0}, "", "damping ratios from 0 to 0.99", fmt::format("{}", damping));
   if (given.generate.empty() && given.files.empty())
     throw InputError({"uplift motion", 0}, "", "a file of a recorded motion, or --generate TARGET", "neither");
   MotionReport report;
   report.frequencies = frequencies_of(given.frequencies);
   report.motions = given.generate.empty() ? read_all(given) : generate_all(given, targets, generating);
+  for (const ShownMotion& shown : report.motions) check_values(shown.now, {"uplift motion", 0}, shown.now.name);
   bool good = true;
   for (const ShownMotion& shown : report.motions)
     if (shown.fit && !shown.fit->good()) {
@@ -272,14 +280,15 @@ int motion(const Options& options, const MotionOptions& given) {
   report = with_rotated(std::move(report));
   report.from = provenance_of(given, options, report.motions);
 
-  ResultFolder folder(folder_of(given, options));
+  OutputFolder folder(options, folder_of(given, options));
   write(report, options, folder);
   if (options.json) {
-    fmt::print("{}", read_file(folder.path() + "/summary.json"));
+    print_text(read_file(folder.path() + "/summary.json"));
   } else if (!options.quiet) {
     print(report);
     say(fmt::format("results: {}/report.html", folder.path()));
   }
+  if (interrupt_asked()) return interrupt_exit_code();
   return good ? Exit::done : Exit::numerical_failure;
 }
 

@@ -1,11 +1,12 @@
 #include <fmt/format.h>
 
-#include <cstdio>
 #include <filesystem>
 
 #include "uplift/base/error.h"
+#include "uplift/base/file.h"
 #include "uplift/cli/commands.h"
 #include "uplift/cli/console.h"
+#include "uplift/io/files.h"
 
 namespace uplift::cli {
 namespace {
@@ -135,10 +136,11 @@ int new_case(const std::string& name) {
   std::string title = folder.filename().empty() ? folder.parent_path().filename().string() : folder.filename().string();
   for (char& c : title)
     if (c == '"' || c == '\\') c = '_';
-  std::FILE* out = std::fopen(file.c_str(), "wb");
-  if (!out) throw InputError({file.string(), 0}, "", "a file that can be written", "none");
-  fmt::print(out, template_text, title);
-  std::fclose(out);
+  try {
+    write_file_atomically(file, fmt::format(template_text, title));
+  } catch (const fs::filesystem_error& refusal) {
+    throw OutputError(fmt::format("{}: cannot write the file: {}", file.string(), refusal.code().message()));
+  }
   const char* quote = name.find(' ') == std::string::npos ? "" : "\"";
   say(fmt::format("{} written; next: uplift check {}{}{}", file.string(), quote, folder.string(), quote));
   return Exit::done;

@@ -34,6 +34,10 @@ Answer solve(const InterfaceProblem& problem, const std::string& name) {
   answer.residual = answer.solution.opening.size() == problem.rows() && answer.solution.force.size() == problem.rows()
                         ? yardstick(problem, answer.solution)
                         : INFINITY;
+  if (answer.outcome.converged && !(answer.solution.opening.allFinite() && answer.solution.force.allFinite())) {
+    answer.outcome.converged = false;
+    answer.outcome.why = "the solution is not finite";
+  }
   if (answer.outcome.converged && problem.shift.size() > 0)  // of a static step: what has run away is no equilibrium of the structure
     if (std::string why = unheld_motion(problem, answer.solution, runaway_ratio); !why.empty()) {
       answer.outcome.converged = false;

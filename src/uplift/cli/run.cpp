@@ -9,6 +9,7 @@
 #include "uplift/base/file.h"
 #include "uplift/cli/console.h"
 #include "uplift/cli/load.h"
+#include "uplift/linear/memory.h"
 
 namespace uplift::cli {
 namespace {
@@ -46,7 +47,7 @@ class CompanionRuns {
   /// Begins to compute a case that is small.
   void begin(const Built& base) {
     constexpr int small_model = 3000;  // free unknowns
-    if (!specs_.empty() && base.model.free() <= small_model)
+    if (!specs_.empty() && base.model.free() <= small_model && runs_side_by_side(2) == 2)
       beside_ = std::async(std::launch::async | std::launch::deferred, [this] { compute(true); });
   }
   /// What the verdict is compared with; null when nothing was computed.
@@ -85,9 +86,8 @@ class CompanionRuns {
 int run(const Options& options) {
   const Loaded loaded = load(options);
   Results results;
-  ResultFolder folder(result_path(options, loaded.read));
+  OutputFolder folder(options, result_path(options, loaded.read));
   std::vector<std::string> fields;
-  catch_interrupts();
   CompanionRuns companions(loaded, options);
   for (const RunSpec& spec : runs_of_case(loaded.read)) {
     if (interrupt_asked() && !results.runs.empty()) break;
@@ -107,7 +107,7 @@ int run(const Options& options) {
   write_results(options, loaded, results, nullptr, folder);
 
   if (options.json) {
-    fmt::print("{}", read_file(folder.path() + "/summary.json"));
+    print_text(read_file(folder.path() + "/summary.json"));
   } else if (!options.quiet) {
     for (const std::string& warning : results.warnings) complain("warning: " + warning);
     say(results.verdict.headline);
@@ -126,13 +126,13 @@ int run(const Options& options) {
     for (const std::string& list : fields) say(fmt::format("fields: {}/{} (for ParaView)", folder.path(), list));
   }
   if (main.status == RunStatus::interrupted) {
-    if (!options.quiet) complain(fmt::format("interrupted at t = {:g} s: the files hold everything up to there", main.end_time));
-    return Exit::interrupted;
+    if (!options.quiet) complain(fmt::format("{} at t = {:g} s: the files hold everything up to there", interrupt_text(), main.end_time));
+    return interrupt_exit_code();
   }
   if (interrupt_asked()) {
     if (!options.quiet)
-      complain("interrupted: the bonded run or the run with twice the step is not complete; what is compared with it is missing");
-    return Exit::interrupted;
+      complain(interrupt_text() + ": the bonded run or the run with twice the step is not complete; what is compared with it is missing");
+    return interrupt_exit_code();
   }
   if (main.status == RunStatus::failed) {
     complain("failed: " + main.reason);

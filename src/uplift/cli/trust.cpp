@@ -10,6 +10,7 @@
 #include "uplift/cli/console.h"
 #include "uplift/cli/load.h"
 #include "uplift/io/trust_json.h"
+#include "uplift/linear/memory.h"
 
 namespace uplift::cli {
 namespace {
@@ -55,10 +56,12 @@ void print_spectra(const TrustAnswer& answer) {
 }
 
 void print_answer(const TrustAnswer& answer) {
-  print_bands(answer);
+  if (!answer.bands.empty()) print_bands(answer);
   print_spectra(answer);
   for (const TrustRun& run : answer.runs)
-    if (!run.counts()) say(fmt::format("{} is left out: {}: {}", run.label, to_string(run.status), run.reason));
+    if (!run.counts())
+      say(run.status == RunStatus::interrupted ? fmt::format("{} is left out: {}", run.label, run.reason)
+                                               : fmt::format("{} is left out: {}: {}", run.label, to_string(run.status), run.reason));
   for (const TrustPlan::LeftOut& each : answer.left_out) say(fmt::format("not changed: {}: {}", each.choice, each.reason));
 }
 
@@ -67,8 +70,7 @@ void print_answer(const TrustAnswer& answer) {
 int trust(const Options& options) {
   const Loaded loaded = load(options);
   Results results;
-  ResultFolder folder(result_path(options, loaded.read));
-  catch_interrupts();
+  OutputFolder folder(options, result_path(options, loaded.read));
   for (const RunSpec& spec : runs_of_case(loaded.read)) {
     results.specs.push_back(spec);
     results.built.push_back(build(loaded.read, spec));
@@ -79,19 +81,20 @@ int trust(const Options& options) {
   TrustAnswer answer;
   {
     ProgressLine line("trust", options.quiet || options.json);
-    const int threads = static_cast<int>(std::max(1u, std::thread::hardware_concurrency()));
+    const int threads = runs_side_by_side(static_cast<int>(std::thread::hardware_concurrency()));
     answer = uplift::trust(loaded.raw, loaded.read, mesh_reader(), {results.built.front(), results.runs.front(), bonded}, threads,
                            [&line](const Progress& progress) { return line(progress); });
   }
   results.trust = &answer;
   results.floors = floor_answers(results.built.front().plan, results.runs, results.specs);
   results.verdict = judge(results.built.front(), results.runs.front(), bonded, &results.floors.runs.front());
-  results.verdict.consequence += (results.verdict.consequence.empty() ? "" : " ") + trust_sentence(answer);
+  const std::string bands = trust_sentence(answer);
+  results.verdict.consequence += (results.verdict.consequence.empty() || bands.empty() ? "" : " ") + bands;
   folder.write("trust.json", trust_json(answer));
   write_results(options, loaded, results, nullptr, folder);
 
   if (options.json) {
-    fmt::print("{}", read_file(folder.path() + "/trust.json"));
+    print_text(read_file(folder.path() + "/trust.json"));
   } else if (!options.quiet) {
     for (const std::string& warning : results.warnings) complain("warning: " + warning);
     say(results.verdict.headline);
@@ -100,8 +103,8 @@ int trust(const Options& options) {
     say(fmt::format("results: {}/report.html", folder.path()));
   }
   if (!answer.complete) {
-    if (!options.quiet) complain("interrupted: runs that were not finished are left out");
-    return Exit::interrupted;
+    if (!options.quiet) complain(interrupt_text() + ": runs that were not finished are left out");
+    return interrupt_exit_code();
   }
   if (!answer.base.counts()) {
     complain("failed: " + answer.base.reason);

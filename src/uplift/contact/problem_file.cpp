@@ -121,7 +121,7 @@ class Reader {
     if (block.area.size() != block.batch.points)
       refuse(path + ".area", std::to_string(block.batch.points) + " numbers", std::to_string(block.area.size()));
     for (const double area : block.area)
-      if (!(area > 0)) refuse(path + ".area", "areas > 0", std::to_string(area));
+      if (!(area > 0 && std::isfinite(area))) refuse(path + ".area", "finite areas > 0", std::to_string(area));
     const Values values = check_part(raw(at(object, path, "behaviour"), path + ".behaviour"), interface_behaviours());
     InterfaceProblem& problem = stored.problem;
     for (const Block& other : problem.blocks) block.first = other.first + other.rows();
@@ -132,7 +132,8 @@ class Reader {
       if (const auto found = object.find("substitute"); found != object.end()) {
         const std::string inside = path + ".substitute";
         block.substitute_stiffness = number(at(*found, inside, "stiffness"), inside + ".stiffness");
-        if (!(block.substitute_stiffness > 0)) refuse(inside + ".stiffness", "a stiffness > 0", std::to_string(block.substitute_stiffness));
+        if (!(block.substitute_stiffness > 0 && std::isfinite(block.substitute_stiffness)))
+          refuse(inside + ".stiffness", "a finite stiffness > 0", std::to_string(block.substitute_stiffness));
         block.substitute_memory = numbers(at(*found, inside, "memory"), inside + ".memory");
         if (block.substitute_memory.size() % static_cast<std::size_t>(block.batch.points) != 0)
           refuse(inside + ".memory", "as many numbers for each point", std::to_string(block.substitute_memory.size()));

@@ -158,9 +158,14 @@ std::vector<double> FieldRun::section_forces(const Moment& moment, const Vector*
 }
 
 void FieldRun::write(const State& state, const Vector* acceleration, const std::vector<double>& section_forces, double time) {
-  if (times_.contains(time)) return;
+  if (disk_refused_ || times_.contains(time)) return;
   const FieldFrame frame = frames_->of(state, acceleration, section_forces, time);
-  const std::optional<FieldTrouble> trouble = vtu_ ? vtu_->write(frame) : xdmf_->write(frame);
+  std::optional<FieldTrouble> trouble;
+  try {
+    trouble = vtu_ ? vtu_->write(frame) : xdmf_->write(frame);
+  } catch (const InputError&) {
+    return stop_writing();
+  }
   if (!trouble) {
     times_.insert(time);
     return;
@@ -168,11 +173,20 @@ void FieldRun::write(const State& state, const Vector* acceleration, const std::
   if (left_out_++ == 0) trouble_ = fmt::format("{} at t = {:.6g} s", trouble->reason, time);
 }
 
+void FieldRun::stop_writing() {
+  disk_refused_ = true;
+  folder_.note_failure(list_, "the system refused a part of its data (a full disk, or a file that is too large)");
+}
+
 void FieldRun::finish(RunResult& result) {
   for (const Kept* kept : {&gap_, &pressure_})
     if (kept->largest > 0) write(kept->state, &kept->acceleration, kept->section_forces, kept->state.time);
-  if (vtu_) vtu_->finish();
-  if (xdmf_) xdmf_->finish(into(folder_));
+  try {
+    if (vtu_) vtu_->finish();
+    if (xdmf_ && !disk_refused_) xdmf_->finish(into(folder_));
+  } catch (const InputError&) {
+    stop_writing();
+  }
   if (left_out_ > 0)
     result.notes.push_back(fmt::format("{} of the fields {} left out: {}", left_out_ == 1 ? "a frame" : fmt::format("{} frames", left_out_),
                                        left_out_ == 1 ? "was" : "were", trouble_));

@@ -38,7 +38,7 @@ class FieldRun {
   FieldRun(const FieldRun&) = delete;
   FieldRun& operator=(const FieldRun&) = delete;
 
-  /// To be given to run() as its observer. Throws InputError when the disk refuses.
+  /// To be given to run() as its observer. When the disk refuses, the run goes on without fields, and the folder notes the failure.
   void see(const Moment& moment);
   /// Writes the events and the list. A frame that was left out because a number was not finite is noted in the result.
   void finish(RunResult& result);
@@ -57,6 +57,7 @@ class FieldRun {
   void keep(Kept& kept, double value, const Moment& moment);
   /// Section forces of the beams at this moment.
   std::vector<double> section_forces(const Moment& moment, const Vector* acceleration);
+  void stop_writing();
   void write(const State& state, const Vector* acceleration, const std::vector<double>& section_forces, double time);
 
   const RunPlan& plan_;
@@ -72,7 +73,8 @@ class FieldRun {
   std::size_t metered_ = 0;                  // that stage
   Kept gap_, pressure_;
   int left_out_ = 0;
-  std::string trouble_;  // of the first frame that was left out
+  bool disk_refused_ = false;  // then nothing more is written; the folder knows why
+  std::string trouble_;        // of the first frame that was left out
 };
 
 }  // namespace uplift

@@ -7,14 +7,6 @@
 namespace uplift {
 namespace {
 
-/// A cell of text: in quotes where it needs them.
-std::string cell(const std::string& text) {
-  if (text.find_first_of(",\"\n") == text.npos) return text;
-  std::string quoted = "\"";
-  for (const char c : text) quoted += c == '"' ? "\"\"" : std::string(1, c);
-  return quoted + "\"";
-}
-
 void write_block(std::string& text, const std::string& head, const FloorSpectra& floor, std::size_t damping, const FloorChange* change) {
   const Spectrum& raw = floor.raw[damping];
   std::size_t next = 0;  // of the change's frequencies: those of the spectrum, less the ones at which the bonded floor rests
@@ -78,14 +70,14 @@ std::string floor_spectra_csv(const std::vector<RunResult>& runs, const FloorAns
   for (std::size_t i = 0; i < runs.size(); ++i)
     for (std::size_t k = 0; k < floors.runs[i].floors.size(); ++k) {
       const FloorSpectra& floor = floors.runs[i].floors[k];
-      const std::string head = cell(runs[i].group) + "," + cell(runs[i].name) + "," + cell(floor.name) + ",";
+      const std::string head = csv_cell(runs[i].group) + "," + csv_cell(runs[i].name) + "," + csv_cell(floor.name) + ",";
       for (std::size_t d = 0; d < floor.raw.size(); ++d)
         write_block(text, head, floor, d, floors.runs[i].beside.empty() ? nullptr : &floors.runs[i].beside[k][d]);
     }
   for (const FloorEnvelope& envelope : floors.envelopes)
     for (std::size_t k = 0; k < envelope.floors.size(); ++k)
       for (std::size_t d = 0; d < envelope.floors[k].raw.size(); ++d)
-        write_block(text, cell(envelope.damping) + ",envelope," + cell(envelope.floors[k].name) + ",", envelope.floors[k], d,
+        write_block(text, csv_cell(envelope.damping) + ",envelope," + csv_cell(envelope.floors[k].name) + ",", envelope.floors[k], d,
                     envelope.beside.empty() ? nullptr : &envelope.beside[k][d]);
   return text;
 }

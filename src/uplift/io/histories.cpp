@@ -19,7 +19,7 @@ bool finite_row(const Table& table, std::size_t row) {
 std::string table_csv(std::string_view first_column, const std::vector<Request>& columns, const Table& table, bool step_means) {
   std::string text(first_column);
   for (const Request& column : columns)
-    text += "," + column.name + " [" + column.unit + (step_means && is_step_mean(column.kind) ? "; mean of the step]" : "]");
+    text += "," + csv_cell(column.name + " [" + column.unit + (step_means && is_step_mean(column.kind) ? "; mean of the step]" : "]"));
   text += '\n';
   const std::size_t rows = table.empty() ? 0 : table[0].size();
   std::vector<char> line(table.size() * (number_room + 1));

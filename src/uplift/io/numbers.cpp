@@ -140,6 +140,13 @@ void append_numbers(std::string& text, std::span<const double> values, int digit
   text.append(some.data(), values.empty() ? out : out - 1);
 }
 
+std::string csv_cell(const std::string& text) {
+  if (text.find_first_of(",\"\r\n") == text.npos) return text;
+  std::string quoted = "\"";
+  for (const char c : text) quoted += c == '"' ? "\"\"" : std::string(1, c);
+  return quoted + "\"";
+}
+
 void append_exact(std::string& text, double value) {
   assert(std::isfinite(value));
   char out[40];

@@ -2,7 +2,7 @@
 #include <span>
 #include <string>
 
-// Numbers as text, fast: a run of 10 000 steps writes some hundred thousand of them.
+// Cells of tables. Numbers as text, fast: a run of 10 000 steps writes some hundred thousand of them.
 namespace uplift {
 
 /// Room that write_number() needs: it may write beyond the end that it returns.
@@ -15,6 +15,8 @@ char* write_number(char* out, double value, int digits = 10);
 void append_number(std::string& text, double value, int digits = 10);
 /// Numbers with commas between them; null for what is not finite.
 void append_numbers(std::string& text, std::span<const double> values, int digits = 10);
+/// A cell of text in a table with commas (RFC 4180): in quotes where it needs them.
+std::string csv_cell(const std::string& text);
 /// Shortest text that reads back as the same number.
 void append_exact(std::string& text, double value);
 

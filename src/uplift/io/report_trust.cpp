@@ -50,9 +50,8 @@ void write_trust_reaches(JsonWriter& json, const TrustAnswer& answer) {
   json.end_array().end_object();
 }
 
-}  // namespace
-
-void write_trust_tables(JsonWriter& json, const TrustAnswer& answer) {
+void write_trust_bands(JsonWriter& json, const TrustAnswer& answer) {
+  if (answer.bands.empty()) return;
   json.begin_object().member("id", "trust").member("title", "Trust bands of the results");
   json.member("caption",
               "Range of each result of the verdict over all runs in which one computational choice was changed. Band: half of the range "
@@ -75,10 +74,16 @@ void write_trust_tables(JsonWriter& json, const TrustAnswer& answer) {
     json.member("by", band.dominant).end_object();
   }
   json.end_array().end_object();
+}
+
+}  // namespace
+
+void write_trust_tables(JsonWriter& json, const TrustAnswer& answer) {
+  write_trust_bands(json, answer);
   write_trust_reaches(json, answer);
 
   json.begin_object().member("id", "trust_runs").member("title", "Changed computational choices");
-  json.member("caption", "One choice is changed at a time. Failed runs do not count for the bands.");
+  json.member("caption", "One choice is changed at a time. Runs that failed or were interrupted do not count for the bands.");
   write_heads(json, {{"choice", "Choice"}, {"label", "Changed to"}, {"status", "Status"}, {"why", "Why"}});
   json.key("rows").begin_array();
   for (const TrustRun& run : answer.runs) {

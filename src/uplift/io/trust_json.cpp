@@ -61,16 +61,21 @@ std::string trust_json(const TrustAnswer& answer) {
 }
 
 std::string trust_sentence(const TrustAnswer& answer) {
-  if (!answer.base.counts()) return "No bands: the run of the case failed.";
+  if (!answer.base.counts())
+    return fmt::format("No bands: the run of the case {}.", answer.base.status == RunStatus::failed ? "failed" : "was interrupted");
+  if (answer.runs.empty()) return "Nothing was changed.";
+  const std::size_t all = answer.runs.size(), counted = answer.counted();
+  if (counted == 0) return fmt::format("No bands: none of the {} runs with a changed choice was completed.", all);
+  const std::string over = counted == all ? "all changed choices" : fmt::format("{} of {} changed choices", counted, all);
   std::string text;
   for (const char* name : {"max_uplifted_ratio", "max_opening", "max_moment"})
     for (const TrustBand& band : answer.bands) {
       if (band.quantity->name != name) continue;
-      text += fmt::format("{}{} from {} to {}", text.empty() ? "Over all changed choices: " : ", ", band.quantity->brief,
-                          band.said(band.least), band.said(band.most));
+      text += fmt::format("{}{} from {} to {}", text.empty() ? "Over " + over + ": " : ", ", band.quantity->brief, band.said(band.least),
+                          band.said(band.most));
       break;  // of the first interface
     }
-  if (text.empty()) return "Nothing was changed.";
+  if (text.empty()) return "";
   return text + (answer.dominant.empty() ? "." : fmt::format(". What moves most numbers most is the {}.", answer.dominant));
 }
 

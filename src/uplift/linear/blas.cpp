@@ -2,40 +2,55 @@
 
 #include <sys/mman.h>
 
+#include <algorithm>
 #include <cstddef>
-#include <cstdlib>
+#include <mutex>
 #include <new>
+#include <vector>
 
 extern "C" void openblas_set_num_threads(int count);
-extern "C" void dpotrf_(const char* triangle, const int* n, double* a, const int* stride, int* info);
+/// The number of threads that OpenBLAS starts before main(); 0: it asks the environment and the system. Null in a shared OpenBLAS.
+extern "C" [[gnu::weak]] int blas_num_threads;
+extern "C" void* blas_memory_alloc(int purpose);
+extern "C" void blas_memory_free(void* piece);
 
 namespace uplift {
 
 namespace {
 
-/// OpenBLAS starts its threads before main(), and they wait by spinning. Linked statically, its constructor comes after this one.
+/// OpenBLAS starts its threads before main(): they wait by spinning, and where the system refuses them memory they try for ever, also at
+/// the end of the program. openblas_set_num_threads() comes too late for them. Linked statically, the constructor of OpenBLAS comes after
+/// this.
 [[gnu::constructor(101)]] void start_no_threads() {
-  setenv("OPENBLAS_NUM_THREADS", "1", 0);
+  if (&blas_num_threads != nullptr) blas_num_threads = 1;
 }
 
-bool take_work_space() {
+/// Takes pieces of work space from OpenBLAS until one is new, and gives all of them back: it keeps them for later calls.
+void add_work_space(std::vector<void*>& known) {
   constexpr std::size_t size = std::size_t{32} << 22;  // bytes: BUFFER_SIZE of OpenBLAS on x86-64, the largest of its targets
+  constexpr int of_one_thread = 1;                     // what the routines of BLAS ask for
   void* const trial = mmap(nullptr, size, PROT_READ | PROT_WRITE, MAP_PRIVATE | MAP_ANONYMOUS, -1, 0);
   if (trial == MAP_FAILED) throw std::bad_alloc();
   munmap(trial, size);
-  openblas_set_num_threads(1);
-  double one = 1;
-  const int n = 1;
-  int info = 0;
-  dpotrf_("U", &n, &one, &n, &info);
-  return info == 0;
+  std::vector<void*> taken;
+  do {
+    taken.push_back(blas_memory_alloc(of_one_thread));
+  } while (std::ranges::find(known, taken.back()) != known.end());
+  known.push_back(taken.back());
+  for (void* const piece : taken) blas_memory_free(piece);
 }
 
 }  // namespace
 
 void prepare_blas() {
-  static const bool ready = take_work_space();
-  static_cast<void>(ready);
+  thread_local bool ready = false;
+  if (ready) return;
+  static std::mutex one_at_a_time;
+  static std::vector<void*> known;  // as many as threads have been here
+  const std::lock_guard lock(one_at_a_time);
+  openblas_set_num_threads(1);
+  add_work_space(known);
+  ready = true;
 }
 
 }  // namespace uplift

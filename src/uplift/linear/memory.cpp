@@ -11,6 +11,7 @@
 #include <unistd.h>
 
 #include <algorithm>
+#include <cmath>
 #include <fstream>
 #include <limits>
 #include <system_error>
@@ -84,6 +85,11 @@ double left_of_address_space(const std::string& root) {
 double available_memory(const std::string& root) {
   const double system = 1024 * number_after(root + "/proc/meminfo", "MemAvailable:");
   return std::min({system > 0 ? system : unlimited, left_in_groups(root), left_of_address_space(root)});
+}
+
+int runs_side_by_side(int wanted) {
+  constexpr double bytes_of_a_run = 500e6;
+  return static_cast<int>(std::clamp(1 + std::floor(available_memory() / bytes_of_a_run), 1.0, static_cast<double>(std::max(wanted, 1))));
 }
 
 double resident_memory(const std::string& root) {

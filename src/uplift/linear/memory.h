@@ -14,6 +14,10 @@ namespace uplift {
 /// space. Infinite where nothing is known. `root` stands before the paths of the system's files: for tests.
 double available_memory(const std::string& root = "");
 
+/// How many runs can be computed at the same time, at most `wanted`, at least 1: each takes the work space of BLAS (linear/blas.h), a heap
+/// of its own and some more, 500 MB together.
+int runs_side_by_side(int wanted);
+
 /// Real memory that this process holds now [bytes]; 0 where the system does not tell.
 double resident_memory(const std::string& root = "");
 

@@ -1,5 +1,7 @@
 #include "uplift/mesh/soil_box.h"
 
+#include <fmt/format.h>
+
 #include <algorithm>
 #include <cmath>
 #include <string>
@@ -91,33 +93,45 @@ struct Wish {
   double from, to, size;
 };
 
-/// Lines through the ends of all wishes; between two of them the least size wanted there holds.
-std::vector<double> lines_for(const std::vector<Wish>& wishes, double growth) {
+/// An axis before its lines are made.
+struct Axis {
+  double from = 0;
+  std::vector<Stretch> stretches;
+  /// The least number of cells: no cell is longer than the size of its stretch.
+  double least_cells() const {
+    double count = 0, begin = from;
+    for (const Stretch& stretch : stretches) count += std::ceil((stretch.to - begin) / stretch.size - 1e-6), begin = stretch.to;
+    return count;
+  }
+};
+
+/// Lines are wanted at the ends of all wishes; between two of them the least size wanted there holds.
+Axis axis_for(const std::vector<Wish>& wishes) {
   std::vector<double> ends;
   for (const Wish& w : wishes) ends.insert(ends.end(), {w.from, w.to});
   std::sort(ends.begin(), ends.end());
   const double near = round_off * (ends.back() - ends.front());
   ends.erase(std::unique(ends.begin(), ends.end(), [near](double a, double b) { return b - a <= near; }), ends.end());
-  std::vector<Stretch> stretches;
+  Axis axis{ends.front(), {}};
   for (std::size_t i = 1; i < ends.size(); ++i) {
     const double middle = (ends[i - 1] + ends[i]) / 2;
     Stretch stretch{ends[i], HUGE_VAL};
     for (const Wish& w : wishes)
       if (w.from < middle && middle < w.to) stretch.size = std::min(stretch.size, w.size);
-    stretches.push_back(stretch);
+    axis.stretches.push_back(stretch);
   }
-  return graded_lines(ends.front(), stretches, growth);
+  return axis;
 }
 
-std::vector<double> plan_lines(const SoilBox& m, int axis) {
+Axis plan_axis(const SoilBox& m, int axis) {
   const std::size_t a = at(axis);
   std::vector<Wish> wishes{{-m.soil.width[a] / 2, m.soil.width[a] / 2, m.soil.size}};
   for (const SoilBox::Part* part : {&m.raft, &m.block})
     if (part->height > 0) wishes.push_back({part->offset[a] - part->width[a] / 2, part->offset[a] + part->width[a] / 2, part->size});
-  return lines_for(wishes, m.growth);
+  return axis_for(wishes);
 }
 
-std::vector<double> height_lines(const SoilBox& m) {
+Axis height_axis(const SoilBox& m) {
   std::vector<Wish> wishes;
   double depth = 0;
   for (const SoilBox::Layer& layer : m.soil.layers) {
@@ -130,7 +144,7 @@ std::vector<double> height_lines(const SoilBox& m) {
     wishes.push_back({bottom, bottom + part->height, part->size});
     bottom += part->height;
   }
-  return lines_for(wishes, m.growth);
+  return axis_for(wishes);
 }
 
 /// Parts by number: 0 raft, 1 block, 2 first layer of the soil, ...
@@ -161,16 +175,31 @@ std::string face_name(int part, Direction direction, int other) {
 
 }  // namespace
 
-Mesh soil_box(const SoilBox& model, const Where& where, const std::string& path) {
+Mesh soil_box(const SoilBox& model, const Where& where, const std::string& path, double most) {
   Check(model, where, path).all();
-  Grid lines{plan_lines(model, 0), {}, {}};
-  lines.y = model.dimension == 2 ? height_lines(model) : plan_lines(model, 1);
-  if (model.dimension == 3) lines.z = height_lines(model);
-  constexpr double most = 5e7;
-  const double cells = static_cast<double>(lines.x.size()) * static_cast<double>(lines.y.size()) *
-                       static_cast<double>(std::max<std::size_t>(1, lines.z.size()));
-  if (cells > most)
-    throw InputError(where, path + "soil.size", "sizes that make at most 50 million elements", "a grid of " + shortest(std::round(cells)));
+  std::vector<Axis> axes{plan_axis(model, 0)};
+  if (model.dimension == 3) axes.push_back(plan_axis(model, 1));
+  axes.push_back(height_axis(model));
+  constexpr double always = 5e7;
+  const auto check_count = [&](double cells, const char* count) {
+    const std::string found = count + fmt::format("{:.4g}", cells);
+    if (cells > always) throw InputError(where, path + "soil.size", "sizes that make at most 50 million elements", found);
+    if (cells > most)
+      throw InputError(where, path + "soil.size",
+                       fmt::format("sizes that make at most {:.3g} elements, whose matrices fit into memory", most), found);
+  };
+  double least = 1;
+  for (const Axis& axis : axes) least *= std::max(1.0, axis.least_cells());
+  check_count(least, "a grid of at least ");
+  std::vector<std::vector<double>> lines_of_axes;
+  double cells = 1;
+  for (const Axis& axis : axes) {
+    lines_of_axes.push_back(graded_lines(axis.from, axis.stretches, model.growth));
+    cells *= static_cast<double>(lines_of_axes.back().size() - 1);
+  }
+  check_count(cells, "a grid of ");
+  Grid lines{lines_of_axes[0], lines_of_axes[1], {}};
+  if (model.dimension == 3) lines.z = lines_of_axes[2];
   std::vector<std::string> names{"raft", "block"};
   for (std::size_t i = 0; i < model.soil.layers.size(); ++i) names.push_back("soil_" + std::to_string(i + 1));
   const auto middle = [](const std::vector<double>& axis, int i) { return axis.empty() ? 0.0 : (axis[at(i)] + axis[at(i + 1)]) / 2; };

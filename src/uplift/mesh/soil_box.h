@@ -1,5 +1,6 @@
 #pragma once
 #include <array>
+#include <cmath>
 #include <vector>
 
 #include "uplift/mesh/mesh.h"
@@ -52,7 +53,8 @@ struct SoilBox {
 ///   an embedded raft, too.
 /// Throws InputError (keys "soil.width", "block.offset", ... of the structure above, after `path`): sizes, thicknesses not positive, sizes
 /// below a millionth of the soil's width, growth outside ]1, 2], parts beyond the soil or the block beyond the raft, embedment not
-/// less than the depth of the soil, not above the block's top, more than 50 million elements.
-Mesh soil_box(const SoilBox& model, const Where& where, const std::string& path = {});
+/// less than the depth of the soil, not above the block's top, more than 50 million elements or more than `most`. The elements are counted
+/// before anything of their number is made.
+Mesh soil_box(const SoilBox& model, const Where& where, const std::string& path = {}, double most = HUGE_VAL);
 
 }  // namespace uplift

@@ -116,8 +116,8 @@ std::string describe_motion(const Model& model, const Vector& motion) {
 
 namespace {
 
-Where place_of(const Model& model) {
-  return model.assembly.interface_where.empty() ? Where{} : model.assembly.interface_where.front();
+Where place_of(const Model& model, const Where& file) {
+  return model.assembly.interface_where.empty() ? file : model.assembly.interface_where.front();
 }
 
 /// Groups of unknowns that the matrix couples.
@@ -141,11 +141,11 @@ std::string loose_part(const Model& model, Resistance resistance) {
   return motion.size() == 0 ? std::string() : describe_motion(model, motion);
 }
 
-void check_static(const Model& model) {
+void check_static(const Model& model, const Where& file) {
   const std::string loose = loose_part(model, Resistance::stiffness);
   if (loose.empty()) return;
   const std::vector<int> hinged = hinges(model);
-  throw InputError(place_of(model), "", "a structure that stands when all its interfaces are closed",
+  throw InputError(place_of(model, file), "", "a structure that stands when all its interfaces are closed",
                    fmt::format("a mechanism: {} without resistance{}", loose,
                                hinged.empty() ? "" : "; beams end in hinges of solids: " + named_places(model, hinged)));
 }
@@ -167,7 +167,7 @@ void require_mass(const Model& model, const Refused& refused) {
 }
 
 /// Throws where the mass matrix is singular although not massless.
-void check_masses(const Model& model) {
+void check_masses(const Model& model, const Where& file) {
   Vector scale;
   std::vector<int> massless;
   // a motion without kinetic energy moves no node of a massive solid: those need not be looked at
@@ -192,7 +192,7 @@ void check_masses(const Model& model) {
     for (std::size_t i = 0; i < others.size(); ++i)
       if (block[i] == block[broken] && members.size() < 6) members.push_back(model.unknown_names[others[i]]);
     throw InputError(
-        place_of(model), "mass", "a mass matrix that is regular where it is not zero",
+        place_of(model, file), "mass", "a mass matrix that is regular where it is not zero",
         fmt::format(
             "zero mass where mass is needed: a motion of {} without kinetic energy (a point mass off its node needs an inertia > 0)",
             fmt::join(members, ", ")));
@@ -205,13 +205,13 @@ void check_impulses(const Model& model) {
   require_mass(model, [](const Interface&, int) { return true; });
 }
 
-void check_dynamic(const Model& model) {
+void check_dynamic(const Model& model, const Where& file) {
   if (model.free() == 0) return;
   require_mass(model, [](const Interface& face, int) { return face.cone != nullptr; });
-  check_masses(model);
+  check_masses(model, file);
   const Vector unresisted = unresisted_motion(model, Resistance::dynamic);
   if (unresisted.size() > 0)
-    throw InputError(place_of(model), "", "a stiffness, a mass, a dashpot or an interface against every motion",
+    throw InputError(place_of(model, file), "", "a stiffness, a mass, a dashpot or an interface against every motion",
                      describe_motion(model, unresisted) + " without any of them");
 }
 

@@ -1,5 +1,8 @@
 #include "uplift/motion/motion.h"
 
+#include <fmt/format.h>
+
+#include <algorithm>
 #include <cmath>
 
 namespace uplift {
@@ -33,6 +36,18 @@ MotionPeak peak_of(const Motion& motion) {
   for (std::size_t i = 0; i < motion.values.size(); ++i)
     if (std::abs(motion.values[i]) > std::abs(peak.value)) peak = {motion.values[i], motion.step * static_cast<double>(i)};
   return peak;
+}
+
+constexpr double most_possible = 1e6;
+
+bool has_possible_values(const Motion& motion) {
+  return std::ranges::all_of(motion.values, [](double value) { return std::abs(value) <= most_possible; });
+}
+
+void check_values(const Motion& motion, const Where& where, const std::string& path) {
+  if (!has_possible_values(motion))
+    throw InputError(where, path, fmt::format("values of a ground motion, at most {:g} {}", most_possible, unit_of(motion.kind)),
+                     fmt::format("{:.4g} {}", peak_of(motion).value, unit_of(motion.kind)));
 }
 
 }  // namespace uplift

@@ -4,6 +4,8 @@
 #include <string_view>
 #include <vector>
 
+#include "uplift/base/error.h"
+
 namespace uplift {
 
 /// What the values of a motion are: m/s2, m/s or m.
@@ -36,5 +38,10 @@ struct MotionPeak {
   double time = 0;   // s
 };
 MotionPeak peak_of(const Motion&);
+
+/// True when every value is finite and at most 1e6 in SI: a thousand times beyond what is recorded.
+bool has_possible_values(const Motion&);
+/// Throws InputError, with this place, when a generated or processed motion has other values.
+void check_values(const Motion&, const Where& where, const std::string& path);
 
 }  // namespace uplift

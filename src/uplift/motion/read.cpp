@@ -63,13 +63,8 @@ std::vector<Motion> read_motions_from(std::string_view content, const std::strin
 }
 
 std::vector<Motion> read_motions(const std::string& path, const RecordOptions& options) {
-  constexpr double most = 100e6;  // bytes: nine hours of three components at 200 Hz
-  std::error_code unknown;
-  const std::uintmax_t size = std::filesystem::file_size(path, unknown);  // what is no file is for read_file() to tell
-  if (!unknown && static_cast<double>(size) > most)
-    throw InputError({path, 0}, "", fmt::format("a record of ground motion of at most {:g} MB", most / 1e6),
-                     fmt::format("{:.0f} MB", static_cast<double>(size) / 1e6));
-  return read_motions_from(read_file(path), path, options);
+  constexpr double most = 100;  // MB: nine hours of three components at 200 Hz
+  return read_motions_from(read_file(path, most), path, options);
 }
 
 }  // namespace uplift

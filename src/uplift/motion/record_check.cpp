@@ -69,7 +69,6 @@ std::string in_unit(double value, MotionKind kind) {
 double implausible(MotionKind kind) {
   return kind == acceleration ? 10 * g_n : kind == velocity ? 20 : 50;
 }
-constexpr double absurd = 1e6;  // SI, of anything
 
 MotionUnit unit_of_draft(const RecordText& text, const RecordOptions& options, const RecordDraft& draft, Motion& motion) {
   if (options.unit.empty() && draft.unit.empty()) {
@@ -87,17 +86,18 @@ MotionUnit unit_of_draft(const RecordText& text, const RecordOptions& options, c
 }
 
 double step_of_draft(const RecordText& text, const RecordOptions& options, const RecordDraft& draft, Motion& motion) {
-  const auto sound = [](double step) { return std::isfinite(step) && step > 0; };
+  constexpr double least = 1e-7, most = 1e6;  // s: a thousand times beyond what is recorded
+  const auto sound = [](double step) { return step >= least && step <= most; };
+  const std::string wanted = fmt::format("a time step from {:g} s to {:g} s", least, most);
   if (options.step) {
-    if (!sound(*options.step)) throw InputError({}, "step", "a time step > 0 s", fmt::format("{:g} s", *options.step));
+    if (!sound(*options.step)) throw InputError({}, "step", wanted, fmt::format("{:g} s", *options.step));
     if (draft.step && std::abs(draft.step->value - *options.step) > 1e-6 * *options.step)
       motion.repairs.push_back(
           fmt::format("the file states a step of {:g} s; read with {:g} s, as asked", draft.step->value, *options.step));
     return *options.step;
   }
   if (!draft.step) throw InputError(text.where(), "", "the time step of a file without times (give it, as in step = 0.01)", "none");
-  if (!sound(draft.step->value))
-    throw InputError(text.where(draft.step->line), "", "a time step > 0 s", fmt::format("{:g} s", draft.step->value));
+  if (!sound(draft.step->value)) throw InputError(text.where(draft.step->line), "", wanted, fmt::format("{:g} s", draft.step->value));
   if (draft.step->value > 1)
     motion.repairs.push_back(
         fmt::format("a step of {:g} s is longer than that of any accelerograph; taken as it stands", draft.step->value));
@@ -162,8 +162,7 @@ void fill_gaps(const RecordText& text, RecordDraft& draft, Motion& motion) {
 
 void check_magnitude(const RecordText& text, const RecordDraft& draft, Motion& motion) {
   const double most = std::abs(peak_of(motion).value);
-  const bool finite = std::ranges::all_of(motion.values, [](double value) { return std::isfinite(value); });
-  if (!finite || most > absurd)
+  if (!has_possible_values(motion))
     throw InputError(text.where(draft.unit_line), "", "values of a ground motion",
                      fmt::format("up to {:.4g} {} with the unit {}", most, unit_of(motion.kind), motion.unit));
   if (most > implausible(motion.kind))

@@ -34,7 +34,10 @@ class Watcher {
     if (going_ && watch_) going_ = watch_(progress);
     return going_;
   }
-  bool stopped() const { return !going_; }
+  bool stopped() {
+    const std::lock_guard lock(mutex_);
+    return !going_;
+  }
 
  private:
   std::vector<double> shares_;
@@ -62,6 +65,15 @@ Repetition repetition_of(const TrustChange& change, const Built& built, const Ru
 Repetition compute(const Case& read, const TrustChange& change, std::size_t place, Watcher& watcher) {
   std::vector<RunSpec> specs = runs_of_case(read);
   for (RunSpec& spec : specs) spec.pictures = false;
+  if (watcher.stopped()) {
+    Repetition left_out;
+    left_out.run.name = change.name;
+    left_out.run.choice = change.choice;
+    left_out.run.label = change.label;
+    left_out.run.status = left_out.run.bonded_status = RunStatus::interrupted;
+    left_out.run.reason = "interrupted before it began";
+    return left_out;
+  }
   const double each = 1.0 / static_cast<double>(specs.size());
   const auto one = [&](std::size_t k, const Built& built) {
     return run(built.model, built.plan, built.behaviours,
@@ -233,6 +245,10 @@ std::string TrustBand::said(double number) const {
   return moves ? spoken_within(number, swing, quantity->unit) : uplift::said(*quantity, number);
 }
 
+std::size_t TrustAnswer::counted() const {
+  return static_cast<std::size_t>(std::ranges::count_if(runs, &TrustRun::counts));
+}
+
 TrustAnswer trust(const Raw& raw, const Case& read, const MeshReader& read_mesh, const TrustBase& base, int threads, const Watch& watch) {
   const TrustPlan plan = trust_plan(read);
   std::vector<Case> cases;
@@ -250,7 +266,7 @@ TrustAnswer trust(const Raw& raw, const Case& read, const MeshReader& read_mesh,
   made.left_out = plan.left_out;
   made.accepted = read.values.table("trust").number("spectrum_band");
   made.complete = !watcher.stopped();
-  if (!made.base.counts()) return made;
+  if (!made.base.counts() || made.counted() == 0) return made;
   made.bands = bands_of(repetitions);
   const std::vector<Reach> bounds = resolutions(read, base.built.plan);
   for (std::size_t floor = 0; floor < repetitions.front().floors.size(); ++floor)

@@ -59,9 +59,10 @@ struct TrustAnswer {
   std::vector<TrustPlan::LeftOut> left_out;
   std::vector<TrustBand> bands;
   std::vector<TrustSpectrum> spectra;
-  double accepted = 0;    // the share that a spectrum may differ by
-  std::string dominant;   // the choice that is dominant most often; empty when there is none
-  bool complete = false;  // not interrupted
+  double accepted = 0;          // the share that a spectrum may differ by
+  std::size_t counted() const;  // repetitions that count; without any there are no bands
+  std::string dominant;         // the choice that is dominant most often; empty when there is none
+  bool complete = false;        // not interrupted
 };
 
 /// The run of the case as it stands.
