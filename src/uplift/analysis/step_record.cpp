@@ -76,6 +76,9 @@ void StepRecord::average(double window) {
     }
     for (const Part part : parts) {
       const auto value = [&](std::size_t i) -> double& { return instants[i * interfaces + k].*part; };
+      bool any = false;
+      for (std::size_t i = 0; i < count; ++i) any |= value(i) != 0;
+      if (!any) continue;  // in the plane
       for (std::size_t i = 1; i < count; ++i) integral[i] = integral[i - 1] + value(i) * (time[i] - time[i - 1]);
       const double first = value(0);
       std::size_t begin = 1;  // step in which the window begins

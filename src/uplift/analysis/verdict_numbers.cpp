@@ -39,15 +39,12 @@ class Base {
     } else if (built.bases() == 1) {
       rest.force = built.weight;
     }
-    const auto square = [](double axial, double shear_1, double shear_2) {
-      return axial * axial + shear_1 * shear_1 + shear_2 * shear_2;
-    };
+    const auto square = [](double axial, double shear_1, double shear_2) { return axial * axial + shear_1 * shear_1 + shear_2 * shear_2; };
     double largest = 0, largest_change = 0;  // squares
     for (std::size_t i = 0; i < run.steps.size(); ++i) {
       const StepRecord::Instant &now = at(i), &first = at(0);
       largest = std::max(largest, square(now.axial, now.shear_1, now.shear_2));
-      largest_change =
-          std::max(largest_change, square(now.axial - first.axial, now.shear_1 - first.shear_1, now.shear_2 - first.shear_2));
+      largest_change = std::max(largest_change, square(now.axial - first.axial, now.shear_1 - first.shear_1, now.shear_2 - first.shear_2));
     }
     largest_force = std::sqrt(largest);
     least_force = std::max(noise_share * std::sqrt(largest_change), round_off_share * largest_force);

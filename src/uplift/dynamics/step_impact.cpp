@@ -74,10 +74,12 @@ double Stepper::contact_work() const {
   for (const Block& block : last_->blocks) {
     if (block.cone == nullptr) continue;
     const int normal = block.first + block.batch.normal();
-    for (int i = normal; i < normal + block.batch.points; ++i)
-      work += 0.5 * (now_.force[i] + contact_[i]) * (next_.opening[i] - now_.opening[i]);
+    const double *force = now_.force.data() + normal, *next_force = contact_.data() + normal, *opening = now_.opening.data() + normal,
+                 *next_opening = next_.opening.data() + normal;
+#pragma omp simd reduction(+ : work)
+    for (int i = 0; i < block.batch.points; ++i) work += (force[i] + next_force[i]) * (next_opening[i] - opening[i]);
   }
-  return work;
+  return 0.5 * work;
 }
 
 /// Velocity, acceleration and contact force of a step are corrected by the rule of impact, for the points that are pressed at its end.
@@ -106,9 +108,11 @@ void Stepper::apply_impact(Level& level) {
 /// In a step in which a gap closes, the contact force contains the momentum that the impact transfers, over the step: it grows as 1/dt. The
 /// force that balances the accelerations after the impact is reported instead, and the rest as an impulse [N s].
 void Stepper::separate_impulse(const Impact& data) {
-  bool closes = false;
-  for (Eigen::Index i = 0; i < pressed_.size() && !closes; ++i) closes = pressed_[i] > 0 && now_.opening[i] > closed_gap_;
-  if (!closes) return;
+  const double *pressed = pressed_.data(), *opening = now_.opening.data(), gap = closed_gap_;
+  int closing = 0;
+#pragma omp simd reduction(+ : closing)
+  for (Eigen::Index i = 0; i < pressed_.size(); ++i) closing += static_cast<int>(pressed[i] > 0) & static_cast<int>(opening[i] > gap);
+  if (closing == 0) return;
   const ImpactScratch& scratch = impact_scratch_;
   for (const Block& block : last_->blocks) {
     if (block.cone == nullptr) continue;  // the force of a law follows from its opening
