@@ -1,5 +1,6 @@
 #!/usr/bin/env python3
-"""A file may include only its own layer and layers to its left; Eigen is named in src/uplift/math only; nobody prints or exits but the command line."""
+"""A file may include only its own layer and layers to its left; Eigen is named in src/uplift/math only; nobody prints or exits but the command line.
+Sections and equations of docs/theory that sources and tests cite exist."""
 import pathlib
 import re
 import sys
@@ -7,7 +8,29 @@ import sys
 ORDER = "base math mesh laws elements interface model linear contact dynamics motion analysis study io cli".split()
 ROOT = pathlib.Path(__file__).resolve().parent.parent / "src" / "uplift"
 
+theory = (ROOT.parent.parent / "docs" / "theory" / "README.md").read_text()
+sections = set(re.findall(r"^## (\d+)\.", theory, re.M))
+equations = set(re.findall(r"\((\d+[a-z]?)\)[ \t]*$", theory, re.M))
+
+
+def citations(text):
+    """(what, number, where) of each section and equation of the theory that is cited; comments go on in the next line."""
+    joined = re.sub(r"\n\s*(//+|#|\")\s?", " ", text)
+    for found in re.finditer(r"docs/theory(?:/README\.md)?,? \(?(sections?|eqs?)((?:,? (?:and |to )?\(?\d+[a-z]?\)?)+)", joined):
+        for number in re.findall(r"\d+[a-z]?", found.group(2)):
+            yield ("section" if found.group(1).startswith("section") else "equation"), number
+
+
 mistakes = []
+cited = 0
+for folder in ("src", "tests"):
+    for path in sorted((ROOT.parent.parent / folder).rglob("*")):
+        if path.suffix not in (".h", ".cpp", ".py"):
+            continue
+        for kind, number in citations(path.read_text()):
+            cited += 1
+            if number not in (sections if kind == "section" else equations):
+                mistakes.append(f"{path.relative_to(ROOT.parent.parent)}: cites {kind} {number} of docs/theory, which does not exist")
 for path in sorted(ROOT.rglob("*")):
     if path.suffix not in (".h", ".cpp"):
         continue
@@ -30,5 +53,5 @@ for path in sorted(ROOT.rglob("*")):
             if layer not in ("math", "base"):
                 mistakes.append(f"{place}: a class template in a header outside math and base")
 
-print("\n".join(mistakes) if mistakes else f"layers: {' <- '.join(ORDER)}: in order")
+print("\n".join(mistakes) if mistakes else f"layers: {' <- '.join(ORDER)}: in order; {cited} citations of docs/theory exist")
 sys.exit(1 if mistakes else 0)

@@ -1,4 +1,4 @@
-"""The example shows what it claims: examples/01_oscillator, against the claims of the issue and the reference values of THEORY section 7."""
+"""The example shows what it claims: examples/01_oscillator, against the claims of its page and semi-analytic reference values."""
 
 from support import *
 
@@ -20,7 +20,7 @@ class Oscillator(CliTest):
         self.assertGreater(share("lagrange_none-undamped"), 1)
         self.assertGreater(share("sdm_end-undamped"), 1)
 
-        # (b) the path-averaged traction creates none, whatever the stiffness; the end of the step does from k F = 0.1 on (THEORY section 4)
+        # (b) the path-averaged traction creates none, whatever the stiffness; the end of the step does from k F = 0.1 on (docs/theory, section 3)
         for row in summary["stiffness_sweep"]:
             self.assertLess(row["created_share_path"], 1e-10, row)
             if row["k_F"] >= 0.1:  # undamped and unstable: how much it is depends on round-off, that it is well above the limit of 1 % does not
@@ -52,7 +52,7 @@ class Oscillator(CliTest):
         self.assertEqual(len(names), 20)
 
     def test_joint_as_the_ground_gives_the_reference_values(self):
-        """Case A of THEORY section 7 in the first second: tensionless Winkler base, 200 points, no damping."""
+        """The reference oscillator in the first second: tensionless Winkler base, 200 points, no damping."""
         text = EXAMPLE.read_text()
         text = text[: text.index("# ---- the variants ----")]
         bed = re.search(r"\[interface\.footing\.bed\].*?\n\n", text, re.S).group(0)

@@ -195,7 +195,7 @@ source = "specification, 4.2"
 
 class Failures(CliTest):
     def created(self):
-        """A stiff joint with the traction at the end of the step and no velocity correction creates energy (THEORY section 4: k F = 13 makes 5e4)."""
+        """A stiff joint with the traction at the end of the step and no velocity correction creates energy (k F = 13 makes 5e4)."""
         return (BASE.replace("K_n = 2e8", "K_n = 2e11").replace("step = 1e-3", 'step = 1e-3\ntraction = "end"').replace("duration = 0.5", "duration = 2")
                 .replace('title = "test"\n', 'title = "test"\nimpact = "none"\n'))
 

@@ -138,7 +138,7 @@ TEST(EnergyDecay, WithoutDecayItIsTheTrapezoidalRule) {
   EXPECT_EQ(moment(decay(1)), moment(Scheme{}));
 }
 
-/// The first swing of the reference oscillator that uplifts (THEORY section 7, semi-analytic: 3.584171e-2 m within 1 s), of second order in
+/// The first swing of the reference oscillator that uplifts (semi-analytic: 3.584171e-2 m within 1 s), of second order in
 /// the step.
 TEST(EnergyDecay, FirstSwingOfTheReferenceOscillator) {
   const auto swing = [](double step) {

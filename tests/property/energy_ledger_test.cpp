@@ -5,7 +5,7 @@
 #include "oracle_models.h"
 
 // The energy ledger: with the average acceleration rule and path-averaged tractions it closes to round-off at every stiffness and step;
-// with end-of-step tractions it does not (THEORY section 4).
+// with end-of-step tractions it does not (docs/theory, section 3).
 namespace uplift::whole {
 namespace {
 
@@ -129,8 +129,8 @@ TEST(EnergyLedger, StaysClosedOverHalvedSteps) {
   EXPECT_LE(closing.worst, 1e-10);
 }
 
-/// The same model with the traction at the end of the step: nothing is created at k F_ii = 0.013, and energy appears from 0.13 on (THEORY
-/// section 4). Measured by what the push has put in when it ends: the work of the constant load grows with the bouncing that the created
+/// The same model with the traction at the end of the step: nothing is created at k F_ii = 0.013, and energy appears from 0.13 on.
+/// Measured by what the push has put in when it ends: the work of the constant load grows with the bouncing that the created
 /// energy makes.
 TEST(EnergyLedger, EndOfStepTractionCreatesEnergy) {
   const auto created = [](double ratio, bool path) {

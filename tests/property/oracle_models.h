@@ -102,7 +102,7 @@ inline void watch_all(Whole& whole) {
     list.push_back(request(kind, 0, "energy"));
 }
 
-/// The oscillator of THEORY section 7; its numbers may be changed.
+/// The reference oscillator of tests/verification/oscillator_test.cpp; its numbers may be changed.
 struct Oscillator {
   double height = 5, half_width = 1.5, bending = 4e9;  // m, m, N m2
   double mass = 24317.0841, base_mass = 1e4, base_inertia = 7500;

@@ -86,7 +86,7 @@ std::string complaint(Action action) {
 TEST(Case, TunesTheMassToTheFixedBaseFrequency) {
   const Case file = read();
   const Built built = build(file, runs_of_case(file).front());
-  // M h^3 = 3 E I/(2 pi f)^2 (THEORY section 7): 24 317.0841 kg
+  // M h^3 = 3 E I/(2 pi f)^2: 24 317.0841 kg
   const double mass = 3 * 2e10 * 0.2 / (std::pow(2 * std::numbers::pi * 10, 2) * 125);
   Vector horizontal = Vector::Zero(built.model.full_unknowns());
   horizontal[built.model.at(built.top, ux)] = 1;

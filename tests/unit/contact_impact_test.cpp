@@ -2,7 +2,7 @@
 
 #include "contact_support.h"
 
-// Impact rules on systems small enough to be written down here: the bar of VERIFICATION section 3 and the rocking block of section 4.
+// Impact rules on systems small enough to be written down here: a bar on a wall and a rocking block.
 namespace uplift::contact_test {
 namespace {
 
@@ -97,8 +97,8 @@ class Bar {
   Spread contact_, inertia_;
 };
 
-// Requirement: the table of THEORY section 4. The figures there are rounded; those of an independent program for the same scheme are used,
-// 0.5 %.
+// Requirement: the table of impact_bar_test.cpp. The figures there are rounded; those of an independent program for the same scheme are
+// used, 0.5 %.
 TEST(Impact, bar_table) {
   const Bar bar(100);
   struct Row {
@@ -116,7 +116,7 @@ TEST(Impact, bar_table) {
   }
 }
 
-// Requirement: project_hold gives the exact pressure 300, contact time 2/3 s, and loses 1/(2n) of the energy (VERIFICATION section 3).
+// Requirement: project_hold gives the exact pressure 300, contact time 2/3 s, and loses 1/(2n) of the energy.
 TEST(Impact, bar_project_hold) {
   for (const int n : {100, 200, 400}) {
     const BarResult result = Bar(n).run("project_hold", 1.0);
@@ -163,8 +163,7 @@ struct RockingBlock {
   }
 };
 
-// Requirement: restitution r = (1 - 1.5 sin^2 alpha)^2 of the energy when the corners stick; the block must not stop dead (VERIFICATION
-// section 4).
+// Requirement: restitution r = (1 - 1.5 sin^2 alpha)^2 of the energy when the corners stick; the block must not stop dead.
 TEST(Impact, rocking_block_housner) {
   const RockingBlock block;
   const double sine = block.half_width / std::hypot(block.half_width, block.half_height), ratio = 1 - 1.5 * sine * sine;

@@ -6,7 +6,7 @@
 namespace uplift::contact_test {
 namespace {
 
-// VERIFICATION section 2: k = 4e6, P = 2e5 towards a wall at 0.01: u = 0.01, lambda = 1.6e5.
+// A spring against a wall: k = 4e6, P = 2e5 towards a wall at 0.01: u = 0.01, lambda = 1.6e5.
 TEST(Lagrange, spring_against_a_wall) {
   const double k = 4e6, load = 2e5, wall = 0.01;
   Own own;

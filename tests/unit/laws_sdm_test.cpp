@@ -4,7 +4,7 @@
 
 #include "unit/laws_support.h"
 
-// The SDM law where VERIFICATION has no case: no strength, no jump-back, initial openings, messages.
+// The SDM law where law_sdm_test.cpp of the verification has no case: no strength, no jump-back, initial openings, messages.
 namespace uplift {
 using namespace law_test;
 namespace {

@@ -14,7 +14,7 @@ using namespace support;
 // ---- the linear tension ratio ----
 
 TEST(TensionRatio, EqualEnergyOnAWinklerStrip) {
-  // VERIFICATION, section 9
+  // the prediction of eq (31) of docs/theory, by hand
   for (const auto& [t, percent] : {std::pair{0.10, 10.66}, {0.20, 23.37}, {0.30, 39.75}, {0.35, 50.17}})
     EXPECT_NEAR(100 * uplift_of_tension(t).value(), percent, 0.005) << t;
   for (double t = 0.01; t < 0.495; t += 0.02) {

@@ -1,4 +1,4 @@
-// Beams against closed forms (VERIFICATION section 7). Roots of the frequency equations are computed here, to round-off, by bisection.
+// Beams against closed forms. Roots of the frequency equations are computed here, to round-off, by bisection.
 #include <gtest/gtest.h>
 
 #include <functional>

@@ -1,4 +1,4 @@
-// Floor spectra through whole runs (VERIFICATION section 7): what is recorded is the absolute acceleration, at every step, whatever is
+// Floor spectra through whole runs: what is recorded is the absolute acceleration, at every step, whatever is
 // written.
 #include <fmt/format.h>
 #include <gtest/gtest.h>

@@ -1,4 +1,4 @@
-// Uplifting footings (VERIFICATION section 5): half width b, vertical load W, rotation imposed on the body in statics, moment at its
+// Uplifting footings: half width b, vertical load W, rotation imposed on the body in statics, moment at its
 // middle. Two springs k at +-b: M_u = W b, theta_u = W/(2 k b). Winkler strip k_w: M_u = W b/3, theta_u = W/(2 k_w b^2), beyond it M/M_u =
 // 3 - 2 sqrt(theta_u/theta), contact ratio sqrt(theta_u/theta), heel jump 2 b theta (1 - sqrt(theta_u/theta)).
 #include <gtest/gtest.h>
@@ -86,7 +86,7 @@ TEST(Footing, WinklerStrip) {
 }
 
 // Claim: nodal joints: error of M at theta = 2.6 theta_u is of order 2, 2.7e-2, 6.4e-3, 1.4e-3, 3.0e-4 of M for 8, 16, 32, 64 joints
-// (VERIFICATION sections 2 and 10; counted as cells of the trapezoidal rule): as printed, 4 %. Midpoints: order 2.
+// (counted as cells of the trapezoidal rule): as printed, 4 %. Midpoints: order 2.
 TEST(Footing, OrderOfTheQuadrature) {
   const double theta_u = weight / (2 * bed * b * b), m_u = weight * b / 3, exact = m_u * (3 - 2 * std::sqrt(1 / 2.6));
   for (const char* rule : {"nodal", "midpoint"}) {

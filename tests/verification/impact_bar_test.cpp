@@ -1,4 +1,4 @@
-// A bar on a rigid wall (THEORY section 4, VERIFICATION section 3): E = 900, rho = 1, A = 1, L = 10, v0 = -10, gap 1, two-node elements
+// A bar on a rigid wall: E = 900, rho = 1, A = 1, L = 10, v0 = -10, gap 1, two-node elements
 // with lumped mass, trapezoidal rule, dt = h/c, Lagrange. Exact (d'Alembert): the wall presses with rho c v0 A = 300 for 2L/c = 2/3 s, the
 // bar leaves with the velocity 10 and its energy of 500.
 #include <gtest/gtest.h>
@@ -58,9 +58,9 @@ Figures figures(const Bar& bar) {
   return figures(bar, run_text(bar.text()));
 }
 
-// Claim: energy after the impact, THEORY's table. The loss of project_hold is the kinetic energy of the lowest node, which carries half an
-// element: (m/2n) v0^2/2, so the ratio is 1 - 1/(2n); tolerance 1e-4 (sharp). The others depend on where in a step the impact falls: 2 % of
-// the table.
+// Claim: energy after the impact, as tabulated by an independent program. The loss of project_hold is the kinetic energy of the lowest
+// node, which carries half an element: (m/2n) v0^2/2, so the ratio is 1 - 1/(2n); tolerance 1e-4 (sharp). The others depend on where in a
+// step the impact falls: 2 % of the table.
 TEST(BarOnAWall, EnergyOfEveryImpactRule) {
   for (const int n : {100, 200, 400}) {
     const double ratio = figures(falling_bar(n, "project_hold")).energy;
@@ -74,7 +74,7 @@ TEST(BarOnAWall, EnergyOfEveryImpactRule) {
 }
 
 // Claim: without a correction each refinement makes it worse (the energy that is created grows with the number of elements); every
-// correction converges to the exact energy with h^1 or better (VERIFICATION section 10).
+// correction converges to the exact energy with h^1 or better.
 TEST(BarOnAWall, OnlyTheCorrectedImpactConverges) {
   EXPECT_GT(figures(falling_bar(400, "none")).energy, 1.5 * figures(falling_bar(100, "none")).energy);
   for (const char* rule : {"project", "project_hold", "propagate"}) {
@@ -90,15 +90,15 @@ TEST(BarOnAWall, OnlyTheCorrectedImpactConverges) {
   for (const int n : {100, 200, 400}) EXPECT_NEAR(figures(falling_bar(n, "reflect")).energy, 1, 2e-3) << n;
 }
 
-// Claim: force and contact of THEORY's table; exact 300 and 2/3 s. `project_hold` gives directly usable forces (0.03 %, deviation below
-// 0.5), `project` the right mean with a deviation of a third. The uncorrected force, 1032 +- 458 where it pushes, depends on where in a
-// step the impact falls: 4 % and 10 %.
+// Claim: force and contact as tabulated by an independent program; exact 300 and 2/3 s. `project_hold` gives directly usable forces (0.03
+// %, deviation below 0.5), `project` the right mean with a deviation of a third. The uncorrected force, 1032 +- 458 where it pushes,
+// depends on where in a step the impact falls: 4 % and 10 %.
 TEST(BarOnAWall, ForceAndContactWhereTheForceIsTheMultiplier) {
   const Figures hold = figures(falling_bar(100, "project_hold"));
   EXPECT_NEAR(hold.mean, 300, 0.1);
   EXPECT_LT(hold.deviation, 0.5);
   EXPECT_EQ(hold.switches, 2);
-  const double one_step = 1.0 / 300 + 5e-5;  // and half a unit of the last digit that THEORY prints
+  const double one_step = 1.0 / 300 + 5e-5;  // and half a unit of the last digit of that table
   EXPECT_NEAR(hold.contact, 2.0 / 3, one_step);
   const Figures project = figures(falling_bar(100, "project"));
   EXPECT_NEAR(project.mean, 301, 0.01 * 301);
@@ -142,9 +142,9 @@ TEST(BarOnAWall, ImpactAnywhereInAStep) {
     }
 }
 
-// Claim: the path-averaged traction keeps the energy at every stiffness and step, without any velocity correction (THEORY section 4): 1e-10
-// of the initial energy. The momentum is turned round (200): 1.5 %, except for joints that are far stiffer than an element (k h/(E A) =
-// 1e5), where the energy that is kept goes into vibrations of single elements in part: 10 %. k h/(E A) from 0.01 to 1e5.
+// Claim: the path-averaged traction keeps the energy at every stiffness and step, without any velocity correction (docs/theory, eq (12)):
+// 1e-10 of the initial energy. The momentum is turned round (200): 1.5 %, except for joints that are far stiffer than an element (k h/(E A)
+// = 1e5), where the energy that is kept goes into vibrations of single elements in part: 10 %. k h/(E A) from 0.01 to 1e5.
 TEST(BarOnAWall, PathAveragedJointsKeepTheEnergy) {
   for (const double stiffness : {1e2, 1e4, 1e6, 1e9})
     for (const double part : {1.0, 0.37}) {
@@ -172,7 +172,7 @@ TEST(BarOnAWall, PathAveragedJointsKeepTheEnergy) {
 }
 
 // Claim: the same stiff joint with the traction at the end of the step has the disease of the uncorrected constraint, and the velocity
-// correction does not help a law (it belongs to constraints): energy is created (THEORY section 4).
+// correction does not help a law (it belongs to constraints): energy is created (docs/theory, section 3).
 TEST(BarOnAWall, EndOfStepTractionCreatesEnergy) {
   Bar bar = falling_bar(100, "none");
   bar.law = "{ type = \"springs\", K_n = 1e6, tangential = \"none\" }";

@@ -1,4 +1,4 @@
-// A bar that bounces on a wall under gravity, and one that rests on it (VERIFICATION section 3): E = 900, rho = 1, A = 1, L = 10, g = 10,
+// A bar that bounces on a wall under gravity, and one that rests on it: E = 900, rho = 1, A = 1, L = 10, g = 10,
 // so c = 30 and the stress of its own weight is rho g L = 100. Dropped from 5 m it arrives with 10 m/s after 1 s and the motion is exact
 // and periodic, T = 16/3 s.
 #include <gtest/gtest.h>
@@ -107,7 +107,7 @@ TEST(BouncingBar, MeanHeightConverges) {
   EXPECT_GT(order(size, worst), 0.5);
 }
 
-// Claim: energy after the first impact converges with h^1 (VERIFICATION section 10). The bar arrives with 10 m/s, its lowest node carries
+// Claim: energy after the first impact converges with h^1. The bar arrives with 10 m/s, its lowest node carries
 // 1/(2n) of the mass: the loss is 1/(2n) (5 % for where in the step it falls, at n >= 100).
 TEST(BouncingBar, ExitEnergyIsOfFirstOrder) {
   std::vector<double> size, lost;

@@ -1,4 +1,4 @@
-// Numerical damping and period error of the time integration (VERIFICATION section 7): a linear oscillator, 50 cycles, against the
+// Numerical damping and period error of the time integration: a linear oscillator, 50 cycles, against the
 // eigenvalues of the scheme's own amplification matrix, worked out here from the equations of the scheme (not from the program), and
 // against the reference table.
 #include <gtest/gtest.h>
@@ -165,7 +165,7 @@ TEST(Integrators, ReferenceTable) {
   EXPECT_EQ(seen, 45);
 }
 
-// Claim: every scheme but Newmark with gamma > 1/2 is of second order, that one of first order (VERIFICATION section 10: smooth dynamics
+// Claim: every scheme but Newmark with gamma > 1/2 is of second order, that one of first order (smooth dynamics
 // dt^2).
 TEST(Integrators, Orders) {
   for (const Coefficients& scheme : all_schemes()) {

@@ -1,4 +1,4 @@
-// Joint elements and footings against closed forms (VERIFICATION sections 2, 5 and 7; THEORY section 7).
+// Joint elements and footings against closed forms.
 #include <gtest/gtest.h>
 
 #include "../unit/model_support.h"
@@ -187,7 +187,8 @@ TEST(Footing, QuadratureErrorOfTheUpliftMoment) {
   EXPECT_NEAR(std::log2(errors[0] / errors[3]) / 3, 2, 0.2);
 }
 
-/// The reference oscillator of THEORY section 7 with bonded joints: the top mass acts in both directions, column massless and inextensible.
+/// The reference oscillator (oscillator_test.cpp) with bonded joints: the top mass acts in both directions, column massless and
+/// inextensible.
 Model oscillator(double top_mass, double k_w, int points, bool two_springs) {
   ModelBuilder builder;
   builder.add_node("base", {0, 0}, here);

@@ -8,8 +8,8 @@
 #include "data_support.h"
 #include "unit/laws_support.h"
 
-// VERIFICATION section 1 and THEORY section 3: the SDM interface law. Reference values are computed here by bisection and quadrature in
-// extended precision, beside the figures of the document.
+// The SDM interface law, docs/theory, eqs (2) to (8). Reference values are computed here by bisection and quadrature in
+// extended precision, beside published figures.
 namespace uplift {
 using namespace law_test;
 namespace {
@@ -45,7 +45,7 @@ TEST(SdmVerification, EnvelopeMatchesTheRootFoundByBisection) {
       {5e-4, 64707.539543672}, {1e-3, 38221.2417467994}, {2e-3, 13720.494730453}, {3e-3, 5003.68112781450}};
   for (const auto& [d, t] : document) {
     EXPECT_NEAR(respond(sdm(), d, 0), static_cast<double>(envelope(d)), 1e-12 * t);
-    EXPECT_NEAR(respond(sdm(), d, 0), t, 1e-11 * t) << "figure of VERIFICATION section 1, given to 15 digits";
+    EXPECT_NEAR(respond(sdm(), d, 0), t, 1e-11 * t) << "published figure, given to 15 digits";
   }
   for (double d = 1.01e-4; d < 0.02; d *= 1.07) EXPECT_NEAR(respond(sdm(), d, 0), static_cast<double>(envelope(d)), 1e-12 * F_u) << d;
 }

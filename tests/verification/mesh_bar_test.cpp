@@ -1,4 +1,4 @@
-// The bar of THEORY section 4 on a wall (VERIFICATION section 3) as solids: a column of cells one wide, in the plane and in space, that
+// The bar of impact_bar_test.cpp on a wall as solids: a column of cells one wide, in the plane and in space, that
 // falls on all nodes of its foot. E = 900, rho = 1, A = 1, L = 10, nu = 0, v0 = -10, gap 1, lumped mass, trapezoidal rule, dt = h/c. Exact:
 // force 300 for 2/3 s, then all the energy of 500 J again.
 #include <gtest/gtest.h>

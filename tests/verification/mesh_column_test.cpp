@@ -1,4 +1,4 @@
-// Soil columns under waves that come up through an absorbing base or with a rigid one (VERIFICATION section 8). References: d'Alembert, and
+// Soil columns under waves that come up through an absorbing base or with a rigid one. References: d'Alembert, and
 // transfer functions of layers made here by the recursion of up- and downgoing waves (Haskell 1953; Kramer, Geotechnical Earthquake
 // Engineering, 1996, section 7.2): at the top of each layer u = A e^{ikz} + B e^{-ikz}, at the free surface A = B.
 #include <gtest/gtest.h>
@@ -146,7 +146,7 @@ double transfer_error(const Column& column, const std::string& quantity) {
 // the speeds are those of the wave that runs through
 const std::vector<Layer> ground{{6, 150, 1700, 3e-3}, {10, 250, 1850, 2e-3}, {8, 200, 1800, 4e-3}, {8, 800, 2200, 0}};
 
-// Claim (own transfer matrix against the table of VERIFICATION): H = 20 m, Vs = 200 m/s, rho = 1900 on rock 2200, 800 m/s, undamped:
+// Claim (own transfer matrix against a published table): H = 20 m, Vs = 200 m/s, rho = 1900 on rock 2200, 800 m/s, undamped:
 // 4.631579 at 2.5 Hz. This checks the reference, not the program.
 TEST(MeshColumn, TheTransferMatrixGivesTheClosedForm) {
   EXPECT_NEAR(std::abs(transfer({{20, 200, 1900, 0}, {5, 800, 2200, 0}}, 2 * pi * 2.5)), 4.631579, 5e-7);

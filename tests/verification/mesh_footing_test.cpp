@@ -1,4 +1,4 @@
-// Rigid tensionless bases on Winkler beds in space (VERIFICATION section 5): a disc whose joints are the faces of a mesh, and a rectangle
+// Rigid tensionless bases on Winkler beds in space: a disc whose joints are the faces of a mesh, and a rectangle
 // turned about both axes. References by quadrature made here: the pressure is k (w + r . x)+, w such that it carries the load W.
 #include <gtest/gtest.h>
 

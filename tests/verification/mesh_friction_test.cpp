@@ -1,4 +1,4 @@
-// Friction between a rigid body and elastic ground that is meshed (VERIFICATION section 6). Reference: Johnson, Contact Mechanics, 1985,
+// Friction between a rigid body and elastic ground that is meshed. Reference: Johnson, Contact Mechanics, 1985,
 // sections 2.8 and 7.2.
 #include <gtest/gtest.h>
 

@@ -1,4 +1,4 @@
-// Patch tests through interfaces on meshes (VERIFICATION section 2): two elastic blocks that meet in a joint whose faces are distorted,
+// Patch tests through interfaces on meshes: two elastic blocks that meet in a joint whose faces are distorted,
 // under uniform traction p: jump p/K everywhere, total p L/E + p/K; an inclined joint shares the traction into p cos^2 and p sin cos.
 #include <gtest/gtest.h>
 

@@ -1,5 +1,5 @@
 // Rigid bodies pressed into elastic ground that is meshed. A rigid body's nodes face nodes of the ground without friction and without
-// tension (constraints). References (Johnson, Contact Mechanics, 1985): flat strip on the half-plane with uplift (VERIFICATION section 5),
+// tension (constraints). References (Johnson, Contact Mechanics, 1985): flat strip on the half-plane with uplift,
 // line and point contact of Hertz (section 6), stiffness of discs on the half-space (section 8).
 #include <gtest/gtest.h>
 

@@ -1,4 +1,4 @@
-// Orders of convergence by refinement (VERIFICATION section 10) that no other file shows: penalty -> Lagrange with (1/eps)^1, dynamics with
+// Orders of convergence by refinement that no other file shows: penalty -> Lagrange with (1/eps)^1, dynamics with
 // impacts with dt^1. Elsewhere: smooth dynamics and uplift (oscillator_, integrators_), exit energy h^1 (impact_), nodal joints h^2
 // (footing_), beams h^4 (beams_), the SDM exact for any sub-stepping (law_sdm_).
 #include <gtest/gtest.h>
@@ -27,7 +27,7 @@ Pressed pressed(const std::string& method) {
   return {-run["u"][0], -run["wall.1.traction"][0]};
 }
 
-// Claim: penalty u = (P + eps g)/(k_s + eps), in particular 0.0101593625498 for eps = 1e9 (VERIFICATION section 2), 1e-12; its distance
+// Claim: penalty u = (P + eps g)/(k_s + eps), in particular 0.0101593625498 for eps = 1e9, 1e-12; its distance
 // from the Lagrange solution u = g, force P - k_s g falls with (1/eps)^1; the augmented Lagrangian is exact.
 TEST(Orders, PenaltyTowardsLagrange) {
   const double k = 4e6, p = 2e5, gap = 0.01;

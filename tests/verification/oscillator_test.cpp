@@ -1,4 +1,4 @@
-// The reference oscillator (THEORY section 7): a mass on a massless inextensible column of 5 m on a rigid footing 3 m wide that is pressed
+// The reference oscillator: a mass on a massless inextensible column of 5 m on a rigid footing 3 m wide that is pressed
 // on a tensionless Winkler base by 1 MN and hit by a half-sine pulse. Everything is compared with an integration of its own here: exact
 // contact length, classical Runge-Kutta with 1e-5 s (error below 1e-9 of the peaks), and with the curves of the reference folder when that
 // is there.
@@ -113,8 +113,8 @@ double distance(const std::vector<double>& a, const std::vector<double>& b) {
   return std::sqrt(difference / size);
 }
 
-// Claim: the integration of this test is the reference of THEORY section 7 (DOP853 at 1e-11): curves to 1e-8 of their peaks in the first
-// second, and the text's first peaks.
+// Claim: the integration of this test agrees with an independent one (DOP853 at 1e-11): curves to 1e-8 of their peaks in the first
+// second, and its first peaks.
 TEST(ReferenceOscillator, TheIntegrationOfThisTest) {
   const Exact a = integrate(3e5, 1), c = integrate(5e4, 1);
   EXPECT_NEAR(a.x_peak, 3.584171e-2, 1e-6 * 3.584171e-2);
@@ -130,7 +130,7 @@ TEST(ReferenceOscillator, TheIntegrationOfThisTest) {
   }
 }
 
-// Claim: peaks of the first second with 200 points of tensionless springs (VERIFICATION section 5): motion to 1e-3 at 0.5 ms. With uplift
+// Claim: peaks of the first second with 200 points of tensionless springs: motion to 1e-3 at 0.5 ms. With uplift
 // the base moment, the toe pressure and the jump carry the footing's own vibration (about 100 Hz): 5e-3 at 0.5 ms, 1e-3 at 0.125 ms. The
 // uplifted ratio is counted in points: 1/200. The path average closes the energy balance (1e-9 of the work).
 TEST(ReferenceOscillator, Peaks) {
@@ -154,8 +154,8 @@ TEST(ReferenceOscillator, Peaks) {
   }
 }
 
-// Claim: order 2 in the step for fixed points, and order 2 in the points (nodal quadrature), with and without uplift (VERIFICATION sections
-// 5, 10).
+// Claim: order 2 in the step for fixed points, and order 2 in the points (nodal quadrature), with and without
+// uplift.
 TEST(ReferenceOscillator, Orders) {
   for (const double pulse : {3e5, 5e4}) {
     std::vector<double> step, error;
@@ -193,7 +193,7 @@ TEST(ReferenceOscillator, Orders) {
 }
 
 /// The same oscillator on 200 SDM joints (nodal rule) with F_u = 0: memory j = largest opening of a point, t = K (d - j)/(1 + K j/|F_c|)
-/// down to F_c, K d below (THEORY section 3). Runge-Kutta with 1e-4 s, j from the stages too; x of the top every 1e-3 s.
+/// down to F_c, K d below (docs/theory, eqs (2) and (3)). Runge-Kutta with 1e-4 s, j from the stages too; x of the top every 1e-3 s.
 std::vector<double> integrate_sdm(double pulse, double closure, double duration) {
   const int n = 200;
   std::vector<double> jump(n, 0.0), x;
@@ -233,8 +233,8 @@ std::vector<double> integrate_sdm(double pulse, double closure, double duration)
 }
 
 // Claim: the SDM's closure stress, 200 points, first second, 1 ms. The program's motion of the top is that of the integration above: 0.5 %
-// rms (the program's step is ten times longer). Its rms distance from the tensionless base, over the peak, follows THEORY section 7, 0.06 %
-// to 21 % for |F_c|/mean pressure from 0.003 to 1: the table does not say over which time nor by which measure; over the first second and
+// rms (the program's step is ten times longer). Its rms distance from the tensionless base, over the peak, follows a published table, 0.06
+// % to 21 % for |F_c|/mean pressure from 0.003 to 1: the table does not say over which time nor by which measure; over the first second and
 // the peak it is met within 10 % from 0.1 on and within a half at the smallest.
 TEST(ReferenceOscillator, ClosureStress) {
   Oscillator base;

@@ -1,4 +1,4 @@
-// A rigid block that rocks on its two corners (VERIFICATION section 4): half width b = 0.5, half height h = 2, g = 9.81, R = sqrt(b^2 +
+// A rigid block that rocks on its two corners: half width b = 0.5, half height h = 2, g = 9.81, R = sqrt(b^2 +
 // h^2), alpha = atan(b/h), p = sqrt(3 g/4R). Small displacements with the P-Delta effect: I theta'' = m g (h theta - b) about a corner, I =
 // 4/3 m R^2, so that the angle of repose is b/h and the rate sqrt(m g h/I) = p sqrt(cos alpha). Housner's own linearisation, p and alpha,
 // takes both to first order in alpha.

@@ -174,7 +174,7 @@ void warn_floating(const Case& read, const Built& built, std::vector<std::string
                              spoken(-built.weight, "N")));
 }
 
-/// THEORY section 3: a closure stress above 1 % of the bearing pressure resists the closing of gaps noticeably.
+/// docs/theory, eq (3): a closure stress above 1 % of the bearing pressure resists the closing of gaps noticeably.
 void warn_closure(const Built& built, std::vector<std::string>& said) {
   double area = 0;
   for (const InterfaceFacts& facts : built.facts) area += facts.area;

@@ -25,7 +25,7 @@ const Entry<ImpactRule>& entry_impact_project_hold() {
        .summary = "velocity projected as in `project`, and the acceleration of the rows that stay closed too",
        .equations = "v' as in `project`\n"
                     "a' = argmin |a' - (a + M^-1 B_A^T p)|_M^2 / 2,  B a' >= 0 on the rows with B v' = 0",
-       .source = "Cherubini, Richard & Frau, eq 4, completed for the acceleration (THEORY section 4)",
+       .source = "Cherubini, Richard & Frau, eq 4, completed for the acceleration (docs/theory, eq (18))",
        .params = {}},
       [](const Values&) { return std::make_unique<const ProjectHold>(); }};
   return entry;

@@ -17,12 +17,13 @@ class Reflect final : public ImpactRule {
 }  // namespace
 
 const Entry<ImpactRule>& entry_impact_reflect() {
-  static const Entry<ImpactRule> entry{{.name = "reflect",
-                                        .summary = "velocity reflected at the active constraints: keeps the kinetic energy exactly",
-                                        .equations = "v' = 2 v_p - v,  v_p = argmin |v_p - v|_M^2 / 2,  B_A v_p = 0",
-                                        .source = "THEORY section 4; the limit of eqs 5-6 for dt -> 0",
-                                        .params = {}},
-                                       [](const Values&) { return std::make_unique<const Reflect>(); }};
+  static const Entry<ImpactRule> entry{
+      {.name = "reflect",
+       .summary = "velocity reflected at the active constraints: keeps the kinetic energy exactly",
+       .equations = "v' = 2 v_p - v,  v_p = argmin |v_p - v|_M^2 / 2,  B_A v_p = 0",
+       .source = "Cherubini, Richard & Frau, the limit of eqs 5-6 for dt -> 0; docs/theory, eqs (18) and (19)",
+       .params = {}},
+      [](const Values&) { return std::make_unique<const Reflect>(); }};
   return entry;
 }
 

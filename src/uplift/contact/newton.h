@@ -5,7 +5,7 @@
 //     G(z) = z + C^T (p(opening) - D opening) = 0        opening = free_opening + C z
 //     H = I + C^T (dp/d opening - D) C
 // For laws that do not soften the step is the minimum of a convex function whose gradient is G, so that a line search along the Newton
-// direction d on the directional derivative d . G makes it globally convergent (THEORY section 6).
+// direction d on the directional derivative d . G makes it globally convergent (docs/theory, section 4).
 namespace uplift {
 
 /// Multipliers of the augmented Lagrangian: the force of cone blocks is P(multiplier + stiffness * (opening - origin)), the origin being

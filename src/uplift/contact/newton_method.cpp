@@ -33,7 +33,7 @@ const Entry<ContactMethod>& entry_method_newton() {
        .equations = "G(z) = z + C^T p(opening) = 0, opening = free opening + C z\n"
                     "H = I + C^T (dp/d opening) C, symmetric positive definite when the law does not soften\n"
                     "line search on the directional derivative of the incremental potential",
-       .source = "THEORY section 6",
+       .source = "docs/theory, section 4",
        .params = {number("tolerance", "1", "residual of the interface balance, relative to the interface force").positive().standard(1e-12),
                   integer("most_iterations", "iterations before the step is cut").between(1, 10000).standard(60.0)}},
       [](const Values& values) -> std::unique_ptr<const ContactMethod> {

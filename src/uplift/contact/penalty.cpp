@@ -92,7 +92,7 @@ const Entry<ContactMethod>& entry_method_penalty() {
        .summary = "constraints replaced by stiff tensionless springs, stiffness given or scaled from the compliance",
        .equations = "p = P(e g), P the projection on the cone\n"
                     "e = stiffness * area, or e F_ii = factor at the most flexible point of the interface",
-       .source = "Cherubini, Richard & Frau, section 2; THEORY section 4",
+       .source = "Cherubini, Richard & Frau, section 2; docs/theory, eq (15)",
        .params = {number("stiffness", "Pa/m", "penalty stiffness per area; absent: scaled by `factor`").positive().optional(),
                   number("factor", "1", "k F_ii of the automatic stiffness").positive().standard(10.0),
                   number("tolerance", "1", "residual of the interface balance, relative to the interface force").positive().standard(1e-12),

@@ -11,9 +11,9 @@
 // The interface problem of one step. With the linear bulk condensed, the step is
 //     opening = free_opening + C z        z + C^T (p - D opening) = 0        p in law(opening)
 // where F = C C^T = B K_eff^-1 B^T is the compliance [m/N] and z [sqrt(J)] are coordinates in which the energy of K_eff is |z|^2/2.
-// C has as many columns as the smaller of the two exact forms needs (DESIGN section 4): the interface rows m, or the independent
+// C has as many columns as the smaller of the two exact forms needs (docs/theory, eq (13)): the interface rows m, or the independent
 // unknowns that the interface touches (three for a rigid footing in 2D). F itself is never inverted; it is singular under a rigid footing.
-// D [N/m] is zero in dynamics; in statics it takes back the closed joint that was put into the factored matrix (THEORY section 6).
+// D [N/m] is zero in dynamics; in statics it takes back the closed joint that was put into the factored matrix (docs/theory, section 4).
 namespace uplift {
 
 /// One interface inside the problem.

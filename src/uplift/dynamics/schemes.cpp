@@ -10,7 +10,7 @@ const Entry<Scheme>& entry_scheme_average_acceleration() {
       {.name = "average_acceleration",
        .summary = "trapezoidal rule; no numerical damping; conserves energy exactly with the path-averaged traction",
        .equations = "beta = 1/4, gamma = 1/2",
-       .source = "Newmark 1959; THEORY section 4",
+       .source = "Newmark 1959; docs/theory, eqs (9) and (10)",
        .params = {}},
       [](const Values&) { return std::make_unique<const Scheme>(); }};
   return entry;

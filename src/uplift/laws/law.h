@@ -42,7 +42,7 @@ class InterfaceLaw {
   virtual int num_history(int components) const = 0;
   /// Traction at the end of a step that goes from opening `from` to `to`. In statics and dynamics (`traction = "end"`).
   virtual void respond(const Batch&, const double* from, const double* to, const double* old, const Reply&) const = 0;
-  /// Path-averaged traction of the step, 1/(to - from) * integral of t d(opening) along the law's own path (THEORY section 4), and its
+  /// Path-averaged traction of the step, 1/(to - from) * integral of t d(opening) along the law's own path (docs/theory, eq (11)), and its
   /// slope with respect to `to`.
   virtual void mean(const Batch&, const double* from, const double* to, const double* old, const Reply&) const = 0;
   /// `mean` for Newton's method in one pass where there is one component, see sweep.h; false where the law does not offer it for these

@@ -8,9 +8,9 @@
 #include "uplift/math/exponential.h"
 #include "uplift/math/lambert.h"
 
-// The SDM law (strong discontinuity method): Cherubini, Richard & Frau, eqs 15 to 21, in the reading and the closed forms of THEORY
-// sections 3 and 4. Opening d [m], memory j [m] (the jump [u]_max, never decreasing), K [Pa/m], F_u, F_c [Pa], G_f [J/m2], a = F_u/G_f, d_c
-// = F_c/K < 0:
+// The SDM law (strong discontinuity method): Cherubini, Richard & Frau, eqs 15 to 21, in the reading and the closed forms of
+// docs/theory, eqs (2) to (8). Opening d [m], memory j [m] (the jump [u]_max, never decreasing), K [Pa/m], F_u, F_c [Pa], G_f [J/m2], a =
+// F_u/G_f, d_c = F_c/K < 0:
 //     d >= j         t = K (d - j)             up to the threshold F_u exp(-a j)
 //     beyond it      t = K y, j = d - y, y = w/a with w exp(-w) = (a F_u/K) exp(-a d)       softening; one root because K > F_u^2/G_f
 //     d_c <= d < j   t = k_c (d - j)           closure, k_c = K/(1 + K j/|F_c|)
@@ -408,7 +408,7 @@ const Entry<InterfaceLaw>& entry_law_sdm() {
                    .equations = "t_n = K_n (d_n - eta j), j the largest jump so far\n"
                                 "t_n <= F_u exp(-F_u j/G_f)\n"
                                 "eta = 1 for t_n > 0; 1 - t_n/F_c for F_c <= t_n <= 0; 0 below",
-                   .source = "Cherubini, Richard & Frau, eqs 15 to 21, in the reading of THEORY section 3",
+                   .source = "Cherubini, Richard & Frau, eqs 15 to 21, in the reading of docs/theory, eqs (2) to (8)",
                    .params = {number("K_n", "Pa/m", "normal stiffness; above F_u^2/G_f").positive(),
                               number("F_u", "Pa", "tensile strength; 0: no tension, the jump follows the opening").nonnegative(),
                               number("G_f", "J/m2", "cracking energy").positive(),

@@ -13,7 +13,7 @@
 //               creates energy.
 //   coulomb     |t| <= bound = cohesion (1 - damage) - friction min(t_n, 0), t = K e, slip along t.
 // The joint filter of the scheme (laws/filter.h) is added to the path average of every part, for coulomb up to the bound.
-// Source: THEORY section 3; the energy argument is that of each update's docstring.
+// Source: docs/theory, sections 2 and 3; the energy argument is that of each update's docstring.
 namespace uplift {
 
 /// One call for all points of an interface, the normal part of the reply being already there.
