@@ -8,7 +8,9 @@ JointFilter::JointFilter(const Model& model, const Behaviours& behaviours, const
     : blocks_(blocks_of(model, behaviours)), pole_(scheme.pole), gain_(scheme.gain) {
   Eigen::Index rows = 0;
   for (const Block& block : blocks_.blocks) {
-    Part part{.first = block.first, .points = block.batch.points, .components = block.batch.components, .area = block.area};
+    Part part{
+        .first = block.first, .points = block.batch.points, .components = block.batch.components, .area = block.area, .inverse_area = {}};
+    part.inverse_area = part.area.cwiseInverse();
     if (block.law != nullptr) block.law->closed_stiffness(part.components, part.stiffness);
     rows += block.rows();
     parts_.push_back(std::move(part));
@@ -50,10 +52,11 @@ const JointFilterInput& JointFilter::begin(const State& now, double shrink) {
         const LaneMask touches = at(contact) >= closed;
         const Lanes here = is_normal ? choose(touches, gain * slope, Lanes(-1))
                                      : choose(touches || (slope >= stuck && slope > zero), Lanes(2 * gain * stuck), zero);
-        const LaneMask acts = here > zero;
-        const Lanes ratio = smaller(Lanes(1), at(before) / choose(acts, here, Lanes(1)));
+        const LaneMask acts = here > zero, grows = acts && at(before) < here;
+        Lanes remembered = shrink * at(filtered);
+        if (any_of(grows)) remembered *= std::experimental::sqrt(choose(grows, at(before) / choose(grows, here, Lanes(1)), Lanes(1)));
         at.put(coefficient, here);
-        at.put(lag, choose(acts, shrink * at(filtered) * std::experimental::sqrt(ratio), zero));
+        at.put(lag, choose(acts, remembered, zero));
       });
     }
   }
@@ -65,7 +68,7 @@ void JointFilter::end(const InterfaceProblem& problem, const InterfaceSolution& 
   Lanes dissipated = 0, storage = 0;
   for (std::size_t b = 0; b < parts_.size(); ++b) {
     const Part& part = parts_[b];
-    const double* area = part.area.data();
+    const double *area = part.area.data(), *inverse_area = part.inverse_area.data();
     for (int c = 0; c < part.components; ++c) {
       const int n = part.points, first = part.first + c * n;
       const double *coefficient = input_.coefficient.data() + first, *lag = input_.lag.data() + first,
@@ -78,11 +81,10 @@ void JointFilter::end(const InterfaceProblem& problem, const InterfaceSolution& 
       const double scale = 1 / problem.scale;
       for_lanes(n, [&](const auto& at) {
         const Lanes zero = 0, one = 1, way = at(to) - at(from), ahead = way - at(lag), weight = at(area, 1.0), here = at(coefficient);
-        const Lanes added = scale * at(force) / weight - at(plain), wanted = here * ahead;
-        const LaneMask acts = here > zero, moves = acts && wanted != zero;
-        Lanes share = added / choose(moves, wanted, one);  // theta
-        share = choose(share < 1 - 1e-6, larger(share, zero), one);
-        const Lanes kept = choose(acts, choose(moves, share, one) * here, zero);  // theta c
+        const Lanes added = scale * at(force) * at(inverse_area) - at(plain), wanted = here * ahead;
+        const LaneMask acts = here > zero, less = acts && added * wanted < (1 - 1e-6) * wanted * wanted;
+        Lanes kept = choose(acts, here, zero);  // theta c
+        if (any_of(less)) kept *= choose(less, larger(added / choose(less, wanted, one), zero), one);
         const Lanes stored_before = at(before) * at(filtered) * at(filtered), stored_used = kept * at(lag) * at(lag);
         dissipated += weight * (loss * kept * ahead * ahead + store * (stored_before - stored_used) + choose(acts, zero, added * way));
         const Lanes filtered_now = choose(acts, pole * at(lag) + keep * way, zero);

@@ -24,8 +24,8 @@ class JointFilter {
  private:
   struct Part {  // of one interface
     int first = 0, points = 0, components = 0;
-    double stiffness[3] = {};  // closed joint [Pa/m]
-    Vector area;
+    double stiffness[3] = {};   // closed joint [Pa/m]
+    Vector area, inverse_area;  // m2, 1/m2
   };
   InterfaceProblem blocks_;
   std::vector<Part> parts_;
