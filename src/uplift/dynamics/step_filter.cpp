@@ -50,20 +50,20 @@ void Stepper::advance_filters(const Level& level) {
   double *d_u1 = next_.filter.displacement.data(), *d_v1 = next_.filter.velocity.data(), *k_d1 = work_.data(), *m_d1 = work2_.data();
   double lost = 0, stored = 0, stored_before = 0;
   small::with_size(n, [=, &lost, &stored, &stored_before](auto count) {
-    double sums[3] = {};
-#pragma omp simd reduction(+ : sums)
+    double loss = 0, before = 0, after = 0;
+#pragma omp simd reduction(+ : loss, before, after)
     for (Eigen::Index i = 0; i < count; ++i) {
       const double dv = v1[i] - v0[i], dk = k1[i] - k0[i] - k_d1[i], dm = m1[i] - m0[i];
       const double u_lag = shrink * d_u[i], v_lag = shrink * d_v[i], k_lag = shrink * k_d[i], m_lag = shrink * m_d[i];
-      sums[0] += (du[i] - u_lag) * (dk - k_lag) + (dv - v_lag) * (dm - m_lag);
-      sums[1] += d_u[i] * k_d[i] + d_v[i] * m_d[i];
+      loss += (du[i] - u_lag) * (dk - k_lag) + (dv - v_lag) * (dm - m_lag);
+      before += d_u[i] * k_d[i] + d_v[i] * m_d[i];
       d_u1[i] = a * u_lag + keep * du[i];
       d_v1[i] = a * v_lag + keep * dv;
       k_d1[i] = a * k_lag + keep * dk;
       m_d1[i] = a * m_lag + keep * dm;
-      sums[2] += d_u1[i] * k_d1[i] + d_v1[i] * m_d1[i];
+      after += d_u1[i] * k_d1[i] + d_v1[i] * m_d1[i];
     }
-    lost = sums[0], stored_before = sums[1], stored = sums[2];
+    lost = loss, stored_before = before, stored = after;
   });
   const double storage = b / (2 * (1 - a));
   energies_.algorithmic += 0.5 * b * (1 + a) * lost + storage * (1 - shrink * shrink) * stored_before;
