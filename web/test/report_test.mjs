@@ -358,6 +358,7 @@ async function check_theme(page) {
   await page.locator(".theme-toggle").click();
   check.equal((await colours()).theme, "light", "the toggle wins over the system");
   await page.reload();
+  await page.locator(".theme-toggle").waitFor();  // the page is made when its data are unpacked
   check.equal((await colours()).theme, "light", "and is remembered");
   await page.locator(".theme-toggle").click();
   check.equal((await colours()).theme, "dark", "and toggles back");
