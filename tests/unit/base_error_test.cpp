@@ -31,9 +31,10 @@ TEST(InputError, LeavesOutEmptyPartsCleanly) {
 
 TEST(NearestName, FindsMisspellings) {
   const std::vector<std::string> names{"stiffness", "damping", "mass", "nodes", "K_n", "G_f", "augmented_lagrangian", "E", "I"};
-  EXPECT_EQ(nearest_name("stifness", names), "stiffness");  // a letter lost
-  EXPECT_EQ(nearest_name("dampping", names), "damping");    // a letter too many
-  EXPECT_EQ(nearest_name("msas", names), "mass");           // neighbours swapped: one edit
+  EXPECT_EQ(nearest_name("stifness", names), "stiffness");      // a letter lost
+  EXPECT_EQ(nearest_name("dampping", names), "damping");        // a letter too many
+  EXPECT_EQ(nearest_name("stepp", {"steps", "step"}), "step");  // the last letter typed twice
+  EXPECT_EQ(nearest_name("msas", names), "mass");               // neighbours swapped: one edit
   EXPECT_EQ(nearest_name("node", names), "nodes");
   EXPECT_EQ(nearest_name("k_n", names), "K_n");  // case
   EXPECT_EQ(nearest_name("e", names), "E");

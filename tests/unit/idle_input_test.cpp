@@ -73,8 +73,9 @@ TEST(IdleInput, ADurationThatIsNoWholeNumberOfSteps) {
   const auto stage = [](const char* duration, const char* step) {
     return std::string("[[stage]]\ntype = \"dynamic\"\nduration = ") + duration + "\nstep = " + step + "\n";
   };
-  EXPECT_TRUE(warns(footing + weight + statics + stage("0.1", "0.03"),
-                    "stage 2: the duration of 0.100 s is no whole number of steps of 30.0 ms; the stage has 3 and ends after 90.0 ms"));
+  EXPECT_TRUE(
+      warns(footing + weight + statics + stage("0.1", "0.03"),
+            "stage 2: the duration of 0.1 s is not a whole number of steps of 0.03 s; the stage has 3 steps and ends after 0.09 s"));
   for (const auto& [duration, step] : {std::pair{"0.1", "0.01"}, {"20", "1e-3"}, {"0.3", "0.1"}, {"53.74", "0.02"}})
     EXPECT_FALSE(warns(footing + weight + statics + stage(duration, step), "whole number")) << duration;
 }

@@ -113,8 +113,10 @@ void warn_duration(const Built& built, std::vector<std::string>& said) {
     if (stage.type != Stage::Type::dynamics) continue;
     const double steps = stage.duration / stage.step, whole = std::max(1.0, std::round(steps));
     if (std::abs(steps - whole) > 1e-6 * whole)
-      said.push_back(fmt::format("stage {}: the duration of {} is no whole number of steps of {}; the stage has {:g} and ends after {}",
-                                 k + 1, spoken(stage.duration, "s"), spoken(stage.step, "s"), whole, spoken(whole * stage.step, "s")));
+      said.push_back(
+          fmt::format("stage {}: the duration of {:.9g} s is not a whole number of steps of {:.9g} s; the stage has {:.9g} steps and ends "
+                      "after {:.9g} s",
+                      k + 1, stage.duration, stage.step, whole, whole * stage.step));
   }
 }
 

@@ -25,10 +25,8 @@ std::string late_peaks(const RunResult& run, const VerdictNumbers& numbers) {
   return fmt::format("largest values are reached in the last tenth of the run ({}): a longer run may exceed them", fmt::join(found, ", "));
 }
 
-/// The verdict marks the same share.
 std::string lost_energy(const RunResult& run) {
-  constexpr double much = 0.05;
-  if (run.status == RunStatus::failed || !(run.energy_lost > much * run.energy_scale)) return "";
+  if (run.status == RunStatus::failed || !(run.energy_lost > accepted_energy_loss * run.energy_scale)) return "";
   return fmt::format("the time scheme lost {} of the energy that was put in: the step does not resolve the motion, take a smaller one",
                      percent(run.energy_lost / run.energy_scale));
 }

@@ -7,6 +7,7 @@
 #include <span>
 #include <utility>
 
+#include "uplift/analysis/result_warnings.h"
 #include "uplift/analysis/verdict_standing.h"
 #include "uplift/analysis/wording.h"
 
@@ -304,7 +305,8 @@ void say_energy(const Built& built, const RunResult& run, Verdict& verdict) {
   const bool too_much = created > built.plan.created_limit;
   constexpr double least_loss = 0.001;
   if (lost > least_loss && lost > created)
-    verdict.facts.push_back({"Energy lost by the scheme", percent(lost), "of the same: what the step does not resolve", lost > 0.05});
+    verdict.facts.push_back(
+        {"Energy lost by the scheme", percent(lost), "of the same: what the step does not resolve", lost > accepted_energy_loss});
   verdict.facts.push_back({"Energy created by the computation", created < round_off ? "none" : percent(created),
                            fmt::format("of {}; limit {}", spoken(scale, "J"), percent(built.plan.created_limit)), too_much});
   const Energies& end = run.final_energy;

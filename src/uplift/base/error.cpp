@@ -75,7 +75,8 @@ std::string nearest_name(std::string_view name, const std::vector<std::string>& 
     // One letter may differ only in its case, up to five letters allow one edit, then a third of the letters.
     const int most = length == 1 ? slip : edit * std::max(1, static_cast<int>(length) / 3);
     const int d = distance(name, candidate);
-    if (d <= most && (best.empty() || d < least)) {
+    const bool twice = name.starts_with(candidate) && name.back() == candidate.back();  // the last letter; of equals the likeliest
+    if (d <= most && (best.empty() || d < least || (d == least && twice))) {
       best = candidate;
       least = d;
     }

@@ -72,7 +72,7 @@ BulkResponse PlasticBulk::respond(const Vector& displacement, MotionInstant at, 
     for (const int node : one.solid->nodes())
       for (int c = 0; c < each; ++c) sizes[model_.space.unknowns() * node + c] += std::abs(scratch_.force[i++]);
     if (!one.solid->has_yielded(history)) continue;
-    one.solid->find_yielded_again(history, scratch_.points, scratch_.yielded);
+    one.solid->find_yielded_of_response(history, scratch_.points, scratch_.yielded);
     add_yielded(*one.solid, now);
   }
   now.force = model_.expansion * now.full;

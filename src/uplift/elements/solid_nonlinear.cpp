@@ -224,10 +224,10 @@ bool NonlinearSolid::yields(std::span<const double> old, std::span<const double>
 // those with the nodes.
 void NonlinearSolid::find_yielded(std::span<const double> history, Scratch& scratch, Yielded& made) const {
   find_gradients(scratch.gradient);
-  find_yielded_again(history, scratch, made);
+  find_yielded_of_response(history, scratch, made);
 }
 
-void NonlinearSolid::find_yielded_again(std::span<const double> history, const Scratch& scratch, Yielded& made) const {
+void NonlinearSolid::find_yielded_of_response(std::span<const double> history, const Scratch& scratch, Yielded& made) const {
   const int count = static_cast<int>(nodes().size()), d = dimension();
   double amplitudes[3 * 3] = {};
   if (modes_ > 0) add_plastic_amplitudes(history, scratch, amplitudes);

@@ -55,7 +55,7 @@ class NonlinearSolid : public Solid {
   };
   void find_yielded(std::span<const double> history, Scratch& scratch, Yielded& made) const;
   /// The same of a history that `respond` has just found with this scratch.
-  void find_yielded_again(std::span<const double> history, const Scratch& scratch, Yielded& made) const;
+  void find_yielded_of_response(std::span<const double> history, const Scratch& scratch, Yielded& made) const;
   /// True when a point has ever yielded; when one has between two histories.
   bool has_yielded(std::span<const double> history) const;
   bool yields(std::span<const double> old, std::span<const double> now) const;
