@@ -40,10 +40,10 @@ struct Footing {
     traction.resize(n);
     slope.resize(n);
     end.resize(n);
-    Reply reply{traction.data(), slope.data(), old.data(), end.data()};
-    law.mean(batch, zero.data(), spare.data(), first.data(), reply);
+    LawResponse response{traction.data(), slope.data(), old.data(), end.data()};
+    law.mean(batch, zero.data(), spare.data(), first.data(), response);
   }
-  Reply reply() { return {traction.data(), slope.data(), now.data(), end.data()}; }
+  LawResponse response() { return {traction.data(), slope.data(), now.data(), end.data()}; }
 
   Batch batch;
   std::vector<double> from, to, old, now, traction, slope, end;
@@ -55,14 +55,14 @@ void time_law(benchmark::State& state, Question question, double seen) {
   const Entry<InterfaceLaw>& entry = *law_catalog()[static_cast<std::size_t>(state.range(0))];
   const auto law = law_with_usual_parameters(entry);
   Footing footing(*law, static_cast<int>(state.range(1)), seen);
-  const Reply reply = footing.reply();
+  const LawResponse response = footing.response();
   for (auto _ : state) {
     if (question == path_average)
-      law->mean(footing.batch, footing.from.data(), footing.to.data(), footing.old.data(), reply);
+      law->mean(footing.batch, footing.from.data(), footing.to.data(), footing.old.data(), response);
     else if (question == end_of_step)
-      law->respond(footing.batch, footing.from.data(), footing.to.data(), footing.old.data(), reply);
+      law->respond(footing.batch, footing.from.data(), footing.to.data(), footing.old.data(), response);
     else
-      law->energy(footing.batch, footing.to.data(), footing.old.data(), reply.traction, reply.slope);
+      law->energy(footing.batch, footing.to.data(), footing.old.data(), response.traction, response.slope);
     benchmark::ClobberMemory();
   }
   state.SetLabel(std::string(entry.name));

@@ -168,7 +168,7 @@ struct Record {
       if (why.empty()) why = fmt::format("step {}: {}", times.size(), outcome.why);
       return false;
     }
-    worst_yardstick = std::max(worst_yardstick, yardstick(problem, solution));
+    worst_yardstick = std::max(worst_yardstick, contact_residual(problem, solution));
     for (std::size_t i = 0; i < std::min(before.size(), solution.status.size()); ++i) changes += before[i] != solution.status[i];
     before = solution.status;
     return true;

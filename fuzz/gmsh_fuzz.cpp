@@ -1,6 +1,6 @@
 // Any bytes as a .msh file: a mesh whose parts fit together, or an InputError. See README.md.
 #include "fuzz_support.h"
-#include "uplift/io/mesh_gmsh.h"
+#include "uplift/io/mesh/gmsh.h"
 
 extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size) {
   try {

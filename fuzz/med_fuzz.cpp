@@ -16,10 +16,10 @@
 #include <vector>
 
 #include "fuzz_support.h"
-#include "uplift/io/hdf5_library.h"
-#include "uplift/io/mesh_med.h"
-#include "uplift/io/mesh_med_file.h"
-#include "uplift/io/mesh_med_message.h"
+#include "uplift/io/hdf5/library.h"
+#include "uplift/io/mesh/med.h"
+#include "uplift/io/mesh/med_file.h"
+#include "uplift/io/mesh/med_message.h"
 
 // HDF5 asks for what a damaged file says and takes a refusal well; some memory it loses when such a file does not close.
 extern "C" const char* __asan_default_options() {

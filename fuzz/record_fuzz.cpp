@@ -4,7 +4,7 @@
 #include <cstdint>
 
 #include "uplift/base/error.h"
-#include "uplift/motion/read.h"
+#include "uplift/motion/formats/read.h"
 
 extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size) {
   // without options, and with those that a bare column of numbers needs

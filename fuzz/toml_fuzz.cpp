@@ -3,7 +3,7 @@
 #include <cstdint>
 
 #include "uplift/base/error.h"
-#include "uplift/io/toml.h"
+#include "uplift/io/text/toml.h"
 
 extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size) {
   try {

@@ -12,13 +12,13 @@ command -v ccache >/dev/null && clang="ccache $clang"
 read -ra hdf5 <<<"$(pkg-config --cflags --libs hdf5-serial)"
 flags=(-std=c++20 -g -O1 -fsanitize=address,undefined -fno-sanitize-recover=all -DUPLIFT_VERSION='"fuzz"' -Isrc -Ifuzz -isystem /usr/include/eigen3)
 base=(src/uplift/base/{error,text,file}.cpp)
-mesh=("${base[@]}" src/uplift/mesh/{cells,mesh,jacobian,cell_shapes,cell_quadrature}.cpp src/uplift/math/{shapes,quadrature}.cpp src/uplift/io/mesh_draft.cpp)
+mesh=("${base[@]}" src/uplift/mesh/{cells,mesh,jacobian,cell_shapes,cell_quadrature}.cpp src/uplift/math/{shapes,quadrature}.cpp src/uplift/io/mesh/draft.cpp)
 sources() {
   case "$1" in
-    gmsh) printf '%s\n' "${mesh[@]}" src/uplift/io/mesh_gmsh*.cpp ;;
-    med) printf '%s\n' "${mesh[@]}" src/uplift/io/hdf5{,_child}.cpp src/uplift/io/mesh_med{,_message,_file}.cpp ;;
-    toml) printf '%s\n' "${base[@]}" src/uplift/io/toml.cpp ;;
-    record) printf '%s\n' "${base[@]}" src/uplift/base/sha256.cpp src/uplift/motion/{motion,read,columns}.cpp src/uplift/motion/{record,format}_*.cpp ;;
+    gmsh) printf '%s\n' "${mesh[@]}" src/uplift/io/mesh/gmsh*.cpp ;;
+    med) printf '%s\n' "${mesh[@]}" src/uplift/io/hdf5/{hdf5,child}.cpp src/uplift/io/mesh/med{,_message,_file}.cpp ;;
+    toml) printf '%s\n' "${base[@]}" src/uplift/io/text/toml.cpp ;;
+    record) printf '%s\n' "${base[@]}" src/uplift/base/sha256.cpp src/uplift/motion/{motion,record_check}.cpp src/uplift/motion/formats/{read,column_reader,record_text,at2,columns,cosmos,csmip,esm,knet,smc}.cpp ;;
     *) echo "fuzz.sh: wanted gmsh, med, toml or record, found \"$1\"" >&2; exit 2 ;;
   esac
 }

@@ -339,10 +339,10 @@ class Dynamic(CliTest):
             values = lambda name: joint.at_points[name]
             normal = shear = moment = 0
             widest = 0
-            for cell, (lip,) in zip(joint.cells, joint.at_cells["lip"]):
+            for cell, (side,) in zip(joint.cells, joint.at_cells["side"]):
                 a, b = cell
                 length = abs(joint.points[b][0] - joint.points[a][0])  # thickness 1 m
-                if lip == 0:
+                if side == 0:
                     for end, other in ((a, b), (b, a)):
                         # of the trapezoid, so that the moment is that of forces at the nodes
                         normal += length / 2 * -values("pressure [Pa]")[end][0]
@@ -361,11 +361,11 @@ class Dynamic(CliTest):
             close(shear, row["joint.shear"], 1e6)
             close(moment, row["joint.moment"], 1e6)
             close(widest, row["joint.max_opening"], 0.01)
-            # the lips part by the opening: the displacement of the upper one less that of the lower one
+            # the faces part by the opening: the displacement of the upper one less that of the lower one
             lower, upper = {}, {}
-            for cell, (lip,) in zip(joint.cells, joint.at_cells["lip"]):
+            for cell, (side,) in zip(joint.cells, joint.at_cells["side"]):
                 for end in cell:
-                    (upper if lip else lower)[round(joint.points[end][0], 6)] = end
+                    (upper if side else lower)[round(joint.points[end][0], 6)] = end
             u = values("displacement [m]")
             for x in lower:
                 close(u[upper[x]][1] - u[lower[x]][1], values("opening [m]")[upper[x]][0], 0.01)

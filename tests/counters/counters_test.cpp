@@ -4,8 +4,8 @@
 #include <atomic>
 #include <cstdlib>
 
-#include "../property/oracle_models.h"
-#include "../unit/solid_support.h"
+#include "property/oracle_models.h"
+#include "unit/elements/solid_support.h"
 #include "uplift/dynamics/bulk.h"
 #include "uplift/elements/solid_nonlinear.h"
 

@@ -3,7 +3,7 @@
 
 #include <random>
 
-#include "../unit/contact_support.h"
+#include "unit/contact/contact_support.h"
 
 // The impact projection on random bodies: the optimality conditions written out, and no energy from nothing.
 namespace uplift::contact_test {

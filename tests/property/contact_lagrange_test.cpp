@@ -5,7 +5,7 @@
 #include <optional>
 #include <random>
 
-#include "../unit/contact_support.h"
+#include "unit/contact/contact_support.h"
 
 // The Lagrange method on random interface problems against brute force over all contact statuses.
 namespace uplift::contact_test {
@@ -90,7 +90,7 @@ void check_frictionless(unsigned seed, bool redundant) {
   RC_ASSERT(outcome.converged);
   // opposing rows, as in a wedge, carry forces that cancel: round-off grows with them
   const double cancelled = (c.cwiseAbs().transpose() * solution.force.cwiseAbs()).norm();
-  RC_ASSERT(yardstick(own.problem, solution) <= 1e-10 + (solution.z.norm() > 0 ? 1e-14 * cancelled / solution.z.norm() : 0));
+  RC_ASSERT(contact_residual(own.problem, solution) <= 1e-10 + (solution.z.norm() > 0 ? 1e-14 * cancelled / solution.z.norm() : 0));
   RC_ASSERT(solution.force.maxCoeff() <= 0);
   RC_ASSERT((solution.z - *expected).norm() <= 1e-7 * expected->norm());
 }
@@ -118,7 +118,7 @@ RC_GTEST_PROP(Lagrange, redundant_forces_are_of_least_norm, ()) {
   own.set(spread.factor, base.b * inverse(stiffness) * load);
   InterfaceSolution solution;
   RC_ASSERT(method("lagrange")->solve(own.problem, solution).converged);
-  RC_ASSERT(yardstick(own.problem, solution) <= 1e-10);
+  RC_ASSERT(contact_residual(own.problem, solution) <= 1e-10);
   RC_ASSERT(solution.force.maxCoeff() <= 0);
   RC_ASSERT((base.b.transpose() * solution.force - load).norm() <= 1e-9 * load.norm());  // resultants
   // the tensionless linear distribution with these resultants: p/area = min(0, y0 + y1 x), by Newton on y, independently
@@ -187,7 +187,7 @@ std::vector<Vector> brute_force_friction(const InterfaceProblem& problem, double
     solution.z = z;
     solution.force = p;
     solution.opening = problem.free_opening + c * z;
-    if (yardstick(problem, solution) > 1e-9) continue;
+    if (contact_residual(problem, solution) > 1e-9) continue;
     const bool known = std::any_of(found.begin(), found.end(), [&](const Vector& other) { return (other - z).norm() <= 1e-7 * z.norm(); });
     if (!known) found.push_back(z);
   }
@@ -211,7 +211,7 @@ void check_friction(unsigned seed) {
     for (int i = 0; i < n; ++i) solution.status.push_back(static_cast<Status>(dice.integer(0, 2)));
   const Outcome outcome = method("lagrange")->solve(own.problem, solution);
   if (outcome.converged) {
-    RC_ASSERT(yardstick(own.problem, solution) <= 1e-9);
+    RC_ASSERT(contact_residual(own.problem, solution) <= 1e-9);
     if (expected.size() == 1) RC_ASSERT((solution.z - expected[0]).norm() <= 1e-6 * expected[0].norm());
   } else {
     RC_ASSERT(!outcome.why.empty());

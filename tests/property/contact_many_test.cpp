@@ -5,7 +5,7 @@
 #include <limits>
 #include <random>
 
-#include "unit/contact_support.h"
+#include "unit/contact/contact_support.h"
 
 // Random interfaces of surfaces, small and large, for every method: an answer that the common residual confirms, or a reason.
 namespace uplift::contact_test {
@@ -140,7 +140,7 @@ TEST(ManyPoints, every_end_is_honest) {
           RC_ASSERT(!outcome.why.empty());
         } else {
           std::unique_ptr<const InterfaceLaw> soft;
-          const double residual = yardstick(name == "penalty" ? with_penalty(own, *chosen, soft) : own.problem, solution);
+          const double residual = contact_residual(name == "penalty" ? with_penalty(own, *chosen, soft) : own.problem, solution);
           if (!(residual <= allowed(own.problem, solution)))
             RC_FAIL(name + " says that it converged, residual " + std::to_string(std::log10(residual)) + ", " +
                     std::to_string(draw.points) + " points, rigid " + std::to_string(draw.rigid) + ", seed " + std::to_string(draw.seed));
@@ -166,9 +166,9 @@ TEST(PathAveragedFriction, slope_is_not_negative_in_the_plane) {
     double from[2], to[2], traction[2], end[2], slope[4] = {};
     for (int c = 0; c < 2; ++c) from[c] = uniform(engine), to[c] = from[c] + uniform(engine) * std::pow(10, 1.5 * uniform(engine));
     old[old.size() - 2] = from[0] - 2 * uniform(engine);  // slip, then energy
-    Reply reply;
-    reply.traction = traction, reply.slope = slope, reply.now = now.data(), reply.end = end;
-    law->mean(Batch{1, 2, 0.01}, from, to, old.data(), reply);
+    LawResponse response;
+    response.traction = traction, response.slope = slope, response.now = now.data(), response.end = end;
+    law->mean(Batch{1, 2, 0.01}, from, to, old.data(), response);
     least = std::min(least, slope[0]), largest = std::max(largest, slope[0]);
   }
   EXPECT_GE(least, -1e-12);
@@ -202,7 +202,7 @@ TEST(PathAveragedFriction, newton_solves_every_step_of_moderate_stiffness) {
           InterfaceSolution solution;
           const Outcome outcome = method("newton")->solve(own.problem, solution);
           ASSERT_TRUE(outcome.converged) << components << " components, k F " << stiffness << ": " << outcome.why;
-          EXPECT_LE(yardstick(own.problem, solution), 1e-9);
+          EXPECT_LE(contact_residual(own.problem, solution), 1e-9);
         }
 }
 
@@ -228,8 +228,8 @@ TEST(ManyPoints, exact_methods_agree_along_a_path) {
       const Outcome one = method("lagrange")->solve(own.problem, first), other = method("augmented_lagrangian")->solve(own.problem, second);
       ASSERT_TRUE(one.converged) << seed << step << one.why;
       ASSERT_TRUE(other.converged) << seed << step << other.why;
-      EXPECT_LE(yardstick(own.problem, first), 1e-10) << seed << step;
-      EXPECT_LE(yardstick(own.problem, second), 1e-9) << seed << step;
+      EXPECT_LE(contact_residual(own.problem, first), 1e-10) << seed << step;
+      EXPECT_LE(contact_residual(own.problem, second), 1e-9) << seed << step;
       EXPECT_LE((first.z - second.z).norm(), 1e-6 * first.z.norm()) << seed << step;
       changes += before != first.status;
       own.problem.from = first.opening;

@@ -8,8 +8,8 @@
 #include <functional>
 #include <random>
 
-#include "uplift/analysis/case.h"
-#include "uplift/io/toml.h"
+#include "uplift/case/case.h"
+#include "uplift/io/text/toml.h"
 
 namespace uplift {
 namespace {
@@ -62,7 +62,7 @@ struct Ran {
 
 Ran run_with(const Drawn& drawn, double stiffness, bool only_ratio) {
   const Case read = check_case(read_toml_text(drawn.text(stiffness), "case.toml"), "case.toml");
-  const Built built = build(read, runs_of_case(read).front());
+  const BuiltCase built = build(read, runs_of_case(read).front());
   Ran ran;
   for (const Stage& stage : built.plan.stages)
     if (stage.type == Stage::Type::dynamics) ran.ratio = stiffness_ratios(built.model, stage, *built.plan.solver).front().most;
@@ -223,7 +223,7 @@ double damping_ratio(bool joint, int steps_per_period) {
       "step = {:.17g}\nscheme = \"energy_decay\"\n[output]\nframes = 0\nhistory = [{{ node = \"foot\", quantity = \"vy\" }}]\n",
       periods, step);
   const Case read = check_case(read_toml_text(text, "case.toml"), "case.toml");
-  const Built built = build(read, runs_of_case(read).front());
+  const BuiltCase built = build(read, runs_of_case(read).front());
   const RunResult result = run(built.model, built.plan, built.behaviours);
   EXPECT_EQ(result.status, RunStatus::completed) << result.reason;
   const std::vector<double>& velocity = column(result, "foot.vy");

@@ -5,7 +5,7 @@
 #include <limits>
 #include <optional>
 
-#include "unit/laws_support.h"
+#include "unit/laws/laws_support.h"
 
 // Properties of every law in the catalog. Parameters are drawn from the law's own declaration, so that a new law is tested before its
 // author writes a test.

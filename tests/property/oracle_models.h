@@ -7,12 +7,12 @@
 #include <variant>
 #include <vector>
 
-#include "uplift/analysis/run.h"
 #include "uplift/dynamics/scheme.h"
 #include "uplift/elements/beam.h"
 #include "uplift/elements/discrete.h"
 #include "uplift/linear/solver.h"
 #include "uplift/model/builder.h"
+#include "uplift/run/run.h"
 
 // Models and plans of whole runs, made without a case file: what the oracle, energy, robustness and counter tests share.
 namespace uplift::whole {

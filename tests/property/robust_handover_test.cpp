@@ -93,13 +93,13 @@ TEST(HandOver, FirstAccelerationFollowsFromTheBalance) {
   for (const Choice& choice : choices) {
     SCOPED_TRACE(name_of(choice));
     Whole whole = footing(choice);
-    Drive drive;
-    drive.name = "sudden";
-    drive.shape = Vector::Zero(whole.model.free());
+    TimeLoad time_load;
+    time_load.name = "sudden";
+    time_load.shape = Vector::Zero(whole.model.free());
     for (int i = 0; i < whole.model.free(); ++i)
-      if (whole.model.unknown_names[static_cast<std::size_t>(i)] == "top.ux") drive.shape[i] = 5e4;
-    drive.function = function({"constant"});
-    whole.model.drives.push_back(std::move(drive));
+      if (whole.model.unknown_names[static_cast<std::size_t>(i)] == "top.ux") time_load.shape[i] = 5e4;
+    time_load.function = function({"constant"});
+    whole.model.time_loads.push_back(std::move(time_load));
     whole.plan.requests = {request(Kind::acceleration, 3, "top"), request(Kind::acceleration, 1, "base")};
     whole.plan.stages = {settle(), march(1e-4, 10, true, choice.scheme)};
     const RunResult result = whole.run();
@@ -117,14 +117,14 @@ TEST(HandOver, ALoadThatJumpsOntoAClosedContactMovesNothing) {
     if (choice.method.type != "lagrange" && choice.method.type != "augmented_lagrangian") continue;
     SCOPED_TRACE(name_of(choice));
     Whole whole = footing(choice);
-    Drive drive;
-    drive.name = "sudden";
-    drive.shape = Vector::Zero(whole.model.free());
+    TimeLoad time_load;
+    time_load.name = "sudden";
+    time_load.shape = Vector::Zero(whole.model.free());
     for (int i = 0; i < whole.model.free(); ++i)
-      if (whole.model.unknown_names[static_cast<std::size_t>(i)] == "base.uy") drive.shape[i] = -1e5;
-    ASSERT_EQ(drive.shape.sum(), -1e5);
-    drive.function = function({"constant"});
-    whole.model.drives.push_back(std::move(drive));
+      if (whole.model.unknown_names[static_cast<std::size_t>(i)] == "base.uy") time_load.shape[i] = -1e5;
+    ASSERT_EQ(time_load.shape.sum(), -1e5);
+    time_load.function = function({"constant"});
+    whole.model.time_loads.push_back(std::move(time_load));
     whole.plan.requests = {request(Kind::axial, 0, "axial"), request(Kind::kinetic, 0, "kinetic")};
     whole.plan.stages = {settle(), march(1e-4, 2, true, choice.scheme)};
     const RunResult result = whole.run();

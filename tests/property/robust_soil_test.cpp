@@ -7,8 +7,8 @@
 #include <map>
 #include <random>
 
-#include "uplift/analysis/case.h"
-#include "uplift/io/toml.h"
+#include "uplift/case/case.h"
+#include "uplift/io/text/toml.h"
 #include "uplift/mesh/soil_box.h"
 
 // The long part: random small blocks and rafts on soil, in the plane and in space, as case files. Each ends completed, overturned or failed
@@ -316,7 +316,7 @@ bool finite(const RunResult& result) {
 }
 
 /// What every result must be, whatever was drawn.
-void judge(const Drawn& drawn, const Built& built, const RunResult& result, Tally& tally) {
+void judge(const Drawn& drawn, const BuiltCase& built, const RunResult& result, Tally& tally) {
   EXPECT_LE(result.counts.steps, drawn.steps);
   EXPECT_TRUE(finite(result));
   switch (result.status) {
@@ -367,7 +367,7 @@ TEST(Robust, RandomBuildingsOnSoilEndWell) {
       const Case read = check_case(read_toml_text(drawn.text, "case.toml"), "case.toml",
                                    [&](const std::string&, const Where&, const std::string&) { return drawn.mesh; });
       const RunSpec spec = runs_of_case(read).front();
-      const Built built = build(read, spec);
+      const BuiltCase built = build(read, spec);
       for (const std::string& said : warnings(read, spec, built)) EXPECT_FALSE(said.empty());
       const RunResult result = run(built.model, built.plan, built.behaviours);
       Tally& tally = table[drawn.method];

@@ -3,7 +3,7 @@
 
 #include <functional>
 
-#include "../unit/model_support.h"
+#include "unit/model/model_support.h"
 #include "uplift/linear/solver.h"
 #include "uplift/math/dense.h"
 #include "uplift/model/geometric.h"

@@ -12,8 +12,8 @@
 
 #include "data_support.h"
 #include "support.h"
-#include "uplift/analysis/floor_spectra.h"
-#include "uplift/io/toml.h"
+#include "uplift/io/text/toml.h"
+#include "uplift/verdict/floor_spectra.h"
 
 namespace uplift::verification {
 namespace {
@@ -36,7 +36,7 @@ Answer run_floors(const std::string& text, bool bonded = false, bool spectra = t
   RunSpec spec;
   spec.bonded = bonded;
   spec.pictures = false;
-  const Built built = build(read, spec);
+  const BuiltCase built = build(read, spec);
   Answer answer{run(built.model, built.plan, built.behaviours), {}};
   EXPECT_EQ(answer.result.status, RunStatus::completed) << answer.result.reason;
   if (spectra) answer.floors = floor_spectra(built.plan, answer.result);

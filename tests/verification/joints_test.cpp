@@ -1,7 +1,7 @@
 // Joint elements and footings against closed forms.
 #include <gtest/gtest.h>
 
-#include "../unit/model_support.h"
+#include "unit/model/model_support.h"
 #include "uplift/linear/solver.h"
 #include "uplift/math/dense.h"
 #include "uplift/model/damping.h"

@@ -6,7 +6,7 @@
 #include <sstream>
 
 #include "data_support.h"
-#include "unit/laws_support.h"
+#include "unit/laws/laws_support.h"
 
 // The SDM interface law, docs/theory, eqs (2) to (8). Reference values are computed here by bisection and quadrature in
 // extended precision, beside published figures.

@@ -29,7 +29,7 @@ Figures fall(Cell cell, int elements, const std::string& rule) {
           "[[interface]]\nname = \"foot\"\ngap = 1\npairs = {{ upper = {}, area = {} }}\nlaw = \"unilateral\"\n[[stage]]\ntype = "
           "\"dynamic\"\nduration = 1\nstep = {:.17g}\n[energy]\ncreated_limit = 1e9\n[limits]\nrotation = 1e9\n[output]\nframes = 0\n",
           names_of(foot), 1.0 / static_cast<double>(foot.size()), step);
-  const MeshRun run = run_mesh(text, mesh, [](Built& built) {
+  const MeshRun run = run_mesh(text, mesh, [](BuiltCase& built) {
     const Model& model = built.model;
     built.plan.initial_velocity = Vector::Zero(model.free());
     for (int i = 0; i < model.free(); ++i)

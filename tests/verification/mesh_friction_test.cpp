@@ -38,7 +38,7 @@ std::vector<Partial> mindlin(double a, int cells, double poisson, const std::vec
       "impact = \"none\"\n" + with(punch_text(punch, mesh, touching, h), "duration = 1e-7\nstep = 1e-7\n",
                                    fmt::format("duration = {:.17g}\nstep = {:.17g}\nscheme = {{ type = \"generalised_alpha\", rho = 0 }}\n",
                                                static_cast<double>(steps) * step, step));
-  const MeshRun run = run_mesh(text, mesh, [&](Built& built) {
+  const MeshRun run = run_mesh(text, mesh, [&](BuiltCase& built) {
     watch_tractions(built);
     Interface& foot = built.model.interfaces.front();
     for (int i = 0; i < foot.batch.points; ++i) {

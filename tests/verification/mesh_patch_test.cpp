@@ -71,7 +71,7 @@ PatchError patch(Cell cell, const char* quadrature, double distortion, double sl
   if (d == 3) text += fmt::format("[[support]]\nnode = \"mesh.{}\"\nfixed = [\"uy\"]\n", corner(side));
   std::vector<int> top = nodes_where(mesh, [&](const Vec3& x) { return x[up] > height - 1e-9; });
   int points = 0;
-  const MeshRun run = run_mesh(text, mesh, [&](Built& built) {
+  const MeshRun run = run_mesh(text, mesh, [&](BuiltCase& built) {
     points = built.model.interfaces.front().batch.points;
     for (int c = 0; c < d; ++c)
       for (int i = 0; i < points; ++i) {

@@ -259,12 +259,12 @@ double disc_stiffness(int cells, Motion motion, double young, double poisson) {
                            fmt::format("[[output.history]]\nname = \"moved\"\nnode = \"master\"\nquantity = \"{}\"\n", free);
   const Case read = check_case(read_toml_text(text, "case.toml"), "case.toml",
                                [&](const std::string&, const Where&, const std::string&) { return mesh; });
-  Built built = build(read, RunSpec{});
+  BuiltCase built = build(read, RunSpec{});
   built.plan.stages.resize(1);  // equilibrium is all that is asked for
   const int unknown = std::ranges::find(built.plan.requests, "moved", &Request::name)->unknown;
   double moved = 0;
   const RunResult result = run(built.model, built.plan, built.behaviours, {},
-                               [&](const Moment& moment) { moved = built.model.full(moment.state.displacement, 0, 0)[unknown]; });
+                               [&](const Snapshot& snapshot) { moved = built.model.full(snapshot.state.displacement, 0, 0)[unknown]; });
   EXPECT_EQ(result.status, RunStatus::completed) << result.reason;
   return 4 * 1e4 / std::abs(moved);
 }

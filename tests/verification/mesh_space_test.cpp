@@ -66,7 +66,7 @@ struct Block {
                duration, step);
   }
 
-  MeshRun run(const std::function<void(Built&)>& change = {}) const {
+  MeshRun run(const std::function<void(BuiltCase&)>& change = {}) const {
     MeshRun made = run_mesh(text(), mesh(), change);
     EXPECT_TRUE(made.completed()) << made.result.reason;
     return made;
@@ -228,7 +228,7 @@ TEST(MeshSpace, CondensedStepEqualsTheMonolithicOne) {
         for (const char* along : {"[1, 0, 0]", "[0, 1, 0]"})
           block.extra += fmt::format("[[spring]]\nnodes = [\"mesh.{}\"]\ndirection = {}\nstiffness = 1e6\n", node + 1, along);
     }
-    const MeshRun run = block.run([](Built& built) {
+    const MeshRun run = block.run([](BuiltCase& built) {
       built.plan.oracle_tolerance = 1e-8;
       for (Stage& stage : built.plan.stages) stage.halvings = 0;
     });
@@ -247,7 +247,7 @@ TEST(MeshSpace, CondensedStepEqualsTheMonolithicOneUnderFriction) {
   block.box.block.size = 3;
   block.duration = 0.06;
   block.step = 4e-3;
-  const MeshRun run = block.run([](Built& built) {
+  const MeshRun run = block.run([](BuiltCase& built) {
     built.plan.oracle_tolerance = 1e-8;
     for (Stage& stage : built.plan.stages) stage.halvings = 0;
   });

@@ -11,8 +11,8 @@
 #include <vector>
 
 #include "support.h"
-#include "uplift/analysis/case.h"
-#include "uplift/io/toml.h"
+#include "uplift/case/case.h"
+#include "uplift/io/text/toml.h"
 #include "uplift/mesh/box.h"
 #include "uplift/mesh/mesh.h"
 
@@ -23,7 +23,7 @@ using std::numbers::pi;
 
 /// The result of a run with its model.
 struct MeshRun {
-  Built built;
+  BuiltCase built;
   RunResult result;
   bool completed() const { return result.status == RunStatus::completed; }
   /// A column by its name; throws std::out_of_range without it.
@@ -43,7 +43,7 @@ struct MeshRun {
 };
 
 /// `change` may put what a case file does not say (initial velocities of all nodes) into the model that is ready to run.
-inline MeshRun run_mesh(const std::string& text, const Mesh& mesh, const std::function<void(Built&)>& change = {}) {
+inline MeshRun run_mesh(const std::string& text, const Mesh& mesh, const std::function<void(BuiltCase&)>& change = {}) {
   const Case read = check_case(read_toml_text(text, "case.toml"), "case.toml",
                                [&](const std::string&, const Where&, const std::string&) { return mesh; });
   MeshRun made{build(read, RunSpec{}), {}};

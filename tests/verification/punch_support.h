@@ -49,7 +49,7 @@ inline std::vector<double> downwards(std::vector<double> depths) {
 }
 
 /// Tractions of the points [Pa]: p0, p1, ... normal (tension > 0), with friction in the plane q0, q1, ... tangential.
-inline void watch_tractions(Built& built) {
+inline void watch_tractions(BuiltCase& built) {
   const Interface& foot = built.model.interfaces.front();
   for (int i = 0; i < foot.batch.points; ++i)
     for (int c = 0; c < foot.batch.components; ++c) {

@@ -9,8 +9,8 @@
 #include <stdexcept>
 
 #include "data_support.h"
-#include "uplift/analysis/case.h"
-#include "uplift/io/toml.h"
+#include "uplift/case/case.h"
+#include "uplift/io/text/toml.h"
 
 namespace uplift::verification {
 namespace {
@@ -42,7 +42,7 @@ double History::mechanical_energy(std::size_t row) const {
 
 History run_text(const std::string& toml) {
   const Case read = check_case(read_toml_text(toml, "case.toml"), "case.toml");
-  Built built = build(read, RunSpec{});
+  BuiltCase built = build(read, RunSpec{});
   built.plan.frames = 0;
   RunResult result = run(built.model, built.plan, built.behaviours);
   History history;

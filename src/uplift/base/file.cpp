@@ -91,8 +91,8 @@ std::string read_file(const fs::path& path, double most) {
   const double size = static_cast<double>(fs::file_size(path, error));
   if (!error && size > 1e6 * most)
     throw InputError({path.string(), 0}, "",
-                     "a file of at most " + spoken_bytes(1e6 * most) + " (the environment variable UPLIFT_MAX_FILE_MB raises this limit)",
-                     spoken_bytes(size));
+                     "a file of at most " + format_bytes(1e6 * most) + " (the environment variable UPLIFT_MAX_FILE_MB raises this limit)",
+                     format_bytes(size));
   std::ifstream in(path, std::ios::binary);
   if (!in) throw InputError({path.string(), 0}, "", "a file that may be read", std::error_code(errno, std::generic_category()).message());
   std::string text{std::istreambuf_iterator<char>(in), std::istreambuf_iterator<char>()};

@@ -91,7 +91,7 @@ std::string shortest(double value) {
   return fmt::format("{}", value);
 }
 
-std::string spoken_bytes(double bytes) {
+std::string format_bytes(double bytes) {
   if (bytes < 1e3) return fmt::format("{:.0f} bytes", bytes);
   if (bytes < 1e6) return fmt::format("{:.3g} kB", bytes / 1e3);
   return bytes < 1e9 ? fmt::format("{:.3g} MB", bytes / 1e6) : fmt::format("{:.4g} GB", bytes / 1e9);

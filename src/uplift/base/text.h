@@ -14,7 +14,7 @@ std::string in_quotes(std::string_view text);
 /// The shortest decimal that reads back as the same double: "0.1", "20000000000", "1e+20".
 std::string shortest(double value);
 /// "999 bytes", "1.23 kB", "121 MB", "31.25 GB" (1 MB = 1e6 bytes).
-std::string spoken_bytes(double bytes);
+std::string format_bytes(double bytes);
 /// "a, b or c".
 std::string listed(const std::vector<std::string>& items);
 /// Text of a JSON or TOML basic string, with its quotes.

@@ -4,22 +4,22 @@
 #include <chrono>
 #include <cmath>
 
-#include "uplift/analysis/case_mesh.h"
-#include "uplift/analysis/content_warning.h"
-#include "uplift/analysis/floor_record.h"
-#include "uplift/analysis/history_forecast.h"
-#include "uplift/analysis/step_suggestion.h"
-#include "uplift/analysis/wording.h"
+#include "uplift/base/format.h"
 #include "uplift/base/text.h"
+#include "uplift/case/advice/content.h"
+#include "uplift/case/advice/history_forecast.h"
+#include "uplift/case/advice/step_suggestion.h"
+#include "uplift/case/mesh/mesh.h"
 #include "uplift/cli/console.h"
 #include "uplift/cli/load.h"
 #include "uplift/dynamics/cost.h"
-#include "uplift/io/field_run.h"
-#include "uplift/io/interface_points.h"
-#include "uplift/io/json_writer.h"
-#include "uplift/io/report_motions.h"
+#include "uplift/io/fields/run.h"
+#include "uplift/io/report/motions.h"
+#include "uplift/io/results/interface_points.h"
+#include "uplift/io/text/json_writer.h"
 #include "uplift/linear/memory.h"
 #include "uplift/mesh/quality.h"
+#include "uplift/run/floor_record.h"
 
 namespace uplift::cli {
 namespace {
@@ -120,7 +120,7 @@ std::vector<double> frequencies(const std::vector<Mode>& found) {
 }
 
 /// The first steps of the run: do the static stages converge, and what does a step cost?
-void try_steps(Findings& found, const Built& built) {
+void try_steps(Findings& found, const BuiltCase& built) {
   RunPlan plan = built.plan;
   plan.frames = 0;
   for (Stage& stage : plan.stages)
@@ -139,7 +139,7 @@ void try_steps(Findings& found, const Built& built) {
 }
 
 /// What the pictures of all runs of `uplift run` take until the report is written.
-double pictures_bytes(const Case& read, const Built& built) {
+double pictures_bytes(const Case& read, const BuiltCase& built) {
   double numbers = built.model.full_unknowns();
   for (const Interface& interface : built.model.interfaces) numbers += 2 * interface.rows();
   return 8 * numbers * built.plan.frames * static_cast<double>(runs_of_case(read).size());
@@ -154,10 +154,10 @@ std::string history_warning(const Case& read, const HistoryForecast& one) {
   if (all <= available) return {};
   return fmt::format(
       "the histories of all runs together take {} of memory, {} are available: take a larger step or `every`, or leave runs out",
-      spoken_bytes(all), spoken_bytes(available));
+      format_bytes(all), format_bytes(available));
 }
 
-Findings find(const Case& read, const RunSpec& spec, const Built& built) {
+Findings find(const Case& read, const RunSpec& spec, const BuiltCase& built) {
   Findings found;
   look_at_mesh(read, found);
   found.fields = field_forecast(read, built);
@@ -198,7 +198,7 @@ std::string list_hz(const std::vector<double>& values) {
   return text.empty() ? "none" : text + " Hz";
 }
 
-void print(const Loaded& loaded, const Built& built, const Findings& found, const std::vector<std::string>& runs) {
+void print(const Loaded& loaded, const BuiltCase& built, const Findings& found, const std::vector<std::string>& runs) {
   const Model& model = built.model;
   const auto line = [](std::string_view what, const std::string& value) { say(fmt::format("  {:<28} {}", what, value)); };
   say(loaded.from.title);
@@ -217,43 +217,43 @@ void print(const Loaded& loaded, const Built& built, const Findings& found, cons
   for (const auto& history : motions_of({{nullptr, &built, nullptr}})) {
     const Motion& motion = *history->motion();
     line("record " + motion.name,
-         fmt::format("{}, {} points every {}, {}, peak {}", motion.format, motion.values.size(), spoken(motion.step, "s"),
-                     spoken(motion.duration(), "s"), spoken(std::abs(peak_of(motion).value), unit_of(motion.kind))));
+         fmt::format("{}, {} points every {}, {}, peak {}", motion.format, motion.values.size(), format_quantity(motion.step, "s"),
+                     format_quantity(motion.duration(), "s"), format_quantity(std::abs(peak_of(motion).value), unit_of(motion.kind))));
     if (!motion.file.empty())  // of generated ones a warning tells
       for (const std::string& repair : motion.repairs) line("  mended", repair);
     for (const std::string& step : motion.processing) line("  processed", step);
   }
-  if (!built.facts.empty()) line("dead load on the base", spoken(built.weight, "N"));
+  if (!built.facts.empty()) line("dead load on the base", format_quantity(built.weight, "N"));
   if (!found.fixed.empty()) line("frequencies, fixed base", list_hz(found.fixed));
   line("frequencies, bonded base", list_hz(found.bonded));
   if (!found.base_free.empty()) line("frequencies, base free", list_hz(found.base_free));
   for (const std::string& note : built.notes) line("chosen", note);
   const Stage* stage = dynamic_stage(built.plan);
   if (stage) {
-    line("time step", fmt::format("{} ({} steps)", spoken(stage->step, "s"), found.steps));
+    line("time step", fmt::format("{} ({} steps)", format_quantity(stage->step, "s"), found.steps));
     if (found.suggested_step > 0)
-      line("suggested step, at most", fmt::format("{} ({})", spoken(found.suggested_step, "s"), found.bounds.front().reason));
+      line("suggested step, at most", fmt::format("{} ({})", format_quantity(found.suggested_step, "s"), found.bounds.front().reason));
   }
   if (found.seconds_per_step > 0)
-    line("cost", fmt::format("about {} a step, {} a run", spoken(found.seconds_per_step, "s"),
-                             spoken(found.seconds_per_step * static_cast<double>(found.steps), "s")));
+    line("cost", fmt::format("about {} a step, {} a run", format_quantity(found.seconds_per_step, "s"),
+                             format_quantity(found.seconds_per_step * static_cast<double>(found.steps), "s")));
   if (found.systems.factored + found.systems.iterated > 0)
     line("interface solver",
          fmt::format("{}; in the first steps {} systems with a new factor, {} by conjugate residuals (one factor kept, or none)",
                      loaded.read.values.text("interface_solver"), found.systems.factored, found.systems.iterated));
   if (found.bulk)
-    line("memory", fmt::format("about {}, {} of it the factor of a step; {} are free", spoken_bytes(found.bulk->bytes),
-                               spoken_bytes(found.bulk->step.bytes), spoken_bytes(found.bulk->available)));
+    line("memory", fmt::format("about {}, {} of it the factor of a step; {} are free", format_bytes(found.bulk->bytes),
+                               format_bytes(found.bulk->step.bytes), format_bytes(found.bulk->available)));
   line("histories", fmt::format("{:.0f} rows x {:.0f} columns a run: {} in memory, about {} on disk", found.histories.rows,
-                                found.histories.columns, spoken_bytes(found.histories.memory), spoken_bytes(found.histories.disk)));
+                                found.histories.columns, format_bytes(found.histories.memory), format_bytes(found.histories.disk)));
   if (found.record_bytes > 0)
     line("floor spectra", fmt::format("{} at every step: {} a run",
                                       built.plan.floors.size() == 1 ? "one record" : fmt::format("{} records", built.plan.floors.size()),
-                                      spoken_bytes(found.record_bytes)));
+                                      format_bytes(found.record_bytes)));
   if (found.fields) {
     const FieldForecast& fields = *found.fields;
-    line("fields", fmt::format("{} frames x {} = {} a run, as {}", fields.frames, spoken_bytes(static_cast<double>(fields.size.per_frame)),
-                               spoken_bytes(static_cast<double>(fields.bytes())), fields.format == FieldFormat::vtu ? "vtu" : "xdmf"));
+    line("fields", fmt::format("{} frames x {} = {} a run, as {}", fields.frames, format_bytes(static_cast<double>(fields.size.per_frame)),
+                               format_bytes(static_cast<double>(fields.bytes())), fields.format == FieldFormat::vtu ? "vtu" : "xdmf"));
   }
   say("what is computed");
   for (const std::string& run : runs) say("  " + run);
@@ -262,7 +262,7 @@ void print(const Loaded& loaded, const Built& built, const Findings& found, cons
   say(found.warnings.empty() && found.trial_failure.empty() ? "the case is in order" : "the case can be run; mind the warnings");
 }
 
-void write(const Loaded& loaded, const Built& built, const Findings& found, const std::vector<std::string>& runs) {
+void write(const Loaded& loaded, const BuiltCase& built, const Findings& found, const std::vector<std::string>& runs) {
   JsonWriter json(0, 2);
   json.begin_object()
       .member("case", loaded.from.case_file)
@@ -347,7 +347,7 @@ int check(const Options& options) {
   const std::vector<RunSpec> own = runs_of_case(loaded.read);
   std::vector<std::string> runs;
   for (const RunSpec& spec : own) runs.push_back("uplift run: " + spec.label);
-  const Built built = build(loaded.read, own.front());
+  const BuiltCase built = build(loaded.read, own.front());
   if (compares(loaded.read)) {
     const Comparison comparison = comparison_of_case(loaded.read);
     for (const RunSpec& spec : comparison.runs) {

@@ -2,7 +2,7 @@
 #include <string>
 #include <vector>
 
-#include "uplift/motion/read.h"
+#include "uplift/motion/formats/read.h"
 
 // The commands of the program: one function and one file each. main.cpp declares their options and calls them.
 namespace uplift::cli {

@@ -1,11 +1,11 @@
-#include "uplift/analysis/compare.h"
+#include "uplift/verdict/compare.h"
 
 #include <fmt/format.h>
 
 #include <algorithm>
 
-#include "uplift/analysis/wording.h"
 #include "uplift/base/file.h"
+#include "uplift/base/format.h"
 #include "uplift/cli/console.h"
 #include "uplift/cli/load.h"
 #include "uplift/model/builder.h"
@@ -33,10 +33,10 @@ void print_runs(const Results& results, const ComparisonSummary& compared) {
     const Agreement& agreement = compared.agreement[i];
     const bool counted = agreement.word == Agreement::Word::agrees || agreement.word == Agreement::Word::differs;
     const bool bonded = results.specs[i].bonded;  // it stretches instead of opening
-    rows.push_back({run.label, status_text(run), motion ? spoken(std::abs(motion->value), "m") : "-",
+    rows.push_back({run.label, status_text(run), motion ? format_quantity(std::abs(motion->value), "m") : "-",
                     bonded ? "-" : percent(run.max_uplifted_ratio.value),
-                    bonded ? "-" : said(*find_verdict_quantity("max_opening"), run.max_opening.value),
-                    spoken(std::abs(run.max_base_moment.value), "N m"), percent(created_share(run)),
+                    bonded ? "-" : format_value(*find_verdict_quantity("max_opening"), run.max_opening.value),
+                    format_quantity(std::abs(run.max_base_moment.value), "N m"), percent(created_share(run)),
                     percent(run.energy_scale > 0 ? run.energy_lost / run.energy_scale : 0), std::string(to_string(agreement.word)),
                     counted ? percent(agreement.deviation) : "-"});
   }
@@ -54,7 +54,7 @@ void print_sweep(const ComparisonSummary& compared) {
 
 /// A value as the table shows it: shares in per cent.
 std::string shown(double value, const std::string& unit) {
-  return unit == "1" ? percent(value) : spoken(value, unit);
+  return unit == "1" ? percent(value) : format_quantity(value, unit);
 }
 
 void print_over_motions(const ComparisonSummary& compared) {
@@ -95,7 +95,7 @@ void run_all(const Loaded& loaded, const Options& options, const std::vector<Run
 /// Those of the motions that the first run does not have.
 void add_motion_warnings(Results& results) {
   std::vector<std::string> said;
-  for (const Built& each : results.built) warn_motions(each.motions, each.plan.stages, said);
+  for (const BuiltCase& each : results.built) warn_motions(each.motions, each.plan.stages, said);
   for (const std::string& warning : said)
     if (std::ranges::find(results.warnings, warning) == results.warnings.end()) results.warnings.push_back(warning);
 }
@@ -172,7 +172,7 @@ int compare(const Options& options) {
   const Values* compare = loaded.read.values.has("compare") ? &loaded.read.values.table("compare") : nullptr;
   compared.band = compare ? compare->number("band") : 0.02;
   const std::vector<std::string> columns = compare ? compare->texts("agree_on") : std::vector<std::string>{};
-  const Built& first = results.built.front();
+  const BuiltCase& first = results.built.front();
   compared.columns = columns;
   compared.agreement = agreement(results.runs, results.specs, results.built, columns, compared.band);
   compared.sweep = sweep_table(swept.specs, swept.runs);

@@ -14,7 +14,7 @@
 #include <cstring>
 #include <utility>
 
-#include "uplift/analysis/wording.h"
+#include "uplift/base/format.h"
 #include "uplift/io/files.h"
 
 namespace uplift::cli {

@@ -4,7 +4,7 @@
 #include <string_view>
 #include <vector>
 
-#include "uplift/analysis/run.h"
+#include "uplift/run/run.h"
 
 namespace uplift::cli {
 

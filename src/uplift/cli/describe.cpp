@@ -2,18 +2,18 @@
 
 #include <algorithm>
 
-#include "uplift/analysis/case_sections.h"
+#include "uplift/case/schema/sections.h"
 #include "uplift/cli/commands.h"
 #include "uplift/cli/console.h"
-#include "uplift/contact/impact.h"
+#include "uplift/contact/impact/impact.h"
 #include "uplift/contact/method.h"
 #include "uplift/dynamics/scheme.h"
 #include "uplift/laws/law.h"
 #include "uplift/linear/solver.h"
 #include "uplift/model/function.h"
+#include "uplift/motion/formats/record_format.h"
 #include "uplift/motion/generate.h"
-#include "uplift/motion/processing.h"
-#include "uplift/motion/record_format.h"
+#include "uplift/motion/processing/processing.h"
 #include "uplift/motion/target.h"
 
 namespace uplift::cli {

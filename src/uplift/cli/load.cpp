@@ -7,15 +7,15 @@
 #include <filesystem>
 #include <future>
 
-#include "uplift/analysis/case_decided.h"
 #include "uplift/base/file.h"
+#include "uplift/case/decided.h"
 #include "uplift/cli/console.h"
-#include "uplift/io/field_run.h"
-#include "uplift/io/floors.h"
-#include "uplift/io/histories.h"
-#include "uplift/io/mesh_file.h"
-#include "uplift/io/report_motions.h"
-#include "uplift/io/toml.h"
+#include "uplift/io/fields/run.h"
+#include "uplift/io/mesh/file.h"
+#include "uplift/io/report/motions.h"
+#include "uplift/io/results/floors.h"
+#include "uplift/io/results/histories.h"
+#include "uplift/io/text/toml.h"
 
 namespace uplift::cli {
 namespace fs = std::filesystem;
@@ -83,25 +83,25 @@ std::string status_text(const RunResult& result) {
   return text;
 }
 
-RunResult run_one(const Built& built, const std::string& label, const Options& options) {
+RunResult run_one(const BuiltCase& built, const std::string& label, const Options& options) {
   ProgressLine line(label, options.quiet || options.json);
   return uplift::run(built.model, built.plan, built.behaviours, [&line](const Progress& progress) { return line(progress); });
 }
 
-void forget_matrices(Built& built) {
+void forget_matrices(BuiltCase& built) {
   Model& model = built.model;
   for (Sparse* matrix : {&model.stiffness, &model.mass, &model.damping}) Sparse().swap(*matrix);  // an assignment would keep the memory
   built.plan.rest.reset();
 }
 
-RunResult run_with_fields(const Loaded& loaded, const Built& built, const std::string& label, const Options& options, ResultFolder& folder,
-                          std::vector<std::string>& lists) {
+RunResult run_with_fields(const Loaded& loaded, const BuiltCase& built, const std::string& label, const Options& options,
+                          ResultFolder& folder, std::vector<std::string>& lists) {
   if (!loaded.read.values.table("output").has("fields")) return run_one(built, label, options);
   FieldRun fields(loaded.read, built, folder);
   ProgressLine line(label, options.quiet || options.json);
   RunResult result = uplift::run(
       built.model, built.plan, built.behaviours, [&line](const Progress& progress) { return line(progress); },
-      [&fields](const Moment& moment) { fields.see(moment); });
+      [&fields](const Snapshot& snapshot) { fields.see(snapshot); });
   fields.finish(result);
   lists.push_back(fields.list());
   return result;

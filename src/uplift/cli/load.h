@@ -1,10 +1,10 @@
 #pragma once
 #include <deque>
 
-#include "uplift/analysis/case.h"
+#include "uplift/case/case.h"
 #include "uplift/cli/commands.h"
 #include "uplift/io/files.h"
-#include "uplift/io/report.h"
+#include "uplift/io/report/report.h"
 
 namespace uplift::cli {
 
@@ -35,7 +35,7 @@ class OutputFolder : public ResultFolder {
 /// Everything that a command computed, ready to be written.
 struct Results {
   std::vector<RunSpec> specs;
-  std::deque<Built> built;
+  std::deque<BuiltCase> built;
   std::vector<RunResult> runs;
   FloorAnswers floors;  // of the runs
   Verdict verdict;
@@ -47,13 +47,13 @@ void write_results(const Options& options, const Loaded& loaded, const Results& 
                    ResultFolder& folder);
 
 /// Gives back the matrices of a model whose run is over: results are written without them.
-void forget_matrices(Built& built);
+void forget_matrices(BuiltCase& built);
 
 /// Runs one spec of a case with the progress line.
-RunResult run_one(const Built& built, const std::string& label, const Options& options);
+RunResult run_one(const BuiltCase& built, const std::string& label, const Options& options);
 /// The same; writes its fields, when the case asks for them, and adds the name of their list to `lists`.
-RunResult run_with_fields(const Loaded& loaded, const Built& built, const std::string& label, const Options& options, ResultFolder& folder,
-                          std::vector<std::string>& lists);
+RunResult run_with_fields(const Loaded& loaded, const BuiltCase& built, const std::string& label, const Options& options,
+                          ResultFolder& folder, std::vector<std::string>& lists);
 
 /// How a run is reported on one line: "completed", "failed (expected): ...".
 std::string status_text(const RunResult& result);

@@ -4,7 +4,7 @@
 
 #include "uplift/cli/console.h"
 #include "uplift/cli/load.h"
-#include "uplift/io/json_writer.h"
+#include "uplift/io/text/json_writer.h"
 #include "uplift/model/builder.h"
 
 namespace uplift::cli {
@@ -60,7 +60,7 @@ void write_modes(JsonWriter& json, const Model& model, const std::vector<Mode>& 
 
 int modes(const Options& options, int count) {
   const Loaded loaded = load(options);
-  const Built built = build(loaded.read, runs_of_case(loaded.read).front());
+  const BuiltCase built = build(loaded.read, runs_of_case(loaded.read).front());
   const std::vector<Mode> bonded = bonded_modes(built.at_rest(), count),
                           base_free = uplift::modes(built.at_rest().stiffness, built.at_rest().mass, count);
   if (options.json) {

@@ -1,3 +1,5 @@
+#include "uplift/io/report/motion.h"
+
 #include <fmt/chrono.h>
 #include <fmt/format.h>
 
@@ -12,14 +14,13 @@
 #include "uplift/cli/console.h"
 #include "uplift/cli/load.h"
 #include "uplift/io/files.h"
-#include "uplift/io/report.h"
-#include "uplift/io/report_motion.h"
-#include "uplift/io/toml.h"
-#include "uplift/motion/convert.h"
+#include "uplift/io/report/report.h"
+#include "uplift/io/text/toml.h"
+#include "uplift/motion/formats/convert.h"
+#include "uplift/motion/formats/write.h"
 #include "uplift/motion/intensity.h"
-#include "uplift/motion/processing.h"
+#include "uplift/motion/processing/processing.h"
 #include "uplift/motion/spectrum.h"
-#include "uplift/motion/write.h"
 
 namespace uplift::cli {
 namespace {

@@ -7,7 +7,7 @@
 #include "uplift/cli/load.h"
 #include "uplift/contact/method.h"
 #include "uplift/contact/unheld.h"
-#include "uplift/io/json_writer.h"
+#include "uplift/io/text/json_writer.h"
 
 namespace uplift::cli {
 namespace {
@@ -17,7 +17,7 @@ struct Answer {
   bool suits = true;
   Outcome outcome;
   InterfaceSolution solution;
-  double residual = 0;  // the common yardstick
+  double residual = 0;  // the contact residual
 };
 
 Answer solve(const InterfaceProblem& problem, const std::string& name) {
@@ -32,7 +32,7 @@ Answer solve(const InterfaceProblem& problem, const std::string& name) {
   const Values values = check_part(Raw{name, {"uplift replay --method", 0}, ""}, contact_methods());
   answer.outcome = make_part(method_catalog(), values)->solve(problem, answer.solution);
   answer.residual = answer.solution.opening.size() == problem.rows() && answer.solution.force.size() == problem.rows()
-                        ? yardstick(problem, answer.solution)
+                        ? contact_residual(problem, answer.solution)
                         : INFINITY;
   if (answer.outcome.converged && !(answer.solution.opening.allFinite() && answer.solution.force.allFinite())) {
     answer.outcome.converged = false;
@@ -93,7 +93,7 @@ int replay(const Options& options, const std::string& method, bool all) {
   }
   if (!stored.reason.empty()) say("stored because: " + stored.reason);
   say(fmt::format("{} rows, {} coordinates", stored.problem.rows(), stored.problem.factor.cols()));
-  std::vector<std::vector<std::string>> rows{{"method", "result", "iterations", "cycles", "residual (yardstick)"}};
+  std::vector<std::vector<std::string>> rows{{"method", "result", "iterations", "cycles", "contact residual"}};
   for (const Answer& answer : answers)
     rows.push_back({answer.method,
                     answer.outcome.converged ? "converged"

@@ -4,12 +4,12 @@
 #include <deque>
 #include <future>
 
-#include "uplift/analysis/result_warnings.h"
-#include "uplift/analysis/wording.h"
 #include "uplift/base/file.h"
+#include "uplift/base/format.h"
 #include "uplift/cli/console.h"
 #include "uplift/cli/load.h"
 #include "uplift/linear/memory.h"
+#include "uplift/verdict/result_warnings.h"
 
 namespace uplift::cli {
 namespace {
@@ -28,8 +28,8 @@ void say_criteria(const std::vector<CriterionResult>& results) {
     const VerdictQuantity& quantity = *result.criterion.quantity;
     const std::string of = result.interface.empty() ? "" : " of " + result.interface;
     say(fmt::format("criterion {}: {}{} {}, at {} {} ({})", to_string(result.state), quantity.brief, of,
-                    result.value ? said(quantity, *result.value) : "not computed", quantity.at_least ? "least" : "most",
-                    said(quantity, result.criterion.limit), result.criterion.source));
+                    result.value ? format_value(quantity, *result.value) : "not computed", quantity.at_least ? "least" : "most",
+                    format_value(quantity, result.criterion.limit), result.criterion.source));
   }
 }
 
@@ -45,7 +45,7 @@ class CompanionRuns {
     if (!options.no_step_check) specs_ = companions_of_case(loaded.read);
   }
   /// Begins to compute a case that is small.
-  void begin(const Built& base) {
+  void begin(const BuiltCase& base) {
     constexpr int small_model = 3000;  // free unknowns
     if (!specs_.empty() && base.model.free() <= small_model && runs_side_by_side(2) == 2)
       beside_ = std::async(std::launch::async | std::launch::deferred, [this] { compute(true); });
@@ -65,7 +65,7 @@ class CompanionRuns {
   void compute(bool silent) {
     for (const RunSpec& spec : specs_) {
       built_.push_back(build(loaded_.read, spec));
-      const Built& built = built_.back();
+      const BuiltCase& built = built_.back();
       runs_.push_back(silent ? uplift::run(built.model, built.plan, built.behaviours, [](const Progress&) { return !interrupt_asked(); })
                              : run_one(built, spec.label, options_));
       forget_matrices(built_.back());
@@ -75,7 +75,7 @@ class CompanionRuns {
   const Loaded& loaded_;
   const Options& options_;
   std::vector<RunSpec> specs_;
-  std::deque<Built> built_;
+  std::deque<BuiltCase> built_;
   std::vector<RunResult> runs_;
   std::future<void> beside_;
   Companion companion_;
@@ -117,11 +117,11 @@ int run(const Options& options) {
     say_criteria(results.verdict.numbers.criteria);
     const double per_step = main.counts.steps > 0 ? 1e6 * main.wall / static_cast<double>(main.counts.steps) : 0;
     if (statics_alone(results.built.front().plan))
-      say(fmt::format("{}: static stages in {}, {}, {}", status_text(main), spoken(main.wall, "s"),
+      say(fmt::format("{}: static stages in {}, {}, {}", status_text(main), format_quantity(main.wall, "s"),
                       counted(main.counts.load_steps, "load step", "load steps"), counted(main.counts.retries, "retry", "retries")));
     else
       say(fmt::format("{}: {} in {} ({:.2f} microseconds a step), {}", status_text(main), counted(main.counts.steps, "step", "steps"),
-                      spoken(main.wall, "s"), per_step, counted(main.counts.retries, "retry", "retries")));
+                      format_quantity(main.wall, "s"), per_step, counted(main.counts.retries, "retry", "retries")));
     say(fmt::format("results: {}/report.html", folder.path()));
     for (const std::string& list : fields) say(fmt::format("fields: {}/{} (for ParaView)", folder.path(), list));
   }

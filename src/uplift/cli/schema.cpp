@@ -1,4 +1,4 @@
-#include "uplift/analysis/case_sections.h"
+#include "uplift/case/schema/sections.h"
 #include "uplift/cli/commands.h"
 #include "uplift/cli/console.h"
 

@@ -5,11 +5,11 @@
 #include <algorithm>
 #include <thread>
 
-#include "uplift/analysis/wording.h"
 #include "uplift/base/file.h"
+#include "uplift/base/format.h"
 #include "uplift/cli/console.h"
 #include "uplift/cli/load.h"
-#include "uplift/io/trust_json.h"
+#include "uplift/io/results/trust_json.h"
 #include "uplift/linear/memory.h"
 
 namespace uplift::cli {
@@ -27,9 +27,9 @@ void print_bands(const TrustAnswer& answer) {
   if (many) rows.front().insert(rows.front().begin() + 1, "of");
   for (const TrustBand& band : answer.bands) {
     const std::optional<double> share = band.share();
-    std::vector<std::string>& row =
-        rows.emplace_back(std::vector<std::string>{std::string(band.quantity->brief), band.said(band.value), band.said(band.least),
-                                                   band.said(band.most), share ? "+-" + percent(*share) : "", band.dominant});
+    std::vector<std::string>& row = rows.emplace_back(
+        std::vector<std::string>{std::string(band.quantity->brief), band.format_value(band.value), band.format_value(band.least),
+                                 band.format_value(band.most), share ? "+-" + percent(*share) : "", band.dominant});
     if (many) row.insert(row.begin() + 1, band.interface);
   }
   print_table(rows);

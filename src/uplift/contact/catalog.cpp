@@ -1,6 +1,6 @@
 #include <array>
 
-#include "uplift/contact/impact.h"
+#include "uplift/contact/impact/impact.h"
 #include "uplift/contact/method.h"
 
 namespace uplift {

@@ -265,8 +265,8 @@ bool PointRows::factor_and_correct(double size, Vector& forces, Vector& opening)
 }
 
 bool PointRows::solve(Vector& forces, Vector& opening, Vector& z, InterfaceSystems& counts) {
-  const InterfaceSolver way = problem_->solver;
-  const bool same = same_kinds(), kept = valid_ && same && way == InterfaceSolver::automatic;
+  const InterfaceSolver choice = problem_->solver;
+  const bool same = same_kinds(), kept = valid_ && same && choice == InterfaceSolver::automatic;
   forces.resize(compliance_.rows());
   if (!same) {
     list_unknowns();
@@ -274,7 +274,7 @@ bool PointRows::solve(Vector& forces, Vector& opening, Vector& z, InterfaceSyste
   }
   double size = start(forces, opening);
   if (!std::isfinite(size)) return false;
-  const bool alone = way == InterfaceSolver::krylov || (way == InterfaceSolver::automatic && !kept && unknowns_ >= enough_to_iterate);
+  const bool alone = choice == InterfaceSolver::krylov || (choice == InterfaceSolver::automatic && !kept && unknowns_ >= enough_to_iterate);
   bool done = unknowns_ == 0;
   if (!done && kept) done = iterate(std::clamp(static_cast<int>(unknowns_ / 64), 3, most_with_factor), size, forces, opening);
   if (!done && alone) done = iterate_alone(size, forces, opening);

@@ -11,7 +11,7 @@ double largest(const Vector& v) {
   return v.size() > 0 ? v.cwiseAbs().maxCoeff() : 0;
 }
 
-double balance(const InterfaceProblem& problem, const InterfaceSolution& solution, YardstickScratch& scratch) {
+double balance(const InterfaceProblem& problem, const InterfaceSolution& solution, ResidualScratch& scratch) {
   scratch.balance.noalias() = problem.factor.transpose() * solution.force;
   const double size = solution.z.norm() + scratch.balance.norm();
   if (problem.shift.size() > 0) {
@@ -23,7 +23,7 @@ double balance(const InterfaceProblem& problem, const InterfaceSolution& solutio
 }
 
 /// Largest difference between the force and that of the law, N.
-double law_error(const InterfaceProblem& problem, const Block& block, const InterfaceSolution& solution, YardstickScratch& scratch) {
+double law_error(const InterfaceProblem& problem, const Block& block, const InterfaceSolution& solution, ResidualScratch& scratch) {
   scratch.now.resize(problem.old.size());
   for (Vector* v : {&scratch.traction, &scratch.end, &scratch.plain}) v->resize(problem.rows());
   for (Vector* v : {&scratch.slope, &scratch.next}) v->resize(3 * problem.rows());
@@ -69,12 +69,12 @@ double cone_error(const InterfaceProblem& problem, const Block& block, const Int
 
 }  // namespace
 
-double yardstick(const InterfaceProblem& problem, const InterfaceSolution& solution) {
-  YardstickScratch scratch;
-  return yardstick(problem, solution, scratch);
+double contact_residual(const InterfaceProblem& problem, const InterfaceSolution& solution) {
+  ResidualScratch scratch;
+  return contact_residual(problem, solution, scratch);
 }
 
-double yardstick(const InterfaceProblem& problem, const InterfaceSolution& solution, YardstickScratch& scratch) {
+double contact_residual(const InterfaceProblem& problem, const InterfaceSolution& solution, ResidualScratch& scratch) {
   if (!solution.z.allFinite() || !solution.force.allFinite() || !solution.opening.allFinite())
     return std::numeric_limits<double>::infinity();
   // the solution's own opening is not trusted

@@ -3,9 +3,9 @@
 #include <string>
 #include <vector>
 
-#include "uplift/contact/kernel.h"
+#include "uplift/contact/kernel/kernel.h"
 #include "uplift/interface/interface.h"
-#include "uplift/laws/sweep.h"
+#include "uplift/laws/fused.h"
 #include "uplift/math/linalg.h"
 
 // The interface problem of one step. With the linear bulk condensed, the step is
@@ -51,10 +51,10 @@ struct InterfaceProblem {
   double scale = 1;  // weight of the interface force in the scheme's balance: with the path average 2/(1 + 2 b), else 1
   double step = 0;   // s; 0 in statics
   // what changes from step to step
-  Vector free_opening;  // m, initial gap included
-  Vector from;          // opening at the beginning of the step [m]
-  Vector old;           // memory at the beginning of the step
-  Vector way;           // r: free_opening - from = C way; empty where nobody knows
+  Vector free_opening;            // m, initial gap included
+  Vector from;                    // opening at the beginning of the step [m]
+  Vector old;                     // memory at the beginning of the step
+  Vector free_opening_increment;  // r: x with free_opening - from = C x; empty where it is not known
   JointFilterInput filter;
   int rows() const { return static_cast<int>(factor.rows()); }
 };
@@ -84,15 +84,15 @@ class KeptWork {
 
 /// Work space of Newton's method, sized once.
 struct NewtonScratch {
-  Sweep sweep;   // laid out for this solution and the problem that it was last asked for, where that can be swept
-  Vector slope;  // per block (components x components x points), blocks one after another [N/m]
+  FusedEvaluation evaluation;  // laid out for this solution and the problem that it was last asked for, where it can be fused
+  Vector slope;                // per block (components x components x points), blocks one after another [N/m]
   std::vector<int> first_slope;
   Vector gradient, direction, origin;
   Vector end;   // traction at the end of the step [Pa], path average only
   Vector next;  // as slope, for the step to come [Pa/m], path average only
   Vector pull;  // rows: k times one column of C, of one block; in the units of slope times those of the factor
   Matrix hessian;
-  Vector end_pull;             // C^T (scale area end) [sqrt(J)], of a swept solution
+  Vector end_pull;             // C^T (scale area end) [sqrt(J)], of a fused solution
   bool follows = false;        // the next problem may be guessed from this solution: slope, end and hessian are those of a converged step
   KeptWork direction_of_many;  // more than twelve coordinates
 };
@@ -110,8 +110,8 @@ struct LagrangeScratch {
   KeptWork frictionless, frictional;
 };
 
-/// Work space of the yardstick.
-struct YardstickScratch {
+/// Work space of contact_residual.
+struct ResidualScratch {
   Vector opening, moved, force, balance;
   Vector traction, slope, end, next, plain;
   Vector now;
@@ -124,20 +124,20 @@ struct InterfaceSolution {
   Vector force;                // rows, p as it enters the balance [N]: scale * area * traction, tension > 0
   Vector plain;                // rows, with a joint filter: path average of the law alone [Pa]
   Vector now;                  // memory at the end of the step
-  bool swept = false;          // the law made all in one pass (laws/sweep.h): its memory stays, and it stores this:
+  bool fused = false;          // the law made all in one pass (laws/fused.h): its memory stays, and it stores this:
   double stored = 0;           // J
   std::vector<Status> status;  // per point, all blocks one after another (cones)
   NewtonScratch newton;
   AugmentedScratch augmented;
   LagrangeScratch lagrange;
-  YardstickScratch yardstick;
+  ResidualScratch residual_scratch;
   InterfaceSystems systems;
 };
 
 struct Outcome {
   bool converged = false;
   int iterations = 0;
-  double residual = 0;  // the common yardstick (see below)
+  double residual = 0;  // the contact residual (see below)
   int cycles = 0;       // times that a repeated contact status was met and treated
   std::string why;      // when not converged; names the points
 };
@@ -147,13 +147,13 @@ struct Outcome {
 ///  - law blocks: |p - scale * area * t(opening)| / (max |p|)
 ///  - cone blocks: penetration, tension, friction bound and complementarity, each made dimensionless with max |p| and max |opening -
 ///  free_opening|.
-double yardstick(const InterfaceProblem&, const InterfaceSolution&);
+double contact_residual(const InterfaceProblem&, const InterfaceSolution&);
 /// The same in the solution's own work space.
-double yardstick(const InterfaceProblem&, const InterfaceSolution&, YardstickScratch&);
+double contact_residual(const InterfaceProblem&, const InterfaceSolution&, ResidualScratch&);
 
 /// Force of a law block [N] and its slope [N/m], scale * area times those of the law for the way from problem.from to `opening` (all rows;
-/// path-averaged where the problem says so). `reply` points to the block's own rows, as in InterfaceLaw; `end` stays a traction.
-void law_force(const InterfaceProblem&, const Block&, const double* opening, const Reply& reply);
+/// path-averaged where the problem says so). `response` points to the block's own rows, as in InterfaceLaw; `end` stays a traction.
+void law_force(const InterfaceProblem&, const Block&, const double* opening, const LawResponse& response);
 
 /// JSON text of a problem with its laws (names and parameters) and back. Throws InputError with the position on bad files.
 std::string save_problem(const InterfaceProblem&, const std::vector<const Values*>& behaviours, const std::string& reason);

@@ -71,11 +71,11 @@ Condensed::Condensed(const Model& model, const Sparse& b, const Vector& gap, boo
   if (gap_moves || spread_.cols() > 3 || spread_.cols() != touched_value_.size()) return;
   Matrix touched_spread(spread_.cols(), spread_.cols());
   for (std::size_t j = 0; j < touched_.size(); ++j) touched_spread.row(static_cast<Eigen::Index>(j)) = spread_.row(touched_[j]);
-  to_way_ = inverse(touched_spread);
-  if (to_way_.allFinite())
-    problem_.way.setZero(spread_.cols());
+  to_free_increment_ = inverse(touched_spread);
+  if (to_free_increment_.allFinite())
+    problem_.free_opening_increment.setZero(spread_.cols());
   else
-    to_way_.resize(0, 0);
+    to_free_increment_.resize(0, 0);
 }
 
 void Condensed::free_opening(const Vector& right, const Vector& displacement) {
@@ -92,9 +92,9 @@ void Condensed::free_opening(const Vector& right, const Vector& displacement) {
     problem_.free_opening += gap_;
     return;
   }
-  if (to_way_.size() > 0) {
+  if (to_free_increment_.size() > 0) {
     for (std::size_t j = 0; j < touched_.size(); ++j) touched_value_[static_cast<Eigen::Index>(j)] = free_[touched_[j]];
-    small::multiply(to_way_, touched_value_.data(), problem_.way.data());
+    small::multiply(to_free_increment_, touched_value_.data(), problem_.free_opening_increment.data());
   }
   for (std::size_t j = 0; j < touched_.size(); ++j)
     touched_value_[static_cast<Eigen::Index>(j)] = displacement[touched_[j]] + free_[touched_[j]];

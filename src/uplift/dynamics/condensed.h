@@ -72,8 +72,9 @@ class Condensed final : public StepSolver {
   std::unique_ptr<SplitResponse> split_;
   Matrix dense_b_, touched_b_;  // small bulks; columns of B that are not empty
   std::vector<int> touched_;
-  Matrix spread_;  // X: du = du_free + X z
-  Matrix to_way_;  // inverse of its touched rows where they are as many as its columns and few, and the gap stays: C = B X; else empty
+  Matrix spread_;             // X: du = du_free + X z
+  Matrix to_free_increment_;  // inverse of its touched rows where they are as many as its columns and few, and the gap stays: C = B X; else
+                              // empty
   InterfaceProblem problem_;
   InterfaceSolution solution_;
   const ContactMethod& method_;

@@ -80,14 +80,16 @@ void JointFilter::end(const InterfaceProblem& problem, const InterfaceSolution& 
              *tangent = next.filter.tangent.data() + first;
       const double scale = 1 / problem.scale;
       for_lanes(n, [&](const auto& at) {
-        const Lanes zero = 0, one = 1, way = at(to) - at(from), ahead = way - at(lag), weight = at(area, 1.0), here = at(coefficient);
+        const Lanes zero = 0, one = 1, increment = at(to) - at(from), ahead = increment - at(lag), weight = at(area, 1.0),
+                    here = at(coefficient);
         const Lanes added = scale * at(force) * at(inverse_area) - at(plain), wanted = here * ahead;
         const LaneMask acts = here > zero, less = acts && added * wanted < (1 - 1e-6) * wanted * wanted;
         Lanes kept = choose(acts, here, zero);  // theta c
         if (any_of(less)) kept *= choose(less, larger(added / choose(less, wanted, one), zero), one);
         const Lanes stored_before = at(before) * at(filtered) * at(filtered), stored_used = kept * at(lag) * at(lag);
-        dissipated += weight * (loss * kept * ahead * ahead + store * (stored_before - stored_used) + choose(acts, zero, added * way));
-        const Lanes filtered_now = choose(acts, pole * at(lag) + keep * way, zero);
+        dissipated +=
+            weight * (loss * kept * ahead * ahead + store * (stored_before - stored_used) + choose(acts, zero, added * increment));
+        const Lanes filtered_now = choose(acts, pole * at(lag) + keep * increment, zero);
         storage += weight * store * kept * filtered_now * filtered_now;
         at.put(coefficient_next, kept);
         at.put(filtered_next, filtered_now);

@@ -25,10 +25,10 @@ bool lost_contact(const Block& block, const InterfaceProblem& problem, const Int
 /// Answer of a law to these openings (all rows): its slopes; the forces go into `force`, the memory into `now`.
 Vector respond(const Block& block, const InterfaceProblem& problem, const Vector& opening, Vector& force, Vector& now) {
   Vector slope(block.rows() * block.batch.components);
-  Reply reply{.traction = force.data() + block.first, .slope = slope.data()};
-  reply.now = now.data() + block.first_history;
+  LawResponse response{.traction = force.data() + block.first, .slope = slope.data()};
+  response.now = now.data() + block.first_history;
   block.law->respond(block.batch, problem.from.data() + block.first, opening.data() + block.first, problem.old.data() + block.first_history,
-                     reply);
+                     response);
   for (int row = 0; row < block.rows(); ++row) force[block.first + row] *= block.area[row % block.batch.points];
   return slope;
 }

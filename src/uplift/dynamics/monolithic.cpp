@@ -90,16 +90,16 @@ class Monolithic final : public StepSolver {
       if (block.law == nullptr) continue;
       const int n = block.batch.points, components = block.batch.components;
       std::vector<double> k(static_cast<std::size_t>(n * components * components));
-      Reply reply;
-      reply.traction = solution_.force.data() + block.first;
-      reply.slope = k.data();
-      reply.now = solution_.now.data() + block.first_history;
+      LawResponse response;
+      response.traction = solution_.force.data() + block.first;
+      response.slope = k.data();
+      response.now = solution_.now.data() + block.first_history;
       if (problem_.average) {
-        reply.end = solution_.newton.end.data() + block.first;
-        reply.next = solution_.newton.next.data() + solution_.newton.first_slope[b];
-        reply.plain = solution_.plain.data() + block.first;
+        response.end = solution_.newton.end.data() + block.first;
+        response.next = solution_.newton.next.data() + solution_.newton.first_slope[b];
+        response.plain = solution_.plain.data() + block.first;
       }
-      law_force(problem_, block, solution_.opening.data(), reply);
+      law_force(problem_, block, solution_.opening.data(), response);
       for (int i = 0; i < n; ++i)
         for (int r = 0; r < components; ++r)
           for (int c = 0; c < components; ++c)

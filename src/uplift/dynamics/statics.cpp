@@ -144,10 +144,10 @@ void LoadSteps::find_loads() {
   if (yielding_.any()) first_load_ += plastic_now_.force;
   if (b_.rows() > 0) first_load_ += b_.transpose() * state_.force;
   dead_load_ = Vector::Zero(bulk_.unknowns);
-  for (const Drive& drive : model_.drives)
-    if (drive.is_static()) dead_load_ += drive.factor(state_.time) * drive.shape;
+  for (const TimeLoad& time_load : model_.time_loads)
+    if (time_load.is_static()) dead_load_ += time_load.factor(state_.time) * time_load.shape;
   if (options_.second_order != nullptr)
-    for (const Drive& drive : *options_.second_order) dead_load_ += drive.factor(state_.time) * drive.shape;
+    for (const TimeLoad& time_load : *options_.second_order) dead_load_ += time_load.factor(state_.time) * time_load.shape;
   change_ = dead_load_ - first_load_;
   model_.add_prescribed_opening(state_.time, motion_);
 }

@@ -20,9 +20,10 @@ struct StaticProgress {
 
 /// How a static stage proceeds.
 struct StaticOptions {
-  int steps = 1;                                     // equal load steps
-  int halvings = 8;                                  // a load step that fails is halved at most so often
-  const std::vector<Drive>* second_order = nullptr;  // what prescribed motions do through the geometric stiffness of P-Delta; null: nothing
+  int steps = 1;     // equal load steps
+  int halvings = 8;  // a load step that fails is halved at most so often
+  const std::vector<TimeLoad>* second_order =
+      nullptr;  // what prescribed motions do through the geometric stiffness of P-Delta; null: nothing
   PlasticOptions plastic = {};
   // Called after every load step that converged, halved ones too; false ends the stage there.
   std::function<bool(const StaticProgress&)> after_step = {};

@@ -98,7 +98,7 @@ void Stepper::force_at(double time, Vector& force) const {
   small::with_size(still_force_.size(), [=](auto count) { std::copy_n(still, static_cast<Eigen::Index>(count), sum); });
   model_.add_varying_force(time, force);
   if (options_.second_order != nullptr)
-    for (const Drive& drive : *options_.second_order) force += drive.factor(time) * drive.shape;
+    for (const TimeLoad& time_load : *options_.second_order) force += time_load.factor(time) * time_load.shape;
 }
 
 void Stepper::forces_at(const State& state, Vector& result) const {  // f - C v - K u - r - B^T p; r is that of now_

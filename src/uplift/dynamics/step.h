@@ -4,7 +4,7 @@
 #include <string>
 #include <vector>
 
-#include "uplift/contact/impact.h"
+#include "uplift/contact/impact/impact.h"
 #include "uplift/dynamics/condensed.h"
 #include "uplift/dynamics/energy.h"
 #include "uplift/dynamics/joint_filter.h"
@@ -25,7 +25,7 @@ struct StepOptions {
   double oracle_tolerance = 0;   // > 0: every condensed step is also taken by the oracle; a larger relative difference fails it
   const Vector* held = nullptr;  // constant forces beside those of the model [N, N m], free unknowns: what released supports have borne
   // What prescribed motions do through the geometric stiffness of P-Delta; null: nothing
-  const std::vector<Drive>* second_order = nullptr;
+  const std::vector<TimeLoad>* second_order = nullptr;
   PlasticOptions plastic;
 };
 
@@ -113,7 +113,7 @@ class Stepper {
   const Bulk& bulk_;
   const Sparse& b_;
   const Vector& still_gap_;  // initial gaps
-  Vector still_force_;       // that do not change in the stage: StepOptions::held and the drives that never change [N, N m]
+  Vector still_force_;       // that do not change in the stage: StepOptions::held and the loads that never change [N, N m]
   Vector gap_, gap_step_;    // with the prescribed motions at the end of the step, and their change in the step
   const Behaviours& behaviours_;
   const ContactMethod& method_;

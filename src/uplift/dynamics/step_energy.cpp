@@ -40,7 +40,7 @@ void Stepper::book_energies(const Level& level) {
     energies_.plastic += yielding_.dissipated(now_.displacement, now_.time, plastic_now_, next_.displacement, next_.time, plastic_next_);
     energies_.external += yielding_.support_work(now_.time, plastic_now_, next_.time, plastic_next_);
   }
-  if (b_.rows() > 0 && solution_->swept)  // memory and what was dissipated stay
+  if (b_.rows() > 0 && solution_->fused)  // memory and what was dissipated stay
     interface_energy_.stored = solution_->stored;
   else
     interface_energy_.update(*last_, next_.opening, next_.history);

@@ -2,7 +2,7 @@
 #include <cmath>
 #include <utility>
 
-#include "uplift/contact/impact_projection.h"
+#include "uplift/contact/impact/projection.h"
 #include "uplift/dynamics/step_level.h"
 #include "uplift/math/small.h"
 

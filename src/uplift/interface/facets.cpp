@@ -47,9 +47,9 @@ void add_line(const std::vector<JointPoint>& points, int first, int last, double
 
 /// Both ways to halve a quadrilateral, with half the weight each.
 void add_quadrilateral(const std::array<int, 4>& corner, const std::array<double, 4>& half_area, Facets& facets) {
-  static constexpr int way[4][3] = {{0, 1, 2}, {0, 2, 3}, {0, 1, 3}, {1, 2, 3}};
+  static constexpr int split[4][3] = {{0, 1, 2}, {0, 2, 3}, {0, 1, 3}, {1, 2, 3}};
   for (std::size_t k = 0; k < 4; ++k) {
-    const auto at = [&](int i) { return corner[static_cast<std::size_t>(way[k][i])]; };
+    const auto at = [&](int i) { return corner[static_cast<std::size_t>(split[k][i])]; };
     facets.pieces.push_back({{at(0), at(1), at(2)}, half_area[k] / 2});
   }
 }

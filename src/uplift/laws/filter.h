@@ -13,18 +13,18 @@
 namespace uplift {
 
 /// Changes a normal traction and its slope with respect to the end of the path, as numbers or as lanes, from the path average of the law to
-/// that with the filter. `end`, `end_slope`: at the end of the step; `way`: opening increment; `tension`: the law carries tension.
+/// that with the filter. `end`, `end_slope`: at the end of the step; `increment`: opening increment; `tension`: the law carries tension.
 template <class Number>
-[[gnu::always_inline]] inline void filter_normal(Number& value, Number& slope, Number end, Number end_slope, Number way, Number coefficient,
-                                                 Number lag, bool tension) {
+[[gnu::always_inline]] inline void filter_normal(Number& value, Number& slope, Number end, Number end_slope, Number increment,
+                                                 Number coefficient, Number lag, bool tension) {
   const Number zero = 0;
   const auto open = coefficient < zero;
-  Number closed = value + coefficient * (way - lag), closed_slope = slope + coefficient;
+  Number closed = value + coefficient * (increment - lag), closed_slope = slope + coefficient;
   if (!tension) {
     const auto cut = closed > zero;
     closed = choose(cut, zero, closed), closed_slope = choose(cut, zero, closed_slope);
   }
-  const auto jumps = (end - value) * way >= zero;
+  const auto jumps = (end - value) * increment >= zero;
   value = choose(open, choose(jumps, end, value), closed);
   slope = choose(open, choose(jumps, end_slope, slope), closed_slope);
 }

@@ -18,24 +18,24 @@ class JointLaw final : public InterfaceLaw {
     return normal_->num_history() + (components > 1 ? tangential_->num_history(components - 1) : 0);
   }
 
-  void respond(const Batch& batch, const double* from, const double* to, const double* old, const Reply& reply) const override {
-    if (batch.components == 1) return normal_->respond(batch, from, to, old, reply);
+  void respond(const Batch& batch, const double* from, const double* to, const double* old, const LawResponse& response) const override {
+    if (batch.components == 1) return normal_->respond(batch, from, to, old, response);
     const int normal = batch.normal();
-    normal_->respond(one_component(batch), from + normal, to + normal, old, normal_reply(batch, reply));
-    tangential_->respond(call(batch, from, to, old, reply));
+    normal_->respond(one_component(batch), from + normal, to + normal, old, normal_response(batch, response));
+    tangential_->respond(call(batch, from, to, old, response));
   }
 
-  void mean(const Batch& batch, const double* from, const double* to, const double* old, const Reply& reply) const override {
+  void mean(const Batch& batch, const double* from, const double* to, const double* old, const LawResponse& response) const override {
     const int normal = batch.normal();
-    const Reply part = batch.components == 1 ? reply : normal_reply(batch, reply);
+    const LawResponse part = batch.components == 1 ? response : normal_response(batch, response);
     normal_->mean(one_component(batch), from + normal, to + normal, old, part);
     if (batch.coefficient != nullptr) filter(batch, from + normal, to + normal, part);
     if (batch.components == 1) return;
-    tangential_->mean(call(batch, from, to, old, reply));
-    if (reply.next != nullptr) std::copy_n(reply.slope, others(batch), reply.next);
+    tangential_->mean(call(batch, from, to, old, response));
+    if (response.next != nullptr) std::copy_n(response.slope, others(batch), response.next);
   }
 
-  bool sweep(const Sweep& sweep) const override { return normal_->sweep(sweep); }
+  bool fused(const FusedEvaluation& evaluation) const override { return normal_->fused(evaluation); }
 
   void energy(const Batch& batch, const double* opening, const double* history, double* stored, double* dissipated) const override {
     normal_->energy(one_component(batch), opening + batch.normal(), history, stored, dissipated);
@@ -51,8 +51,8 @@ class JointLaw final : public InterfaceLaw {
  private:
   static Batch one_component(const Batch& batch) { return {batch.points, 1, batch.step}; }
 
-  /// The normal part of the joint filter, on the reply of the normal law.
-  void filter(const Batch& batch, const double* from, const double* to, const Reply& part) const {
+  /// The normal part of the joint filter, on the response of the normal law.
+  void filter(const Batch& batch, const double* from, const double* to, const LawResponse& part) const {
     const double *coefficient = batch.coefficient + batch.normal(), *lag = batch.lag + batch.normal();
     const bool tension = normal_->carries_tension();
     for (int i = 0; i < batch.points; ++i) {
@@ -64,26 +64,26 @@ class JointLaw final : public InterfaceLaw {
     }
   }
 
-  /// The normal part of the reply; the rest of the slope becomes zero.
-  static Reply normal_reply(const Batch& batch, const Reply& reply) {
-    Reply part = reply;
+  /// The normal part of the response; the rest of the slope becomes zero.
+  static LawResponse normal_response(const Batch& batch, const LawResponse& response) {
+    LawResponse part = response;
     part.traction += batch.normal();
-    if (reply.end != nullptr) part.end += batch.normal();
-    if (reply.slope != nullptr) {
-      std::fill_n(reply.slope, others(batch), 0.0);
+    if (response.end != nullptr) part.end += batch.normal();
+    if (response.slope != nullptr) {
+      std::fill_n(response.slope, others(batch), 0.0);
       part.slope += others(batch);
     }
-    if (reply.next != nullptr) part.next += others(batch);
-    if (reply.plain != nullptr) part.plain += batch.normal();
+    if (response.next != nullptr) part.next += others(batch);
+    if (response.plain != nullptr) part.plain += batch.normal();
     return part;
   }
 
   /// Entries of the slope before those of the normal part.
   static int others(const Batch& batch) { return (batch.components * batch.components - 1) * batch.points; }
 
-  TangentialCall call(const Batch& batch, const double* from, const double* to, const double* old, const Reply& reply) const {
+  TangentialCall call(const Batch& batch, const double* from, const double* to, const double* old, const LawResponse& response) const {
     const int first = normal_->num_history() * batch.points;
-    return {batch, *normal_, from, to, old, old + first, reply, reply.now != nullptr ? reply.now + first : nullptr};
+    return {batch, *normal_, from, to, old, old + first, response, response.now != nullptr ? response.now + first : nullptr};
   }
 
   std::unique_ptr<const NormalLaw> normal_;

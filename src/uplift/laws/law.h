@@ -23,7 +23,7 @@ struct Batch {
 
 /// What a law returns for a batch. Null is not wanted; the traction always is. `slope` is d traction_r / d opening_c at [(r * components +
 /// c) * points + i] [Pa/m].
-struct Reply {
+struct LawResponse {
   double* traction = nullptr;  // Pa
   double* slope = nullptr;     // Pa/m
   double* now = nullptr;       // memory at the end of the step
@@ -32,7 +32,7 @@ struct Reply {
   double* plain = nullptr;     // with a joint filter: the path average of the law alone, without the filter [Pa]; `end`, `next` are needed
 };
 
-struct Sweep;
+struct FusedEvaluation;
 
 /// A traction law: traction from opening, with memory.
 class InterfaceLaw {
@@ -41,13 +41,13 @@ class InterfaceLaw {
   /// Number of memory variables of a point; all start at zero.
   virtual int num_history(int components) const = 0;
   /// Traction at the end of a step that goes from opening `from` to `to`. In statics and dynamics (`traction = "end"`).
-  virtual void respond(const Batch&, const double* from, const double* to, const double* old, const Reply&) const = 0;
+  virtual void respond(const Batch&, const double* from, const double* to, const double* old, const LawResponse&) const = 0;
   /// Path-averaged traction of the step, 1/(to - from) * integral of t d(opening) along the law's own path (docs/theory, eq (11)), and its
   /// slope with respect to `to`.
-  virtual void mean(const Batch&, const double* from, const double* to, const double* old, const Reply&) const = 0;
-  /// `mean` for Newton's method in one pass where there is one component, see sweep.h; false where the law does not offer it for these
+  virtual void mean(const Batch&, const double* from, const double* to, const double* old, const LawResponse&) const = 0;
+  /// `mean` for Newton's method in one pass where there is one component, see evaluation.h; false where the law does not offer it for these
   /// paths.
-  virtual bool sweep(const Sweep&) const { return false; }
+  virtual bool fused(const FusedEvaluation&) const { return false; }
   /// Energy per area [J/m2] that is stored at this opening and memory, and that was dissipated since the beginning. Either may be null.
   virtual void energy(const Batch&, const double* opening, const double* history, double* stored, double* dissipated) const = 0;
   /// Stiffness of a closed joint in compression [Pa/m], per component (normal last): for k*F_ii, the static base and suggestions.
@@ -62,7 +62,7 @@ class Cone {
   virtual ~Cone() = default;
   /// Friction coefficient; 0 for a frictionless contact.
   virtual double friction() const = 0;
-  /// force = P(trial), and `slope` = d force_r / d trial_c in the layout of Reply::slope, or null. `force` may be `trial`.
+  /// force = P(trial), and `slope` = d force_r / d trial_c in the layout of LawResponse::slope, or null. `force` may be `trial`.
   virtual void project(const Batch&, const double* trial, double* force, double* slope) const = 0;
 };
 

@@ -10,25 +10,25 @@ void keep(const double* now, int count, int i, int points, double* history) {
 
 }  // namespace
 
-void PointLaw::respond(const Batch& batch, const double* from, const double* to, const double* old, const Reply& reply) const {
+void PointLaw::respond(const Batch& batch, const double* from, const double* to, const double* old, const LawResponse& response) const {
   double now[most_history];
   for (int i = 0; i < batch.points; ++i) {
     const Point point = advance(batch.step, from[i], to[i], {old + i, batch.points}, now);
-    reply.traction[i] = point.end;
-    if (reply.slope != nullptr) reply.slope[i] = point.end_slope;
-    keep(now, num_history(), i, batch.points, reply.now);
+    response.traction[i] = point.end;
+    if (response.slope != nullptr) response.slope[i] = point.end_slope;
+    keep(now, num_history(), i, batch.points, response.now);
   }
 }
 
-void PointLaw::mean(const Batch& batch, const double* from, const double* to, const double* old, const Reply& reply) const {
+void PointLaw::mean(const Batch& batch, const double* from, const double* to, const double* old, const LawResponse& response) const {
   double now[most_history];
   for (int i = 0; i < batch.points; ++i) {
     const Point point = advance(batch.step, from[i], to[i], {old + i, batch.points}, now);
-    reply.traction[i] = point.mean;
-    if (reply.slope != nullptr) reply.slope[i] = point.mean_slope;
-    if (reply.end != nullptr) reply.end[i] = point.end;
-    if (reply.next != nullptr) reply.next[i] = 0.5 * point.end_slope;
-    keep(now, num_history(), i, batch.points, reply.now);
+    response.traction[i] = point.mean;
+    if (response.slope != nullptr) response.slope[i] = point.mean_slope;
+    if (response.end != nullptr) response.end[i] = point.end;
+    if (response.next != nullptr) response.next[i] = 0.5 * point.end_slope;
+    keep(now, num_history(), i, batch.points, response.now);
   }
 }
 

@@ -8,7 +8,7 @@
 // fast derives from NormalLaw and writes its loops over the points.
 namespace uplift {
 
-struct Sweep;
+struct FusedEvaluation;
 
 /// Memory of one point in a structure of arrays.
 struct Memory {
@@ -40,10 +40,10 @@ class NormalLaw {
  public:
   virtual ~NormalLaw() = default;
   virtual int num_history() const = 0;
-  virtual void respond(const Batch&, const double* from, const double* to, const double* old, const Reply&) const = 0;
-  virtual void mean(const Batch&, const double* from, const double* to, const double* old, const Reply&) const = 0;
-  /// `mean` for Newton's method in one pass, see sweep.h; false where the law does not offer it for these paths.
-  virtual bool sweep(const Sweep&) const { return false; }
+  virtual void respond(const Batch&, const double* from, const double* to, const double* old, const LawResponse&) const = 0;
+  virtual void mean(const Batch&, const double* from, const double* to, const double* old, const LawResponse&) const = 0;
+  /// `mean` for Newton's method in one pass, see evaluation.h; false where the law does not offer it for these paths.
+  virtual bool fused(const FusedEvaluation&) const { return false; }
   virtual void energy(const Batch&, const double* opening, const double* history, double* stored, double* dissipated) const = 0;
   /// Stiffness in compression [Pa/m].
   virtual double stiffness() const = 0;
@@ -74,8 +74,8 @@ class PointLaw : public NormalLaw {
   virtual Point advance(double step, double from, double to, Memory old, double* now) const = 0;
   virtual PointEnergy energy_at(double opening, Memory history) const = 0;
 
-  void respond(const Batch&, const double* from, const double* to, const double* old, const Reply&) const final;
-  void mean(const Batch&, const double* from, const double* to, const double* old, const Reply&) const final;
+  void respond(const Batch&, const double* from, const double* to, const double* old, const LawResponse&) const final;
+  void mean(const Batch&, const double* from, const double* to, const double* old, const LawResponse&) const final;
   void energy(const Batch&, const double* opening, const double* history, double* stored, double* dissipated) const final;
   Surface surface(double step, double from, double to, Memory old) const final;
 };

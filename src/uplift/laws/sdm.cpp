@@ -2,9 +2,9 @@
 
 #include <algorithm>
 
+#include "uplift/laws/fused_points.h"
 #include "uplift/laws/joint.h"
 #include "uplift/laws/path.h"
-#include "uplift/laws/sweep_points.h"
 #include "uplift/math/exponential.h"
 #include "uplift/math/lambert.h"
 
@@ -101,7 +101,8 @@ struct Sdm {
   /// measured from `from`.
   template <class T>
   [[gnu::always_inline]] Average<T> average(T from, T to, T j) const {
-    const T zero = 0, d_c = knot, way = to - from, low = smaller(way, zero), high = larger(way, zero), length = absolute(way);
+    const T zero = 0, d_c = knot, increment = to - from, low = smaller(increment, zero), high = larger(increment, zero),
+            length = absolute(increment);
     const T held = larger(length, T(shortest_path)), soft = closure + k * j;
     const T inverse_both = 1 / (held * soft);  // one division for 1/length and the closing stiffness
     const T inverse = soft * inverse_both, closing_stiffness = k * closure * held * inverse_both;
@@ -135,8 +136,8 @@ struct Sdm {
   double softening_slope(double traction) const { return -k * rate * traction / (k - rate * traction); }
 };
 
-/// The law as sweep_points wants it.
-struct SweptSdm : Sdm {
+/// The law as evaluate_points wants it.
+struct FusedSdm : Sdm {
   static constexpr bool remembers = true;
   /// Twice `stored` from the traction t = end, without a division: t (d - j) in closure and above; below the knot t d - K d_c j, because
   /// k_c (d_c - j) = K d_c there.
@@ -188,8 +189,8 @@ bool respond_below(const Sdm law, const Step step, double* traction, double* slo
 }
 
 /// The first loop is right for points without a bend in their path, which is the rule; lanes in which one has a bend are done again.
-bool mean_below(const Sdm law, const Step step, const Reply& reply) {
-  double *mean = reply.traction, *slope = reply.slope, *now = reply.now, *end = reply.end, *next = reply.next, most = 0;
+bool mean_below(const Sdm law, const Step step, const LawResponse& response) {
+  double *mean = response.traction, *slope = response.slope, *now = response.now, *end = response.end, *next = response.next, most = 0;
   Marks bends;
   std::int64_t any = 0;
 #pragma omp simd reduction(max : most) reduction(| : any)
@@ -262,7 +263,7 @@ void respond_beyond(const Sdm law, const Step& step, double* traction, double* s
   }
 }
 
-void mean_beyond(const Sdm law, const Step& step, const Reply& reply) {
+void mean_beyond(const Sdm law, const Step& step, const LawResponse& response) {
   Gathered points;
   gather(law, step, points);
   alignas(64) double value[block];
@@ -274,7 +275,7 @@ void mean_beyond(const Sdm law, const Step& step, const Reply& reply) {
   for (int i = 0; i < padded; ++i) {
     const double from = points.from[i], to = points.to[i], j = points.jump[i], limit = points.limit[i];
     const Softening s = law.soften(from, to, j, limit);
-    const double way = to - from, inverse = std::abs(way) > shortest_path ? 1 / way : 0;
+    const double increment = to - from, inverse = std::abs(increment) > shortest_path ? 1 / increment : 0;
     const bool softens = to > s.elastic_end;
     const Average<double> elastic = law.average(from, s.elastic_end, j);
     // q by one Newton step from the jumps' own difference, which has only its last digits wrong
@@ -288,18 +289,18 @@ void mean_beyond(const Sdm law, const Step& step, const Reply& reply) {
     const double share = (s.elastic_end - from) * inverse;
     const double at_end = softens ? s.traction : elastic.end;
     value[i] = inverse != 0 ? share * elastic.value + work * inverse : at_end;
-    derivative[i] = inverse != 0 ? share * share * elastic.slope - (way * r - below) * inverse * inverse : elastic.slope;
+    derivative[i] = inverse != 0 ? share * share * elastic.slope - (increment * r - below) * inverse * inverse : elastic.slope;
     points.jump[i] = s.jump;
     last[i] = at_end;
     last_slope[i] = softens ? law.softening_slope(s.traction) : elastic.end_slope;
   }
   for (int i = 0; i < points.count; ++i) {
     const int place = points.place[i];
-    reply.traction[place] = value[i];
-    reply.slope[place] = derivative[i];
-    reply.now[place] = points.jump[i];
-    reply.end[place] = last[i];
-    reply.next[place] = 0.5 * last_slope[i];
+    response.traction[place] = value[i];
+    response.slope[place] = derivative[i];
+    response.now[place] = points.jump[i];
+    response.end[place] = last[i];
+    response.next[place] = 0.5 * last_slope[i];
   }
 }
 
@@ -310,31 +311,32 @@ class SdmLaw final : public NormalLaw {
   double stiffness() const override { return law_.k; }
   bool carries_tension() const override { return law_.strength > 0; }
 
-  void respond(const Batch& batch, const double* from, const double* to, const double* old, const Reply& reply) const override {
+  void respond(const Batch& batch, const double* from, const double* to, const double* old, const LawResponse& response) const override {
     for (int first = 0; first < batch.points; first += block) {
       double spare[2][block];
       const Step step{from + first, to + first, old + first, std::min(block, batch.points - first)};
-      double* slope = reply.slope != nullptr ? reply.slope + first : spare[0];
-      double* now = reply.now != nullptr ? reply.now + first : spare[1];
-      if (respond_below(law_, step, reply.traction + first, slope, now)) respond_beyond(law_, step, reply.traction + first, slope, now);
+      double* slope = response.slope != nullptr ? response.slope + first : spare[0];
+      double* now = response.now != nullptr ? response.now + first : spare[1];
+      if (respond_below(law_, step, response.traction + first, slope, now))
+        respond_beyond(law_, step, response.traction + first, slope, now);
     }
   }
 
-  void mean(const Batch& batch, const double* from, const double* to, const double* old, const Reply& reply) const override {
+  void mean(const Batch& batch, const double* from, const double* to, const double* old, const LawResponse& response) const override {
     for (int first = 0; first < batch.points; first += block) {
       double spare[4][block];
       const auto given = [first](double* values, double* instead) { return values != nullptr ? values + first : instead; };
       const Step step{from + first, to + first, old + first, std::min(block, batch.points - first)};
-      const Reply here{.traction = reply.traction + first,
-                       .slope = given(reply.slope, spare[0]),
-                       .now = given(reply.now, spare[1]),
-                       .end = given(reply.end, spare[2]),
-                       .next = given(reply.next, spare[3])};
+      const LawResponse here{.traction = response.traction + first,
+                             .slope = given(response.slope, spare[0]),
+                             .now = given(response.now, spare[1]),
+                             .end = given(response.end, spare[2]),
+                             .next = given(response.next, spare[3])};
       if (mean_below(law_, step, here)) mean_beyond(law_, step, here);
     }
   }
 
-  bool sweep(const Sweep& sweep) const override { return sweep_points(SweptSdm{law_}, sweep, law_.strength > 0); }
+  bool fused(const FusedEvaluation& evaluation) const override { return evaluate_points(FusedSdm{law_}, evaluation, law_.strength > 0); }
 
   void energy(const Batch& batch, const double* opening, const double* history, double* stored, double* dissipated) const override {
     const Sdm law = law_;

@@ -1,6 +1,6 @@
+#include "uplift/laws/fused_points.h"
 #include "uplift/laws/joint.h"
 #include "uplift/laws/path.h"
-#include "uplift/laws/sweep_points.h"
 
 // Tensionless springs, the classic no-tension base: K the stiffness [Pa/m], c the damping in contact [Pa s/m], d the opening, r = (to -
 // from)/step.
@@ -18,8 +18,8 @@ struct Average {
   Lanes value, slope, end, end_slope;
 };
 
-/// Without the dashpot, as sweep_points wants it.
-struct SweptSprings {
+/// Without the dashpot, as evaluate_points wants it.
+struct FusedSprings {
   static constexpr bool remembers = false;
   double stiffness;
 
@@ -35,8 +35,8 @@ struct SweptSprings {
 
   [[gnu::always_inline]] Average average(Lanes from, Lanes to, Lanes old) const {
     const Average point = straight(to, to, old);
-    const Lanes zero = 0, way = to - from, length = absolute(way), inverse = 1 / length;
-    const Lanes a = smaller(smaller(way, zero), -from), b = smaller(larger(way, zero), -from);
+    const Lanes zero = 0, increment = to - from, length = absolute(increment), inverse = 1 / length;
+    const Lanes a = smaller(smaller(increment, zero), -from), b = smaller(larger(increment, zero), -from);
     const Lanes weight = 0.5 * stiffness * (b - a) * inverse;
     const LaneMask moves = length > shortest_path;
     return {choose(moves, weight * (2 * from + (a + b)), point.end), choose(moves, weight * absolute(a + b) * inverse, point.slope),
@@ -51,29 +51,29 @@ class Springs final : public NormalLaw {
   double stiffness() const override { return stiffness_; }
   bool carries_tension() const override { return false; }
 
-  void respond(const Batch& batch, const double* from, const double* to, const double* old, const Reply& reply) const override {
-    if (damping_ > 0) return viscous(batch, from, to, old, reply, false);
+  void respond(const Batch& batch, const double* from, const double* to, const double* old, const LawResponse& response) const override {
+    if (damping_ > 0) return viscous(batch, from, to, old, response, false);
     const double stiffness = stiffness_;
-    double* traction = reply.traction;
+    double* traction = response.traction;
 #pragma omp simd
     for (int i = 0; i < batch.points; ++i) traction[i] = force(stiffness, to[i]);
-    if (double* slope = reply.slope; slope != nullptr)
+    if (double* slope = response.slope; slope != nullptr)
 #pragma omp simd
       for (int i = 0; i < batch.points; ++i) slope[i] = to[i] < 0 ? stiffness : 0.0;
   }
 
-  void mean(const Batch& batch, const double* from, const double* to, const double* old, const Reply& reply) const override {
-    if (damping_ > 0) return viscous(batch, from, to, old, reply, true);
+  void mean(const Batch& batch, const double* from, const double* to, const double* old, const LawResponse& response) const override {
+    if (damping_ > 0) return viscous(batch, from, to, old, response, true);
     for (int first = 0; first < batch.points; first += block) {
       double spare[3][block];
       const auto given = [first](double* values, double* instead) { return values != nullptr ? values + first : instead; };
-      average(batch.points - first < block ? batch.points - first : block, from + first, to + first, reply.traction + first,
-              given(reply.slope, spare[0]), given(reply.end, spare[1]), given(reply.next, spare[2]));
+      average(batch.points - first < block ? batch.points - first : block, from + first, to + first, response.traction + first,
+              given(response.slope, spare[0]), given(response.end, spare[1]), given(response.next, spare[2]));
     }
   }
 
-  bool sweep(const Sweep& sweep) const override {
-    return damping_ == 0 && sweep_points(SweptSprings{stiffness_}, sweep, false);
+  bool fused(const FusedEvaluation& evaluation) const override {
+    return damping_ == 0 && evaluate_points(FusedSprings{stiffness_}, evaluation, false);
   }
 
   void energy(const Batch& batch, const double* opening, const double* history, double* stored, double* dissipated) const override {
@@ -121,7 +121,8 @@ class Springs final : public NormalLaw {
     crossing.for_groups(count, [=](int first, int some) {
 #pragma omp simd
       for (int i = first; i < first + some; ++i) {
-        const double way = to[i] - from[i], low = smaller(way, 0.0), high = larger(way, 0.0), length = std::abs(way);
+        const double increment = to[i] - from[i], low = smaller(increment, 0.0), high = larger(increment, 0.0),
+                     length = std::abs(increment);
         const double a = smaller(low, -from[i]), b = smaller(high, -from[i]), inverse = 1 / length;
         const double weight = 0.5 * stiffness * (b - a) * inverse;
         mean[i] = length > shortest_path ? weight * (2 * from[i] + (a + b)) : end[i];
@@ -131,7 +132,8 @@ class Springs final : public NormalLaw {
   }
 
   /// With the dashpot, or one point without; `average`: the path average, else the traction at the end.
-  void viscous(const Batch& batch, const double* from, const double* to, const double* old, const Reply& reply, bool average) const {
+  void viscous(const Batch& batch, const double* from, const double* to, const double* old, const LawResponse& response,
+               bool average) const {
     const double per_step = batch.step > 0 ? damping_ / batch.step : 0;  // c/step [Pa/m]
     for (int i = 0; i < batch.points; ++i) {
       const Path path(from[i], to[i]);
@@ -141,18 +143,18 @@ class Springs final : public NormalLaw {
       const double end = to[i] < knee ? stiffness_ * to[i] + dashpot : force(0, to[i]);
       const double end_slope = to[i] < knee ? stiffness_ + per_step : 0;
       if (average) {
-        reply.traction[i] = pushing.share * (stiffness_ * pushing.middle + dashpot);
+        response.traction[i] = pushing.share * (stiffness_ * pushing.middle + dashpot);
         // a path that crosses 0 inwards meets the jump from 0 to c r, with lever |from|/length
         const double jump = from[i] > 0 && to[i] < 0 ? per_step * from[i] / path.length() : 0;
-        if (reply.slope != nullptr) reply.slope[i] = pushing.share * (stiffness_ * pushing.lever + per_step) + jump;
-        if (reply.end != nullptr) reply.end[i] = end;
-        if (reply.next != nullptr) reply.next[i] = to[i] < knee ? 0.5 * stiffness_ + per_step : 0;
+        if (response.slope != nullptr) response.slope[i] = pushing.share * (stiffness_ * pushing.lever + per_step) + jump;
+        if (response.end != nullptr) response.end[i] = end;
+        if (response.next != nullptr) response.next[i] = to[i] < knee ? 0.5 * stiffness_ + per_step : 0;
       } else {
-        reply.traction[i] = end;
-        if (reply.slope != nullptr) reply.slope[i] = end_slope;
+        response.traction[i] = end;
+        if (response.slope != nullptr) response.slope[i] = end_slope;
       }
-      if (reply.now != nullptr && damping_ > 0)
-        reply.now[i] = old[i] + path.length() * (pushing.share * std::abs(dashpot) - parting.share * stiffness_ * parting.middle);
+      if (response.now != nullptr && damping_ > 0)
+        response.now[i] = old[i] + path.length() * (pushing.share * std::abs(dashpot) - parting.share * stiffness_ * parting.middle);
     }
   }
 

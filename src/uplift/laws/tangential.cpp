@@ -45,16 +45,17 @@ struct Bound {
   double value = HUGE_VAL, slope = 0;
 };
 
-/// Adds theta y, y = c (way - lag), the joint filter of the scheme (laws/filter.h), with the largest theta <= 1 that keeps the traction on
-/// or within the bound.
+/// Adds theta y, y = c (increment - lag), the joint filter of the scheme (laws/filter.h), with the largest theta <= 1 that keeps the
+/// traction on or within the bound.
 void add_filter(const TangentialCall& call, int i, const Bound& bound, Answer& answer) {
   const Batch& batch = call.batch;
   if (batch.coefficient == nullptr) return;
   const int n = batch.points, tangents = batch.components - 1;
-  put(answer.traction, tangents, n, i, call.reply.plain);
+  put(answer.traction, tangents, n, i, call.response.plain);
   const double c = batch.coefficient[i];
   if (!(c > 0)) return;
-  const Plane way = plane(call.to, tangents, n, i) - plane(call.from, tangents, n, i), y = c * (way - plane(batch.lag, tangents, n, i));
+  const Plane increment = plane(call.to, tangents, n, i) - plane(call.from, tangents, n, i),
+              y = c * (increment - plane(batch.lag, tangents, n, i));
   const Plane plain = answer.traction, whole = plain + y;
   if (size(whole) <= bound.value) {
     answer.traction = whole;
@@ -79,9 +80,9 @@ void add_filter(const TangentialCall& call, int i, const Bound& bound, Answer& a
 
 void put(const Answer& answer, const TangentialCall& call, int i) {
   const int n = call.batch.points, components = call.batch.components, tangents = components - 1;
-  put(answer.traction, tangents, n, i, call.reply.traction);
-  if (call.reply.slope == nullptr) return;
-  const auto entry = [&](int row, int column) -> double& { return call.reply.slope[(row * components + column) * n + i]; };
+  put(answer.traction, tangents, n, i, call.response.traction);
+  if (call.response.slope == nullptr) return;
+  const auto entry = [&](int row, int column) -> double& { return call.response.slope[(row * components + column) * n + i]; };
   entry(0, 0) = answer.by_x.x;
   entry(0, tangents) = answer.by_normal.x;
   if (tangents == 1) return;
@@ -95,11 +96,11 @@ class NoShear final : public TangentialPart {
  public:
   int num_history(int) const override { return 0; }
   double stiffness() const override { return 0; }
-  void respond(const TangentialCall& call) const override { std::fill_n(call.reply.traction, call.batch.normal(), 0.0); }
+  void respond(const TangentialCall& call) const override { std::fill_n(call.response.traction, call.batch.normal(), 0.0); }
   void mean(const TangentialCall& call) const override {
     respond(call);
-    if (call.reply.end != nullptr) std::fill_n(call.reply.end, call.batch.normal(), 0.0);
-    if (call.reply.plain != nullptr) std::fill_n(call.reply.plain, call.batch.normal(), 0.0);
+    if (call.response.end != nullptr) std::fill_n(call.response.end, call.batch.normal(), 0.0);
+    if (call.response.plain != nullptr) std::fill_n(call.response.plain, call.batch.normal(), 0.0);
   }
   void add_energy(const Batch&, const NormalLaw&, const double*, const double*, const double*, double*, double*) const override {}
 };
@@ -111,20 +112,20 @@ class Bonded final : public TangentialPart {
   double stiffness() const override { return stiffness_; }
 
   void respond(const TangentialCall& call) const override {
-    for (int i = 0; i < call.batch.normal(); ++i) call.reply.traction[i] = stiffness_ * call.to[i];
+    for (int i = 0; i < call.batch.normal(); ++i) call.response.traction[i] = stiffness_ * call.to[i];
     put_slope(call, stiffness_);
   }
 
   void mean(const TangentialCall& call) const override {
-    for (int i = 0; i < call.batch.normal(); ++i) call.reply.traction[i] = 0.5 * stiffness_ * (call.from[i] + call.to[i]);
+    for (int i = 0; i < call.batch.normal(); ++i) call.response.traction[i] = 0.5 * stiffness_ * (call.from[i] + call.to[i]);
     put_slope(call, 0.5 * stiffness_);
-    if (call.reply.end != nullptr)
-      for (int i = 0; i < call.batch.normal(); ++i) call.reply.end[i] = stiffness_ * call.to[i];
+    if (call.response.end != nullptr)
+      for (int i = 0; i < call.batch.normal(); ++i) call.response.end[i] = stiffness_ * call.to[i];
     if (call.batch.coefficient == nullptr) return;
     const int n = call.batch.points, tangents = call.batch.components - 1;
     for (int i = 0; i < n; ++i) {
       const double half = 0.5 * stiffness_;
-      Answer answer{plane(call.reply.traction, tangents, n, i), {half, 0}, {0, half}, {}};
+      Answer answer{plane(call.response.traction, tangents, n, i), {half, 0}, {0, half}, {}};
       add_filter(call, i, {}, answer);
       put(answer, call, i);
     }
@@ -143,8 +144,8 @@ class Bonded final : public TangentialPart {
  private:
   static void put_slope(const TangentialCall& call, double slope) {
     const int n = call.batch.points, components = call.batch.components;
-    if (call.reply.slope != nullptr)
-      for (int c = 0; c < components - 1; ++c) std::fill_n(call.reply.slope + c * (components + 1) * n, n, slope);
+    if (call.response.slope != nullptr)
+      for (int c = 0; c < components - 1; ++c) std::fill_n(call.response.slope + c * (components + 1) * n, n, slope);
   }
   double stiffness_;  // Pa/m
 };
@@ -192,7 +193,7 @@ class WithSlip : public TangentialPart {
                               average, answer, bound);
       if (average) add_filter(call, i, bound, answer);
       put(answer, call, i);
-      if (average && call.reply.end != nullptr) put(state.end, tangents, n, i, call.reply.end);
+      if (average && call.response.end != nullptr) put(state.end, tangents, n, i, call.response.end);
       if (call.now == nullptr) continue;
       put(state.slip, tangents, n, i, call.now);
       call.now[tangents * n + i] = call.old[tangents * n + i] + state.taken;
@@ -221,7 +222,7 @@ class OpenFree final : public WithSlip {
     const double f = gap != 0 ? std::clamp((o.end - o.mean) / gap, 0.0, 1.0) : 1, rest = 1 - f;
     const double f_slope = gap != 0 ? (rest * o.end_slope - o.mean_slope) / gap : 0;
     const double shrink = w0 < w1 ? w0 / w1 : 1;  // of e, when contact grows: continuous traction
-    const Plane way = to - from, e0 = from - slip, ea = e0 + f * way, eb = shrink * ea, e1 = eb + rest * way;
+    const Plane increment = to - from, e0 = from - slip, ea = e0 + f * increment, eb = shrink * ea, e1 = eb + rest * increment;
     const double k = stiffness_;
 
     State state;
@@ -230,15 +231,15 @@ class OpenFree final : public WithSlip {
     state.taken = 0.5 * k * (w0 * dot(ea, ea) - w1 * dot(eb, eb));
     double diagonal;
     if (average) {
-      answer.traction = k * (w0 * f * (e0 + 0.5 * f * way) + w1 * rest * (eb + 0.5 * rest * way));
+      answer.traction = k * (w0 * f * (e0 + 0.5 * f * increment) + w1 * rest * (eb + 0.5 * rest * increment));
       diagonal = k * (0.5 * w0 * f * f + w1 * rest * (shrink * f + 0.5 * rest));
-      const Plane by_fraction = w0 * ea - w1 * (eb + rest * (1 - shrink) * way);
-      const Plane by_openness = w0 < w1 ? -0.5 * rest * rest * way : -rest * (eb + 0.5 * rest * way);
+      const Plane by_fraction = w0 * ea - w1 * (eb + rest * (1 - shrink) * increment);
+      const Plane by_openness = w0 < w1 ? -0.5 * rest * rest * increment : -rest * (eb + 0.5 * rest * increment);
       answer.by_normal = k * (f_slope * by_fraction + o.end_slope * by_openness);
     } else {
       answer.traction = state.end;
       diagonal = k * w1 * (shrink * f + rest);
-      answer.by_normal = k * (f_slope * w1 * (shrink - 1) * way + o.end_slope * (w0 < w1 ? -rest * way : -1.0 * e1));
+      answer.by_normal = k * (f_slope * w1 * (shrink - 1) * increment + o.end_slope * (w0 < w1 ? -rest * increment : -1.0 * e1));
     }
     answer.by_x = {diagonal, 0};
     answer.by_y = {0, diagonal};
@@ -266,12 +267,12 @@ class CoulombShear final : public WithSlip {
     Surface surface;
     if (cohesion_ > 0 || average)
       surface = call.normal.surface(call.batch.step, call.from[normal + i], call.to[normal + i], {call.normal_old + i, call.batch.points});
-    const double pull = call.reply.traction[normal + i];
+    const double pull = call.response.traction[normal + i];
     const double bond = average ? surface.damage.mean : surface.damage.end;
     const double bond_slope = average ? surface.damage.mean_slope : surface.damage.end_slope;
     bound = {cohesion_ * (1 - bond) - friction_ * std::min(pull, 0.0), 0};
-    if (call.reply.slope != nullptr)
-      bound.slope = -cohesion_ * bond_slope - (pull < 0 ? friction_ * call.reply.slope[last * call.batch.points + i] : 0);
+    if (call.response.slope != nullptr)
+      bound.slope = -cohesion_ * bond_slope - (pull < 0 ? friction_ * call.response.slope[last * call.batch.points + i] : 0);
 
     const Plane t0 = stiffness_ * (from - slip);
     if (!average) return at_end(t0, to - from, to, bound, answer);
@@ -293,9 +294,9 @@ class CoulombShear final : public WithSlip {
     state.end = (bound / length) * state.end;
   }
 
-  State at_end(const Plane& t0, const Plane& way, const Plane& to, const Bound& bound, Answer& answer) const {
+  State at_end(const Plane& t0, const Plane& increment, const Plane& to, const Bound& bound, Answer& answer) const {
     const double k = stiffness_;
-    const Plane trial = t0 + k * way;
+    const Plane trial = t0 + k * increment;
     const double length = size(trial);
     if (length <= bound.value) {
       answer = {trial, {k, 0}, {0, k}, {}};
@@ -306,25 +307,25 @@ class CoulombShear final : public WithSlip {
     return {to - (1 / k) * t, t, bound.value * (length - bound.value) / k};
   }
 
-  State along(const Plane& start, const Plane& way, const Bound& bound, Answer& answer) const {
+  State along(const Plane& start, const Plane& increment, const Bound& bound, Answer& answer) const {
     const double k = stiffness_, start_length = size(start);
     const bool drops = start_length > bound.value;
     const Plane n0 = drops ? (1 / start_length) * start : Plane{}, t0 = drops ? bound.value * n0 : start;
     double taken = drops ? (start_length - bound.value) * (start_length + bound.value) / (2 * k) : 0;
-    const Plane trial = t0 + k * way;
+    const Plane trial = t0 + k * increment;
     const double length = size(trial);
     if (length <= bound.value) {
       answer = {0.5 * (t0 + trial), {0.5 * k, 0}, {0, 0.5 * k}, bound.slope * n0};
       return {{}, trial, taken};
     }
-    const double f = reach(t0, k * way, drops ? 0 : (start_length - bound.value) * (start_length + bound.value));
-    const Plane ta = t0 + f * k * way, n = (1 / length) * trial, tb = bound.value * n;
+    const double f = reach(t0, k * increment, drops ? 0 : (start_length - bound.value) * (start_length + bound.value));
+    const Plane ta = t0 + f * k * increment, n = (1 / length) * trial, tb = bound.value * n;
     taken += (length - bound.value) / k * 0.5 * (dot(ta, n) + bound.value);
     answer.traction = 0.5 * (f * (t0 + ta) + (1 - f) * (ta + tb));
 
-    // d traction = ((trial - t_b) df + (1 + f) dt_0 + f K d way + (1 - f) dt_b)/2, f from |t_a| = bound
-    const double rate = k * dot(ta, way), ratio = bound.value / length;
-    const bool grazes = rate <= 1e-14 * k * bound.value * size(way);
+    // d traction = ((trial - t_b) df + (1 + f) dt_0 + f K d increment + (1 - f) dt_b)/2, f from |t_a| = bound
+    const double rate = k * dot(ta, increment), ratio = bound.value / length;
+    const bool grazes = rate <= 1e-14 * k * bound.value * size(increment);
     const auto change = [&](const Plane& moved, const Plane& t0_moved, double bound_moved) {
       const double df = grazes ? 0 : (bound.value * bound_moved - dot(ta, t0_moved + f * moved)) / rate;
       const Plane dtb = bound_moved * n + across(ratio, n, t0_moved + moved);
@@ -336,9 +337,9 @@ class CoulombShear final : public WithSlip {
     return {{}, tb, taken};
   }
 
-  /// Fraction of the elastic way at which |t0 + f way| meets the bound; `inside` = |t0|^2 - bound^2 <= 0.
-  static double reach(const Plane& t0, const Plane& way, double inside) {
-    const double a = dot(way, way), b = dot(t0, way), root = std::sqrt(std::max(b * b - a * inside, 0.0));
+  /// Fraction of the elastic increment at which |t0 + f increment| meets the bound; `inside` = |t0|^2 - bound^2 <= 0.
+  static double reach(const Plane& t0, const Plane& increment, double inside) {
+    const double a = dot(increment, increment), b = dot(t0, increment), root = std::sqrt(std::max(b * b - a * inside, 0.0));
     const double f = b > 0 ? -inside / (b + root) : (root - b) / a;
     return std::clamp(f, 0.0, 1.0);
   }

@@ -16,15 +16,15 @@
 // Source: docs/theory, sections 2 and 3; the energy argument is that of each update's docstring.
 namespace uplift {
 
-/// One call for all points of an interface, the normal part of the reply being already there.
+/// One call for all points of an interface, the normal part of the response being already there.
 struct TangentialCall {
   const Batch& batch;
   const NormalLaw& normal;
-  const double *from, *to;   // all components
-  const double* normal_old;  // memory of the normal part at the beginning of the step
-  const double* old;         // memory of the tangential part
-  const Reply& reply;        // all components; the slope has been set to zero where the normal part did not write
-  double* now;               // memory of the tangential part, or null
+  const double *from, *to;      // all components
+  const double* normal_old;     // memory of the normal part at the beginning of the step
+  const double* old;            // memory of the tangential part
+  const LawResponse& response;  // all components; the slope has been set to zero where the normal part did not write
+  double* now;                  // memory of the tangential part, or null
 };
 
 class TangentialPart {

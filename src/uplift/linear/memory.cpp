@@ -136,7 +136,7 @@ void PageTaker::start() {
 std::string memory_refusal(double needed, double available) {
   if (needed <= available) return {};
   return fmt::format("the factor needs {}, {} are free: coarsen the mesh, make the model smaller, or run it on a machine with more memory",
-                     spoken_bytes(needed), spoken_bytes(available));
+                     format_bytes(needed), format_bytes(available));
 }
 
 }  // namespace uplift

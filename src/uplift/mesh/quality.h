@@ -4,7 +4,7 @@
 
 #include "uplift/mesh/mesh.h"
 
-// How good the cells are, what waves they can carry, and what hangs together.
+// How good the cells are, what waves they can carry, and what is connected.
 namespace uplift {
 
 struct CellQuality {

@@ -10,8 +10,8 @@
 namespace uplift {
 
 /// Numbers sets of nodes (edges, faces), each set once, from 0. A set is known by its two to four corners and the sum of its other nodes:
-/// that tells the faces of the two lips of an opened surface apart when only nodes in the middle of edges were doubled. Sets are chained at
-/// their lowest corner, so neighbours in the mesh are neighbours in memory.
+/// that tells the faces of the two faces of an opened surface apart when only nodes in the middle of edges were doubled. Sets are chained
+/// at their lowest corner, so neighbours in the mesh are neighbours in memory.
 class NodeSets {
  public:
   explicit NodeSets(std::size_t nodes) : head_(nodes, -1) {}

@@ -277,10 +277,10 @@ void renumber(Mesh& mesh, const Cut& cut) {
 }
 
 /// Nodes of a side of a renumbered cell, in the order of the same side before.
-void write_lip(Mesh& mesh, const Cut& cut, const std::vector<int>& nodes, int side, CellId lip) {
-  CellBlock& block = mesh.blocks[at(lip.block)];
+void write_face(Mesh& mesh, const Cut& cut, const std::vector<int>& nodes, int side, CellId opened) {
+  CellBlock& block = mesh.blocks[at(opened.block)];
   const auto n = nodes.size();
-  for (std::size_t i = 0; i < n; ++i) block.nodes[at(lip.index) * n + i] = cut.node_for(nodes[i], side / Sides::stride);
+  for (std::size_t i = 0; i < n; ++i) block.nodes[at(opened.index) * n + i] = cut.node_for(nodes[i], side / Sides::stride);
 }
 
 OpenedSurface open_surface(Mesh& mesh, const Cut& cut, const std::string& name, const std::vector<CutFace>& faces,
@@ -290,13 +290,13 @@ OpenedSurface open_surface(Mesh& mesh, const Cut& cut, const std::string& name, 
   for (std::size_t f = 0; f < faces.size(); ++f) {
     const CutFace& face = faces[f];
     CellBlock& block = mesh.blocks[at(face.cell.block)];
-    const CellId lip{face.cell.block, block.count()};
+    const CellId opened{face.cell.block, block.count()};
     block.nodes.resize(block.nodes.size() + lists[f].size());
     if (!block.file_number.empty()) block.file_number.push_back(block.file_number[at(face.cell.index)]);
-    write_lip(mesh, cut, lists[f], face.lower, face.cell);
-    write_lip(mesh, cut, lists[f], face.upper, lip);
-    surface.faces.push_back({face.cell, lip});
-    upper.cells.push_back(lip);
+    write_face(mesh, cut, lists[f], face.lower, face.cell);
+    write_face(mesh, cut, lists[f], face.upper, opened);
+    surface.faces.push_back({face.cell, opened});
+    upper.cells.push_back(opened);
   }
   std::sort(upper.cells.begin(), upper.cells.end());
   mesh.groups[name + "_upper"] = std::move(upper);

@@ -7,7 +7,7 @@
 // Opens a conforming mesh along named surfaces, so that both sides can part there.
 namespace uplift {
 
-/// The two lips of one face of an opened surface, as cells of the mesh. Their nodes stand in corresponding order, numbered with the normal
+/// The two faces of one face of an opened surface, as cells of the mesh. Their nodes stand in corresponding order, numbered with the normal
 /// from the lower to the upper side (edges a-b of plane meshes: normal (dy, -dx)). Where the surface ends inside the continuum both have
 /// the same node.
 struct FacePair {

@@ -76,7 +76,7 @@ void ModelBuilder::add_load(std::string name, std::vector<std::pair<int, double>
 }
 
 void ModelBuilder::add_feed(std::string name, std::vector<Triplet> pattern, int functions, std::shared_ptr<const TimeFunctions> values) {
-  feeds_.push_back({std::move(name), std::move(pattern), functions, std::move(values)});
+  tables_.push_back({std::move(name), std::move(pattern), functions, std::move(values)});
 }
 
 void ModelBuilder::set_gravity(Place acceleration, Where) {

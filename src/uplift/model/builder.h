@@ -58,7 +58,7 @@ class ModelBuilder {
   /// A force pattern of (full unknown, value) pairs [N, N m] times a function (null: constant). `dead`: static stages apply it.
   void add_load(std::string name, std::vector<std::pair<int, double>> pattern, std::shared_ptr<const TimeFunction> function, bool dead,
                 Where where);
-  /// Forces that follow many functions of time at once (see Feed): entries (full unknown, function, value).
+  /// Forces that follow many functions of time at once (see TimeLoadTable): entries (full unknown, function, value).
   void add_feed(std::string name, std::vector<Triplet> pattern, int functions, std::shared_ptr<const TimeFunctions> values);
   /// Interfaces keep tangential components that supports and constraints hold still.
   void keep_tangents() { keeps_tangents_ = true; }
@@ -87,7 +87,7 @@ class ModelBuilder {
     Dof dof;
     Where where;
   };
-  struct Feeding {
+  struct TableOfLoads {
     std::string name;
     std::vector<Triplet> pattern;
     int functions;
@@ -131,7 +131,7 @@ class ModelBuilder {
   std::vector<Where> interface_where_;
   std::vector<Load> loads_;
   std::vector<GroundAcceleration> grounds_;
-  std::vector<Feeding> feeds_;
+  std::vector<TableOfLoads> tables_;
   bool keeps_tangents_ = false;
   Vec3 gravity_ = Vec3::Zero();
   BulkDamping damping_;

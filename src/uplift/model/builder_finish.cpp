@@ -73,8 +73,8 @@ void ModelBuilder::make_drives(Model& model, const Full& full, const Matrix& mot
   const auto one = std::make_shared<const One>();
   const auto add = [&](std::string name, const Vector& pattern, std::shared_ptr<const TimeFunction> function, bool dead) {
     const bool constant = dynamic_cast<const One*>(function.get()) != nullptr;
-    model.drives.push_back(
-        {std::move(name), model.reduction.transpose() * pattern, std::move(function), Drive::Order::value, dead, constant});
+    model.time_loads.push_back(
+        {std::move(name), model.reduction.transpose() * pattern, std::move(function), TimeLoad::Order::value, dead, constant});
     model.assembly.loads.push_back(pattern);
   };
   if (!gravity_.isZero()) add("gravity", full.mass * translation(space_, gravity_, unknowns), one, true);
@@ -88,22 +88,22 @@ void ModelBuilder::make_drives(Model& model, const Full& full, const Matrix& mot
   }
   for (const GroundAcceleration& ground : grounds_)
     add(ground.name, -(full.mass * translation(space_, ground.direction, unknowns)), ground.function, false);
-  for (const Feeding& feed : feeds_) {
-    Sparse pattern(unknowns, feed.functions);
-    pattern.setFromTriplets(feed.pattern.begin(), feed.pattern.end());
-    model.feeds.push_back({feed.name, model.reduction.transpose() * pattern, feed.values});
-    model.assembly.feeds.push_back(std::move(pattern));
+  for (const TableOfLoads& table : tables_) {
+    Sparse pattern(unknowns, table.functions);
+    pattern.setFromTriplets(table.pattern.begin(), table.pattern.end());
+    model.time_load_tables.push_back({table.name, model.reduction.transpose() * pattern, table.values});
+    model.assembly.time_load_tables.push_back(std::move(pattern));
   }
   for (Index k = 0; k < motion_shapes.cols(); ++k) {
     const Motion& motion = motions_[k];
     const Vector shape = motion_shapes.col(k);
     model.motions.push_back({motion.name, shape, model.assembly.b * shape, motion.function});
-    const std::pair<const Sparse*, Drive::Order> parts[] = {
-        {&full.stiffness, Drive::Order::value}, {&full.damping, Drive::Order::rate}, {&full.mass, Drive::Order::acceleration}};
+    const std::pair<const Sparse*, TimeLoad::Order> parts[] = {
+        {&full.stiffness, TimeLoad::Order::value}, {&full.damping, TimeLoad::Order::rate}, {&full.mass, TimeLoad::Order::acceleration}};
     for (const auto& [matrix, order] : parts) {
       Vector force = -(model.reduction.transpose() * (*matrix * shape));
       if (force.isZero(0)) continue;
-      model.drives.push_back({motion.name, std::move(force), motion.function, order, false, false, true});
+      model.time_loads.push_back({motion.name, std::move(force), motion.function, order, false, false, true});
       model.assembly.loads.emplace_back();
     }
   }

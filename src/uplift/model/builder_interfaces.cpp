@@ -97,7 +97,7 @@ Vector ModelBuilder::water_load(const Model& model, std::size_t interface) const
   return model.assembly.b.transpose() * thrust;
 }
 
-/// Places of what hangs together with one side, through elements and rigid bodies: nodes and centres of masses.
+/// Places of what is connected to one side, through elements and rigid bodies: nodes and centres of masses.
 std::vector<Vec3> ModelBuilder::structure_of(const InterfaceSpec& spec, bool upper, std::vector<int>& nodes) const {
   std::vector<std::vector<int>> neighbours(nodes_.size());
   const auto connect = [&](int a, int b) {

@@ -13,8 +13,8 @@ namespace {
 Vector unbalanced(const Model& model, const State& state) {
   const Assembly& full = model.assembly;
   Vector force = -(assembled(model, &Local::stiffness) * model.full(state.displacement, 0, state.time));
-  for (std::size_t i = 0; i < model.drives.size(); ++i)
-    if (model.drives[i].dead && full.loads[i].size() > 0) force += model.drives[i].factor(state.time) * full.loads[i];
+  for (std::size_t i = 0; i < model.time_loads.size(); ++i)
+    if (model.time_loads[i].dead && full.loads[i].size() > 0) force += model.time_loads[i].factor(state.time) * full.loads[i];
   if (full.b.rows() > 0) force -= full.b.transpose() * state.force;
   return force;
 }

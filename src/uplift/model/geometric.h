@@ -19,12 +19,12 @@ SecondOrder second_order(const Model& model, const State& state);
 ///    + (theta^2 (f . r) - (theta . f)(theta . r))/2, so that in the plane f . r is added to the master's rotational stiffness. Forces:
 ///    weights (also of masses with an offset centre), loads, end forces of elements and forces of the interfaces. A weight W at the height
 ///    h above the master gives -W h.
-/// The state must be in equilibrium under the drives that are dead; state.force holds the interface forces [N].
+/// The state must be in equilibrium under the dead loads; state.force holds the interface forces [N].
 Sparse geometric_stiffness(const Model& model, const State& state);
 /// The same on the free unknowns of another model of the same nodes: full = reduction * free.
 Sparse geometric_stiffness(const Model& model, const State& state, const Sparse& reduction);
 
-/// Forces of the constraints (rows of Assembly::constraints) that hold the state in equilibrium under the dead drives [N, N m]:
+/// Forces of the constraints (rows of Assembly::constraints) that hold the state in equilibrium under the dead loads [N, N m]:
 /// reactions of supports (acting on the structure), forces of rigid ties on the slave, minus the tension of inextensible beams.
 Vector constraint_forces(const Model& model, const State& state);
 

@@ -4,7 +4,7 @@
 
 namespace uplift {
 
-double Drive::factor(double time) const {
+double TimeLoad::factor(double time) const {
   return derivative_of(*function, static_cast<int>(order), time);
 }
 
@@ -48,19 +48,19 @@ void Model::add_force(double time, Vector& force) const {
 }
 
 void Model::add_constant_force(Vector& force) const {
-  for (const Drive& drive : drives)
-    if (drive.constant) force += drive.shape;
+  for (const TimeLoad& time_load : time_loads)
+    if (time_load.constant) force += time_load.shape;
 }
 
 void Model::add_varying_force(double time, Vector& force) const {
-  for (const Drive& drive : drives)
-    if (!drive.constant)
-      if (const double factor = drive.factor(time); factor != 0) small::add(force.size(), factor, drive.shape.data(), force.data());
-  if (feeds.empty()) return;
+  for (const TimeLoad& time_load : time_loads)
+    if (!time_load.constant)
+      if (const double factor = time_load.factor(time); factor != 0) small::add(force.size(), factor, time_load.shape.data(), force.data());
+  if (time_load_tables.empty()) return;
   Vector values;
-  for (const Feed& feed : feeds) {
-    feed.functions->values(time, values);
-    force += feed.pattern * values;
+  for (const TimeLoadTable& table : time_load_tables) {
+    table.functions->values(time, values);
+    force += table.pattern * values;
   }
 }
 

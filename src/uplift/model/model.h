@@ -18,7 +18,7 @@ struct Node {
 };
 
 /// A force pattern on the free unknowns times a function of time.
-struct Drive {
+struct TimeLoad {
   std::string name;
   Vector shape;  // free unknowns
   std::shared_ptr<const TimeFunction> function;
@@ -40,7 +40,7 @@ class TimeFunctions {
 };
 
 /// Forces that follow many functions of time: pattern * values(t). Never a dead load.
-struct Feed {
+struct TimeLoadTable {
   std::string name;
   Sparse pattern;  // free unknowns x functions
   std::shared_ptr<const TimeFunctions> functions;
@@ -60,7 +60,7 @@ struct PrescribedMotion {
   std::shared_ptr<const TimeFunction> function;
 };
 
-/// Acceleration of the ground in the relative frame: direction * function(t) [m/s2]. Its load is one of the drives; what moves with the
+/// Acceleration of the ground in the relative frame: direction * function(t) [m/s2]. Its load is one of the time loads; what moves with the
 /// ground is at rest in this frame.
 struct GroundAcceleration {
   std::string name;
@@ -73,7 +73,7 @@ struct GroundAcceleration {
 struct Assembly {
   Sparse b;                     // interface rows x full unknowns
   Sparse constraints;           // independent rows g with g . u = prescribed: supports, rigid ties, inextensible beams
-  std::vector<Vector> loads;    // full pattern of drive i; empty for the drives that prescribed motions make
+  std::vector<Vector> loads;    // full pattern of time load i; empty for those that prescribed motions make
   Vec3 gravity = Vec3::Zero();  // m/s2
   /// slave's constraint rows start at `row`, one per unknown of a node; offset = slave - master [m]
   struct Tie {
@@ -95,7 +95,7 @@ struct Assembly {
   std::vector<Where> interface_where;
   // Rows of `constraints` from here on: rigid ties come first, then supports and prescribed motions, equal ties, inextensible beams.
   int first_support = 0, first_equal = 0, first_link = 0;
-  std::vector<Sparse> feeds;                       // full pattern of feed i
+  std::vector<Sparse> time_load_tables;            // full pattern of table i
   double mass_damping = 0, stiffness_damping = 0;  // Rayleigh: alpha [1/s], beta [s]
   Sparse modal_damping;                            // free x free, part of Model::damping; empty without
 };
@@ -108,8 +108,8 @@ struct Model {
   std::vector<Node> nodes;
   std::vector<std::unique_ptr<const Element>> elements;
   std::vector<Interface> interfaces;
-  std::vector<Drive> drives;
-  std::vector<Feed> feeds;
+  std::vector<TimeLoad> time_loads;
+  std::vector<TimeLoadTable> time_load_tables;
   std::vector<PrescribedMotion> motions;
   std::vector<GroundAcceleration> grounds;
 
@@ -131,9 +131,9 @@ struct Model {
   Vector full(const Vector& q, int derivative, MotionInstant at) const;
   /// Acceleration of the relative frame along a direction [m/s2].
   double ground_acceleration(const Vec3& direction, double time) const;
-  /// Adds the force of all drives and feeds at a time to `force` (free unknowns).
+  /// Adds the force of all time loads at a time to `force` (free unknowns).
   void add_force(double time, Vector& force) const;
-  /// Its two parts: of the drives that never change, and all the rest.
+  /// Its two parts: of the loads that never change, and all the rest.
   void add_constant_force(Vector& force) const;
   void add_varying_force(double time, Vector& force) const;
   /// Adds what the prescribed motions do to the openings (rows of all interfaces).

@@ -5,7 +5,7 @@
 #include <cmath>
 #include <numbers>
 
-#include "uplift/motion/convert.h"
+#include "uplift/motion/formats/convert.h"
 #include "uplift/motion/spectrum.h"
 
 // Arias, in Seismic Design for Nuclear Power Plants (1970); Housner, Behavior of structures during earthquakes (1959); CAV: EPRI NP-5930

@@ -3,7 +3,7 @@
 #include <algorithm>
 #include <cassert>
 
-#include "uplift/motion/convert.h"
+#include "uplift/motion/formats/convert.h"
 
 namespace uplift {
 

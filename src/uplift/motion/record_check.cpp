@@ -6,7 +6,7 @@
 #include <cmath>
 
 #include "uplift/base/text.h"
-#include "uplift/motion/record_format.h"
+#include "uplift/motion/formats/record_format.h"
 
 namespace uplift {
 namespace {

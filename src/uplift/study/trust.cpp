@@ -8,8 +8,8 @@
 #include <numeric>
 #include <thread>
 
-#include "uplift/analysis/content_warning.h"
-#include "uplift/analysis/wording.h"
+#include "uplift/base/format.h"
+#include "uplift/case/advice/content.h"
 
 namespace uplift {
 namespace {
@@ -46,7 +46,7 @@ class Watcher {
   bool going_ = true;
 };
 
-Repetition repetition_of(const TrustChange& change, const Built& built, const RunResult& result, const RunResult* bonded) {
+Repetition repetition_of(const TrustChange& change, const BuiltCase& built, const RunResult& result, const RunResult* bonded) {
   Repetition made;
   made.run = {change.name,
               change.choice,
@@ -75,11 +75,11 @@ Repetition compute(const Case& read, const TrustChange& change, std::size_t plac
     return left_out;
   }
   const double each = 1.0 / static_cast<double>(specs.size());
-  const auto one = [&](std::size_t k, const Built& built) {
+  const auto one = [&](std::size_t k, const BuiltCase& built) {
     return run(built.model, built.plan, built.behaviours,
                [&](const Progress& now) { return watcher.tell(place, each * (static_cast<double>(k) + now.fraction), now); });
   };
-  const Built built = build(read, specs.front());
+  const BuiltCase built = build(read, specs.front());
   const RunResult result = one(0, built);
   std::optional<RunResult> bonded;
   if (specs.size() > 1) bonded = one(1, build(read, specs[1]));
@@ -240,9 +240,9 @@ std::optional<double> TrustBand::share() const {
   return 0.5 * (most - least) / std::abs(value);
 }
 
-std::string TrustBand::said(double number) const {
+std::string TrustBand::format_value(double number) const {
   const bool moves = !is_share(*quantity) && swing >= nothing_beside(quantity->unit) && swing > 0;
-  return moves ? spoken_within(number, swing, quantity->unit) : uplift::said(*quantity, number);
+  return moves ? format_quantity_within(number, swing, quantity->unit) : uplift::format_value(*quantity, number);
 }
 
 std::size_t TrustAnswer::counted() const {

@@ -4,9 +4,9 @@
 #include <string>
 #include <vector>
 
-#include "uplift/analysis/floor_spectra.h"
-#include "uplift/analysis/verdict_numbers.h"
 #include "uplift/study/trust_plan.h"
+#include "uplift/verdict/floor_spectra.h"
+#include "uplift/verdict/numbers.h"
 
 namespace uplift {
 
@@ -31,7 +31,7 @@ struct TrustBand {
   /// Half the band as a share of the value; nothing where the value does not move or can be near zero (shares, changes, residuals).
   std::optional<double> share() const;
   /// One of its values in words: a residual no finer than it still moves.
-  std::string said(double number) const;
+  std::string format_value(double number) const;
 };
 
 /// A floor spectrum with its band, for one damping.
@@ -67,7 +67,7 @@ struct TrustAnswer {
 
 /// The run of the case as it stands.
 struct TrustBase {
-  const Built& built;
+  const BuiltCase& built;
   const RunResult& run;
   const RunResult* bonded = nullptr;  // where the case has a bonded run
 };

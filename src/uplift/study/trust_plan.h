@@ -3,7 +3,7 @@
 #include <string_view>
 #include <vector>
 
-#include "uplift/analysis/case.h"
+#include "uplift/case/case.h"
 #include "uplift/study/case_edit.h"
 
 // How far results can be trusted: the same case with every choice of the computation changed, one at a time (docs/theory/trust.md).

@@ -1,9 +1,0 @@
-#pragma once
-#include "uplift/analysis/verdict_numbers.h"
-
-namespace uplift {
-
-/// Holds a criterion against the numbers: one result for the run, or for each interface that it is for.
-void add_results(const Criterion& criterion, VerdictNumbers& numbers);
-
-}  // namespace uplift

@@ -1,0 +1,130 @@
+#include "uplift/case/advice/step_suggestion.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+
+#include "uplift/base/format.h"
+#include "uplift/case/mesh/mesh.h"
+
+namespace uplift {
+namespace {
+
+constexpr double steps_a_period = 20, highest_of_structure = 50;  // Hz
+constexpr double steps_a_period_of_joint = 8,
+                 highest_of_joint = 300;  // Hz: above, the joint acts as a constraint, which needs no resolution
+constexpr double steps_a_period_of_floors = 40, highest_of_floors = 33;  // Hz: above, the spectrum of an earthquake is that of the peak
+constexpr double accepted_difference = 0.01, least_step = 1e-5, most_step = 0.1;
+
+/// Modes of the structure, and those in which it bounces on the closed joint.
+void bound_by_modes(const std::vector<double>& bonded, std::vector<StepBound>& bounds) {
+  double structure = 0, joint = 0;
+  for (const double frequency : bonded) {
+    if (frequency < highest_of_structure)
+      structure = std::max(structure, frequency);
+    else if (frequency < highest_of_joint)
+      joint = std::max(joint, frequency);
+  }
+  if (structure > 0)
+    bounds.push_back({1 / (steps_a_period * structure),
+                      fmt::format("twenty steps a period of the bonded mode of {}", format_quantity(structure, "Hz"))});
+  if (joint > 0)
+    bounds.push_back({1 / (steps_a_period_of_joint * joint),
+                      fmt::format("eight steps a period of the bonded mode of {}", format_quantity(joint, "Hz"))});
+}
+
+/// A wave shall not cross more than one face of the interface in a step, on the softer side: what a contact that opens or closes sends out
+/// is not resolved otherwise.
+void bound_by_contact_mesh(const Case& read, const BuiltCase& built, std::vector<StepBound>& bounds) {
+  if (!read.mesh) return;
+  const CaseSolids solids(read.values, *read.mesh);
+  for (std::size_t k = 0; k < built.facts.size(); ++k) {
+    double speed = 0;
+    for (const FacePair& faces : built.facts[k].faces)
+      for (const CellId side : {faces.lower, faces.upper})
+        if (const CaseSolids::Solid* solid = solids.beside(side); solid && solid->section.material.density > 0) {
+          const double here = solid->section.material.p_wave_speed();
+          speed = speed > 0 ? std::min(speed, here) : here;
+        }
+    const Interface& interface = built.model.interfaces[k];
+    if (!(speed > 0)) continue;
+    const double face = interface.area.sum() / static_cast<double>(built.facts[k].faces.size());
+    const double size = interface.space.dimension == 3 ? std::sqrt(face) : face / built.facts[k].depth;
+    bounds.push_back({size / speed, fmt::format("waves of {} cross a face of \"{}\", {}, in one step", format_quantity(speed, "m/s"),
+                                                interface.name, format_quantity(size, "m"))});
+  }
+}
+
+/// Floor spectra ask for more than the forces: the period error of the scheme, (w h)^2/12, moves their peaks.
+void bound_by_floors(const RunPlan& plan, std::vector<StepBound>& bounds) {
+  double highest = 0;
+  for (const FloorRequest& floor : plan.floors)
+    if (!floor.frequencies.empty()) highest = std::max(highest, std::min(floor.frequencies.back(), highest_of_floors));
+  if (highest > 0)
+    bounds.push_back({1 / (steps_a_period_of_floors * highest),
+                      fmt::format("forty steps a period of the floor spectra at {}", format_quantity(highest, "Hz"))});
+}
+
+void bound_by_loads(const BuiltCase& built, std::vector<StepBound>& bounds) {
+  double smallest = most_step;
+  const TimeLoad* fastest = nullptr;
+  for (const TimeLoad* time_load : varying_loads(built.model)) {
+    const double step =
+        step_that_resolves(*time_load->function, static_cast<int>(time_load->order), dynamic_duration(built.plan), smallest);
+    if (step < smallest) smallest = step, fastest = time_load;
+  }
+  if (fastest)
+    bounds.push_back({smallest, fmt::format("straight lines between the steps follow the load \"{}\" within 1 %", fastest->name)});
+}
+
+}  // namespace
+
+std::vector<const TimeLoad*> varying_loads(const Model& model) {
+  std::vector<const TimeLoad*> found;
+  for (const TimeLoad& time_load : model.time_loads)
+    if (!time_load.constant && !time_load.dead && time_load.function) found.push_back(&time_load);
+  return found;
+}
+
+double dynamic_duration(const RunPlan& plan) {
+  double duration = 0;
+  for (const Stage& stage : plan.stages)
+    if (stage.type == Stage::Type::dynamics) duration += stage.duration;
+  return duration;
+}
+
+double unresolved_share(const TimeFunction& function, int derivative, double duration, double step) {
+  constexpr double most_samples = 2e5;
+  const double fine = std::max({least_step, duration / most_samples, step / 1000});
+  const auto count = std::max(1L, std::lround(duration / fine));
+  double difference = 0, size = 0, begin = 0, left = derivative_of(function, derivative, 0),
+         right = derivative_of(function, derivative, step);
+  for (long i = 0; i < count; ++i) {
+    const double time = (static_cast<double>(i) + 0.5) * fine;
+    while (time > begin + step) begin += step, left = right, right = derivative_of(function, derivative, begin + step);
+    const double value = derivative_of(function, derivative, time), share = (time - begin) / step;
+    difference += std::abs(value - (left + share * (right - left)));
+    size += std::abs(value);
+  }
+  return size > 0 ? difference / size : 0;
+}
+
+double step_that_resolves(const TimeFunction& function, int derivative, double duration, double most) {
+  double step = most;
+  while (step > least_step * (1 + 1e-9) && unresolved_share(function, derivative, duration, step) > accepted_difference)
+    step = rounded_down(0.6 * step);
+  return std::max(step, least_step);
+}
+
+std::vector<StepBound> step_bounds(const Case& read, const BuiltCase& built, const std::vector<double>& bonded) {
+  std::vector<StepBound> bounds;
+  bound_by_modes(bonded, bounds);
+  bound_by_contact_mesh(read, built, bounds);
+  bound_by_floors(built.plan, bounds);
+  bound_by_loads(built, bounds);
+  std::ranges::stable_sort(bounds, {}, &StepBound::step);
+  return bounds;
+}
+
+}  // namespace uplift

@@ -1,0 +1,400 @@
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+
+#include "uplift/base/format.h"
+#include "uplift/case/advice/content.h"
+#include "uplift/case/advice/step_suggestion.h"
+#include "uplift/case/ground/ground.h"
+#include "uplift/case/mesh/mesh.h"
+#include "uplift/model/damping.h"
+#include "uplift/model/hinges.h"
+#include "uplift/model/tuned_mass.h"
+
+namespace uplift {
+namespace {
+
+struct Magnitude {
+  const char *table, *key, *unit;
+  double least, most;
+  const char* hint;
+};
+/// What civil structures have; outside, a unit is probably missing.
+constexpr std::array<Magnitude, 12> usual{{{"beam", "E", "Pa", 1e8, 1e12, "concrete is about 3e10 Pa, steel 2.1e11 Pa"},
+                                           {"beam", "I", "m4", 1e-9, 1e5, "1 cm4 is 1e-8 m4"},
+                                           {"beam", "A", "m2", 1e-6, 1e4, "1 cm2 is 1e-4 m2"},
+                                           {"beam", "density", "kg/m3", 100, 30000, "concrete is about 2500 kg/m3"},
+                                           {"mass", "mass", "kg", 1e-1, 1e10, "1 t is 1000 kg"},
+                                           {"mass", "tuned_frequency", "Hz", 1e-2, 1e3, "in Hz, not in rad/s"},
+                                           {"rigid", "mass", "kg", 1e-1, 1e10, "1 t is 1000 kg"},
+                                           {"solid", "E", "Pa", 1e5, 1e12, "soil has 1e7 to 1e9 Pa, concrete about 3e10 Pa"},
+                                           {"solid", "shear_wave_speed", "m/s", 20, 5000, "soil has 100 to 800 m/s"},
+                                           {"solid", "density", "kg/m3", 10, 30000, "soil is about 1900 kg/m3, concrete 2500 kg/m3"},
+                                           {"stage", "step", "s", 1e-7, 0.5, "1 ms is 0.001 s"},
+                                           {"stage", "duration", "s", 1e-4, 1e5, "in seconds"}}};
+
+constexpr Magnitude water_weight{"water", "unit_weight", "N/m3", 9e3, 1.3e4, "water has 9810 N/m3; 9.81 kN/m3 is meant for 9.81"};
+
+void warn_magnitude(const Values& table, const Magnitude& each, std::vector<std::string>& said) {
+  if (!table.given(each.key)) return;
+  const double value = table.number(each.key);
+  if (value != 0 && (value < each.least || value > each.most))
+    said.push_back(fmt::format("{}:{}: {} = {:g} {} is unusual for a structure ({}); is the unit right?", table.where(each.key).file,
+                               table.where(each.key).line, table.path(each.key), value, each.unit, each.hint));
+}
+
+void warn_magnitudes(const Case& read, std::vector<std::string>& said) {
+  for (const Magnitude& each : usual)
+    for (const Values& table : read.values.tables(each.table)) warn_magnitude(table, each, said);
+  for (const Values& interface : read.values.tables("interface"))
+    if (const Values* water = table_if(interface, "water")) warn_magnitude(*water, water_weight, said);
+}
+
+/// Largest distance between nodes and points of interfaces, in one direction [m].
+double extent(const Model& model) {
+  Vec3 least = model.nodes.front().position, most = least;
+  const auto take = [&](const Vec3& place) { least = least.cwiseMin(place), most = most.cwiseMax(place); };
+  for (const Node& node : model.nodes) take(node.position);
+  for (const Interface& interface : model.interfaces)
+    for (const Vec3& place : interface.position) take(place);
+  return (most - least).maxCoeff();
+}
+
+/// Gaps are small beside a structure.
+void warn_gaps(const BuiltCase& built, std::vector<std::string>& said) {
+  constexpr double most = 0.1;
+  if (built.model.nodes.empty()) return;
+  const double size = extent(built.model);
+  for (const Interface& interface : built.model.interfaces)
+    if (const double gap = interface.gap.maxCoeff(); size > 0 && gap > most * size)
+      said.push_back(
+          fmt::format("interface \"{}\": an initial gap of {} in a model of {} will hardly close (joints have gaps of "
+                      "millimetres to centimetres); is the unit right?",
+                      interface.name, format_quantity(gap, "m"), format_quantity(size, "m")));
+}
+
+/// Static stages apply what is constant, and motions as they are at t = 0.
+void warn_idle_functions(const Case& read, const BuiltCase& built, std::vector<std::string>& said) {
+  if (!statics_alone(built.plan)) return;
+  for (const char* name : {"load", "ground_acceleration"})
+    for (const Values& table : read.values.tables(name))
+      if (table.has("function"))
+        said.push_back(
+            fmt::format("{}:{}: this [[{}]] has no effect: it has a function of time, and static stages apply constant loads "
+                        "alone; leave the function out, or add a dynamic stage",
+                        table.where().file, table.where().line, name));
+  for (const PrescribedMotion& motion : built.model.motions)
+    if (motion.function->value(0) == 0)
+      said.push_back(
+          fmt::format("the prescribed motion \"{}\" has no effect: static stages apply the value that its function has at t = 0, "
+                      "which is 0",
+                      motion.name));
+}
+
+/// Without a static stage the weight acts suddenly: twice the settlement, and uplift on the rebound.
+void warn_sudden_weight(const BuiltCase& built, std::vector<std::string>& said) {
+  const std::vector<Stage>& stages = built.plan.stages;
+  if (stages.empty() || stages.front().type == Stage::Type::statics || built.plan.initial_displacement.size() > 0) return;
+  const double weight = built.model.assembly.gravity.norm();
+  const bool falls =
+      std::ranges::any_of(built.model.time_loads, [](const TimeLoad& time_load) { return time_load.dead && !time_load.shape.isZero(0); });
+  if (weight > 0 && falls)
+    said.push_back(
+        "the weight acts suddenly at t = 0, because no static stage comes before the dynamic one: the structure oscillates about its "
+        "equilibrium with twice the settlement; put a [[stage]] with type = \"static\" first");
+}
+
+/// Steps are equal, so that a stage has a whole number of them.
+void warn_duration(const BuiltCase& built, std::vector<std::string>& said) {
+  for (std::size_t k = 0; k < built.plan.stages.size(); ++k) {
+    const Stage& stage = built.plan.stages[k];
+    if (stage.type != Stage::Type::dynamics) continue;
+    const double steps = stage.duration / stage.step, whole = std::max(1.0, std::round(steps));
+    if (std::abs(steps - whole) > 1e-6 * whole)
+      said.push_back(
+          fmt::format("stage {}: the duration of {:.9g} s is not a whole number of steps of {:.9g} s; the stage has {:.9g} steps and ends "
+                      "after {:.9g} s",
+                      k + 1, stage.duration, stage.step, whole, whole * stage.step));
+  }
+}
+
+/// Absorbing sides take the ground beside the model to be at rest.
+void warn_sides(const Case& read, std::vector<std::string>& said) {
+  const std::vector<Values>& faces = read.values.tables("absorbing");
+  if (std::ranges::none_of(faces, [](const Values& each) { return each.has("incident"); })) return;
+  for (const Values& each : faces)
+    if (!each.has("incident") && !each.flag("free_field"))
+      said.push_back(
+          fmt::format("{}:{}: {} holds the incident wave back like ground at rest; take free_field = true, or a [[tie]] of opposite sides",
+                      each.where().file, each.where().line, each.text("group")));
+}
+
+/// Absorbing faces on which a support holds the nodes in the dynamic stages too: what would move along a held direction neither goes out
+/// nor comes in there. An incident wave that moves along the others is none of its business.
+void warn_held_faces(const Case& read, const BuiltCase& built, std::vector<std::string>& said) {
+  const int dimension = built.model.space.dimension;
+  for (const Values& face : read.values.tables("absorbing"))
+    for (const Values& support : read.values.tables("support")) {
+      if (!support.has("group") || support.text("group") != face.text("group") || support.text("stages") != "all") continue;
+      const std::vector<std::string>& fixed = support.texts("fixed");
+      const Values* incident = table_if(face, "incident");
+      const Vec3 motion = incident ? incident_motion(*incident, built.model.space) : Vec3::Zero();
+      std::string held, stopped;
+      int count = 0;
+      for (int k = 0; k < dimension; ++k) {
+        const std::string unknown = std::array{"ux", "uy", "uz"}[static_cast<std::size_t>(k)];
+        if (std::ranges::find(fixed, unknown) == fixed.end()) continue;
+        ++count;
+        held += (held.empty() ? "" : ", ") + unknown;
+        if (std::abs(motion[k]) > 1e-9) stopped += (stopped.empty() ? "" : ", ") + unknown;
+      }
+      const std::string place = fmt::format("{}:{}: {} is held along {} in the dynamic stages too: ", support.where().file,
+                                            support.where().line, face.text("group"), held);
+      if (!stopped.empty())
+        said.push_back(fmt::format("{}the incident {} wave, which moves along {}, does not come in there; take stages = \"static\"", place,
+                                   incident->text("wave"), stopped));
+      else if (count == dimension)
+        said.push_back(place + "no wave leaves there; take stages = \"static\"");
+    }
+}
+
+void warn_sides_exchanged(const Case& read, const BuiltCase& built, std::vector<std::string>& said) {
+  const std::vector<Values>& interfaces = read.values.tables("interface");
+  if (interfaces.size() != 1 || !interfaces.front().has("surface") || !(built.weight < 0)) return;
+  if (interfaces.front().has("water") || !interfaces.front().table("surface").has("lower")) return;  // see warn_floating
+  const Values& surface = interfaces.front().table("surface");
+  said.push_back(fmt::format("{}:{}: the dead load of {} pulls the upper side off the lower one: does `lower` name the side that bears?",
+                             surface.where("lower").file, surface.where("lower").line, format_quantity(-built.weight, "N")));
+}
+
+void warn_floating(const Case& read, const BuiltCase& built, std::vector<std::string>& said) {
+  const std::vector<Values>& interfaces = read.values.tables("interface");
+  if (built.weight > 0 || std::ranges::none_of(interfaces, [](const Values& interface) { return interface.has("water"); })) return;
+  said.push_back(fmt::format("the water pressure exceeds the dead load on \"{}\" by {}: the structure floats", built.facts.front().name,
+                             format_quantity(-built.weight, "N")));
+}
+
+/// docs/theory, eq (3): a closure stress above 1 % of the bearing pressure resists the closing of gaps noticeably.
+void warn_closure(const BuiltCase& built, std::vector<std::string>& said) {
+  double area = 0;
+  for (const InterfaceFacts& facts : built.facts) area += facts.area;
+  const double mean = area > 0 ? built.weight / area : 0;
+  for (std::size_t k = 0; k < built.behaviours.size(); ++k) {
+    const Values& law = *built.behaviours[k];
+    if (!law.items().contains("F_c") || !law.has("F_c")) continue;
+    const double closure = std::abs(law.number("F_c"));
+    if (mean > 0 && closure > 0.01 * mean)
+      said.push_back(fmt::format(
+          "{}:{}: |F_c| = {} is {} of the mean bearing pressure {}: the joint pushes before its gap is closed; keep it below 1 %",
+          law.where("F_c").file, law.where("F_c").line, format_quantity(closure, "Pa"), percent(closure / mean),
+          format_quantity(mean, "Pa")));
+    if (!(mean > 0))
+      said.push_back(fmt::format("{}: nothing presses the structure down: the interface opens under any load", built.facts[k].name));
+  }
+}
+
+/// Twenty steps per period of the fastest of the first three modes below 50 Hz (earthquakes hold little above 33 Hz).
+void warn_step(const BuiltCase& built, std::vector<std::string>& said) {
+  const Stage* stage = dynamic_stage(built.plan);
+  if (!stage) return;
+  double fastest = 0;
+  for (const Mode& mode : bonded_modes(built.at_rest(), 3))
+    if (mode.frequency < 50) fastest = std::max(fastest, mode.frequency);
+  if (fastest > 0 && stage->step > 1 / (20 * fastest))
+    said.push_back(
+        fmt::format("the step of {} is coarse for the mode at {:.3g} Hz (bonded base): take at most {} for twenty steps a period",
+                    format_quantity(stage->step, "s"), fastest, format_quantity(1 / (20 * fastest), "s")));
+}
+
+/// The scheme sees the loads at the steps only.
+void warn_loads(const BuiltCase& built, std::vector<std::string>& said) {
+  constexpr double accepted = 0.1;
+  const Stage* stage = dynamic_stage(built.plan);
+  if (!stage) return;
+  for (const TimeLoad* time_load : varying_loads(built.model)) {
+    const double share =
+        unresolved_share(*time_load->function, static_cast<int>(time_load->order), dynamic_duration(built.plan), stage->step);
+    if (share > accepted)
+      said.push_back(fmt::format("steps of {} do not follow the load \"{}\": straight lines between them differ from it by {} on average",
+                                 format_quantity(stage->step, "s"), time_load->name, percent(share)));
+  }
+}
+
+/// Bases without mass follow the loads in balance; the trapezoidal rule gives them velocities that alternate.
+void warn_massless(const BuiltCase& built, std::vector<std::string>& said) {
+  const Model& model = built.model;
+  if (!dynamic_stage(built.plan)) return;
+  std::string names;
+  for (int i = 0; i < model.free(); ++i) {
+    const int node = model.space.node_of(model.kept[static_cast<std::size_t>(i)]);
+    if (model.mass.coeff(i, i) != 0) continue;
+    const bool base = std::ranges::any_of(
+        built.facts, [&](const InterfaceFacts& facts) { return std::ranges::find(facts.upper, node) != facts.upper.end(); });
+    if (base && names.size() < 60) names += (names.empty() ? "" : ", ") + model.unknown_names[static_cast<std::size_t>(i)];
+  }
+  if (!names.empty())
+    said.push_back(fmt::format(
+        "no mass at {}: displacements and forces are those of the balance, but velocities, accelerations and floor spectra mean "
+        "nothing there, and without contact nothing may determine the motion; give it a mass",
+        names));
+}
+
+/// A static stage knows no velocities.
+void warn_stop(const BuiltCase& built, std::vector<std::string>& said) {
+  for (const std::size_t k : stopping_stages(built.plan))
+    said.push_back(
+        fmt::format("stage {} is static after a dynamic one: the structure is stopped there, and the energy that this takes is booked as "
+                    "energy.stop",
+                    k + 1));
+}
+
+/// Ten steps a period, as for any response by steps; and the shocks of rigid ground.
+void warn_floors(const RunSpec& spec, const BuiltCase& built, std::vector<std::string>& said) {
+  const Stage* stage = dynamic_stage(built.plan);
+  if (!stage || built.plan.floors.empty()) return;
+  if (built.plan.method->constrains() && !spec.bonded)
+    said.push_back(fmt::format("floor spectra of a run with constraints: {}", floors_of_constraints));
+  double highest = 0;
+  for (const FloorRequest& floor : built.plan.floors) highest = std::max(highest, floor.frequencies.back());
+  if (const double resolved = 1 / (10 * stage->step); resolved < highest)
+    said.push_back(fmt::format("floor spectra up to {:.3g} Hz with a step of {}: ten steps a period reach up to {:.3g} Hz", highest,
+                               format_quantity(stage->step, "s"), resolved));
+}
+
+void warn_method(const Case& read, const RunSpec& spec, const BuiltCase& built, std::vector<std::string>& said) {
+  const Stage* stage = dynamic_stage(built.plan);
+  if (!stage || spec.bonded) return;
+  const Values* given = spec.impact ? spec.impact : read.values.has("impact") ? &read.values.part("impact") : nullptr;
+  const std::string impact = given ? given->type() : built.plan.method->constrains() ? "project_hold" : "none";
+  if (built.plan.method->constrains()) {
+    if (impact == "none")
+      said.push_back("constraints without a velocity correction (impact = \"none\") create energy without bound; take \"project_hold\"");
+    if (impact == "reflect" || impact == "propagate")
+      said.push_back(
+          fmt::format("impact = \"{}\" corrects the velocity at every step: the multipliers alone are not the contact force", impact));
+    if (spec.path_average.value_or(false))
+      said.push_back("traction = \"path\" has no effect with a constraint method: it takes the force at the end of the step");
+  } else if (!stage->path_average && impact == "none") {
+    double largest = 0;
+    for (const StiffnessRatio& ratio : stiffness_ratios(built.model, *stage, *built.plan.solver)) largest = std::max(largest, ratio.most);
+    if (largest > 0.05)
+      said.push_back(fmt::format(
+          "traction at the end of the step with a stiff joint (k F_ii = {:.3g}): this creates energy; take {}, or an "
+          "impact rule",
+          largest,
+          stage->scheme.average_acceleration() ? "traction = \"path\""
+                                               : "scheme = \"average_acceleration\", which has the path average of the traction"));
+  }
+}
+
+/// Solids hold no rotation: a column that ends at one of their nodes is hinged, which few mean.
+void warn_hinges(const BuiltCase& built, std::vector<std::string>& said) {
+  if (const std::vector<int> hinged = hinges(built.model); !hinged.empty())
+    said.push_back(fmt::format(
+        "beams end in hinges of solids, which hold no rotation: {}; where they are to be clamped, let them run on along edges of "
+        "the solids, or take a [[rigid]] group",
+        named_places(built.model, hinged)));
+}
+
+/// Between its nodes in the solids a beam bends as on hinged supports.
+void warn_embedded_feet(const BuiltCase& built, std::vector<std::string>& said) {
+  const std::vector<EmbeddedFoot> feet = embedded_feet(built.model);
+  if (feet.empty()) return;
+  const auto softer = [](const EmbeddedFoot& foot) { return 3 * foot.flexibility / foot.free_length; };
+  const EmbeddedFoot& worst = *std::ranges::max_element(feet, {}, softer);
+  said.push_back(fmt::format(
+      "{} run on into solids, along {} of {} at {}: that foot turns by {:.3g} m x M/(E I) more than a clamped one, so that a cantilever of "
+      "its free length, {}, moves {} further; a [[rigid]] plate under the foot clamps it, and smaller cells reduce the error in proportion",
+      feet.size() == 1 ? "a beam" : fmt::format("{} beams", feet.size()),
+      worst.cells == 1 ? "one cell" : fmt::format("{} cells", worst.cells), format_quantity(worst.cell, "m"),
+      named_places(built.model, {worst.node}), worst.flexibility, format_quantity(worst.free_length, "m"), percent(softer(worst))));
+}
+
+}  // namespace
+
+namespace {
+
+/// Modes of the motions that the columns of `held` span.
+std::vector<Mode> modes_within(const Sparse& held, const Sparse& stiffness, const Sparse& mass, int count) {
+  if (held.cols() == 0) return {};
+  const Sparse to_held = held.transpose();
+  std::vector<Mode> found = modes(to_held * stiffness * held, to_held * mass * held, count);
+  for (Mode& mode : found) mode.shape = held * mode.shape;
+  return found;
+}
+
+/// Nodes of all interfaces that are on the upper (lower) side: those whose shape functions have a positive (negative) integral in the
+/// normal openings.
+std::vector<int> nodes_of_sides(const Model& model, bool upper) {
+  Vector integral = Vector::Zero(static_cast<Index>(model.nodes.size()));
+  const SparseRows rows = model.assembly.b;
+  Index row = 0;
+  for (const Interface& face : model.interfaces) {
+    row += face.batch.normal();
+    for (int i = 0; i < face.batch.points; ++i, ++row)
+      for (SparseRows::InnerIterator entry(rows, row); entry; ++entry)
+        if (const int dof = model.space.index_of(entry.col()); dof < model.space.dimension)
+          integral[model.space.node_of(entry.col())] += face.area[i] * entry.value() * face.normal[static_cast<std::size_t>(i)][dof];
+    row += face.rows() - face.batch.normal() - face.batch.points;
+  }
+  std::vector<int> nodes;
+  for (int node = 0; node < static_cast<int>(integral.size()); ++node)
+    if (upper ? integral[node] > 0 : integral[node] < 0) nodes.push_back(node);
+  return nodes;
+}
+
+/// Only the columns that move something else than ground: what is connected to lower sides alone stands still.
+Sparse without_ground(const Sparse& held, const Model& model) {
+  const std::vector<char> above = part_of(model, nodes_of_sides(model, true)), below = part_of(model, nodes_of_sides(model, false));
+  std::vector<Triplet> chosen;
+  for (int column = 0, next = 0; column < static_cast<int>(held.cols()); ++column) {
+    bool ground = true;
+    for (Sparse::InnerIterator entry(held, column); entry; ++entry) {
+      const auto node = static_cast<std::size_t>(model.space.node_of(model.kept[static_cast<std::size_t>(entry.row())]));
+      ground = ground && below[node] && !above[node];
+    }
+    if (!ground) chosen.emplace_back(column, next++, 1.0);
+  }
+  Sparse select(held.cols(), static_cast<Index>(chosen.size()));
+  select.setFromTriplets(chosen.begin(), chosen.end());
+  return held * select;
+}
+
+}  // namespace
+
+std::vector<Mode> bonded_modes(const Model& model, int count) {
+  return modes_within(cones_held(model), bonded_stiffness(model), model.mass, count);
+}
+
+std::vector<Mode> fixed_base_modes(const Model& model, int count) {
+  return modes_within(without_ground(base_held(model), model), model.stiffness, model.mass, count);
+}
+
+std::vector<std::string> warnings(const Case& read, const RunSpec& spec, const BuiltCase& built) {
+  std::vector<std::string> said;
+  warn_magnitudes(read, said);
+  warn_gaps(built, said);
+  warn_idle_functions(read, built, said);
+  warn_sudden_weight(built, said);
+  warn_duration(built, said);
+  warn_closure(built, said);
+  warn_sides(read, said);
+  warn_held_faces(read, built, said);
+  warn_sides_exchanged(read, built, said);
+  warn_floating(read, built, said);
+  warn_hinges(built, said);
+  warn_embedded_feet(built, said);
+  warn_step(built, said);
+  warn_loads(built, said);
+  warn_massless(built, said);
+  warn_stop(built, said);
+  warn_floors(spec, built, said);
+  warn_method(read, spec, built, said);
+  warn_content(read, built, said);
+  warn_motions(built.motions, built.plan.stages, said);
+  return said;
+}
+
+}  // namespace uplift

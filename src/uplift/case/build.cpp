@@ -1,0 +1,421 @@
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <filesystem>
+
+#include "uplift/base/text.h"
+#include "uplift/case/advice/history_forecast.h"
+#include "uplift/case/build/criteria.h"
+#include "uplift/case/build/output.h"
+#include "uplift/case/build/roles.h"
+#include "uplift/case/build/water.h"
+#include "uplift/case/decided.h"
+#include "uplift/case/ground/ground.h"
+#include "uplift/case/schema/sections.h"
+#include "uplift/case/shown.h"
+#include "uplift/model/check.h"
+#include "uplift/model/tuned_mass.h"
+
+namespace uplift {
+namespace {
+
+constexpr int most_pictured = 20'000'000;  // numbers kept for the animation: 160 MB
+
+/// Values as they would be read from a file again, with one number replaced.
+Values with_number(const Values& part, std::string_view key, double number) {
+  auto table = std::make_shared<RawTable>();
+  const auto add = [&](std::string_view name, auto data) {
+    table->entries.emplace_back(std::string(name), Raw{std::move(data), part.where(name), part.path(name)});
+  };
+  add("type", part.type());
+  for (const auto& [name, item] : part.items()) {
+    if (name == key) continue;
+    if (const auto* flag = std::get_if<bool>(&item.data)) add(name, *flag);
+    if (const auto* whole = std::get_if<std::int64_t>(&item.data)) add(name, *whole);
+    if (const auto* real = std::get_if<double>(&item.data)) add(name, *real);
+    if (const auto* text = std::get_if<std::string>(&item.data)) add(name, *text);
+  }
+  add(key, number);
+  return check_part(Raw{table, part.where(), part.path()}, interface_behaviours());
+}
+
+/// An elastic joint that never opens, with the damping of the one that may: what differs between the runs is the uplift alone.
+Values bonded_behaviour(const Values& like, const std::vector<double>& stiffness) {
+  auto table = std::make_shared<RawTable>();
+  const auto add = [&](const char* name, auto data) { table->entries.emplace_back(name, Raw{std::move(data), like.where(), like.path()}); };
+  add("type", std::string("elastic"));
+  add("K_n", stiffness.back());
+  if (like.items().contains("c") && like.has("c")) add("c", like.number("c"));
+  if (stiffness.size() > 1)
+    add("K_t", stiffness.front());
+  else
+    add("tangential", std::string("none"));
+  return check_part(Raw{table, like.where(), like.path()}, interface_behaviours());
+}
+
+/// The law or cone of an interface in this run.
+const Values& behaviour_of(const InterfacePart& part, const RunSpec& spec) {
+  const bool replaced = spec.law && (spec.interface.empty() || spec.interface == part.name);
+  return replaced ? *spec.law : part.table->part("law");
+}
+
+/// `like`: the interfaces get the components that they have in this model; null: as many as their law and supports leave.
+void add_interfaces(const Case& read, const RunSpec& spec, const Model* like, ModelBuilder& builder, CaseNames& names, BuiltCase& built) {
+  if (like) builder.keep_tangents();
+  std::vector<InterfacePart> parts = interface_parts(read, spec.rigid_ground, builder, names);
+  for (InterfacePart& part : parts) {
+    if (std::string note = note_of_water(part); !note.empty()) built.notes.push_back(std::move(note));
+    Joint& joint = part.joint;
+    const Values& behaviour = behaviour_of(part, spec);
+    InterfaceSpec made;
+    made.name = part.name;
+    made.components = like ? like->interfaces[built.facts.size()].batch.components : components_of(behaviour, names.space);
+    made.points = std::move(joint.points);
+    made.reference = joint.reference;
+    made.behaviour = behaviour.type();
+    made.law = make_part(law_catalog(), behaviour);
+    if (!made.law) made.cone = make_part(cone_catalog(), behaviour);
+    if (behaviour.items().contains("friction") && behaviour.has("friction")) joint.facts.friction = behaviour.number("friction");
+    if (behaviour.items().contains("cohesion") && behaviour.has("cohesion")) joint.facts.cohesion = behaviour.number("cohesion");
+    if (behaviour.items().contains("F_u") && behaviour.has("F_u")) joint.facts.tension = behaviour.number("F_u");
+    built.facts.push_back(std::move(joint.facts));
+    built.behaviours.push_back(&behaviour);
+    builder.add_interface(std::move(made), part.table->where());
+  }
+  if (spec.law && !spec.interface.empty()) names.interfaces.find(spec.interface, spec.law->where(), spec.law->path());
+}
+
+/// With the place that asks for the path average: a stage, a variant or the stiffness sweep.
+[[noreturn]] void fail_traction(const Values& stage, const RunSpec& spec) {
+  const char* wanted = "traction = \"end\" with this scheme (the path average belongs to the average acceleration)";
+  if (spec.stiffness_ratio)
+    throw InputError(spec.law->where(), "compare.stiffness_sweep",
+                     "stages with the average acceleration: the sweep compares both tractions", in_quotes(stage.part("scheme").type()));
+  if (spec.path_average) throw InputError(stage.where("scheme"), "variant \"" + spec.name + "\"", wanted, "traction = \"path\"");
+  fail(stage, "traction", wanted, "\"path\"");
+}
+
+Stage stage_of(const Values& table, const RunSpec& spec) {
+  Stage stage;
+  stage.type = table.text("type") == "static" ? Stage::Type::statics : Stage::Type::dynamics;
+  stage.steps = table.integer("steps");
+  stage.halvings = table.integer("halvings");
+  stage.p_delta = table.flag("p_delta");
+  if (stage.type == Stage::Type::statics) return stage;
+  for (const char* key : {"duration", "step"})
+    if (!table.has(key)) fail(table, "", fmt::format("{} of a dynamic stage", key), "none");
+  stage.duration = spec.duration.value_or(table.number("duration"));
+  stage.step = spec.step_factor * spec.step.value_or(table.number("step"));
+  if (stage.step > stage.duration)
+    fail(table, "step", fmt::format("a step shorter than the duration of {:g} s", stage.duration), fmt::format("{:g} s", stage.step));
+  const Values& scheme = spec.scheme ? *spec.scheme : table.part("scheme");
+  stage.scheme = *make_part(scheme_catalog(), scheme);
+  // The path average closes the energy balance with the trapezoidal rule only: other schemes take the end of the step unless told
+  // otherwise.
+  const bool wanted = spec.path_average.value_or(table.text("traction") == "path");
+  const bool stated = spec.path_average.has_value() || table.given("traction");
+  if (wanted && stated && !stage.scheme.average_acceleration()) fail_traction(table, spec);
+  stage.path_average = wanted && stage.scheme.average_acceleration();
+  return stage;
+}
+
+}  // namespace
+
+DecidedTexts decided_texts(const Case& read) {
+  DecidedTexts decided;
+  for (const Values& stage : read.values.tables("stage"))
+    if (stage.text("type") != "static" && !stage.given("traction") &&
+        stage_of(stage, {}).path_average != (stage.text("traction") == "path"))
+      decided[stage.path("traction")] = "end";
+  return decided;
+}
+
+namespace {
+
+void add_stages(const Case& read, const RunSpec& spec, RunPlan& plan) {
+  for (const Values& table : read.values.tables("stage")) plan.stages.push_back(stage_of(table, spec));
+  if (plan.stages.empty()) fail(read.values, "", "at least one [[stage]]", "none");
+}
+
+/// Method and rule; the method must suit the behaviours.
+void add_method(const Case& read, const RunSpec& spec, BuiltCase& built) {
+  const Values& root = read.values;
+  const Values* method = spec.method ? spec.method : root.has("method") ? &root.part("method") : nullptr;
+  bool cone = false;
+  for (const Interface& interface : built.model.interfaces) cone = cone || interface.cone != nullptr;
+  if (spec.bonded) method = nullptr;
+  if (method && cone && method->type() == "newton")
+    fail(*method, "", "a method for cones (penalty, augmented_lagrangian, lagrange), or a traction law", "\"newton\" with a cone");
+  if (method && !cone && !spec.law && method->type() == "penalty")
+    fail(*method, "", "a cone (law = \"unilateral\" or \"coulomb\"), or method = \"newton\"", "\"penalty\" with a traction law");
+  const Values automatic = check_part(Raw{std::string(cone ? "lagrange" : "newton"), root.where(), "method"}, contact_methods());
+  built.plan.method = make_part(method_catalog(), method ? *method : automatic);
+  // a joint that gives way keeps its velocity: a correction is for constraints, and for a stiff law where the user asks for it
+  const Values* impact = spec.bonded ? nullptr : spec.impact ? spec.impact : root.has("impact") ? &root.part("impact") : nullptr;
+  const Values standard =
+      check_part(Raw{std::string(cone && !spec.bonded ? "project_hold" : "none"), root.where(), "impact"}, impact_rules());
+  built.plan.impact = make_part(impact_catalog(), impact ? *impact : standard);
+}
+
+/// The mass that a tuned point mass gets: that of the structure without it, see tuned_mass.
+std::vector<double> tuned_masses(const Case& read, const RunSpec& spec) {
+  const Values* tuned = nullptr;
+  for (const Values& mass : read.values.tables("mass")) {
+    if (!mass.has("tuned_frequency") || mass.has("mass")) continue;
+    if (tuned) fail(mass, "tuned_frequency", "at most one tuned mass", "a second one");
+    tuned = &mass;
+  }
+  if (!tuned) return {};
+  BuiltCase without;
+  CaseNames names;
+  names.space = space_of(read);
+  ModelBuilder builder(names.space);
+  add_nodes(read.values, builder, names);
+  add_mesh(read, builder, names);
+  add_functions(read, names);
+  add_structure(read.values, builder, names, {0.0}, true);
+  add_interfaces(read, spec, nullptr, builder, names, without);
+  const Model model = builder.finish();
+  check_static(model, read.values.where());  // a loose body is named as such, not as a mass that cannot be tuned
+  return {tuned_mass(model, names.node(*tuned, "node"), tuned->number("tuned_frequency"), tuned->where("tuned_frequency"))};
+}
+
+/// The model of a run. `dynamic`: the model without the supports of static stages alone, when that with them is wanted; null: without them.
+Model make_model(const Case& read, const RunSpec& spec, const std::vector<double>& tuned, const Model* dynamic, CaseNames& names,
+                 BuiltCase& built) {
+  const Values& root = read.values;
+  names.space = space_of(read);
+  ModelBuilder builder(names.space);
+  add_nodes(root, builder, names);
+  add_mesh(read, builder, names);
+  names.instead = spec.motion;
+  names.share = newmark_share(built.plan.stages);
+  add_functions(read, names);
+  add_structure(root, builder, names, tuned, dynamic != nullptr);
+  add_ties(root, builder, names);
+  add_absorbing(root, builder, names);
+  if (!dynamic)
+    add_free_field(root, built.plan.stages, spec.damping ? bulk_damping(*spec.damping) : BulkDamping{}, *bulk_solver(read), builder, names);
+  add_interfaces(read, spec, dynamic, builder, names, built);
+  add_loads(root, builder, names);
+  if (spec.damping) builder.set_damping(bulk_damping(*spec.damping));
+  built.beams = names.beams;
+  return builder.finish();
+}
+
+/// The model of the static stages, with the laws that the run takes.
+std::shared_ptr<const Model> resting_model(const Case& read, const RunSpec& spec, const std::vector<double>& tuned,
+                                           const BuiltCase& built) {
+  BuiltCase scratch;
+  CaseNames names;
+  auto rest = std::make_shared<Model>(make_model(read, spec, tuned, &built.model, names, scratch));
+  for (std::size_t k = 0; k < rest->interfaces.size(); ++k) {
+    Interface& interface = rest->interfaces[k];
+    interface.law = make_part(law_catalog(), *built.behaviours[k]);
+    interface.cone = interface.law ? nullptr : make_part(cone_catalog(), *built.behaviours[k]);
+    interface.behaviour = built.model.interfaces[k].behaviour;
+  }
+  return rest;
+}
+
+/// Released supports do not come back, and the second order begins with the state that they have borne.
+void check_release(const Values& root, const RunPlan& plan) {
+  const Stage* first = dynamic_stage(plan);
+  const std::vector<Values>& tables = root.tables("stage");
+  for (std::size_t k = 0; first && k < plan.stages.size(); ++k) {
+    const Stage& stage = plan.stages[k];
+    if (&stage < first) continue;
+    if (stage.type == Stage::Type::statics)
+      fail(tables[k], "type", "no static stage after a dynamic one, where supports hold in static stages alone", "one");
+    if (stage.p_delta && !first->p_delta)
+      fail(tables[k], "p_delta", "p_delta from the first dynamic stage on, where supports hold in static stages alone", "p_delta later");
+  }
+}
+
+/// N/m; of rigid bodies alone any number does.
+double largest_stiffness(const Model& model) {
+  const double largest = model.free() > 0 ? Vector(model.stiffness.diagonal()).maxCoeff() : 0;
+  return largest > 0 ? largest : 1e9;
+}
+
+/// Replaces laws that depend on the compliance of the model: the swept stiffness, the bonded joint.
+void adapt_laws(const Case& read, const RunSpec& spec, BuiltCase& built) {
+  if (!spec.stiffness_ratio && !spec.bonded) return;
+  const Stage* stage = dynamic_stage(built.plan);
+  if (!stage && spec.stiffness_ratio) fail(*spec.law, "", "a dynamic stage, at whose step k F_ii is taken", "static stages alone");
+  std::vector<StiffnessRatio> ratios;
+  if (stage) ratios = stiffness_ratios(built.model, *stage, *bulk_solver(read));
+  for (std::size_t k = 0; k < built.model.interfaces.size(); ++k) {
+    Interface& interface = built.model.interfaces[k];
+    const Values& behaviour = *built.behaviours[k];
+    std::unique_ptr<const Values> derived;
+    if (spec.bonded) {
+      std::vector<double> stiffness(static_cast<std::size_t>(interface.batch.components));
+      if (interface.law)
+        interface.law->closed_stiffness(interface.batch.components, stiffness.data());
+      else  // a constraint: stiff beside the structure
+        std::fill(stiffness.begin(), stiffness.end(),
+                  1e3 * (stage ? 1 / ratios[k].compliance : largest_stiffness(built.model)) / interface.area.mean());
+      derived = std::make_unique<const Values>(bonded_behaviour(behaviour, stiffness));
+    } else if (&behaviour == spec.law) {
+      const std::string& key = spec.stiffness_parameter;
+      if (!behaviour.items().contains(key) || !behaviour.has(key))
+        fail(behaviour, "", "a law with the parameter \"" + key + "\"", "\"" + behaviour.type() + "\"");
+      derived = std::make_unique<const Values>(with_number(behaviour, key, behaviour.number(key) * *spec.stiffness_ratio / ratios[k].most));
+    } else {
+      continue;
+    }
+    interface.law = make_part(law_catalog(), *derived);
+    interface.cone.reset();
+    interface.behaviour = derived->type();
+    built.behaviours[k] = derived.get();
+    built.derived.push_back(std::move(derived));
+  }
+}
+
+}  // namespace
+
+Case check_case(const Raw& raw, const std::string& file, const MeshReader& read_mesh) {
+  Case read{check(raw, case_section()), file, nullptr, {}};
+  read.mesh = mesh_of_case(read.values, file, read_mesh);
+  read.records = read_records(read.values);
+  return read;
+}
+
+Case check_case_like(const Case& like, bool same_mesh, const Raw& raw, const MeshReader& read_mesh) {
+  Case read{check(raw, case_section()), like.file, like.mesh, like.records};
+  if (!same_mesh) read.mesh = mesh_of_case(read.values, like.file, read_mesh);
+  return read;
+}
+
+std::vector<std::string> input_files(const Case& read) {
+  std::vector<std::string> files;
+  const auto add = [&](const Values& table) {
+    const std::filesystem::path path = std::filesystem::path(read.file).parent_path() / table.text("file");
+    if (!std::filesystem::is_regular_file(path)) fail(table, "file", "a file", in_quotes(path.string()));
+    files.push_back(path.lexically_normal().string());
+  };
+  for (const Values& function : read.values.tables("function")) {
+    const Values& shape = function.part("shape");
+    if (shape.items().contains("file") && shape.has("file")) add(shape);
+  }
+  if (const Values* mesh = table_if(read.values, "mesh"); mesh && mesh->has("file")) add(*mesh);
+  for (const Values& record : read.values.tables("record"))
+    if (record.has("file")) files.push_back(record_path(record));
+  return files;
+}
+
+std::shared_ptr<const LinearSolver> bulk_solver(const Case& read) {
+  return make_part(solver_catalog(), read.values.part("solver"));
+}
+
+namespace {
+
+/// Diagonal of the box around places [m].
+double extent(const std::vector<Place>& places) {
+  if (places.empty()) return 0;
+  Vec3 least = places.front(), most = least;
+  for (const Vec3& place : places) least = least.cwiseMin(place), most = most.cwiseMax(place);
+  return (most - least).norm();
+}
+
+/// A base of width B that turns by the limit theta opens by B theta at its toe: as far, everywhere, the displacement is no smaller beside
+/// the structure than there.
+double separation_limit(const Values& limits, const Model& model) {
+  if (limits.has("separation")) return limits.number("separation");
+  std::vector<Place> points, nodes;
+  for (const Interface& interface : model.interfaces) points.insert(points.end(), interface.position.begin(), interface.position.end());
+  for (const Node& node : model.nodes) nodes.push_back(node.position);
+  const double base = extent(points);
+  return limits.number("rotation") * (base > 0 ? base : extent(nodes));
+}
+
+/// Tells of interfaces that were divided by their normals.
+void note_divided(BuiltCase& built) {
+  for (const InterfaceFacts& walls : built.facts)
+    for (const InterfaceFacts& base : built.facts)
+      if (walls.name == base.name + " walls" && walls.role == Role::wall)
+        built.notes.push_back(
+            fmt::format("the interface \"{}\" has faces of a base ({:.4g} m2) and of walls ({:.4g} m2): the walls are the "
+                        "interface \"{}\"",
+                        base.name, base.area, walls.area, walls.name));
+}
+
+InterfaceSolver interface_solver(const std::string& word) {
+  return word == "direct" ? InterfaceSolver::direct : word == "krylov" ? InterfaceSolver::krylov : InterfaceSolver::automatic;
+}
+
+}  // namespace
+
+std::string_view to_string(Role role) {
+  return role == Role::base ? "base" : "wall";
+}
+
+std::size_t BuiltCase::bases() const {
+  const auto count = static_cast<std::size_t>(std::ranges::count(facts, Role::base, &InterfaceFacts::role));
+  return count > 0 ? count : facts.size();
+}
+
+bool BuiltCase::is_strip() const {
+  return model.space.dimension == 2 && !facts.empty() &&
+         std::ranges::all_of(facts, [](const InterfaceFacts& each) { return each.depth == 1; });
+}
+
+BuiltCase build(const Case& read, const RunSpec& spec) {
+  const Values& root = read.values;
+  BuiltCase built;
+  CaseNames names;
+  const std::vector<double> tuned = tuned_masses(read, spec);
+  if (!tuned.empty()) {
+    built.tuned_mass = tuned.front();
+    built.notes.push_back(fmt::format("the tuned mass is {:.10g} kg", built.tuned_mass));
+  }
+  add_stages(read, spec, built.plan);
+  check_second_order_water(root);
+  built.model = make_model(read, spec, tuned, nullptr, names, built);
+  const bool released = any_released(root);
+  const bool rests = std::ranges::any_of(built.plan.stages, [](const Stage& stage) { return stage.type == Stage::Type::statics; });
+  if (!released && rests) check_static(built.model, root.where());
+  if (dynamic_stage(built.plan)) check_dynamic(built.model, root.where());
+  built.motions = motions_used(root, read.records, spec.motion);
+
+  RunPlan& plan = built.plan;
+  plan.name = spec.name;
+  plan.label = spec.label;
+  plan.group = spec.group;
+  plan.expected_to_fail = spec.expected_to_fail;
+  plan.solver = bulk_solver(read);
+  plan.interface_solver = interface_solver(root.text("interface_solver"));
+  adapt_laws(read, spec, built);
+  if (released) {
+    check_release(root, plan);
+    plan.rest = resting_model(read, spec, tuned, built);
+    check_static(*plan.rest, root.where());
+  }
+  add_method(read, spec, built);
+  if (const Stage* stage = dynamic_stage(plan);
+      stage != nullptr && plan.impact->acts() && (!stage->path_average || plan.method->constrains()))
+    check_impulses(built.model);
+  add_initial(root, names, built);
+  find_shown(read, names, built);
+  plan.created_limit = root.table("energy").number("created_limit");
+  plan.stop_at_limit = root.table("energy").flag("stop_at_limit");
+  plan.rotation_limit = root.table("limits").number("rotation");
+  plan.separation_limit = separation_limit(root.table("limits"), built.model);
+  plan.gap_tolerance = root.table("limits").number("gap_tolerance");
+  for (const InterfaceFacts& facts : built.facts) plan.bases.push_back(facts.upper), plan.facets.push_back(facts.facets);
+  for (std::size_t k = 0; k < built.facts.size(); ++k) plan.is_wall.push_back(k >= built.bases());
+  note_divided(built);
+  plan.every = root.table("output").integer("every");
+  plan.frames = spec.pictures ? root.table("output").integer("frames") : 0;
+  plan.frames = std::min(plan.frames, std::max(2, most_pictured / std::max(1, built.model.full_unknowns())));
+  add_requests(read, names, built);
+  if (!spec.stiffness_ratio) add_floors(read, built);
+  built.verdict_request = verdict_request(root, built);
+  plan.window = built.verdict_request.window;
+  if (const Values* compare = table_if(root, "compare")) check_columns(*compare, "agree_on", plan.requests);
+  check_history_memory(read, built);
+  return built;
+}
+
+}  // namespace uplift

@@ -1,0 +1,178 @@
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+
+#include "uplift/case/build/model.h"
+#include "uplift/case/build/water.h"
+#include "uplift/elements/discrete.h"
+#include "uplift/interface/facets.h"
+
+// Where the joints of an interface stand, and the elastic bed under a footing.
+namespace uplift {
+namespace {
+
+/// m; zero where the gap is that of the geometry.
+double uniform_gap(const Values& interface) {
+  return interface.is_word("gap") ? 0 : interface.number("gap");
+}
+
+std::vector<SideNode> side(const Values& table, std::string_view key, const CaseNames& names) {
+  std::vector<SideNode> nodes;
+  for (const int node : names.nodes_of(table, key)) nodes.push_back({node, names.positions[node]});
+  return nodes;
+}
+
+Place normal_of(const Values& table, Space space) {
+  if (!table.has("normal")) return space.axis(space.up());
+  const Vec3 normal = vector_of(table, "normal", space);
+  if (normal.norm() == 0) fail(table, "normal", "a direction", "one of length zero");
+  return normal.normalized();
+}
+
+/// Under each point a node on a spring (and dashpot, and mass) of its own along the normal; it moves in this direction only.
+void add_bed(const Values& bed, const std::string& interface, std::vector<JointPoint>& points, ModelBuilder& builder, CaseNames& names) {
+  for (std::size_t i = 0; i < points.size(); ++i) {
+    JointPoint& point = points[i];
+    const std::string name = fmt::format("{}.{}", interface, i + 1);
+    const int node = builder.add_node(name, point.position, bed.where());
+    names.nodes.add(name, bed.where(), bed.path());
+    names.positions.push_back(point.position);
+    if (point.normal.cwiseAbs().maxCoeff() < 1 - 1e-12)
+      fail(bed, "", "a footing with a vertical or horizontal normal on a bed", "an inclined one");
+    const Space space = names.space;
+    for (int k = 0; k < space.unknowns(); ++k)
+      if (space.is_rotation(k) || std::abs(point.normal.dot(space.axis(k))) < 0.5) builder.fix(node, space.dof(k), bed.where());
+    const Connection along{{node}, point.normal, space};
+    builder.add_element(std::make_unique<Spring>(along, bed.number("stiffness") * point.area), bed.where("stiffness"));
+    if (bed.number("damping") > 0)
+      builder.add_element(std::make_unique<Dashpot>(along, bed.number("damping") * point.area), bed.where("damping"));
+    if (bed.number("mass") > 0)
+      builder.add_element(std::make_unique<PointMass>(space, node, bed.number("mass") * point.area, Vec3::Zero()), bed.where("mass"));
+    point.lower = {{node, 1.0}};
+  }
+}
+
+Joint footing_joint(const Values& interface, const Values& table, bool rigid_ground, ModelBuilder& builder, CaseNames& names) {
+  Footing footing;
+  footing.body = names.node(table, "body");
+  footing.centre = names.positions[footing.body];
+  if (table.has("offset")) footing.centre += vector_of(table, "offset", names.space);
+  footing.normal = normal_of(table, names.space);
+  footing.width = table.number("width");
+  footing.thickness = table.number("thickness");
+  footing.points = table.integer("points");
+  for (const char* key : {"length", "points_across"})
+    if (table.has(key) != (names.space.dimension == 3))
+      fail(table, key, names.space.dimension == 3 ? "length and points_across in space" : "width alone in the plane",
+           table.has(key) ? "given" : "none");
+  if (names.space.dimension == 3) {
+    footing.length = table.number("length");
+    footing.points_across = table.integer("points_across");
+    footing.azimuth = table.number("azimuth");
+    footing.thickness = 1;
+  }
+  footing.gap = uniform_gap(interface);
+  const std::string& rule = table.text("rule");
+  footing.rule = rule == "nodal" ? FootingRule::nodal : rule == "midpoint" ? FootingRule::midpoint : FootingRule::gauss;
+  Joint joint;
+  joint.points = footing_points(footing, table.where("points"));
+  joint.facts.facets = std::make_shared<Facets>(names.space.dimension == 3 ? rectangle_facets(footing, joint.points)
+                                                                           : line_facets(joint.points, footing.thickness));
+  joint.facts.body = names.nodes[footing.body];
+  joint.facts.corners = footing_corners(footing);
+  joint.reference = footing.centre;
+  if (const Values* bed = table_if(table, "bed"); bed && !rigid_ground) add_bed(*bed, interface.text("name"), joint.points, builder, names);
+  return joint;
+}
+
+Place middle_of(const Joint& joint) {
+  Vec3 sum = Vec3::Zero();
+  for (const JointPoint& point : joint.points) sum += point.area * point.position;
+  return sum / joint.facts.area;
+}
+
+/// Nodes of one side of the points, each once.
+std::vector<int> nodes_of_side(const std::vector<JointPoint>& points, std::vector<std::pair<int, double>> JointPoint::*side) {
+  std::vector<int> nodes;
+  for (const JointPoint& point : points)
+    for (const auto& [node, shape] : point.*side) nodes.push_back(node);
+  std::ranges::sort(nodes);
+  nodes.erase(std::unique(nodes.begin(), nodes.end()), nodes.end());
+  return nodes;
+}
+
+void add_surface(const Values& interface, const Values& surface, const std::vector<FacePair>& open, const CaseNames& names, Joint& joint) {
+  const FaceQuadrature quadrature = surface.text("quadrature") == "nodal" ? FaceQuadrature::nodal : FaceQuadrature::gauss;
+  const Mesh& mesh = names.solids->mesh();
+  const double thickness = thickness_of(*names.solids, open, surface);
+  FaceJoints joints = face_joints(mesh, open, quadrature, thickness, uniform_gap(interface));
+  joint.facts.facets =
+      std::make_shared<Facets>(mesh.dimension == 3 ? face_facets(mesh, open, quadrature, joints) : line_facets(joints.points, thickness));
+  joint.points = std::move(joints.points);
+  for (JointPoint& point : joint.points)
+    for (auto* side : {&point.upper, &point.lower})
+      for (auto& [node, shape] : *side) node += names.first_of_mesh;
+}
+
+/// See InterfaceFacts::depth.
+double depth_of(const Values& interface, const std::vector<FacePair>& open, const CaseNames& names) {
+  if (names.space.dimension == 3) return 0;
+  for (const char* kind : {"footing", "line"})
+    if (const Values* table = table_if(interface, kind)) return table->number("thickness");
+  const Values* surface = table_if(interface, "surface");
+  return surface ? thickness_of(*names.solids, open, *surface) : 0;
+}
+
+}  // namespace
+
+Joint make_joint(const Values& interface, const std::vector<FacePair>& open, bool rigid_ground, ModelBuilder& builder, CaseNames& names) {
+  const Values* footing = table_if(interface, "footing");
+  const Values* pairs = table_if(interface, "pairs");
+  const Values* line = table_if(interface, "line");
+  const Values* surface = table_if(interface, "surface");
+  const int kinds = (footing != nullptr) + (pairs != nullptr) + (line != nullptr) + (surface != nullptr);
+  if (kinds != 1) fail(interface, "", "exactly one of footing, pairs, line and surface", kinds == 0 ? "none" : fmt::format("{}", kinds));
+  Joint joint;
+  if (footing) joint = footing_joint(interface, *footing, rigid_ground, builder, names);
+  if (pairs)
+    joint.points = pair_points(side(*pairs, "upper", names), side(*pairs, "lower", names), normal_of(*pairs, names.space),
+                               pairs->number("area"), uniform_gap(interface), names.space, pairs->where());
+  if (line) {
+    if (names.space.dimension == 3) fail(*line, "", "footing, pairs or surface in a model in space", "line");
+    LineJoint made{side(*line, "upper", names),        side(*line, "lower", names),
+                   line->integer("nodes_per_element"), line->text("quadrature") == "nodal" ? LineQuadrature::nodal : LineQuadrature::gauss,
+                   line->number("thickness"),          uniform_gap(interface)};
+    joint.points = line_points(made, line->where());
+    joint.facts.facets = std::make_shared<Facets>(line_facets(joint.points, made.thickness));
+  }
+  if (surface) add_surface(interface, *surface, open, names, joint);
+  if (surface) joint.facts.faces = open, joint.facts.nodal = surface->text("quadrature") == "nodal";
+  joint.facts.depth = depth_of(interface, open, names);
+  set_gaps(interface, joint.points, names);
+  set_water(interface, joint.points, names);
+  const Place reference = joint.reference;
+  joint = with_points(joint, joint.points);
+  if (footing) joint.reference = reference;
+  joint.facts.name = interface.text("name");
+  return joint;
+}
+
+Joint with_points(const Joint& joint, std::vector<JointPoint> points) {
+  Joint made{std::move(points), joint.facts, {}};
+  made.facts.upper = nodes_of_side(made.points, &JointPoint::upper);
+  made.facts.lower = nodes_of_side(made.points, &JointPoint::lower);
+  made.facts.area = 0;
+  for (const JointPoint& point : made.points) made.facts.area += point.area;
+  made.reference = middle_of(made);
+  if (joint.facts.facets && made.points.size() != joint.points.size())  // a line that was divided
+    made.facts.facets = std::make_shared<Facets>(line_facets(made.points, joint.facts.depth));
+  return made;
+}
+
+int components_of(const Values& behaviour, Space space) {
+  if (behaviour.items().contains("tangential")) return behaviour.text("tangential") == "none" ? 1 : space.dimension;
+  return behaviour.type() == "unilateral" ? 1 : space.dimension;
+}
+
+}  // namespace uplift

@@ -1,0 +1,274 @@
+#include "uplift/case/build/model.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+#include <numbers>
+
+#include "uplift/base/text.h"
+#include "uplift/elements/discrete.h"
+#include "uplift/elements/solid_nonlinear.h"
+
+namespace uplift {
+
+Place vector_of(const Values& table, std::string_view key, Space space) {
+  const std::vector<double>& numbers = table.numbers(key);
+  if (static_cast<int>(numbers.size()) != space.dimension)
+    fail(table, key, space.dimension == 2 ? "two numbers [x, y] in a plane model" : "three numbers [x, y, z] in a model in space",
+         fmt::format("{}", numbers.size()));
+  return {numbers[0], numbers[1], space.dimension == 3 ? numbers[2] : 0};
+}
+
+bool first_of_two(const Values& table, std::string_view first, std::string_view second) {
+  const bool a = table.has(first), b = table.has(second);
+  if (a == b) fail(table, a ? second : "", fmt::format("either {} or {}", first, second), a ? "both" : "neither");
+  return a;
+}
+
+Space space_of(const Case& read) {
+  if (read.mesh) return {read.mesh->mesh.dimension};
+  const std::vector<Values>& nodes = read.values.tables("nodes");
+  return {nodes.empty() ? 2 : static_cast<int>(nodes.front().numbers("value").size())};
+}
+
+const Values* table_if(const Values& values, std::string_view key) {
+  return values.has(key) ? &values.table(key) : nullptr;
+}
+
+std::vector<int> CaseNames::nodes_of(const Values& table, std::string_view key) const {
+  std::vector<int> found;
+  if (!table.has(key)) return found;
+  for (const std::string& name : table.texts(key)) found.push_back(nodes.find(name, table.where(key), table.path(key)));
+  return found;
+}
+
+const CaseSolids& CaseNames::mesh_for(const Values& table) const {
+  if (!solids) fail(table, "group", "a [mesh] with this group", "none");
+  return *solids;
+}
+
+std::vector<int> CaseNames::node_or_group(const Values& table) const {
+  const bool node_given = table.has("node");
+  if (node_given == table.has("group")) fail(table, node_given ? "group" : "", "either node or group", node_given ? "both" : "neither");
+  if (node_given) return {node(table, "node")};
+  std::vector<int> found = mesh_for(table).nodes(table, "group");
+  for (int& each : found) each += first_of_mesh;
+  return found;
+}
+
+namespace {
+
+/// A function times an amplitude.
+class Scaled final : public TimeFunction {
+ public:
+  Scaled(double factor, std::shared_ptr<const TimeFunction> function) : factor_(factor), function_(std::move(function)) {}
+  double value(double time) const override { return factor_ * function_->value(time); }
+  double rate(double time) const override { return factor_ * function_->rate(time); }
+  double acceleration(double time) const override { return factor_ * function_->acceleration(time); }
+
+ private:
+  double factor_;
+  std::shared_ptr<const TimeFunction> function_;
+};
+
+Connection connection_of(const Values& table, const CaseNames& names, bool along) {
+  const bool plane = names.space.dimension == 2;
+  Connection connection;
+  connection.space = names.space;
+  connection.rotational = !along;
+  connection.nodes = names.nodes_of(table, "nodes");
+  if (connection.nodes.empty() || connection.nodes.size() > 2)
+    fail(table, "nodes", "one node or two nodes", fmt::format("{}", connection.nodes.size()));
+  const bool needed = along || !plane;
+  if (needed != table.has("direction"))
+    fail(table, needed ? "" : "direction", needed ? "a direction" : "no direction for a rotational one", needed ? "none" : "one");
+  if (needed) {
+    connection.direction = vector_of(table, "direction", names.space);
+    if (connection.direction->norm() == 0) fail(table, "direction", "a direction", "one of length zero");
+  }
+  return connection;
+}
+
+void add_masses(const Values& root, ModelBuilder& builder, CaseNames& names, const std::vector<double>& tuned) {
+  std::size_t next = 0;
+  for (const Values& mass : root.tables("mass")) {
+    const int node = names.node(mass, "node");
+    const double value = first_of_two(mass, "mass", "tuned_frequency") ? mass.number("mass") : tuned.at(next++);
+    builder.add_element(std::make_unique<PointMass>(names.space, node, value, about_axes(mass, "inertia", "inertias", true, names.space)),
+                        mass.where());
+  }
+  Names bodies("rigid body");
+  for (const Values& body : root.tables("rigid")) {
+    if (body.has("name")) bodies.add(body, "name");
+    const int master = master_of(body, names);
+    for (const int slave : names.nodes_of(body, "slaves")) {
+      if (slave == master) fail(body, "slaves", "nodes other than the master", "\"" + names.nodes[master] + "\"");
+      builder.tie_rigid(master, slave, body.where("slaves"));
+    }
+    if (body.has("group"))
+      for (const int node : names.mesh_for(body).nodes(body, "group"))
+        if (names.first_of_mesh + node != master) builder.tie_rigid(master, names.first_of_mesh + node, body.where("group"));
+    Place offset;
+    if (body.has("centre")) offset = vector_of(body, "centre", names.space) - names.positions[master];
+    const Vec3 inertia = about_axes(body, "inertia", "inertias", true, names.space);
+    if (body.number("mass") > 0 || !inertia.isZero(0))
+      builder.add_element(std::make_unique<PointMass>(names.space, master, body.number("mass"), inertia, offset), body.where());
+  }
+}
+
+}  // namespace
+
+int master_of(const Values& body, const CaseNames& names) {
+  if (body.has("node")) return names.node(body, "node");
+  if (!body.has("group")) fail(body, "", "node, or a group of the mesh", "neither");
+  std::vector<int> nodes = names.mesh_for(body).nodes(body, "group");
+  const auto position = [&](int node) -> const Place& { return names.positions[static_cast<std::size_t>(names.first_of_mesh + node)]; };
+  Vec3 middle = Vec3::Zero();
+  for (const int node : nodes) middle += position(node) / static_cast<double>(nodes.size());
+  return names.first_of_mesh + *std::ranges::min_element(nodes, {}, [&](int node) { return (position(node) - middle).norm(); });
+}
+
+Vec3 about_axes(const Values& table, std::string_view single, std::string_view plural, bool everywhere, Space space) {
+  if (table.has(plural)) {
+    if (space.dimension == 2) fail(table, plural, fmt::format("{} in a plane model", single), "three numbers");
+    if (table.has(single) && table.number(single) != 0) fail(table, single, fmt::format("either {} or {}", single, plural), "both");
+    const std::vector<double>& numbers = table.numbers(plural);
+    return {numbers[0], numbers[1], numbers[2]};
+  }
+  const double value = table.has(single) ? table.number(single) : 0;
+  return everywhere && space.dimension == 3 ? Vec3(value, value, value) : Vec3(0, 0, value);
+}
+
+std::shared_ptr<const TimeFunction> scaled(double factor, std::shared_ptr<const TimeFunction> function) {
+  return std::make_shared<Scaled>(factor, std::move(function));
+}
+
+bool CaseNames::is_record(const Values& table) const {
+  if (!table.has("function")) return false;
+  const std::string& name = name_taken(instead, table.text("function"));
+  return functions_made[static_cast<std::size_t>(functions.find(name, table.where("function"), table.path("function")))] == nullptr;
+}
+
+std::shared_ptr<const TimeFunction> CaseNames::function(const Values& table, std::optional<MotionKind> kind) const {
+  if (!table.has("function")) return std::make_shared<One>();
+  const std::string& name = name_taken(instead, table.text("function"));
+  const auto found = static_cast<std::size_t>(functions.find(name, table.where("function"), table.path("function")));
+  if (functions_made[found]) return functions_made[found];
+  const CaseRecord& record = (*records)[found - (functions_made.size() - records->size())];
+  if (!kind) fail(table, "function", "a function (a record is a motion: no load, no rotation)", "the record " + in_quotes(name));
+  return std::make_shared<MotionFunction>(giving(record.history, *kind), *kind, share);
+}
+
+void add_nodes(const Values& root, ModelBuilder& builder, CaseNames& names) {
+  for (const Values& node : root.tables("nodes")) {
+    names.nodes.add(node.key(), node.where(), node.path());
+    names.positions.push_back(vector_of(node, "value", names.space));
+    builder.add_node(node.key(), names.positions.back(), node.where());
+  }
+}
+
+namespace {
+
+/// Nodes of the mesh that are a group of their own: the group's name is theirs, unless another node has it.
+std::map<int, std::string> named_nodes(const Mesh& mesh, const Names& taken) {
+  std::map<int, std::string> named;
+  for (const auto& [name, group] : mesh.groups)
+    if (group.dimension == 0 && !taken.has(name) && !name.starts_with("mesh."))
+      if (const std::vector<int> nodes = nodes_of(mesh, group); nodes.size() == 1) named.emplace(nodes.front(), name);
+  return named;
+}
+
+}  // namespace
+
+void add_mesh(const Case& read, ModelBuilder& builder, CaseNames& names) {
+  if (!read.mesh) return;
+  const Mesh& mesh = read.mesh->mesh;
+  const Values& table = read.values.table("mesh");
+  names.solids = std::make_shared<const CaseSolids>(read.values, *read.mesh);
+  names.first_of_mesh = names.nodes.size();
+  const std::map<int, std::string> named = named_nodes(mesh, names.nodes);
+  auto coordinates = std::make_shared<std::vector<Vec3>>(names.positions.size(), Vec3::Zero());
+  for (int i = 0; i < static_cast<int>(mesh.nodes.size()); ++i) {
+    const std::string number = fmt::format("mesh.{}", i + 1);
+    const auto name = named.find(i);
+    coordinates->push_back(mesh.nodes[static_cast<std::size_t>(i)]);
+    const int node = names.nodes.add(number, table.where(), table.path());
+    names.positions.emplace_back(coordinates->back());
+    if (name == named.end()) {
+      builder.add_node(number, names.positions.back(), table.where());
+    } else {
+      names.nodes.also(name->second, node);
+      builder.add_node(name->second, names.positions.back(), table.where(), number);
+    }
+  }
+  names.coordinates = coordinates;
+  std::vector<int> nodes;
+  for (const CaseSolids::Solid& solid : names.solids->solids())
+    for (const CellId cell : solid.cells) {
+      nodes.clear();
+      for (const int node : mesh.cell(cell)) nodes.push_back(names.first_of_mesh + node);
+      std::unique_ptr<Solid> element;
+      if (solid.plasticity)
+        element = std::make_unique<NonlinearSolid>(mesh.type(cell), nodes, coordinates, solid.section, *solid.plasticity);
+      else
+        element = std::make_unique<Solid>(mesh.type(cell), nodes, coordinates, solid.section);
+      element->beta = solid.table->number("damping_beta");
+      builder.add_element(std::move(element), solid.table->where());
+    }
+}
+
+void add_functions(const Case& read, CaseNames& names) {
+  if (!read.records.empty()) names.functions = Names("function or record");
+  for (const Values& function : read.values.tables("function")) {
+    names.functions.add(function, "name");
+    names.functions_made.push_back(make_part(function_catalog(), function.part("shape")));
+  }
+  for (const Values& record : read.values.tables("record")) {
+    names.functions.add(record, "name");
+    names.functions_made.push_back(nullptr);
+  }
+  names.records = &read.records;
+}
+
+void add_structure(const Values& root, ModelBuilder& builder, CaseNames& names, const std::vector<double>& tuned, bool at_rest) {
+  add_beams(root, builder, names);
+  add_masses(root, builder, names, tuned);
+  for (const Values& spring : root.tables("spring")) {
+    const bool along = first_of_two(spring, "stiffness", "rotational_stiffness");
+    builder.add_element(
+        std::make_unique<Spring>(connection_of(spring, names, along), spring.number(along ? "stiffness" : "rotational_stiffness")),
+        spring.where());
+  }
+  for (const Values& dashpot : root.tables("dashpot")) {
+    const bool along = first_of_two(dashpot, "damping", "rotational_damping");
+    builder.add_element(
+        std::make_unique<Dashpot>(connection_of(dashpot, names, along), dashpot.number(along ? "damping" : "rotational_damping")),
+        dashpot.where());
+  }
+  add_supports(root, builder, names, at_rest);
+}
+
+BulkDamping bulk_damping(const Values& damping) {
+  BulkDamping made{damping.number("alpha"), damping.number("beta"), damping.numbers("modal"), damping.integer("modes")};
+  if (made.modal_count == 0) made.modal_count = static_cast<int>(made.modal.size());
+  const std::vector<Values>& pairs = damping.tables("rayleigh");
+  if (pairs.size() > 2) fail(damping, "rayleigh", "one or two pairs of frequency and ratio", fmt::format("{}", pairs.size()));
+  if (!pairs.empty() && (made.alpha > 0 || made.beta > 0)) fail(damping, "rayleigh", "either rayleigh or alpha and beta", "both");
+  // ratio(w) = alpha/(2 w) + beta w/2
+  const auto omega = [](const Values& pair) { return 2 * std::numbers::pi * pair.number("frequency"); };
+  if (pairs.size() == 1) made.beta = 2 * pairs[0].number("ratio") / omega(pairs[0]);
+  if (pairs.size() == 2) {
+    const double w1 = omega(pairs[0]), w2 = omega(pairs[1]), r1 = pairs[0].number("ratio"), r2 = pairs[1].number("ratio");
+    if (w1 == w2)
+      fail(pairs[1], "frequency", "a frequency that differs from the first", fmt::format("{} Hz again", pairs[1].number("frequency")));
+    made.beta = 2 * (r2 * w2 - r1 * w1) / (w2 * w2 - w1 * w1);
+    made.alpha = 2 * w1 * r1 - made.beta * w1 * w1;
+    if (made.alpha < 0 || made.beta < 0)
+      fail(damping, "rayleigh", "two pairs that give no negative factor",
+           fmt::format("alpha = {:.4g} 1/s, beta = {:.4g} s", made.alpha, made.beta));
+  }
+  return made;
+}
+
+}  // namespace uplift

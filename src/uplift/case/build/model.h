@@ -1,0 +1,101 @@
+#pragma once
+#include <map>
+#include <memory>
+#include <set>
+#include <string>
+#include <vector>
+
+#include "uplift/case/build/names.h"
+#include "uplift/case/case.h"
+#include "uplift/case/mesh/mesh.h"
+#include "uplift/model/builder.h"
+
+// The steps by which a case becomes a model; used by build() alone.
+namespace uplift {
+
+/// Names and places met so far.
+struct CaseNames {
+  Names nodes{"node"}, functions{"function"}, interfaces{"interface"};
+  Space space;
+  std::vector<Place> positions;                                     // of the nodes
+  std::vector<std::shared_ptr<const TimeFunction>> functions_made;  // then the records: null
+  const std::vector<CaseRecord>* records = nullptr;
+  const Values* instead = nullptr;  // [[compare.motion]] of the run; null: as in the case
+  /// Whether the function of a table is a record, which has a unit.
+  bool is_record(const Values& table) const;
+  double share = 0;                          // of the displacements of records, see MotionFunction
+  std::shared_ptr<const CaseSolids> solids;  // null without a mesh
+  int first_of_mesh = 0;                     // node of the model that the mesh's first node is
+  Coordinates coordinates;                   // of the nodes up to the mesh's last
+  std::vector<BeamLine> beams;               // met so far
+  int node(const Values& table, std::string_view key) const { return nodes.find(table, key); }
+  std::vector<int> nodes_of(const Values& table, std::string_view key) const;
+  /// The node of "node" or the nodes of "group": exactly one of the keys must be given.
+  std::vector<int> node_or_group(const Values& table) const;
+  /// The mesh that "group" speaks of; InputError without one.
+  const CaseSolids& mesh_for(const Values& table) const;
+  /// What drives something; absent: constant 1. `kind`: the quantity taken of a record, none where no motion can stand.
+  std::shared_ptr<const TimeFunction> function(const Values& table, std::optional<MotionKind> kind = {}) const;
+};
+
+/// Two numbers in plane models, three in space; InputError otherwise.
+Place vector_of(const Values& table, std::string_view key, Space space);
+/// Something about the three axes: `plural` in space, else `single`, which is about z, or with `everywhere` about all axes of space. Zero
+/// when neither is there.
+Vec3 about_axes(const Values& table, std::string_view single, std::string_view plural, bool everywhere, Space space);
+/// Plane or space: as the mesh, else as the first node.
+Space space_of(const Case& read);
+/// Exactly one of two keys must be given: whether it is the first.
+bool first_of_two(const Values& table, std::string_view first, std::string_view second);
+/// A table that may be absent: null then.
+const Values* table_if(const Values& values, std::string_view key);
+
+/// Nodes, functions, elements, supports, motions, loads and damping. `tuned` is the mass of the tuned point masses [kg], one per such mass.
+void add_nodes(const Values& root, ModelBuilder& builder, CaseNames& names);
+/// Nodes and solids of the mesh.
+void add_mesh(const Case& read, ModelBuilder& builder, CaseNames& names);
+/// Absorbing faces and the waves that come in through them; after the functions.
+void add_absorbing(const Values& root, ModelBuilder& builder, const CaseNames& names);
+/// A function times an amplitude.
+std::shared_ptr<const TimeFunction> scaled(double factor, std::shared_ptr<const TimeFunction> function);
+/// As stated, else from what it acts on.
+std::string name_of_load(const Values& load);
+/// The force [N] that a load puts on the whole model when its function is 1.
+Vec3 resultant_of_load(const Values& load, const Model& model);
+/// Functions, then records.
+void add_functions(const Case& read, CaseNames& names);
+/// Nodes of beams: those of the mesh that have rotations.
+std::set<int> beam_nodes(const CaseNames& names);
+/// Beams between nodes and along groups of the mesh.
+void add_beams(const Values& root, ModelBuilder& builder, CaseNames& names);
+/// The master node of a rigid body: as named, else the node of its group that is nearest to the group's middle.
+int master_of(const Values& body, const CaseNames& names);
+/// `at_rest`: with the supports that hold in static stages alone.
+void add_structure(const Values& root, ModelBuilder& builder, CaseNames& names, const std::vector<double>& tuned, bool at_rest);
+/// Supports and prescribed motions. Groups of two sides share the corner: it is held once, and moves where one of them moves.
+void add_supports(const Values& root, ModelBuilder& builder, const CaseNames& names, bool at_rest);
+/// Whether supports hold in static stages alone.
+bool any_released(const Values& root);
+void add_loads(const Values& root, ModelBuilder& builder, const CaseNames& names);
+/// Initial displacements and velocities of the free unknowns; after the model is made.
+void add_initial(const Values& root, const CaseNames& names, BuiltCase& built);
+BulkDamping bulk_damping(const Values& damping);
+
+/// Joint points of an interface with its lower nodes; with an elastic bed (unless `rigid_ground`) these are made here.
+struct Joint {
+  std::vector<JointPoint> points;
+  InterfaceFacts facts;
+  Place reference;
+};
+/// `open`: the faces that the mesh was opened at for it.
+Joint make_joint(const Values& interface, const std::vector<FacePair>& open, bool rigid_ground, ModelBuilder& builder, CaseNames& names);
+
+/// Initial gaps that come from the geometry or from a table; of points with both sides.
+void set_gaps(const Values& interface, std::vector<JointPoint>& points, const CaseNames& names);
+
+/// Number of local components that a law or cone needs: 1 when it has no tangential part, else all of the space.
+int components_of(const Values& behaviour, Space space);
+/// The same joint with some of its points alone.
+Joint with_points(const Joint& joint, std::vector<JointPoint> points);
+
+}  // namespace uplift

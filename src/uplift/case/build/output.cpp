@@ -1,0 +1,259 @@
+#include "uplift/case/build/output.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <array>
+
+#include "uplift/base/text.h"
+#include "uplift/case/build/forces.h"
+#include "uplift/case/build/model.h"
+#include "uplift/dynamics/plastic_bulk.h"
+
+namespace uplift {
+namespace {
+
+using Column = Request::Kind;
+
+struct NodeQuantity {
+  std::string word;
+  Column kind;
+  int index;  // of the unknown among those of its node
+  std::string unit;
+};
+
+/// Displacements "ux", velocities "vx" and accelerations "ax"; of rotations "rz", "vrz", "arz"; absolute accelerations "abs_ax".
+std::vector<NodeQuantity> node_quantities(Space space) {
+  std::vector<NodeQuantity> made;
+  const std::pair<const char*, Column> kinds[] = {{"", Column::displacement}, {"v", Column::velocity}, {"a", Column::acceleration}};
+  const char* per[] = {"", "/s", "/s2"};
+  for (int order = 0; order < 3; ++order)
+    for (int i = 0; i < space.unknowns(); ++i) {
+      const std::string name(to_string(space.dof(i)));
+      const bool turns = space.is_rotation(i);
+      const std::string word = order == 0 ? name : kinds[order].first + (turns ? name : name.substr(1));
+      made.push_back({word, kinds[order].second, i, std::string(turns ? "rad" : "m") + per[order]});
+    }
+  for (int i = 0; i < space.dimension; ++i)
+    made.push_back({fmt::format("abs_a{}", to_string(space.dof(i)).substr(1)), Column::absolute_acceleration, i, "m/s2"});
+  return made;
+}
+
+struct Quantity {
+  std::string_view word;
+  Column kind;
+  std::string_view unit;
+};
+/// In space `shear`, `moment` and `rotation` are the lengths of their parts along (about) the two tangents.
+std::vector<Quantity> interface_quantities(Space space) {
+  std::vector<Quantity> made{{"axial", Column::axial, "N"},
+                             {"shear", Column::shear, "N"},
+                             {"moment", Column::moment, "N m"},
+                             {"rotation", Column::rotation, "rad"}};
+  if (space.dimension == 3)
+    for (const Quantity& each : {Quantity{"shear_1", Column::shear_1, "N"}, Quantity{"shear_2", Column::shear_2, "N"},
+                                 Quantity{"moment_1", Column::moment_1, "N m"}, Quantity{"moment_2", Column::moment_2, "N m"},
+                                 Quantity{"torsion", Column::torsion, "N m"}, Quantity{"rotation_1", Column::rotation_1, "rad"},
+                                 Quantity{"rotation_2", Column::rotation_2, "rad"}})
+      made.push_back(each);
+  made.push_back({"settlement", Column::settlement, "m"});
+  if (space.dimension == 2) made.push_back({"tilt", Column::tilt_1, "rad"});
+  if (space.dimension == 3) made.push_back({"tilt_1", Column::tilt_1, "rad"}), made.push_back({"tilt_2", Column::tilt_2, "rad"});
+  for (const Quantity& each : {Quantity{"uplifted_ratio", Column::uplifted_ratio, "1"}, Quantity{"max_opening", Column::max_opening, "m"},
+                               Quantity{"max_pressure", Column::max_pressure, "Pa"}})
+    made.push_back(each);
+  return made;
+}
+/// Motions of the base above an interface.
+bool is_base_motion(Column kind) {
+  return kind == Column::settlement || kind == Column::tilt_1 || kind == Column::tilt_2;
+}
+/// Those that need a tangential part of the interface.
+bool is_shear(Column kind) {
+  return kind == Column::shear || kind == Column::shear_1 || kind == Column::shear_2 || kind == Column::torsion;
+}
+
+constexpr std::array<Quantity, 8> energy_quantities{{{"kinetic", Column::kinetic, "J"},
+                                                     {"strain", Column::strain, "J"},
+                                                     {"stored", Column::stored, "J"},
+                                                     {"interface_dissipated", Column::interface_dissipated, "J"},
+                                                     {"damping", Column::damping, "J"},
+                                                     {"impact", Column::impact, "J"},
+                                                     {"external", Column::external, "J"},
+                                                     {"residual", Column::residual, "J"}}};
+
+struct PointQuantity {
+  std::string word;
+  Column kind;
+  int tangent;  // number of the tangent; -1: normal
+  std::string_view unit;
+};
+
+std::vector<PointQuantity> point_quantities(Space space) {
+  std::vector<PointQuantity> made{{"opening", Column::opening, -1, "m"},
+                                  {"traction", Column::traction, -1, "Pa"},
+                                  {"mean_traction", Column::traction, -1, "Pa"},
+                                  {"end_traction", Column::end_traction, -1, "Pa"}};
+  for (int k = 0; k < space.dimension - 1; ++k) {
+    const std::string number = space.dimension == 2 ? "" : fmt::format("_{}", k + 1);
+    made.push_back({"slip" + number, Column::opening, k, "m"});
+    made.push_back({"shear_traction" + number, Column::traction, k, "Pa"});
+    made.push_back({"mean_shear_traction" + number, Column::traction, k, "Pa"});
+    made.push_back({"end_shear_traction" + number, Column::end_traction, k, "Pa"});
+  }
+  return made;
+}
+
+/// The entry with this word; InputError with the list and the nearest word when there is none.
+template <class Table>
+auto find_quantity(const Table& table, const Values& history, const char* of) {
+  const std::string& word = history.text("quantity");
+  std::vector<std::string> words;
+  for (const auto& entry : table) {
+    if (entry.word == word) return entry;
+    words.emplace_back(entry.word);
+  }
+  fail(history, "quantity", fmt::format("a quantity of {}: {}", of, fmt::join(words, ", ")), "\"" + word + "\"", nearest_name(word, words));
+}
+
+Request make(Column kind, std::string name, std::string_view unit) {
+  Request request;
+  request.kind = kind;
+  request.name = std::move(name);
+  request.unit = unit;
+  return request;
+}
+
+Request node_request(const Model& model, int node, const NodeQuantity& quantity, std::string name = {}) {
+  if (name.empty()) name = fmt::format("{}.{}", model.nodes[node].name, quantity.word);
+  Request request = make(quantity.kind, std::move(name), quantity.unit);
+  request.unknown = model.space.unknowns() * node + quantity.index;
+  return request;
+}
+
+void add_node(const Model& model, int node, std::vector<std::string_view> words, std::vector<Request>& requests) {
+  for (const NodeQuantity& quantity : node_quantities(model.space))
+    if (std::find(words.begin(), words.end(), quantity.word) != words.end() && moves(model, model.space.unknowns() * node + quantity.index))
+      requests.push_back(node_request(model, node, quantity));
+}
+
+Request point_request(const Values& history, const Model& model, int interface, std::string name) {
+  const Interface& joint = model.interfaces[interface];
+  const int point = history.integer("point");
+  if (point > joint.batch.points)
+    fail(history, "point", fmt::format("a point of \"{}\", from 1 to {}", joint.name, joint.batch.points), fmt::format("{}", point));
+  const PointQuantity quantity = find_quantity(point_quantities(model.space), history, "an interface point");
+  if (quantity.tangent >= 0 && joint.batch.components == 1)
+    fail(history, "quantity", fmt::format("a normal quantity: \"{}\" has no tangential part", joint.name),
+         "\"" + history.text("quantity") + "\"");
+  if (name.empty()) name = fmt::format("{}.{}.{}", joint.name, point, quantity.word);
+  Request request = make(quantity.kind, std::move(name), quantity.unit);
+  request.interface = interface;
+  request.point = point - 1;
+  request.component = quantity.tangent < 0 ? joint.batch.components - 1 : quantity.tangent;
+  return request;
+}
+
+/// The node nearest to a place; of nodes at the same place (the sides of an interface) the first, that of the lower side.
+int nearest_node(const Values& table, const std::string& what, BuiltCase& built) {
+  const Place place = vector_of(table, "at", built.model.space);
+  int nearest = 0;
+  const auto distance = [&](int node) { return (built.model.nodes[static_cast<std::size_t>(node)].position - place).norm(); };
+  for (int node = 1; node < static_cast<int>(built.model.nodes.size()); ++node)
+    if (distance(node) < distance(nearest) - 1e-9) nearest = node;
+  const Node& found = built.model.nodes[static_cast<std::size_t>(nearest)];
+  built.notes.push_back(fmt::format("{} at {} m: node {} at {} m, {:.3g} m away", what, to_string(place, built.model.space), found.name,
+                                    to_string(found.position, built.model.space), distance(nearest)));
+  return nearest;
+}
+
+Request asked_request(const Values& history, BuiltCase& built, const CaseNames& names, const Names& nodes, const Names& interfaces) {
+  const std::string name = history.has("name") ? history.text("name") : "";
+  if (history.has("beam") || history.has("level") || history.has("group")) return force_request(history, built, names);
+  const int given = history.has("node") + history.has("at") + history.has("interface");
+  if (given != 1)
+    fail(history, "", "exactly one of node, at, interface, beam, level and group", given == 0 ? "none" : fmt::format("{}", given));
+  if (!history.has("interface")) {
+    const int node = asked_node(history, history.text("quantity"), nodes, built);
+    if (history.has("below") || is_constraint_force(history.text("quantity"))) return force_request(history, built, names, node);
+    return node_request(built.model, node, find_quantity(node_quantities(built.model.space), history, "a node"), name);
+  }
+  const int interface = interfaces.find(history, "interface");
+  if (history.has("point")) return point_request(history, built.model, interface, name);
+  const Quantity quantity = find_quantity(interface_quantities(built.model.space), history, "an interface");
+  Request request =
+      make(quantity.kind, name.empty() ? fmt::format("{}.{}", built.model.interfaces[interface].name, quantity.word) : name, quantity.unit);
+  request.interface = interface;
+  return request;
+}
+
+}  // namespace
+
+bool moves(const Model& model, int full_unknown) {
+  if (Sparse::InnerIterator(model.expansion, full_unknown)) return true;
+  return std::any_of(model.motions.begin(), model.motions.end(),
+                     [&](const PrescribedMotion& motion) { return motion.shape[full_unknown] != 0; });
+}
+
+int asked_node(const Values& table, const std::string& what, const Names& nodes, BuiltCase& built) {
+  if (table.has("node") == table.has("at")) fail(table, "", "exactly one of node and at", table.has("at") ? "both" : "none");
+  if (table.has("at")) return nearest_node(table, what, built);
+  const int node = built.model.find_node(table.text("node"));
+  return node < 0 ? nodes.find(table, "node") : node;  // which says what is near
+}
+
+void check_columns(const Values& table, std::string_view key, const std::vector<Request>& requests) {
+  Names columns("column of the output");
+  for (const Request& request : requests) columns.add(request.name, {}, {});
+  for (const std::string& name : table.texts(key)) columns.find(name, table.where(key), table.path(key));
+}
+
+void add_requests(const Case& read, const CaseNames& names, BuiltCase& built) {
+  const Values& output = read.values.table("output");
+  std::vector<Request>& requests = built.plan.requests;
+  const Model& model = built.model;
+  if (output.flag("automatic")) {
+    const bool plane = model.space.dimension == 2;
+    std::vector<std::string_view> top{"ux", "vx", "uy"}, base{"ux", "uy", "rz", "vy", "vrz"}, base_too{"rz", "vy", "vrz"};
+    if (!plane)
+      top = {"ux", "uy", "uz", "vx", "vy"}, base = {"ux", "uy", "uz", "rx", "ry", "rz", "vz"}, base_too = {"rx", "ry", "rz", "vz"};
+    if (built.top >= 0) add_node(model, built.top, top, requests);
+    if (built.base >= 0) add_node(model, built.base, built.base != built.top ? base : base_too, requests);
+    // the drift of the top needs the tilt of the base, which nodes of solids do not have
+    const bool nodes_turn_not = built.top >= 0 && built.base >= 0 && !moves(model, built.base_turn());
+    for (std::size_t k = 0; k < model.interfaces.size(); ++k)
+      for (const Quantity& quantity : interface_quantities(model.space)) {
+        if (is_shear(quantity.kind) && model.interfaces[k].batch.components == 1) continue;
+        if (is_base_motion(quantity.kind) && !(nodes_turn_not && k == 0 && quantity.kind != Column::settlement)) continue;
+        requests.push_back(make(quantity.kind, fmt::format("{}.{}", model.interfaces[k].name, quantity.word), quantity.unit));
+        requests.back().interface = static_cast<int>(k);
+      }
+  }
+  Names nodes("node"), interfaces("interface"), columns("column");
+  for (const Node& node : model.nodes) nodes.add(node.name, {}, {});
+  for (const Interface& interface : model.interfaces) interfaces.add(interface.name, {}, {});
+  for (const Request& request : requests) columns.add(request.name, {}, {});
+  for (const Values& history : output.tables("history")) {
+    if (history.has("name")) check_name(history.text("name"), "the column", history.where("name"), history.path("name"));
+    Request request = asked_request(history, built, names, nodes, interfaces);
+    const bool there = std::any_of(requests.begin(), requests.end(), [&](const Request& other) { return other.name == request.name; });
+    if (there && !history.has("name")) continue;  // one of the automatic ones
+    if (request.name == "time") fail(history, "name", "a name other than that of the first column", in_quotes(request.name));
+    columns.add(request.name, history.where("name"), history.path("name"));
+    requests.push_back(std::move(request));
+  }
+  add_envelopes(output, built);
+  if (output.flag("energies")) {
+    for (const Quantity& quantity : energy_quantities)
+      requests.push_back(make(quantity.kind, fmt::format("energy.{}", quantity.word), quantity.unit));
+    if (PlasticBulk(model).any()) requests.push_back(make(Column::plastic, "energy.plastic", "J"));
+    if (!stopping_stages(built.plan).empty()) requests.push_back(make(Column::stop, "energy.stop", "J"));
+    const auto filters = [](const Stage& stage) { return stage.type == Stage::Type::dynamics && stage.scheme.filtered(); };
+    if (!built.plan.method->constrains() && std::ranges::any_of(built.plan.stages, filters)) {
+      requests.push_back(make(Column::algorithmic, "energy.algorithmic", "J"));
+      requests.push_back(make(Column::filter, "energy.filter", "J"));
+    }
+  }
+}
+
+}  // namespace uplift

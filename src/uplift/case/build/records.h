@@ -1,0 +1,59 @@
+#pragma once
+#include <memory>
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include "uplift/base/declare.h"
+#include "uplift/motion/motion_function.h"
+#include "uplift/run/run.h"
+
+// Recorded and generated motions of a case: `[[record]]` tables.
+namespace uplift {
+
+/// A record of the case, read and processed.
+struct CaseRecord {
+  std::string name;
+  std::shared_ptr<const MotionHistory> history;
+  const Motion& motion() const { return *history->motion(); }
+};
+
+/// Tables of the case file that stand for records.
+const Section& record_section();
+const Section& compare_motion_section();
+
+/// Reads and processes all records of a checked case file. Throws InputError.
+std::vector<CaseRecord> read_records(const Values& root);
+/// Path of a record's file that can be opened from here.
+std::string record_path(const Values& record);
+
+/// Refuses a [[compare.motion]] whose names do not pair, drive nothing or do not exist.
+void check_motion(const Values& root, const Values& motion);
+/// A history that gives a quantity: this one, or when it would have to be differentiated, that of its spline (see converted).
+std::shared_ptr<const MotionHistory> giving(const std::shared_ptr<const MotionHistory>& history, MotionKind kind);
+
+/// The function or record that is taken instead of another: `instead` is a [[compare.motion]], or null.
+const std::string& name_taken(const Values* instead, const std::string& name);
+
+/// A place of the case file where a function, or a record, drives the model.
+struct DrivenBy {
+  const Values* table;   // its `function` is the name
+  MotionKind kind;       // the quantity that it takes of a record
+  bool rotates = false;  // a rotation: of no record
+};
+std::vector<DrivenBy> motions_wanted(const Values& root);
+
+/// A record that a run uses, once for every quantity.
+struct MotionUse {
+  std::shared_ptr<const MotionHistory> history;
+  MotionKind kind;
+};
+std::vector<MotionUse> motions_used(const Values& root, const std::vector<CaseRecord>& records, const Values* instead);
+
+/// What the displacement of a record gets on top, see MotionFunction [s2]: zero when the dynamic stages differ or damp numerically.
+double newmark_share(const std::vector<Stage>& stages);
+
+/// What an engineer should know of the motions of a run: steps that do not fit, a record cut short, a base that drifts away.
+void warn_motions(const std::vector<MotionUse>& used, const std::vector<Stage>& stages, std::vector<std::string>& said);
+
+}  // namespace uplift

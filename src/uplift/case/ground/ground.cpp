@@ -1,0 +1,92 @@
+#include "uplift/case/ground/ground.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+
+#include "uplift/base/text.h"
+
+namespace uplift {
+namespace {
+
+/// One side of a tie: nodes of the mesh, sorted by height.
+struct Side {
+  std::vector<int> nodes;
+  Vec3 low, high;
+};
+
+Side side_of(const Values& tie, std::string_view key, const CaseNames& names) {
+  Side side{names.mesh_for(tie).nodes(tie, key), {}, {}};
+  const std::vector<Vec3>& places = names.solids->mesh().nodes;
+  side.low = side.high = places[static_cast<std::size_t>(side.nodes.front())];
+  for (const int node : side.nodes) {
+    side.low = side.low.cwiseMin(places[static_cast<std::size_t>(node)]);
+    side.high = side.high.cwiseMax(places[static_cast<std::size_t>(node)]);
+  }
+  const int up = names.space.up();
+  std::ranges::sort(side.nodes, {}, [&](int node) { return places[static_cast<std::size_t>(node)][up]; });
+  return side;
+}
+
+/// Pairs the nodes of two opposite sides by their place across the direction from one to the other.
+class Partners {
+ public:
+  Partners(const Values& tie, const Side& from, const Side& to, const CaseNames& names)
+      : tie_(tie), places_(names.solids->mesh().nodes), up_(names.space.up()) {
+    const Vec3 apart = (to.low + to.high - from.low - from.high) / 2;
+    apart.cwiseAbs().maxCoeff(&across_);
+    tolerance_ = 1e-6 * (from.high.cwiseMax(to.high) - from.low.cwiseMin(to.low)).norm();
+    if (across_ == up_ || !(apart.norm() > tolerance_)) fail(tie, "to", "the opposite side of the ground", in_quotes(tie.text("to")));
+  }
+
+  /// The node of the other side (sorted by height) with the same place; InputError without one.
+  int find(int node, const std::vector<int>& others, std::string_view group) const {
+    const Vec3& place = at(node);
+    const auto height = [&](int other) { return at(other)[up_]; };
+    for (auto other = std::ranges::lower_bound(others, place[up_] - tolerance_, {}, height); other != others.end(); ++other) {
+      Vec3 apart = at(*other) - place;
+      if (apart[up_] > tolerance_) break;
+      apart[across_] = 0;
+      if (apart.norm() <= tolerance_) return *other;
+    }
+    fail(tie_, "group", "nodes with a partner on the opposite side, at the same height",
+         fmt::format("node {} at ({:g}, {:g}, {:g}) without one in {}", node + 1, place.x(), place.y(), place.z(),
+                     in_quotes(std::string(group))));
+  }
+
+ private:
+  const Vec3& at(int node) const { return places_[static_cast<std::size_t>(node)]; }
+  const Values& tie_;
+  const std::vector<Vec3>& places_;
+  int up_, across_ = 0;
+  double tolerance_ = 0;  // m
+};
+
+std::vector<Dof> unknowns_of(const Values& tie, Space space) {
+  std::vector<Dof> unknowns;
+  for (const std::string& word : tie.texts("unknowns")) {
+    int found = -1;
+    for (int k = 0; k < space.dimension; ++k)
+      if (to_string(space.dof(k)) == word) found = k;
+    if (found < 0) fail(tie, "unknowns", space.dimension == 2 ? "ux or uy" : "ux, uy or uz", in_quotes(word));
+    unknowns.push_back(space.dof(found));
+  }
+  return unknowns;
+}
+
+}  // namespace
+
+void add_ties(const Values& root, ModelBuilder& builder, const CaseNames& names) {
+  for (const Values& tie : root.tables("tie")) {
+    const Side from = side_of(tie, "group", names), to = side_of(tie, "to", names);
+    const Partners partners(tie, from, to, names);
+    const std::vector<Dof> unknowns = unknowns_of(tie, names.space);
+    for (const int node : from.nodes) {
+      const int partner = partners.find(node, to.nodes, tie.text("to"));
+      for (const Dof unknown : unknowns) builder.tie_equal(names.first_of_mesh + node, names.first_of_mesh + partner, unknown, tie.where());
+    }
+    for (const int node : to.nodes) partners.find(node, from.nodes, tie.text("group"));
+  }
+}
+
+}  // namespace uplift

@@ -1,0 +1,25 @@
+#pragma once
+#include "uplift/case/build/model.h"
+#include "uplift/elements/absorbing.h"
+#include "uplift/linear/solver.h"
+#include "uplift/run/run.h"
+
+// The ground beside the model: lateral nodes that move together, and the free field that lateral boundaries follow.
+namespace uplift {
+
+/// Tied nodes: every node of a group moves as its partner on the opposite side.
+void add_ties(const Values& root, ModelBuilder& builder, const CaseNames& names);
+
+/// Free-field columns beside the absorbing faces that ask for them (`free_field`), marched through the dynamic stages, and what they put
+/// on these faces. Throws InputError for faces that are not in horizontal rows, without an incident wave below, or with modal damping.
+void add_free_field(const Values& root, const std::vector<Stage>& stages, const BulkDamping& damping, const LinearSolver& solver,
+                    ModelBuilder& builder, const CaseNames& names);
+
+/// Particle motion of an incident wave [1]; InputError for what a plane model does not have.
+Vec3 incident_motion(const Values& incident, Space space);
+/// Velocity of the incoming wave alone [m/s].
+std::shared_ptr<const TimeFunction> incident_velocity(const Values& incident, const CaseNames& names);
+/// Material of the ground behind an absorbing face; InputError where it cannot carry waves.
+AbsorbingSection absorbing_ground(const Values& absorbing, const CaseSolids::Solid& solid, Space space);
+
+}  // namespace uplift

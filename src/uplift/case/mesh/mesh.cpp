@@ -1,0 +1,348 @@
+#include "uplift/case/mesh/mesh.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cassert>
+#include <filesystem>
+#include <limits>
+#include <numeric>
+
+#include "uplift/base/text.h"
+#include "uplift/case/build/model.h"
+#include "uplift/linear/memory.h"
+#include "uplift/mesh/absent_group.h"
+#include "uplift/mesh/cell_quadrature.h"
+#include "uplift/mesh/cell_shapes.h"
+#include "uplift/mesh/facing.h"
+#include "uplift/mesh/soil_box.h"
+
+namespace uplift {
+namespace {
+
+std::size_t at(int i) {
+  return static_cast<std::size_t>(i);
+}
+
+Cell cell_named(const std::string& name) {
+  for (const CellInfo& each : all_cells())
+    if (each.name == name) return each.cell;
+  assert(false);
+  return Cell::quad4;
+}
+
+SoilBox::Part part_from(const Values* table) {
+  SoilBox::Part part;
+  if (!table) return part;
+  part.width = {table->number("width"), table->number(table->has("length") ? "length" : "width")};
+  part.height = table->number("height");
+  part.size = table->number("size");
+  if (table->items().contains("offset")) part.offset = {table->number("offset"), table->number("offset_y")};
+  return part;
+}
+
+Mesh make_soil_box(const Values& box) {
+  SoilBox made;
+  const Values& soil = box.table("soil");
+  made.dimension = soil.has("length") ? 3 : 2;
+  made.soil.width = {soil.number("width"), soil.number(soil.has("length") ? "length" : "width")};
+  made.soil.size = soil.number("size");
+  made.soil.layers.clear();
+  for (const Values& layer : soil.tables("layers")) made.soil.layers.push_back({layer.number("thickness"), layer.number("size")});
+  if (made.soil.layers.empty()) fail(soil, "layers", "at least one layer", "none");
+  made.raft = part_from(table_if(box, "raft"));
+  made.block = part_from(table_if(box, "block"));
+  made.embedment = box.number("embedment");
+  made.growth = box.number("growth");
+  made.cell = box.has("cell") ? cell_named(box.text("cell")) : made.dimension == 2 ? Cell::quad4 : Cell::hex8;
+  if (info(made.cell).dimension != made.dimension)
+    fail(box, "cell",
+         made.dimension == 2 ? "a cell of the plane (soil.length makes the mesh one in space)" : "a cell of space, for example hex8",
+         in_quotes(box.text("cell")));
+  // At least: stiffness and mass of one node for each element, with 3 x 81 or 2 x 18 numbers of 12 bytes each; the factor takes more.
+  const double bytes = made.dimension == 3 ? 6000 : 900;
+  return soil_box(made, box.where(), box.path() + ".", available_memory() / bytes);
+}
+
+/// Whether the faces of a surface are drawn apart; either two groups of them are named, or one at which the mesh is opened.
+bool drawn_apart(const Values& surface) {
+  const bool apart = surface.has("lower_group") && surface.has("upper_group"), opened = surface.has("group") && surface.has("lower");
+  const int given = surface.has("lower_group") + surface.has("upper_group") + surface.has("group") + surface.has("lower");
+  if (given != 2 || !(apart || opened))
+    fail(surface, "", "group and lower, or lower_group and upper_group",
+         given == 0  ? "none of them"
+         : given < 2 ? "one of them"
+                     : fmt::format("{} of them", given));
+  return apart;
+}
+
+/// Groups of interfaces whose surfaces have the same lower side, in the order of the case.
+std::vector<std::vector<std::size_t>> opened_together(const std::vector<Values>& interfaces) {
+  std::vector<std::vector<std::size_t>> together;
+  std::vector<std::vector<std::string>> sides;
+  for (std::size_t k = 0; k < interfaces.size(); ++k) {
+    const Values* surface = table_if(interfaces[k], "surface");
+    if (!surface || drawn_apart(*surface)) continue;
+    std::vector<std::string> lower = surface->texts("lower");
+    std::ranges::sort(lower);
+    const auto same = std::ranges::find(sides, lower);
+    if (same == sides.end()) {
+      sides.push_back(std::move(lower));
+      together.push_back({k});
+    } else {
+      together[static_cast<std::size_t>(same - sides.begin())].push_back(k);
+    }
+  }
+  return together;
+}
+
+void open_surfaces(const std::vector<Values>& interfaces, CaseMesh& made) {
+  made.open.resize(interfaces.size());
+  for (const std::vector<std::size_t>& together : opened_together(interfaces)) {
+    std::vector<std::string> surfaces;
+    for (const std::size_t k : together) surfaces.push_back(interfaces[k].table("surface").text("group"));
+    const Values& first = interfaces[together.front()].table("surface");
+    std::vector<OpenedSurface> opened = split(made.mesh, surfaces, first.texts("lower"), first.where("group"));
+    for (std::size_t i = 0; i < together.size(); ++i) made.open[together[i]] = std::move(opened[i].faces);
+  }
+  for (std::size_t k = 0; k < interfaces.size(); ++k)
+    if (const Values* surface = table_if(interfaces[k], "surface"); surface && drawn_apart(*surface))
+      made.open[k] = facing_pairs(made.mesh, surface->text("lower_group"), surface->text("upper_group"), surface->where("upper_group"));
+}
+
+const Group& group_named(const Mesh& mesh, const Values& table, std::string_view key, const std::string& what) {
+  const std::string& name = table.text(key);
+  const auto found = mesh.groups.find(name);
+  if (found != mesh.groups.end()) return found->second;
+  throw absent_group(mesh, name, table.where(key), table.path(key), what);
+}
+
+/// What a group holds, in the words of its mesh: cells fill it, edges (in space: faces) bound them.
+std::string dimension_word(const Mesh& mesh, int dimension) {
+  const char* word = dimension == 0 ? "nodes" : dimension == mesh.dimension ? "cells" : dimension == 2 ? "faces" : "edges";
+  return std::string("a group of ") + word;
+}
+
+SolidSection section_from(const Values& solid) {
+  SolidSection section;
+  const bool stiffness = solid.has("E");
+  if (stiffness == solid.has("shear_wave_speed"))
+    fail(solid, stiffness ? "shear_wave_speed" : "", "either E or shear_wave_speed", stiffness ? "both" : "neither");
+  const std::string& mass = solid.text("mass");
+  if ((mass != "none" || !stiffness) && !solid.has("density"))
+    fail(solid, "", mass == "none" ? "density, from which E follows with shear_wave_speed" : "density, or mass = \"none\"", "none");
+  const double density = solid.has("density") ? solid.number("density") : 0, poisson = solid.number("poisson");
+  section.material = stiffness ? ElasticMaterial{solid.number("E"), poisson, density}
+                               : material_of_wave_speed(solid.number("shear_wave_speed"), poisson, density);
+  check_material(section.material, solid.where(), solid.path());
+  section.plane = solid.text("plane") == "strain" ? PlaneState::strain : PlaneState::stress;
+  section.thickness = solid.number("thickness");
+  section.mass = mass == "consistent" ? SolidSection::Mass::consistent
+                 : mass == "lumped"   ? SolidSection::Mass::lumped
+                                      : SolidSection::Mass::none;
+  section.incompatible_modes = solid.flag("incompatible_modes");
+  return section;
+}
+
+std::optional<DruckerPragerParameters> plasticity_from(const Values& solid, const SolidSection& section) {
+  const Values* table = table_if(solid, "plasticity");
+  if (!table) return std::nullopt;
+  if (section.plane == PlaneState::stress) fail(solid, "plane", "plane = \"strain\" for a solid with plasticity", "\"stress\"");
+  using Fit = DruckerPragerParameters::Fit;
+  DruckerPragerParameters law;
+  law.elastic = section.material;
+  law.cohesion = table->number("cohesion");
+  law.friction = table->number("friction_angle");
+  law.dilation = table->number("dilatancy_angle");
+  law.hardening = table->number("hardening");
+  const std::string& fit = table->text("fit");
+  law.fit = fit == "compression" ? Fit::compression : fit == "extension" ? Fit::extension : Fit::plane_strain;
+  if (law.dilation > law.friction)
+    fail(*table, "dilatancy_angle", "an angle from 0 to the friction angle", fmt::format("{:g} rad", law.dilation));
+  if (law.friction == 0 && law.cohesion == 0) fail(*table, "cohesion", "above 0 Pa for a soil without friction", "0 Pa");
+  check_drucker_prager(law, table->where(), table->path());
+  return law;
+}
+
+/// The first group of cells that holds the cell, or the cell itself, for messages.
+std::string owner_of(const Mesh& mesh, CellId cell) {
+  for (const auto& [name, group] : mesh.groups)
+    if (group.dimension == mesh.dimension && std::ranges::binary_search(group.cells, cell)) return in_quotes(name);
+  return describe_cell(mesh, cell);
+}
+
+/// A mesh of beams needs no solids.
+bool beams_alone(const Values& root) {
+  return root.tables("solid").empty() && std::ranges::any_of(root.tables("beam"), [](const Values& beam) { return beam.has("group"); });
+}
+
+/// Faces that do not lie in a plane of equal z are taken for a mesh in space, which has nothing to be solid.
+void check_solid(const Mesh& mesh, const Values& table) {
+  const auto fills = [&](const CellBlock& block) { return info(block.cell).dimension == mesh.dimension; };
+  if (mesh.dimension == 2 || std::ranges::any_of(mesh.blocks, fills)) return;
+  std::string found = "no solid cells";
+  for (const char axis : {'x', 'y', 'z'}) {
+    const auto along = [&](const Vec3& point) { return point[axis - 'x']; };
+    const auto [least, most] = std::ranges::minmax(mesh.nodes, {}, along);
+    found += fmt::format("{} {} from {:g} to {:g}", axis == 'x' ? ", nodes with" : ",", axis, along(least), along(most));
+  }
+  fail(table, "file", "cells of space (tet, hex, wedge), or a mesh in the plane: x to the right, y up, all z equal", found);
+}
+
+}  // namespace
+
+std::shared_ptr<const CaseMesh> mesh_of_case(const Values& root, const std::string& file, const MeshReader& read_mesh) {
+  const Values* mesh = table_if(root, "mesh");
+  if (!mesh) {
+    for (const Values& interface : root.tables("interface"))
+      if (interface.has("surface")) fail(interface, "surface", "a [mesh] for the surface", "none");
+    for (const char* key : {"solid", "absorbing"})
+      if (!root.tables(key).empty()) fail(root.tables(key).front(), "", "a [mesh] with this group", "none");
+    return nullptr;
+  }
+  const bool from_file = mesh->has("file");
+  if (from_file == mesh->has("soil_box")) fail(*mesh, "", "either file or soil_box", from_file ? "both" : "neither");
+  auto made = std::make_shared<CaseMesh>();
+  if (from_file) {
+    assert(read_mesh);
+    const Where where = mesh->where("file");
+    made->from = (std::filesystem::path(file).parent_path() / mesh->text("file")).lexically_normal().string();
+    made->mesh = read_mesh(made->from, where, mesh->has("name") ? mesh->text("name") : "");
+    check_mesh(made->mesh, {made->from, 0});
+    if (!beams_alone(root)) check_solid(made->mesh, *mesh);
+  } else {
+    made->from = "soil_box";
+    made->mesh = make_soil_box(mesh->table("soil_box"));
+  }
+  open_surfaces(root.tables("interface"), *made);
+  return made;
+}
+
+CaseSolids::CaseSolids(const Values& root, const CaseMesh& from) : mesh_(&from.mesh), sides_(from.mesh, full_cells(from.mesh)) {
+  const std::vector<CellId>& cells = sides_.cells();
+  solid_of_.assign(cells.size(), -1);
+  for (const Values& solid : root.tables("solid")) {
+    const Group& group = group_named(*mesh_, solid, "group", "a group of cells");
+    if (group.dimension != mesh_->dimension || group.cells.empty())
+      fail(solid, "group", "a group of cells", dimension_word(*mesh_, group.dimension));
+    for (const CellId cell : group.cells) {
+      int& solid_here = solid_of_[static_cast<std::size_t>(std::ranges::lower_bound(cells, cell) - cells.begin())];
+      if (solid_here >= 0)
+        fail(solid, "group", "cells without another solid",
+             fmt::format("{}, which belongs to the solid {} too", describe_cell(*mesh_, cell),
+                         in_quotes(solids_[at(solid_here)].table->text("group"))));
+      solid_here = static_cast<int>(solids_.size());
+    }
+    const SolidSection section = section_from(solid);
+    solids_.push_back({&solid, section, plasticity_from(solid, section), group.cells});
+  }
+  const auto bare = std::ranges::find(solid_of_, -1);
+  if (bare != solid_of_.end())
+    throw InputError(root.table("mesh").where(), "solid", "a [[solid]] for every cell of the mesh",
+                     "none for " + owner_of(*mesh_, cells[static_cast<std::size_t>(bare - solid_of_.begin())]));
+}
+
+const CaseSolids::Solid* CaseSolids::beside(CellId edge) const {
+  const int side = sides_.find(mesh_->type(edge), mesh_->cell(edge));
+  return side < 0 ? nullptr : &solids_[at(solid_of_[at(side / Sides::stride)])];
+}
+
+std::vector<int> CaseSolids::outward_nodes(CellId edge) const {
+  const int side = sides_.find(mesh_->type(edge), mesh_->cell(edge));
+  std::vector<int> nodes;
+  if (side >= 0 && sides_.twin(side) < 0) sides_.nodes_of(*mesh_, side, nodes);
+  return nodes;
+}
+
+Vec3 CaseSolids::centre_beside(CellId edge) const {
+  const int side = sides_.find(mesh_->type(edge), mesh_->cell(edge));
+  assert(side >= 0);
+  const std::span<const int> nodes = mesh_->cell(sides_.cells()[at(side / Sides::stride)]);
+  Vec3 sum = Vec3::Zero();
+  for (const int node : nodes) sum += mesh_->nodes[at(node)];
+  return sum / static_cast<double>(nodes.size());
+}
+
+std::vector<int> CaseSolids::nodes(const Values& table, std::string_view key) const {
+  std::vector<int> found = nodes_of(*mesh_, group_named(*mesh_, table, key, "a group of the mesh"));
+  if (found.empty()) fail(table, key, "a group with nodes", "an empty one");
+  return found;
+}
+
+const std::vector<CellId>& CaseSolids::lines(const Values& table) const {
+  const Group& group = group_named(*mesh_, table, "group", "a group of lines");
+  if (group.dimension != 1 || group.cells.empty()) fail(table, "group", "a group of lines", dimension_word(*mesh_, group.dimension));
+  return group.cells;
+}
+
+const std::vector<CellId>& CaseSolids::edges(const Values& table, std::string_view key) const {
+  const std::string wanted = dimension_word(*mesh_, mesh_->dimension - 1);
+  const Group& group = group_named(*mesh_, table, key, wanted);
+  if (group.dimension != mesh_->dimension - 1 || group.cells.empty()) fail(table, key, wanted, dimension_word(*mesh_, group.dimension));
+  for (const CellId edge : group.cells)
+    if (!beside(edge))
+      fail(table, key, mesh_->dimension == 2 ? "edges of cells" : "faces of cells", describe_cell(*mesh_, edge) + " beside no cell");
+  return group.cells;
+}
+
+std::vector<std::pair<int, double>> tributary_areas(const CaseSolids& solids, const std::vector<CellId>& edges) {
+  const Mesh& mesh = solids.mesh();
+  std::vector<std::pair<int, double>> areas;
+  std::vector<Vec3> positions;
+  for (const CellId edge : edges) {
+    const Cell cell = mesh.type(edge);
+    const double thickness = solids.beside(edge)->section.thickness;
+    const std::span<const int> nodes = mesh.cell(edge);
+    positions.clear();
+    for (const int node : nodes) positions.push_back(mesh.nodes[at(node)]);
+    const CellRule rule = cell_rule(cell, 4);
+    for (std::size_t a = 0; a < nodes.size(); ++a) {
+      double area = 0;
+      for (std::size_t i = 0; i < rule.point.size(); ++i) {
+        const CellShape shape = cell_shape(cell, rule.point[i]);
+        area += rule.weight[i] * shape.value[a] * cell_area_vector(shape, positions, cell).norm() * thickness;
+      }
+      areas.emplace_back(nodes[a], area);
+    }
+  }
+  return areas;
+}
+
+double thickness_of(const CaseSolids& solids, const std::vector<FacePair>& faces, const Values& surface) {
+  if (surface.has("thickness")) return surface.number("thickness");
+  double least = std::numeric_limits<double>::infinity(), most = 0;
+  for (const FacePair& face : faces) {
+    const double thickness = std::min(solids.beside(face.lower)->section.thickness, solids.beside(face.upper)->section.thickness);
+    least = std::min(least, thickness);
+    most = std::max(most, thickness);
+  }
+  if (most > least) fail(surface, "", "thickness, where that of the solids changes along the surface", "none");
+  return most;
+}
+
+std::vector<char> part_of(const Model& model, const std::vector<int>& nodes) {
+  std::vector<int> parent(model.nodes.size());
+  std::iota(parent.begin(), parent.end(), 0);
+  const auto root = [&](int node) {
+    while (parent[at(node)] != node) node = parent[at(node)] = parent[at(parent[at(node)])];
+    return node;
+  };
+  const auto join = [&](int a, int b) { parent[at(root(a))] = root(b); };
+  for (const auto& element : model.elements)
+    for (const int node : element->nodes()) join(node, element->nodes()[0]);
+  const Sparse rows = model.assembly.constraints.transpose();  // a column for each constraint
+  for (int row = 0; row < static_cast<int>(rows.cols()); ++row) {
+    int first = -1;
+    for (Sparse::InnerIterator entry(rows, row); entry; ++entry) {
+      const int node = model.space.node_of(entry.row());
+      if (first < 0) first = node;
+      join(node, first);
+    }
+  }
+  std::vector<char> started(model.nodes.size(), 0), part(model.nodes.size(), 0);
+  for (const int node : nodes) started[at(root(node))] = 1;
+  for (int node = 0; node < static_cast<int>(part.size()); ++node) part[at(node)] = started[at(root(node))];
+  return part;
+}
+
+}  // namespace uplift

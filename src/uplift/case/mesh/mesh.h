@@ -1,0 +1,71 @@
+#pragma once
+#include <memory>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "uplift/case/case.h"
+#include "uplift/elements/drucker_prager.h"
+#include "uplift/elements/solid.h"
+#include "uplift/mesh/sides.h"
+#include "uplift/mesh/split.h"
+#include "uplift/model/model.h"
+
+// The mesh of a case: where it comes from, how its interfaces are opened, what its cells are made of.
+namespace uplift {
+
+/// A mesh, opened along the surfaces of the case's interfaces.
+struct CaseMesh {
+  Mesh mesh;
+  std::string from;                         // the file, or "soil_box"
+  std::vector<std::vector<FacePair>> open;  // per interface of the case; empty for one without a surface
+};
+
+/// Reads or makes the mesh, checks it, opens it. Surfaces with the same lower side are opened together, others one after another. Null when
+/// the case has none. Throws InputError: both a file and a soil box or neither, groups and surfaces that do not fit.
+std::shared_ptr<const CaseMesh> mesh_of_case(const Values& root, const std::string& file, const MeshReader& read_mesh);
+
+/// What the solids of a case are made of. Throws InputError unless every cell has exactly one of them. An edge is a side of a cell: in
+/// space a face.
+class CaseSolids {
+ public:
+  CaseSolids(const Values& root, const CaseMesh& from);
+  const Mesh& mesh() const { return *mesh_; }
+  struct Solid {
+    const Values* table;
+    SolidSection section;
+    std::optional<DruckerPragerParameters> plasticity;
+    std::vector<CellId> cells;
+  };
+  const std::vector<Solid>& solids() const { return solids_; }
+  /// Of the cell that has this edge; null for an edge of none.
+  const Solid* beside(CellId edge) const;
+  /// Nodes of such an edge, numbered with the normal out of its cell; empty for an edge between two cells.
+  std::vector<int> outward_nodes(CellId edge) const;
+  /// Mean place of the nodes of the cell that has this edge, which must be one.
+  Vec3 centre_beside(CellId edge) const;
+  /// Nodes of the group named under `key`.
+  std::vector<int> nodes(const Values& table, std::string_view key) const;
+  /// Lines of the group named under "group"; InputError for a group of something else.
+  const std::vector<CellId>& lines(const Values& table) const;
+  /// Edges of the group named under `key`; InputError for a group of something else.
+  const std::vector<CellId>& edges(const Values& table, std::string_view key) const;
+
+ private:
+  const Mesh* mesh_;
+  std::vector<Solid> solids_;
+  Sides sides_;
+  std::vector<int> solid_of_;  // of the cells of sides_
+};
+
+/// Uniform traction on edges: nodes of the mesh with the integrals of their shape functions [m2].
+std::vector<std::pair<int, double>> tributary_areas(const CaseSolids& solids, const std::vector<CellId>& edges);
+
+/// Thickness of an opened surface [m]: the smaller one of the solids on both sides. Throws InputError at the table when it changes along
+/// the surface.
+double thickness_of(const CaseSolids& solids, const std::vector<FacePair>& faces, const Values& surface);
+
+/// Which nodes of the model hang together with the given ones by elements, rigid bodies, ties and inextensible beams.
+std::vector<char> part_of(const Model& model, const std::vector<int>& nodes);
+
+}  // namespace uplift

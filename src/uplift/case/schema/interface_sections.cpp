@@ -1,0 +1,101 @@
+#include "uplift/case/schema/interface_sections.h"
+
+#include "uplift/case/build/profile.h"
+#include "uplift/case/schema/mesh_sections.h"
+#include "uplift/laws/law.h"
+
+namespace uplift {
+namespace {
+
+using Fields = std::vector<Field>;
+
+const Section& bed_section() {
+  static const Section s{
+      "bed",
+      "elastic ground: under each point of the footing a spring of its own (Winkler), below the joint. It belongs to the model, "
+      "so that every interface method sees the same ground",
+      Fields{number("stiffness", "Pa/m", "stiffness of the ground per area (subgrade modulus)").positive(),
+             number("damping", "Pa s/m", "viscous damping of the ground per area").nonnegative().standard(0.0),
+             number("mass", "kg/m2", "mass of the moving ground per area").nonnegative().standard(0.0)}};
+  return s;
+}
+
+const Section& footing_section() {
+  static const Section s{"footing", "points spread over the width of a rigid footing, in space over its area",
+                         Fields{text("body", "node (the master of the footing) that carries the upper side"),
+                                number("width", "m", "width of the footing").positive(),
+                                number("thickness", "m", "length out of the plane").positive().standard(1.0),
+                                number("length", "m", "in space: length across the width").positive().optional(),
+                                integer("points", "number of joint points; in space along the width").between(1, 100000),
+                                integer("points_across", "in space: number of joint points along the length").between(1, 100000).optional(),
+                                number("azimuth", "rad", "in space: angle from the x axis to the width, about the normal").standard(0.0),
+                                choice("rule", {"nodal", "midpoint", "gauss"},
+                                       "where they stand and what they weigh: trapezoidal rule with points on both edges, "
+                                       "middle of equal strips, Gauss points")
+                                    .standard("nodal"),
+                                vector("offset", "m", "from the node to the middle of the footing's underside").optional(),
+                                vector("normal", "1", "from the ground to the structure; absent: up").optional(),
+                                table("bed", bed_section(), "elastic ground under the joint; absent: fixed ground").optional()}};
+  return s;
+}
+
+const Section& pairs_section() {
+  static const Section s{"pairs", "isolated pairs of nodes",
+                         Fields{texts("upper", "nodes of the structure"),
+                                texts("lower", "nodes of the ground, in the same order; absent: fixed ground").optional(),
+                                vector("normal", "1", "from the ground to the structure; absent: up").optional(),
+                                number("area", "m2", "area of each pair").positive()}};
+  return s;
+}
+
+const Section& line_section() {
+  static const Section s{
+      "line", "joint elements along a line of node pairs",
+      Fields{texts("upper", "nodes of the structure in order along the line, the structure to the left of the walking direction"),
+             texts("lower", "nodes of the ground, in the same order; absent: fixed ground").optional(),
+             integer("nodes_per_element", "2 (linear) or 3 (quadratic)").between(2, 3).standard(2.0),
+             choice("quadrature", {"nodal", "gauss"}, "integration points of an element").standard("nodal"),
+             number("thickness", "m", "length out of the plane").positive().standard(1.0)}};
+  return s;
+}
+
+const Section& water_section() {
+  static const Section s{
+      "water",
+      "water in the joint: it pushes both faces apart over the whole area, in contact or not, and does not change in time. The pressures "
+      "of "
+      "the contact are then those beyond the water's (effective pressures). Static stages apply it like a constant load",
+      Fields{
+          number("level", "m", "height of the water table: pressure unit_weight x (level - height of the point), zero above; or give head")
+              .optional(),
+          number("head", "m", "pressure head, the same at every point").nonnegative().optional(),
+          number("unit_weight", "Pa/m", "unit weight of the water, 1 Pa/m = 1 N/m3").positive().standard(9810.0)}};
+  return s;
+}
+
+}  // namespace
+
+const Section& interface_section() {
+  static const Section s{
+      "interface", "a surface that may open: exactly one of footing, pairs, line and surface says where",
+      Fields{
+          text("name", "name"), table("footing", footing_section(), "under a rigid footing").optional(),
+          table("pairs", pairs_section(), "isolated points").optional(), table("line", line_section(), "along a line").optional(),
+          table("surface", surface_section(), "along faces (edges) inside the mesh").optional(),
+          number("gap", "m",
+                 "initial gap of every point; geometry: the distance along the normal at which both sides are drawn, of pairs, lines and "
+                 "surfaces with two groups")
+              .or_word("geometry")
+              .standard(0.0),
+          table("gap_profile", gap_profile_section(), "initial gaps that vary over the interface, added to gap").optional(),
+          table("water", water_section(), "water pressure in the joint; absent: none").optional(),
+          choice("role", {"base", "wall"},
+                 "base: carries the structure and may lift off; uplift, eccentricity, safeties and the headline are those of bases. wall: "
+                 "stands beside it. Absent: by the normals, base within 45 degrees of the direction of gravity (of the vertical axis "
+                 "without gravity); a surface with faces of both kinds is divided, the walls of \"soil\" become \"soil walls\"")
+              .optional(),
+          part("law", interface_behaviours, "what it does: a traction law or a cone (contact by constraint)")}};
+  return s;
+}
+
+}  // namespace uplift

@@ -1,0 +1,182 @@
+#include "uplift/case/schema/mesh_sections.h"
+
+namespace uplift {
+namespace {
+
+using Fields = std::vector<Field>;
+
+const Section& layer_section() {
+  static const Section s{"layer", "a layer of the soil, from top to bottom; its cells are the group soil_1, soil_2, ...",
+                         Fields{number("thickness", "m", "thickness").positive(),
+                                number("size", "m", "largest height of an element").positive().standard(1.0)}};
+  return s;
+}
+
+const Section& soil_section() {
+  static const Section s{"soil", "the soil, its surface at y = 0 (in space z = 0)",
+                         Fields{number("width", "m", "width along x").positive(),
+                                number("length", "m", "length along y: this makes the mesh one in space").positive().optional(),
+                                number("size", "m", "largest width of an element away from the foundation").positive().standard(4.0),
+                                tables("layers", layer_section(), "layers from top to bottom; at least one")}};
+  return s;
+}
+
+Field part_width() {
+  return number("width", "m", "width along x").positive();
+}
+Field part_length() {
+  return number("length", "m", "in space: length along y; absent: as the width").positive().optional();
+}
+Field part_height() {
+  return number("height", "m", "height").positive();
+}
+Field part_size() {
+  return number("size", "m", "largest size of an element").positive().standard(1.0);
+}
+
+const Section& raft_section() {
+  static const Section s{"raft", "the foundation, in the middle of the soil (x = 0, in space y = 0)",
+                         Fields{part_width(), part_length(), part_height(), part_size()}};
+  return s;
+}
+
+const Section& block_section() {
+  static const Section s{"block", "the building, on the raft (without one: on the soil)",
+                         Fields{part_width(), part_length(), part_height(), part_size(),
+                                number("offset", "m", "of its middle from the middle of the soil, along x").standard(0.0),
+                                number("offset_y", "m", "in space: the same along y").standard(0.0)}};
+  return s;
+}
+
+const Section& soil_box_section() {
+  static const Section s{
+      "soil_box",
+      "layered soil with a building on it, or level ground. Groups of cells: soil_1, soil_2, ..., raft, block; of edges (faces): "
+      "soil_left, soil_right, "
+      "in space soil_front, soil_back, soil_bottom, soil_top, the same of raft_ and block_, and interface (between soil and building)",
+      Fields{table("soil", soil_section(), "the soil"), table("raft", raft_section(), "the foundation; absent: none").optional(),
+             table("block", block_section(), "the building; absent: none").optional(),
+             number("embedment", "m", "depth of the foundation's underside below the soil surface").nonnegative().standard(0.0),
+             number("growth", "1", "growth of the elements away from the foundation, one to the next").between(1.01, 2).standard(1.25),
+             choice("cell", {"quad4", "quad8", "quad9", "tri3", "tri6", "hex8", "hex20", "hex27", "tet4", "tet10", "wedge6", "wedge15"},
+                    "type of the elements; absent: quad4, in space hex8")
+                 .optional()}};
+  return s;
+}
+
+}  // namespace
+
+const Section& mesh_section() {
+  static const Section s{"mesh",
+                         "mesh of solids and beams, in the plane or in space: either a file or a soil box. Its nodes are called mesh.1, "
+                         "mesh.2, ...; a node that "
+                         "is a group of its own has the name of the group",
+                         Fields{text("file", "mesh of Gmsh (.msh) or MED (.med), in metres; in the plane where all z are equal").optional(),
+                                text("name", "the mesh to take when a MED file holds several").optional(),
+                                table("soil_box", soil_box_section(), "a made mesh").optional()}};
+  return s;
+}
+
+namespace {
+
+const Section& plasticity_section() {
+  static const Section s{
+      "plasticity",
+      "a soil that yields under shear, the stronger the more it is compressed. Every step then iterates on it around the linear step",
+      Fields{
+          choice("type", {"drucker_prager"}, "yield surface: a cone around the axis of equal stresses").standard("drucker_prager"),
+          number("cohesion", "Pa", "cohesion; above 0 without friction").nonnegative(),
+          number("friction_angle", "rad", "angle of internal friction").between(0, 1.5),
+          number("dilatancy_angle", "rad", "0: no change of volume; as the friction angle: associated flow").between(0, 1.5).standard(0.0),
+          number("hardening", "Pa", "growth of the cohesion with the accumulated plastic strain").nonnegative().standard(0.0),
+          choice("fit", {"compression", "extension", "plane_strain"},
+                 "where the cone meets Mohr-Coulomb's pyramid: at its compression edges, its extension edges, or for the same collapse in "
+                 "plane strain")
+              .standard("compression")}};
+  return s;
+}
+
+}  // namespace
+
+const Section& solid_section() {
+  static const Section s{
+      "solid", "what a group of cells of the mesh is made of; every cell needs one",
+      Fields{text("group", "group of cells"), number("E", "Pa", "Young's modulus; or give shear_wave_speed").positive().optional(),
+             number("shear_wave_speed", "m/s", "speed of shear waves, from which E follows: G = density x speed squared")
+                 .positive()
+                 .optional(),
+             number("poisson", "1", "Poisson's ratio, below 0.5").between(0, 0.4999),
+             number("density", "kg/m3", "density; not needed with mass = \"none\" and E").positive().optional(),
+             choice("plane", {"strain", "stress"}, "what is zero out of the plane (plane meshes)").standard("strain"),
+             number("thickness", "m", "length out of the plane (plane meshes)").positive().standard(1.0),
+             choice("mass", {"consistent", "lumped", "none"}, "mass matrix").standard("consistent"),
+             flag("incompatible_modes", "quad4 and hex8: bubbles that let an element bend").standard(true),
+             table("plasticity", plasticity_section(), "plastic yielding (plane strain and space); absent: linear elastic").optional(),
+             number("damping_beta", "s", "stiffness-proportional damping factor of this solid alone").nonnegative().standard(0.0)}};
+  return s;
+}
+
+namespace {
+
+const Section& incident_section() {
+  static const Section s{
+      "incident",
+      "a plane wave that comes up through the face; the face then carries 2 rho c times its velocity, and absorbs what comes back",
+      Fields{
+          choice("wave", {"P", "SV", "SH"}, "P: the particles move upwards; SV: along x; SH (in space): along y"),
+          number("azimuth", "rad", "in space: turns the motion of S waves about the vertical, from x to y").standard(0.0),
+          choice("kind", {"outcrop", "incoming"},
+                 "what the function is: the motion that the free surface of the same rock would have (twice the incoming wave), or that of "
+                 "the incoming wave alone. A motion recorded within the ground holds what comes down again: it is no incident wave but "
+                 "a prescribed motion, [[motion]] with the group of the base, and the base then reflects"),
+          number("velocity", "m/s", "velocity that the function multiplies").standard(1.0),
+          text("function", "name of the function of time: a velocity"), text("name", "name").standard("incident wave")}};
+  return s;
+}
+
+}  // namespace
+
+const Section& absorbing_section() {
+  static const Section s{
+      "absorbing",
+      "a viscous boundary: edges (faces) of the mesh through which waves leave (Lysmer & Kuhlemeyer), with the material of the "
+      "solid beside them. It "
+      "holds nothing at rest: static stages need supports elsewhere",
+      Fields{
+          text("group", "group of edges (faces) of the mesh"), flag("lumped", "diagonal damping matrix").standard(false),
+          flag("free_field",
+               "for sides: the boundary follows a column of level ground (the layers beside it) under the incident wave at its foot, and "
+               "absorbs only what differs from it")
+              .standard(false),
+          table("incident", incident_section(), "a wave that comes in; absent: none").optional()}};
+  return s;
+}
+
+const Section& tie_section() {
+  static const Section s{
+      "tie",
+      "nodes of one side of the mesh that move as those at the same place of the opposite side, as in ground that goes on "
+      "the same",
+      Fields{text("group", "group of the mesh"), text("to", "group of the opposite side"),
+             texts("unknowns", "any of ux, uy; in space of ux, uy, uz")}};
+  return s;
+}
+
+const Section& surface_section() {
+  static const Section s{
+      "surface",
+      "edges (faces) inside the mesh, which is opened there (group and lower), or two groups of edges (faces) that are drawn apart and lie "
+      "opposite to each other node by node (lower_group and upper_group)",
+      Fields{text("group", "group of edges (faces) at which the mesh is opened").optional(),
+             texts("lower", "groups of cells of the lower side (soil); all other cells are the upper side").optional(),
+             text("lower_group", "group of edges (faces) on the surface of the lower side, instead of group").optional(),
+             text("upper_group", "group of edges (faces) of the upper side opposite to lower_group").optional(),
+             choice("quadrature", {"nodal", "gauss"}, "where the joint points stand: at the pairs of nodes, or at Gauss points")
+                 .standard("nodal"),
+             number("thickness", "m", "length out of the plane (plane meshes); absent: that of the solids (the smaller one)")
+                 .positive()
+                 .optional()}};
+  return s;
+}
+
+}  // namespace uplift

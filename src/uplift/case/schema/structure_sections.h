@@ -1,0 +1,21 @@
+#pragma once
+#include "uplift/base/declare.h"
+
+// The declarations of the structure, its supports, motions and loads; used by case/schema/sections.cpp alone.
+namespace uplift {
+
+const Section& node_section();
+const Section& beam_section();
+const Section& mass_section();
+const Section& spring_section();
+const Section& dashpot_section();
+const Section& rigid_section();
+const Section& support_section();
+const Section& motion_section();
+const Section& ground_section();
+const Section& gravity_section();
+const Section& function_section();
+const Section& load_section();
+const Section& initial_section();
+
+}  // namespace uplift

@@ -1,0 +1,59 @@
+#pragma once
+#include <memory>
+#include <span>
+#include <vector>
+
+#include "uplift/base/catalog.h"
+#include "uplift/contact/compliance.h"
+#include "uplift/contact/kernel/kernel.h"
+#include "uplift/contact/problem.h"
+
+namespace uplift {
+
+/// What an impact rule may know of the step just solved. Rows are interface rows; compression is negative.
+struct Impact {
+  const Spread* mass = nullptr;     // of M; all that the rows touch has mass (check_dynamic)
+  const Spread* dynamic = nullptr;  // of K + 4M/dt^2 (eq 5); only for rules that ask for it
+  const Matrix* b = nullptr;        // dense B, rows x free (null when large), or
+  const Sparse* sparse_b = nullptr;
+  // all rows: weight of the active normal rows (compressed), 0 elsewhere: the area of the row's point [m2], by which redundant impulses are
+  // shared, or all alike
+  const Vector* pressed = nullptr;
+  std::vector<int> tangents;       // sticking tangential rows: equalities
+  const Vector* force = nullptr;   // all rows: contact force at the end of the step [N], tension > 0
+  const Vector* area = nullptr;    // all rows: the same weight, for the tangents; null: all alike
+  double velocity_weight = 0;      // gamma * dt [s]: a force p at the end of the step put -velocity_weight * M^-1 B^T p into the velocity
+  double step = 0;                 // s: of the step just solved
+  double acceleration_weight = 1;  // and -acceleration_weight * M^-1 B^T p into the acceleration
+};
+
+/// Work space of a rule, sized at the first call and kept between steps.
+struct ImpactScratch {
+  KernelScratch kernel;
+  Vector target, limit, fixed, held;  // rows: B v without the contact force, weights of the rows (kernel.h)
+  Vector rate, taken, impulse;        // rows: B v corrected, force that was taken out, total impulse
+  Vector total;                       // rows: total impulse of the velocity, where the acceleration is projected too
+  Vector y, push;                     // r
+  Index first = 0, count = 0;         // range of rows that holds the active ones
+  bool any_fixed = false;             // some rows are held both ways
+};
+
+class ImpactRule {
+ public:
+  virtual ~ImpactRule() = default;
+  virtual bool acts() const { return true; }
+  virtual bool needs_dynamic() const { return false; }
+  /// True when the force of the displacement solve alone is not the contact force: the correction's impulse / dt is added to it (reflect,
+  /// propagate).
+  virtual bool force_includes_impulse() const { return false; }
+  /// True when the acceleration is projected too: the scratch then holds the force that belongs to it, and the impulse of the velocity.
+  virtual bool holds_acceleration() const { return false; }
+  /// Corrects velocity and acceleration of the free unknowns in place. `impulse` (rows, N s, compression negative) receives what the
+  /// correction put in.
+  virtual void apply(const Impact&, Vector& velocity, Vector& acceleration, Vector& impulse, ImpactScratch&) const = 0;
+};
+
+std::span<const Entry<ImpactRule>* const> impact_catalog();  // none, project, project_hold, reflect, propagate
+std::span<const PartInfo* const> impact_rules();
+
+}  // namespace uplift

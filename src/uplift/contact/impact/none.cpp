@@ -1,0 +1,24 @@
+#include "uplift/contact/impact/impact.h"
+
+namespace uplift {
+namespace {
+
+class None final : public ImpactRule {
+ public:
+  bool acts() const override { return false; }
+  void apply(const Impact&, Vector&, Vector&, Vector&, ImpactScratch&) const override {}
+};
+
+}  // namespace
+
+const Entry<ImpactRule>& entry_impact_none() {
+  static const Entry<ImpactRule> entry{{.name = "none",
+                                        .summary = "the integrator's velocity is kept: shows the energy that constraint contact creates",
+                                        .equations = "v' = v",
+                                        .source = "Cherubini, Richard & Frau, section 2",
+                                        .params = {}},
+                                       [](const Values&) { return std::make_unique<const None>(); }};
+  return entry;
+}
+
+}  // namespace uplift

@@ -1,0 +1,171 @@
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+
+#include "uplift/contact/lagrange/lagrange.h"
+#include "uplift/contact/method.h"
+#include "uplift/contact/newton/newton.h"
+#include "uplift/contact/point_rows.h"
+
+// Augmented Lagrangian (paper, eq 1 with alpha > 0): p = P(m + e g), solved by Newton; then m <- p, until the multipliers stand still. Each
+// update contracts the error by 1/(1 + e F): with e F_ii = factor a handful of updates reaches round-off. Where it contracts slowly
+// (neighbouring points of a rigid footing are nearly one row), e grows by 16 until round-off in the openings would show in the forces. From
+// m = 0 the pressures of redundant points come out as those of a bed of equal springs, the least-norm ones, up to 1/factor.
+namespace uplift {
+
+void augmentation(const InterfaceProblem& problem, double factor, Vector& stiffness) {
+  stiffness.resize(problem.rows());
+  double largest = 0;
+  for (Index i = 0; i < stiffness.size(); ++i) largest = std::max(largest, stiffness[i] = problem.factor.row(i).squaredNorm());
+  for (const Block& block : problem.blocks) {
+    const int n = block.batch.points;
+    for (int i = block.first; block.batch.components == 3 && i < block.first + n; ++i)
+      stiffness[i] = stiffness[i + n] = 0.5 * (stiffness[i] + stiffness[i + n]);
+  }
+  for (Index i = 0; i < stiffness.size(); ++i)
+    stiffness[i] = factor / (stiffness[i] > 1e-12 * largest ? stiffness[i] : std::max(largest, 1e-300));
+}
+
+namespace {
+
+class AugmentedLagrangian final : public ContactMethod {
+ public:
+  AugmentedLagrangian(double factor, double tolerance, int most_updates, NewtonOptions newton)
+      : factor_(factor), tolerance_(tolerance), most_updates_(most_updates), newton_(newton) {}
+
+  Outcome solve(const InterfaceProblem& problem, InterfaceSolution& solution) const override {
+    AugmentedScratch& scratch = solution.augmented;
+    prepare(problem, scratch);
+    const AugmentedForce augmented{&scratch.multiplier, &scratch.stiffness};
+    const Outcome guess = guess_by_status(problem, solution);
+    Outcome total = iterate(problem, augmented, guess.converged, solution);
+    total.iterations += guess.iterations;
+    reset_stiffness(scratch);
+    for (const double softer : {1.0 / 128, 1.0 / 16384}) {
+      if (total.converged) break;
+      const Outcome again = iterate_from(softer, problem, augmented, solution);
+      const int iterations = total.iterations + again.iterations;
+      if (again.converged) total = again;
+      total.iterations = iterations;
+    }
+    return total;
+  }
+
+  bool constrains() const override { return true; }
+
+ private:
+  /// The same from rest on softer springs (a power of two, which the growth takes back): on these Newton's method, which follows no
+  /// potential with friction, arrives from afar.
+  Outcome iterate_from(double softer, const InterfaceProblem& problem, const AugmentedForce& augmented, InterfaceSolution& solution) const {
+    AugmentedScratch& scratch = solution.augmented;
+    scratch.multiplier.setZero();
+    scratch.stiffness *= softer;
+    scratch.growth = softer;
+    solution.z.setZero();
+    Outcome outcome = iterate(problem, augmented, false, solution);
+    reset_stiffness(scratch);
+    return outcome;
+  }
+
+  /// `guessed`: the multipliers are expected to be the answer.
+  Outcome iterate(const InterfaceProblem& problem, const AugmentedForce& augmented, bool guessed, InterfaceSolution& solution) const {
+    constexpr double epsilon = std::numeric_limits<double>::epsilon();
+    AugmentedScratch& scratch = solution.augmented;
+    Outcome total;
+    double before = std::numeric_limits<double>::infinity();
+    for (int update = 0; update < most_updates_; ++update) {
+      const Outcome inner = solve_by_newton(problem, augmented, newton_, solution);
+      total.iterations += inner.iterations + 1;
+      total.residual = inner.residual;
+      if (!inner.converged) {
+        total.why = fmt::format("augmented Lagrangian, update {}: {}", update + 1, inner.why);
+        return total;
+      }
+      bool rubs = false;
+      double change = 0, largest = 0, noise = 0;  // noise: what round-off in the openings makes of a stiff augmentation
+      for (const Block& block : problem.blocks) {
+        if (block.cone == nullptr) continue;
+        rubs = rubs || block.cone->friction() > 0;
+        for (int i = block.first; i < block.first + block.rows(); ++i) {
+          change = std::max(change, std::abs(solution.force[i] - scratch.multiplier[i]));
+          largest = std::max(largest, std::abs(solution.force[i]));
+          noise = std::max(
+              noise, scratch.stiffness[i] * (std::abs(problem.free_opening[i]) + std::abs(solution.opening[i] - problem.free_opening[i])));
+          scratch.multiplier[i] = solution.force[i];
+        }
+      }
+      // under a rigid footing friction can be shared in many ways, between which the multipliers wander while everything else stands still
+      const bool wanders = rubs && (guessed || update >= 8) && change <= 1e-3 * largest &&
+                           contact_residual(problem, solution, solution.residual_scratch) <= 10 * tolerance_;
+      if (change <= tolerance_ * largest || wanders || change <= 4 * epsilon * noise) {
+        total.converged = true;
+        return total;
+      }
+      if (update >= 4 && change > 0.25 * before && 64 * epsilon * noise < 1e-8 * largest) {
+        scratch.growth *= 16;
+        scratch.stiffness *= 16;
+      }
+      before = change;
+    }
+    total.why = fmt::format("the multipliers did not settle in {} updates of the augmented Lagrangian", most_updates_);
+    return total;
+  }
+
+  /// Where many independent rows rub, Newton's method has no potential to follow and fails from a poor guess: the exact status iteration
+  /// gives the first multipliers, which the updates then have to confirm.
+  static Outcome guess_by_status(const InterfaceProblem& problem, InterfaceSolution& solution) {
+    const bool rubs = std::any_of(problem.blocks.begin(), problem.blocks.end(),
+                                  [](const Block& block) { return block.cone != nullptr && block.cone->friction() > 0; });
+    if (!rubs || !PointRows::suits(problem)) return {};
+    size_solution(problem, solution);
+    Outcome outcome = solve_frictional(problem, {}, solution);
+    if (outcome.converged)
+      solution.augmented.multiplier = solution.force;
+    else
+      solution.z.setZero();
+    return outcome;
+  }
+
+  static void reset_stiffness(AugmentedScratch& scratch) {
+    if (scratch.growth != 1) scratch.stiffness /= scratch.growth;  // a power of two: exact
+    scratch.growth = 1;
+  }
+
+  /// Multipliers start at zero, so that the answer depends on the problem alone.
+  void prepare(const InterfaceProblem& problem, AugmentedScratch& scratch) const {
+    const Eigen::Index rows = problem.rows();
+    if (scratch.multiplier.size() != rows) scratch.multiplier.resize(rows);
+    scratch.multiplier.setZero();
+    if (scratch.stiffness.size() != rows) augmentation(problem, factor_, scratch.stiffness);
+  }
+
+  double factor_, tolerance_;
+  int most_updates_;
+  NewtonOptions newton_;
+};
+
+}  // namespace
+
+const Entry<ContactMethod>& entry_method_augmented_lagrangian() {
+  static const Entry<ContactMethod> entry{
+      {.name = "augmented_lagrangian",
+       .summary = "penalty with multiplier updates until the constraints hold to round-off",
+       .equations = "p = P(m + e g), m <- p, repeat while max|p - m| > tolerance max|p|\n"
+                    "e = factor / F_ii; the error contracts by 1/(1 + e F) per update",
+       .source = "Cherubini, Richard & Frau, eq 1",
+       .params = {number("factor", "1", "penalty stiffness times compliance, e F_ii").positive().standard(1000.0),
+                  number("tolerance", "1", "largest change of a contact force in the last update, relative to the largest force")
+                      .positive()
+                      .standard(1e-11),
+                  integer("most_updates", "multiplier updates before the step is cut").between(1, 10000).standard(60.0),
+                  integer("most_iterations", "Newton iterations per update").between(1, 10000).standard(60.0)}},
+      [](const Values& values) -> std::unique_ptr<const ContactMethod> {
+        return std::make_unique<AugmentedLagrangian>(values.number("factor"), values.number("tolerance"), values.integer("most_updates"),
+                                                     NewtonOptions{1e-12, values.integer("most_iterations")});
+      }};
+  return entry;
+}
+
+}  // namespace uplift

@@ -1,0 +1,53 @@
+#include <algorithm>
+
+#include "uplift/contact/lagrange/lagrange.h"
+
+// Law blocks beside cones: their forces and slopes, for both Lagrange methods.
+namespace uplift {
+
+void slope_offsets(const InterfaceProblem& problem, std::vector<int>& offsets) {
+  offsets.assign(1, 0);
+  for (const Block& block : problem.blocks)
+    offsets.push_back(offsets.back() + (block.law != nullptr ? block.batch.points * block.batch.components * block.batch.components : 0));
+}
+
+void law_forces(const InterfaceProblem& problem, const std::vector<int>& first_slope, double* slope, InterfaceSolution& solution) {
+  for (std::size_t b = 0; b < problem.blocks.size(); ++b) {
+    const Block& block = problem.blocks[b];
+    if (block.law == nullptr) continue;
+    LawResponse response;
+    response.traction = solution.force.data() + block.first;
+    response.slope = slope != nullptr ? slope + first_slope[b] : nullptr;
+    response.now = solution.now.data() + block.first_history;
+    law_force(problem, block, solution.opening.data(), response);
+  }
+}
+
+void add_weighted_gram(const InterfaceProblem& problem, Index left, Index right, const ConstMap& weight, Matrix& work, Matrix& hessian) {
+  const Index n = weight.size();
+  work.topRows(n) = weight.asDiagonal() * problem.factor.middleRows(right, n);
+  hessian.noalias() += problem.factor.middleRows(left, n).transpose() * work.topRows(n);
+}
+
+void add_law_slopes(const InterfaceProblem& problem, const std::vector<int>& first_slope, Vector& slope, bool convex, Matrix& work,
+                    Matrix& hessian) {
+  for (std::size_t b = 0; b < problem.blocks.size(); ++b) {
+    const Block& block = problem.blocks[b];
+    if (block.law == nullptr) continue;
+    const int n = block.batch.points, components = block.batch.components;
+    for (int row = 0; row < components; ++row)
+      for (int column = 0; column < components; ++column) {
+        if (convex && row != column) continue;
+        double* k = slope.data() + first_slope[b] + (row * components + column) * n;
+        if (convex)
+          for (int i = 0; i < n; ++i) k[i] = std::max(k[i], 0.0);
+        add_weighted_gram(problem, block.first + row * n, block.first + column * n, ConstMap(k, n), work, hessian);
+      }
+  }
+}
+
+bool settled(double residual, double before, double tolerance) {
+  return residual <= tolerance || (residual <= 1e-9 && residual > 0.5 * before);
+}
+
+}  // namespace uplift

@@ -1,0 +1,174 @@
+#include "uplift/contact/newton/fused.h"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+
+#include "uplift/math/small.h"
+
+namespace uplift {
+namespace {
+
+/// All that a pass reads and writes.
+FusedEvaluation lay_out(const InterfaceProblem& problem, InterfaceSolution& solution) {
+  const Block& block = problem.blocks.front();
+  NewtonScratch& scratch = solution.newton;
+  return {.points = block.batch.points,
+          .columns = problem.factor.cols(),
+          .z = solution.z.data(),
+          .factor = problem.factor.data(),
+          .stride = problem.factor.rows(),
+          .free = problem.free_opening.data(),
+          .from = problem.from.data(),
+          .old = problem.old.data(),
+          .area = block.area.data(),
+          .scale = problem.scale,
+          .coefficient = problem.filter.acts() ? problem.filter.coefficient.data() : nullptr,
+          .lag = problem.filter.lag.data(),
+          .opening = solution.opening.data(),
+          .force = solution.force.data(),
+          .slope = scratch.slope.data(),
+          .now = solution.now.data(),
+          .end = scratch.end.data(),
+          .next = scratch.next.data(),
+          .pull = scratch.gradient.data(),
+          .stiffness = scratch.hessian.data(),
+          .end_pull = scratch.end_pull.data(),
+          .plain = solution.plain.data(),
+          .stored = &solution.stored};
+}
+
+/// x = -H^-1 x; false when H is singular. Without softening H is at least the identity, so that Cramer's rule may solve two equations.
+template <int R>
+[[gnu::always_inline]] inline bool descend(const double* hessian, double* x) {
+  if constexpr (R == 2) {
+    const double determinant = hessian[0] * hessian[3] - hessian[1] * hessian[2], inverse = -1 / determinant, first = x[0];
+    x[0] = (hessian[3] * first - hessian[2] * x[1]) * inverse;
+    x[1] = (hessian[0] * x[1] - hessian[1] * first) * inverse;
+    return determinant > 0;
+  } else {
+    double h[R * R];
+    std::copy_n(hessian, R * R, h);
+    for (int j = 0; j < R; ++j) x[j] = -x[j];
+    return small::gauss_solve<R>(R, h, x);
+  }
+}
+
+/// C^T (scale area end), where the last step was not fused.
+template <int R>
+void pull_at_end(const FusedEvaluation& evaluation) {
+  Lanes pull[R] = {};
+  for_lanes(evaluation.points, [&](const auto& at) {
+    const Lanes force = evaluation.scale * at(evaluation.area) * at(evaluation.end);
+    for (int j = 0; j < R; ++j) pull[j] += at(evaluation.factor + j * evaluation.stride) * force;
+  });
+  for (int j = 0; j < R; ++j) evaluation.end_pull[j] = sum(pull[j]);
+}
+
+/// What the joint filter's memory adds to it, C^T (-scale area c d_f).
+template <int R>
+void add_lag(const FusedEvaluation& evaluation) {
+  Lanes pull[R] = {};
+  for_lanes(evaluation.points, [&](const auto& at) {
+    const Lanes force = evaluation.scale * at(evaluation.area) * larger(at(evaluation.coefficient), Lanes(0)) * at(evaluation.lag);
+    for (int j = 0; j < R; ++j) pull[j] += at(evaluation.factor + j * evaluation.stride) * force;
+  });
+  for (int j = 0; j < R; ++j) evaluation.end_pull[j] -= sum(pull[j]);
+}
+
+/// The laws go on linearly from their force at the end of the last step with their slope there:
+///     H z = -C^T (scale area (end - c d_f)) - (H - I) free_increment        free_opening - from = C free_increment
+template <int R>
+[[gnu::always_inline]] inline void guess(const FusedEvaluation& evaluation, const double* free_increment, double* z) {
+  double x[R];
+  for (int j = 0; j < R; ++j) {
+    x[j] = evaluation.end_pull[j] - free_increment[j];
+    for (int i = 0; i < R; ++i) x[j] += evaluation.stiffness[i * R + j] * free_increment[i];
+  }
+  if (descend<R>(evaluation.stiffness, x)) std::copy_n(x, R, z);
+}
+
+/// After a step that the law bent in: H of the step to come, in which it goes on straight.
+template <int R>
+void go_on(const FusedEvaluation& evaluation) {
+  Lanes gram[R][R] = {};
+  for_lanes(evaluation.points, [&](const auto& at) {
+    const Lanes slope = 2 * at(evaluation.area) * at(evaluation.next);  // see Newton::go_on
+    for (int j = 0; j < R; ++j) {
+      const Lanes weighted = slope * at(evaluation.factor + j * evaluation.stride);
+      for (int i = j; i < R; ++i) gram[j][i] += weighted * at(evaluation.factor + i * evaluation.stride);
+    }
+  });
+  for (int j = 0; j < R; ++j)
+    for (int i = j; i < R; ++i) evaluation.stiffness[j * R + i] = evaluation.stiffness[i * R + j] = sum(gram[j][i]) + (i == j ? 1 : 0);
+}
+
+template <int R>
+bool iterate(const InterfaceProblem& problem, const NewtonOptions& options, InterfaceSolution& solution, Outcome& outcome) {
+  const InterfaceLaw& law = *problem.blocks.front().law;
+  NewtonScratch& scratch = solution.newton;
+  const FusedEvaluation& evaluation = scratch.evaluation;
+  double* z = solution.z.data();
+  if (scratch.follows) {
+    if (!solution.fused) pull_at_end<R>(evaluation);
+    if (evaluation.coefficient != nullptr) add_lag<R>(evaluation);
+    guess<R>(evaluation, problem.free_opening_increment.data(), z);
+  }
+  scratch.follows = false;
+  double before = std::numeric_limits<double>::infinity();
+  const int most = std::min(patience_of_newton, options.most_iterations);
+  for (outcome.iterations = 0; outcome.iterations < most; ++outcome.iterations) {
+    solution.fused = law.fused(evaluation);
+    if (!solution.fused) return false;
+    double gradient[R], square = 0, reference = 0;  // the largest of |z| and |C^T p|
+    for (int j = 0; j < R; ++j) {
+      const double pull = evaluation.pull[j];
+      gradient[j] = z[j] + pull;
+      evaluation.stiffness[j * R + j] += 1;
+      square += gradient[j] * gradient[j];
+      reference = larger(reference, larger(absolute(z[j]), absolute(pull)));
+    }
+    const double size = std::sqrt(square);
+    if (size <= options.tolerance * reference || size == 0) {
+      outcome.converged = true;
+      outcome.residual = size / larger(reference, 1e-300);
+      if (outcome.iterations > 0) go_on<R>(evaluation);
+      scratch.follows = true;
+      return true;
+    }
+    if (!(size <= 0.5 * before) || !descend<R>(evaluation.stiffness, gradient)) return false;
+    before = size;
+    for (int j = 0; j < R; ++j) z[j] += gradient[j];
+  }
+  return false;
+}
+
+}  // namespace
+
+bool may_sweep(const InterfaceProblem& problem, InterfaceSolution& solution) {
+  const FusedEvaluation& evaluation = solution.newton.evaluation;
+  if (problem.free_opening_increment.size() == 0) return false;
+  if (evaluation.z == solution.z.data() && evaluation.stored == &solution.stored && evaluation.free == problem.free_opening.data())
+    return true;  // the same two as before
+  if (!problem.average || problem.shift.size() > 0 || problem.blocks.size() != 1 || problem.blocks.front().batch.components != 1 ||
+      problem.blocks.front().law == nullptr)
+    return false;
+  size_newton(problem, solution);
+  solution.newton.evaluation = lay_out(problem, solution);
+  return true;
+}
+
+bool solve_by_sweeps(const InterfaceProblem& problem, const NewtonOptions& options, InterfaceSolution& solution, Outcome& outcome) {
+  switch (problem.free_opening_increment.size()) {
+    case 1:
+      return iterate<1>(problem, options, solution, outcome);
+    case 2:
+      return iterate<2>(problem, options, solution, outcome);
+    case 3:
+      return iterate<3>(problem, options, solution, outcome);
+    default:
+      return false;
+  }
+}
+
+}  // namespace uplift

@@ -1,0 +1,390 @@
+#include "uplift/contact/newton/newton.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+
+#include "uplift/contact/newton/fused.h"
+#include "uplift/contact/newton/many.h"
+#include "uplift/contact/point_rows.h"
+#include "uplift/math/small.h"
+
+namespace uplift {
+namespace {
+
+/// One solve. R: number of coordinates where it is known beforehand (a rigid footing has up to three in the plane, six in space), so that
+/// what goes over them is unrolled; else 0.
+template <int R>
+class Newton {
+ public:
+  Newton(const InterfaceProblem& problem, const AugmentedForce& augmented, const NewtonOptions& options, InterfaceSolution& solution)
+      : problem_(problem),
+        augmented_(augmented),
+        options_(options),
+        solution_(solution),
+        scratch_(solution.newton),
+        r_(R > 0 ? R : problem.factor.cols()),
+        rows_(problem.factor.rows()) {}
+
+  Outcome solve(int done);
+
+ private:
+  static constexpr Index most = R > 0 ? R : few;  // where H is formed
+  Index r() const { return R > 0 ? R : r_; }
+  const double* column(Index j) const { return problem_.factor.data() + j * rows_; }
+  const double* slope_of(std::size_t block) const { return scratch_.slope.data() + scratch_.first_slope[block]; }
+
+  /// Sum over the coordinates.
+  double dot(const Vector& a, const Vector& b) const {
+    double sum = 0;
+    for (Index i = 0; i < r(); ++i) sum += a.data()[i] * b.data()[i];
+    return sum;
+  }
+
+  void predict();
+  void add_lag(Lanes* total);
+  void go_on();
+  void look(bool with_hessian);
+  void move(double alpha, bool with_hessian);
+  void form_gradient(bool with_hessian);
+  void add_block(const Block& block, const double* slope, double* g, double* h);
+  void add_general(const Block& block, const double* slope, double* g, double* h);
+  void take_back_shift(bool with_hessian);
+  bool direction();
+  bool direction_of_few(double* d) const;
+  void line_search(double start_slope, double end_slope);
+  void shorten(double before);
+  double balance_scale();
+  double round_off() const;
+
+  const InterfaceProblem& problem_;
+  const AugmentedForce& augmented_;
+  const NewtonOptions& options_;
+  InterfaceSolution& solution_;
+  NewtonScratch& scratch_;
+  Index r_, rows_;
+  double size_ = 0;  // |G| where it was looked at last
+};
+
+/// First guess of a step from the last one: the laws go on linearly from their end-of-step force with their slope there,
+///     H_end z = -C^T (p_end + k_end (free_opening - from))
+/// which is the solution itself where no law changes its branch (with a joint filter less scale area c d_f). Costs two sums over the points
+/// instead of an evaluation of the laws.
+template <int R>
+void Newton<R>::predict() {
+  Lanes total[most] = {};
+  for (std::size_t b = 0; b < problem_.blocks.size(); ++b) {
+    const Block& block = problem_.blocks[b];
+    const int n = block.batch.points, components = block.batch.components;
+    const double *free = problem_.free_opening.data() + block.first, *from = problem_.from.data() + block.first;
+    const double *end = scratch_.end.data() + block.first, *area = block.area.data(), *slope = slope_of(b);
+    if (components == 1) {
+      const double* columns = column(0) + block.first;
+      const double scale = problem_.scale;
+      for_lanes(n, [=, this, &total](const auto& at) {
+        const Lanes force = scale * at(area) * at(end) + at(slope) * (at(free) - at(from));
+        for (Index j = 0; j < r(); ++j) total[j] += at(columns + j * rows_) * force;
+      });
+      continue;
+    }
+    for (int a = 0; a < components; ++a)
+      for_lanes(n, [&](const auto& at) {
+        Lanes force = problem_.scale * at(area) * at(end + a * n);
+        for (int c = 0; c < components; ++c) force += at(slope + (a * components + c) * n) * (at(free + c * n) - at(from + c * n));
+        for (Index j = 0; j < r(); ++j) total[j] += at(column(j) + block.first + a * n) * force;
+      });
+  }
+  if (problem_.filter.acts()) add_lag(total);
+  for (Index j = 0; j < r(); ++j) scratch_.gradient[j] = sum(total[j]);
+  direction_of_few(solution_.z.data());
+}
+
+/// What the joint filter's memory pulls at the start of the step, -scale area c d_f.
+template <int R>
+void Newton<R>::add_lag(Lanes* total) {
+  for (const Block& block : problem_.blocks) {
+    const double* area = block.area.data();
+    for (int a = 0; a < block.batch.components; ++a) {
+      const int first = block.first + a * block.batch.points;
+      const double *coefficient = problem_.filter.coefficient.data() + first, *lag = problem_.filter.lag.data() + first;
+      for_lanes(block.batch.points, [&](const auto& at) {
+        const Lanes force = problem_.scale * at(area) * larger(at(coefficient), Lanes(0)) * at(lag);
+        for (Index j = 0; j < r(); ++j) total[j] -= at(column(j) + first) * force;
+      });
+    }
+  }
+}
+
+/// After a step that some law bent in: slopes and Hessian of the step to come, in which it goes on straight. A joint filter in contact
+/// makes the slope larger by 1 + 2 b, which scale is smaller by.
+template <int R>
+void Newton<R>::go_on() {
+  for (std::size_t b = 0; b < problem_.blocks.size(); ++b) {
+    const Block& block = problem_.blocks[b];
+    const int n = block.batch.points, components = block.batch.components;
+    double* slope = scratch_.slope.data() + scratch_.first_slope[b];
+    const double *next = scratch_.next.data() + scratch_.first_slope[b], *area = block.area.data();
+    for (int c = 0; c < components * components; ++c)
+#pragma omp simd
+      for (int i = 0; i < n; ++i) slope[c * n + i] = 2 * area[i] * next[c * n + i];
+  }
+  form_gradient(true);
+}
+
+/// Forces, G and |G| at solution.z, and the Hessian when wanted.
+template <int R>
+void Newton<R>::look(bool with_hessian) {
+  evaluate(problem_, augmented_, true, solution_);
+  form_gradient(with_hessian);
+}
+
+/// Goes to origin + alpha * direction.
+template <int R>
+void Newton<R>::move(double alpha, bool with_hessian) {
+  double* z = solution_.z.data();
+  const double *origin = scratch_.origin.data(), *direction = scratch_.direction.data();
+  for (Index i = 0; i < r(); ++i) z[i] = origin[i] + alpha * direction[i];
+  look(with_hessian);
+}
+
+/// G (and H) at solution.z, the force having been evaluated.
+template <int R>
+void Newton<R>::form_gradient(bool with_hessian) {
+  const bool forms = with_hessian && r() <= few;
+  const double* z = solution_.z.data();
+  if (forms) {
+    double g[most], h[most * most];  // not in memory where their number is known
+    for (Index j = 0; j < r(); ++j) {
+      g[j] = z[j];
+      for (Index i = 0; i < r(); ++i) h[j * r() + i] = i == j ? 1 : 0;
+    }
+    for (std::size_t b = 0; b < problem_.blocks.size(); ++b) add_block(problem_.blocks[b], slope_of(b), g, h);
+    std::copy_n(g, r(), scratch_.gradient.data());
+    std::copy_n(h, r() * r(), scratch_.hessian.data());
+  } else {
+    double* g = scratch_.gradient.data();
+    for (Index i = 0; i < r(); ++i) g[i] = z[i];
+    small::add_transposed<R>(rows_, r(), column(0), rows_, solution_.force.data(), g);
+  }
+  if (problem_.shift.size() > 0) take_back_shift(forms);
+  size_ = std::sqrt(dot(scratch_.gradient, scratch_.gradient));
+}
+
+/// h += C_block^T k C_block and g += C_block^T p.
+template <int R>
+[[gnu::always_inline]] inline void Newton<R>::add_block(const Block& block, const double* slope, double* g, double* h) {
+  if constexpr (R > 0)
+    if (block.batch.components == 1)
+      return small::gradient_and_gram<R>(block.batch.points, column(0) + block.first, rows_, solution_.force.data() + block.first, slope, g,
+                                         h);
+  add_general(block, slope, g, h);
+}
+
+/// The same where the slope couples the components: k C_block column by column, and its products with every column.
+template <int R>
+void Newton<R>::add_general(const Block& block, const double* slope, double* g, double* h) {
+  const int n = block.batch.points, components = block.batch.components, rows = block.rows();
+  double* pull = scratch_.pull.data();
+  for (Index j = 0; j < r(); ++j) {
+    const double* right = column(j) + block.first;
+    g[j] += small::dot(rows, right, solution_.force.data() + block.first);
+    std::fill_n(pull, rows, 0.0);
+    for (int a = 0; a < components; ++a)
+      for (int b = 0; b < components; ++b) {
+        const double *k = slope + (a * components + b) * n, *from = right + b * n;
+        double* to = pull + a * n;
+#pragma omp simd
+        for (int p = 0; p < n; ++p) to[p] += k[p] * from[p];
+      }
+    for (Index i = 0; i < r(); ++i) h[j * r() + i] += small::dot(rows, column(i) + block.first, pull);
+  }
+}
+
+/// Statics: the closed joint of the factored matrix is taken back.
+template <int R>
+void Newton<R>::take_back_shift(bool with_hessian) {
+  for (Index j = 0; j < r(); ++j) {
+    const double* own = column(j);
+    for (Index i = 0; i < rows_; ++i) scratch_.gradient[j] -= own[i] * problem_.shift[i] * solution_.opening[i];
+    if (!with_hessian) continue;
+    for (Index k = 0; k < r(); ++k) {
+      const double* other = column(k);
+      for (Index i = 0; i < rows_; ++i) scratch_.hessian(k, j) -= other[i] * problem_.shift[i] * own[i];
+    }
+  }
+}
+
+/// The direction -H^-1 G; false when H is singular. A softening or friction slope may make H indefinite or unsymmetric: Gauss elimination
+/// takes both.
+template <int R>
+bool Newton<R>::direction() {
+  return r() > few ? direction_of_many(problem_, solution_) : direction_of_few(scratch_.direction.data());
+}
+
+/// Writes it to d; nothing when H is singular.
+template <int R>
+bool Newton<R>::direction_of_few(double* d) const {
+  double h[most * most], x[most];
+  std::copy_n(scratch_.hessian.data(), r() * r(), h);
+  for (Index i = 0; i < r(); ++i) x[i] = -scratch_.gradient.data()[i];
+  if (!small::gauss_solve<R>(r(), h, x)) return false;
+  for (Index i = 0; i < r(); ++i) d[i] = x[i];
+  return true;
+}
+
+/// Follows origin + alpha * direction by bisection on the directional derivative until it has fallen enough; the last point is left
+/// evaluated, with its Hessian.
+template <int R>
+void Newton<R>::line_search(double start_slope, double end_slope) {
+  double low = 0, high = 1, low_slope = start_slope, high_slope = end_slope;
+  for (int trial = 0; trial < 30; ++trial) {
+    double alpha = 0.5 * (low + high);
+    if (high_slope > 0 && low_slope < 0) {  // regula falsi, kept away from the ends
+      const double secant = low - low_slope * (high - low) / (high_slope - low_slope);
+      alpha = std::clamp(secant, low + 0.1 * (high - low), high - 0.1 * (high - low));
+    }
+    move(alpha, false);
+    const double slope = dot(scratch_.gradient, scratch_.direction);
+    if (std::abs(slope) <= 0.5 * std::abs(start_slope)) break;
+    (slope < 0 ? low : high) = alpha;
+    (slope < 0 ? low_slope : high_slope) = slope;
+  }
+  form_gradient(true);
+}
+
+/// Where friction or softening leave no potential: the step is shortened until the residual |G| falls; the last point is left evaluated,
+/// with its Hessian.
+template <int R>
+void Newton<R>::shorten(double before) {
+  double alpha = 1;
+  for (int trial = 0; trial < 12; ++trial) {
+    alpha *= 0.5;
+    move(alpha, true);
+    if (size_ <= (1 - 1e-3 * alpha) * before) break;
+  }
+}
+
+/// Size of G that round-off in the openings alone makes: stiff joints magnify it.
+template <int R>
+double Newton<R>::round_off() const {
+  double sum = 0;
+  for (Index j = 0; j < r(); ++j) {
+    double component = std::abs(solution_.z[j]);
+    for (std::size_t b = 0; b < problem_.blocks.size(); ++b) {
+      const Block& block = problem_.blocks[b];
+      const int n = block.batch.points, components = block.batch.components;
+      for (int c = 0; c < components; ++c)
+        for (int i = 0; i < n; ++i) {
+          const Index row = block.first + c * n + i;
+          const double slope = std::abs(slope_of(b)[(c * components + c) * n + i]);
+          const double moved = std::abs(problem_.free_opening[row]) + std::abs(solution_.opening[row] - problem_.free_opening[row]);
+          component += std::abs(column(j)[row]) * (slope * moved + std::abs(solution_.force[row]));
+        }
+    }
+    sum += component * component;
+  }
+  return std::numeric_limits<double>::epsilon() * std::sqrt(sum);
+}
+
+/// What the balance is measured against: the largest of |z| and |C^T p|. In dynamics C^T p = G - z; in statics the closed joint is taken
+/// back in G.
+template <int R>
+double Newton<R>::balance_scale() {
+  const double *z = solution_.z.data(), *g = scratch_.gradient.data();
+  double scale = 0;
+  if (problem_.shift.size() > 0) {
+    scratch_.direction.setZero();
+    small::add_transposed<R>(rows_, r(), column(0), rows_, solution_.force.data(), scratch_.direction.data());
+    for (Index i = 0; i < r(); ++i) scale = std::max({scale, std::abs(z[i]), std::abs(scratch_.direction[i])});
+  } else {
+    for (Index i = 0; i < r(); ++i) scale = std::max({scale, std::abs(z[i]), std::abs(g[i] - z[i])});
+  }
+  return scale;
+}
+
+template <int R>
+Outcome Newton<R>::solve(int done) {
+  Outcome outcome;
+  int patience = patience_of_newton;
+  constexpr int again = 25;  // when a large problem starts afresh: caught between two branches of a point, as friction can be
+  // where an iteration is expensive, round-off counts as converged at once; sums over many columns have more of it
+  const bool large = R == 0 && PointRows::suits(problem_);
+  const int enough = large ? 1 : patience;
+  const double noise = large ? 8 * std::sqrt(static_cast<double>(r())) : 8;
+  const bool predictable = problem_.average && r() <= few && augmented_.multiplier == nullptr && problem_.shift.size() == 0;
+  if (predictable && scratch_.follows) predict();
+  scratch_.follows = false;
+  look(true);
+  for (outcome.iterations = done; outcome.iterations < options_.most_iterations; ++outcome.iterations) {
+    if (!std::isfinite(size_)) {
+      outcome.why = "the interface forces are not finite";
+      return outcome;
+    }
+    const double reference = balance_scale();
+    outcome.residual = size_ / std::max(reference, 1e-300);
+    if (size_ <= options_.tolerance * reference || size_ == 0 ||
+        (outcome.iterations >= enough && (!large || outcome.residual <= 1e-9) && size_ <= noise * round_off())) {
+      outcome.converged = true;
+      scratch_.follows = predictable;
+      if (predictable && outcome.iterations > 0) go_on();
+      return outcome;
+    }
+    if (large && outcome.iterations == again) {
+      patience += again;
+      solution_.z.setZero();
+      look(true);
+    }
+    const double before = size_;
+    std::copy_n(solution_.z.data(), r(), scratch_.origin.data());
+    // the gradient is needed again by the line search
+    if (!direction()) {
+      outcome.why = "the Newton matrix of the interface is singular";
+      return outcome;
+    }
+    const double start_slope = dot(scratch_.gradient, scratch_.direction);
+    move(1, true);
+    if (size_ > 0.5 * before && size_ > options_.tolerance * reference) {
+      const double end_slope = dot(scratch_.gradient, scratch_.direction);
+      if (outcome.iterations >= patience) {
+        if (size_ > before) shorten(before);
+      } else if (start_slope < 0 && end_slope > 0.5 * std::abs(start_slope)) {
+        line_search(start_slope, end_slope);
+      }
+    }
+  }
+  outcome.why = fmt::format("Newton's method did not converge in {} iterations (residual {:.2e} of the interface force)",
+                            options_.most_iterations, outcome.residual);
+  return outcome;
+}
+
+/// `done`: iterations that have led to the guess in solution.z.
+Outcome solve_in_general(const InterfaceProblem& problem, const AugmentedForce& augmented, const NewtonOptions& options, int done,
+                         InterfaceSolution& solution) {
+  switch (problem.factor.cols()) {
+    case 1:
+      return Newton<1>(problem, augmented, options, solution).solve(done);
+    case 2:
+      return Newton<2>(problem, augmented, options, solution).solve(done);
+    case 3:
+      return Newton<3>(problem, augmented, options, solution).solve(done);
+    case 6:
+      return Newton<6>(problem, augmented, options, solution).solve(done);
+    default:
+      return Newton<0>(problem, augmented, options, solution).solve(done);
+  }
+}
+
+}  // namespace
+
+Outcome solve_by_newton(const InterfaceProblem& problem, const AugmentedForce& augmented, const NewtonOptions& options,
+                        InterfaceSolution& solution) {
+  Outcome outcome;
+  if (may_sweep(problem, solution) && solve_by_sweeps(problem, options, solution, outcome)) return outcome;
+  size_newton(problem, solution);
+  solution.fused = false;
+  return solve_in_general(problem, augmented, options, outcome.iterations, solution);
+}
+
+}  // namespace uplift

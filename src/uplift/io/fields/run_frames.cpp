@@ -1,0 +1,194 @@
+#include "uplift/io/fields/run_frames.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <array>
+#include <cassert>
+
+#include "uplift/base/text.h"
+#include "uplift/case/mesh/mesh.h"
+#include "uplift/elements/solid_nonlinear.h"
+
+namespace uplift {
+namespace {
+
+struct MotionField {
+  std::string_view name, unit;
+};
+constexpr std::array<MotionField, 3> motions{{{"displacement", "m"}, {"velocity", "m/s"}, {"acceleration", "m/s2"}}};  // by derivative
+
+FieldValues field(std::string_view name, std::string_view unit, FieldKind kind) {
+  return {std::string(name), std::string(unit), kind, {}};
+}
+
+[[noreturn]] void fail(const Values& fields, std::string_view key, const std::vector<std::string>& known, const std::string& found) {
+  std::vector<std::string> quoted;
+  for (const std::string& name : known) quoted.push_back(in_quotes(name));
+  throw InputError(fields.where(key), fields.path(key), listed(quoted), in_quotes(found), nearest_name(found, known));
+}
+
+const Case& with_mesh(const Values& fields, const Case& read) {
+  if (!read.mesh) throw InputError(fields.where(), fields.path(), "a [mesh], on which fields are written", "none");
+  return read;
+}
+
+/// Groups with a solid or a beam that are wanted, in this order.
+std::vector<std::string> wanted_groups(const Values& fields, const Case& read) {
+  std::vector<std::string> known;
+  for (const Values& solid : read.values.tables("solid")) known.push_back(solid.text("group"));
+  for (const Values& beam : read.values.tables("beam"))
+    if (beam.has("group")) known.push_back(beam.text("group"));
+  const std::vector<std::string> asked = fields.has("groups") ? fields.texts("groups") : known;
+  for (const std::string& group : asked)
+    if (std::ranges::find(known, group) == known.end()) fail(fields, "groups", known, group);
+  if (asked.empty())
+    throw InputError(fields.where("groups"), fields.path("groups"), "at least one group with a [[solid]] or a [[beam]]", "none");
+  std::erase_if(known, [&](const std::string& group) { return std::ranges::find(asked, group) == asked.end(); });
+  return known;
+}
+
+const Values& beam_of(const Case& read, const std::string& group) {
+  return *std::ranges::find_if(read.values.tables("beam"),
+                               [&](const Values& beam) { return beam.has("group") && beam.text("group") == group; });
+}
+
+/// The elements of every solid of the case. They were made solid after solid, cell after cell.
+std::vector<std::vector<const Solid*>> elements_of(const CaseSolids& solids, const Model& model) {
+  std::vector<const Solid*> all;
+  for (const auto& element : model.elements)
+    if (const auto* solid = dynamic_cast<const Solid*>(element.get())) all.push_back(solid);
+  std::vector<std::vector<const Solid*>> elements;
+  auto next = all.begin();
+  for (const CaseSolids::Solid& solid : solids.solids()) {
+    assert(all.end() - next >= static_cast<std::ptrdiff_t>(solid.cells.size()));
+    elements.emplace_back(next, next + static_cast<std::ptrdiff_t>(solid.cells.size()));
+    next += static_cast<std::ptrdiff_t>(solid.cells.size());
+  }
+  assert(next == all.end());
+  return elements;
+}
+
+}  // namespace
+
+RunFrames::RunFrames(const Values& fields, const Case& read, const BuiltCase& built)
+    : model_(&built.model), quantities_(fields.texts("quantities")), interfaces_(with_mesh(fields, read), built) {
+  const std::vector<std::string> known{"displacement", "velocity", "acceleration", "stress", "section_forces"};
+  for (const std::string& quantity : quantities_)
+    if (std::ranges::find(known, quantity) == known.end()) fail(fields, "quantities", known, quantity);
+  const CaseSolids solids(read.values, *read.mesh);
+  const Mesh& mesh = solids.mesh();
+  const std::vector<std::vector<const Solid*>> elements = elements_of(solids, *model_);
+  const std::vector<std::string> groups = wanted_groups(fields, read);
+  for (std::size_t k = 0; k < groups.size(); ++k) {
+    blocks_.push_back(field_mesh(mesh, groups[k], {groups[k]}, fields.where("groups")));
+    CellMark& mark = blocks_.back().marks.front();  // programs that put the blocks together tell them apart by it
+    mark.values.assign(mark.values.size(), static_cast<int>(k));
+    mark.meanings = groups;
+    const auto solid =
+        std::ranges::find(solids.solids(), groups[k], [](const CaseSolids::Solid& each) { return each.table->text("group"); });
+    if (solid == solids.solids().end()) {  // a beam: these come last
+      if (wants("section_forces")) beams_.add(beam_of(read, groups[k]), solids, built, blocks_.back());
+      continue;
+    }
+    solids_.push_back(elements[static_cast<std::size_t>(solid - solids.solids().begin())]);
+    assert(blocks_.back().cell == solid->cells);
+  }
+  std::size_t first_history = 0;
+  for (const auto& element : model_->elements)
+    if (const auto* yielding = dynamic_cast<const NonlinearSolid*>(element.get()); yielding != nullptr) {
+      first_history_[yielding] = first_history;
+      first_history += static_cast<std::size_t>(yielding->num_history());
+    }
+  if (!interfaces_.mesh().face.empty()) blocks_.push_back(interfaces_.mesh().mesh);
+  dimension_ = model_->space.dimension;
+  stride_ = static_cast<std::size_t>(model_->space.unknowns());
+  first_ = stride_ * read.values.tables("nodes").size();  // nodes of the case, then those of the mesh
+}
+
+bool RunFrames::wants(std::string_view quantity) const {
+  return quantities_.empty() || std::ranges::find(quantities_, quantity) != quantities_.end();
+}
+
+FieldFrame RunFrames::empty(const std::vector<double>& section_forces) const {
+  FieldFrame frame;
+  for (std::size_t b = 0; b < blocks_.size(); ++b) {
+    std::vector<FieldValues>& points = frame.blocks.emplace_back().points;
+    for (const MotionField& motion : motions)
+      if (wants(motion.name)) points.push_back(field(motion.name, motion.unit, FieldKind::vector));
+    if (b < solids_.size()) {
+      if (wants("stress")) points.push_back(field("stress", "Pa", FieldKind::tensor));
+    } else if (b - solids_.size() < beams_.beams()) {
+      frame.blocks.back().cells = beams_.fields(b - solids_.size(), section_forces);
+    } else if (&blocks_[b] == &blocks_.back() && !interfaces_.mesh().face.empty()) {
+      points.push_back(field("opening", "m", FieldKind::scalar));
+      points.push_back(field("slip", "m", FieldKind::vector));
+      points.push_back(field("traction", "Pa", FieldKind::vector));
+      points.push_back(field("pressure", "Pa", FieldKind::scalar));
+      points.push_back(field("status", "", FieldKind::scalar));
+    }
+  }
+  return frame;
+}
+
+std::vector<double> RunFrames::motion(const FieldMesh& block, const Vector& full) const {
+  const std::span<const double> nodal(full.data(), static_cast<std::size_t>(full.size()));
+  return at_points(block, FieldKind::vector, nodal.subspan(first_), static_cast<int>(stride_), dimension_);
+}
+
+/// At the nodes, the mean of the cells of this material.
+std::vector<double> RunFrames::stress(std::size_t block, const Vector& full, const std::vector<double>& history) const {
+  const std::size_t points = blocks_[block].points.size();
+  constexpr std::size_t width = 6;
+  std::vector<double> sum(width * points, 0), count(points, 0);
+  auto element = solids_[block].begin();
+  for (const CellBlock& type : blocks_[block].blocks)
+    for (int cell = 0; cell < type.count(); ++cell) {
+      const Solid& solid = **element++;
+      Vector displacement(solid.unknowns());
+      const std::span<const int> nodes = solid.nodes();
+      for (std::size_t a = 0; a < nodes.size(); ++a)
+        displacement.segment(dimension_ * static_cast<Index>(a), dimension_) =
+            full.segment(static_cast<Index>(stride_) * nodes[a], dimension_);
+      const auto yielding = first_history_.find(&solid);
+      const std::vector<Stress> stress =
+          yielding == first_history_.end() || history.empty()
+              ? solid.node_stress(displacement)
+              : static_cast<const NonlinearSolid&>(solid).node_stress(displacement, std::span(history).subspan(yielding->second));
+      for (std::size_t a = 0; a < nodes.size(); ++a) {
+        const auto point = static_cast<std::size_t>(type[cell][a]);
+        count[point] += 1;
+        for (std::size_t c = 0; c < width; ++c) sum[width * point + c] += stress[a][static_cast<Index>(c)];
+      }
+    }
+  for (std::size_t point = 0; point < points; ++point)
+    for (std::size_t c = 0; c < width; ++c) sum[width * point + c] /= count[point];
+  return sum;
+}
+
+FieldFrame RunFrames::of(const State& state, const Vector* acceleration, const std::vector<double>& section_forces, double time) const {
+  const std::array<const Vector*, 3> free{&state.displacement, acceleration ? &state.velocity : nullptr, acceleration};
+  std::array<Vector, 3> full;
+  for (int d = 0; d < 3; ++d) {
+    const auto k = static_cast<std::size_t>(d);
+    full[k] = free[k] ? model_->full(*free[k], d, state.instant()) : Vector::Zero(model_->full_unknowns());
+  }
+  const InterfaceFrames::JointValues joint = interfaces_.at(state);
+  const auto at_lips = [&](FieldKind kind, const std::vector<double>& values) { return at_points(interfaces_.mesh(), kind, values); };
+  FieldFrame frame = empty(section_forces);
+  frame.time = time;
+  for (std::size_t b = 0; b < blocks_.size(); ++b)
+    for (FieldValues& field : frame.blocks[b].points) {
+      for (std::size_t d = 0; d < motions.size(); ++d)
+        if (field.name == motions[d].name) field.values = motion(blocks_[b], full[d]);
+      if (field.name == "stress") field.values = stress(b, full[0], state.bulk_history);
+      if (field.name == "opening") field.values = at_lips(field.kind, joint.opening);
+      if (field.name == "slip") field.values = at_lips(field.kind, joint.slip);
+      if (field.name == "traction") field.values = at_lips(field.kind, joint.traction);
+      if (field.name == "pressure") field.values = at_lips(field.kind, joint.pressure);
+      if (field.name == "status") field.values = at_lips(field.kind, joint.status);
+    }
+  return frame;
+}
+
+}  // namespace uplift

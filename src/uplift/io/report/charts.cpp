@@ -1,0 +1,383 @@
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+
+#include "uplift/case/build/model.h"
+#include "uplift/io/report/motions.h"
+#include "uplift/io/results/histories.h"
+
+// The figures: histories of all runs, side by side; hysteresis; energy.
+namespace uplift {
+namespace {
+
+using Column = Request::Kind;
+constexpr std::size_t points_per_curve = 1500;
+
+/// What a figure shows of every run: a column over time, or two columns against each other.
+struct View {
+  const char *id, *section, *title;
+  std::string caption;
+  const char *label, *unit;
+  Column kind;
+  int of;         // full unknown or interface
+  double factor;  // multiplies the column
+};
+
+Curve curve_of(const ReportRun& run) {
+  Curve curve;
+  curve.label = run.result->label + (run.say_group ? ", " + run.result->group : "");
+  curve.run = run.result->label;  // not the name: a variant has one colour, whatever its damping
+  curve.dash = run.spec->bonded;
+  curve.failed = run.result->status == RunStatus::failed;
+  return curve;
+}
+
+void keep_finite(Curve& curve) {
+  std::size_t kept = 0;
+  for (std::size_t i = 0; i < curve.x.size(); ++i)
+    if (std::isfinite(curve.x[i]) && std::isfinite(curve.y[i])) {
+      curve.x[kept] = curve.x[i];
+      curve.y[kept++] = curve.y[i];
+    }
+  curve.x.resize(kept);
+  curve.y.resize(kept);
+}
+
+/// Appends the history of a column when the run recorded it.
+void add_history(Chart& chart, const ReportRun& run, Column kind, int of, double factor) {
+  const std::vector<double>* column = find_column(*run.result, kind, of);
+  if (!column) return;
+  Curve curve = curve_of(run);
+  thin_history(run.result->table.front(), *column, points_per_curve, curve.x, curve.y);
+  for (double& value : curve.y) value *= factor;
+  if (!curve.x.empty()) chart.curves.push_back(std::move(curve));
+}
+
+Chart history_chart(const View& view, const std::vector<ReportRun>& runs) {
+  const Axis along = statics_alone(runs.front().built->plan) ? Axis{"Load factor", "1"} : Axis{"Time", "s"};
+  Chart chart{view.id, view.section, view.title, view.caption, along, {view.label, view.unit}, {}};
+  const bool gap = view.kind == Column::uplifted_ratio || view.kind == Column::max_opening;
+  for (const ReportRun& run : runs)
+    if (!gap || !run.spec->bonded) add_history(chart, run, view.kind, view.of, view.factor);  // a bonded base stretches instead of opening
+  return chart;
+}
+
+/// Two columns against each other; every n-th point.
+Chart loop_chart(Chart chart, const std::vector<ReportRun>& runs, std::pair<Column, int> x, std::pair<Column, int> y, double factor) {
+  for (const ReportRun& run : runs) {
+    const std::vector<double>* along = find_column(*run.result, x.first, x.second);
+    const std::vector<double>* up = find_column(*run.result, y.first, y.second);
+    if (!along || !up) continue;
+    Curve curve = curve_of(run);
+    const std::size_t stride = std::max<std::size_t>(1, along->size() / (2 * points_per_curve));
+    for (std::size_t i = 0; i < along->size(); i += stride) {
+      curve.x.push_back((*along)[i]);
+      curve.y.push_back(factor * (*up)[i]);
+    }
+    keep_finite(curve);
+    if (!curve.x.empty()) chart.curves.push_back(std::move(curve));
+  }
+  return chart;
+}
+
+/// What the computation created (positive) or lost, relative to the energy put in.
+Chart energy_error_chart(const char* id, const char* section, const std::string& title, const std::vector<ReportRun>& runs) {
+  Chart chart{id,
+              section,
+              title,
+              "Residual of the energy balance divided by the largest external work. It should be zero; a positive value means that the "
+              "computation created energy.",
+              {"Time", "s"},
+              {"Energy error", "1"},
+              {}};
+  for (const ReportRun& run : runs)
+    if (run.result->energy_scale > 0) add_history(chart, run, Column::residual, 0, 1 / run.result->energy_scale);
+  return chart;
+}
+
+Chart ledger_chart(const ReportRun& run) {
+  Chart chart{"energy_ledger",
+              "energy",
+              "Energy ledger: " + run.result->label,
+              "Terms of the energy balance over time. The residual should be zero.",
+              {"Time", "s"},
+              {"Energy", "J"},
+              {}};
+  struct Term {
+    Column kind;
+    const char* label;
+  };
+  for (const Term& term :
+       {Term{Column::external, "external work"}, Term{Column::kinetic, "kinetic"}, Term{Column::strain, "strain"},
+        Term{Column::stored, "stored in the interface"}, Term{Column::interface_dissipated, "dissipated by the interface"},
+        Term{Column::plastic, "dissipated by yielding solids"}, Term{Column::damping, "damping"}, Term{Column::impact, "impacts"},
+        Term{Column::stop, "taken by static stages"}, Term{Column::algorithmic, "dissipated by the time scheme"},
+        Term{Column::filter, "stored in the filters of the scheme"}, Term{Column::residual, "residual"}}) {
+    add_history(chart, run, term.kind, 0, 1);
+    if (!chart.curves.empty() && chart.curves.back().label == run.result->label) {
+      chart.curves.back().label = term.label;
+      chart.curves.back().run.clear();
+      chart.curves.back().dash = term.kind == Column::residual;
+    }
+  }
+  return chart;
+}
+
+/// The loads of the case over time: the sum of the forces of each, on a node or on faces.
+Chart load_chart(const Case& read, const ReportRun& run) {
+  Chart chart{"loads", "loads", "Loads", "Resultant force of each load on nodes and faces.", {"Time", "s"}, {"Force", "N"}, {}};
+  const Model& model = run.built->model;
+  const auto along = [&](int axis) {
+    return axis == model.space.up() ? "vertical" : model.space.dimension == 2 ? "horizontal" : axis == 0 ? "along x" : "along y";
+  };
+  const double end = std::max(run.result->end_time, 1e-9);
+  const auto sample = [&](const std::string& label, double amplitude, const TimeFunction& function) {
+    Curve curve;
+    curve.label = label;
+    for (int i = 0; i <= 6000; ++i) {
+      curve.x.push_back(end * i / 6000);
+      curve.y.push_back(amplitude * function.value(curve.x.back()));
+    }
+    thin_history(curve.x, curve.y, points_per_curve);
+    chart.curves.push_back(std::move(curve));
+  };
+  std::size_t next = 0;  // time loads stand in the order of the loads of the case; names may come twice
+  for (const Values& load : read.values.tables("load")) {
+    std::size_t at = next;
+    while (at < model.time_loads.size() && model.time_loads[at].name != name_of_load(load)) ++at;
+    if (at == model.time_loads.size()) continue;
+    next = at + 1;
+    const Vector& pattern = model.assembly.loads[at];
+    for (int axis = 0; axis < model.space.dimension; ++axis) {
+      double sum = 0;
+      for (Index i = axis; i < pattern.size(); i += model.space.unknowns()) sum += pattern[i];
+      if (std::abs(sum) > 1e-12 * pattern.lpNorm<1>())
+        sample(fmt::format("{}, {}", name_of_load(load), along(axis)), sum, *model.time_loads[at].function);
+    }
+  }
+  return chart;
+}
+
+Chart sweep_chart(const ComparisonSummary& compared) {
+  Chart chart{"stiffness_sweep",
+              "energy",
+              "Spurious energy against the stiffness of the joint",
+              "Largest spurious energy divided by the external work, for the end-of-step traction and the path-averaged traction. "
+              "Values below 1e-16 are drawn at 1e-16.",
+              {"Stiffness ratio k F", "1", true},
+              {"Spurious energy", "1", true},
+              {}};
+  Curve path{"path average", "", {}, {}, false, false}, end{"end of step", "", {}, {}, true, false};
+  for (const SweepRow& row : compared.sweep) {
+    path.x.push_back(row.ratio);
+    path.y.push_back(std::max(row.path, 1e-16));
+    end.x.push_back(row.ratio);
+    end.y.push_back(std::max(row.end, 1e-16));
+  }
+  if (!path.x.empty()) chart.curves = {path, end};
+  return chart;
+}
+
+/// Which rotation is meant.
+std::string about(const BuiltCase& built) {
+  if (built.model.space.dimension == 2) return "Counter-clockwise positive.";
+  return fmt::format("About the {} axis, right-handed.", built.sway == ux ? "y" : "x");
+}
+
+/// Sign of the base moment of a horizontal force at the top that acts in the positive direction: its lever arm points upwards, and the
+/// axis of the moment is z in the plane, y for a sway along x, x for a sway along y.
+double sign_of_moment(const BuiltCase& built) {
+  return built.model.space.dimension == 3 && built.sway == ux ? 1 : -1;
+}
+
+/// Motion of the top and of the base for some runs, in the order of the paper's figures 5 and 6.
+std::vector<View> motion_views(const BuiltCase& built) {
+  std::vector<View> views;
+  if (built.top >= 0) {
+    const std::string along = built.model.space.dimension == 2 ? "." : fmt::format(" along {}.", built.sway == ux ? "x" : "y");
+    views.push_back({"top_displacement", "response", "Displacement of the top", "Horizontal displacement of the highest mass" + along,
+                     "Displacement", "m", Column::displacement, built.top_sway(), 1});
+    views.push_back({"top_velocity", "response", "Velocity of the top", "Horizontal velocity of the highest mass" + along, "Velocity",
+                     "m/s", Column::velocity, built.top_sway(), 1});
+  }
+  if (built.base >= 0) {
+    views.push_back({"base_displacement", "response", "Displacement of the base", "Vertical displacement of the base.", "Displacement", "m",
+                     Column::displacement, built.base_lift(), 1});
+    views.push_back({"base_velocity", "response", "Velocity of the base", "Vertical velocity of the base.", "Velocity", "m/s",
+                     Column::velocity, built.base_lift(), 1});
+    views.push_back(
+        {"base_rotation", "response", "Rotation of the base", about(built), "Rotation", "rad", Column::displacement, built.base_turn(), 1});
+  }
+  return views;
+}
+
+std::vector<View> interface_views(const BuiltCase& built) {
+  return {{"base_moment", "interface", "Base moment", "Moment of the interface about its centre. " + about(built), "Moment", "N m",
+           built.base_moment(), 0, 1},
+          {"base_axial", "interface", "Vertical force of the base", "Compression is negative.", "Force", "N", Column::axial, 0, 1},
+          {"base_shear", "interface", "Base shear", "Shear force in the interface.", "Force", "N", Column::shear, 0, 1},
+          {"uplifted_ratio", "interface", "Uplifted area of the base", "Share of the area with a gap.", "Uplifted share", "1",
+           Column::uplifted_ratio, 0, 1},
+          {"max_opening", "interface", "Largest gap", "Largest opening of the interface, up to its edges.", "Gap", "m", Column::max_opening,
+           0, 1},
+          {"max_pressure", "interface", "Largest pressure", "Largest pressure of all points, at the end of each step.", "Pressure", "Pa",
+           Column::max_pressure, 0, 1}};
+}
+
+void write_loops(JsonWriter& json, const ReportInput& input, const std::vector<ReportRun>& runs) {
+  const BuiltCase& built = *input.runs.front().built;
+  if (built.top >= 0 && built.base >= 0) {
+    const Vec3 reference = built.model.interfaces.front().reference;
+    const double height =
+        built.model.nodes[static_cast<std::size_t>(built.top)].position[built.model.space.up()] - reference[built.model.space.up()];
+    if (height > 0)
+      write_chart(
+          json, *input.read,
+          loop_chart({"force_displacement",
+                      "response",
+                      "Force against displacement",
+                      fmt::format("Equivalent horizontal force at the top, positive in the direction of positive displacement: base "
+                                  "moment divided by the height of {:g} m.",
+                                  height),
+                      {"Displacement of the top", "m"},
+                      {"Equivalent force", "N"},
+                      {}},
+                     runs, {Column::displacement, built.top_sway()}, {built.base_moment(), 0}, sign_of_moment(built) / height));
+  }
+  write_chart(json, *input.read,
+              loop_chart({"moment_rotation",
+                          "interface",
+                          "Moment against rotation",
+                          "Base moment against the rotation of the interface.",
+                          {"Rotation", "rad"},
+                          {"Moment", "N m"},
+                          {}},
+                         runs, {built.base_rotation(), 0}, {built.base_moment(), 0}, 1));
+}
+
+}  // namespace
+
+void write_chart(JsonWriter& json, const Case& read, const Chart& chart) {
+  if (chart.curves.empty()) return;
+  std::string origin = "added by uplift", caption = chart.caption;
+  for (const Values& figure : read.values.tables("figure"))
+    if (figure.text("chart") == chart.id) {
+      origin = figure.text("origin");
+      if (figure.has("caption")) caption = figure.text("caption");
+    }
+  write_chart(json, chart, origin, caption);
+}
+
+void write_chart(JsonWriter& json, const Chart& chart, std::string_view origin, std::string_view caption) {
+  if (chart.curves.empty()) return;
+  const auto axis = [&](const char* key, const Axis& each) {
+    json.key(key).begin_object().member("label", each.label).member("unit", each.unit).member("log", each.log).end_object();
+  };
+  json.begin_object()
+      .member("id", chart.id)
+      .member("section", chart.section)
+      .member("title", chart.title)
+      .member("caption", caption)
+      .member("origin", origin);
+  axis("x", chart.x);
+  axis("y", chart.y);
+  json.key("series").begin_array();
+  for (const Curve& curve : chart.curves) {
+    json.begin_object().member("label", curve.label);
+    if (!curve.run.empty()) json.member("run", curve.run);
+    json.key("x").numbers(curve.x).key("y").numbers(curve.y);
+    if (curve.dash) json.member("dash", true);
+    if (curve.failed) json.member("failed", true);
+    json.end_object();
+  }
+  json.end_array().end_object();
+}
+
+void thin_history(std::span<const double> x, std::span<const double> y, std::size_t most, std::vector<double>& thin_x,
+                  std::vector<double>& thin_y) {
+  const auto finite = [&](std::size_t i) { return std::isfinite(x[i]) && std::isfinite(y[i]); };
+  std::size_t count = y.size();
+  while (count > 0 && !finite(count - 1)) --count;
+  const std::size_t buckets = count <= most || most < 4 ? count : most / 2;
+  thin_x.reserve(2 * buckets);
+  thin_y.reserve(2 * buckets);
+  const auto keep = [&](std::size_t i) {
+    thin_x.push_back(x[i]);
+    thin_y.push_back(y[i]);
+  };
+  for (std::size_t b = 0; b < buckets; ++b) {
+    std::size_t first = b * count / buckets;
+    const std::size_t last = (b + 1) * count / buckets;
+    while (first < last && !finite(first)) ++first;
+    if (first == last) continue;
+    std::size_t least = first, largest = first;
+    for (std::size_t i = first; i < last; ++i) {
+      if (y[i] < y[least] && finite(i)) least = i;
+      if (y[i] > y[largest] && finite(i)) largest = i;
+    }
+    keep(std::min(least, largest));
+    if (least != largest) keep(std::max(least, largest));
+  }
+}
+
+void thin_history(std::vector<double>& x, std::vector<double>& y, std::size_t most) {
+  std::vector<double> thin_x, thin_y;
+  thin_history(x, y, most, thin_x, thin_y);
+  x = std::move(thin_x);
+  y = std::move(thin_y);
+}
+
+void write_charts(JsonWriter& json, const ReportInput& input) {
+  const BuiltCase& built = *input.runs.front().built;
+  std::vector<ReportRun> runs, others;  // the group of the first run, and the rest
+  for (const ReportRun& run : input.runs) (run.result->group == input.runs.front().result->group ? runs : others).push_back(run);
+  std::string other = others.empty() ? "" : others.front().result->group;
+  if (std::ranges::any_of(others, [&](const ReportRun& run) { return run.result->group != other; })) {
+    for (ReportRun& run : others) run.say_group = true;
+    other = "all others";
+  }
+  json.begin_array();
+  if (statics_alone(built.plan)) {  // nothing over time
+    for (const View& view : motion_views(built))
+      if (view.kind != Column::velocity) write_chart(json, *input.read, history_chart(view, runs));
+    for (const View& view : interface_views(built)) write_chart(json, *input.read, history_chart(view, runs));
+    if (!built.facts.empty()) write_loops(json, input, runs);
+    for (const Chart& chart : rest_charts(input.runs.front())) write_chart(json, *input.read, chart);
+    for (const Chart& chart : beam_charts(runs)) write_chart(json, *input.read, chart);
+    write_chart(json, *input.read, law_chart(input.runs.front()));
+    json.end_array();
+    return;
+  }
+  write_chart(json, *input.read, load_chart(*input.read, input.runs.front()));
+  write_motion_charts(json, input);
+  for (const View& view : motion_views(built)) write_chart(json, *input.read, history_chart(view, runs));
+  for (const View& view : interface_views(built)) write_chart(json, *input.read, history_chart(view, runs));
+  for (const Chart& chart : safety_charts(runs)) write_chart(json, *input.read, chart);
+  for (const Chart& chart : rest_charts(runs.front())) write_chart(json, *input.read, chart);
+  write_loops(json, input, runs);
+  for (const Chart& chart : beam_charts(runs)) write_chart(json, *input.read, chart);
+  write_floor_charts(json, input);
+  if (input.trust)
+    for (const Chart& chart : trust_charts(*input.trust)) write_chart(json, *input.read, chart);
+  if (!others.empty()) {
+    std::vector<View> views = motion_views(built);
+    for (View& view : views) {
+      const std::string id = std::string("other_") + view.id, title = fmt::format("{}, {}", view.title, other);
+      if (view.kind == Column::velocity && view.of != built.top_sway()) continue;
+      view.section = "others";
+      Chart chart = history_chart(view, others);
+      chart.id = id;
+      chart.title = title;
+      write_chart(json, *input.read, chart);
+    }
+    write_chart(json, *input.read, energy_error_chart("other_energy_error", "others", "Energy error, " + other, others));
+  }
+  write_chart(json, *input.read, energy_error_chart("energy_error", "energy", "Energy error", runs));
+  write_chart(json, *input.read, ledger_chart(input.runs.front()));
+  if (input.compared) write_chart(json, *input.read, sweep_chart(*input.compared));
+  write_chart(json, *input.read, law_chart(input.runs.front()));
+  json.end_array();
+}
+
+}  // namespace uplift

@@ -1,0 +1,80 @@
+#pragma once
+#include <set>
+#include <span>
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include "uplift/io/report/report.h"
+#include "uplift/io/text/json_writer.h"
+
+// The parts of the reports' documents; used by the files of the reports alone.
+namespace uplift {
+
+void write_choices(JsonWriter& json, const Case& read, const BuiltCase& built);
+/// Floor spectra, where there are any.
+bool has_floors(const ReportInput& input);
+void write_floor_charts(JsonWriter& json, const ReportInput& input);
+void write_floor_table(JsonWriter& json, const ReportInput& input);
+void write_verdict(JsonWriter& json, const ReportInput& input);
+void write_tables(JsonWriter& json, const ReportInput& input);
+void write_charts(JsonWriter& json, const ReportInput& input);
+/// Nodes of the model that masses, supports, loads, springs, dashpots and footings stand on: they are drawn.
+std::set<int> nodes_used(const Case& read, const BuiltCase& built);
+/// The force of a load as it is drawn: as the case states it, of a pressure its resultant; empty for a moment.
+std::vector<double> drawn_force(const Values& load, const Model& model);
+void write_model(JsonWriter& json, const Case& read, const BuiltCase& built);
+void write_animations(JsonWriter& json, const ReportInput& input);
+/// The member "uplifted": share of the area in every frame, by interface.
+void write_uplifted(JsonWriter& json, const Model& model, const std::vector<const Frame*>& frames);
+/// Uplifted share of the area of all interfaces.
+double uplifted_share(const Model& model, const Frame& frame);
+/// The same two for a model in space: the members "space" and "spaceAnimations".
+void write_space(JsonWriter& json, const ReportInput& input);
+
+struct Axis {
+  std::string label, unit;
+  bool log = false;
+};
+struct Curve {
+  std::string label, run;  // run: label of the run, decides the colour; empty: none
+  std::vector<double> x, y;
+  bool dash = false, failed = false;
+};
+struct Chart {
+  std::string id, section, title, caption;
+  Axis x, y;
+  std::vector<Curve> curves;
+};
+/// How far the numbers can be trusted: two tables, and a figure for every floor spectrum.
+void write_trust_tables(JsonWriter& json, const TrustAnswer& answer);
+std::vector<Chart> trust_charts(const TrustAnswer& answer);
+/// With the origin and the caption that the case states; nothing without curves.
+void write_chart(JsonWriter& json, const Case& read, const Chart& chart);
+void write_chart(JsonWriter& json, const Chart& chart, std::string_view origin, std::string_view caption);
+
+/// A column of a table of the report.
+struct TableColumn {
+  const char *key, *label, *unit, *kind;
+  int digits;
+};
+void write_column(JsonWriter& json, const TableColumn& column);
+
+/// The traction law of the first interface driven through openings and closings, with its largest opening so far (figure 3 of the paper);
+/// without curves for a cone.
+Chart law_chart(const ReportRun& run);
+
+/// The base before and after: gap and pressure along the first interface, plane models with pictures.
+std::vector<Chart> rest_charts(const ReportRun& run);
+/// Section forces along the beams whose envelopes were asked for.
+std::vector<Chart> beam_charts(const std::vector<ReportRun>& runs);
+/// Eccentricity and safeties of the first interface over time.
+std::vector<Chart> safety_charts(const std::vector<ReportRun>& runs);
+
+/// At most about `most` of the points of a history y over x: the least and the largest of each bucket, so that no peak is lost.
+void thin_history(std::vector<double>& x, std::vector<double>& y, std::size_t most);
+/// Likewise, appended to other vectors. What is not finite is left out.
+void thin_history(std::span<const double> x, std::span<const double> y, std::size_t most, std::vector<double>& thin_x,
+                  std::vector<double>& thin_y);
+
+}  // namespace uplift

@@ -1,0 +1,434 @@
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <limits>
+#include <map>
+#include <set>
+#include <span>
+#include <utility>
+
+#include "uplift/case/build/model.h"
+#include "uplift/io/report/parts.h"
+#include "uplift/mesh/sides.h"
+
+// The drawing of a model in space and the frames of its animation.
+namespace uplift {
+namespace {
+
+constexpr std::size_t most_numbers = 900'000;  // of all frames of a run, about 500 kB
+// Levels from zero to the largest value. The largest displacement is drawn about 60 pixels long: one level is far below a pixel.
+constexpr int levels_of_displacements = 4095, levels_of_points = 32767;
+
+std::size_t at(int i) {
+  return static_cast<std::size_t>(i);
+}
+
+/// The outer surface of a group of solids.
+struct Surface {
+  std::string name;
+  std::vector<int> triangles, edges;  // nodes of the mesh: three each, counter-clockwise from outside; two each
+};
+
+Surface surface_of(const Mesh& mesh, const std::string& group) {
+  Surface surface{group, {}, {}};
+  const Sides sides(mesh, mesh.groups.at(group).cells);
+  std::set<std::pair<int, int>> edges;
+  std::vector<int> nodes;
+  for (int cell = 0; cell < static_cast<int>(sides.cells().size()); ++cell)
+    for (int side = 0; side < sides.count(cell); ++side) {
+      const int number = Sides::stride * cell + side;
+      if (sides.twin(number) >= 0) continue;
+      sides.nodes_of(mesh, number, nodes);
+      const Cell type = info(mesh.type(sides.cells()[at(cell)])).sides[at(side)];
+      const auto corners = at(info(type).corners);
+      for (std::size_t k = 2; k < corners; ++k) surface.triangles.insert(surface.triangles.end(), {nodes[0], nodes[k - 1], nodes[k]});
+      for (std::size_t k = 0; k < corners; ++k) edges.insert(std::minmax(nodes[k], nodes[(k + 1) % corners]));
+    }
+  for (const auto& [a, b] : edges) surface.edges.insert(surface.edges.end(), {a, b});
+  return surface;
+}
+
+/// What is drawn: surfaces of solids, nodes of the case, of beams and of rigid bodies.
+struct Drawn {
+  std::vector<Surface> surfaces;
+  std::vector<int> nodes;  // of the model, ascending
+  int first_of_mesh = 0;
+  int number(int node) const { return static_cast<int>(std::ranges::lower_bound(nodes, node) - nodes.begin()); }
+};
+
+Drawn drawn_of(const Case& read, const BuiltCase& built) {
+  Drawn drawn;
+  drawn.first_of_mesh = static_cast<int>(read.values.tables("nodes").size());
+  std::set<int> nodes = nodes_used(read, built);
+  for (int i = 0; i < drawn.first_of_mesh; ++i) nodes.insert(i);
+  if (read.mesh)
+    for (const Values& solid : read.values.tables("solid")) {
+      drawn.surfaces.push_back(surface_of(read.mesh->mesh, solid.text("group")));
+      for (const int node : drawn.surfaces.back().triangles) nodes.insert(drawn.first_of_mesh + node);
+    }
+  for (const BeamLine& beam : built.beams) nodes.insert(beam.nodes.begin(), beam.nodes.end());
+  for (const int node : {built.top, built.base})
+    if (node >= 0) nodes.insert(node);
+  drawn.nodes.assign(nodes.begin(), nodes.end());
+  return drawn;
+}
+
+void write_whole(JsonWriter& json, std::string_view key, const std::vector<int>& numbers) {
+  const std::vector<double> doubles(numbers.begin(), numbers.end());
+  json.key(key).numbers(doubles);
+}
+
+void write_places(JsonWriter& json, std::string_view key, const std::vector<Vec3>& places) {
+  std::vector<double> numbers;
+  for (const Vec3& place : places) numbers.insert(numbers.end(), {place.x(), place.y(), place.z()});
+  json.key(key).numbers(numbers);
+}
+
+void write_surfaces(JsonWriter& json, const Drawn& drawn) {
+  json.key("parts").begin_array();
+  for (const Surface& surface : drawn.surfaces) {
+    json.begin_object().member("name", surface.name);
+    for (const auto& [key, of_mesh] : {std::pair("triangles", &surface.triangles), std::pair("edges", &surface.edges)}) {
+      std::vector<int> numbers;
+      for (const int node : *of_mesh) numbers.push_back(drawn.number(drawn.first_of_mesh + node));
+      write_whole(json, key, numbers);
+    }
+    json.end_object();
+  }
+  json.end_array();
+}
+
+/// Rectangle of a footing's points, in their order round it.
+std::array<Vec3, 4> corners_of(const Interface& joint, const Values& footing) {
+  const Vec3 n = joint.normal.front(), t = local_axis(joint.space, n, 0);
+  const double azimuth = footing.number("azimuth");
+  const Vec3 along = std::cos(azimuth) * t + std::sin(azimuth) * cross(n, t), across = cross(n, along);
+  const Vec3 a = footing.number("width") / 2 * along, b = footing.number("length") / 2 * across, middle = joint.reference;
+  return {middle - a - b, middle + a - b, middle + a + b, middle - a + b};
+}
+
+const Values* footing_of(const Case& read, const Interface& joint) {
+  for (const Values& interface : read.values.tables("interface"))
+    if (interface.text("name") == joint.name) return table_if(interface, "footing");
+  return nullptr;
+}
+
+void write_bodies(JsonWriter& json, const Case& read, const BuiltCase& built, const Drawn& drawn) {
+  json.key("bodies").begin_array();
+  for (const Interface& joint : built.model.interfaces)
+    if (const Values* footing = footing_of(read, joint)) {
+      const auto corners = corners_of(joint, *footing);
+      json.begin_object().member("name", footing->text("body")).member("node", drawn.number(built.model.find_node(footing->text("body"))));
+      write_places(json, "corners", {corners.begin(), corners.end()});
+      json.end_object();
+    }
+  json.end_array();
+}
+
+void write_small_parts(JsonWriter& json, const Case& read, const BuiltCase& built, const Drawn& drawn) {
+  json.key("masses").begin_array();
+  for (const Values& mass : read.values.tables("mass"))
+    json.begin_object()
+        .member("node", drawn.number(built.model.find_node(mass.text("node"))))
+        .member("mass", mass.has("mass") ? mass.number("mass") : built.tuned_mass)
+        .end_object();
+  json.end_array().key("supports").begin_array();
+  const auto write_support = [&](int node, const Values& support) {
+    if (!std::ranges::binary_search(drawn.nodes, node)) return;
+    json.begin_object().member("node", drawn.number(node)).key("dofs").texts(support.texts("fixed")).end_object();
+  };
+  for (const Values& support : read.values.tables("support")) {
+    if (support.has("node")) write_support(built.model.find_node(support.text("node")), support);
+    if (!support.has("group")) continue;
+    const Group& group = read.mesh->mesh.groups.at(support.text("group"));
+    if (group.dimension >= 2) continue;  // faces, see write_borders
+    for (const int node : nodes_of(read.mesh->mesh, group)) write_support(drawn.first_of_mesh + node, support);
+  }
+  json.end_array().key("loads").begin_array();
+  for (const Values& load : read.values.tables("load")) {
+    const std::vector<double> force = drawn_force(load, built.model);
+    if (force.empty()) continue;
+    int node = load.has("node") ? built.model.find_node(load.text("node")) : -1;
+    if (load.has("group") && read.mesh) {
+      const std::vector<int> nodes = nodes_of(read.mesh->mesh, read.mesh->mesh.groups.at(load.text("group")));
+      node = drawn.first_of_mesh + nodes[nodes.size() / 2];
+    }
+    if (!std::ranges::binary_search(drawn.nodes, node)) continue;
+    json.begin_object().member("node", drawn.number(node)).key("force").numbers(force);
+    json.member("label", name_of_load(load)).end_object();
+  }
+  json.end_array();
+}
+
+/// Triangles over the faces of a group on the outer surface, counter-clockwise from outside.
+std::vector<int> faces_of(const Mesh& mesh, const Sides& sides, const std::string& group, const Drawn& drawn) {
+  std::vector<int> triangles, nodes;
+  for (const CellId cell : mesh.groups.at(group).cells) {
+    const int side = info(mesh.type(cell)).dimension == 2 ? sides.find(mesh.type(cell), mesh.cell(cell)) : -1;
+    if (side < 0 || sides.twin(side) >= 0) continue;
+    sides.nodes_of(mesh, side, nodes);
+    const auto number = [&](int k) { return drawn.number(drawn.first_of_mesh + nodes[at(k)]); };
+    for (int k = 2; k < info(mesh.type(cell)).corners; ++k) triangles.insert(triangles.end(), {number(0), number(k - 1), number(k)});
+  }
+  return triangles;
+}
+
+/// Faces that supports hold, and absorbing ones; a face that is held in the static stages alone and absorbs then counts as absorbing.
+void write_borders(JsonWriter& json, const Case& read, const Drawn& drawn) {
+  json.key("borders").begin_array();
+  if (!read.mesh) {
+    json.end_array();
+    return;
+  }
+  const Mesh& mesh = read.mesh->mesh;
+  const Sides sides(mesh, full_cells(mesh));
+  std::set<std::string> written;
+  const auto write = [&](const Values& table, const char* kind) {
+    if (!table.has("group") || !written.insert(table.text("group")).second) return;
+    const std::vector<int> triangles = faces_of(mesh, sides, table.text("group"), drawn);
+    if (triangles.empty()) return;
+    json.begin_object().member("name", table.text("group")).member("kind", kind);
+    write_whole(json, "triangles", triangles);
+    json.end_object();
+  };
+  for (const Values& face : read.values.tables("absorbing")) write(face, "absorbing");
+  for (const Values& support : read.values.tables("support")) write(support, "held");
+  json.end_array();
+}
+
+/// The point of an interface at a place; places are compared to a millionth of a metre.
+class PointAt {
+ public:
+  explicit PointAt(const Interface& joint) {
+    for (int i = 0; i < joint.batch.points; ++i) number_[key(joint.position[at(i)])] = i;
+  }
+  int operator()(const Vec3& place) const {
+    const auto found = number_.find(key(place));
+    return found == number_.end() ? -1 : found->second;
+  }
+
+ private:
+  static std::array<long, 3> key(const Vec3& place) {
+    return {std::lround(place.x() * 1e6), std::lround(place.y() * 1e6), std::lround(place.z() * 1e6)};
+  }
+  std::map<std::array<long, 3>, int> number_;
+};
+
+/// Triangles between the points of an interface: over the faces of an opened surface, over the grid of a footing. Empty where the points do
+/// not stand at corners.
+std::vector<int> triangles_of(const Case& read, const Interface& joint, const InterfaceFacts& facts) {
+  std::vector<int> triangles;
+  const auto add_polygon = [&](const std::vector<int>& corners) {
+    for (std::size_t k = 2; k < corners.size(); ++k) triangles.insert(triangles.end(), {corners[0], corners[k - 1], corners[k]});
+  };
+  if (!facts.faces.empty()) {
+    const PointAt point_at(joint);
+    for (const FacePair& face : facts.faces) {
+      std::vector<int> corners;
+      for (int k = 0; k < info(read.mesh->mesh.type(face.lower)).corners; ++k)
+        corners.push_back(point_at(read.mesh->mesh.nodes[at(read.mesh->mesh.cell(face.lower)[at(k)])]));
+      if (std::ranges::find(corners, -1) != corners.end()) continue;
+      add_polygon(corners);
+    }
+  }
+  if (const Values* footing = footing_of(read, joint); footing && footing->text("rule") == "nodal") {
+    const int along = footing->integer("points"), across = footing->integer("points_across");
+    for (int j = 0; j + 1 < across; ++j)
+      for (int i = 0; i + 1 < along; ++i) {
+        const int a = j * along + i;
+        add_polygon({a, a + 1, a + along + 1, a + along});
+      }
+  }
+  return triangles;
+}
+
+/// "x" when the direction is an axis of the model.
+std::string axis_name(const Vec3& direction, const char* otherwise) {
+  constexpr const char* names[] = {"x", "y", "z"};
+  for (int k = 0; k < 3; ++k)
+    if (std::abs(direction[k]) > 1 - 1e-9) return names[k];
+  return otherwise;
+}
+
+/// The drawn node of the upper side that is nearest to each point: the point is drawn moving with it.
+std::vector<int> carriers(const Interface& joint, const InterfaceFacts& facts, const BuiltCase& built, const Drawn& drawn) {
+  std::vector<int> nodes;
+  for (int i = 0; i < joint.batch.points; ++i) {
+    int nearest = -1;
+    double least = 0;
+    for (const int node : facts.upper) {
+      const double distance = (built.model.nodes[at(node)].position - joint.position[at(i)]).squaredNorm();
+      if (std::ranges::binary_search(drawn.nodes, node) && (nearest < 0 || distance < least)) nearest = node, least = distance;
+    }
+    if (nearest < 0) return {};
+    nodes.push_back(drawn.number(nearest));
+  }
+  return nodes;
+}
+
+void write_interfaces(JsonWriter& json, const Case& read, const BuiltCase& built, const Drawn& drawn) {
+  json.key("interfaces").begin_array();
+  int bodies = 0;
+  for (std::size_t k = 0; k < built.model.interfaces.size(); ++k) {
+    const Interface& joint = built.model.interfaces[k];
+    const Vec3 normal = mean_normal(joint), s = local_axis(joint.space, normal, 0), t = local_axis(joint.space, normal, 1);
+    std::vector<double> plan;
+    for (const Place& place : joint.position) plan.insert(plan.end(), {(place - joint.reference).dot(s), (place - joint.reference).dot(t)});
+    json.begin_object().member("name", joint.name);
+    write_places(json, "points", {joint.position.begin(), joint.position.end()});
+    json.key("plan").numbers(plan).key("axes").texts({axis_name(s, "s"), axis_name(t, "t")});
+    json.key("normal").numbers(std::array<double, 3>{normal.x(), normal.y(), normal.z()});
+    json.key("area").numbers(std::span<const double>(joint.area.data(), at(joint.batch.points)));
+    write_whole(json, "triangles", triangles_of(read, joint, built.facts[k]));
+    if (footing_of(read, joint)) {
+      json.member("body", bodies++);
+    } else if (const std::vector<int> nodes = carriers(joint, built.facts[k], built, drawn); !nodes.empty()) {
+      write_whole(json, "node", nodes);
+    }
+    json.end_object();
+  }
+  json.end_array();
+}
+
+void write_model(JsonWriter& json, const Case& read, const BuiltCase& built, const Drawn& drawn) {
+  std::vector<Vec3> places;
+  for (const int node : drawn.nodes) places.push_back(built.model.nodes[at(node)].position);
+  json.begin_object();
+  write_places(json, "nodes", places);
+  write_surfaces(json, drawn);
+  json.key("lines").begin_array();
+  for (const BeamLine& beam : built.beams) {
+    std::vector<int> line;
+    for (const int node : beam.nodes) line.push_back(drawn.number(node));
+    json.begin_object().member("name", beam.name);
+    write_whole(json, "nodes", line);
+    json.end_object();
+  }
+  json.end_array();
+  write_bodies(json, read, built, drawn);
+  write_small_parts(json, read, built, drawn);
+  write_borders(json, read, drawn);
+  write_interfaces(json, read, built, drawn);
+  json.end_object();
+}
+
+/// Values of all frames as whole levels of one unit. A level is written as its difference to that of the frame before, less the same
+/// difference `stride` entries earlier (a neighbouring node or point): compressed, this takes half a byte to one byte per value. What is
+/// not finite is written as zero. A value above `nonzero` keeps at least one level: of a gap the sign tells open from closed.
+class QuantisedFrames {
+ public:
+  QuantisedFrames(JsonWriter& json, double largest, int levels, std::size_t stride, double nonzero)
+      : json_(json), unit_(largest > 0 ? largest / levels : 1), nonzero_(nonzero), stride_(stride) {
+    json_.begin_object().member("unit", unit_).member("stride", static_cast<long>(stride)).key("differences").begin_array();
+  }
+  void add(std::span<const double> values) {
+    levels_.resize(values.size());
+    changes_.resize(values.size());
+    for (std::size_t i = 0; i < values.size(); ++i) {
+      double level = std::isfinite(values[i]) ? std::round(values[i] / unit_) : 0;
+      if (values[i] > nonzero_) level = std::max(level, 1.0);
+      changes_[i] = level - std::exchange(levels_[i], level);
+    }
+    differences_ = changes_;
+    for (std::size_t i = stride_; i < values.size(); ++i) differences_[i] -= changes_[i - stride_];
+    json_.numbers(differences_);
+  }
+  void end() { json_.end_array().end_object(); }
+
+ private:
+  JsonWriter& json_;
+  double unit_, nonzero_;
+  std::size_t stride_;
+  std::vector<double> levels_, changes_, differences_;
+};
+
+double largest_of(std::span<const double> values) {
+  double largest = 0;
+  for (const double value : values)
+    if (std::isfinite(value)) largest = std::max(largest, std::abs(value));
+  return largest;
+}
+
+/// Values of the interfaces' points in the frames, by interface.
+void write_points(JsonWriter& json, std::string_view key, const BuiltCase& built, const std::vector<const Frame*>& frames,
+                  Vector Frame::*field) {
+  json.key(key).begin_object();
+  Index first = 0;
+  for (const Interface& joint : built.model.interfaces) {
+    const auto values = [&](const Frame& frame) { return std::span<const double>((frame.*field).data() + first, at(joint.batch.points)); };
+    double largest = 0;
+    for (const Frame* frame : frames) largest = std::max(largest, largest_of(values(*frame)));
+    json.key(joint.name);
+    QuantisedFrames quantised(json, largest, levels_of_points, 1, built.plan.gap_tolerance);
+    for (const Frame* frame : frames) quantised.add(values(*frame));
+    quantised.end();
+    first += joint.batch.points;
+  }
+  json.end_object();
+}
+
+/// So many frames, evenly chosen, that the report stays small; the one of the largest uplift is among them.
+std::vector<const Frame*> chosen_frames(const Model& model, const RunResult& result, std::size_t nodes) {
+  const std::size_t most = std::max<std::size_t>(12, most_numbers / (3 * nodes + 1));
+  const std::size_t every = std::max<std::size_t>((result.frames.size() + most - 1) / most, 1);
+  const auto share = [&](const Frame& frame) { return uplifted_share(model, frame); };
+  const Frame* peak = &*std::ranges::max_element(result.frames, {}, share);
+  std::vector<const Frame*> frames;
+  for (std::size_t i = 0; i < result.frames.size(); ++i)
+    if (i % every == 0 || &result.frames[i] == peak || i + 1 == result.frames.size()) frames.push_back(&result.frames[i]);
+  return frames;
+}
+
+/// Displacements (or rotations) of nodes, three numbers each.
+std::vector<double> motion_of(const Space& space, const Frame& frame, std::span<const int> nodes, bool rotation) {
+  std::vector<double> numbers;
+  for (const int node : nodes)
+    for (int k = 0; k < 3; ++k) numbers.push_back(frame.displacement[space.unknowns() * node + k + (rotation ? space.dimension : 0)]);
+  return numbers;
+}
+
+void write_displacements(JsonWriter& json, const Space& space, const std::vector<const Frame*>& frames, const std::vector<int>& nodes) {
+  double largest = 0;
+  for (const Frame* frame : frames) largest = std::max(largest, largest_of(motion_of(space, *frame, nodes, false)));
+  json.key("displacement");
+  QuantisedFrames quantised(json, largest, levels_of_displacements, 3, std::numeric_limits<double>::infinity());
+  for (const Frame* frame : frames) quantised.add(motion_of(space, *frame, nodes, false));
+  quantised.end();
+}
+
+void write_animation(JsonWriter& json, const Case& read, const ReportRun& run, const Drawn& drawn) {
+  const BuiltCase& built = *run.built;
+  const Space space = built.model.space;
+  const std::vector<const Frame*> frames = chosen_frames(built.model, *run.result, drawn.nodes.size());
+  json.begin_object().member("run", run.result->label).key("time").begin_array();
+  for (const Frame* frame : frames) json.value(frame->time);
+  json.end_array();
+  write_uplifted(json, built.model, frames);
+  write_displacements(json, space, frames, drawn.nodes);
+  json.key("rotation").begin_object();
+  for (const Interface& joint : built.model.interfaces)
+    if (const Values* footing = footing_of(read, joint)) {
+      const int body = built.model.find_node(footing->text("body"));
+      json.key(footing->text("body")).begin_array();
+      for (const Frame* frame : frames) json.numbers(motion_of(space, *frame, {&body, 1}, true));
+      json.end_array();
+    }
+  json.end_object();
+  write_points(json, "openings", built, frames, &Frame::opening);
+  write_points(json, "pressures", built, frames, &Frame::pressure);
+  json.end_object();
+}
+
+}  // namespace
+
+void write_space(JsonWriter& json, const ReportInput& input) {
+  const Drawn drawn = drawn_of(*input.read, *input.runs.front().built);
+  json.key("space");
+  write_model(json, *input.read, *input.runs.front().built, drawn);
+  json.key("spaceAnimations").begin_array();
+  for (const ReportRun& run : input.runs)
+    if (run.result->frames.size() >= 2) write_animation(json, *input.read, run, drawn);
+  json.end_array();
+}
+
+}  // namespace uplift

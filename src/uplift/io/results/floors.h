@@ -1,0 +1,18 @@
+#pragma once
+#include <string>
+#include <vector>
+
+#include "uplift/io/text/json_writer.h"
+#include "uplift/verdict/floor_spectra.h"
+
+namespace uplift {
+
+/// floor_spectra.csv: a line for every frequency, in one block for every run, floor and damping; then the envelopes. The bonded run and the
+/// ratio stand beside the runs that have one; empty cells: there is none.
+std::string floor_spectra_csv(const std::vector<RunResult>& runs, const FloorAnswers& floors);
+
+/// For summary.json: the array of the floors of one run, and that of the envelopes.
+void write_floors(JsonWriter& json, const FloorRun& run);
+void write_floor_envelopes(JsonWriter& json, const FloorAnswers& floors);
+
+}  // namespace uplift

@@ -1,0 +1,45 @@
+#pragma once
+#include <string>
+#include <utility>
+#include <vector>
+
+#include "uplift/verdict/compare.h"
+#include "uplift/verdict/compare_motions.h"
+#include "uplift/verdict/floor_spectra.h"
+#include "uplift/verdict/verdict.h"
+
+namespace uplift {
+
+/// Where results come from.
+struct Provenance {
+  std::string title, subtitle, command, version, created;   // created: date and time, ISO 8601
+  std::string built_with;                                   // compiler
+  std::string case_file, case_hash;                         // SHA-256 of the case file
+  std::vector<std::pair<std::string, std::string>> inputs;  // other input files with their SHA-256
+  std::string resolved;                                     // the case with all defaults, TOML
+};
+
+/// What `uplift compare` adds.
+struct ComparisonSummary {
+  std::vector<Agreement> agreement;  // one per run
+  double band = 0;
+  std::vector<std::string> columns;  // whose peaks are compared
+  std::vector<SweepRow> sweep;
+  std::vector<MotionTable> motions;  // one per variant and damping; empty without [[compare.motion]]
+};
+
+/// What stands in summary.json.
+struct SummaryInput {
+  const Provenance& from;
+  const std::vector<RunResult>& runs;
+  const Verdict& verdict;                                     // on the first run
+  std::vector<std::shared_ptr<const MotionHistory>> motions;  // those that drive the runs
+  const ComparisonSummary* compared = nullptr;                // null for a single run
+  const FloorAnswers* floors = nullptr;
+  const BuiltCase* built = nullptr;  // of the first run
+};
+
+/// summary.json: an object with the provenance, the arrays `motions` and `runs`, and the `verdict`.
+std::string summary_json(const SummaryInput&);
+
+}  // namespace uplift

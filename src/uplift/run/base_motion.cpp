@@ -1,0 +1,88 @@
+#include "uplift/run/base_motion.h"
+
+#include <map>
+
+namespace uplift {
+namespace {
+
+using Weights = std::map<int, double>;  // of the full unknowns
+
+/// The vertical motion of the point `reference` of a rigid body, downwards, and its rotations.
+std::array<Weights, 3> weights_of_body(const Model& model, int node, const Place& reference) {
+  const Space space = model.space;
+  const Vec3 up = space.axis(space.up()), arm = reference - model.nodes[static_cast<std::size_t>(node)].position;
+  std::array<Weights, 3> weights;
+  for (int k = 0; k < space.unknowns(); ++k) weights[0][model.at(node, space.dof(k))] = -space.motion(k, arm).dot(up);
+  if (space.dimension == 2) {
+    weights[1][model.at(node, rz)] = 1;
+  } else {
+    weights[1][model.at(node, rx)] = 1;
+    weights[2][model.at(node, ry)] = 1;
+  }
+  return weights;
+}
+
+/// Plane u_up = c + tilt . shape that fits the nodes best; shape is x in the plane, (y, -x) in space. No tilt where they do not span it.
+std::array<Weights, 3> weights_of_nodes(const Model& model, const std::vector<int>& nodes) {
+  const Space space = model.space;
+  const auto count = static_cast<Index>(nodes.size()), tilts = static_cast<Index>(space.dimension - 1);
+  Matrix shape(count, tilts);
+  for (Index i = 0; i < count; ++i) {
+    const Vec3& x = model.nodes[static_cast<std::size_t>(nodes[static_cast<std::size_t>(i)])].position;
+    if (tilts == 1)
+      shape(i, 0) = x.x();
+    else
+      shape.row(i) << x.y(), -x.x();
+  }
+  shape.rowwise() -= shape.colwise().mean().eval();
+  const Matrix inertia = shape.transpose() * shape;
+  Matrix inverse = Matrix::Zero(tilts, tilts);
+  const double size = inertia.trace();
+  if (tilts == 1 && size > 0) inverse(0, 0) = 1 / size;
+  const double det = tilts == 2 ? inertia(0, 0) * inertia(1, 1) - inertia(0, 1) * inertia(1, 0) : 0;
+  if (det > 1e-12 * size * size) inverse << inertia(1, 1) / det, -inertia(0, 1) / det, -inertia(1, 0) / det, inertia(0, 0) / det;
+  const Matrix slope = shape * inverse;
+  std::array<Weights, 3> weights;
+  for (Index i = 0; i < count; ++i) {
+    const int unknown = model.at(nodes[static_cast<std::size_t>(i)], space.dof(space.up()));
+    weights[0][unknown] = -1.0 / static_cast<double>(count);
+    for (Index k = 0; k < tilts; ++k) weights[static_cast<std::size_t>(k) + 1][unknown] = slope(i, k);
+  }
+  return weights;
+}
+
+}  // namespace
+
+BaseMotion::BaseMotion(const Model& model, const Interface& interface, const std::vector<int>& nodes) {
+  if (nodes.empty()) return;
+  const std::array<Weights, 3> weights =
+      nodes.size() == 1 ? weights_of_body(model, nodes.front(), interface.reference) : weights_of_nodes(model, nodes);
+  for (std::size_t k = 0; k < 3; ++k) {
+    Weights free;
+    for (const auto& [unknown, weight] : weights[k])
+      for (Sparse::InnerIterator entry(model.expansion, unknown); entry; ++entry)
+        free[static_cast<int>(entry.row())] += weight * entry.value();
+    for (const auto& [unknown, weight] : free)
+      if (weight != 0) sums_[k].terms.emplace_back(unknown, weight);
+    for (const PrescribedMotion& motion : model.motions) {
+      double sum = 0;
+      for (const auto& [unknown, weight] : weights[k]) sum += weight * motion.shape[unknown];
+      if (sum != 0) sums_[k].functions.emplace_back(motion.function.get(), sum);
+    }
+  }
+}
+
+double BaseMotion::value(const Sum& sum, const State& state) {
+  double total = 0;
+  for (const auto& [unknown, weight] : sum.terms) total += weight * state.displacement[unknown];
+  for (const auto& [function, weight] : sum.functions) total += state.load_factor * weight * function->value(state.time);
+  return total;
+}
+
+void BaseMotion::look(const State& state, BasePose& pose) const {
+  pose.settlement = value(sums_[0], state);
+  pose.tilt_1 = value(sums_[1], state);
+  pose.tilt_2 = value(sums_[2], state);
+}
+
+}  // namespace uplift

@@ -1,0 +1,188 @@
+#include "uplift/run/equilibrium.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+
+#include "uplift/run/force_rows.h"
+
+namespace uplift {
+
+struct EquilibriumCheck::Snapshot {
+  Vector displacement, velocity, acceleration;  // full unknowns
+  Vector free_velocity, joint;
+  Vector unbalanced;  // M a + C v + K u + B^T p - f, full unknowns
+  Vector applied;     // f
+  Vector yielding;
+  double largest_reaction = 0;  // N: on one unknown
+  Equilibrium::Instant sums;
+};
+
+namespace {
+
+/// Adds a force on one unknown.
+void add(double value, Space space, const Vec3& arm, Index unknown, Equilibrium::Sum& sum) {
+  const Vec3 axis = space.axis(space.index_of(unknown));
+  if (space.is_rotation(unknown)) {
+    sum.moment += value * axis;
+  } else {
+    sum.force += value * axis;
+    sum.moment += value * cross(arm, axis);
+  }
+}
+
+double largest(const Vec3& v) {
+  return v.cwiseAbs().maxCoeff();
+}
+
+}  // namespace
+
+std::string Equilibrium::warning() const {
+  if (!(residual > 1e-6)) return {};
+  return fmt::format(
+      "The forces on the whole model are not in equilibrium at t = {:.6g} s: the unbalanced part is {:.2g} of the largest force "
+      "(or moment). Reactions and section forces there are no better than that.",
+      time, residual);
+}
+
+EquilibriumCheck::EquilibriumCheck(const ForceStage& stage) : stage_(std::make_unique<const ForceStage>(stage)) {
+  const std::vector<Node>& nodes = stage.model.nodes;
+  for (const Node& node : nodes) centre_ += node.position / static_cast<double>(nodes.size());
+}
+
+EquilibriumCheck::~EquilibriumCheck() = default;
+
+void EquilibriumCheck::note(const StepBalance& balance) {
+  const Model& model = stage_->model;
+  const Index free = model.free(), rows = model.rows();
+  Snapshot at;
+  at.sums.time = balance.time();
+  Vector displacement(free), acceleration(free);
+  at.free_velocity.resize(free);
+  for (Index i = 0; i < free; ++i) {
+    displacement[i] = balance.displacement(i);
+    at.free_velocity[i] = balance.velocity(i);
+    acceleration[i] = balance.acceleration(i);
+  }
+  at.joint.resize(rows);
+  for (Index i = 0; i < rows; ++i) at.joint[i] = balance.force(i);
+  at.displacement = model.reduction * displacement;
+  at.velocity = model.reduction * at.free_velocity;
+  at.acceleration = model.reduction * acceleration;
+  for (const PrescribedMotion& motion : model.motions) {
+    at.displacement += balance.motion(*motion.function, 0) * motion.shape;
+    at.velocity += balance.motion(*motion.function, 1) * motion.shape;
+    at.acceleration += balance.motion(*motion.function, 2) * motion.shape;
+  }
+  at.applied = Vector::Zero(model.full_unknowns());
+  const double begin = balance.share_of_begin();
+  for (std::size_t i = 0; i < model.time_loads.size(); ++i) {
+    const TimeLoad& time_load = model.time_loads[i];
+    if (i < model.assembly.loads.size() && model.assembly.loads[i].size() > 0)
+      at.applied += (time_load.constant ? balance.load_factor() : balance.value(*time_load.function, static_cast<int>(time_load.order))) *
+                    model.assembly.loads[i];
+  }
+  for (std::size_t i = 0; balance.moves() && i < model.time_load_tables.size(); ++i) {
+    Vector last, first;
+    model.time_load_tables[i].functions->values(balance.after().time, last);
+    model.time_load_tables[i].functions->values(balance.before().time, first);
+    at.applied += model.assembly.time_load_tables[i] * Vector((1 - begin) * last + begin * first);
+  }
+  if (const PlasticBulk yielding(model); yielding.any())
+    at.yielding =
+        (1 - begin) * yielding.state(balance.after().bulk_history).full + begin * yielding.state(balance.before().bulk_history).full;
+  snapshots_.push_back(std::move(at));
+}
+
+/// Every element is formed once and answers all instants.
+void EquilibriumCheck::add_elements() {
+  const Model& model = stage_->model;
+  const Space space = model.space;
+  Matrix stiffness, mass, damping;
+  for (Snapshot& at : snapshots_) at.unbalanced = -at.applied;
+  for (const auto& element : model.elements) {
+    const int each = element->unknowns_per_node();
+    const auto nodes = element->nodes();
+    element->form({.stiffness = &stiffness, .mass = &mass, .damping = &damping});
+    damping += (model.assembly.stiffness_damping + element->beta) * stiffness + model.assembly.mass_damping * mass;
+    const auto unknown = [&](Index i) { return space.unknowns() * nodes[static_cast<std::size_t>(i) / each] + static_cast<int>(i) % each; };
+    Vector u(stiffness.cols()), v(u), a(u);
+    for (Snapshot& at : snapshots_) {
+      for (Index i = 0; i < u.size(); ++i)
+        u[i] = at.displacement[unknown(i)], v[i] = at.velocity[unknown(i)], a[i] = at.acceleration[unknown(i)];
+      const Vector internal = stiffness * u, damped = damping * v, inertia = mass * a;
+      for (Index i = 0; i < u.size(); ++i) {
+        const Vec3 arm = model.nodes[static_cast<std::size_t>(nodes[static_cast<std::size_t>(i) / each])].position - centre_;
+        at.unbalanced[unknown(i)] += internal[i] + damped[i] + inertia[i];
+        add(-internal[i], space, arm, unknown(i), at.sums.internal);
+        add(-damped[i], space, arm, unknown(i), at.sums.damping);
+        add(-inertia[i], space, arm, unknown(i), at.sums.inertia);
+      }
+    }
+  }
+}
+
+void EquilibriumCheck::add_forces(const ForceModel& forces, Snapshot& at) const {
+  const Model& model = stage_->model;
+  const auto sum_up = [&](const Vector& values, Equilibrium::Sum& sum) {
+    for (Index i = 0; i < values.size(); ++i)
+      if (values[i] != 0)
+        add(values[i], model.space, model.nodes[static_cast<std::size_t>(model.space.node_of(i))].position - centre_, i, sum);
+  };
+  const auto put = [&](const Vector& internal, Equilibrium::Sum& sum) {
+    at.unbalanced += internal;
+    sum_up(-internal, sum);
+  };
+  if (stage_->held != nullptr && stage_->held->size() > 0)
+    for (Index i = 0; i < model.free(); ++i) {
+      at.applied[model.kept[static_cast<std::size_t>(i)]] += (*stage_->held)[i];
+      at.unbalanced[model.kept[static_cast<std::size_t>(i)]] -= (*stage_->held)[i];
+    }
+  sum_up(at.applied, at.sums.applied);
+  if (model.assembly.b.rows() > 0) put(model.assembly.b.transpose() * at.joint, at.sums.joint);
+  if (stage_->second_order != nullptr) put(stage_->second_order->stiffness * at.displacement, at.sums.second_order);
+  if (at.yielding.size() > 0) put(at.yielding, at.sums.internal);
+  if (model.assembly.modal_damping.cols() > 0) {
+    const Vector damped = model.assembly.modal_damping * at.free_velocity;
+    Vector full = Vector::Zero(model.full_unknowns());
+    for (Index i = 0; i < damped.size(); ++i) full[model.kept[static_cast<std::size_t>(i)]] = damped[i];
+    put(full, at.sums.damping);
+  }
+  const Vector reactions = forces.constraint_forces(at.unbalanced);
+  for (Index i = 0; i < reactions.size(); ++i)
+    if (!model.space.is_rotation(model.space.index_of(i))) at.largest_reaction = std::max(at.largest_reaction, std::abs(reactions[i]));
+  sum_up(reactions, at.sums.reactions);
+  sum_up(reactions - at.unbalanced, at.sums.residual);
+}
+
+void EquilibriumCheck::finish(Equilibrium& equilibrium) {
+  // The rows of a rigid body are coupled by its reference node: their forces cost the third power of its size.
+  constexpr std::size_t most_tied = 250;
+  if (stage_->model.assembly.ties.size() > most_tied) snapshots_.clear();
+  if (snapshots_.empty()) return;
+  add_elements();
+  const ForceModel forces(*stage_);
+  double force = 0, moment = 0;
+  for (Snapshot& at : snapshots_) {
+    add_forces(forces, at);
+    force = std::max(force, at.largest_reaction);  // of supports that settle the reactions cancel each other
+    equilibrium.instants.push_back(at.sums);
+  }
+  snapshots_.clear();
+  for (const Equilibrium::Instant& at : equilibrium.instants)
+    for (const Equilibrium::Sum* sum : {&at.inertia, &at.damping, &at.internal, &at.joint, &at.second_order, &at.applied, &at.reactions})
+      force = std::max(force, largest(sum->force)), moment = std::max(moment, largest(sum->moment));
+  double size = 0;
+  for (const Node& node : stage_->model.nodes) size = std::max(size, (node.position - centre_).norm());
+  for (const Interface& interface : stage_->model.interfaces)  // of a single body, whose only node is the centre
+    for (const Place& place : interface.position) size = std::max(size, (place - centre_).norm());
+  moment = std::max(moment, force * size);  // forces through the middle have no moment to compare with
+  equilibrium.residual = 0;
+  for (const Equilibrium::Instant& at : equilibrium.instants) {
+    const double share =
+        std::max(force > 0 ? largest(at.residual.force) / force : 0, moment > 0 ? largest(at.residual.moment) / moment : 0);
+    if (share > equilibrium.residual) equilibrium.residual = share, equilibrium.time = at.time;
+  }
+}
+
+}  // namespace uplift

@@ -1,0 +1,225 @@
+#include "uplift/run/interface_viewer.h"
+
+#include <algorithm>
+#include <cmath>
+#include <utility>
+
+#include "uplift/math/small.h"
+
+namespace uplift {
+
+namespace {
+
+/// Weights whose sums with the openings are the slopes of their best plane, c + theta . (arm x n), for arms in the axes of the mean normal.
+std::array<Vector, 2> slope_weights(const Interface& interface) {
+  const Vec3 normal = mean_normal(interface);
+  const int points = interface.batch.points, slopes = interface.space.dimension - 1;
+  Matrix shape(points, slopes);  // opening per slope
+  for (int i = 0; i < points; ++i) {
+    const Vec3 arm = interface.position[static_cast<std::size_t>(i)] - interface.reference;
+    for (int k = 0; k < slopes; ++k) {
+      const Vec3 axis = slopes == 1 ? Vec3(Vec3::UnitZ()) : local_axis(interface.space, normal, k);
+      shape(i, k) = cross(axis, arm).dot(normal);
+    }
+  }
+  const Vector mean = shape.transpose() * interface.area / interface.area.sum();
+  shape.rowwise() -= mean.transpose();
+  const Matrix inertia = shape.transpose() * interface.area.asDiagonal() * shape;
+  Matrix inverse = Matrix::Zero(slopes, slopes);
+  const double det = slopes == 1 ? inertia(0, 0) : inertia(0, 0) * inertia(1, 1) - inertia(0, 1) * inertia(1, 0);
+  const double size = inertia.trace();
+  if (slopes == 1 && size > 0) inverse(0, 0) = 1 / inertia(0, 0);
+  if (slopes == 2 && det > 1e-12 * size * size)
+    inverse << inertia(1, 1) / det, -inertia(0, 1) / det, -inertia(1, 0) / det, inertia(0, 0) / det;
+  const Matrix weights = interface.area.asDiagonal() * shape * inverse;
+  std::array<Vector, 2> made;
+  for (int k = 0; k < slopes; ++k) made[static_cast<std::size_t>(k)] = weights.col(k);
+  return made;
+}
+
+constexpr double whole = 1 - 1e-12;  // share of an area: all of it but for round-off
+constexpr double much_softer = 10;   // what lies under a joint than the joint, before its openings count as bent
+
+/// Of the closed joint, in compression [Pa/m].
+double normal_stiffness(const Interface& interface) {
+  if (interface.law == nullptr) return HUGE_VAL;
+  std::array<double, 3> stiffness{};
+  interface.law->closed_stiffness(interface.batch.components, stiffness.data());
+  return stiffness[static_cast<std::size_t>(interface.batch.components) - 1];
+}
+
+bool flat(const Interface& interface) {
+  return std::ranges::all_of(interface.normal, [&](const Vec3& n) { return (n - interface.normal.front()).norm() < 1e-9; });
+}
+
+}  // namespace
+
+InterfaceViewer::InterfaceViewer(const Model& model, double gap_tolerance, const std::vector<std::vector<int>>& bases,
+                                 const std::vector<std::shared_ptr<const Facets>>& facets)
+    : tolerance_(gap_tolerance) {
+  for (std::size_t k = 0; k < bases.size(); ++k) bases_.emplace_back(model, model.interfaces[k], bases[k]);
+  int first = 0;
+  for (const Interface& interface : model.interfaces) {
+    Layout layout;
+    layout.first = first;
+    layout.points = interface.batch.points;
+    layout.components = interface.batch.components;
+    layout.space = interface.space;
+    layout.area = interface.area;
+    layout.inverse_area = interface.area.cwiseInverse();
+    layout.along.resize(layout.points);
+    layout.across.resize(layout.points);
+    for (int i = 0; i < layout.points; ++i) {
+      const auto p = static_cast<std::size_t>(i);
+      const Vec3 arm = interface.position[p] - interface.reference;
+      layout.along[i] = arm.dot(local_axis(interface.space, interface.normal[p], 0));
+      layout.across[i] = arm.dot(interface.normal[p]);
+    }
+    if (interface.space.dimension == 3 || !flat(interface)) layout.resultant_rows = resultant_rows(interface);
+    layout.total = interface.area.sum();
+    layout.slope_weight = slope_weights(interface);
+    layout.stiffness = normal_stiffness(interface);
+    layout.bonded = interface.behaviour == "elastic";
+    if (const std::size_t k = layouts_.size(); k < facets.size() && facets[k] != nullptr) {
+      layout.share = PositiveShare(*facets[k]);
+      layout.corners = facets[k]->corners;
+      layout.at_edge = facets[k]->at_edge;
+      value_.setZero(std::max(value_.size(), layout.share.room()));
+    }
+    layouts_.push_back(std::move(layout));
+    first += interface.rows();
+  }
+}
+
+/// The share of the area that is open, given the view, where points still count as a whole. Openings are cut where they pass zero. Where
+/// what lies under the joint is softer than the joint, or the joint does not give at all, the opening has a bend there: it does not get
+/// much below zero. The closed side then goes on with pressure times a compliance c that makes its mean slope that of the open side. With
+/// the volume V of the gap over the share s and the compression P over the share 1 - s, both as triangles: c = (V/s^2)/(P/(1 - s)^2).
+double InterfaceViewer::open_share(const Layout& layout, const double* gap, const double* force, const InterfaceView& view) {
+  const double counted = view.open_area, closed = 1 - counted, tolerance = tolerance_;
+  // the same compliance from the largest values, good enough to decide
+  const bool bent = view.max_opening * closed * layout.stiffness > much_softer * counted * view.max_pressure;
+  if (!bent && layout.share.points_alone()) return layout.share.above(tolerance, gap);
+  const double *area = layout.area.data(), *inverse = layout.inverse_area.data();
+  double* value = value_.data();
+  const Lanes zero = 0;
+  Lanes volume = zero, compression = zero;
+  for_lanes(layout.points, [&](const auto& at) {
+    const Lanes here = at(gap);
+    volume += at(area) * larger(here, zero);
+    compression -= smaller(at(force), zero);
+    at.put(value, here - tolerance);
+  });
+  const double pressed = sum(compression) * counted * counted;
+  const double compliance = bent && pressed > 0 ? sum(volume) * closed * closed / pressed : 0;
+  if (compliance > 0)
+    for_lanes(layout.points, [&](const auto& at) {
+      const Lanes here = at(value);
+      at.put(value, choose(here > zero, here, smaller(here, compliance * at(force) * at(inverse))));
+    });
+  return layout.share.positive(value);
+}
+
+/// The share of the area that pulls, tractions cut where they pass zero.
+double InterfaceViewer::tension_share(const Layout& layout, const double* force) {
+  for_lanes(layout.points, [&, value = value_.data()](const auto& at) { at.put(value, at(force) * at(layout.inverse_area.data())); });
+  return layout.share.positive(value_.data());
+}
+
+/// The largest pressure at the edges of the base that no point reaches: linear from the points next to them, where these are in contact.
+double InterfaceViewer::edge_pressure(const Layout& layout, const double* force) {
+  double most = 0;
+  for (const Facets::Corner& corner : layout.corners) {
+    double traction = 0;
+    bool contact = true;
+    for (const auto& [point, weight] : corner) {
+      traction += weight * force[point] * layout.inverse_area[point];
+      contact = contact && force[point] < 0;
+    }
+    if (contact) most = larger(most, -traction);
+  }
+  return most;
+}
+
+/// The largest opening at corners that no point reaches: linear from the points next to them, where these are open.
+double InterfaceViewer::edge_opening(const Layout& layout, const double* gap) const {
+  double most = 0;
+  for (const Facets::Corner& corner : layout.corners) {
+    double opening = 0;
+    bool open = true;
+    for (const auto& [point, weight] : corner) {
+      opening += weight * gap[point];
+      open = open && gap[point] > tolerance_;
+    }
+    if (open) most = larger(most, opening);
+  }
+  return most;
+}
+
+void InterfaceViewer::look(const Vector& opening, const Vector& force, std::vector<InterfaceView>& views) {
+  views.resize(layouts_.size());
+  for (std::size_t k = 0; k < layouts_.size(); ++k) {
+    const Layout& layout = layouts_[k];
+    const int n = layout.points, normal = layout.first + (layout.components - 1) * n;
+    const double *gap = opening.data() + normal, *p = force.data() + normal;
+    const double *area = layout.area.data(), *inverse = layout.inverse_area.data(), *along = layout.along.data();
+    const double *slope = layout.slope_weight[0].data(), tolerance = tolerance_;
+    const Lanes zero = 0;
+    Lanes axials = zero, moments = zero, slopes = zero, open = zero, pulled = zero, widest = zero, pressure = zero, least = gap[0];
+    for_lanes(n, [&](const auto& at) {
+      const Lanes pull = at(p), here = at(gap), weight = at(area);
+      axials += pull;
+      moments += at(along) * pull;
+      slopes += at(slope) * here;
+      open += choose(here > tolerance, weight, zero);
+      pulled += choose(pull > zero, weight, zero);
+      widest = larger(widest, here);
+      least = smaller(least, at(gap, gap[0]));
+      pressure = larger(pressure, -pull * at(inverse));
+    });
+    double shear = 0, moment = sum(moments);
+    InterfaceView& view = views[k];
+    view.open_area = std::min(1.0, sum(open) / layout.total);
+    view.tension_area = std::min(1.0, sum(pulled) / layout.total);
+    view.max_opening = largest(widest);
+    view.least_opening = smallest(least);
+    view.max_pressure = largest(pressure);
+    const auto in_parts = [&](double share) { return !layout.share.empty() && share > 0 && share < whole; };
+    if (in_parts(view.open_area)) view.open_area = open_share(layout, gap, p, view);
+    if (layout.bonded && in_parts(view.tension_area)) view.tension_area = tension_share(layout, p);
+    if (!layout.corners.empty()) {
+      if (layout.at_edge) view.max_pressure = std::max(view.max_pressure, edge_pressure(layout, p));
+      if (view.max_opening > tolerance) view.max_opening = std::max(view.max_opening, edge_opening(layout, gap));
+    }
+    view.rotation = {sum(slopes), 0};
+    if (layout.slope_weight[1].size() > 0) view.rotation[1] = small::dot(n, layout.slope_weight[1].data(), gap);
+    if (layout.resultant_rows.size() > 0) {
+      std::array<double, 6> sums{};
+      for (Index row = 0; row < layout.resultant_rows.cols(); ++row)
+        for (Index c = 0; c < layout.resultant_rows.rows(); ++c)
+          sums[static_cast<std::size_t>(c)] += layout.resultant_rows(c, row) * force[layout.first + row];
+      view.resultant = resultant_of(layout.space, sums.data());
+      continue;
+    }
+    if (layout.components > 1) {
+      const double* t = force.data() + layout.first;
+      const double* across = layout.across.data();
+#pragma omp simd reduction(+ : shear, moment)
+      for (int i = 0; i < n; ++i) shear += t[i], moment -= across[i] * t[i];
+    }
+    view.resultant = {.axial = sum(axials), .shear = shear, .moment = moment};
+  }
+}
+
+BasePose InterfaceViewer::pose(const State& state, std::size_t interface, const InterfaceView& view) const {
+  const Layout& layout = layouts_[interface];
+  const int n = layout.points;
+  const double *along = state.opening.data() + layout.first, *area = layout.area.data();
+  BasePose pose{.max_opening = view.max_opening, .open_area = view.open_area};
+  if (layout.components > 1) pose.slip_1 = small::dot(n, area, along) / layout.total;
+  if (layout.components > 2) pose.slip_2 = small::dot(n, area, along + n) / layout.total;
+  if (!bases_.empty()) bases_[interface].look(state, pose);
+  return pose;
+}
+
+}  // namespace uplift

@@ -1,0 +1,48 @@
+#pragma once
+#include <array>
+#include <memory>
+#include <vector>
+
+#include "uplift/interface/facets.h"
+#include "uplift/model/model.h"
+#include "uplift/run/base_motion.h"
+#include "uplift/run/step_record.h"
+
+namespace uplift {
+
+/// Looks at all interfaces of a model quickly: arms and areas are laid out once.
+class InterfaceViewer {
+ public:
+  /// `bases`: nodes of the upper side of every interface, `facets`: the surface of each; either may be empty.
+  InterfaceViewer(const Model& model, double gap_tolerance, const std::vector<std::vector<int>>& bases = {},
+                  const std::vector<std::shared_ptr<const Facets>>& facets = {});
+  /// `force` holds one force per row [N], tension > 0: the mean over the step.
+  void look(const Vector& opening, const Vector& force, std::vector<InterfaceView>& views);
+  /// How an interface stands; `view` is what look() saw of it.
+  BasePose pose(const State& state, std::size_t interface, const InterfaceView& view) const;
+
+ private:
+  struct Layout {
+    int first = 0, points = 0, components = 0;
+    Vector area, inverse_area, along, across;  // along t and along n from the reference point [m]
+    std::array<Vector, 2> slope_weight;
+    Space space;
+    Matrix resultant_rows;                // in space, and where the normals differ; else empty: the sums are then taken directly
+    double total = 0;                     // m2
+    PositiveShare share;                  // empty: points count as a whole
+    double stiffness = 0;                 // Pa/m of the closed joint; infinite for constraints
+    bool bonded = false;                  // it may pull: the tension share is asked for
+    std::vector<Facets::Corner> corners;  // of the surface that are no points: openings are extrapolated to them
+    bool at_edge = false;                 // pressures too
+  };
+  double open_share(const Layout& layout, const double* gap, const double* force, const InterfaceView& view);
+  double tension_share(const Layout& layout, const double* force);
+  static double edge_pressure(const Layout& layout, const double* force);
+  double edge_opening(const Layout& layout, const double* gap) const;
+  std::vector<Layout> layouts_;
+  std::vector<BaseMotion> bases_;
+  double tolerance_;
+  Vector value_;  // at the points of one interface
+};
+
+}  // namespace uplift

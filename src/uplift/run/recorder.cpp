@@ -1,0 +1,298 @@
+#include "uplift/run/recorder.h"
+
+#include <algorithm>
+#include <cmath>
+#include <utility>
+
+#include "uplift/math/lanes.h"
+
+namespace uplift {
+namespace {
+
+constexpr double nothing = 0;
+
+}  // namespace
+
+Recorder::Recorder(const Model& model, const RunPlan& plan, const State& state, const Energies& energies, const Stepper* stepper,
+                   const std::vector<InterfaceView>& views, const ForceStage& stage, long steps, double step, PageTaker& pages,
+                   RunResult& result)
+    : model_(model),
+      plan_(plan),
+      state_(state),
+      energies_(energies),
+      stepper_(stepper),
+      views_(views),
+      result_(result),
+      floors_(model, plan, steps, step, result) {
+  wants_acceleration_ = records_accelerations(plan);
+  for (const Frame& frame : result.frames)
+    for (const double share : frame.uplifted) peak_uplift_ = std::max(peak_uplift_, share);
+  if (asks_for_forces(plan)) forces_ = std::make_unique<ForceRecorder>(stage, plan, stepper, state, result);
+  const std::size_t expected_rows = static_cast<std::size_t>(steps / plan.every) + 2;
+  const bool fresh = result_.table.empty();  // a later dynamic stage goes on in the same table
+  if (fresh) {
+    result_.columns = plan.requests;
+    result_.table.assign(plan.requests.size() + 1, {});
+  }
+  for (std::vector<double>& column : result_.table) {
+    column.reserve(column.size() + expected_rows + 2);
+    pages.add(column.data() + column.size(), (expected_rows + 2) * sizeof(double));
+  }
+  recent_.resize(plan.requests.size() * apart);
+  const auto moves_base = [](const Request& request) {
+    return request.kind == Request::Kind::settlement || request.kind == Request::Kind::tilt_1 || request.kind == Request::Kind::tilt_2;
+  };
+  if (std::ranges::any_of(plan.requests, moves_base))
+    for (std::size_t k = 0; k < plan.bases.size(); ++k) bases_.emplace_back(model, model.interfaces[k], plan.bases[k]);
+  const SparseRows reduction(model.reduction);
+  for (const Request& request : plan.requests) {
+    Source source = source_of(request, reduction);
+    source.request = &request;
+    source.to = recent_.data() + most_.size() * apart;
+    if (fresh) result_.peaks.push_back({request.name, request.unit, 0, 0});
+    most_.push_back(std::abs(result_.peaks[most_.size()].value));
+    (source.place != nullptr ? placed_ : source.vector != nullptr ? entries_ : made_).push_back(std::move(source));
+  }
+  if (stepper_ == nullptr) acceleration_ = Vector::Zero(model.free());
+  before_ = state.time;
+}
+
+Recorder::Source Recorder::source_of(const Request& request, const SparseRows& reduction) const {
+  using What = Request::Kind;
+  const InterfaceView* view = views_.data() + request.interface;
+  const auto entry_of = [&](const Vector State::*vector) {  // of one free unknown, or made from several
+    Source source{.vector = vector};
+    for (SparseRows::InnerIterator entry(reduction, request.unknown); entry; ++entry)
+      source.terms.emplace_back(static_cast<int>(entry.col()), entry.value());
+    if (request.below >= 0)
+      for (SparseRows::InnerIterator entry(reduction, request.below); entry; ++entry)
+        source.terms.emplace_back(static_cast<int>(entry.col()), -entry.value());
+    for (const PrescribedMotion& motion : model_.motions)
+      source.moved = source.moved || motion.shape[request.unknown] != 0 || (request.below >= 0 && motion.shape[request.below] != 0);
+    for (auto& [unknown, factor] : source.terms) factor *= request.factor;
+    if (source.moved || source.terms.size() != 1)
+      source.vector = nullptr;
+    else
+      source.entry = source.terms.front().first, source.factor = source.terms.front().second;
+    return source;
+  };
+  const auto row_of = [&](const Vector State::*vector, bool per_area) {
+    int first = 0;
+    for (int i = 0; i < request.interface; ++i) first += model_.interfaces[static_cast<std::size_t>(i)].rows();
+    const Interface& interface = model_.interfaces[static_cast<std::size_t>(request.interface)];
+    if (request.component >= interface.batch.components) return Source{.place = &nothing};  // free to slide: neither moved nor pulled
+    return Source{.vector = vector,
+                  .entry = first + request.component * interface.batch.points + request.point,
+                  .factor = per_area ? 1 / interface.area[request.point] : 1.0};
+  };
+  switch (request.kind) {
+    case What::displacement:
+      return entry_of(&State::displacement);
+    case What::velocity:
+      return entry_of(&State::velocity);
+    case What::acceleration:
+    case What::absolute_acceleration:
+      return entry_of(nullptr);
+    case What::opening:
+      return row_of(&State::opening, false);
+    case What::traction:
+      return row_of(&State::mean_force, true);
+    case What::end_traction:
+      return row_of(&State::force, true);
+    case What::rotation:
+      return {.place = model_.space.dimension == 2 ? &view->rotation[0] : nullptr};
+    case What::rotation_1:
+      return {.place = &view->rotation[0]};
+    case What::rotation_2:
+      return {.place = &view->rotation[1]};
+    case What::axial:
+      return {.place = &view->resultant.axial};
+    case What::shear:
+      return {.place = &view->resultant.shear};
+    case What::moment:
+      return {.place = &view->resultant.moment};
+    case What::shear_1:
+      return {.place = &view->resultant.shear_1};
+    case What::shear_2:
+      return {.place = &view->resultant.shear_2};
+    case What::moment_1:
+      return {.place = &view->resultant.moment_1};
+    case What::moment_2:
+      return {.place = &view->resultant.moment_2};
+    case What::torsion:
+      return {.place = &view->resultant.torsion};
+    case What::uplifted_ratio:
+      return {.place = &view->open_area};
+    case What::max_opening:
+      return {.place = &view->max_opening};
+    case What::max_pressure:
+      return {.place = &view->max_pressure};
+    case What::kinetic:
+      return {.place = &energies_.kinetic};
+    case What::strain:
+      return {.place = &energies_.strain};
+    case What::stored:
+      return {.place = &energies_.stored};
+    case What::interface_dissipated:
+      return {.place = &energies_.interface_dissipated};
+    case What::damping:
+      return {.place = &energies_.damping};
+    case What::impact:
+      return {.place = &energies_.impact};
+    case What::external:
+      return {.place = &energies_.external};
+    case What::residual:
+      return {.place = &energies_.residual};
+    case What::plastic:
+      return {.place = &energies_.plastic};
+    case What::algorithmic:
+      return {.place = &energies_.algorithmic};
+    case What::filter:
+      return {.place = &energies_.filter};
+    case What::stop:
+      return {.place = &energies_.stop};
+    case What::settlement:
+    case What::tilt_1:
+    case What::tilt_2:
+      return {};
+    case What::force:
+      return {.place = forces_->value(request)};
+  }
+  return {};
+}
+
+/// Acceleration of the relative frame along the axis of the request [m/s2].
+double Recorder::ground(const Request& request, double time) const {
+  return model_.ground_acceleration(model_.space.axis(model_.space.index_of(request.unknown)), time);
+}
+
+double Recorder::made(const Source& source) const {
+  using What = Request::Kind;
+  const Request& request = *source.request;
+  const State& state = state_;
+  const bool rests = stepper_ == nullptr;
+  const auto sum = [&](const Vector& q, int derivative) {
+    if (source.moved) {
+      const auto at = [&](MotionInstant instant) {
+        const double below = request.below >= 0 ? model_.full(request.below, q, derivative, instant) : 0;
+        return request.factor * (model_.full(request.unknown, q, derivative, instant) - below);
+      };
+      return derivative == 2 ? 0.5 * (at(before_) + at(state.time)) : at(state.instant());
+    }
+    double total = 0;
+    for (const auto& [unknown, factor] : source.terms) total += factor * q[unknown];
+    return total;
+  };
+  switch (request.kind) {
+    case What::displacement:
+      return sum(state.displacement, 0);
+    case What::velocity:
+      return rests ? 0 : sum(state.velocity, 1);
+    case What::acceleration:
+      return rests ? 0 : sum(acceleration_, 2);
+    case What::absolute_acceleration:
+      return rests ? 0 : sum(acceleration_, 2) + 0.5 * (ground(request, before_) + ground(request, state.time));
+    case What::rotation: {
+      const std::array<double, 2>& slope = views_[static_cast<std::size_t>(request.interface)].rotation;
+      return std::hypot(slope[0], slope[1]);
+    }
+    case What::settlement:
+    case What::tilt_1:
+    case What::tilt_2: {
+      BasePose pose;
+      bases_[static_cast<std::size_t>(request.interface)].look(state, pose);
+      return request.kind == What::settlement ? pose.settlement : request.kind == What::tilt_1 ? pose.tilt_1 : pose.tilt_2;
+    }
+    default:
+      return 0;
+  }
+}
+
+void Recorder::record(bool row, double abscissa) {
+  const State& state = state_;
+  if (wants_acceleration_ && stepper_ != nullptr) stepper_->acceleration(acceleration_);
+  if (stepper_ == nullptr || !stepper_->averages_acceleration()) before_ = state.time;
+  floors_.record(acceleration_, before_, state.time);
+  if (forces_) forces_->record();
+  const std::size_t at = count_;
+#pragma GCC unroll 4
+  for (const Source& each : placed_) each.to[at] = *each.place;
+#pragma GCC unroll 4
+  for (const Source& each : entries_) each.to[at] = each.factor * (state.*each.vector).data()[each.entry];
+  for (const Source& each : made_) each.to[at] = made(each);
+  time_[at] = abscissa;
+  before_ = state.time;
+  is_row_[at] = row;
+  if (++count_ == many) flush();
+}
+
+void Recorder::flush() {
+  const std::size_t count = std::exchange(count_, 0);
+  for (std::size_t k = 0; k < most_.size(); ++k) {
+    const double* recent = recent_.data() + k * apart;
+    Lanes sizes = most_[k];
+    for_lanes(static_cast<std::ptrdiff_t>(count), [&](const auto& at) {
+      const Lanes size = absolute(at(recent));
+      sizes = choose(size > sizes, size, sizes);  // never what is not a number
+    });
+    const double most = largest(sizes);
+    if (most == most_[k]) continue;
+    most_[k] = most;
+    const double* peak = std::find_if(recent, recent + count, [most](double value) { return std::abs(value) == most; });
+    result_.peaks[k].value = *peak, result_.peaks[k].time = time_[static_cast<std::size_t>(peak - recent)];
+  }
+  std::array<std::size_t, many> rows;
+  std::size_t kept = 0;
+  for (std::size_t i = 0; i < count; ++i)
+    if (is_row_[i]) rows[kept++] = i;
+  const auto append_rows = [&](std::vector<double>& column, double* numbers) {
+    for (std::size_t i = 0; kept < count && i < kept; ++i) numbers[i] = numbers[rows[i]];
+    column.insert(column.end(), numbers, numbers + kept);
+  };
+  append_rows(result_.table.front(), time_.data());
+  for (std::size_t k = 0; k < most_.size(); ++k) append_rows(result_.table[k + 1], recent_.data() + k * apart);
+}
+
+void Recorder::finish() {
+  flush();
+  if (peak_frame_.displacement.size() == 0) return;
+  const auto next = std::ranges::lower_bound(result_.frames, peak_frame_.time, {}, &Frame::time);
+  if (next == result_.frames.end() || next->time != peak_frame_.time) result_.frames.insert(next, std::move(peak_frame_));
+}
+
+void Recorder::picture(const State& state) {
+  result_.frames.push_back(frame_of(state));
+}
+
+void Recorder::note_largest_uplift() {
+  double largest = peak_uplift_;
+  for (std::size_t k = 0; k < views_.size(); ++k)
+    if (plan_.is_wall.empty() || !plan_.is_wall[k]) largest = std::max(largest, views_[k].open_area);
+  if (!(largest > peak_uplift_)) return;
+  peak_uplift_ = largest;
+  peak_frame_ = frame_of(state_);
+}
+
+Frame Recorder::frame_of(const State& state) const {
+  Frame frame;
+  frame.time = state.time;
+  frame.displacement = model_.reduction * state.displacement;
+  for (const PrescribedMotion& motion : model_.motions)
+    frame.displacement += motion.shape * (state.load_factor * motion.function->value(state.time));
+  int points = 0;
+  for (const Interface& interface : model_.interfaces) points += interface.batch.points;
+  frame.opening.resize(points);
+  frame.pressure.resize(points);
+  int first = 0, point = 0;
+  for (const Interface& interface : model_.interfaces) {
+    for (int i = 0; i < interface.batch.points; ++i, ++point) {
+      frame.opening[point] = state.opening[first + interface.batch.normal() + i];
+      frame.pressure[point] = std::max(0.0, -state.mean_force[first + interface.batch.normal() + i] / interface.area[i]);
+    }
+    first += interface.rows();
+  }
+  for (const InterfaceView& view : views_) frame.uplifted.push_back(view.open_area);
+  return frame;
+}
+
+}  // namespace uplift

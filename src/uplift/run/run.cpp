@@ -1,0 +1,298 @@
+#include "uplift/run/run.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <chrono>
+#include <cmath>
+#include <utility>
+
+#include "uplift/run/probe.h"
+#include "uplift/run/runner.h"
+
+namespace uplift {
+
+std::string_view to_string(RunStatus status) {
+  switch (status) {
+    case RunStatus::completed:
+      return "completed";
+    case RunStatus::overturned:
+      return "overturned";
+    case RunStatus::separated:
+      return "separated";
+    case RunStatus::failed:
+      return "failed";
+    case RunStatus::interrupted:
+      return "interrupted";
+  }
+  return "";
+}
+
+const Stage* dynamic_stage(const RunPlan& plan) {
+  for (const Stage& stage : plan.stages)
+    if (stage.type == Stage::Type::dynamics) return &stage;
+  return nullptr;
+}
+
+bool statics_alone(const RunPlan& plan) {
+  return !plan.stages.empty() && dynamic_stage(plan) == nullptr;
+}
+
+std::vector<std::size_t> stopping_stages(const RunPlan& plan) {
+  std::vector<std::size_t> found;
+  for (std::size_t k = 1; k < plan.stages.size(); ++k)
+    if (plan.stages[k].type == Stage::Type::statics && plan.stages[k - 1].type == Stage::Type::dynamics) found.push_back(k);
+  return found;
+}
+
+bool is_step_mean(Request::Kind kind) {
+  using enum Request::Kind;
+  switch (kind) {
+    case acceleration:
+    case absolute_acceleration:
+    case traction:
+    case axial:
+    case shear:
+    case moment:
+    case shear_1:
+    case shear_2:
+    case moment_1:
+    case moment_2:
+    case torsion:
+    case max_pressure:
+      return true;
+    default:
+      return false;
+  }
+}
+
+std::string RunResult::created_percent() const {
+  return energy_scale > 0 ? fmt::format("{:.3g} %", 100 * energy_created / energy_scale) : "0 %";
+}
+
+namespace {
+
+Vector stack_gaps(const Model& model) {
+  Vector gap(model.rows());
+  int first = 0;
+  for (const Interface& interface : model.interfaces) {
+    gap.segment(first, interface.rows()) = interface.gap;
+    first += interface.rows();
+  }
+  return gap;
+}
+
+}  // namespace
+
+Runner::Runner(const Model& model, const RunPlan& plan, const std::vector<const Values*>& behaviours, const Watch& watch,
+               const Observe& observe)
+    : model_(model),
+      plan_(plan),
+      parameters_(behaviours),
+      watch_(watch),
+      observe_(observe),
+      b_(stack_interfaces(model)),
+      gap_(stack_gaps(model)),
+      viewer_(model, plan.gap_tolerance, plan.bases, plan.facets),
+      rest_(plan.rest.get()),
+      views_(model.interfaces.size()) {
+  has_walls_ = std::ranges::any_of(plan.is_wall, [](char wall) { return wall != 0; });
+  result_.name = plan.name;
+  result_.label = plan.label;
+  result_.group = plan.group;
+  result_.expected_to_fail = plan.expected_to_fail;
+  result_.max_uplifted_ratio = {"max_uplifted_ratio", "1", 0, 0};
+  result_.max_opening = {"max_opening", "m", 0, 0};
+  result_.max_base_moment = {"max_base_moment", "N m", 0, 0};
+  result_.max_base_shear = {"max_base_shear", "N", 0, 0};
+  result_.max_pressure = {"max_pressure", "Pa", 0, 0};
+}
+
+RunResult Runner::go() {
+  const auto start = std::chrono::steady_clock::now();
+  execute();
+  check_tables();
+  result_.steps.average(plan_.window);
+  take_window_peaks();
+  result_.wall = std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count() - shown_;
+  result_.counts.factorisations = linear_.factorisations;
+  if (!linear_.notice.empty()) result_.notes.push_back(linear_.notice);
+  result_.counts.back_solves = linear_.back_solves;
+  result_.counts.systems = linear_.systems;
+  return std::move(result_);
+}
+
+/// A run with a number in its tables that is not finite has failed, also where its energies are finite.
+void Runner::check_tables() {
+  for (const std::vector<std::vector<double>>* table : {&result_.table, &result_.load_steps})
+    for (std::size_t k = 1; k < table->size(); ++k) {
+      const std::vector<double>& column = (*table)[k];
+      if (std::isfinite(ConstMap(column.data(), std::ssize(column)).sum())) continue;  // finds them fast, and a few sums too large
+      const auto bad = std::ranges::find_if_not(column, [](double value) { return std::isfinite(value); });
+      if (bad == column.end() || result_.status == RunStatus::failed) continue;
+      result_.status = RunStatus::failed;
+      const double at = table->front()[static_cast<std::size_t>(bad - column.begin())];
+      const bool over_time = table == &result_.table && !statics_alone(plan_);
+      result_.reason = fmt::format("{} is not finite at {}", plan_.requests[k - 1].name,
+                                   over_time ? fmt::format("t = {:.6g} s", at) : fmt::format("the load factor {:.6g}", at));
+    }
+}
+
+/// Largest forces of the bases as means over the window, which the verdict shows.
+void Runner::take_window_peaks() {
+  const StepRecord& steps = result_.steps;
+  result_.max_step_pressure = result_.max_pressure;
+  for (Peak* peak : {&result_.max_base_moment, &result_.max_base_shear, &result_.max_pressure}) peak->value = peak->time = 0;
+  const auto note = [](Peak& peak, double value, double time) {
+    if (std::abs(value) > std::abs(peak.value)) peak.value = value, peak.time = time;
+  };
+  const bool plane = model_.space.dimension == 2;
+  double force = 0, moment = 0;  // N, N m: what is to be told from round-off
+  for (std::size_t k = 0; k < steps.extremes.size(); ++k) {
+    if (is_wall(k)) continue;
+    double arm = 0;
+    for (const Place& place : model_.interfaces[k].position) arm = std::max(arm, (place - model_.interfaces[k].reference).norm());
+    for (std::size_t i = 0; i < steps.size(); ++i) {
+      const StepRecord::Instant& now = steps.at(i, k);
+      note(result_.max_base_moment, plane ? now.moment_1 : std::hypot(now.moment_1, now.moment_2), steps.time[i]);
+      note(result_.max_base_shear, plane ? now.shear_1 : std::hypot(now.shear_1, now.shear_2), steps.time[i]);
+      const double size = std::hypot(now.axial, now.shear_1, now.shear_2);
+      force = std::max(force, size), moment = std::max(moment, arm * size);
+    }
+    note(result_.max_pressure, steps.extremes[k].max_pressure.value, steps.extremes[k].max_pressure.time);
+  }
+  constexpr double round_off = 1e-9, least = 1e-9;  // share of it; N, N m
+  if (std::abs(result_.max_base_shear.value) < std::max(round_off * force, least))
+    result_.max_base_shear.value = result_.max_base_shear.time = 0;
+  if (std::abs(result_.max_base_moment.value) < std::max(round_off * moment, least))
+    result_.max_base_moment.value = result_.max_base_moment.time = 0;
+}
+
+void Runner::fail(std::string why, const InterfaceProblem* problem) {
+  result_.status = RunStatus::failed;
+  result_.reason = std::move(why);
+  result_.end_time = seen_->time;
+  if (problem != nullptr && problem->rows() > 0) result_.problem = save_problem(*problem, parameters_, result_.reason);
+}
+
+void Runner::execute() {
+  const Stage* dynamic = dynamic_stage(plan_);
+  InterfaceProblem compliance;
+  bool cones = false;
+  for (const Interface& interface : model_.interfaces) cones = cones || interface.cone != nullptr;
+  if (dynamic != nullptr && cones && !plan_.method->constrains()) {
+    std::string why;
+    compliance = probe(model_, Bulk(model_, nullptr), b_, *dynamic, *plan_.solver, linear_, why);
+    if (!why.empty()) return fail(why, nullptr);
+  }
+  laws_ = std::make_unique<Behaviours>(model_, *plan_.method, compliance.rows() > 0 ? &compliance : nullptr);
+  laws_->solver = plan_.interface_solver;
+
+  const Eigen::Index n = rest_ != nullptr ? rest_->free() : model_.free();
+  state_.displacement = state_.velocity = state_.acceleration = Vector::Zero(n);
+  if (!plan_.stages.empty() && plan_.stages.front().type == Stage::Type::statics) state_.load_factor = 0;
+  state_.opening = gap_;
+  if (state_.load_factor > 0) model_.add_prescribed_opening(0, state_.opening);
+  state_.force = state_.mean_force = Vector::Zero(b_.rows());
+  state_.history.setZero(laws_->history);
+  remember_gaps();
+  for (const Stage& stage : plan_.stages) planned_ += stage.type == Stage::Type::dynamics ? stage.duration : 0;
+  if (dynamic != nullptr) tail_ = 0.1 * planned_ + 0.5 * dynamic->step;
+
+  run_stages();
+  result_.end_time = state_.time;
+  if (statics_alone(plan_))
+    stand();
+  else
+    result_.load_steps = std::move(load_steps_.table);
+}
+
+/// Ends at the first stage that fails or ends the run.
+void Runner::run_stages() {
+  bool moving = false;
+  for (const Stage& stage : plan_.stages) {
+    if (stage.type == Stage::Type::statics) {
+      march_.reset();
+      if (!statics(stage)) return;
+      continue;
+    }
+    if (stage.p_delta && geometric_ == nullptr && !second_order()) return;
+    if (rest_ != nullptr) release();
+    if (!std::exchange(moving, true)) {
+      if (&stage != plan_.stages.data()) note_rest();
+      add_initial_state();
+      rotations_ = rotations_on_interfaces(model_, b_);
+    }
+    const Bulk stage_bulk(model_, geometric_.get());
+    if (!dynamics(stage, stage_bulk)) return;
+  }
+}
+
+/// A joint with an initial gap was broken before the analysis: its law remembers an opening from zero to that gap (the SDM's jump is the
+/// gap), or the first step would take the gap for a stretched joint.
+void Runner::remember_gaps() {
+  const InterfaceProblem blocks = blocks_of(model_, *laws_);
+  for (const Block& block : blocks.blocks) {
+    const Vector gap = gap_.segment(block.first, block.rows()).cwiseMax(0), closed = Vector::Zero(block.rows());
+    if (block.law == nullptr || block.law->num_history(block.batch.components) == 0 || gap.isZero(0)) continue;
+    Vector traction(block.rows());
+    LawResponse response;
+    response.traction = traction.data();
+    response.now = state_.history.data() + block.first_history;
+    block.law->respond(block.batch, closed.data(), gap.data(), blocks.old.data() + block.first_history, response);
+  }
+}
+
+/// The initial state of the first dynamic stage comes on top of what the static stages left: laws answer the change of the openings, a
+/// constraint that is opened by it has no force any more.
+void Runner::add_initial_state() {
+  const Eigen::Index n = model_.free();
+  if (plan_.initial_velocity.size() == n) state_.velocity += plan_.initial_velocity;
+  if (plan_.initial_displacement.size() != n || plan_.initial_displacement.isZero(0)) return;
+  state_.displacement += plan_.initial_displacement;
+  const Vector from = state_.opening;
+  state_.opening += b_ * plan_.initial_displacement;
+  const Vector old = state_.history;
+  for (const Block& block : blocks_of(model_, *laws_).blocks) {
+    const int points = block.batch.points, normal = block.first + block.batch.normal();
+    if (block.law != nullptr) {
+      LawResponse response;
+      response.traction = state_.force.data() + block.first;
+      response.now = state_.history.data() + block.first_history;
+      block.law->respond(block.batch, from.data() + block.first, state_.opening.data() + block.first, old.data() + block.first_history,
+                         response);
+    }
+    for (int c = 0; c < block.batch.components; ++c)
+      for (int i = 0; i < points; ++i) {
+        double& force = state_.force[block.first + c * points + i];
+        if (block.law != nullptr)
+          force *= block.area[static_cast<std::size_t>(i)];
+        else if (state_.opening[normal + i] > 0)
+          force = 0;
+      }
+  }
+  state_.mean_force = state_.force;
+}
+
+ForceStage Runner::force_stage(const Stage& stage) const {
+  return {model_, stage.p_delta ? &second_order_ : nullptr, held_.size() > 0 ? &held_ : nullptr};
+}
+
+/// Tells the observer, if there is one, of the present state. Its time is not that of the run.
+void Runner::show(const Stage& stage, const Stepper* stepper, long step, bool last) {
+  if (!observe_) return;
+  sum_up(stage.step);
+  const auto start = std::chrono::steady_clock::now();
+  std::optional<State> resting;
+  if (rest_ != nullptr) resting = carried();
+  const ForceStage forces = force_stage(stage);
+  observe_({resting ? *resting : *seen_, stepper, result_, static_cast<std::size_t>(&stage - plan_.stages.data()), step, last, forces});
+  shown_ += std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
+}
+
+RunResult run(const Model& model, const RunPlan& plan, const std::vector<const Values*>& behaviours, const Watch& watch,
+              const Observe& observe) {
+  return Runner(model, plan, behaviours, watch, observe).go();
+}
+
+}  // namespace uplift

@@ -1,0 +1,83 @@
+#include "uplift/verdict/base_shape.h"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+
+namespace uplift {
+namespace {
+
+using Point = std::array<double, 2>;
+
+double turn(const Point& a, const Point& b, const Point& c) {
+  return (b[0] - a[0]) * (c[1] - a[1]) - (b[1] - a[1]) * (c[0] - a[0]);
+}
+
+/// Convex hull, counter-clockwise, by Andrew's monotone chain (Inf. Process. Lett. 9 (1979) 216-219); points within `flat` [m2] of an edge
+/// are left out.
+std::vector<Point> convex_hull(std::vector<Point> points, double flat) {
+  std::ranges::sort(points);
+  std::vector<Point> hull;
+  const auto chain = [&](auto first, auto last) {
+    const std::size_t start = hull.size();
+    for (; first != last; ++first) {
+      while (hull.size() >= start + 2 && turn(hull[hull.size() - 2], hull.back(), *first) <= flat) hull.pop_back();
+      hull.push_back(*first);
+    }
+    hull.pop_back();  // the other chain begins with it
+  };
+  chain(points.begin(), points.end());
+  chain(points.rbegin(), points.rend());
+  return hull;
+}
+
+}  // namespace
+
+Thrust thrust_of(Space space, double axial, double moment_1, double moment_2) {
+  if (space.dimension == 2) return {-axial, {-moment_1, 0}};
+  return {-axial, {moment_2, -moment_1}};
+}
+
+BaseShape::BaseShape(const Model& model, const Interface& interface, const InterfaceFacts& facts) {
+  std::vector<Place> corners = facts.corners;
+  if (corners.empty())
+    for (const int node : facts.upper) corners.push_back(model.nodes[static_cast<std::size_t>(node)].position);
+  if (corners.empty()) return;
+  const Vec3 normal = mean_normal(interface);
+  const int axes = interface.space.dimension - 1;
+  std::vector<Point> points;
+  for (const Place& corner : corners) {
+    Point point{};
+    for (int k = 0; k < axes; ++k)
+      point[static_cast<std::size_t>(k)] = local_axis(interface.space, normal, k).dot(corner - interface.reference);
+    points.push_back(point);
+  }
+  for (std::size_t k = 0; k < static_cast<std::size_t>(axes); ++k) {
+    const auto [least, most] = std::ranges::minmax_element(points, {}, [k](const Point& point) { return point[k]; });
+    width[k] = (*most)[k] - (*least)[k];
+    if (axes == 1) edges_ = {{{1, 0}, (*most)[k]}, {{-1, 0}, -(*least)[k]}};
+  }
+  if (axes == 1) return;
+  const std::vector<Point> hull = convex_hull(points, 1e-9 * width[0] * width[1]);
+  for (std::size_t i = 0; i < hull.size(); ++i) {
+    const Point &from = hull[i], &to = hull[(i + 1) % hull.size()];
+    const double length = std::hypot(to[0] - from[0], to[1] - from[1]);
+    if (!(length > 0)) continue;
+    const Point out{(to[1] - from[1]) / length, (from[0] - to[0]) / length};
+    edges_.push_back({out, out[0] * from[0] + out[1] * from[1]});
+  }
+}
+
+double BaseShape::overturning_safety(const Thrust& rest, const Thrust& now) const {
+  double least = std::numeric_limits<double>::infinity();
+  for (const Edge& edge : edges_) {
+    const auto about = [&edge](const Thrust& thrust) {
+      return thrust.force * edge.distance - edge.out[0] * thrust.first[0] - edge.out[1] * thrust.first[1];
+    };
+    const double stabilising = about(rest), driving = stabilising - about(now);
+    if (stabilising > 0 && driving > 0) least = std::min(least, stabilising / driving);
+  }
+  return least;
+}
+
+}  // namespace uplift

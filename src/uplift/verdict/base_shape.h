@@ -1,0 +1,34 @@
+#pragma once
+#include <array>
+#include <vector>
+
+#include "uplift/case/case.h"
+
+namespace uplift {
+
+/// The pressure of a base as one force: its size, and its size times its place e from the reference point along t1 and t2. In the plane
+/// moment_1 is the moment (docs/theory, eq 28).
+struct Thrust {
+  double force = 0;               // N, compression > 0
+  std::array<double, 2> first{};  // N m: P e
+};
+Thrust thrust_of(Space space, double axial, double moment_1, double moment_2);
+
+/// How far a base goes: its convex outline in the plane of its mean normal, about the reference point of its moments.
+class BaseShape {
+ public:
+  BaseShape(const Model& model, const Interface& interface, const InterfaceFacts& facts);
+  /// Extent along t1 and t2 [m]; the second is 0 in the plane.
+  std::array<double, 2> width{};
+  /// Stabilising over driving moment about the toe, the least of all edges (docs/theory, eq 29); infinite when nothing drives.
+  double overturning_safety(const Thrust& rest, const Thrust& now) const;
+
+ private:
+  struct Edge {
+    std::array<double, 2> out{};  // unit, outwards
+    double distance = 0;          // m
+  };
+  std::vector<Edge> edges_;
+};
+
+}  // namespace uplift

@@ -1,0 +1,102 @@
+#include "uplift/verdict/beams.h"
+
+#include <algorithm>
+#include <cmath>
+#include <string_view>
+
+namespace uplift {
+namespace {
+
+struct Reached {
+  double value = 0, time = 0;
+  void add(double candidate, double at) {
+    if (candidate > value) value = candidate, time = at;
+  }
+};
+
+/// `least`: a smaller number is noise.
+void add_number(std::vector<VerdictNumber>& numbers, std::string_view name, const Reached& reached, const Reached* bonded, double least) {
+  VerdictNumber number;
+  number.quantity = find_verdict_quantity(name);
+  number.value = reached.value;
+  number.time = reached.time;
+  number.least = least;
+  if (bonded != nullptr) {
+    number.bonded = bonded->value;
+    number.change = change_of(reached.value, bonded->value, least);
+  }
+  numbers.push_back(number);
+}
+
+/// Largest value of a component over all sections, of the given sign; 0: of either.
+Reached largest(const BeamEnvelope& envelope, std::string_view component, int sign) {
+  Reached reached;
+  const auto k = static_cast<std::size_t>(std::ranges::find(envelope.components, component) - envelope.components.begin());
+  for (std::size_t s = 0; s < envelope.sections.size(); ++s) {
+    const ForceRange& range = envelope.at(s, k);
+    if (sign >= 0) reached.add(range.most, range.most_time);
+    if (sign <= 0) reached.add(-range.least, range.least_time);
+  }
+  return reached;
+}
+
+/// Largest range over time of the forces of any section [N].
+double range_of_forces(const BeamEnvelope& envelope) {
+  double most = 0;
+  for (std::size_t s = 0; s < envelope.sections.size(); ++s)
+    for (std::size_t k = 0; k < envelope.components.size(); ++k)
+      if (const std::string& name = envelope.components[k]; name.starts_with("axial") || name.starts_with("shear"))
+        most = std::max(most, envelope.at(s, k).most - envelope.at(s, k).least);
+  return most;
+}
+
+/// Largest peak of the columns that `wanted` accepts; nothing without any.
+template <class Wanted>
+std::optional<Reached> largest_peak(const RunResult& run, Wanted wanted) {
+  std::optional<Reached> reached;
+  for (std::size_t k = 0; k < run.columns.size() && k < run.peaks.size(); ++k) {
+    if (!wanted(run.columns[k])) continue;
+    if (!reached) reached.emplace();
+    reached->add(std::abs(run.peaks[k].value), run.peaks[k].time);
+  }
+  return reached;
+}
+
+}  // namespace
+
+std::vector<BeamVerdict> beam_verdicts(const RunResult& run, const RunResult* bonded) {
+  std::vector<BeamVerdict> verdicts;
+  for (std::size_t k = 0; k < run.envelopes.size(); ++k) {
+    const BeamEnvelope& envelope = run.envelopes[k];
+    const BeamEnvelope* other = bonded != nullptr && k < bonded->envelopes.size() ? &bonded->envelopes[k] : nullptr;
+    BeamVerdict verdict{envelope.beam, {}};
+    const double least = noise_share * std::max(range_of_forces(envelope), other != nullptr ? range_of_forces(*other) : 0);
+    const double length = envelope.sections.empty() ? 0 : envelope.sections.back().along - envelope.sections.front().along;
+    const auto add = [&](std::string_view name, std::string_view change, std::string_view component, int sign) {
+      const Reached reached = largest(envelope, component, sign);
+      const Reached reference = other != nullptr ? largest(*other, component, sign) : Reached{};
+      add_number(verdict.numbers, name, reached, other != nullptr ? &reference : nullptr, component == "moment" ? least * length : least);
+      const std::optional<double> changed = verdict.numbers.back().change;
+      if (!change.empty() && changed) add_number(verdict.numbers, change, {*changed, reached.time}, nullptr, 0);
+    };
+    add("max_beam_compression", "", "axial", -1);
+    add("max_beam_tension", "", "axial", 1);
+    add("max_beam_shear", "change_of_beam_shear", "shear", 0);
+    add("max_beam_moment", "change_of_beam_moment", "moment", 0);
+    verdicts.push_back(std::move(verdict));
+  }
+  return verdicts;
+}
+
+void add_storeys(const RunResult& run, const RunResult* bonded, std::vector<VerdictNumber>& numbers) {
+  const auto add = [&](std::string_view name, auto wanted) {
+    const std::optional<Reached> reached = largest_peak(run, wanted);
+    if (!reached) return;
+    const std::optional<Reached> other = bonded != nullptr ? largest_peak(*bonded, wanted) : std::nullopt;
+    add_number(numbers, name, *reached, other ? &*other : nullptr, 0);
+  };
+  add("max_storey_shear", [](const Request& column) { return column.storey; });
+  add("max_drift_ratio", [](const Request& column) { return column.below >= 0 && column.unit == "1"; });
+}
+
+}  // namespace uplift

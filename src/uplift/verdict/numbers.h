@@ -1,0 +1,95 @@
+#pragma once
+#include <algorithm>
+#include <optional>
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include "uplift/case/case.h"
+
+namespace uplift {
+
+/// One number of the verdict. Forces and eccentricities are magnitudes; a settlement is positive downwards. The rotation
+/// (counter-clockwise) and the slip that are left have their sign in the plane and are magnitudes in space.
+struct VerdictNumber {
+  const VerdictQuantity* quantity = nullptr;
+  double value = 0;
+  std::optional<double> time = {};       // s, where it is reached
+  std::optional<double> bonded = {};     // the same number of the bonded reference run
+  std::optional<double> swing = {};      // half of the range in which a residual still moves
+  std::optional<double> change = {};     // relative to it: 0.1 is 10 % more; nothing where both are noise
+  std::optional<double> step_peak = {};  // largest mean over one step, of numbers that are means over the window
+  // With twice the step, and by how much that changes the number, relative to what check_step() compares it with
+  std::optional<double> coarse = {}, step_change = {};
+  double least = 0;  // in the unit of the quantity: a value below it is noise
+};
+
+/// What is said of one interface.
+struct InterfaceVerdict {
+  std::string name;
+  Role role = Role::base;
+  double weight = 0, mean_pressure = 0;  // N, Pa: of the static state; 0 when nothing presses
+  std::array<double, 2> width{};         // m, along t1 and t2
+  std::vector<VerdictNumber> numbers;    // those that there are, in the order of verdict_quantities()
+  struct Above {
+    double threshold = 0, duration = 0;  // 1, s
+  };
+  std::vector<Above> above;
+  std::vector<Interval> full_loss;  // without any contact
+};
+
+struct CriterionResult {
+  Criterion criterion;
+  std::string interface;  // empty: of the run
+  enum class State { met, not_met, undetermined } state = State::undetermined;
+  std::optional<double> value = {};
+  std::optional<double> time = {};
+};
+std::string_view to_string(CriterionResult::State);
+
+/// The largest section forces of a beam whose envelope was asked for.
+struct BeamVerdict {
+  std::string name;
+  std::vector<VerdictNumber> numbers;
+};
+
+struct VerdictNumbers {
+  std::vector<VerdictNumber> whole;          // of the run
+  std::vector<InterfaceVerdict> interfaces;  // bases first
+  std::vector<Interval> full_loss;           // no base has any contact
+  std::size_t bases() const { return static_cast<std::size_t>(std::ranges::count(interfaces, Role::base, &InterfaceVerdict::role)); }
+  std::vector<BeamVerdict> beams;
+  std::vector<CriterionResult> criteria;
+};
+
+/// From what the run kept of every step. `bonded`: the same model with interfaces that never open, or null.
+VerdictNumbers numbers_of(const BuiltCase& built, const RunResult& run, const RunResult* bonded);
+
+/// Numbers are compared with those of the bonded reference run only where one of the two exceeds this share of the excitation: of the
+/// largest change of the force on the base since rest (times its width for moments), of the largest motion of the top in any direction, of
+/// the largest floor acceleration in any direction. Below, a ratio would be that of coupling by round-off and asymmetric meshes, which was
+/// found up to some 1e-6 of the excitation, and it is far below what an engineer resolves (docs/theory, section 10).
+inline constexpr double noise_share = 1e-3;
+/// A force below this share of the largest force on the same interface is round-off.
+inline constexpr double round_off_share = 1e-9;
+/// The relative change of a number: nothing where both are below `least`. A reference below it counts as `least`.
+std::optional<double> change_of(double value, double reference, double least);
+
+/// A number as it is printed wherever it appears: rounded once, here. A residual has no more decimals than the range in which it moves.
+std::string text_of(const VerdictNumber&);
+/// Half of that range: "0.012 mm"; empty when it is at rest.
+std::string swing_text(const VerdictNumber&);
+
+/// The number of this name; null when there is none.
+const VerdictNumber* find_number(const std::vector<VerdictNumber>& numbers, std::string_view name);
+
+/// What the verdict follows over time, for every instant of run.steps. NaN where it has no meaning: eccentricity and safeties while the
+/// base carries less than a thousandth of its static force, safeties that are infinite.
+enum class BaseHistory { uplifted_ratio, eccentricity_1, eccentricity_2, overturning_safety, sliding_safety };
+std::vector<double> base_history(const BuiltCase& built, const RunResult& run, std::size_t interface, BaseHistory which);
+
+/// Share of a Winkler strip that really uplifts where a linear analysis has tension on the share t: M_lin/M_u = 1/(1 - 2t), and equal
+/// energies (docs/theory, eq 31). Nothing for t >= 1/2, where the linear moment has no bound.
+std::optional<double> uplift_of_tension(double t);
+
+}  // namespace uplift

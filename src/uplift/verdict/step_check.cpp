@@ -1,0 +1,201 @@
+#include "uplift/verdict/step_check.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+
+#include "uplift/base/format.h"
+
+namespace uplift {
+namespace {
+
+constexpr double least_share = 0.1;                            // of an area, and of an inverse safety: below it a change is no matter
+constexpr double least_motion = 0.05;                          // of the largest motion
+constexpr double steps_per_period = 20, least_spectrum = 0.1;  // of floor spectra; least value beside their peak
+constexpr double least_eccentricity = 0.01;                    // of the width
+
+double longest_step(const RunPlan& plan) {
+  double step = 0;
+  for (const Stage& stage : plan.stages)
+    if (stage.type == Stage::Type::dynamics) step = std::max(step, stage.step);
+  return step;
+}
+
+/// What a change of the numbers of one interface, or of the whole run, is measured by.
+struct Scale {
+  double motion = 0;       // m: largest of the top and of the gap
+  double rotation = 0;     // rad: that opens the gap over the width
+  double compression = 0;  // N
+};
+
+double value_or(const std::vector<VerdictNumber>& numbers, std::string_view name, double otherwise) {
+  const VerdictNumber* number = find_number(numbers, name);
+  return number ? std::abs(number->value) : otherwise;
+}
+
+bool is_safety(const VerdictQuantity& quantity) {
+  return quantity.name.ends_with("_safety");
+}
+
+/// Durations and instants depend on gaps that vanish, and the compression of the joint on its stiffness, which is a choice of the
+/// computation: their changes are stated but decide nothing.
+bool decides(const VerdictQuantity& quantity) {
+  return quantity.unit != "s" && quantity.name != "max_penetration";
+}
+
+/// What the change of a number is divided by.
+double reference(const VerdictNumber& number, double other, const Scale& scale) {
+  const VerdictQuantity& quantity = *number.quantity;
+  const double size = std::max({std::abs(number.value), std::abs(other), number.least, nothing_beside(quantity.unit)});
+  if (quantity.name.starts_with("change_of")) return std::max(1 + std::max(number.value, other), least_share);
+  if (quantity.name == "residual_uplifted_ratio") return 1;  // gaps of micrometres count: beside the whole area
+  if (is_share(quantity)) return std::max(size, least_share);
+  if (quantity.name == "min_compression") return std::max(size, scale.compression);
+  if (quantity.name.starts_with("max_eccentricity")) return std::max(size, least_eccentricity);
+  if (quantity.name.starts_with("residual"))
+    return std::max({size, number.swing.value_or(0), least_motion * (quantity.unit == "rad" ? scale.rotation : scale.motion)});
+  return size;
+}
+
+double change_of_step(const VerdictNumber& number, double other, const Scale& scale) {
+  if (is_safety(*number.quantity)) {
+    const double here = 1 / number.value, there = 1 / other;
+    if (number.value == other) return 0;
+    return std::abs(here - there) / std::max({std::abs(here), std::abs(there), least_share});
+  }
+  return number.value == other ? 0 : std::abs(number.value - other) / reference(number, other, scale);  // of two zeros too
+}
+
+/// Compares the numbers of one table; keeps the one that changes most.
+void compare(std::vector<VerdictNumber>& numbers, const std::vector<VerdictNumber>& coarse, const std::string& of, const Scale& scale,
+             StepCheck& check) {
+  for (VerdictNumber& number : numbers) {
+    const VerdictNumber* other = find_number(coarse, number.quantity->name);
+    if (!other || !std::isfinite(number.value) || !std::isfinite(other->value)) continue;
+    number.coarse = other->value;
+    if (!decides(*number.quantity)) continue;
+    number.step_change = change_of_step(number, other->value, scale);
+    if (*number.step_change > check.largest) check.largest = *number.step_change, check.quantity = number.quantity, check.of = of;
+  }
+}
+
+template <class Named>
+const std::vector<VerdictNumber>& numbers_named(const std::vector<Named>& list, const std::string& name) {
+  static const std::vector<VerdictNumber> none;
+  const auto found = std::ranges::find(list, name, &Named::name);
+  return found == list.end() ? none : found->numbers;
+}
+
+Scale scale_of(const VerdictNumbers& numbers) {
+  Scale scale{value_or(numbers.whole, "max_top_motion", 0)};
+  for (const InterfaceVerdict& said : numbers.interfaces) scale.motion = std::max(scale.motion, value_or(said.numbers, "max_opening", 0));
+  return scale;
+}
+
+std::string how_it_ended(const RunResult& run) {
+  if (run.status == RunStatus::completed) return "reaches its end";
+  return run.status == RunStatus::failed ? "fails: " + run.reason : fmt::format("ends early ({})", to_string(run.status));
+}
+
+void judge(StepCheck& check) {
+  const bool moves = check.largest > accepted_step_change;
+  check.state = moves ? StepCheck::State::not_converged : StepCheck::State::converged;
+  check.sufficient_step = moves ? rounded_down(check.step * accepted_step_change / check.largest) : 0;
+}
+
+/// Relative to the larger of both values, 0.3 %.
+std::string change_in_words(const VerdictNumber& number, double difference) {
+  const double size = std::max(std::abs(number.value), std::abs(*number.coarse));
+  const double share = size > nothing_beside(number.quantity->unit) ? difference / size : 0;
+  return share < 0.0005 ? "< 0.1 %" : "\u00b1" + percent(share);
+}
+
+}  // namespace
+
+std::string_view to_string(StepCheck::State state) {
+  switch (state) {
+    case StepCheck::State::not_made:
+      return "not made";
+    case StepCheck::State::converged:
+      return "converged";
+    case StepCheck::State::not_converged:
+      return "not converged";
+  }
+  return "";
+}
+
+void compare_steps(VerdictNumbers& numbers, const VerdictNumbers& coarse, StepCheck& check) {
+  const Scale scale = scale_of(numbers);
+  compare(numbers.whole, coarse.whole, "", scale, check);
+  for (InterfaceVerdict& said : numbers.interfaces) {
+    Scale here = scale;
+    const double width = std::max(said.width[0], said.width[1]);
+    here.rotation = width > 0 ? value_or(said.numbers, "max_opening", 0) / width : 0;
+    here.compression = value_or(said.numbers, "max_compression", 0);
+    compare(said.numbers, numbers_named(coarse.interfaces, said.name), said.name, here, check);
+  }
+  for (BeamVerdict& beam : numbers.beams) compare(beam.numbers, numbers_named(coarse.beams, beam.name), beam.name, scale, check);
+  judge(check);
+}
+
+void compare_floors(const std::vector<FloorSpectra>& floors, const std::vector<FloorSpectra>& coarse, StepCheck& check) {
+  const double to = 1 / (steps_per_period * check.coarse_step);
+  for (std::size_t k = 0; k < std::min(floors.size(), coarse.size()); ++k)
+    for (std::size_t d = 0; d < std::min(floors[k].raw.size(), coarse[k].raw.size()); ++d) {
+      const Spectrum &fine = floors[k].raw[d], &other = coarse[k].raw[d];
+      const double peak = fine.values.empty() ? 0 : *std::ranges::max_element(fine.values);
+      for (std::size_t f = 0; f < std::min(fine.values.size(), other.values.size()) && fine.frequencies[f] <= to && peak > 0; ++f) {
+        check.floors_to = std::max(check.floors_to, fine.frequencies[f]);
+        const double size = std::max({fine.values[f], other.values[f], least_spectrum * peak});
+        const double change = std::abs(fine.values[f] - other.values[f]) / size;
+        check.floors = std::max(check.floors, change);
+        if (change > check.largest) check.largest = change, check.quantity = nullptr, check.of = floors[k].name;
+      }
+    }
+  judge(check);
+}
+
+StepCheck check_step(const BuiltCase& built, const RunResult& run, const FloorRun* floors, const Companion& companion,
+                     VerdictNumbers& numbers) {
+  StepCheck check;
+  check.step = longest_step(built.plan);
+  check.coarse_step = longest_step(companion.built->plan);
+  const RunStatus ended = companion.run->status;
+  if (ended == RunStatus::interrupted || run.status == RunStatus::interrupted) {
+    check.reason = "interrupted";
+  } else if (ended != run.status) {
+    check.state = StepCheck::State::not_converged;
+    check.reason = "with twice the step the run " + how_it_ended(*companion.run);
+  } else {
+    compare_steps(numbers, numbers_of(*companion.built, *companion.run, companion.bonded), check);
+    if (floors) compare_floors(floors->floors, floor_spectra(companion.built->plan, *companion.run), check);
+  }
+  return check;
+}
+
+std::string StepCheck::sentence() const {
+  if (state == State::not_made) return "Error of the time step: not examined" + (reason.empty() ? "" : " (" + reason + ")") + ".";
+  const std::string steps = fmt::format("{} instead of {}", format_quantity(coarse_step, "s"), format_quantity(step, "s"));
+  if (!reason.empty()) return fmt::format("Not converged: {} ({}).", reason, steps);
+  const std::string which = !quantity    ? (of.empty() ? "" : "floor spectrum of " + of)
+                            : of.empty() ? std::string(quantity->brief)
+                                         : fmt::format("{} of {}", quantity->brief, of);
+  if (state == State::converged)
+    return fmt::format("Converged: with twice the step ({}) no number of the verdict changes by more than {}{}.", steps, percent(largest),
+                       which.empty() ? "" : " (" + which + ")");
+  return fmt::format("Not converged: with twice the step ({}) {} changes by {}; a step of {} is expected to be sufficient.", steps, which,
+                     percent(largest), format_quantity(sufficient_step, "s"));
+}
+
+std::string format_step_change(const VerdictNumber& number) {
+  if (!number.coarse) return "";
+  const VerdictQuantity& quantity = *number.quantity;
+  const double difference = std::abs(*number.coarse - number.value);
+  if (is_share(quantity)) return difference < 0.0005 ? "< 0.1 points" : fmt::format("\u00b1{:.2g} points", 100 * difference);
+  if (!near_zero(quantity)) return change_in_words(number, difference);
+  const bool nothing = difference <= nothing_beside(quantity.unit) || difference < 0.01 * number.swing.value_or(0);
+  return "\u00b1" + (nothing ? "0" : format_quantity_within(difference, difference, quantity.unit));
+}
+
+}  // namespace uplift

@@ -1,0 +1,56 @@
+#pragma once
+#include <string>
+
+#include "uplift/verdict/floor_spectra.h"
+#include "uplift/verdict/numbers.h"
+
+namespace uplift {
+
+/// The same case with twice the step: what the numbers of the verdict are compared with.
+struct Companion {
+  const BuiltCase* built = nullptr;
+  const RunResult* run = nullptr;
+  const RunResult* bonded = nullptr;  // null where the verdict has no bonded reference run
+};
+
+/// By how much the numbers of the verdict still depend on the step. The difference between the run and its companion bounds the error of
+/// the run where the error is proportional to the step or to a power of it.
+struct StepCheck {
+  enum class State {
+    not_made,       // the numbers were not compared with another step
+    converged,      // no number moves by more than accepted_step_change
+    not_converged,  // at least one does, or the companion ended differently
+  } state = State::not_made;
+  double step = 0, coarse_step = 0;           // s: longest of the dynamic stages, of the run and of the companion
+  double largest = 0;                         // change of the number that changes most, relative to its reference
+  const VerdictQuantity* quantity = nullptr;  // that number, null: none changes, or a floor spectrum changes most
+  std::string of;                             // its interface, beam or floor; empty: of the whole run
+  double floors = 0, floors_to = 0;           // largest change of a floor spectrum, up to this frequency [Hz]; 0 Hz: there is none
+  double sufficient_step = 0;                 // s: where an error proportional to the step is accepted_step_change; 0 where unknown
+  std::string reason;                         // why it was not made, or how the companion ended
+  /// One sentence for the terminal and the first page.
+  std::string sentence() const;
+};
+std::string_view to_string(StepCheck::State);
+
+/// Share of its reference by which a number may change when the step is doubled.
+inline constexpr double accepted_step_change = 0.05;
+
+/// Adds to every number its value and its change with twice the step; numbers that one of the two runs lacks have none. A change is
+/// relative to the larger of the two values; of shares of an area to at least 0.1 (to the whole area for the residual one), of
+/// eccentricities to at least 0.01, of residual values to at least a twentieth of the largest motion and to their remaining variation, of
+/// the least compression to the largest; safeties are compared by their inverse, with at least 0.1, and changes beside the bonded run by 1
+/// + change. Durations, instants and the compression of the joint are stated but decide nothing.
+/// `floors`: the spectra of the run, or null; they are compared up to the frequency with twenty steps of the companion a period, relative
+/// to the larger value, which counts as at least a tenth of the peak of the spectrum.
+StepCheck check_step(const BuiltCase& built, const RunResult& run, const FloorRun* floors, const Companion& companion,
+                     VerdictNumbers& numbers);
+/// The comparison alone: fills the rest of a check whose steps are known.
+void compare_steps(VerdictNumbers& numbers, const VerdictNumbers& coarse, StepCheck& check);
+/// The same for the spectra of floors, in the same order.
+void compare_floors(const std::vector<FloorSpectra>& floors, const std::vector<FloorSpectra>& coarse, StepCheck& check);
+
+/// "±0.3 %", of instants "±0.02 s"; empty without a companion.
+std::string format_step_change(const VerdictNumber&);
+
+}  // namespace uplift

@@ -1,0 +1,107 @@
+// Inputs that would do nothing, or something else than what is meant, without a word: refused or warned of.
+#include <algorithm>
+
+#include "text_support.h"
+#include "unit/verdict/verdict_support.h"
+#include "uplift/verdict/verdict.h"
+
+namespace uplift {
+namespace {
+
+const std::string footing =
+    "title = \"footing\"\n[nodes]\nbase = [0, 0]\n[[rigid]]\nname = \"footing\"\nnode = \"base\"\nmass = 1e4\ninertia = 7500\n"
+    "[[interface]]\nname = \"soil\"\nfooting = { body = \"base\", width = 3, points = 21 }\n"
+    "law = { type = \"springs\", K_n = 2e8, K_t = 1e8, tangential = \"bonded\" }\n";
+const std::string weight = "[gravity]\nacceleration = [0, -9.81]\n", statics = "[[stage]]\ntype = \"static\"\n";
+const std::string dynamics = "[[stage]]\ntype = \"dynamic\"\nduration = 0.1\nstep = 0.01\n";
+
+/// All warnings of a case, one per line.
+std::string warnings_of(const std::string& text) {
+  const Case file = check_case(read_toml_text(text, "case.toml"), "case.toml");
+  const RunSpec spec = runs_of_case(file).front();
+  std::string all;
+  for (const std::string& warning : warnings(file, spec, build(file, spec))) all += warning + "\n";
+  return all;
+}
+
+bool warns(const std::string& text, const std::string& of) {
+  return warnings_of(text).find(of) != std::string::npos;
+}
+
+TEST(IdleInput, AGapProfileBesideTheFooting) {
+  const auto with = [](const std::string& positions) {
+    return support::refusal_of([&] {
+      support::built_of(
+          support::replaced(footing, "law = ", "gap_profile = { along = \"x\", positions = " + positions + ", gaps = [0, 1e-3] }\nlaw = ") +
+          weight + statics);
+    });
+  };
+  EXPECT_EQ(with("[0, 1]"), "accepted");
+  EXPECT_EQ(with("[1.5, 4]"), "accepted");  // touches the edge
+  EXPECT_NE(with("[1.6, 4]").find("positions that reach the surface, which lies from x = -1.5 to 1.5 m"), std::string::npos)
+      << with("[1.6, 4]");
+  EXPECT_NE(with("[1.6, 4]").find("1.6 to 4 m"), std::string::npos);
+  EXPECT_NE(with("[-3000, -1500]").find("case.toml:"), std::string::npos);
+}
+
+TEST(IdleInput, LoadsWithAFunctionInStaticStagesAlone) {
+  const std::string push =
+      "[[function]]\nname = \"pulse\"\nshape = { type = \"harmonic\", frequency = 2 }\n"
+      "[[load]]\nnode = \"base\"\nforce = [1e4, 0]\nfunction = \"pulse\"\n";
+  EXPECT_TRUE(warns(footing + weight + push + statics, "this [[load]] has no effect"));
+  EXPECT_FALSE(warns(footing + weight + push + statics + dynamics, "has no effect"));
+  EXPECT_FALSE(warns(footing + weight + "[[load]]\nnode = \"base\"\nforce = [1e4, 0]\n" + statics, "has no effect"));
+}
+
+TEST(IdleInput, AMotionThatIsZeroInStaticStages) {
+  const auto moved = [](const std::string& shape) {
+    return "[[function]]\nname = \"f\"\nshape = { type = \"harmonic\", frequency = 2" + shape +
+           " }\n[[motion]]\nnode = \"base\"\ndirection = \"uy\"\namplitude = -1e-3\nfunction = \"f\"\n";
+  };
+  EXPECT_TRUE(warns(footing + moved("") + statics, "has no effect: static stages apply the value that its function has at t = 0"));
+  EXPECT_FALSE(warns(footing + moved("") + statics + dynamics, "has no effect"));
+  EXPECT_FALSE(warns(footing + "[[motion]]\nnode = \"base\"\ndirection = \"uy\"\namplitude = -1e-3\n" + statics, "has no effect"));
+}
+
+TEST(IdleInput, WeightThatComesSuddenly) {
+  EXPECT_TRUE(warns(footing + weight + dynamics, "the weight acts suddenly at t = 0"));
+  EXPECT_FALSE(warns(footing + weight + statics + dynamics, "suddenly"));
+  EXPECT_FALSE(warns(footing + "[[load]]\nnode = \"base\"\nforce = [1e4, 0]\n" + dynamics, "suddenly"));
+}
+
+TEST(IdleInput, ADurationThatIsNoWholeNumberOfSteps) {
+  const auto stage = [](const char* duration, const char* step) {
+    return std::string("[[stage]]\ntype = \"dynamic\"\nduration = ") + duration + "\nstep = " + step + "\n";
+  };
+  EXPECT_TRUE(
+      warns(footing + weight + statics + stage("0.1", "0.03"),
+            "stage 2: the duration of 0.1 s is not a whole number of steps of 0.03 s; the stage has 3 steps and ends after 0.09 s"));
+  for (const auto& [duration, step] : {std::pair{"0.1", "0.01"}, {"20", "1e-3"}, {"0.3", "0.1"}, {"53.74", "0.02"}})
+    EXPECT_FALSE(warns(footing + weight + statics + stage(duration, step), "whole number")) << duration;
+}
+
+TEST(IdleInput, SuspiciousMagnitudes) {
+  const auto water = [](const std::string& more) {
+    return support::replaced(footing, "law = ", "water = { head = 1" + more + " }\nlaw = ") + weight + statics;
+  };
+  EXPECT_TRUE(warns(water(", unit_weight = 9.81"), "unit_weight = 9.81 N/m3 is unusual for a structure (water has 9810 N/m3"));
+  EXPECT_FALSE(warns(water(", unit_weight = 10000"), "unit_weight"));
+  EXPECT_FALSE(warns(water(", unit_weight = \"9.81 kN/m3\""), "unit_weight"));
+  EXPECT_FALSE(warns(water(""), "unit_weight"));
+  const auto gap = [](const std::string& value) { return support::replaced(footing, "law = ", "gap = " + value + "\nlaw = ") + dynamics; };
+  EXPECT_TRUE(warns(gap("100"), "interface \"soil\": an initial gap of 100 m in a model of 3.00 m"));
+  EXPECT_FALSE(warns(gap("\"100 mm\""), "initial gap"));
+}
+
+TEST(IdleInput, AStepCheckThatIsNotMadeSaysWhy) {
+  const auto sentence = [](const std::string& text) {
+    const BuiltCase built = support::built_of(text);
+    return judge(built, support::run_of(built), nullptr).step_check.sentence();
+  };
+  const std::string three = "[[stage]]\ntype = \"dynamic\"\nduration = 0.03\nstep = 0.01\n";
+  EXPECT_EQ(sentence(footing + weight + statics + three), "Error of the time step: not examined (a dynamic stage has fewer than 4 steps).");
+  EXPECT_EQ(sentence(footing + weight + statics + dynamics), "Error of the time step: not examined.");
+}
+
+}  // namespace
+}  // namespace uplift

@@ -1,0 +1,397 @@
+// The verdict's numbers against closed forms: a rigid strip on Winkler springs, rafts in space, sliding, flights.
+#include "uplift/verdict/numbers.h"
+
+#include <cmath>
+
+#include "unit/verdict/verdict_support.h"
+#include "uplift/run/interface_viewer.h"
+
+namespace uplift {
+namespace {
+
+using namespace support;
+
+// ---- the linear tension ratio ----
+
+TEST(TensionRatio, EqualEnergyOnAWinklerStrip) {
+  // the prediction of eq (31) of docs/theory, by hand
+  for (const auto& [t, percent] : {std::pair{0.10, 10.66}, {0.20, 23.37}, {0.30, 39.75}, {0.35, 50.17}})
+    EXPECT_NEAR(100 * uplift_of_tension(t).value(), percent, 0.005) << t;
+  for (double t = 0.01; t < 0.495; t += 0.02) {
+    // 1/2 y^2 = 3 x - 4 sqrt(x) + 1.5 with the uplift 1 - 1/sqrt(x)
+    const double y = 1 / (1 - 2 * t), root = 1 / (1 - uplift_of_tension(t).value());
+    EXPECT_NEAR(3 * root * root - 4 * root + 1.5, y * y / 2, 1e-12 * y * y) << t;
+  }
+}
+
+TEST(TensionRatio, NothingWithoutTensionAndNoAnswerFromOneHalfOn) {
+  EXPECT_EQ(uplift_of_tension(0), 0);
+  EXPECT_FALSE(uplift_of_tension(0.5));
+  EXPECT_FALSE(uplift_of_tension(0.8));
+}
+
+// ---- a rigid strip on Winkler springs ----
+
+constexpr double width = 3, modulus = 2e8, weight = 1e6, theta_u = weight / (modulus * width * width / 2);  // W/(2 k b^2)
+
+std::string strip(const std::string& more = "") {
+  return R"(title = "strip"
+[nodes]
+base = [0, 0]
+[[rigid]]
+name = "footing"
+node = "base"
+mass = 1e4
+inertia = 7500
+[[interface]]
+name = "soil"
+footing = { body = "base", width = 3, points = 4001 }
+law = { type = "springs", K_n = 2e8, K_t = 1e8, tangential = "coulomb", friction = 0.6, cohesion = "20 kPa" }
+[[load]]
+node = "base"
+force = [0, -1e6]
+[[stage]]
+type = "static"
+[[stage]]
+type = "dynamic"
+duration = 0.1
+step = 0.01
+)" + more;
+}
+
+/// What the strip looks like at a rotation, in units of theta_u: the plane that carries the weight, by the closed form.
+InterfaceView turned(const BuiltCase& built, double ratio) {
+  const Interface& interface = built.model.interfaces.front();
+  const int n = interface.batch.points, normal = interface.batch.normal();
+  const double theta = ratio * theta_u, contact = ratio > 1 ? width / std::sqrt(ratio) : width;
+  State state;
+  state.displacement = Vector::Zero(built.model.free());
+  state.opening = state.force = Vector::Zero(interface.rows());
+  for (int i = 0; i < n; ++i) {
+    const double x = interface.position[static_cast<std::size_t>(i)].x();
+    const double gap = ratio > 1 ? theta * (x + width / 2 - contact) : theta * x - weight / (modulus * width);
+    state.opening[normal + i] = gap;
+    state.force[normal + i] = modulus * std::min(gap, 0.0) * interface.area[i];
+  }
+  std::vector<InterfaceView> views;
+  InterfaceViewer(built.model, 1e-9, {}).look(state.opening, state.force, views);
+  return views.front();
+}
+
+TEST(VerdictNumbersTest, WinklerStripUpTo30Percent) {
+  const BuiltCase built = built_of(strip("[verdict]\nuplifted_ratio_thresholds = [0.1, 0.25, 0.5]\n"));
+  std::vector<InterfaceView> views;
+  const double most = 1 / (0.7 * 0.7);  // 2.040816
+  for (const double ratio : {0.0, 0.5, 1.2, 1.5, most, 1.8, 1.1, 0.2}) views.push_back(turned(built, ratio));
+  const VerdictNumbers numbers = numbers_of(built, run_of(views, 0.1), nullptr);
+  const InterfaceVerdict& said = numbers.interfaces.at(0);
+  EXPECT_NEAR(said.weight, weight, 1e-6 * weight);
+  EXPECT_NEAR(said.mean_pressure, weight / width, 1e-6 * weight);
+  EXPECT_NEAR(number(numbers, "max_uplifted_ratio"), 0.3, 1e-3);
+  EXPECT_NEAR(*find_number(said.numbers, "max_uplifted_ratio")->time, 0.4, 1e-12);
+  EXPECT_NEAR(number(numbers, "max_opening"), width * most * theta_u * 0.3, 1e-9);  // 2 b theta (1 - sqrt(theta_u/theta))
+  EXPECT_NEAR(number(numbers, "toe_pressure_ratio"), 2.857143, 1e-5);
+  EXPECT_NEAR(number(numbers, "max_moment"), 1.6 * weight * width / 6, 1e-5 * weight);
+  EXPECT_NEAR(number(numbers, "max_eccentricity"), 1.6 / 6, 1e-5);
+  EXPECT_NEAR(number(numbers, "min_overturning_safety"), 3 / 1.6, 1e-4);
+  EXPECT_NEAR(number(numbers, "first_uplift"), 0.2, 1e-12);
+  EXPECT_NEAR(number(numbers, "uplifted_time"), 0.5, 1e-12);
+  EXPECT_EQ(number(numbers, "full_loss_time"), 0);
+  // uplifted shares 1 - 1/sqrt(theta/theta_u): 0.087, 0.184, 0.3, 0.255, 0.047
+  EXPECT_NEAR(said.above.at(0).duration, 0.3, 1e-12);
+  EXPECT_NEAR(said.above.at(1).duration, 0.2, 1e-12);
+  EXPECT_EQ(said.above.at(2).duration, 0);
+}
+
+TEST(VerdictNumbersTest, HistoriesOfTheStrip) {
+  const BuiltCase built = built_of(strip());
+  const std::vector<InterfaceView> views{turned(built, 0), turned(built, 0.5), turned(built, 4)};
+  const RunResult run = run_of(views, 0.1);
+  const auto history = [&](BaseHistory which) { return base_history(built, run, 0, which); };
+  // M/M_u = theta/theta_u up to 1, then 3 - 2 sqrt(theta_u/theta); M_u = W b/3; the pressure moves to the side that goes down
+  EXPECT_NEAR(history(BaseHistory::eccentricity_1)[1], -0.5 / 6, 1e-6);
+  EXPECT_NEAR(history(BaseHistory::eccentricity_1)[2], -2.0 / 6, 1e-6);
+  EXPECT_NEAR(history(BaseHistory::overturning_safety)[2], 1.5, 1e-5);
+  EXPECT_NEAR(history(BaseHistory::uplifted_ratio)[2], 0.5, 1e-3);
+  EXPECT_TRUE(std::isnan(history(BaseHistory::sliding_safety)[2]));  // no shear
+}
+
+TEST(VerdictNumbersTest, BesideTheBondedStrip) {
+  const BuiltCase built = built_of(strip());
+  const RunResult run = run_of({turned(built, 0), turned(built, 2)}, 0.1);
+  // bonded, M = 2.5 M_u: pressure W/B (1 + 2.5 x/b), so the share (1 - 1/2.5)/2 pulls
+  std::vector<InterfaceView> views{turned(built, 0), turned(built, 0)};
+  views[1].resultant.moment = 2.5 * weight * width / 6;
+  views[1].tension_area = 0.3;
+  const RunResult bonded = run_of(views, 0.1);
+  const VerdictNumbers numbers = numbers_of(built, run, &bonded);
+  EXPECT_NEAR(number(numbers, "change_of_moment"), (3 - std::sqrt(2.0)) / 2.5 - 1, 1e-5);
+  EXPECT_NEAR(number(numbers, "change_of_compression"), 0, 1e-6);
+  EXPECT_NEAR(number(numbers, "linear_tension_ratio"), 0.3, 1e-12);
+  EXPECT_NEAR(number(numbers, "predicted_uplifted_ratio"), 0.3975, 5e-5);
+  const VerdictNumber* eccentricity = find_number(numbers.interfaces[0].numbers, "max_eccentricity");
+  EXPECT_NEAR(eccentricity->bonded.value(), 2.5 / 6, 1e-6);  // the thrust of a bonded base may leave it
+}
+
+// ---- safeties ----
+
+TEST(VerdictNumbersTest, SlidingSafety) {
+  const BuiltCase built = built_of(strip());
+  const double area = width;
+  std::vector<InterfaceView> views{view_of({.axial = -weight})};
+  views.push_back(view_of({.axial = -weight, .shear = 3e5}));
+  views.push_back(view_of({.axial = -0.5 * weight, .shear = -2.5e5}, 0.4));
+  views.push_back(view_of({.axial = -1e-4 * weight, .shear = 1e5}, 0.9));  // carries nothing: no place of the thrust, no safety
+  const RunResult run = run_of(views, 0.1);
+  const std::vector<double> history = base_history(built, run, 0, BaseHistory::sliding_safety);
+  EXPECT_NEAR(history[1], (0.6 * weight + 2e4 * area) / 3e5, 1e-12);
+  EXPECT_NEAR(history[2], (0.3 * weight + 2e4 * area * 0.6) / 2.5e5, 1e-12);
+  EXPECT_TRUE(std::isnan(history[3]));
+  const VerdictNumbers numbers = numbers_of(built, run, nullptr);
+  EXPECT_NEAR(number(numbers, "min_sliding_safety"), history[2], 1e-15);
+  EXPECT_EQ(number(numbers, "max_shear"), 3e5);
+  EXPECT_NEAR(number(numbers, "min_compression"), 1e-4 * weight, 1e-9);
+}
+
+TEST(VerdictNumbersTest, WeightThatIsTakenAwayDrivesToo) {
+  const BuiltCase built = built_of(strip());
+  // stabilising W b about either toe; driving (W - N) b + |M|
+  const RunResult run = run_of({view_of({.axial = -weight}), view_of({.axial = -0.8 * weight, .moment = -0.3 * weight})}, 0.1);
+  EXPECT_NEAR(number(numbers_of(built, run, nullptr), "min_overturning_safety"), 1.5 / (0.2 * 1.5 + 0.3), 1e-12);
+}
+
+TEST(VerdictNumbersTest, AnEccentricWeightStandsNearerToOneToe) {
+  const BuiltCase built = built_of(strip());
+  // at rest the thrust stands 0.5 m to the right; 0.25 m further needs (1.5 - 0.5)/0.25
+  const auto right = [](double e) { return view_of({.axial = -weight, .moment = -e * weight}); };
+  EXPECT_NEAR(number(numbers_of(built, run_of({right(0.5), right(0.75)}, 0.1), nullptr), "min_overturning_safety"), 4, 1e-12);
+  EXPECT_NEAR(number(numbers_of(built, run_of({right(0.5), right(0.25)}, 0.1), nullptr), "min_overturning_safety"), 8, 1e-12);
+}
+
+BuiltCase raft() {
+  return built_of(R"(title = "raft"
+[nodes]
+base = [0, 0, 0]
+[[rigid]]
+name = "raft"
+node = "base"
+mass = 2e4
+inertias = [5e4, 8e4, 1.2e5]
+[[interface]]
+name = "soil"
+footing = { body = "base", width = 6, length = 4, points = 7, points_across = 5, azimuth = 0.3 }
+law = { type = "springs", K_n = 5e7, K_t = 2e7, tangential = "coulomb", friction = 0.7 }
+[gravity]
+acceleration = [0, 0, -9.81]
+[[stage]]
+type = "static"
+[[stage]]
+type = "dynamic"
+duration = 0.1
+step = 0.01
+)");
+}
+
+TEST(VerdictNumbersTest, OverturningAboutTheEdgesOfATurnedRaft) {
+  const BuiltCase built = raft();
+  const auto thrust_at = [](double e, double angle) {  // a force P at r pushes down: r x (0, 0, -P) = P (-y, x, 0); on the ground -n P
+    const double x = e * std::cos(angle), y = e * std::sin(angle);
+    return view_of({.axial = -1, .moment = e, .moment_1 = -y, .moment_2 = x});
+  };
+  const auto safety = [&](double e, double angle) {
+    return number(numbers_of(built, run_of({thrust_at(0, 0), thrust_at(e, angle)}, 0.1), nullptr), "min_overturning_safety");
+  };
+  EXPECT_NEAR(safety(0.5, 0.3), 3 / 0.5, 1e-9);
+  EXPECT_NEAR(safety(0.5, 0.3 + M_PI), 3 / 0.5, 1e-9);
+  EXPECT_NEAR(safety(0.5, 0.3 + M_PI / 2), 2 / 0.5, 1e-9);
+  EXPECT_NEAR(safety(0.5, 0), 3 / (0.5 * std::cos(0.3)), 1e-9);
+  EXPECT_NEAR(safety(0.5, 1.0), std::min(3 / (0.5 * std::cos(0.7)), 2 / (0.5 * std::sin(0.7))), 1e-9);
+}
+
+TEST(VerdictNumbersTest, TwoEccentricitiesInSpace) {
+  const BuiltCase built = raft();
+  // a thrust at (0.6, -0.9): the resultant of the forces themselves
+  const Interface& interface = built.model.interfaces.front();
+  const int n = interface.batch.points;
+  State state;
+  state.displacement = Vector::Zero(built.model.free());
+  state.opening = state.force = Vector::Zero(interface.rows());
+  double sum = 0, first_x = 0, first_y = 0;
+  for (int i = 0; i < n; ++i) {
+    const Place& at = interface.position[static_cast<std::size_t>(i)];
+    const double pressure = 10 + at.x() - 2 * at.y();
+    state.force[2 * n + i] = -pressure * interface.area[i];
+    sum += pressure * interface.area[i];
+    first_x += pressure * interface.area[i] * at.x();
+    first_y += pressure * interface.area[i] * at.y();
+  }
+  std::vector<InterfaceView> views;
+  InterfaceViewer(built.model, 1e-9, {}).look(state.opening, state.force, views);
+  const RunResult run = run_of({views.front()}, 0.1);
+  const double c = std::cos(0.3), s = std::sin(0.3);
+  EXPECT_NEAR(base_history(built, run, 0, BaseHistory::eccentricity_1)[0], first_x / sum / (6 * c + 4 * s), 1e-12);
+  EXPECT_NEAR(base_history(built, run, 0, BaseHistory::eccentricity_2)[0], first_y / sum / (6 * s + 4 * c), 1e-12);
+}
+
+// ---- whole runs ----
+
+/// A block whose mass is at the level of its base.
+std::string block(const std::string& law, const std::string& initial, double duration, double step) {
+  return R"(title = "block"
+bonded = false
+[nodes]
+base = [0, 0]
+[[rigid]]
+name = "block"
+node = "base"
+mass = 2000
+inertia = 1500
+[[interface]]
+name = "floor"
+footing = { body = "base", width = 2, points = 5 }
+law = )" +
+         law + (law.find("coulomb") == law.npos ? "\n[[support]]\nnode = \"base\"\nfixed = [\"ux\"]" : "") +
+         "\n[gravity]\nacceleration = [0, -9.81]\n[[initial]]\nnode = \"base\"\n" + initial +
+         "\n[[stage]]\ntype = \"static\"\n[[stage]]\ntype = \"dynamic\"\nduration = " + std::to_string(duration) +
+         "\nstep = " + std::to_string(step) + "\n";
+}
+
+TEST(VerdictNumbersTest, FlightsOfABouncingBlock) {
+  // springs of 50 Hz with the block: it leaves them with v'^2 = v^2 - (g/omega)^2 and flies for 2 v'/g, again and again
+  const double omega = 2 * M_PI * 50, stiffness = 2000 * omega * omega / 2, step = 2e-4;
+  const BuiltCase built = built_of(
+      block("{ type = \"springs\", K_n = " + std::to_string(stiffness) + ", tangential = \"none\" }", "velocity = [0, 1]", 0.8, step));
+  const RunResult run = run_of(built);
+  ASSERT_EQ(run.status, RunStatus::completed) << run.reason;
+  const VerdictNumbers numbers = numbers_of(built, run, nullptr);
+  const std::vector<Interval>& flights = numbers.interfaces.at(0).full_loss;
+  const double leaves = std::sqrt(1 - std::pow(9.81 / omega, 2)), flight = 2 * leaves / 9.81;
+  ASSERT_EQ(flights.size(), 4);
+  EXPECT_NEAR(flights[0].from, std::asin(9.81 / omega / 1.0) / omega, 5e-6);  // x = v sin(omega t)/omega reaches g/omega^2
+  for (std::size_t k = 0; k < 3; ++k) EXPECT_NEAR(flights[k].to - flights[k].from, flight, 1e-5) << k;
+  EXPECT_NEAR(number(numbers, "longest_full_loss"), flight, 1e-5);
+  EXPECT_NEAR(flights[3].to, 0.8, 1e-12);  // still in the air at the end
+  EXPECT_NEAR(number(numbers, "max_opening"), leaves * leaves / (2 * 9.81), 1e-6);
+}
+
+TEST(VerdictNumbersTest, ABlockThatSlidesUntilItStops) {
+  // a constraint decides at the end of a step: half a step of the first velocity more
+  const double step = 5e-4;
+  for (const auto& [law, off] : {std::pair{"{ type = \"coulomb\", friction = 0.5 }", step / 2},
+                                 {"{ type = \"springs\", K_n = 1e9, K_t = 1e9, tangential = \"coulomb\", friction = 0.5 }", 0.0}}) {
+    const BuiltCase built = built_of(block(law, "velocity = [1, 0]", 0.5, step));
+    const RunResult run = run_of(built);
+    ASSERT_EQ(run.status, RunStatus::completed) << run.reason;
+    const VerdictNumbers numbers = numbers_of(built, run, nullptr);
+    EXPECT_NEAR(number(numbers, "residual_slip"), 1 / (2 * 0.5 * 9.81), off + 1e-4 / 9.81) << law;  // v^2/(2 mu g)
+    EXPECT_NEAR(number(numbers, "min_sliding_safety"), 1, 1e-6) << law;
+    EXPECT_NEAR(number(numbers, "max_shear"), 0.5 * 2000 * 9.81, 1e-6 * 2000) << law;
+    EXPECT_NEAR(number(numbers, "residual_settlement"), 0, 1e-9) << law;
+  }
+}
+
+TEST(BaseMotionTest, SettlementAndTiltOfTwoNodes) {
+  const BuiltCase built = built_of(R"(title = "two nodes"
+bonded = false
+[nodes]
+a = [-1, 0]
+b = [3, 0]
+[[mass]]
+node = "a"
+mass = 10
+inertia = 1
+[[mass]]
+node = "b"
+mass = 10
+inertia = 1
+[[support]]
+node = "a"
+fixed = ["ux", "rz"]
+[[support]]
+node = "b"
+fixed = ["ux", "rz"]
+[[interface]]
+name = "pads"
+pairs = { upper = ["a", "b"], area = 2 }
+law = { type = "springs", K_n = 1e6, tangential = "none" }
+[gravity]
+acceleration = [0, -10]
+[[stage]]
+type = "static"
+[[stage]]
+type = "dynamic"
+duration = 0.1
+step = 0.01
+)");
+  State state;
+  state.displacement = free_values(built.model, {{built.model.at(0, uy), -0.01}, {built.model.at(1, uy), -0.03}}, {});
+  state.opening = state.force = Vector::Zero(2);
+  const BasePose pose = InterfaceViewer(built.model, 1e-9, built.plan.bases).pose(state, 0, {});
+  EXPECT_NEAR(pose.settlement, 0.02, 1e-15);
+  EXPECT_NEAR(pose.tilt_1, -0.02 / 4, 1e-15);  // clockwise: the right side goes down
+}
+
+// ---- criteria ----
+
+std::string with_criterion(const std::string& lines) {
+  return strip("[[verdict.criterion]]\n" + lines);
+}
+std::string refusal_of(const std::string& lines) {
+  try {
+    built_of(with_criterion(lines));
+  } catch (const InputError& error) {
+    return error.what();
+  }
+  return {};
+}
+
+TEST(VerdictCriteria, MetOrNot) {
+  const auto state = [](const std::string& quantity, const std::string& limit, RunStatus status = RunStatus::completed) {
+    const BuiltCase built = built_of(with_criterion("quantity = \"" + quantity + "\"\nlimit = " + limit + "\nsource = \"client\"\n"));
+    RunResult run = run_of({turned(built, 0), turned(built, 2)}, 0.1);
+    run.status = status;
+    const VerdictNumbers numbers = numbers_of(built, run, nullptr);
+    EXPECT_EQ(numbers.criteria.size(), 1);
+    EXPECT_EQ(numbers.criteria.at(0).criterion.source, "client");
+    return numbers.criteria.at(0).state;
+  };
+  using Result = CriterionResult::State;
+  // uplifted share 0.293; gap 2 b theta 0.293 = 1.95 mm; W b/M = 3/(3 - sqrt 2) = 1.89
+  EXPECT_EQ(state("max_uplifted_ratio", "0.3"), Result::met);
+  EXPECT_EQ(state("max_uplifted_ratio", "\"25 %\""), Result::not_met);
+  EXPECT_EQ(state("max_opening", "\"2 mm\""), Result::met);
+  EXPECT_EQ(state("max_opening", "0.0019"), Result::not_met);
+  EXPECT_EQ(state("min_overturning_safety", "1.5"), Result::met);
+  EXPECT_EQ(state("min_overturning_safety", "2"), Result::not_met);
+  EXPECT_EQ(state("min_sliding_safety", "1.1"), Result::undetermined);  // nothing pushes
+  EXPECT_EQ(state("longest_full_loss", "\"0.1 s\""), Result::met);
+  EXPECT_EQ(state("max_opening", "\"2 mm\"", RunStatus::interrupted), Result::undetermined);
+  EXPECT_EQ(state("max_opening", "\"1 mm\"", RunStatus::interrupted), Result::not_met);
+}
+
+TEST(VerdictCriteria, WhatIsRefused) {
+  EXPECT_NE(refusal_of("quantity = \"max_uplift_ratio\"\nlimit = 0.3\nsource = \"a\"\n").find("did you mean \"max_uplifted_ratio\"?"),
+            std::string::npos);
+  EXPECT_NE(refusal_of("quantity = \"max_opening\"\nlimit = \"3 kN\"\nsource = \"a\"\n").find("limit: wanted a length [m], found \"3 kN\""),
+            std::string::npos);
+  EXPECT_NE(refusal_of("quantity = \"max_opening\"\nlimit = 0.3\n").find("source"), std::string::npos);
+  EXPECT_NE(refusal_of("quantity = \"max_opening\"\nlimit = 0.3\nsource = \" \"\n").find("where the limit comes from"), std::string::npos);
+  EXPECT_NE(refusal_of("quantity = \"max_opening\"\nlimit = true\nsource = \"a\"\n").find("a number, or a text with a number and its unit"),
+            std::string::npos);
+  EXPECT_NE(refusal_of("quantity = \"max_opening\"\nlimit = 1\nsource = \"a\"\ninterface = \"soli\"\n").find("did you mean \"soil\"?"),
+            std::string::npos);
+  EXPECT_NE(refusal_of("quantity = \"max_top_motion\"\nlimit = 1\nsource = \"a\"\ninterface = \"soil\"\n").find("the whole run"),
+            std::string::npos);
+}
+
+TEST(VerdictCriteria, EveryQuantityIsFoundByItsName) {
+  for (const VerdictQuantity& quantity : verdict_quantities()) {
+    EXPECT_EQ(find_verdict_quantity(quantity.name), &quantity);
+    EXPECT_NE(refusal_of("quantity = \"" + std::string(quantity.name) + "\"\nlimit = \"1 furlong2\"\nsource = \"a\"\n"), "");
+    EXPECT_EQ(refusal_of("quantity = \"" + std::string(quantity.name) + "\"\nlimit = 1\nsource = \"a\"\n") == "",
+              !quantity.of_beam);  // beams need an envelope
+  }
+}
+
+}  // namespace
+}  // namespace uplift

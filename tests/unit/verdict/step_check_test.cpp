@@ -1,0 +1,166 @@
+#include "uplift/verdict/step_check.h"
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+
+#include "uplift/base/format.h"
+
+namespace uplift {
+namespace {
+
+VerdictNumber number(std::string_view name, double value) {
+  return {find_verdict_quantity(name), value};
+}
+
+/// One base of 4 m width.
+VerdictNumbers numbers_with(std::vector<VerdictNumber> of_base, std::vector<VerdictNumber> whole = {}) {
+  VerdictNumbers numbers;
+  numbers.whole = std::move(whole);
+  InterfaceVerdict& base = numbers.interfaces.emplace_back();
+  base.name = "soil";
+  base.width = {4, 0};
+  base.numbers = std::move(of_base);
+  return numbers;
+}
+
+StepCheck compared(VerdictNumbers& numbers, const VerdictNumbers& coarse) {
+  StepCheck check;
+  check.step = 1e-3, check.coarse_step = 2e-3;
+  compare_steps(numbers, coarse, check);
+  return check;
+}
+
+/// The change of one number of the base.
+double change_of_one(std::string_view name, double value, double coarse) {
+  VerdictNumbers numbers = numbers_with({number(name, value)});
+  const StepCheck check = compared(numbers, numbers_with({number(name, coarse)}));
+  EXPECT_EQ(numbers.interfaces.front().numbers.front().coarse, coarse);
+  EXPECT_DOUBLE_EQ(numbers.interfaces.front().numbers.front().step_change.value(), check.largest);
+  return check.largest;
+}
+
+TEST(StepCheck, ForcesAreRelativeToTheLargerValue) {
+  EXPECT_DOUBLE_EQ(change_of_one("max_moment", 1.0e6, 1.1e6), 0.1 / 1.1);
+  EXPECT_DOUBLE_EQ(change_of_one("max_moment", 1.1e6, 1.0e6), 0.1 / 1.1);
+  EXPECT_DOUBLE_EQ(change_of_one("max_toe_pressure", 2e5, 2e5), 0);
+}
+
+TEST(StepCheck, SmallSharesDoNotCount) {
+  EXPECT_NEAR(change_of_one("max_uplifted_ratio", 0.30, 0.33), 0.03 / 0.33, 1e-15);
+  EXPECT_NEAR(change_of_one("max_uplifted_ratio", 0.001, 0.003), 0.002 / 0.1, 1e-15) << "relative to a tenth of the area";
+  EXPECT_NEAR(change_of_one("max_eccentricity", 0.001, 0.002), 0.001 / 0.01, 1e-15);
+}
+
+TEST(StepCheck, DurationsAreStatedAndDecideNothing) {
+  VerdictNumbers numbers = numbers_with({number("uplifted_time", 1), number("first_uplift", 0.5), number("max_penetration", 1e-4)});
+  const VerdictNumbers coarse = numbers_with({number("uplifted_time", 2), number("first_uplift", 0.6), number("max_penetration", 3e-4)});
+  EXPECT_EQ(compared(numbers, coarse).state, StepCheck::State::converged);
+  EXPECT_EQ(numbers.interfaces.front().numbers.front().coarse, 2);
+  EXPECT_FALSE(numbers.interfaces.front().numbers.front().step_change);
+  EXPECT_EQ(format_step_change(numbers.interfaces.front().numbers.front()), "\u00b150 %");
+  EXPECT_EQ(format_step_change(numbers.interfaces.front().numbers[1]), "\u00b10.10 s");
+}
+
+TEST(StepCheck, SafetiesByTheirInverse) {
+  EXPECT_NEAR(change_of_one("min_overturning_safety", 1.25, 1.0), 0.2, 1e-15);
+  EXPECT_NEAR(change_of_one("min_sliding_safety", 40, 20), 0.025 / 0.1, 1e-15) << "both are far from sliding";
+  EXPECT_NEAR(change_of_one("min_sliding_safety", 400, 200), 0.0025 / 0.1, 1e-15);
+}
+
+TEST(StepCheck, ChangesBesideTheBondedRunByTheirRatio) {
+  EXPECT_NEAR(change_of_one("change_of_moment", -0.5, -0.48), 0.02 / 0.52, 1e-15);
+  EXPECT_NEAR(change_of_one("change_of_moment", 0, 0.02), 0.02 / 1.02, 1e-15);
+}
+
+TEST(StepCheck, LeastCompressionBesideTheLargest) {
+  VerdictNumbers numbers = numbers_with({number("max_compression", 2e6), number("min_compression", 1e3)});
+  const StepCheck check = compared(numbers, numbers_with({number("max_compression", 2e6), number("min_compression", 3e3)}));
+  EXPECT_DOUBLE_EQ(check.largest, 2e3 / 2e6);
+  EXPECT_EQ(check.state, StepCheck::State::converged);
+}
+
+/// 8 cm of gap over 4 m: 20 mrad. A residual rotation counts beside a twentieth of it, 1 mrad, and beside its remaining variation.
+TEST(StepCheck, ResidualsBesideTheMotion) {
+  VerdictNumber left = number("residual_rotation", 1e-4);
+  left.swing = 1e-5;
+  VerdictNumbers numbers = numbers_with({number("max_opening", 0.08), left});
+  const VerdictNumbers coarse = numbers_with({number("max_opening", 0.08), number("residual_rotation", 3e-4)});
+  EXPECT_NEAR(compared(numbers, coarse).largest, 2e-4 / 1e-3, 1e-15);
+  numbers.interfaces.front().numbers.back().swing = 0.01;
+  EXPECT_NEAR(compared(numbers, coarse).largest, 2e-4 / 0.01, 1e-15);
+  EXPECT_EQ(format_step_change(numbers.interfaces.front().numbers.back()), "\u00b10.20 mrad");
+}
+
+TEST(StepCheck, NamesTheNumberThatChangesMostAndTheStep) {
+  VerdictNumbers numbers = numbers_with({number("max_moment", 1e6), number("max_compression", 2e6)},
+                                        {number("max_top_motion", 0.05), number("max_drift", 0.05)});
+  const VerdictNumbers coarse =
+      numbers_with({number("max_moment", 1.02e6), number("max_compression", 2.5e6)}, {number("max_top_motion", 0.0501)});
+  const StepCheck check = compared(numbers, coarse);
+  EXPECT_EQ(check.state, StepCheck::State::not_converged);
+  EXPECT_DOUBLE_EQ(check.largest, 0.2);
+  EXPECT_EQ(check.quantity->name, "max_compression");
+  EXPECT_EQ(check.of, "soil");
+  EXPECT_DOUBLE_EQ(check.sufficient_step, 2e-4) << "0.25 ms would halve the change twice, rounded down";
+  EXPECT_EQ(check.sentence(),
+            "Not converged: with twice the step (2.00 ms instead of 1.00 ms) largest compression of soil changes by 20 %; "
+            "a step of 0.200 ms is expected to be sufficient.");
+  EXPECT_FALSE(numbers.whole.back().coarse) << "the companion has no drift";
+  EXPECT_EQ(format_step_change(numbers.whole.back()), "");
+  EXPECT_EQ(format_step_change(numbers.whole.front()), "\u00b10.2 %");
+}
+
+TEST(StepCheck, NothingThatStaysNothingDoesNotChange) {
+  EXPECT_EQ(change_of_one("max_shear", 0, 0), 0);
+  EXPECT_EQ(change_of_one("change_of_moment", -1, -1), 0) << "no moment at all, with both steps";
+  EXPECT_NEAR(change_of_one("change_of_moment", -1, -0.99), 0.01 / 0.1, 1e-12);
+  EXPECT_EQ(change_of_one("min_overturning_safety", 0, 0), 0);
+}
+
+/// Twenty steps of 2 ms a period: up to 25 Hz. The value at 10 Hz counts beside a tenth of the peak, 1 m/s2.
+TEST(StepCheck, FloorSpectra) {
+  FloorSpectra fine, coarse;
+  fine.name = "roof";
+  fine.raw = {{Spectrum::Kind::psa, 0.05, {5, 10, 30}, {10, 0.5, 4}}};
+  coarse.raw = {{Spectrum::Kind::psa, 0.05, {5, 10, 30}, {10.2, 0.7, 8}}};
+  StepCheck check;
+  check.step = 1e-3, check.coarse_step = 2e-3;
+  compare_floors({fine}, {coarse}, check);
+  EXPECT_DOUBLE_EQ(check.floors, 0.2);
+  EXPECT_DOUBLE_EQ(check.floors_to, 10) << "the last frequency below 25 Hz";
+  EXPECT_EQ(check.state, StepCheck::State::not_converged);
+  EXPECT_EQ(check.sentence(),
+            "Not converged: with twice the step (2.00 ms instead of 1.00 ms) floor spectrum of roof changes by 20 %; a step "
+            "of 0.200 ms is expected to be sufficient.");
+}
+
+TEST(StepCheck, NobodyLooked) {
+  EXPECT_EQ(StepCheck().sentence(), "Error of the time step: not examined.");
+  EXPECT_EQ(to_string(StepCheck().state), "not made");
+}
+
+TEST(StepCheck, ACompanionThatEndsDifferentlyShowsThatTheStepDecides) {
+  BuiltCase built, coarse_built;
+  built.plan.stages.emplace_back().step = 1e-3;
+  coarse_built.plan.stages.emplace_back().step = 2e-3;
+  RunResult run, coarse;
+  coarse.status = RunStatus::overturned;
+  VerdictNumbers numbers = numbers_with({number("max_moment", 1e6)});
+  const StepCheck check = check_step(built, run, nullptr, {&coarse_built, &coarse}, numbers);
+  EXPECT_EQ(check.state, StepCheck::State::not_converged);
+  EXPECT_EQ(check.sentence(), "Not converged: with twice the step the run ends early (overturned) (2.00 ms instead of 1.00 ms).");
+  coarse.status = RunStatus::interrupted;
+  EXPECT_EQ(check_step(built, run, nullptr, {&coarse_built, &coarse}, numbers).state, StepCheck::State::not_made);
+}
+
+TEST(Wording, RoundsDownToOneTwoOrFive) {
+  EXPECT_DOUBLE_EQ(rounded_down(0.0047), 0.002);
+  EXPECT_DOUBLE_EQ(rounded_down(0.005), 0.005);
+  EXPECT_DOUBLE_EQ(rounded_down(0.0099), 0.005);
+  EXPECT_DOUBLE_EQ(rounded_down(1), 1);
+  EXPECT_DOUBLE_EQ(rounded_down(1.9e-4), 1e-4);
+}
+
+}  // namespace
+}  // namespace uplift
