@@ -10,6 +10,7 @@ namespace uplift {
 struct Where {
   std::string file;
   int line = 0;
+  int column = 0;  // from 1, in bytes; 0 where it is not known
 };
 
 /// Bad input, found before the first step. The text reads

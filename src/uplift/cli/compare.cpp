@@ -8,7 +8,6 @@
 #include "uplift/base/format.h"
 #include "uplift/cli/console.h"
 #include "uplift/cli/load.h"
-#include "uplift/model/builder.h"
 
 namespace uplift::cli {
 namespace {
@@ -76,115 +75,15 @@ void print_over_motions(const ComparisonSummary& compared) {
   }
 }
 
-/// Builds and runs one list of specs; stops after an interrupted run. Fields are written into the folder when there is one.
-void run_all(const Loaded& loaded, const Options& options, const std::vector<RunSpec>& specs, std::size_t before, std::size_t total,
-             ResultFolder* folder, Results& results) {
-  std::vector<std::string> fields;
-  for (const RunSpec& spec : specs) {
-    if (interrupt_asked()) return;
-    results.specs.push_back(spec);
-    results.built.push_back(build(loaded.read, spec));
-    if (results.runs.empty()) results.warnings = warnings(loaded.read, spec, results.built.back());
-    const std::string label = fmt::format("[{}/{}] {}", before + results.runs.size() + 1, total, spec.name);
-    results.runs.push_back(folder ? run_with_fields(loaded, results.built.back(), label, options, *folder, fields)
-                                  : run_one(results.built.back(), label, options));
-    forget_matrices(results.built.back());
-  }
-}
-
-/// Those of the motions that the first run does not have.
-void add_motion_warnings(Results& results) {
-  std::vector<std::string> said;
-  for (const BuiltCase& each : results.built) warn_motions(each.motions, each.plan.stages, said);
-  for (const std::string& warning : said)
-    if (std::ranges::find(results.warnings, warning) == results.warnings.end()) results.warnings.push_back(warning);
-}
-
-const RunResult* bonded_beside(const Results& results, std::size_t place) {
-  for (std::size_t i = 0; i < results.runs.size(); ++i)
-    if (results.specs[i].bonded && results.runs[i].group == results.runs[place].group) return &results.runs[i];
-  return nullptr;
-}
-
-/// Puts the group of a run first, because the page shows the first one. Only the runs that stood there have kept pictures: what now stands
-/// there is run again.
-void bring_forward(const Loaded& loaded, const Options& options, std::size_t place, Results& results) {
-  const std::string group = results.runs[place].group;
-  const auto mine = [&](const RunResult& run) { return run.group == group; };
-  const auto begin = std::ranges::find_if(results.runs, mine) - results.runs.begin(), count = std::ranges::count_if(results.runs, mine);
-  if (begin == 0) return;
-  const auto rotate = [&](auto& list) { std::rotate(list.begin(), list.begin() + begin, list.begin() + begin + count); };
-  std::vector<bool> pictures;
-  for (std::ptrdiff_t i = 0; i < count; ++i) pictures.push_back(results.specs[static_cast<std::size_t>(i)].pictures);
-  rotate(results.specs);
-  rotate(results.built);
-  rotate(results.runs);
-  for (std::size_t i = 0; i < pictures.size(); ++i) {
-    results.runs[i + pictures.size()].frames.clear();
-    if (!pictures[i] || interrupt_asked()) continue;
-    results.specs[i].pictures = true;
-    results.built[i] = build(loaded.read, results.specs[i]);
-    RunResult again = run_one(results.built[i], fmt::format("[again, for its pictures] {}", results.specs[i].name), options);
-    if (again.status != RunStatus::interrupted) results.runs[i] = std::move(again);
-    forget_matrices(results.built[i]);
-  }
-}
-
-struct OverMotions {
-  std::string headline, paragraph;  // empty without [[compare.motion]]
-};
-/// Judges the first variant under every motion and puts the runs of the hardest one first.
-OverMotions show_hardest(const Loaded& loaded, const Options& options, const std::vector<MotionTable>& tables, Results& results) {
-  if (tables.empty() || interrupt_asked()) return {};
-  const RunSpec first = results.specs.front();
-  std::vector<JudgedMotion> judged;
-  std::vector<std::size_t> places;
-  for (std::size_t i = 0; i < results.runs.size(); ++i) {
-    if (results.specs[i].label != first.label || results.specs[i].damping != first.damping) continue;
-    judged.push_back(
-        {tables.front().rows[judged.size()].motion, &results.runs[i], judge(results.built[i], results.runs[i], bonded_beside(results, i))});
-    places.push_back(i);
-  }
-  if (judged.size() < 2) return {};
-  const std::size_t worst = hardest(judged);
-  OverMotions said{fmt::format(" ({}, the most demanding of {} motions)", judged[worst].motion, judged.size()),
-                   said_over_motions(judged, tables.front())};
-  bring_forward(loaded, options, places[worst], results);
-  return said;
-}
-
 }  // namespace
 
 int compare(const Options& options) {
-  const Loaded loaded = load(options);
-  const Comparison comparison = comparison_of_case(loaded.read);
-  const std::size_t total = comparison.runs.size() + comparison.sweep.size();
-  Results results, swept;
+  const LoadedCase loaded = load(options);
+  comparison_of_case(loaded.read);  // a case with nothing to compare is refused before there is a folder
   OutputFolder folder(options, result_path(options, loaded.read));
-  const Values& output = loaded.read.values.table("output");
-  const bool with_fields = output.has("fields") && output.table("fields").flag("variants");
-  run_all(loaded, options, comparison.runs, 0, total, with_fields ? &folder : nullptr, results);
-  run_all(loaded, options, comparison.sweep, comparison.runs.size(), total, nullptr, swept);
-
-  ComparisonSummary compared;
-  compared.motions = motion_tables(results.specs, results.built, results.runs);
-  const OverMotions over = show_hardest(loaded, options, compared.motions, results);
-  const Values* compare = loaded.read.values.has("compare") ? &loaded.read.values.table("compare") : nullptr;
-  compared.band = compare ? compare->number("band") : 0.02;
-  const std::vector<std::string> columns = compare ? compare->texts("agree_on") : std::vector<std::string>{};
-  const BuiltCase& first = results.built.front();
-  compared.columns = columns;
-  compared.agreement = agreement(results.runs, results.specs, results.built, columns, compared.band);
-  compared.sweep = sweep_table(swept.specs, swept.runs);
-  results.floors = floor_answers(first.plan, results.runs, results.specs);
-  results.verdict = judge(results.built.front(), results.runs.front(), bonded_beside(results, 0), &results.floors.runs.front());
-  results.verdict.headline += over.headline;
-  if (!over.paragraph.empty()) results.verdict.paragraphs.insert(results.verdict.paragraphs.begin(), over.paragraph);
-  add_motion_warnings(results);
-  for (const RunResult& run : results.runs)
-    if (const std::string text = run.equilibrium.warning(); !text.empty() && run.status != RunStatus::failed)
-      results.warnings.push_back(run.label + ": " + text);
-  write_results(options, loaded, results, &compared, folder);
+  const Results results = compare_case(loaded, control_of(options, &folder));
+  const ComparisonSummary& compared = *results.comparison;
+  finish_results(options, loaded, results, folder);
 
   if (options.json) {
     print_text(read_file(folder.path() + "/summary.json"));
@@ -201,7 +100,8 @@ int compare(const Options& options) {
   }
   if (interrupt_asked()) {
     if (!options.quiet)
-      complain(fmt::format("{}: the files hold the {} runs that were begun", interrupt_text(), results.runs.size() + swept.runs.size()));
+      complain(
+          fmt::format("{}: the files hold the {} runs that were begun", interrupt_text(), results.runs.size() + 2 * compared.sweep.size()));
     return interrupt_exit_code();
   }
   bool failed = false;

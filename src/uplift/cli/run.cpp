@@ -1,15 +1,11 @@
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <deque>
-#include <future>
 
 #include "uplift/base/file.h"
 #include "uplift/base/format.h"
 #include "uplift/cli/console.h"
 #include "uplift/cli/load.h"
-#include "uplift/linear/memory.h"
-#include "uplift/verdict/result_warnings.h"
 
 namespace uplift::cli {
 namespace {
@@ -38,73 +34,14 @@ std::string counted(long count, const char* one, const char* several) {
   return fmt::format("{} {}", count, count == 1 ? one : several);
 }
 
-/// The runs with twice the step: beside the others where they are small, after them where memory counts.
-class CompanionRuns {
- public:
-  CompanionRuns(const Loaded& loaded, const Options& options) : loaded_(loaded), options_(options) {
-    if (!options.no_step_check) specs_ = companions_of_case(loaded.read);
-  }
-  /// Begins to compute a case that is small.
-  void begin(const BuiltCase& base) {
-    constexpr int small_model = 3000;  // free unknowns
-    if (!specs_.empty() && base.model.free() <= small_model && runs_side_by_side(2) == 2)
-      beside_ = std::async(std::launch::async | std::launch::deferred, [this] { compute(true); });
-  }
-  /// What the verdict is compared with; null when nothing was computed.
-  const Companion* finish() {
-    if (beside_.valid())
-      beside_.get();
-    else if (!interrupt_asked())
-      compute(false);
-    if (runs_.empty()) return nullptr;
-    companion_ = {&built_.front(), &runs_.front(), runs_.size() > 1 ? &runs_[1] : nullptr};
-    return &companion_;
-  }
-
- private:
-  void compute(bool silent) {
-    for (const RunSpec& spec : specs_) {
-      built_.push_back(build(loaded_.read, spec));
-      const BuiltCase& built = built_.back();
-      runs_.push_back(silent ? uplift::run(built.model, built.plan, built.behaviours, [](const Progress&) { return !interrupt_asked(); })
-                             : run_one(built, spec.label, options_));
-      forget_matrices(built_.back());
-    }
-  }
-
-  const Loaded& loaded_;
-  const Options& options_;
-  std::vector<RunSpec> specs_;
-  std::deque<BuiltCase> built_;
-  std::vector<RunResult> runs_;
-  std::future<void> beside_;
-  Companion companion_;
-};
-
 }  // namespace
 
 int run(const Options& options) {
-  const Loaded loaded = load(options);
-  Results results;
+  const LoadedCase loaded = load(options);
   OutputFolder folder(options, result_path(options, loaded.read));
-  std::vector<std::string> fields;
-  CompanionRuns companions(loaded, options);
-  for (const RunSpec& spec : runs_of_case(loaded.read)) {
-    if (interrupt_asked() && !results.runs.empty()) break;
-    results.specs.push_back(spec);
-    results.built.push_back(build(loaded.read, spec));
-    if (results.runs.empty()) companions.begin(results.built.front());
-    if (results.runs.empty()) results.warnings = warnings(loaded.read, spec, results.built.front());
-    results.runs.push_back(run_with_fields(loaded, results.built.back(), spec.label, options, folder, fields));
-    forget_matrices(results.built.back());
-  }
-  results.floors = floor_answers(results.built.front().plan, results.runs, results.specs);
+  const Results results = run_case(loaded, control_of(options, &folder));
   const RunResult& main = results.runs.front();
-  const Companion* companion = main.status == RunStatus::failed ? nullptr : companions.finish();
-  results.verdict =
-      judge(results.built.front(), main, results.runs.size() > 1 ? &results.runs[1] : nullptr, &results.floors.runs.front(), companion);
-  for (std::string& warning : result_warnings(main, results.verdict.numbers)) results.warnings.push_back(std::move(warning));
-  write_results(options, loaded, results, nullptr, folder);
+  finish_results(options, loaded, results, folder);
 
   if (options.json) {
     print_text(read_file(folder.path() + "/summary.json"));
@@ -123,7 +60,7 @@ int run(const Options& options) {
       say(fmt::format("{}: {} in {} ({:.2f} microseconds a step), {}", status_text(main), counted(main.counts.steps, "step", "steps"),
                       format_quantity(main.wall, "s"), per_step, counted(main.counts.retries, "retry", "retries")));
     say(fmt::format("results: {}/report.html", folder.path()));
-    for (const std::string& list : fields) say(fmt::format("fields: {}/{} (for ParaView)", folder.path(), list));
+    for (const std::string& list : results.field_lists) say(fmt::format("fields: {}/{} (for ParaView)", folder.path(), list));
   }
   if (main.status == RunStatus::interrupted) {
     if (!options.quiet) complain(fmt::format("{} at t = {:g} s: the files hold everything up to there", interrupt_text(), main.end_time));

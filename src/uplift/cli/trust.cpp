@@ -3,14 +3,11 @@
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <thread>
 
 #include "uplift/base/file.h"
 #include "uplift/base/format.h"
 #include "uplift/cli/console.h"
 #include "uplift/cli/load.h"
-#include "uplift/io/results/trust_json.h"
-#include "uplift/linear/memory.h"
 
 namespace uplift::cli {
 namespace {
@@ -68,30 +65,11 @@ void print_answer(const TrustAnswer& answer) {
 }  // namespace
 
 int trust(const Options& options) {
-  const Loaded loaded = load(options);
-  Results results;
+  const LoadedCase loaded = load(options);
   OutputFolder folder(options, result_path(options, loaded.read));
-  for (const RunSpec& spec : runs_of_case(loaded.read)) {
-    results.specs.push_back(spec);
-    results.built.push_back(build(loaded.read, spec));
-    if (results.runs.empty()) results.warnings = warnings(loaded.read, spec, results.built.front());
-    results.runs.push_back(run_one(results.built.back(), spec.label, options));
-  }
-  const RunResult* bonded = results.runs.size() > 1 ? &results.runs[1] : nullptr;
-  TrustAnswer answer;
-  {
-    ProgressLine line("trust", options.quiet || options.json);
-    const int threads = runs_side_by_side(static_cast<int>(std::thread::hardware_concurrency()));
-    answer = uplift::trust(loaded.raw, loaded.read, mesh_reader(), {results.built.front(), results.runs.front(), bonded}, threads,
-                           [&line](const Progress& progress) { return line(progress); });
-  }
-  results.trust = &answer;
-  results.floors = floor_answers(results.built.front().plan, results.runs, results.specs);
-  results.verdict = judge(results.built.front(), results.runs.front(), bonded, &results.floors.runs.front());
-  const std::string bands = trust_sentence(answer);
-  results.verdict.consequence += (results.verdict.consequence.empty() || bands.empty() ? "" : " ") + bands;
-  folder.write("trust.json", trust_json(answer));
-  write_results(options, loaded, results, nullptr, folder);
+  const Results results = trust_case(loaded, control_of(options, &folder));
+  const TrustAnswer& answer = *results.trust;
+  finish_results(options, loaded, results, folder);
 
   if (options.json) {
     print_text(read_file(folder.path() + "/trust.json"));

@@ -70,7 +70,8 @@ class Reader {
   explicit Reader(const std::string& file) : file_(file) {}
 
   Raw read(const toml::node& node, std::string path) const {
-    Raw raw{{}, {file_, static_cast<int>(node.source().begin.line)}, std::move(path)};
+    const toml::source_position& at = node.source().begin;
+    Raw raw{{}, {file_, static_cast<int>(at.line), static_cast<int>(at.column)}, std::move(path)};
     switch (node.type()) {
       case toml::node_type::table:
         raw.data = table(*node.as_table(), raw.path);
@@ -159,7 +160,7 @@ Raw read_toml_text(std::string_view text, const std::string& file) {
   } catch (const toml::parse_error& error) {
     std::string found(error.description());  // "Error while parsing KIND: REASON"
     if (found.starts_with("Error")) found.replace(0, 1, "an e");
-    throw InputError({file, static_cast<int>(error.source().begin.line)}, "", "TOML", found);
+    throw InputError({file, static_cast<int>(error.source().begin.line), static_cast<int>(error.source().begin.column)}, "", "TOML", found);
   } catch (const ParserLost&) {
     throw InputError({file, lost_line(text)}, "", "TOML", "brackets or characters that are none");
   }

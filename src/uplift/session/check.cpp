@@ -1,0 +1,138 @@
+#include "uplift/session/check.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <chrono>
+#include <cmath>
+
+#include "uplift/base/format.h"
+#include "uplift/base/text.h"
+#include "uplift/case/advice/content.h"
+#include "uplift/case/mesh/mesh.h"
+#include "uplift/linear/memory.h"
+#include "uplift/run/floor_record.h"
+
+namespace uplift {
+namespace {
+
+constexpr int small_model = 3000, quick_modes = 30'000;  // unknowns: nothing to foresee below; only the bonded modes beyond
+constexpr double trial_seconds = 5;
+
+/// Quality and resolution of the groups that have a material.
+void look_at_mesh(const Case& read, CaseFindings& found) {
+  if (!read.mesh) return;
+  const CaseSolids materials(read.values, *read.mesh);
+  const std::vector<GroupQuality> qualities = quality_by_group(read.mesh->mesh);
+  for (const CaseSolids::Solid& solid : materials.solids())
+    for (const GroupQuality& quality : qualities) {
+      if (quality.name != solid.table->text("group")) continue;
+      const double speed = solid.section.material.density > 0 ? solid.section.material.s_wave_speed() : 0;
+      found.solids.push_back({quality, speed, speed > 0 ? highest_frequency(quality, speed, nodes_per_wavelength) : 0});
+    }
+  for (const Values& beam : read.values.tables("beam"))
+    for (const GroupQuality& quality : qualities)
+      if (beam.has("group") && quality.name == beam.text("group")) found.beams.push_back(quality);
+  found.pieces = connected_pieces(read.mesh->mesh).count();
+}
+
+/// Frequencies with the nodes of every interface held: what a fixed-base model has.
+std::vector<double> frequencies(const std::vector<Mode>& found) {
+  std::vector<double> values;
+  for (const Mode& mode : found) values.push_back(mode.frequency);
+  return values;
+}
+
+/// The first steps of the run: do the static stages converge, and what does a step cost?
+void try_steps(CaseFindings& found, const BuiltCase& built) {
+  RunPlan plan = built.plan;
+  plan.frames = 0;
+  for (Stage& stage : plan.stages)
+    if (stage.type == Stage::Type::dynamics) {
+      found.steps += std::lround(stage.duration / stage.step);
+      stage.duration = std::min(stage.duration, 200 * stage.step);
+    }
+  const auto start = std::chrono::steady_clock::now();
+  const Watch enough = [&](const Progress&) {
+    return std::chrono::steady_clock::now() - start < std::chrono::duration<double>(trial_seconds);
+  };
+  const RunResult trial = uplift::run(built.model, plan, built.behaviours, enough);
+  if (trial.status == RunStatus::failed && trial.counts.steps < 200) found.trial_failure = trial.reason;
+  found.seconds_per_step = trial.step_seconds;
+  found.systems = trial.counts.systems;
+}
+
+/// What the pictures of all runs of `uplift run` take until the report is written.
+double pictures_bytes(const Case& read, const BuiltCase& built) {
+  double numbers = built.model.full_unknowns();
+  for (const Interface& interface : built.model.interfaces) numbers += 2 * interface.rows();
+  return 8 * numbers * built.plan.frames * static_cast<double>(runs_of_case(read).size());
+}
+
+/// `uplift run` keeps the histories of all its runs until they are written; those with twice the step have half of them.
+std::string history_warning(const Case& read, const HistoryForecast& one) {
+  constexpr double small = 1e8;  // bytes
+  const double all =
+      one.memory * (static_cast<double>(runs_of_case(read).size()) + 0.5 * static_cast<double>(companions_of_case(read).size()));
+  const double available = all > small ? available_memory() : all;
+  if (all <= available) return {};
+  return fmt::format(
+      "the histories of all runs together take {} of memory, {} are available: take a larger step or `every`, or leave runs out",
+      format_bytes(all), format_bytes(available));
+}
+
+CaseFindings find(const Case& read, const RunSpec& spec, const BuiltCase& built) {
+  CaseFindings found;
+  look_at_mesh(read, found);
+  found.fields = field_forecast(read, built);
+  found.record_bytes = floor_record_bytes(built.plan);
+  found.histories = forecast_histories(built.plan, built.model.interfaces.size());
+  const int unknowns = built.model.free();
+  if (unknowns > small_model) {
+    BulkUse use;
+    use.impacts = built.plan.method->constrains();
+    use.propagates = use.impacts && built.plan.impact->needs_dynamic();
+    const Stage* stage = dynamic_stage(built.plan);
+    const bool balanced = stage != nullptr && stage->path_average && !use.impacts;
+    use.keeps_mass = use.impacts || (balanced && (records_accelerations(built.plan) || found.fields));
+    use.record_bytes = found.record_bytes + pictures_bytes(read, built);
+    found.bulk = predict_bulk(built.model, *built.plan.solver, use);
+    if (!found.bulk->refusal.empty()) {
+      found.trial_failure = found.bulk->refusal;
+      return found;
+    }
+  }
+  found.bonded = frequencies(bonded_modes(built.at_rest(), 5));
+  if (unknowns <= quick_modes) {
+    found.fixed = frequencies(fixed_base_modes(built.at_rest(), 3));
+    found.base_free = frequencies(uplift::modes(built.at_rest().stiffness, built.at_rest().mass, 5));
+  }
+  if (const Stage* stage = dynamic_stage(built.plan)) found.ratios = stiffness_ratios(built.model, *stage, *built.plan.solver);
+  if (dynamic_stage(built.plan)) found.bounds = step_bounds(read, built, found.bonded);
+  if (!found.bounds.empty()) found.suggested_step = rounded_down(found.bounds.front().step);
+  try_steps(found, built);
+  found.warnings = warnings(read, spec, built);
+  if (std::string warning = history_warning(read, found.histories); !warning.empty()) found.warnings.push_back(std::move(warning));
+  return found;
+}
+
+}  // namespace
+
+CheckedCase examine(const LoadedCase& loaded) {
+  const std::vector<RunSpec> own = runs_of_case(loaded.read);
+  CheckedCase checked{build(loaded.read, own.front()), {}, {}};
+  for (const RunSpec& spec : own) checked.runs.push_back("uplift run: " + spec.label);
+  if (compares(loaded.read)) {
+    const Comparison comparison = comparison_of_case(loaded.read);
+    for (const RunSpec& spec : comparison.runs) {
+      build(loaded.read, spec);  // every variant is checked too
+      checked.runs.push_back(fmt::format("uplift compare: {}{}", spec.label, spec.group.empty() ? "" : ", " + spec.group));
+    }
+    for (const RunSpec& spec : comparison.sweep) build(loaded.read, spec);
+    if (!comparison.sweep.empty()) checked.runs.push_back(fmt::format("uplift compare: stiffness sweep, {} runs", comparison.sweep.size()));
+  }
+  checked.found = find(loaded.read, own.front(), checked.built);
+  return checked;
+}
+
+}  // namespace uplift

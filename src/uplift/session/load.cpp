@@ -1,0 +1,67 @@
+#include "uplift/session/load.h"
+
+#include <fmt/chrono.h>
+
+#include <ctime>
+#include <filesystem>
+
+#include "uplift/base/file.h"
+#include "uplift/case/decided.h"
+#include "uplift/io/mesh/file.h"
+#include "uplift/io/text/json_reader.h"
+#include "uplift/io/text/toml.h"
+
+namespace uplift {
+namespace fs = std::filesystem;
+
+namespace {
+
+LoadedCase checked(Raw raw, const std::string& text, const std::string& file, const std::string& command) {
+  LoadedCase loaded;
+  loaded.raw = std::move(raw);
+  loaded.read = check_case(loaded.raw, file, mesh_reader());
+  Provenance& from = loaded.from;
+  from.title = loaded.read.values.text("title");
+  if (loaded.read.values.has("description")) from.subtitle = loaded.read.values.text("description");
+  from.command = command;
+  from.version = UPLIFT_VERSION;
+#if defined(__clang__)
+  from.built_with = "Clang " __clang_version__;
+#else
+  from.built_with = "GCC " __VERSION__;
+#endif
+  from.created = fmt::format("{:%Y-%m-%dT%H:%M:%SZ}", fmt::gmtime(std::time(nullptr)));
+  from.case_file = file;
+  from.case_hash = sha256(text);
+  for (const std::string& input : input_files(loaded.read)) from.inputs.emplace_back(input, sha256(read_file(input)));
+  from.resolved = to_toml(loaded.read.values, decided_texts(loaded.read));
+  return loaded;
+}
+
+}  // namespace
+
+MeshReader mesh_reader() {
+  return [](const std::string& path, const Where& where, const std::string& name) { return read_mesh(path, where, name); };
+}
+
+LoadedCase load_case(const std::string& given, const std::string& command) {
+  std::string file = given;
+  std::error_code error;
+  if (fs::is_directory(file, error) && fs::exists(fs::path(file) / "case.toml", error)) file = (fs::path(file) / "case.toml").string();
+  Raw raw = read_toml_file(file);
+  return checked(std::move(raw), read_file(file), file, command);
+}
+
+LoadedCase load_case_text(const std::string& text, const std::string& file, const std::string& command) {
+  const std::size_t first = text.find_first_not_of(" \t\r\n");
+  const bool is_json = first != std::string::npos && text[first] == '{';
+  return checked(is_json ? read_json_text(text, file) : read_toml_text(text, file), text, file, command);
+}
+
+std::string default_result_path(const Case& read) {
+  const fs::path file = fs::absolute(read.file).lexically_normal();
+  const std::string name = file.filename() == "case.toml" ? file.parent_path().filename().string() : file.stem().string();
+  return (fs::path("out") / name).string();
+}
+
+}  // namespace uplift

@@ -1,0 +1,28 @@
+#pragma once
+#include <string>
+
+#include "uplift/case/case.h"
+#include "uplift/io/results/summary.h"
+
+namespace uplift {
+
+/// A case file, read and checked, with its provenance.
+struct LoadedCase {
+  Raw raw;  // the file as it stands
+  Case read;
+  Provenance from;
+};
+
+/// Reads and checks a case file, or the case.toml of a folder. `command` is recorded in the results. Throws InputError.
+LoadedCase load_case(const std::string& file, const std::string& command);
+/// The same for a text in TOML, or in JSON where its first character is a brace. `file` is its name in messages; relative paths in the
+/// case start from its folder. Errors in a JSON text have no line.
+LoadedCase load_case_text(const std::string& text, const std::string& file, const std::string& command);
+
+/// Reads meshes of files.
+MeshReader mesh_reader();
+
+/// Folder of the results that is used when none is given: out/NAME with the name of the case's folder (for case.toml) or file.
+std::string default_result_path(const Case& read);
+
+}  // namespace uplift

@@ -1,0 +1,37 @@
+#include "uplift/session/steps.h"
+
+#include "uplift/io/fields/run.h"
+
+namespace uplift {
+
+BuiltCase build_run(const LoadedCase& loaded, const RunSpec& spec, const Control& control) {
+  BuiltCase built = build(loaded.read, spec);
+  if (control.adapt) control.adapt(built);
+  return built;
+}
+
+RunResult run_built(const LoadedCase& loaded, const BuiltCase& built, const std::string& label, const Control& control, bool first,
+                    std::vector<std::string>* field_lists) {
+  Watch watch;
+  if (control.watch) watch = control.watch(label);
+  if (!watch && control.stopped) watch = [&control](const Progress&) { return !control.stopped(); };
+  const Observe observe = first ? control.observe : Observe();
+  if (field_lists == nullptr || control.folder == nullptr || !loaded.read.values.table("output").has("fields"))
+    return run(built.model, built.plan, built.behaviours, watch, observe);
+  FieldRun fields(loaded.read, built, *control.folder);
+  RunResult result = run(built.model, built.plan, built.behaviours, watch, [&](const Snapshot& snapshot) {
+    fields.see(snapshot);
+    if (observe) observe(snapshot);
+  });
+  fields.finish(result);
+  field_lists->push_back(fields.list());
+  return result;
+}
+
+void free_matrices(BuiltCase& built) {
+  Model& model = built.model;
+  for (Sparse* matrix : {&model.stiffness, &model.mass, &model.damping}) Sparse().swap(*matrix);  // an assignment would keep the memory
+  built.plan.rest.reset();
+}
+
+}  // namespace uplift

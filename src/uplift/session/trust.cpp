@@ -1,0 +1,30 @@
+#include <thread>
+
+#include "uplift/io/results/trust_json.h"
+#include "uplift/linear/memory.h"
+#include "uplift/session/steps.h"
+
+namespace uplift {
+
+Results trust_case(const LoadedCase& loaded, const Control& control) {
+  Results results;
+  for (const RunSpec& spec : runs_of_case(loaded.read)) {
+    const bool first = results.runs.empty();
+    results.specs.push_back(spec);
+    results.built.push_back(build_run(loaded, spec, control));
+    if (first) results.warnings = warnings(loaded.read, spec, results.built.front());
+    results.runs.push_back(run_built(loaded, results.built.back(), spec.label, control, first, nullptr));
+  }
+  const BuiltCase& built = results.built.front();
+  const RunResult* bonded = results.runs.size() > 1 ? &results.runs[1] : nullptr;
+  const int threads = runs_side_by_side(static_cast<int>(std::thread::hardware_concurrency()));
+  results.trust = trust(loaded.raw, loaded.read, mesh_reader(), {built, results.runs.front(), bonded}, threads,
+                        control.watch ? control.watch("trust") : Watch());
+  results.floors = floor_answers(built.plan, results.runs, results.specs);
+  results.verdict = judge(built, results.runs.front(), bonded, &results.floors.runs.front());
+  const std::string bands = trust_sentence(*results.trust);
+  results.verdict.consequence += (results.verdict.consequence.empty() || bands.empty() ? "" : " ") + bands;
+  return results;
+}
+
+}  // namespace uplift
