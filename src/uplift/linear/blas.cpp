@@ -9,21 +9,13 @@
 #include <vector>
 
 extern "C" void openblas_set_num_threads(int count);
-/// The number of threads that OpenBLAS starts before main(); 0: it asks the environment and the system. Null in a shared OpenBLAS.
-extern "C" [[gnu::weak]] int blas_num_threads;
+extern "C" int openblas_get_num_threads();
 extern "C" void* blas_memory_alloc(int purpose);
 extern "C" void blas_memory_free(void* piece);
 
 namespace uplift {
 
 namespace {
-
-/// OpenBLAS starts its threads before main(): they wait by spinning, and where the system refuses them memory they try for ever, also at
-/// the end of the program. openblas_set_num_threads() comes too late for them. Linked statically, the constructor of OpenBLAS comes after
-/// this.
-[[gnu::constructor(101)]] void start_no_threads() {
-  if (&blas_num_threads != nullptr) blas_num_threads = 1;
-}
 
 /// Takes pieces of work space from OpenBLAS until one is new, and gives all of them back: it keeps them for later calls.
 void add_work_space(std::vector<void*>& known) {
@@ -41,6 +33,32 @@ void add_work_space(std::vector<void*>& known) {
 }
 
 }  // namespace
+
+namespace {
+
+struct BlasUsers {
+  std::mutex mutex;
+  int count = 0, threads = 1;
+};
+BlasUsers& blas_users() {
+  static BlasUsers users;
+  return users;
+}
+
+}  // namespace
+
+SingleThreadBlas::SingleThreadBlas() {
+  BlasUsers& users = blas_users();
+  const std::lock_guard lock(users.mutex);
+  if (users.count++ == 0) users.threads = openblas_get_num_threads();
+  openblas_set_num_threads(1);
+}
+
+SingleThreadBlas::~SingleThreadBlas() {
+  BlasUsers& users = blas_users();
+  const std::lock_guard lock(users.mutex);
+  if (--users.count == 0) openblas_set_num_threads(users.threads);
+}
 
 void prepare_blas() {
   thread_local bool ready = false;

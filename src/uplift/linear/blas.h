@@ -7,4 +7,14 @@ namespace uplift {
 /// BLAS itself uses one thread: results do not depend on the number of cores, and runs side by side do not fight for them.
 void prepare_blas();
 
+/// As long as one exists BLAS uses one thread; with the last one the number of threads is what it was before the first. For a library in a
+/// process where others use the same OpenBLAS.
+class SingleThreadBlas {
+ public:
+  SingleThreadBlas();
+  SingleThreadBlas(const SingleThreadBlas&) = delete;
+  SingleThreadBlas& operator=(const SingleThreadBlas&) = delete;
+  ~SingleThreadBlas();
+};
+
 }  // namespace uplift

@@ -16,10 +16,13 @@ namespace fs = std::filesystem;
 
 namespace {
 
-LoadedCase checked(Raw raw, const std::string& text, const std::string& file, const std::string& command) {
+LoadedCase checked(Raw raw, const std::string& text, const std::string& file, const std::string& command, MeshFiles files) {
   LoadedCase loaded;
   loaded.raw = std::move(raw);
-  loaded.read = check_case(loaded.raw, file, mesh_reader());
+  loaded.read_mesh = [isolated = files == MeshFiles::isolated](const std::string& path, const Where& where, const std::string& name) {
+    return read_mesh(path, where, name, isolated);
+  };
+  loaded.read = check_case(loaded.raw, file, loaded.read_mesh);
   Provenance& from = loaded.from;
   from.title = loaded.read.values.text("title");
   if (loaded.read.values.has("description")) from.subtitle = loaded.read.values.text("description");
@@ -40,22 +43,18 @@ LoadedCase checked(Raw raw, const std::string& text, const std::string& file, co
 
 }  // namespace
 
-MeshReader mesh_reader() {
-  return [](const std::string& path, const Where& where, const std::string& name) { return read_mesh(path, where, name); };
-}
-
-LoadedCase load_case(const std::string& given, const std::string& command) {
+LoadedCase load_case(const std::string& given, const std::string& command, MeshFiles files) {
   std::string file = given;
   std::error_code error;
   if (fs::is_directory(file, error) && fs::exists(fs::path(file) / "case.toml", error)) file = (fs::path(file) / "case.toml").string();
   Raw raw = read_toml_file(file);
-  return checked(std::move(raw), read_file(file), file, command);
+  return checked(std::move(raw), read_file(file), file, command, files);
 }
 
-LoadedCase load_case_text(const std::string& text, const std::string& file, const std::string& command) {
+LoadedCase load_case_text(const std::string& text, const std::string& file, const std::string& command, MeshFiles files) {
   const std::size_t first = text.find_first_not_of(" \t\r\n");
   const bool is_json = first != std::string::npos && text[first] == '{';
-  return checked(is_json ? read_json_text(text, file) : read_toml_text(text, file), text, file, command);
+  return checked(is_json ? read_json_text(text, file) : read_toml_text(text, file), text, file, command, files);
 }
 
 std::string default_result_path(const Case& read) {

@@ -1,11 +1,28 @@
 #include "uplift/session/steps.h"
 
+#include "uplift/base/text.h"
 #include "uplift/io/fields/run.h"
+#include "uplift/laws/external.h"
 
 namespace uplift {
 
+void check_external_laws(const BuiltCase& built, const Control& control) {
+  for (const Values* behaviour : built.behaviours) {
+    if (!is_external(*behaviour)) continue;
+    const std::string& name = behaviour->text("name");
+    if (!control.external_laws || !control.external_laws(name))
+      throw InputError(behaviour->where("name"), behaviour->path("name"), "the name of a law that the calling program has connected",
+                       in_quotes(name) + " (laws of type \"external\" are for users of the library)");
+    for (const Stage& stage : built.plan.stages)
+      if (stage.type == Stage::Type::dynamics && stage.scheme.filtered())
+        throw InputError(behaviour->where(), behaviour->path(), "another scheme than energy_decay with a law of type \"external\"",
+                         "energy_decay");
+  }
+}
+
 BuiltCase build_run(const LoadedCase& loaded, const RunSpec& spec, const Control& control) {
   BuiltCase built = build(loaded.read, spec);
+  check_external_laws(built, control);
   if (control.adapt) control.adapt(built);
   return built;
 }

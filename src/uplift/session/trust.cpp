@@ -1,6 +1,7 @@
 #include <thread>
 
 #include "uplift/io/results/trust_json.h"
+#include "uplift/laws/external.h"
 #include "uplift/linear/memory.h"
 #include "uplift/session/steps.h"
 
@@ -16,9 +17,13 @@ Results trust_case(const LoadedCase& loaded, const Control& control) {
     results.runs.push_back(run_built(loaded, results.built.back(), spec.label, control, first, nullptr));
   }
   const BuiltCase& built = results.built.front();
+  for (const Values* behaviour : built.behaviours)
+    if (is_external(*behaviour))
+      throw InputError(behaviour->where(), behaviour->path(), "a law of the program for a statement of reliability",
+                       "a law of type \"external\"");
   const RunResult* bonded = results.runs.size() > 1 ? &results.runs[1] : nullptr;
   const int threads = runs_side_by_side(static_cast<int>(std::thread::hardware_concurrency()));
-  results.trust = trust(loaded.raw, loaded.read, mesh_reader(), {built, results.runs.front(), bonded}, threads,
+  results.trust = trust(loaded.raw, loaded.read, loaded.read_mesh, {built, results.runs.front(), bonded}, threads,
                         control.watch ? control.watch("trust") : Watch());
   results.floors = floor_answers(built.plan, results.runs, results.specs);
   results.verdict = judge(built, results.runs.front(), bonded, &results.floors.runs.front());

@@ -39,14 +39,15 @@ std::string beginning(const fs::path& path, std::uintmax_t most, const Where& wh
 
 }  // namespace
 
-Mesh read_mesh(const std::string& path, const Where& where, const std::string& mesh) {
+Mesh read_mesh(const std::string& path, const Where& where, const std::string& mesh, bool isolated) {
   std::error_code error;
   const fs::file_status status = fs::status(path, error);
   if (!fs::exists(status)) missing(path, where);
   if (!fs::is_regular_file(status)) throw InputError(where, "", wanted, in_quotes(path) + ", which is no file");
   const std::uintmax_t size = fs::file_size(path, error);
   if (error) throw InputError(where, "", "a file that can be read", in_quotes(path) + ": " + error.message());
-  if (beginning(path, std::min<std::uintmax_t>(size, hdf5_signature.size()), where) == hdf5_signature) return read_med_file(path, mesh);
+  if (beginning(path, std::min<std::uintmax_t>(size, hdf5_signature.size()), where) == hdf5_signature)
+    return isolated ? read_med_file(path, mesh) : read_med_here(path, mesh);
   const std::string bytes = beginning(path, size, where);
   if (!is_gmsh(bytes)) throw InputError(where, "", wanted, in_quotes(path) + ", which begins with " + in_quotes(bytes.substr(0, 20)));
   return read_gmsh(bytes, path);

@@ -2,6 +2,7 @@
 
 #include <filesystem>
 #include <functional>
+#include <mutex>
 
 #include "uplift/base/error.h"
 #include "uplift/io/hdf5/child.h"
@@ -34,6 +35,12 @@ Mesh read_med_file(const std::string& path, const std::string& mesh) {
   const std::uintmax_t size = std::filesystem::file_size(path, error);
   if (error) throw InputError({path, 0}, "", "a file", error.message());
   return read_apart([&] { return Hdf5Reader::open(path); }, size, path, mesh);
+}
+
+Mesh read_med_here(const std::string& path, const std::string& mesh) {
+  static std::mutex one_at_a_time;  // Debian's HDF5 is not safe in threads
+  const std::lock_guard lock(one_at_a_time);
+  return read_med(Hdf5Reader::open(path), mesh);
 }
 
 Mesh read_med_bytes(std::string_view bytes, const std::string& name, const std::string& mesh) {

@@ -3,6 +3,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <cmath>
 #include <limits>
 #include <nlohmann/json.hpp>
 
@@ -63,7 +64,27 @@ Raw converted(const Json& value, const std::string& file, const std::string& pat
   return raw;
 }
 
+Json json_of(const Raw& raw) {
+  if (const auto* truth = std::get_if<bool>(&raw.data)) return *truth;
+  if (const auto* whole = std::get_if<std::int64_t>(&raw.data)) return *whole;
+  if (const auto* number = std::get_if<double>(&raw.data)) return std::isfinite(*number) ? Json(*number) : Json(fmt::format("{}", *number));
+  if (const auto* text = std::get_if<std::string>(&raw.data)) return *text;
+  if (const auto* list = std::get_if<RawList>(&raw.data)) {
+    Json made = Json::array();
+    for (const Raw& each : *list) made.push_back(json_of(each));
+    return made;
+  }
+  Json made = Json::object();
+  if (const auto* table = std::get_if<std::shared_ptr<RawTable>>(&raw.data))
+    for (const auto& [key, value] : (*table)->entries) made[key] = json_of(value);
+  return made;
+}
+
 }  // namespace
+
+std::string json_text(const Raw& raw) {
+  return json_of(raw).dump();
+}
 
 Raw read_json_text(std::string_view text, const std::string& file) {
   if (text.size() > most_bytes) throw InputError({file, 0}, "", "at most 16 MiB of JSON", fmt::format("{} bytes", text.size()));

@@ -11,4 +11,7 @@ namespace uplift {
 /// column, null, more than 16 MiB, more than 64 levels, and a key that comes twice.
 Raw read_json_text(std::string_view text, const std::string& file);
 
+/// The other way round: the value as JSON text. Numbers that JSON lacks (infinite or not a number) become texts.
+std::string json_text(const Raw& raw);
+
 }  // namespace uplift

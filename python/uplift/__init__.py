@@ -1,0 +1,32 @@
+"""uplift: uplift of foundations in earthquakes and its consequences for structure, equipment and soil.
+
+    import uplift as up
+    case = up.load("examples/05_bridge_pier")
+    run = case.run()
+    print(run.verdict.headline)
+    print(run["underside.moment"].max(), run.time)
+
+All quantities are in SI units; an opening > 0 separates the faces of an interface, a traction > 0 is tension.
+"""
+
+from __future__ import annotations
+
+from . import functions, impacts, laws, methods, processes, schemes, targets
+from ._case import Case, March, Motion, StepView, load, march, motion, parse
+from ._laws import ExternalLaw, law
+from ._library import InputError, OutputError, UpliftError, library
+from ._parts import Part
+from ._results import Comparison, Floor, Histories, Quantity, Run, Trust, Verdict, psa
+from .laws import bilinear, coulomb, elastic, exponential, sdm, springs, unilateral
+
+__all__ = [
+    "Case", "Comparison", "ExternalLaw", "Floor", "Histories", "InputError", "March", "Motion", "OutputError", "Part", "Quantity", "Run",
+    "StepView", "Trust", "UpliftError", "Verdict", "bilinear", "coulomb", "elastic", "exponential", "functions", "impacts", "law", "laws",
+    "load", "march", "methods", "motion", "parse", "processes", "psa", "schemes", "sdm", "springs", "targets", "unilateral", "version",
+]
+
+
+def version() -> str:
+    """Version of the library."""
+    text: bytes = library().uplift_version()
+    return text.decode()

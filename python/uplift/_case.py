@@ -1,0 +1,432 @@
+"""The case: what is to be computed."""
+
+from __future__ import annotations
+
+import copy
+import ctypes
+import json
+import os
+import pathlib
+import sys
+import threading
+import time
+from typing import Any, Callable, Dict, List, Mapping, Optional, Sequence, Tuple, Union
+
+from . import _library, _toml
+from ._laws import ExternalLaw
+from ._parts import Part, Quantity
+from ._results import Comparison, Run, Trust
+from ._tables import Tables
+
+StepCallback = Callable[["StepView"], Any]
+
+
+class Motion(Dict[str, Any]):
+    """A recorded or generated ground motion for one direction; see :func:`motion`."""
+
+
+def motion(
+    file: Union[str, "os.PathLike[str]", None] = None,
+    *,
+    direction: Optional[Sequence[float]] = None,
+    pga: Optional[Quantity] = None,
+    factor: Optional[Quantity] = None,
+    process: Sequence[Mapping[str, Any]] = (),
+    generate: Optional[Mapping[str, Any]] = None,
+    amplitude: Optional[Quantity] = None,
+    **record: Any,
+) -> Motion:
+    """A ground acceleration for :meth:`Case.run`.
+
+    Parameters:
+        file: record in any format that `uplift motion` reads.
+        direction: direction of the acceleration; default (1, 0), in space (1, 0, 0).
+        pga: peak acceleration to which the record is scaled ("0.4 g_n").
+        factor: factor instead of `pga`.
+        process: processing steps (:mod:`uplift.processes`), in order, before the scaling.
+        generate: instead of a file, a motion that fits a target spectrum (:mod:`uplift.targets`).
+        amplitude: factor of the acceleration; default 1.
+        record: other keys of the table [[record]]: format, unit, step, column, component.
+    """
+    if (file is None) == (generate is None):
+        raise TypeError("motion() takes a file or `generate`, and not both")
+    steps = [{"do": step} for step in process]
+    if pga is not None or factor is not None:
+        steps.append({"do": {"type": "scale", "pga": pga, "factor": factor}})
+    table = {"file": None if file is None else os.path.abspath(os.fspath(file)), "generate": generate, "process": steps or None, **record}
+    return Motion({"record": table, "direction": direction, "amplitude": amplitude})
+
+
+class StepView:
+    """A step of a run, as the function that `step` of :meth:`Case.run` names sees it. Arrays are copies."""
+
+    def __init__(self, given: _library.Step) -> None:
+        from ._results import array_of
+
+        self.time: float = given.time
+        self.number: int = given.number
+        self.stage: int = given.stage
+        self.displacement = array_of(given.displacement, given.unknowns).copy()
+        self.velocity = array_of(given.velocity, given.unknowns).copy() if given.velocity else None
+        self.opening = array_of(given.opening, given.rows).copy()
+        self.force = array_of(given.force, given.rows).copy()
+
+
+class _Watcher:
+    """Progress bar, step function and Ctrl-C of one analysis."""
+
+    def __init__(self, progress: Union[bool, None], step: Optional[StepCallback], step_check: bool, fields: Optional[str]) -> None:
+        self.options = _library.Options()
+        _library.library().uplift_options_init(ctypes.byref(self.options))
+        self.options.step_check = int(step_check)
+        self._cancel = ctypes.c_int(0)
+        self.options.cancel = ctypes.pointer(self._cancel)
+        self._fields = fields.encode() if fields else None
+        self.options.fields_folder = self._fields
+        self._bar = sys.stderr.isatty() if progress is None else progress
+        self._drawn = 0.0
+        self._step = step
+        self.raised: Optional[BaseException] = None
+        self._progress_function = _library.ProgressFunction(self._on_progress)
+        self._step_function = _library.StepFunction(self._on_step)
+        self.options.progress = self._progress_function
+        if step is not None:
+            self.options.step = self._step_function
+
+    def _on_progress(self, user: Any, given: Any) -> int:
+        try:
+            now = time.monotonic()
+            if self._bar and now - self._drawn > 0.1:
+                self._drawn = now
+                state = given.contents
+                done = int(30 * state.fraction)
+                label = (state.label or b"").decode()
+                sys.stderr.write(f"\r{label:<28.28} [{'#' * done}{'.' * (30 - done)}] t = {state.time:.3f} s, {100 * state.uplifted:.0f} % uplifted ")
+                sys.stderr.flush()
+            return 0
+        except BaseException as error:  # Ctrl-C arrives here
+            return self._stop(error)
+
+    def _on_step(self, user: Any, given: Any) -> int:
+        try:
+            assert self._step is not None
+            return 1 if self._step(StepView(given.contents)) is False else 0
+        except BaseException as error:
+            return self._stop(error)
+
+    def _stop(self, error: BaseException) -> int:
+        self._cancel.value = 1
+        if self.raised is None:
+            self.raised = error
+        return 1
+
+    def finish(self) -> None:
+        """Clears the bar; raises what a function of the caller raised, but for Ctrl-C, which keeps the results."""
+        if self._drawn:
+            sys.stderr.write("\r" + " " * 100 + "\r")
+            sys.stderr.flush()
+        if self.raised is not None and not isinstance(self.raised, KeyboardInterrupt):
+            raise self.raised
+
+
+class Case(Tables):
+    """A case: structure, interfaces, loads and analysis. Its methods add tables; `run`, `compare` and `trust` compute.
+
+    Numbers are in SI units, texts may carry units ("30 GPa"). In the plane x points to the right and y up; in space z points up.
+    """
+
+    def __init__(self, title: str, description: Optional[str] = None) -> None:
+        self._document: Dict[str, Any] = {"title": title}
+        if description is not None:
+            self._document["description"] = description
+        self._text: Optional[str] = None  # of the file, as long as nothing was changed
+        self._file = os.path.join(os.getcwd(), "case.toml")
+        self._laws: Dict[str, ExternalLaw] = {}
+
+    # ---- building ----
+
+    @property
+    def document(self) -> Dict[str, Any]:
+        """The case as nested tables, which may be changed."""
+        self._text = None
+        return self._document
+
+    def _add(self, name: str, table: Mapping[str, Any]) -> None:
+        entry = {key: value for key, value in table.items() if value is not None}
+        self._connect(entry)
+        self.document.setdefault(name, []).append(entry)
+
+    def _set(self, name: str, table: Mapping[str, Any]) -> None:
+        entry = self.document.setdefault(name, {})
+        entry.update({key: value for key, value in table.items() if value is not None})
+
+    def _add_output(self, name: str, table: Mapping[str, Any]) -> None:
+        entry = {key: value for key, value in table.items() if value is not None}
+        self.document.setdefault("output", {}).setdefault(name, []).append(entry)
+
+    def _interface(self, own: Mapping[str, Any], kind: str, table: Mapping[str, Any]) -> None:
+        inner = {key: value for key, value in table.items() if value is not None}
+        self._add("interface", {**own, kind: inner})
+
+    def _connect(self, table: Dict[str, Any]) -> None:
+        given = table.get("law")
+        if isinstance(given, ExternalLaw):
+            self._laws[given.name] = given
+            table["law"] = given.table()
+
+    def node(self, name: str, *position: Quantity) -> None:
+        """A node at [x, y], or at [x, y, z] in space [m]."""
+        self.document.setdefault("nodes", {})[name] = list(position)
+
+    def gravity(self, *acceleration: Quantity) -> None:
+        """Weight of all masses. The default is 9.81 m/s2 downwards."""
+        nodes = self._document.get("nodes", {})
+        in_space = any(len(position) == 3 for position in nodes.values())
+        default: Tuple[Quantity, ...] = (0, 0, -9.81) if in_space else (0, -9.81)
+        self.document["gravity"] = {"acceleration": list(acceleration or default)}
+
+    def damping(
+        self,
+        *,
+        rayleigh: Optional[Sequence[Union[Mapping[str, Any], Tuple[Quantity, Quantity]]]] = None,
+        alpha: Optional[Quantity] = None,
+        beta: Optional[Quantity] = None,
+        modal: Optional[Sequence[Quantity]] = None,
+        modes: Optional[int] = None,
+    ) -> None:
+        """Damping of the structure.
+
+        Parameters:
+            rayleigh: pairs (frequency [Hz], damping ratio).
+            alpha: factor of the mass matrix [1/s].
+            beta: factor of the stiffness matrix [s].
+            modal: damping ratios of the modes of the bonded structure.
+            modes: number of modes to which the last ratio applies.
+        """
+        pairs = None
+        if rayleigh is not None:
+            pairs = [each if isinstance(each, Mapping) else {"frequency": each[0], "ratio": each[1]} for each in rayleigh]
+        given = {"rayleigh": pairs, "alpha": alpha, "beta": beta, "modal": modal, "modes": modes}
+        self.document["damping"] = {key: value for key, value in given.items() if value is not None}
+
+    def static(self, *, steps: Optional[int] = None, **keys: Any) -> None:
+        """A static stage: the dead loads in equal steps."""
+        self._add("stage", {"type": "static", "steps": steps, **keys})
+
+    def dynamic(self, duration: Quantity, *, step: Quantity, scheme: Union[Part, str, None] = None, **keys: Any) -> None:
+        """A dynamic stage.
+
+        Parameters:
+            duration: s.
+            step: time step [s].
+            scheme: time integration (:mod:`uplift.schemes`).
+            keys: other keys of the table [[stage]]: traction, p_delta, halvings.
+        """
+        self._add("stage", {"type": "dynamic", "duration": duration, "step": step, "scheme": scheme, **keys})
+
+    # ---- text ----
+
+    def to_toml(self) -> str:
+        """The case as TOML: the text of the file when it was loaded and not changed."""
+        return self._text if self._text is not None else _toml.dumps(self._document)
+
+    def resolved(self) -> str:
+        """The case with all default values, as TOML. Raises InputError."""
+        return _library.text_of("uplift_case_toml", self._handle().pointer)
+
+    def save(self, path: Union[str, "os.PathLike[str]"]) -> None:
+        """Writes the case as a file, which the program reads. An existing file is replaced when the new one is complete."""
+        target = pathlib.Path(path)
+        working = target.with_name(target.name + f".part-{os.getpid()}")
+        working.write_text(self.to_toml(), encoding="utf-8")
+        working.replace(target)
+
+    def copy(self) -> "Case":
+        """An independent copy."""
+        made = copy.copy(self)
+        made._document = copy.deepcopy(self._document)
+        made._laws = dict(self._laws)
+        return made
+
+    def __repr__(self) -> str:
+        return f"Case({self._document.get('title', '')!r})"
+
+    # ---- computing ----
+
+    def _handle(self) -> _library.Handle:
+        text, file = self.to_toml().encode(), self._file.encode()
+        made = _library.Handle("uplift_case_parse", "uplift_case_free", text, file)
+        for law in self._laws.values():
+            law.connect(made)
+        return made
+
+    def check(self) -> Dict[str, Any]:
+        """What a run would compute: unknowns, frequencies, suggested step, time, memory, warnings. Raises InputError."""
+        made: Dict[str, Any] = json.loads(_library.text_of("uplift_case_check", self._handle().pointer))
+        return made
+
+    def modes(self, count: int = 6) -> Dict[str, Any]:
+        """Natural modes with the base bonded and with the base free."""
+        made: Dict[str, Any] = json.loads(_library.text_of("uplift_case_modes", self._handle().pointer, count))
+        return made
+
+    def _with_motions(self, motions: Sequence[Motion]) -> "Case":
+        if not motions:
+            return self
+        case = self.copy()
+        document = case.document
+        in_space = any(len(position) == 3 for position in document.get("nodes", {}).values())
+        document["ground_acceleration"] = []
+        for number, given in enumerate(motions, 1):
+            name = f"motion {number}"
+            direction = given["direction"] or ((1, 0, 0) if in_space else (1, 0))
+            document.setdefault("record", []).append({"name": name, **{k: v for k, v in given["record"].items() if v is not None}})
+            table = {"name": name, "direction": list(direction), "amplitude": given["amplitude"], "function": name}
+            document["ground_acceleration"].append({key: value for key, value in table.items() if value is not None})
+        return case
+
+    def _analyse(self, function: str, watcher: _Watcher) -> _library.Handle:
+        case = self._handle()
+        results = _library.Handle(function, "uplift_results_free", case.pointer, ctypes.byref(watcher.options))
+        watcher.finish()
+        return results
+
+    def run(
+        self,
+        *motions: Motion,
+        progress: Optional[bool] = None,
+        step_check: bool = True,
+        step: Optional[StepCallback] = None,
+        fields: Union[str, "os.PathLike[str]", None] = None,
+    ) -> Run:
+        """Runs the case, the bonded model, and both with twice the step. Other Python threads go on meanwhile.
+
+        Parameters:
+            motions: ground motions that take the place of the ground accelerations of the case.
+            progress: show a progress bar; by default on a terminal.
+            step_check: estimate the error of the time step by a run with twice the step.
+            step: called after every step of the case's own run with a :class:`StepView`; returning False ends the run.
+            fields: folder for the fields that the case asks for.
+
+        Ctrl-C ends the run in order: its results are complete up to that instant and `run.status` is "interrupted".
+        Raises InputError.
+        """
+        watcher = _Watcher(progress, step, step_check, None if fields is None else os.fspath(fields))
+        return Run(self._with_motions(motions)._analyse("uplift_run", watcher))
+
+    def compare(self, *variants: str, progress: Optional[bool] = None) -> Comparison:
+        """Runs the variants of the case side by side: all of them, or those of these names.
+
+        Raises InputError when the case has no variants, and ValueError for an unknown name.
+        """
+        case = self
+        if variants:
+            case = self.copy()
+            known = [each["name"] for each in case._document.get("variant", [])]
+            for name in variants:
+                if name not in known:
+                    raise ValueError(f"unknown variant {name!r}; the variants of the case are {', '.join(known) or 'none'}")
+            case.document["variant"] = [each for each in case._document["variant"] if each["name"] in variants]
+        return Comparison(case._analyse("uplift_compare", _Watcher(progress, None, True, None)))
+
+    def trust(self, *, progress: Optional[bool] = None) -> Trust:
+        """Repeats the run with every choice of the computation changed, one at a time."""
+        return Trust(self._analyse("uplift_trust", _Watcher(progress, None, True, None)))
+
+
+def load(path: Union[str, "os.PathLike[str]"]) -> Case:
+    """A case of a file, or of the case.toml of a folder. Raises InputError for what is no case."""
+    file = pathlib.Path(path)
+    if file.is_dir():
+        file = file / "case.toml"
+    try:
+        text = file.read_text(encoding="utf-8")
+    except (OSError, UnicodeDecodeError) as error:
+        raise _library.InputError(f"{file}: {error}", str(file)) from error
+    return parse(text, str(file))
+
+
+def parse(text: str, file: str = "case.toml") -> Case:
+    """A case of a TOML text; relative paths start from the folder of `file`. Raises InputError."""
+    case = Case("")
+    case._file = os.path.abspath(file)
+    case._document = json.loads(_library.text_of("uplift_toml_to_json", text.encode(), case._file.encode()))
+    case._text = text
+    return case
+
+
+class March:
+    """A run that is made step by step: `for step in march: ...`. Ending the loop ends the run; `results` has what was computed."""
+
+    def __init__(self, case: Case, *motions: Motion) -> None:
+        self._next = threading.Semaphore(0)
+        self._ready = threading.Semaphore(0)
+        self._step: Optional[StepView] = None
+        self._stopping = False
+        self._done = False
+        self._run: Optional[Run] = None
+        self._error: Optional[BaseException] = None
+        self._thread = threading.Thread(target=self._work, args=(case, motions), daemon=True)
+        self._thread.start()
+
+    def _work(self, case: Case, motions: Sequence[Motion]) -> None:
+        try:
+            self._next.acquire()
+            if not self._stopping:
+                self._run = case.run(*motions, progress=False, step_check=False, step=self._see)
+        except BaseException as error:
+            self._error = error
+        self._done = True
+        self._ready.release()
+
+    def _see(self, step: StepView) -> bool:
+        self._step = step
+        self._ready.release()
+        self._next.acquire()
+        return not self._stopping
+
+    def __iter__(self) -> "March":
+        return self
+
+    def __next__(self) -> StepView:
+        if self._done or self._stopping:
+            raise StopIteration
+        self._next.release()
+        self._ready.acquire()
+        if self._done:
+            if self._error is not None:
+                raise self._error
+            raise StopIteration
+        assert self._step is not None
+        return self._step
+
+    def stop(self) -> None:
+        """Ends the run in order."""
+        if not self._done and not self._stopping:
+            self._stopping = True
+            self._next.release()
+        self._thread.join()
+
+    @property
+    def results(self) -> Run:
+        """The results up to here. Ends the run when it is still going."""
+        self.stop()
+        if self._error is not None:
+            raise self._error
+        if self._run is None:
+            raise RuntimeError("the march has no step yet")
+        return self._run
+
+    def __enter__(self) -> "March":
+        return self
+
+    def __exit__(self, *_: Any) -> None:
+        self.stop()
+
+
+def march(case: Case, *motions: Motion) -> March:
+    """Runs a case step by step; see :class:`March`."""
+    return March(case, *motions)
+
+
+__all__: List[str] = ["Case", "March", "Motion", "StepView", "load", "march", "motion", "parse"]
