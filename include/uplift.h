@@ -112,8 +112,8 @@ typedef struct uplift_step {
   const double* force;        /* rows [N] at the end of the step, tension > 0 */
 } uplift_step;
 
-/* Initialise with uplift_options_init(). Functions return 0 to go on; any other number ends the analysis in order, with complete results up
- * to that instant. */
+/* Initialise with uplift_options_init(). Functions return 0 to go on; any other number ends the analysis in order, at the latest after
+ * the next step, with complete results up to that instant. */
 typedef struct uplift_options {
   size_t size;                                                  /* of this structure */
   int step_check;                                               /* 0: without the companion run with twice the step */

@@ -19,6 +19,8 @@ POSITIONAL = {
     "motion": ["node", "direction"], "ground_acceleration": ["direction"], "initial": ["node"], "support": ["node", "fixed"],
     "variant": ["name"], "origin": ["label", "keys"], "figure": ["chart", "origin"],
 }
+# methods that are not called like their table, because the case has another method of this name
+RENAMED = {"compare": "comparison", "trust": "trust_settings"}
 INTERFACE_KINDS = ["footing", "pairs", "line", "surface"]
 
 
@@ -112,7 +114,7 @@ def table_method(name, schema, summary):
     entries, names = parameters(properties, required, POSITIONAL.get(name, []))
     given = ", ".join(f'"{each}": {identifier(each)}' for each in names)
     store = "_set" if single else "_add"
-    return "\n".join([signature(identifier(name), ["self"] + entries, "None", "    "), docstring(summary, names, properties, "        "),
+    return "\n".join([signature(identifier(RENAMED.get(name, name)), ["self"] + entries, "None", "    "), docstring(summary, names, properties, "        "),
                       f'        self.{store}("{name}", {{{given}}})', ""])
 
 

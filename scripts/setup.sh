@@ -4,7 +4,7 @@ set -euo pipefail
 
 run="g++ cmake ninja-build pkg-config libeigen3-dev libsuitesparse-dev libopenblas-dev libspectra-dev libtomlplusplus-dev
   nlohmann-json3-dev libudunits2-dev libhdf5-dev zlib1g-dev libcli11-dev libfmt-dev"
-test="libgtest-dev librapidcheck-dev python3 python3-jsonschema"
+test="libgtest-dev librapidcheck-dev python3 python3-jsonschema python3-numpy mypy"
 develop="libbenchmark-dev clang-14 libclang-rt-14-dev clang-format-14 clang-tidy-14 nodejs npm chromium ca-certificates"
 
 case "${1:-run}" in
@@ -26,6 +26,7 @@ have() {
     nodejs) command -v node >/dev/null ;;
     npm) command -v npm >/dev/null ;;
     python3) command -v python3 >/dev/null ;;
+    mypy) command -v mypy >/dev/null ;;
     python3-jsonschema) python3 -c 'import jsonschema' 2>/dev/null ;;
     *) return 1 ;;
   esac

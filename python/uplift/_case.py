@@ -7,6 +7,7 @@ import ctypes
 import json
 import os
 import pathlib
+import signal
 import sys
 import threading
 import time
@@ -87,11 +88,25 @@ class _Watcher:
         self._drawn = 0.0
         self._step = step
         self.raised: Optional[BaseException] = None
+        self._caught = False
         self._progress_function = _library.ProgressFunction(self._on_progress)
         self._step_function = _library.StepFunction(self._on_step)
         self.options.progress = self._progress_function
         if step is not None:
             self.options.step = self._step_function
+
+    def __enter__(self) -> None:
+        in_main = threading.current_thread() is threading.main_thread()
+        if in_main and signal.getsignal(signal.SIGINT) is signal.default_int_handler:
+            signal.signal(signal.SIGINT, self._on_interrupt)
+            self._caught = True
+
+    def __exit__(self, *_: Any) -> None:
+        if self._caught:
+            signal.signal(signal.SIGINT, signal.default_int_handler)
+
+    def _on_interrupt(self, *_: Any) -> None:
+        self._cancel.value = 1
 
     def _on_progress(self, user: Any, given: Any) -> int:
         try:
@@ -104,7 +119,7 @@ class _Watcher:
                 sys.stderr.write(f"\r{label:<28.28} [{'#' * done}{'.' * (30 - done)}] t = {state.time:.3f} s, {100 * state.uplifted:.0f} % uplifted ")
                 sys.stderr.flush()
             return 0
-        except BaseException as error:  # Ctrl-C arrives here
+        except BaseException as error:
             return self._stop(error)
 
     def _on_step(self, user: Any, given: Any) -> int:
@@ -121,11 +136,11 @@ class _Watcher:
         return 1
 
     def finish(self) -> None:
-        """Clears the bar; raises what a function of the caller raised, but for Ctrl-C, which keeps the results."""
+        """Clears the bar; raises what a function of the caller raised."""
         if self._drawn:
             sys.stderr.write("\r" + " " * 100 + "\r")
             sys.stderr.flush()
-        if self.raised is not None and not isinstance(self.raised, KeyboardInterrupt):
+        if self.raised is not None:
             raise self.raised
 
 
@@ -232,7 +247,8 @@ class Case(Tables):
 
     def resolved(self) -> str:
         """The case with all default values, as TOML. Raises InputError."""
-        return _library.text_of("uplift_case_toml", self._handle().pointer)
+        case = self._handle()
+        return _library.text_of("uplift_case_toml", case.pointer)
 
     def save(self, path: Union[str, "os.PathLike[str]"]) -> None:
         """Writes the case as a file, which the program reads. An existing file is replaced when the new one is complete."""
@@ -262,12 +278,14 @@ class Case(Tables):
 
     def check(self) -> Dict[str, Any]:
         """What a run would compute: unknowns, frequencies, suggested step, time, memory, warnings. Raises InputError."""
-        made: Dict[str, Any] = json.loads(_library.text_of("uplift_case_check", self._handle().pointer))
+        case = self._handle()
+        made: Dict[str, Any] = json.loads(_library.text_of("uplift_case_check", case.pointer))
         return made
 
     def modes(self, count: int = 6) -> Dict[str, Any]:
         """Natural modes with the base bonded and with the base free."""
-        made: Dict[str, Any] = json.loads(_library.text_of("uplift_case_modes", self._handle().pointer, count))
+        case = self._handle()
+        made: Dict[str, Any] = json.loads(_library.text_of("uplift_case_modes", case.pointer, count))
         return made
 
     def _with_motions(self, motions: Sequence[Motion]) -> "Case":
@@ -287,7 +305,8 @@ class Case(Tables):
 
     def _analyse(self, function: str, watcher: _Watcher) -> _library.Handle:
         case = self._handle()
-        results = _library.Handle(function, "uplift_results_free", case.pointer, ctypes.byref(watcher.options))
+        with watcher:
+            results = _library.Handle(function, "uplift_results_free", case.pointer, ctypes.byref(watcher.options))
         watcher.finish()
         return results
 

@@ -25,7 +25,7 @@ def array_of(pointer: Any, count: int, owner: Any = None) -> "Array":
         return np.empty(0)
     buffer = (ctypes.c_double * count).from_address(ctypes.addressof(pointer.contents))
     buffer._owner = owner  # type: ignore[attr-defined]
-    made: Array = np.frombuffer(buffer, dtype=np.float64)
+    made: Array = np.frombuffer(memoryview(buffer), dtype=np.float64)
     made.flags.writeable = False
     return made
 
@@ -202,7 +202,7 @@ class Histories(Mapping[str, "Array"]):
 
             near = difflib.get_close_matches(name, self._columns, 1)
             raise KeyError(f"no history {name!r}" + (f"; did you mean {near[0]!r}?" if near else f"; there are {', '.join(self._columns)}"))
-        return array_of(*self._columns[name], owner=self._handle)
+        return array_of(self._columns[name][0], self._columns[name][1], self._handle)
 
     def __iter__(self) -> Iterator[str]:
         return iter(self._columns)

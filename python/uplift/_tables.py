@@ -669,7 +669,7 @@ class Tables:
         """
         self._add("variant", {"name": name, "label": label, "law": law, "interface": interface, "method": method, "impact": impact, "scheme": scheme, "traction": traction, "step": step, "expected": expected})
 
-    def compare(
+    def comparison(
         self,
         *,
         band: Optional[Quantity] = None,
@@ -689,7 +689,7 @@ class Tables:
         """
         self._set("compare", {"band": band, "agree_on": agree_on, "damping": damping, "motion": motion, "stiffness_sweep": stiffness_sweep})
 
-    def trust(
+    def trust_settings(
         self,
         *,
         stiffness_factor: Optional[Quantity] = None,

@@ -148,6 +148,7 @@ class Caller {
     return !stop_;
   }
   void show(const Snapshot& snapshot) {
+    if (stop_) return;
     const State& state = snapshot.state;
     const uplift_step given{state.time,
                             snapshot.step,

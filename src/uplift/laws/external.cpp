@@ -77,12 +77,14 @@ class ExternalLaw final : public InterfaceLaw {
       square += d[r] * d[r];
       work += half.traction[row(r)] * d[r];
     }
-    // below this the difference of the energies is round-off; the midpoint is as exact there
-    constexpr double shortest = 1e-12;  // m
-    const bool moves = square > shortest * shortest;
-    const double defect = moves ? (end.energy(i) - begin.energy(i) - work) / square : 0;
+    // what the work at the midpoint lacks; where that is round-off of the energies the midpoint is exact, as on every straight path
+    const double lacking = end.energy(i) - begin.energy(i) - work;
+    const double round_off =
+        32 * std::numeric_limits<double>::epsilon() * (std::abs(end.energy(i)) + std::abs(begin.energy(i)) + std::abs(work));
+    const bool bends = std::abs(lacking) > round_off;
+    const double defect = bends ? lacking / square : 0;
     double by_end[most] = {};  // d defect / d to
-    if (moves)
+    if (bends)
       for (int s = 0; s < c; ++s) {
         double midpoint = half.traction[row(s)];
         for (int r = 0; r < c; ++r) midpoint += 0.5 * half.slope[entry(r, s)] * d[r];

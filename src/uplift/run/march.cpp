@@ -198,7 +198,8 @@ bool Runner::dynamics(const Stage& stage, const Bulk& bulk) {
     show(stage, &stepper, 0, false);
   }
   bool go_on = true;
-  const long between = bulk.small ? 256 : 8;  // steps from one report of progress to the next
+  // steps from one report of progress to the next; an observer may want to end the run after any step
+  const long between = observe_ ? 1 : bulk.small ? 256 : 8;
   auto first_done = std::chrono::steady_clock::now();
   double shown_before = shown_;
   for (long step = 1; step <= steps && go_on; ++step) {

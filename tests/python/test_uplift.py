@@ -1,0 +1,295 @@
+"""The Python package on the library: python3 tests/python/test_uplift.py PROGRAM LIBRARY. Needs NumPy."""
+
+import json
+import os
+import pathlib
+import signal
+import subprocess
+import sys
+import tempfile
+import threading
+import unittest
+
+ROOT = pathlib.Path(__file__).resolve().parents[2]
+PROGRAM = os.path.abspath(sys.argv.pop(1))
+os.environ["UPLIFT_LIBRARY"] = os.path.abspath(sys.argv.pop(1))
+sys.path.insert(0, str(ROOT / "python"))
+
+import numpy as np  # noqa: E402
+
+import uplift as up  # noqa: E402
+
+K, SHEAR = 80e6, 60e6  # Pa/m
+
+
+def pier(law, duration="6 s"):
+    """The bridge pier of example 05 with another law."""
+    case = up.Case("pier")
+    case.node("deck", 0, 17)
+    case.node("base", 0, 1)
+    case.beam("column", ["base", "deck"], E="30 GPa", A="3.8 m2", I="0.7 m4", density="2500 kg/m3")
+    case.mass("deck", mass="600 t", inertia="6000 t m2")
+    case.rigid("footing", "base", mass="245 t", inertia="1080 t m2")
+    case.footing("underside", body="base", width="7 m", thickness="7 m", points=41, offset=[0, -1], law=law)
+    case.function("pulse", up.functions.ricker(frequency="0.8 Hz", delay="2 s"))
+    case.ground_acceleration([1, 0], amplitude="4 m/s2", function="pulse")
+    case.gravity()
+    case.damping(rayleigh=[(0.8, 0.03), (10, 0.03)])
+    case.static()
+    case.dynamic(duration, step="2 ms")
+    return case
+
+
+def soil():
+    return up.springs(K_n=K, K_t=SHEAR, tangential="bonded")
+
+
+class Cases(unittest.TestCase):
+    def test_a_loaded_case_gives_its_file_back(self):
+        for example in sorted((ROOT / "examples").glob("0*")):
+            self.assertEqual(up.load(example).to_toml(), (example / "case.toml").read_text())
+
+    def test_a_case_survives_the_tour_through_toml(self):
+        for example in sorted((ROOT / "examples").glob("0*")):
+            case = up.load(example)
+            resolved = case.resolved()
+            case.document  # from now on the text is written by the package
+            self.assertEqual(case.resolved(), resolved, example.name)
+
+    def test_what_is_refused_has_its_place(self):
+        case = pier(soil())
+        case.document["beam"][0]["E"] = "30 GPaa"
+        with self.assertRaises(up.InputError) as caught:
+            case.check()
+        line = case.to_toml().splitlines()[caught.exception.line - 1]
+        self.assertTrue(line.startswith("E = "), line)
+        self.assertEqual(line[caught.exception.column - 1:], '"30 GPaa"')
+        self.assertEqual(caught.exception.path, "beam[0].E")
+        self.assertIn('did you mean "GPa"', str(caught.exception))
+        with self.assertRaises(up.InputError) as caught:
+            up.parse("title = \nx", "t.toml")
+        self.assertEqual(caught.exception.line, 1)
+        with self.assertRaises(up.InputError):
+            up.load(ROOT / "no_such_case")
+        with self.assertRaises(TypeError):
+            pier(object()).to_toml()
+
+    def test_texts_with_every_character_survive(self):
+        title = "".join(chr(code) for code in list(range(1, 300)) + [0x1F30A]) + '"""\\'
+        case = up.Case(title)
+        self.assertEqual(up.parse(case.to_toml())._document["title"], title)
+
+    def test_saved_cases_are_complete(self):
+        with tempfile.TemporaryDirectory() as folder:
+            path = pathlib.Path(folder) / "case.toml"
+            pier(soil()).save(path)
+            self.assertEqual(os.listdir(folder), ["case.toml"])
+            checked = subprocess.run([PROGRAM, "check", str(path), "--json"], capture_output=True, text=True, check=True)
+            mine = pier(soil()).check()
+            self.assertEqual(json.loads(checked.stdout)["unknowns"], mine["unknowns"])
+            self.assertEqual(json.loads(checked.stdout)["suggested_step"], mine["suggested_step"])
+
+    def test_generated_modules_are_up_to_date(self):
+        subprocess.run([sys.executable, str(ROOT / "scripts" / "make_python.py"), PROGRAM, "--check"], check=True)
+
+
+class Runs(unittest.TestCase):
+    def test_results_are_those_of_the_program_bit_for_bit(self):
+        with tempfile.TemporaryDirectory() as folder:
+            out = pathlib.Path(folder) / "out"
+            subprocess.run([PROGRAM, "run", str(ROOT / "examples/05_bridge_pier"), "-q", "-o", str(out)], check=True)
+            run = up.load(ROOT / "examples/05_bridge_pier").run()
+            run.write(pathlib.Path(folder) / "mine")
+            self.assertEqual((out / "histories.csv").read_bytes(), (pathlib.Path(folder) / "mine" / "histories.csv").read_bytes())
+            theirs, mine = json.loads((out / "summary.json").read_text()), run.summary
+            self.assertEqual(theirs["verdict"]["interfaces"], mine["verdict"]["interfaces"])
+            self.assertEqual(theirs["verdict"]["numbers"], mine["verdict"]["numbers"])
+
+    def test_histories_are_views_that_keep_the_results(self):
+        moment = pier(soil()).run(step_check=False)["underside.moment"]
+        self.assertFalse(moment.flags.owndata)
+        with self.assertRaises(ValueError):
+            moment[0] = 1
+        self.assertGreater(abs(moment).max(), 1e6)  # the results would be gone if the view did not hold them
+
+    def test_verdict_and_energies(self):
+        run = pier(soil()).run()
+        base = run.verdict.bases["underside"]
+        self.assertEqual(base["max_moment"].unit, "N m")
+        self.assertAlmostEqual(run.verdict.uplift, float(run["underside.uplifted_ratio"].max()), delta=1e-12)
+        self.assertTrue(run.verdict.converged)
+        self.assertLess(abs(run.energy.residual), 1e-9 * run.energy.scale)
+        self.assertIsNotNone(base["max_moment"].bonded)
+        self.assertIn("report", run._repr_html_())
+        with self.assertRaisesRegex(KeyError, "did you mean 'underside.moment'"):
+            run["underside.momnt"]
+        with self.assertRaisesRegex(KeyError, "no floor"):
+            run.floor("roof")
+
+    def test_motions_take_the_place_of_the_loads(self):
+        case = pier(soil())
+        record = ROOT / "tests/data/records/tone_peer_new.AT2"
+        run = case.run(up.motion(record, pga="0.1 g_n"), step_check=False)
+        self.assertNotIn("record", case._document)
+        self.assertEqual([each["file"] for each in run.summary["motions"]], [str(record)])
+
+    def test_compare(self):
+        compared = up.load(ROOT / "examples/05_bridge_pier").compare("springs")
+        self.assertEqual([run.name for run in compared.runs], ["springs", "bonded"])
+        self.assertEqual(compared["springs"].time[0], 0)
+        self.assertEqual(compared.table[0]["status"], "completed")
+        with self.assertRaisesRegex(ValueError, "unknown variant"):
+            up.load(ROOT / "examples/05_bridge_pier").compare("sprngs")
+
+    def test_floor_spectrum_of_a_harmonic_motion(self):
+        # resonance of an undamped oscillator with sin(w t): x = (sin wt - wt cos wt)/(2 w^2), largest near the end of n periods
+        frequency, periods, step = 2.0, 5, 1e-3
+        w = 2 * np.pi * frequency
+        t = np.arange(0, periods / frequency + step / 2, step)
+        at, value = up.psa(np.sin(w * t), step, damping=0.0, frequencies=[frequency])
+        self.assertEqual(at[0], frequency)
+        exact = np.max(np.abs(np.sin(w * t) - w * t * np.cos(w * t))) / 2
+        self.assertAlmostEqual(value[0], exact, delta=2e-5 * exact)
+        with self.assertRaises(up.InputError):
+            up.psa([np.nan, 1], step)
+
+    def test_ctrl_c_keeps_the_results(self):
+        case = pier(soil(), "4000 s")
+        timer = threading.Timer(0.5, lambda: os.kill(os.getpid(), signal.SIGINT))
+        timer.start()
+        run = case.run(step_check=False, progress=False)
+        timer.join()
+        self.assertEqual(run.status, "interrupted")
+        self.assertGreater(run.time[-1], 1.0)
+
+    def test_what_a_step_function_raises_reaches_the_caller(self):
+        def fail(step):
+            raise ZeroDivisionError("mine")
+
+        with self.assertRaisesRegex(ZeroDivisionError, "mine"):
+            pier(soil()).run(step=fail)
+
+    def test_a_march_is_the_run(self):
+        whole = pier(soil()).run(step_check=False)
+        openings = []
+        with up.march(pier(soil())) as march:
+            for step in march:
+                if step.stage == 1:
+                    openings.append((step.time, step.opening[-1]))
+        self.assertEqual(len(openings), len(whole.time))
+        self.assertEqual([time for time, _ in openings], list(whole.time))
+        np.testing.assert_array_equal(march.results["deck.ux"], whole["deck.ux"])
+
+    def test_a_march_can_be_left(self):
+        march = up.march(pier(soil()))
+        for step in march:
+            if step.time > 1:
+                break
+        self.assertEqual(march.results.status, "interrupted")
+        self.assertLess(march.results.time[-1], 1.01)
+
+    def test_two_threads_give_what_one_gives(self):
+        alone = pier(soil()).run(step_check=False)["deck.ux"].copy()
+        made = []
+        threads = [threading.Thread(target=lambda: made.append(pier(soil()).run(step_check=False, progress=False))) for _ in range(4)]
+        for thread in threads:
+            thread.start()
+        for thread in threads:
+            thread.join()
+        for run in made:
+            np.testing.assert_array_equal(run["deck.ux"], alone)
+
+    def test_memory_does_not_grow(self):
+        case = pier(soil(), "0.2 s")
+
+        def resident():
+            return int(pathlib.Path("/proc/self/statm").read_text().split()[1]) * os.sysconf("SC_PAGESIZE")
+
+        for _ in range(100):
+            case.run(step_check=False, progress=False)
+        before = resident()
+        for _ in range(400):
+            case.run(step_check=False, progress=False)
+        self.assertLess(resident() - before, 1e6)
+
+
+class Laws(unittest.TestCase):
+    @staticmethod
+    def tensionless(start, end, memory, step):
+        """Springs that push and do not pull, elastic in shear: what `springs` with bonded shear is."""
+        shear, normal = end
+        traction = np.stack([SHEAR * shear, K * np.minimum(normal, 0)])
+        slope = np.stack([np.full_like(shear, SHEAR), np.where(normal < 0, K, 0.0)])
+        return traction, slope, memory, 0.5 * SHEAR * shear**2 + 0.5 * K * np.minimum(normal, 0) ** 2
+
+    def test_a_law_in_python_is_the_same_law(self):
+        theirs = pier(soil(), "4 s").run(step_check=False)
+        mine = pier(up.law(self.tensionless, K_n=K, K_t=SHEAR), "4 s").run(step_check=False)
+        self.assertGreater(theirs.verdict.uplift, 0.3)
+        for name in ("deck.ux", "underside.moment", "underside.shear", "underside.uplifted_ratio"):
+            # where a point closes within a step, the discrete gradient corrects along the increment, shear included, and the law of the
+            # library averages each component: a difference of the order of the step squared in few steps
+            self.assertLess(abs(theirs[name] - mine[name]).max() / abs(theirs[name]).max(), 5e-5, name)
+        self.assertLess(abs(mine.energy.residual), 1e-9 * mine.energy.scale)
+
+    def test_memory_and_dissipation(self):
+        """Springs that lose their stiffness with the largest opening: the ledger closes, and what is lost is in it."""
+        critical = 5e-3  # m
+
+        def softening(start, end, memory, step):
+            shear, normal = end
+            # damage follows the largest opening; the energy of the closed joint does not depend on it
+            largest = np.maximum(memory[0], np.maximum(normal, 0))
+            stiffness = 1e6 / (1 + largest / critical) ** 2
+            pull = np.maximum(normal, 0)
+            virgin = 1e6 * critical**2 * (np.log1p(largest / critical) + 1 / (1 + largest / critical) - 1)
+            stored = 0.5 * stiffness * pull**2 + 0.5 * K * np.minimum(normal, 0) ** 2 + 0.5 * SHEAR * shear**2
+            dissipated = virgin - 0.5 * stiffness * largest**2
+            traction = np.stack([SHEAR * shear, np.where(normal > 0, stiffness * normal, K * normal)])
+            growing = (normal > memory[0]) & (normal > 0)
+            slope_n = np.where(normal < 0, K, np.where(growing, 1e6 * (1 - normal / critical) / (1 + largest / critical) ** 3, stiffness))
+            return traction, np.stack([np.full_like(shear, SHEAR), slope_n]), largest[None], stored, dissipated
+
+        run = pier(up.law(softening, K_n=K, K_t=SHEAR, memory=1), "4 s").run(step_check=False)
+        self.assertEqual(run.status, "completed")
+        self.assertLess(abs(run.energy.residual), 1e-9 * run.energy.scale)
+        lost = run["energy.interface_dissipated"]
+        self.assertGreater(lost[-1], 0)
+        self.assertGreaterEqual(np.diff(lost).min(), -1e-9 * lost[-1])
+
+    def test_a_law_that_raises_fails_the_run(self):
+        def bad(start, end, memory, step):
+            raise RuntimeError("mine")
+
+        excepthook, sys.excepthook = sys.excepthook, lambda *_: None
+        try:
+            run = pier(up.law(bad, K_n=K, K_t=SHEAR)).run(step_check=False)
+        finally:
+            sys.excepthook = excepthook
+        self.assertEqual(run.status, "failed")
+
+    def test_the_program_refuses_such_a_law(self):
+        with tempfile.TemporaryDirectory() as folder:
+            case = pathlib.Path(folder) / "case.toml"
+            pier(up.law(self.tensionless, K_n=K, K_t=SHEAR, name="mine")).save(case)
+            done = subprocess.run([PROGRAM, "run", str(case), "-q", "-o", folder + "/out"], capture_output=True, text=True)
+            self.assertEqual(done.returncode, 2)
+            self.assertIn('"mine"', done.stderr)
+
+
+class Package(unittest.TestCase):
+    def test_import_needs_no_numpy_and_no_library(self):
+        code = "import sys; import uplift; sys.exit('numpy' in sys.modules or uplift._library._loaded is not None)"
+        subprocess.run([sys.executable, "-c", code], check=True, env={**os.environ, "PYTHONPATH": str(ROOT / "python")})
+
+    def test_the_module_is_the_program(self):
+        done = subprocess.run([sys.executable, "-m", "uplift", "--version"], capture_output=True, text=True, check=True,
+                              env={**os.environ, "PYTHONPATH": str(ROOT / "python"), "PATH": os.path.dirname(PROGRAM) + ":" + os.environ["PATH"]})
+        self.assertEqual(done.stdout.strip(), up.version())
+
+    def test_help_says_units_and_ranges(self):
+        self.assertIn("normal stiffness in compression [Pa/m], > 0 Pa/m", up.springs.__doc__)
+        self.assertIn("width of the footing [m], > 0 m", up.Case.footing.__doc__)
+
+
+unittest.main()
