@@ -6,6 +6,7 @@
 #include <numbers>
 
 #include "unit/elements/solid_support.h"
+#include "uplift/elements/bulk_laws/drucker_prager.h"
 #include "uplift/math/dense.h"
 
 namespace uplift {
@@ -23,7 +24,7 @@ DruckerPragerParameters clay(double cohesion, double dilation) {
 
 NonlinearSolid yielding(const SolidKind& kind, const std::vector<Vec3>& positions, const DruckerPragerParameters& law) {
   return NonlinearSolid(kind.cell, first_numbers(info(kind.cell).nodes), std::make_shared<const std::vector<Vec3>>(positions),
-                        section_of(kind), law);
+                        section_of(kind), std::make_shared<const DruckerPrager>(law));
 }
 
 std::vector<SolidKind> nonlinear_kinds() {
@@ -42,7 +43,7 @@ Vector random_displacement(Index n, double size, std::mt19937& random) {
 
 double accumulated(const NonlinearSolid& solid, const std::vector<double>& history) {
   double sum = 0;
-  for (int p = 0; p < solid.num_points(); ++p) sum += history[static_cast<std::size_t>(p * DruckerPrager::num_history + 6)];
+  for (int p = 0; p < solid.num_points(); ++p) sum += history[static_cast<std::size_t>(p * DruckerPrager::history_size + 6)];
   return sum;
 }
 
@@ -94,7 +95,7 @@ TEST(SolidNonlinear, TangentIsTheFiniteDifferenceOfTheForce) {
         const auto status = [&](const std::vector<double>& of) {
           std::vector<bool> yields;
           for (int p = 0; p < solid.num_points(); ++p) {
-            const auto at = static_cast<std::size_t>(p * DruckerPrager::num_history + 6);
+            const auto at = static_cast<std::size_t>(p * DruckerPrager::history_size + 6);
             yields.push_back(of[at] > old[at]);
           }
           return yields;
@@ -131,8 +132,8 @@ TEST(SolidNonlinear, UniformStrainGivesThePointsStress) {
     Vector force;
     ASSERT_TRUE(solid.respond(linear_field(positions, d, g), old, now, scratch, force, nullptr).converged) << kind.name;
     ASSERT_GT(accumulated(solid, now), 0) << kind.name;
-    const std::vector<double> zero(DruckerPrager::num_history, 0.0);
-    std::vector<double> point(DruckerPrager::num_history);
+    const std::vector<double> zero(DruckerPrager::history_size, 0.0);
+    std::vector<double> point(DruckerPrager::history_size);
     const Stress s = DruckerPrager(p).respond(strain, zero, point, nullptr);
     for (const Stress& at_node : solid.node_stress(linear_field(positions, d, g), now))
       EXPECT_LE((at_node - s).norm(), 1e-11 * s.norm()) << kind.name;
@@ -195,8 +196,8 @@ TEST(SolidNonlinear, WorkIsStoredEnergyAndDissipation) {
       work += (force + before).dot(next - u) / 2;
       const auto stress = solid.point_stress(next, now);
       for (std::size_t i = 0; i < stress.size(); ++i) {
-        const double* was = old.data() + i * DruckerPrager::num_history;
-        const double* is = now.data() + i * DruckerPrager::num_history;
+        const double* was = old.data() + i * DruckerPrager::history_size;
+        const double* is = now.data() + i * DruckerPrager::history_size;
         dissipated += solid.volume() / solid.num_points() * (stress[i] + stress_before[i]).dot(ConstMap(is, 6) - ConstMap(was, 6)) / 2;
       }
       before = force;

@@ -8,6 +8,7 @@
 #include "unit/elements/solid_support.h"
 #include "uplift/case/case.h"
 #include "uplift/dynamics/statics.h"
+#include "uplift/elements/bulk_laws/drucker_prager.h"
 #include "uplift/elements/solid_nonlinear.h"
 #include "uplift/io/fields/run_frames.h"
 #include "uplift/io/text/toml.h"
@@ -331,7 +332,7 @@ TEST(PlasticSolid, YieldedForceAndEnergyAreWhatTheLinearSolidLacks) {
     if (kind.plane != PlaneState::strain) continue;
     const auto positions = distorted_nodes(kind.cell, 0.1, random);
     const NonlinearSolid solid(kind.cell, first_numbers(info(kind.cell).nodes), std::make_shared<const std::vector<Vec3>>(positions),
-                               section_of(kind), law);
+                               section_of(kind), std::make_shared<const DruckerPrager>(law));
     std::uniform_real_distribution<double> uniform(-1e-3, 1e-3);
     NonlinearSolid::Scratch scratch;
     Vector u0(solid.unknowns()), u1(solid.unknowns()), f0, f1;
@@ -347,8 +348,8 @@ TEST(PlasticSolid, YieldedForceAndEnergyAreWhatTheLinearSolidLacks) {
     EXPECT_FALSE(solid.has_yielded(natural));
     Matrix k;
     solid.form({&k, nullptr, nullptr});
-    NonlinearSolid::Yielded part;
-    solid.find_yielded(now, scratch, part);
+    Inelastic part;
+    solid.find_inelastic(now, scratch, part);
     EXPECT_LE((k * u1 + part.force - f1).norm(), 1e-10 * f1.norm()) << kind.name;
     const double stored = solid.stored_energy(u1, now);
     EXPECT_NEAR(u1.dot(k * u1) / 2 + u1.dot(part.force) + part.energy, stored, 1e-10 * stored) << kind.name;
