@@ -80,7 +80,8 @@ density = 1900
   text += "[[support]]\ngroup = \"soil_left\"\nfixed = [\"ux\"]\n";
   if (space) text += "[[support]]\ngroup = \"soil_front\"\nfixed = [\"uy\"]\n";
   text += "[[load]]\nname = \"press\"\ngroup = \"soil_top\"\ntraction = [" + std::string(space ? "0, 0, " : "0, ") +
-          std::to_string(-pressure) + "]\n[[stage]]\ntype = \"static\"\n[output.fields]\nformat = \"vtu\"\nquantities = [\"stress\"]\n";
+          std::to_string(-pressure) +
+          "]\n[[stage]]\ntype = \"static\"\n[output.fields]\nformat = \"vtu\"\nquantities = [\"stress\", \"plastic_strain\"]\n";
   return prepared(text, &cube);
 }
 
@@ -130,7 +131,10 @@ TEST(PlasticRun, UniaxialCompressionHardensByTheClosedForm) {
       ASSERT_TRUE(rest.outcome.converged) << rest.outcome.why;
       EXPECT_NEAR(settlement(made.built, rest.state), expected, 1e-8 * -expected) << psi;
       const RunFrames frames(made.read->values.table("output").table("fields"), *made.read, made.built);
-      const std::vector<double> stress = frames.of(rest.state, nullptr, {}, 0).blocks.front().points.front().values;
+      const std::vector<FieldValues> fields = frames.of(rest.state, nullptr, {}, 0).blocks.front().points;
+      const std::vector<double>& stress = fields.front().values;
+      ASSERT_EQ(fields.back().name, "plastic_strain");
+      for (const double value : fields.back().values) EXPECT_NEAR(value, accumulated, 1e-7 * accumulated);
       for (std::size_t i = 0; i < stress.size(); ++i) EXPECT_NEAR(stress[i], i % 6 == 2 ? -q : 0, 1e-8 * q);
     }
   }
@@ -318,6 +322,24 @@ TEST(PlasticRun, RefusesWhatTheLawCannotBe) {
   EXPECT_NE(refused(soil(0, 0, 0)).find("above 0 Pa"), std::string::npos);
   EXPECT_NE(refused("plane = \"stress\"\n" + soil(0.4, 0)).find("plane = \"strain\""), std::string::npos);
   EXPECT_NE(refused("plasticity = { type = \"cam_clay\" }").find("drucker_prager"), std::string::npos);
+  EXPECT_NE(refused("law = { type = \"druker_prager\" }").find("did you mean \"drucker_prager\""), std::string::npos);
+  EXPECT_NE(refused("law = { cohesion = 1e4, friction_angle = 0.5 }").find("law.type"), std::string::npos);
+  EXPECT_NE(refused("law = \"elastic\"\n" + soil(0.4, 0)).find("either law or plasticity"), std::string::npos);
+}
+
+TEST(PlasticRun, LawAndItsOlderNameAreTheSame) {
+  const std::string parameters = "cohesion = 2e4, friction_angle = 0.4, dilatancy_angle = 0.1 }\n";
+  const auto pushed = [](const std::string& law) {
+    const Prepared made = prepared(block_on_soil(law, springs, static_push));
+    return rest_of(made.built, 5, {});
+  };
+  const Rest named = pushed("law = { type = \"drucker_prager\", " + parameters), older = pushed("plasticity = { " + parameters),
+             elastic = pushed("law = \"elastic\"\n"), absent = pushed("");
+  ASSERT_TRUE(named.outcome.converged && older.outcome.converged && elastic.outcome.converged && absent.outcome.converged);
+  EXPECT_EQ(named.state.displacement, older.state.displacement);
+  EXPECT_EQ(elastic.state.displacement, absent.state.displacement);
+  EXPECT_FALSE(named.state.bulk_history.empty());
+  EXPECT_TRUE(elastic.state.bulk_history.empty());
 }
 
 TEST(PlasticSolid, YieldedForceAndEnergyAreWhatTheLinearSolidLacks) {
