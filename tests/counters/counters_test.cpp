@@ -7,6 +7,7 @@
 #include "property/oracle_models.h"
 #include "unit/elements/solid_support.h"
 #include "uplift/dynamics/bulk.h"
+#include "uplift/elements/bulk_laws/drucker_prager.h"
 #include "uplift/elements/solid_nonlinear.h"
 
 // What a run costs in operations that can be counted: factorisations, back-solves, allocations.
@@ -171,23 +172,23 @@ TEST(Counters, NoAllocationOfYieldingSolids) {
     std::vector<int> nodes;
     auto positions = std::make_shared<std::vector<Vec3>>();
     for (int a = 0; a < info(cell).nodes; ++a) nodes.push_back(a), positions->push_back(local_node(cell, a));
-    const NonlinearSolid solid(cell, nodes, positions, SolidSection{}, law);
+    const NonlinearSolid solid(cell, nodes, positions, SolidSection{}, std::make_shared<const DruckerPrager>(law));
     std::vector<double> natural(static_cast<std::size_t>(solid.num_history()), 0.0), old = natural, now = natural;
     NonlinearSolid::Scratch scratch;
-    NonlinearSolid::Yielded yielded;
+    Inelastic yielded;
     Vector force, wave(solid.unknowns());
     for (Index i = 0; i < wave.size(); ++i) wave[i] = std::sin(2.0 * static_cast<double>(i + 1));
     for (std::size_t a = 0; a < positions->size(); ++a)  // sheared
       wave[solid.dimension() * static_cast<Index>(a)] += 3 * (*positions)[a].y();
     ASSERT_TRUE(solid.respond(wave * 1e-2, natural, old, scratch, force, nullptr).converged);
     ASSERT_TRUE(solid.has_yielded(old));
-    solid.find_yielded(old, scratch, yielded);
+    solid.find_inelastic(old, scratch, yielded);
     for (const double size : {0.0, 1e-6, 3e-3, 3e-2, -3e-2}) {
       const Vector displacement = size * wave;
       allocations = 0;
       counting = true;
       const bool good = solid.respond(displacement, old, now, scratch, force, nullptr).converged;
-      solid.find_yielded(now, scratch, yielded);
+      solid.find_inelastic(now, scratch, yielded);
       counting = false;
       EXPECT_TRUE(good);
       EXPECT_EQ(allocations, 0) << info(cell).name << ", " << size;

@@ -5,31 +5,15 @@
 #include <limits>
 #include <optional>
 
+#include "property/random_parts.h"
 #include "unit/laws/laws_support.h"
 
 // Properties of every law in the catalog. Parameters are drawn from the law's own declaration, so that a new law is tested before its
 // author writes a test.
 namespace uplift {
 using namespace law_test;
+using namespace random_parts;
 namespace {
-
-/// An integer from a to b - 1, evenly spread whatever rapidcheck's size is (it would begin with small ones), and not shrunk: a failure
-/// prints the law and the seed, and a path of many numbers takes minutes to shrink.
-int integer_in(int a, int b) {
-  return *rc::gen::noShrink(rc::gen::resize(rc::kNominalSize, rc::gen::inRange(a, b)));
-}
-double unit() {
-  return integer_in(0, 1000001) / 1e6;
-}
-double between(double a, double b) {
-  return a + (b - a) * unit();
-}
-double magnitude(double a, double b) {
-  return std::exp(between(std::log(a), std::log(b)));
-}
-bool one_in(int n) {
-  return integer_in(0, n) == 0;
-}
 
 /// A usual size of a quantity, by its unit.
 double usual(std::string_view unit_name) {
@@ -41,48 +25,22 @@ double usual(std::string_view unit_name) {
   return unit();
 }
 
-double random_number(const Field& field) {
-  if (field.least == 0 && !field.least_excluded && one_in(5)) return 0;
-  const double value = field.most <= 0 ? -usual(field.unit) : usual(field.unit);
-  return std::clamp(value, field.least, field.most);
-}
-
 struct Law {
   std::vector<Parameter> parameters;
   std::shared_ptr<const InterfaceLaw> law;
   std::string tangential;
 };
 
-/// A law with random parameters within their bounds; sets that the law itself refuses are drawn again.
+/// A law with random parameters within their bounds.
 Law random_law(const Entry<InterfaceLaw>& entry) {
-  for (int trial = 0; trial < 1000; ++trial) {
-    Law made;
-    for (const Field& field : entry.params) {
-      if (!field.required && one_in(2)) continue;
-      if (field.kind == Kind::choice)
-        made.parameters.emplace_back(
-            std::string(field.name),
-            std::string(field.choices[static_cast<std::size_t>(integer_in(0, static_cast<int>(field.choices.size())))]));
-      else if (field.kind == Kind::number)
-        made.parameters.emplace_back(std::string(field.name), random_number(field));
-    }
-    try {
-      const Values values = checked(std::string(entry.name), made.parameters);
-      made.tangential = values.text("tangential");
-      made.law = make_part(law_catalog(), values);
-      return made;
-    } catch (const InputError&) {
-    }
-  }
-  throw std::runtime_error("no random parameters suit this law");
+  return random_part<Law>(entry, usual, [&](const std::vector<Parameter>& parameters) {
+    const Values values = checked(std::string(entry.name), parameters);
+    return Law{parameters, make_part(law_catalog(), values), values.text("tangential")};
+  });
 }
 
 std::string shown(const Entry<InterfaceLaw>& entry, const Law& law) {
-  std::string text(entry.name);
-  for (const auto& [key, value] : law.parameters)
-    text +=
-        " " + key + "=" + (std::holds_alternative<double>(value) ? std::to_string(std::get<double>(value)) : std::get<std::string>(value));
-  return text;
+  return random_parts::shown(entry, law.parameters);
 }
 
 /// Openings of one point; the normal one reaches from compression to wide open.

@@ -140,7 +140,7 @@ class Checker {
     return values;
   }
 
-  static Values part(const Raw& raw, std::span<const PartInfo* const> catalog) {
+  static Values part(const Raw& raw, std::span<const PartInfo* const> catalog, std::string_view standard = {}) {
     static const RawTable empty;
     std::vector<std::string> names;
     for (const PartInfo* info : catalog) names.emplace_back(info->name);
@@ -153,6 +153,8 @@ class Checker {
     const RawTable* table = table_of(raw);
     if (!word && !table) throw InputError(raw.where, raw.path, wanted(), found_text(raw));
     const Raw* type = table ? table->find("type") : &raw;
+    const Raw unnamed{std::string(standard), raw.where, joined(raw.path, "type")};
+    if (!type && !standard.empty()) type = &unnamed;
     if (!type) throw InputError(raw.where, joined(raw.path, "type"), wanted(), "nothing");
     const auto* name = std::get_if<std::string>(&type->data);
     if (!name) throw InputError(type->where, type->path, wanted(), found_text(*type));
@@ -246,7 +248,7 @@ class Checker {
         item.data = named_of(raw, field);
         break;
       case Kind::part:
-        item.data = std::vector<Values>{part(raw, field.parts())};
+        item.data = std::vector<Values>{part(raw, field.parts(), field.type)};
         break;
     }
     return item;
@@ -332,8 +334,8 @@ class Checker {
 Values check(const Raw& raw, const Section& section) {
   return Checker::section(raw, section);
 }
-Values check_part(const Raw& raw, std::span<const PartInfo* const> catalog) {
-  return Checker::part(raw, catalog);
+Values check_part(const Raw& raw, std::span<const PartInfo* const> catalog, std::string_view type) {
+  return Checker::part(raw, catalog, type);
 }
 
 }  // namespace uplift

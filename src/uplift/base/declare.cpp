@@ -113,6 +113,12 @@ Field Field::or_word(std::string_view word) const {
   field.words.push_back(word);
   return field;
 }
+Field Field::standard_type(std::string_view part) const {
+  assert(kind == Kind::part);
+  Field field = *this;
+  field.type = part;
+  return field;
+}
 
 // ---- kinds ----
 

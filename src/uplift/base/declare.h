@@ -58,6 +58,7 @@ struct Field {
   std::vector<std::string_view> choices;                  // Kind::choice
   const Section* section = nullptr;                       // Kind::table, tables, named
   std::span<const PartInfo* const> (*parts)() = nullptr;  // Kind::part: the catalog
+  std::string_view type = {};                             // Kind::part: what a table without `type` is; empty: refused
   int size = 0, most_size = 0;                            // Kind::numbers: length from, to; 0 = any
   std::vector<std::string_view> words = {};               // Kind::number: words taken instead of a number (e.g. "rigid")
 
@@ -70,8 +71,9 @@ struct Field {
   Field standard(int value) const;
   Field standard(bool value) const;
   Field standard(const char* value) const;
-  Field optional() const;                      // may be absent, no default
-  Field or_word(std::string_view word) const;  // Kind::number that may also be this word
+  Field optional() const;                            // may be absent, no default
+  Field or_word(std::string_view word) const;        // Kind::number that may also be this word
+  Field standard_type(std::string_view name) const;  // Kind::part: a table may leave `type` out
 };
 
 Field number(std::string_view name, std::string_view unit, std::string_view meaning);
@@ -150,11 +152,18 @@ class Values {
   const PartInfo* part_ = nullptr;
 };
 
+/// Throws the InputError of a key of a table, or with an empty key of the table itself.
+[[noreturn]] void fail(const Values& table, std::string_view key, const std::string& wanted, const std::string& found,
+                       const std::string& nearest = {});
+/// Exactly one of two keys must be given: whether it is the first.
+bool first_of_two(const Values& table, std::string_view first, std::string_view second);
+
 /// Checks a table against its declaration: unknown keys (with the nearest name), missing keys, kinds, units and dimensions, bounds.
 /// Throws InputError. The values keep a pointer to the declaration. Numbers may be written bare (SI) or as text with a unit ("20000 MPa").
 Values check(const Raw& raw, const Section& section);
 /// The same for a part: a table with `type = "name"`, or the bare name when no parameter is needed.
-Values check_part(const Raw& raw, std::span<const PartInfo* const> catalog);
+/// `type`: what a table that does not name one is; empty: it is refused.
+Values check_part(const Raw& raw, std::span<const PartInfo* const> catalog, std::string_view type = {});
 
 /// The checked table as TOML text, defaults filled in, SI numbers with their unit as a comment: reading it again gives the same values.
 std::string to_toml(const Values& values);

@@ -13,7 +13,7 @@ using Json = nlohmann::ordered_json;
 
 constexpr const char* number_pattern = R"([ \t]*[-+]?([0-9]|\.[0-9]).*)";
 
-Json object_of(const std::vector<Field>& fields, std::string_view type = {});
+Json object_of(const std::vector<Field>& fields, std::string_view type = {}, bool names_type = true);
 
 void add_bounds(Json& schema, const Field& field) {
   if (std::isfinite(field.least)) schema[field.least_excluded ? "exclusiveMinimum" : "minimum"] = field.least;
@@ -47,7 +47,7 @@ Json part_of(const Field& field) {
     bool needs = false;
     for (const Field& parameter : info->params) needs = needs || parameter.required;
     if (!needs) names.push_back(info->name);
-    Json alternative = object_of(info->params, info->name);
+    Json alternative = object_of(info->params, info->name, info->name != field.type);
     alternative["description"] = info->summary;
     alternatives.push_back(std::move(alternative));
   }
@@ -116,11 +116,11 @@ bool must_be_given(const Field& field) {
   return false;
 }
 
-Json object_of(const std::vector<Field>& fields, std::string_view type) {
+Json object_of(const std::vector<Field>& fields, std::string_view type, bool names_type) {
   Json properties = Json::object(), required = Json::array();
   if (!type.empty()) {
     properties["type"] = {{"const", type}};
-    required.push_back("type");
+    if (names_type) required.push_back("type");
   }
   for (const Field& field : fields) {
     properties[std::string(field.name)] = schema_of(field);

@@ -74,4 +74,15 @@ std::string Values::path(std::string_view key) const {
   return path_.empty() ? std::string(key) : path_ + "." + std::string(key);
 }
 
+void fail(const Values& table, std::string_view key, const std::string& wanted, const std::string& found, const std::string& nearest) {
+  throw InputError(table.where(key), table.path(key), wanted, found, nearest);
+}
+
+bool first_of_two(const Values& table, std::string_view first, std::string_view second) {
+  const bool a = table.has(first), b = table.has(second);
+  const std::string wanted = "either " + std::string(first) + " or " + std::string(second);
+  if (a == b) fail(table, a ? second : "", wanted, a ? "both" : "neither");
+  return a;
+}
+
 }  // namespace uplift

@@ -8,6 +8,8 @@
 #include "uplift/contact/impact/impact.h"
 #include "uplift/contact/method.h"
 #include "uplift/dynamics/scheme.h"
+#include "uplift/elements/bulk_law.h"
+#include "uplift/elements/element_entry.h"
 #include "uplift/laws/law.h"
 #include "uplift/linear/solver.h"
 #include "uplift/model/function.h"
@@ -26,6 +28,8 @@ struct Family {
 
 std::vector<Family> families() {
   return {{"law", "what an interface does: traction laws, and cones (contact by constraint)", interface_behaviours()},
+          {"bulk_law", "what a solid is made of: stress from strain", bulk_laws()},
+          {"element", "elements on named nodes: tables [[spring]], [[dashpot]], ...", element_kinds()},
           {"method", "how the interface problem of a step is solved", contact_methods()},
           {"impact", "velocity corrections on impact, for constraints", impact_rules()},
           {"scheme", "time integration", schemes()},

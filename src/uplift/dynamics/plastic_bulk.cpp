@@ -6,23 +6,23 @@ namespace uplift {
 
 PlasticBulk::PlasticBulk(const Model& model) : model_(model) {
   for (const auto& element : model.elements)
-    if (const auto* solid = dynamic_cast<const NonlinearSolid*>(element.get()); solid != nullptr) {
-      solids_.push_back({solid, history_});
-      history_ += static_cast<std::size_t>(solid->num_history());
+    if (const int size = element->num_history(); size > 0) {
+      elements_.push_back({element.get(), history_});
+      history_ += static_cast<std::size_t>(size);
     }
   if (any()) spread_ = model.expansion.cwiseAbs();
 }
 
-void PlasticBulk::of_element(const NonlinearSolid& solid, const Vector& full, Vector& result) const {
-  result.resize(solid.unknowns());
-  const int each = solid.unknowns_per_node();
+void PlasticBulk::of_element(const Element& element, const Vector& full, Vector& result) const {
+  result.resize(element.unknowns());
+  const int each = element.unknowns_per_node();
   Index i = 0;
-  for (const int node : solid.nodes())
+  for (const int node : element.nodes())
     for (int c = 0; c < each; ++c) result[i++] = full[model_.space.unknowns() * node + c];
 }
 
 std::span<const double> PlasticBulk::history_of(const One& one, const std::vector<double>& all) const {
-  return std::span(all).subspan(one.first, static_cast<std::size_t>(one.solid->num_history()));
+  return std::span(all).subspan(one.first, static_cast<std::size_t>(one.element->num_history()));
 }
 
 void PlasticBulk::clear(PlasticState& state) const {
@@ -30,12 +30,12 @@ void PlasticBulk::clear(PlasticState& state) const {
   state.energy = 0;
 }
 
-void PlasticBulk::add_yielded(const NonlinearSolid& solid, PlasticState& state) const {
-  const int each = solid.unknowns_per_node();
+void PlasticBulk::add_inelastic(const Element& element, PlasticState& state) const {
+  const int each = element.unknowns_per_node();
   Index i = 0;
-  for (const int node : solid.nodes())
-    for (int c = 0; c < each; ++c) state.full[model_.space.unknowns() * node + c] += scratch_.yielded.force[i++];
-  state.energy += scratch_.yielded.energy;
+  for (const int node : element.nodes())
+    for (int c = 0; c < each; ++c) state.full[model_.space.unknowns() * node + c] += scratch_.inelastic.force[i++];
+  state.energy += scratch_.inelastic.energy;
 }
 
 PlasticState PlasticBulk::state(std::vector<double> history) const {
@@ -44,11 +44,11 @@ PlasticState PlasticBulk::state(std::vector<double> history) const {
   if (made.history.empty()) made.history.assign(history_, 0.0);
   assert(made.history.size() == history_);
   clear(made);
-  for (const One& one : solids_) {
+  for (const One& one : elements_) {
     const auto history_of_one = history_of(one, made.history);
-    if (!one.solid->has_yielded(history_of_one)) continue;
-    one.solid->find_yielded(history_of_one, scratch_.points, scratch_.yielded);
-    add_yielded(*one.solid, made);
+    if (!one.element->has_yielded(history_of_one)) continue;
+    one.element->find_inelastic(history_of_one, scratch_.element, scratch_.inelastic);
+    add_inelastic(*one.element, made);
   }
   made.force = model_.expansion * made.full;
   return made;
@@ -61,19 +61,19 @@ BulkResponse PlasticBulk::respond(const Vector& displacement, MotionInstant at, 
   sizes.setZero(full.size());
   now.history.resize(history_);
   clear(now);
-  for (const One& one : solids_) {
-    of_element(*one.solid, full, scratch_.displacement);
-    const auto history = std::span(now.history).subspan(one.first, static_cast<std::size_t>(one.solid->num_history()));
+  for (const One& one : elements_) {
+    of_element(*one.element, full, scratch_.displacement);
+    const auto history = std::span(now.history).subspan(one.first, static_cast<std::size_t>(one.element->num_history()));
     const BulkResponse response =
-        one.solid->respond(scratch_.displacement, history_of(one, old), history, scratch_.points, scratch_.force, nullptr);
+        one.element->respond(scratch_.displacement, history_of(one, old), history, scratch_.element, scratch_.force, nullptr);
     if (!response.converged) return response;
-    const int each = one.solid->unknowns_per_node();
+    const int each = one.element->unknowns_per_node();
     Index i = 0;
-    for (const int node : one.solid->nodes())
+    for (const int node : one.element->nodes())
       for (int c = 0; c < each; ++c) sizes[model_.space.unknowns() * node + c] += std::abs(scratch_.force[i++]);
-    if (!one.solid->has_yielded(history)) continue;
-    one.solid->find_yielded_of_response(history, scratch_.points, scratch_.yielded);
-    add_yielded(*one.solid, now);
+    if (!one.element->has_yielded(history)) continue;
+    one.element->find_inelastic_of_response(history, scratch_.element, scratch_.inelastic);
+    add_inelastic(*one.element, now);
   }
   now.force = model_.expansion * now.full;
   size = spread_ * sizes;
@@ -85,16 +85,16 @@ Sparse PlasticBulk::softening(const Vector& displacement, MotionInstant at, cons
   std::vector<Triplet> entries;
   std::vector<double> unused;
   Matrix tangent, elastic;
-  for (const One& one : solids_) {
+  for (const One& one : elements_) {
     const auto before = history_of(one, old);
-    if (!one.solid->yields(before, history_of(one, now.history))) continue;
+    if (!one.element->yields(before, history_of(one, now.history))) continue;
     unused.assign(before.begin(), before.end());
-    of_element(*one.solid, full, scratch_.displacement);
-    if (!one.solid->respond(scratch_.displacement, before, unused, scratch_.points, scratch_.force, &tangent).converged) continue;
-    one.solid->form({&elastic, nullptr, nullptr});
+    of_element(*one.element, full, scratch_.displacement);
+    if (!one.element->respond(scratch_.displacement, before, unused, scratch_.element, scratch_.force, &tangent).converged) continue;
+    one.element->form({&elastic, nullptr, nullptr});
     tangent = (0.5 * (tangent + tangent.transpose()) - elastic).eval();
-    const auto nodes = one.solid->nodes();
-    const int each = one.solid->unknowns_per_node();
+    const auto nodes = one.element->nodes();
+    const int each = one.element->unknowns_per_node();
     const auto unknown = [&](Index i) {
       return model_.space.unknowns() * nodes[static_cast<std::size_t>(i / each)] + static_cast<int>(i % each);
     };
@@ -115,12 +115,12 @@ double PlasticBulk::dissipated(const Vector& from, MotionInstant before, const P
   const Vector u0 = model_.full(from, 0, before), u1 = model_.full(to, 0, after);
   Vector from_element, to_element;
   double sum = 0;
-  for (const One& one : solids_) {
+  for (const One& one : elements_) {
     const auto was = history_of(one, old.history), is = history_of(one, now.history);
-    if (!one.solid->yields(was, is)) continue;
-    of_element(*one.solid, u0, from_element);
-    of_element(*one.solid, u1, to_element);
-    sum += one.solid->dissipated(from_element, was, to_element, is);
+    if (!one.element->yields(was, is)) continue;
+    of_element(*one.element, u0, from_element);
+    of_element(*one.element, u1, to_element);
+    sum += one.element->dissipated(from_element, was, to_element, is);
   }
   return sum;
 }

@@ -3,24 +3,24 @@
 #include <utility>
 #include <vector>
 
-#include "uplift/elements/solid_nonlinear.h"
+#include "uplift/elements/scratch.h"
 #include "uplift/model/model.h"
 
 namespace uplift {
 
 /// What yielding adds to the linear bulk at one state: the internal force is K u + force.
 struct PlasticState {
-  std::vector<double> history;  // of all yielding solids
+  std::vector<double> history;  // of all elements with memory
   Vector full, force;           // N: on the full unknowns, on the free ones
   double energy = 0;            // J
 };
 
-/// The solids of a model that can yield (NonlinearSolid). Their elastic part is in the model's matrices.
+/// The elements of a model that have a memory, as solids that can yield. Their linear part is in the model's matrices.
 class PlasticBulk {
  public:
   /// Refers to the model, which must stay alive.
   explicit PlasticBulk(const Model& model);
-  bool any() const { return !solids_.empty(); }
+  bool any() const { return !elements_.empty(); }
   std::size_t num_history() const { return history_; }
   /// The state of an accepted history; an empty one is the natural state.
   PlasticState state(std::vector<double> history) const;
@@ -40,23 +40,23 @@ class PlasticBulk {
 
  private:
   struct One {
-    const NonlinearSolid* solid;
+    const Element* element;
     std::size_t first;  // of its history
   };
-  void of_element(const NonlinearSolid& solid, const Vector& full, Vector& result) const;
+  void of_element(const Element& element, const Vector& full, Vector& result) const;
   std::span<const double> history_of(const One& one, const std::vector<double>& all) const;
-  /// Adds the part scratch_.yielded of a solid.
-  void add_yielded(const NonlinearSolid& solid, PlasticState& state) const;
+  /// Adds the part scratch_.inelastic of an element.
+  void add_inelastic(const Element& element, PlasticState& state) const;
   void clear(PlasticState& state) const;
 
   const Model& model_;
-  std::vector<One> solids_;
+  std::vector<One> elements_;
   std::size_t history_ = 0;
   Sparse spread_;  // |T|^T: free x full
   /// Room for one element at a time. An object of this class serves one thread.
   struct Scratch {
-    NonlinearSolid::Scratch points;
-    NonlinearSolid::Yielded yielded;
+    ElementScratch element;
+    Inelastic inelastic;
     Vector displacement, force, sizes;
   };
   mutable Scratch scratch_;

@@ -28,6 +28,12 @@ Beam::Beam(int a, int b, Vec2 position_a, Vec2 position_b, BeamSection section)
   }
 }
 
+Mat3 Beam::axes() const {
+  Mat3 axes = Mat3::Identity();
+  axes.topLeftCorner<2, 2>() = axes_.topLeftCorner<2, 2>();
+  return axes;
+}
+
 Matrix Beam::to_global(const Matrix& local) const {
   return axes_.transpose() * local * axes_;
 }

@@ -19,15 +19,6 @@ struct BeamSection {
   double shear_ratio(double length) const { return 12 * bending / (shear * length * length); }
 };
 
-/// The section forces at one position of a beam as linear functions of its end unknowns, global axes:
-///   stiffness (u + beta v) + N0 geometric u + mass (a + alpha v)
-/// with the absolute acceleration less that of gravity, Rayleigh's alpha and beta and the axial force N0 of P-Delta (docs/theory, section
-/// 13). Rows: what the part beyond the section, towards b, exerts on the part before it, in local axes. Plane: N, V, M; space: N, V_y, V_z,
-/// T, M_y, M_z. Tension > 0; V along the local axes; T and M right-handed about them, so that dM_z/dx = -V_y and M_z = E I w''.
-struct SectionRows {
-  Matrix stiffness, geometric, mass;
-};
-
 /// Plane beam with two nodes, exact in statics for end loads (Euler-Bernoulli and Timoshenko: Przemieniecki 1968, sections 5.6 and 11.4).
 ///
 /// In local axes (x from a to b, y to the left of it), with phi of BeamSection and EI' = EI / (1 + phi):
@@ -48,11 +39,13 @@ class Beam : public Element {
   void geometric(double axial, Matrix& stiffness) const override;
 
   double length() const { return length_; }
-  bool inextensible() const { return !section_.axial; }
+  bool has_axis() const override { return true; }
+  bool inextensible() const override { return !section_.axial; }
+  Mat3 axes() const override;
   /// End forces (fx, fy, m at a and b) [N, N, N m] in local axes for global end displacements.
   Vector end_forces(const Vector& displacement) const;
-  /// At the share `xi` of the length, 0 (a) to 1 (b). Equilibrium of the part from a to the section: end forces and the inertia between.
-  SectionRows section(double xi) const;
+  /// Equilibrium of the part from a to the section: end forces and the inertia between.
+  SectionRows section(double xi) const override;
 
  private:
   Matrix local_stiffness() const;

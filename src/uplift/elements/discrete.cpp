@@ -1,6 +1,10 @@
 #include "uplift/elements/discrete.h"
 
+#include <fmt/format.h>
+
 #include <cassert>
+
+#include "uplift/elements/element_entry.h"
 
 namespace uplift {
 
@@ -65,6 +69,62 @@ void Dashpot::form(Local local) const {
   form_none(local.stiffness, damping_.rows());
   form_none(local.mass, damping_.rows());
   form_one(local.damping, damping_);
+}
+
+namespace {
+
+Connection connection_of(const ElementSite& site, const Values& table, bool along) {
+  if (site.nodes.empty() || site.nodes.size() > 2) fail(table, "nodes", "one node or two nodes", fmt::format("{}", site.nodes.size()));
+  Connection connection{.nodes = site.nodes, .direction = {}, .space = site.space, .rotational = !along};
+  const bool needed = along || site.space.dimension == 3;
+  if (needed != table.has("direction"))
+    fail(table, needed ? "" : "direction", needed ? "a direction" : "no direction for a rotational one", needed ? "none" : "one");
+  if (needed) {
+    connection.direction = vector_of(table, "direction", site.space);
+    if (connection.direction->norm() == 0) fail(table, "direction", "a direction", "one of length zero");
+  }
+  return connection;
+}
+
+/// The keys of springs and dashpots: where they act, and one of two values.
+std::vector<Field> connection_fields(const Field& along, const Field& rotational) {
+  return {text("name", "name").optional(), texts("nodes", "two nodes, or one (to the ground)"),
+          vector("direction", "1", "direction in which it acts; in space also the axis of a rotational one").optional(),
+          along.positive().optional(), rotational.positive().optional()};
+}
+
+}  // namespace
+
+const ElementEntry& entry_element_spring() {
+  static const ElementEntry entry{
+      {{.name = "spring",
+        .summary = "a linear spring between two nodes, or from one node to fixed ground",
+        .equations = "force = stiffness d . (u_b - u_a), d: direction, does not turn with the nodes; the same with rotations",
+        .source = "docs/theory, section 1",
+        .params = connection_fields(number("stiffness", "N/m", "stiffness along direction"),
+                                    number("rotational_stiffness", "N m/rad", "stiffness of a rotational spring"))},
+       [](const ElementSite& site, const Values& table) -> std::unique_ptr<const Element> {
+         const bool along = first_of_two(table, "stiffness", "rotational_stiffness");
+         return std::make_unique<Spring>(connection_of(site, table, along), table.number(along ? "stiffness" : "rotational_stiffness"));
+       }},
+      "spring"};
+  return entry;
+}
+
+const ElementEntry& entry_element_dashpot() {
+  static const ElementEntry entry{
+      {{.name = "dashpot",
+        .summary = "a linear dashpot between two nodes, or from one node to fixed ground",
+        .equations = "force = damping d . (v_b - v_a), d: direction, does not turn with the nodes; the same with rotations",
+        .source = "docs/theory, section 1",
+        .params = connection_fields(number("damping", "N s/m", "damping along direction"),
+                                    number("rotational_damping", "N m s/rad", "damping of a rotational dashpot"))},
+       [](const ElementSite& site, const Values& table) -> std::unique_ptr<const Element> {
+         const bool along = first_of_two(table, "damping", "rotational_damping");
+         return std::make_unique<Dashpot>(connection_of(site, table, along), table.number(along ? "damping" : "rotational_damping"));
+       }},
+      "dashpot"};
+  return entry;
 }
 
 }  // namespace uplift

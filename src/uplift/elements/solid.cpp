@@ -100,8 +100,28 @@ std::vector<Stress> Solid::extrapolate(const std::vector<Stress>& at_points) con
   return at_nodes;
 }
 
+std::vector<double> Solid::extrapolate(const std::vector<double>& at_points) const {
+  const Matrix& to_nodes = solid_tables(cell_).to_nodes;
+  const Vector at_nodes = to_nodes * ConstMap(at_points.data(), to_nodes.cols());
+  return {at_nodes.begin(), at_nodes.end()};
+}
+
+std::vector<double> Solid::in_one_list(const std::vector<Stress>& all) {
+  std::vector<double> list;
+  for (const Stress& each : all) list.insert(list.end(), each.begin(), each.end());
+  return list;
+}
+
 std::vector<Stress> Solid::node_stress(const Vector& displacement) const {
   return extrapolate(point_stress(displacement));
+}
+
+std::vector<ElementOutput> Solid::outputs() const {
+  return {{"stress", "Pa", 6}};
+}
+
+std::vector<double> Solid::at_nodes(std::size_t, const Vector& displacement, std::span<const double>) const {
+  return in_one_list(node_stress(displacement));
 }
 
 }  // namespace uplift

@@ -48,10 +48,9 @@ class Solid : public Element {
   int unknowns_per_node() const override { return dimension_; }
   void form(Local local) const override;
 
-  Cell cell() const { return cell_; }
+  const SolidSection* continuum() const override { return &section_; }
+  Cell cell() const override { return cell_; }
   int dimension() const { return dimension_; }
-  int unknowns() const { return dimension_ * static_cast<int>(nodes_.size()); }
-  const SolidSection& section() const { return section_; }
   double volume() const;  // m3; area times thickness for surface cells
 
   /// Integration points of the stiffness: their number, and where they are [m].
@@ -63,6 +62,9 @@ class Solid : public Element {
   /// Stress at the nodes: the least-squares fit of the corner shape functions (linear field) to the values at the integration points
   /// (Hinton & Campbell, IJNME 8 (1974) 461-480). To be averaged between elements of the same material.
   std::vector<Stress> node_stress(const Vector& displacement) const;
+  /// The stress at the nodes.
+  std::vector<ElementOutput> outputs() const override;
+  std::vector<double> at_nodes(std::size_t k, const Vector& displacement, std::span<const double> history) const override;
 
  protected:
   int num_modes() const;  // incompatible bubbles
@@ -71,6 +73,8 @@ class Solid : public Element {
   void find_gradients(std::vector<PointGradient>& all) const;
   /// Nodal values from values at the integration points, as in node_stress.
   std::vector<Stress> extrapolate(const std::vector<Stress>& at_points) const;
+  std::vector<double> extrapolate(const std::vector<double>& at_points) const;
+  static std::vector<double> in_one_list(const std::vector<Stress>& all);
 
  private:
   void form_stiffness(Matrix& stiffness) const;

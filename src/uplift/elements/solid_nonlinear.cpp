@@ -40,16 +40,17 @@ double NonlinearSolid::node_gradient(const PointGradient& at) const {
 }
 
 NonlinearSolid::NonlinearSolid(Cell cell, std::span<const int> nodes, Coordinates coordinates, SolidSection section,
-                               const DruckerPragerParameters& law)
-    : Solid(cell, nodes, std::move(coordinates), with_material(section, law.elastic)),
-      law_(law),
+                               std::shared_ptr<const BulkLaw> law)
+    : Solid(cell, nodes, std::move(coordinates), with_material(section, law->material())),
+      law_(std::move(law)),
+      size_(law_->num_history()),
       points_(num_points()),
       modes_(num_modes()) {
   assert(dimension() == 3 || section.plane == PlaneState::strain);
   if (num_modes() == 0) return;
   Scratch elastic;
   find_gradients(elastic.gradient);
-  elastic.tangent.assign(elastic.gradient.size(), law_.elastic());
+  elastic.tangent.assign(elastic.gradient.size(), law_->elastic());
   const Matrix k = full_tangent(elastic, 0);
   mode_flexibility_ = inverse(k.bottomRightCorner(num_amplitudes(), num_amplitudes()));
   modes_of_nodes_ = -mode_flexibility_ * k.bottomLeftCorner(num_amplitudes(), unknowns());
@@ -67,17 +68,17 @@ Strain NonlinearSolid::strain(const PointGradient& at, const Vector& displacemen
   return strain;
 }
 
-void NonlinearSolid::evaluate(const Vector& displacement, std::span<const double> old, std::span<double> now, bool tangents,
-                              Scratch& scratch) const {
-  constexpr auto size = static_cast<std::size_t>(DruckerPrager::num_history);
+BulkResponse NonlinearSolid::evaluate(const Vector& displacement, std::span<const double> old, std::span<double> now, bool tangents,
+                                      Scratch& scratch) const {
   const double* amplitudes = now.data() + first_amplitude();
-  for (std::size_t p = 0; p < scratch.gradient.size(); ++p)
-    scratch.stress[p] = law_.respond(strain(scratch.gradient[p], displacement, amplitudes), old.subspan(size * p, size),
-                                     now.subspan(size * p, size), tangents ? &scratch.tangent[p] : nullptr);
+  for (std::size_t p = 0; p < scratch.gradient.size(); ++p) scratch.strain[p] = strain(scratch.gradient[p], displacement, amplitudes);
+  const BulkResponse response =
+      law_->respond({scratch.strain, old.data(), now.data(), scratch.stress.data(), tangents ? scratch.tangent.data() : nullptr});
   scratch.mode_force.setZero(num_amplitudes());
   if (modes_ > 0)
     for (std::size_t p = 0; p < scratch.gradient.size(); ++p)
       add_force(scratch.gradient[p], dimension(), static_cast<int>(nodes().size()), modes_, scratch.stress[p], scratch.mode_force.data());
+  return response;
 }
 
 Matrix NonlinearSolid::full_tangent(const Scratch& scratch, double elastic_share) const {
@@ -91,7 +92,7 @@ Matrix NonlinearSolid::full_tangent(const Scratch& scratch, double elastic_share
       add_strain(at, d, c / d, 1, unit.data(), column);
       strain_of.col(c) = column;
     }
-    k += at.volume * strain_of.transpose() * ((scratch.tangent[p] + elastic_share * law_.elastic()) * strain_of);
+    k += at.volume * strain_of.transpose() * ((scratch.tangent[p] + elastic_share * law_->elastic()) * strain_of);
   }
   return k;
 }
@@ -102,7 +103,7 @@ void NonlinearSolid::find_mode_tangent(Scratch& scratch, double elastic_share) c
   scratch.mode_stiffness.setZero(n, n);
   for (std::size_t p = 0; p < scratch.gradient.size(); ++p) {
     const PointGradient& at = scratch.gradient[p];
-    const Mat6 tangent = scratch.tangent[p] + elastic_share * law_.elastic();
+    const Mat6 tangent = scratch.tangent[p] + elastic_share * law_->elastic();
     for (int c = 0; c < n; ++c) {
       Stress stress = at.g[0][first + c / d] * tangent.col(voigt[c % d][0]);
       for (int j = 1; j < d; ++j) stress += at.g[j][first + c / d] * tangent.col(voigt[c % d][j]);
@@ -111,13 +112,13 @@ void NonlinearSolid::find_mode_tangent(Scratch& scratch, double elastic_share) c
   }
 }
 
-// No force works on the modes: K_aa a + K_au u - int G^T D e dV = 0 with the plastic strains e.
-void NonlinearSolid::add_plastic_amplitudes(std::span<const double> history, const Scratch& scratch, double* amplitudes) const {
+// No force works on the modes: K_aa a + K_au u - int G^T D e dV = 0 with the inelastic strains e.
+void NonlinearSolid::add_inelastic_amplitudes(std::span<const double> history, const Scratch& scratch, double* amplitudes) const {
   const int n = num_amplitudes();
   double force[3 * 3] = {};
   for (std::size_t p = 0; p < scratch.gradient.size(); ++p)
-    add_force(scratch.gradient[p], dimension(), static_cast<int>(nodes().size()), modes_,
-              law_.elastic() * ConstMap(history.data() + DruckerPrager::num_history * p, 6), force);
+    add_force(scratch.gradient[p], dimension(), static_cast<int>(nodes().size()), modes_, law_->elastic() * inelastic_strain(history, p),
+              force);
   Map(amplitudes, n).noalias() += mode_flexibility_.lazyProduct(ConstMap(force, n));
 }
 
@@ -126,8 +127,7 @@ BulkResponse NonlinearSolid::balance_modes(const Vector& displacement, std::span
   const int n = num_amplitudes();
   Map amplitudes(now.data() + first_amplitude(), n);
   // round-off of the strain under a large rigid motion: 1e-13 of this is a few last digits of the displacement
-  const double noise =
-      0.01 * law_.parameters().elastic.constrained() * displacement.cwiseAbs().maxCoeff() * node_gradient(scratch.gradient.front());
+  const double noise = 0.01 * law_->material().constrained() * displacement.cwiseAbs().maxCoeff() * node_gradient(scratch.gradient.front());
   double share = least_elastic_share, floor = least_elastic_share;
   for (int iteration = 0; iteration < 200; ++iteration) {
     double scale = 0;  // N
@@ -135,11 +135,12 @@ BulkResponse NonlinearSolid::balance_modes(const Vector& displacement, std::span
       scale += scratch.gradient[p].volume * mode_gradient(scratch.gradient[p]) * (scratch.stress[p].norm() + noise);
     const double rest = scratch.mode_force.norm();
     if (rest <= 1e-13 * scale) return {};
-    if (iteration == 0) evaluate(displacement, old, now, true, scratch);  // the first response came without tangents
+    if (iteration == 0)  // the first response came without tangents
+      if (const BulkResponse response = evaluate(displacement, old, now, true, scratch); !response.converged) return response;
     find_mode_tangent(scratch, share);
     if (!small::gauss_solve<0>(n, scratch.mode_stiffness.data(), scratch.mode_force.data())) break;
     amplitudes -= scratch.mode_force;
-    evaluate(displacement, old, now, true, scratch);
+    if (const BulkResponse response = evaluate(displacement, old, now, true, scratch); !response.converged) return response;
     if (scratch.mode_force.norm() < rest) {
       share = std::max(share / 2, floor);
     } else {
@@ -156,15 +157,15 @@ BulkResponse NonlinearSolid::respond(const Vector& displacement, std::span<const
   assert(displacement.size() == unknowns());
   assert(static_cast<int>(old.size()) == num_history() && static_cast<int>(now.size()) == num_history());
   find_gradients(scratch.gradient);
+  scratch.strain.resize(scratch.gradient.size());
   scratch.stress.resize(scratch.gradient.size());
   scratch.tangent.resize(scratch.gradient.size());
-  BulkResponse outcome;
   if (modes_ > 0) {
     Map(now.data() + first_amplitude(), num_amplitudes()).noalias() = modes_of_nodes_.lazyProduct(displacement);
-    if (has_yielded(old)) add_plastic_amplitudes(old, scratch, now.data() + first_amplitude());
+    if (has_yielded(old)) add_inelastic_amplitudes(old, scratch, now.data() + first_amplitude());
   }
-  evaluate(displacement, old, now, tangent != nullptr, scratch);
-  if (modes_ > 0 && yields(old, now)) outcome = balance_modes(displacement, old, now, scratch);
+  BulkResponse outcome = evaluate(displacement, old, now, tangent != nullptr, scratch);
+  if (outcome.converged && modes_ > 0 && yields(old, now)) outcome = balance_modes(displacement, old, now, scratch);
 
   force.setZero(unknowns());
   for (std::size_t p = 0; p < scratch.gradient.size(); ++p)
@@ -180,12 +181,9 @@ BulkResponse NonlinearSolid::respond(const Vector& displacement, std::span<const
 
 std::vector<Stress> NonlinearSolid::point_stress(const Vector& displacement, std::span<const double> history) const {
   std::vector<Stress> stress;
-  std::array<double, DruckerPrager::num_history> unused;
-  std::size_t first = 0;
   for (const PointGradient& at : gradients()) {
-    const auto of_point = history.subspan(first, DruckerPrager::num_history);
-    first += DruckerPrager::num_history;
-    stress.push_back(law_.respond(strain(at, displacement, history.data() + first_amplitude()), of_point, unused, nullptr));
+    const Strain total = strain(at, displacement, history.data() + first_amplitude());
+    stress.push_back(law_->elastic() * (total - inelastic_strain(history, stress.size())));
   }
   return stress;
 }
@@ -194,64 +192,87 @@ std::vector<Stress> NonlinearSolid::node_stress(const Vector& displacement, std:
   return extrapolate(point_stress(displacement, history));
 }
 
+std::vector<ElementOutput> NonlinearSolid::outputs() const {
+  std::vector<ElementOutput> all = Solid::outputs();
+  for (const BulkOutput& each : law_->outputs()) all.push_back({std::string(each.name), std::string(each.unit)});
+  return all;
+}
+
+std::vector<double> NonlinearSolid::at_nodes(std::size_t k, const Vector& displacement, std::span<const double> history) const {
+  const std::vector<double> natural(history.empty() ? static_cast<std::size_t>(num_history()) : 0, 0.0);
+  if (history.empty() && k == 0) return Solid::at_nodes(k, displacement, history);
+  if (history.empty()) history = natural;
+  if (k == 0) return in_one_list(node_stress(displacement, history));
+  std::vector<double> values(law_->outputs().size()), at_points;
+  for (int p = 0; p < points_; ++p) {
+    law_->find_outputs(history.data() + size_ * p, values.data());
+    at_points.push_back(values[k - 1]);
+  }
+  return extrapolate(at_points);
+}
+
 double NonlinearSolid::stored_energy(const Vector& displacement, std::span<const double> history) const {
   double sum = 0;
-  std::size_t first = 0;
+  std::size_t p = 0;
   for (const PointGradient& at : gradients()) {
-    const auto of_point = history.subspan(first, DruckerPrager::num_history);
-    first += DruckerPrager::num_history;
-    sum += at.volume * law_.stored_energy(strain(at, displacement, history.data() + first_amplitude()), of_point);
+    const Strain recoverable = strain(at, displacement, history.data() + first_amplitude()) - inelastic_strain(history, p);
+    sum += at.volume * (recoverable.dot(law_->elastic() * recoverable) / 2 + locked_energy(history, p));
+    ++p;
   }
   return sum;
 }
 
 bool NonlinearSolid::has_yielded(std::span<const double> history) const {
-  for (int p = 0; p < points_; ++p)
-    if (history[static_cast<std::size_t>(DruckerPrager::num_history * p + 6)] > 0) return true;
+  for (int p = 0; p < points_; ++p) {
+    const double* e = history.data() + size_ * p;
+    if (std::any_of(e, e + 6, [](double value) { return value != 0; })) return true;
+  }
   return false;
 }
 
 bool NonlinearSolid::yields(std::span<const double> old, std::span<const double> now) const {
   for (int p = 0; p < points_; ++p) {
-    const auto at = static_cast<std::size_t>(DruckerPrager::num_history * p + 6);
-    if (now[at] > old[at]) return true;
+    const double* was = old.data() + size_ * p;
+    if (!std::equal(was, was + 6, now.data() + size_ * p)) return true;
   }
   return false;
 }
 
-// With the amplitudes of the linear solid taken off, the modes a answer the plastic strains e alone: int G^T D (G a - e) dV = 0. The stress
-// s = D (G a - e) is what yielding adds to the linear one, which is in balance with the modes as s is; so the mixed terms of the energy are
-// those with the nodes.
-void NonlinearSolid::find_yielded(std::span<const double> history, Scratch& scratch, Yielded& made) const {
+// With the amplitudes of the linear solid taken off, the modes a answer the inelastic strains e alone: int G^T D (G a - e) dV = 0. The
+// stress s = D (G a - e) is what yielding adds to the linear one, which is in balance with the modes as s is; so the mixed terms of the
+// energy are those with the nodes.
+void NonlinearSolid::find_inelastic(std::span<const double> history, Scratch& scratch, Inelastic& made) const {
   find_gradients(scratch.gradient);
-  find_yielded_of_response(history, scratch, made);
+  find_inelastic_of_response(history, scratch, made);
 }
 
-void NonlinearSolid::find_yielded_of_response(std::span<const double> history, const Scratch& scratch, Yielded& made) const {
+void NonlinearSolid::find_inelastic_of_response(std::span<const double> history, Scratch& scratch, Inelastic& made) const {
   const int count = static_cast<int>(nodes().size()), d = dimension();
   double amplitudes[3 * 3] = {};
-  if (modes_ > 0) add_plastic_amplitudes(history, scratch, amplitudes);
+  if (modes_ > 0) add_inelastic_amplitudes(history, scratch, amplitudes);
   made.force.setZero(unknowns());
   made.energy = 0;
   for (std::size_t p = 0; p < scratch.gradient.size(); ++p) {
     const PointGradient& at = scratch.gradient[p];
-    Strain strain = -ConstMap(history.data() + DruckerPrager::num_history * p, 6);
+    Strain strain = -inelastic_strain(history, p);
     add_strain(at, d, count, modes_, amplitudes, strain);
-    const Stress stress = law_.elastic() * strain;
+    const Stress stress = law_->elastic() * strain;
     add_force(at, d, 0, count, stress, made.force.data());
     made.energy += at.volume * stress.dot(strain) / 2;
+    made.energy += at.volume * locked_energy(history, p);
   }
 }
 
 double NonlinearSolid::dissipated(const Vector& from, std::span<const double> old, const Vector& to, std::span<const double> now) const {
   double sum = 0;
-  std::size_t first = 0;
+  std::size_t p = 0;
   for (const PointGradient& at : gradients()) {
-    const ConstMap before(old.data() + first, 6), after(now.data() + first, 6);
-    first += DruckerPrager::num_history;
+    const ConstMap before = inelastic_strain(old, p), after = inelastic_strain(now, p);
     const Strain recoverable =
         strain(at, from, old.data() + first_amplitude()) + strain(at, to, now.data() + first_amplitude()) - before - after;
-    sum += at.volume * (law_.elastic() * recoverable).dot(after - before) / 2;
+    sum += at.volume * (law_->elastic() * recoverable).dot(after - before) / 2;
+    sum -= at.volume * (locked_energy(now, p) - locked_energy(old, p));
+    ++p;
   }
   return sum;
 }

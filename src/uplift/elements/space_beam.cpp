@@ -6,7 +6,7 @@ namespace uplift {
 
 namespace {
 
-constexpr int unknowns = 12;
+constexpr int end_unknowns = 12;
 constexpr int turn_a = 3, turn_b = 9;                          // r_x
 constexpr std::array<int, 6> rows_xy{0, 1, 5, 6, 7, 11};       // of the plane beam's (u, w, r) at a and b: u_x, u_y, r_z
 constexpr std::array<int, 6> rows_xz{0, 2, 4, 6, 8, 10};       // u_x, u_z, -r_y
@@ -24,7 +24,7 @@ Beam plane_beam(double length, double bending, double shear, double rotary, std:
 
 /// The local matrix of the two plane beams.
 Matrix both_planes(const Matrix& xy, const Matrix& xz) {
-  Matrix local = Matrix::Zero(unknowns, unknowns);
+  Matrix local = Matrix::Zero(end_unknowns, end_unknowns);
   for (int i = 0; i < 6; ++i)
     for (int j = 0; j < 6; ++j) {
       local(rows_xy[i], rows_xy[j]) += xy(i, j);
@@ -42,9 +42,9 @@ void add_torsion(double same, double other, Matrix& local) {
 }
 
 Matrix to_global(const Mat3& axes, const Matrix& local) {
-  Matrix global(unknowns, unknowns);
-  for (int i = 0; i < unknowns; i += 3)
-    for (int j = 0; j < unknowns; j += 3) global.block<3, 3>(i, j) = axes.transpose() * local.block<3, 3>(i, j) * axes;
+  Matrix global(end_unknowns, end_unknowns);
+  for (int i = 0; i < end_unknowns; i += 3)
+    for (int j = 0; j < end_unknowns; j += 3) global.block<3, 3>(i, j) = axes.transpose() * local.block<3, 3>(i, j) * axes;
   return global;
 }
 
@@ -79,8 +79,8 @@ SpaceBeam::SpaceBeam(int a, int b, const Vec3& position_a, const Vec3& position_
 }
 
 Vector SpaceBeam::to_local(const Vector& global) const {
-  Vector local(unknowns);
-  for (int i = 0; i < unknowns; i += 3) local.segment<3>(i) = axes_ * global.segment<3>(i);
+  Vector local(end_unknowns);
+  for (int i = 0; i < end_unknowns; i += 3) local.segment<3>(i) = axes_ * global.segment<3>(i);
   return local;
 }
 
@@ -106,7 +106,7 @@ Matrix SpaceBeam::local_mass() const {
 void SpaceBeam::form(Local local) const {
   if (local.stiffness) *local.stiffness = to_global(axes_, local_stiffness());
   if (local.mass) *local.mass = to_global(axes_, local_mass());
-  if (local.damping) local.damping->setZero(unknowns, unknowns);
+  if (local.damping) local.damping->setZero(end_unknowns, end_unknowns);
 }
 
 Vector SpaceBeam::end_forces(const Vector& displacement) const {
@@ -117,7 +117,7 @@ namespace {
 
 /// N, V_y, V_z, T, M_y, M_z from the N, V, M of the two planes; the moment of the plane x-z turns about -y.
 Matrix both_sections(const Matrix& xy, const Matrix& xz) {
-  Matrix rows = Matrix::Zero(6, unknowns);
+  Matrix rows = Matrix::Zero(6, end_unknowns);
   for (int k = 0; k < 6; ++k) {
     rows(0, rows_xy[k]) += xy(0, k);
     rows(1, rows_xy[k]) += xy(1, k);
@@ -146,8 +146,8 @@ SectionRows SpaceBeam::section(double xi) const {
     if (xi <= 0) rows.mass(3, turn_a) = -polar / 2;
     if (xi >= 1) rows.mass(3, turn_b) = polar / 2;
   }
-  Matrix axes = Matrix::Zero(unknowns, unknowns);
-  for (int i = 0; i < unknowns; i += 3) axes.block<3, 3>(i, i) = axes_;
+  Matrix axes = Matrix::Zero(end_unknowns, end_unknowns);
+  for (int i = 0; i < end_unknowns; i += 3) axes.block<3, 3>(i, i) = axes_;
   for (Matrix* each : {&rows.stiffness, &rows.geometric, &rows.mass}) *each = (*each * axes).eval();
   return rows;
 }

@@ -44,13 +44,12 @@ class SpaceBeam : public Element {
   void geometric(double axial, Matrix& stiffness) const override;
 
   double length() const { return xy_.length(); }
-  bool inextensible() const { return xy_.inextensible(); }
-  /// Rows: local x, y, z in global axes.
-  const Mat3& axes() const { return axes_; }
+  bool has_axis() const override { return true; }
+  bool inextensible() const override { return xy_.inextensible(); }
+  Mat3 axes() const override { return axes_; }
   /// End forces (fx, fy, fz, mx, my, mz at a and b) [N, N m] in local axes for global end displacements.
   Vector end_forces(const Vector& displacement) const;
-  /// At the share `xi` of the length, 0 (a) to 1 (b), see SectionRows.
-  SectionRows section(double xi) const;
+  SectionRows section(double xi) const override;
 
  private:
   Vector to_local(const Vector& global) const;

@@ -72,7 +72,7 @@ void ModelBuilder::make_drives(Model& model, const Full& full, const Matrix& mot
   const Index unknowns = full.mass.rows();
   const auto one = std::make_shared<const One>();
   const auto add = [&](std::string name, const Vector& pattern, std::shared_ptr<const TimeFunction> function, bool dead) {
-    const bool constant = dynamic_cast<const One*>(function.get()) != nullptr;
+    const bool constant = function->is_one();
     model.time_loads.push_back(
         {std::move(name), model.reduction.transpose() * pattern, std::move(function), TimeLoad::Order::value, dead, constant});
     model.assembly.loads.push_back(pattern);

@@ -13,6 +13,8 @@ class TimeFunction {
   virtual double value(double time) const = 0;
   virtual double rate(double time) const = 0;
   virtual double acceleration(double time) const = 0;
+  /// Its value is 1 at all times.
+  virtual bool is_one() const { return false; }
 };
 
 /// The function itself (0), its first (1) or second (2) derivative.
@@ -26,6 +28,7 @@ class One final : public TimeFunction {
   double value(double) const override { return 1; }
   double rate(double) const override { return 0; }
   double acceleration(double) const override { return 0; }
+  bool is_one() const override { return true; }
 };
 
 std::span<const Entry<TimeFunction>* const> function_catalog();

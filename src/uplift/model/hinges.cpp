@@ -21,12 +21,12 @@ struct Joints {
   explicit Joints(const Model& model) : beams(model.nodes.size()), solids(model.nodes.size()) {
     for (const auto& element : model.elements) {
       const auto nodes = element->nodes();
-      if (!is_beam(*element)) continue;
+      if (!element->has_axis()) continue;
       beams[nodes[0]].push_back(nodes[1]);
       beams[nodes[1]].push_back(nodes[0]);
     }
     for (int i = 0; i < static_cast<int>(model.elements.size()); ++i)
-      if (is_solid(*model.elements[i]))
+      if (model.elements[i]->continuum() != nullptr)
         for (const int node : model.elements[i]->nodes())
           if (!beams[node].empty()) solids[node].push_back(i);
   }
@@ -53,7 +53,7 @@ bool held(const Model& model, int node) {
 }  // namespace
 
 std::vector<int> hinges(const Model& model) {
-  if (std::ranges::none_of(model.elements, [](const auto& element) { return is_beam(*element); })) return {};
+  if (std::ranges::none_of(model.elements, [](const auto& element) { return element->has_axis(); })) return {};
   const Joints joints(model);
   std::vector<int> found;
   for (int node = 0; node < static_cast<int>(joints.beams.size()); ++node) {
@@ -91,7 +91,7 @@ class EmbeddedBeams {
   bool held_by_solids(const EmbeddedFoot& foot) const {
     double bending = 0;  // the largest rotational stiffness of the beams there is 4 E I/l
     for (const auto& element : model_.elements) {
-      if (!is_beam(*element) || std::ranges::find(element->nodes(), foot.node) == element->nodes().end()) continue;
+      if (!element->has_axis() || std::ranges::find(element->nodes(), foot.node) == element->nodes().end()) continue;
       Matrix stiffness;
       element->form({.stiffness = &stiffness});
       const auto nodes = element->nodes();
@@ -100,7 +100,7 @@ class EmbeddedBeams {
     }
     double solid = 0;
     for (const int element : joints_.solids[foot.node]) {
-      const SolidSection& section = static_cast<const Solid&>(*model_.elements[element]).section();
+      const SolidSection& section = *model_.elements[element]->continuum();
       const double depth = model_.space.dimension == 2 ? section.thickness : foot.cell;
       solid = std::max(solid, section.material.young * foot.cell * foot.cell * depth);
     }
@@ -147,7 +147,7 @@ class EmbeddedBeams {
 
 std::vector<EmbeddedFoot> embedded_feet(const Model& model) {
   std::vector<EmbeddedFoot> feet;
-  if (std::ranges::none_of(model.elements, [](const auto& element) { return is_beam(*element); })) return feet;
+  if (std::ranges::none_of(model.elements, [](const auto& element) { return element->has_axis(); })) return feet;
   const EmbeddedBeams beams(model);
   for (int node = 0; node < static_cast<int>(model.nodes.size()); ++node)
     if (const auto foot = beams.foot(node); foot && beams.held_by_solids(*foot)) feet.push_back(*foot);

@@ -90,9 +90,9 @@ class Equations {
 
   void collect_other_rows(bool dynamic) {
     for (const auto& element : model_.elements) {
-      if (is_solid(*element)) continue;
+      if (element->continuum() != nullptr) continue;
       Matrix stiffness, mass, damping;
-      const bool rigid = is_beam(*element);
+      const bool rigid = element->has_axis();
       element->form(
           {.stiffness = rigid ? nullptr : &stiffness, .mass = dynamic ? &mass : nullptr, .damping = dynamic ? &damping : nullptr});
       for (const Matrix* matrix : {&stiffness, &mass, &damping}) add_columns(*element, *matrix);

@@ -6,20 +6,14 @@
 #include <numeric>
 #include <utility>
 
-#include "uplift/elements/beam.h"
 #include "uplift/elements/solid.h"
-#include "uplift/elements/space_beam.h"
 
 namespace uplift {
 
 namespace {
 
-const Solid* solid_of(const Element& element) {
-  return dynamic_cast<const Solid*>(&element);
-}
-
-bool has_mass(const Solid& solid) {
-  return solid.section().mass != SolidSection::Mass::none && solid.section().material.density > 0;
+bool has_mass(const SolidSection& solid) {
+  return solid.mass != SolidSection::Mass::none && solid.material.density > 0;
 }
 
 /// Sets of elements that are merged step by step.
@@ -42,13 +36,13 @@ using Side = std::pair<std::array<int, 4>, int>;  // corners, ascending; element
 void merge_solids(const Model& model, Sets& sets) {
   std::vector<Side> sides;
   for (int e = 0; e < static_cast<int>(model.elements.size()); ++e) {
-    const Solid* solid = solid_of(*model.elements[e]);
-    if (solid == nullptr) continue;
-    const auto nodes = solid->nodes();
-    const CellInfo& type = info(solid->cell());
+    const Element& solid = *model.elements[e];
+    if (solid.continuum() == nullptr) continue;
+    const auto nodes = solid.nodes();
+    const CellInfo& type = info(solid.cell());
     for (int s = 0; s < static_cast<int>(type.sides.size()); ++s) {
       std::array<int, 4> corners{-1, -1, -1, -1};
-      const auto side = side_of(solid->cell(), s);
+      const auto side = side_of(solid.cell(), s);
       for (int c = 0; c < info(type.sides[s]).corners; ++c) corners[c] = nodes[side[c]];
       std::ranges::sort(corners);
       sides.emplace_back(corners, e);
@@ -63,7 +57,7 @@ void merge_solids(const Model& model, Sets& sets) {
 void merge_beams(const Model& model, Sets& sets) {
   std::vector<int> first(model.nodes.size(), -1);
   for (int e = 0; e < static_cast<int>(model.elements.size()); ++e) {
-    if (!is_beam(*model.elements[e])) continue;
+    if (!model.elements[e]->has_axis()) continue;
     for (const int node : model.elements[e]->nodes()) {
       if (first[node] < 0) first[node] = e;
       sets.merge(e, first[node]);
@@ -73,14 +67,6 @@ void merge_beams(const Model& model, Sets& sets) {
 
 }  // namespace
 
-bool is_solid(const Element& element) {
-  return solid_of(element) != nullptr;
-}
-
-bool is_beam(const Element& element) {
-  return dynamic_cast<const Beam*>(&element) != nullptr || dynamic_cast<const SpaceBeam*>(&element) != nullptr;
-}
-
 std::vector<RigidPart> rigid_parts(const Model& model) {
   Sets sets(model.elements.size());
   merge_solids(model, sets);
@@ -89,8 +75,8 @@ std::vector<RigidPart> rigid_parts(const Model& model) {
   std::map<int, std::size_t> number;
   for (int e = 0; e < static_cast<int>(model.elements.size()); ++e) {
     const Element& element = *model.elements[e];
-    const Solid* solid = solid_of(element);
-    if (solid == nullptr && !is_beam(element)) continue;
+    const SolidSection* solid = element.continuum();
+    if (solid == nullptr && !element.has_axis()) continue;
     const auto [at, fresh] = number.try_emplace(sets.root(e), parts.size());
     if (fresh) parts.emplace_back();
     RigidPart& part = parts[at->second];
@@ -109,7 +95,7 @@ std::vector<RigidPart> rigid_parts(const Model& model) {
 std::vector<char> moved_by_solid_mass(const Model& model) {
   std::vector<char> massive(model.nodes.size(), 0);
   for (const auto& element : model.elements)
-    if (const Solid* solid = solid_of(*element); solid != nullptr && has_mass(*solid))
+    if (const SolidSection* solid = element->continuum(); solid != nullptr && has_mass(*solid))
       for (const int node : element->nodes()) massive[node] = 1;
   std::vector<char> moved(model.free(), 0);
   for (int i = 0; i < model.free(); ++i) moved[i] = massive[model.space.node_of(model.kept[i])] && !model.space.is_rotation(model.kept[i]);

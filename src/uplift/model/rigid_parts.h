@@ -5,9 +5,6 @@
 
 namespace uplift {
 
-bool is_solid(const Element& element);
-bool is_beam(const Element& element);
-
 /// Nodes that move as one rigid body in every motion without strain energy: solids that are connected through faces (in the plane: edges),
 /// or beams that are connected at nodes. An inextensible beam counts, since a constraint keeps its length.
 struct RigidPart {

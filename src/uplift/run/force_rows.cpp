@@ -3,7 +3,6 @@
 #include <algorithm>
 #include <cmath>
 
-#include "uplift/elements/space_beam.h"
 #include "uplift/math/sparse_solvers.h"
 
 namespace uplift {
@@ -11,17 +10,6 @@ namespace {
 
 void add(double value, int index, Weights& weights) {
   if (value != 0) weights[index] += value;
-}
-
-struct BeamView {
-  SectionRows rows;
-  bool inextensible;
-};
-
-BeamView view_of(const Element& element, double xi) {
-  if (const auto* plane = dynamic_cast<const Beam*>(&element)) return {plane->section(xi), plane->inextensible()};
-  const auto& space = dynamic_cast<const SpaceBeam&>(element);
-  return {space.section(xi), space.inextensible()};
 }
 
 /// Number of an element's unknown i among all.
@@ -50,7 +38,7 @@ ForceModel::ForceModel(const ForceStage& stage) : stage_(stage), elements_of_(st
 void ForceModel::add_section(int element, double xi, const Vector& weights, ForceRow& row) const {
   const Model& model = stage_.model;
   const Element& beam = *model.elements[static_cast<std::size_t>(element)];
-  const auto [rows, inextensible] = view_of(beam, xi);
+  const SectionRows rows = beam.section(xi);
   const Vector stiffness = rows.stiffness.transpose() * weights, mass = rows.mass.transpose() * weights;
   Vector geometric = Vector::Zero(stiffness.size());
   if (stage_.second_order != nullptr)
@@ -68,7 +56,7 @@ void ForceModel::add_section(int element, double xi, const Vector& weights, Forc
     for (const GroundAcceleration& ground : model.grounds)
       if (const double share = ground.direction.dot(axis); share != 0) row.terms.push_back({ground.function.get(), 0, mass[i] * share});
   }
-  if (!inextensible || weights[0] == 0) return;
+  if (!beam.inextensible() || weights[0] == 0) return;
   const std::span<const int> nodes = beam.nodes();
   for (const Assembly::Link& link : model.assembly.links) {
     if (std::minmax(link.a, link.b) != std::minmax(nodes[0], nodes[1])) continue;

@@ -7,14 +7,14 @@
 #include <numbers>
 
 #include "unit/elements/solid_support.h"
-#include "uplift/elements/drucker_prager.h"
+#include "uplift/elements/bulk_laws/drucker_prager.h"
 #include "uplift/math/dense.h"
 
 namespace uplift {
 namespace {
 
 using Fit = DruckerPragerParameters::Fit;
-using History = std::array<double, DruckerPrager::num_history>;
+using History = std::array<double, DruckerPrager::history_size>;
 constexpr double degree = std::numbers::pi / 180;
 constexpr std::array<Fit, 3> fits{Fit::compression, Fit::extension, Fit::plane_strain};
 

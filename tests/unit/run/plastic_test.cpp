@@ -8,6 +8,7 @@
 #include "unit/elements/solid_support.h"
 #include "uplift/case/case.h"
 #include "uplift/dynamics/statics.h"
+#include "uplift/elements/bulk_laws/drucker_prager.h"
 #include "uplift/elements/solid_nonlinear.h"
 #include "uplift/io/fields/run_frames.h"
 #include "uplift/io/text/toml.h"
@@ -79,7 +80,8 @@ density = 1900
   text += "[[support]]\ngroup = \"soil_left\"\nfixed = [\"ux\"]\n";
   if (space) text += "[[support]]\ngroup = \"soil_front\"\nfixed = [\"uy\"]\n";
   text += "[[load]]\nname = \"press\"\ngroup = \"soil_top\"\ntraction = [" + std::string(space ? "0, 0, " : "0, ") +
-          std::to_string(-pressure) + "]\n[[stage]]\ntype = \"static\"\n[output.fields]\nformat = \"vtu\"\nquantities = [\"stress\"]\n";
+          std::to_string(-pressure) +
+          "]\n[[stage]]\ntype = \"static\"\n[output.fields]\nformat = \"vtu\"\nquantities = [\"stress\", \"plastic_strain\"]\n";
   return prepared(text, &cube);
 }
 
@@ -129,7 +131,10 @@ TEST(PlasticRun, UniaxialCompressionHardensByTheClosedForm) {
       ASSERT_TRUE(rest.outcome.converged) << rest.outcome.why;
       EXPECT_NEAR(settlement(made.built, rest.state), expected, 1e-8 * -expected) << psi;
       const RunFrames frames(made.read->values.table("output").table("fields"), *made.read, made.built);
-      const std::vector<double> stress = frames.of(rest.state, nullptr, {}, 0).blocks.front().points.front().values;
+      const std::vector<FieldValues> fields = frames.of(rest.state, nullptr, {}, 0).blocks.front().points;
+      const std::vector<double>& stress = fields.front().values;
+      ASSERT_EQ(fields.back().name, "plastic_strain");
+      for (const double value : fields.back().values) EXPECT_NEAR(value, accumulated, 1e-7 * accumulated);
       for (std::size_t i = 0; i < stress.size(); ++i) EXPECT_NEAR(stress[i], i % 6 == 2 ? -q : 0, 1e-8 * q);
     }
   }
@@ -317,6 +322,24 @@ TEST(PlasticRun, RefusesWhatTheLawCannotBe) {
   EXPECT_NE(refused(soil(0, 0, 0)).find("above 0 Pa"), std::string::npos);
   EXPECT_NE(refused("plane = \"stress\"\n" + soil(0.4, 0)).find("plane = \"strain\""), std::string::npos);
   EXPECT_NE(refused("plasticity = { type = \"cam_clay\" }").find("drucker_prager"), std::string::npos);
+  EXPECT_NE(refused("law = { type = \"druker_prager\" }").find("did you mean \"drucker_prager\""), std::string::npos);
+  EXPECT_NE(refused("law = { cohesion = 1e4, friction_angle = 0.5 }").find("law.type"), std::string::npos);
+  EXPECT_NE(refused("law = \"elastic\"\n" + soil(0.4, 0)).find("either law or plasticity"), std::string::npos);
+}
+
+TEST(PlasticRun, LawAndItsOlderNameAreTheSame) {
+  const std::string parameters = "cohesion = 2e4, friction_angle = 0.4, dilatancy_angle = 0.1 }\n";
+  const auto pushed = [](const std::string& law) {
+    const Prepared made = prepared(block_on_soil(law, springs, static_push));
+    return rest_of(made.built, 5, {});
+  };
+  const Rest named = pushed("law = { type = \"drucker_prager\", " + parameters), older = pushed("plasticity = { " + parameters),
+             elastic = pushed("law = \"elastic\"\n"), absent = pushed("");
+  ASSERT_TRUE(named.outcome.converged && older.outcome.converged && elastic.outcome.converged && absent.outcome.converged);
+  EXPECT_EQ(named.state.displacement, older.state.displacement);
+  EXPECT_EQ(elastic.state.displacement, absent.state.displacement);
+  EXPECT_FALSE(named.state.bulk_history.empty());
+  EXPECT_TRUE(elastic.state.bulk_history.empty());
 }
 
 TEST(PlasticSolid, YieldedForceAndEnergyAreWhatTheLinearSolidLacks) {
@@ -331,7 +354,7 @@ TEST(PlasticSolid, YieldedForceAndEnergyAreWhatTheLinearSolidLacks) {
     if (kind.plane != PlaneState::strain) continue;
     const auto positions = distorted_nodes(kind.cell, 0.1, random);
     const NonlinearSolid solid(kind.cell, first_numbers(info(kind.cell).nodes), std::make_shared<const std::vector<Vec3>>(positions),
-                               section_of(kind), law);
+                               section_of(kind), std::make_shared<const DruckerPrager>(law));
     std::uniform_real_distribution<double> uniform(-1e-3, 1e-3);
     NonlinearSolid::Scratch scratch;
     Vector u0(solid.unknowns()), u1(solid.unknowns()), f0, f1;
@@ -347,8 +370,8 @@ TEST(PlasticSolid, YieldedForceAndEnergyAreWhatTheLinearSolidLacks) {
     EXPECT_FALSE(solid.has_yielded(natural));
     Matrix k;
     solid.form({&k, nullptr, nullptr});
-    NonlinearSolid::Yielded part;
-    solid.find_yielded(now, scratch, part);
+    Inelastic part;
+    solid.find_inelastic(now, scratch, part);
     EXPECT_LE((k * u1 + part.force - f1).norm(), 1e-10 * f1.norm()) << kind.name;
     const double stored = solid.stored_energy(u1, now);
     EXPECT_NEAR(u1.dot(k * u1) / 2 + u1.dot(part.force) + part.energy, stored, 1e-10 * stored) << kind.name;

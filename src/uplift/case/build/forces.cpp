@@ -8,7 +8,6 @@
 
 #include "uplift/base/text.h"
 #include "uplift/case/build/model.h"
-#include "uplift/elements/space_beam.h"
 #include "uplift/run/force_rows.h"
 
 namespace uplift {
@@ -145,16 +144,6 @@ Request section_request(const Values& history, const BuiltCase& built) {
   no_such_quantity(history, words, "a beam");
 }
 
-/// Local axes of a beam element as rows.
-Mat3 axes_of(const Element& element, const Stretch& stretch) {
-  if (const auto* beam = dynamic_cast<const SpaceBeam*>(&element)) return beam->axes();
-  const Vec3 x = (stretch.reversed ? -1 : 1) * (stretch.to - stretch.from).normalized();
-  Mat3 axes = Mat3::Identity();
-  axes.row(0) = x;
-  axes.row(1) = Vec3(-x.y(), x.x(), 0);
-  return axes;
-}
-
 /// Horizontal force that what lies above a level exerts on what lies below, through all beams that cross it.
 Request storey_shear(const Values& history, const BuiltCase& built) {
   const Model& model = built.model;
@@ -175,7 +164,7 @@ Request storey_shear(const Values& history, const BuiltCase& built) {
       least = std::min({least, from, to}), most = std::max({most, from, to});
       if (!(std::min(from, to) <= level && level < std::max(from, to))) continue;
       const double share = (level - from) / (to - from);
-      const Mat3 axes = axes_of(*model.elements[static_cast<std::size_t>(each.element)], each);
+      const Mat3 axes = model.elements[static_cast<std::size_t>(each.element)]->axes();
       const double sign = (to > from) != each.reversed ? 1 : -1;  // the part beyond the section of the element is the upper one
       Vector weights = Vector::Zero(dimension == 2 ? 3 : 6);
       for (int k = 0; k < dimension; ++k) weights[k] = sign * axes(k, direction);

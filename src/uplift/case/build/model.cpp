@@ -12,20 +12,6 @@
 
 namespace uplift {
 
-Place vector_of(const Values& table, std::string_view key, Space space) {
-  const std::vector<double>& numbers = table.numbers(key);
-  if (static_cast<int>(numbers.size()) != space.dimension)
-    fail(table, key, space.dimension == 2 ? "two numbers [x, y] in a plane model" : "three numbers [x, y, z] in a model in space",
-         fmt::format("{}", numbers.size()));
-  return {numbers[0], numbers[1], space.dimension == 3 ? numbers[2] : 0};
-}
-
-bool first_of_two(const Values& table, std::string_view first, std::string_view second) {
-  const bool a = table.has(first), b = table.has(second);
-  if (a == b) fail(table, a ? second : "", fmt::format("either {} or {}", first, second), a ? "both" : "neither");
-  return a;
-}
-
 Space space_of(const Case& read) {
   if (read.mesh) return {read.mesh->mesh.dimension};
   const std::vector<Values>& nodes = read.values.tables("nodes");
@@ -72,24 +58,6 @@ class Scaled final : public TimeFunction {
   std::shared_ptr<const TimeFunction> function_;
 };
 
-Connection connection_of(const Values& table, const CaseNames& names, bool along) {
-  const bool plane = names.space.dimension == 2;
-  Connection connection;
-  connection.space = names.space;
-  connection.rotational = !along;
-  connection.nodes = names.nodes_of(table, "nodes");
-  if (connection.nodes.empty() || connection.nodes.size() > 2)
-    fail(table, "nodes", "one node or two nodes", fmt::format("{}", connection.nodes.size()));
-  const bool needed = along || !plane;
-  if (needed != table.has("direction"))
-    fail(table, needed ? "" : "direction", needed ? "a direction" : "no direction for a rotational one", needed ? "none" : "one");
-  if (needed) {
-    connection.direction = vector_of(table, "direction", names.space);
-    if (connection.direction->norm() == 0) fail(table, "direction", "a direction", "one of length zero");
-  }
-  return connection;
-}
-
 void add_masses(const Values& root, ModelBuilder& builder, CaseNames& names, const std::vector<double>& tuned) {
   std::size_t next = 0;
   for (const Values& mass : root.tables("mass")) {
@@ -115,6 +83,16 @@ void add_masses(const Values& root, ModelBuilder& builder, CaseNames& names, con
     if (body.number("mass") > 0 || !inertia.isZero(0))
       builder.add_element(std::make_unique<PointMass>(names.space, master, body.number("mass"), inertia, offset), body.where());
   }
+}
+
+/// The elements of the catalog: one for each table [[name]].
+void add_elements(const Values& root, ModelBuilder& builder, const CaseNames& names) {
+  for (const ElementEntry* entry : element_catalog())
+    for (const Values& table : root.tables(entry->name)) {
+      ElementSite site{names.space, names.nodes_of(table, "nodes"), {}};
+      for (const int node : site.nodes) site.positions.push_back(names.positions[static_cast<std::size_t>(node)]);
+      builder.add_element(entry->make(site, table), table.where());
+    }
 }
 
 }  // namespace
@@ -209,10 +187,10 @@ void add_mesh(const Case& read, ModelBuilder& builder, CaseNames& names) {
       nodes.clear();
       for (const int node : mesh.cell(cell)) nodes.push_back(names.first_of_mesh + node);
       std::unique_ptr<Solid> element;
-      if (solid.plasticity)
-        element = std::make_unique<NonlinearSolid>(mesh.type(cell), nodes, coordinates, solid.section, *solid.plasticity);
-      else
+      if (!solid.law || solid.law->linear())
         element = std::make_unique<Solid>(mesh.type(cell), nodes, coordinates, solid.section);
+      else
+        element = std::make_unique<NonlinearSolid>(mesh.type(cell), nodes, coordinates, solid.section, solid.law);
       element->beta = solid.table->number("damping_beta");
       builder.add_element(std::move(element), solid.table->where());
     }
@@ -234,18 +212,7 @@ void add_functions(const Case& read, CaseNames& names) {
 void add_structure(const Values& root, ModelBuilder& builder, CaseNames& names, const std::vector<double>& tuned, bool at_rest) {
   add_beams(root, builder, names);
   add_masses(root, builder, names, tuned);
-  for (const Values& spring : root.tables("spring")) {
-    const bool along = first_of_two(spring, "stiffness", "rotational_stiffness");
-    builder.add_element(
-        std::make_unique<Spring>(connection_of(spring, names, along), spring.number(along ? "stiffness" : "rotational_stiffness")),
-        spring.where());
-  }
-  for (const Values& dashpot : root.tables("dashpot")) {
-    const bool along = first_of_two(dashpot, "damping", "rotational_damping");
-    builder.add_element(
-        std::make_unique<Dashpot>(connection_of(dashpot, names, along), dashpot.number(along ? "damping" : "rotational_damping")),
-        dashpot.where());
-  }
+  add_elements(root, builder, names);
   add_supports(root, builder, names, at_rest);
 }
 

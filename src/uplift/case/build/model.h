@@ -8,6 +8,7 @@
 #include "uplift/case/build/names.h"
 #include "uplift/case/case.h"
 #include "uplift/case/mesh/mesh.h"
+#include "uplift/elements/element_entry.h"
 #include "uplift/model/builder.h"
 
 // The steps by which a case becomes a model; used by build() alone.
@@ -38,15 +39,11 @@ struct CaseNames {
   std::shared_ptr<const TimeFunction> function(const Values& table, std::optional<MotionKind> kind = {}) const;
 };
 
-/// Two numbers in plane models, three in space; InputError otherwise.
-Place vector_of(const Values& table, std::string_view key, Space space);
 /// Something about the three axes: `plural` in space, else `single`, which is about z, or with `everywhere` about all axes of space. Zero
 /// when neither is there.
 Vec3 about_axes(const Values& table, std::string_view single, std::string_view plural, bool everywhere, Space space);
 /// Plane or space: as the mesh, else as the first node.
 Space space_of(const Case& read);
-/// Exactly one of two keys must be given: whether it is the first.
-bool first_of_two(const Values& table, std::string_view first, std::string_view second);
 /// A table that may be absent: null then.
 const Values* table_if(const Values& values, std::string_view key);
 

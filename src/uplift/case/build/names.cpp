@@ -7,10 +7,6 @@
 
 namespace uplift {
 
-void fail(const Values& table, std::string_view key, const std::string& wanted, const std::string& found, const std::string& nearest) {
-  throw InputError(table.where(key), table.path(key), wanted, found, nearest);
-}
-
 void check_name(const std::string& name, const std::string& of, const Where& where, const std::string& path) {
   constexpr std::size_t most = 200;  // bytes
   const auto control = [](char c) { return static_cast<unsigned char>(c) < 0x20 || c == 0x7F; };

@@ -9,10 +9,6 @@
 
 namespace uplift {
 
-/// Throws the InputError of a key of a table, or with an empty key of the table itself.
-[[noreturn]] void fail(const Values& table, std::string_view key, const std::string& wanted, const std::string& found,
-                       const std::string& nearest = {});
-
 /// Names head columns of tables: refused are empty ones, control characters, more than 200 bytes, and beginnings that spreadsheets take for
 /// a formula. `of`: "the node".
 void check_name(const std::string& name, const std::string& of, const Where& where, const std::string& path);

@@ -144,23 +144,13 @@ SolidSection section_from(const Values& solid) {
   return section;
 }
 
-std::optional<DruckerPragerParameters> plasticity_from(const Values& solid, const SolidSection& section) {
-  const Values* table = table_if(solid, "plasticity");
-  if (!table) return std::nullopt;
-  if (section.plane == PlaneState::stress) fail(solid, "plane", "plane = \"strain\" for a solid with plasticity", "\"stress\"");
-  using Fit = DruckerPragerParameters::Fit;
-  DruckerPragerParameters law;
-  law.elastic = section.material;
-  law.cohesion = table->number("cohesion");
-  law.friction = table->number("friction_angle");
-  law.dilation = table->number("dilatancy_angle");
-  law.hardening = table->number("hardening");
-  const std::string& fit = table->text("fit");
-  law.fit = fit == "compression" ? Fit::compression : fit == "extension" ? Fit::extension : Fit::plane_strain;
-  if (law.dilation > law.friction)
-    fail(*table, "dilatancy_angle", "an angle from 0 to the friction angle", fmt::format("{:g} rad", law.dilation));
-  if (law.friction == 0 && law.cohesion == 0) fail(*table, "cohesion", "above 0 Pa for a soil without friction", "0 Pa");
-  check_drucker_prager(law, table->where(), table->path());
+std::shared_ptr<const BulkLaw> law_from(const Values& solid, const SolidSection& section) {
+  if (solid.has("plasticity") && solid.has("law")) fail(solid, "plasticity", "either law or plasticity, its older name", "both");
+  const char* key = solid.has("plasticity") ? "plasticity" : "law";
+  if (!solid.has(key)) return nullptr;
+  std::shared_ptr<const BulkLaw> law = make_part(bulk_law_catalog(), solid.part(key), section.material);
+  if (!law->linear() && section.plane == PlaneState::stress)
+    fail(solid, "plane", "plane = \"strain\" for a solid whose law is not elastic", "\"stress\"");
   return law;
 }
 
@@ -234,7 +224,7 @@ CaseSolids::CaseSolids(const Values& root, const CaseMesh& from) : mesh_(&from.m
       solid_here = static_cast<int>(solids_.size());
     }
     const SolidSection section = section_from(solid);
-    solids_.push_back({&solid, section, plasticity_from(solid, section), group.cells});
+    solids_.push_back({&solid, section, law_from(solid, section), group.cells});
   }
   const auto bare = std::ranges::find(solid_of_, -1);
   if (bare != solid_of_.end())

@@ -5,7 +5,7 @@
 #include <vector>
 
 #include "uplift/case/case.h"
-#include "uplift/elements/drucker_prager.h"
+#include "uplift/elements/bulk_law.h"
 #include "uplift/elements/solid.h"
 #include "uplift/mesh/sides.h"
 #include "uplift/mesh/split.h"
@@ -34,7 +34,7 @@ class CaseSolids {
   struct Solid {
     const Values* table;
     SolidSection section;
-    std::optional<DruckerPragerParameters> plasticity;
+    std::shared_ptr<const BulkLaw> law;  // null: elastic
     std::vector<CellId> cells;
   };
   const std::vector<Solid>& solids() const { return solids_; }

@@ -1,5 +1,7 @@
 #include "uplift/case/schema/mesh_sections.h"
 
+#include "uplift/elements/bulk_law.h"
+
 namespace uplift {
 namespace {
 
@@ -77,27 +79,6 @@ const Section& mesh_section() {
   return s;
 }
 
-namespace {
-
-const Section& plasticity_section() {
-  static const Section s{
-      "plasticity",
-      "a soil that yields under shear, the stronger the more it is compressed. Every step then iterates on it around the linear step",
-      Fields{
-          choice("type", {"drucker_prager"}, "yield surface: a cone around the axis of equal stresses").standard("drucker_prager"),
-          number("cohesion", "Pa", "cohesion; above 0 without friction").nonnegative(),
-          number("friction_angle", "rad", "angle of internal friction").between(0, 1.5),
-          number("dilatancy_angle", "rad", "0: no change of volume; as the friction angle: associated flow").between(0, 1.5).standard(0.0),
-          number("hardening", "Pa", "growth of the cohesion with the accumulated plastic strain").nonnegative().standard(0.0),
-          choice("fit", {"compression", "extension", "plane_strain"},
-                 "where the cone meets Mohr-Coulomb's pyramid: at its compression edges, its extension edges, or for the same collapse in "
-                 "plane strain")
-              .standard("compression")}};
-  return s;
-}
-
-}  // namespace
-
 const Section& solid_section() {
   static const Section s{
       "solid", "what a group of cells of the mesh is made of; every cell needs one",
@@ -111,7 +92,11 @@ const Section& solid_section() {
              number("thickness", "m", "length out of the plane (plane meshes)").positive().standard(1.0),
              choice("mass", {"consistent", "lumped", "none"}, "mass matrix").standard("consistent"),
              flag("incompatible_modes", "quad4 and hex8: bubbles that let an element bend").standard(true),
-             table("plasticity", plasticity_section(), "plastic yielding (plane strain and space); absent: linear elastic").optional(),
+             part("law", bulk_laws,
+                  "stress from strain; absent: elastic. Other laws need plane strain or space, and every step then iterates on them around "
+                  "the linear step")
+                 .optional(),
+             part("plasticity", bulk_laws, "older name of law; without type: drucker_prager").optional().standard_type("drucker_prager"),
              number("damping_beta", "s", "stiffness-proportional damping factor of this solid alone").nonnegative().standard(0.0)}};
   return s;
 }

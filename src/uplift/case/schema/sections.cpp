@@ -1,5 +1,7 @@
 #include "uplift/case/schema/sections.h"
 
+#include <algorithm>
+
 #include "uplift/case/build/criteria.h"
 #include "uplift/case/build/records.h"
 #include "uplift/case/schema/interface_sections.h"
@@ -168,8 +170,8 @@ const Section& fields_section() {
              integer("every", "every n-th step").between(1, 1000000000).optional(),
              flag("events", "first uplift, largest gap, largest pressure").standard(false),
              texts("quantities",
-                   "any of displacement, velocity, acceleration, stress (of solids), section_forces (in the middle of the lines of beams); "
-                   "absent: all")
+                   "any of displacement, velocity, acceleration, stress (of solids), what the laws of solids put out (drucker_prager: "
+                   "plastic_strain), section_forces (in the middle of the lines of beams); absent: all")
                  .optional(),
              texts("groups", "groups with a [[solid]] or a [[beam]]; absent: all").optional(),
              choice("precision", {"float32", "float64"}, "how values are stored: 7 or 16 digits").standard("float32"),
@@ -267,50 +269,56 @@ const Section& figure_section() {
 }  // namespace
 
 const Section& case_section() {
-  static const Section s{
-      "case", "a case file",
-      Fields{text("title", "title of the case"),
-             text("description", "what it shows").optional(),
-             flag("bonded", "run the model with bonded interfaces too, for comparison").standard(true),
-             named("nodes", node_section(), "nodes: name = [x, y], or [x, y, z]"),
-             table("mesh", mesh_section(), "mesh of solids, in the plane or in space").optional(),
-             tables("solid", solid_section(), "materials of the mesh"),
-             tables("absorbing", absorbing_section(), "absorbing boundaries of the mesh"),
-             tables("tie", tie_section(), "sides of the mesh that move together"),
-             tables("beam", beam_section(), "beams"),
-             tables("mass", mass_section(), "point masses"),
-             tables("spring", spring_section(), "springs"),
-             tables("dashpot", dashpot_section(), "dashpots"),
-             tables("rigid", rigid_section(), "rigid bodies"),
-             tables("support", support_section(), "supports"),
-             tables("interface", interface_section(), "interfaces"),
-             table("gravity", gravity_section(), "weight").optional(),
-             tables("function", function_section(), "functions of time"),
-             tables("record", record_section(), "motions of the ground, recorded or generated"),
-             tables("load", load_section(), "loads"),
-             tables("motion", motion_section(), "prescribed motions"),
-             tables("ground_acceleration", ground_section(), "ground acceleration"),
-             tables("initial", initial_section(), "initial state"),
-             table("damping", damping_section(), "damping").optional(),
-             tables("stage", stage_section(), "stages, in order"),
-             part("method", contact_methods, "contact method; absent: newton for traction laws, lagrange for cones").optional(),
-             part("impact", impact_rules, "velocity correction on impact; absent: project_hold for constraints, none for traction laws")
-                 .optional(),
-             part("solver", linear_solvers, "factorisation of the structure's matrices").standard("cholmod"),
-             choice("interface_solver", {"automatic", "direct", "krylov"},
-                    "linear problems of interfaces with more than twelve independent rows: one factor while the contact status stays, and "
-                    "none from 300 unknown forces on (automatic), a factor every time (direct), conjugate residuals on the compliance "
-                    "(krylov)")
-                 .standard("automatic"),
-             table("energy", energy_section(), "energy gate"),
-             table("limits", limits_section(), "limits"),
-             table("output", output_section(), "output"),
-             table("verdict", verdict_section(), "what the verdict is asked").optional(),
-             tables("variant", variant_section(), "variants to compare"),
-             table("compare", compare_section(), "comparison").optional(),
-             table("trust", trust_section(), "trust bands"),
-             tables("origin", origin_section(), "origin of values"),
-             tables("figure", figure_section(), "origin of figures")}};
+  static const Section s = [] {
+    Section made{
+        "case", "a case file",
+        Fields{
+            text("title", "title of the case"),
+            text("description", "what it shows").optional(),
+            flag("bonded", "run the model with bonded interfaces too, for comparison").standard(true),
+            named("nodes", node_section(), "nodes: name = [x, y], or [x, y, z]"),
+            table("mesh", mesh_section(), "mesh of solids, in the plane or in space").optional(),
+            tables("solid", solid_section(), "materials of the mesh"),
+            tables("absorbing", absorbing_section(), "absorbing boundaries of the mesh"),
+            tables("tie", tie_section(), "sides of the mesh that move together"),
+            tables("beam", beam_section(), "beams"),
+            tables("mass", mass_section(), "point masses"),
+            tables("rigid", rigid_section(), "rigid bodies"),
+            tables("support", support_section(), "supports"),
+            tables("interface", interface_section(), "interfaces"),
+            table("gravity", gravity_section(), "weight").optional(),
+            tables("function", function_section(), "functions of time"),
+            tables("record", record_section(), "motions of the ground, recorded or generated"),
+            tables("load", load_section(), "loads"),
+            tables("motion", motion_section(), "prescribed motions"),
+            tables("ground_acceleration", ground_section(), "ground acceleration"),
+            tables("initial", initial_section(), "initial state"),
+            table("damping", damping_section(), "damping").optional(),
+            tables("stage", stage_section(), "stages, in order"),
+            part("method", contact_methods, "contact method; absent: newton for traction laws, lagrange for cones").optional(),
+            part("impact", impact_rules, "velocity correction on impact; absent: project_hold for constraints, none for traction laws")
+                .optional(),
+            part("solver", linear_solvers, "factorisation of the structure's matrices").standard("cholmod"),
+            choice("interface_solver", {"automatic", "direct", "krylov"},
+                   "linear problems of interfaces with more than twelve independent rows: one factor while the contact status stays, and "
+                   "none from 300 unknown forces on (automatic), a factor every time (direct), conjugate residuals on the compliance "
+                   "(krylov)")
+                .standard("automatic"),
+            table("energy", energy_section(), "energy gate"),
+            table("limits", limits_section(), "limits"),
+            table("output", output_section(), "output"),
+            table("verdict", verdict_section(), "what the verdict is asked").optional(),
+            tables("variant", variant_section(), "variants to compare"),
+            table("compare", compare_section(), "comparison").optional(),
+            table("trust", trust_section(), "trust bands"),
+            tables("origin", origin_section(), "origin of values"),
+            tables("figure", figure_section(), "origin of figures")}};
+    const auto after_masses = std::ranges::find(made.fields, "rigid", &Field::name);
+    std::vector<Field> elements;
+    for (const Section& element : element_sections()) elements.push_back(tables(element.name, element, element.meaning));
+    made.fields.insert(after_masses, elements.begin(), elements.end());
+    return made;
+  }();
   return s;
 }
 

@@ -1,6 +1,7 @@
 #include "uplift/case/schema/structure_sections.h"
 
 #include "uplift/case/build/profile.h"
+#include "uplift/elements/element_entry.h"
 #include "uplift/model/function.h"
 
 namespace uplift {
@@ -67,24 +68,13 @@ const Section& mass_section() {
   return s;
 }
 
-const Section& spring_section() {
-  static const Section s{
-      "spring", "a linear spring between two nodes, or from one node to fixed ground",
-      Fields{text("name", "name").optional(), texts("nodes", "two nodes, or one (to the ground)"),
-             vector("direction", "1", "direction in which it acts; in space also the axis of a rotational spring").optional(),
-             number("stiffness", "N/m", "stiffness along direction").positive().optional(),
-             number("rotational_stiffness", "N m/rad", "stiffness of a rotational spring").positive().optional()}};
-  return s;
-}
-
-const Section& dashpot_section() {
-  static const Section s{
-      "dashpot", "a linear dashpot between two nodes, or from one node to fixed ground",
-      Fields{text("name", "name").optional(), texts("nodes", "two nodes, or one (to the ground)"),
-             vector("direction", "1", "direction in which it acts; in space also the axis of a rotational dashpot").optional(),
-             number("damping", "N s/m", "damping along direction").positive().optional(),
-             number("rotational_damping", "N m s/rad", "damping of a rotational dashpot").positive().optional()}};
-  return s;
+const std::vector<Section>& element_sections() {
+  static const std::vector<Section> sections = [] {
+    std::vector<Section> made;
+    for (const PartInfo* element : element_kinds()) made.push_back({element->name, element->summary, element->params});
+    return made;
+  }();
+  return sections;
 }
 
 const Section& rigid_section() {

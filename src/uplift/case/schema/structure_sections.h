@@ -7,8 +7,8 @@ namespace uplift {
 const Section& node_section();
 const Section& beam_section();
 const Section& mass_section();
-const Section& spring_section();
-const Section& dashpot_section();
+/// One for each element of the catalog: a table [[name]].
+const std::vector<Section>& element_sections();
 const Section& rigid_section();
 const Section& support_section();
 const Section& motion_section();

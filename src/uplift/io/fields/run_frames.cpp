@@ -8,7 +8,6 @@
 
 #include "uplift/base/text.h"
 #include "uplift/case/mesh/mesh.h"
-#include "uplift/elements/solid_nonlinear.h"
 
 namespace uplift {
 namespace {
@@ -54,11 +53,11 @@ const Values& beam_of(const Case& read, const std::string& group) {
 }
 
 /// The elements of every solid of the case. They were made solid after solid, cell after cell.
-std::vector<std::vector<const Solid*>> elements_of(const CaseSolids& solids, const Model& model) {
-  std::vector<const Solid*> all;
+std::vector<std::vector<const Element*>> elements_of(const CaseSolids& solids, const Model& model) {
+  std::vector<const Element*> all;
   for (const auto& element : model.elements)
-    if (const auto* solid = dynamic_cast<const Solid*>(element.get())) all.push_back(solid);
-  std::vector<std::vector<const Solid*>> elements;
+    if (element->continuum() != nullptr) all.push_back(element.get());
+  std::vector<std::vector<const Element*>> elements;
   auto next = all.begin();
   for (const CaseSolids::Solid& solid : solids.solids()) {
     assert(all.end() - next >= static_cast<std::ptrdiff_t>(solid.cells.size()));
@@ -69,16 +68,24 @@ std::vector<std::vector<const Solid*>> elements_of(const CaseSolids& solids, con
   return elements;
 }
 
+/// The quantities that are asked for are those of every run or outputs of its solids.
+void check_quantities(const Values& fields, const std::vector<std::vector<const Element*>>& solids) {
+  std::vector<std::string> known{"displacement", "velocity", "acceleration", "stress", "section_forces"};
+  for (const std::vector<const Element*>& solid : solids)
+    for (const ElementOutput& output : solid.front()->outputs())
+      if (std::ranges::find(known, output.name) == known.end()) known.push_back(output.name);
+  for (const std::string& quantity : fields.texts("quantities"))
+    if (std::ranges::find(known, quantity) == known.end()) fail(fields, "quantities", known, quantity);
+}
+
 }  // namespace
 
 RunFrames::RunFrames(const Values& fields, const Case& read, const BuiltCase& built)
     : model_(&built.model), quantities_(fields.texts("quantities")), interfaces_(with_mesh(fields, read), built) {
-  const std::vector<std::string> known{"displacement", "velocity", "acceleration", "stress", "section_forces"};
-  for (const std::string& quantity : quantities_)
-    if (std::ranges::find(known, quantity) == known.end()) fail(fields, "quantities", known, quantity);
   const CaseSolids solids(read.values, *read.mesh);
   const Mesh& mesh = solids.mesh();
-  const std::vector<std::vector<const Solid*>> elements = elements_of(solids, *model_);
+  const std::vector<std::vector<const Element*>> elements = elements_of(solids, *model_);
+  check_quantities(fields, elements);
   const std::vector<std::string> groups = wanted_groups(fields, read);
   for (std::size_t k = 0; k < groups.size(); ++k) {
     blocks_.push_back(field_mesh(mesh, groups[k], {groups[k]}, fields.where("groups")));
@@ -96,9 +103,9 @@ RunFrames::RunFrames(const Values& fields, const Case& read, const BuiltCase& bu
   }
   std::size_t first_history = 0;
   for (const auto& element : model_->elements)
-    if (const auto* yielding = dynamic_cast<const NonlinearSolid*>(element.get()); yielding != nullptr) {
-      first_history_[yielding] = first_history;
-      first_history += static_cast<std::size_t>(yielding->num_history());
+    if (const int size = element->num_history(); size > 0) {
+      first_history_[element.get()] = first_history;
+      first_history += static_cast<std::size_t>(size);
     }
   if (!interfaces_.mesh().face.empty()) blocks_.push_back(interfaces_.mesh().mesh);
   dimension_ = model_->space.dimension;
@@ -117,7 +124,9 @@ FieldFrame RunFrames::empty(const std::vector<double>& section_forces) const {
     for (const MotionField& motion : motions)
       if (wants(motion.name)) points.push_back(field(motion.name, motion.unit, FieldKind::vector));
     if (b < solids_.size()) {
-      if (wants("stress")) points.push_back(field("stress", "Pa", FieldKind::tensor));
+      for (const ElementOutput& output : solids_[b].front()->outputs())
+        if (wants(output.name))
+          points.push_back(field(output.name, output.unit, output.components == 6 ? FieldKind::tensor : FieldKind::scalar));
     } else if (b - solids_.size() < beams_.beams()) {
       frame.blocks.back().cells = beams_.fields(b - solids_.size(), section_forces);
     } else if (&blocks_[b] == &blocks_.back() && !interfaces_.mesh().face.empty()) {
@@ -137,28 +146,28 @@ std::vector<double> RunFrames::motion(const FieldMesh& block, const Vector& full
 }
 
 /// At the nodes, the mean of the cells of this material.
-std::vector<double> RunFrames::stress(std::size_t block, const Vector& full, const std::vector<double>& history) const {
+std::vector<double> RunFrames::of_elements(std::size_t block, std::size_t output, const Vector& full,
+                                           const std::vector<double>& history) const {
   const std::size_t points = blocks_[block].points.size();
-  constexpr std::size_t width = 6;
+  const auto width = static_cast<std::size_t>(solids_[block].front()->outputs()[output].components);
   std::vector<double> sum(width * points, 0), count(points, 0);
   auto element = solids_[block].begin();
   for (const CellBlock& type : blocks_[block].blocks)
     for (int cell = 0; cell < type.count(); ++cell) {
-      const Solid& solid = **element++;
+      const Element& solid = **element++;
       Vector displacement(solid.unknowns());
       const std::span<const int> nodes = solid.nodes();
       for (std::size_t a = 0; a < nodes.size(); ++a)
         displacement.segment(dimension_ * static_cast<Index>(a), dimension_) =
             full.segment(static_cast<Index>(stride_) * nodes[a], dimension_);
-      const auto yielding = first_history_.find(&solid);
-      const std::vector<Stress> stress =
-          yielding == first_history_.end() || history.empty()
-              ? solid.node_stress(displacement)
-              : static_cast<const NonlinearSolid&>(solid).node_stress(displacement, std::span(history).subspan(yielding->second));
+      std::span<const double> memory;
+      if (const auto first = first_history_.find(&solid); first != first_history_.end() && !history.empty())
+        memory = std::span(history).subspan(first->second, static_cast<std::size_t>(solid.num_history()));
+      const std::vector<double> values = solid.at_nodes(output, displacement, memory);
       for (std::size_t a = 0; a < nodes.size(); ++a) {
         const auto point = static_cast<std::size_t>(type[cell][a]);
         count[point] += 1;
-        for (std::size_t c = 0; c < width; ++c) sum[width * point + c] += stress[a][static_cast<Index>(c)];
+        for (std::size_t c = 0; c < width; ++c) sum[width * point + c] += values[width * a + c];
       }
     }
   for (std::size_t point = 0; point < points; ++point)
@@ -177,17 +186,20 @@ FieldFrame RunFrames::of(const State& state, const Vector* acceleration, const s
   const auto at_lips = [&](FieldKind kind, const std::vector<double>& values) { return at_points(interfaces_.mesh(), kind, values); };
   FieldFrame frame = empty(section_forces);
   frame.time = time;
-  for (std::size_t b = 0; b < blocks_.size(); ++b)
+  for (std::size_t b = 0; b < blocks_.size(); ++b) {
+    const std::vector<ElementOutput> outputs = b < solids_.size() ? solids_[b].front()->outputs() : std::vector<ElementOutput>{};
     for (FieldValues& field : frame.blocks[b].points) {
       for (std::size_t d = 0; d < motions.size(); ++d)
         if (field.name == motions[d].name) field.values = motion(blocks_[b], full[d]);
-      if (field.name == "stress") field.values = stress(b, full[0], state.bulk_history);
+      for (std::size_t k = 0; k < outputs.size(); ++k)
+        if (field.name == outputs[k].name) field.values = of_elements(b, k, full[0], state.bulk_history);
       if (field.name == "opening") field.values = at_lips(field.kind, joint.opening);
       if (field.name == "slip") field.values = at_lips(field.kind, joint.slip);
       if (field.name == "traction") field.values = at_lips(field.kind, joint.traction);
       if (field.name == "pressure") field.values = at_lips(field.kind, joint.pressure);
       if (field.name == "status") field.values = at_lips(field.kind, joint.status);
     }
+  }
   return frame;
 }
 

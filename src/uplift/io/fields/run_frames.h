@@ -7,7 +7,6 @@
 
 #include "uplift/case/case.h"
 #include "uplift/case/mesh/mesh.h"
-#include "uplift/elements/solid.h"
 #include "uplift/io/fields/fields.h"
 #include "uplift/run/force_rows.h"
 
@@ -83,13 +82,13 @@ class RunFrames {
  private:
   bool wants(std::string_view quantity) const;
   std::vector<double> motion(const FieldMesh& block, const Vector& full) const;
-  std::vector<double> stress(std::size_t block, const Vector& full, const std::vector<double>& history) const;
+  std::vector<double> of_elements(std::size_t block, std::size_t output, const Vector& full, const std::vector<double>& history) const;
 
   const Model* model_;
   std::vector<std::string> quantities_;  // empty: all
   std::vector<FieldMesh> blocks_;
-  std::vector<std::vector<const Solid*>> solids_;      // of the first blocks, in the order of their cells
-  std::map<const Solid*, std::size_t> first_history_;  // of the solids that can yield: where the state remembers them
+  std::vector<std::vector<const Element*>> solids_;      // of the first blocks, in the order of their cells
+  std::map<const Element*, std::size_t> first_history_;  // of the elements with memory: where the state has it
   InterfaceFrames interfaces_;
   BeamFrames beams_;                    // of the blocks behind those of the solids
   std::size_t stride_ = 0, first_ = 0;  // unknowns of a node; the first of the mesh's first node

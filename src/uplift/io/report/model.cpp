@@ -6,6 +6,7 @@
 #include <utility>
 
 #include "uplift/case/mesh/outline.h"
+#include "uplift/elements/element_entry.h"
 #include "uplift/io/report/parts.h"
 
 // The drawing of the model and the pictures of the animation.
@@ -214,15 +215,15 @@ void write_small_parts(JsonWriter& json, const Case& read, const BuiltCase& buil
         .end_object();
   json.end_array();
   json.key("springs").begin_array();
-  for (const char* kind : {"spring", "dashpot"})
-    for (const Values& spring : read.values.tables(kind)) {
+  for (const ElementEntry* element : element_catalog())
+    for (const Values& spring : read.values.tables(element->name)) {
       const std::vector<std::string>& nodes = spring.texts("nodes");
       json.begin_object().key("nodes").begin_array().value(shown_name(built, nodes.front()));
       if (nodes.size() > 1)
         json.value(shown_name(built, nodes.back()));
       else
         json.null();
-      json.end_array().member("kind", kind).end_object();
+      json.end_array().member("kind", element->symbol).end_object();
     }
   json.end_array();
 }
@@ -305,8 +306,8 @@ std::set<int> nodes_used(const Case& read, const BuiltCase& built) {
   for (const char* kind : {"mass", "support", "load"})
     for (const Values& table : read.values.tables(kind))
       if (table.has("node")) nodes.insert(built.model.find_node(table.text("node")));
-  for (const char* kind : {"spring", "dashpot"})
-    for (const Values& table : read.values.tables(kind))
+  for (const PartInfo* element : element_kinds())
+    for (const Values& table : read.values.tables(element->name))
       for (const std::string& node : table.texts("nodes")) nodes.insert(built.model.find_node(node));
   for (const Values& interface : read.values.tables("interface"))
     if (const Values* footing = table_if(interface, "footing")) nodes.insert(built.model.find_node(footing->text("body")));

@@ -3,6 +3,7 @@
 #include <cmath>
 
 #include "uplift/case/build/model.h"
+#include "uplift/elements/element_entry.h"
 #include "uplift/io/report/motions.h"
 
 // The tables: all runs side by side, the stiffness sweep, and where the values come from.
@@ -159,15 +160,19 @@ void write_tables(JsonWriter& json, const ReportInput& input) {
 
 void write_choices(JsonWriter& json, const Case& read, const BuiltCase& built) {
   std::vector<Given> given;
-  for (const char* table : {"nodes", "beam", "mass", "spring", "dashpot", "rigid", "interface", "gravity", "function", "record", "load",
-                            "motion", "ground_acceleration", "initial", "damping", "stage", "compare"}) {
+  std::vector<std::string_view> tables{"nodes", "beam", "mass"};
+  for (const PartInfo* element : element_kinds()) tables.push_back(element->name);
+  for (const char* table : {"rigid", "interface", "gravity", "function", "record", "load", "motion", "ground_acceleration", "initial",
+                            "damping", "stage", "compare"})
+    tables.emplace_back(table);
+  for (const std::string_view table : tables) {
     const Field* field = nullptr;
     for (const Field& each : read.values.section()->fields)
       if (each.name == table) field = &each;
     if (!field || !read.values.given(table)) continue;
     for (std::size_t i = 0; i < read.values.tables(table).size(); ++i) {
       const Values& inner = read.values.tables(table)[i];
-      collect(inner, table + entry_name(inner, field->kind, i), given);
+      collect(inner, std::string(table) + entry_name(inner, field->kind, i), given);
     }
   }
   json.begin_array();

@@ -2,7 +2,7 @@
 #include <span>
 #include <string>
 
-#include "uplift/elements/material.h"
+#include "uplift/elements/bulk_law.h"
 
 namespace uplift {
 
@@ -28,22 +28,25 @@ void check_drucker_prager(const DruckerPragerParameters& parameters, const Where
 ///              p = xi c/eta with de = eta xi (p_trial - p_apex)/(K eta eta_bar + xi^2 H) and the plastic volume strain (eta_bar/xi) de.
 ///              This is continuous in eta_bar: for eta_bar = 0 and H > 0 the volume stays elastic and the apex follows p_trial
 ///              (docs/theory, section 9). Linear hardening: no iteration.
-/// The update is implicit (backward Euler), the tangent consistent with it; not symmetric when psi < phi.
-class DruckerPrager {
+/// All plastic work counts as dissipated. The update is implicit (backward Euler), the tangent consistent with it; not symmetric when psi <
+/// phi.
+class DruckerPrager final : public BulkLaw {
  public:
-  /// Numbers per point: plastic strain (6, order of Strain), accumulated plastic strain e. They start at zero.
-  static constexpr int num_history = 7;
+  /// Numbers per point: plastic strain (6, order of Strain), accumulated plastic strain e.
+  static constexpr int history_size = 7;
 
   explicit DruckerPrager(const DruckerPragerParameters& parameters);
   const DruckerPragerParameters& parameters() const { return parameters_; }
+  int num_history() const override { return history_size; }
+  BulkResponse respond(const BulkPoints& points) const override;
+  std::span<const BulkOutput> outputs() const override;
+  void find_outputs(const double* history, double* values) const override;
 
-  /// Stress [Pa] for the total strain, with the history of the last accepted state; fills `now`; `tangent` = d stress/d strain unless null.
+  /// One point: stress [Pa] for the total strain, with the history of the last accepted state; fills `now`; `tangent` = d stress/d strain
+  /// unless null.
   Stress respond(const Strain& strain, std::span<const double> old, std::span<double> now, Mat6* tangent) const;
   /// sqrt(J2) + eta p - xi c [Pa]; at most zero (round-off) for every stress that respond returns.
   double yield(const Stress& stress, double accumulated) const;
-  const Mat6& elastic() const { return elastic_; }
-  /// Recoverable (elastic) energy [J/m3] of a state. All plastic work counts as dissipated; it is never negative.
-  double stored_energy(const Strain& strain, std::span<const double> history) const;
   /// Mean stress of the apex [Pa], tension > 0; infinite without friction.
   double apex(double accumulated) const;
 
@@ -53,7 +56,6 @@ class DruckerPrager {
   double return_to_apex(const Trial& trial, Stress& stress, Mat6* tangent) const;
 
   DruckerPragerParameters parameters_;
-  Mat6 elastic_;
   double eta_, eta_bar_, xi_;
 };
 

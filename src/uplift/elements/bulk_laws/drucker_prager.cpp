@@ -1,8 +1,9 @@
-#include "uplift/elements/drucker_prager.h"
+#include "uplift/elements/bulk_laws/drucker_prager.h"
 
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <array>
 #include <cassert>
 #include <cmath>
 #include <limits>
@@ -80,8 +81,8 @@ void check_drucker_prager(const DruckerPragerParameters& p, const Where& where, 
 }
 
 DruckerPrager::DruckerPrager(const DruckerPragerParameters& parameters)
-    : parameters_(parameters),
-      elastic_(elastic_matrix(parameters.elastic)),
+    : BulkLaw(parameters.elastic),
+      parameters_(parameters),
       eta_(cone_slope(parameters.friction, parameters.fit)),
       eta_bar_(cone_slope(parameters.dilation, parameters.fit)),
       xi_(cohesion_factor(parameters.friction, parameters.fit)) {}
@@ -96,11 +97,11 @@ double DruckerPrager::apex(double accumulated) const {
 }
 
 Stress DruckerPrager::respond(const Strain& strain, std::span<const double> old, std::span<double> now, Mat6* tangent) const {
-  assert(old.size() >= num_history && now.size() >= num_history);
-  Stress stress = elastic_ * (strain - ConstMap(old.data(), 6));
+  assert(old.size() >= history_size && now.size() >= history_size);
+  Stress stress = elastic() * (strain - ConstMap(old.data(), 6));
   const double over = yield(stress, old[6]);
-  std::copy_n(old.begin(), num_history, now.begin());
-  if (tangent) *tangent = elastic_;
+  std::copy_n(old.begin(), history_size, now.begin());
+  if (tangent) *tangent = elastic();
   if (over <= 0) return stress;
 
   const double shear = parameters_.elastic.shear(), bulk = parameters_.elastic.bulk();
@@ -148,9 +149,68 @@ double DruckerPrager::return_to_apex(const Trial& trial, Stress& stress, Mat6* t
   return trial.accumulated + eta_ * xi_ * past / (volumetric + hardening);
 }
 
-double DruckerPrager::stored_energy(const Strain& strain, std::span<const double> history) const {
-  const Strain recoverable = strain - ConstMap(history.data(), 6);
-  return recoverable.dot(elastic_ * recoverable) / 2;
+BulkResponse DruckerPrager::respond(const BulkPoints& points) const {
+  for (std::size_t p = 0; p < points.strain.size(); ++p) {
+    const std::size_t first = history_size * p;
+    points.stress[p] = respond(points.strain[p], {points.old + first, history_size}, {points.now + first, history_size},
+                               points.tangent != nullptr ? points.tangent + p : nullptr);
+  }
+  return {};
+}
+
+std::span<const BulkOutput> DruckerPrager::outputs() const {
+  static constexpr std::array<BulkOutput, 1> all{{{"plastic_strain", "1"}}};
+  return all;
+}
+
+void DruckerPrager::find_outputs(const double* history, double* values) const {
+  values[0] = history[6];
+}
+
+namespace {
+
+std::unique_ptr<const BulkLaw> made(const ElasticMaterial& material, const Values& values) {
+  using Fit = DruckerPragerParameters::Fit;
+  DruckerPragerParameters law;
+  law.elastic = material;
+  law.cohesion = values.number("cohesion");
+  law.friction = values.number("friction_angle");
+  law.dilation = values.number("dilatancy_angle");
+  law.hardening = values.number("hardening");
+  const std::string& fit = values.text("fit");
+  law.fit = fit == "compression" ? Fit::compression : fit == "extension" ? Fit::extension : Fit::plane_strain;
+  const auto refuse = [&](const char* key, const char* wanted, const std::string& found) {
+    throw InputError(values.where(key), values.path(key), wanted, found);
+  };
+  if (law.dilation > law.friction)
+    refuse("dilatancy_angle", "an angle from 0 to the friction angle", fmt::format("{:g} rad", law.dilation));
+  if (law.friction == 0 && law.cohesion == 0) refuse("cohesion", "above 0 Pa for a soil without friction", "0 Pa");
+  check_drucker_prager(law, values.where(), values.path());
+  return std::make_unique<DruckerPrager>(law);
+}
+
+}  // namespace
+
+const BulkLawEntry& entry_bulk_law_drucker_prager() {
+  static const BulkLawEntry entry{
+      {.name = "drucker_prager",
+       .summary = "a soil that yields under shear, the stronger the more it is compressed: a cone around the axis of equal stresses",
+       .equations = "sqrt(J2) + eta p - xi c <= 0, c = cohesion + hardening e, p = tr(stress)/3 (tension > 0)\n"
+                    "plastic strain rate = gamma' d(sqrt(J2) + eta_bar p)/d stress, e' = xi gamma'\n"
+                    "eta, xi from friction_angle and eta_bar from dilatancy_angle by fit",
+       .source = "de Souza Neto, Peric & Owen, Computational Methods for Plasticity (2008), sections 6.4.3 and 8.3; docs/theory, section 9",
+       .params = {number("cohesion", "Pa", "cohesion; above 0 without friction").nonnegative(),
+                  number("friction_angle", "rad", "angle of internal friction").between(0, 1.5),
+                  number("dilatancy_angle", "rad", "0: no change of volume; as the friction angle: associated flow")
+                      .between(0, 1.5)
+                      .standard(0.0),
+                  number("hardening", "Pa", "growth of the cohesion with the accumulated plastic strain").nonnegative().standard(0.0),
+                  choice("fit", {"compression", "extension", "plane_strain"},
+                         "where the cone meets Mohr-Coulomb's pyramid: at its compression edges, its extension edges, or for the same "
+                         "collapse in plane strain")
+                      .standard("compression")}},
+      made};
+  return entry;
 }
 
 }  // namespace uplift
