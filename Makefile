@@ -13,7 +13,7 @@ test: build-tests  ## the same set-up, then build and run every test
 
 docs: build        ## the documentation as a site that opens from disk: build/docs/site/index.html
 	@scripts/setup.sh docs
-	python3 scripts/make_docs.py build/release/uplift --build
+	python3 scripts/make_docs.py build/release/uplift --record build/release/verification --build
 
 build:
 	@scripts/setup.sh run

@@ -62,9 +62,8 @@ def navigation(text, source):
     """Replaces "- generated: FOLDER" by the pages of that folder."""
     def lines(found):
         indent, folder = found.groups()
-        inner = sorted((source / folder).glob("*.md"), key=lambda page: (page.name != "index.md", page.name))
-        gallery_index = [page for page in inner if page.name != "index.md" or folder in ("decisions", "verification")]
-        return "\n".join(f"{indent}- \"{title_of(page)}\": {folder}/{page.name}" if page.name != "index.md" else f"{indent}- {folder}/index.md" for page in gallery_index)
+        inner = sorted((source / folder).glob("*.md"))
+        return "\n".join(f"{indent}- \"{title_of(page)}\": {folder}/{page.name}" for page in inner if page.name != "index.md")
     return re.sub(r"^( *)- generated: (\S+)$", lines, text, flags=re.M)
 
 

@@ -14,6 +14,7 @@ from support import *
 ROOT = pathlib.Path(__file__).resolve().parents[2]
 sys.path.insert(0, str(ROOT / "scripts"))
 import make_docs  # noqa: E402
+import make_verification  # noqa: E402
 
 NEW_LAW = "src/uplift/laws/anchored.cpp"  # the file that the pages on a new law tell the reader to write
 LANGUAGES = {"toml", "toml fragment", "sh", "sh fragment", "output", "text", "cpp", "python", "python fragment", "c"}
@@ -79,10 +80,32 @@ class Pages(CliTest):
 
     def test_every_page_is_in_the_navigation(self):
         listed = make_docs.navigation((ROOT / "docs" / "mkdocs.yml").read_text(), self.source)
+        matrix = (self.source / "verification" / "index.md").read_text()
         for path in self.pages:
-            self.assertIn(str(path.relative_to(self.source)), listed)
+            if path.parent.name == "verification" and path.name != "index.md":
+                self.assertIn(f"({path.name})", matrix)
+            else:
+                self.assertIn(str(path.relative_to(self.source)), listed)
         for page in re.findall(r"[\w/-]+\.md", listed):
             self.assertTrue((self.source / page).exists(), page)
+
+    def test_the_verification_manual_has_a_page_for_every_case(self):
+        cases = make_verification.declared()  # ends with an error where a test does not state requirement, title and source
+        self.assertGreaterEqual(len(cases), 100)
+        for case in cases.values():
+            self.assertTrue(all(case[key] for key in ("requirement", "title", "source")), case["id"])
+            self.assertIn(case["title"], (self.source / "verification" / f"{case['id']}.md").read_text())
+
+    def test_figures_of_a_run_are_on_the_pages(self):
+        record = self.folder / "record"
+        record.mkdir()
+        row = {"quantity": "moment", "unit": "N m", "comparison": "near", "measured": 1.0004, "reference": 1, "tolerance": 0.001, "count": 7}
+        (record / "a.json").write_text(json.dumps({"suite": "Footing", "name": "TwoSprings", "passed": True, "rows": [row]}))
+        make_verification.write_manual(record, self.folder / "manual")
+        self.assertIn("| moment | N m | 1 | 1.0004 | 0.001 | 7 |", (self.folder / "manual" / "Footing.TwoSprings.md").read_text())
+        matrix = (self.folder / "manual" / "index.md").read_text()
+        self.assertRegex(matrix, r"Footing on two springs\]\(Footing.TwoSprings.md\) \| 1 \| passed")
+        self.assertRegex(matrix, r"Footing.WinklerStrip.md\) \|   \| not run")
 
     def test_files_named_in_the_text_exist(self):
         for path, text in self.pages.items():
