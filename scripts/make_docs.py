@@ -7,6 +7,7 @@ scripts/make_verification.py, the gallery from examples/*/README.md, and the fil
 --record: what the verification tests recorded; --build: runs mkdocs, for FOLDER/site/index.html."""
 import argparse
 import base64
+import os
 import pathlib
 import re
 import shutil
@@ -51,8 +52,40 @@ def pages(program, record, folder):
     write_manual(record, folder / "verification")
 
 
+def linked(text, page, source):
+    """Pages, equations and sections of the theory that the text names become links."""
+    def path_to(target, anchor=""):
+        return os.path.relpath(target, page.parent) + anchor
+
+    def to_page(found):
+        for target in (page.parent / found.group(1), source / found.group(1).removeprefix("docs/")):
+            if target.exists() and target.resolve() != page.resolve():
+                return f"[{title_of(target)}]({path_to(target)})"
+        return found.group(0)
+
+    theory = source / "theory" / "README.md"
+    equations = {number: path for path in theory.parent.glob("*.md") for number in re.findall(r"\\tag\{(\w+)\}", path.read_text())}
+    sections = {number: re.sub(r"[-\s]+", "-", re.sub(r"[^\w\s-]", "", title).lower()).strip("-")
+                for title, number in re.findall(r"^## ((\d+)\. .*)$", theory.read_text(), re.M)}
+
+    def to_theory(found):
+        kind, number = found.group(2), found.group(3) or found.group(4)
+        if kind == "section" and number not in sections:
+            return found.group(0)
+        if kind == "section":
+            return f"[theory, {found.group(1)}]({path_to(theory, '#' + sections[number])})"
+        target = equations.get(number)
+        return f"[theory, {found.group(1)}]({path_to(target, f'#eq-{number}')})" if target else found.group(0)
+
+    blocks = re.split(r"(^```[\s\S]*?^```$|^    [^\n]*$)", text, flags=re.M)
+    for i in range(0, len(blocks), 2):
+        blocks[i] = re.sub(r"`?docs/theory(?:/README\.md)?`?,? ((eq|section)s? (?:\((\w+)\)|(\w+)))(?=[\s.,;:)])", to_theory, blocks[i])
+        blocks[i] = re.sub(r"(?<!\[)`((?:docs/)?[\w/]+\.md)`", to_page, blocks[i])
+    return "".join(blocks)
+
+
 def for_mkdocs(text):
-    """What mkdocs does not know: words after the language of a block, anchors of equations, `docs/guide/x.md` as text."""
+    """What mkdocs does not know: words after the language of a block, and anchors of equations."""
     text = re.sub(r"^```(toml|sh) fragment$", r"```\1", text, flags=re.M)
     text = re.sub(r"^```output$", "```text", text, flags=re.M)
     return re.sub(r"^\$\$\n(.*?\\tag\{(\w+)\}.*?)\n\$\$$", r'<a id="eq-\2"></a>\n\n$$\n\1\n$$', text, flags=re.M | re.S)
@@ -82,8 +115,9 @@ def katex(assets):
 
 def build(folder):
     source = folder / "source"
-    for page in source.rglob("*.md"):
-        page.write_text(for_mkdocs(page.read_text()))
+    texts = {page: for_mkdocs(linked(page.read_text(), page, source)) for page in source.rglob("*.md")}
+    for page, text in texts.items():
+        page.write_text(text)
     shutil.rmtree(folder / "theme", ignore_errors=True)
     shutil.copytree(ROOT / "docs" / "site" / "theme", folder / "theme")
     shutil.copytree(ROOT / "docs" / "site" / "assets", source / "assets")
@@ -94,6 +128,7 @@ def build(folder):
     subprocess.run([*command, "build", "--quiet", "--strict", "--clean", "-f", folder / "mkdocs.yml"], check=True)
     index = (folder / "site" / "search" / "search_index.json").read_text()
     (folder / "site" / "assets" / "search_index.js").write_text(f"var uplift_search_index = {index};\n")
+    (folder / "site" / "404.html").unlink()  # for servers
     for path in [*(folder / "site").rglob("*.map"), *(folder / "site" / "assets" / "javascripts").glob("lunr/**/*.js")]:
         path.unlink()
     print(f"documentation: {folder / 'site' / 'index.html'}")

@@ -77,7 +77,8 @@ def part_page(program, family, meaning, parts):
 
 def section_text(program, path, level):
     lines = program("describe", "section", path).split("\n")
-    text = [f"{'#' * level} {path}", "", lines[0].split(": ", 1)[1] + ".", "", "```text", lines[1], "```", ""]
+    meaning = lines[0].split(": ", 1)[1]
+    text = [f"{'#' * level} {path}", "", meaning[0].upper() + meaning[1:] + ".", "", "```text", lines[1], "```", ""]
     fields = [i for i, line in enumerate(lines) if re.match(r"  key +unit", line)]
     end = next((i for i in range(fields[0], len(lines)) if not lines[i]), len(lines)) if fields else 0
     text += [field_table(lines[fields[0] : end]) if fields else "No keys.", ""]

@@ -2,7 +2,9 @@
 """Writes the verification manual: a page for each test of tests/verification, with its text (the comments above the test and at the head of its
 file), the figures that its last run left in a folder, and the command to repeat it; and the matrix of requirements, tests and results.
 Usage: scripts/make_verification.py RECORD FOLDER"""
+import html
 import json
+import math
 import pathlib
 import re
 import subprocess
@@ -10,6 +12,7 @@ import sys
 
 ROOT = pathlib.Path(__file__).resolve().parent.parent
 TESTS = ROOT / "tests" / "verification"
+COLOURS = ("#0b64a0", "#d1500a", "#2b8a3e", "#7a3fa0", "#a07a00", "#00868b", "#b0245c", "#555555")
 SIGNS = {"less": "< {}", "greater": "> {}", "at_most": "≤ {}", "at_least": "≥ {}"}
 
 
@@ -82,6 +85,46 @@ def result_table(record):
     return "\n".join(lines)
 
 
+def drawing(curves):
+    """Errors over the size or step relative to the coarsest one, logarithmic, with lines of the orders 1 and 2: SVG."""
+    width, height, left, top, bottom = 560, 320, 70, 20, 48
+    points = [[(x / max(curve["size"]), y) for x, y in zip(curve["size"], curve["error"]) if x > 0 and y is not None and y > 0] for curve in curves]
+    xs, ys = [x for each in points for x, _ in each], [y for each in points for _, y in each]
+    if len(set(xs)) < 2 or not ys:
+        return ""
+    low_x, high_y, low_y = math.log10(min(xs)), math.ceil(math.log10(max(ys)) + 0.01), math.floor(math.log10(min(ys)) - 0.01)
+
+    def place(x, y):
+        return (f"{left + (math.log10(x) - low_x) / -low_x * (width - left - 190):.1f}",
+                f"{top + (high_y - math.log10(y)) / (high_y - low_y) * (height - top - bottom):.1f}")
+
+    out = [f'<svg xmlns="http://www.w3.org/2000/svg" viewBox="0 0 {width} {height}" font-family="sans-serif" font-size="11">', f'<rect width="{width}" height="{height}" fill="#fff"/>']
+    for power in range(low_y, high_y + 1):
+        (a, y), (b, _) = place(min(xs), 10.0**power), place(1, 10.0**power)
+        out += [f'<line x1="{a}" y1="{y}" x2="{b}" y2="{y}" stroke="#ddd"/>', f'<text x="{left - 6}" y="{float(y) + 4:.1f}" text-anchor="end">1e{power}</text>']
+    for x in sorted(set(f"{x:.3g}" for x in xs)):
+        at = place(float(x), 10.0**low_y)[0]
+        out += [f'<line x1="{at}" y1="{top}" x2="{at}" y2="{height - bottom}" stroke="#eee"/>', f'<text x="{at}" y="{height - bottom + 15}" text-anchor="middle">{x}</text>']
+    for order, dash in ((1, "6 4"), (2, "2 3")):
+        start = 10.0**high_y / 1.5
+        end = max(start * min(xs) ** order, 10.0**low_y)
+        (a, b), (c, d) = place(1, start), place((end / start) ** (1 / order), end)
+        out.append(f'<line x1="{a}" y1="{b}" x2="{c}" y2="{d}" stroke="#999" stroke-dasharray="{dash}"/>')
+        out += [f'<line x1="{width - 180}" y1="{height - bottom - 18 + 14 * order}" x2="{width - 160}" y2="{height - bottom - 18 + 14 * order}" stroke="#999" stroke-dasharray="{dash}"/>',
+                f'<text x="{width - 155}" y="{height - bottom - 14 + 14 * order}">order {order}</text>']
+    for number, (curve, each) in enumerate(zip(curves, points)):
+        colour = COLOURS[number % len(COLOURS)]
+        path = " ".join(",".join(place(x, y)) for x, y in sorted(each))
+        out.append(f'<polyline points="{path}" fill="none" stroke="{colour}" stroke-width="1.6"/>')
+        out += ['<circle cx="{}" cy="{}" r="2.6" fill="{}"/>'.format(*place(x, y), colour) for x, y in each]
+        if number < 16:
+            out += [f'<line x1="{width - 180}" y1="{top + 6 + 14 * number}" x2="{width - 160}" y2="{top + 6 + 14 * number}" stroke="{colour}" stroke-width="1.6"/>',
+                    f'<text x="{width - 155}" y="{top + 10 + 14 * number}">{html.escape(curve["label"])}</text>']
+    out += [f'<text x="{left + (width - left - 190) / 2:.0f}" y="{height - 12}" text-anchor="middle">size or step over the coarsest one</text>',
+            f'<text transform="translate(16 {(height - bottom + top) / 2:.0f}) rotate(-90)" text-anchor="middle">error</text>', "</svg>"]
+    return "\n".join(out)
+
+
 def state(records):
     if not records:
         return "not run"
@@ -93,7 +136,7 @@ def commit():
     return done.stdout.strip() or "unknown"
 
 
-def page(case, records, version):
+def page(case, records, version, folder):
     text = [f"# {case['title']}", "", f"**Requirement:** {case['requirement']}. **Test:** `{case['id']}` in `tests/verification/{case['file']}`. **Result:** {state(records)}.", "",
             f"**Source:** {escaped(case['source'])}.", ""]
     if case["text"]:
@@ -105,6 +148,10 @@ def page(case, records, version):
         text += ["This build has not run the test. `make test` fills this page.", ""]
     for record in records:
         text += ([f"### {record['instance']}", ""] if record["instance"] else []) + [result_table(record), ""]
+    curves = [curve for record in records for curve in record.get("curves", [])]
+    if picture := drawing(curves) if curves else "":
+        (folder / f"{case['id']}.svg").write_text(picture)
+        text += [f"![Error over size or step]({case['id']}.svg)", ""]
     if records:
         text += ["Where several comparisons have the same name, the row is the one nearest to its tolerance.", ""]
     wildcard = f"*{case['id']}/*" if case["parametrised"] else case["id"]
@@ -123,7 +170,7 @@ def contents():
 def write_manual(record, folder):
     groups, records, version = contents(), measured(record), commit()
     folder.mkdir(parents=True)
-    count = sum(len(found) for found in records.values())
+    count = sum(len(records.get(case["id"], [])) for cases in groups.values() for case in cases)
     text = ["# Verification", "", f"{sum(map(len, groups.values()))} tests" + (f" with {count} cases" if count else "") + " compare the program with closed forms, published figures and independent computations, "
             "never with output of the program itself. The tests write these pages: the figures are those of their last run, and a changed tolerance changes the page. "
             "The property tests (`tests/property`) and the tests of single parts (`tests/unit`) are not listed here.", "",
@@ -131,7 +178,7 @@ def write_manual(record, folder):
     for requirement, entries in groups.items():
         for case in entries:
             found = records.get(case["id"], [])
-            (folder / f"{case['id']}.md").write_text(page(case, found, version))
+            (folder / f"{case['id']}.md").write_text(page(case, found, version, folder))
             quantities = len({row["quantity"] for each in found for row in each["rows"]})
             cases_of = f" ({len(found)} cases)" if len(found) > 1 else ""
             text.append(f"| {requirement} | [{cell(case['title'])}]({case['id']}.md){cases_of} | {quantities or ' '} | {state(found)} |")

@@ -88,6 +88,7 @@ TEST(BarOnAWall, OnlyTheCorrectedImpactConverges) {
       size.push_back(1.0 / n);
       error.push_back(1 - figures(falling_bar(n, rule)).energy);
     }
+    verified_case.curve(std::string("energy, ") + rule, size, error);
     RecordProperty(std::string("order_") + rule, std::to_string(order(size, error)));
     VERIFY_GT("order of convergence of the energy, lower bound", "1", order(size, error), std::string(rule) == "propagate" ? 0.6 : 0.9)
         << rule;

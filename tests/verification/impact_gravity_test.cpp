@@ -107,6 +107,7 @@ TEST(BouncingBar, MeanHeightConverges) {
     worst.push_back(most);
   }
   RecordProperty("worst_200", std::to_string(worst[1]));
+  verified_case.curve("mean height [m]", size, worst);
   RecordProperty("order", std::to_string(order(size, worst)));
   VERIFY_LT("largest error of the mean height, 200 elements", "m", worst[1], 0.04 * height);
   VERIFY_GT("order of convergence", "1", order(size, worst), 0.5);
@@ -125,6 +126,7 @@ TEST(BouncingBar, ExitEnergyIsOfFirstOrder) {
     lost.push_back(1 - energy(run, run.rows() - 1) / start_energy);
     VERIFY_NEAR("energy lost times 2n", "1", lost.back() * 2 * n, 1, 0.1) << n;
   }
+  verified_case.curve("energy lost", size, lost);
   RecordProperty("order", std::to_string(order(size, lost)));
   VERIFY_NEAR("order of convergence", "1", order(size, lost), 1, 0.1);
 }

@@ -184,6 +184,7 @@ TEST(Integrators, Orders) {
       error.push_back(std::abs(u.back() - std::cos(2 * pi * 1.0 / per_cycle * static_cast<double>(u.size() - 1))) +
                       std::abs(whole.back() - 1));
     }
+    verified_case.curve(scheme.name, step, error);
     VERIFY_NEAR("order of convergence", "1", order(step, error), scheme.name == "newmark_g0.6" ? 1 : 2, 0.1) << scheme.text;
   }
 }

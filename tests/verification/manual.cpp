@@ -78,6 +78,7 @@ ManualCase::~ManualCase() {
                               {"reference", number(row.reference)},
                               {"tolerance", row.tolerance},
                               {"count", row.count}});
+  for (const Curve& curve : curves_) record["curves"].push_back({{"label", curve.label}, {"size", curve.size}, {"error", curve.error}});
   std::string file = std::string(test->test_suite_name()) + "." + test->name();
   std::replace(file.begin(), file.end(), '/', '.');
   std::ofstream(std::string(folder) + "/" + file + ".json") << record.dump(1) << "\n";

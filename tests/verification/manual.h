@@ -36,7 +36,16 @@ class ManualCase {
   testing::AssertionResult compare(Comparison, const std::string& quantity, const char* unit, double measured, double reference,
                                    double tolerance = 0);
 
+  /// Errors over sizes or steps, for a drawing of the page.
+  void curve(const std::string& label, const std::vector<double>& size, const std::vector<double>& error) {
+    curves_.push_back({label, size, error});
+  }
+
  private:
+  struct Curve {
+    std::string label;
+    std::vector<double> size, error;
+  };
   struct Row {
     std::string quantity;
     const char* unit;
@@ -46,6 +55,7 @@ class ManualCase {
   };
   CaseDescription description_;
   std::vector<Row> rows_;
+  std::vector<Curve> curves_;
 };
 
 }  // namespace uplift::verification

@@ -185,6 +185,7 @@ TEST(MeshColumn, SurfaceOfUniformRockIsTheOutcrop) {
     RecordProperty(std::string(wave) + "_" + std::string(info(cell).name),
                    fmt::format("{:.2e} {:.2e} order {:.2f}", error[0], error[1], order(size, error)));
     VERIFY_LT("largest error over the peak, finer mesh", "1", error[1], 1e-3) << info(cell).name << wave;
+    verified_case.curve(fmt::format("{} {}", info(cell).name, wave), size, error);
     VERIFY_NEAR("order of convergence", "1", order(size, error), 2, 0.2) << info(cell).name << wave;
   }
 }
@@ -207,6 +208,7 @@ TEST(MeshColumn, LayersMatchTheTransferMatrix) {
     RecordProperty(std::string(wave) + "_" + std::string(info(cell).name),
                    fmt::format("{:.2e} {:.2e} order {:.2f}", error[0], error[1], order(size, error)));
     VERIFY_LT("largest error over the peak, finer mesh", "1", error[1], 5e-3) << info(cell).name << wave;
+    verified_case.curve(fmt::format("{} {}", info(cell).name, wave), size, error);
     VERIFY_NEAR("order of convergence", "1", order(size, error), 2, 0.2) << info(cell).name << wave;
   }
 }

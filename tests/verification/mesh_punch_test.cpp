@@ -57,6 +57,7 @@ TEST(MeshPunch, StripOnTheHalfPlane) {
     RecordProperty(fmt::format("ratio_{}", ratio),
                    fmt::format("{:.2e} {:.2e} {:.2e} order {:.2f}", error[0], error[1], error[2], order(size, error)));
     VERIFY_LT("relative error of the moment, 128 elements", "1", error.back(), 0.02) << ratio;
+    verified_case.curve(fmt::format("rotation {} θ_u", ratio), size, error);
     VERIFY_GT("order of convergence", "1", order(size, error), 0.8) << ratio;
   }
 }
@@ -138,6 +139,7 @@ TEST(MeshPunch, LineContactOfHertz) {
     VERIFY_NEAR("half width", "m", found.half_width, a, 0.01 * a) << cells;
     VERIFY_NEAR("peak pressure", "Pa", found.peak, p0, 0.01 * p0) << cells;
   }
+  verified_case.curve("half width", size, error);
   VERIFY_GT("order of convergence of the half width", "1", order(size, error), 0.8);
 }
 

@@ -47,6 +47,7 @@ TEST(Orders, PenaltyTowardsLagrange) {
     error.push_back(soft.displacement - gap);
   }
   RecordProperty("order", std::to_string(order(step, error)));
+  verified_case.curve("displacement [m]", step, error);
   VERIFY_NEAR("order of convergence in 1/ε", "1", order(step, error), 1, 0.05);
 }
 
@@ -96,6 +97,7 @@ TEST(Orders, DynamicsWithImpacts) {
     error.push_back(sum);
   }
   RecordProperty("order", std::to_string(order(step, error)));
+  verified_case.curve("second passage [s]", step, error);
   VERIFY_NEAR("order of convergence", "1", order(step, error), 1, 0.3);
   VERIFY_LT("mean error of the second passage, shortest step", "s", error.back(), 3 * step.back());
 }

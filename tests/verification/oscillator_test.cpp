@@ -182,6 +182,7 @@ TEST(ReferenceOscillator, Orders) {
       error.push_back(distance(run["top.ux"], same));
     }
     RecordProperty("order_dt_" + std::to_string(pulse), std::to_string(order(step, error)));
+    verified_case.curve(pulse > 1e5 ? "step, with uplift" : "step, without uplift", step, error);
     VERIFY_NEAR("order in the step", "1", order(step, error), 2, 0.25) << pulse;
     const Exact exact = integrate(pulse, 0.5);
     std::vector<double> size, far;
@@ -194,6 +195,7 @@ TEST(ReferenceOscillator, Orders) {
       far.push_back(distance(run["top.ux"], exact.x));
     }
     RecordProperty("order_points_" + std::to_string(pulse), std::to_string(order(size, far)));
+    verified_case.curve(pulse > 1e5 ? "points, with uplift" : "points, without uplift", size, far);
     VERIFY_NEAR("order in the points", "1", order(size, far), 2, 0.3) << pulse;
   }
 }

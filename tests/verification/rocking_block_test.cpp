@@ -97,6 +97,7 @@ TEST(RockingBlock, QuarterPeriod) {
     }
     RecordProperty("error_5e-4", std::to_string(error.back()));
     VERIFY_LT("relative error of the quarter period, shortest step", "1", error.back(), 1e-4);
+    verified_case.curve(side > 0 ? "quarter period, to the left" : "quarter period, to the right", step, error);
     VERIFY_GT("order of convergence", "1", order(step, error), 0.8);
   }
 }
