@@ -131,7 +131,18 @@ def build(folder):
     (folder / "site" / "404.html").unlink()  # for servers
     for path in [*(folder / "site").rglob("*.map"), *(folder / "site" / "assets" / "javascripts").glob("lunr/**/*.js")]:
         path.unlink()
+    inspect(folder / "site")
     print(f"documentation: {folder / 'site' / 'index.html'}")
+
+
+def inspect(site):
+    """The site must open from disk and stay small."""
+    size = sum(path.stat().st_size for path in site.rglob("*") if path.is_file())
+    if size > 15e6:
+        sys.exit(f"make_docs: the site has {size / 1e6:.1f} MB, at most 15 MB are meant")
+    for page in site.rglob("*.html"):
+        for element in re.findall(r"<(?:script|link|img|iframe)[^>]*(?:src|href)=\"https?:[^>]*>", page.read_text()):
+            sys.exit(f"make_docs: {page.relative_to(site)} needs the network: {element}")
 
 
 def main():
