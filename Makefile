@@ -1,6 +1,6 @@
 # The two commands of the README, and what developers need. `make help` lists them.
 .DEFAULT_GOAL := help
-.PHONY: help run test bench build build-tests web format check-format layers tidy asan clean
+.PHONY: help run test docs bench build build-tests web format check-format layers tidy asan clean
 
 help:              ## this list
 	@grep -E '^[a-z-]+: .*##|^[a-z-]+:  *##' Makefile | sed -E 's/^([a-z-]+):.*## */  make \1\t/' | expand -t 22
@@ -10,6 +10,10 @@ run: build         ## install what is missing, build, run the paper's oscillator
 
 test: build-tests  ## the same set-up, then build and run every test
 	ctest --test-dir build/release --output-on-failure -j 2
+
+docs: build        ## the documentation as a site that opens from disk: build/docs/site/index.html
+	@scripts/setup.sh docs
+	python3 scripts/make_docs.py build/release/uplift --record build/release/verification --build
 
 build:
 	@scripts/setup.sh run

@@ -10,7 +10,7 @@ ROOT = pathlib.Path(__file__).resolve().parent.parent / "src" / "uplift"
 
 theory = (ROOT.parent.parent / "docs" / "theory" / "README.md").read_text()
 sections = set(re.findall(r"^## (\d+)\.", theory, re.M))
-equations = set(re.findall(r"\((\d+[a-z]?)\)[ \t]*$", theory, re.M))
+equations = set(re.findall(r"\\tag\{(\d+[a-z]?)\}", theory))
 
 
 def citations(text):

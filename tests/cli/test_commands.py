@@ -122,6 +122,12 @@ class Describe(CliTest):
                 self.assertIn("parameters" if family != "section" else "meaning", done.stdout)
         self.assertGreater(described, 40)
 
+    def test_quantities_of_the_verdict(self):
+        text = self.uplift("describe", "quantity").stdout
+        self.assertRegex(text, r"max_toe_pressure +Pa +base, wall +at most +largest pressure")
+        self.assertRegex(text, r"min_sliding_safety +1 +base +at least ")
+        self.assertIn('did you mean "max_slip"?', self.uplift("describe", "quantity", "max_slipp", expect=2).stderr)
+
     def test_law_with_units_defaults_and_source(self):
         text = self.uplift("describe", "law", "sdm").stdout
         for part in ("equations", "K_n", "Pa/m", "F_u", "G_f", "J/m2", "source", "eqs"):

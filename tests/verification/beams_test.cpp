@@ -7,6 +7,7 @@
 #include "uplift/linear/solver.h"
 #include "uplift/math/dense.h"
 #include "uplift/model/geometric.h"
+#include "verification/manual.h"
 
 namespace uplift {
 namespace {
@@ -56,11 +57,14 @@ double beta_l(const Frame& frame, int k) {
 }
 
 TEST(Cantilever, FrequenciesAndTheirOrder) {
+  VERIFIES({"Beams", "Natural frequencies of a cantilever",
+            "Euler-Bernoulli frequency equation cos x cosh x + 1 = 0, solved by bisection; Blevins, Formulas for Natural Frequency and "
+            "Mode Shape (1979)"});
   const auto equation = [](double x) { return std::cos(x) * std::cosh(x) + 1; };
   const double exact[] = {root(equation, 1.5, 2.5), root(equation, 4, 5.5), root(equation, 7, 8.5)};
-  EXPECT_NEAR(exact[0], 1.8751040687, 1e-10);
-  EXPECT_NEAR(exact[1], 4.6940911330, 1e-10);
-  EXPECT_NEAR(exact[2], 7.8547574382, 1e-10);
+  VERIFY_NEAR("βL of mode 1, root of the frequency equation", "1", exact[0], 1.8751040687, 1e-10);
+  VERIFY_NEAR("βL of mode 2, root of the frequency equation", "1", exact[1], 4.6940911330, 1e-10);
+  VERIFY_NEAR("βL of mode 3, root of the frequency equation", "1", exact[2], 7.8547574382, 1e-10);
   for (const bool extensible : {true, false})
     for (int k = 0; k < 3; ++k) {
       Frame frame;
@@ -69,21 +73,24 @@ TEST(Cantilever, FrequenciesAndTheirOrder) {
       for (int level = 0; level < 3; ++level) {
         frame.elements = 4 << level;
         errors[level] = beta_l(frame, k) / exact[k] - 1;
-        EXPECT_GT(errors[level], -1e-9);  // consistent mass: from above
+        VERIFY_GT("relative error of βL (consistent mass: from above)", "1", errors[level], -1e-9);  // consistent mass: from above
       }
-      EXPECT_NEAR(std::log2(errors[0] / errors[1]), 4, 0.4) << k;
-      EXPECT_NEAR(std::log2(errors[1] / errors[2]), 4, 0.15) << k;
-      EXPECT_LT(errors[2], 3e-5);
+      VERIFY_NEAR("order of convergence, coarse meshes", "1", std::log2(errors[0] / errors[1]), 4, 0.4) << k;
+      VERIFY_NEAR("order of convergence, fine meshes", "1", std::log2(errors[1] / errors[2]), 4, 0.15) << k;
+      VERIFY_LT("relative error of βL, 16 elements", "1", errors[2], 3e-5);
     }
 }
 
 TEST(Cantilever, TipMass) {
+  VERIFIES({"Beams", "Natural frequencies of a cantilever with a tip mass",
+            "Frequency equation of the cantilever with the tip mass ρAL, solved by bisection; Blevins, Formulas for Natural Frequency and "
+            "Mode Shape (1979)"});
   const auto equation = [](double x) {
     return 1 + std::cos(x) * std::cosh(x) + x * (std::cos(x) * std::sinh(x) - std::sin(x) * std::cosh(x));
   };
   const double exact[] = {root(equation, 1, 1.5), root(equation, 3.5, 4.5)};
-  EXPECT_NEAR(exact[0], 1.2479174096, 1e-10);
-  EXPECT_NEAR(exact[1], 4.0311394367, 1e-10);
+  VERIFY_NEAR("βL of mode 1, root of the frequency equation", "1", exact[0], 1.2479174096, 1e-10);
+  VERIFY_NEAR("βL of mode 2, root of the frequency equation", "1", exact[1], 4.0311394367, 1e-10);
   for (int k = 0; k < 2; ++k) {
     Frame frame;
     frame.extensible = false;
@@ -93,13 +100,14 @@ TEST(Cantilever, TipMass) {
       frame.elements = 2 << level;
       errors[level] = beta_l(frame, k) / exact[k] - 1;
     }
-    EXPECT_NEAR(std::log2(errors[0] / errors[1]), 4, 0.5) << k;
-    EXPECT_NEAR(std::log2(errors[1] / errors[2]), 4, 0.15) << k;
-    EXPECT_LT(errors[2], 3e-5);
+    VERIFY_NEAR("order of convergence, coarse meshes", "1", std::log2(errors[0] / errors[1]), 4, 0.5) << k;
+    VERIFY_NEAR("order of convergence, fine meshes", "1", std::log2(errors[1] / errors[2]), 4, 0.15) << k;
+    VERIFY_LT("relative error of βL, 8 elements", "1", errors[2], 3e-5);
   }
 }
 
 TEST(Cantilever, LumpedMassConvergesFromBelowAndKeepsTheMass) {
+  VERIFIES({"Beams", "Cantilever with lumped mass", "Euler-Bernoulli frequency equation, first root 1.8751040687"});
   Frame frame;
   frame.mass = BeamSection::Mass::lumped;
   double errors[2];
@@ -107,11 +115,13 @@ TEST(Cantilever, LumpedMassConvergesFromBelowAndKeepsTheMass) {
     frame.elements = 8 << level;
     errors[level] = beta_l(frame, 0) / 1.8751040687 - 1;
   }
-  EXPECT_LT(errors[0], 0);
-  EXPECT_NEAR(std::log2(errors[0] / errors[1]), 2, 0.1);
+  VERIFY_LT("relative error of βL, 8 elements (from below)", "1", errors[0], 0);
+  VERIFY_NEAR("order of convergence", "1", std::log2(errors[0] / errors[1]), 2, 0.1);
 }
 
 TEST(Timoshenko, TipDisplacementsOfACantilever) {
+  VERIFIES({"Beams", "Tip displacements of a cantilever, with and without shear flexibility",
+            "Unit-load method: PL³/3EI + PL/GA − ML²/2EI, NL/EA, PL²/2EI + ML/EI"});
   const double EI = 2.5e7, GA = 8e6, EA = 1e9, l = 3, p = 1e4, m = 2e4, n = 5e4;
   for (const bool shear : {false, true})
     for (const int elements : {1, 3}) {
@@ -129,13 +139,15 @@ TEST(Timoshenko, TipDisplacementsOfACantilever) {
       model.add_force(0, force);
       const Vector u = model.full(PivotedLdlt(Matrix(model.stiffness)).solve(force), 0, 0);
       // vertical cantilever: a load to the right turns it clockwise
-      EXPECT_NEAR(u[3 * elements], p * l * l * l / (3 * EI) + (shear ? p * l / GA : 0) - m * l * l / (2 * EI), 1e-12);
-      EXPECT_NEAR(u[3 * elements + 1], -n * l / EA, 1e-15);
-      EXPECT_NEAR(u[3 * elements + 2], -p * l * l / (2 * EI) + m * l / EI, 1e-14);
+      VERIFY_NEAR("transverse displacement of the tip", "m", u[3 * elements],
+                  p * l * l * l / (3 * EI) + (shear ? p * l / GA : 0) - m * l * l / (2 * EI), 1e-12);
+      VERIFY_NEAR("axial displacement of the tip", "m", u[3 * elements + 1], -n * l / EA, 1e-15);
+      VERIFY_NEAR("rotation of the tip", "rad", u[3 * elements + 2], -p * l * l / (2 * EI) + m * l / EI, 1e-14);
     }
 }
 
 TEST(Timoshenko, FrequencyOfASimplySupportedBeam) {
+  VERIFIES({"Beams", "Frequency of a simply supported Timoshenko beam", "Timoshenko (1921): closed form with shear and rotary inertia"});
   // w^2 of the mode sin(pi x/L) with shear and rotary inertia: roots of rho A w^2 = ... (Timoshenko 1921), from the 2 x 2 problem in (w,
   // rotation)
   const double EI = 2.5e7, GA = 6e7, l = 3, rho_a = 240, rho_i = 12, q = pi / l;
@@ -162,12 +174,13 @@ TEST(Timoshenko, FrequencyOfASimplySupportedBeam) {
     errors[level] = modes(model.stiffness, model.mass, 1)[0].frequency / exact - 1;
   }
   // the shear force is constant in an element while the inertia forces vary it: order 2, not 4 as in bending
-  EXPECT_GT(errors[1], 0);
-  EXPECT_LT(errors[1], 3e-3);
-  EXPECT_NEAR(std::log2(errors[0] / errors[1]), 2, 0.1);
+  VERIFY_GT("relative error of the frequency (from above)", "1", errors[1], 0);
+  VERIFY_LT("relative error of the frequency, 8 elements", "1", errors[1], 3e-3);
+  VERIFY_NEAR("order of convergence", "1", std::log2(errors[0] / errors[1]), 2, 0.1);
 }
 
 TEST(PDelta, EulerLoadOfACantilever) {
+  VERIFIES({"Beams", "Buckling load of a cantilever", "Euler: π²EI/4L²"});
   // the smallest load factor at which K + factor Kg is singular is pi^2 EI/(4 L^2); both for a beam with area and for an inextensible one
   const double EI = 2.5e7, l = 3, exact = pi * pi * EI / (4 * l * l), p = 1000;
   for (const bool extensible : {true, false})
@@ -195,8 +208,8 @@ TEST(PDelta, EulerLoadOfACantilever) {
         const Vector eigen = GeneralisedEigen(-kg, Matrix(model.stiffness)).eigenvalues();
         errors[level] = p / eigen.maxCoeff() / exact - 1;
       }
-      EXPECT_LT(std::abs(errors[1]), 1e-4);
-      EXPECT_NEAR(std::log2(errors[0] / errors[1]), 4, 0.4);
+      VERIFY_LT("relative error of the buckling load, 4 elements", "1", std::abs(errors[1]), 1e-4);
+      VERIFY_NEAR("order of convergence", "1", std::log2(errors[0] / errors[1]), 4, 0.4);
     }
 }
 

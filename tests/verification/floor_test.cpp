@@ -11,6 +11,7 @@
 #include <sstream>
 
 #include "data_support.h"
+#include "manual.h"
 #include "support.h"
 #include "uplift/io/text/toml.h"
 #include "uplift/verdict/floor_spectra.h"
@@ -96,6 +97,8 @@ double distance(const std::vector<double>& a, const std::vector<double>& b) {
 // the exact floor every 2.5 ms. The trapezoidal rule is of order 2: the period is longer by (w h)^2/12, which floor and resonant equipment
 // feel through 1/(2 damping), 10 and 25 times; two steps extrapolated leave an error of order 4: 1e-6.
 TEST(FloorSpectrum, ElCentro) {
+  VERIFIES({"Floor spectra", "Floor spectrum of an oscillator under El Centro",
+            "Exact oscillators for straight lines (Nigam & Jennings, BSSA 59 (1969) 909-922), tables of tests/data/reference"});
   const Reference reference_curve = reference("floor_spectrum_elcentro_5Hz.csv");
   const std::vector<double> quake = el_centro();
   ASSERT_EQ(quake.size(), 1560U);
@@ -108,20 +111,24 @@ TEST(FloorSpectrum, ElCentro) {
   ASSERT_EQ(at_8.size(), 1559U * 8 + 1);
   std::vector<double> exact;
   for (std::size_t i = 0; i < at_8.size(); ++i) exact.push_back(at_8[i] + (at_8[i] - at_4[i]) / 3);
-  EXPECT_NEAR(distance(at_4, exact) / distance(at_8, exact), 4, 0.02);
-  EXPECT_NEAR(largest(exact), 0.823915, 1e-6);
+  VERIFY_NEAR("ratio of the errors of two steps (order 2: 4)", "1", distance(at_4, exact) / distance(at_8, exact), 4, 0.02);
+  VERIFY_NEAR("zero-period acceleration of the reference", "g", largest(exact), 0.823915, 1e-6);
 
   const Spectrum known = response_spectra(exact, step, f, {0.02}, Spectrum::Kind::psa).front(), wide = broadened(known, 0.15);
   const Spectrum seen = response_spectra(at_8, step, f, {0.02}, Spectrum::Kind::psa).front();
   const double omega = 2 * pi * 5, felt = std::pow(omega * h, 2) / 12 * (10 + 25);
   for (std::size_t i = 0; i < f.size(); ++i) {
-    EXPECT_NEAR(known.values[i] / raw[i], 1, 1e-6) << f[i];
-    if (f[i] > 0.86 * 5.0907 && f[i] < 1.14 * 5.0907) EXPECT_NEAR(value_at(wide, f[i]), 7.892547, 7.9e-6) << f[i];
-    EXPECT_NEAR(seen.values[i] / raw[i], 1, felt) << f[i];
+    VERIFY_NEAR("spectrum extrapolated over the step, over the exact one", "1", known.values[i] / raw[i], 1, 1e-6) << f[i];
+    if (f[i] > 0.86 * 5.0907 && f[i] < 1.14 * 5.0907)
+      VERIFY_NEAR("broadened spectrum on its plateau", "g", value_at(wide, f[i]), 7.892547, 7.9e-6) << f[i];
+    VERIFY_NEAR("spectrum with the step of the run, over the exact one", "1", seen.values[i] / raw[i], 1, felt) << f[i];
     // the answer of the program also finds the peaks between the points, by which the reference is at most 1.3 % too small
-    EXPECT_GT(fine.floors[0].raw[0].values[i], (1 - felt) * raw[i]) << f[i];
-    EXPECT_LT(fine.floors[0].raw[0].values[i], (1.013 + felt) * raw[i]) << f[i];
-    EXPECT_GE(value_at(fine.floors[0].broadened[0], f[i]), fine.floors[0].raw[0].values[i] * (1 - 1e-12)) << f[i];
+    VERIFY_GT("spectrum with peaks between the points, lower bound", "m/s2", fine.floors[0].raw[0].values[i], (1 - felt) * raw[i]) << f[i];
+    VERIFY_LT("spectrum with peaks between the points, upper bound", "m/s2", fine.floors[0].raw[0].values[i], (1.013 + felt) * raw[i])
+        << f[i];
+    VERIFY_GE("broadened spectrum, at least the raw one", "m/s2", value_at(fine.floors[0].broadened[0], f[i]),
+              fine.floors[0].raw[0].values[i] * (1 - 1e-12))
+        << f[i];
   }
 }
 
@@ -130,10 +137,12 @@ TEST(FloorSpectrum, ElCentro) {
 // then. The equipment stands on straight lines between the steps, whose harmonic is smaller by (sin(w h/2)/(w h/2))^2. The amplitude grows
 // so smoothly (five derivatives) that the beginning is not felt.
 TEST(FloorSpectrum, HarmonicFactors) {
+  VERIFIES({"Floor spectra", "Floor and equipment under harmonic ground",
+            "Steady-state amplification of two oscillators in series, closed form"});
   const auto dynamic_factor = [](double r, double damping) { return 1 / std::abs(std::complex<double>(1 - r * r, 2 * damping * r)); };
   const double floor_factor = std::abs(std::complex<double>(1, 2 * 0.05 * 0.8)) * dynamic_factor(0.8, 0.05);
-  EXPECT_NEAR(floor_factor, 2.72029410, 1e-8);
-  EXPECT_NEAR(floor_factor * dynamic_factor(8.0 / 12, 0.02), 4.89089831, 1e-8);
+  VERIFY_NEAR("amplification of the floor", "1", floor_factor, 2.72029410, 1e-8);
+  VERIFY_NEAR("amplification of the equipment", "1", floor_factor * dynamic_factor(8.0 / 12, 0.02), 4.89089831, 1e-8);
 
   const double h = 1e-3, grows = 14, frequency = std::atan(8 * pi * h) / (pi * h);
   std::vector<double> ground;
@@ -143,9 +152,11 @@ TEST(FloorSpectrum, HarmonicFactors) {
     ground.push_back(share * std::sin(2 * pi * frequency * t));
   }
   const Answer answer = run_floors(oscillator(10, 0.05, ground, h, h, "damping = [0.02]\nfrequencies = [12]\nbroadening = 0"));
-  EXPECT_NEAR(std::abs(answer.floors[0].zero_period.value) / floor_factor, 1, 1e-6);
+  VERIFY_NEAR("zero-period acceleration of the floor over its closed form", "1",
+              std::abs(answer.floors[0].zero_period.value) / floor_factor, 1, 1e-6);
   const double half = pi * frequency * h, straight = std::pow(std::sin(half) / half, 2);
-  EXPECT_NEAR(answer.floors[0].raw[0].values[0] / (floor_factor * straight * dynamic_factor(frequency / 12, 0.02)), 1, 1e-6);
+  VERIFY_NEAR("spectral value of the equipment over its closed form", "1",
+              answer.floors[0].raw[0].values[0] / (floor_factor * straight * dynamic_factor(frequency / 12, 0.02)), 1, 1e-6);
   EXPECT_TRUE(answer.floors[0].broadened.empty());
 }
 
@@ -191,23 +202,27 @@ struct Column {
 // Claim: the absolute acceleration of a run in the frame of the ground is that of a run in the absolute frame, bonded and uplifting, to
 // 1e-9 of its peak.
 TEST(FloorSpectrum, RelativeFrameIsAbsoluteFrame) {
+  VERIFIES({"Floor spectra", "Absolute acceleration in the moving frame and in the frame at rest",
+            "Equivalence of both frames; the same structure on a base that moves"});
   for (const bool bonded : {true, false}) {
     Column relative, absolute;
     absolute.absolute = true;
     const Answer a = run_floors(relative.text(), bonded, false), b = run_floors(absolute.text(), bonded, false);
-    EXPECT_GT(a.result.max_uplifted_ratio.value, 0.2);
+    VERIFY_GT("uplifted share (the case uplifts)", "1", a.result.max_uplifted_ratio.value, 0.2);
     for (const std::size_t floor : {0, 1}) {
       const std::vector<double>&one = a.result.floors[floor].acceleration, &other = b.result.floors[floor].acceleration;
-      EXPECT_GT(largest(one), 4);
-      EXPECT_LT(distance(one, other), 1e-9 * largest(one)) << bonded;
+      VERIFY_GT("largest acceleration", "m/s2", largest(one), 4);
+      VERIFY_LT("largest difference of the accelerations of both frames", "m/s2", distance(one, other), 1e-9 * largest(one)) << bonded;
     }
-    EXPECT_LT(distance(b.column("top.ax"), b.column("top.abs_ax")), 1e-15);
+    VERIFY_LT("difference of relative and absolute acceleration in the frame at rest", "m/s2",
+              distance(b.column("top.ax"), b.column("top.abs_ax")), 1e-15);
   }
 }
 
 // Claim: the record is relative + ground along its direction, both as their mean over the step (there is an interface: docs/theory, section
 // 3), and what does not move in the frame has the ground's acceleration.
 TEST(FloorSpectrum, RelativeAndGround) {
+  VERIFIES({"Floor spectra", "Record of a floor: relative acceleration plus ground", "docs/theory, eq (F1)"});
   const Column column;
   const Answer answer = run_floors(column.text(), false, false);
   const std::vector<double>&time = answer.result.table[0], &ax = answer.column("top.ax"), &ay = answer.column("top.abs_ay");
@@ -215,15 +230,17 @@ TEST(FloorSpectrum, RelativeAndGround) {
   for (std::size_t i = 0; i < time.size(); ++i) {
     const auto ground_at = [&](double t) { return column.shaking * std::sin(2 * pi * column.frequency * t); };
     const double ground = 0.5 * (ground_at(time[i > 0 ? i - 1 : 0]) + ground_at(time[i])), sum = ax[i] + ground;
-    EXPECT_NEAR(answer.result.floors[0].acceleration[i], sum, 1e-12);
-    EXPECT_NEAR(answer.column("top.abs_ax")[i], sum, 1e-12);
-    EXPECT_NEAR(answer.result.floors[1].acceleration[i], 0.6 * sum + 0.8 * ay[i], 1e-12);
-    EXPECT_NEAR(answer.result.floors[2].acceleration[i], ground, 1e-12);
+    VERIFY_NEAR("recorded acceleration of the top", "m/s2", answer.result.floors[0].acceleration[i], sum, 1e-12);
+    VERIFY_NEAR("output column of the absolute acceleration", "m/s2", answer.column("top.abs_ax")[i], sum, 1e-12);
+    VERIFY_NEAR("acceleration along an inclined direction", "m/s2", answer.result.floors[1].acceleration[i], 0.6 * sum + 0.8 * ay[i],
+                1e-12);
+    VERIFY_NEAR("acceleration of a held node", "m/s2", answer.result.floors[2].acceleration[i], ground, 1e-12);
   }
 }
 
 // Claim: the record has all steps, equal ones, whatever output.every is and however often steps are halved.
 TEST(FloorSpectrum, EveryStepOfTheRun) {
+  VERIFIES({"Floor spectra", "The record contains every step", "docs/theory, floor spectra: equal steps whatever is written and halved"});
   Column all;
   all.law = "{ type = \"sdm\", K_n = 5e9, F_u = 5e4, G_f = 50, F_c = -1e3, tangential = \"none\" }";
   all.options = "method = { type = \"newton\", most_iterations = 4 }";
@@ -234,10 +251,10 @@ TEST(FloorSpectrum, EveryStepOfTheRun) {
   const Answer a = run_floors(all.text()), b = run_floors(few.text());
   ASSERT_GT(a.result.counts.retries, 0);
   ASSERT_EQ(a.result.floors[0].acceleration.size(), 201U);
-  EXPECT_EQ(a.result.floors[0].step, 5e-3);
-  EXPECT_LT(b.result.table[0].size(), 35U);
+  VERIFY_EQ("step of the record", "s", a.result.floors[0].step, 5e-3);
+  VERIFY_LT("rows of the written table", "1", b.result.table[0].size(), 35U);
   for (std::size_t floor = 0; floor < 3; ++floor) EXPECT_EQ(a.result.floors[floor].acceleration, b.result.floors[floor].acceleration);
-  EXPECT_LT(distance(a.result.floors[0].acceleration, a.column("top.abs_ax")), 1e-12);
+  VERIFY_LT("difference of record and output column", "m/s2", distance(a.result.floors[0].acceleration, a.column("top.abs_ax")), 1e-12);
 }
 
 }  // namespace

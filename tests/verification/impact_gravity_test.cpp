@@ -5,6 +5,7 @@
 
 #include <cmath>
 
+#include "manual.h"
 #include "support.h"
 
 namespace uplift::verification {
@@ -67,32 +68,36 @@ std::vector<Flight> flights(const History& run) {
 // (1.5 % of 500), in the second one its mean over the inner part, exact mean of 500 - 300 (t - 11/3) (1.5 %), as the fronts ring; impulse
 // of each contact 800/3 (1 %).
 TEST(BouncingBar, OnePeriod) {
+  VERIFIES({"Impact", "One period of a bouncing bar", "d'Alembert's solution, tests/data/reference/bouncing_bar.csv"});
   const Reference exact = reference("bouncing_bar.csv");
   Bar bar = dropped_bar(200, "project_hold");
   const History run = run_text(bar.text());
   const std::vector<Flight> parts = flights(run);
   ASSERT_EQ(parts.size(), 3U);
   const double dt = bar.time_step();
-  EXPECT_NEAR(run.time()[parts[0].last], 1, 2 * dt);
-  EXPECT_NEAR(run.time()[parts[1].first], 5.0 / 3, 6 * dt);
-  EXPECT_NEAR(run.time()[parts[1].last], 11.0 / 3, 6 * dt);
-  EXPECT_NEAR(run.time()[parts[2].first], 13.0 / 3, 6 * dt);
+  VERIFY_NEAR("beginning of the first contact", "s", run.time()[parts[0].last], 1, 2 * dt);
+  VERIFY_NEAR("end of the first contact", "s", run.time()[parts[1].first], 5.0 / 3, 6 * dt);
+  VERIFY_NEAR("beginning of the second contact", "s", run.time()[parts[1].last], 11.0 / 3, 6 * dt);
+  VERIFY_NEAR("end of the second contact", "s", run.time()[parts[2].first], 13.0 / 3, 6 * dt);
   double inner = 0, steps = 0, impulse[2] = {};
   for (std::size_t i = 0; i < run.rows(); ++i) {
     const double t = run.time()[i];
-    if (t > 1.15 && t < 1.5) EXPECT_NEAR(-run["foot.1.traction"][i], 300 + 300 * (t - 1), 0.015 * 500) << t;
+    if (t > 1.15 && t < 1.5)
+      VERIFY_NEAR("force in the first contact", "N", -run["foot.1.traction"][i], 300 + 300 * (t - 1), 0.015 * 500) << t;
     if (t > 3.8 && t < 4.2) inner -= run["foot.1.traction"][i] + 500 - 300 * (t - 11.0 / 3), steps += 1;
     impulse[t > 2.5] -= run["foot.1.traction"][i] * dt;
   }
-  EXPECT_NEAR(inner / steps, 0, 0.015 * 500);
-  for (const double i : impulse) EXPECT_NEAR(i, 800.0 / 3, 0.01 * 800 / 3);
+  VERIFY_NEAR("mean difference of the force in the second contact", "N", inner / steps, 0, 0.015 * 500);
+  for (const double i : impulse) VERIFY_NEAR("impulse of a contact", "N s", i, 800.0 / 3, 0.01 * 800 / 3);
   // the formula above is the curve of the file
-  for (std::size_t i = 0; i < exact["t"].size(); ++i) EXPECT_NEAR(exact_mean(exact["t"][i]), exact["u_mean"][i], 1e-8);
+  for (std::size_t i = 0; i < exact["t"].size(); ++i)
+    VERIFY_NEAR("mean height, formula of the test", "m", exact_mean(exact["t"][i]), exact["u_mean"][i], 1e-8);
 }
 
 // Claim: the mean height over the first period converges to the exact one: below 4 % of 5 m at n = 200 (what is missing went into ringing
 // of the fronts), and with an order of more than 1/2.
 TEST(BouncingBar, MeanHeightConverges) {
+  VERIFIES({"Impact", "Mean height of a bouncing bar", "d'Alembert's solution"});
   std::vector<double> size, worst;
   for (const int n : {100, 200, 400}) {
     const History run = run_text(dropped_bar(n, "project_hold").text());
@@ -102,14 +107,16 @@ TEST(BouncingBar, MeanHeightConverges) {
     worst.push_back(most);
   }
   RecordProperty("worst_200", std::to_string(worst[1]));
+  verified_case.curve("mean height [m]", size, worst);
   RecordProperty("order", std::to_string(order(size, worst)));
-  EXPECT_LT(worst[1], 0.04 * height);
-  EXPECT_GT(order(size, worst), 0.5);
+  VERIFY_LT("largest error of the mean height, 200 elements", "m", worst[1], 0.04 * height);
+  VERIFY_GT("order of convergence", "1", order(size, worst), 0.5);
 }
 
 // Claim: energy after the first impact converges with h^1. The bar arrives with 10 m/s, its lowest node carries
 // 1/(2n) of the mass: the loss is 1/(2n) (5 % for where in the step it falls, at n >= 100).
 TEST(BouncingBar, ExitEnergyIsOfFirstOrder) {
+  VERIFIES({"Impact", "Energy loss of an impact is of first order", "Energy of the node that hits: 1/(2n)"});
   std::vector<double> size, lost;
   for (const int n : {50, 100, 200, 400}) {
     Bar bar = dropped_bar(n, "project_hold");
@@ -117,10 +124,11 @@ TEST(BouncingBar, ExitEnergyIsOfFirstOrder) {
     const History run = run_text(bar.text());
     size.push_back(1.0 / n);
     lost.push_back(1 - energy(run, run.rows() - 1) / start_energy);
-    EXPECT_NEAR(lost.back() * 2 * n, 1, 0.1) << n;
+    VERIFY_NEAR("energy lost times 2n", "1", lost.back() * 2 * n, 1, 0.1) << n;
   }
+  verified_case.curve("energy lost", size, lost);
   RecordProperty("order", std::to_string(order(size, lost)));
-  EXPECT_NEAR(order(size, lost), 1, 0.1);
+  VERIFY_NEAR("order of convergence", "1", order(size, lost), 1, 0.1);
 }
 
 // Claim: energy and apex after 10 and 50 impacts, every rule (exact: 500 J and 5 m for ever; the apex falls in every mesh, since the fronts
@@ -129,6 +137,7 @@ TEST(BouncingBar, ExitEnergyIsOfFirstOrder) {
 // v^2/2 with its own velocity v (twice that where it closes inside a step). The others are reported: `none`, `project` and `reflect` create
 // energy in long runs.
 TEST(BouncingBar, FiftyImpacts) {
+  VERIFIES({"Impact", "Fifty impacts of a bar under gravity", "Conservation of energy; energy of the node that hits at each closing"});
   struct Run {
     const char *name, *impact, *law, *method;
   };
@@ -163,15 +172,15 @@ TEST(BouncingBar, FiftyImpacts) {
     const std::string name = rule.name;
     RecordProperty(name + "_energy_last", std::to_string(energy(run, run.rows() - 1)));
     if (name == "project_hold") {
-      EXPECT_LE(most, 1 + 1e-9);
-      EXPECT_LE(worst, 0);
-      EXPECT_GT(closings, 25);
+      VERIFY_LE("largest energy over the initial one, project_hold", "1", most, 1 + 1e-9);
+      VERIFY_LE("loss beyond what the node at the contact brings, project_hold", "J", worst, 0);
+      VERIFY_GT("number of closings, project_hold", "1", closings, 25);
     }
     if (name == "penalty" || name == "sdm") {
       // how many bounces fit in depends on the last bit of the first ones: the bar rings and leaves the wall early or late
       ASSERT_GT(parts.size(), 25U) << name;
-      EXPECT_NEAR(energy(run, run.rows() - 1), start_energy, 1e-8 * start_energy) << name;
-      EXPECT_NEAR(most, 1, 1e-8) << name;
+      VERIFY_NEAR("energy at the end, path-averaged joints", "J", energy(run, run.rows() - 1), start_energy, 1e-8 * start_energy) << name;
+      VERIFY_NEAR("largest energy over the initial one, path-averaged joints", "1", most, 1, 1e-8) << name;
     }
   }
 }
@@ -180,6 +189,7 @@ TEST(BouncingBar, FiftyImpacts) {
 // period 4L/c (d'Alembert), never negative. Tolerances at n = 200: 1 % of 2 rho g L for the range, 2 % for the root mean square distance
 // from the triangle.
 TEST(RestingBar, GravityAppliedSuddenly) {
+  VERIFIES({"Impact", "Gravity applied suddenly to a resting bar", "d'Alembert: pressure between 0 and 2ρgL, triangle of period 4L/c"});
   Bar bar = dropped_bar(200, "project_hold");
   bar.gap = 0;
   const double c = bar.wave_speed(), period = 4 * length / c, top = 2 * gravity * length;
@@ -191,11 +201,11 @@ TEST(RestingBar, GravityAppliedSuddenly) {
     highest = std::max(highest, pressure);
     lowest = std::min(lowest, pressure);
     square += std::pow(pressure - top * (1 - std::abs(1 - 2 * phase)), 2) / static_cast<double>(run.rows());
-    EXPECT_LT(run["foot.1.opening"][i], 1e-4);
+    VERIFY_LT("opening of the foot", "m", run["foot.1.opening"][i], 1e-4);
   }
-  EXPECT_GE(lowest, 0);
-  EXPECT_NEAR(highest, top, 0.01 * top);
-  EXPECT_LT(std::sqrt(square), 0.02 * top);
+  VERIFY_GE("least pressure of the foot", "N", lowest, 0);
+  VERIFY_NEAR("largest pressure of the foot", "N", highest, top, 0.01 * top);
+  VERIFY_LT("rms distance of the pressure from the triangle", "N", std::sqrt(square), 0.02 * top);
 }
 
 }  // namespace

@@ -8,6 +8,7 @@
 #include <complex>
 #include <numbers>
 
+#include "manual.h"
 #include "support.h"
 
 namespace uplift::verification {
@@ -103,6 +104,8 @@ std::vector<double> oscillation(const Coefficients& s, double dt, double cycles)
 // acceleration: amplitude and phase, hence period and damping, to 1e-6 (relative to T and to the amplitude); it is far better, so 1e-9 is
 // asked.
 TEST(Integrators, FiftyCyclesFollowTheAmplificationMatrix) {
+  VERIFIES({"Time integration", "Fifty cycles of an oscillator, every scheme",
+            "Amplification matrix of the scheme (Hughes, The Finite Element Method (1987), chapter 9)"});
   for (const Coefficients& scheme : all_schemes())
     for (const double dt : {0.01, 0.02, 0.05, 0.1, 0.2}) {
       const std::vector<double> u = oscillation(scheme, dt, 50);
@@ -117,13 +120,15 @@ TEST(Integrators, FiftyCyclesFollowTheAmplificationMatrix) {
         x = next;
       }
       ASSERT_EQ(u.size(), static_cast<std::size_t>(std::lround(50 / dt)) + 1);
-      EXPECT_LT(worst, 1e-9) << scheme.text << " " << dt;
+      VERIFY_LT("largest difference from the powers of the amplification matrix", "1", worst, 1e-9) << scheme.text << " " << dt;
     }
 }
 
 // Claim: damping ratio and period error of the program's oscillation, measured from the run alone: 1e-6 of T. Three neighbouring values of
 // u = Re(c x^n) give x: u_{n+1} - 2 Re(x) u_n + |x|^2 u_{n-1} = 0, fitted over the run (the third, strongly damped root has died out).
 TEST(Integrators, DampingAndPeriodMeasured) {
+  VERIFIES({"Time integration", "Numerical damping and period error, every scheme",
+            "Eigenvalues of the amplification matrix (Hughes, The Finite Element Method (1987), chapter 9)"});
   for (const Coefficients& scheme : all_schemes())
     for (const double dt : {0.01, 0.02, 0.05, 0.1, 0.2}) {
       const double w_dt = 2 * pi * dt;
@@ -137,14 +142,15 @@ TEST(Integrators, DampingAndPeriodMeasured) {
       }
       const double det = a11 * a22 - a12 * a12, sum = (b1 * a22 - b2 * a12) / det, product = -(a11 * b2 - a12 * b1) / det;
       const Error found = error_of(Complex(sum / 2, std::sqrt(product - sum * sum / 4)), w_dt);
-      EXPECT_NEAR(found.zeta, expected.zeta, 1e-6) << scheme.text << " " << dt;
-      EXPECT_NEAR(found.period, expected.period, 1e-6) << scheme.text << " " << dt;
+      VERIFY_NEAR("damping ratio", "1", found.zeta, expected.zeta, 1e-6) << scheme.text << " " << dt;
+      VERIFY_NEAR("relative period error", "1", found.period, expected.period, 1e-6) << scheme.text << " " << dt;
     }
 }
 
 // Claim: the closed form used above is that of the reference table (spectral radius, damping, period error): 1e-9. This is what ties the
 // program to the table.
 TEST(Integrators, ReferenceTable) {
+  VERIFIES({"Time integration", "Closed form of damping, period error and spectral radius", "tests/data/reference/integrators.csv"});
   const Reference table = reference("integrators.csv");
   const std::pair<std::string, Coefficients> rows[] = {
       {"trapezoidal", all_schemes()[0]},     {"hht-0.05", all_schemes()[1]},        {"hht-0.1", all_schemes()[2]},
@@ -158,16 +164,17 @@ TEST(Integrators, ReferenceTable) {
       const double w_dt = 2 * pi * table["dt/T"][i];
       const Complex root = principal_root(amplification(scheme, w_dt), w_dt);
       const Error error = error_of(root, w_dt);
-      EXPECT_NEAR(error.zeta, table["zeta_num"][i], 1e-9) << name << i;
-      EXPECT_NEAR(error.period, table["T_num/T-1"][i], 1e-9) << name << i;
-      EXPECT_NEAR(std::abs(root), table["spectral_radius"][i], 1e-9) << name << i;
+      VERIFY_NEAR("damping ratio", "1", error.zeta, table["zeta_num"][i], 1e-9) << name << i;
+      VERIFY_NEAR("relative period error", "1", error.period, table["T_num/T-1"][i], 1e-9) << name << i;
+      VERIFY_NEAR("spectral radius", "1", std::abs(root), table["spectral_radius"][i], 1e-9) << name << i;
     }
-  EXPECT_EQ(seen, 45);
+  VERIFY_EQ("rows of the table that were compared", "1", seen, 45);
 }
 
 // Claim: every scheme but Newmark with gamma > 1/2 is of second order, that one of first order (smooth dynamics
 // dt^2).
 TEST(Integrators, Orders) {
+  VERIFIES({"Time integration", "Order of the time schemes", "Order of the Newmark family: 2 for γ = 1/2 and its α-modifications, else 1"});
   for (const Coefficients& scheme : all_schemes()) {
     std::vector<double> step, error;
     for (const int per_cycle : {50, 100, 200, 400}) {
@@ -177,7 +184,8 @@ TEST(Integrators, Orders) {
       error.push_back(std::abs(u.back() - std::cos(2 * pi * 1.0 / per_cycle * static_cast<double>(u.size() - 1))) +
                       std::abs(whole.back() - 1));
     }
-    EXPECT_NEAR(order(step, error), scheme.name == "newmark_g0.6" ? 1 : 2, 0.1) << scheme.text;
+    verified_case.curve(scheme.name, step, error);
+    VERIFY_NEAR("order of convergence", "1", order(step, error), scheme.name == "newmark_g0.6" ? 1 : 2, 0.1) << scheme.text;
   }
 }
 

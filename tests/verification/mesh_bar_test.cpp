@@ -3,6 +3,7 @@
 // force 300 for 2/3 s, then all the energy of 500 J again.
 #include <gtest/gtest.h>
 
+#include "manual.h"
 #include "mesh_support.h"
 
 namespace uplift::verification {
@@ -65,25 +66,27 @@ INSTANTIATE_TEST_SUITE_P(Cells, MeshBar, testing::Values(Cell::quad4, Cell::hex8
 // Claim: project_hold: mean 300 (0.1), deviation below 0.5, contact for 2/3 s (one step), two switches, energy 1 - 1/(2n) (1e-4): the foot
 // carries half an element.
 TEST_P(MeshBar, ProjectHoldHasTheFiguresOfTheTable) {
+  VERIFIES({"Impact", "Bar of solids on a wall, project_hold", "d'Alembert: 300 N for 2/3 s; energy 1 − 1/(2n)"});
   for (const int n : {100, 200}) {
     const Figures f = fall(GetParam(), n, "project_hold");
     RecordProperty(fmt::format("elements_{}", n),
                    fmt::format("mean {:.3f} deviation {:.3f} energy {:.6f} contact {:.4f}", f.mean, f.deviation, f.energy, f.contact));
-    EXPECT_NEAR(f.mean, 300, 0.1);
-    EXPECT_LT(f.deviation, 0.5);
-    EXPECT_EQ(f.switches, 2);
-    EXPECT_NEAR(f.contact, 2.0 / 3, 10.0 / n / 30 + 5e-5);
-    EXPECT_NEAR(f.energy, 1 - 1.0 / (2 * n), 1e-4);
+    VERIFY_NEAR("mean force", "N", f.mean, 300, 0.1);
+    VERIFY_LT("scatter of the force", "N", f.deviation, 0.5);
+    VERIFY_EQ("changes between contact and separation", "1", f.switches, 2);
+    VERIFY_NEAR("duration of contact", "s", f.contact, 2.0 / 3, 10.0 / n / 30 + 5e-5);
+    VERIFY_NEAR("energy after over before", "1", f.energy, 1 - 1.0 / (2 * n), 1e-4);
   }
 }
 
 // Claim: the other rules, n = 100: energies of the table, 1e-3. Without a rule it is created at will (22.9 in the table; round-off in when
 // the foot lands changes it): more than five times the energy.
 TEST_P(MeshBar, EnergyOfTheOtherRules) {
-  EXPECT_GT(fall(GetParam(), 100, "none").energy, 5);
-  EXPECT_NEAR(fall(GetParam(), 100, "project").energy, 0.9952, 1e-3);
-  EXPECT_NEAR(fall(GetParam(), 100, "reflect").energy, 1.0005, 1e-3);
-  EXPECT_NEAR(fall(GetParam(), 100, "propagate").energy, 0.9971, 1e-3);
+  VERIFIES({"Impact", "Bar of solids on a wall, other impact rules", "Energies of an independent program"});
+  VERIFY_GT("energy after over before, no rule (it is created)", "1", fall(GetParam(), 100, "none").energy, 5);
+  VERIFY_NEAR("energy after over before, project", "1", fall(GetParam(), 100, "project").energy, 0.9952, 1e-3);
+  VERIFY_NEAR("energy after over before, reflect", "1", fall(GetParam(), 100, "reflect").energy, 1.0005, 1e-3);
+  VERIFY_NEAR("energy after over before, propagate", "1", fall(GetParam(), 100, "propagate").energy, 0.9971, 1e-3);
 }
 
 }  // namespace

@@ -3,6 +3,7 @@
 // Engineering, 1996, section 7.2): at the top of each layer u = A e^{ikz} + B e^{-ikz}, at the free surface A = B.
 #include <gtest/gtest.h>
 
+#include "manual.h"
 #include "mesh_support.h"
 
 namespace uplift::verification {
@@ -149,16 +150,20 @@ const std::vector<Layer> ground{{6, 150, 1700, 3e-3}, {10, 250, 1850, 2e-3}, {8,
 // Claim (own transfer matrix against a published table): H = 20 m, Vs = 200 m/s, rho = 1900 on rock 2200, 800 m/s, undamped:
 // 4.631579 at 2.5 Hz. This checks the reference, not the program.
 TEST(MeshColumn, TheTransferMatrixGivesTheClosedForm) {
-  EXPECT_NEAR(std::abs(transfer({{20, 200, 1900, 0}, {5, 800, 2200, 0}}, 2 * pi * 2.5)), 4.631579, 5e-7);
+  VERIFIES({"Waves in soil", "Transfer function of the reference against its closed form",
+            "Kramer, Geotechnical Earthquake Engineering (1996), section 7.2; tests/data/reference/soil_column_transfer.csv"});
+  VERIFY_NEAR("amplification at 2.5 Hz", "1", std::abs(transfer({{20, 200, 1900, 0}, {5, 800, 2200, 0}}, 2 * pi * 2.5)), 4.631579, 5e-7);
   const Reference table = reference("soil_column_transfer.csv");
   const std::vector<double>& f = table["f_Hz"];
   for (std::size_t i = 0; i < f.size(); i += 7)
-    EXPECT_NEAR(std::abs(transfer({{20, 200, 1900, 0}, {5, 800, 2200, 0}}, 2 * pi * f[i])), table["elastic_rock_undamped"][i], 1e-9);
+    VERIFY_NEAR("amplification, table", "1", std::abs(transfer({{20, 200, 1900, 0}, {5, 800, 2200, 0}}, 2 * pi * f[i])),
+                table["elastic_rock_undamped"][i], 1e-9);
 }
 
 // Claim: uniform rock: the free surface moves as the outcrop, later by H/c: 1e-3 of the peak, order 2 in h and dt together; 2D and 3D, P,
 // SV and SH.
 TEST(MeshColumn, SurfaceOfUniformRockIsTheOutcrop) {
+  VERIFIES({"Waves in soil", "Surface of uniform rock on an absorbing base", "d'Alembert: the outcrop motion, later by H/c"});
   struct Kind {
     Cell cell;
     const char *wave, *quantity;
@@ -179,14 +184,17 @@ TEST(MeshColumn, SurfaceOfUniformRockIsTheOutcrop) {
     }
     RecordProperty(std::string(wave) + "_" + std::string(info(cell).name),
                    fmt::format("{:.2e} {:.2e} order {:.2f}", error[0], error[1], order(size, error)));
-    EXPECT_LT(error[1], 1e-3) << info(cell).name << wave;
-    EXPECT_NEAR(order(size, error), 2, 0.2) << info(cell).name << wave;
+    VERIFY_LT("largest error over the peak, finer mesh", "1", error[1], 1e-3) << info(cell).name << wave;
+    verified_case.curve(fmt::format("{} {}", info(cell).name, wave), size, error);
+    VERIFY_NEAR("order of convergence", "1", order(size, error), 2, 0.2) << info(cell).name << wave;
   }
 }
 
 // Claim: three damped layers on rock against the transfer matrix, amplitude and phase from 0.5 to 6 Hz: 5e-3 of the peak on the finer mesh,
 // order 2. The speeds are those of the wave (S or P).
 TEST(MeshColumn, LayersMatchTheTransferMatrix) {
+  VERIFIES({"Waves in soil", "Three damped layers on rock",
+            "Recursion of up- and downgoing waves (Haskell, BSSA 43 (1953) 17-34; Kramer (1996), section 7.2)"});
   struct Kind {
     Cell cell;
     const char *wave, *quantity;
@@ -199,18 +207,21 @@ TEST(MeshColumn, LayersMatchTheTransferMatrix) {
     }
     RecordProperty(std::string(wave) + "_" + std::string(info(cell).name),
                    fmt::format("{:.2e} {:.2e} order {:.2f}", error[0], error[1], order(size, error)));
-    EXPECT_LT(error[1], 5e-3) << info(cell).name << wave;
-    EXPECT_NEAR(order(size, error), 2, 0.2) << info(cell).name << wave;
+    VERIFY_LT("largest error over the peak, finer mesh", "1", error[1], 5e-3) << info(cell).name << wave;
+    verified_case.curve(fmt::format("{} {}", info(cell).name, wave), size, error);
+    VERIFY_NEAR("order of convergence", "1", order(size, error), 2, 0.2) << info(cell).name << wave;
   }
 }
 
 // Claim: a rigid base with 5 % damping at f1 and 3 f1: amplification 12.763146 and 4.220223 (the stiffness is complex, G (1 + i w beta), so
 // at that frequency viscous and hysteretic damping are the same): 5e-3.
 TEST(MeshColumn, RigidBaseAmplifiesByTheTable) {
+  VERIFIES({"Waves in soil", "Damped layer on a rigid base", "Kramer (1996), section 7.2: 1/|cos(ωH/c*)|"});
   for (const auto& [k, value] : {std::pair{1, 12.763146}, std::pair{3, 4.220223}}) {
     const double omega = 2 * pi * 2.5 * k, beta = 2 * 0.05 / omega;
     // the closed form, |1/cos(omega H/Vs*)|, gives the table
-    EXPECT_NEAR(std::abs(1.0 / std::cos(omega * 20.0 / (200.0 * std::sqrt(Complex(1, 0.1))))), value, 5e-7);
+    VERIFY_NEAR("closed form of the amplification", "1", std::abs(1.0 / std::cos(omega * 20.0 / (200.0 * std::sqrt(Complex(1, 0.1))))),
+                value, 5e-7);
     Column column{{{20, 200, 1900, beta}}, Cell::quad8, "SV", 1e-2 / k, k == 1 ? 14.0 : 40.0, 2.5 * k};
     column.rigid = true;
     const MeshRun run = column.run();
@@ -220,13 +231,14 @@ TEST(MeshColumn, RigidBaseAmplifiesByTheTable) {
     for (double& t : middle) t -= column.step() / 2;
     const Complex found = 1.0 + fourier(middle, run["ax"], omega) / fourier(run.time(), input, omega);
     RecordProperty(fmt::format("mode_{}", k), fmt::format("{:.6f}", std::abs(found)));
-    EXPECT_NEAR(std::abs(found), value, 5e-3 * value);
+    VERIFY_NEAR("amplification", "1", std::abs(found), value, 5e-3 * value);
   }
 }
 
 // Claim: no structure: a wide soil mass whose sides are held against vertical motion gives back the free field of the column, 1e-8 of the
 // peak (the same equations but for the spring).
 TEST(MeshColumn, WithoutStructureTheFreeFieldComesBack) {
+  VERIFIES({"Waves in soil", "Wide soil without a structure", "The column of one cell: the same equations"});
   for (const Cell cell : {Cell::quad4, Cell::hex8}) {
     Column narrow{ground, cell, "SV", 1e-2, 1.0};
     Column wide = narrow;
@@ -237,14 +249,15 @@ TEST(MeshColumn, WithoutStructureTheFreeFieldComesBack) {
       worst = std::max(worst, std::abs(one["vx"][i] - many["vx"][i]));
       vertical = std::max(vertical, std::abs(many[cell == Cell::quad4 ? "vy" : "vz"][i]));
     }
-    EXPECT_LT(worst, 1e-8 * one.peak("vx"));
-    EXPECT_LT(vertical, 1e-9 * one.peak("vx"));
-    EXPECT_GT(one.peak("vx"), 1);  // softer soil moves more than the rock's outcrop
+    VERIFY_LT("largest difference of the horizontal velocity", "m/s", worst, 1e-8 * one.peak("vx"));
+    VERIFY_LT("largest vertical velocity", "m/s", vertical, 1e-9 * one.peak("vx"));
+    VERIFY_GT("largest velocity of the surface", "m/s", one.peak("vx"), 1);  // softer soil moves more than the rock's outcrop
   }
 }
 
 // Claim: an S wave with an azimuth moves the surface along that azimuth: components in the ratio of cosine and sine, 1e-8 of the peak.
 TEST(MeshColumn, AzimuthTurnsTheMotion) {
+  VERIFIES({"Waves in soil", "Azimuth of an S wave", "Components of the motion along x: cos and sin"});
   Column along{ground, Cell::hex8, "SV", 1e-2, 1.0}, turned = along;
   turned.azimuth = 37 * pi / 180;
   const MeshRun one = along.run(), other = turned.run();
@@ -252,7 +265,7 @@ TEST(MeshColumn, AzimuthTurnsTheMotion) {
   for (std::size_t i = 0; i < one.time().size(); ++i)
     worst = std::max({worst, std::abs(other["vx"][i] - std::cos(turned.azimuth) * one["vx"][i]),
                       std::abs(other["vy"][i] - std::sin(turned.azimuth) * one["vx"][i])});
-  EXPECT_LT(worst, 1e-8 * one.peak("vx"));
+  VERIFY_LT("largest difference of the velocities", "m/s", worst, 1e-8 * one.peak("vx"));
 }
 
 }  // namespace

@@ -2,6 +2,7 @@
 // turned about both axes. References by quadrature made here: the pressure is k (w + r . x)+, w such that it carries the load W.
 #include <gtest/gtest.h>
 
+#include "manual.h"
 #include "mesh_support.h"
 
 namespace uplift::verification {
@@ -84,18 +85,20 @@ DiscAnswer disc(Cell cell, const char* quadrature, int cells, double theta) {
 // Claim: the quadrature of this file gives the table: 30 % of the area uplifted at theta/theta_u = 2.473383 with M/M_u = 1.874109,
 // p_toe/p_mean = 3.264103; M_u = W R/4 at theta_u = W/(pi R^3 k). This checks the reference, not the program.
 TEST(MeshFooting, TheQuadratureGivesTheTableOfTheDisc) {
+  VERIFIES({"Footings", "Disc on a Winkler bed, quadrature of the reference", "Closed forms M_u = WR/4 and a published table"});
   const double theta_u = weight / (pi * bed);
   const DiscAnswer a = exact_disc(2.473383 * theta_u), first = exact_disc(theta_u);
-  EXPECT_NEAR(first.moment, weight / 4, 1e-6 * weight);
-  EXPECT_NEAR(a.moment / (weight / 4), 1.874109, 1e-6);
-  EXPECT_NEAR(a.uplifted, 0.3, 1e-6);
-  EXPECT_NEAR(a.toe / (weight / pi), 3.264103, 1e-6);
+  VERIFY_NEAR("moment at the beginning of uplift", "N m", first.moment, weight / 4, 1e-6 * weight);
+  VERIFY_NEAR("moment over M_u at 30 % uplift", "1", a.moment / (weight / 4), 1.874109, 1e-6);
+  VERIFY_NEAR("uplifted share", "1", a.uplifted, 0.3, 1e-6);
+  VERIFY_NEAR("toe pressure over mean pressure", "1", a.toe / (weight / pi), 3.264103, 1e-6);
 }
 
 // Claim: the disc by joints on the faces of a mesh of every kind, both quadratures: moment 1e-2 with 16 faces over the diameter and
 // order 2 with straight edges (they miss a part of the area of order h^2), 2e-3 with curved ones (where the edge of the contact cuts the
 // faces decides, no order).
 TEST(MeshFooting, DiscOfFaceJoints) {
+  VERIFIES({"Footings", "Disc of face joints on a Winkler bed", "Quadrature of k (w + θx)+ over the disc"});
   const double theta_u = weight / (pi * bed);
   for (const double ratio : {0.7, 2.473383, 5.0}) {
     const DiscAnswer exact = exact_disc(ratio * theta_u);
@@ -111,14 +114,16 @@ TEST(MeshFooting, DiscOfFaceJoints) {
       for (const int cells : {4, 8, 16}) {
         const DiscAnswer found = disc(cell, quadrature, cells, ratio * theta_u);
         size.push_back(1.0 / cells), error.push_back(std::abs(found.moment / exact.moment - 1));
-        EXPECT_LT(std::abs(found.uplifted - exact.uplifted), 0.5 / (cells * cells)) << cells << ": " << found.uplifted - exact.uplifted;
-        if (cells == 16 && std::string(quadrature) == "nodal") EXPECT_NEAR(found.toe, exact.toe, 0.02 * exact.toe);
+        VERIFY_LT("error of the uplifted share", "1", std::abs(found.uplifted - exact.uplifted), 0.5 / (cells * cells))
+            << cells << ": " << found.uplifted - exact.uplifted;
+        if (cells == 16 && std::string(quadrature) == "nodal") VERIFY_NEAR("toe pressure", "Pa", found.toe, exact.toe, 0.02 * exact.toe);
       }
       RecordProperty(fmt::format("{}_{}_{}", info(cell).name, quadrature, static_cast<int>(10 * ratio)),
                      fmt::format("{:.1e} {:.1e} {:.1e} order {:.2f}", error[0], error[1], error[2], order(size, error)));
       const bool curved = info(cell).linear != cell;
-      EXPECT_LT(error.back(), curved ? 2e-3 : 1e-2);
-      if (!curved) EXPECT_GT(order(size, error), 1.6);
+      VERIFY_LT("relative error of the moment, 16 faces", "1", error.back(), curved ? 2e-3 : 1e-2);
+      if (!curved) verified_case.curve(fmt::format("{} {} {:.2g}", info(cell).name, quadrature, ratio), size, error);
+      if (!curved) VERIFY_GT("order of convergence, straight edges", "1", order(size, error), 1.6);
     }
   }
 }
@@ -173,10 +178,13 @@ RectangleAnswer rectangle_footing(const char* rule, int points, double turn_x, d
 // Claim: rectangle 6 x 4 m turned about both axes: both moments with their signs, 1e-2 with 24 cells a side, order 2 (nodal and midpoint
 // rules).
 TEST(MeshFooting, RectangleTurnedAboutBothAxes) {
+  VERIFIES({"Footings", "Rectangle turned about both axes", "Quadrature of k (w − θ_x y + θ_y x)+ over the rectangle"});
   // closed: M_x = k L_x L_y^3/12 turn_x
   const double small = 1e-6;
-  EXPECT_NEAR(exact_rectangle(small, small).about_x, bed * length_x * std::pow(length_y, 3) / 12 * small, 1e-9 * weight);
-  EXPECT_NEAR(exact_rectangle(small, small).about_y, bed * length_y * std::pow(length_x, 3) / 12 * small, 1e-9 * weight);
+  VERIFY_NEAR("moment about x in full contact, closed form", "N m", exact_rectangle(small, small).about_x,
+              bed * length_x * std::pow(length_y, 3) / 12 * small, 1e-9 * weight);
+  VERIFY_NEAR("moment about y in full contact, closed form", "N m", exact_rectangle(small, small).about_y,
+              bed * length_y * std::pow(length_x, 3) / 12 * small, 1e-9 * weight);
   const double unit = weight / (bed * length_x * length_y * length_x / 2);
   for (const auto& [turn_x, turn_y] :
        {std::pair{1.5 * unit, 1.0 * unit}, std::pair{-3 * unit, 2.5 * unit}, std::pair{0.4 * unit, -4 * unit}}) {
@@ -191,8 +199,9 @@ TEST(MeshFooting, RectangleTurnedAboutBothAxes) {
       }
       RecordProperty(fmt::format("{}_{:.1f}_{:.1f}", rule, turn_x / unit, turn_y / unit),
                      fmt::format("{:.1e} {:.1e} {:.1e} order {:.2f}", error[0], error[1], error[2], order(size, error)));
-      EXPECT_LT(error.back(), 1e-2) << rule;
-      EXPECT_NEAR(order(size, error), 2, 0.4) << rule;
+      VERIFY_LT("relative error of the moments, 24 cells", "1", error.back(), 1e-2) << rule;
+      verified_case.curve(fmt::format("{} {:.1f} {:.1f}", rule, turn_x / unit, turn_y / unit), size, error);
+      VERIFY_NEAR("order of convergence", "1", order(size, error), 2, 0.4) << rule;
     }
   }
 }

@@ -2,6 +2,7 @@
 // sections 2.8 and 7.2.
 #include <gtest/gtest.h>
 
+#include "manual.h"
 #include "punch_support.h"
 
 namespace uplift::verification {
@@ -68,6 +69,8 @@ std::vector<Partial> mindlin(double a, int cells, double poisson, const std::vec
 // and sticks on the half width c = a sqrt(1 - Q/(mu P)): 1 % with ten elements over a, less with twenty. The formula wants tangential
 // forces that do not press: incompressible ground, nu = 0.4999 here.
 TEST(MeshFriction, PartialSlipOfCattaneoAndMindlin) {
+  VERIFIES({"Friction", "Partial slip of a pressed cylinder",
+            "Cattaneo and Mindlin: c/a = √(1 − Q/μP); Johnson, Contact Mechanics (1985), section 7.2"});
   const double poisson = 0.4999, modulus = young / (1 - poisson * poisson), a = std::sqrt(4 * load * radius / (pi * modulus));
   const std::vector<double> shares{0.25, 0.5, 0.75};
   double before = 1;
@@ -77,11 +80,11 @@ TEST(MeshFriction, PartialSlipOfCattaneoAndMindlin) {
     for (std::size_t k = 0; k < shares.size(); ++k) {
       const double ratio = found[k].stick / found[k].contact, exact = std::sqrt(1 - shares[k]);
       RecordProperty(fmt::format("cells_{}_share_{}", cells, shares[k]), fmt::format("{:.2e}", ratio / exact - 1));
-      EXPECT_NEAR(found[k].contact, a, 0.01 * a) << cells << " " << shares[k];
-      EXPECT_NEAR(ratio, exact, 0.01 * exact) << cells << " " << shares[k];
+      VERIFY_NEAR("half width of the contact", "m", found[k].contact, a, 0.01 * a) << cells << " " << shares[k];
+      VERIFY_NEAR("half width of the stick zone over that of the contact", "1", ratio, exact, 0.01 * exact) << cells << " " << shares[k];
       worst = std::max(worst, std::abs(ratio / exact - 1));
     }
-    EXPECT_LT(worst, before);
+    VERIFY_LT("largest error of the ratio (below that of the coarser mesh)", "1", worst, before);
     before = worst;
   }
 }
@@ -112,6 +115,8 @@ std::vector<std::pair<double, double>> under_strip(int cells) {
 // Claim: pressure under a rigid smooth strip, p = P/(pi sqrt(a^2 - x^2)): the nodes within 0.9 a carry what it gives on their halves of the
 // elements to 2 % with ten elements over a, and less than half as far off as with five.
 TEST(MeshFriction, PressureUnderAStrip) {
+  VERIFIES({"Rigid bodies on elastic ground", "Pressure under a rigid strip",
+            "Johnson, Contact Mechanics (1985), section 2.8: P/(π √(a² − x²))"});
   std::vector<double> worst;
   for (const int cells : {5, 10}) {
     const auto nodes = under_strip(cells);
@@ -125,13 +130,14 @@ TEST(MeshFriction, PressureUnderAStrip) {
     }
     RecordProperty(fmt::format("cells_{}", cells), fmt::format("{:.2e}", worst.back()));
   }
-  EXPECT_LT(worst.back(), 0.02);
-  EXPECT_LT(worst.back(), 0.5 * worst.front());
+  VERIFY_LT("largest relative error of a nodal force, ten elements", "1", worst.back(), 0.02);
+  VERIFY_LT("the same, compared with half of that of five elements", "1", worst.back(), 0.5 * worst.front());
 }
 
 // Claim: a rigid body that slides along a slanted direction under Coulomb friction by constraints stops after v/(mu g) and v^2/(2 mu g),
 // and the ledger holds m v^2/2 as dissipated by the interface: 1 % at 1 ms, a tenth of it at 0.1 ms (the step in which it stops: order 1).
 TEST(MeshFriction, ASlidingBodyLeavesItsEnergyInTheLedger) {
+  VERIFIES({"Friction", "Sliding body under Coulomb friction", "v²/(2μg) and ½mv²"});
   const double mass = 9e4, speed = 0.6, g = 9.81;
   std::vector<double> error;
   for (const double step : {1e-3, 1e-4}) {
@@ -146,14 +152,14 @@ TEST(MeshFriction, ASlidingBodyLeavesItsEnergyInTheLedger) {
         {});
     ASSERT_TRUE(run.completed()) << run.result.reason;
     const double slid = speed * speed / (2 * friction * g), energy = 0.5 * mass * speed * speed;
-    EXPECT_NEAR(run["base.ux"].back(), 0.8 * slid, 0.01 * slid);
-    EXPECT_NEAR(run["base.uy"].back(), 0.6 * slid, 0.01 * slid);
-    EXPECT_LT(run["energy.kinetic"].back(), 1e-6 * energy);
+    VERIFY_NEAR("way along x", "m", run["base.ux"].back(), 0.8 * slid, 0.01 * slid);
+    VERIFY_NEAR("way along y", "m", run["base.uy"].back(), 0.6 * slid, 0.01 * slid);
+    VERIFY_LT("kinetic energy at the end", "J", run["energy.kinetic"].back(), 1e-6 * energy);
     error.push_back(std::abs(run["energy.interface_dissipated"].back() / energy - 1));
     RecordProperty(fmt::format("step_{}", step), fmt::format("{:.2e}", error.back()));
   }
-  EXPECT_LT(error[0], 1e-2);
-  EXPECT_LT(error[1], 1e-3);
+  VERIFY_LT("relative error of the dissipated energy, step of 1 ms", "1", error[0], 1e-2);
+  VERIFY_LT("relative error of the dissipated energy, step of 0.1 ms", "1", error[1], 1e-3);
 }
 
 }  // namespace

@@ -2,6 +2,7 @@
 // under uniform traction p: jump p/K everywhere, total p L/E + p/K; an inclined joint shares the traction into p cos^2 and p sin cos.
 #include <gtest/gtest.h>
 
+#include "manual.h"
 #include "mesh_support.h"
 #include "uplift/mesh/cell_shapes.h"
 
@@ -112,30 +113,34 @@ INSTANTIATE_TEST_SUITE_P(Cells, MeshPatch,
 
 // Claim: uniform traction through a joint on any distorted mesh: 1e-10 for the jump at every point and the motion of the top.
 TEST_P(MeshPatch, UniformTractionThroughADistortedJoint) {
+  VERIFIES({"Joint elements", "Patch test through a distorted joint", "Uniform state: openings p/K, top motion pL/E + p/K"});
   const Cell cell = GetParam();
   for (const char* quadrature : {"gauss", "nodal"}) {
     const PatchError error = patch(cell, quadrature, 0.12, 0);
     RecordProperty(quadrature, fmt::format("{:.1e} {:.1e} {:.1e}", error.normal, error.shear, error.top));
-    EXPECT_LT(error.normal, 1e-10) << quadrature;
-    EXPECT_LT(error.shear, 1e-10) << quadrature;
-    EXPECT_LT(error.top, 1e-10) << quadrature;
+    VERIFY_LT("relative error of the opening", "1", error.normal, 1e-10) << quadrature;
+    VERIFY_LT("shear opening over the normal one", "1", error.shear, 1e-10) << quadrature;
+    VERIFY_LT("relative error of the motion of the top", "1", error.top, 1e-10) << quadrature;
   }
 }
 
 // Claim: without distortion the nodal rule is exact on every face: 1e-10.
 TEST_P(MeshPatch, UniformTractionThroughARegularJoint) {
+  VERIFIES(
+      {"Joint elements", "Patch test through a regular joint, nodal quadrature", "Uniform state: openings p/K, top motion pL/E + p/K"});
   const PatchError error = patch(GetParam(), "nodal", 0, 0);
-  EXPECT_LT(error.normal, 1e-10);
-  EXPECT_LT(error.shear, 1e-10);
-  EXPECT_LT(error.top, 1e-10);
+  VERIFY_LT("relative error of the opening", "1", error.normal, 1e-10);
+  VERIFY_LT("shear opening over the normal one", "1", error.shear, 1e-10);
+  VERIFY_LT("relative error of the motion of the top", "1", error.top, 1e-10);
 }
 
 // Claim: a joint inclined by 30 degrees and distorted shares the traction: p cos^2 across, p sin cos along it: 1e-10.
 TEST_P(MeshPatch, InclinedJointSharesTheTraction) {
+  VERIFIES({"Joint elements", "Patch test through an inclined and distorted joint", "Mohr: p cos² across the joint, p sin cos along it"});
   const PatchError error = patch(GetParam(), "gauss", 0.08, std::tan(pi / 6));
-  EXPECT_LT(error.normal, 1e-10);
-  EXPECT_LT(error.shear, 1e-10);
-  EXPECT_LT(error.top, 1e-10);
+  VERIFY_LT("relative error of the opening", "1", error.normal, 1e-10);
+  VERIFY_LT("error of the shear opening over the normal opening", "1", error.shear, 1e-10);
+  VERIFY_LT("relative error of the motion of the top", "1", error.top, 1e-10);
 }
 
 }  // namespace

@@ -2,6 +2,7 @@
 // unknowns at once. No numbers of the program are expected here, only that they do not depend on the way.
 #include <gtest/gtest.h>
 
+#include "manual.h"
 #include "mesh_support.h"
 #include "uplift/mesh/soil_box.h"
 
@@ -113,6 +114,7 @@ double difference(const std::vector<double>& a, const std::vector<double>& b, do
 // Claim: a slice of one element, held across, is the plane strain model: motions, resultants and uplift ratio to 1e-8 of their peaks (quad4
 // against hex8 with their bubbles, nodal joints, absorbing sides).
 TEST(MeshSpace, ExtrusionGivesThePlaneAnswer) {
+  VERIFIES({"Models in space", "A slice of one element is the plane model", "The plane-strain model of the program, verified on its own"});
   largest_difference = 0;
   for (const Contact& contact : {springs, sdm, held_friction}) {
     SCOPED_TRACE(contact.name);
@@ -123,15 +125,17 @@ TEST(MeshSpace, ExtrusionGivesThePlaneAnswer) {
     slice.box.cell = Cell::hex8;
     slice.slice = true;
     const MeshRun two = plane.run(), three = slice.run();
-    EXPECT_GT(two.peak("base.uplifted_ratio"), 0.3);
-    EXPECT_GT(two.peak("base.max_opening"), 1e-4);
-    EXPECT_LT(difference(two["top.ux"], three["top.ux"]), 1e-8);
-    EXPECT_LT(difference(two["top.uy"], three["top.uz"]), 1e-8);
-    EXPECT_LT(difference(two["base.axial"], three["base.axial"]), 1e-8);
-    EXPECT_LT(difference(two["base.moment"], three["base.moment_2"], -1), 1e-8);  // about y: from z to x, against x to y of the plane
-    EXPECT_LT(difference(two["base.uplifted_ratio"], three["base.uplifted_ratio"]), 1e-8);
-    EXPECT_LT(difference(two["base.max_opening"], three["base.max_opening"]), 1e-8);
-    EXPECT_LT(difference(two["base.shear"], three["base.shear_1"]), 1e-8);
+    VERIFY_GT("uplifted share (the case uplifts)", "1", two.peak("base.uplifted_ratio"), 0.3);
+    VERIFY_GT("largest gap", "m", two.peak("base.max_opening"), 1e-4);
+    VERIFY_LT("difference of the horizontal motion over its peak", "1", difference(two["top.ux"], three["top.ux"]), 1e-8);
+    VERIFY_LT("difference of the vertical motion over its peak", "1", difference(two["top.uy"], three["top.uz"]), 1e-8);
+    VERIFY_LT("difference of the normal force over its peak", "1", difference(two["base.axial"], three["base.axial"]), 1e-8);
+    VERIFY_LT("difference of the moment over its peak", "1", difference(two["base.moment"], three["base.moment_2"], -1),
+              1e-8);  // about y: from z to x, against x to y of the plane
+    VERIFY_LT("difference of the uplifted share over its peak", "1", difference(two["base.uplifted_ratio"], three["base.uplifted_ratio"]),
+              1e-8);
+    VERIFY_LT("difference of the largest gap over its peak", "1", difference(two["base.max_opening"], three["base.max_opening"]), 1e-8);
+    VERIFY_LT("difference of the shear over its peak", "1", difference(two["base.shear"], three["base.shear_1"]), 1e-8);
   }
   RecordProperty("largest_difference", fmt::format("{:.1e}", largest_difference));
 }
@@ -159,6 +163,7 @@ void expect_turned(const MeshRun& straight, const MeshRun& turned, double tolera
 // Claim: mesh and load turned by 37 degrees in plan give the turned answer: 1e-10 of the peaks. Tangents of the joint are no principal
 // directions: friction and stiffness are isotropic.
 TEST(MeshSpace, TurnedMeshGivesTheTurnedAnswer) {
+  VERIFIES({"Models in space", "A mesh turned in plan gives the turned answer", "Invariance under rotation"});
   largest_difference = 0;
   for (const Contact& contact : {springs, held_friction}) {
     SCOPED_TRACE(contact.name);
@@ -168,8 +173,9 @@ TEST(MeshSpace, TurnedMeshGivesTheTurnedAnswer) {
     Block turned = block;
     turned.angle = turned_by;
     const MeshRun one = block.run(), other = turned.run();
-    EXPECT_GT(one.peak("base.uplifted_ratio"), 0.1);
+    VERIFY_GT("uplifted share (the case uplifts)", "1", one.peak("base.uplifted_ratio"), 0.1);
     expect_turned(one, other, 1e-10);
+    VERIFY_LT("largest difference of vectors and scalars over their peaks", "1", largest_difference, 1e-10);
   }
   RecordProperty("largest_difference", fmt::format("{:.1e}", largest_difference));
 }
@@ -198,6 +204,7 @@ std::string tower(const Contact& contact, double angle, const char* bed) {
 // Claim: a rigid raft with azimuth 37 degrees under a tower of beams (principal axes, eccentricity and load turned too) gives the turned
 // answer: 1e-10 of the peaks. Coulomb friction by springs on fixed ground, and by constraints on a bed.
 TEST(MeshSpace, TurnedRaftGivesTheTurnedAnswer) {
+  VERIFIES({"Models in space", "A raft with an azimuth gives the turned answer", "Invariance under rotation"});
   largest_difference = 0;
   for (const auto& [contact, bed] :
        {std::pair{springs, ""}, std::pair{held_friction, ", bed = { stiffness = 1e8, damping = 1e5, mass = 50 }"}}) {
@@ -205,9 +212,10 @@ TEST(MeshSpace, TurnedRaftGivesTheTurnedAnswer) {
     const MeshRun one = run_mesh(tower(contact, 0, bed), {}), other = run_mesh(tower(contact, turned_by, bed), {});
     ASSERT_TRUE(one.completed()) << one.result.reason;
     ASSERT_TRUE(other.completed()) << other.result.reason;
-    EXPECT_GT(one.peak("base.uplifted_ratio"), 0.1);
-    EXPECT_GT(one.peak("base.torsion"), 1e3);
+    VERIFY_GT("uplifted share (the case uplifts)", "1", one.peak("base.uplifted_ratio"), 0.1);
+    VERIFY_GT("torsion", "N m", one.peak("base.torsion"), 1e3);
     expect_turned(one, other, 1e-10);
+    VERIFY_LT("largest difference of vectors and scalars over their peaks", "1", largest_difference, 1e-10);
   }
   RecordProperty("largest_difference", fmt::format("{:.1e}", largest_difference));
 }
@@ -215,6 +223,8 @@ TEST(MeshSpace, TurnedRaftGivesTheTurnedAnswer) {
 // Claim: each condensed step (split factor, interface unknowns only) equals Newton's method on all unknowns from the same beginning: 1e-8;
 // in space, with biaxial uplift, on traction laws with friction and with constraints (without: springs hold the block sideways).
 TEST(MeshSpace, CondensedStepEqualsTheMonolithicOne) {
+  VERIFIES({"Models in space", "The condensed step equals Newton's method on all unknowns",
+            "Monolithic solution of each step, to 1e-8 (docs/theory, section 4)"});
   for (const Contact& contact : {springs, sdm, held}) {
     SCOPED_TRACE(contact.name);
     Block block = space_block();
@@ -232,13 +242,16 @@ TEST(MeshSpace, CondensedStepEqualsTheMonolithicOne) {
       built.plan.oracle_tolerance = 1e-8;
       for (Stage& stage : built.plan.stages) stage.halvings = 0;
     });
-    EXPECT_GT(run.peak("base.uplifted_ratio"), 0.1);
+    VERIFY_EQ("run completed: every step within 1e-8 of the monolithic solution (1: yes)", "1", run.completed(), 1);
+    VERIFY_GT("uplifted share (the case uplifts)", "1", run.peak("base.uplifted_ratio"), 0.1);
   }
 }
 
 // Claim: the same of constraints with friction: nine node pairs under a block of bricks, uplift about both axes, slip in directions that
 // turn (those of the oracle come from Newton's method on states of open, sticking and slipping pairs): each step to 1e-8.
 TEST(MeshSpace, CondensedStepEqualsTheMonolithicOneUnderFriction) {
+  VERIFIES({"Models in space", "The condensed step with friction equals Newton's method on all unknowns",
+            "Monolithic solution of each step, to 1e-8 (docs/theory, section 4)"});
   Block block = space_block();
   block.contact = held_friction;
   block.box.soil.width = {8, 10};
@@ -251,19 +264,22 @@ TEST(MeshSpace, CondensedStepEqualsTheMonolithicOneUnderFriction) {
     built.plan.oracle_tolerance = 1e-8;
     for (Stage& stage : built.plan.stages) stage.halvings = 0;
   });
-  EXPECT_GT(run.peak("base.uplifted_ratio"), 0.1);
-  EXPECT_GT(run.peak("energy.interface_dissipated"), 1);  // J: by slip alone
+  VERIFY_GT("uplifted share (the case uplifts)", "1", run.peak("base.uplifted_ratio"), 0.1);
+  VERIFY_EQ("run completed: every step within 1e-8 of the monolithic solution (1: yes)", "1", run.completed(), 1);
+  VERIFY_GT("energy dissipated by slip", "J", run.peak("energy.interface_dissipated"), 1);  // J: by slip alone
 }
 
 // Claim: constraints with friction are the limit of stiff springs with friction, which are checked above: under weight and a biaxial push
 // in statics, with uplift and slip, motion and resultants come nearer in proportion to 1/K (order 1) and to 1e-4 at K = 1e13 Pa/m.
 TEST(MeshSpace, ConstraintsWithFrictionAreTheLimitOfStiffSprings) {
+  VERIFIES({"Friction", "Constraints with friction are the limit of stiff springs",
+            "Springs with K = 1e11, 1e12 and 1e13 Pa/m, verified on their own"});
   Block block = space_block();
   block.contact = held_friction;
   block.duration = block.step = 1e-9;
   block.extra = "[[load]]\nname = \"dead\"\ngroup = \"block_top\"\nforce = [9e5, 6e5, 0]\n";
   const MeshRun rigid = block.run();
-  EXPECT_GT(rigid["base.uplifted_ratio"][0], 0.1);
+  VERIFY_GT("uplifted share (the case uplifts)", "1", rigid["base.uplifted_ratio"][0], 0.1);
   std::map<std::string, std::vector<double>> error;
   const std::vector<double> stiffness{1e11, 1e12, 1e13};
   for (const double k : stiffness) {
@@ -275,8 +291,9 @@ TEST(MeshSpace, ConstraintsWithFrictionAreTheLimitOfStiffSprings) {
   }
   for (const auto& [name, values] : error) {
     RecordProperty(name, fmt::format("{:.2e} {:.2e} {:.2e}", values[0], values[1], values[2]));
-    EXPECT_LT(values.back(), 1e-4) << name;
-    if (values.front() > 1e-6) EXPECT_NEAR(std::log10(values.front() / values.back()) / 2, 1, 0.15) << name;
+    VERIFY_LT("relative difference at K = 1e13 Pa/m", "1", values.back(), 1e-4) << name;
+    if (values.front() > 1e-6)
+      VERIFY_NEAR("order of convergence in 1/K", "1", std::log10(values.front() / values.back()) / 2, 1, 0.15) << name;
   }
 }
 

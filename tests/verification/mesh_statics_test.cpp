@@ -1,6 +1,7 @@
 // Blocks of many plans and meshes that rest on soil by contact and friction alone: statics carry the weight, whatever the method.
 #include <gtest/gtest.h>
 
+#include "manual.h"
 #include "mesh_support.h"
 #include "uplift/mesh/soil_box.h"
 
@@ -19,6 +20,7 @@ INSTANTIATE_TEST_SUITE_P(Plans, MeshStatics,
 // Claim: a block 10 m high under its weight: the joint carries rho g V (1e-6), and the block settles by millimetres. Soil 16 x 6 m, E = 200
 // MPa: p H/M alone is 5 mm.
 TEST_P(MeshStatics, ABlockOnSoilStandsByContactAndFriction) {
+  VERIFIES({"Static equilibrium", "A block stands on soil by contact and friction", "Weight ρgV"});
   const Plan plan = GetParam();
   SoilBox box;
   box.dimension = 3;
@@ -42,9 +44,9 @@ TEST_P(MeshStatics, ABlockOnSoilStandsByContactAndFriction) {
         law);
     const MeshRun run = run_mesh(text, soil_box(box, {}));
     EXPECT_TRUE(run.completed()) << run.result.reason;
-    EXPECT_NEAR(run["base.axial"][0], -weight, 1e-6 * weight);
-    EXPECT_LT(std::abs(run["top.uz"][0]), 0.02);
-    EXPECT_EQ(run["base.uplifted_ratio"][0], 0);
+    VERIFY_NEAR("vertical force of the joint", "N", run["base.axial"][0], -weight, 1e-6 * weight);
+    VERIFY_LT("settlement", "m", std::abs(run["top.uz"][0]), 0.02);
+    VERIFY_EQ("uplifted share", "1", run["base.uplifted_ratio"][0], 0);
   }
 }
 

@@ -5,6 +5,7 @@
 
 #include <cmath>
 
+#include "manual.h"
 #include "support.h"
 
 namespace uplift::verification {
@@ -30,22 +31,24 @@ Pressed pressed(const std::string& method) {
 // Claim: penalty u = (P + eps g)/(k_s + eps), in particular 0.0101593625498 for eps = 1e9, 1e-12; its distance
 // from the Lagrange solution u = g, force P - k_s g falls with (1/eps)^1; the augmented Lagrangian is exact.
 TEST(Orders, PenaltyTowardsLagrange) {
+  VERIFIES({"Contact methods", "The penalty method converges to the constraint", "u = (P + εg)/(k + ε); u = g, force P − kg"});
   const double k = 4e6, p = 2e5, gap = 0.01;
   for (const char* method : {"\"lagrange\"", "\"augmented_lagrangian\""}) {
     const Pressed exact = pressed(method);
-    EXPECT_NEAR(exact.displacement, gap, 1e-9 * gap) << method;
-    EXPECT_NEAR(exact.force, p - k * gap, 1e-6 * p) << method;
+    VERIFY_NEAR("displacement, Lagrange and augmented Lagrangian", "m", exact.displacement, gap, 1e-9 * gap) << method;
+    VERIFY_NEAR("contact force, Lagrange and augmented Lagrangian", "N", exact.force, p - k * gap, 1e-6 * p) << method;
   }
   std::vector<double> step, error;
   for (const double eps : {1e8, 1e9, 1e10, 1e11}) {
     const Pressed soft = pressed("{ type = \"penalty\", stiffness = " + std::to_string(eps) + " }");
-    EXPECT_NEAR(soft.displacement, (p + eps * gap) / (k + eps), 1e-12) << eps;
-    if (eps == 1e9) EXPECT_NEAR(soft.displacement, 0.0101593625498, 1e-12);
+    VERIFY_NEAR("displacement, penalty", "m", soft.displacement, (p + eps * gap) / (k + eps), 1e-12) << eps;
+    if (eps == 1e9) VERIFY_NEAR("displacement, ε = 1e9 N/m", "m", soft.displacement, 0.0101593625498, 1e-12);
     step.push_back(1 / eps);
     error.push_back(soft.displacement - gap);
   }
   RecordProperty("order", std::to_string(order(step, error)));
-  EXPECT_NEAR(order(step, error), 1, 0.05);
+  verified_case.curve("displacement [m]", step, error);
+  VERIFY_NEAR("order of convergence in 1/ε", "1", order(step, error), 1, 0.05);
 }
 
 // Claim: dynamics with impacts is of first order in dt. A rocking block (base held horizontally, with P-Delta, b = 0.5, h = 2) is released;
@@ -53,6 +56,7 @@ TEST(Orders, PenaltyTowardsLagrange) {
 // impact leaves (1 - 1.5 sin^2 alpha)^2 of the energy 1 - (1 - theta/repose)^2. Mean error over starting angles, since where in a step an
 // impact falls is chance.
 TEST(Orders, DynamicsWithImpacts) {
+  VERIFIES({"Rocking block", "Order of dynamics with impacts", "Housner, BSSA 53 (1963) 403-417, without linearisation of the arms"});
   const double b = 0.5, h = 2, g = 9.81, square = b * b + h * h, alpha = std::atan(b / h), repose = b / h;
   const double rate = std::sqrt(g * h / (4.0 / 3 * square)), r = std::pow(1 - 1.5 * std::pow(std::sin(alpha), 2), 2);
   const auto quarter = [&](double x) { return std::acosh(1 / (1 - x)) / rate; };
@@ -93,8 +97,9 @@ TEST(Orders, DynamicsWithImpacts) {
     error.push_back(sum);
   }
   RecordProperty("order", std::to_string(order(step, error)));
-  EXPECT_NEAR(order(step, error), 1, 0.3);
-  EXPECT_LT(error.back(), 3 * step.back());
+  verified_case.curve("second passage [s]", step, error);
+  VERIFY_NEAR("order of convergence", "1", order(step, error), 1, 0.3);
+  VERIFY_LT("mean error of the second passage, shortest step", "s", error.back(), 3 * step.back());
 }
 
 }  // namespace

@@ -6,6 +6,7 @@
 
 #include <cmath>
 
+#include "manual.h"
 #include "support.h"
 
 namespace uplift::verification {
@@ -76,8 +77,9 @@ Passage passage(const History& run) {
 // solution (1e-3); the error falls with the step, first order, to 1e-4. Housner's quarter period (4 x = 2.78845718 s linearised) differs by
 // the order of alpha^2: 0.3 %.
 TEST(RockingBlock, QuarterPeriod) {
+  VERIFIES({"Rocking block", "Quarter period of a rocking block", "Housner, BSSA 53 (1963) 403-417; arcosh(1/(1 − θ₀/θ_r))/rate"});
   const double exact = std::acosh(1 / (1 - alpha / 2 / repose)) / rate, housner = std::acosh(1 / (1 - 0.5)) / p;
-  EXPECT_NEAR(4 * housner, 2.78845718, 1e-8);
+  VERIFY_NEAR("Housner's period", "s", 4 * housner, 2.78845718, 1e-8);
   for (const double side : {1.0, -1.0}) {
     std::vector<double> step, error;
     for (const double dt : {4e-3, 2e-3, 1e-3, 5e-4}) {
@@ -89,12 +91,14 @@ TEST(RockingBlock, QuarterPeriod) {
       const Passage upright = passage(run);
       step.push_back(dt);
       error.push_back(std::abs(upright.time / exact - 1));
-      EXPECT_NEAR(upright.time / housner, 1, 3e-3);
-      EXPECT_NEAR(upright.before / (-side * rate * (repose - alpha / 2) * std::sinh(rate * exact)), 1, 2 * dt + 1e-3);
+      VERIFY_NEAR("quarter period over Housner's", "1", upright.time / housner, 1, 3e-3);
+      VERIFY_NEAR("angular velocity at the passage over the closed form", "1",
+                  upright.before / (-side * rate * (repose - alpha / 2) * std::sinh(rate * exact)), 1, 2 * dt + 1e-3);
     }
     RecordProperty("error_5e-4", std::to_string(error.back()));
-    EXPECT_LT(error.back(), 1e-4);
-    EXPECT_GT(order(step, error), 0.8);
+    VERIFY_LT("relative error of the quarter period, shortest step", "1", error.back(), 1e-4);
+    verified_case.curve(side > 0 ? "quarter period, to the left" : "quarter period, to the right", step, error);
+    VERIFY_GT("order of convergence", "1", order(step, error), 0.8);
   }
 }
 
@@ -102,7 +106,9 @@ TEST(RockingBlock, QuarterPeriod) {
 // with the base held horizontally; a frictionless block (h^2 - 2 b^2)/(h^2 + 4 b^2) = 0.7. 2e-3 (gravity acts for two steps of 1e-5 s
 // besides). The block goes on: with the equality of eq 4 at both corners it would stop dead.
 TEST(RockingBlock, RestitutionOfOneImpact) {
-  EXPECT_NEAR(std::pow(1 - 1.5 * std::pow(std::sin(alpha), 2), 2), 0.8313148789, 1e-10);
+  VERIFIES({"Rocking block", "Restitution of one impact",
+            "Housner, BSSA 53 (1963) 403-417: (1 − 1.5 sin²α); frictionless: (h² − 2b²)/(h² + 4b²)"});
+  VERIFY_NEAR("share of the energy after an impact", "1", std::pow(1 - 1.5 * std::pow(std::sin(alpha), 2), 2), 0.8313148789, 1e-10);
   for (const char* rule : {"project", "project_hold"})
     for (const bool slides : {false, true})
       for (const double side : {1.0, -1.0}) {
@@ -116,14 +122,15 @@ TEST(RockingBlock, RestitutionOfOneImpact) {
         block.duration = 3e-4;
         const Passage upright = passage(run_text(block.text()));
         const double expected = slides ? (h * h - 2 * b * b) / (h * h + 4 * b * b) : 1 - 1.5 * std::pow(std::sin(alpha), 2);
-        EXPECT_NEAR(upright.before, -side, 2e-3);
-        EXPECT_NEAR(upright.after / upright.before, expected, 2e-3) << rule << slides << side;
+        VERIFY_NEAR("angular velocity before the impact", "rad/s", upright.before, -side, 2e-3);
+        VERIFY_NEAR("ratio of the angular velocities", "1", upright.after / upright.before, expected, 2e-3) << rule << slides << side;
       }
 }
 
 // Claim: the block loses the same share at every impact: after n impacts the largest rotation follows from the energy r^n, with
 // 1 - (1 - theta_n/alpha)^2 = r^n (1 - (1 - theta_0/alpha)^2) (Housner 1963), alpha the angle of repose; 0.2 % of it.
 TEST(RockingBlock, DecayOverManyImpacts) {
+  VERIFIES({"Rocking block", "Decay over many impacts", "Housner, BSSA 53 (1963) 403-417"});
   Block block;
   block.rotation = repose / 2;
   block.step = 2e-4;
@@ -141,9 +148,10 @@ TEST(RockingBlock, DecayOverManyImpacts) {
     if (i >= run.rows()) break;
     energy *= r;
     ++impacts;
-    EXPECT_NEAR(most / repose, 1 - std::sqrt(1 - energy), 0.002) << impacts;
+    VERIFY_NEAR("largest rotation after an impact over the angle of repose", "1", most / repose, 1 - std::sqrt(1 - energy), 0.002)
+        << impacts;
   }
-  EXPECT_EQ(impacts, 5);
+  VERIFY_EQ("number of impacts", "1", impacts, 5);
 }
 
 }  // namespace

@@ -1,5 +1,6 @@
 #include <gtest/gtest.h>
 
+#include "manual.h"
 #include "solids_support.h"
 
 // Claim: with incompatible modes one quad4 or hex8 over the thickness of a wall bends right; without them it locks.
@@ -77,19 +78,21 @@ double cantilever(const Wall& wall) {
 const std::vector<Wall> walls{{Cell::quad4, 1}, {Cell::quad4, 1, PlaneState::strain}, {Cell::hex8, 1}, {Cell::hex8, 2}};
 
 TEST(SolidsBending, CantileverWithOneElementOverTheThickness) {
+  VERIFIES({"Solids", "Cantilever with one element over its thickness", "Beam theory with shear: PL³/3EI + 1.2 PL/GA"});
   for (Wall wall : walls) {
     const bool slab = wall.cell == Cell::quad4 && wall.plane == PlaneState::strain;
     const double inertia = width * std::pow(thickness, 3) / 12, e = slab ? young / (1 - poisson * poisson) : young;
     const double shear = young / (2 * (1 + poisson)), area = width * thickness;
     const double beam = 1e4 * std::pow(length, 3) / (3 * e * inertia) + 1.2 * 1e4 * length / (shear * area);
     const double modes = cantilever(wall);
-    EXPECT_NEAR(modes, beam, 0.01 * beam) << info(wall.cell).name << wall.across;
+    VERIFY_NEAR("deflection of the tip", "m", modes, beam, 0.01 * beam) << info(wall.cell).name << wall.across;
     wall.modes = false;
-    EXPECT_LT(cantilever(wall), 0.5 * beam) << info(wall.cell).name << wall.across;
+    VERIFY_LT("deflection without incompatible modes (it locks)", "m", cantilever(wall), 0.5 * beam) << info(wall.cell).name << wall.across;
   }
 }
 
 TEST(SolidsBending, PureBendingIsExact) {
+  VERIFIES({"Solids", "Pure bending", "Beam theory: ML²/2EI, My/I"});
   // a couple at the end, by the trilinear distribution of a linear traction: tip deflection M L^2/(2 E I), stress M y/I
   const double moment = 5e4;
   for (const Wall& wall : walls) {
@@ -107,7 +110,7 @@ TEST(SolidsBending, PureBendingIsExact) {
     const int d = info(wall.cell).dimension;
     for (std::size_t a = 0; a < mesh.before.size(); ++a)
       if (mesh.before[a].x() > length - 1e-9 && mesh.before[a][wall.across] < 1e-9) lower = u[d * static_cast<Index>(a) + wall.across];
-    EXPECT_NEAR(lower, tip, 1e-9 * tip) << info(wall.cell).name << wall.across;
+    VERIFY_NEAR("deflection of the tip", "m", lower, tip, 1e-9 * tip) << info(wall.cell).name << wall.across;
     for (std::size_t c = 0; c < mesh.cells.size(); ++c) {
       Vector of_cell(d * static_cast<Index>(mesh.cells[c].size()));
       for (std::size_t a = 0; a < mesh.cells[c].size(); ++a)
@@ -115,8 +118,9 @@ TEST(SolidsBending, PureBendingIsExact) {
       const auto stress = system.solids[c].node_stress(of_cell);
       for (std::size_t a = 0; a < stress.size(); ++a) {
         const double y = (*mesh.nodes)[static_cast<std::size_t>(mesh.cells[c][a])][wall.across] - thickness / 2;
-        EXPECT_NEAR(stress[a][0], -moment * y / inertia, 1e-8 * moment * thickness / inertia) << info(wall.cell).name;
-        EXPECT_NEAR(stress[a][wall.across], 0, 1e-8 * moment * thickness / inertia) << info(wall.cell).name;
+        VERIFY_NEAR("stress along the beam", "Pa", stress[a][0], -moment * y / inertia, 1e-8 * moment * thickness / inertia)
+            << info(wall.cell).name;
+        VERIFY_NEAR("stress across the beam", "Pa", stress[a][wall.across], 0, 1e-8 * moment * thickness / inertia) << info(wall.cell).name;
       }
     }
   }

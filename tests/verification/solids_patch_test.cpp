@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <random>
 
+#include "manual.h"
 #include "solids_support.h"
 
 // Claim: any mesh of solids meets constant strain exactly (patch test; Taylor, Simo, Zienkiewicz & Chan, IJNME 22 (1986) 39-62).
@@ -26,6 +27,8 @@ std::function<Vec3(const Vec3&)> random_move(double amplitude, int dimension, un
 }
 
 TEST(SolidsPatch, ConstantStrainOnRandomMeshes) {
+  VERIFIES({"Solids", "Patch test: constant strain on random meshes",
+            "Taylor, Simo, Zienkiewicz & Chan, IJNME 22 (1986) 39-62; linear displacement and Hooke's law"});
   for (const CellInfo& cell : all_cells()) {
     if (cell.dimension < 2) continue;
     for (const bool modes : {false, true})
@@ -52,7 +55,7 @@ TEST(SolidsPatch, ConstantStrainOnRandomMeshes) {
             if (fixed[i]) u[static_cast<Index>(i)] = exact[static_cast<Index>(i)];
           ASSERT_NE(std::count(fixed.begin(), fixed.end(), false), 0);
           solve_held(system.stiffness, Vector::Zero(u.size()), fixed, u);
-          EXPECT_LE((u - exact).lpNorm<1>(), 1e-10 * exact.lpNorm<1>()) << cell.name << modes;
+          VERIFY_LE("error of the displacements (sum norm)", "m", (u - exact).lpNorm<1>(), 1e-10 * exact.lpNorm<1>()) << cell.name << modes;
           // stress everywhere: lambda tr e I + 2 mu e
           const double mu = young / (2 * (1 + poisson)), trace = gradient.trace();
           const double lambda = plane == PlaneState::stress ? young * poisson / (1 - poisson * poisson)
@@ -67,13 +70,14 @@ TEST(SolidsPatch, ConstantStrainOnRandomMeshes) {
             Vector of_cell(d * cell.nodes);
             for (int a = 0; a < cell.nodes; ++a) of_cell.segment(d * a, d) = u.segment(d * mesh.cells[e][static_cast<std::size_t>(a)], d);
             for (const Stress& s : system.solids[e].node_stress(of_cell))
-              ASSERT_LE((s - expected).norm(), 1e-10 * expected.norm()) << cell.name;
+              VERIFY_LE("error of the stress (norm)", "Pa", (s - expected).norm(), 1e-10 * expected.norm()) << cell.name;
           }
         }
   }
 }
 
 TEST(SolidsPatch, PullOnAHalfFreeBlock) {
+  VERIFIES({"Solids", "Patch test: tension of a block", "Hooke's law: u = px/E, v = −νpy/E"});
   // the other form of the test: forces on one side, the least supports; plane stress and 3D, any Poisson ratio: u = p x/E, v = -nu p y/E
   const double p = 3e5;
   for (const CellInfo& cell : all_cells()) {
@@ -115,7 +119,8 @@ TEST(SolidsPatch, PullOnAHalfFreeBlock) {
     solve_held(system.stiffness, force, fixed, u);
     for (std::size_t a = 0; a < mesh.nodes->size(); ++a)
       for (int i = 0; i < d; ++i)
-        EXPECT_NEAR(u[d * static_cast<Index>(a) + i], (i == 0 ? 1 : -poisson) * p / young * (*mesh.nodes)[a][i], 1e-10 * p / young * 2)
+        VERIFY_NEAR("displacement", "m", u[d * static_cast<Index>(a) + i], (i == 0 ? 1 : -poisson) * p / young * (*mesh.nodes)[a][i],
+                    1e-10 * p / young * 2)
             << cell.name;
   }
 }

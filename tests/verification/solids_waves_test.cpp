@@ -2,6 +2,7 @@
 
 #include <numbers>
 
+#include "manual.h"
 #include "solids_support.h"
 #include "support.h"
 #include "uplift/elements/absorbing.h"
@@ -113,6 +114,8 @@ Column run(Cell cell, int along, bool lumped, int pieces) {
 }
 
 TEST(SolidsWaves, IncomingWavesDoubleAtTheSurfaceAndLeave) {
+  VERIFIES({"Waves in soil", "Incoming waves double at the surface and leave",
+            "d'Alembert; Lysmer & Kuhlemeyer, J. Eng. Mech. Div. ASCE 95 (1969) 859-877"});
   struct Kind {
     Cell cell;
     bool lumped;
@@ -127,9 +130,9 @@ TEST(SolidsWaves, IncomingWavesDoubleAtTheSurfaceAndLeave) {
     for (const int along : {0, d - 1}) {
       const Column coarse = run(cell, along, lumped, fine / 2), best = run(cell, along, lumped, fine);
       const std::string name = std::string(info(cell).name) + (lumped ? " lumped" : "") + (along == d - 1 ? " P" : " S");
-      EXPECT_LE(best.wrong, 1e-3) << name;
-      EXPECT_GE(std::log2(coarse.wrong / best.wrong), 1.9) << name;
-      EXPECT_LE(best.left, 1e-4) << name;
+      VERIFY_LE("largest error of the surface over the peak", "1", best.wrong, 1e-3) << name;
+      VERIFY_GE("order of convergence", "1", std::log2(coarse.wrong / best.wrong), 1.9) << name;
+      VERIFY_LE("motion that is left, over the peak", "1", best.left, 1e-4) << name;
     }
   }
 }
@@ -154,6 +157,8 @@ struct PlaneWave {
 };
 
 TEST(SolidsWaves, ReflectionAtOtherAnglesIsThatOfThePlaneWaveAlgebra) {
+  VERIFIES({"Waves in soil", "Reflection of a viscous boundary at other angles",
+            "Lysmer & Kuhlemeyer, J. Eng. Mech. Div. ASCE 95 (1969) 859-877; tests/data/reference/lysmer_reflection.csv"});
   const Reference csv = reference("lysmer_reflection.csv");
   for (const auto& [nu, tag] : {std::pair{0.25, std::string("nu0.25")}, std::pair{1.0 / 3, std::string("nu0.333")}}) {
     const ElasticMaterial material{1e6, nu, 1500};
@@ -174,9 +179,9 @@ TEST(SolidsWaves, ReflectionAtOtherAnglesIsThatOfThePlaneWaveAlgebra) {
       if (std::abs(std::cos(theta)) < 1e-9) continue;  // grazing: no energy arrives
       const double energy =
           amplitude[0] * amplitude[0] + vs * std::sqrt(1 - sine * sine) / (vp * std::cos(theta)) * amplitude[1] * amplitude[1];
-      EXPECT_NEAR(std::abs(amplitude[0]), std::abs(csv["P_Rp_" + tag][row]), 1e-10) << row;
-      EXPECT_NEAR(std::abs(amplitude[1]), std::abs(csv["P_Rs_" + tag][row]), 1e-10) << row;
-      EXPECT_NEAR(energy, csv["P_energy_" + tag][row], 1e-10) << row;
+      VERIFY_NEAR("reflected P wave of an incident P wave", "1", std::abs(amplitude[0]), std::abs(csv["P_Rp_" + tag][row]), 1e-10) << row;
+      VERIFY_NEAR("reflected S wave of an incident P wave", "1", std::abs(amplitude[1]), std::abs(csv["P_Rs_" + tag][row]), 1e-10) << row;
+      VERIFY_NEAR("reflected energy of an incident P wave", "1", energy, csv["P_energy_" + tag][row], 1e-10) << row;
       // incoming S below the critical angle, where the reflected P wave still travels away
       const double p_sine = std::sin(theta) * vp / vs;
       if (p_sine < 0.999) {
@@ -186,14 +191,15 @@ TEST(SolidsWaves, ReflectionAtOtherAnglesIsThatOfThePlaneWaveAlgebra) {
         const PlaneWave s_out{{-std::cos(theta), std::sin(theta)}, {std::sin(theta), std::cos(theta)}, vs};
         both << rest(p_out), rest(s_out);
         const Vector of_s = PartialLu(both).solve(Matrix(-rest(s_in)));
-        EXPECT_NEAR(std::abs(of_s[0]), std::abs(csv["S_Rp_" + tag][row]), 1e-10) << row;
-        EXPECT_NEAR(std::abs(of_s[1]), std::abs(csv["S_Rs_" + tag][row]), 1e-10) << row;
-        EXPECT_NEAR(of_s[1] * of_s[1] + vp * p_cosine / (vs * std::cos(theta)) * of_s[0] * of_s[0], csv["S_energy_" + tag][row], 1e-10)
+        VERIFY_NEAR("reflected P wave of an incident S wave", "1", std::abs(of_s[0]), std::abs(csv["S_Rp_" + tag][row]), 1e-10) << row;
+        VERIFY_NEAR("reflected S wave of an incident S wave", "1", std::abs(of_s[1]), std::abs(csv["S_Rs_" + tag][row]), 1e-10) << row;
+        VERIFY_NEAR("reflected energy of an incident S wave", "1",
+                    of_s[1] * of_s[1] + vp * p_cosine / (vs * std::cos(theta)) * of_s[0] * of_s[0], csv["S_energy_" + tag][row], 1e-10)
             << row;
       }
       // SH: tangential dashpot alone, rho Vs (cos - 1)/(cos + 1)
       const double sh = (material.density * vs * std::cos(theta) - tangential) / (material.density * vs * std::cos(theta) + tangential);
-      EXPECT_NEAR(sh, csv["SH_amplitude_R"][row], 1e-10) << row;
+      VERIFY_NEAR("reflected SH wave", "1", sh, csv["SH_amplitude_R"][row], 1e-10) << row;
     }
   }
 }

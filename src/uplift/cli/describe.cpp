@@ -3,6 +3,7 @@
 #include <algorithm>
 
 #include "uplift/case/schema/sections.h"
+#include "uplift/case/schema/verdict_quantities.h"
 #include "uplift/cli/commands.h"
 #include "uplift/cli/console.h"
 #include "uplift/contact/impact/impact.h"
@@ -169,6 +170,25 @@ void print_choices(const Field& field) {
     if (family.parts.data() == field.parts().data()) say(fmt::format("more: uplift describe {} {}", family.name, field.parts()[0]->name));
 }
 
+/// The numbers of the verdict: what a criterion may limit and summary.json contains.
+int describe_quantities(const std::string& name) {
+  std::vector<std::vector<std::string>> rows{{"  quantity", "unit", "of", "limit", "meaning"}};
+  std::vector<std::string> known;
+  for (const VerdictQuantity& each : verdict_quantities()) {
+    known.emplace_back(each.name);
+    if (!name.empty() && each.name != name) continue;
+    std::string of = each.of_beam ? "beam" : "run";
+    if (each.of_interface) of = !each.of_wall ? "base" : each.of_base ? "base, wall" : "wall";
+    rows.push_back(
+        {"  " + std::string(each.name), std::string(each.unit), of, each.at_least ? "at least" : "at most", std::string(each.meaning)});
+  }
+  if (rows.size() == 1)
+    throw InputError({"uplift describe quantity", 0}, "", "a number of the verdict", "\"" + name + "\"", nearest_name(name, known));
+  if (name.empty()) say("quantity: numbers of the verdict, in summary.json and for [[verdict.criterion]]");
+  print_table(rows);
+  return Exit::done;
+}
+
 int describe_section(const std::string& name) {
   std::vector<std::string> known;
   for (const Place& place : places()) {
@@ -194,7 +214,7 @@ int describe(const std::string& family, const std::string& name) {
       say("");
     }
     print_sections();
-    say("\nmore: uplift describe law sdm; uplift describe section beam");
+    say("\nmore: uplift describe law sdm; uplift describe section beam; uplift describe quantity");
     return Exit::done;
   }
   if (family == "section") {
@@ -204,7 +224,8 @@ int describe(const std::string& family, const std::string& name) {
       return describe_section(name);
     return Exit::done;
   }
-  std::vector<std::string> known{"section"};
+  if (family == "quantity") return describe_quantities(name);
+  std::vector<std::string> known{"section", "quantity"};
   for (const Family& each : all) {
     known.emplace_back(each.name);
     if (each.name != family) continue;

@@ -121,7 +121,8 @@ void declare(CLI::App& app, Choices& given) {
 
   command = add(app, "describe", "print equations, parameters, units and sources of every part, and the tables of a case file",
                 "  uplift describe\n  uplift describe law\n  uplift describe law sdm\n  uplift describe section interface.footing");
-  command->add_option("family", given.family, "law, method, impact, scheme, function, process, target, solver or section");
+  command->add_option("family", given.family,
+                      "law, method, impact, scheme, function, record, process, target, solver, section or quantity");
   command->add_option("name", given.name, "name of the part or table");
 
   add(app, "schema", "print the JSON Schema of the case file", "  uplift schema > case.schema.json");
