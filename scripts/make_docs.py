@@ -37,7 +37,11 @@ def gallery(folder):
         pictures = sorted(example.glob("*.svg")) + sorted(example.glob("*.png"))
         for picture in pictures:
             shutil.copy(picture, folder)
-        lines += [f"## [{title_of(page)}]({page.name})", "", f"`uplift run examples/{example.name}`" + (f"\n\n![{title_of(page)}]({pictures[0].name})" if pictures else ""), ""]
+        screenshot = ROOT / "docs" / "images" / f"{example.name}.png"
+        picture = f"../images/{screenshot.name}" if screenshot.exists() else pictures[0].name if pictures else ""
+        description = re.search(r'^description = "(.*)"$', (example / "case.toml").read_text(), re.M)
+        lines += [f"## [{title_of(page)}]({page.name})", "", description.group(1) if description else "", "", f"`uplift run examples/{example.name}`", ""]
+        lines += [f"![{title_of(page)}]({picture})", ""] if picture else []
     (folder / "index.md").write_text("\n".join(lines))
 
 
