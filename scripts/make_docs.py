@@ -30,7 +30,7 @@ def gallery(folder):
     """The pages of the examples with their pictures, and a list of them."""
     folder.mkdir(parents=True)
     lines = ["# Examples", "", "Each example is a folder of `examples/` with a case file and a page that states the theory, the command and the expected table.", ""]
-    for example in sorted((ROOT / "examples").iterdir()):
+    for example in sorted(path.parent for path in (ROOT / "examples").glob("*/case.toml")):
         page = folder / f"{example.name}.md"
         text = (example / "README.md").read_text()
         page.write_text(text + f"\n## The case file\n\n```toml fragment\n{(example / 'case.toml').read_text()}```\n")
