@@ -30,14 +30,18 @@ def gallery(folder):
     """The pages of the examples with their pictures, and a list of them."""
     folder.mkdir(parents=True)
     lines = ["# Examples", "", "Each example is a folder of `examples/` with a case file and a page that states the theory, the command and the expected table.", ""]
-    for example in sorted((ROOT / "examples").iterdir()):
+    for example in sorted(path.parent for path in (ROOT / "examples").glob("*/case.toml")):
         page = folder / f"{example.name}.md"
         text = (example / "README.md").read_text()
         page.write_text(text + f"\n## The case file\n\n```toml fragment\n{(example / 'case.toml').read_text()}```\n")
         pictures = sorted(example.glob("*.svg")) + sorted(example.glob("*.png"))
         for picture in pictures:
             shutil.copy(picture, folder)
-        lines += [f"## [{title_of(page)}]({page.name})", "", f"`uplift run examples/{example.name}`" + (f"\n\n![{title_of(page)}]({pictures[0].name})" if pictures else ""), ""]
+        screenshot = ROOT / "docs" / "images" / f"{example.name}.png"
+        picture = f"../images/{screenshot.name}" if screenshot.exists() else pictures[0].name if pictures else ""
+        description = re.search(r'^description = "(.*)"$', (example / "case.toml").read_text(), re.M)
+        lines += [f"## [{title_of(page)}]({page.name})", "", description.group(1) if description else "", "", f"`uplift run examples/{example.name}`", ""]
+        lines += [f"![{title_of(page)}]({picture})", ""] if picture else []
     (folder / "index.md").write_text("\n".join(lines))
 
 

@@ -11,7 +11,7 @@ import tempfile
 
 ROOT = pathlib.Path(__file__).resolve().parent.parent
 KEYS = ROOT / "docs" / "reference_keys.txt"
-TITLES = {"law": "Interface laws", "method": "Contact methods", "impact": "Impact rules", "scheme": "Time schemes", "function": "Functions of time",
+TITLES = {"law": "Interface laws", "bulk_law": "Bulk laws", "element": "Elements", "method": "Contact methods", "impact": "Impact rules", "scheme": "Time schemes", "function": "Functions of time",
           "record": "Record formats", "process": "Processing steps", "target": "Target spectra", "solver": "Solvers"}
 
 
