@@ -171,6 +171,7 @@ def main():
     stage, record = properties["stage"]["items"]["properties"], properties["record"]["items"]["properties"]
     modules = {
         "laws": ("Interface laws and cones.", properties["interface"]["items"]["properties"]["law"]),
+        "bulk_laws": ("Bulk laws: what a solid is made of.", properties["solid"]["items"]["properties"]["law"]),
         "methods": ("Contact methods.", properties["method"]),
         "impacts": ("Velocity corrections on impact.", properties["impact"]),
         "schemes": ("Time integration schemes.", stage["scheme"]),

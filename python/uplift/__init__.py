@@ -11,7 +11,7 @@ All quantities are in SI units; an opening > 0 separates the faces of an interfa
 
 from __future__ import annotations
 
-from . import functions, impacts, laws, methods, processes, schemes, targets
+from . import bulk_laws, functions, impacts, laws, methods, processes, schemes, targets
 from ._case import Case, March, Motion, StepView, load, march, motion, parse
 from ._laws import ExternalLaw, law
 from ._library import InputError, OutputError, UpliftError, library
@@ -21,8 +21,9 @@ from .laws import bilinear, coulomb, elastic, exponential, sdm, springs, unilate
 
 __all__ = [
     "Case", "Comparison", "ExternalLaw", "Floor", "Histories", "InputError", "March", "Motion", "OutputError", "Part", "Quantity", "Run",
-    "StepView", "Trust", "UpliftError", "Verdict", "bilinear", "coulomb", "elastic", "exponential", "functions", "impacts", "law", "laws",
-    "load", "march", "methods", "motion", "parse", "processes", "psa", "schemes", "sdm", "springs", "targets", "unilateral", "version",
+    "StepView", "Trust", "UpliftError", "Verdict", "bilinear", "bulk_laws", "coulomb", "elastic", "exponential", "functions", "impacts",
+    "law", "laws", "load", "march", "methods", "motion", "parse", "processes", "psa", "schemes", "sdm", "springs", "targets",
+    "unilateral", "version",
 ]
 
 

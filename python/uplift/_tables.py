@@ -211,7 +211,8 @@ class Tables:
         thickness: Optional[Quantity] = None,
         mass: Optional[str] = None,
         incompatible_modes: Optional[bool] = None,
-        plasticity: Optional[Mapping[str, Any]] = None,
+        law: Optional[Union[Part, str]] = None,
+        plasticity: Optional[Union[Part, str]] = None,
         damping_beta: Optional[Quantity] = None,
     ) -> None:
         """Materials of the mesh.
@@ -226,10 +227,12 @@ class Tables:
             thickness: length out of the plane (plane meshes) [m], > 0 m; default 1.0.
             mass: mass matrix; one of "consistent", "lumped", "none"; default consistent.
             incompatible_modes: quad4 and hex8: bubbles that let an element bend; default True.
-            plasticity: plastic yielding (plane strain and space); absent: linear elastic.
+            law: stress from strain; absent: elastic. Other laws need plane strain or space, and every step then
+                iterates on them around the linear step.
+            plasticity: older name of law; without type: drucker_prager.
             damping_beta: stiffness-proportional damping factor of this solid alone [s], >= 0 s; default 0.0.
         """
-        self._add("solid", {"group": group, "poisson": poisson, "E": E, "shear_wave_speed": shear_wave_speed, "density": density, "plane": plane, "thickness": thickness, "mass": mass, "incompatible_modes": incompatible_modes, "plasticity": plasticity, "damping_beta": damping_beta})
+        self._add("solid", {"group": group, "poisson": poisson, "E": E, "shear_wave_speed": shear_wave_speed, "density": density, "plane": plane, "thickness": thickness, "mass": mass, "incompatible_modes": incompatible_modes, "law": law, "plasticity": plasticity, "damping_beta": damping_beta})
 
     def absorbing(
         self,
@@ -281,7 +284,9 @@ class Tables:
         elements: Optional[int] = None,
         damping_beta: Optional[Quantity] = None,
     ) -> None:
-        """Beams.
+        """A straight beam between two nodes, or the lines of a group of the mesh. Beams that share a node are rigidly
+        connected. Solids hold no rotation: a beam that ends at their node is hinged there, unless a [[rigid]] group clamps it
+        or it runs on along their edges (softer).
 
         Parameters:
             name: name; inner nodes of a subdivided beam are called NAME.1, NAME.2, ..., of the n-th line of a group
@@ -340,12 +345,12 @@ class Tables:
         stiffness: Optional[Quantity] = None,
         rotational_stiffness: Optional[Quantity] = None,
     ) -> None:
-        """Springs.
+        """A linear spring between two nodes, or from one node to fixed ground.
 
         Parameters:
             nodes: two nodes, or one (to the ground).
             name: name.
-            direction: direction in which it acts; in space also the axis of a rotational spring.
+            direction: direction in which it acts; in space also the axis of a rotational one.
             stiffness: stiffness along direction [N/m], > 0 N/m.
             rotational_stiffness: stiffness of a rotational spring [N m/rad], > 0 N m/rad.
         """
@@ -360,12 +365,12 @@ class Tables:
         damping: Optional[Quantity] = None,
         rotational_damping: Optional[Quantity] = None,
     ) -> None:
-        """Dashpots.
+        """A linear dashpot between two nodes, or from one node to fixed ground.
 
         Parameters:
             nodes: two nodes, or one (to the ground).
             name: name.
-            direction: direction in which it acts; in space also the axis of a rotational dashpot.
+            direction: direction in which it acts; in space also the axis of a rotational one.
             damping: damping along direction [N s/m], > 0 N s/m.
             rotational_damping: damping of a rotational dashpot [N m s/rad], > 0 N m s/rad.
         """

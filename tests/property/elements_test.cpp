@@ -31,6 +31,7 @@ Values table_of(const ElementEntry& entry, const std::vector<Parameter>& paramet
     std::visit([&, &name = key](const auto& given) { table->entries.emplace_back(name, Raw{given, {}, name}); }, value);
   for (const Field& field : entry.params) {
     const std::string name(field.name);
+    if (field.kind == Kind::text && field.required) table->entries.emplace_back(name, Raw{std::string("element"), {}, name});
     if (field.kind == Kind::texts && name == "nodes") {
       RawList nodes;
       for (const int node : site.nodes) nodes.push_back(Raw{"n" + std::to_string(node), {}, name});
@@ -62,8 +63,8 @@ void for_each_element(const std::function<void(const std::string&, const Element
   for (const ElementEntry* entry : element_catalog()) {
     int made = 0;
     for (const int dimension : {2, 3})
-      for (int nodes = 1; nodes <= 8; ++nodes)
-        for (int trial = 0; trial < 20; ++trial) {
+      for (int nodes = entry->along_lines ? 2 : 1; nodes <= (entry->along_lines ? 2 : 8); ++nodes)
+        for (int trial = 0; trial < 500; ++trial) {
           const ElementSite site = random_site({dimension}, nodes);
           std::vector<Parameter> parameters = random_parameters(*entry, usual);
           std::unique_ptr<const Element> element;

@@ -76,11 +76,13 @@ double largest_stiffness(const InterfaceLaw& law) {
 
 /// Runs a property for every law, with several sets of parameters.
 void for_each_law(const std::function<void(const Entry<InterfaceLaw>&, const Law&)>& property, int sets = 1) {
-  for (const Entry<InterfaceLaw>* entry : law_catalog())
+  for (const Entry<InterfaceLaw>* entry : law_catalog()) {
+    if (entry->name == "external") continue;  // the caller's: no parameters make it
     for (int i = 0; i < sets; ++i) {
       const Law law = random_law(*entry);
       property(*entry, law);
     }
+  }
 }
 
 using Question = const std::vector<double>& (Probe::*)(const std::vector<double>&, const std::vector<double>&);

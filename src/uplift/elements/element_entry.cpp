@@ -34,4 +34,12 @@ std::span<const PartInfo* const> element_kinds() {
   return elements;
 }
 
+std::vector<const Values*> tables_along_lines(const Values& root) {
+  std::vector<const Values*> tables;
+  for (const ElementEntry* entry : element_catalog())
+    if (entry->along_lines)
+      for (const Values& table : root.tables(entry->name)) tables.push_back(&table);
+  return tables;
+}
+
 }  // namespace uplift

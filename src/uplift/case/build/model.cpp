@@ -85,14 +85,16 @@ void add_masses(const Values& root, ModelBuilder& builder, CaseNames& names, con
   }
 }
 
-/// The elements of the catalog: one for each table [[name]].
+/// The elements on named nodes: one for each table [[name]].
 void add_elements(const Values& root, ModelBuilder& builder, const CaseNames& names) {
-  for (const ElementEntry* entry : element_catalog())
+  for (const ElementEntry* entry : element_catalog()) {
+    if (entry->along_lines) continue;
     for (const Values& table : root.tables(entry->name)) {
       ElementSite site{names.space, names.nodes_of(table, "nodes"), {}};
       for (const int node : site.nodes) site.positions.push_back(names.positions[static_cast<std::size_t>(node)]);
       builder.add_element(entry->make(site, table), table.where());
     }
+  }
 }
 
 }  // namespace

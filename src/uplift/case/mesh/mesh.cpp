@@ -163,7 +163,8 @@ std::string owner_of(const Mesh& mesh, CellId cell) {
 
 /// A mesh of beams needs no solids.
 bool beams_alone(const Values& root) {
-  return root.tables("solid").empty() && std::ranges::any_of(root.tables("beam"), [](const Values& beam) { return beam.has("group"); });
+  return root.tables("solid").empty() &&
+         std::ranges::any_of(tables_along_lines(root), [](const Values* beam) { return beam->has("group"); });
 }
 
 /// Faces that do not lie in a plane of equal z are taken for a mesh in space, which has nothing to be solid.

@@ -281,7 +281,6 @@ const Section& case_section() {
             tables("solid", solid_section(), "materials of the mesh"),
             tables("absorbing", absorbing_section(), "absorbing boundaries of the mesh"),
             tables("tie", tie_section(), "sides of the mesh that move together"),
-            tables("beam", beam_section(), "beams"),
             tables("mass", mass_section(), "point masses"),
             tables("rigid", rigid_section(), "rigid bodies"),
             tables("support", support_section(), "supports"),
@@ -313,10 +312,12 @@ const Section& case_section() {
             table("trust", trust_section(), "trust bands"),
             tables("origin", origin_section(), "origin of values"),
             tables("figure", figure_section(), "origin of figures")}};
-    const auto after_masses = std::ranges::find(made.fields, "rigid", &Field::name);
-    std::vector<Field> elements;
-    for (const Section& element : element_sections()) elements.push_back(tables(element.name, element, element.meaning));
-    made.fields.insert(after_masses, elements.begin(), elements.end());
+    // beams stand before the masses, springs and dashpots behind them
+    for (const bool along_lines : {true, false}) {
+      auto next = std::ranges::find(made.fields, along_lines ? "mass" : "rigid", &Field::name);
+      for (const Section& element : element_sections(along_lines))
+        next = std::next(made.fields.insert(next, tables(element.name, element, element.meaning)));
+    }
     return made;
   }();
   return s;

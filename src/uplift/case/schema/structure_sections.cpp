@@ -20,40 +20,6 @@ const Section& node_section() {
   return s;
 }
 
-const Section& beam_section() {
-  static const Section s{
-      "beam",
-      "a straight beam between two nodes, or the lines of a group of the mesh. Beams that share a node are rigidly connected. Solids hold "
-      "no rotation: a beam that ends at their node is hinged there, unless a [[rigid]] group clamps it or it runs on along their edges "
-      "(softer)",
-      Fields{
-          text("name", "name; inner nodes of a subdivided beam are called NAME.1, NAME.2, ..., of the n-th line of a group NAME.n.1, ..."),
-          texts("nodes", "the two end nodes; or give group").optional(),
-          text("group", "group of lines of the mesh; one with a node in its middle becomes two straight beams").optional(),
-          number("E", "Pa", "Young's modulus").positive(),
-          number("I", "m4", "second moment of area of the cross-section; in space about both axes").positive().optional(),
-          number("I_y", "m4", "in space: second moment of area about the local y axis; with I_z instead of I").positive().optional(),
-          number("I_z", "m4", "in space: about the local z axis").positive().optional(),
-          number("J", "m4", "in space: torsion constant").positive().optional(),
-          vector("up", "1",
-                 "in space: local z lies in the plane of the beam and this direction; absent: the vertical, of vertical beams x (each line "
-                 "of a group by itself)")
-              .optional(),
-          number("A", "m2", "area of the cross-section; absent: the beam is inextensible (eliminated exactly)").positive().optional(),
-          choice("theory", {"euler_bernoulli", "timoshenko"}, "bending only, or with shear").standard("euler_bernoulli"),
-          number("poisson", "1", "Poisson's ratio (shear modulus of a Timoshenko beam)").between(0, 0.5).standard(0.3),
-          number("shear_area", "m2", "effective shear area of a Timoshenko beam").positive().optional(),
-          choice(
-              "mass", {"none", "consistent", "lumped"},
-              "mass matrix of the beam. consistent: with rotary inertia of the cross-section for theory = \"timoshenko\"; lumped: half of "
-              "the mass and of the rotary inertia density x I x length at each end")
-              .standard("none"),
-          number("density", "kg/m3", "density; needed unless mass = \"none\", and then A too").positive().optional(),
-          integer("elements", "number of equal elements, of a group between two nodes of the mesh").between(1, 10000).standard(1.0),
-          number("damping_beta", "s", "stiffness-proportional damping factor of this beam alone").nonnegative().standard(0.0)}};
-  return s;
-}
-
 const Section& mass_section() {
   static const Section s{
       "mass", "a point mass; it acts in all directions",
@@ -68,13 +34,15 @@ const Section& mass_section() {
   return s;
 }
 
-const std::vector<Section>& element_sections() {
-  static const std::vector<Section> sections = [] {
+const std::vector<Section>& element_sections(bool along_lines) {
+  const auto sections = [](bool along) {
     std::vector<Section> made;
-    for (const PartInfo* element : element_kinds()) made.push_back({element->name, element->summary, element->params});
+    for (const ElementEntry* element : element_catalog())
+      if (element->along_lines == along) made.push_back({element->name, element->summary, element->params});
     return made;
-  }();
-  return sections;
+  };
+  static const std::vector<Section> on_lines = sections(true), on_nodes = sections(false);
+  return along_lines ? on_lines : on_nodes;
 }
 
 const Section& rigid_section() {

@@ -5,10 +5,9 @@
 namespace uplift {
 
 const Section& node_section();
-const Section& beam_section();
 const Section& mass_section();
-/// One for each element of the catalog: a table [[name]].
-const std::vector<Section>& element_sections();
+/// A table [[name]] for each element of the catalog: those along lines, or those on named nodes.
+const std::vector<Section>& element_sections(bool along_lines);
 const Section& rigid_section();
 const Section& support_section();
 const Section& motion_section();

@@ -8,6 +8,7 @@
 
 #include "uplift/base/text.h"
 #include "uplift/case/mesh/mesh.h"
+#include "uplift/elements/element_entry.h"
 
 namespace uplift {
 namespace {
@@ -36,8 +37,8 @@ const Case& with_mesh(const Values& fields, const Case& read) {
 std::vector<std::string> wanted_groups(const Values& fields, const Case& read) {
   std::vector<std::string> known;
   for (const Values& solid : read.values.tables("solid")) known.push_back(solid.text("group"));
-  for (const Values& beam : read.values.tables("beam"))
-    if (beam.has("group")) known.push_back(beam.text("group"));
+  for (const Values* beam : tables_along_lines(read.values))
+    if (beam->has("group")) known.push_back(beam->text("group"));
   const std::vector<std::string> asked = fields.has("groups") ? fields.texts("groups") : known;
   for (const std::string& group : asked)
     if (std::ranges::find(known, group) == known.end()) fail(fields, "groups", known, group);
@@ -48,8 +49,8 @@ std::vector<std::string> wanted_groups(const Values& fields, const Case& read) {
 }
 
 const Values& beam_of(const Case& read, const std::string& group) {
-  return *std::ranges::find_if(read.values.tables("beam"),
-                               [&](const Values& beam) { return beam.has("group") && beam.text("group") == group; });
+  const std::vector<const Values*> beams = tables_along_lines(read.values);
+  return **std::ranges::find_if(beams, [&](const Values* beam) { return beam->has("group") && beam->text("group") == group; });
 }
 
 /// The elements of every solid of the case. They were made solid after solid, cell after cell.

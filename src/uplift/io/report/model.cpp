@@ -215,7 +215,8 @@ void write_small_parts(JsonWriter& json, const Case& read, const BuiltCase& buil
         .end_object();
   json.end_array();
   json.key("springs").begin_array();
-  for (const ElementEntry* element : element_catalog())
+  for (const ElementEntry* element : element_catalog()) {
+    if (element->along_lines) continue;
     for (const Values& spring : read.values.tables(element->name)) {
       const std::vector<std::string>& nodes = spring.texts("nodes");
       json.begin_object().key("nodes").begin_array().value(shown_name(built, nodes.front()));
@@ -225,6 +226,7 @@ void write_small_parts(JsonWriter& json, const Case& read, const BuiltCase& buil
         json.null();
       json.end_array().member("kind", element->symbol).end_object();
     }
+  }
   json.end_array();
 }
 
@@ -306,9 +308,11 @@ std::set<int> nodes_used(const Case& read, const BuiltCase& built) {
   for (const char* kind : {"mass", "support", "load"})
     for (const Values& table : read.values.tables(kind))
       if (table.has("node")) nodes.insert(built.model.find_node(table.text("node")));
-  for (const PartInfo* element : element_kinds())
+  for (const ElementEntry* element : element_catalog()) {
+    if (element->along_lines) continue;
     for (const Values& table : read.values.tables(element->name))
       for (const std::string& node : table.texts("nodes")) nodes.insert(built.model.find_node(node));
+  }
   for (const Values& interface : read.values.tables("interface"))
     if (const Values* footing = table_if(interface, "footing")) nodes.insert(built.model.find_node(footing->text("body")));
   return nodes;

@@ -160,8 +160,12 @@ void write_tables(JsonWriter& json, const ReportInput& input) {
 
 void write_choices(JsonWriter& json, const Case& read, const BuiltCase& built) {
   std::vector<Given> given;
-  std::vector<std::string_view> tables{"nodes", "beam", "mass"};
-  for (const PartInfo* element : element_kinds()) tables.push_back(element->name);
+  std::vector<std::string_view> tables{"nodes"};
+  for (const bool along_lines : {true, false}) {
+    for (const ElementEntry* element : element_catalog())
+      if (element->along_lines == along_lines) tables.push_back(element->name);
+    if (along_lines) tables.emplace_back("mass");
+  }
   for (const char* table : {"rigid", "interface", "gravity", "function", "record", "load", "motion", "ground_acceleration", "initial",
                             "damping", "stage", "compare"})
     tables.emplace_back(table);
