@@ -11,8 +11,9 @@ import tempfile
 
 ROOT = pathlib.Path(__file__).resolve().parent.parent
 KEYS = ROOT / "docs" / "reference_keys.txt"
-TITLES = {"law": "Interface laws", "bulk_law": "Bulk laws", "element": "Elements", "method": "Contact methods", "impact": "Impact rules", "scheme": "Time schemes", "function": "Functions of time",
-          "record": "Record formats", "process": "Processing steps", "target": "Target spectra", "solver": "Solvers"}
+TITLES = {"law": "Interface laws", "bulk_law": "Bulk laws", "element": "Elements along lines and on nodes", "method": "Contact methods",
+          "impact": "Impact rules", "scheme": "Time schemes", "function": "Functions of time", "record": "Record formats",
+          "process": "Processing steps", "target": "Target spectra", "solver": "Solvers"}
 
 
 class Program:
