@@ -18,6 +18,11 @@ def program() -> str:
     return found
 
 
-if __name__ == "__main__":
+def main() -> None:
+    """Replaces this process by the program."""
     path = program()
     os.execv(path, [path, *sys.argv[1:]])
+
+
+if __name__ == "__main__":
+    main()

@@ -145,7 +145,9 @@ void check_static(const Model& model, const Where& file) {
   const std::string loose = loose_part(model, Resistance::stiffness);
   if (loose.empty()) return;
   const std::vector<int> hinged = hinges(model);
-  throw InputError(place_of(model, file), "", "a structure that stands when all its interfaces are closed",
+  const char* wanted =
+      model.interfaces.empty() ? "a structure that its supports hold" : "a structure that stands when all its interfaces are closed";
+  throw InputError(place_of(model, file), "", wanted,
                    fmt::format("a mechanism: {} without resistance{}", loose,
                                hinged.empty() ? "" : "; beams end in hinges of solids: " + named_places(model, hinged)));
 }

@@ -27,6 +27,7 @@ Results trust_case(const LoadedCase& loaded, const Control& control) {
                         control.watch ? control.watch("trust") : Watch());
   results.floors = floor_answers(built.plan, results.runs, results.specs);
   results.verdict = judge(built, results.runs.front(), bonded, &results.floors.runs.front());
+  results.verdict.step_check.reason = "the bands include a run with half the step";
   const std::string bands = trust_sentence(*results.trust);
   results.verdict.consequence += (results.verdict.consequence.empty() || bands.empty() ? "" : " ") + bands;
   return results;

@@ -1,0 +1,86 @@
+#!/usr/bin/env python3
+"""Makes a wheel of the Python package with the library, the program and the libraries that they need: make_wheel.py BUILD FOLDER.
+
+One wheel serves every Python from 3.9 on (ctypes). It needs the C library of this system or a newer one, which its name says. The same
+inputs give the same bytes. Needs patchelf.
+"""
+import base64
+import hashlib
+import os
+import pathlib
+import platform
+import re
+import shutil
+import subprocess
+import sys
+import tempfile
+import zipfile
+
+ROOT = pathlib.Path(__file__).resolve().parent.parent
+# on every Linux, or tied to the C library or to the driver
+OF_THE_SYSTEM = re.compile(r"^(linux-vdso|ld-linux|lib(c|m|dl|pthread|rt|stdc\+\+|gcc_s)\.so)")
+
+
+def output(*words):
+    return subprocess.run([str(word) for word in words], check=True, capture_output=True, text=True).stdout
+
+
+def needed_libraries(binaries):
+    """Files of the shared libraries that the binaries need beyond those of every system, by name."""
+    found = {}
+    for binary in binaries:
+        for name, path in re.findall(r"^\s*(\S+) => (/\S+)", output("ldd", binary), re.M):
+            if not OF_THE_SYSTEM.match(name):
+                found[name] = path
+    return found
+
+
+def record_line(name, data):
+    digest = base64.urlsafe_b64encode(hashlib.sha256(data).digest()).rstrip(b"=").decode()
+    return f"{name},sha256={digest},{len(data)}\n"
+
+
+def main():
+    build, target = pathlib.Path(sys.argv[1]), pathlib.Path(sys.argv[2])
+    version = output(build / "uplift", "--version").strip()
+    tag = "py3-none-manylinux_{}_{}_{}".format(*platform.libc_ver()[1].split(".")[:2], platform.machine())
+    with tempfile.TemporaryDirectory() as folder:
+        package = pathlib.Path(folder) / "uplift"
+        shutil.copytree(ROOT / "python" / "uplift", package, ignore=shutil.ignore_patterns("__pycache__"))
+        (package / "lib").mkdir()
+        (package / "bin").mkdir()
+        library, program = package / "lib" / "libuplift.so.0", package / "bin" / "uplift"
+        shutil.copy(build / "libuplift.so.0", library)
+        shutil.copy(build / "uplift", program)
+        bundled = []
+        for name, path in needed_libraries([library, program]).items():
+            shutil.copy(path, package / "lib" / name)
+            bundled.append(package / "lib" / name)
+        for binary in [library, program, *bundled]:
+            binary.chmod(0o755)
+            output("strip", "--strip-unneeded", binary)
+            output("patchelf", "--set-rpath", "$ORIGIN/../lib" if binary == program else "$ORIGIN", binary)
+        info = pathlib.Path(folder) / f"uplift-{version}.dist-info"
+        info.mkdir()
+        (info / "METADATA").write_text(
+            f"Metadata-Version: 2.1\nName: uplift\nVersion: {version}\nSummary: Uplift of foundations in earthquakes and its consequences\n"
+            "Requires-Python: >=3.9\nRequires-Dist: numpy\nLicense: GPL-2.0-or-later (binaries); BSD-3-Clause (sources)\n")
+        (info / "WHEEL").write_text(f"Wheel-Version: 1.0\nGenerator: make_wheel\nRoot-Is-Purelib: false\nTag: {tag}\n")
+        (info / "entry_points.txt").write_text("[console_scripts]\nuplift = uplift.__main__:main\n")
+        target.mkdir(parents=True, exist_ok=True)
+        wheel = target / f"uplift-{version}-{tag}.whl"
+        working = wheel.with_suffix(f".part-{os.getpid()}")
+        files = sorted(path for path in pathlib.Path(folder).rglob("*") if path.is_file())
+        record = "".join(record_line(path.relative_to(folder).as_posix(), path.read_bytes()) for path in files)
+        (info / "RECORD").write_text(record + f"{info.name}/RECORD,,\n")
+        with zipfile.ZipFile(working, "w", zipfile.ZIP_DEFLATED) as archive:
+            for path in [*files, info / "RECORD"]:
+                entry = zipfile.ZipInfo(path.relative_to(folder).as_posix(), (1980, 1, 1, 0, 0, 0))
+                entry.compress_type = zipfile.ZIP_DEFLATED
+                entry.external_attr = path.stat().st_mode << 16  # pip keeps what is executable
+                archive.writestr(entry, path.read_bytes())
+        working.replace(wheel)
+    print(wheel)
+
+
+main()

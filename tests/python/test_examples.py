@@ -1,0 +1,68 @@
+"""Every example in Python runs and prints the numbers of the program: python3 tests/python/test_examples.py PROGRAM LIBRARY."""
+
+import importlib.util
+import json
+import os
+import pathlib
+import subprocess
+import sys
+import tempfile
+import unittest
+
+ROOT = pathlib.Path(__file__).resolve().parents[2]
+PROGRAM, LIBRARY = (os.path.abspath(word) for word in sys.argv[1:3])
+del sys.argv[1:3]
+ENVIRONMENT = {**os.environ, "UPLIFT_LIBRARY": LIBRARY, "PYTHONPATH": str(ROOT / "python"), "MPLBACKEND": "Agg"}
+
+
+def printed(name):
+    with tempfile.TemporaryDirectory() as folder:
+        figure = [folder + "/figure.png"] if importlib.util.find_spec("matplotlib") else []
+        words = [sys.executable, "-B", str(ROOT / "examples" / name / "example.py"), *figure]
+        done = subprocess.run(words, env=ENVIRONMENT, capture_output=True, text=True)
+        if done.returncode != 0:
+            raise AssertionError(done.stderr)
+        for each in figure:
+            if os.path.getsize(each) < 5000:
+                raise AssertionError("the figure is empty")
+        return done.stdout
+
+
+def of_the_program(name, what="verdict"):
+    """A part of the summary that the program writes."""
+    with tempfile.TemporaryDirectory() as folder:
+        subprocess.run([PROGRAM, "run", str(ROOT / "examples" / name), "-q", "--no-step-check", "-o", folder + "/out"], check=True)
+        return json.loads(pathlib.Path(folder, "out", "summary.json").read_text())[what]
+
+
+class Examples(unittest.TestCase):
+    def test_every_example_has_a_script(self):
+        for folder in sorted((ROOT / "examples").glob("0*")):
+            self.assertTrue((folder / "example.py").exists(), folder.name)
+
+    def test_01_oscillator(self):
+        text = printed("01_oscillator")
+        self.assertGreater(len(text.splitlines()), 15)
+        self.assertNotIn("interrupted", text)
+
+    def test_02_building_on_soil(self):
+        numbers = of_the_program("02_building_on_soil")["interfaces"][0]["numbers"]["max_moment"]
+        shipped = printed("02_building_on_soil").splitlines()[1]
+        self.assertIn(f"base moment {numbers['value'] / 1e6:.3f} MN m, bonded {numbers['bonded'] / 1e6:.3f} MN m", shipped)
+
+    def test_03_asymmetric_building(self):
+        moment = of_the_program("03_asymmetric_building", "runs")[0]["peaks"]["underside.moment"]
+        self.assertIn(f"largest base moment {moment['value'] / 1e6:.2f} MN m at t = {moment['time']:.3f} s", printed("03_asymmetric_building"))
+
+    def test_04_reactor_building(self):
+        floors = of_the_program("04_reactor_building", "runs")[0]["floor_spectra"]
+        zero_period = next(each for each in floors if each["name"] == "floor 3, +25 m")["zero_period_acceleration"]["value"]
+        self.assertEqual(printed("04_reactor_building").count(f"floor acceleration {abs(zero_period):.2f} m/s2"), 3)
+
+    def test_05_bridge_pier(self):
+        numbers = of_the_program("05_bridge_pier")["interfaces"][0]["numbers"]["max_moment"]
+        shipped = printed("05_bridge_pier").splitlines()[1]
+        self.assertIn(f"base moment {numbers['value'] / 1e6:.2f} MN m, bonded {numbers['bonded'] / 1e6:.2f} MN m", shipped)
+
+
+unittest.main()
