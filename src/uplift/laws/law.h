@@ -45,7 +45,7 @@ class InterfaceLaw {
   /// Path-averaged traction of the step, 1/(to - from) * integral of t d(opening) along the law's own path (docs/theory, eq (11)), and its
   /// slope with respect to `to`.
   virtual void mean(const Batch&, const double* from, const double* to, const double* old, const LawResponse&) const = 0;
-  /// `mean` for Newton's method in one pass where there is one component, see evaluation.h; false where the law does not offer it for these
+  /// `mean` for Newton's method in one pass where there is one component, see fused.h; false where the law does not offer it for these
   /// paths.
   virtual bool fused(const FusedEvaluation&) const { return false; }
   /// Energy per area [J/m2] that is stored at this opening and memory, and that was dissipated since the beginning. Either may be null.

@@ -42,7 +42,7 @@ class NormalLaw {
   virtual int num_history() const = 0;
   virtual void respond(const Batch&, const double* from, const double* to, const double* old, const LawResponse&) const = 0;
   virtual void mean(const Batch&, const double* from, const double* to, const double* old, const LawResponse&) const = 0;
-  /// `mean` for Newton's method in one pass, see evaluation.h; false where the law does not offer it for these paths.
+  /// `mean` for Newton's method in one pass, see fused.h; false where the law does not offer it for these paths.
   virtual bool fused(const FusedEvaluation&) const { return false; }
   virtual void energy(const Batch&, const double* opening, const double* history, double* stored, double* dissipated) const = 0;
   /// Stiffness in compression [Pa/m].
