@@ -87,7 +87,7 @@ UPLIFT_API int uplift_case_modes(const uplift_case* each, int count, char** json
 typedef int (*uplift_law_function)(void* user, int points, int components, double step, const double* from, const double* to,
                                    const double* old_memory, double* traction, double* slope, double* memory, double* stored,
                                    double* dissipated);
-/* Connects the function to the law of type "external" with this name in the case. */
+/* Connects the function to the law of type "external" with this name in the case. Function and `user` must live as long as the case. */
 UPLIFT_API int uplift_case_set_law(uplift_case* each, const char* name, uplift_law_function function, void* user, uplift_error* error);
 
 /* ---- analyses ---- */
@@ -137,6 +137,8 @@ UPLIFT_API void uplift_results_free(uplift_results* results);
 
 /* The results document (summary.json). The text belongs to the results. */
 UPLIFT_API int uplift_results_json(const uplift_results* results, const char** json, uplift_error* error);
+/* The bands of uplift_trust (trust.json). */
+UPLIFT_API int uplift_results_trust(const uplift_results* results, char** json, uplift_error* error);
 /* The report as one HTML page; empty when the library was built without it. The text belongs to the results. */
 UPLIFT_API int uplift_results_report(const uplift_results* results, const char** page, uplift_error* error);
 /* Writes everything that the program writes. Earlier results are moved aside, and `moved` (may be null) says where; null: there were none.

@@ -33,6 +33,8 @@ def annotation(schema):
     if "enum" in schema:
         return "str"
     if "oneOf" in schema:
+        if any(each.get("properties", {}).get("type", {}).get("const") == "external" for each in schema["oneOf"]):
+            return "Union[Part, ExternalLaw, str]"
         return "Union[Part, str]"
     if kinds == ["number", "string"]:
         return "Quantity"
@@ -155,7 +157,7 @@ def tables_module(schema):
                                   f'        self._add_output("{name}", {{{given}}})', ""]))
     body = "\n".join(methods)
     return (HEAD.format(title="A method for every table of a case.")
-            + "from typing import Any, Mapping, Optional, Sequence, Union\n\nfrom ._parts import Part, Quantity\n\n\nclass Tables:\n"
+            + "from typing import Any, Mapping, Optional, Sequence, Union\n\nfrom ._laws import ExternalLaw\nfrom ._parts import Part, Quantity\n\n\nclass Tables:\n"
             + '    """The tables of a case; every method adds one table, or sets the only one of its kind."""\n\n'
             + "    def _add(self, name: str, table: Mapping[str, Any]) -> None:\n        raise NotImplementedError\n\n"
             + "    def _set(self, name: str, table: Mapping[str, Any]) -> None:\n        raise NotImplementedError\n\n"

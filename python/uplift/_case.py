@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import atexit
 import copy
 import ctypes
 import json
@@ -11,7 +12,7 @@ import signal
 import sys
 import threading
 import time
-from typing import Any, Callable, Dict, List, Mapping, Optional, Sequence, Tuple, Union
+from typing import Any, Callable, Dict, List, Mapping, Optional, Sequence, Set, Tuple, Union
 
 from . import _library, _toml
 from ._laws import ExternalLaw
@@ -73,6 +74,19 @@ class StepView:
         self.force = array_of(given.force, given.rows).copy()
 
 
+_running: Set["_Watcher"] = set()
+
+
+@atexit.register
+def _stop_all() -> None:
+    """Ends the runs of threads that nobody waits for, before the interpreter goes."""
+    for watcher in list(_running):
+        watcher._on_interrupt()
+    limit = time.monotonic() + 2
+    while _running and time.monotonic() < limit:
+        time.sleep(0.005)
+
+
 class _Watcher:
     """Progress bar, step function and Ctrl-C of one analysis."""
 
@@ -96,12 +110,14 @@ class _Watcher:
             self.options.step = self._step_function
 
     def __enter__(self) -> None:
+        _running.add(self)
         in_main = threading.current_thread() is threading.main_thread()
         if in_main and signal.getsignal(signal.SIGINT) is signal.default_int_handler:
             signal.signal(signal.SIGINT, self._on_interrupt)
             self._caught = True
 
     def __exit__(self, *_: Any) -> None:
+        _running.discard(self)
         if self._caught:
             signal.signal(signal.SIGINT, signal.default_int_handler)
 
@@ -125,7 +141,8 @@ class _Watcher:
     def _on_step(self, user: Any, given: Any) -> int:
         try:
             assert self._step is not None
-            return 1 if self._step(StepView(given.contents)) is False else 0
+            answer = self._step(StepView(given.contents))
+            return 0 if answer is None or answer else 1
         except BaseException as error:
             return self._stop(error)
 
@@ -167,7 +184,7 @@ class Case(Tables):
         return self._document
 
     def _add(self, name: str, table: Mapping[str, Any]) -> None:
-        entry = {key: value for key, value in table.items() if value is not None}
+        entry = {key: copy.deepcopy(value) for key, value in table.items() if value is not None}
         self._connect(entry)
         self.document.setdefault(name, []).append(entry)
 
@@ -186,6 +203,8 @@ class Case(Tables):
     def _connect(self, table: Dict[str, Any]) -> None:
         given = table.get("law")
         if isinstance(given, ExternalLaw):
+            if self._laws.get(given.name, given) is not given:
+                raise ValueError(f"the case has another law of the name {given.name!r}")
             self._laws[given.name] = given
             table["law"] = given.table()
 
@@ -224,6 +243,14 @@ class Case(Tables):
         given = {"rayleigh": pairs, "alpha": alpha, "beta": beta, "modal": modal, "modes": modes}
         self.document["damping"] = {key: value for key, value in given.items() if value is not None}
 
+    def method(self, part: Union[Part, str]) -> None:
+        """The contact method (:mod:`uplift.methods`)."""
+        self.document["method"] = part
+
+    def impact(self, part: Union[Part, str]) -> None:
+        """The velocity correction on impact (:mod:`uplift.impacts`)."""
+        self.document["impact"] = part
+
     def static(self, *, steps: Optional[int] = None, **keys: Any) -> None:
         """A static stage: the dead loads in equal steps."""
         self._add("stage", {"type": "static", "steps": steps, **keys})
@@ -253,9 +280,20 @@ class Case(Tables):
     def save(self, path: Union[str, "os.PathLike[str]"]) -> None:
         """Writes the case as a file, which the program reads. An existing file is replaced when the new one is complete."""
         target = pathlib.Path(path)
+        if os.path.abspath(target.parent) != os.path.dirname(self._file) and self._has_relative_files():
+            raise ValueError("the case names files relative to " + os.path.dirname(self._file) + "; save it there or make the names absolute")
         working = target.with_name(target.name + f".part-{os.getpid()}")
         working.write_text(self.to_toml(), encoding="utf-8")
         working.replace(target)
+
+    def _has_relative_files(self) -> bool:
+        def relative(value: Any) -> bool:
+            if isinstance(value, Mapping):
+                file = value.get("file")
+                return (isinstance(file, str) and not os.path.isabs(file)) or any(relative(each) for each in value.values())
+            return isinstance(value, list) and any(relative(each) for each in value)
+
+        return relative(self._document)
 
     def copy(self) -> "Case":
         """An independent copy."""
@@ -296,8 +334,8 @@ class Case(Tables):
         in_space = any(len(position) == 3 for position in document.get("nodes", {}).values())
         document["ground_acceleration"] = []
         for number, given in enumerate(motions, 1):
-            name = f"motion {number}"
-            direction = given["direction"] or ((1, 0, 0) if in_space else (1, 0))
+            name = f"motion {number} of the run"
+            direction = given["direction"] if given["direction"] is not None else ((1, 0, 0) if in_space else (1, 0))
             document.setdefault("record", []).append({"name": name, **{k: v for k, v in given["record"].items() if v is not None}})
             table = {"name": name, "direction": list(direction), "amplitude": given["amplitude"], "function": name}
             document["ground_acceleration"].append({key: value for key, value in table.items() if value is not None})
@@ -305,9 +343,15 @@ class Case(Tables):
 
     def _analyse(self, function: str, watcher: _Watcher) -> _library.Handle:
         case = self._handle()
+        for law in self._laws.values():
+            law.raised = None
         with watcher:
             results = _library.Handle(function, "uplift_results_free", case.pointer, ctypes.byref(watcher.options))
+        results.case = case  # type: ignore[attr-defined]  # with the laws that the model refers to
         watcher.finish()
+        for law in self._laws.values():
+            if law.raised is not None:
+                raise law.raised
         return results
 
     def run(
@@ -359,7 +403,7 @@ def load(path: Union[str, "os.PathLike[str]"]) -> Case:
     if file.is_dir():
         file = file / "case.toml"
     try:
-        text = file.read_text(encoding="utf-8")
+        text = file.read_bytes().decode("utf-8")
     except (OSError, UnicodeDecodeError) as error:
         raise _library.InputError(f"{file}: {error}", str(file)) from error
     return parse(text, str(file))
@@ -374,73 +418,88 @@ def parse(text: str, file: str = "case.toml") -> Case:
     return case
 
 
+class _MarchState:
+    """What the thread of a march and its owner share. The thread does not know the owner, so that a march that is left can be collected."""
+
+    def __init__(self) -> None:
+        self.go = threading.Semaphore(0)
+        self.ready = threading.Semaphore(0)
+        self.step: Optional[StepView] = None
+        self.stopping = False
+        self.done = False
+        self.run: Optional[Run] = None
+        self.error: Optional[BaseException] = None
+
+    def work(self, case: Case, motions: Sequence[Motion]) -> None:
+        try:
+            self.go.acquire()
+            if not self.stopping:
+                self.run = case.run(*motions, progress=False, step_check=False, step=self.see)
+        except BaseException as error:
+            self.error = error
+        self.done = True
+        self.ready.release()
+
+    def see(self, step: StepView) -> bool:
+        self.step = step
+        self.ready.release()
+        self.go.acquire()
+        return not self.stopping
+
+    def stop(self) -> None:
+        if not self.done and not self.stopping:
+            self.stopping = True
+            self.go.release()
+
+
 class March:
-    """A run that is made step by step: `for step in march: ...`. Ending the loop ends the run; `results` has what was computed."""
+    """A run that is made step by step: `for step in march: ...`. `stop`, `results` or the end of a `with` block ends the run."""
 
     def __init__(self, case: Case, *motions: Motion) -> None:
-        self._next = threading.Semaphore(0)
-        self._ready = threading.Semaphore(0)
-        self._step: Optional[StepView] = None
-        self._stopping = False
-        self._done = False
-        self._run: Optional[Run] = None
-        self._error: Optional[BaseException] = None
-        self._thread = threading.Thread(target=self._work, args=(case, motions), daemon=True)
+        self._state = _MarchState()
+        self._thread = threading.Thread(target=self._state.work, args=(case, motions), daemon=True)
         self._thread.start()
-
-    def _work(self, case: Case, motions: Sequence[Motion]) -> None:
-        try:
-            self._next.acquire()
-            if not self._stopping:
-                self._run = case.run(*motions, progress=False, step_check=False, step=self._see)
-        except BaseException as error:
-            self._error = error
-        self._done = True
-        self._ready.release()
-
-    def _see(self, step: StepView) -> bool:
-        self._step = step
-        self._ready.release()
-        self._next.acquire()
-        return not self._stopping
 
     def __iter__(self) -> "March":
         return self
 
     def __next__(self) -> StepView:
-        if self._done or self._stopping:
+        state = self._state
+        if state.done or state.stopping:
             raise StopIteration
-        self._next.release()
-        self._ready.acquire()
-        if self._done:
-            if self._error is not None:
-                raise self._error
+        state.go.release()
+        state.ready.acquire()
+        if state.done:
+            if state.error is not None:
+                raise state.error
             raise StopIteration
-        assert self._step is not None
-        return self._step
+        assert state.step is not None
+        return state.step
 
     def stop(self) -> None:
         """Ends the run in order."""
-        if not self._done and not self._stopping:
-            self._stopping = True
-            self._next.release()
+        self._state.stop()
         self._thread.join()
 
     @property
     def results(self) -> Run:
         """The results up to here. Ends the run when it is still going."""
         self.stop()
-        if self._error is not None:
-            raise self._error
-        if self._run is None:
+        if self._state.error is not None:
+            raise self._state.error
+        if self._state.run is None:
             raise RuntimeError("the march has no step yet")
-        return self._run
+        return self._state.run
 
     def __enter__(self) -> "March":
         return self
 
     def __exit__(self, *_: Any) -> None:
         self.stop()
+
+    def __del__(self) -> None:
+        if hasattr(self, "_state"):
+            self._state.stop()
 
 
 def march(case: Case, *motions: Motion) -> March:

@@ -5,7 +5,7 @@ from __future__ import annotations
 import ctypes
 import itertools
 import sys
-from typing import Any, Callable, Dict
+from typing import Any, Callable, Dict, Optional
 
 from . import _library
 from ._parts import Quantity
@@ -18,7 +18,11 @@ class ExternalLaw:
 
     def __init__(self, function: Callable[..., Any], name: str, K_n: Quantity, K_t: Quantity, memory: int) -> None:
         self.function, self.name, self.K_n, self.K_t, self.memory = function, name, K_n, K_t, memory
+        self.raised: Optional[BaseException] = None  # the first exception of the function in a run
         self._callback = _library.LawFunction(self._call)
+
+    def __deepcopy__(self, _: Any) -> "ExternalLaw":
+        return self  # a function
 
     def table(self) -> Dict[str, Any]:
         """The table of the case that stands for this law."""
@@ -39,25 +43,36 @@ class ExternalLaw:
                     return np.empty(shape)
                 return np.ctypeslib.as_array(pointer, (size,)).reshape(shape)
 
+            def copied(pointer: Any, *shape: int) -> Any:
+                return view(pointer, *shape).copy()  # the function may keep or change what it is given
+
+            def checked(value: Any, what: str, *shape: int) -> Any:
+                made = np.asarray(value, dtype=float)
+                if made.shape != shape:
+                    raise ValueError(f"the law {self.name!r} returned {what} of the shape {made.shape}, expected {shape}")
+                return made
+
             start, end, old, traction, slope, memory, stored, dissipated = pointers
-            given = (view(start, components, points), view(end, components, points), view(old, self.memory, points))
+            given = (copied(start, components, points), copied(end, components, points), copied(old, self.memory, points))
             result = self.function(*given, step)
-            view(traction, components, points)[...] = result[0]
+            view(traction, components, points)[...] = checked(result[0], "a traction", components, points)
             made_slope = np.asarray(result[1], dtype=float)
             into = view(slope, components, components, points)
-            if made_slope.ndim == 3:
-                into[...] = made_slope
-            else:  # one slope per component: no coupling
+            if made_slope.ndim == 2:  # one slope per component: no coupling
+                made_slope = checked(made_slope, "a slope", components, points)
                 into[...] = 0
                 for component in range(components):
-                    into[component, component] = made_slope[component] if made_slope.ndim == 2 else made_slope
+                    into[component, component] = made_slope[component]
+            else:
+                into[...] = checked(made_slope, "a slope", components, components, points)
             if self.memory:
-                view(memory, self.memory, points)[...] = result[2]
-            view(stored, points)[...] = result[3]
-            view(dissipated, points)[...] = result[4] if len(result) > 4 else 0.0
+                view(memory, self.memory, points)[...] = checked(result[2], "a memory", self.memory, points)
+            view(stored, points)[...] = checked(result[3], "a stored energy", points)
+            view(dissipated, points)[...] = checked(result[4], "a dissipated energy", points) if len(result) > 4 else 0.0
             return 0
-        except Exception:
-            sys.excepthook(*sys.exc_info())
+        except BaseException as error:
+            if self.raised is None:
+                self.raised = error
             return 1
 
 

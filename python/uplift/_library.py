@@ -109,6 +109,7 @@ _signatures: List[Tuple[str, Any, List[Any]]] = [
     ("uplift_trust", c_int, [_handle, POINTER(Options), POINTER(_handle), _error]),
     ("uplift_results_free", None, [_handle]),
     ("uplift_results_json", c_int, [_handle, _text, _error]),
+    ("uplift_results_trust", c_int, [_handle, _own_text, _error]),
     ("uplift_results_report", c_int, [_handle, _text, _error]),
     ("uplift_results_write", c_int, [_handle, c_char_p, _own_text, _error]),
     ("uplift_results_runs", c_size_t, [_handle]),
@@ -126,7 +127,9 @@ _loaded: Optional[ctypes.CDLL] = None
 def _candidates() -> List[str]:
     here = pathlib.Path(__file__).resolve().parent
     given = os.environ.get("UPLIFT_LIBRARY")
-    found = [given] if given else []
+    if given:
+        return [given]
+    found = []
     for folder in (here, here / "lib", here.parents[1] / "build" / "release"):
         found += [str(path) for path in sorted(folder.glob("libuplift.so*"))[:1]]
     return found + ["libuplift.so.0"]
@@ -156,6 +159,10 @@ def library() -> ctypes.CDLL:
 
 def call(name: str, *arguments: Any) -> None:
     """Calls a function that returns a status, and raises its error."""
+    for argument in arguments:
+        if isinstance(argument, bytes) and b"\0" in argument:
+            position = argument.index(b"\0")
+            raise InputError("a text with a zero character cannot be passed", line=1 + argument.count(b"\n", 0, position))
     made = library()
     error = _Error()
     status = getattr(made, name)(*arguments, byref(error))

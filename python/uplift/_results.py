@@ -79,20 +79,27 @@ class Quantity(float):
     bonded: Optional[float]
     step_change_percent: Optional[float]
 
-    def __new__(cls, table: Mapping[str, Any]) -> "Quantity":
-        made = super().__new__(cls, table["value"])
-        made.unit = table.get("unit", "1")
-        made.time = table.get("time")
-        made.bonded = table.get("bonded")
-        made.step_change_percent = table.get("step_change_percent")
+    def __new__(cls, value: float, unit: str = "1", **known: Any) -> "Quantity":
+        made = super().__new__(cls, value)
+        made.unit = unit
+        made.time = known.get("time")
+        made.bonded = known.get("bonded")
+        made.step_change_percent = known.get("step_change_percent")
         return made
+
+    def __reduce__(self) -> Any:
+        return _quantity, (dict(self.__dict__, value=float(self)),)
 
     def __repr__(self) -> str:
         return f"{float(self):.6g} {self.unit}" if self.unit != "1" else f"{float(self):.6g}"
 
 
+def _quantity(table: Mapping[str, Any]) -> Quantity:
+    return Quantity(**table)
+
+
 def _quantities(numbers: Mapping[str, Any]) -> Dict[str, Any]:
-    return {name: Quantity(table) if isinstance(table, Mapping) and table.get("value") is not None else None for name, table in numbers.items()}
+    return {name: _quantity(table) if isinstance(table, Mapping) and table.get("value") is not None else None for name, table in numbers.items()}
 
 
 class Verdict(Record):
@@ -213,12 +220,18 @@ class Histories(Mapping[str, "Array"]):
     @property
     def time(self) -> "Array":
         """Instants [s]; load factors of static cases."""
+        if not self._columns:
+            import numpy as np
+
+            return np.empty(0)  # a run that failed before its first instant
         return self[next(iter(self._columns))]
 
     def frame(self) -> Any:
         """All histories as a pandas DataFrame over the time."""
         import pandas
 
+        if not self._columns:
+            return pandas.DataFrame()
         first = next(iter(self._columns))
         return pandas.DataFrame({name: self[name] for name in self if name != first}, index=pandas.Index(self.time, name=first))
 
@@ -377,4 +390,9 @@ class Comparison(Results):
 
 
 class Trust(Results):
-    """A run with every choice of the computation changed; `summary` and `report` have the bands."""
+    """A run with every choice of the computation changed, one at a time."""
+
+    @property
+    def bands(self) -> Record:
+        """The bands of all numbers and floor spectra: the content of trust.json."""
+        return Record(json.loads(_library.text_of("uplift_results_trust", self._handle.pointer)))

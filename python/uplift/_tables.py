@@ -7,6 +7,7 @@ from __future__ import annotations
 
 from typing import Any, Mapping, Optional, Sequence, Union
 
+from ._laws import ExternalLaw
 from ._parts import Part, Quantity
 
 
@@ -29,7 +30,7 @@ class Tables:
         self,
         name: str,
         *,
-        law: Union[Part, str],
+        law: Union[Part, ExternalLaw, str],
         body: str,
         width: Quantity,
         points: int,
@@ -78,7 +79,7 @@ class Tables:
         self,
         name: str,
         *,
-        law: Union[Part, str],
+        law: Union[Part, ExternalLaw, str],
         upper: Sequence[str],
         area: Quantity,
         lower: Optional[Sequence[str]] = None,
@@ -112,7 +113,7 @@ class Tables:
         self,
         name: str,
         *,
-        law: Union[Part, str],
+        law: Union[Part, ExternalLaw, str],
         upper: Sequence[str],
         lower: Optional[Sequence[str]] = None,
         nodes_per_element: Optional[int] = None,
@@ -148,7 +149,7 @@ class Tables:
         self,
         name: str,
         *,
-        law: Union[Part, str],
+        law: Union[Part, ExternalLaw, str],
         group: Optional[str] = None,
         lower: Optional[Sequence[str]] = None,
         lower_group: Optional[str] = None,
@@ -648,7 +649,7 @@ class Tables:
         name: str,
         *,
         label: Optional[str] = None,
-        law: Optional[Union[Part, str]] = None,
+        law: Optional[Union[Part, ExternalLaw, str]] = None,
         interface: Optional[str] = None,
         method: Optional[Union[Part, str]] = None,
         impact: Optional[Union[Part, str]] = None,

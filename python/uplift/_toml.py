@@ -13,10 +13,14 @@ def plain(value: Any) -> Any:
     """The value with NumPy numbers and arrays, tuples and paths as plain Python."""
     if isinstance(value, Mapping):
         return {str(key): plain(entry) for key, entry in value.items() if entry is not None}
-    if isinstance(value, (bool, int, float, str)):
+    if isinstance(value, bool) or type(value) in (int, float, str):
         return value
     if hasattr(value, "tolist"):
         return plain(value.tolist())
+    if isinstance(value, float):
+        return float.__float__(value)
+    if isinstance(value, (int, str)):
+        return int(value) if isinstance(value, int) else str(value)
     if hasattr(value, "__fspath__"):
         return str(value)
     if isinstance(value, (list, tuple, range)):

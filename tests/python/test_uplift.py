@@ -1,5 +1,6 @@
 """The Python package on the library: python3 tests/python/test_uplift.py PROGRAM LIBRARY. Needs NumPy."""
 
+import gc
 import json
 import os
 import pathlib
@@ -8,6 +9,7 @@ import subprocess
 import sys
 import tempfile
 import threading
+import time
 import unittest
 
 ROOT = pathlib.Path(__file__).resolve().parents[2]
@@ -73,6 +75,21 @@ class Cases(unittest.TestCase):
             up.load(ROOT / "no_such_case")
         with self.assertRaises(TypeError):
             pier(object()).to_toml()
+
+    def test_texts_with_a_zero_are_refused(self):
+        with self.assertRaisesRegex(up.InputError, "zero character"):
+            up.parse('title = "x"\n\0garbage = =')
+
+    def test_relative_files_stay_with_their_folder(self):
+        case = up.parse('title = "x"\n[[record]]\nname = "r"\nfile = "r.AT2"\n', str(ROOT / "examples" / "case.toml"))
+        with tempfile.TemporaryDirectory() as folder, self.assertRaisesRegex(ValueError, "relative"):
+            case.save(folder + "/case.toml")
+
+    def test_cases_do_not_share_their_parts(self):
+        law = soil()
+        first, second = pier(law), pier(law)
+        first.document["interface"][0]["law"]["K_n"] = 1.0
+        self.assertEqual(second.document["interface"][0]["law"]["K_n"], K)
 
     def test_texts_with_every_character_survive(self):
         title = "".join(chr(code) for code in list(range(1, 300)) + [0x1F30A]) + '"""\\'
@@ -153,6 +170,38 @@ class Runs(unittest.TestCase):
         with self.assertRaises(up.InputError):
             up.psa([np.nan, 1], step)
 
+    def test_a_step_function_ends_the_run(self):
+        run = pier(soil()).run(step=lambda step: step.opening.max() < 1e-6, step_check=False)  # a NumPy truth value
+        self.assertEqual(run.status, "interrupted")
+        self.assertLess(run.time[-1], 3)
+
+    def test_trust_has_its_bands(self):
+        case = pier(soil(), "0.5 s")
+        self.assertIn("bands", case.trust().bands)
+        run = case.run(step_check=False)
+        with self.assertRaises(up.InputError):
+            up._results.Trust(run._handle).bands
+
+    def test_numbers_of_the_verdict_can_be_copied_and_used(self):
+        import copy
+        import pickle
+
+        moment = pier(soil(), "1 s").run(step_check=False).verdict.bases["underside"]["max_moment"]
+        for made in (copy.deepcopy(moment), pickle.loads(pickle.dumps(moment))):
+            self.assertEqual((float(made), made.unit, made.bonded), (float(moment), moment.unit, moment.bonded))
+        case = up.Case("x")
+        case.mass("a", mass=moment)
+        case.mass("b", mass=np.float64(0.1))
+        self.assertEqual([each["mass"] for each in up.parse(case.to_toml())._document["mass"]], [float(moment), 0.1])
+
+    def test_a_thread_that_nobody_waits_for_does_not_abort_the_interpreter(self):
+        code = ("import sys, threading, time; sys.argv = ['x', sys.argv[1], sys.argv[2]]\nimport uplift as up\ncase = up.parse(open(sys.argv[1]).read())\n"
+                "threading.Thread(target=lambda: case.run(progress=False, step_check=False), daemon=True).start()\ntime.sleep(0.3)")
+        with tempfile.TemporaryDirectory() as folder:
+            pier(soil(), "4000 s").save(folder + "/case.toml")
+            done = subprocess.run([sys.executable, "-c", code, folder + "/case.toml", ""], env={**os.environ, "PYTHONPATH": str(ROOT / "python")})
+        self.assertEqual(done.returncode, 0)
+
     def test_ctrl_c_keeps_the_results(self):
         case = pier(soil(), "4000 s")
         timer = threading.Timer(0.5, lambda: os.kill(os.getpid(), signal.SIGINT))
@@ -187,6 +236,17 @@ class Runs(unittest.TestCase):
                 break
         self.assertEqual(march.results.status, "interrupted")
         self.assertLess(march.results.time[-1], 1.01)
+
+    def test_marches_that_are_left_end(self):
+        before = threading.active_count()
+        for _ in range(10):
+            march = up.march(pier(soil()))
+            next(march)
+            del march
+        deadline = time.monotonic() + 20
+        while threading.active_count() > before and time.monotonic() < deadline:
+            time.sleep(0.01)
+        self.assertEqual(threading.active_count(), before)
 
     def test_two_threads_give_what_one_gives(self):
         alone = pier(soil()).run(step_check=False)["deck.ux"].copy()
@@ -261,12 +321,39 @@ class Laws(unittest.TestCase):
         def bad(start, end, memory, step):
             raise RuntimeError("mine")
 
-        excepthook, sys.excepthook = sys.excepthook, lambda *_: None
-        try:
-            run = pier(up.law(bad, K_n=K, K_t=SHEAR)).run(step_check=False)
-        finally:
-            sys.excepthook = excepthook
-        self.assertEqual(run.status, "failed")
+        with self.assertRaisesRegex(RuntimeError, "mine"):
+            pier(up.law(bad, K_n=K, K_t=SHEAR)).run(step_check=False)
+
+    def test_a_law_of_the_wrong_shape_is_told(self):
+        def bad(start, end, memory, step):
+            return end[1], np.ones_like(end[1]), memory, end[1] * 0
+
+        with self.assertRaisesRegex(ValueError, r"a traction of the shape \(41,\), expected \(2, 41\)"):
+            pier(up.law(bad, K_n=K, K_t=SHEAR)).run(step_check=False)
+
+    def test_a_law_may_keep_and_change_what_it_is_given(self):
+        kept = []
+
+        def in_place(start, end, memory, step):
+            kept.append((end, end.copy()))
+            answer = self.tensionless(start, end.copy(), memory, step)
+            start[...] = 7
+            return answer
+
+        run = pier(up.law(in_place, K_n=K, K_t=SHEAR), "1 s").run(step_check=False)
+        same = pier(up.law(self.tensionless, K_n=K, K_t=SHEAR), "1 s").run(step_check=False)
+        np.testing.assert_array_equal(run["deck.ux"], same["deck.ux"])
+        self.assertTrue(all(np.array_equal(mine, copy) for mine, copy in kept))
+
+    def test_results_outlive_the_case_of_their_law(self):
+        run = pier(up.law(self.tensionless, K_n=K, K_t=SHEAR), "1 s").run(step_check=False)
+        gc.collect()
+        self.assertIn("<html", run.report)
+
+    def test_two_laws_of_one_name_are_refused(self):
+        case = pier(up.law(self.tensionless, K_n=K, name="a"))
+        with self.assertRaisesRegex(ValueError, "another law of the name 'a'"):
+            case.variant("v", law=up.law(self.tensionless, K_n=K, name="a"))
 
     def test_the_program_refuses_such_a_law(self):
         with tempfile.TemporaryDirectory() as folder:

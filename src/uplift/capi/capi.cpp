@@ -1,3 +1,4 @@
+#include <cxxabi.h>
 #include <fmt/format.h>
 
 #include <algorithm>
@@ -14,6 +15,7 @@
 
 #include "uplift.h"
 #include "uplift/case/schema/sections.h"
+#include "uplift/io/results/trust_json.h"
 #include "uplift/io/text/json_reader.h"
 #include "uplift/io/text/toml.h"
 #include "uplift/laws/external.h"
@@ -76,7 +78,7 @@ Pointer needed(Pointer pointer, const char* name) {
 
 /// Calls what may throw and turns exceptions into a status.
 template <class Work>
-int guarded(uplift_error* error, const Work& work) noexcept {
+int guarded(uplift_error* error, const Work& work) {
   try {
     work();
     return UPLIFT_OK;
@@ -90,6 +92,8 @@ int guarded(uplift_error* error, const Work& work) noexcept {
     return report(error, UPLIFT_NO_MEMORY, "not enough memory");
   } catch (const std::exception& bad) {
     return report(error, UPLIFT_INTERNAL_ERROR, bad.what());
+  } catch (const abi::__forced_unwind&) {
+    throw;  // the thread is cancelled: it must unwind to its end
   } catch (...) {
     return report(error, UPLIFT_INTERNAL_ERROR, "unknown exception");
   }
@@ -168,8 +172,7 @@ class Caller {
   std::atomic<bool> stop_ = false;
 };
 
-int analyse(Analysis analysis, const uplift_case* each, const uplift_options* options, uplift_results** made,
-            uplift_error* error) noexcept {
+int analyse(Analysis analysis, const uplift_case* each, const uplift_options* options, uplift_results** made, uplift_error* error) {
   return guarded(error, [&] {
     *needed(made, "made") = nullptr;
     const SingleThreadBlas blas;
@@ -297,6 +300,14 @@ int uplift_results_json(const uplift_results* results, const char** json, uplift
     const std::lock_guard lock(needed(results, "results")->mutex);
     if (!results->json) results->json = results_json(*results->loaded, results->results);
     *needed(json, "json") = results->json->c_str();
+  });
+}
+
+int uplift_results_trust(const uplift_results* results, char** json, uplift_error* error) {
+  return guarded(error, [&] {
+    const std::optional<TrustAnswer>& answer = needed(results, "results")->results.trust;
+    if (!answer) throw BadArgument("these are not the results of uplift_trust");
+    *needed(json, "json") = copy_of(trust_json(*answer));
   });
 }
 

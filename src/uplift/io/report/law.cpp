@@ -2,6 +2,7 @@
 #include <cmath>
 
 #include "uplift/io/report/parts.h"
+#include "uplift/laws/external.h"
 
 // The interface law as a curve: figure 3 of the paper, for any traction law.
 namespace uplift {
@@ -42,6 +43,7 @@ Chart law_chart(const ReportRun& run) {
   const Interface& interface = run.built->model.interfaces.front();
   if (!interface.law) return chart;
   const Values& values = *run.built->behaviours.front();
+  if (is_external(values)) return chart;  // its function belongs to the caller, who may be gone
   const double opening = shown_opening(values, run.result->max_opening.value), closing = shown_closing(values, *interface.law, opening);
   const Batch batch{1, 1, 0};
   std::vector<double> old(static_cast<std::size_t>(interface.law->num_history(1)), 0.0), now(old);

@@ -109,6 +109,8 @@ Raw read_json_text(std::string_view text, const std::string& file) {
     return converted(value, file, "");
   } catch (const Json::parse_error& error) {
     throw InputError(position(text, error.byte, file), "", "JSON", "unbalanced brackets or invalid characters");
+  } catch (const Json::exception&) {
+    throw InputError({file, 0}, "", "JSON with numbers of at most 1e308", "a larger number");
   }
 }
 
