@@ -347,7 +347,7 @@ class Places(RobustTest):
         bare = BASE[:BASE.index("[[stage]]")]
         self.refused(bare, "{file}: wanted at least one [[stage]], found none")
         loose = BASE[:BASE.index("[[rigid]]")] + BASE[BASE.index("[[load]]"):]
-        self.refused(loose, '{file}: wanted a structure that stands when all its interfaces are closed, found a mechanism: "top", "base" can move '
+        self.refused(loose, '{file}: wanted a structure that its supports hold, found a mechanism: "top", "base" can move '
                      "along (1, 0) without resistance")
         sweep = BASE.replace('type = "dynamic"', 'type = "dynamic"\nscheme = { type = "generalised_alpha", rho = 0.8 }') + (
             SPRINGS.format("a", "2e8") + '[compare.stiffness_sweep]\nlaw = { type = "springs", K_n = 2e8 }\nratios = [1]\n')
