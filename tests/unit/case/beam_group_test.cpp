@@ -244,8 +244,7 @@ TEST(CaseBeamGroup, ColumnThatEndsOnSolidsIsHinged) {
   const Mesh mesh = column_on_raft(0);
   const int foot = mesh.cell(mesh.groups.at("column").cells.front())[0];
   EXPECT_EQ(refusal(raft_text(""), mesh),
-            "case.toml: wanted a structure that its supports hold, found a mechanism: \"mesh." +
-                std::to_string(foot + 1) +
+            "case.toml: wanted a structure that its supports hold, found a mechanism: \"mesh." + std::to_string(foot + 1) +
                 "\", \"mesh.21\", \"mesh.22\", \"tip\" can turn about the point (2, 0) m without resistance; beams end in hinges of "
                 "solids: \"mesh." +
                 std::to_string(foot + 1) + "\" at (2, 0) m");
