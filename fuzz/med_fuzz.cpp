@@ -176,7 +176,7 @@ void check(const Read& read) {
 }
 
 std::string made(const std::uint8_t* data, std::size_t size) {
-  const Hdf5Quiet quiet;
+  const Hdf5Call call;
   FuzzedDataProvider choice(data, size);
   return MadeFile(choice).image();
 }

@@ -12,18 +12,21 @@ All quantities are in SI units; an opening > 0 separates the faces of an interfa
 from __future__ import annotations
 
 from . import bulk_laws, functions, impacts, laws, methods, processes, schemes, targets
-from ._case import Case, March, Motion, StepView, load, march, motion, parse
+from ._case import Case, load, parse
 from ._laws import ExternalLaw, law
 from ._library import InputError, OutputError, UpliftError, library
+from ._march import March, march
+from ._motion import Motion, motion
 from ._parts import Part
-from ._results import Comparison, Floor, Histories, Quantity, Run, Trust, Verdict, psa
+from ._results import Comparison, Floor, Histories, Run, Trust, Verdict, VerdictNumber, psa
+from ._watch import StepView
 from .laws import bilinear, coulomb, elastic, exponential, sdm, springs, unilateral
 
 __all__ = [
-    "Case", "Comparison", "ExternalLaw", "Floor", "Histories", "InputError", "March", "Motion", "OutputError", "Part", "Quantity", "Run",
-    "StepView", "Trust", "UpliftError", "Verdict", "bilinear", "bulk_laws", "coulomb", "elastic", "exponential", "functions", "impacts",
-    "law", "laws", "load", "march", "methods", "motion", "parse", "processes", "psa", "schemes", "sdm", "springs", "targets",
-    "unilateral", "version",
+    "Case", "Comparison", "ExternalLaw", "Floor", "Histories", "InputError", "March", "Motion", "OutputError", "Part", "Run",
+    "StepView", "Trust", "UpliftError", "Verdict", "VerdictNumber", "bilinear", "bulk_laws", "coulomb", "elastic", "exponential",
+    "functions", "impacts", "law", "laws", "load", "march", "methods", "motion", "parse", "processes", "psa", "schemes", "sdm",
+    "springs", "targets", "unilateral", "version",
 ]
 
 

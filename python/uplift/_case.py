@@ -2,163 +2,21 @@
 
 from __future__ import annotations
 
-import atexit
 import copy
 import ctypes
 import json
 import os
 import pathlib
-import signal
-import sys
-import threading
-import time
-from typing import Any, Callable, Dict, List, Mapping, Optional, Sequence, Set, Tuple, Union
+from typing import Any, Dict, List, Mapping, Optional, Sequence, Tuple, Union
 
 from . import _library, _toml
 from ._laws import ExternalLaw
+from ._motion import Motion
 from ._parts import Part, Quantity
 from ._results import Comparison, Run, Trust
 from ._tables import Tables
-
-StepCallback = Callable[["StepView"], Any]
-
-
-class Motion(Dict[str, Any]):
-    """A recorded or generated ground motion for one direction; see :func:`motion`."""
-
-
-def motion(
-    file: Union[str, "os.PathLike[str]", None] = None,
-    *,
-    direction: Optional[Sequence[float]] = None,
-    pga: Optional[Quantity] = None,
-    factor: Optional[Quantity] = None,
-    process: Sequence[Mapping[str, Any]] = (),
-    generate: Optional[Mapping[str, Any]] = None,
-    amplitude: Optional[Quantity] = None,
-    **record: Any,
-) -> Motion:
-    """A ground acceleration for :meth:`Case.run`.
-
-    Parameters:
-        file: record in any format that `uplift motion` reads.
-        direction: direction of the acceleration; default (1, 0), in space (1, 0, 0).
-        pga: peak acceleration to which the record is scaled ("0.4 g_n").
-        factor: factor instead of `pga`.
-        process: processing steps (:mod:`uplift.processes`), in order, before the scaling.
-        generate: instead of a file, a motion that fits a target spectrum (:mod:`uplift.targets`).
-        amplitude: factor of the acceleration; default 1.
-        record: other keys of the table [[record]]: format, unit, step, column, component.
-    """
-    if (file is None) == (generate is None):
-        raise TypeError("motion() takes a file or `generate`, and not both")
-    steps = [{"do": step} for step in process]
-    if pga is not None or factor is not None:
-        steps.append({"do": {"type": "scale", "pga": pga, "factor": factor}})
-    table = {"file": None if file is None else os.path.abspath(os.fspath(file)), "generate": generate, "process": steps or None, **record}
-    return Motion({"record": table, "direction": direction, "amplitude": amplitude})
-
-
-class StepView:
-    """A step of a run, as the function that `step` of :meth:`Case.run` names sees it. Arrays are copies."""
-
-    def __init__(self, given: _library.Step) -> None:
-        from ._results import array_of
-
-        self.time: float = given.time
-        self.number: int = given.number
-        self.stage: int = given.stage
-        self.displacement = array_of(given.displacement, given.unknowns).copy()
-        self.velocity = array_of(given.velocity, given.unknowns).copy() if given.velocity else None
-        self.opening = array_of(given.opening, given.rows).copy()
-        self.force = array_of(given.force, given.rows).copy()
-
-
-_running: Set["_Watcher"] = set()
-
-
-@atexit.register
-def _stop_all() -> None:
-    """Ends the runs of threads that nobody waits for, before the interpreter goes."""
-    for watcher in list(_running):
-        watcher._on_interrupt()
-    limit = time.monotonic() + 2
-    while _running and time.monotonic() < limit:
-        time.sleep(0.005)
-
-
-class _Watcher:
-    """Progress bar, step function and Ctrl-C of one analysis."""
-
-    def __init__(self, progress: Union[bool, None], step: Optional[StepCallback], step_check: bool, fields: Optional[str]) -> None:
-        self.options = _library.Options()
-        _library.library().uplift_options_init(ctypes.byref(self.options))
-        self.options.step_check = int(step_check)
-        self._cancel = ctypes.c_int(0)
-        self.options.cancel = ctypes.pointer(self._cancel)
-        self._fields = fields.encode() if fields else None
-        self.options.fields_folder = self._fields
-        self._bar = sys.stderr.isatty() if progress is None else progress
-        self._drawn = 0.0
-        self._step = step
-        self.raised: Optional[BaseException] = None
-        self._caught = False
-        self._progress_function = _library.ProgressFunction(self._on_progress)
-        self._step_function = _library.StepFunction(self._on_step)
-        self.options.progress = self._progress_function
-        if step is not None:
-            self.options.step = self._step_function
-
-    def __enter__(self) -> None:
-        _running.add(self)
-        in_main = threading.current_thread() is threading.main_thread()
-        if in_main and signal.getsignal(signal.SIGINT) is signal.default_int_handler:
-            signal.signal(signal.SIGINT, self._on_interrupt)
-            self._caught = True
-
-    def __exit__(self, *_: Any) -> None:
-        _running.discard(self)
-        if self._caught:
-            signal.signal(signal.SIGINT, signal.default_int_handler)
-
-    def _on_interrupt(self, *_: Any) -> None:
-        self._cancel.value = 1
-
-    def _on_progress(self, user: Any, given: Any) -> int:
-        try:
-            now = time.monotonic()
-            if self._bar and now - self._drawn > 0.1:
-                self._drawn = now
-                state = given.contents
-                done = int(30 * state.fraction)
-                label = (state.label or b"").decode()
-                sys.stderr.write(f"\r{label:<28.28} [{'#' * done}{'.' * (30 - done)}] t = {state.time:.3f} s, {100 * state.uplifted:.0f} % uplifted ")
-                sys.stderr.flush()
-            return 0
-        except BaseException as error:
-            return self._stop(error)
-
-    def _on_step(self, user: Any, given: Any) -> int:
-        try:
-            assert self._step is not None
-            answer = self._step(StepView(given.contents))
-            return 0 if answer is None or answer else 1
-        except BaseException as error:
-            return self._stop(error)
-
-    def _stop(self, error: BaseException) -> int:
-        self._cancel.value = 1
-        if self.raised is None:
-            self.raised = error
-        return 1
-
-    def finish(self) -> None:
-        """Clears the bar; raises what a function of the caller raised."""
-        if self._drawn:
-            sys.stderr.write("\r" + " " * 100 + "\r")
-            sys.stderr.flush()
-        if self.raised is not None:
-            raise self.raised
+from ._variants import variant
+from ._watch import StepCallback, Watcher
 
 
 class Case(Tables):
@@ -214,10 +72,7 @@ class Case(Tables):
 
     def gravity(self, *acceleration: Quantity) -> None:
         """Weight of all masses. The default is 9.81 m/s2 downwards."""
-        nodes = self._document.get("nodes", {})
-        in_space = any(len(position) == 3 for position in nodes.values())
-        default: Tuple[Quantity, ...] = (0, 0, -9.81) if in_space else (0, -9.81)
-        self.document["gravity"] = {"acceleration": list(acceleration or default)}
+        self.document["gravity"] = {"acceleration": list(acceleration)} if acceleration else {}
 
     def damping(
         self,
@@ -331,17 +186,15 @@ class Case(Tables):
             return self
         case = self.copy()
         document = case.document
-        in_space = any(len(position) == 3 for position in document.get("nodes", {}).values())
         document["ground_acceleration"] = []
         for number, given in enumerate(motions, 1):
             name = f"motion {number} of the run"
-            direction = given["direction"] if given["direction"] is not None else ((1, 0, 0) if in_space else (1, 0))
             document.setdefault("record", []).append({"name": name, **{k: v for k, v in given["record"].items() if v is not None}})
-            table = {"name": name, "direction": list(direction), "amplitude": given["amplitude"], "function": name}
+            table = {"name": name, "direction": given["direction"] and list(given["direction"]), "amplitude": given["amplitude"], "function": name}
             document["ground_acceleration"].append({key: value for key, value in table.items() if value is not None})
         return case
 
-    def _analyse(self, function: str, watcher: _Watcher) -> _library.Handle:
+    def _analyse(self, function: str, watcher: Watcher) -> _library.Handle:
         case = self._handle()
         for law in self._laws.values():
             law.raised = None
@@ -374,27 +227,33 @@ class Case(Tables):
         Ctrl-C ends the run in order: its results are complete up to that instant and `run.status` is "interrupted".
         Raises InputError.
         """
-        watcher = _Watcher(progress, step, step_check, None if fields is None else os.fspath(fields))
+        watcher = Watcher(progress, step, step_check, None if fields is None else os.fspath(fields))
         return Run(self._with_motions(motions)._analyse("uplift_run", watcher))
 
-    def compare(self, *variants: str, progress: Optional[bool] = None) -> Comparison:
-        """Runs the variants of the case side by side: all of them, or those of these names.
+    def compare(self, *names: str, progress: Optional[bool] = None, **variants: Union[Part, ExternalLaw, Mapping[str, Any]]) -> Comparison:
+        """Runs variants of the case side by side: without arguments all that the case has.
 
-        Raises InputError when the case has no variants, and ValueError for an unknown name.
+        Parameters:
+            names: variants of the case, or "springs", "sdm", "lagrange", "augmented_lagrangian", "penalty": this case with its joint in
+                another formulation, made from the stiffness and the friction of its law. The SDM joint has no tensile strength then and a
+                closure stress of -500 Pa.
+            variants: variants by name: a law (`stiff=up.springs(K_n="8 GPa/m")`) or a table of its changes (`fine={"step": "1 ms"}`).
+
+        Raises InputError when there is nothing to compare, and ValueError for an unknown name or a law from which another one cannot be made.
         """
         case = self
-        if variants:
+        if names or variants:
             case = self.copy()
-            known = [each["name"] for each in case._document.get("variant", [])]
-            for name in variants:
-                if name not in known:
-                    raise ValueError(f"unknown variant {name!r}; the variants of the case are {', '.join(known) or 'none'}")
-            case.document["variant"] = [each for each in case._document["variant"] if each["name"] in variants]
-        return Comparison(case._analyse("uplift_compare", _Watcher(progress, None, True, None)))
+            chosen = [variant(name, self._document) for name in names]
+            chosen += [{"name": name, **({"law": given} if not isinstance(given, Mapping) or "type" in given else given)} for name, given in variants.items()]
+            case.document["variant"] = []
+            for table in chosen:
+                case._add("variant", table)
+        return Comparison(case._analyse("uplift_compare", Watcher(progress, None, True, None)))
 
     def trust(self, *, progress: Optional[bool] = None) -> Trust:
         """Repeats the run with every choice of the computation changed, one at a time."""
-        return Trust(self._analyse("uplift_trust", _Watcher(progress, None, True, None)))
+        return Trust(self._analyse("uplift_trust", Watcher(progress, None, True, None)))
 
 
 def load(path: Union[str, "os.PathLike[str]"]) -> Case:
@@ -416,95 +275,3 @@ def parse(text: str, file: str = "case.toml") -> Case:
     case._document = json.loads(_library.text_of("uplift_toml_to_json", text.encode(), case._file.encode()))
     case._text = text
     return case
-
-
-class _MarchState:
-    """What the thread of a march and its owner share. The thread does not know the owner, so that a march that is left can be collected."""
-
-    def __init__(self) -> None:
-        self.go = threading.Semaphore(0)
-        self.ready = threading.Semaphore(0)
-        self.step: Optional[StepView] = None
-        self.stopping = False
-        self.done = False
-        self.run: Optional[Run] = None
-        self.error: Optional[BaseException] = None
-
-    def work(self, case: Case, motions: Sequence[Motion]) -> None:
-        try:
-            self.go.acquire()
-            if not self.stopping:
-                self.run = case.run(*motions, progress=False, step_check=False, step=self.see)
-        except BaseException as error:
-            self.error = error
-        self.done = True
-        self.ready.release()
-
-    def see(self, step: StepView) -> bool:
-        self.step = step
-        self.ready.release()
-        self.go.acquire()
-        return not self.stopping
-
-    def stop(self) -> None:
-        if not self.done and not self.stopping:
-            self.stopping = True
-            self.go.release()
-
-
-class March:
-    """A run that is made step by step: `for step in march: ...`. `stop`, `results` or the end of a `with` block ends the run."""
-
-    def __init__(self, case: Case, *motions: Motion) -> None:
-        self._state = _MarchState()
-        self._thread = threading.Thread(target=self._state.work, args=(case, motions), daemon=True)
-        self._thread.start()
-
-    def __iter__(self) -> "March":
-        return self
-
-    def __next__(self) -> StepView:
-        state = self._state
-        if state.done or state.stopping:
-            raise StopIteration
-        state.go.release()
-        state.ready.acquire()
-        if state.done:
-            if state.error is not None:
-                raise state.error
-            raise StopIteration
-        assert state.step is not None
-        return state.step
-
-    def stop(self) -> None:
-        """Ends the run in order."""
-        self._state.stop()
-        self._thread.join()
-
-    @property
-    def results(self) -> Run:
-        """The results up to here. Ends the run when it is still going."""
-        self.stop()
-        if self._state.error is not None:
-            raise self._state.error
-        if self._state.run is None:
-            raise RuntimeError("the march has no step yet")
-        return self._state.run
-
-    def __enter__(self) -> "March":
-        return self
-
-    def __exit__(self, *_: Any) -> None:
-        self.stop()
-
-    def __del__(self) -> None:
-        if hasattr(self, "_state"):
-            self._state.stop()
-
-
-def march(case: Case, *motions: Motion) -> March:
-    """Runs a case step by step; see :class:`March`."""
-    return March(case, *motions)
-
-
-__all__: List[str] = ["Case", "March", "Motion", "StepView", "load", "march", "motion", "parse"]

@@ -4,11 +4,13 @@ from __future__ import annotations
 
 import ctypes
 import itertools
-import sys
-from typing import Any, Callable, Dict, Optional
+from typing import TYPE_CHECKING, Any, Callable, Dict, Optional
 
 from . import _library
 from ._parts import Quantity
+
+if TYPE_CHECKING:
+    from ._results import Array
 
 _numbers = itertools.count(1)
 
@@ -35,45 +37,55 @@ class ExternalLaw:
 
     def _call(self, user: Any, points: int, components: int, step: float, *pointers: Any) -> int:
         try:
-            import numpy as np
-
-            def view(pointer: Any, *shape: int) -> Any:
-                size = int(np.prod(shape))
-                if size == 0:
-                    return np.empty(shape)
-                return np.ctypeslib.as_array(pointer, (size,)).reshape(shape)
-
-            def copied(pointer: Any, *shape: int) -> Any:
-                return view(pointer, *shape).copy()  # the function may keep or change what it is given
-
-            def checked(value: Any, what: str, *shape: int) -> Any:
-                made = np.asarray(value, dtype=float)
-                if made.shape != shape:
-                    raise ValueError(f"the law {self.name!r} returned {what} of the shape {made.shape}, expected {shape}")
-                return made
-
             start, end, old, traction, slope, memory, stored, dissipated = pointers
-            given = (copied(start, components, points), copied(end, components, points), copied(old, self.memory, points))
+            # copies: the function may keep or change what it is given
+            given = [_view(start, components, points).copy(), _view(end, components, points).copy(), _view(old, self.memory, points).copy()]
             result = self.function(*given, step)
-            view(traction, components, points)[...] = checked(result[0], "a traction", components, points)
-            made_slope = np.asarray(result[1], dtype=float)
-            into = view(slope, components, components, points)
-            if made_slope.ndim == 2:  # one slope per component: no coupling
-                made_slope = checked(made_slope, "a slope", components, points)
-                into[...] = 0
-                for component in range(components):
-                    into[component, component] = made_slope[component]
-            else:
-                into[...] = checked(made_slope, "a slope", components, components, points)
+            _fill(_view(traction, components, points), result[0], f"the law {self.name!r} returned a traction")
+            _fill_slope(_view(slope, components, components, points), result[1], f"the law {self.name!r} returned a slope")
             if self.memory:
-                view(memory, self.memory, points)[...] = checked(result[2], "a memory", self.memory, points)
-            view(stored, points)[...] = checked(result[3], "a stored energy", points)
-            view(dissipated, points)[...] = checked(result[4], "a dissipated energy", points) if len(result) > 4 else 0.0
+                _fill(_view(memory, self.memory, points), result[2], f"the law {self.name!r} returned a memory")
+            _fill(_view(stored, points), result[3], f"the law {self.name!r} returned a stored energy")
+            lost = result[4] if len(result) > 4 else [0.0] * points
+            _fill(_view(dissipated, points), lost, f"the law {self.name!r} returned a dissipated energy")
             return 0
         except BaseException as error:
             if self.raised is None:
                 self.raised = error
             return 1
+
+
+def _view(pointer: Any, *shape: int) -> "Array":
+    """The library's numbers as an array, without a copy."""
+    import numpy as np
+
+    size = int(np.prod(shape))
+    if size == 0:
+        return np.empty(shape)
+    made: Array = np.ctypeslib.as_array(pointer, (size,)).reshape(shape)
+    return made
+
+
+def _fill(into: "Array", value: Any, what: str) -> None:
+    import numpy as np
+
+    made = np.asarray(value, dtype=float)
+    if made.shape != into.shape:
+        raise ValueError(f"{what} of the shape {made.shape}, expected {into.shape}")
+    into[...] = made
+
+
+def _fill_slope(into: "Array", value: Any, what: str) -> None:
+    """A full slope, or one number per component: no coupling."""
+    import numpy as np
+
+    made = np.asarray(value, dtype=float)
+    if made.ndim == 2 and made.shape == into.shape[1:]:
+        diagonal = np.zeros(into.shape)
+        for component in range(len(made)):
+            diagonal[component, component] = made[component]
+        made = diagonal
+    _fill(into, made, what)
 
 
 def law(

@@ -68,7 +68,7 @@ def _wrapped(value: Any) -> Any:
     return value
 
 
-class Quantity(float):
+class VerdictNumber(float):
     """A number of the verdict, in SI units: a float with `unit`, `time` [s] and what is known of its error.
 
     `step_change_percent` is its change with twice the step (None: not examined), `bonded` the value of the bonded model.
@@ -79,7 +79,7 @@ class Quantity(float):
     bonded: Optional[float]
     step_change_percent: Optional[float]
 
-    def __new__(cls, value: float, unit: str = "1", **known: Any) -> "Quantity":
+    def __new__(cls, value: float, unit: str = "1", **known: Any) -> "VerdictNumber":
         made = super().__new__(cls, value)
         made.unit = unit
         made.time = known.get("time")
@@ -88,18 +88,18 @@ class Quantity(float):
         return made
 
     def __reduce__(self) -> Any:
-        return _quantity, (dict(self.__dict__, value=float(self)),)
+        return _number, (dict(self.__dict__, value=float(self)),)
 
     def __repr__(self) -> str:
         return f"{float(self):.6g} {self.unit}" if self.unit != "1" else f"{float(self):.6g}"
 
 
-def _quantity(table: Mapping[str, Any]) -> Quantity:
-    return Quantity(**table)
+def _number(table: Mapping[str, Any]) -> VerdictNumber:
+    return VerdictNumber(**table)
 
 
-def _quantities(numbers: Mapping[str, Any]) -> Dict[str, Any]:
-    return {name: _quantity(table) if isinstance(table, Mapping) and table.get("value") is not None else None for name, table in numbers.items()}
+def _numbers(numbers: Mapping[str, Any]) -> Dict[str, Any]:
+    return {name: _number(table) if isinstance(table, Mapping) and table.get("value") is not None else None for name, table in numbers.items()}
 
 
 class Verdict(Record):
@@ -113,13 +113,13 @@ class Verdict(Record):
 
     @property
     def bases(self) -> Dict[str, Dict[str, Any]]:
-        """Numbers of every interface by their names, as :class:`Quantity`."""
-        return {each["name"]: _quantities(each["numbers"]) for each in self._table["interfaces"]}
+        """Numbers of every interface by their names, as :class:`VerdictNumber`."""
+        return {each["name"]: _numbers(each["numbers"]) for each in self._table["interfaces"]}
 
     @property
     def structure(self) -> Dict[str, Any]:
         """Numbers of the structure as a whole."""
-        return _quantities(self._table["numbers"])
+        return _numbers(self._table["numbers"])
 
     @property
     def uplift(self) -> float:
@@ -129,15 +129,6 @@ class Verdict(Record):
 
     def __repr__(self) -> str:
         return f"<Verdict: {self._table['headline']}>"
-
-
-class Energy(Record):
-    """Energies at the end of a run [J], and their balance."""
-
-    @property
-    def created(self) -> float:
-        """Largest spurious energy [J]."""
-        return float(self._table["created"])
 
 
 class Floor:
@@ -309,12 +300,12 @@ class Run(Results):
         return str(self.summary["runs"][0]["reason"])
 
     @property
-    def energy(self) -> Energy:
+    def energy(self) -> Record:
         """Energies at the end [J], with `residual`, `created`, `lost` and `scale`."""
         run = self.summary["runs"][0]
         table = dict(run["final_energy"])
         table.update(created=run["energy_created"]["value"], lost=run["energy_lost"]["value"], scale=run["energy_scale"])
-        return Energy(table)
+        return Record(table)
 
     def floor(self, name: str) -> Floor:
         """A floor of the case (a floor_spectrum of the output) by its name. Raises KeyError."""

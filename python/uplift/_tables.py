@@ -521,7 +521,7 @@ class Tables:
 
     def ground_acceleration(
         self,
-        direction: Sequence[Quantity],
+        direction: Optional[Sequence[Quantity]] = None,
         *,
         function: str,
         name: Optional[str] = None,
@@ -530,7 +530,7 @@ class Tables:
         """Ground acceleration.
 
         Parameters:
-            direction: direction.
+            direction: direction; absent: the x axis.
             function: name of the function of time.
             name: name.
             amplitude: acceleration that the function multiplies; of a record, which is an acceleration itself, a factor

@@ -28,8 +28,9 @@ def sdm(
         F_u: tensile strength; 0: no tension, the jump follows the opening [Pa], >= 0 Pa.
         G_f: cracking energy [J/m2], > 0 J/m2.
         F_c: closure stress; its size should stay below 1 % of the bearing pressure [Pa], < 0 Pa.
-        tangential: shear: none; elastic, open or closed; elastic and free where open; elastic with friction; one of
-            "none", "bonded", "open_free", "coulomb"; default bonded.
+        tangential: shear: none; elastic, open or closed; elastic and free where open; elastic with friction.
+            Absent: coulomb where friction is given, bonded where only K_t is; one of "none", "bonded", "open_free",
+            "coulomb"; default bonded.
         K_t: tangential stiffness; absent: K_n [Pa/m], > 0 Pa/m.
         friction: coefficient of friction (coulomb), >= 0.
         cohesion: shear strength at zero pressure, lost with damage (coulomb); absent: 0 [Pa], >= 0 Pa.
@@ -51,8 +52,9 @@ def springs(
     Parameters:
         K_n: normal stiffness in compression [Pa/m], > 0 Pa/m.
         c: damping while in contact [Pa s/m], >= 0 Pa s/m; default 0.0.
-        tangential: shear: none; elastic, open or closed; elastic and free where open; elastic with friction; one of
-            "none", "bonded", "open_free", "coulomb"; default none.
+        tangential: shear: none; elastic, open or closed; elastic and free where open; elastic with friction.
+            Absent: coulomb where friction is given, bonded where only K_t is; one of "none", "bonded", "open_free",
+            "coulomb"; default none.
         K_t: tangential stiffness; absent: K_n [Pa/m], > 0 Pa/m.
         friction: coefficient of friction (coulomb), >= 0.
         cohesion: shear strength at zero pressure, lost with damage (coulomb); absent: 0 [Pa], >= 0 Pa.
@@ -74,8 +76,9 @@ def elastic(
     Parameters:
         K_n: normal stiffness [Pa/m], > 0 Pa/m.
         c: normal damping [Pa s/m], >= 0 Pa s/m; default 0.0.
-        tangential: shear: none; elastic, open or closed; elastic and free where open; elastic with friction; one of
-            "none", "bonded", "open_free", "coulomb"; default bonded.
+        tangential: shear: none; elastic, open or closed; elastic and free where open; elastic with friction.
+            Absent: coulomb where friction is given, bonded where only K_t is; one of "none", "bonded", "open_free",
+            "coulomb"; default bonded.
         K_t: tangential stiffness; absent: K_n [Pa/m], > 0 Pa/m.
         friction: coefficient of friction (coulomb), >= 0.
         cohesion: shear strength at zero pressure, lost with damage (coulomb); absent: 0 [Pa], >= 0 Pa.
@@ -99,8 +102,9 @@ def exponential(
         K_n: normal stiffness [Pa/m], > 0 Pa/m.
         F_u: tensile strength [Pa], > 0 Pa.
         G_f: fracture energy, the area under the envelope [J/m2], > 0 J/m2.
-        tangential: shear: none; elastic, open or closed; elastic and free where open; elastic with friction; one of
-            "none", "bonded", "open_free", "coulomb"; default bonded.
+        tangential: shear: none; elastic, open or closed; elastic and free where open; elastic with friction.
+            Absent: coulomb where friction is given, bonded where only K_t is; one of "none", "bonded", "open_free",
+            "coulomb"; default bonded.
         K_t: tangential stiffness; absent: K_n [Pa/m], > 0 Pa/m.
         friction: coefficient of friction (coulomb), >= 0.
         cohesion: shear strength at zero pressure, lost with damage (coulomb); absent: 0 [Pa], >= 0 Pa.
@@ -124,8 +128,9 @@ def bilinear(
         K_n: normal stiffness [Pa/m], > 0 Pa/m.
         F_u: tensile strength [Pa], > 0 Pa.
         G_f: fracture energy, the area under the envelope [J/m2], > 0 J/m2.
-        tangential: shear: none; elastic, open or closed; elastic and free where open; elastic with friction; one of
-            "none", "bonded", "open_free", "coulomb"; default bonded.
+        tangential: shear: none; elastic, open or closed; elastic and free where open; elastic with friction.
+            Absent: coulomb where friction is given, bonded where only K_t is; one of "none", "bonded", "open_free",
+            "coulomb"; default bonded.
         K_t: tangential stiffness; absent: K_n [Pa/m], > 0 Pa/m.
         friction: coefficient of friction (coulomb), >= 0.
         cohesion: shear strength at zero pressure, lost with damage (coulomb); absent: 0 [Pa], >= 0 Pa.

@@ -77,11 +77,19 @@ static void runs(void) {
   uplift_error error = {0, 0, 0, NULL, NULL, NULL};
   uplift_case* each = parsed("{ type = \"external\", name = \"mine\", K_n = 1e6, K_t = 1e6 }", &error);
   uplift_results* results = NULL;
+  char* json = NULL;
   EXPECT(each != NULL);
   EXPECT(uplift_run(each, NULL, &results, &error) == UPLIFT_BAD_INPUT && results == NULL); /* not connected */
   EXPECT(error.message != NULL && strstr(error.message, "mine") != NULL && error.line > 0);
   uplift_error_clear(&error);
+  EXPECT(uplift_case_check(each, &json, &error) == UPLIFT_BAD_INPUT && json == NULL);
+  uplift_error_clear(&error);
   EXPECT(uplift_case_set_law(each, "mine", linear, &stiffness, &error) == UPLIFT_OK);
+  EXPECT(uplift_case_check(each, &json, &error) == UPLIFT_OK && json != NULL);
+  uplift_text_free(json);
+  EXPECT(uplift_trust(each, NULL, &results, &error) == UPLIFT_BAD_INPUT && results == NULL); /* the repetitions have no functions */
+  EXPECT(error.message != NULL && strstr(error.message, "statement of reliability") != NULL);
+  uplift_error_clear(&error);
   EXPECT(uplift_run(each, NULL, &results, &error) == UPLIFT_OK && results != NULL);
   if (error.message != NULL) printf("%s\n", error.message);
   if (results != NULL) check_against_the_closed_form(results);

@@ -7,6 +7,7 @@
 
 #include "property/random_parts.h"
 #include "unit/laws/laws_support.h"
+#include "uplift/laws/tangential.h"
 
 // Properties of every law in the catalog. Parameters are drawn from the law's own declaration, so that a new law is tested before its
 // author writes a test.
@@ -35,7 +36,7 @@ struct Law {
 Law random_law(const Entry<InterfaceLaw>& entry) {
   return random_part<Law>(entry, usual, [&](const std::vector<Parameter>& parameters) {
     const Values values = checked(std::string(entry.name), parameters);
-    return Law{parameters, make_part(law_catalog(), values), values.text("tangential")};
+    return Law{parameters, make_part(law_catalog(), values), tangential_kind(values)};
   });
 }
 

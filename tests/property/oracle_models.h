@@ -10,6 +10,7 @@
 #include "uplift/dynamics/scheme.h"
 #include "uplift/elements/beam.h"
 #include "uplift/elements/discrete.h"
+#include "uplift/laws/tangential.h"
 #include "uplift/linear/solver.h"
 #include "uplift/model/builder.h"
 #include "uplift/run/run.h"
@@ -62,7 +63,7 @@ struct Whole {
 /// Puts a law or a cone on an interface.
 inline void behave(const Part& part, InterfaceSpec& spec, Whole& whole) {
   auto values = std::make_unique<const Values>(checked(part, interface_behaviours()));
-  const bool shear = values->items().contains("tangential") ? values->text("tangential") != "none" : part.type == "coulomb";
+  const bool shear = values->items().contains("tangential") ? tangential_kind(*values) != "none" : part.type == "coulomb";
   spec.components = shear ? 2 : 1;
   spec.behaviour = part.type;
   spec.law = make_part(law_catalog(), *values);

@@ -158,6 +158,34 @@ class Runs(unittest.TestCase):
         with self.assertRaisesRegex(ValueError, "unknown variant"):
             up.load(ROOT / "examples/05_bridge_pier").compare("sprngs")
 
+    def test_formulations_are_compared_by_name(self):
+        law = up.springs(K_n=K, K_t=SHEAR, friction=0.7)
+        compared = pier(law, "4 s").compare("springs", "lagrange", "sdm", half={"step": "1 ms"}, soft=up.springs(K_n=K / 10, K_t=SHEAR))
+        self.assertEqual([run.name for run in compared.runs][:3], ["springs", "lagrange", "sdm"])
+        rows = {row["name"]: row for row in compared.table}
+        self.assertLess({"half", "soft", "bonded"}, set(rows))
+        for name in ("sdm", "half"):  # the same joint in another formulation, and with another step
+            self.assertAlmostEqual(rows[name]["max_base_moment"] / rows["springs"]["max_base_moment"], 1, delta=0.03)
+        # the footing without the compliance of its springs is stiffer
+        self.assertLess(rows["lagrange"]["max_opening"], 2 * rows["springs"]["max_opening"])
+        with self.assertRaisesRegex(ValueError, "needs"):
+            pier({"type": "coulomb", "friction": 0.7}, "4 s").compare("sdm")
+        with self.assertRaisesRegex(ValueError, "coefficient of friction"):
+            pier(up.springs(K_n=K, tangential="bonded"), "4 s").compare("lagrange")
+
+    def test_directions_follow_the_space_of_the_case(self):
+        case = up.Case("a mass on a column")
+        case.gravity()  # before the nodes are known
+        case.node("base", 0, 0, 0)
+        case.node("top", 0, 0, 5)
+        case.beam("column", ["base", "top"], E="30 GPa", A="1 m2", I_y="0.1 m4", I_z="0.1 m4", J="0.1 m4", poisson=0.2)
+        case.mass("top", mass="10 t")
+        case.support("base", ["ux", "uy", "uz", "rx", "ry", "rz"])
+        case.history("top", "uz", name="sag")
+        case.static()
+        run = case.run(step_check=False)
+        self.assertAlmostEqual(run["sag"][-1] / (-1e4 * 9.81 * 5 / 30e9), 1, places=6)
+
     def test_floor_spectrum_of_a_harmonic_motion(self):
         # resonance of an undamped oscillator with sin(w t): x = (sin wt - wt cos wt)/(2 w^2), largest near the end of n periods
         frequency, periods, step = 2.0, 5, 1e-3

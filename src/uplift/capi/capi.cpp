@@ -6,7 +6,6 @@
 #include <cmath>
 #include <cstdlib>
 #include <cstring>
-#include <map>
 #include <memory>
 #include <mutex>
 #include <new>
@@ -18,7 +17,6 @@
 #include "uplift/io/results/trust_json.h"
 #include "uplift/io/text/json_reader.h"
 #include "uplift/io/text/toml.h"
-#include "uplift/laws/external.h"
 #include "uplift/linear/blas.h"
 #include "uplift/motion/spectrum.h"
 #include "uplift/session/check.h"
@@ -27,8 +25,7 @@
 // The C interface: translates handles, texts and exceptions, and computes nothing.
 
 struct uplift_case {
-  std::shared_ptr<const uplift::LoadedCase> loaded;
-  std::map<std::string, uplift::ExternalFunction> laws;
+  std::shared_ptr<uplift::LoadedCase> loaded;
 };
 
 struct uplift_results {
@@ -99,22 +96,12 @@ int guarded(uplift_error* error, const Work& work) {
   }
 }
 
-/// Connects the laws of the caller to the interfaces of a model.
-void connect(const uplift_case& each, BuiltCase& built) {
-  for (std::size_t k = 0; k < built.model.interfaces.size(); ++k) {
-    const Values& behaviour = *built.behaviours[k];
-    if (!is_external(behaviour)) continue;
-    const ExternalLawInfo info = external_info(behaviour);
-    built.model.interfaces[k].law = external_law(info, each.laws.at(info.name));
-  }
-}
-
 using Analysis = Results (*)(const LoadedCase&, const Control&);
 
 /// What the options of the caller mean, for one analysis.
 class Caller {
  public:
-  Caller(const uplift_case& each, const uplift_options* options) : each_(each) {
+  explicit Caller(const uplift_options* options) {
     if (options != nullptr) {
       if (options->size != sizeof(uplift_options))
         throw BadArgument(fmt::format("uplift_options.size is {}, expected {} (uplift_options_init was not called, or another version)",
@@ -130,8 +117,6 @@ class Caller {
     Control made;
     made.step_check = options_.step_check != 0;
     made.folder = folder_ ? &*folder_ : nullptr;
-    made.external_laws = [this](const std::string& name) { return each_.laws.contains(name); };
-    made.adapt = [this](BuiltCase& built) { connect(each_, built); };
     made.stopped = [this] { return stopped(); };
     if (options_.progress != nullptr)
       made.watch = [this](const std::string& label) -> Watch {
@@ -166,7 +151,6 @@ class Caller {
     if (options_.step(options_.user, &given) != 0) stop_ = true;
   }
 
-  const uplift_case& each_;
   uplift_options options_{};
   std::optional<ResultFolder> folder_;
   std::atomic<bool> stop_ = false;
@@ -175,8 +159,9 @@ class Caller {
 int analyse(Analysis analysis, const uplift_case* each, const uplift_options* options, uplift_results** made, uplift_error* error) {
   return guarded(error, [&] {
     *needed(made, "made") = nullptr;
+    needed(each, "each");
     const SingleThreadBlas blas;
-    Caller caller(*needed(each, "each"), options);
+    Caller caller(options);
     auto results = std::make_unique<uplift_results>();
     results->loaded = each->loaded;
     results->results = analysis(*each->loaded, caller.control());
@@ -225,7 +210,7 @@ int uplift_case_load(const char* path, uplift_case** made, uplift_error* error) 
   return guarded(error, [&] {
     *needed(made, "made") = nullptr;
     auto each = std::make_unique<uplift_case>();
-    each->loaded = std::make_shared<const LoadedCase>(load_case(needed(path, "path"), "libuplift", MeshFiles::in_process));
+    each->loaded = std::make_shared<LoadedCase>(load_case(needed(path, "path"), "libuplift", MeshFiles::in_process));
     *made = each.release();
   });
 }
@@ -235,7 +220,7 @@ int uplift_case_parse(const char* text, const char* file, uplift_case** made, up
     *needed(made, "made") = nullptr;
     auto each = std::make_unique<uplift_case>();
     each->loaded =
-        std::make_shared<const LoadedCase>(load_case_text(needed(text, "text"), needed(file, "file"), "libuplift", MeshFiles::in_process));
+        std::make_shared<LoadedCase>(load_case_text(needed(text, "text"), needed(file, "file"), "libuplift", MeshFiles::in_process));
     *made = each.release();
   });
 }
@@ -267,7 +252,7 @@ int uplift_case_modes(const uplift_case* each, int count, char** json, uplift_er
 int uplift_case_set_law(uplift_case* each, const char* name, uplift_law_function function, void* user, uplift_error* error) {
   return guarded(error, [&] {
     needed(function, "function");
-    needed(each, "each")->laws[needed(name, "name")] = [function, user](const ExternalStep& s) {
+    needed(each, "each")->loaded->external_laws[needed(name, "name")] = [function, user](const ExternalStep& s) {
       return function(user, s.points, s.components, s.step, s.from, s.to, s.old, s.traction, s.slope, s.memory, s.stored, s.dissipated) ==
              0;
     };

@@ -13,6 +13,7 @@
 #include "uplift/case/ground/ground.h"
 #include "uplift/case/schema/sections.h"
 #include "uplift/case/shown.h"
+#include "uplift/laws/tangential.h"
 #include "uplift/model/check.h"
 #include "uplift/model/tuned_mass.h"
 
@@ -29,7 +30,7 @@ Values with_number(const Values& part, std::string_view key, double number) {
   };
   add("type", part.type());
   for (const auto& [name, item] : part.items()) {
-    if (name == key) continue;
+    if (name == key || !item.given) continue;
     if (const auto* flag = std::get_if<bool>(&item.data)) add(name, *flag);
     if (const auto* whole = std::get_if<std::int64_t>(&item.data)) add(name, *whole);
     if (const auto* real = std::get_if<double>(&item.data)) add(name, *real);
@@ -127,6 +128,12 @@ DecidedTexts decided_texts(const Case& read) {
     if (stage.text("type") != "static" && !stage.given("traction") &&
         stage_of(stage, {}).path_average != (stage.text("traction") == "path"))
       decided[stage.path("traction")] = "end";
+  for (const char* tables : {"interface", "variant"})
+    for (const Values& table : read.values.tables(tables)) {
+      const Values* law = table.has("law") ? &table.part("law") : nullptr;
+      if (law != nullptr && law->items().contains("tangential") && tangential_kind(*law) != law->text("tangential"))
+        decided[law->path("tangential")] = tangential_kind(*law);
+    }
   return decided;
 }
 

@@ -356,8 +356,15 @@ void refuse(const Values& values, std::string_view key, std::string_view owner) 
 
 }  // namespace
 
-std::unique_ptr<const TangentialPart> make_tangential(const Values& values, double normal_stiffness) {
+std::string tangential_kind(const Values& values) {
   const std::string& kind = values.text("tangential");
+  if (values.given("tangential")) return kind;
+  if (values.given("friction") || values.given("cohesion")) return "coulomb";
+  return values.given("K_t") && kind == "none" ? "bonded" : kind;
+}
+
+std::unique_ptr<const TangentialPart> make_tangential(const Values& values, double normal_stiffness) {
+  const std::string kind = tangential_kind(values);
   if (kind != "coulomb") {
     refuse(values, "friction", "\"coulomb\"");
     refuse(values, "cohesion", "\"coulomb\"");
@@ -377,7 +384,9 @@ std::unique_ptr<const TangentialPart> make_tangential(const Values& values, doub
 
 std::vector<Field> tangential_fields(const char* standard) {
   return {choice("tangential", {"none", "bonded", "open_free", "coulomb"},
-                 "shear: none; elastic, open or closed; elastic and free where open; elastic with friction")
+                 "shear: none; elastic, open or closed; elastic and free where open; elastic with friction. Absent: coulomb where friction "
+                 "is given, "
+                 "bonded where only K_t is")
               .standard(standard),
           number("K_t", "Pa/m", "tangential stiffness; absent: K_n").positive().optional(),
           number("friction", "1", "coefficient of friction (coulomb)").nonnegative().optional(),

@@ -43,6 +43,10 @@ class TangentialPart {
 /// needs is missing, and when one is given that it would not use.
 std::unique_ptr<const TangentialPart> make_tangential(const Values&, double normal_stiffness);
 
+/// Name of the part: `tangential` where it is given; else "coulomb" with a friction or cohesion, elastic ("bonded") with a stiffness, and
+/// else the default of the law.
+std::string tangential_kind(const Values&);
+
 /// The parameters that choose and describe the tangential part.
 std::vector<Field> tangential_fields(const char* standard);
 

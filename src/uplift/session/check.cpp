@@ -13,6 +13,7 @@
 #include "uplift/elements/element_entry.h"
 #include "uplift/linear/memory.h"
 #include "uplift/run/floor_record.h"
+#include "uplift/session/steps.h"
 
 namespace uplift {
 namespace {
@@ -121,15 +122,15 @@ CaseFindings find(const Case& read, const RunSpec& spec, const BuiltCase& built)
 
 CheckedCase examine(const LoadedCase& loaded) {
   const std::vector<RunSpec> own = runs_of_case(loaded.read);
-  CheckedCase checked{build(loaded.read, own.front()), {}, {}};
+  CheckedCase checked{build_run(loaded, own.front()), {}, {}};
   for (const RunSpec& spec : own) checked.runs.push_back("uplift run: " + spec.label);
   if (compares(loaded.read)) {
     const Comparison comparison = comparison_of_case(loaded.read);
     for (const RunSpec& spec : comparison.runs) {
-      build(loaded.read, spec);  // every variant is checked too
+      build_run(loaded, spec);  // every variant is checked too
       checked.runs.push_back(fmt::format("uplift compare: {}{}", spec.label, spec.group.empty() ? "" : ", " + spec.group));
     }
-    for (const RunSpec& spec : comparison.sweep) build(loaded.read, spec);
+    for (const RunSpec& spec : comparison.sweep) build_run(loaded, spec);
     if (!comparison.sweep.empty()) checked.runs.push_back(fmt::format("uplift compare: stiffness sweep, {} runs", comparison.sweep.size()));
   }
   checked.found = find(loaded.read, own.front(), checked.built);

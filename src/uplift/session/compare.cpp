@@ -15,7 +15,7 @@ void run_all(const LoadedCase& loaded, const Control& control, const std::vector
   for (const RunSpec& spec : specs) {
     if (control.is_stopped()) return;
     results.specs.push_back(spec);
-    results.built.push_back(build_run(loaded, spec, control));
+    results.built.push_back(build_run(loaded, spec));
     if (results.runs.empty()) results.warnings = warnings(loaded.read, spec, results.built.back());
     const std::string label = fmt::format("[{}/{}] {}", before + results.runs.size() + 1, total, spec.name);
     results.runs.push_back(run_built(loaded, results.built.back(), label, control, false, with_fields ? &results.field_lists : nullptr));
@@ -54,7 +54,7 @@ void bring_forward(const LoadedCase& loaded, const Control& control, std::size_t
     results.runs[i + pictures.size()].frames.clear();
     if (!pictures[i] || control.is_stopped()) continue;
     results.specs[i].pictures = true;
-    results.built[i] = build_run(loaded, results.specs[i], control);
+    results.built[i] = build_run(loaded, results.specs[i]);
     RunResult again =
         run_built(loaded, results.built[i], fmt::format("[again, for its frames] {}", results.specs[i].name), control, false, nullptr);
     if (again.status != RunStatus::interrupted) results.runs[i] = std::move(again);

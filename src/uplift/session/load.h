@@ -1,13 +1,15 @@
 #pragma once
+#include <map>
 #include <string>
 
 #include "uplift/case/case.h"
 #include "uplift/io/results/summary.h"
+#include "uplift/laws/external.h"
 
 namespace uplift {
 
 /// Where mesh files that need the HDF5 library (MED) are read: in a child process, which a damaged file cannot take down with it
-/// (programs), or in this process, one file at a time (libraries must not fork).
+/// (programs), or in this process (libraries must not fork).
 enum class MeshFiles { isolated, in_process };
 
 /// A case file, read and checked, with its provenance.
@@ -15,7 +17,8 @@ struct LoadedCase {
   Raw raw;  // the file as it stands
   Case read;
   Provenance from;
-  MeshReader read_mesh;  // reads the mesh of a changed case
+  MeshReader read_mesh;                                   // reads the mesh of a changed case
+  std::map<std::string, ExternalFunction> external_laws;  // of the caller, by name
 };
 
 /// Reads and checks a case file, or the case.toml of a folder. `command` is recorded in the results. Throws InputError.

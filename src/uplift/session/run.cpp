@@ -35,7 +35,7 @@ class CompanionRuns {
     Control control = control_;
     if (silent) control.watch = {};
     for (const RunSpec& spec : specs_) {
-      built_.push_back(build_run(loaded_, spec, control));
+      built_.push_back(build_run(loaded_, spec));
       runs_.push_back(run_built(loaded_, built_.back(), spec.label, control, false, nullptr));
       free_matrices(built_.back());
     }
@@ -59,7 +59,7 @@ Results run_case(const LoadedCase& loaded, const Control& control) {
     if (control.is_stopped() && !results.runs.empty()) break;
     const bool first = results.runs.empty();
     results.specs.push_back(spec);
-    results.built.push_back(build_run(loaded, spec, control));
+    results.built.push_back(build_run(loaded, spec));
     if (first) companions.begin(results.built.front());
     if (first) results.warnings = warnings(loaded.read, spec, results.built.front());
     results.runs.push_back(run_built(loaded, results.built.back(), spec.label, control, first, &results.field_lists));

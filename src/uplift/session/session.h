@@ -14,13 +14,11 @@ namespace uplift {
 
 /// How the caller follows and stops an analysis. Every member may be empty.
 struct Control {
-  std::function<Watch(const std::string& label)> watch;   // makes what is told of the progress of one run
-  std::function<bool()> stopped;                          // asked between runs, and during runs that are not watched
-  std::function<void(BuiltCase&)> adapt;                  // connects the caller's interface laws to a model
-  std::function<bool(const std::string&)> external_laws;  // whether the caller has the law of this name
-  Observe observe;                                        // sees the steps of the case's own run
-  ResultFolder* folder = nullptr;                         // where fields are written; null: none are written
-  bool step_check = true;                                 // run_case: the companion run with twice the step
+  std::function<Watch(const std::string& label)> watch;  // makes what is told of the progress of one run
+  std::function<bool()> stopped;                         // asked between runs, and during runs that are not watched
+  Observe observe;                                       // sees the steps of the case's own run
+  ResultFolder* folder = nullptr;                        // where fields are written; null: none are written
+  bool step_check = true;                                // run_case: the companion run with twice the step
   bool is_stopped() const { return stopped && stopped(); }
 };
 

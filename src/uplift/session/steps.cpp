@@ -2,28 +2,36 @@
 
 #include "uplift/base/text.h"
 #include "uplift/io/fields/run.h"
-#include "uplift/laws/external.h"
 
 namespace uplift {
 
-void check_external_laws(const BuiltCase& built, const Control& control) {
-  for (const Values* behaviour : built.behaviours) {
-    if (!is_external(*behaviour)) continue;
-    const std::string& name = behaviour->text("name");
-    if (!control.external_laws || !control.external_laws(name))
-      throw InputError(behaviour->where("name"), behaviour->path("name"), "the name of a law that the calling program has connected",
-                       in_quotes(name) + " (laws of type \"external\" are for users of the library)");
-    for (const Stage& stage : built.plan.stages)
-      if (stage.type == Stage::Type::dynamics && stage.scheme.filtered())
-        throw InputError(behaviour->where(), behaviour->path(), "another scheme than energy_decay with a law of type \"external\"",
-                         "energy_decay");
-  }
+namespace {
+
+const ExternalFunction& function_of(const LoadedCase& loaded, const Values& behaviour) {
+  const auto found = loaded.external_laws.find(behaviour.text("name"));
+  if (found == loaded.external_laws.end())
+    throw InputError(behaviour.where("name"), behaviour.path("name"), "the name of a law that the calling program has connected",
+                     in_quotes(behaviour.text("name")) + " (laws of type \"external\" are for users of the library)");
+  return found->second;
 }
 
-BuiltCase build_run(const LoadedCase& loaded, const RunSpec& spec, const Control& control) {
+void refuse_filtered(const RunPlan& plan, const Values& behaviour) {
+  for (const Stage& stage : plan.stages)
+    if (stage.type == Stage::Type::dynamics && stage.scheme.filtered())
+      throw InputError(behaviour.where(), behaviour.path(), "another scheme than energy_decay with a law of type \"external\"",
+                       "energy_decay");
+}
+
+}  // namespace
+
+BuiltCase build_run(const LoadedCase& loaded, const RunSpec& spec) {
   BuiltCase built = build(loaded.read, spec);
-  check_external_laws(built, control);
-  if (control.adapt) control.adapt(built);
+  for (std::size_t k = 0; k < built.model.interfaces.size(); ++k) {
+    const Values& behaviour = *built.behaviours[k];
+    if (!is_external(behaviour)) continue;
+    refuse_filtered(built.plan, behaviour);
+    built.model.interfaces[k].law = external_law(external_info(behaviour), function_of(loaded, behaviour));
+  }
   return built;
 }
 

@@ -1,26 +1,34 @@
 #include <thread>
 
 #include "uplift/io/results/trust_json.h"
-#include "uplift/laws/external.h"
 #include "uplift/linear/memory.h"
 #include "uplift/session/steps.h"
 
 namespace uplift {
+
+namespace {
+
+/// The repetitions are read from the text of the case, which does not contain the functions of the caller.
+void refuse_external(const BuiltCase& built) {
+  for (const Values* behaviour : built.behaviours)
+    if (is_external(*behaviour))
+      throw InputError(behaviour->where(), behaviour->path(), "a law of the program for a statement of reliability",
+                       "a law of type \"external\"");
+}
+
+}  // namespace
 
 Results trust_case(const LoadedCase& loaded, const Control& control) {
   Results results;
   for (const RunSpec& spec : runs_of_case(loaded.read)) {
     const bool first = results.runs.empty();
     results.specs.push_back(spec);
-    results.built.push_back(build_run(loaded, spec, control));
+    results.built.push_back(build_run(loaded, spec));
+    if (first) refuse_external(results.built.front());
     if (first) results.warnings = warnings(loaded.read, spec, results.built.front());
     results.runs.push_back(run_built(loaded, results.built.back(), spec.label, control, first, nullptr));
   }
   const BuiltCase& built = results.built.front();
-  for (const Values* behaviour : built.behaviours)
-    if (is_external(*behaviour))
-      throw InputError(behaviour->where(), behaviour->path(), "a law of the program for a statement of reliability",
-                       "a law of type \"external\"");
   const RunResult* bonded = results.runs.size() > 1 ? &results.runs[1] : nullptr;
   const int threads = runs_side_by_side(static_cast<int>(std::thread::hardware_concurrency()));
   results.trust = trust(loaded.raw, loaded.read, loaded.read_mesh, {built, results.runs.front(), bonded}, threads,

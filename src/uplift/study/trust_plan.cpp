@@ -4,6 +4,8 @@
 
 #include <algorithm>
 
+#include "uplift/laws/tangential.h"
+
 namespace uplift {
 namespace {
 
@@ -173,7 +175,7 @@ class Planner {
       }
       for (const char* key : {"K_n", "K_t", "friction", "cohesion"})
         if (has_number(law, key)) edits.push_back({path + "." + key, law.number(key)});
-      edits.push_back({path + ".tangential", law.text("tangential")});
+      edits.push_back({path + ".tangential", tangential_kind(law)});
       label = fmt::format("{} instead of {}", other, type);
     }
     add("other_law", "method", label, std::move(edits));

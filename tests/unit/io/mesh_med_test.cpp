@@ -39,7 +39,7 @@ class RawFile {
   RawFile()
       : path_(fs::temp_directory_path() /
               ("uplift-raw-" + std::to_string(::getpid()) + "-" + std::to_string(reinterpret_cast<std::uintptr_t>(this)) + ".med")) {
-    const Hdf5Quiet quiet;
+    const Hdf5Call call;
     const hid_t access = H5Pcreate(H5P_FILE_ACCESS);
     H5Pset_libver_bounds(access, H5F_LIBVER_V18, H5F_LIBVER_V18);  // as MED does
     H5Pset_file_locking(access, false, true);

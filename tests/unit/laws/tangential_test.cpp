@@ -32,11 +32,11 @@ void expect_refusal(const std::string& law, const std::vector<Parameter>& parame
 }
 
 TEST(Tangential, ParametersThatWouldDoNothingAreRefused) {
-  expect_refusal("springs", {{"K_n", 1e9}, {"K_t", 1e9}},
+  expect_refusal("springs", {{"K_n", 1e9}, {"K_t", 1e9}, {"tangential", "none"}},
                  "case.toml:7: law.K_t: wanted no K_t here: it belongs to tangential = \"bonded\", \"open_free\" or \"coulomb\", found "
                  "tangential = \"none\"");
   expect_refusal(
-      "elastic", {{"K_n", 1e9}, {"friction", 0.5}},
+      "elastic", {{"K_n", 1e9}, {"friction", 0.5}, {"tangential", "bonded"}},
       "case.toml:7: law.friction: wanted no friction here: it belongs to tangential = \"coulomb\", found tangential = \"bonded\"");
   expect_refusal(
       "springs", {{"K_n", 1e9}, {"tangential", "open_free"}, {"cohesion", 1e3}},
@@ -44,6 +44,19 @@ TEST(Tangential, ParametersThatWouldDoNothingAreRefused) {
   expect_refusal(
       "springs", {{"K_n", 1e9}, {"tangential", "coulomb"}},
       "case.toml:7: law.friction: wanted a number (1): tangential = \"coulomb\" needs its coefficient of friction, found nothing");
+}
+
+TEST(Tangential, FollowsWhatIsGiven) {
+  // two points that slip apart by 1 mm under a pressure of K_n times 0.1 mm
+  const auto end = [](const std::vector<Parameter>& parameters) {
+    Probe one(make_law("springs", parameters), 2);
+    one.mean({0, -1e-4}, {1e-3, -1e-4});
+    return one.end[0];
+  };
+  EXPECT_EQ(end({{"K_n", K_n}}), 0);
+  EXPECT_DOUBLE_EQ(end({{"K_n", K_n}, {"K_t", K_t}}), K_t * 1e-3);
+  EXPECT_DOUBLE_EQ(end({{"K_n", K_n}, {"K_t", K_t}, {"friction", mu}}), mu * K_n * 1e-4);
+  EXPECT_DOUBLE_EQ(end({{"K_n", K_n}, {"friction", mu}}), mu * K_n * 1e-4);
 }
 
 TEST(Tangential, NoneGivesNoShear) {

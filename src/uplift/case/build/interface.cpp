@@ -7,6 +7,7 @@
 #include "uplift/case/build/water.h"
 #include "uplift/elements/discrete.h"
 #include "uplift/interface/facets.h"
+#include "uplift/laws/tangential.h"
 
 // Where the joints of an interface stand, and the elastic bed under a footing.
 namespace uplift {
@@ -171,7 +172,7 @@ Joint with_points(const Joint& joint, std::vector<JointPoint> points) {
 }
 
 int components_of(const Values& behaviour, Space space) {
-  if (behaviour.items().contains("tangential")) return behaviour.text("tangential") == "none" ? 1 : space.dimension;
+  if (behaviour.items().contains("tangential")) return tangential_kind(behaviour) == "none" ? 1 : space.dimension;
   return behaviour.type() == "unilateral" ? 1 : space.dimension;
 }
 

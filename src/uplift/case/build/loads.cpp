@@ -103,18 +103,24 @@ Vec3 resultant_of_load(const Values& load, const Model& model) {
   return sum;
 }
 
+Vec3 gravity_of(const Values& root, Space space) {
+  const Values* gravity = table_if(root, "gravity");
+  if (gravity == nullptr) return Vec3::Zero();
+  if (gravity->has("acceleration")) return vector_of(*gravity, "acceleration", space);
+  return -9.81 * space.axis(space.up());
+}
+
 void add_loads(const Values& root, ModelBuilder& builder, const CaseNames& names) {
   for (const Values& load : root.tables("load")) {
     std::vector<std::pair<int, double>> pattern =
         first_of_two(load, "node", "group") ? node_load(load, names.node(load, "node"), names.space) : surface_load(load, names);
     builder.add_load(name_of_load(load), std::move(pattern), names.function(load), !load.has("function"), load.where());
   }
-  if (const Values* gravity = table_if(root, "gravity"); gravity && gravity->has("acceleration"))
-    builder.set_gravity(vector_of(*gravity, "acceleration", names.space), gravity->where());
+  if (const Values* gravity = table_if(root, "gravity")) builder.set_gravity(gravity_of(root, names.space), gravity->where());
   for (const Values& ground : root.tables("ground_acceleration")) {
     const std::string name = ground.has("name") ? ground.text("name") : "ground acceleration";
-    builder.add_ground_acceleration(vector_of(ground, "direction", names.space),
-                                    scaled(ground.number("amplitude"), names.function(ground, MotionKind::acceleration)), name,
+    const Vec3 direction = ground.has("direction") ? vector_of(ground, "direction", names.space) : names.space.axis(0);
+    builder.add_ground_acceleration(direction, scaled(ground.number("amplitude"), names.function(ground, MotionKind::acceleration)), name,
                                     ground.where());
   }
 }

@@ -73,6 +73,8 @@ void add_structure(const Values& root, ModelBuilder& builder, CaseNames& names, 
 void add_supports(const Values& root, ModelBuilder& builder, const CaseNames& names, bool at_rest);
 /// Whether supports hold in static stages alone.
 bool any_released(const Values& root);
+/// Acceleration of the weight [m/s2]; zero without gravity.
+Vec3 gravity_of(const Values& root, Space space);
 void add_loads(const Values& root, ModelBuilder& builder, const CaseNames& names);
 /// Initial displacements and velocities of the free unknowns; after the model is made.
 void add_initial(const Values& root, const CaseNames& names, BuiltCase& built);

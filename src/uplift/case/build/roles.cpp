@@ -72,8 +72,7 @@ std::vector<Joint> joints_of(const Values& table, const std::vector<FacePair>& o
 }  // namespace
 
 Vec3 upward(const Values& root, Space space) {
-  const Values* gravity = table_if(root, "gravity");
-  const Vec3 down = gravity && gravity->has("acceleration") ? Vec3(vector_of(*gravity, "acceleration", space)) : Vec3(Vec3::Zero());
+  const Vec3 down = gravity_of(root, space);
   return down.norm() > 0 ? Vec3(-down.normalized()) : space.axis(space.up());
 }
 

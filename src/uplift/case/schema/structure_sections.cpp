@@ -98,7 +98,7 @@ const Section& ground_section() {
   static const Section s{
       "ground_acceleration", "acceleration of the whole ground: inertia forces -M r a(t) in the frame that moves with it",
       Fields{
-          text("name", "name").optional(), vector("direction", "1", "direction"),
+          text("name", "name").optional(), vector("direction", "1", "direction; absent: the x axis").optional(),
           number("amplitude", "m/s2", "acceleration that the function multiplies; of a record, which is an acceleration itself, a factor")
               .standard(1.0),
           text("function", "name of the function of time")}};
@@ -106,8 +106,9 @@ const Section& ground_section() {
 }
 
 const Section& gravity_section() {
-  static const Section s{"gravity", "weight of all masses, applied by the static stages",
-                         Fields{vector("acceleration", "m/s2", "for example [0, \"-9.81 m/s2\"]; in space [0, 0, \"-9.81 m/s2\"]")}};
+  static const Section s{
+      "gravity", "weight of all masses, applied by the static stages",
+      Fields{vector("acceleration", "m/s2", "for example [0, \"-9.81 m/s2\"]; absent: 9.81 m/s2 downwards (y, in space z)").optional()}};
   return s;
 }
 

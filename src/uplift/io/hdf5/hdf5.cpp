@@ -85,8 +85,13 @@ Hdf5Id& Hdf5Id::operator=(Hdf5Id&& other) noexcept {
 
 Hdf5Id::~Hdf5Id() {
   if (id_ < 0) return;
-  const Hdf5Quiet quiet;  // a damaged file may fail to close too
+  const Hdf5Call call;  // a damaged file may fail to close too
   release_(id_);
+}
+
+std::recursive_mutex& Hdf5Call::mutex() {
+  static std::recursive_mutex mutex;
+  return mutex;
 }
 
 std::string hdf5_reason() {
@@ -104,7 +109,7 @@ Hdf5Id hdf5_access(bool in_memory) {
 }
 
 Hdf5Reader Hdf5Reader::open(const std::string& path) {
-  const Hdf5Quiet quiet;
+  const Hdf5Call call;
   const Hdf5Id access = hdf5_access(false);
   std::error_code error;
   const auto bytes = std::filesystem::file_size(path, error);
@@ -115,7 +120,7 @@ Hdf5Reader Hdf5Reader::open(const std::string& path) {
 }
 
 Hdf5Reader Hdf5Reader::from_memory(std::string_view bytes, const std::string& name) {
-  const Hdf5Quiet quiet;
+  const Hdf5Call call;
   const Hdf5Id access = hdf5_access(true);
   // HDF5 copies the image; it takes a pointer that is not const only for its callbacks.
   H5Pset_file_image(access.get(), const_cast<char*>(bytes.data()), bytes.size());
@@ -129,7 +134,7 @@ void Hdf5Reader::fail(const std::string& object, const std::string& wanted, cons
 }
 
 bool Hdf5Reader::has(const std::string& path) const {
-  const Hdf5Quiet quiet;
+  const Hdf5Call call;
   for (std::size_t at = 0; at != path.npos;) {
     at = path.find('/', at + 1);
     const std::string part = path.substr(0, at);
@@ -149,7 +154,7 @@ Hdf5Id Hdf5Reader::object(const std::string& path) const {
 }
 
 std::vector<std::string> Hdf5Reader::children(const std::string& group) const {
-  const Hdf5Quiet quiet;
+  const Hdf5Call call;
   const Hdf5Id id = object(group);
   std::vector<std::string> names;
   if (H5Iget_type(id.get()) != H5I_GROUP) fail(group, "a group", "something else");
@@ -160,7 +165,7 @@ std::vector<std::string> Hdf5Reader::children(const std::string& group) const {
 }
 
 std::optional<std::int64_t> Hdf5Reader::integer_attribute(const std::string& path, const std::string& name) const {
-  const Hdf5Quiet quiet;
+  const Hdf5Call call;
   const Hdf5Id id = object(path);
   if (H5Aexists(id.get(), name.c_str()) <= 0) return std::nullopt;
   const Hdf5Id attribute(H5Aopen(id.get(), name.c_str(), H5P_DEFAULT), H5Aclose);
@@ -210,7 +215,7 @@ std::uint64_t Hdf5Reader::items(const std::string& path, const Hdf5Id& data) con
 }
 
 std::vector<std::int64_t> Hdf5Reader::shape(const std::string& path) const {
-  const Hdf5Quiet quiet;
+  const Hdf5Call call;
   const Hdf5Id id = data(path), space(H5Dget_space(id.get()), H5Sclose);
   std::array<hsize_t, H5S_MAX_RANK> lengths{};
   const int rank = H5Sget_simple_extent_dims(space.get(), lengths.data(), nullptr);
@@ -223,7 +228,7 @@ void Hdf5Reader::read(const std::string& path, const Hdf5Id& data, std::int64_t 
 }
 
 std::vector<int> Hdf5Reader::integers(const std::string& path) const {
-  const Hdf5Quiet quiet;
+  const Hdf5Call call;
   const Hdf5Id id = data(path), type(H5Dget_type(id.get()), H5Tclose);
   if (!standard_integers(type.get())) fail(path, "integers of 4 or 8 bytes", type_name(type.get()));
   std::vector<int> values(items(path, id));
@@ -232,7 +237,7 @@ std::vector<int> Hdf5Reader::integers(const std::string& path) const {
 }
 
 std::vector<double> Hdf5Reader::numbers(const std::string& path) const {
-  const Hdf5Quiet quiet;
+  const Hdf5Call call;
   const Hdf5Id id = data(path), type(H5Dget_type(id.get()), H5Tclose);
   if (!standard_floats(type.get()) && !standard_integers(type.get())) fail(path, "numbers of 4 or 8 bytes", type_name(type.get()));
   std::vector<double> values(items(path, id));
@@ -241,7 +246,7 @@ std::vector<double> Hdf5Reader::numbers(const std::string& path) const {
 }
 
 std::vector<std::string> Hdf5Reader::texts(const std::string& path) const {
-  const Hdf5Quiet quiet;
+  const Hdf5Call call;
   const Hdf5Id id = data(path), type(H5Dget_type(id.get()), H5Tclose);
   const std::size_t length = H5Tget_size(type.get());
   const H5T_class_t kind = H5Tget_class(type.get());

@@ -6,7 +6,8 @@
 #include <string_view>
 #include <vector>
 
-// HDF5 files by the C library, whose headers only hdf5.cpp and hdf5_write.cpp see. Objects are named by their path ("/ENS_MAA/soil").
+// HDF5 files by the C library, whose headers only hdf5.cpp and write.cpp see. Objects are named by their path ("/ENS_MAA/soil").
+// Several threads may use several files at the same time: their calls wait for each other.
 namespace uplift {
 
 /// An object of the library, released with it. An identifier is not negative.

@@ -8,7 +8,7 @@
 namespace uplift {
 
 Hdf5Writer Hdf5Writer::create(const std::string& path) {
-  const Hdf5Quiet quiet;
+  const Hdf5Call call;
   const Hdf5Id access = hdf5_access(false);
   Hdf5Id file(H5Fcreate(path.c_str(), H5F_ACC_TRUNC, H5P_DEFAULT, access.get()), H5Fclose);
   if (!file.ok()) throw InputError({path, 0}, "", "a file that can be written", hdf5_reason());
@@ -16,7 +16,7 @@ Hdf5Writer Hdf5Writer::create(const std::string& path) {
 }
 
 Hdf5Writer Hdf5Writer::in_memory() {
-  const Hdf5Quiet quiet;
+  const Hdf5Call call;
   const Hdf5Id access = hdf5_access(true);
   const std::string name = "memory" + std::to_string(access.get()) + ".h5";  // HDF5 takes files of one name for one file
   Hdf5Id file(H5Fcreate(name.c_str(), H5F_ACC_TRUNC, H5P_DEFAULT, access.get()), H5Fclose);
@@ -29,7 +29,7 @@ void Hdf5Writer::fail(const std::string& object) const {
 }
 
 void Hdf5Writer::group(const std::string& path) {
-  const Hdf5Quiet quiet;
+  const Hdf5Call call;
   for (std::size_t at = 0; at != path.npos;) {
     at = path.find('/', at + 1);
     const std::string part = path.substr(0, at);
@@ -45,7 +45,7 @@ void Hdf5Writer::write(const std::string& path, std::int64_t file_type, std::int
   [[maybe_unused]] const hsize_t product = std::accumulate(lengths.begin(), lengths.end(), hsize_t{1}, std::multiplies<>());
   assert(product == count && "the shape of a data set");
   group(path.substr(0, path.rfind('/')));
-  const Hdf5Quiet quiet;
+  const Hdf5Call call;
   assert(H5Lexists(file_.get(), path.c_str(), H5P_DEFAULT) <= 0 && "a data set is written once");
   const Hdf5Id space(H5Screate_simple(static_cast<int>(lengths.size()), lengths.data(), nullptr), H5Sclose);
   const Hdf5Id data(H5Dcreate2(file_.get(), path.c_str(), file_type, space.get(), H5P_DEFAULT, H5P_DEFAULT, H5P_DEFAULT), H5Dclose);
@@ -53,12 +53,15 @@ void Hdf5Writer::write(const std::string& path, std::int64_t file_type, std::int
 }
 
 void Hdf5Writer::numbers(const std::string& data, std::span<const double> values, std::span<const std::int64_t> shape) {
+  const Hdf5Call call;
   write(data, H5T_IEEE_F64LE, H5T_NATIVE_DOUBLE, values.data(), values.size(), shape);
 }
 void Hdf5Writer::numbers(const std::string& data, std::span<const float> values, std::span<const std::int64_t> shape) {
+  const Hdf5Call call;
   write(data, H5T_IEEE_F32LE, H5T_NATIVE_FLOAT, values.data(), values.size(), shape);
 }
 void Hdf5Writer::integers(const std::string& data, std::span<const int> values, std::span<const std::int64_t> shape) {
+  const Hdf5Call call;
   write(data, H5T_STD_I32LE, H5T_NATIVE_INT, values.data(), values.size(), shape);
 }
 
@@ -71,28 +74,28 @@ void Hdf5Writer::attach(const std::string& object, const std::string& name, std:
 }
 
 void Hdf5Writer::attribute(const std::string& object, const std::string& name, int value) {
-  const Hdf5Quiet quiet;
+  const Hdf5Call call;
   attach(object, name, H5T_STD_I32LE, H5T_NATIVE_INT, &value);
 }
 void Hdf5Writer::attribute(const std::string& object, const std::string& name, double value) {
-  const Hdf5Quiet quiet;
+  const Hdf5Call call;
   attach(object, name, H5T_IEEE_F64LE, H5T_NATIVE_DOUBLE, &value);
 }
 void Hdf5Writer::attribute(const std::string& object, const std::string& name, std::string_view text) {
-  const Hdf5Quiet quiet;
+  const Hdf5Call call;
   const Hdf5Id type(H5Tcopy(H5T_C_S1), H5Tclose);
   H5Tset_size(type.get(), text.size() + 1);
   attach(object, name, type.get(), type.get(), std::string(text).c_str());
 }
 
 void Hdf5Writer::flush() {
-  const Hdf5Quiet quiet;
+  const Hdf5Call call;
   if (H5Fflush(file_.get(), H5F_SCOPE_GLOBAL) < 0) fail("");
 }
 
 std::string Hdf5Writer::image() {
   flush();
-  const Hdf5Quiet quiet;
+  const Hdf5Call call;
   const ssize_t size = H5Fget_file_image(file_.get(), nullptr, 0);
   std::string bytes(size > 0 ? static_cast<std::size_t>(size) : 0, '\0');
   if (size <= 0 || H5Fget_file_image(file_.get(), bytes.data(), bytes.size()) != size) fail("");

@@ -2,7 +2,6 @@
 
 #include <filesystem>
 #include <functional>
-#include <mutex>
 
 #include "uplift/base/error.h"
 #include "uplift/io/hdf5/child.h"
@@ -38,8 +37,6 @@ Mesh read_med_file(const std::string& path, const std::string& mesh) {
 }
 
 Mesh read_med_here(const std::string& path, const std::string& mesh) {
-  static std::mutex one_at_a_time;  // Debian's HDF5 is not safe in threads
-  const std::lock_guard lock(one_at_a_time);
   return read_med(Hdf5Reader::open(path), mesh);
 }
 

@@ -13,7 +13,7 @@ Mesh read_med_file(const std::string& path, const std::string& mesh = {});
 /// The same for a file in memory; `name` stands for it in messages.
 Mesh read_med_bytes(std::string_view bytes, const std::string& name, const std::string& mesh = {});
 
-/// The same in this process, for libraries, which must not fork: one file at a time. A damaged file may end the process.
+/// The same in this process, for libraries, which must not fork. A damaged file may end the process.
 Mesh read_med_here(const std::string& path, const std::string& mesh = {});
 
 }  // namespace uplift
