@@ -75,7 +75,7 @@ UPLIFT_API int uplift_case_modes(const uplift_case* each, int count, char** json
 
 /* One step of all points of an interface, from the openings `from` to the openings `to`. Component c of point i is entry [c * points + i],
  * the normal component is the last one; memory variable h of point i is entry [h * points + i]. `step` is the length of the step in
- * seconds, 0 in statics. The arrays to be filled:
+ * seconds, 0 in statics. The arrays to be filled are zero on entry, except the memory, which is the old one:
  *   traction    Pa, at the end of the step
  *   slope       Pa/m, d traction_r / d opening_c at [(r * components + c) * points + i]
  *   memory      at the end of the step; zero at the beginning of the analysis
@@ -160,6 +160,13 @@ UPLIFT_API int uplift_results_column(const uplift_results* results, size_t run, 
 UPLIFT_API int uplift_results_floor(const uplift_results* results, size_t run, size_t index, double* step, uplift_column* column);
 /* Frames of the animation: all displacements [m, rad] of the model at an instant. */
 UPLIFT_API int uplift_results_frame(const uplift_results* results, size_t run, size_t index, double* time, uplift_column* column);
+
+/* ---- the interface problem of one step ---- */
+
+/* Solves an interface problem alone: the content of a file problem_NAME.json, which is stored when a step fails, or a text of the caller in
+ * this format (docs/guide/library.md). `method` is the name of a contact method; null: all of them. The JSON document is that of
+ * `uplift replay --json`: convergence, iterations, contact residual, openings [m] and forces [N]. */
+UPLIFT_API int uplift_problem_solve(const char* problem, const char* method, char** json, uplift_error* error);
 
 /* ---- motions ---- */
 

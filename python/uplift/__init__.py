@@ -18,7 +18,7 @@ from ._library import InputError, OutputError, UpliftError, library
 from ._march import March, march
 from ._motion import Motion, motion
 from ._parts import Part
-from ._results import Comparison, Floor, Histories, Run, Trust, Verdict, VerdictNumber, psa
+from ._results import Comparison, Floor, Histories, Run, Trust, Verdict, VerdictNumber, psa, solve_problem
 from ._watch import StepView
 from .laws import bilinear, coulomb, elastic, exponential, sdm, springs, unilateral
 

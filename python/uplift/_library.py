@@ -118,6 +118,7 @@ _signatures: List[Tuple[str, Any, List[Any]]] = [
     ("uplift_results_column", c_int, [_handle, c_size_t, c_size_t, POINTER(Column)]),
     ("uplift_results_floor", c_int, [_handle, c_size_t, c_size_t, _numbers, POINTER(Column)]),
     ("uplift_results_frame", c_int, [_handle, c_size_t, c_size_t, _numbers, POINTER(Column)]),
+    ("uplift_problem_solve", c_int, [c_char_p, c_char_p, _own_text, _error]),
     ("uplift_spectrum", c_int, [_numbers, c_size_t, c_double, c_double, _numbers, c_size_t, _numbers, _error]),
 ]
 

@@ -176,6 +176,18 @@ def psa(
     return at, made
 
 
+def solve_problem(problem: Union[str, Mapping[str, Any]], method: Optional[str] = None) -> List[Record]:
+    """Solves the interface problem of one step alone, by one contact method or by all of them.
+
+    `problem` is the content of a file `problem_NAME.json`, as text or as tables, or a problem of one's own in this format (guide, "C and
+    C++"). Each answer has `method`, `converged`, `iterations`, `residual`, `opening` [m], `force` [N] and `why`. Raises InputError.
+    """
+    text = problem if isinstance(problem, str) else json.dumps(problem)
+    given = None if method is None else method.encode()
+    answers = json.loads(_library.text_of("uplift_problem_solve", text.encode(), given))["methods"]
+    return [Record(each) for each in answers]
+
+
 class Histories(Mapping[str, "Array"]):
     """Histories of one run by name, as NumPy views; `time` is their common abscissa."""
 

@@ -1,7 +1,9 @@
 """Installs the program and the library, and builds an outside project against both trees: test_install.py PROGRAM."""
 
+import json
 import os
 import pathlib
+import re
 import subprocess
 import sys
 import tempfile
@@ -40,6 +42,34 @@ class Install(unittest.TestCase):
 
     def test_project_against_the_build_tree(self):
         self.build_outside(BUILD)
+
+    def test_examples_in_cpp(self):
+        made = pathlib.Path(self.folder.name) / "cpp"
+        run("cmake", "-S", ROOT / "examples/cpp", "-B", made, f"-Duplift_DIR={BUILD}", "-DCMAKE_CXX_FLAGS=-Wall -Wextra -Wpedantic -Werror")
+        run("cmake", "--build", made)
+        self.assertRegex(run(made / "1_own_law"), r"largest moment 5\.\d+e\+07 N m, uplifted up to 9\d %")
+        document, closed_form = run(made / "2_interface_problem").split("closed form: ")
+        lagrange = json.loads(document)["methods"][-1]
+        self.assertEqual(lagrange["method"], "lagrange")
+        force, *openings = (float(each) for each in re.findall(r"[-+.e\d]*\d", closed_form.replace("openings 0,", "")))
+        self.assertAlmostEqual(lagrange["force"][0] / force, 1, places=5)
+        for found, expected in zip(lagrange["opening"][1:], openings, strict=True):
+            self.assertAlmostEqual(found / expected, 1, places=5)
+        self.assertRegex(run(made / "3_marching_loop", ROOT / "examples/05_bridge_pier"), r"lifts off at 1\.5\d\d s\nit is closed again")
+
+    def test_blocks_of_the_guide(self):
+        page = (ROOT / "docs/guide/library.md").read_text()
+        flags = [f"-I{self.prefix}/include", f"{BUILD}/libuplift.so", f"-Wl,-rpath,{BUILD}", "-Wall", "-Werror", "-pthread"]
+        for language, compiler, head in (("c", ["gcc", "-std=c99"], "#include <stdio.h>\n#include <uplift.h>\n"),
+                                         ("cpp", ["g++", "-std=c++17"], "#include <iostream>\n#include <uplift.hpp>\n")):
+            blocks = re.findall(rf"^```{language}\n(.*?)^```", page, re.M | re.S)
+            self.assertEqual(len(blocks), 1)
+            source = pathlib.Path(self.folder.name) / f"block.{language}"
+            source.write_text(head + "int main() {\n" + blocks[0] + "return 0;\n}\n")
+            run(*compiler, source, *flags, "-o", source.with_suffix(""))
+            out = run(source.with_suffix(""), cwd=ROOT)
+            if language == "cpp":
+                self.assertIn("underside.moment [N m]", out)
 
     def test_pkg_config(self):
         pc = next(self.prefix.rglob("uplift.pc")).parent

@@ -158,6 +158,20 @@ class Runs(unittest.TestCase):
         with self.assertRaisesRegex(ValueError, "unknown variant"):
             up.load(ROOT / "examples/05_bridge_pier").compare("sprngs")
 
+    def test_an_interface_problem_alone(self):
+        # a mass point on a unilateral support: force = gap / F where it would penetrate
+        problem = {"format": "uplift interface problem 1", "factor": [[1e-4]], "free_opening": [-2e-3],
+                   "blocks": [{"name": "a", "points": 1, "components": 1, "area": [1], "behaviour": {"type": "unilateral"}}]}
+        answer, = up.solve_problem(problem, "lagrange")
+        self.assertTrue(answer.converged)
+        self.assertAlmostEqual(answer.force[0] / (-2e-3 / 1e-8), 1, places=12)
+        self.assertEqual([each.method for each in up.solve_problem(problem)], ["newton", "penalty", "augmented_lagrangian", "lagrange"])
+        with self.assertRaisesRegex(up.InputError, "lagrange"):
+            up.solve_problem(problem, "lagrnge")
+        for damaged in ("", "{", "[]", '{"format": 3}', json.dumps({**problem, "factor": []}), json.dumps({**problem, "blocks": []})):
+            with self.assertRaises(up.InputError):
+                up.solve_problem(damaged)
+
     def test_formulations_are_compared_by_name(self):
         law = up.springs(K_n=K, K_t=SHEAR, friction=0.7)
         compared = pier(law, "4 s").compare("springs", "lagrange", "sdm", half={"step": "1 ms"}, soft=up.springs(K_n=K / 10, K_t=SHEAR))

@@ -20,6 +20,7 @@
 #include "uplift/linear/blas.h"
 #include "uplift/motion/spectrum.h"
 #include "uplift/session/check.h"
+#include "uplift/session/replay.h"
 #include "uplift/session/session.h"
 
 // The C interface: translates handles, texts and exceptions, and computes nothing.
@@ -354,6 +355,16 @@ int uplift_results_frame(const uplift_results* results, size_t run, size_t index
   *time = frame.time;
   *column = {"displacement", "m, rad", frame.displacement.data(), static_cast<size_t>(frame.displacement.size())};
   return 1;
+}
+
+int uplift_problem_solve(const char* problem, const char* method, char** json, uplift_error* error) {
+  return guarded(error, [&] {
+    const SingleThreadBlas blas;
+    const StoredProblem stored = load_problem(needed(problem, "problem"), "interface problem");
+    if (method != nullptr && *method == '\0') throw BadArgument("\"method\" is empty, expected the name of a contact method or null");
+    const std::vector<Replay> answers = replay_problem(stored.problem, method != nullptr ? method : "", {"method", 0});
+    *needed(json, "json") = copy_of(replay_json(stored.reason, answers));
+  });
 }
 
 int uplift_spectrum(const double* acceleration, size_t length, double step, double damping, const double* frequencies, size_t count,

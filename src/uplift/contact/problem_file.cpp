@@ -9,7 +9,8 @@
 //   format "uplift interface problem 1", reason, average, scale, step [s], factor (rows of C), shift, free_opening, from, old, and blocks:
 //   (with the scheme of filtered energy decay: filter_gain, filter_coefficient [Pa/m], filter_lag [m])
 //   name, points, components, area, behaviour {type, parameters}, and substitute {stiffness [Pa/m], memory} where a method had put a law in
-//   the place of the cone. Doubles are written so that they read back to the same bits; numbers that
+//   the place of the cone. Only format, factor, free_opening and blocks are needed: without `scale` it is 1, without `average` false, and
+//   the others are zero or empty. Doubles are written so that they read back to the same bits; numbers that
 //   are not finite (a failed step may hold some) are the words "nan", "inf", "-inf".
 namespace uplift {
 namespace {
@@ -81,7 +82,9 @@ class Reader {
     for (std::size_t i = 0; i < value.size(); ++i) result.push_back(number(value[i], path + "[" + std::to_string(i) + "]"));
     return result;
   }
+  /// Zeros where the key is left out.
   Vector vector(const char* key, std::size_t size) const {
+    if (!json_.contains(key)) return Vector::Zero(static_cast<Index>(size));
     const std::vector<double> list = numbers(at(json_, "", key), key);
     if (list.size() != size) refuse(key, std::to_string(size) + " numbers", std::to_string(list.size()));
     return ConstMap(list.data(), static_cast<Index>(list.size()));
@@ -149,18 +152,20 @@ class Reader {
   StoredProblem problem() const {
     if (!json_.is_object()) refuse("", "a JSON object", json_.type_name());
     if (const std::string found = text(at(json_, "", "format"), "format"); found != format_name) refuse("format", format_name, found);
+    check_keys();
     StoredProblem stored;
-    stored.reason = text(at(json_, "", "reason"), "reason");
+    if (json_.contains("reason")) stored.reason = text(json_["reason"], "reason");
     const Json& blocks = at(json_, "", "blocks");
     if (!blocks.is_array() || blocks.empty()) refuse("blocks", "a list of blocks", blocks.dump().substr(0, 40));
     for (std::size_t b = 0; b < blocks.size(); ++b) block(blocks[b], "blocks[" + std::to_string(b) + "]", stored);
     InterfaceProblem& problem = stored.problem;
     const std::size_t rows = static_cast<std::size_t>(problem.blocks.back().first + problem.blocks.back().rows());
-    const Json& average = at(json_, "", "average");
-    if (!average.is_boolean()) refuse("average", "true or false", average.dump());
-    problem.average = average.get<bool>();
-    problem.scale = number(at(json_, "", "scale"), "scale");
-    problem.step = number(at(json_, "", "step"), "step");
+    if (json_.contains("average")) {
+      if (!json_["average"].is_boolean()) refuse("average", "true or false", json_["average"].dump());
+      problem.average = json_["average"].get<bool>();
+    }
+    if (json_.contains("scale")) problem.scale = number(json_["scale"], "scale");
+    if (json_.contains("step")) problem.step = number(json_["step"], "step");
     const Json& factor = at(json_, "", "factor");
     if (!factor.is_array() || factor.size() != rows)
       refuse("factor", "a list of " + std::to_string(rows) + " rows", factor.is_array() ? std::to_string(factor.size()) : factor.dump());
@@ -172,8 +177,8 @@ class Reader {
         refuse(path, std::to_string(problem.factor.cols()) + " numbers", std::to_string(row.size()));
       problem.factor.row(static_cast<Index>(i)) = ConstMap(row.data(), static_cast<Index>(row.size())).transpose();
     }
-    const Json& shift = at(json_, "", "shift");
-    if (!shift.is_array() || !shift.empty()) problem.shift = vector("shift", rows);
+    if (json_.contains("shift") && json_["shift"] != Json::array()) problem.shift = vector("shift", rows);
+    at(json_, "", "free_opening");
     problem.free_opening = vector("free_opening", rows);
     problem.from = vector("from", rows);
     problem.old = vector("old", problem.old.size());
@@ -186,6 +191,26 @@ class Reader {
   }
 
  private:
+  void check_keys() const {
+    static const std::vector<std::string> known{"format",
+                                                "reason",
+                                                "average",
+                                                "scale",
+                                                "step",
+                                                "factor",
+                                                "shift",
+                                                "free_opening",
+                                                "from",
+                                                "old",
+                                                "blocks",
+                                                "filter_gain",
+                                                "filter_coefficient",
+                                                "filter_lag"};
+    for (const auto& [key, value] : json_.items())
+      if (std::find(known.begin(), known.end(), key) == known.end())
+        throw InputError({file_, 0}, key, "a key of an interface problem", "\"" + key + "\"", nearest_name(key, known));
+  }
+
   const std::string& file_;
   const Json& json_;
 };

@@ -223,7 +223,8 @@ TEST(ProblemFile, bad_files_are_refused_with_position) {
   expect("[1, 2]", "a JSON object");
   expect("", "a JSON file");
   expect(support::replaced(good, "problem 1", "problem 9"), "format");
-  expect(support::replaced(good, "\"reason\"", "\"raisin\""), "reason");
+  expect(support::replaced(good, "\"reason\"", "\"reasn\""), "did you mean \"reason\"?");
+  expect(support::replaced(good, "\"factor\"", "\"faktor\""), "did you mean \"factor\"?");
   expect(support::replaced(good, "\"points\":3", "\"points\":0"), "blocks[0].points");
   expect(support::replaced(good, "\"components\":2", "\"components\":4"), "blocks[0].components");
   expect(support::replaced(good, "\"type\":\"coulomb\"", "\"type\":\"colomb\""), "coulomb");
