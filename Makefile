@@ -1,6 +1,6 @@
 # The two commands of the README, and what developers need. `make help` lists them.
 .DEFAULT_GOAL := help
-.PHONY: help run test docs bench build build-tests web format check-format layers tidy asan clean
+.PHONY: help run test docs bench build build-tests portable wheel deb web format check-format layers tidy asan clean
 
 help:              ## this list
 	@grep -E '^[a-z-]+: .*##|^[a-z-]+:  *##' Makefile | sed -E 's/^([a-z-]+):.*## */  make \1\t/' | expand -t 22
@@ -33,6 +33,16 @@ bench:             ## benchmarks: kernels, steps, whole process; figures and lim
 	build/release/bench/bench_soil_block
 	build/release/bench/bench_soil_block space
 	bench/whole_process.py build/release/uplift
+
+portable:
+	@scripts/setup.sh packages
+	scripts/build_portable.sh build/portable
+
+wheel: portable    ## Python wheel for every x86-64 processor: build/packages/*.whl
+	scripts/make_wheel.py build/portable build/packages
+
+deb: portable      ## Debian packages of the committed files, checked by lintian: build/packages/*.deb
+	scripts/make_deb.sh build/portable build/packages
 
 web:               ## rebuild the report page (developers of the page only)
 	cd web && npm ci && npm run check && npm run build

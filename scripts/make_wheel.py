@@ -1,8 +1,14 @@
 #!/usr/bin/env python3
-"""Makes a wheel of the Python package with the library, the program and the libraries that they need: make_wheel.py BUILD FOLDER.
+"""Makes a wheel of the Python package with the library, the program and the libraries that they need: make_wheel.py PORTABLE FOLDER.
 
-One wheel serves every Python from 3.9 on (ctypes). It needs the C library of this system or a newer one, which its name says. The same
-inputs give the same bytes. Needs patchelf.
+PORTABLE is the folder that scripts/build_portable.sh has filled. One wheel serves every Python from 3.9 on (ctypes) and every x86-64
+processor. It needs the C library of this system or a newer one, which its name says. The same inputs give the same bytes. Needs patchelf.
+
+    uplift/bin/uplift                                launcher
+    uplift/libexec/uplift/LEVEL/uplift               program for a level of processors
+    uplift/lib/libuplift.so                          what Python loads: an empty library that needs the next one
+    uplift/lib/[glibc-hwcaps/LEVEL/]libuplift.so.0   library; the dynamic loader chooses the level where a library is needed by name
+    uplift/lib/...                                   the libraries of others
 """
 import base64
 import hashlib
@@ -40,26 +46,41 @@ def record_line(name, data):
     return f"{name},sha256={digest},{len(data)}\n"
 
 
+def set_search_path(binary, libraries):
+    """Lets the binary find the shared libraries of the wheel, wherever the wheel is installed."""
+    binary.chmod(0o755)
+    output("patchelf", "--set-rpath", "$ORIGIN/" + os.path.relpath(libraries, binary.parent), binary)
+
+
+def add_binaries(root, package):
+    """Copies program and library for every level of processors, and the libraries that they need."""
+    libraries = package / "lib"
+    shutil.copytree(root / "bin", package / "bin")
+    shutil.copytree(root / "libexec", package / "libexec")
+    installed = next(root.rglob("libuplift.so.0")).parent
+    for path in installed.rglob("libuplift.so.0"):
+        copy = libraries / path.relative_to(installed)
+        copy.parent.mkdir(parents=True, exist_ok=True)
+        shutil.copy(path, copy)
+    ours = [*(package / "libexec").rglob("uplift/*/uplift"), *libraries.rglob("libuplift.so.0")]
+    for name, path in needed_libraries(ours).items():
+        shutil.copy(path, libraries / name)
+        output("strip", "--strip-unneeded", libraries / name)
+        set_search_path(libraries / name, libraries)
+    for binary in ours:
+        set_search_path(binary, libraries)
+    output("cc", "-shared", "-nostdlib", "-s", "-Wl,--no-as-needed,-soname,libuplift.so", "-Wl,-rpath,$ORIGIN", "-o", libraries / "libuplift.so",
+           libraries / "libuplift.so.0")
+
+
 def main():
-    build, target = pathlib.Path(sys.argv[1]), pathlib.Path(sys.argv[2])
-    version = output(build / "uplift", "--version").strip()
+    root, target = pathlib.Path(sys.argv[1]) / "root" / "usr", pathlib.Path(sys.argv[2])
+    version = output(root / "bin" / "uplift", "--version").strip()
     tag = "py3-none-manylinux_{}_{}_{}".format(*platform.libc_ver()[1].split(".")[:2], platform.machine())
     with tempfile.TemporaryDirectory() as folder:
         package = pathlib.Path(folder) / "uplift"
         shutil.copytree(ROOT / "python" / "uplift", package, ignore=shutil.ignore_patterns("__pycache__"))
-        (package / "lib").mkdir()
-        (package / "bin").mkdir()
-        library, program = package / "lib" / "libuplift.so.0", package / "bin" / "uplift"
-        shutil.copy(build / "libuplift.so.0", library)
-        shutil.copy(build / "uplift", program)
-        bundled = []
-        for name, path in needed_libraries([library, program]).items():
-            shutil.copy(path, package / "lib" / name)
-            bundled.append(package / "lib" / name)
-        for binary in [library, program, *bundled]:
-            binary.chmod(0o755)
-            output("strip", "--strip-unneeded", binary)
-            output("patchelf", "--set-rpath", "$ORIGIN/../lib" if binary == program else "$ORIGIN", binary)
+        add_binaries(root, package)
         info = pathlib.Path(folder) / f"uplift-{version}.dist-info"
         info.mkdir()
         (info / "METADATA").write_text(

@@ -1,19 +1,21 @@
 #!/usr/bin/env bash
-# Installs the Debian packages that are missing and nothing else: no network when all are there. Usage: scripts/setup.sh [run|test|docs|develop]
+# Installs the Debian packages that are missing and nothing else: no network when all are there. Usage: scripts/setup.sh [run|test|docs|packages|develop]
 set -euo pipefail
 
 run="g++ cmake ninja-build pkg-config libeigen3-dev libsuitesparse-dev libopenblas-dev libspectra-dev libtomlplusplus-dev
   nlohmann-json3-dev libudunits2-dev libhdf5-dev zlib1g-dev libcli11-dev libfmt-dev"
-test="libgtest-dev librapidcheck-dev python3 python3-jsonschema python3-numpy mypy"
+test="libgtest-dev librapidcheck-dev python3 python3-jsonschema python3-numpy python3-yaml mypy patchelf"
 docs="python3 mkdocs mkdocs-material libjs-katex fonts-katex"
+packages="python3 patchelf dpkg-dev debhelper dh-python help2man lintian"
 develop="libbenchmark-dev clang-14 libclang-rt-14-dev clang-format-14 clang-tidy-14 nodejs npm chromium ca-certificates"
 
 case "${1:-run}" in
   run) wanted="$run" ;;
   test) wanted="$run $test" ;;
   docs) wanted="$run $docs" ;;
+  packages) wanted="$run $packages" ;;
   develop) wanted="$run $test $develop" ;;
-  *) echo "setup.sh: wanted run, test, docs or develop, found \"$1\"" >&2; exit 2 ;;
+  *) echo "setup.sh: wanted run, test, docs, packages or develop, found \"$1\"" >&2; exit 2 ;;
 esac
 
 if ! command -v dpkg-query >/dev/null; then
