@@ -223,7 +223,7 @@ int output_failed(const std::string& message) {
 }  // namespace
 
 int main(int count, char** words) {
-  uplift::prepare_heap();
+  const uplift::PreparedHeap heap;
   try {
     const int code = program(count, words);
     uplift::cli::finish_output();

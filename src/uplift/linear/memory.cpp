@@ -96,40 +96,32 @@ double resident_memory(const std::string& root) {
   return 1024 * number_after(root + "/proc/self/status", "VmRSS:");
 }
 
-void prepare_heap() {
+PreparedHeap::PreparedHeap() {
 #if defined(__GLIBC__)
   mallopt(M_TOP_PAD, 2 << 20);
   mallopt(M_MMAP_THRESHOLD, 4 << 20);
   mallopt(M_TRIM_THRESHOLD, 8 << 20);
+#if defined(MADV_POPULATE_WRITE)
+  constexpr std::uintptr_t bytes = (4 << 20) - 4096;
+  const auto page = static_cast<std::uintptr_t>(sysconf(_SC_PAGESIZE));
+  void* block = std::malloc(bytes);
+  const std::uintptr_t first = (reinterpret_cast<std::uintptr_t>(block) + page - 1) / page * page;
+  std::free(block);  // stays part of the heap; giving pages to what is in use meanwhile changes nothing in it
+  if (block == nullptr) return;
+  try {
+    thread_ = std::jthread([first, page] {
+      madvise(reinterpret_cast<void*>(first), bytes / page * page - page, MADV_POPULATE_WRITE);  // NOLINT(performance-no-int-to-ptr)
+    });
+  } catch (const std::system_error&) {
+    // no thread: pages come one after another
+  }
+#endif
 #endif
 }
 
 void give_back_free_memory() {
 #if defined(__GLIBC__)
   malloc_trim(0);
-#endif
-}
-
-void PageTaker::add(void* begin, std::size_t bytes) {
-  constexpr std::size_t most = std::size_t{2} << 20;
-  const auto page = static_cast<std::uintptr_t>(sysconf(_SC_PAGESIZE)), start = reinterpret_cast<std::uintptr_t>(begin);
-  const std::uintptr_t first = (start + page - 1) / page * page, end = (start + std::min(bytes, most)) / page * page;
-  pieces_.emplace_back(first, end > first ? end - first : 0);
-}
-
-void PageTaker::start() {
-#if defined(MADV_POPULATE_WRITE)
-  std::size_t total = 0;
-  for (const auto& [first, bytes] : pieces_) total += bytes;
-  if (total < (std::size_t{1} << 20)) return;  // too little to be worth a thread
-  try {
-    thread_ = std::jthread([pieces = std::move(pieces_)] {
-      for (const auto& [first, bytes] : pieces)
-        madvise(reinterpret_cast<void*>(first), bytes, MADV_POPULATE_WRITE);  // NOLINT(performance-no-int-to-ptr)
-    });
-  } catch (const std::system_error&) {
-    // no thread: pages come one after another
-  }
 #endif
 }
 

@@ -1,10 +1,6 @@
 #pragma once
-#include <cstddef>
-#include <cstdint>
 #include <string>
 #include <thread>
-#include <utility>
-#include <vector>
 
 // What memory there is, so that a factor is refused before it is made, not killed while it is.
 namespace uplift {
@@ -22,24 +18,18 @@ int runs_side_by_side(int wanted);
 double resident_memory(const std::string& root = "");
 
 /// For a whole program, before it allocates much: the heap grows by 2 MB at a time, and blocks of 4 MB and more are not part of it, so that
-/// they go back to the system when they are freed. Where the C library can.
-void prepare_heap();
+/// they go back to the system when they are freed. The first 4 MB get real pages in a thread of its own: when a page is first written, it
+/// costs as much as two steps of a small model. Where the C library and the system can.
+class PreparedHeap {
+ public:
+  PreparedHeap();
+
+ private:
+  std::jthread thread_;  // waited for at the end
+};
 
 /// Hands pages of the heap that nobody uses back to the system, where the C library can: after an analysis, before what it was made for.
 void give_back_free_memory();
-
-/// Lets the system give real pages to memory that will be written soon, in a thread of its own: when each is first written, it costs as
-/// much as two steps of a small model. The first 2 MB of every piece at most; nothing where the system cannot.
-class PageTaker {
- public:
-  void add(void* begin, std::size_t bytes);
-  /// For what was added.
-  void start();
-
- private:
-  std::vector<std::pair<std::uintptr_t, std::size_t>> pieces_;
-  std::jthread thread_;  // waited for at the end
-};
 
 /// Why a factor that takes `needed` bytes is not made when `available` are left; empty when it fits.
 std::string memory_refusal(double needed, double available);

@@ -170,9 +170,8 @@ bool Runner::dynamics(const Stage& stage, const Bulk& bulk) {
   seen_ = &stepper.state();
   result_.step_means = result_.step_means || stepper.averages_acceleration();
   const long steps = std::max(1L, std::lround(stage.duration / stage.step));
-  PageTaker pages;
   const ForceStage force_stage = this->force_stage(stage);
-  Recorder recorder(model_, plan_, *seen_, stepper.energies(), &stepper, views_, force_stage, steps, stage.step, pages, result_);
+  Recorder recorder(model_, plan_, *seen_, stepper.energies(), &stepper, views_, force_stage, steps, stage.step, result_);
   EquilibriumCheck equilibrium(force_stage);
   constexpr long checks = 4;  // of the equilibrium in a stage
   long next_check = 1;
@@ -191,8 +190,7 @@ bool Runner::dynamics(const Stage& stage, const Bulk& bulk) {
     if (picture_every > 0 && step % picture_every == 0) recorder.picture(*seen_);
   };
   result_.steps.reserve(model_.interfaces.size(), static_cast<std::size_t>(steps) + 1,
-                        static_cast<std::size_t>(std::min(static_cast<double>(steps) + 1, tail_ / stage.step + 2)), pages);
-  pages.start();
+                        static_cast<std::size_t>(std::min(static_cast<double>(steps) + 1, tail_ / stage.step + 2)));
   if (!ledger_) {  // else the end of the stage before is there already
     observe(0);
     show(stage, &stepper, 0, false);

@@ -14,8 +14,7 @@ constexpr double nothing = 0;
 }  // namespace
 
 Recorder::Recorder(const Model& model, const RunPlan& plan, const State& state, const Energies& energies, const Stepper* stepper,
-                   const std::vector<InterfaceView>& views, const ForceStage& stage, long steps, double step, PageTaker& pages,
-                   RunResult& result)
+                   const std::vector<InterfaceView>& views, const ForceStage& stage, long steps, double step, RunResult& result)
     : model_(model),
       plan_(plan),
       state_(state),
@@ -34,10 +33,7 @@ Recorder::Recorder(const Model& model, const RunPlan& plan, const State& state, 
     result_.columns = plan.requests;
     result_.table.assign(plan.requests.size() + 1, {});
   }
-  for (std::vector<double>& column : result_.table) {
-    column.reserve(column.size() + expected_rows + 2);
-    pages.add(column.data() + column.size(), (expected_rows + 2) * sizeof(double));
-  }
+  for (std::vector<double>& column : result_.table) column.reserve(column.size() + expected_rows + 2);
   recent_.resize(plan.requests.size() * apart);
   const auto moves_base = [](const Request& request) {
     return request.kind == Request::Kind::settlement || request.kind == Request::Kind::tilt_1 || request.kind == Request::Kind::tilt_2;

@@ -22,10 +22,9 @@ std::vector<int> rotations_on_interfaces(const Model& model, const Sparse& b) {
 bool Runner::statics(const Stage& stage) {
   const Model& resting = rest_ != nullptr ? *rest_ : model_;
   const std::vector<int> rotations = rotations_on_interfaces(resting, rest_ != nullptr ? stack_interfaces(*rest_) : b_);
-  PageTaker pages;  // none
   const Energies before = ledger_ ? ledger_->energies : static_energies_;
   Energies energies = before;
-  Recorder recorder(resting, plan_, state_, energies, nullptr, views_, {resting}, stage.steps, 0, pages, load_steps_);
+  Recorder recorder(resting, plan_, state_, energies, nullptr, views_, {resting}, stage.steps, 0, load_steps_);
   const auto record = [&](const StaticProgress& progress) {
     energies = static_energies(resting, before, progress);
     viewer_.look(state_.opening, state_.mean_force, views_);
@@ -108,13 +107,12 @@ void Runner::stand() {
   }
   if (rest_ != nullptr) state_ = carried();
   result_.final_energy = static_energies_;
-  PageTaker pages;  // none
-  result_.steps.reserve(model_.interfaces.size(), 1, 1, pages);
+  result_.steps.reserve(model_.interfaces.size(), 1, 1);
   viewer_.look(state_.opening, state_.mean_force, views_);
   note_views();
   sum_up(0);
   for (const InterfaceView& view : views_) result_.steps.rest.push_back(view.resultant);
-  Recorder recorder(model_, plan_, state_, result_.final_energy, nullptr, views_, {model_}, 0, 0, pages, result_);
+  Recorder recorder(model_, plan_, state_, result_.final_energy, nullptr, views_, {model_}, 0, 0, result_);
   recorder.record(true);
   recorder.finish();
   result_.table = std::move(load_steps_.table);

@@ -26,18 +26,15 @@ void note_loss(StepRecord::Extremes& extremes, double least, double tolerance, b
 
 }  // namespace
 
-void StepRecord::reserve(std::size_t interfaces, std::size_t count, std::size_t in_tail, PageTaker& pages) {
+void StepRecord::reserve(std::size_t interfaces, std::size_t count, std::size_t in_tail) {
   extremes.resize(interfaces);
   tail.resize(interfaces);
   for (Extremes& each : extremes) each.full_loss.reserve(each.full_loss.size() + count / 2 + 1);
   for (std::vector<BasePose>& each : tail) {
     each.reserve(each.size() + in_tail);
-    pages.add(each.data() + each.size(), in_tail * sizeof(BasePose));
   }
   time.reserve(time.size() + count);
   instants.reserve(instants.size() + count * interfaces);
-  pages.add(time.data() + time.size(), count * sizeof(double));
-  pages.add(instants.data() + instants.size(), count * interfaces * sizeof(Instant));
 }
 
 void StepRecord::add(double now, const std::vector<InterfaceView>& views, double gap_tolerance) {

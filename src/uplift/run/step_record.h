@@ -5,7 +5,6 @@
 #include <vector>
 
 #include "uplift/interface/interface.h"
-#include "uplift/linear/memory.h"
 
 namespace uplift {
 
@@ -58,7 +57,7 @@ class StepRecord {
   };
 
   /// Makes room for instants to come, so many of them in the tail.
-  void reserve(std::size_t interfaces, std::size_t count, std::size_t in_tail, PageTaker& pages);
+  void reserve(std::size_t interfaces, std::size_t count, std::size_t in_tail);
   /// A gap larger than the tolerance [m] is open.
   void add(double time, const std::vector<InterfaceView>& views, double gap_tolerance);
   /// The slip [m] of the walls at the last instant: `is_wall` says which interfaces are walls.

@@ -26,8 +26,7 @@ inline RunResult run_of(const BuiltCase& built) {
 /// A run of one interface that has these instants, the first one at rest too.
 inline RunResult run_of(const std::vector<InterfaceView>& views, double step) {
   RunResult result;
-  PageTaker pages;
-  result.steps.reserve(1, views.size(), 0, pages);
+  result.steps.reserve(1, views.size(), 0);
   result.steps.rest = {views.front().resultant};
   for (std::size_t i = 0; i < views.size(); ++i) result.steps.add(step * static_cast<double>(i), {views[i]}, 1e-9);
   return result;
