@@ -23,7 +23,8 @@ struct Answer {
 Answer solve(const InterfaceProblem& problem, const std::string& name) {
   Answer answer;
   answer.method = name;
-  const bool cones = std::any_of(problem.blocks.begin(), problem.blocks.end(), [](const Block& block) { return block.cone != nullptr; });
+  const bool cones =
+      std::any_of(problem.model->blocks.begin(), problem.model->blocks.end(), [](const Block& block) { return block.cone != nullptr; });
   if (cones && name == "newton") {
     answer.suits = false;
     answer.outcome.why = "newton is for traction laws; this problem has a cone";
@@ -38,7 +39,8 @@ Answer solve(const InterfaceProblem& problem, const std::string& name) {
     answer.outcome.converged = false;
     answer.outcome.why = "the solution is not finite";
   }
-  if (answer.outcome.converged && problem.shift.size() > 0)  // of a static step: what has run away is no equilibrium of the structure
+  if (answer.outcome.converged &&
+      problem.model->shift.size() > 0)  // of a static step: what has run away is no equilibrium of the structure
     if (std::string why = unheld_motion(problem, answer.solution, runaway_ratio); !why.empty()) {
       answer.outcome.converged = false;
       answer.outcome.why = std::move(why);
@@ -48,11 +50,11 @@ Answer solve(const InterfaceProblem& problem, const std::string& name) {
 
 void print_points(const InterfaceProblem& problem, const InterfaceSolution& solution) {
   std::vector<std::vector<std::string>> rows{{"interface", "point", "opening [m]", "pressure [Pa]"}};
-  for (const Block& block : problem.blocks)
+  for (const Block& block : problem.model->blocks)
     for (int i = 0; i < block.batch.points; ++i) {
       const int row = block.first + block.batch.normal() + i;
       rows.push_back({block.name, fmt::format("{}", i + 1), fmt::format("{:.6e}", solution.opening[row]),
-                      fmt::format("{:.6e}", -solution.force[row] / (problem.scale * block.area[static_cast<std::size_t>(i)]))});
+                      fmt::format("{:.6e}", -solution.force[row] / (problem.model->scale * block.area[static_cast<std::size_t>(i)]))});
     }
   print_table(rows);
 }
@@ -92,7 +94,7 @@ int replay(const Options& options, const std::string& method, bool all) {
     return failed ? Exit::numerical_failure : Exit::done;
   }
   if (!stored.reason.empty()) say("stored because: " + stored.reason);
-  say(fmt::format("{} rows, {} coordinates", stored.problem.rows(), stored.problem.factor.cols()));
+  say(fmt::format("{} rows, {} coordinates", stored.problem.rows(), stored.problem.model->factor.cols()));
   std::vector<std::vector<std::string>> rows{{"method", "result", "iterations", "cycles", "contact residual"}};
   for (const Answer& answer : answers)
     rows.push_back({answer.method,
