@@ -156,10 +156,12 @@ struct Record {
   std::string why;
   std::vector<Status> before;
   InterfaceSolution solution;
+  std::unique_ptr<MethodWork> work;
 
   bool solve(const ContactMethod& method, const InterfaceProblem& problem) {
     const double start = now();
-    const Outcome outcome = method.solve(problem, solution);
+    if (work == nullptr) work = method.make_work();
+    const Outcome outcome = method.solve(problem, *work, solution);
     times.push_back(1e3 * (now() - start));
     iterations += outcome.iterations;
     cycles += outcome.cycles;
@@ -203,22 +205,19 @@ class March {
   static constexpr double step = 0.005;
 
   InterfaceProblem frame(const InterfaceLaw* law, const Cone* cone) const {
-    InterfaceProblem problem;
+    ContactModel model;
     Block block;
     block.name = "raft";
     block.batch = Batch{static_cast<int>(system_.area.size()), 3, 0};
     block.law = law;
     block.cone = cone;
     block.area = ConstMap(system_.area.data(), static_cast<Index>(system_.area.size()));
-    problem.blocks.push_back(block);
-    problem.factor = compliance_;
-    problem.average = average_;
-    problem.scale = average_ ? 2 : 1;
-    problem.step = step;
-    problem.free_opening.setZero(compliance_.rows());
-    problem.from.setZero(compliance_.rows());
-    if (law != nullptr) problem.old.setZero(law->num_history(3) * static_cast<Index>(system_.area.size()));
-    return problem;
+    model.blocks.push_back(block);
+    model.factor = compliance_;
+    model.average = average_;
+    model.scale = average_ ? 2 : 1;
+    model.step = step;
+    return problem_of(std::make_shared<const ContactModel>(std::move(model)));
   }
 
   void predict(InterfaceProblem& problem) {
@@ -298,7 +297,7 @@ void run_law(const System& system, int steps, const std::string& name) {
   const auto cone = make_part(cone_catalog(), part(interface_behaviours(), "coulomb", {{"friction", 0.4}}));
   March march(system, true);
   InterfaceProblem problem = march.frame(nullptr, cone.get());
-  if (name == "penalty") law = chosen->substitute(*cone, flexibility(problem, problem.blocks[0]));
+  if (name == "penalty") law = chosen->substitute(*cone, flexibility(*problem.model, problem.model->blocks[0]));
   if (name == "springs")
     law = make_part(law_catalog(), part(interface_behaviours(), "springs", {{"K_n", 2e9}, {"K_t", 1e9}, {"friction", 0.4}}, true));
   if (name == "sdm")

@@ -144,8 +144,8 @@ RC_GTEST_PROP(Lagrange, redundant_forces_are_of_least_norm, ()) {
 
 /// All solutions of a small plane problem with friction: every status of every point is tried.
 std::vector<Vector> brute_force_friction(const InterfaceProblem& problem, double friction) {
-  const int n = problem.blocks[0].batch.points;
-  const Matrix& c = problem.factor;
+  const int n = problem.model->blocks[0].batch.points;
+  const Matrix& c = problem.model->factor;
   std::vector<Vector> found;
   int all = 1;
   for (int i = 0; i < n; ++i) all *= 4;

@@ -91,8 +91,8 @@ void fill(const Draw& draw, Own& own) {
 /// What the residual may be: a point counts as closed when it penetrates by more than 1e-12 m (gap_tolerance), and where the interface
 /// moves and pushes by round-off only, relative residuals mean nothing.
 double allowed(const InterfaceProblem& problem, const InterfaceSolution& solution) {
-  const double moved = (problem.factor * solution.z).cwiseAbs().maxCoeff();
-  const double pushed = (problem.factor * (problem.factor.transpose() * solution.force)).cwiseAbs().maxCoeff();
+  const double moved = (problem.model->factor * solution.z).cwiseAbs().maxCoeff();
+  const double pushed = (problem.model->factor * (problem.model->factor.transpose() * solution.force)).cwiseAbs().maxCoeff();
   if (std::max(moved, pushed) <= 1e-13 * problem.free_opening.cwiseAbs().maxCoeff()) return std::numeric_limits<double>::infinity();
   return 1e-7 + 4e-12 / std::max(moved, 1e-300);
 }
@@ -100,8 +100,10 @@ double allowed(const InterfaceProblem& problem, const InterfaceSolution& solutio
 /// The problem that penalty solves: the law in the place of the cone, with an empty memory.
 InterfaceProblem with_penalty(const Own& own, const ContactMethod& penalty, std::unique_ptr<const InterfaceLaw>& law) {
   InterfaceProblem replaced = own.problem;
-  Block& block = replaced.blocks.front();
-  law = penalty.substitute(*block.cone, flexibility(own.problem, block));
+  auto model = std::make_shared<ContactModel>(*own.problem.model);
+  replaced.model = model;
+  Block& block = model->blocks.front();
+  law = penalty.substitute(*block.cone, flexibility(*model, block));
   block.law = law.get();
   block.cone = nullptr;
   block.first_history = static_cast<int>(replaced.old.size());
@@ -124,16 +126,17 @@ TEST(ManyPoints, every_end_is_honest) {
         Block& block = own.add("surface", draw.points, 3, std::vector<double>(static_cast<std::size_t>(draw.points), 1.0));
         block.law = own.laws.back().get();
         own.problem.old.setZero(block.law->num_history(3) * draw.points);
-        own.problem.average = draw.seed % 2 == 0;
-        own.problem.scale = own.problem.average ? 2 : 1;
+        own.change().average = draw.seed % 2 == 0;
+        own.change().scale = own.problem.model->average ? 2 : 1;
       } else {
         own.add_cone("surface", draw.points, 3, draw.friction);
       }
       fill(draw, own);
       InterfaceSolution solution;
       const auto chosen = method(law ? "newton" : name);
+      const auto work = chosen->make_work();
       for (int step = 0; step < 3; ++step) {
-        const Outcome outcome = chosen->solve(own.problem, solution);
+        const Outcome outcome = chosen->solve(own.problem, *work, solution);
         const bool all = name == "lagrange" || name == "augmented_lagrangian";
         ++asked, exact += all, solved += all && outcome.converged;
         if (!outcome.converged) {
@@ -197,8 +200,8 @@ TEST(PathAveragedFriction, newton_solves_every_step_of_moderate_stiffness) {
           own.set(Matrix(Cholesky(compliance)->matrixL()),
                   Vector::NullaryExpr(rows, [&] { return uniform(engine) * std::pow(10, uniform(engine)); }));
           own.problem.from = Vector::NullaryExpr(rows, [&] { return 0.3 * uniform(engine); });
-          own.problem.average = true;
-          own.problem.scale = 2;
+          own.change().average = true;
+          own.change().scale = 2;
           InterfaceSolution solution;
           const Outcome outcome = method("newton")->solve(own.problem, solution);
           ASSERT_TRUE(outcome.converged) << components << " components, k F " << stiffness << ": " << outcome.why;
@@ -216,6 +219,8 @@ TEST(ManyPoints, exact_methods_agree_along_a_path) {
     fill(draw, own);
     const Vector start = own.problem.free_opening;
     InterfaceSolution first, second;
+    const auto lagrange = method("lagrange"), augmented = method("augmented_lagrangian");
+    const auto first_work = lagrange->make_work(), second_work = augmented->make_work();
     int changes = 0;
     for (int step = 0; step < 40; ++step) {
       const double phase = 0.15 * step;
@@ -225,7 +230,7 @@ TEST(ManyPoints, exact_methods_agree_along_a_path) {
         own.problem.free_opening[2 * draw.points + i] = start[2 * draw.points + i] + 1.5e-4 * (i % 7) / 7.0 * std::sin(0.7 * phase);
       }
       const std::vector<Status> before = first.status;
-      const Outcome one = method("lagrange")->solve(own.problem, first), other = method("augmented_lagrangian")->solve(own.problem, second);
+      const Outcome one = lagrange->solve(own.problem, *first_work, first), other = augmented->solve(own.problem, *second_work, second);
       ASSERT_TRUE(one.converged) << seed << step << one.why;
       ASSERT_TRUE(other.converged) << seed << step << other.why;
       EXPECT_LE(contact_residual(own.problem, first), 1e-10) << seed << step;

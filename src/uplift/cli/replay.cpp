@@ -13,11 +13,11 @@ namespace {
 
 void print_points(const InterfaceProblem& problem, const InterfaceSolution& solution) {
   std::vector<std::vector<std::string>> rows{{"interface", "point", "opening [m]", "pressure [Pa]"}};
-  for (const Block& block : problem.blocks)
+  for (const Block& block : problem.model->blocks)
     for (int i = 0; i < block.batch.points; ++i) {
       const int row = block.first + block.batch.normal() + i;
       rows.push_back({block.name, fmt::format("{}", i + 1), fmt::format("{:.6e}", solution.opening[row]),
-                      fmt::format("{:.6e}", -solution.force[row] / (problem.scale * block.area[static_cast<std::size_t>(i)]))});
+                      fmt::format("{:.6e}", -solution.force[row] / (problem.model->scale * block.area[static_cast<std::size_t>(i)]))});
     }
   print_table(rows);
 }
@@ -33,7 +33,7 @@ int replay(const Options& options, const std::string& method, bool all) {
     return failed ? Exit::numerical_failure : Exit::done;
   }
   if (!stored.reason.empty()) say("stored because: " + stored.reason);
-  say(fmt::format("{} rows, {} coordinates", stored.problem.rows(), stored.problem.factor.cols()));
+  say(fmt::format("{} rows, {} coordinates", stored.problem.rows(), stored.problem.model->factor.cols()));
   std::vector<std::vector<std::string>> rows{{"method", "result", "iterations", "cycles", "contact residual"}};
   for (const Replay& answer : answers)
     rows.push_back({answer.method,

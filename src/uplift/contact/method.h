@@ -7,12 +7,26 @@
 
 namespace uplift {
 
-/// Enforces the interface laws and cones of one step.
+/// Work space of a method, kept from step to step so that nothing is allocated after the first one. It fits any model: what was computed
+/// from one is dropped when another comes (SeenModel). It serves one thread at a time.
+struct MethodWork {
+  MethodWork() = default;
+  MethodWork(const MethodWork&) = delete;
+  MethodWork& operator=(const MethodWork&) = delete;
+  virtual ~MethodWork() = default;
+};
+
+/// Enforces the interface laws and cones of one step. Constant and shared; what changes is in its work space.
 class ContactMethod {
  public:
   virtual ~ContactMethod() = default;
-  /// Never throws for numerical reasons: failure is in the outcome.
-  virtual Outcome solve(const InterfaceProblem&, InterfaceSolution&) const = 0;
+  /// Work space of this method's own type, which `solve` is called with.
+  virtual std::unique_ptr<MethodWork> make_work() const = 0;
+  /// Starts from the `z` and `status` in the solution and fills its results: z, opening, force and now; with the path average end_traction
+  /// and next_slope, with a joint filter plain; status under cones. Never throws for numerical reasons: failure is in the outcome.
+  virtual Outcome solve(const InterfaceProblem&, MethodWork&, InterfaceSolution&) const = 0;
+  /// One problem alone.
+  Outcome solve(const InterfaceProblem& problem, InterfaceSolution& solution) const { return solve(problem, *make_work(), solution); }
   /// True when contact is enforced exactly (multipliers): the step then takes end-of-step forces and an impact rule.
   virtual bool constrains() const = 0;
   /// A method that regularises constraints puts a traction law in the place of a cone (penalty); null when it does not. `flexibility` is
@@ -23,12 +37,13 @@ class ContactMethod {
 /// Nothing touches: for models without an interface and for what is computed before a method is chosen.
 class NoContact final : public ContactMethod {
  public:
-  Outcome solve(const InterfaceProblem&, InterfaceSolution&) const override { return {}; }
+  std::unique_ptr<MethodWork> make_work() const override { return std::make_unique<MethodWork>(); }
+  Outcome solve(const InterfaceProblem&, MethodWork&, InterfaceSolution&) const override { return {}; }
   bool constrains() const override { return false; }
 };
 
 /// Largest area * F_ii [m3/N] over the normal rows of a block: the displacement of a point under a unit pressure on its own area.
-double flexibility(const InterfaceProblem&, const Block&);
+double flexibility(const ContactModel&, const Block&);
 
 std::span<const Entry<ContactMethod>* const> method_catalog();  // "newton", "penalty", "augmented_lagrangian", "lagrange"
 std::span<const PartInfo* const> contact_methods();

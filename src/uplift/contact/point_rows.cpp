@@ -22,52 +22,37 @@ double largest(const Vector& v, Index n) {
 
 }  // namespace
 
-double SeenFactor::mark(const Matrix& c) {
-  double sum = 0;
-  for (Index i = 0; i < c.rows(); ++i) sum += (1.0 + static_cast<double>(i)) * (c(i, std::min(i, c.cols() - 1)) + 0.5 * c(i, 0));
-  for (Index j = 0; c.rows() > 0 && j < c.cols(); ++j) sum += (2.0 + static_cast<double>(j)) * c(c.rows() - 1, j);
-  return sum;
-}
-
 void PointRows::begin(const InterfaceProblem& problem) {
-  const Index rows = problem.rows();
-  std::size_t points = 0;
-  bool same = seen_.is(problem.factor) && solver_ == problem.solver && first_point_.size() == problem.blocks.size();
-  for (std::size_t b = 0; b < problem.blocks.size(); ++b) {
-    const Block& block = problem.blocks[b];
-    same = same && first_point_[b] == points && points < places_.size() && places_[points].components == block.batch.components;
-    points += static_cast<std::size_t>(block.batch.points);
-  }
   problem_ = &problem;
-  solver_ = problem.solver;
-  if (same && places_.size() == points) return;
-  seen_.take(problem.factor);
+  const ContactModel& model = *problem.model;
+  if (seen_.is(model)) return;
+  seen_.take(model);
+  const Index rows = model.rows();
   valid_ = false;
   compliance_.resize(rows, rows);
-  compliance_.noalias() = problem.factor * problem.factor.transpose();
+  compliance_.noalias() = model.factor * model.factor.transpose();
   for (Vector* v : {&residual_, &direction_, &image_, &unknown_, &change_, &moved_, &column_}) v->setZero(rows);
-  const bool alone =
-      problem.solver == InterfaceSolver::krylov || (problem.solver == InterfaceSolver::automatic && rows >= enough_to_iterate);
+  const bool alone = model.solver == InterfaceSolver::krylov || (model.solver == InterfaceSolver::automatic && rows >= enough_to_iterate);
   directions_.resize(rows, alone ? most_alone : most_with_factor);
   images_.resize(rows, directions_.cols());
   places_.clear();
   first_point_.clear();
-  for (const Block& block : problem.blocks) {
+  for (const Block& block : model.blocks) {
     first_point_.push_back(places_.size());
     for (int i = 0; i < block.batch.points; ++i) places_.push_back({block.first + i, block.batch.points, 0, block.batch.components, -1});
   }
-  relations_.assign(points, {});
+  relations_.assign(places_.size(), {});
 }
 
 void PointRows::linearise(std::size_t b, const double* slope, const Vector& force, const Vector& opening) {
-  const Block& block = problem_->blocks[b];
+  const Block& block = problem_->model->blocks[b];
   const int n = block.batch.points, components = block.batch.components;
   for (int i = 0; i < n; ++i) {
     const Place& at = places_[first_point_[b] + static_cast<std::size_t>(i)];
     PointRelation& relation = relations_[first_point_[b] + static_cast<std::size_t>(i)];
     relation.count = relation.kind = 0;
     for (int r = 0; r < components; ++r) {
-      const double taken = problem_->shift.size() > 0 ? problem_->shift[at.row(r)] : 0;
+      const double taken = problem_->model->shift.size() > 0 ? problem_->model->shift[at.row(r)] : 0;
       PointRelation::Local k{};
       double moved = 0;
       bool any = false;
@@ -238,7 +223,7 @@ bool PointRows::iterate(int most, double size, Vector& forces, Vector& opening) 
 /// The iteration without a factor, from no unknown forces, begun afresh when its directions are used up. The equations are scaled so that
 /// the diagonal of the matrix is about one.
 bool PointRows::iterate_alone(double& size, Vector& forces, Vector& opening) {
-  const int most_restarts = solver_ == InterfaceSolver::krylov ? 6 : 2;
+  const int most_restarts = problem_->model->solver == InterfaceSolver::krylov ? 6 : 2;
   valid_ = false;
   for (int k = 0; k < most_restarts; ++k) {
     const double before = rest_;
@@ -265,7 +250,7 @@ bool PointRows::factor_and_correct(double size, Vector& forces, Vector& opening)
 }
 
 bool PointRows::solve(Vector& forces, Vector& opening, Vector& z, InterfaceSystems& counts) {
-  const InterfaceSolver choice = problem_->solver;
+  const InterfaceSolver choice = problem_->model->solver;
   const bool same = same_kinds(), kept = valid_ && same && choice == InterfaceSolver::automatic;
   forces.resize(compliance_.rows());
   if (!same) {
@@ -281,7 +266,7 @@ bool PointRows::solve(Vector& forces, Vector& opening, Vector& z, InterfaceSyste
   if (unknowns_ > 0) ++(done ? counts.iterated : counts.factored);
   if (!done) done = factor_and_correct(size, forces, opening);
   if (!done) unknown_.setZero();
-  z.noalias() = -problem_->factor.transpose() * forces;
+  z.noalias() = -problem_->model->factor.transpose() * forces;
   return done;
 }
 

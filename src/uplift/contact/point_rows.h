@@ -7,20 +7,6 @@
 
 namespace uplift {
 
-/// Recognises the factor C of a problem seen before without looking at all of it: by its place, its size and the sum of its first column,
-/// its diagonal and its last row, where a triangular factor has entries too.
-class SeenFactor {
- public:
-  bool is(const Matrix& c) const { return at_ == c.data() && rows_ == c.rows() && columns_ == c.cols() && mark_ == mark(c); }
-  void take(const Matrix& c) { at_ = c.data(), rows_ = c.rows(), columns_ = c.cols(), mark_ = mark(c); }
-
- private:
-  static double mark(const Matrix& c);
-  const double* at_ = nullptr;
-  Index rows_ = 0, columns_ = 0;
-  double mark_ = 0;
-};
-
 /// How force P [N] and opening g [m] of one point depend on each other, linearised. The force has `count` unknowns q and as many equations:
 ///     P_c = known_c + sum over f of basis_fc q_f          sum over c of (opening_fc g_c - force_fc P_c) = right_f
 /// Equations are scaled so that their residual is a force.
@@ -48,15 +34,15 @@ class PointRows {
   static constexpr Index many = 12;
   /// Unknown forces from which products with F are cheaper than a factor (docs/performance.md).
   static constexpr Index enough_to_iterate = 300;
-  static bool suits(const InterfaceProblem& problem) { return problem.rows() > many && problem.rows() <= problem.factor.cols(); }
+  static bool suits(const ContactModel& model) { return model.rows() > many && model.rows() <= model.factor.cols(); }
 
-  /// Takes up a problem; what belongs to the factor C is kept from the one before as long as C is the same.
+  /// Takes up a problem; what belongs to its model is kept from the one before as long as that is the same.
   void begin(const InterfaceProblem&);
   /// F_ii [m/N].
   double compliance(Index row) const { return compliance_(row, row); }
   /// Relation of point i, all blocks one after another, to be filled before `solve`.
   PointRelation& relation(Index point) { return relations_[static_cast<std::size_t>(point)]; }
-  /// Relations of the points of a block from forces p [N] and slopes k [N/m] (all as in NewtonScratch::slope) at an opening, the shift
+  /// Relations of the points of a block from forces p [N] and slopes k [N/m] (all as in NewtonWork::slope) at an opening, the shift
   /// D of statics taken back: P + D g - k g = p - k opening.
   void linearise(std::size_t block, const double* slope, const Vector& force, const Vector& opening);
   /// Forces P (rows), opening g (rows) and z = -C^T P; false when the matrix is singular or the residual does not fall to round-off.
@@ -80,8 +66,7 @@ class PointRows {
   bool factor_and_correct(double size, Vector& forces, Vector& opening);
 
   const InterfaceProblem* problem_ = nullptr;
-  SeenFactor seen_;
-  InterfaceSolver solver_ = InterfaceSolver::automatic;
+  SeenModel seen_;
   bool valid_ = false;
   Index unknowns_ = 0;
   Matrix compliance_;

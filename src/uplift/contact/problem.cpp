@@ -12,11 +12,11 @@ double largest(const Vector& v) {
 }
 
 double balance(const InterfaceProblem& problem, const InterfaceSolution& solution, ResidualScratch& scratch) {
-  scratch.balance.noalias() = problem.factor.transpose() * solution.force;
+  scratch.balance.noalias() = problem.model->factor.transpose() * solution.force;
   const double size = solution.z.norm() + scratch.balance.norm();
-  if (problem.shift.size() > 0) {
-    scratch.force = solution.force - problem.shift.cwiseProduct(solution.opening);
-    scratch.balance.noalias() = problem.factor.transpose() * scratch.force;
+  if (problem.model->shift.size() > 0) {
+    scratch.force = solution.force - problem.model->shift.cwiseProduct(solution.opening);
+    scratch.balance.noalias() = problem.model->factor.transpose() * scratch.force;
   }
   scratch.balance += solution.z;
   return scratch.balance.norm() / (size + std::numeric_limits<double>::min());
@@ -69,6 +69,19 @@ double cone_error(const InterfaceProblem& problem, const Block& block, const Int
 
 }  // namespace
 
+InterfaceProblem problem_of(std::shared_ptr<const ContactModel> model) {
+  int rows = 0, history = 0;
+  for (const Block& block : model->blocks) {
+    rows += block.rows();
+    if (block.law != nullptr) history += block.law->num_history(block.batch.components) * block.batch.points;
+  }
+  InterfaceProblem problem;
+  problem.model = std::move(model);
+  for (Vector* v : {&problem.free_opening, &problem.from}) v->setZero(rows);
+  problem.old.setZero(history);
+  return problem;
+}
+
 double contact_residual(const InterfaceProblem& problem, const InterfaceSolution& solution) {
   ResidualScratch scratch;
   return contact_residual(problem, solution, scratch);
@@ -78,7 +91,7 @@ double contact_residual(const InterfaceProblem& problem, const InterfaceSolution
   if (!solution.z.allFinite() || !solution.force.allFinite() || !solution.opening.allFinite())
     return std::numeric_limits<double>::infinity();
   // the solution's own opening is not trusted
-  scratch.moved.noalias() = problem.factor * solution.z;
+  scratch.moved.noalias() = problem.model->factor * solution.z;
   scratch.opening = problem.free_opening + scratch.moved;
   const double force = largest(solution.force), moved = largest(scratch.moved);
   const double force_scale = force > 0 ? force : 1;
@@ -86,7 +99,7 @@ double contact_residual(const InterfaceProblem& problem, const InterfaceSolution
   if (!(length_scale > 0)) length_scale = 1;
   scratch.opening -= solution.opening;
   double worst = std::max(balance(problem, solution, scratch), largest(scratch.opening) / length_scale);
-  for (const Block& block : problem.blocks)
+  for (const Block& block : problem.model->blocks)
     worst = std::max(worst, block.law != nullptr ? law_error(problem, block, solution, scratch) / force_scale
                                                  : cone_error(problem, block, solution, force_scale, length_scale));
   return worst;

@@ -114,7 +114,7 @@ class Reader {
     return result;
   }
 
-  void block(const Json& object, const std::string& path, StoredProblem& stored) const {
+  void block(const Json& object, const std::string& path, ContactModel& model, StoredProblem& stored) const {
     Block block;
     block.name = text(at(object, path, "name"), path + ".name");
     block.batch.points = integer(at(object, path, "points"), path + ".points", 1, 10000000);
@@ -127,7 +127,7 @@ class Reader {
       if (!(area > 0 && std::isfinite(area))) refuse(path + ".area", "finite areas > 0", std::to_string(area));
     const Values values = check_part(raw(at(object, path, "behaviour"), path + ".behaviour"), interface_behaviours());
     InterfaceProblem& problem = stored.problem;
-    for (const Block& other : problem.blocks) block.first = other.first + other.rows();
+    for (const Block& other : model.blocks) block.first = other.first + other.rows();
     block.first_history = static_cast<int>(problem.old.size());
     if (is_cone(values.type())) {
       stored.cones.push_back(make_part(cone_catalog(), values));
@@ -146,7 +146,7 @@ class Reader {
       block.law = stored.laws.back().get();
       problem.old.resize(problem.old.size() + block.law->num_history(block.batch.components) * block.batch.points);
     }
-    problem.blocks.push_back(std::move(block));
+    model.blocks.push_back(std::move(block));
   }
 
   StoredProblem problem() const {
@@ -154,30 +154,33 @@ class Reader {
     if (const std::string found = text(at(json_, "", "format"), "format"); found != format_name) refuse("format", format_name, found);
     check_keys();
     StoredProblem stored;
+    auto shared = std::make_shared<ContactModel>();
+    ContactModel& model = *shared;
+    stored.problem.model = shared;
     if (json_.contains("reason")) stored.reason = text(json_["reason"], "reason");
     const Json& blocks = at(json_, "", "blocks");
     if (!blocks.is_array() || blocks.empty()) refuse("blocks", "a list of blocks", blocks.dump().substr(0, 40));
-    for (std::size_t b = 0; b < blocks.size(); ++b) block(blocks[b], "blocks[" + std::to_string(b) + "]", stored);
+    for (std::size_t b = 0; b < blocks.size(); ++b) block(blocks[b], "blocks[" + std::to_string(b) + "]", model, stored);
     InterfaceProblem& problem = stored.problem;
-    const std::size_t rows = static_cast<std::size_t>(problem.blocks.back().first + problem.blocks.back().rows());
+    const std::size_t rows = static_cast<std::size_t>(model.blocks.back().first + model.blocks.back().rows());
     if (json_.contains("average")) {
       if (!json_["average"].is_boolean()) refuse("average", "true or false", json_["average"].dump());
-      problem.average = json_["average"].get<bool>();
+      model.average = json_["average"].get<bool>();
     }
-    if (json_.contains("scale")) problem.scale = number(json_["scale"], "scale");
-    if (json_.contains("step")) problem.step = number(json_["step"], "step");
+    if (json_.contains("scale")) model.scale = number(json_["scale"], "scale");
+    if (json_.contains("step")) model.step = number(json_["step"], "step");
     const Json& factor = at(json_, "", "factor");
     if (!factor.is_array() || factor.size() != rows)
       refuse("factor", "a list of " + std::to_string(rows) + " rows", factor.is_array() ? std::to_string(factor.size()) : factor.dump());
     for (std::size_t i = 0; i < rows; ++i) {
       const std::string path = "factor[" + std::to_string(i) + "]";
       const std::vector<double> row = numbers(factor[i], path);
-      if (i == 0) problem.factor.resize(static_cast<Index>(rows), static_cast<Index>(row.size()));
-      if (row.size() != static_cast<std::size_t>(problem.factor.cols()))
-        refuse(path, std::to_string(problem.factor.cols()) + " numbers", std::to_string(row.size()));
-      problem.factor.row(static_cast<Index>(i)) = ConstMap(row.data(), static_cast<Index>(row.size())).transpose();
+      if (i == 0) model.factor.resize(static_cast<Index>(rows), static_cast<Index>(row.size()));
+      if (row.size() != static_cast<std::size_t>(model.factor.cols()))
+        refuse(path, std::to_string(model.factor.cols()) + " numbers", std::to_string(row.size()));
+      model.factor.row(static_cast<Index>(i)) = ConstMap(row.data(), static_cast<Index>(row.size())).transpose();
     }
-    if (json_.contains("shift") && json_["shift"] != Json::array()) problem.shift = vector("shift", rows);
+    if (json_.contains("shift") && json_["shift"] != Json::array()) model.shift = vector("shift", rows);
     at(json_, "", "free_opening");
     problem.free_opening = vector("free_opening", rows);
     problem.from = vector("from", rows);
@@ -221,13 +224,13 @@ std::string save_problem(const InterfaceProblem& problem, const std::vector<cons
   Json json = Json::object();
   json["format"] = format_name;
   json["reason"] = reason;
-  json["average"] = problem.average;
-  json["scale"] = to_json(problem.scale);
-  json["step"] = to_json(problem.step);
+  json["average"] = problem.model->average;
+  json["scale"] = to_json(problem.model->scale);
+  json["step"] = to_json(problem.model->step);
   json["blocks"] = Json::array();
   std::vector<double> old;
-  for (std::size_t b = 0; b < problem.blocks.size(); ++b) {
-    const Block& block = problem.blocks[b];
+  for (std::size_t b = 0; b < problem.model->blocks.size(); ++b) {
+    const Block& block = problem.model->blocks[b];
     Json object = Json::object();
     object["name"] = block.name;
     object["points"] = block.batch.points;
@@ -248,8 +251,9 @@ std::string save_problem(const InterfaceProblem& problem, const std::vector<cons
     json["blocks"].push_back(std::move(object));
   }
   json["factor"] = Json::array();
-  for (Index i = 0; i < problem.factor.rows(); ++i) json["factor"].push_back(to_json(Vector(problem.factor.row(i).transpose())));
-  json["shift"] = to_json(problem.shift);
+  for (Index i = 0; i < problem.model->factor.rows(); ++i)
+    json["factor"].push_back(to_json(Vector(problem.model->factor.row(i).transpose())));
+  json["shift"] = to_json(problem.model->shift);
   json["free_opening"] = to_json(problem.free_opening);
   json["from"] = to_json(problem.from);
   json["old"] = to_json(old.data(), old.size());

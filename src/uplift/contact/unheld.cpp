@@ -11,7 +11,7 @@ std::string unheld_motion(const InterfaceProblem& problem, const InterfaceSoluti
   const double least = ratio * (problem.free_opening - problem.from).cwiseAbs().maxCoeff();
   double most = 0;
   std::string text;
-  for (const Block& block : problem.blocks) {
+  for (const Block& block : problem.model->blocks) {
     const int normal = block.batch.normal();
     const double along = normal > 0 ? moved.segment(block.first, normal).maxCoeff() : 0;
     const double apart = moved.segment(block.first + normal, block.batch.points).maxCoeff();

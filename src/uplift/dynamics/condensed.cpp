@@ -8,7 +8,7 @@
 
 namespace uplift {
 
-Behaviours::Behaviours(const Model& model, const ContactMethod& method, const InterfaceProblem* probe) {
+Behaviours::Behaviours(const Model& model, const ContactMethod& method, const ContactModel* probe) {
   for (std::size_t i = 0; i < model.interfaces.size(); ++i) {
     const Interface& interface = model.interfaces[i];
     One one{interface.law.get(), interface.cone.get()};
@@ -24,9 +24,9 @@ Behaviours::Behaviours(const Model& model, const ContactMethod& method, const In
   }
 }
 
-InterfaceProblem blocks_of(const Model& model, const Behaviours& behaviours) {
-  InterfaceProblem problem;
-  problem.solver = behaviours.solver;
+ContactModel blocks_of(const Model& model, const Behaviours& behaviours) {
+  ContactModel contact;
+  contact.solver = behaviours.solver;
   int first = 0;
   for (std::size_t i = 0; i < model.interfaces.size(); ++i) {
     const Interface& interface = model.interfaces[i];
@@ -39,34 +39,37 @@ InterfaceProblem blocks_of(const Model& model, const Behaviours& behaviours) {
     block.cone = behaviours.interfaces[i].cone;
     block.area = interface.area;
     first += block.rows();
-    problem.blocks.push_back(std::move(block));
+    contact.blocks.push_back(std::move(block));
   }
-  problem.free_opening.setZero(first);
-  problem.from.setZero(first);
-  problem.old.setZero(behaviours.history);
-  return problem;
+  return contact;
 }
 
-Condensed::Condensed(const Model& model, const Sparse& b, const Vector& gap, bool gap_moves, BulkFactor factor, InterfaceProblem frame,
+Condensed::Condensed(const Model& model, const Sparse& b, const Vector& gap, bool gap_moves, BulkFactor factor, ContactModel frame,
                      const ContactMethod& method)
-    : b_(b), gap_(gap), factor_(std::move(factor)), problem_(std::move(frame)), method_(method) {
+    : b_(b), gap_(gap), factor_(std::move(factor)), method_(method), work_(method.make_work()) {
   if (factor_.split() != nullptr) {
     split_ = std::make_unique<SplitResponse>(factor_, b);
-    problem_.factor = split_->factor();
-    return;
+    frame.factor = split_->factor();
+  } else {
+    Spread spread = factor_.spread(b);
+    frame.factor = std::move(spread.factor);
+    spread_ = std::move(spread.spread);
   }
-  Spread spread = factor_.spread(b);
-  problem_.factor = std::move(spread.factor);
-  spread_ = std::move(spread.spread);
+  problem_ = problem_of(std::make_shared<const ContactModel>(std::move(frame)));
+  if (split_ == nullptr) list_touched(model, gap_moves);
+}
+
+void Condensed::list_touched(const Model& model, bool gap_moves) {
   free_.setZero(model.free());
-  touched_ = touched_unknowns(b);
+  touched_ = touched_unknowns(b_);
   if (touched_.size() > 64) {
     touched_.clear();
     return;
   }
-  touched_b_.setZero(b.rows(), static_cast<Eigen::Index>(touched_.size()));
+  touched_b_.setZero(b_.rows(), static_cast<Eigen::Index>(touched_.size()));
   for (std::size_t j = 0; j < touched_.size(); ++j)
-    for (Sparse::InnerIterator entry(b, touched_[j]); entry; ++entry) touched_b_(entry.row(), static_cast<Eigen::Index>(j)) = entry.value();
+    for (Sparse::InnerIterator entry(b_, touched_[j]); entry; ++entry)
+      touched_b_(entry.row(), static_cast<Eigen::Index>(j)) = entry.value();
   touched_value_.setZero(static_cast<Eigen::Index>(touched_.size()));
   if (gap_moves || spread_.cols() > 3 || spread_.cols() != touched_value_.size()) return;
   Matrix touched_spread(spread_.cols(), spread_.cols());
@@ -118,7 +121,7 @@ Outcome Condensed::contact_step(const Vector& right, const StepStart& start, Vec
   small::copy(start.opening.size(), start.opening.data(), problem_.from.data());
   small::copy(start.history.size(), start.history.data(), problem_.old.data());
   if (start.filter != nullptr) problem_.filter = *start.filter;
-  Outcome outcome = method_.solve(problem_, solution_);
+  Outcome outcome = method_.solve(problem_, *work_, solution_);
   factor_.count(std::exchange(solution_.systems, {}));
   if (!outcome.converged) return outcome;
   if (split_ != nullptr)

@@ -22,13 +22,13 @@ struct Behaviours {
   int history = 0;  // memory values of all interfaces
   InterfaceSolver solver = InterfaceSolver::automatic;
 
-  /// `probe`: a problem with the compliance of the dynamic step, from which automatic stiffnesses are scaled; may be null when no method
+  /// `probe`: a model with the compliance of the dynamic step, from which automatic stiffnesses are scaled; may be null when no method
   /// substitutes.
-  Behaviours(const Model& model, const ContactMethod& method, const InterfaceProblem* probe);
+  Behaviours(const Model& model, const ContactMethod& method, const ContactModel* probe);
 };
 
-/// The blocks of an interface problem (no compliance yet).
-InterfaceProblem blocks_of(const Model& model, const Behaviours& behaviours);
+/// The blocks of the interfaces (no compliance yet).
+ContactModel blocks_of(const Model& model, const Behaviours& behaviours);
 
 /// The beginning of a step.
 struct StepStart {
@@ -52,16 +52,17 @@ class StepSolver {
 /// is one back-solve; through any other one back-solve and the kept spread of the interface forces; with a kept inverse no back-solve.
 class Condensed final : public StepSolver {
  public:
-  /// `factor` is that of K_eff (with B^T D B in statics); `frame` has blocks, average, scale, step and shift set. `gap_moves`: the gap
+  /// `factor` is that of K_eff (with B^T D B in statics); `frame` lacks nothing but the factor C. `gap_moves`: the gap
   /// changes from step to step.
-  Condensed(const Model& model, const Sparse& b, const Vector& gap, bool gap_moves, BulkFactor factor, InterfaceProblem frame,
+  Condensed(const Model& model, const Sparse& b, const Vector& gap, bool gap_moves, BulkFactor factor, ContactModel frame,
             const ContactMethod& method);
   Outcome solve(const Vector& right, const StepStart& start, Vector& increment) override;
   const InterfaceProblem& problem() const override { return problem_; }
   const InterfaceSolution& solution() const override { return solution_; }
-  void forget() override { solution_ = {}; }
+  void forget() override { solution_ = {}, work_ = method_.make_work(); }
 
  private:
+  void list_touched(const Model& model, bool gap_moves);
   void free_opening(const Vector& right, const Vector& displacement);
   Outcome free_step(const Vector& right, Vector& increment);
   Outcome contact_step(const Vector& right, const StepStart& start, Vector& increment);
@@ -78,6 +79,7 @@ class Condensed final : public StepSolver {
   InterfaceProblem problem_;
   InterfaceSolution solution_;
   const ContactMethod& method_;
+  std::unique_ptr<MethodWork> work_;
   Vector free_, touched_value_;
 };
 

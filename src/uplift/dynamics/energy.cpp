@@ -6,12 +6,12 @@
 
 namespace uplift {
 
-void InterfaceEnergy::update(const InterfaceProblem& problem, const Vector& opening, const Vector& history) {
+void InterfaceEnergy::update(const std::vector<Block>& blocks, const Vector& opening, const Vector& history) {
   const bool changed = last_.size() != history.size() || !std::equal(last_.data(), last_.data() + last_.size(), history.data());
   if (changed) last_ = history;
   stored = 0;
   double lost = 0;
-  for (const Block& block : problem.blocks) {
+  for (const Block& block : blocks) {
     if (block.law == nullptr) continue;
     const Index points = block.batch.points;
     if (density_.size() < points) density_.resize(points), lost_.resize(points);
@@ -23,9 +23,9 @@ void InterfaceEnergy::update(const InterfaceProblem& problem, const Vector& open
   if (changed) dissipated = lost;
 }
 
-double friction_work(const InterfaceProblem& problem, const State& from, const State& to) {
+double friction_work(const std::vector<Block>& blocks, const State& from, const State& to) {
   double total = 0;
-  for (const Block& block : problem.blocks) {
+  for (const Block& block : blocks) {
     if (block.cone == nullptr || !(block.cone->friction() > 0)) continue;
     const int n = block.batch.points;
     for (int i = 0; i < n; ++i) {

@@ -28,7 +28,7 @@ struct Energies {
 class InterfaceEnergy {
  public:
   /// Dissipation is summed again only when the memory has changed (for the SDM it costs an exponential per point).
-  void update(const InterfaceProblem& problem, const Vector& opening, const Vector& history);
+  void update(const std::vector<Block>& blocks, const Vector& opening, const Vector& history);
   double stored = 0, dissipated = 0;
 
  private:
@@ -37,6 +37,6 @@ class InterfaceEnergy {
 
 /// What the friction of constraints takes in a step [J]: the work of the mean force on the slip of every point, where it is positive (a
 /// force that turns round in the step may give energy back: that is created by the scheme and stays in the residual).
-double friction_work(const InterfaceProblem& problem, const State& from, const State& to);
+double friction_work(const std::vector<Block>& blocks, const State& from, const State& to);
 
 }  // namespace uplift

@@ -5,14 +5,20 @@
 namespace uplift {
 
 JointFilter::JointFilter(const Model& model, const Behaviours& behaviours, const Scheme& scheme)
-    : blocks_(blocks_of(model, behaviours)), pole_(scheme.pole), gain_(scheme.gain) {
+    : blocks_(blocks_of(model, behaviours).blocks), pole_(scheme.pole), gain_(scheme.gain) {
   Eigen::Index rows = 0;
-  for (const Block& block : blocks_.blocks) {
-    Part part{
-        .first = block.first, .points = block.batch.points, .components = block.batch.components, .area = block.area, .inverse_area = {}};
+  int slopes = 0;
+  for (const Block& block : blocks_) {
+    Part part{.first = block.first,
+              .first_slope = slopes,
+              .points = block.batch.points,
+              .components = block.batch.components,
+              .area = block.area,
+              .inverse_area = {}};
     part.inverse_area = part.area.cwiseInverse();
     if (block.law != nullptr) block.law->closed_stiffness(part.components, part.stiffness);
     rows += block.rows();
+    slopes += block.slopes();
     parts_.push_back(std::move(part));
   }
   input_.gain = gain_;
@@ -22,7 +28,7 @@ JointFilter::JointFilter(const Model& model, const Behaviours& behaviours, const
 
 void JointFilter::look(const State& now, Vector& tangent) const {
   tangent.setZero(now.opening.size());
-  for (const Block& block : blocks_.blocks) {
+  for (const Block& block : blocks_) {
     if (block.law == nullptr) continue;
     const int n = block.batch.points, components = block.batch.components;
     Vector traction(block.rows()), end(block.rows()), slope(block.rows() * components), next(block.rows() * components),
@@ -66,8 +72,7 @@ const JointFilterInput& JointFilter::begin(const State& now, double shrink) {
 void JointFilter::end(const InterfaceProblem& problem, const InterfaceSolution& solution, const State& now, State& next) {
   const double loss = 0.5 * (1 + pole_), store = 0.5 / (1 - pole_), pole = pole_, keep = 1 - pole_;
   Lanes dissipated = 0, storage = 0;
-  for (std::size_t b = 0; b < parts_.size(); ++b) {
-    const Part& part = parts_[b];
+  for (const Part& part : parts_) {
     const double *area = part.area.data(), *inverse_area = part.inverse_area.data();
     for (int c = 0; c < part.components; ++c) {
       const int n = part.points, first = part.first + c * n;
@@ -75,10 +80,10 @@ void JointFilter::end(const InterfaceProblem& problem, const InterfaceSolution& 
                    *plain = solution.plain.data() + first, *force = solution.force.data() + first, *to = solution.opening.data() + first,
                    *from = now.opening.data() + first, *before = now.filter.coefficient.data() + first,
                    *filtered = now.filter.opening.data() + first,
-                   *slope = solution.newton.next.data() + solution.newton.first_slope[b] + (c * part.components + c) * n;
+                   *slope = solution.next_slope.data() + part.first_slope + (c * part.components + c) * n;
       double *coefficient_next = next.filter.coefficient.data() + first, *filtered_next = next.filter.opening.data() + first,
              *tangent = next.filter.tangent.data() + first;
-      const double scale = 1 / problem.scale;
+      const double scale = 1 / problem.model->scale;
       for_lanes(n, [&](const auto& at) {
         const Lanes zero = 0, one = 1, increment = at(to) - at(from), ahead = increment - at(lag), weight = at(area, 1.0),
                     here = at(coefficient);

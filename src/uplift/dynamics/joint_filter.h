@@ -23,11 +23,11 @@ class JointFilter {
 
  private:
   struct Part {  // of one interface
-    int first = 0, points = 0, components = 0;
+    int first = 0, first_slope = 0, points = 0, components = 0;
     double stiffness[3] = {};   // closed joint [Pa/m]
     Vector area, inverse_area;  // m2, 1/m2
   };
-  InterfaceProblem blocks_;
+  std::vector<Block> blocks_;
   std::vector<Part> parts_;
   double pole_, gain_;
   JointFilterInput input_;

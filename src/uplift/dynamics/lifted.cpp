@@ -16,7 +16,7 @@ namespace {
 bool lost_contact(const Block& block, const InterfaceProblem& problem, const InterfaceSolution& solution) {
   constexpr double round_off = 1e-9;
   const auto opening = solution.opening.segment(block.first + block.batch.normal(), block.batch.points);
-  const auto stiffness = problem.shift.segment(block.first + block.batch.normal(), block.batch.points);
+  const auto stiffness = problem.model->shift.segment(block.first + block.batch.normal(), block.batch.points);
   const double most = opening.maxCoeff(), force = stiffness.maxCoeff() * most;
   return most > 0 && opening.minCoeff() >= -round_off * most &&
          solution.force.segment(block.first, block.rows()).cwiseAbs().maxCoeff() <= round_off * force;
@@ -49,7 +49,7 @@ Vector lengths(const Model& model) {
 Lifted keep_undetermined(const Model& model, const Sparse& b, const InterfaceProblem& problem, const InterfaceSolution& solution,
                          const Vector& increment, LooseMotions& loose) {
   std::vector<const Block*> lifted;
-  for (const Block& block : problem.blocks)
+  for (const Block& block : problem.model->blocks)
     if (lost_contact(block, problem, solution)) lifted.push_back(&block);
   if (lifted.empty()) return {};
   std::vector<char> holds(static_cast<std::size_t>(b.rows()), 1);

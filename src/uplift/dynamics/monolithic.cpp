@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <cmath>
 #include <set>
+#include <utility>
 
 #include "uplift/math/dense.h"
 
@@ -23,20 +24,16 @@ struct Slip {
 
 class Monolithic final : public StepSolver {
  public:
-  Monolithic(const Sparse& matrix, const Sparse& b, const Vector& gap, InterfaceProblem frame)
-      : matrix_(matrix), b_(b), gap_(gap), problem_(std::move(frame)) {
-    problem_.factor.setZero(b.rows(), 0);
-    solution_.force.setZero(b.rows());
-    solution_.opening.setZero(b.rows());
-    solution_.newton.end.setZero(b.rows());
-    solution_.plain.setZero(b.rows());
+  Monolithic(const Sparse& matrix, const Sparse& b, const Vector& gap, ContactModel frame) : matrix_(matrix), b_(b), gap_(gap) {
+    frame.factor.setZero(b.rows(), 0);
+    problem_ = problem_of(std::make_shared<const ContactModel>(std::move(frame)));
+    for (Vector* v : {&solution_.force, &solution_.opening, &solution_.end_traction, &solution_.plain}) v->setZero(b.rows());
     int slopes = 0;
-    for (const Block& block : problem_.blocks) {
+    for (const Block& block : problem_.model->blocks) {
       points_ += static_cast<std::size_t>(block.batch.points);
-      solution_.newton.first_slope.push_back(slopes);
-      slopes += block.batch.points * block.batch.components * block.batch.components;
+      slopes += block.slopes();
     }
-    solution_.newton.next.setZero(slopes);
+    solution_.next_slope.setZero(slopes);
   }
 
   Outcome solve(const Vector& right, const StepStart& start, Vector& increment) override {
@@ -85,8 +82,9 @@ class Monolithic final : public StepSolver {
   /// Law forces and their full slope matrix dP/d opening (rows x rows) at the present opening.
   void law_forces(Matrix& slope) {
     slope.setZero(b_.rows(), b_.rows());
-    for (std::size_t b = 0; b < problem_.blocks.size(); ++b) {
-      const Block& block = problem_.blocks[b];
+    int first_slope = 0;
+    for (const Block& block : problem_.model->blocks) {
+      double* next = solution_.next_slope.data() + std::exchange(first_slope, first_slope + block.slopes());
       if (block.law == nullptr) continue;
       const int n = block.batch.points, components = block.batch.components;
       std::vector<double> k(static_cast<std::size_t>(n * components * components));
@@ -94,9 +92,9 @@ class Monolithic final : public StepSolver {
       response.traction = solution_.force.data() + block.first;
       response.slope = k.data();
       response.now = solution_.now.data() + block.first_history;
-      if (problem_.average) {
-        response.end = solution_.newton.end.data() + block.first;
-        response.next = solution_.newton.next.data() + solution_.newton.first_slope[b];
+      if (problem_.model->average) {
+        response.end = solution_.end_traction.data() + block.first;
+        response.next = next;
         response.plain = solution_.plain.data() + block.first;
       }
       law_force(problem_, block, solution_.opening.data(), response);
@@ -116,7 +114,7 @@ class Monolithic final : public StepSolver {
       solution_.opening = origin_ + b * increment;
       law_forces(slope);
       Vector law_force = Vector::Zero(b_.rows());
-      for (const Block& block : problem_.blocks)
+      for (const Block& block : problem_.model->blocks)
         if (block.law != nullptr) law_force.segment(block.first, block.rows()) = solution_.force.segment(block.first, block.rows());
       const std::vector<std::pair<int, double>> rows = constraint_rows();  // row, opening that it must have
       const Eigen::Index m = static_cast<Eigen::Index>(rows.size());
@@ -142,7 +140,7 @@ class Monolithic final : public StepSolver {
       const double factor = damped(right, bulk, b, increment, step.head(n), m > 0);
       increment += factor * step.head(n);
       ++outcome.iterations;
-      for (const Block& block : problem_.blocks)
+      for (const Block& block : problem_.model->blocks)
         if (block.cone != nullptr) solution_.force.segment(block.first, block.rows()).setZero();
       for (Eigen::Index k = 0; k < m; ++k) add_multiplier(rows[static_cast<std::size_t>(k)].first, scale * step[n + k]);
       solution_.opening = origin_ + b * increment;
@@ -330,7 +328,7 @@ class Monolithic final : public StepSolver {
   template <class Visit>
   void each_point(const Visit& visit) const {
     std::size_t point = 0;
-    for (const Block& block : problem_.blocks)
+    for (const Block& block : problem_.model->blocks)
       for (int i = 0; i < block.batch.points; ++i, ++point)
         if (block.cone != nullptr) visit(block, i, point);
   }
@@ -380,7 +378,7 @@ class Compared final : public StepSolver {
 
 }  // namespace
 
-std::unique_ptr<StepSolver> make_monolithic(const Sparse& matrix, const Sparse& b, const Vector& gap, InterfaceProblem frame) {
+std::unique_ptr<StepSolver> make_monolithic(const Sparse& matrix, const Sparse& b, const Vector& gap, ContactModel frame) {
   return std::make_unique<Monolithic>(matrix, b, gap, std::move(frame));
 }
 

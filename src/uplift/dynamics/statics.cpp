@@ -54,7 +54,9 @@ double size_of(const Vector& v) {
 std::string diagnose(const InterfaceProblem& problem, const ContactMethod& method) {
   InterfaceProblem held = problem;
   for (const double share : {1e-6, 1e-4}) {
-    held.shift = (1 - share) * problem.shift;
+    auto model = std::make_shared<ContactModel>(*problem.model);
+    model->shift *= 1 - share;
+    held.model = std::move(model);
     InterfaceSolution solution;
     if (method.solve(held, solution).converged) return unheld_motion(held, solution, 5e-3 / share);
   }
@@ -96,7 +98,7 @@ class LoadSteps {
   Vector gap_, motion_;         // rows: gap of the present load step, and what the prescribed motions open [m]
   Vector first_load_, change_;  // N: internal force at the beginning, and what the stage adds to it
   Vector dead_load_;            // N: the static loads at the load factor 1
-  InterfaceProblem blocks_;
+  ContactModel blocks_;
   Sparse matrix_;  // upper triangle of K + B^T D B: all that a factor is made of
   std::unique_ptr<StepSolver> linear_;
   std::unique_ptr<PlasticNewton> newton_;
@@ -236,7 +238,7 @@ void LoadSteps::book(double to) {
   progress_.work += 0.5 * (after - before) * motion_.dot(state_.force + force_);
   State next;
   next.opening = opening_, next.force = force_;
-  progress_.friction += friction_work(last_->problem(), state_, next);
+  progress_.friction += friction_work(last_->problem().model->blocks, state_, next);
 }
 
 void LoadSteps::accept(double to) {

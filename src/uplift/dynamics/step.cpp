@@ -173,7 +173,7 @@ void Stepper::start(State state, const Ledger* before) {
   next_ = now_;
   force_at(now_.time, force_now_);
   products(now_.displacement, now_.velocity, stiff_now_, momentum_now_);
-  const InterfaceProblem blocks = blocks_of(model_, behaviours_);
+  const std::vector<Block> blocks = blocks_of(model_, behaviours_).blocks;
   interface_energy_.update(blocks, now_.opening, now_.history);
   energies_ = before != nullptr ? before->energies : Energies{};
   energies_.kinetic = 0.5 * now_.velocity.dot(momentum_now_);
@@ -345,11 +345,11 @@ bool Stepper::try_step(Level& level) {
   if (newton_ != nullptr) next_.bulk_history = plastic_next_.history;
   products(next_.displacement, next_.velocity, stiff_next_, momentum_next_);
   if (path_) {
-    const double to_mean = 1 / last_->scale;
-    for (const Block& block : last_->blocks)
+    const double to_mean = 1 / last_->model->scale;
+    for (const Block& block : last_->model->blocks)
       for (int c = 0; c < block.batch.components; ++c) {
         const int points = block.batch.points, first = block.first + c * points;
-        const double *end = solution.newton.end.data() + first, *force = solution.force.data() + first, *area = block.area.data();
+        const double *end = solution.end_traction.data() + first, *force = solution.force.data() + first, *area = block.area.data();
         double *at_end = next_.force.data() + first, *mean = next_.mean_force.data() + first;
         for_lanes(points, [=](const auto& at) {
           at.put(at_end, at(end) * at(area));

@@ -96,7 +96,7 @@ class Stepper {
   void advance_filters(const Level& level);
   bool kinematics(const Level& level);
   Sparse matrix_of(const Level& level) const;
-  InterfaceProblem frame_of(const Level& level) const;
+  ContactModel frame_of(const Level& level) const;
   Outcome solve(Level& level);
   void prepare_impacts();
   bool select_pressed(const std::vector<Block>& blocks, const Vector& forces);

@@ -71,7 +71,7 @@ Impact Stepper::impact_data(const Vector& force) const {
 /// given back. The sum with the projection does not depend on the step (docs/theory, section 5).
 double Stepper::contact_work() const {
   double work = 0;
-  for (const Block& block : last_->blocks) {
+  for (const Block& block : last_->model->blocks) {
     if (block.cone == nullptr) continue;
     const int normal = block.first + block.batch.normal();
     const double *force = now_.force.data() + normal, *next_force = contact_.data() + normal, *opening = now_.opening.data() + normal,
@@ -86,7 +86,7 @@ double Stepper::contact_work() const {
 void Stepper::apply_impact(Level& level) {
   impact_impulse_.setZero();
   impact_loss_ += contact_work();
-  if (!select_pressed(last_->blocks, contact_)) return;
+  if (!select_pressed(last_->model->blocks, contact_)) return;
   const double weight = (1 - options_.scheme.alpha_f) / (1 - options_.scheme.alpha_m);
   Impact data = impact_data(contact_);
   data.dynamic = level.dynamic.get();
@@ -114,7 +114,7 @@ void Stepper::separate_impulse(const Impact& data) {
   for (Eigen::Index i = 0; i < pressed_.size(); ++i) closing += static_cast<int>(pressed[i] > 0) & static_cast<int>(opening[i] > gap);
   if (closing == 0) return;
   const ImpactScratch& scratch = impact_scratch_;
-  for (const Block& block : last_->blocks) {
+  for (const Block& block : last_->model->blocks) {
     if (block.cone == nullptr) continue;  // the force of a law follows from its opening
     const int n = block.batch.points, normal = block.first + block.batch.normal();
     if (block.cone->friction() > 0) {

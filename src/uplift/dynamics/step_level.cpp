@@ -23,7 +23,7 @@ Stepper::Level& Stepper::make_level(int halving) {
   made.damping_velocity = 1 - s.gamma / s.beta + s.alpha_f / w;
   made.damping_acceleration = dt * (1 - s.gamma / (2 * s.beta));
 
-  InterfaceProblem frame = frame_of(made);
+  ContactModel frame = frame_of(made);
   if (options_.monolithic) {
     made.solver = make_monolithic(matrix_of(made), b_, gap_, std::move(frame));
     ++linear_.factorisations;
@@ -69,14 +69,10 @@ Sparse Stepper::matrix_of(const Level& level) const {
   return linear - (1 - 1 / options_.scheme.stretch()) * *bulk_.geometric;  // the geometric stiffness is not filtered
 }
 
-InterfaceProblem Stepper::frame_of(const Level& level) const {
-  InterfaceProblem frame = blocks_of(model_, behaviours_);
+ContactModel Stepper::frame_of(const Level& level) const {
+  ContactModel frame = blocks_of(model_, behaviours_);
   frame.average = path_;
   frame.scale = path_ ? 2 / options_.scheme.stretch() : 1;
-  if (filtered_) {
-    frame.filter.gain = options_.scheme.gain;
-    frame.filter.coefficient = frame.filter.lag = Vector::Zero(b_.rows());
-  }
   frame.step = level.step;
   frame.shift = shift_;
   return frame;

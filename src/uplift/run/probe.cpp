@@ -7,37 +7,37 @@
 
 namespace uplift {
 
-InterfaceProblem probe(const Model& model, const Bulk& bulk, const Sparse& b, const Stage& stage, const LinearSolver& solver,
-                       LinearCounts& counts, std::string& why) {
+ContactModel probe(const Model& model, const Bulk& bulk, const Sparse& b, const Stage& stage, const LinearSolver& solver,
+                   LinearCounts& counts, std::string& why) {
   const Scheme& s = stage.scheme;
   const double w = 1 - s.alpha_f, dt = stage.step * s.stretch();
   const Sparse matrix =
       bulk.stiffness_matrix + s.gamma / (s.beta * dt) * bulk.damping_matrix + (1 - s.alpha_m) / (w * s.beta * dt * dt) * bulk.mass_matrix;
-  InterfaceProblem problem = blocks_of(model, Behaviours(model, NoContact(), nullptr));
-  problem.step = stage.step;
+  ContactModel contact = blocks_of(model, Behaviours(model, NoContact(), nullptr));
+  contact.step = stage.step;
   BulkFactor factor(matrix, &b, bulk.small, solver, model, counts);
   if (!factor.ok()) {
     why = factor.why();
-    return problem;
+    return contact;
   }
-  problem.factor = factor.split() != nullptr ? SplitResponse(factor, b).factor() : factor.spread(b).factor;
-  return problem;
+  contact.factor = factor.split() != nullptr ? SplitResponse(factor, b).factor() : factor.spread(b).factor;
+  return contact;
 }
 
 std::vector<StiffnessRatio> stiffness_ratios(const Model& model, const Stage& stage, const LinearSolver& solver) {
   const Bulk bulk(model, nullptr);
   LinearCounts counts;
   std::string why;
-  const InterfaceProblem problem = probe(model, bulk, stack_interfaces(model), stage, solver, counts, why);
+  const ContactModel contact = probe(model, bulk, stack_interfaces(model), stage, solver, counts, why);
   std::vector<StiffnessRatio> ratios;
   if (!why.empty()) return ratios;
-  for (std::size_t k = 0; k < problem.blocks.size(); ++k) {
-    const Block& block = problem.blocks[k];
+  for (std::size_t k = 0; k < contact.blocks.size(); ++k) {
+    const Block& block = contact.blocks[k];
     StiffnessRatio ratio{block.name, 1e300, 0, 0};
     double stiffness[3] = {0, 0, 0};
     if (block.law != nullptr) block.law->closed_stiffness(block.batch.components, stiffness);
     for (int i = 0; i < block.batch.points; ++i) {
-      const double compliance = problem.factor.row(block.first + block.batch.normal() + i).squaredNorm();
+      const double compliance = contact.factor.row(block.first + block.batch.normal() + i).squaredNorm();
       const double value = stiffness[block.batch.components - 1] * block.area[static_cast<std::size_t>(i)] * compliance;
       ratio.least = std::min(ratio.least, value);
       ratio.most = std::max(ratio.most, value);

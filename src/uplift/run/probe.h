@@ -9,7 +9,7 @@ namespace uplift {
 
 /// The interface problem of a dynamic step with its compliance alone, for automatic stiffnesses and for `check`. `b`: rows of all
 /// interfaces. Where the factorisation fails `why` says so, and there is no compliance.
-InterfaceProblem probe(const Model& model, const Bulk& bulk, const Sparse& b, const Stage& stage, const LinearSolver& solver,
-                       LinearCounts& counts, std::string& why);
+ContactModel probe(const Model& model, const Bulk& bulk, const Sparse& b, const Stage& stage, const LinearSolver& solver,
+                   LinearCounts& counts, std::string& why);
 
 }  // namespace uplift

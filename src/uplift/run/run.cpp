@@ -177,7 +177,7 @@ void Runner::fail(std::string why, const InterfaceProblem* problem) {
 
 void Runner::execute() {
   const Stage* dynamic = dynamic_stage(plan_);
-  InterfaceProblem compliance;
+  ContactModel compliance;
   bool cones = false;
   for (const Interface& interface : model_.interfaces) cones = cones || interface.cone != nullptr;
   if (dynamic != nullptr && cones && !plan_.method->constrains()) {
@@ -231,15 +231,15 @@ void Runner::run_stages() {
 /// A joint with an initial gap was broken before the analysis: its law remembers an opening from zero to that gap (the SDM's jump is the
 /// gap), or the first step would take the gap for a stretched joint.
 void Runner::remember_gaps() {
-  const InterfaceProblem blocks = blocks_of(model_, *laws_);
-  for (const Block& block : blocks.blocks) {
+  const Vector old = Vector::Zero(laws_->history);
+  for (const Block& block : blocks_of(model_, *laws_).blocks) {
     const Vector gap = gap_.segment(block.first, block.rows()).cwiseMax(0), closed = Vector::Zero(block.rows());
     if (block.law == nullptr || block.law->num_history(block.batch.components) == 0 || gap.isZero(0)) continue;
     Vector traction(block.rows());
     LawResponse response;
     response.traction = traction.data();
     response.now = state_.history.data() + block.first_history;
-    block.law->respond(block.batch, closed.data(), gap.data(), blocks.old.data() + block.first_history, response);
+    block.law->respond(block.batch, closed.data(), gap.data(), old.data() + block.first_history, response);
   }
 }
 

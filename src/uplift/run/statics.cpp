@@ -77,7 +77,7 @@ Energies Runner::static_energies(const Model& resting, const Energies& before, c
   if (const PlasticBulk yielding(resting); yielding.any())
     energies.strain += yielding.energy(state_.displacement, state_.instant(), yielding.state(state_.bulk_history));
   InterfaceEnergy interfaces;
-  interfaces.update(blocks_of(model_, *laws_), state_.opening, state_.history);
+  interfaces.update(blocks_of(model_, *laws_).blocks, state_.opening, state_.history);
   energies.stored = interfaces.stored, energies.interface_dissipated = interfaces.dissipated + energies.friction;
   if (ledger_)
     energies.stop += before.sum() - energies.sum();

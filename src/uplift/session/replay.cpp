@@ -13,7 +13,8 @@ namespace {
 Replay solve(const InterfaceProblem& problem, const std::string& name, const Where& where) {
   Replay answer;
   answer.method = name;
-  const bool cones = std::any_of(problem.blocks.begin(), problem.blocks.end(), [](const Block& block) { return block.cone != nullptr; });
+  const bool cones =
+      std::any_of(problem.model->blocks.begin(), problem.model->blocks.end(), [](const Block& block) { return block.cone != nullptr; });
   if (cones && name == "newton") {
     answer.suits = false;
     answer.outcome.why = "newton is for traction laws; this problem has a cone";
@@ -28,7 +29,8 @@ Replay solve(const InterfaceProblem& problem, const std::string& name, const Whe
     answer.outcome.converged = false;
     answer.outcome.why = "the solution is not finite";
   }
-  if (answer.outcome.converged && problem.shift.size() > 0)  // of a static step: what has run away is no equilibrium of the structure
+  if (answer.outcome.converged &&
+      problem.model->shift.size() > 0)  // of a static step: what has run away is no equilibrium of the structure
     if (std::string why = unheld_motion(problem, answer.solution, runaway_ratio); !why.empty()) {
       answer.outcome.converged = false;
       answer.outcome.why = std::move(why);

@@ -163,9 +163,10 @@ TEST(Surface, tangent_is_the_derivative) {
   multiplier.head(points).setConstant(100);
   const AugmentedForce augmented{&multiplier, &stiffness};
   InterfaceSolution solution;
-  size_newton(own.problem, solution);
-  evaluate(own.problem, augmented, true, solution);
-  const Vector slope = solution.newton.slope;
+  NewtonWork work;
+  size_newton(own.problem, work, solution);
+  evaluate(own.problem, augmented, true, work, solution);
+  const Vector slope = work.slope;
   int slips = 0, opens = 0;
   constexpr double h = 1e-9;
   for (int c = 0; c < 3; ++c)
@@ -174,7 +175,7 @@ TEST(Surface, tangent_is_the_derivative) {
       for (const int side : {0, 1}) {
         own.problem.free_opening = data.free_opening;
         own.problem.free_opening[c * points + i] += side == 0 ? -h : h;
-        evaluate(own.problem, augmented, false, solution);
+        evaluate(own.problem, augmented, false, work, solution);
         forces[side] = solution.force;
       }
       for (int r = 0; r < 3; ++r)
@@ -225,14 +226,15 @@ TEST(Surface, what_is_kept_does_not_show) {
     Own own = surface(name, points, 0.4);
     take(own, data);
     InterfaceSolution kept;
+    const auto work = chosen(name)->make_work();
     int changes = 0;
     for (int step = 0; step < 60; ++step) {
-      if (step == 30) own.problem.factor = other.factor;
+      if (step == 30) own.change().factor = other.factor;
       const double phase = 0.1 * step;
       own.problem.free_opening = data.free_opening + 1e-4 * std::sin(phase) * other.free_opening.normalized() +
                                  (1 - std::cos(3 * phase)) * 0.3 * other.free_opening;
       const std::vector<Status> before = kept.status;
-      const Outcome outcome = chosen(name)->solve(own.problem, kept);
+      const Outcome outcome = chosen(name)->solve(own.problem, *work, kept);
       ASSERT_TRUE(outcome.converged) << name << step << outcome.why;
       EXPECT_LE(contact_residual(own.problem, kept), 1e-10) << name << step;
       changes += before != kept.status;

@@ -38,19 +38,24 @@ inline std::unique_ptr<const InterfaceLaw> springs(double stiffness) {
 
 /// A problem that owns its behaviours.
 struct Own {
-  InterfaceProblem problem;
+  std::shared_ptr<ContactModel> model = std::make_shared<ContactModel>();
+  InterfaceProblem problem = problem_of(model);
   std::vector<std::unique_ptr<const Cone>> cones;
   std::vector<std::unique_ptr<const InterfaceLaw>> laws;
 
+  /// A new model in place of the present one, to be changed before a method sees it.
+  ContactModel& change() {
+    problem.model = model = std::make_shared<ContactModel>(*model);
+    return *model;
+  }
   Block& add(const std::string& name, int points, int components, const std::vector<double>& area) {
     Block block;
     block.name = name;
-    for (const Block& other : problem.blocks) block.first = other.first + other.rows();
+    for (const Block& other : model->blocks) block.first = other.first + other.rows();
     block.first_history = static_cast<int>(problem.old.size());
     block.batch = Batch{points, components, 0};
     block.area = ConstMap(area.data(), static_cast<Index>(area.size()));
-    problem.blocks.push_back(std::move(block));
-    return problem.blocks.back();
+    return change().blocks.emplace_back(std::move(block));
   }
   void add_cone(const std::string& name, int points, int components, double friction, std::vector<double> area = {}) {
     if (area.empty()) area.assign(static_cast<std::size_t>(points), 1.0);
@@ -64,7 +69,7 @@ struct Own {
     problem.old.conservativeResizeLike(Vector::Zero(problem.old.size() + block.law->num_history(1) * points));
   }
   void set(Matrix factor, Vector free_opening) {
-    problem.factor = std::move(factor);
+    change().factor = std::move(factor);
     problem.free_opening = std::move(free_opening);
     problem.from = Vector::Zero(problem.rows());
   }

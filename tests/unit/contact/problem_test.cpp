@@ -66,10 +66,10 @@ TEST(ContactResidual, law_blocks_and_shift) {
   solution.force = Vector::Constant(1, -4e4);
   solution.opening = Vector::Constant(1, -0.01);
   EXPECT_LE(contact_residual(own.problem, solution), 1e-15);
-  own.problem.scale = 2;
+  own.change().scale = 2;
   EXPECT_NEAR(contact_residual(own.problem, solution), 1, 1e-12);  // |p - 2 k o| / |p|
-  own.problem.scale = 1;
-  own.problem.shift = Vector::Constant(1, 1e6);  // z + C (p - D o) = 20 - 20 + 5
+  own.change().scale = 1;
+  own.change().shift = Vector::Constant(1, 1e6);  // z + C (p - D o) = 20 - 20 + 5
   EXPECT_NEAR(contact_residual(own.problem, solution), 5.0 / 40, 1e-12);
 }
 
@@ -92,10 +92,10 @@ struct Sample {
     for (Index i = 0; i < factor.size(); ++i) factor.data()[i] = std::pow(-1.1, static_cast<double>(i)) * 1e-4 / 3;
     own.set(factor, Vector::LinSpaced(8, -1.0 / 3, 1e-17));
     own.problem.from = Vector::LinSpaced(8, 5e-324, 1.7976931348623157e308);
-    own.problem.shift = Vector::LinSpaced(8, 0, 1e9 / 7);
-    own.problem.average = true;
-    own.problem.scale = 2;
-    own.problem.step = 1e-3 / 3;
+    own.change().shift = Vector::LinSpaced(8, 0, 1e9 / 7);
+    own.change().average = true;
+    own.change().scale = 2;
+    own.change().step = 1e-3 / 3;
     for (const Values& one : values) behaviours.push_back(&one);
   }
 };
@@ -111,31 +111,31 @@ TEST(ProblemFile, round_trip_to_the_last_bit) {
   const StoredProblem stored = load_problem(text, "sample.json");
   EXPECT_EQ(stored.reason, "a \"reason\"\nin two lines");
   const InterfaceProblem& back = stored.problem;
-  ASSERT_EQ(back.blocks.size(), 2u);
+  ASSERT_EQ(back.model->blocks.size(), 2u);
   for (std::size_t b = 0; b < 2; ++b) {
-    EXPECT_EQ(back.blocks[b].name, problem.blocks[b].name);
-    EXPECT_EQ(back.blocks[b].first, problem.blocks[b].first);
-    EXPECT_EQ(back.blocks[b].first_history, problem.blocks[b].first_history);
-    EXPECT_EQ(back.blocks[b].batch.points, problem.blocks[b].batch.points);
-    EXPECT_EQ(back.blocks[b].batch.components, problem.blocks[b].batch.components);
-    expect_same_bits(back.blocks[b].area.data(), problem.blocks[b].area.data(), static_cast<Index>(problem.blocks[b].area.size()));
+    EXPECT_EQ(back.model->blocks[b].name, problem.model->blocks[b].name);
+    EXPECT_EQ(back.model->blocks[b].first, problem.model->blocks[b].first);
+    EXPECT_EQ(back.model->blocks[b].first_history, problem.model->blocks[b].first_history);
+    EXPECT_EQ(back.model->blocks[b].batch.points, problem.model->blocks[b].batch.points);
+    EXPECT_EQ(back.model->blocks[b].batch.components, problem.model->blocks[b].batch.components);
+    expect_same_bits(back.model->blocks[b].area.data(), problem.model->blocks[b].area.data(), problem.model->blocks[b].area.size());
   }
-  EXPECT_EQ(back.average, true);
-  EXPECT_EQ(back.scale, 2);
-  EXPECT_EQ(back.step, problem.step);
-  ASSERT_EQ(back.factor.rows(), 8);
-  ASSERT_EQ(back.factor.cols(), 3);
-  expect_same_bits(back.factor.data(), problem.factor.data(), 24);
+  EXPECT_EQ(back.model->average, true);
+  EXPECT_EQ(back.model->scale, 2);
+  EXPECT_EQ(back.model->step, problem.model->step);
+  ASSERT_EQ(back.model->factor.rows(), 8);
+  ASSERT_EQ(back.model->factor.cols(), 3);
+  expect_same_bits(back.model->factor.data(), problem.model->factor.data(), 24);
   expect_same_bits(back.free_opening.data(), problem.free_opening.data(), 8);
   expect_same_bits(back.from.data(), problem.from.data(), 8);
-  expect_same_bits(back.shift.data(), problem.shift.data(), 8);
+  expect_same_bits(back.model->shift.data(), problem.model->shift.data(), 8);
   ASSERT_EQ(back.old.size(), problem.old.size());
   expect_same_bits(back.old.data(), problem.old.data(), static_cast<Index>(problem.old.size()));
-  ASSERT_NE(back.blocks[0].cone, nullptr);
-  EXPECT_EQ(back.blocks[0].cone->friction(), 1.0 / 3);
-  ASSERT_NE(back.blocks[1].law, nullptr);
+  ASSERT_NE(back.model->blocks[0].cone, nullptr);
+  EXPECT_EQ(back.model->blocks[0].cone->friction(), 1.0 / 3);
+  ASSERT_NE(back.model->blocks[1].law, nullptr);
   double stiffness = 0;
-  back.blocks[1].law->closed_stiffness(1, &stiffness);
+  back.model->blocks[1].law->closed_stiffness(1, &stiffness);
   EXPECT_EQ(stiffness, 1e9);
 }
 
@@ -155,15 +155,16 @@ TEST(ProblemFile, substituted_law_is_stored_as_its_cone) {
   Sample sample;
   InterfaceProblem& problem = sample.own.problem;
   const auto spring = springs(1e9);
-  problem.blocks[0].cone = nullptr;
-  problem.blocks[0].law = spring.get();
+  ContactModel& model = sample.own.change();
+  model.blocks[0].cone = nullptr;
+  model.blocks[0].law = spring.get();
   const int memory = spring->num_history(2) * 3;
   const Vector own = problem.old;
   problem.old.resize(memory + own.size());
   problem.old << Vector::Constant(memory, 0.7), own;
-  problem.blocks[1].first_history += memory;
+  model.blocks[1].first_history += memory;
   const StoredProblem stored = load_problem(save_problem(problem, sample.behaviours, ""), "sample.json");
-  EXPECT_NE(stored.problem.blocks[0].cone, nullptr);
+  EXPECT_NE(stored.problem.model->blocks[0].cone, nullptr);
   ASSERT_EQ(stored.problem.old.size(), problem.old.size() - memory);
   EXPECT_EQ(stored.problem.old[0], 0.1 / 3);
 }
@@ -179,9 +180,9 @@ TEST(ProblemFile, penalty_problem_replays_to_the_same_solution) {
   for (int i = 0; i < 5; ++i) b(i, 0) = 1, b.row(5 + i) << 0, plan.b(i, 0), plan.b(i, 1);
   own.set(1e-4 * b, Vector::Zero(10));
   InterfaceProblem& problem = own.problem;
-  const auto law = method("penalty", {{"factor", 3.0}})->substitute(*own.cones[0], 0.7 * flexibility(problem, problem.blocks[0]));
-  problem.blocks[0].law = law.get();
-  problem.blocks[0].cone = nullptr;
+  const auto law = method("penalty", {{"factor", 3.0}})->substitute(*own.cones[0], 0.7 * flexibility(*own.model, own.model->blocks[0]));
+  own.change().blocks[0].law = law.get();
+  own.model->blocks[0].cone = nullptr;
   problem.old.setZero(law->num_history(2) * 5);
   InterfaceSolution solution;
   Outcome outcome;
@@ -197,13 +198,15 @@ TEST(ProblemFile, penalty_problem_replays_to_the_same_solution) {
   }
   const Values cone_values = values_of("coulomb", {{"friction", mu}}, interface_behaviours());
   const StoredProblem stored = load_problem(save_problem(problem, {&cone_values}, ""), "penalty.json");
-  ASSERT_NE(stored.problem.blocks[0].cone, nullptr);
+  ASSERT_NE(stored.problem.model->blocks[0].cone, nullptr);
   InterfaceSolution replayed;
   ASSERT_TRUE(method("penalty")->solve(stored.problem, replayed).converged);
   EXPECT_LE((replayed.z - solution.z).norm(), 1e-12 * solution.z.norm());
   EXPECT_LE((replayed.force - solution.force).norm(), 1e-12 * solution.force.norm());
   StoredProblem afresh = load_problem(save_problem(problem, {&cone_values}, ""), "penalty.json");  // the memory is what makes it so
-  afresh.problem.blocks[0].substitute_memory.clear();
+  auto forgetful = std::make_shared<ContactModel>(*afresh.problem.model);
+  forgetful->blocks[0].substitute_memory.clear();
+  afresh.problem.model = forgetful;
   ASSERT_TRUE(method("penalty")->solve(afresh.problem, replayed).converged);
   EXPECT_GE((replayed.force - solution.force).norm(), 1e-3 * solution.force.norm());
 }

@@ -47,9 +47,8 @@ Rest rest(const std::string& name, bool rubs, double push, double height) {
   const Bulk bulk(whole.model, nullptr);
   const Sparse b = stack_interfaces(whole.model);
   const Vector gap = Vector::Zero(b.rows());
-  InterfaceProblem probe;
   const Behaviours none(whole.model, *method("lagrange"), nullptr);
-  probe = blocks_of(whole.model, none);
+  ContactModel probe = blocks_of(whole.model, none);
   probe.factor = Matrix::Zero(b.rows(), 1);
   const Behaviours behaviours(whole.model, *chosen, &probe);
   LinearCounts counts;

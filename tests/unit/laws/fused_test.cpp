@@ -139,18 +139,20 @@ TEST(FusedEvaluation, StepsAreThoseOfTheGeneralMethod) {
       Matrix factor(n, 2);
       for (Index i = 0; i < n; ++i) factor.row(i) << 1e-5, 1e-5 * (2 * static_cast<double>(i) / static_cast<double>(n - 1) - 1);
       own.set(factor, Vector::Zero(n));
-      own.problem.average = true;
-      own.problem.scale = 2;
+      own.change().average = true;
+      own.change().scale = 2;
       own.problem.old.setZero(law.law->num_history(1) * n);
       InterfaceProblem plain = own.problem;
       InterfaceSolution swept, general;
+      NewtonWork swept_work, general_work;
       int passes = 0;
       for (int step = 0; step < 400; ++step) {
         const double phase = 0.05 * step;
         const Vector way = (Vector(2) << 0.3 * std::sin(2 * phase) - 0.5, std::sin(phase)).finished();
         own.problem.free_opening_increment = way;
         own.problem.free_opening = plain.free_opening = own.problem.from + factor * way;
-        const Outcome one = solve_by_newton(own.problem, {}, {}, swept), other = solve_by_newton(plain, {}, {}, general);
+        const Outcome one = solve_by_newton(own.problem, {}, {}, swept_work, swept),
+                      other = solve_by_newton(plain, {}, {}, general_work, general);
         ASSERT_TRUE(one.converged) << law.name << ", step " << step << ": " << one.why;
         ASSERT_TRUE(other.converged) << law.name << ", step " << step << ": " << other.why;
         ASSERT_LE((swept.z - general.z).norm(), 1e-9 * (1 + general.z.norm())) << law.name << ", step " << step;

@@ -15,11 +15,11 @@
 // m = 0 the pressures of redundant points come out as those of a bed of equal springs, the least-norm ones, up to 1/factor.
 namespace uplift {
 
-void augmentation(const InterfaceProblem& problem, double factor, Vector& stiffness) {
-  stiffness.resize(problem.rows());
+void augmentation(const ContactModel& model, double factor, Vector& stiffness) {
+  stiffness.resize(model.rows());
   double largest = 0;
-  for (Index i = 0; i < stiffness.size(); ++i) largest = std::max(largest, stiffness[i] = problem.factor.row(i).squaredNorm());
-  for (const Block& block : problem.blocks) {
+  for (Index i = 0; i < stiffness.size(); ++i) largest = std::max(largest, stiffness[i] = model.factor.row(i).squaredNorm());
+  for (const Block& block : model.blocks) {
     const int n = block.batch.points;
     for (int i = block.first; block.batch.components == 3 && i < block.first + n; ++i)
       stiffness[i] = stiffness[i + n] = 0.5 * (stiffness[i] + stiffness[i + n]);
@@ -30,22 +30,31 @@ void augmentation(const InterfaceProblem& problem, double factor, Vector& stiffn
 
 namespace {
 
+struct AugmentedWork final : MethodWork {
+  SeenModel model;               // that the stiffness belongs to
+  Vector multiplier, stiffness;  // rows [N], [N/m]
+  double growth = 1;             // of the stiffness in this step
+  NewtonWork newton;
+  std::unique_ptr<MethodWork> frictional;
+  ResidualScratch residual;
+};
+
 class AugmentedLagrangian final : public ContactMethod {
  public:
   AugmentedLagrangian(double factor, double tolerance, int most_updates, NewtonOptions newton)
       : factor_(factor), tolerance_(tolerance), most_updates_(most_updates), newton_(newton) {}
 
-  Outcome solve(const InterfaceProblem& problem, InterfaceSolution& solution) const override {
-    AugmentedScratch& scratch = solution.augmented;
-    prepare(problem, scratch);
-    const AugmentedForce augmented{&scratch.multiplier, &scratch.stiffness};
-    const Outcome guess = guess_by_status(problem, solution);
-    Outcome total = iterate(problem, augmented, guess.converged, solution);
+  std::unique_ptr<MethodWork> make_work() const override { return std::make_unique<AugmentedWork>(); }
+  Outcome solve(const InterfaceProblem& problem, MethodWork& kept, InterfaceSolution& solution) const override {
+    AugmentedWork& work = static_cast<AugmentedWork&>(kept);
+    prepare(*problem.model, work);
+    const Outcome guess = guess_by_status(problem, work, solution);
+    Outcome total = iterate(problem, work, guess.converged, solution);
     total.iterations += guess.iterations;
-    reset_stiffness(scratch);
+    reset_stiffness(work);
     for (const double softer : {1.0 / 128, 1.0 / 16384}) {
       if (total.converged) break;
-      const Outcome again = iterate_from(softer, problem, augmented, solution);
+      const Outcome again = iterate_from(softer, problem, work, solution);
       const int iterations = total.iterations + again.iterations;
       if (again.converged) total = again;
       total.iterations = iterations;
@@ -58,25 +67,24 @@ class AugmentedLagrangian final : public ContactMethod {
  private:
   /// The same from rest on softer springs (a power of two, which the growth takes back): on these Newton's method, which follows no
   /// potential with friction, arrives from afar.
-  Outcome iterate_from(double softer, const InterfaceProblem& problem, const AugmentedForce& augmented, InterfaceSolution& solution) const {
-    AugmentedScratch& scratch = solution.augmented;
-    scratch.multiplier.setZero();
-    scratch.stiffness *= softer;
-    scratch.growth = softer;
+  Outcome iterate_from(double softer, const InterfaceProblem& problem, AugmentedWork& work, InterfaceSolution& solution) const {
+    work.multiplier.setZero();
+    work.stiffness *= softer;
+    work.growth = softer;
     solution.z.setZero();
-    Outcome outcome = iterate(problem, augmented, false, solution);
-    reset_stiffness(scratch);
+    Outcome outcome = iterate(problem, work, false, solution);
+    reset_stiffness(work);
     return outcome;
   }
 
   /// `guessed`: the multipliers are expected to be the answer.
-  Outcome iterate(const InterfaceProblem& problem, const AugmentedForce& augmented, bool guessed, InterfaceSolution& solution) const {
+  Outcome iterate(const InterfaceProblem& problem, AugmentedWork& work, bool guessed, InterfaceSolution& solution) const {
     constexpr double epsilon = std::numeric_limits<double>::epsilon();
-    AugmentedScratch& scratch = solution.augmented;
+    const AugmentedForce augmented{&work.multiplier, &work.stiffness};
     Outcome total;
     double before = std::numeric_limits<double>::infinity();
     for (int update = 0; update < most_updates_; ++update) {
-      const Outcome inner = solve_by_newton(problem, augmented, newton_, solution);
+      const Outcome inner = solve_by_newton(problem, augmented, newton_, work.newton, solution);
       total.iterations += inner.iterations + 1;
       total.residual = inner.residual;
       if (!inner.converged) {
@@ -85,27 +93,27 @@ class AugmentedLagrangian final : public ContactMethod {
       }
       bool rubs = false;
       double change = 0, largest = 0, noise = 0;  // noise: what round-off in the openings makes of a stiff augmentation
-      for (const Block& block : problem.blocks) {
+      for (const Block& block : problem.model->blocks) {
         if (block.cone == nullptr) continue;
         rubs = rubs || block.cone->friction() > 0;
         for (int i = block.first; i < block.first + block.rows(); ++i) {
-          change = std::max(change, std::abs(solution.force[i] - scratch.multiplier[i]));
+          change = std::max(change, std::abs(solution.force[i] - work.multiplier[i]));
           largest = std::max(largest, std::abs(solution.force[i]));
           noise = std::max(
-              noise, scratch.stiffness[i] * (std::abs(problem.free_opening[i]) + std::abs(solution.opening[i] - problem.free_opening[i])));
-          scratch.multiplier[i] = solution.force[i];
+              noise, work.stiffness[i] * (std::abs(problem.free_opening[i]) + std::abs(solution.opening[i] - problem.free_opening[i])));
+          work.multiplier[i] = solution.force[i];
         }
       }
       // under a rigid footing friction can be shared in many ways, between which the multipliers wander while everything else stands still
       const bool wanders = rubs && (guessed || update >= 8) && change <= 1e-3 * largest &&
-                           contact_residual(problem, solution, solution.residual_scratch) <= 10 * tolerance_;
+                           contact_residual(problem, solution, work.residual) <= 10 * tolerance_;
       if (change <= tolerance_ * largest || wanders || change <= 4 * epsilon * noise) {
         total.converged = true;
         return total;
       }
       if (update >= 4 && change > 0.25 * before && 64 * epsilon * noise < 1e-8 * largest) {
-        scratch.growth *= 16;
-        scratch.stiffness *= 16;
+        work.growth *= 16;
+        work.stiffness *= 16;
       }
       before = change;
     }
@@ -115,30 +123,30 @@ class AugmentedLagrangian final : public ContactMethod {
 
   /// Where many independent rows rub, Newton's method has no potential to follow and fails from a poor guess: the exact status iteration
   /// gives the first multipliers, which the updates then have to confirm.
-  static Outcome guess_by_status(const InterfaceProblem& problem, InterfaceSolution& solution) {
-    const bool rubs = std::any_of(problem.blocks.begin(), problem.blocks.end(),
+  static Outcome guess_by_status(const InterfaceProblem& problem, AugmentedWork& work, InterfaceSolution& solution) {
+    const bool rubs = std::any_of(problem.model->blocks.begin(), problem.model->blocks.end(),
                                   [](const Block& block) { return block.cone != nullptr && block.cone->friction() > 0; });
-    if (!rubs || !PointRows::suits(problem)) return {};
+    if (!rubs || !PointRows::suits(*problem.model)) return {};
     size_solution(problem, solution);
-    Outcome outcome = solve_frictional(problem, {}, solution);
+    Outcome outcome = solve_frictional(problem, {}, work.frictional, solution);
     if (outcome.converged)
-      solution.augmented.multiplier = solution.force;
+      work.multiplier = solution.force;
     else
       solution.z.setZero();
     return outcome;
   }
 
-  static void reset_stiffness(AugmentedScratch& scratch) {
-    if (scratch.growth != 1) scratch.stiffness /= scratch.growth;  // a power of two: exact
-    scratch.growth = 1;
+  static void reset_stiffness(AugmentedWork& work) {
+    if (work.growth != 1) work.stiffness /= work.growth;  // a power of two: exact
+    work.growth = 1;
   }
 
   /// Multipliers start at zero, so that the answer depends on the problem alone.
-  void prepare(const InterfaceProblem& problem, AugmentedScratch& scratch) const {
-    const Eigen::Index rows = problem.rows();
-    if (scratch.multiplier.size() != rows) scratch.multiplier.resize(rows);
-    scratch.multiplier.setZero();
-    if (scratch.stiffness.size() != rows) augmentation(problem, factor_, scratch.stiffness);
+  void prepare(const ContactModel& model, AugmentedWork& work) const {
+    work.multiplier.setZero(model.rows());
+    if (work.model.is(model)) return;
+    work.model.take(model);
+    augmentation(model, factor_, work.stiffness);
   }
 
   double factor_, tolerance_;

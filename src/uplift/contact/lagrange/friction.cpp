@@ -52,9 +52,9 @@ class Frictional final : public MethodWork {
   /// The settled status is an answer only when the common residual says so; points may be off by the gap tolerance. In statics a loose body
   /// that has flown away meets its balance too: another status may hold it.
   bool confirmed() {
-    if (problem_->shift.size() > 0 && ran_away()) return false;
+    if (problem_->model->shift.size() > 0 && ran_away()) return false;
     step_.write_status();
-    outcome_.residual = contact_residual(*problem_, *solution_, solution_->residual_scratch);
+    outcome_.residual = contact_residual(*problem_, *solution_, residual_);
     const double moved = problem_->rows() > 0 ? (solution_->opening - problem_->free_opening).cwiseAbs().maxCoeff() : 0;
     return outcome_.residual <= 1e-8 + (moved > 0 ? 4 * options_->gap_tolerance / moved : 1);
   }
@@ -113,14 +113,14 @@ class Frictional final : public MethodWork {
   /// Updates of the augmented Lagrangian, the exact solve being tried from the status that they show after every few of them.
   Outcome by_augmentation(double factor) {
     multiplier_.setZero(problem_->rows());
-    augmentation(*problem_, factor, stiffness_);
+    augmentation(*problem_->model, factor, stiffness_);
     const AugmentedForce augmented{&multiplier_, &stiffness_};
     NewtonOptions newton;
     newton.most_iterations = 100;
     solution_->z.setZero();
     double before = std::numeric_limits<double>::infinity();
     for (int update = 1; update <= 200; ++update) {
-      const Outcome inner = solve_by_newton(*problem_, augmented, newton, *solution_);
+      const Outcome inner = solve_by_newton(*problem_, augmented, newton, newton_, *solution_);
       outcome_.iterations += inner.iterations;
       if (ran_away()) return fail(unsettled() + "; nothing holds the structure against sliding or lifting off");
       if (!inner.converged) return fail(unsettled() + "; the augmented Lagrangian: " + inner.why);
@@ -141,7 +141,7 @@ class Frictional final : public MethodWork {
       if (settle(10, false) && confirmed()) return finish();
       solution_->z = z_;
       if (!settled) continue;
-      solve_by_newton(*problem_, augmented, newton, *solution_);
+      solve_by_newton(*problem_, augmented, newton, newton_, *solution_);
       if (!found_by_augmentation()) break;
       outcome_.converged = true;
       step_.guess_from_solution();
@@ -153,26 +153,28 @@ class Frictional final : public MethodWork {
 
   /// Forces of redundant points may wander for ever while everything else stands still.
   bool found_by_augmentation() {
-    outcome_.residual = contact_residual(*problem_, *solution_, solution_->residual_scratch);
+    outcome_.residual = contact_residual(*problem_, *solution_, residual_);
     return outcome_.residual <= 1e-9;
   }
 
   /// In statics a loose body has no equilibrium: the balance, which is relative, is then met at infinity.
   bool ran_away() const {
-    const Vector moved = problem_->factor * solution_->z;
+    const Vector moved = problem_->model->factor * solution_->z;
     return !(moved.cwiseAbs().maxCoeff() <= 1e6 * (problem_->free_opening - problem_->from).cwiseAbs().maxCoeff());
   }
 
   std::string unsettled() const {
     if (step_.changed().empty())
       return "no contact status was found: the closed points contradict each other, or nothing holds the structure";
-    return fmt::format("the contact status did not settle at {}", point_names(*problem_, step_.changed()));
+    return fmt::format("the contact status did not settle at {}", point_names(*problem_->model, step_.changed()));
   }
 
   const InterfaceProblem* problem_ = nullptr;
   const LagrangeOptions* options_ = nullptr;
   InterfaceSolution* solution_ = nullptr;
   StatusStep step_;
+  NewtonWork newton_;  // of the augmentation
+  ResidualScratch residual_;
   std::vector<std::uint64_t> visited_;  // hashes of the sets met
   Vector multiplier_, stiffness_, z_;   // of the augmentation
   Outcome outcome_;
@@ -180,10 +182,10 @@ class Frictional final : public MethodWork {
 
 }  // namespace
 
-Outcome solve_frictional(const InterfaceProblem& problem, const LagrangeOptions& options, InterfaceSolution& solution) {
-  std::unique_ptr<MethodWork>& kept = solution.lagrange.frictional.work;
-  if (kept == nullptr) kept = std::make_unique<Frictional>();
-  return static_cast<Frictional&>(*kept).solve(problem, options, solution);
+Outcome solve_frictional(const InterfaceProblem& problem, const LagrangeOptions& options, std::unique_ptr<MethodWork>& work,
+                         InterfaceSolution& solution) {
+  if (work == nullptr) work = std::make_unique<Frictional>();
+  return static_cast<Frictional&>(*work).solve(problem, options, solution);
 }
 
 }  // namespace uplift

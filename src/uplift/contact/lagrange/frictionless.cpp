@@ -26,25 +26,22 @@ class Frictionless final : public MethodWork {
 
  private:
   void prepare() {
-    const Index rows = problem_->rows(), r = problem_->factor.cols();
-    slope_offsets(*problem_, offsets_);
+    const Index rows = problem_->rows(), r = problem_->model->factor.cols();
+    slope_offsets(*problem_->model, offsets_);
     slope_.setZero(offsets_.back());
-    LagrangeScratch& scratch = solution_->lagrange;
-    scratch.limit.setZero(rows);
-    scratch.held.setZero(rows);
-    for (Vector* v : {&multiplier_, &opening_, &target_, &force_, &taken_}) v->setZero(rows);
+    for (Vector* v : {&limit_, &held_, &multiplier_, &opening_, &target_, &force_, &taken_}) v->setZero(rows);
     for (Vector* v : {&start_, &newton_, &direction_, &reaction_, &x_, &end_}) v->setZero(r);
     work_.resize(rows, r);
     factor_.resize(rows, r);
     half_.resize(r, rows);
     hessian_.resize(r, r);
     std::size_t point = 0;
-    for (const Block& block : problem_->blocks)
+    for (const Block& block : problem_->model->blocks)
       for (int i = 0; i < block.batch.points; ++i, ++point) {
         if (block.cone == nullptr) continue;
         const int row = block.first + block.batch.normal() + i;
-        scratch.limit[row] = block.area[static_cast<std::size_t>(i)];
-        if (solution_->status[point] != Status::open) scratch.held[row] = scratch.limit[row];
+        limit_[row] = block.area[static_cast<std::size_t>(i)];
+        if (solution_->status[point] != Status::open) held_[row] = limit_[row];
       }
   }
 
@@ -74,27 +71,26 @@ class Frictionless final : public MethodWork {
   void move_to(const Vector& z) {
     solution_->z = z;
     solution_->opening = problem_->free_opening;
-    solution_->opening.noalias() += problem_->factor * solution_->z;
+    solution_->opening.noalias() += problem_->model->factor * solution_->z;
     law_forces(*problem_, offsets_, slope_.data(), *solution_);
     force_ = solution_->force;
-    for (const Block& block : problem_->blocks)
+    for (const Block& block : problem_->model->blocks)
       if (block.cone != nullptr) force_.segment(block.first, block.rows()).setZero();
-    if (problem_->shift.size() > 0) force_ -= problem_->shift.cwiseProduct(solution_->opening);
+    if (problem_->model->shift.size() > 0) force_ -= problem_->model->shift.cwiseProduct(solution_->opening);
     gradient_ = solution_->z;
-    gradient_.noalias() += problem_->factor.transpose() * force_;
+    gradient_.noalias() += problem_->model->factor.transpose() * force_;
   }
 
   /// Cholesky factor of H: with the true slopes, then with the shift kept on all rows, then with positive slopes only.
   void factorise() {
     for (int attempt = 0; attempt < 3; ++attempt) {
       hessian_.setIdentity();
-      add_law_slopes(*problem_, offsets_, slope_, attempt == 2, work_, hessian_);
+      add_law_slopes(*problem_->model, offsets_, slope_, attempt == 2, work_, hessian_);
       for (Index j = 0; j < hessian_.cols(); ++j)
         for (Index i = 0; i < j; ++i) hessian_(i, j) = hessian_(j, i) = 0.5 * (hessian_(i, j) + hessian_(j, i));
-      if (attempt == 0 && problem_->shift.size() > 0) {
-        const Vector& held = solution_->lagrange.held;
-        for (Index i = 0; i < taken_.size(); ++i) taken_[i] = held[i] > 0 ? 0 : -problem_->shift[i];
-        add_weighted_gram(*problem_, 0, 0, ConstMap(taken_.data(), taken_.size()), work_, hessian_);
+      if (attempt == 0 && problem_->model->shift.size() > 0) {
+        for (Index i = 0; i < taken_.size(); ++i) taken_[i] = held_[i] > 0 ? 0 : -problem_->model->shift[i];
+        add_weighted_gram(*problem_->model, 0, 0, ConstMap(taken_.data(), taken_.size()), work_, hessian_);
       }
       lower_.compute(hessian_);
       if (lower_->info() != Success) continue;
@@ -108,18 +104,17 @@ class Frictionless final : public MethodWork {
     factorise();
     lower_.solve(gradient_, newton_);
     newton_ = start_ - newton_;
-    half_ = problem_->factor.transpose();
+    half_ = problem_->model->factor.transpose();
     lower_->matrixL().solveInPlace(half_);
     factor_ = half_.transpose();
     target_ = problem_->free_opening;
-    target_.noalias() += problem_->factor * newton_;
-    LagrangeScratch& scratch = solution_->lagrange;
-    const Rows rows{problem_->rows(), factor_.cols(),       problem_->rows(), factor_.data(),
-                    target_.data(),   scratch.limit.data(), nullptr,          options_->gap_tolerance};
-    const KernelReply reply = solve_rows(rows, scratch.held.data(), x_.data(), opening_.data(), multiplier_.data(), scratch.kernel);
+    target_.noalias() += problem_->model->factor * newton_;
+    const Rows rows{problem_->rows(), factor_.cols(), problem_->rows(), factor_.data(),
+                    target_.data(),   limit_.data(),  nullptr,          options_->gap_tolerance};
+    const KernelReply reply = solve_rows(rows, held_.data(), x_.data(), opening_.data(), multiplier_.data(), kernel_);
     outcome_.cycles += reply.cycles;
     if (!reply.solved()) {
-      outcome_.why = kernel_failure(*problem_, reply, 0);
+      outcome_.why = kernel_failure(*problem_->model, reply, 0);
       return 0;
     }
     lower_->matrixU().solveInPlace(x_);
@@ -150,7 +145,7 @@ class Frictionless final : public MethodWork {
   }
 
   double balance() {
-    reaction_.noalias() = problem_->factor.transpose() * multiplier_;
+    reaction_.noalias() = problem_->model->factor.transpose() * multiplier_;
     newton_ = gradient_ + reaction_;
     const double size = std::max({solution_->z.norm(), (newton_ - solution_->z).norm(), reaction_.norm()});
     return size > 0 ? newton_.norm() / size : 0;
@@ -158,14 +153,13 @@ class Frictionless final : public MethodWork {
 
   Outcome finish() {
     std::size_t point = 0;
-    for (const Block& block : problem_->blocks) {
+    for (const Block& block : problem_->model->blocks) {
       if (block.cone != nullptr) solution_->force.segment(block.first, block.rows()) = multiplier_.segment(block.first, block.rows());
       for (int i = 0; i < block.batch.points; ++i, ++point)
-        solution_->status[point] =
-            block.cone != nullptr && solution_->lagrange.held[block.first + block.batch.normal() + i] > 0 ? Status::slip : Status::open;
+        solution_->status[point] = block.cone != nullptr && held_[block.first + block.batch.normal() + i] > 0 ? Status::slip : Status::open;
     }
     outcome_.converged = true;
-    outcome_.residual = contact_residual(*problem_, *solution_, solution_->residual_scratch);
+    outcome_.residual = contact_residual(*problem_, *solution_, residual_);
     return outcome_;
   }
 
@@ -173,6 +167,9 @@ class Frictionless final : public MethodWork {
   const LagrangeOptions* options_ = nullptr;
   InterfaceSolution* solution_ = nullptr;
   std::vector<int> offsets_;
+  KernelScratch kernel_;
+  ResidualScratch residual_;
+  Vector limit_, held_;  // rows: area of the normal rows of cones, and the same where they are closed
   Vector slope_, gradient_, multiplier_, opening_, target_, force_, taken_;
   Vector start_, newton_, direction_, reaction_, x_, end_;
   Matrix work_, factor_, half_, hessian_;
@@ -182,10 +179,10 @@ class Frictionless final : public MethodWork {
 
 }  // namespace
 
-Outcome solve_frictionless(const InterfaceProblem& problem, const LagrangeOptions& options, InterfaceSolution& solution) {
-  std::unique_ptr<MethodWork>& kept = solution.lagrange.frictionless.work;
-  if (kept == nullptr) kept = std::make_unique<Frictionless>();
-  return static_cast<Frictionless&>(*kept).solve(problem, options, solution);
+Outcome solve_frictionless(const InterfaceProblem& problem, const LagrangeOptions& options, std::unique_ptr<MethodWork>& work,
+                           InterfaceSolution& solution) {
+  if (work == nullptr) work = std::make_unique<Frictionless>();
+  return static_cast<Frictionless&>(*work).solve(problem, options, solution);
 }
 
 }  // namespace uplift

@@ -5,15 +5,15 @@
 // Law blocks beside cones: their forces and slopes, for both Lagrange methods.
 namespace uplift {
 
-void slope_offsets(const InterfaceProblem& problem, std::vector<int>& offsets) {
+void slope_offsets(const ContactModel& model, std::vector<int>& offsets) {
   offsets.assign(1, 0);
-  for (const Block& block : problem.blocks)
+  for (const Block& block : model.blocks)
     offsets.push_back(offsets.back() + (block.law != nullptr ? block.batch.points * block.batch.components * block.batch.components : 0));
 }
 
 void law_forces(const InterfaceProblem& problem, const std::vector<int>& first_slope, double* slope, InterfaceSolution& solution) {
-  for (std::size_t b = 0; b < problem.blocks.size(); ++b) {
-    const Block& block = problem.blocks[b];
+  for (std::size_t b = 0; b < problem.model->blocks.size(); ++b) {
+    const Block& block = problem.model->blocks[b];
     if (block.law == nullptr) continue;
     LawResponse response;
     response.traction = solution.force.data() + block.first;
@@ -23,16 +23,16 @@ void law_forces(const InterfaceProblem& problem, const std::vector<int>& first_s
   }
 }
 
-void add_weighted_gram(const InterfaceProblem& problem, Index left, Index right, const ConstMap& weight, Matrix& work, Matrix& hessian) {
+void add_weighted_gram(const ContactModel& model, Index left, Index right, const ConstMap& weight, Matrix& work, Matrix& hessian) {
   const Index n = weight.size();
-  work.topRows(n) = weight.asDiagonal() * problem.factor.middleRows(right, n);
-  hessian.noalias() += problem.factor.middleRows(left, n).transpose() * work.topRows(n);
+  work.topRows(n) = weight.asDiagonal() * model.factor.middleRows(right, n);
+  hessian.noalias() += model.factor.middleRows(left, n).transpose() * work.topRows(n);
 }
 
-void add_law_slopes(const InterfaceProblem& problem, const std::vector<int>& first_slope, Vector& slope, bool convex, Matrix& work,
+void add_law_slopes(const ContactModel& model, const std::vector<int>& first_slope, Vector& slope, bool convex, Matrix& work,
                     Matrix& hessian) {
-  for (std::size_t b = 0; b < problem.blocks.size(); ++b) {
-    const Block& block = problem.blocks[b];
+  for (std::size_t b = 0; b < model.blocks.size(); ++b) {
+    const Block& block = model.blocks[b];
     if (block.law == nullptr) continue;
     const int n = block.batch.points, components = block.batch.components;
     for (int row = 0; row < components; ++row)
@@ -41,7 +41,7 @@ void add_law_slopes(const InterfaceProblem& problem, const std::vector<int>& fir
         double* k = slope.data() + first_slope[b] + (row * components + column) * n;
         if (convex)
           for (int i = 0; i < n; ++i) k[i] = std::max(k[i], 0.0);
-        add_weighted_gram(problem, block.first + row * n, block.first + column * n, ConstMap(k, n), work, hessian);
+        add_weighted_gram(model, block.first + row * n, block.first + column * n, ConstMap(k, n), work, hessian);
       }
   }
 }

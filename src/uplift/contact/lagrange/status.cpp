@@ -21,7 +21,7 @@ void StatusStep::begin(const InterfaceProblem& problem, double gap_tolerance, In
   finite_ = true;
   redundant_ = false;
   changed_.clear();
-  slope_offsets(problem, offsets_);
+  slope_offsets(*problem.model, offsets_);
   slope_.setZero(offsets_.back());
   size_work();
   list_points();
@@ -31,13 +31,13 @@ void StatusStep::list_points() {
   const InterfaceProblem& problem = *problem_;
   const Index rows = problem.rows();
   moved_.setZero();
-  for (Index k = 0; k < problem.factor.cols(); ++k)
-    for (Index i = 0; i < rows; ++i) moved_[i] += problem.factor(i, k) * problem.factor(i, k);
+  for (Index k = 0; k < problem.model->factor.cols(); ++k)
+    for (Index i = 0; i < rows; ++i) moved_[i] += problem.model->factor(i, k) * problem.model->factor(i, k);
   const double largest = rows > 0 ? moved_.maxCoeff() : 0;
   const auto rho = [&](Index row) { return 1 / (moved_[row] > 1e-12 * largest ? moved_[row] : std::max(largest, 1e-300)); };
   points_.clear();
   Index index = 0;
-  for (const Block& block : problem.blocks)
+  for (const Block& block : problem.model->blocks)
     for (int i = 0; i < block.batch.points; ++i, ++index) {
       if (block.cone == nullptr) continue;
       FrictionPoint point;
@@ -133,11 +133,11 @@ bool StatusStep::update_status(bool single) {
 
 double StatusStep::residual() {
   law_forces(*problem_, offsets_, nullptr, *solution_);
-  reaction_.noalias() = problem_->factor.transpose() * solution_->force;
+  reaction_.noalias() = problem_->model->factor.transpose() * solution_->force;
   const double size = std::max(solution_->z.norm(), reaction_.norm());
-  if (problem_->shift.size() > 0) {
-    force_ = solution_->force - problem_->shift.cwiseProduct(solution_->opening);
-    reaction_.noalias() = problem_->factor.transpose() * force_;
+  if (problem_->model->shift.size() > 0) {
+    force_ = solution_->force - problem_->model->shift.cwiseProduct(solution_->opening);
+    reaction_.noalias() = problem_->model->factor.transpose() * force_;
   }
   reaction_ += solution_->z;
   double worst = size > 0 ? reaction_.norm() / size : 0;

@@ -18,7 +18,7 @@ StatusStep::StatusStep() : rows_(std::make_unique<PointRows>()) {}
 StatusStep::~StatusStep() = default;
 
 void StatusStep::size_work() {
-  const Index rows = problem_->rows(), r = problem_->factor.cols();
+  const Index rows = problem_->rows(), r = problem_->model->factor.cols();
   if (moved_.size() == rows && z_.size() == r) return;
   for (Vector* v : {&linear_force_, &field_, &q_, &excess_, &moved_, &taken_, &known_, &force_}) v->setZero(rows);
   for (Vector* v : {&right_, &z_, &reaction_}) v->setZero(r);
@@ -29,7 +29,7 @@ void StatusStep::size_work() {
 
 void StatusStep::open_at(const Vector& z) {
   solution_->opening = problem_->free_opening;
-  solution_->opening.noalias() += problem_->factor * z;
+  solution_->opening.noalias() += problem_->model->factor * z;
 }
 
 void StatusStep::list_held() {
@@ -46,8 +46,8 @@ void StatusStep::linearise_laws() {
   if (offsets_.back() == 0) return;
   law_forces(*problem_, offsets_, slope_.data(), *solution_);
   moved_ = solution_->opening - problem_->free_opening;
-  for (std::size_t b = 0; b < problem_->blocks.size(); ++b) {
-    const Block& block = problem_->blocks[b];
+  for (std::size_t b = 0; b < problem_->model->blocks.size(); ++b) {
+    const Block& block = problem_->model->blocks[b];
     if (block.law == nullptr) continue;
     const int n = block.batch.points, components = block.batch.components;
     for (int row = 0; row < components; ++row) {
@@ -74,7 +74,7 @@ void StatusStep::turn_slip() {
 
 /// H and the right-hand side; false when something is not finite, or when nothing holds the body.
 bool StatusStep::assemble() {
-  const Matrix& c = problem_->factor;
+  const Matrix& c = problem_->model->factor;
   const Index rows = problem_->rows(), r = c.cols(), least = std::min(rows, r);
   if (hessian_.rows() != r || u_.cols() != rows) {  // not before they are needed: many independent rows do without
     hessian_.setZero(r, r);
@@ -88,22 +88,22 @@ bool StatusStep::assemble() {
     image_.size(rows, least);
     reduced_.size(rows, least);
   }
-  plain_ = offsets_.back() == 0 && problem_->shift.size() == 0;
+  plain_ = offsets_.back() == 0 && problem_->model->shift.size() == 0;
   hessian_.setIdentity();
   right_.setZero();
   if (offsets_.back() > 0) {
-    add_law_slopes(*problem_, offsets_, slope_, false, work_, hessian_);
+    add_law_slopes(*problem_->model, offsets_, slope_, false, work_, hessian_);
     right_.noalias() -= c.transpose() * linear_force_;
   }
-  if (problem_->shift.size() > 0) {
-    taken_ = -problem_->shift;
+  if (problem_->model->shift.size() > 0) {
+    taken_ = -problem_->model->shift;
     known_.setZero();
     for (const Held& held : held_) {
-      known_[held.row] = problem_->shift[held.row] * held.target;
+      known_[held.row] = problem_->model->shift[held.row] * held.target;
       taken_[held.row] = 0;
     }
     known_ -= taken_.cwiseProduct(problem_->free_opening);
-    add_weighted_gram(*problem_, 0, 0, ConstMap(taken_.data(), taken_.size()), work_, hessian_);
+    add_weighted_gram(*problem_->model, 0, 0, ConstMap(taken_.data(), taken_.size()), work_, hessian_);
     right_.noalias() += c.transpose() * known_;
   }
   for (const FrictionPoint& point : points_) {
@@ -132,12 +132,12 @@ void StatusStep::list_held_rows() {
     const Held& held = held_[k];
     const double root = std::sqrt(held.area);
     auto u = u_.col(static_cast<Index>(k)), v = v_.col(static_cast<Index>(k));
-    u = root * problem_->factor.row(held.row).transpose();
+    u = root * problem_->model->factor.row(held.row).transpose();
     v = u;
     if (held.slipping == nullptr) continue;
     for (int t = 0; t < held.slipping->tangents(); ++t)
       v -= root * held.slipping->friction * held.slipping->direction[static_cast<std::size_t>(t)] *
-           problem_->factor.row(held.slipping->row(t)).transpose();
+           problem_->model->factor.row(held.slipping->row(t)).transpose();
   }
 }
 
@@ -158,15 +158,15 @@ bool StatusStep::solve() {
 }
 
 bool StatusStep::solve_by_rows() {
-  if (!PointRows::suits(*problem_)) return false;
+  if (!PointRows::suits(*problem_->model)) return false;
   rows_->begin(*problem_);
-  for (std::size_t b = 0; b < problem_->blocks.size(); ++b)
-    if (problem_->blocks[b].law != nullptr) rows_->linearise(b, slope_.data() + offsets_[b], solution_->force, solution_->opening);
+  for (std::size_t b = 0; b < problem_->model->blocks.size(); ++b)
+    if (problem_->model->blocks[b].law != nullptr) rows_->linearise(b, slope_.data() + offsets_[b], solution_->force, solution_->opening);
   for (const FrictionPoint& point : points_) relate(point, rows_->relation(point.index));
   if (!rows_->solve(force_, moved_, z_, solution_->systems)) return false;
   for (std::size_t k = 0; k < held_.size(); ++k) {
     const Held& held = held_[k];
-    const double taken = problem_->shift.size() > 0 ? problem_->shift[held.row] * held.target : 0;
+    const double taken = problem_->model->shift.size() > 0 ? problem_->model->shift[held.row] * held.target : 0;
     q_[static_cast<Index>(k)] = (force_[held.row] + taken) / std::sqrt(held.area);
   }
   finite_ = true;
@@ -183,7 +183,7 @@ bool StatusStep::solve_by_rows() {
 ///     slips              P_t + D_t g_t = -mu d p_n + s e (e . (g_t - from_t))
 /// Without D an open point has no unknown; a slipping one has its pressure and the force across d.
 void StatusStep::relate(const FrictionPoint& point, PointRelation& relation) const {
-  const bool shifted = problem_->shift.size() > 0, slips = point.status == Status::slip && point.friction > 0;
+  const bool shifted = problem_->model->shift.size() > 0, slips = point.status == Status::slip && point.friction > 0;
   const int normal = point.tangents();
   relation = PointRelation();
   relation.kind = 1 + static_cast<int>(point.status) + (slips ? 3 : 0);
@@ -213,7 +213,7 @@ void StatusStep::relate(const FrictionPoint& point, PointRelation& relation) con
       relation.basis[f][at] = 1;
       relation.force[f][at] = weight;
       if (slips) relation.force[f][static_cast<std::size_t>(normal)] = weight * point.friction * along[at];
-      relation.opening[f][at] = -weight * problem_->shift[point.row(c)];
+      relation.opening[f][at] = -weight * problem_->model->shift[point.row(c)];
       if (slips && normal > 1) turn(f, across[at]);
     }
   } else if (slips) {
@@ -238,7 +238,7 @@ void StatusStep::measure_excess() {
 /// z <- z - H^-1 V^T q so that the held rows are on target; each pass takes the round-off of the one before.
 bool StatusStep::hold() {
   constexpr int passes = 3;
-  const Index count = static_cast<Index>(held_.size()), r = problem_->factor.cols();
+  const Index count = static_cast<Index>(held_.size()), r = problem_->model->factor.cols();
   list_held_rows();
   range_.compute(v_, r, count, 1e-10);
   const Index rank = range_.rank();
@@ -267,7 +267,7 @@ bool StatusStep::hold() {
   if (!redundant_) return true;
   image_.solve(q_, more_);
   reaction_.noalias() = basis * more_.head(rank);
-  field_.noalias() = problem_->factor * reaction_;
+  field_.noalias() = problem_->model->factor * reaction_;
   return true;
 }
 

@@ -26,27 +26,27 @@ void cone_force(const InterfaceProblem& problem, const Block& block, const Augme
 
 }  // namespace
 
-void size_newton(const InterfaceProblem& problem, InterfaceSolution& solution) {
-  NewtonScratch& scratch = solution.newton;
-  const Eigen::Index rows = problem.rows(), r = problem.factor.cols();
-  if (scratch.first_slope.size() == problem.blocks.size() && solution.opening.size() == rows && scratch.gradient.size() == r &&
-      solution.now.size() == problem.old.size())
+void size_newton(const InterfaceProblem& problem, NewtonWork& work, InterfaceSolution& solution) {
+  const ContactModel& model = *problem.model;
+  const Index rows = model.rows(), r = model.factor.cols(), paths = model.average ? rows : 0;
+  if (work.model.is(model) && solution.opening.size() == rows && solution.now.size() == problem.old.size() &&
+      solution.end_traction.size() == paths)
     return;
-  scratch.first_slope.clear();
+  work.model.take(model);
+  work.follows = false;
+  work.evaluation = {};
+  work.first_slope.clear();
   int slopes = 0;
-  for (const Block& block : problem.blocks) {
-    scratch.first_slope.push_back(slopes);
-    slopes += block.batch.points * block.batch.components * block.batch.components;
+  for (const Block& block : model.blocks) {
+    work.first_slope.push_back(slopes);
+    slopes += block.slopes();
   }
-  scratch.slope.setZero(slopes);
-  scratch.next.setZero(slopes);
-  scratch.gradient.setZero(r);
-  scratch.end_pull.setZero(r);
-  scratch.direction.setZero(r);
-  scratch.origin.setZero(r);
-  if (r <= few) scratch.hessian.setZero(r, r);
-  scratch.end.setZero(rows);
-  scratch.pull.setZero(rows);
+  work.slope.setZero(slopes);
+  for (Vector* v : {&work.gradient, &work.end_pull, &work.direction, &work.origin}) v->setZero(r);
+  if (r <= few) work.hessian.setZero(r, r);
+  work.pull.setZero(rows);
+  solution.next_slope.setZero(model.average ? slopes : 0);
+  solution.end_traction.setZero(paths);
   solution.opening.setZero(rows);
   solution.force.setZero(rows);
   if (problem.filter.acts()) solution.plain.setZero(rows);
@@ -54,16 +54,18 @@ void size_newton(const InterfaceProblem& problem, InterfaceSolution& solution) {
   solution.now.setZero(problem.old.size());
 }
 
-void evaluate(const InterfaceProblem& problem, const AugmentedForce& augmented, bool with_slope, InterfaceSolution& solution) {
-  small::affine(problem.factor, problem.free_opening.data(), solution.z.data(), solution.opening.data());
-  for (std::size_t b = 0; b < problem.blocks.size(); ++b) {
-    const Block& block = problem.blocks[b];
-    const int first_slope = solution.newton.first_slope[b];
-    double* slope = with_slope ? solution.newton.slope.data() + first_slope : nullptr;
+void evaluate(const InterfaceProblem& problem, const AugmentedForce& augmented, bool with_slope, NewtonWork& work,
+              InterfaceSolution& solution) {
+  const ContactModel& model = *problem.model;
+  small::affine(model.factor, problem.free_opening.data(), solution.z.data(), solution.opening.data());
+  for (std::size_t b = 0; b < model.blocks.size(); ++b) {
+    const Block& block = model.blocks[b];
+    const int first_slope = work.first_slope[b];
+    double* slope = with_slope ? work.slope.data() + first_slope : nullptr;
     if (block.law != nullptr) {
       LawResponse response{solution.force.data() + block.first, slope, solution.now.data() + block.first_history};
-      if (problem.average) response.end = solution.newton.end.data() + block.first;
-      if (problem.average && (with_slope || problem.filter.acts())) response.next = solution.newton.next.data() + first_slope;
+      if (model.average) response.end = solution.end_traction.data() + block.first;
+      if (model.average && (with_slope || problem.filter.acts())) response.next = solution.next_slope.data() + first_slope;
       if (problem.filter.acts()) response.plain = solution.plain.data() + block.first;
       law_force(problem, block, solution.opening.data(), response);
     } else {

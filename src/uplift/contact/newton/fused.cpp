@@ -10,30 +10,30 @@ namespace uplift {
 namespace {
 
 /// All that a pass reads and writes.
-FusedEvaluation lay_out(const InterfaceProblem& problem, InterfaceSolution& solution) {
-  const Block& block = problem.blocks.front();
-  NewtonScratch& scratch = solution.newton;
+FusedEvaluation lay_out(const InterfaceProblem& problem, NewtonWork& work, InterfaceSolution& solution) {
+  const ContactModel& model = *problem.model;
+  const Block& block = model.blocks.front();
   return {.points = block.batch.points,
-          .columns = problem.factor.cols(),
+          .columns = model.factor.cols(),
           .z = solution.z.data(),
-          .factor = problem.factor.data(),
-          .stride = problem.factor.rows(),
+          .factor = model.factor.data(),
+          .stride = model.factor.rows(),
           .free = problem.free_opening.data(),
           .from = problem.from.data(),
           .old = problem.old.data(),
           .area = block.area.data(),
-          .scale = problem.scale,
+          .scale = model.scale,
           .coefficient = problem.filter.acts() ? problem.filter.coefficient.data() : nullptr,
           .lag = problem.filter.lag.data(),
           .opening = solution.opening.data(),
           .force = solution.force.data(),
-          .slope = scratch.slope.data(),
+          .slope = work.slope.data(),
           .now = solution.now.data(),
-          .end = scratch.end.data(),
-          .next = scratch.next.data(),
-          .pull = scratch.gradient.data(),
-          .stiffness = scratch.hessian.data(),
-          .end_pull = scratch.end_pull.data(),
+          .end = solution.end_traction.data(),
+          .next = solution.next_slope.data(),
+          .pull = work.gradient.data(),
+          .stiffness = work.hessian.data(),
+          .end_pull = work.end_pull.data(),
           .plain = solution.plain.data(),
           .stored = &solution.stored};
 }
@@ -104,17 +104,17 @@ void go_on(const FusedEvaluation& evaluation) {
 }
 
 template <int R>
-bool iterate(const InterfaceProblem& problem, const NewtonOptions& options, InterfaceSolution& solution, Outcome& outcome) {
-  const InterfaceLaw& law = *problem.blocks.front().law;
-  NewtonScratch& scratch = solution.newton;
-  const FusedEvaluation& evaluation = scratch.evaluation;
+bool iterate(const InterfaceProblem& problem, const NewtonOptions& options, NewtonWork& work, InterfaceSolution& solution,
+             Outcome& outcome) {
+  const InterfaceLaw& law = *problem.model->blocks.front().law;
+  const FusedEvaluation& evaluation = work.evaluation;
   double* z = solution.z.data();
-  if (scratch.follows) {
+  if (work.follows) {
     if (!solution.fused) pull_at_end<R>(evaluation);
     if (evaluation.coefficient != nullptr) add_lag<R>(evaluation);
     guess<R>(evaluation, problem.free_opening_increment.data(), z);
   }
-  scratch.follows = false;
+  work.follows = false;
   double before = std::numeric_limits<double>::infinity();
   const int most = std::min(patience_of_newton, options.most_iterations);
   for (outcome.iterations = 0; outcome.iterations < most; ++outcome.iterations) {
@@ -133,7 +133,7 @@ bool iterate(const InterfaceProblem& problem, const NewtonOptions& options, Inte
       outcome.converged = true;
       outcome.residual = size / larger(reference, 1e-300);
       if (outcome.iterations > 0) go_on<R>(evaluation);
-      scratch.follows = true;
+      work.follows = true;
       return true;
     }
     if (!(size <= 0.5 * before) || !descend<R>(evaluation.stiffness, gradient)) return false;
@@ -145,27 +145,30 @@ bool iterate(const InterfaceProblem& problem, const NewtonOptions& options, Inte
 
 }  // namespace
 
-bool may_sweep(const InterfaceProblem& problem, InterfaceSolution& solution) {
-  const FusedEvaluation& evaluation = solution.newton.evaluation;
+bool may_sweep(const InterfaceProblem& problem, NewtonWork& work, InterfaceSolution& solution) {
+  const FusedEvaluation& evaluation = work.evaluation;
   if (problem.free_opening_increment.size() == 0) return false;
-  if (evaluation.z == solution.z.data() && evaluation.stored == &solution.stored && evaluation.free == problem.free_opening.data())
+  const ContactModel& model = *problem.model;
+  if (work.model.is(model) && evaluation.z == solution.z.data() && evaluation.stored == &solution.stored &&
+      evaluation.free == problem.free_opening.data())
     return true;  // the same two as before
-  if (!problem.average || problem.shift.size() > 0 || problem.blocks.size() != 1 || problem.blocks.front().batch.components != 1 ||
-      problem.blocks.front().law == nullptr)
+  if (!model.average || model.shift.size() > 0 || model.blocks.size() != 1 || model.blocks.front().batch.components != 1 ||
+      model.blocks.front().law == nullptr)
     return false;
-  size_newton(problem, solution);
-  solution.newton.evaluation = lay_out(problem, solution);
+  size_newton(problem, work, solution);
+  work.evaluation = lay_out(problem, work, solution);
   return true;
 }
 
-bool solve_by_sweeps(const InterfaceProblem& problem, const NewtonOptions& options, InterfaceSolution& solution, Outcome& outcome) {
+bool solve_by_sweeps(const InterfaceProblem& problem, const NewtonOptions& options, NewtonWork& work, InterfaceSolution& solution,
+                     Outcome& outcome) {
   switch (problem.free_opening_increment.size()) {
     case 1:
-      return iterate<1>(problem, options, solution, outcome);
+      return iterate<1>(problem, options, work, solution, outcome);
     case 2:
-      return iterate<2>(problem, options, solution, outcome);
+      return iterate<2>(problem, options, work, solution, outcome);
     case 3:
-      return iterate<3>(problem, options, solution, outcome);
+      return iterate<3>(problem, options, work, solution, outcome);
     default:
       return false;
   }

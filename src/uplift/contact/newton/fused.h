@@ -8,10 +8,10 @@ namespace uplift {
 
 /// Whether it suits the problem; if so, the solution is sized and the pass laid out. Condensed problems keep their arrays from step to
 /// step.
-bool may_sweep(const InterfaceProblem&, InterfaceSolution&);
+bool may_sweep(const InterfaceProblem&, NewtonWork&, InterfaceSolution&);
 
 /// For problems that may_sweep. False when the law does not offer a pass for these paths or when the residual does not fall by half:
 /// solution.z is then the best guess so far, and `outcome` counts the iterations.
-bool solve_by_sweeps(const InterfaceProblem&, const NewtonOptions&, InterfaceSolution&, Outcome&);
+bool solve_by_sweeps(const InterfaceProblem&, const NewtonOptions&, NewtonWork&, InterfaceSolution&, Outcome&);
 
 }  // namespace uplift

@@ -7,7 +7,7 @@ namespace {
 void to_force(const InterfaceProblem& problem, const Block& block, double* force, double* slope) {
   const int n = block.batch.points, components = block.batch.components;
   const double* area = block.area.data();
-  const double scale = problem.scale;
+  const double scale = problem.model->scale;
   if (components == 1 && slope != nullptr) {
 #pragma omp simd
     for (int i = 0; i < n; ++i) {
@@ -30,14 +30,14 @@ void to_force(const InterfaceProblem& problem, const Block& block, double* force
 
 void law_force(const InterfaceProblem& problem, const Block& block, const double* opening, const LawResponse& response) {
   Batch batch = block.batch;
-  batch.step = problem.step;
+  batch.step = problem.model->step;
   if (problem.filter.acts()) {
     batch.coefficient = problem.filter.coefficient.data() + block.first;
     batch.lag = problem.filter.lag.data() + block.first;
   }
   const double *from = problem.from.data() + block.first, *to = opening + block.first;
   const double* old = problem.old.data() + block.first_history;
-  if (problem.average)
+  if (problem.model->average)
     block.law->mean(batch, from, to, old, response);
   else
     block.law->respond(batch, from, to, old, response);

@@ -13,57 +13,54 @@ namespace {
 
 class Direction final : public MethodWork {
  public:
-  bool solve(const InterfaceProblem& problem, InterfaceSolution& solution) {
-    return (PointRows::suits(problem) && solve_by_rows(problem, solution)) || solve_by_hessian(problem, solution);
+  bool solve(const InterfaceProblem& problem, NewtonWork& work, InterfaceSolution& solution) {
+    return (PointRows::suits(*problem.model) && solve_by_rows(problem, work, solution)) || solve_by_hessian(*problem.model, work);
   }
 
  private:
-  bool solve_by_hessian(const InterfaceProblem& problem, InterfaceSolution& solution) {
-    const Index r = problem.factor.cols();
+  bool solve_by_hessian(const ContactModel& model, NewtonWork& work) {
+    const Index r = model.factor.cols();
     hessian_.setIdentity(r, r);
-    work_.resize(problem.rows(), r);
-    const NewtonScratch& scratch = solution.newton;
-    for (std::size_t b = 0; b < problem.blocks.size(); ++b) {
-      const Block& block = problem.blocks[b];
+    weighted_.resize(model.rows(), r);
+    for (std::size_t b = 0; b < model.blocks.size(); ++b) {
+      const Block& block = model.blocks[b];
       const int n = block.batch.points, components = block.batch.components;
       for (int row = 0; row < components; ++row)
         for (int column = 0; column < components; ++column)
-          add_weighted_gram(problem, block.first + row * n, block.first + column * n,
-                            ConstMap(scratch.slope.data() + scratch.first_slope[b] + (row * components + column) * n, n), work_, hessian_);
+          add_weighted_gram(model, block.first + row * n, block.first + column * n,
+                            ConstMap(work.slope.data() + work.first_slope[b] + (row * components + column) * n, n), weighted_, hessian_);
     }
-    if (problem.shift.size() > 0) {
-      taken_ = -problem.shift;
-      add_weighted_gram(problem, 0, 0, ConstMap(taken_.data(), taken_.size()), work_, hessian_);
+    if (model.shift.size() > 0) {
+      taken_ = -model.shift;
+      add_weighted_gram(model, 0, 0, ConstMap(taken_.data(), taken_.size()), weighted_, hessian_);
     }
     lu_.compute(hessian_);
-    lu_.solve(scratch.gradient, solution.newton.direction);
-    solution.newton.direction *= -1;
-    return solution.newton.direction.allFinite();
+    lu_.solve(work.gradient, work.direction);
+    work.direction *= -1;
+    return work.direction.allFinite();
   }
 
-  bool solve_by_rows(const InterfaceProblem& problem, InterfaceSolution& solution) {
-    const NewtonScratch& scratch = solution.newton;
-    if (!scratch.slope.allFinite()) return false;
+  bool solve_by_rows(const InterfaceProblem& problem, NewtonWork& work, InterfaceSolution& solution) {
+    if (!work.slope.allFinite()) return false;
     rows_.begin(problem);
-    for (std::size_t b = 0; b < problem.blocks.size(); ++b)
-      rows_.linearise(b, scratch.slope.data() + scratch.first_slope[b], solution.force, solution.opening);
-    if (!rows_.solve(force_, opening_, solution.newton.direction, solution.systems)) return false;
-    solution.newton.direction -= solution.z;
+    for (std::size_t b = 0; b < problem.model->blocks.size(); ++b)
+      rows_.linearise(b, work.slope.data() + work.first_slope[b], solution.force, solution.opening);
+    if (!rows_.solve(force_, opening_, work.direction, solution.systems)) return false;
+    work.direction -= solution.z;
     return true;
   }
 
   PointRows rows_;
-  Matrix hessian_, work_;
+  Matrix hessian_, weighted_;
   Vector taken_, force_, opening_;
   PartialLu lu_;
 };
 
 }  // namespace
 
-bool direction_of_many(const InterfaceProblem& problem, InterfaceSolution& solution) {
-  std::unique_ptr<MethodWork>& kept = solution.newton.direction_of_many.work;
-  if (kept == nullptr) kept = std::make_unique<Direction>();
-  return static_cast<Direction&>(*kept).solve(problem, solution);
+bool direction_of_many(const InterfaceProblem& problem, NewtonWork& work, InterfaceSolution& solution) {
+  if (work.direction_of_many == nullptr) work.direction_of_many = std::make_unique<Direction>();
+  return static_cast<Direction&>(*work.direction_of_many).solve(problem, work, solution);
 }
 
 }  // namespace uplift

@@ -3,7 +3,7 @@
 
 namespace uplift {
 
-/// Newton's direction -H^-1 G for many coordinates, from the slopes and the gradient in the scratch; false when H is singular.
-bool direction_of_many(const InterfaceProblem&, InterfaceSolution&);
+/// Newton's direction -H^-1 G for many coordinates, from the slopes and the gradient in the work space; false when H is singular.
+bool direction_of_many(const InterfaceProblem&, NewtonWork&, InterfaceSolution&);
 
 }  // namespace uplift

@@ -10,14 +10,15 @@ namespace {
 class NewtonMethod final : public ContactMethod {
  public:
   explicit NewtonMethod(NewtonOptions options) : options_(options) {}
-  Outcome solve(const InterfaceProblem& problem, InterfaceSolution& solution) const override {
-    for (const Block& block : problem.blocks)
+  std::unique_ptr<MethodWork> make_work() const override { return std::make_unique<NewtonWork>(); }
+  Outcome solve(const InterfaceProblem& problem, MethodWork& work, InterfaceSolution& solution) const override {
+    for (const Block& block : problem.model->blocks)
       if (block.law == nullptr) {
         Outcome outcome;
         outcome.why = fmt::format("method \"newton\" needs a traction law, interface \"{}\" has a constraint", block.name);
         return outcome;
       }
-    return solve_by_newton(problem, {}, options_, solution);
+    return solve_by_newton(problem, {}, options_, static_cast<NewtonWork&>(work), solution);
   }
   bool constrains() const override { return false; }
 

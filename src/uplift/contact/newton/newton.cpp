@@ -19,22 +19,24 @@ namespace {
 template <int R>
 class Newton {
  public:
-  Newton(const InterfaceProblem& problem, const AugmentedForce& augmented, const NewtonOptions& options, InterfaceSolution& solution)
+  Newton(const InterfaceProblem& problem, const AugmentedForce& augmented, const NewtonOptions& options, NewtonWork& work,
+         InterfaceSolution& solution)
       : problem_(problem),
+        model_(*problem.model),
         augmented_(augmented),
         options_(options),
         solution_(solution),
-        scratch_(solution.newton),
-        r_(R > 0 ? R : problem.factor.cols()),
-        rows_(problem.factor.rows()) {}
+        work_(work),
+        r_(R > 0 ? R : problem.model->factor.cols()),
+        rows_(problem.model->factor.rows()) {}
 
   Outcome solve(int done);
 
  private:
   static constexpr Index most = R > 0 ? R : few;  // where H is formed
   Index r() const { return R > 0 ? R : r_; }
-  const double* column(Index j) const { return problem_.factor.data() + j * rows_; }
-  const double* slope_of(std::size_t block) const { return scratch_.slope.data() + scratch_.first_slope[block]; }
+  const double* column(Index j) const { return model_.factor.data() + j * rows_; }
+  const double* slope_of(std::size_t block) const { return work_.slope.data() + work_.first_slope[block]; }
 
   /// Sum over the coordinates.
   double dot(const Vector& a, const Vector& b) const {
@@ -60,10 +62,11 @@ class Newton {
   double round_off() const;
 
   const InterfaceProblem& problem_;
+  const ContactModel& model_;
   const AugmentedForce& augmented_;
   const NewtonOptions& options_;
   InterfaceSolution& solution_;
-  NewtonScratch& scratch_;
+  NewtonWork& work_;
   Index r_, rows_;
   double size_ = 0;  // |G| where it was looked at last
 };
@@ -75,14 +78,14 @@ class Newton {
 template <int R>
 void Newton<R>::predict() {
   Lanes total[most] = {};
-  for (std::size_t b = 0; b < problem_.blocks.size(); ++b) {
-    const Block& block = problem_.blocks[b];
+  for (std::size_t b = 0; b < model_.blocks.size(); ++b) {
+    const Block& block = model_.blocks[b];
     const int n = block.batch.points, components = block.batch.components;
     const double *free = problem_.free_opening.data() + block.first, *from = problem_.from.data() + block.first;
-    const double *end = scratch_.end.data() + block.first, *area = block.area.data(), *slope = slope_of(b);
+    const double *end = solution_.end_traction.data() + block.first, *area = block.area.data(), *slope = slope_of(b);
     if (components == 1) {
       const double* columns = column(0) + block.first;
-      const double scale = problem_.scale;
+      const double scale = model_.scale;
       for_lanes(n, [=, this, &total](const auto& at) {
         const Lanes force = scale * at(area) * at(end) + at(slope) * (at(free) - at(from));
         for (Index j = 0; j < r(); ++j) total[j] += at(columns + j * rows_) * force;
@@ -91,26 +94,26 @@ void Newton<R>::predict() {
     }
     for (int a = 0; a < components; ++a)
       for_lanes(n, [&](const auto& at) {
-        Lanes force = problem_.scale * at(area) * at(end + a * n);
+        Lanes force = model_.scale * at(area) * at(end + a * n);
         for (int c = 0; c < components; ++c) force += at(slope + (a * components + c) * n) * (at(free + c * n) - at(from + c * n));
         for (Index j = 0; j < r(); ++j) total[j] += at(column(j) + block.first + a * n) * force;
       });
   }
   if (problem_.filter.acts()) add_lag(total);
-  for (Index j = 0; j < r(); ++j) scratch_.gradient[j] = sum(total[j]);
+  for (Index j = 0; j < r(); ++j) work_.gradient[j] = sum(total[j]);
   direction_of_few(solution_.z.data());
 }
 
 /// What the joint filter's memory pulls at the start of the step, -scale area c d_f.
 template <int R>
 void Newton<R>::add_lag(Lanes* total) {
-  for (const Block& block : problem_.blocks) {
+  for (const Block& block : model_.blocks) {
     const double* area = block.area.data();
     for (int a = 0; a < block.batch.components; ++a) {
       const int first = block.first + a * block.batch.points;
       const double *coefficient = problem_.filter.coefficient.data() + first, *lag = problem_.filter.lag.data() + first;
       for_lanes(block.batch.points, [&](const auto& at) {
-        const Lanes force = problem_.scale * at(area) * larger(at(coefficient), Lanes(0)) * at(lag);
+        const Lanes force = model_.scale * at(area) * larger(at(coefficient), Lanes(0)) * at(lag);
         for (Index j = 0; j < r(); ++j) total[j] -= at(column(j) + first) * force;
       });
     }
@@ -121,11 +124,11 @@ void Newton<R>::add_lag(Lanes* total) {
 /// makes the slope larger by 1 + 2 b, which scale is smaller by.
 template <int R>
 void Newton<R>::go_on() {
-  for (std::size_t b = 0; b < problem_.blocks.size(); ++b) {
-    const Block& block = problem_.blocks[b];
+  for (std::size_t b = 0; b < model_.blocks.size(); ++b) {
+    const Block& block = model_.blocks[b];
     const int n = block.batch.points, components = block.batch.components;
-    double* slope = scratch_.slope.data() + scratch_.first_slope[b];
-    const double *next = scratch_.next.data() + scratch_.first_slope[b], *area = block.area.data();
+    double* slope = work_.slope.data() + work_.first_slope[b];
+    const double *next = solution_.next_slope.data() + work_.first_slope[b], *area = block.area.data();
     for (int c = 0; c < components * components; ++c)
 #pragma omp simd
       for (int i = 0; i < n; ++i) slope[c * n + i] = 2 * area[i] * next[c * n + i];
@@ -136,7 +139,7 @@ void Newton<R>::go_on() {
 /// Forces, G and |G| at solution.z, and the Hessian when wanted.
 template <int R>
 void Newton<R>::look(bool with_hessian) {
-  evaluate(problem_, augmented_, true, solution_);
+  evaluate(problem_, augmented_, true, work_, solution_);
   form_gradient(with_hessian);
 }
 
@@ -144,7 +147,7 @@ void Newton<R>::look(bool with_hessian) {
 template <int R>
 void Newton<R>::move(double alpha, bool with_hessian) {
   double* z = solution_.z.data();
-  const double *origin = scratch_.origin.data(), *direction = scratch_.direction.data();
+  const double *origin = work_.origin.data(), *direction = work_.direction.data();
   for (Index i = 0; i < r(); ++i) z[i] = origin[i] + alpha * direction[i];
   look(with_hessian);
 }
@@ -160,16 +163,16 @@ void Newton<R>::form_gradient(bool with_hessian) {
       g[j] = z[j];
       for (Index i = 0; i < r(); ++i) h[j * r() + i] = i == j ? 1 : 0;
     }
-    for (std::size_t b = 0; b < problem_.blocks.size(); ++b) add_block(problem_.blocks[b], slope_of(b), g, h);
-    std::copy_n(g, r(), scratch_.gradient.data());
-    std::copy_n(h, r() * r(), scratch_.hessian.data());
+    for (std::size_t b = 0; b < model_.blocks.size(); ++b) add_block(model_.blocks[b], slope_of(b), g, h);
+    std::copy_n(g, r(), work_.gradient.data());
+    std::copy_n(h, r() * r(), work_.hessian.data());
   } else {
-    double* g = scratch_.gradient.data();
+    double* g = work_.gradient.data();
     for (Index i = 0; i < r(); ++i) g[i] = z[i];
     small::add_transposed<R>(rows_, r(), column(0), rows_, solution_.force.data(), g);
   }
-  if (problem_.shift.size() > 0) take_back_shift(forms);
-  size_ = std::sqrt(dot(scratch_.gradient, scratch_.gradient));
+  if (model_.shift.size() > 0) take_back_shift(forms);
+  size_ = std::sqrt(dot(work_.gradient, work_.gradient));
 }
 
 /// h += C_block^T k C_block and g += C_block^T p.
@@ -186,7 +189,7 @@ template <int R>
 template <int R>
 void Newton<R>::add_general(const Block& block, const double* slope, double* g, double* h) {
   const int n = block.batch.points, components = block.batch.components, rows = block.rows();
-  double* pull = scratch_.pull.data();
+  double* pull = work_.pull.data();
   for (Index j = 0; j < r(); ++j) {
     const double* right = column(j) + block.first;
     g[j] += small::dot(rows, right, solution_.force.data() + block.first);
@@ -207,11 +210,11 @@ template <int R>
 void Newton<R>::take_back_shift(bool with_hessian) {
   for (Index j = 0; j < r(); ++j) {
     const double* own = column(j);
-    for (Index i = 0; i < rows_; ++i) scratch_.gradient[j] -= own[i] * problem_.shift[i] * solution_.opening[i];
+    for (Index i = 0; i < rows_; ++i) work_.gradient[j] -= own[i] * model_.shift[i] * solution_.opening[i];
     if (!with_hessian) continue;
     for (Index k = 0; k < r(); ++k) {
       const double* other = column(k);
-      for (Index i = 0; i < rows_; ++i) scratch_.hessian(k, j) -= other[i] * problem_.shift[i] * own[i];
+      for (Index i = 0; i < rows_; ++i) work_.hessian(k, j) -= other[i] * model_.shift[i] * own[i];
     }
   }
 }
@@ -220,15 +223,15 @@ void Newton<R>::take_back_shift(bool with_hessian) {
 /// takes both.
 template <int R>
 bool Newton<R>::direction() {
-  return r() > few ? direction_of_many(problem_, solution_) : direction_of_few(scratch_.direction.data());
+  return r() > few ? direction_of_many(problem_, work_, solution_) : direction_of_few(work_.direction.data());
 }
 
 /// Writes it to d; nothing when H is singular.
 template <int R>
 bool Newton<R>::direction_of_few(double* d) const {
   double h[most * most], x[most];
-  std::copy_n(scratch_.hessian.data(), r() * r(), h);
-  for (Index i = 0; i < r(); ++i) x[i] = -scratch_.gradient.data()[i];
+  std::copy_n(work_.hessian.data(), r() * r(), h);
+  for (Index i = 0; i < r(); ++i) x[i] = -work_.gradient.data()[i];
   if (!small::gauss_solve<R>(r(), h, x)) return false;
   for (Index i = 0; i < r(); ++i) d[i] = x[i];
   return true;
@@ -246,7 +249,7 @@ void Newton<R>::line_search(double start_slope, double end_slope) {
       alpha = std::clamp(secant, low + 0.1 * (high - low), high - 0.1 * (high - low));
     }
     move(alpha, false);
-    const double slope = dot(scratch_.gradient, scratch_.direction);
+    const double slope = dot(work_.gradient, work_.direction);
     if (std::abs(slope) <= 0.5 * std::abs(start_slope)) break;
     (slope < 0 ? low : high) = alpha;
     (slope < 0 ? low_slope : high_slope) = slope;
@@ -272,8 +275,8 @@ double Newton<R>::round_off() const {
   double sum = 0;
   for (Index j = 0; j < r(); ++j) {
     double component = std::abs(solution_.z[j]);
-    for (std::size_t b = 0; b < problem_.blocks.size(); ++b) {
-      const Block& block = problem_.blocks[b];
+    for (std::size_t b = 0; b < model_.blocks.size(); ++b) {
+      const Block& block = model_.blocks[b];
       const int n = block.batch.points, components = block.batch.components;
       for (int c = 0; c < components; ++c)
         for (int i = 0; i < n; ++i) {
@@ -292,12 +295,12 @@ double Newton<R>::round_off() const {
 /// back in G.
 template <int R>
 double Newton<R>::balance_scale() {
-  const double *z = solution_.z.data(), *g = scratch_.gradient.data();
+  const double *z = solution_.z.data(), *g = work_.gradient.data();
   double scale = 0;
-  if (problem_.shift.size() > 0) {
-    scratch_.direction.setZero();
-    small::add_transposed<R>(rows_, r(), column(0), rows_, solution_.force.data(), scratch_.direction.data());
-    for (Index i = 0; i < r(); ++i) scale = std::max({scale, std::abs(z[i]), std::abs(scratch_.direction[i])});
+  if (model_.shift.size() > 0) {
+    work_.direction.setZero();
+    small::add_transposed<R>(rows_, r(), column(0), rows_, solution_.force.data(), work_.direction.data());
+    for (Index i = 0; i < r(); ++i) scale = std::max({scale, std::abs(z[i]), std::abs(work_.direction[i])});
   } else {
     for (Index i = 0; i < r(); ++i) scale = std::max({scale, std::abs(z[i]), std::abs(g[i] - z[i])});
   }
@@ -310,12 +313,12 @@ Outcome Newton<R>::solve(int done) {
   int patience = patience_of_newton;
   constexpr int again = 25;  // when a large problem starts afresh: caught between two branches of a point, as friction can be
   // where an iteration is expensive, round-off counts as converged at once; sums over many columns have more of it
-  const bool large = R == 0 && PointRows::suits(problem_);
+  const bool large = R == 0 && PointRows::suits(model_);
   const int enough = large ? 1 : patience;
   const double noise = large ? 8 * std::sqrt(static_cast<double>(r())) : 8;
-  const bool predictable = problem_.average && r() <= few && augmented_.multiplier == nullptr && problem_.shift.size() == 0;
-  if (predictable && scratch_.follows) predict();
-  scratch_.follows = false;
+  const bool predictable = model_.average && r() <= few && augmented_.multiplier == nullptr && model_.shift.size() == 0;
+  if (predictable && work_.follows) predict();
+  work_.follows = false;
   look(true);
   for (outcome.iterations = done; outcome.iterations < options_.most_iterations; ++outcome.iterations) {
     if (!std::isfinite(size_)) {
@@ -327,7 +330,7 @@ Outcome Newton<R>::solve(int done) {
     if (size_ <= options_.tolerance * reference || size_ == 0 ||
         (outcome.iterations >= enough && (!large || outcome.residual <= 1e-9) && size_ <= noise * round_off())) {
       outcome.converged = true;
-      scratch_.follows = predictable;
+      work_.follows = predictable;
       if (predictable && outcome.iterations > 0) go_on();
       return outcome;
     }
@@ -337,16 +340,16 @@ Outcome Newton<R>::solve(int done) {
       look(true);
     }
     const double before = size_;
-    std::copy_n(solution_.z.data(), r(), scratch_.origin.data());
+    std::copy_n(solution_.z.data(), r(), work_.origin.data());
     // the gradient is needed again by the line search
     if (!direction()) {
       outcome.why = "the Newton matrix of the interface is singular";
       return outcome;
     }
-    const double start_slope = dot(scratch_.gradient, scratch_.direction);
+    const double start_slope = dot(work_.gradient, work_.direction);
     move(1, true);
     if (size_ > 0.5 * before && size_ > options_.tolerance * reference) {
-      const double end_slope = dot(scratch_.gradient, scratch_.direction);
+      const double end_slope = dot(work_.gradient, work_.direction);
       if (outcome.iterations >= patience) {
         if (size_ > before) shorten(before);
       } else if (start_slope < 0 && end_slope > 0.5 * std::abs(start_slope)) {
@@ -361,30 +364,30 @@ Outcome Newton<R>::solve(int done) {
 
 /// `done`: iterations that have led to the guess in solution.z.
 Outcome solve_in_general(const InterfaceProblem& problem, const AugmentedForce& augmented, const NewtonOptions& options, int done,
-                         InterfaceSolution& solution) {
-  switch (problem.factor.cols()) {
+                         NewtonWork& work, InterfaceSolution& solution) {
+  switch (problem.model->factor.cols()) {
     case 1:
-      return Newton<1>(problem, augmented, options, solution).solve(done);
+      return Newton<1>(problem, augmented, options, work, solution).solve(done);
     case 2:
-      return Newton<2>(problem, augmented, options, solution).solve(done);
+      return Newton<2>(problem, augmented, options, work, solution).solve(done);
     case 3:
-      return Newton<3>(problem, augmented, options, solution).solve(done);
+      return Newton<3>(problem, augmented, options, work, solution).solve(done);
     case 6:
-      return Newton<6>(problem, augmented, options, solution).solve(done);
+      return Newton<6>(problem, augmented, options, work, solution).solve(done);
     default:
-      return Newton<0>(problem, augmented, options, solution).solve(done);
+      return Newton<0>(problem, augmented, options, work, solution).solve(done);
   }
 }
 
 }  // namespace
 
-Outcome solve_by_newton(const InterfaceProblem& problem, const AugmentedForce& augmented, const NewtonOptions& options,
+Outcome solve_by_newton(const InterfaceProblem& problem, const AugmentedForce& augmented, const NewtonOptions& options, NewtonWork& work,
                         InterfaceSolution& solution) {
   Outcome outcome;
-  if (may_sweep(problem, solution) && solve_by_sweeps(problem, options, solution, outcome)) return outcome;
-  size_newton(problem, solution);
+  if (may_sweep(problem, work, solution) && solve_by_sweeps(problem, options, work, solution, outcome)) return outcome;
+  size_newton(problem, work, solution);
   solution.fused = false;
-  return solve_in_general(problem, augmented, options, outcome.iterations, solution);
+  return solve_in_general(problem, augmented, options, outcome.iterations, work, solution);
 }
 
 }  // namespace uplift

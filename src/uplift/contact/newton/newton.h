@@ -1,5 +1,6 @@
 #pragma once
-#include "uplift/contact/problem.h"
+#include "uplift/contact/method.h"
+#include "uplift/laws/fused.h"
 
 // Newton's method on the traction laws of an interface problem. The unknowns are the coordinates z:
 //     G(z) = z + C^T (p(opening) - D opening) = 0        opening = free_opening + C z
@@ -18,26 +19,40 @@ struct AugmentedForce {
 
 /// Stiffness of every row for the augmentation [N/m]: factor / F_ii, of the whole interface where a row has no compliance. The tangential
 /// rows of a point share that of their mean compliance: the trial force must not turn.
-void augmentation(const InterfaceProblem&, double factor, Vector& stiffness);
+void augmentation(const ContactModel&, double factor, Vector& stiffness);
 
 struct NewtonOptions {
   double tolerance = 1e-12;  // |G| relative to |z| + |C^T p|
   int most_iterations = 60;
 };
 
+/// Work space of Newton's method, sized for one model.
+struct NewtonWork final : MethodWork {
+  SeenModel model;
+  FusedEvaluation evaluation;  // laid out for the problem and the solution of the last call, where it can be fused
+  Vector slope;                // per block (components x components x points), blocks one after another [N/m]
+  std::vector<int> first_slope;
+  Vector gradient, direction, origin;
+  Vector pull;  // rows: k times one column of C, of one block; in the units of slope times those of the factor
+  Matrix hessian;
+  Vector end_pull;       // C^T (scale area end_traction) [sqrt(J)], of a fused solution
+  bool follows = false;  // the next step may be guessed from this one: slope, hessian and the solution's end_traction are converged
+  std::unique_ptr<MethodWork> direction_of_many;  // more than twelve coordinates
+};
+
 /// Iterations after which the search turns from the potential to the residual, and round-off counts as converged.
 inline constexpr int patience_of_newton = 12;
 
 /// Solves in place from the guess in `solution.z`; fills opening, force, now.
-Outcome solve_by_newton(const InterfaceProblem&, const AugmentedForce&, const NewtonOptions&, InterfaceSolution&);
+Outcome solve_by_newton(const InterfaceProblem&, const AugmentedForce&, const NewtonOptions&, NewtonWork&, InterfaceSolution&);
 
-/// Up to so many coordinates the Newton matrix is formed and solved by plain loops; beyond, see newton_many.h.
+/// Up to so many coordinates the Newton matrix is formed and solved by plain loops; beyond, see newton/many.h.
 inline constexpr int few = 12;
 
-/// Gives what follows its sizes; does nothing when they are right.
-void size_newton(const InterfaceProblem&, InterfaceSolution&);
+/// Sizes the work space and the results for a problem; does nothing when they fit.
+void size_newton(const InterfaceProblem&, NewtonWork&, InterfaceSolution&);
 
-/// Forces, and slopes when wanted, at solution.z: fills opening, force, now and the scratch's slope, all of the right size.
-void evaluate(const InterfaceProblem&, const AugmentedForce&, bool with_slope, InterfaceSolution&);
+/// Forces, and slopes when wanted, at solution.z: fills the results of the path and the slope of the work space, all of the right size.
+void evaluate(const InterfaceProblem&, const AugmentedForce&, bool with_slope, NewtonWork&, InterfaceSolution&);
 
 }  // namespace uplift

@@ -13,10 +13,10 @@ std::unique_ptr<const InterfaceLaw> ContactMethod::substitute(const Cone&, doubl
   return nullptr;
 }
 
-double flexibility(const InterfaceProblem& problem, const Block& block) {
+double flexibility(const ContactModel& model, const Block& block) {
   double largest = 0;
   for (int i = 0; i < block.batch.points; ++i) {
-    const double compliance = problem.factor.row(block.first + block.batch.normal() + i).squaredNorm();
+    const double compliance = model.factor.row(block.first + block.batch.normal() + i).squaredNorm();
     largest = std::max(largest, compliance * block.area[static_cast<std::size_t>(i)]);
   }
   return largest;
@@ -55,17 +55,21 @@ class PenaltyMethod final : public ContactMethod {
 
   /// A stored problem may still hold cones: they are replaced here, with the stiffness and the memory that were stored with them, or
   /// afresh. In a run they were replaced before the first step. A stiffness of the method's own goes before the stored one.
-  Outcome solve(const InterfaceProblem& problem, InterfaceSolution& solution) const override {
-    if (std::none_of(problem.blocks.begin(), problem.blocks.end(), [](const Block& block) { return block.cone != nullptr; }))
-      return solve_by_newton(problem, {}, options_, solution);
+  std::unique_ptr<MethodWork> make_work() const override { return std::make_unique<NewtonWork>(); }
+  Outcome solve(const InterfaceProblem& problem, MethodWork& kept, InterfaceSolution& solution) const override {
+    NewtonWork& work = static_cast<NewtonWork&>(kept);
+    if (std::ranges::none_of(problem.model->blocks, [](const Block& block) { return block.cone != nullptr; }))
+      return solve_by_newton(problem, {}, options_, work, solution);
     InterfaceProblem replaced = problem;
+    auto model = std::make_shared<ContactModel>(*problem.model);
+    replaced.model = model;
     replaced.free_opening_increment.resize(0);  // its arrays do not stay where they are from step to step
     std::vector<std::unique_ptr<const InterfaceLaw>> laws;
-    for (Block& block : replaced.blocks) {
+    for (Block& block : model->blocks) {
       if (block.cone == nullptr) continue;
       const bool stored = block.substitute_stiffness > 0 && !(stiffness_ > 0);
       laws.push_back(stored ? tensionless(block.substitute_stiffness, block.cone->friction())
-                            : substitute(*block.cone, flexibility(problem, block)));
+                            : substitute(*block.cone, flexibility(*model, block)));
       block.law = laws.back().get();
       block.cone = nullptr;
       block.first_history = static_cast<int>(replaced.old.size());
@@ -74,7 +78,7 @@ class PenaltyMethod final : public ContactMethod {
       if (static_cast<Index>(block.substitute_memory.size()) == values)
         std::copy_n(block.substitute_memory.data(), values, replaced.old.data() + block.first_history);
     }
-    return solve_by_newton(replaced, {}, options_, solution);
+    return solve_by_newton(replaced, {}, options_, work, solution);
   }
 
   bool constrains() const override { return false; }

@@ -1,0 +1,75 @@
+#pragma once
+#include <memory>
+#include <string>
+#include <vector>
+
+#include "uplift/interface/interface.h"
+#include "uplift/math/linalg.h"
+
+// The constant part of the interface problems of a step size. With the linear subsystem condensed, the step is
+//     opening = free_opening + C z        z + C^T (p - D opening) = 0        p in law(opening)
+// where F = C C^T = B K_eff^-1 B^T is the compliance [m/N] and z [sqrt(J)] are coordinates in which the energy of K_eff is |z|^2/2.
+// C has as many columns as the smaller of the two exact forms needs (docs/theory, eq (13)): the interface rows m, or the independent
+// unknowns that the interface touches (three for a rigid footing in 2D). F itself is never inverted; it is singular under a rigid footing.
+// D [N/m] is zero in dynamics; in statics it takes back the closed joint that was put into the factored matrix (docs/theory, section 4).
+namespace uplift {
+
+/// One interface inside the problem.
+struct Block {
+  std::string name;
+  int first = 0;          // first row
+  int first_history = 0;  // first memory value
+  Batch batch;
+  const InterfaceLaw* law = nullptr;  // one of the two
+  const Cone* cone = nullptr;
+  Vector area;  // m2 per point
+  // of a stored problem: the law that a method had put in the cone's place (penalty)
+  double substitute_stiffness = 0;        // Pa/m
+  std::vector<double> substitute_memory;  // at the beginning of the step
+  int rows() const { return batch.points * batch.components; }
+  int slopes() const { return rows() * batch.components; }
+};
+
+/// How the linear problems of interfaces with many independent rows are solved, see PointRows.
+enum class InterfaceSolver : signed char { automatic, direct, krylov };
+
+/// Tells contact models apart: every new model has a version of its own, copies included, and a version never comes back while somebody
+/// remembers it.
+class ModelVersion {
+ public:
+  ModelVersion() : token_(std::make_shared<char>()) {}
+  ModelVersion(const ModelVersion&) : ModelVersion() {}
+  ModelVersion(ModelVersion&&) = default;
+  ModelVersion& operator=(const ModelVersion&) { return *this = ModelVersion(); }
+  ModelVersion& operator=(ModelVersion&&) = default;
+  ~ModelVersion() = default;
+
+ private:
+  friend class SeenModel;
+  std::shared_ptr<const char> token_;
+};
+
+/// Shared by all steps of one size and constant once a method has seen it: another factor is another model.
+struct ContactModel {
+  std::vector<Block> blocks;
+  Matrix factor;         // C: rows x r [m/sqrt(J)]
+  Vector shift;          // D: rows [N/m]; in dynamics empty, unless interfaces alone hold a massless unknown
+  bool average = false;  // path-averaged traction: p = scale * area * mean(from -> opening)
+  InterfaceSolver solver = InterfaceSolver::automatic;
+  double scale = 1;  // weight of the interface force in the scheme's balance: with the path average 2/(1 + 2 b), else 1
+  double step = 0;   // s; 0 in statics
+  ModelVersion version;
+  int rows() const { return static_cast<int>(factor.rows()); }
+};
+
+/// The model that work space was made for.
+class SeenModel {
+ public:
+  bool is(const ContactModel& model) const { return token_ == model.version.token_; }
+  void take(const ContactModel& model) { token_ = model.version.token_; }
+
+ private:
+  std::shared_ptr<const char> token_;
+};
+
+}  // namespace uplift
