@@ -303,13 +303,20 @@ class Run(Results):
 
     @property
     def status(self) -> str:
-        """"completed", "failed", "overturned", "separated" or "interrupted"."""
-        return str(self.summary["runs"][0]["status"])
+        """"completed", "failed", "overturned", "separated" or "interrupted" (also where only the bonded run was)."""
+        return str(self._decisive["status"])
 
     @property
     def reason(self) -> str:
         """Why the run failed or ended early."""
-        return str(self.summary["runs"][0]["reason"])
+        return str(self._decisive["reason"])
+
+    @property
+    def _decisive(self) -> Dict[str, Any]:
+        runs: List[Dict[str, Any]] = self.summary["runs"]
+        if runs[0]["status"] != "completed":
+            return runs[0]
+        return next((run for run in runs if run["status"] == "interrupted"), runs[0])
 
     @property
     def energy(self) -> Record:
