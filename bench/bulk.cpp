@@ -104,10 +104,11 @@ void measure(int cells, bool with_modes) {
   const double after_factor = status("VmHWM:");
   std::unique_ptr<SplitResponse> response;
   Spread spread;
-  const double t_response = seconds([&] { response = std::make_unique<SplitResponse>(*factor, b); });
+  const double t_response = seconds([&] { response = std::make_unique<SplitResponse>(*factor, b, counts); });
   const double t_spread = seconds([&] { spread = accelerator->spread(b); });
   Vector right = Vector::Ones(model.free()), x = Vector::Zero(model.free());
-  const double solve = median_ms(11, [&] { factor->solve(right, x); });
+  BulkWork work(counts);
+  const double solve = median_ms(11, [&] { factor->solve(right, x, work); });
   const Vector z = Vector::Ones(spread.factor.cols());
   const double impulse = median_ms(11, [&] { spread.add(1, z, x); });
   const double matrices = 12.0 * static_cast<double>(model.stiffness.nonZeros() + model.mass.nonZeros());

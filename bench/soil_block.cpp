@@ -177,11 +177,12 @@ void measure(double size, Setup kind) {
   const Sparse matrix = bulk.stiffness_matrix + 4 / (options.step * options.step) * bulk.mass_matrix;
   const BulkFactor factor(matrix, &b, bulk.small, *solver, model, counts);
   std::vector<double> solves;
+  BulkWork work(counts);
   Vector x = Vector::Zero(model.free());
   const Vector right = Vector::Ones(model.free());
   for (int k = 0; k < 50; ++k) {
     const double begin = now();
-    factor.solve(right, x);
+    factor.solve(right, x, work);
     solves.push_back(now() - begin);
   }
   std::sort(solves.begin(), solves.end());

@@ -67,33 +67,29 @@ class InverseFactor final : public Factor {
 }  // namespace
 
 BulkFactor::BulkFactor(const Sparse& matrix, const Sparse* b, bool small, const LinearSolver& solver, const Model& model,
-                       LinearCounts& counts)
-    : small_(small), counts_(&counts) {
+                       LinearCounts& counts, const BulkFactor* like)
+    : small_(small) {
   ++counts.factorisations;
-  factorise(matrix, b, solver, model);
-  if (ok()) try_out(matrix, model);
+  factorise(matrix, b, solver, model, counts, like);
+  if (ok()) try_out(matrix, model, counts);
 }
 
-void BulkFactor::factorise(const Sparse& matrix, const Sparse* b, const LinearSolver& solver, const Model& model) {
+void BulkFactor::factorise(const Sparse& matrix, const Sparse* b, const LinearSolver& solver, const Model& model, LinearCounts& counts,
+                           const BulkFactor* like) {
   if (matrix.rows() == 0) {  // every unknown is prescribed
     small_ = true;
     inverse_.resize(0, 0);
     return;
   }
-  if (!small_ && b != nullptr) {
-    last_ = touched_unknowns(*b);
-    if (!last_.empty()) {
-      SplitFactorisation result = solver.factorise_split(matrix, last_);
-      if (!result.why.empty()) {
-        too_large_ = result.too_large;
-        fail(model, result.failed_unknown, result.why);
-        return;
-      }
-      split_ = std::move(result.factor);
-    }
-    if (split_ != nullptr) return;
+  if (!small_ && b != nullptr) last_ = touched_unknowns(*b);
+  if (!last_.empty()) factorise_split(matrix, solver, model, counts, like);
+  if (split_ != nullptr || !ok()) return;
+  Factorisation result;
+  if (like != nullptr && like->factor_ != nullptr && !small_) result = like->factor_->refactorise(matrix);
+  if (result.factor == nullptr && result.why.empty()) {
+    result = solver.factorise(matrix);
+    if (!small_) ++counts.analyses;
   }
-  Factorisation result = solver.factorise(matrix);
   if (result.factor == nullptr) {
     too_large_ = result.too_large;
     fail(model, result.failed_unknown, result.why);
@@ -106,15 +102,29 @@ void BulkFactor::factorise(const Sparse& matrix, const Sparse* b, const LinearSo
   }
 }
 
-void BulkFactor::try_out(const Sparse& matrix, const Model& model) {
+/// Leaves no factor and no reason where the solver cannot.
+void BulkFactor::factorise_split(const Sparse& matrix, const LinearSolver& solver, const Model& model, LinearCounts& counts,
+                                 const BulkFactor* like) {
+  SplitFactorisation result;
+  if (like != nullptr && like->split_ != nullptr && like->last_ == last_) result = like->split_->refactorise(matrix);
+  if (result.factor == nullptr && result.why.empty()) {
+    result = solver.factorise_split(matrix, last_);
+    if (result.factor != nullptr || !result.why.empty()) ++counts.analyses;
+  }
+  too_large_ = result.too_large;
+  if (!result.why.empty()) return fail(model, result.failed_unknown, result.why);
+  split_ = std::move(result.factor);
+}
+
+void BulkFactor::try_out(const Sparse& matrix, const Model& model, LinearCounts& counts) {
   const Index n = matrix.rows();
   if (n == 0) return;
   const Vector diagonal = matrix.diagonal(), weight = diagonal.cwiseSqrt();
   Vector load(n), x(n);
   for (Index i = 0; i < n; ++i) load[i] = std::sin(1.618 * static_cast<double>(i + 1) * static_cast<double>(i + 1)) * weight[i];
-  const long before = counts_->back_solves;
-  solve(load, x);
-  counts_->back_solves = before;
+  LinearCounts trial;  // not one of the run's
+  BulkWork work(trial);
+  solve(load, x, work);
   const double size = load.cwiseQuotient(weight).norm(),
                round_off = 64 * std::numeric_limits<double>::epsilon() * weight.cwiseProduct(x).norm();
   const double rest = (load - matrix.selfadjointView<upper_triangle>() * x).cwiseQuotient(weight).norm(), residual = rest / size;
@@ -122,8 +132,8 @@ void BulkFactor::try_out(const Sparse& matrix, const Model& model) {
     why_ = fmt::format("back-solves meet their equations to {:.1e} of the load only", residual);
     return;
   }
-  if (residual <= counts_->residual) return;
-  counts_->residual = residual;
+  if (residual <= counts.residual) return;
+  counts.residual = residual;
   if (residual <= 1e-9) return;
   Index least = 0, most = 0;
   diagonal.minCoeff(&least);
@@ -132,7 +142,7 @@ void BulkFactor::try_out(const Sparse& matrix, const Model& model) {
     return static_cast<std::size_t>(i) < model.unknown_names.size() ? model.unknown_names[static_cast<std::size_t>(i)]
                                                                     : fmt::format("{}", i);
   };
-  counts_->notice = fmt::format(
+  counts.notice = fmt::format(
       "back-solves meet their equations to {:.1e} of the load only, so many digits are lost: diagonal entries reach "
       "from {:.1e} at {} to {:.1e} at {}",
       residual, diagonal[least], name(least), diagonal[most], name(most));
@@ -143,31 +153,26 @@ void BulkFactor::fail(const Model& model, int unknown, const std::string& why) {
   why_ = named ? fmt::format("the matrix is not positive definite at {}", model.unknown_names[static_cast<std::size_t>(unknown)]) : why;
 }
 
-void BulkFactor::solve(const Vector& b, Vector& x) const {
+void BulkFactor::solve(const Vector& b, Vector& x, BulkWork& work) const {
   if (small_) {
     small::multiply(inverse_, b.data(), x.data());
     return;
   }
-  count_back_solve();
+  ++work.counts->back_solves;
   if (split_ != nullptr) {
-    split_->forward(b, half_);
-    split_->backward(half_, x);
+    split_->forward(b, work.half);
+    split_->backward(work.half, x);
     return;
   }
-  given_.resize(b.size(), 1);
-  given_.col(0) = b;
-  factor_->solve(given_, solved_);
-  x = solved_.col(0);
+  work.given.resize(b.size(), 1);
+  work.given.col(0) = b;
+  factor_->solve(work.given, work.solved);
+  x = work.solved.col(0);
 }
 
-void BulkFactor::count(const InterfaceSystems& solved) const {
-  counts_->systems.factored += solved.factored;
-  counts_->systems.iterated += solved.iterated;
-}
-
-Spread BulkFactor::spread(const Sparse& b) const {
+Spread BulkFactor::spread(const Sparse& b, LinearCounts& counts) const {
   if (small_) return spread_through(InverseFactor(inverse_), b);
-  if (split_ != nullptr) return split_spread(*this, b);
+  if (split_ != nullptr) return split_spread(*this, b, counts);
   return spread_through(*factor_, b);
 }
 
@@ -193,7 +198,7 @@ std::vector<int> touched_unknowns(const Sparse& b) {
 }
 
 Accelerator::Accelerator(const Model& model, const Bulk& bulk, const Sparse* b, const LinearSolver& solver, LinearCounts& counts)
-    : bulk_(bulk) {
+    : bulk_(bulk), work_(counts) {
   // A unit mass makes the factor regular and is taken out of every acceleration. Impulses would move it: a dynamic case whose interfaces
   // touch a massless unknown is refused (check_dynamic), since its velocity after an impact is not defined.
   std::vector<Triplet> diagonal;
@@ -226,7 +231,7 @@ void Accelerator::solve(const Vector& force, Vector& acceleration) const {
     acceleration.setZero();
     return;
   }
-  mass_->solve(force, acceleration);
+  mass_->solve(force, acceleration, work_);
   for (int i : massless_) acceleration[i] = 0;
   if (condensed_ == nullptr) return;
   pull_.resize(bulk_.unknowns);
@@ -235,7 +240,7 @@ void Accelerator::solve(const Vector& force, Vector& acceleration) const {
   right_.resize(count);
   solution_.resize(count);
   for (Eigen::Index i = 0; i < count; ++i) right_[i] = -pull_[massless_[static_cast<std::size_t>(i)]];
-  condensed_->solve(right_, solution_);
+  condensed_->solve(right_, solution_, work_);
   for (Eigen::Index i = 0; i < count; ++i) acceleration[massless_[static_cast<std::size_t>(i)]] = solution_[i];
 }
 

@@ -12,9 +12,9 @@ namespace uplift {
 
 /// Counted by whoever owns a bulk; nothing global.
 struct LinearCounts {
-  long factorisations = 0, back_solves = 0;
-  double residual = 0;  // the largest of all factors, see BulkFactor
-  std::string notice;   // what it is and where it may come from; empty up to 1e-9
+  long factorisations = 0, analyses = 0, back_solves = 0;  // analyses: symbolic ones, of sparse matrices
+  double residual = 0;                                     // the largest of all factors, see BulkFactor
+  std::string notice;                                      // what it is and where it may come from; empty up to 1e-9
   InterfaceSystems systems;
 };
 
@@ -51,36 +51,47 @@ class Bulk {
   std::vector<char> massless;  // per free unknown
 };
 
+/// Counts and buffers of one run beside the factors that it uses.
+struct BulkWork {
+  explicit BulkWork(LinearCounts& of_run) : counts(&of_run) {}
+  LinearCounts* counts;
+  Matrix given, solved;  // one column each
+  Vector half;
+};
+
 /// A factored matrix of the bulk: the inverse itself when small; with the unknowns that the interfaces touch last when that is asked for
 /// and the solver can.
 ///
 /// Every factor is tried on one load, of the size sqrt(A_ii) and changing signs in every unknown. The residual |b - A x| / |b| (both with
 /// the weights 1/sqrt(A_ii), so that units play no part) is about the condition number times 1e-16: above 1e-9 it is noted in the counts,
 /// because results lose digits; above 1e-6, beyond the round-off of A x, the factor is wrong and refused.
+///
+/// It does not change after it was made: runs and threads may share it, each with work of its own.
 class BulkFactor {
  public:
   /// Of the matrix the upper triangle is read. `b`: interface rows x free unknowns, whose touched unknowns shall be last; null: in any
-  /// order. `why` is set (and ok() false) when the matrix is not positive definite.
-  BulkFactor(const Sparse& matrix, const Sparse* b, bool small, const LinearSolver& solver, const Model& model, LinearCounts& counts);
+  /// order. `why` is set (and ok() false) when the matrix is not positive definite. `like`: a factor of the same B whose symbolic analysis
+  /// is used again where it has a place for every entry of the matrix; null: none.
+  BulkFactor(const Sparse& matrix, const Sparse* b, bool small, const LinearSolver& solver, const Model& model, LinearCounts& counts,
+             const BulkFactor* like = nullptr);
   bool ok() const { return why_.empty(); }
   const std::string& why() const { return why_; }
   /// It does not fit into memory: a smaller step would not help.
   bool too_large() const { return too_large_; }
   /// x = A^-1 b
-  void solve(const Vector& b, Vector& x) const;
+  void solve(const Vector& b, Vector& x, BulkWork& work) const;
   /// How forces on the rows of B spread; through a split factor (of the same B) as its backward half, see split_spread. This factor must
-  /// stay alive, and where it is.
-  Spread spread(const Sparse& b) const;
+  /// stay alive, and where it is. `counts`, of the back-solves that the spread takes, must stay alive too.
+  Spread spread(const Sparse& b, LinearCounts& counts) const;
   /// The factor in two halves, and its last unknowns in their order; null when there is none.
   const SplitFactor* split() const { return split_.get(); }
   const std::vector<int>& last() const { return last_; }
-  void count_back_solve() const { ++counts_->back_solves; }
-  /// Interface problems condensed with this factor.
-  void count(const InterfaceSystems& solved) const;
 
  private:
-  void factorise(const Sparse& matrix, const Sparse* b, const LinearSolver& solver, const Model& model);
-  void try_out(const Sparse& matrix, const Model& model);
+  void factorise(const Sparse& matrix, const Sparse* b, const LinearSolver& solver, const Model& model, LinearCounts& counts,
+                 const BulkFactor* like);
+  void factorise_split(const Sparse& matrix, const LinearSolver& solver, const Model& model, LinearCounts& counts, const BulkFactor* like);
+  void try_out(const Sparse& matrix, const Model& model, LinearCounts& counts);
   void fail(const Model& model, int unknown, const std::string& why);
 
   bool small_ = false, too_large_ = false;
@@ -89,9 +100,6 @@ class BulkFactor {
   std::unique_ptr<const Factor> factor_;
   std::unique_ptr<const SplitFactor> split_;
   std::vector<int> last_;
-  LinearCounts* counts_;
-  mutable Matrix given_, solved_;  // one column each, kept: a factor belongs to one run
-  mutable Vector half_;
 };
 
 /// B of all interfaces, one after another: rows x free.
@@ -110,13 +118,14 @@ class Accelerator {
   const std::string& why() const { return mass_->why(); }
   bool too_large() const { return mass_->too_large(); }
   /// Spread through the mass matrix, for impact rules.
-  Spread spread(const Sparse& b) const { return mass_->spread(b); }
+  Spread spread(const Sparse& b) const { return mass_->spread(b, *work_.counts); }
 
  private:
   const Bulk& bulk_;
   std::vector<int> massless_;
   std::unique_ptr<BulkFactor> mass_, condensed_;
-  mutable Vector pull_, right_, solution_;  // work space
+  mutable BulkWork work_;  // of one run
+  mutable Vector pull_, right_, solution_;
 };
 
 }  // namespace uplift

@@ -44,14 +44,14 @@ ContactModel blocks_of(const Model& model, const Behaviours& behaviours) {
   return contact;
 }
 
-Condensed::Condensed(const Model& model, const Sparse& b, const Vector& gap, bool gap_moves, BulkFactor factor, ContactModel frame,
-                     const ContactMethod& method)
-    : b_(b), gap_(gap), factor_(std::move(factor)), method_(method), work_(method.make_work()) {
-  if (factor_.split() != nullptr) {
-    split_ = std::make_unique<SplitResponse>(factor_, b);
+Condensed::Condensed(const Model& model, const Sparse& b, const Vector& gap, bool gap_moves, std::shared_ptr<const BulkFactor> factor,
+                     ContactModel frame, const ContactMethod& method, LinearCounts& counts)
+    : b_(b), gap_(gap), factor_(std::move(factor)), work_(counts), method_(method), method_work_(method.make_work()) {
+  if (factor_->split() != nullptr) {
+    split_ = std::make_unique<SplitResponse>(*factor_, b, counts);
     frame.factor = split_->factor();
   } else {
-    Spread spread = factor_.spread(b);
+    Spread spread = factor_->spread(b, counts);
     frame.factor = std::move(spread.factor);
     spread_ = std::move(spread.spread);
   }
@@ -88,7 +88,7 @@ void Condensed::free_opening(const Vector& right, const Vector& displacement) {
     split_->forward(right, problem_.free_opening);
     return;
   }
-  factor_.solve(right, free_);
+  factor_->solve(right, free_, work_);
   if (touched_.empty()) {
     touched_value_ = displacement + free_;
     problem_.free_opening.noalias() = b_ * touched_value_;
@@ -106,7 +106,7 @@ void Condensed::free_opening(const Vector& right, const Vector& displacement) {
 
 /// Nothing touches.
 Outcome Condensed::free_step(const Vector& right, Vector& increment) {
-  factor_.solve(right, increment);
+  factor_->solve(right, increment, work_);
   Outcome outcome;
   outcome.converged = true;
   return outcome;
@@ -121,8 +121,10 @@ Outcome Condensed::contact_step(const Vector& right, const StepStart& start, Vec
   small::copy(start.opening.size(), start.opening.data(), problem_.from.data());
   small::copy(start.history.size(), start.history.data(), problem_.old.data());
   if (start.filter != nullptr) problem_.filter = *start.filter;
-  Outcome outcome = method_.solve(problem_, *work_, solution_);
-  factor_.count(std::exchange(solution_.systems, {}));
+  Outcome outcome = method_.solve(problem_, *method_work_, solution_);
+  const InterfaceSystems solved = std::exchange(solution_.systems, {});
+  work_.counts->systems.factored += solved.factored;
+  work_.counts->systems.iterated += solved.iterated;
   if (!outcome.converged) return outcome;
   if (split_ != nullptr)
     split_->backward(solution_.z, increment);

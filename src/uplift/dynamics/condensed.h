@@ -44,6 +44,8 @@ class StepSolver {
   virtual Outcome solve(const Vector& right, const StepStart& start, Vector& increment) = 0;
   virtual const InterfaceProblem& problem() const = 0;
   virtual const InterfaceSolution& solution() const = 0;
+  /// The factor of the bulk; null where there is none.
+  virtual const BulkFactor* factor() const { return nullptr; }
   /// The next solve does not begin at the last solution, which led nowhere.
   virtual void forget() {}
 };
@@ -54,12 +56,13 @@ class Condensed final : public StepSolver {
  public:
   /// `factor` is that of K_eff (with B^T D B in statics); `frame` lacks nothing but the factor C. `gap_moves`: the gap
   /// changes from step to step.
-  Condensed(const Model& model, const Sparse& b, const Vector& gap, bool gap_moves, BulkFactor factor, ContactModel frame,
-            const ContactMethod& method);
+  Condensed(const Model& model, const Sparse& b, const Vector& gap, bool gap_moves, std::shared_ptr<const BulkFactor> factor,
+            ContactModel frame, const ContactMethod& method, LinearCounts& counts);
   Outcome solve(const Vector& right, const StepStart& start, Vector& increment) override;
   const InterfaceProblem& problem() const override { return problem_; }
   const InterfaceSolution& solution() const override { return solution_; }
-  void forget() override { solution_ = {}, work_ = method_.make_work(); }
+  const BulkFactor* factor() const override { return factor_.get(); }
+  void forget() override { solution_ = {}, method_work_ = method_.make_work(); }
 
  private:
   void list_touched(const Model& model, bool gap_moves);
@@ -69,9 +72,10 @@ class Condensed final : public StepSolver {
 
   const Sparse& b_;
   const Vector& gap_;
-  BulkFactor factor_;
+  std::shared_ptr<const BulkFactor> factor_;
+  BulkWork work_;
   std::unique_ptr<SplitResponse> split_;
-  Matrix dense_b_, touched_b_;  // small bulks; columns of B that are not empty
+  Matrix touched_b_;  // columns of B that are not empty
   std::vector<int> touched_;
   Matrix spread_;             // X: du = du_free + X z
   Matrix to_free_increment_;  // inverse of its touched rows where they are as many as its columns and few, and the gap stays: C = B X; else
@@ -79,7 +83,7 @@ class Condensed final : public StepSolver {
   InterfaceProblem problem_;
   InterfaceSolution solution_;
   const ContactMethod& method_;
-  std::unique_ptr<MethodWork> work_;
+  std::unique_ptr<MethodWork> method_work_;
   Vector free_, touched_value_;
 };
 

@@ -366,6 +366,7 @@ class Compared final : public StepSolver {
 
   const InterfaceProblem& problem() const override { return solver_->problem(); }
   const InterfaceSolution& solution() const override { return solver_->solution(); }
+  const BulkFactor* factor() const override { return solver_->factor(); }
 
  private:
   double energy_norm(const Vector& u) const { return std::sqrt(std::max(0.0, u.dot(matrix_ * u))); }

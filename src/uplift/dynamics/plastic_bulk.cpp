@@ -87,12 +87,15 @@ Sparse PlasticBulk::softening(const Vector& displacement, MotionInstant at, cons
   Matrix tangent, elastic;
   for (const One& one : elements_) {
     const auto before = history_of(one, old);
-    if (!one.element->yields(before, history_of(one, now.history))) continue;
     unused.assign(before.begin(), before.end());
     of_element(*one.element, full, scratch_.displacement);
-    if (!one.element->respond(scratch_.displacement, before, unused, scratch_.element, scratch_.force, &tangent).converged) continue;
-    one.element->form({&elastic, nullptr, nullptr});
-    tangent = (0.5 * (tangent + tangent.transpose()) - elastic).eval();
+    if (one.element->yields(before, history_of(one, now.history)) &&
+        one.element->respond(scratch_.displacement, before, unused, scratch_.element, scratch_.force, &tangent).converged) {
+      one.element->form({&elastic, nullptr, nullptr});
+      tangent = (0.5 * (tangent + tangent.transpose()) - elastic).eval();
+    } else {
+      tangent.setZero(one.element->unknowns(), one.element->unknowns());  // so that all tangents have their entries in the same places
+    }
     const auto nodes = one.element->nodes();
     const int each = one.element->unknowns_per_node();
     const auto unknown = [&](Index i) {

@@ -3,6 +3,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 
 #include "uplift/math/dense.h"
@@ -16,33 +17,52 @@ constexpr int patience = 5;
 
 }  // namespace
 
+/// Anderson's mixing: the iterations before tell how y answers its own change.
+class PlasticNewton::Mixing {
+ public:
+  void forget() { count_ = 0; }
+  /// Moves y on by its change, both of this iteration.
+  void mix(const Vector& weight, const Vector& change, Vector& y) {
+    remember(y, change);
+    if (count_ > 1) {
+      const Index steps = static_cast<Index>(count_) - 1;
+      y_steps_.resize(y.size(), steps);
+      change_steps_.resize(y.size(), steps);
+      for (Index k = 0; k < steps; ++k) {
+        const auto at = static_cast<std::size_t>(k);
+        y_steps_.col(k) = y_[at + 1] - y_[at];
+        change_steps_.col(k) = change_[at + 1] - change_[at];
+      }
+      least_squares_->setThreshold(1e-10);
+      least_squares_.compute(weight.asDiagonal() * change_steps_);
+      y -= (y_steps_ + change_steps_) * least_squares_.solve(weight.cwiseProduct(change));
+    }
+    y += change;
+  }
+
+ private:
+  void remember(const Vector& y, const Vector& change) {
+    if (count_ > mixing_depth) {
+      std::rotate(y_.begin(), y_.begin() + 1, y_.end());
+      std::rotate(change_.begin(), change_.begin() + 1, change_.end());
+      --count_;
+    }
+    y_[count_] = y;
+    change_[count_++] = change;
+  }
+
+  std::array<Vector, mixing_depth + 1> y_, change_;  // oldest first; `count_` of them count
+  std::size_t count_ = 0;
+  Matrix y_steps_, change_steps_;
+  CompleteQr least_squares_;
+};
+
 PlasticNewton::PlasticNewton(const PlasticBulk& bulk, const Sparse& stiffness, const PlasticOptions& options)
-    : bulk_(bulk), options_(options), weight_(stiffness.diagonal()) {
+    : bulk_(bulk), options_(options), weight_(stiffness.diagonal()), mixing_(std::make_unique<Mixing>()) {
   for (double& w : weight_) w = w > 0 ? 1 / std::sqrt(w) : 0;
 }
 
-/// The next y of Anderson's mixing: the steps before tell how y answers its own change.
-void PlasticNewton::mix() {
-  if (given_before_.size() > mixing_depth + 1) {
-    given_before_.erase(given_before_.begin());
-    change_before_.erase(change_before_.begin());
-  }
-  const Index count = static_cast<Index>(given_before_.size());
-  if (count > 1) {
-    Matrix given(given_.size(), count - 1), change(given_.size(), count - 1);
-    for (Index k = 0; k + 1 < count; ++k) {
-      const auto at = static_cast<std::size_t>(k);
-      given.col(k) = given_before_[at + 1] - given_before_[at];
-      change.col(k) = change_before_[at + 1] - change_before_[at];
-    }
-    CompleteQr least_squares;
-    least_squares->setThreshold(1e-10);
-    least_squares.compute(weight_.asDiagonal() * change);
-    const Vector share = least_squares.solve(weight_.cwiseProduct(change_));
-    given_ -= (given + change) * share;
-  }
-  given_ += change_;
-}
+PlasticNewton::~PlasticNewton() = default;
 
 /// Goes over to the tangent of the present state. A tangent that is not positive definite (no associated flow, or no strength left) gets a
 /// share of the elastic stiffness back.
@@ -76,10 +96,8 @@ Outcome PlasticNewton::solve(const Step& step, StepSolver& elastic, const Make& 
   last_ = &elastic;
   softening_.resize(0, 0);
   residuals_.clear();
-  given_before_.clear();
-  change_before_.clear();
+  mixing_->forget();
   given_ = step.right - step.weight * step.old.force;
-  Vector moved;
   int since = 0;  // iterations with the present factor
   const bool may_soften = options_.newton != PlasticOptions::Newton::modified;
   for (int iteration = 0; iteration < options_.iterations; ++iteration) {
@@ -90,9 +108,9 @@ Outcome PlasticNewton::solve(const Step& step, StepSolver& elastic, const Make& 
       outcome.why = inner.why;
       return outcome;
     }
-    moved = step.start.displacement + increment;
-    if (!moved.allFinite()) break;
-    if (const BulkResponse response = bulk_.respond(moved, step.at, step.old.history, now, size_); !response.converged) {
+    moved_ = step.start.displacement + increment;
+    if (!moved_.allFinite()) break;
+    if (const BulkResponse response = bulk_.respond(moved_, step.at, step.old.history, now, size_); !response.converged) {
       outcome.why = response.why;
       return outcome;
     }
@@ -107,14 +125,11 @@ Outcome PlasticNewton::solve(const Step& step, StepSolver& elastic, const Make& 
     ++since;
     if (may_soften && wants_tangent(since) && soften(step, make, increment, now)) {
       since = 0;
-      given_before_.clear();
-      change_before_.clear();
+      mixing_->forget();
       given_ = step.right - step.weight * now.force + softening_ * increment;
       continue;
     }
-    given_before_.push_back(given_);
-    change_before_.push_back(change_);
-    mix();
+    mixing_->mix(weight_, change_, given_);
   }
   outcome.why = fmt::format("yielding solids: no balance in {} iterations, {:.1e} of their forces are left", residuals_.size(),
                             residuals_.empty() ? 0 : residuals_.back());

@@ -32,6 +32,7 @@ class PlasticNewton {
   using Make = std::function<std::unique_ptr<StepSolver>(const Sparse& d, std::string& why)>;
   /// `stiffness`: its diagonal weighs the unknowns in norms, so that units play no part.
   PlasticNewton(const PlasticBulk& bulk, const Sparse& stiffness, const PlasticOptions& options);
+  ~PlasticNewton();
   /// The end of a step: what the bulk remembers at its beginning, and the instant of its end.
   struct Step {
     const Vector& right;
@@ -48,14 +49,15 @@ class PlasticNewton {
   const std::vector<double>& residuals() const { return residuals_; }
 
  private:
-  void mix();
+  class Mixing;
   bool wants_tangent(int since) const;
   bool soften(const Step& step, const Make& make, const Vector& increment, const PlasticState& now);
 
   const PlasticBulk& bulk_;
   PlasticOptions options_;
   Vector weight_, size_, given_, change_;  // given_: y
-  std::vector<Vector> given_before_, change_before_;
+  std::unique_ptr<Mixing> mixing_;
+  Vector moved_;
   Sparse softening_;
   std::unique_ptr<StepSolver> tangent_;
   StepSolver* last_ = nullptr;

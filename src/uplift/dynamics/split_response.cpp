@@ -4,7 +4,7 @@
 
 namespace uplift {
 
-SplitResponse::SplitResponse(const BulkFactor& factor, const Sparse& b) : factor_(factor) {
+SplitResponse::SplitResponse(const BulkFactor& factor, const Sparse& b, LinearCounts& counts) : factor_(factor), counts_(counts) {
   const Index touched = static_cast<Index>(factor.last().size());
   Matrix at_touched(b.rows(), touched);
   for (Index j = 0; j < touched; ++j) at_touched.col(j) = b.col(factor.last()[static_cast<std::size_t>(j)]);
@@ -37,7 +37,7 @@ void SplitResponse::backward(const Vector& z, Vector& x) {
   else
     touched += z;
   factor_.split()->backward(half_, x);
-  factor_.count_back_solve();
+  ++counts_.back_solves;
 }
 
 namespace {
@@ -45,7 +45,7 @@ namespace {
 /// X z = P^T L^-T [0; Q^T z]
 class SplitSpreader final : public Spreader {
  public:
-  SplitSpreader(const BulkFactor& factor, const Sparse& b) : response_(factor, b) {}
+  SplitSpreader(const BulkFactor& factor, const Sparse& b, LinearCounts& counts) : response_(factor, b, counts) {}
   Matrix take_factor() { return response_.take_factor(); }
   void add(double scale, const Vector& z, Vector& x) const override {
     response_.forward_of_nothing(x.size());
@@ -60,8 +60,8 @@ class SplitSpreader final : public Spreader {
 
 }  // namespace
 
-Spread split_spread(const BulkFactor& factor, const Sparse& b) {
-  auto through = std::make_shared<SplitSpreader>(factor, b);
+Spread split_spread(const BulkFactor& factor, const Sparse& b, LinearCounts& counts) {
+  auto through = std::make_shared<SplitSpreader>(factor, b, counts);
   Matrix c = through->take_factor();
   return {.factor = std::move(c), .spread = {}, .through = std::move(through)};
 }

@@ -12,8 +12,8 @@ namespace uplift {
 /// a condensed step costs one back-solve and keeps nothing that is larger than the interface.
 class SplitResponse {
  public:
-  /// `factor` must be split, its last unknowns those that `b` touches, and stay alive.
-  SplitResponse(const BulkFactor& factor, const Sparse& b);
+  /// `factor` must be split, its last unknowns those that `b` touches. It and the counts must stay alive.
+  SplitResponse(const BulkFactor& factor, const Sparse& b, LinearCounts& counts);
   const Matrix& factor() const { return c_; }  // C: rows x r
   /// Hands C over, for those who need no forward half.
   Matrix take_factor() { return std::move(c_); }
@@ -26,12 +26,13 @@ class SplitResponse {
 
  private:
   const BulkFactor& factor_;
+  LinearCounts& counts_;
   Matrix c_, q_;  // q_: r x touched unknowns; empty: the identity
   Vector half_, tail_;
 };
 
 /// The spread of interface forces through a split factor, which must stay alive: C is kept, a product with X is the backward half of a
 /// back-solve. What the dense X would take (free x r) is neither made nor streamed.
-Spread split_spread(const BulkFactor& factor, const Sparse& b);
+Spread split_spread(const BulkFactor& factor, const Sparse& b, LinearCounts& counts);
 
 }  // namespace uplift

@@ -71,9 +71,11 @@ class LoadSteps {
   StaticOutcome run();
 
  private:
-  BulkFactor factor(const Sparse& matrix) const { return {matrix, &b_, bulk_.small, solver_, model_, counts_}; }
-  std::unique_ptr<StepSolver> condensed(BulkFactor made) const {
-    return std::make_unique<Condensed>(model_, b_, gap_, !motion_.isZero(0), std::move(made), blocks_, method_);
+  std::shared_ptr<const BulkFactor> factor(const Sparse& matrix, const BulkFactor* like) const {
+    return std::make_shared<const BulkFactor>(matrix, &b_, bulk_.small, solver_, model_, counts_, like);
+  }
+  std::unique_ptr<StepSolver> condensed(std::shared_ptr<const BulkFactor> made) const {
+    return std::make_unique<Condensed>(model_, b_, gap_, !motion_.isZero(0), std::move(made), blocks_, method_, counts_);
   }
   void find_loads();
   double load_factor(double share) const { return share < 1 ? first_factor_ + share * (1 - first_factor_) : 1; }
@@ -101,6 +103,7 @@ class LoadSteps {
   ContactModel blocks_;
   Sparse matrix_;  // upper triangle of K + B^T D B: all that a factor is made of
   std::unique_ptr<StepSolver> linear_;
+  std::shared_ptr<const BulkFactor> tangent_;  // the last one, whose analysis serves the next one
   std::unique_ptr<PlasticNewton> newton_;
   const StepSolver* last_ = nullptr;  // solver of the last load step
   PlasticState plastic_now_, plastic_next_;
@@ -184,9 +187,11 @@ std::string LoadSteps::solve(double to, int depth) {
   last_ = linear_.get();
   if (yielding_.any()) {
     const PlasticNewton::Make soften = [this](const Sparse& d, std::string& why) -> std::unique_ptr<StepSolver> {
-      BulkFactor softer = factor(matrix_ + d);
-      why = softer.why();
-      return softer.ok() ? condensed(std::move(softer)) : nullptr;
+      std::shared_ptr<const BulkFactor> softer = factor(matrix_ + d, tangent_ != nullptr ? tangent_.get() : linear_->factor());
+      why = softer->why();
+      if (!softer->ok()) return nullptr;
+      tangent_ = softer;
+      return condensed(std::move(softer));
     };
     step = newton_->solve({right, start, plastic_now_, {state_.time, load_factor(to)}}, *linear_, soften, increment_, plastic_next_);
     last_ = &newton_->last();
@@ -280,9 +285,9 @@ bool LoadSteps::go(double from, double to, int depth) {
 }
 
 StaticOutcome LoadSteps::run() {
-  BulkFactor made = factor(matrix_);
-  if (!made.ok()) {
-    outcome_.why = "static stage: " + made.why();
+  std::shared_ptr<const BulkFactor> made = factor(matrix_, nullptr);
+  if (!made->ok()) {
+    outcome_.why = "static stage: " + made->why();
     return std::move(outcome_);
   }
   linear_ = condensed(std::move(made));

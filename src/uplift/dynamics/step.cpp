@@ -79,10 +79,12 @@ Outcome Stepper::solve(Level& level) {
   const PlasticNewton::Make soften = [&](const Sparse& d, std::string& why) -> std::unique_ptr<StepSolver> {
     const Sparse matrix = matrix_of(level) + d;
     if (options_.monolithic) return make_monolithic(matrix, b_, gap_, frame_of(level));
-    BulkFactor factor(matrix, &b_, bulk_.small, solver_, model_, linear_);
-    why = factor.why();
-    if (!factor.ok()) return nullptr;
-    return std::make_unique<Condensed>(model_, b_, gap_, gap_moves_, std::move(factor), frame_of(level), method_);
+    auto factor = std::make_shared<const BulkFactor>(matrix, &b_, bulk_.small, solver_, model_, linear_,
+                                                     level.tangent != nullptr ? level.tangent.get() : level.solver->factor());
+    why = factor->why();
+    if (!factor->ok()) return nullptr;
+    level.tangent = factor;
+    return std::make_unique<Condensed>(model_, b_, gap_, gap_moves_, std::move(factor), frame_of(level), method_, linear_);
   };
   Outcome outcome =
       newton_->solve({right_, start, plastic_now_, next_.time, 1 / options_.scheme.stretch()}, *last, soften, increment_, plastic_next_);

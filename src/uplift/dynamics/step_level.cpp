@@ -29,15 +29,15 @@ Stepper::Level& Stepper::make_level(int halving) {
     ++linear_.factorisations;
   } else {
     const Sparse upper = matrix_of(made).triangularView<upper_triangle>();  // half of it, while the factor is made
-    BulkFactor factor(upper, &b_, bulk_.small, solver_, model_, linear_);
-    if (!factor.ok()) {
-      made.why = factor.why();
-      made.hopeless = factor.too_large();
+    auto factor = std::make_shared<const BulkFactor>(upper, &b_, bulk_.small, solver_, model_, linear_);
+    if (!factor->ok()) {
+      made.why = factor->why();
+      made.hopeless = factor->too_large();
       return made;
     }
     std::unique_ptr<StepSolver> oracle;
     if (options_.oracle_tolerance > 0) oracle = make_monolithic(matrix_of(made), b_, gap_, frame);
-    made.solver = std::make_unique<Condensed>(model_, b_, gap_, gap_moves_, std::move(factor), std::move(frame), method_);
+    made.solver = std::make_unique<Condensed>(model_, b_, gap_, gap_moves_, std::move(factor), std::move(frame), method_, linear_);
     if (oracle != nullptr)
       made.solver = make_compared(matrix_of(made), std::move(made.solver), std::move(oracle), options_.oracle_tolerance);
   }
@@ -46,7 +46,7 @@ Stepper::Level& Stepper::make_level(int halving) {
     made.dynamic_factor = std::make_unique<BulkFactor>(dynamic, &b_, bulk_.small, solver_, model_, linear_);
     made.why = made.dynamic_factor->why();
     made.hopeless = made.dynamic_factor->too_large();
-    if (made.why.empty()) made.dynamic = std::make_unique<Spread>(made.dynamic_factor->spread(b_));
+    if (made.why.empty()) made.dynamic = std::make_unique<Spread>(made.dynamic_factor->spread(b_, linear_));
   }
   return made;
 }

@@ -16,6 +16,7 @@ struct Stepper::Level {
   double mass = 0, damping = 0;  // K_eff = K + damping C + mass M
   double mass_velocity = 0, mass_acceleration = 0, damping_velocity = 0, damping_acceleration = 0;
   std::unique_ptr<StepSolver> solver;
+  std::shared_ptr<const BulkFactor> tangent;   // the last one of yielding solids, whose analysis serves the next one
   std::unique_ptr<BulkFactor> dynamic_factor;  // of K + 4M/dt^2, for `propagate`
   std::unique_ptr<Spread> dynamic;
   std::string why;        // when the matrix could not be factorised

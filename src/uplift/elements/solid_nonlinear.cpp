@@ -15,6 +15,9 @@ namespace {
 /// A point at the apex has no stiffness at all: this share of the elastic one, added to every tangent, keeps matrices regular.
 constexpr double least_elastic_share = 1e-9;
 
+/// Elements of up to so many points keep the gradients of their shape functions: at most 2.2 kB (hex8).
+constexpr int most_kept_points = 8;
+
 SolidSection with_material(SolidSection section, const ElasticMaterial& material) {
   section.material = material;
   return section;
@@ -47,13 +50,31 @@ NonlinearSolid::NonlinearSolid(Cell cell, std::span<const int> nodes, Coordinate
       points_(num_points()),
       modes_(num_modes()) {
   assert(dimension() == 3 || section.plane == PlaneState::strain);
-  if (num_modes() == 0) return;
   Scratch elastic;
   find_gradients(elastic.gradient);
+  if (points_ <= most_kept_points)
+    for (const PointGradient& at : elastic.gradient) {
+      gradient_.push_back(at.volume);
+      for (int i = 0; i < dimension(); ++i) gradient_.insert(gradient_.end(), at.g[i], at.g[i] + this->nodes().size() + modes_);
+    }
+  if (modes_ == 0) return;
   elastic.tangent.assign(elastic.gradient.size(), law_->elastic());
   const Matrix k = full_tangent(elastic, 0);
   mode_flexibility_ = inverse(k.bottomRightCorner(num_amplitudes(), num_amplitudes()));
   modes_of_nodes_ = -mode_flexibility_ * k.bottomLeftCorner(num_amplitudes(), unknowns());
+}
+
+void NonlinearSolid::recall_gradient(int point, PointGradient& at) const {
+  const int d = dimension(), functions = static_cast<int>(nodes().size()) + modes_;
+  const double* kept = gradient_.data() + static_cast<std::ptrdiff_t>(point) * (1 + d * functions);
+  at.volume = *kept++;
+  for (int i = 0; i < d; ++i, kept += functions) std::copy_n(kept, functions, at.g[i]);
+}
+
+void NonlinearSolid::recall_gradients(std::vector<PointGradient>& all) const {
+  if (gradient_.empty()) return find_gradients(all);
+  all.resize(static_cast<std::size_t>(points_));
+  for (int p = 0; p < points_; ++p) recall_gradient(p, all[static_cast<std::size_t>(p)]);
 }
 
 int NonlinearSolid::num_history() const {
@@ -122,7 +143,7 @@ void NonlinearSolid::add_inelastic_amplitudes(std::span<const double> history, c
   Map(amplitudes, n).noalias() += mode_flexibility_.lazyProduct(ConstMap(force, n));
 }
 
-BulkResponse NonlinearSolid::balance_modes(const Vector& displacement, std::span<const double> old, std::span<double> now,
+BulkResponse NonlinearSolid::balance_modes(const Vector& displacement, std::span<const double> old, std::span<double> now, bool tangents,
                                            Scratch& scratch) const {
   const int n = num_amplitudes();
   Map amplitudes(now.data() + first_amplitude(), n);
@@ -135,7 +156,7 @@ BulkResponse NonlinearSolid::balance_modes(const Vector& displacement, std::span
       scale += scratch.gradient[p].volume * mode_gradient(scratch.gradient[p]) * (scratch.stress[p].norm() + noise);
     const double rest = scratch.mode_force.norm();
     if (rest <= 1e-13 * scale) return {};
-    if (iteration == 0)  // the first response came without tangents
+    if (iteration == 0 && !tangents)
       if (const BulkResponse response = evaluate(displacement, old, now, true, scratch); !response.converged) return response;
     find_mode_tangent(scratch, share);
     if (!small::gauss_solve<0>(n, scratch.mode_stiffness.data(), scratch.mode_force.data())) break;
@@ -156,7 +177,9 @@ BulkResponse NonlinearSolid::respond(const Vector& displacement, std::span<const
                                      Vector& force, Matrix* tangent) const {
   assert(displacement.size() == unknowns());
   assert(static_cast<int>(old.size()) == num_history() && static_cast<int>(now.size()) == num_history());
-  find_gradients(scratch.gradient);
+  // where the update before changed the memory this one will, and its modes need the tangents
+  const bool tangents = tangent != nullptr || (modes_ > 0 && yields(old, now));
+  recall_gradients(scratch.gradient);
   scratch.strain.resize(scratch.gradient.size());
   scratch.stress.resize(scratch.gradient.size());
   scratch.tangent.resize(scratch.gradient.size());
@@ -164,8 +187,8 @@ BulkResponse NonlinearSolid::respond(const Vector& displacement, std::span<const
     Map(now.data() + first_amplitude(), num_amplitudes()).noalias() = modes_of_nodes_.lazyProduct(displacement);
     if (has_yielded(old)) add_inelastic_amplitudes(old, scratch, now.data() + first_amplitude());
   }
-  BulkResponse outcome = evaluate(displacement, old, now, tangent != nullptr, scratch);
-  if (outcome.converged && modes_ > 0 && yields(old, now)) outcome = balance_modes(displacement, old, now, scratch);
+  BulkResponse outcome = evaluate(displacement, old, now, tangents, scratch);
+  if (outcome.converged && modes_ > 0 && yields(old, now)) outcome = balance_modes(displacement, old, now, tangents, scratch);
 
   force.setZero(unknowns());
   for (std::size_t p = 0; p < scratch.gradient.size(); ++p)
@@ -242,7 +265,7 @@ bool NonlinearSolid::yields(std::span<const double> old, std::span<const double>
 // stress s = D (G a - e) is what yielding adds to the linear one, which is in balance with the modes as s is; so the mixed terms of the
 // energy are those with the nodes.
 void NonlinearSolid::find_inelastic(std::span<const double> history, Scratch& scratch, Inelastic& made) const {
-  find_gradients(scratch.gradient);
+  recall_gradients(scratch.gradient);
   find_inelastic_of_response(history, scratch, made);
 }
 
@@ -265,14 +288,17 @@ void NonlinearSolid::find_inelastic_of_response(std::span<const double> history,
 
 double NonlinearSolid::dissipated(const Vector& from, std::span<const double> old, const Vector& to, std::span<const double> now) const {
   double sum = 0;
-  std::size_t p = 0;
-  for (const PointGradient& at : gradients()) {
+  std::vector<PointGradient> made;
+  if (gradient_.empty()) made = gradients();
+  PointGradient kept;
+  for (std::size_t p = 0; p < static_cast<std::size_t>(points_); ++p) {
+    if (!gradient_.empty()) recall_gradient(static_cast<int>(p), kept);
+    const PointGradient& at = gradient_.empty() ? made[p] : kept;
     const ConstMap before = inelastic_strain(old, p), after = inelastic_strain(now, p);
     const Strain recoverable =
         strain(at, from, old.data() + first_amplitude()) + strain(at, to, now.data() + first_amplitude()) - before - after;
     sum += at.volume * (law_->elastic() * recoverable).dot(after - before) / 2;
     sum -= at.volume * (locked_energy(now, p) - locked_energy(old, p));
-    ++p;
   }
   return sum;
 }

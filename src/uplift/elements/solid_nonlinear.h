@@ -41,6 +41,9 @@ class NonlinearSolid : public Solid {
   const BulkLaw& law() const { return *law_; }
 
  private:
+  /// The gradients of the points: those kept, or computed where none are.
+  void recall_gradients(std::vector<PointGradient>& all) const;
+  void recall_gradient(int point, PointGradient& at) const;
   Strain strain(const PointGradient& at, const Vector& displacement, const double* amplitudes) const;
   BulkResponse evaluate(const Vector& displacement, std::span<const double> old, std::span<double> now, bool tangents,
                         Scratch& scratch) const;
@@ -52,7 +55,9 @@ class NonlinearSolid : public Solid {
   void add_inelastic_amplitudes(std::span<const double> history, const Scratch& scratch, double* amplitudes) const;
   double mode_gradient(const PointGradient& at) const;  // 1/m: size of the bubbles' gradients
   double node_gradient(const PointGradient& at) const;  // 1/m: largest of the nodes
-  BulkResponse balance_modes(const Vector& displacement, std::span<const double> old, std::span<double> now, Scratch& scratch) const;
+  /// `tangents`: those of the response in the scratch are there.
+  BulkResponse balance_modes(const Vector& displacement, std::span<const double> old, std::span<double> now, bool tangents,
+                             Scratch& scratch) const;
   int num_amplitudes() const { return dimension() * modes_; }
   int first_amplitude() const { return size_ * points_; }
   /// Recoverable energy and stress need the strain less this one.
@@ -65,8 +70,10 @@ class NonlinearSolid : public Solid {
 
   std::shared_ptr<const BulkLaw> law_;
   int size_, points_, modes_;  // size_: numbers that a point remembers
-  Matrix modes_of_nodes_;      // amplitudes of the elastic element for nodal displacements: -K_aa^-1 K_au
-  Matrix mode_flexibility_;    // m/N: K_aa^-1 of the elastic element
+  // Of each point: volume, then the gradients of nodes and modes in each direction. Empty for second-order cells, which have many of both.
+  std::vector<double> gradient_;
+  Matrix modes_of_nodes_;    // amplitudes of the elastic element for nodal displacements: -K_aa^-1 K_au
+  Matrix mode_flexibility_;  // m/N: K_aa^-1 of the elastic element
 };
 
 }  // namespace uplift

@@ -26,6 +26,14 @@ SplitFactorisation LinearSolver::factorise_split(const Sparse&, const std::vecto
   return {};
 }
 
+Factorisation Factor::refactorise(const Sparse&) const {
+  return {};
+}
+
+SplitFactorisation SplitFactor::refactorise(const Sparse&) const {
+  return {};
+}
+
 FactorCost LinearSolver::predict(const Sparse& a, const std::vector<int>&) const {
   FactorCost cost;
   cost.unknowns = static_cast<double>(a.rows());

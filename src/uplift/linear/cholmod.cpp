@@ -33,11 +33,9 @@ class CholmodFactor : public Factor {
     give_back(std::move(work));
   }
 
-  /// The numbers; false when memory ran out.
-  bool fill(cholmod_sparse& upper) {
-    cholmod_factorize(&upper, factor_, &settings_->common);
-    return settings_->common.status >= 0;
-  }
+  Factorisation refactorise(const Sparse& a) const override;
+  /// The numbers: `upper` is the triangle of `a`.
+  static Factorisation fill(std::unique_ptr<CholmodFactor> factor, cholmod_sparse& upper, const Sparse& a);
 
   double nonzeros() const override { return static_cast<double>(factor_->is_super ? factor_->xsize : factor_->nzmax); }
 
@@ -73,6 +71,28 @@ class CholmodFactor : public Factor {
   mutable std::vector<std::unique_ptr<Workspace>> idle_;
 };
 
+Factorisation failed(std::string why) {
+  return {.factor = nullptr, .failed_unknown = -1, .why = std::move(why), .too_large = true};
+}
+
+Factorisation CholmodFactor::fill(std::unique_ptr<CholmodFactor> factor, cholmod_sparse& upper, const Sparse& a) {
+  cholmod_factorize(&upper, factor->factor_, &factor->settings_->common);
+  if (factor->settings_->common.status < 0) return failed("the sparse factorisation ran out of memory");
+  if (const int broken = broken_unknown(*factor->factor_, a); broken >= 0) return singular_at(broken);
+  return {.factor = std::move(factor), .failed_unknown = -1, .why = {}};
+}
+
+Factorisation CholmodFactor::refactorise(const Sparse& a) const {
+  if (!has_room(*factor_, a)) return {};
+  Sparse upper = a.triangularView<upper_triangle>();
+  cholmod_sparse view = sparse_view(upper);
+  auto settings = std::make_unique<Common>();
+  if (std::string why = refusal(cost_of(*factor_, settings->common, upper.nonZeros())); !why.empty()) return failed(std::move(why));
+  cholmod_factor* copy = cholmod_copy_factor(factor_, &settings->common);
+  if (copy == nullptr) return failed("the sparse factorisation ran out of memory");
+  return fill(std::make_unique<CholmodFactor>(std::move(settings), copy), view, a);
+}
+
 /// The analysis of a matrix: its upper triangle and the factor without numbers, null when there is none.
 struct Analysed {
   explicit Analysed(const Sparse& given) : upper(given.triangularView<upper_triangle>()), settings(std::make_unique<Common>()) {
@@ -93,18 +113,12 @@ struct Analysed {
 class Cholmod : public LinearSolver {
  public:
   Factorisation factorise(const Sparse& given) const override {
-    const auto fail = [](std::string why) {
-      return Factorisation{.factor = nullptr, .failed_unknown = -1, .why = std::move(why), .too_large = true};
-    };
     Analysed analysed(given);
-    if (analysed.factor == nullptr) return fail(why_not_analysed(analysed.settings->common));
+    if (analysed.factor == nullptr) return failed(why_not_analysed(analysed.settings->common));
     const FactorCost cost = cost_of(*analysed.factor, analysed.settings->common, analysed.upper.nonZeros());
-    if (std::string why = refusal(cost); !why.empty()) return fail(std::move(why));
+    if (std::string why = refusal(cost); !why.empty()) return failed(std::move(why));
     cholmod_factor* raw = std::exchange(analysed.factor, nullptr);
-    auto factor = std::make_unique<CholmodFactor>(std::move(analysed.settings), raw);
-    if (!factor->fill(analysed.view)) return fail("the sparse factorisation ran out of memory");
-    if (const int broken = broken_unknown(*raw, given); broken >= 0) return singular_at(broken);
-    return {.factor = std::move(factor), .failed_unknown = -1, .why = {}};
+    return CholmodFactor::fill(std::make_unique<CholmodFactor>(std::move(analysed.settings), raw), analysed.view, given);
   }
   SplitFactorisation factorise_split(const Sparse& a, const std::vector<int>& last) const override { return cholmod_split(a, last); }
   FactorCost predict(const Sparse& a, const std::vector<int>& last) const override {

@@ -1,5 +1,7 @@
 #include "uplift/linear/cholmod_common.h"
 
+#include <algorithm>
+
 #include "uplift/linear/blas.h"
 #include "uplift/linear/memory.h"
 
@@ -50,6 +52,25 @@ Supernodes supernodes(const cholmod_factor& factor) {
           static_cast<const int*>(factor.px),
           static_cast<const int*>(factor.s),
           static_cast<const double*>(factor.x)};
+}
+
+bool has_room(const cholmod_factor& factor, const Sparse& a) {
+  if (factor.is_super == 0 || a.rows() != static_cast<Index>(factor.n)) return false;
+  const Supernodes nodes = supernodes(factor);
+  const auto* order = static_cast<const int*>(factor.Perm);
+  std::vector<int> place(factor.n), node(factor.n);
+  for (std::size_t s = 0; s < nodes.count; ++s)
+    for (int k = nodes.super[s]; k < nodes.super[s + 1]; ++k) {
+      place[static_cast<std::size_t>(order[k])] = k;
+      node[static_cast<std::size_t>(k)] = static_cast<int>(s);
+    }
+  for (int column = 0; column < a.outerSize(); ++column)
+    for (Sparse::InnerIterator entry(a, column); entry && entry.row() <= column; ++entry) {
+      const auto [low, high] = std::minmax(place[static_cast<std::size_t>(entry.row())], place[static_cast<std::size_t>(column)]);
+      const int s = node[static_cast<std::size_t>(low)];
+      if (!std::binary_search(nodes.rows + nodes.pi[s], nodes.rows + nodes.pi[s + 1], high)) return false;
+    }
+  return true;
 }
 
 FactorCost cost_of(const cholmod_factor& analysed, const cholmod_common& common, Index entries) {

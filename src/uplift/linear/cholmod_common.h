@@ -37,6 +37,9 @@ cholmod_sparse sparse_view(Sparse& upper);
 /// The supernodes of a finished factor.
 Supernodes supernodes(const cholmod_factor& factor);
 
+/// Whether every entry of the upper triangle of a matrix has a place in a supernodal factor, so that its analysis serves the matrix too.
+bool has_room(const cholmod_factor& factor, const Sparse& a);
+
 /// What the numbers will take, after the analysis of a matrix with `entries` entries in one triangle.
 FactorCost cost_of(const cholmod_factor& analysed, const cholmod_common& common, Index entries);
 /// Why the numbers are not made: what they take does not fit into the memory that is left. Empty when it does, and BLAS is ready then; a

@@ -16,10 +16,23 @@ namespace uplift {
 
 namespace {
 
+/// Explicit zeros that hold the chosen unknowns together: every end of a component and the first chosen one, each chosen one and the next.
+using Chain = std::vector<std::pair<int, int>>;
+
+/// Upper triangle of `a` with the chain.
+Sparse with_chain(const Sparse& a, const Chain& chain) {
+  std::vector<Triplet> zeros;
+  for (const auto& [i, j] : chain) zeros.emplace_back(std::min(i, j), std::max(i, j), 0.0);
+  Sparse extra(a.rows(), a.cols());
+  extra.setFromTriplets(zeros.begin(), zeros.end());
+  extra += a.triangularView<upper_triangle>();
+  return extra;
+}
+
 class CholmodSplit : public SplitFactor {
  public:
-  CholmodSplit(std::unique_ptr<Common> settings, cholmod_factor* factor, Index chosen)
-      : settings_(std::move(settings)), factor_(factor), chosen_(chosen) {}
+  CholmodSplit(std::unique_ptr<Common> settings, cholmod_factor* factor, Index chosen, Chain chain)
+      : settings_(std::move(settings)), factor_(factor), chosen_(chosen), chain_(std::move(chain)) {}
   ~CholmodSplit() override { cholmod_free_factor(&factor_, &settings_->common); }
   CholmodSplit(const CholmodSplit&) = delete;
   CholmodSplit& operator=(const CholmodSplit&) = delete;
@@ -60,11 +73,9 @@ class CholmodSplit : public SplitFactor {
     return block;
   }
 
-  /// The numbers; false when memory ran out.
-  bool fill(cholmod_sparse& upper) {
-    cholmod_factorize(&upper, factor_, &settings_->common);
-    return settings_->common.status >= 0;
-  }
+  SplitFactorisation refactorise(const Sparse& a) const override;
+  /// The numbers, with the matrix and what its factor was analysed from.
+  static SplitFactorisation fill(std::unique_ptr<CholmodSplit> factor, cholmod_sparse& upper, const Sparse& a);
 
   double nonzeros() const override { return static_cast<double>(factor_->xsize); }
 
@@ -85,6 +96,7 @@ class CholmodSplit : public SplitFactor {
   std::unique_ptr<Common> settings_;
   cholmod_factor* factor_;
   Index chosen_;
+  Chain chain_;
   mutable std::mutex mutex_;  // guards the idle scratch only; the factor itself is read-only in a solve
   mutable std::vector<Scratch> idle_;
 };
@@ -139,16 +151,34 @@ std::vector<int> ends_of_components(const Sparse& a, const std::vector<int>& ord
   return ends;
 }
 
-/// Upper triangle of `a` with the explicit zeros that hold the chosen unknowns together.
-Sparse with_chain(const Sparse& a, const std::vector<int>& last, const std::vector<int>& ends) {
-  std::vector<Triplet> zeros;
-  const auto add = [&](int i, int j) { zeros.emplace_back(std::min(i, j), std::max(i, j), 0.0); };
-  for (const int end : ends) add(last.front(), end);
-  for (std::size_t k = 1; k < last.size(); ++k) add(last[k - 1], last[k]);
-  Sparse extra(a.rows(), a.cols());
-  extra.setFromTriplets(zeros.begin(), zeros.end());
-  extra += a.triangularView<upper_triangle>();
-  return extra;
+Chain chain_of(const std::vector<int>& last, const std::vector<int>& ends) {
+  Chain chain;
+  for (const int end : ends) chain.emplace_back(last.front(), end);
+  for (std::size_t k = 1; k < last.size(); ++k) chain.emplace_back(last[k - 1], last[k]);
+  return chain;
+}
+
+SplitFactorisation failed(std::string why) {
+  return {.factor = nullptr, .failed_unknown = -1, .why = std::move(why), .too_large = true};
+}
+
+SplitFactorisation CholmodSplit::fill(std::unique_ptr<CholmodSplit> factor, cholmod_sparse& upper, const Sparse& a) {
+  cholmod_factorize(&upper, factor->factor_, &factor->settings_->common);
+  if (factor->settings_->common.status < 0) return failed("the sparse factorisation ran out of memory");
+  if (const int broken = broken_unknown(*factor->factor_, a); broken >= 0)
+    return {.factor = nullptr, .failed_unknown = broken, .why = singular_at(broken).why};
+  return {.factor = std::move(factor), .failed_unknown = -1, .why = {}};
+}
+
+SplitFactorisation CholmodSplit::refactorise(const Sparse& a) const {
+  if (!has_room(*factor_, a)) return {};
+  Sparse upper = with_chain(a, chain_);
+  cholmod_sparse view = sparse_view(upper);
+  auto settings = std::make_unique<Common>();
+  if (std::string why = refusal(cost_of(*factor_, settings->common, upper.nonZeros())); !why.empty()) return failed(std::move(why));
+  cholmod_factor* copy = cholmod_copy_factor(factor_, &settings->common);
+  if (copy == nullptr) return failed("the sparse factorisation ran out of memory");
+  return fill(std::make_unique<CholmodSplit>(std::move(settings), copy, chosen_, chain_), view, a);
 }
 
 /// The analysis with the chosen unknowns last: the upper triangle, ready to be factorised, and the factor without numbers, null when there
@@ -163,7 +193,8 @@ struct Analysed {
     count = others.size();
     std::vector<int> order = order_of(a, last, others, *settings);
     if (order.empty()) return;
-    upper = with_chain(a, last, ends_of_components(a, order, count));
+    chain = chain_of(last, ends_of_components(a, order, count));
+    upper = with_chain(a, chain);
     view = sparse_view(upper);
     settings->common.nmethods = 1;
     settings->common.method[0].ordering = CHOLMOD_GIVEN;
@@ -183,6 +214,7 @@ struct Analysed {
 
   std::unique_ptr<Common> settings;
   std::size_t count = 0;  // unknowns that are not chosen
+  Chain chain;
   Sparse upper;
   cholmod_sparse view{};
   cholmod_factor* factor = nullptr;
@@ -191,24 +223,18 @@ struct Analysed {
 }  // namespace
 
 SplitFactorisation cholmod_split(const Sparse& a, const std::vector<int>& last) {
-  const auto fail = [](std::string why) {
-    return SplitFactorisation{.factor = nullptr, .failed_unknown = -1, .why = std::move(why), .too_large = true};
-  };
   Analysed analysed(a, last);
   const FactorCost cost = analysed.cost();
-  if (!cost.why.empty()) return fail(cost.why);
-  if (std::string why = refusal(cost); !why.empty()) return fail(std::move(why));
+  if (!cost.why.empty()) return failed(cost.why);
+  if (std::string why = refusal(cost); !why.empty()) return failed(std::move(why));
   cholmod_factor* raw = std::exchange(analysed.factor, nullptr);
-  auto factor = std::make_unique<CholmodSplit>(std::move(analysed.settings), raw, static_cast<Index>(last.size()));
-  if (!factor->fill(analysed.view)) return fail("the sparse factorisation ran out of memory");
-  if (const int broken = broken_unknown(*raw, a); broken >= 0) {
-    Factorisation singular = singular_at(broken);
-    return {.factor = nullptr, .failed_unknown = broken, .why = std::move(singular.why)};
-  }
+  auto factor =
+      std::make_unique<CholmodSplit>(std::move(analysed.settings), raw, static_cast<Index>(last.size()), std::move(analysed.chain));
   const auto* permutation = static_cast<const int*>(raw->Perm);
-  if (!std::equal(last.begin(), last.end(), permutation + analysed.count))
-    return {.factor = nullptr, .failed_unknown = -1, .why = "the chosen unknowns did not stay last"};
-  return {.factor = std::move(factor), .failed_unknown = -1, .why = {}};
+  const bool stayed = std::equal(last.begin(), last.end(), permutation + analysed.count);
+  SplitFactorisation made = CholmodSplit::fill(std::move(factor), analysed.view, a);
+  if (made.factor != nullptr && !stayed) return {.factor = nullptr, .failed_unknown = -1, .why = "the chosen unknowns did not stay last"};
+  return made;
 }
 
 FactorCost cholmod_split_cost(const Sparse& a, const std::vector<int>& last) {

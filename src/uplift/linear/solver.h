@@ -10,6 +10,8 @@
 
 namespace uplift {
 
+struct Factorisation;
+
 /// A factorised matrix. Thread-safe; many columns at once.
 class Factor {
  public:
@@ -17,6 +19,9 @@ class Factor {
   /// x = A^-1 b; b and x have the same shape and may be the same object.
   virtual void solve(const Matrix& b, Matrix& x) const = 0;
   virtual double nonzeros() const = 0;  // of the factor, for the physical limit
+  /// The factor of another matrix by the symbolic analysis of this one. No factor and an empty reason: the matrix has entries for which
+  /// this factor has no place, or the solver cannot.
+  virtual Factorisation refactorise(const Sparse& a) const;
 };
 
 /// What a factorisation takes, known from its symbolic analysis before it is done.

@@ -7,6 +7,8 @@
 
 namespace uplift {
 
+struct SplitFactorisation;
+
 /// Cholesky factor in which chosen unknowns are eliminated last:  P A P^T = L L^T,  P = (the others, the chosen ones in their order).
 /// Then the last rows of a forward solve are all that the chosen unknowns feel of a right-hand side, and with L_bb, the last block of L,
 ///   (A^-1)_bb = L_bb^-T L_bb^-1.
@@ -21,6 +23,9 @@ class SplitFactor {
   /// L_bb: lower triangle, as many rows as there are chosen unknowns; zero above.
   virtual Matrix last() const = 0;
   virtual double nonzeros() const = 0;  // of the factor, for the physical limit
+  /// The factor of another matrix by the symbolic analysis of this one. No factor and an empty reason: the matrix has entries for which
+  /// this factor has no place, or the solver cannot.
+  virtual SplitFactorisation refactorise(const Sparse& a) const;
 };
 
 /// A factor, or the reason and the unknown at which the factorisation broke down.

@@ -20,7 +20,7 @@ ContactModel probe(const Model& model, const Bulk& bulk, const Sparse& b, const 
     why = factor.why();
     return contact;
   }
-  contact.factor = factor.split() != nullptr ? SplitResponse(factor, b).factor() : factor.spread(b).factor;
+  contact.factor = factor.split() != nullptr ? SplitResponse(factor, b, counts).factor() : factor.spread(b, counts).factor;
   return contact;
 }
 

@@ -73,8 +73,8 @@ TEST(Impulse, SplitMassMatrixSpreadsAsTheDenseInverse) {
           step_whole(step, nullptr, false, *solver, nameless, counts);
       ASSERT_TRUE(split.ok() && whole.ok() && step_split.ok() && step_whole.ok());
       ASSERT_NE(split.split(), nullptr);
-      const Spread thin = split.spread(boxes.b), dense = whole.spread(boxes.b), thin_step = step_split.spread(boxes.b),
-                   dense_step = step_whole.spread(boxes.b);
+      const Spread thin = split.spread(boxes.b, counts), dense = whole.spread(boxes.b, counts),
+                   thin_step = step_split.spread(boxes.b, counts), dense_step = step_whole.spread(boxes.b, counts);
       EXPECT_EQ(thin.spread.size(), 0);  // nothing of the size of the bulk is kept
       ASSERT_EQ(dense.spread.rows(), boxes.mass.rows());
 

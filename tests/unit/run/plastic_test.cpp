@@ -129,6 +129,7 @@ TEST(PlasticRun, UniaxialCompressionHardensByTheClosedForm) {
       if (newton == Newton::full && psi < phi) continue;  // half a tangent at every step may go round in circles
       const Rest rest = rest_of(made.built, 5, {.newton = newton});
       ASSERT_TRUE(rest.outcome.converged) << rest.outcome.why;
+      EXPECT_LE(rest.counts.analyses, 2);
       EXPECT_NEAR(settlement(made.built, rest.state), expected, 1e-8 * -expected) << psi;
       const RunFrames frames(made.read->values.table("output").table("fields"), *made.read, made.built);
       const std::vector<FieldValues> fields = frames.of(rest.state, nullptr, {}, 0).blocks.front().points;
@@ -207,6 +208,8 @@ TEST(PlasticRun, ModifiedAndFullNewtonMeetTheSameState) {
     EXPECT_LE((modified.state.force - full.state.force).norm(), 1e-8 * full.state.force.norm()) << dilation;
     EXPECT_EQ(modified.counts.factorisations, 1);
     EXPECT_GT(full.counts.factorisations, 1);
+    EXPECT_GT(full.counts.factorisations, 4);
+    EXPECT_LE(full.counts.analyses, 2);  // of the elastic matrix, and one of all tangents
     // the soil matters: without yielding the block settles less
     const Prepared elastic = prepared(block_on_soil("", springs, static_push));
     EXPECT_LT(settlement(made.built, full.state), 1.02 * settlement(elastic.built, rest_of(elastic.built, 5, {}).state));
