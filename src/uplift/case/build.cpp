@@ -78,7 +78,7 @@ void add_interfaces(const Case& read, const RunSpec& spec, const Model* like, Mo
     if (!made.law) made.cone = make_part(cone_catalog(), behaviour);
     if (behaviour.items().contains("friction") && behaviour.has("friction")) joint.facts.friction = behaviour.number("friction");
     if (behaviour.items().contains("cohesion") && behaviour.has("cohesion")) joint.facts.cohesion = behaviour.number("cohesion");
-    if (behaviour.items().contains("F_u") && behaviour.has("F_u")) joint.facts.tension = behaviour.number("F_u");
+    if (made.law) joint.facts.tension = made.law->scales().strength;
     built.facts.push_back(std::move(joint.facts));
     built.behaviours.push_back(&behaviour);
     builder.add_interface(std::move(made), part.table->where());

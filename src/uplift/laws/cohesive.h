@@ -12,9 +12,13 @@ namespace uplift {
 /// All that differs from one cohesive law to the other is its envelope beyond d_0.
 class CohesiveLaw : public PointLaw {
  public:
-  CohesiveLaw(double stiffness, double strength) : stiffness_(stiffness), strength_(strength), onset_(strength / stiffness) {}
+  CohesiveLaw(double stiffness, double strength, double energy)
+      : stiffness_(stiffness), strength_(strength), energy_(energy), onset_(strength / stiffness) {}
   int num_history() const final { return 1; }
   double stiffness() const final { return stiffness_; }
+  LawScales scales() const final {
+    return {.strength = strength_, .opening = energy_ / strength_, .least_stiffness = 0.5 * strength_ * strength_ / energy_};
+  }
   Point advance(double step, double from, double to, Memory old, double* now) const final;
   PointEnergy energy_at(double opening, Memory history) const final;
 
@@ -27,7 +31,7 @@ class CohesiveLaw : public PointLaw {
   /// Energy per area dissipated when the largest opening is `opening` >= onset [J/m2].
   virtual double dissipated(double opening) const = 0;
 
-  double stiffness_, strength_, onset_;  // Pa/m, Pa, m
+  double stiffness_, strength_, energy_, onset_;  // Pa/m, Pa, J/m2, m
 };
 
 /// Refuses a fracture energy that leaves no room for softening: G_f > F_u^2/(2 K_n). Returns G_f.

@@ -9,7 +9,7 @@ namespace {
 class BilinearLaw final : public CohesiveLaw {
  public:
   BilinearLaw(double stiffness, double strength, double energy)
-      : CohesiveLaw(stiffness, strength), energy_(energy), last_(2 * energy / strength), slope_(-strength / (last_ - onset_)) {}
+      : CohesiveLaw(stiffness, strength, energy), last_(2 * energy / strength), slope_(-strength / (last_ - onset_)) {}
 
  protected:
   double traction(double opening) const override { return -slope_ * larger(last_ - opening, 0); }
@@ -21,7 +21,7 @@ class BilinearLaw final : public CohesiveLaw {
   double dissipated(double opening) const override { return energy_ * (smaller(opening, last_) - onset_) / (last_ - onset_); }
 
  private:
-  double energy_, last_, slope_;  // J/m2, m, Pa/m
+  double last_, slope_;  // m, Pa/m
 };
 
 }  // namespace

@@ -12,7 +12,7 @@ namespace {
 class ExponentialLaw final : public CohesiveLaw {
  public:
   ExponentialLaw(double stiffness, double strength, double energy)
-      : CohesiveLaw(stiffness, strength), rate_(strength / (energy - 0.5 * strength * strength / stiffness)) {}
+      : CohesiveLaw(stiffness, strength, energy), rate_(strength / (energy - 0.5 * strength * strength / stiffness)) {}
 
  protected:
   double traction(double opening) const override { return strength_ * std::exp(-rate_ * (opening - onset_)); }

@@ -10,6 +10,7 @@ class ElasticLaw final : public PointLaw {
   ElasticLaw(double stiffness, double damping) : stiffness_(stiffness), damping_(damping) {}
   int num_history() const override { return damping_ > 0 ? 1 : 0; }
   double stiffness() const override { return stiffness_; }
+  LawScales scales() const override { return {.opens = false}; }
 
   Point advance(double step, double from, double to, Memory old, double* now) const override {
     const double per_step = step > 0 ? damping_ / step : 0, dashpot = per_step * (to - from);  // c/step [Pa/m], c r [Pa]

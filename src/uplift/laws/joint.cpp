@@ -48,6 +48,8 @@ class JointLaw final : public InterfaceLaw {
     stiffness[components - 1] = normal_->stiffness();
   }
 
+  LawScales scales() const override { return normal_->scales(); }
+
  private:
   static Batch one_component(const Batch& batch) { return {batch.points, 1, batch.step}; }
 

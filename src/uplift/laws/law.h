@@ -34,6 +34,15 @@ struct LawResponse {
 
 struct FusedEvaluation;
 
+/// Scales of the normal direction of a law: what warnings, variations and drawings need to know of it.
+struct LawScales {
+  bool opens = true;           // false: bonded for good
+  double strength = 0;         // Pa, in tension
+  double closure = 0;          // Pa, compression that closes a gap for good, > 0
+  double opening = 0;          // m, over which it softens
+  double least_stiffness = 0;  // Pa/m: the law exists above it alone
+};
+
 /// A traction law: traction from opening, with memory.
 class InterfaceLaw {
  public:
@@ -52,6 +61,7 @@ class InterfaceLaw {
   virtual void energy(const Batch&, const double* opening, const double* history, double* stored, double* dissipated) const = 0;
   /// Stiffness of a closed joint in compression [Pa/m], per component (normal last): for k*F_ii, the static base and suggestions.
   virtual void closed_stiffness(int components, double* stiffness) const = 0;
+  virtual LawScales scales() const { return {}; }
 };
 
 /// A set that only bounds the contact force (p per point, N or Pa): the unilateral ray, the Coulomb cone. `force` and `trial` use the

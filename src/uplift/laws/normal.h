@@ -47,6 +47,7 @@ class NormalLaw {
   virtual void energy(const Batch&, const double* opening, const double* history, double* stored, double* dissipated) const = 0;
   /// Stiffness in compression [Pa/m].
   virtual double stiffness() const = 0;
+  virtual LawScales scales() const { return {}; }
   /// False where the traction is never positive.
   virtual bool carries_tension() const { return true; }
   /// The surface of one point along a step of duration `step` [s]; `from` = `to` asks for the state at that opening.

@@ -58,6 +58,7 @@ struct Sdm {
         flexibility(1 / stiffness),
         brittleness(tensile_strength * tensile_strength / (stiffness * cracking_energy)) {}
 
+  double least_stiffness() const { return strength * strength / energy; }  // Pa/m: a softer joint releases more energy than G_f takes
   double threshold(double j) const { return strength * exponential(-rate * j).value; }
 
   /// Positive when an opening that is `over` beyond the jump may pass the threshold: F_u (1 - a j) is below F_u exp(-a j).
@@ -309,6 +310,9 @@ class SdmLaw final : public NormalLaw {
   explicit SdmLaw(const Sdm& law) : law_(law) {}
   int num_history() const override { return 1; }
   double stiffness() const override { return law_.k; }
+  LawScales scales() const override {
+    return {.strength = law_.strength, .closure = law_.closure, .opening = law_.inverse_rate, .least_stiffness = law_.least_stiffness()};
+  }
   bool carries_tension() const override { return law_.strength > 0; }
 
   void respond(const Batch& batch, const double* from, const double* to, const double* old, const LawResponse& response) const override {
@@ -392,7 +396,7 @@ Surface SdmLaw::surface(double, double from, double to, Memory old) const {
 
 std::unique_ptr<const NormalLaw> make_sdm(const Values& values) {
   const Sdm law(values.number("K_n"), values.number("F_u"), values.number("G_f"), values.number("F_c"));
-  const double least = law.strength * law.strength / law.energy;
+  const double least = law.least_stiffness();
   if (!(law.k > least))
     throw InputError(
         values.where("K_n"), values.path("K_n"),

@@ -79,7 +79,7 @@ InterfaceViewer::InterfaceViewer(const Model& model, double gap_tolerance, const
     layout.total = interface.area.sum();
     layout.slope_weight = slope_weights(interface);
     layout.stiffness = normal_stiffness(interface);
-    layout.bonded = interface.behaviour == "elastic";
+    layout.bonded = interface.law != nullptr && !interface.law->scales().opens;
     if (const std::size_t k = layouts_.size(); k < facets.size() && facets[k] != nullptr) {
       layout.share = PositiveShare(*facets[k]);
       layout.corners = facets[k]->corners;

@@ -92,12 +92,12 @@ class Planner {
         if (has_number(law, "K_n")) factors.push_back(factor);
         for (const char* key : {"K_n", "K_t"})
           if (has_number(law, key)) edits.push_back({law_path(k) + "." + key, by * law.number(key)});
-        // the SDM asks for K_n > F_u^2/G_f, and the others soften no faster than they are stiff
-        if (!stiffer && has_number(law, "F_u") && has_number(law, "G_f")) {
-          const double least = law.number("F_u") * law.number("F_u") / law.number("G_f");
-          if (by * law.number("K_n") <= least)
+        if (const auto made = make_part(law_catalog(), law); made != nullptr && !stiffer) {
+          double stiffness[3] = {};
+          made->closed_stiffness(3, stiffness);
+          if (const double least = made->scales().least_stiffness; by * stiffness[2] <= least)
             return leave_out("joint stiffness, softer",
-                             fmt::format("the law of '{}' needs K_n > F_u2/G_f = {:.3g} Pa/m", interfaces[k].text("name"), least));
+                             fmt::format("the law of '{}' needs a stiffness above {:.3g} Pa/m", interfaces[k].text("name"), least));
         }
       }
       if (penalty) {

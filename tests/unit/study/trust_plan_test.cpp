@@ -88,7 +88,7 @@ TEST(TrustPlan, StepStiffnessToleranceMethod) {
 
 TEST(TrustPlan, SdmThatWouldSnapBackIsNotMadeSofter) {
   const Planned tested = planned(tower(R"({ type = "sdm", K_n = "2 GPa/m", F_u = "10 kPa", G_f = 0.1, F_c = -1e3, tangential = "none" })"));
-  EXPECT_NE(reason(tested, "joint stiffness, softer").find("F_u2/G_f = 1e+09 Pa/m"), std::string::npos)
+  EXPECT_NE(reason(tested, "joint stiffness, softer").find("a stiffness above 1e+09 Pa/m"), std::string::npos)
       << reason(tested, "joint stiffness, softer");
   EXPECT_DOUBLE_EQ(law_of(changed(tested, "stiffer")).number("K_n"), 4e9);
   const Case other = changed(tested, "other_scheme");

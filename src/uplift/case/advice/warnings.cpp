@@ -183,13 +183,14 @@ void warn_closure(const BuiltCase& built, std::vector<std::string>& said) {
   const double mean = area > 0 ? built.weight / area : 0;
   for (std::size_t k = 0; k < built.behaviours.size(); ++k) {
     const Values& law = *built.behaviours[k];
-    if (!law.items().contains("F_c") || !law.has("F_c")) continue;
-    const double closure = std::abs(law.number("F_c"));
+    const Interface& interface = built.model.interfaces[k];
+    const double closure = interface.law != nullptr ? interface.law->scales().closure : 0;
+    if (!(closure > 0)) continue;
     if (mean > 0 && closure > 0.01 * mean)
       said.push_back(fmt::format(
-          "{}:{}: |F_c| = {} is {} of the mean bearing pressure {}: the joint pushes before its gap is closed; keep it below 1 %",
-          law.where("F_c").file, law.where("F_c").line, format_quantity(closure, "Pa"), percent(closure / mean),
-          format_quantity(mean, "Pa")));
+          "{}:{}: the closure stress of {} is {} of the mean bearing pressure {}: the joint pushes before its gap is closed; keep it below "
+          "1 %",
+          law.where().file, law.where().line, format_quantity(closure, "Pa"), percent(closure / mean), format_quantity(mean, "Pa")));
     if (!(mean > 0))
       said.push_back(fmt::format("{}: nothing presses the structure down: the interface opens under any load", built.facts[k].name));
   }

@@ -70,7 +70,7 @@ InterfaceFrames::InterfaceFrames(const Case& read, const BuiltCase& built)
     const InterfaceFacts& facts = built.facts[k];
     if (!facts.faces.empty()) {
       const Values& behaviour = *built.behaviours[k];
-      Surface surface{static_cast<int>(k), row, -1, 0, interface.behaviour != "elastic", {}};
+      Surface surface{static_cast<int>(k), row, -1, 0, interface.law == nullptr || interface.law->scales().opens, {}};
       surface.friction = number_or(behaviour, "friction", -1);
       surface.cohesion = number_or(behaviour, "cohesion", 0);
       surface.places =

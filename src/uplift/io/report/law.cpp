@@ -8,24 +8,18 @@
 namespace uplift {
 namespace {
 
-/// Opening [m] that shows the law: several softening lengths G_f/F_u where it has them, else what the run reached.
-double shown_opening(const Values& law, double reached) {
-  const auto number = [&](const char* key) {
-    return law.items().contains(key) && law.has(key) && !law.is_word(key) ? law.number(key) : 0.0;
-  };
-  const double strength = number("F_u"), energy = number("G_f");
-  if (strength > 0 && energy > 0) return 2 * energy / strength;
+/// Opening [m] that shows the law: twice that over which it softens, else what the run reached.
+double shown_opening(const LawScales& scales, double reached) {
+  if (scales.opening > 0) return 2 * scales.opening;
   return reached > 0 ? reached : 1e-3;
 }
 
 /// Largest compression [m] that is driven: comparable to the tensile branch, and through the closure branch.
-double shown_closing(const Values& law, const InterfaceLaw& driven, double opening) {
-  const auto number = [&](const char* key) {
-    return law.items().contains(key) && law.has(key) && !law.is_word(key) ? std::abs(law.number(key)) : 0.0;
-  };
+double shown_closing(const InterfaceLaw& law, double opening) {
   double stiffness = 0;
-  driven.closed_stiffness(1, &stiffness);
-  const double stress = 2 * std::max(number("F_c"), number("F_u"));
+  law.closed_stiffness(1, &stiffness);
+  const LawScales scales = law.scales();
+  const double stress = 2 * std::max(scales.closure, scales.strength);
   return stress > 0 && stiffness > 0 ? std::min(stress / stiffness, opening) : 0.1 * opening;
 }
 
@@ -44,7 +38,8 @@ Chart law_chart(const ReportRun& run) {
   if (!interface.law) return chart;
   const Values& values = *run.built->behaviours.front();
   if (is_external(values)) return chart;  // its function belongs to the caller, who may be gone
-  const double opening = shown_opening(values, run.result->max_opening.value), closing = shown_closing(values, *interface.law, opening);
+  const double opening = shown_opening(interface.law->scales(), run.result->max_opening.value),
+               closing = shown_closing(*interface.law, opening);
   const Batch batch{1, 1, 0};
   std::vector<double> old(static_cast<std::size_t>(interface.law->num_history(1)), 0.0), now(old);
   Curve path{run.built->model.interfaces.front().behaviour, "", {0.0}, {}, false, false};
