@@ -97,7 +97,7 @@ Factorisation CholmodFactor::refactorise(const Sparse& a) const {
 struct Analysed {
   explicit Analysed(const Sparse& given) : upper(given.triangularView<upper_triangle>()), settings(std::make_unique<Common>()) {
     view = sparse_view(upper);
-    factor = cholmod_analyze(&view, &settings->common);
+    factor = analyse(view, *settings);
   }
   ~Analysed() {
     if (settings != nullptr) cholmod_free_factor(&factor, &settings->common);

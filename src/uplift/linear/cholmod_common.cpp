@@ -1,6 +1,7 @@
 #include "uplift/linear/cholmod_common.h"
 
 #include <algorithm>
+#include <mutex>
 
 #include "uplift/linear/blas.h"
 #include "uplift/linear/memory.h"
@@ -96,6 +97,12 @@ std::string refusal(const FactorCost& cost) {
   }
   if (why.empty()) prepare_blas();
   return why;
+}
+
+cholmod_factor* analyse(cholmod_sparse& matrix, Common& settings) {
+  static std::mutex one_at_a_time;
+  const std::lock_guard lock(one_at_a_time);
+  return cholmod_analyze(&matrix, &settings.common);
 }
 
 std::string why_not_analysed(const cholmod_common& common) {

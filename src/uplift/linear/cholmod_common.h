@@ -18,6 +18,10 @@ struct Common {
   cholmod_common common;
 };
 
+/// cholmod_analyze, one at a time in the process: METIS draws from the generator of the C library, which all threads share, and what it
+/// draws decides the order of elimination and with it the round-off of every result.
+cholmod_factor* analyse(cholmod_sparse& matrix, Common& settings);
+
 /// Solution and scratch of one back-solve, kept for the next one of the same size.
 struct Workspace {
   Common settings;

@@ -117,7 +117,7 @@ std::vector<int> order_of(const Sparse& a, const std::vector<int>& last, const s
   cholmod_sparse view = sparse_view(upper);
   std::vector<int> order;
   if (!others.empty()) {
-    cholmod_factor* factor = cholmod_analyze(&view, &settings.common);
+    cholmod_factor* factor = analyse(view, settings);
     if (factor == nullptr) return {};
     const auto* permutation = static_cast<const int*>(factor->Perm);
     for (std::size_t k = 0; k < others.size(); ++k) order.push_back(others[static_cast<std::size_t>(permutation[k])]);

@@ -62,5 +62,47 @@ TEST(SharedFactor, ThreadsGetWhatOneThreadGets) {
     }
 }
 
+/// The seven-point star on a box of n x n x n unknowns: large enough for nested dissection to draw random numbers.
+Sparse star(int n) {
+  Sparse matrix(n * n * n, n * n * n);
+  std::vector<Triplet> entries;
+  const auto at = [n](int i, int j, int k) { return (i * n + j) * n + k; };
+  const auto join = [&](int a, int b) { entries.emplace_back(a, b, -1.0), entries.emplace_back(b, a, -1.0); };
+  for (int i = 0; i < n; ++i)
+    for (int j = 0; j < n; ++j)
+      for (int k = 0; k < n; ++k) {
+        entries.emplace_back(at(i, j, k), at(i, j, k), 6.5);
+        if (i + 1 < n) join(at(i, j, k), at(i + 1, j, k));
+        if (j + 1 < n) join(at(i, j, k), at(i, j + 1, k));
+        if (k + 1 < n) join(at(i, j, k), at(i, j, k + 1));
+      }
+  matrix.setFromTriplets(entries.begin(), entries.end());
+  return matrix;
+}
+
+// The order of elimination comes from random numbers of the process: threads that analyse at the same time must not mix them.
+TEST(SharedFactor, AnalysesSideBySideGiveTheSameBits) {
+  const auto solver = solver_catalog()[0]->make(Values());
+  const Sparse matrix = star(14);
+  const Vector load = Vector::LinSpaced(matrix.rows(), 1, 2);
+  const auto solution = [&] {
+    LinearCounts counts;
+    const BulkFactor factor(matrix, nullptr, false, *solver, Model(), counts);
+    BulkWork work(counts);
+    Vector x(matrix.rows());
+    factor.solve(load, x, work);
+    return x;
+  };
+  const Vector expected = solution();
+  std::vector<std::thread> threads;
+  std::vector<int> same(3, 0);
+  for (int& count : same)
+    threads.emplace_back([&count, &solution, &expected] {
+      for (int k = 0; k < 15; ++k) count += solution() == expected ? 1 : 0;
+    });
+  for (std::thread& thread : threads) thread.join();
+  for (const int count : same) EXPECT_EQ(count, 15);
+}
+
 }  // namespace
 }  // namespace uplift
