@@ -41,7 +41,7 @@ portable:
 wheel: portable    ## Python wheel for every x86-64 processor: build/packages/*.whl
 	scripts/make_wheel.py build/portable build/packages
 
-deb: portable      ## Debian packages of the committed files, checked by lintian: build/packages/*.deb
+deb: portable      ## Debian packages of the tracked files, checked by lintian: build/packages/*.deb
 	scripts/make_deb.sh build/portable build/packages
 
 web:               ## rebuild the report page (developers of the page only)

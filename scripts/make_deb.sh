@@ -1,5 +1,5 @@
 #!/usr/bin/env bash
-# Builds the Debian packages from the committed files and checks them with lintian: scripts/make_deb.sh PORTABLE FOLDER.
+# Builds the Debian packages from the tracked files and checks them with lintian: scripts/make_deb.sh PORTABLE FOLDER.
 # PORTABLE is the folder of scripts/build_portable.sh, FOLDER gets the packages. The same inputs give the same bytes.
 set -euo pipefail
 cd "$(dirname "$0")/.."
