@@ -2,10 +2,10 @@
 # Fuzzes the readers of files: scripts/fuzz.sh SECONDS [TARGET...]; see fuzz/README.md. Needs clang with its runtime (Debian: clang, libclang-rt-14-dev).
 set -euo pipefail
 cd "$(dirname "$0")/.."
-seconds="${1:?usage: scripts/fuzz.sh SECONDS [gmsh|med|toml|record...]}"
+seconds="${1:?usage: scripts/fuzz.sh SECONDS [gmsh|med|toml|json|record|problem...]}"
 shift
 targets=("$@")
-[ ${#targets[@]} -gt 0 ] || targets=(gmsh med toml record)
+[ ${#targets[@]} -gt 0 ] || targets=(gmsh med toml json record problem)
 clang="${CLANG:-$(command -v clang++-14 || echo clang++)}"
 command -v ccache >/dev/null && clang="ccache $clang"
 
@@ -13,13 +13,16 @@ read -ra hdf5 <<<"$(pkg-config --cflags --libs hdf5-serial)"
 flags=(-std=c++20 -g -O1 -fsanitize=address,undefined -fno-sanitize-recover=all -DUPLIFT_VERSION='"fuzz"' -Isrc -Ifuzz -isystem /usr/include/eigen3)
 base=(src/uplift/base/{error,text,file}.cpp)
 mesh=("${base[@]}" src/uplift/mesh/{cells,mesh,jacobian,cell_shapes,cell_quadrature}.cpp src/uplift/math/{shapes,quadrature}.cpp src/uplift/io/mesh/draft.cpp)
+declared=("${base[@]}" src/uplift/base/{declare,units,check,format,values}.cpp)
 sources() {
   case "$1" in
     gmsh) printf '%s\n' "${mesh[@]}" src/uplift/io/mesh/gmsh*.cpp ;;
     med) printf '%s\n' "${mesh[@]}" src/uplift/io/hdf5/{hdf5,child}.cpp src/uplift/io/mesh/med{,_message,_file}.cpp ;;
     toml) printf '%s\n' "${base[@]}" src/uplift/io/text/toml.cpp ;;
     record) printf '%s\n' "${base[@]}" src/uplift/base/sha256.cpp src/uplift/motion/{motion,record_check}.cpp src/uplift/motion/formats/{read,column_reader,record_text,at2,columns,cosmos,csmip,esm,knet,smc}.cpp ;;
-    *) echo "fuzz.sh: wanted gmsh, med, toml or record, found \"$1\"" >&2; exit 2 ;;
+    json) printf '%s\n' "${base[@]}" src/uplift/io/text/json_reader.cpp ;;
+    problem) printf '%s\n' "${declared[@]}" src/uplift/contact/{problem,problem_file}.cpp src/uplift/laws/*.cpp ;;
+    *) echo "fuzz.sh: expected gmsh, med, toml, json, record or problem, found \"$1\"" >&2; exit 2 ;;
   esac
 }
 

@@ -60,7 +60,7 @@ class Check(CliTest):
         law = 'type = "sdm"\nK_n = 2e8\nF_u = 1e3\nG_f = 0.1\nF_c = -1e4\ntangential = "none"\n'
         text = BASE.replace('type = "springs"\nK_n = 2e8\n', law).replace("step = 1e-3", "step = 0.02").replace("E = 2e10", "E = 2e4")
         done = self.uplift("check", self.write(text).name)
-        self.assertRegex(done.stdout, r"warning: case\.toml:\d+: \|F_c\| = 10\.0 kPa is 3\.0 % of the mean bearing pressure 333 kPa")
+        self.assertRegex(done.stdout, r"warning: case\.toml:\d+: the closure stress of 10\.0 kPa is 3\.0 % of the mean bearing pressure 333 kPa")
         self.assertRegex(done.stdout, r"warning: the step of 20\.0 ms is coarse")
         self.assertRegex(done.stdout, r"beam\[0\]\.E = 20000 Pa is unusual")
 
