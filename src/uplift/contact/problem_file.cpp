@@ -277,13 +277,20 @@ std::string save_problem(const InterfaceProblem& problem, const std::vector<cons
 }
 
 StoredProblem load_problem(const std::string& text, const std::string& file) {
+  constexpr int most_levels = 20;  // of nested lists and tables
+  const auto watch = [&](int depth, Json::parse_event_t, Json&) {
+    if (depth > most_levels) throw InputError({file, 0}, "", "at most 20 levels of JSON", "more");
+    return true;
+  };
   Json json;
   try {
-    json = Json::parse(text);
+    json = Json::parse(text, watch);
   } catch (const Json::parse_error& error) {
     const std::size_t end = std::min(error.byte, text.size());
     const int line = 1 + static_cast<int>(std::count(text.begin(), text.begin() + static_cast<std::ptrdiff_t>(end), '\n'));
     throw InputError({file, line}, "", "a JSON file of an interface problem", "a syntax error at byte " + std::to_string(error.byte));
+  } catch (const Json::exception&) {
+    throw InputError({file, 0}, "", "JSON with numbers of at most 1e308", "a larger number");
   }
   return Reader(file, json).problem();
 }

@@ -224,6 +224,8 @@ TEST(ProblemFile, bad_files_are_refused_with_position) {
   };
   expect("{\n\"format\": ,\n}", "bad.json:2");
   expect("[1, 2]", "a JSON object");
+  expect("{\"format\": 1e999}", "at most 1e308");
+  expect(std::string(100000, '[') + std::string(100000, ']'), "at most 20 levels");
   expect("", "a JSON file");
   expect(support::replaced(good, "problem 1", "problem 9"), "format");
   expect(support::replaced(good, "\"reason\"", "\"reasn\""), "did you mean \"reason\"?");
