@@ -1,5 +1,5 @@
 // The interface problem alone: a rigid footing on three points is pushed into the ground on one side. Every method solves
-//     opening = free opening + C C^T p        opening >= 0, p <= 0, p opening = 0
+//     opening = free opening - C C^T p        opening >= 0, p <= 0, p opening = 0
 // and says how well; the closed form is beside it.
 #include <cstdio>
 #include <uplift.hpp>
@@ -19,7 +19,7 @@ const char* const problem = R"({
 
 int main() {
   std::puts(uplift::solve_problem(problem).c_str());
-  // only the first point stays closed: p_1 F_11 = -free_1 with F_11 = 1e-9 + 4e-10
+  // only the first point stays closed: p_1 = free opening / F_11 with F_11 = 1e-9 + 4e-10
   const double force = -1e-3 / 1.4e-9;
   std::printf("closed form: force %.6g N, openings 0, %.6g, %.6g m\n", force, 0.5e-3 - 1e-9 * force, 2e-3 - (1e-9 - 4e-10) * force);
 }
