@@ -40,7 +40,10 @@ class ModelVersion {
   ModelVersion() : token_(std::make_shared<char>()) {}
   ModelVersion(const ModelVersion&) : ModelVersion() {}
   ModelVersion(ModelVersion&&) = default;
-  ModelVersion& operator=(const ModelVersion&) { return *this = ModelVersion(); }
+  ModelVersion& operator=(const ModelVersion& other) {
+    if (this != &other) token_ = std::make_shared<char>();
+    return *this;
+  }
   ModelVersion& operator=(ModelVersion&&) = default;
   ~ModelVersion() = default;
 
