@@ -67,6 +67,7 @@ export async function start_browser({ webgl = true } = {}) {
 export async function open(browser, url, options = {}) {
   const context = await browser.newContext({ viewport: { width: 1440, height: 900 }, colorScheme: "light", acceptDownloads: true, ...options });
   const page = await context.newPage();
+  page.setDefaultTimeout(120_000); // machines that test are busy, and draw without a graphics card
   const log = { console: [], network: [] };
   page.on("console", (message) => {
     if (["error", "warning"].includes(message.type())) log.console.push(message.text());
