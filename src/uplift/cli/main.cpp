@@ -223,7 +223,7 @@ int output_failed(const std::string& message) {
 }  // namespace
 
 int main(int count, char** words) {
-  const uplift::PreparedHeap heap;
+  uplift::prepare_heap();
   try {
     const int code = program(count, words);
     uplift::cli::finish_output();

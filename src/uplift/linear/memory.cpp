@@ -6,7 +6,6 @@
 #if defined(__GLIBC__)
 #include <malloc.h>
 #endif
-#include <sys/mman.h>
 #include <sys/resource.h>
 #include <unistd.h>
 
@@ -14,7 +13,6 @@
 #include <cmath>
 #include <fstream>
 #include <limits>
-#include <system_error>
 
 #include "uplift/base/text.h"
 
@@ -96,26 +94,11 @@ double resident_memory(const std::string& root) {
   return 1024 * number_after(root + "/proc/self/status", "VmRSS:");
 }
 
-PreparedHeap::PreparedHeap() {
+void prepare_heap() {
 #if defined(__GLIBC__)
   mallopt(M_TOP_PAD, 2 << 20);
   mallopt(M_MMAP_THRESHOLD, 4 << 20);
   mallopt(M_TRIM_THRESHOLD, 8 << 20);
-#if defined(MADV_POPULATE_WRITE)
-  constexpr std::uintptr_t bytes = (4 << 20) - 4096;
-  const auto page = static_cast<std::uintptr_t>(sysconf(_SC_PAGESIZE));
-  void* block = std::malloc(bytes);
-  const std::uintptr_t first = (reinterpret_cast<std::uintptr_t>(block) + page - 1) / page * page;
-  std::free(block);  // stays part of the heap; giving pages to what is in use meanwhile changes nothing in it
-  if (block == nullptr) return;
-  try {
-    thread_ = std::jthread([first, page] {
-      madvise(reinterpret_cast<void*>(first), bytes / page * page - page, MADV_POPULATE_WRITE);  // NOLINT(performance-no-int-to-ptr)
-    });
-  } catch (const std::system_error&) {
-    // no thread: pages come one after another
-  }
-#endif
 #endif
 }
 

@@ -1,6 +1,5 @@
 #pragma once
 #include <string>
-#include <thread>
 
 // What memory there is, so that a factor is refused before it is made, not killed while it is.
 namespace uplift {
@@ -18,15 +17,8 @@ int runs_side_by_side(int wanted);
 double resident_memory(const std::string& root = "");
 
 /// For a whole program, before it allocates much: the heap grows by 2 MB at a time, and blocks of 4 MB and more are not part of it, so that
-/// they go back to the system when they are freed. The first 4 MB get real pages in a thread of its own: when a page is first written, it
-/// costs as much as two steps of a small model. Where the C library and the system can.
-class PreparedHeap {
- public:
-  PreparedHeap();
-
- private:
-  std::jthread thread_;  // waited for at the end
-};
+/// they go back to the system when they are freed. Where the C library can.
+void prepare_heap();
 
 /// Hands pages of the heap that nobody uses back to the system, where the C library can: after an analysis, before what it was made for.
 void give_back_free_memory();

@@ -148,15 +148,5 @@ TEST(MemoryDeathTest, FactorThatDoesNotFitIsRefused) {
   EXPECT_EXIT(refuse(boxes), testing::ExitedWithCode(0), "");
 }
 
-// Pages are given to memory that is written in the meantime, too: nothing in it changes.
-TEST(Memory, PagesAreTakenBesideTheWork) {
-  std::vector<double> written;
-  {
-    const PreparedHeap heap;
-    for (int i = 0; i < 400000; ++i) written.push_back(i);
-  }
-  for (std::size_t i = 0; i < written.size(); ++i) ASSERT_EQ(written[i], static_cast<double>(i));
-}
-
 }  // namespace
 }  // namespace uplift
