@@ -53,6 +53,12 @@ shape = { type = "ricker", frequency = "0.8 Hz", delay = "2 s" }
 amplitude = "4 m/s2"
 function = "pulse"
 [gravity]
+[[damping.rayleigh]]
+frequency = "0.8 Hz"
+ratio = 0.03
+[[damping.rayleigh]]
+frequency = "10 Hz"
+ratio = 0.03
 [[stage]]
 type = "static"
 [[stage]]
@@ -67,6 +73,14 @@ double largest(const uplift::Numbers& history) {
   return most;
 }
 
+/// Largest eccentricity of the force under the footing as a share of half its width: 1 would be a footing that stands on its edge.
+double largest_eccentricity(const uplift::Numbers& moment, const uplift::Numbers& axial, double width) {
+  double most = 0;
+  for (std::size_t i = 0; i < moment.size(); ++i)
+    if (axial[i] < 0) most = std::max(most, std::abs(moment[i] / axial[i]) / (width / 2));
+  return most;
+}
+
 }  // namespace
 
 int main() {
@@ -75,6 +89,7 @@ int main() {
   uplift::Options options;
   options.step_check = false;
   const uplift::Results results = rocking.run(options);
-  std::printf("largest moment %.4g N m, uplifted up to %.0f %% of the area\n", largest(results["underside.moment"]),
-              100 * largest(results["underside.uplifted_ratio"]));
+  std::printf("largest moment %.4g N m, eccentricity up to %.4f of half the width, uplifted up to %.4f of the area\n",
+              largest(results["underside.moment"]), largest_eccentricity(results["underside.moment"], results["underside.axial"], 7),
+              largest(results["underside.uplifted_ratio"]));
 }

@@ -180,8 +180,9 @@ class Runs(unittest.TestCase):
         self.assertLess({"half", "soft", "bonded"}, set(rows))
         for name in ("sdm", "half"):  # the same joint in another formulation, and with another step
             self.assertAlmostEqual(rows[name]["max_base_moment"] / rows["springs"]["max_base_moment"], 1, delta=0.03)
-        # the footing without the compliance of its springs is stiffer
-        self.assertLess(rows["lagrange"]["max_opening"], 2 * rows["springs"]["max_opening"])
+        # where it may lift off, the force cannot lie outside the footing: at every instant |M| <= |N| B/2, which the bonded one exceeds
+        lies = {run.name: (abs(run["underside.moment"]) <= abs(run["underside.axial"]) * 3.5 * (1 + 1e-9)).all() for run in compared.runs}
+        self.assertEqual(lies, {"springs": True, "lagrange": True, "sdm": True, "half": True, "soft": True, "bonded": False})
         with self.assertRaisesRegex(ValueError, "needs"):
             pier({"type": "coulomb", "friction": 0.7}, "4 s").compare("sdm")
         with self.assertRaisesRegex(ValueError, "coefficient of friction"):
