@@ -68,7 +68,7 @@ struct ContactModel {
 /// The model that work space was made for.
 class SeenModel {
  public:
-  bool is(const ContactModel& model) const { return token_ == model.version.token_; }
+  bool is(const ContactModel& model) const { return token_ != nullptr && token_ == model.version.token_; }
   void take(const ContactModel& model) { token_ = model.version.token_; }
 
  private:

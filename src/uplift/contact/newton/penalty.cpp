@@ -53,9 +53,10 @@ class PenaltyMethod final : public ContactMethod {
     return tensionless(stiffness_ > 0 ? stiffness_ : factor_ / std::max(flexibility, 1e-300), cone.friction());
   }
 
+  std::unique_ptr<MethodWork> make_work() const override { return std::make_unique<NewtonWork>(); }
+
   /// A stored problem may still hold cones: they are replaced here, with the stiffness and the memory that were stored with them, or
   /// afresh. In a run they were replaced before the first step. A stiffness of the method's own goes before the stored one.
-  std::unique_ptr<MethodWork> make_work() const override { return std::make_unique<NewtonWork>(); }
   Outcome solve(const InterfaceProblem& problem, MethodWork& kept, InterfaceSolution& solution) const override {
     NewtonWork& work = static_cast<NewtonWork&>(kept);
     if (std::ranges::none_of(problem.model->blocks, [](const Block& block) { return block.cone != nullptr; }))
