@@ -367,6 +367,7 @@ class Compared final : public StepSolver {
   const InterfaceProblem& problem() const override { return solver_->problem(); }
   const InterfaceSolution& solution() const override { return solver_->solution(); }
   const BulkFactor* factor() const override { return solver_->factor(); }
+  void forget() override { solver_->forget(), oracle_->forget(); }
 
  private:
   double energy_norm(const Vector& u) const { return std::sqrt(std::max(0.0, u.dot(matrix_ * u))); }

@@ -41,6 +41,16 @@ struct Ledger {
   bool acceleration = false;                        // the state's acceleration is that of the scheme and goes on
 };
 
+/// Where the march through a stage stands between two steps: a value, from which another Stepper of the same stage goes on.
+struct MarchState {
+  State state;
+  Ledger ledger;
+  StepCounts counts;
+  double start_time = 0;   // s: of the stage
+  double origin = 0;       // J: what the balance is measured from
+  std::vector<int> sizes;  // halvings whose matrices have been factorised
+};
+
 /// Marches a state in time. Everything that depends on the step is made once per halving level and kept.
 class Stepper {
  public:
@@ -53,6 +63,13 @@ class Stepper {
   /// the same scheme's.
   void start(State state, const Ledger* before = nullptr);
   Ledger ledger() const { return {energies_, initial_energy_, largest_external_, !path_}; }
+  /// Goes on where another Stepper of the same stage has been: takes the place of `start`. After `reenter` of that one both take the same
+  /// steps to the last bit.
+  void resume(MarchState from);
+  /// Where the march stands; called between two steps.
+  MarchState march_state() const;
+  /// Drops first guesses and makes everything anew that follows from the state: the next step depends on the march state alone.
+  void reenter();
   /// One step of the nominal size. A part that fails is halved and tried again; false when the smallest part fails too: the state stays
   /// that of the last success and `why`, `failed` tell.
   bool advance();
@@ -85,6 +102,8 @@ class Stepper {
   bool substep(int halving);
   /// Its factor of M is large: made when it is first asked for.
   const Accelerator& accelerator() const;
+  void make_room();
+  void follow_state();
   void force_at(double time, Vector& force) const;
   void move_gap(double from, double to);
   /// ku = K u and mv = M v, in one pass where the bulk is large.

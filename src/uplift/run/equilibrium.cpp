@@ -14,7 +14,6 @@ struct EquilibriumCheck::Snapshot {
   Vector unbalanced;  // M a + C v + K u + B^T p - f, full unknowns
   Vector applied;     // f
   Vector yielding;
-  double largest_reaction = 0;  // N: on one unknown
   Equilibrium::Instant sums;
 };
 
@@ -150,7 +149,8 @@ void EquilibriumCheck::add_forces(const ForceModel& forces, Snapshot& at) const 
   }
   const Vector reactions = forces.constraint_forces(at.unbalanced);
   for (Index i = 0; i < reactions.size(); ++i)
-    if (!model.space.is_rotation(model.space.index_of(i))) at.largest_reaction = std::max(at.largest_reaction, std::abs(reactions[i]));
+    if (!model.space.is_rotation(model.space.index_of(i)))
+      at.sums.largest_reaction = std::max(at.sums.largest_reaction, std::abs(reactions[i]));
   sum_up(reactions, at.sums.reactions);
   sum_up(reactions - at.unbalanced, at.sums.residual);
 }
@@ -165,13 +165,14 @@ void EquilibriumCheck::finish(Equilibrium& equilibrium) {
   double force = 0, moment = 0;
   for (Snapshot& at : snapshots_) {
     add_forces(forces, at);
-    force = std::max(force, at.largest_reaction);  // of supports that settle the reactions cancel each other
     equilibrium.instants.push_back(at.sums);
   }
   snapshots_.clear();
-  for (const Equilibrium::Instant& at : equilibrium.instants)
+  for (const Equilibrium::Instant& at : equilibrium.instants) {
+    force = std::max(force, at.largest_reaction);  // of supports that settle the reactions cancel each other
     for (const Equilibrium::Sum* sum : {&at.inertia, &at.damping, &at.internal, &at.joint, &at.second_order, &at.applied, &at.reactions})
       force = std::max(force, largest(sum->force)), moment = std::max(moment, largest(sum->moment));
+  }
   double size = 0;
   for (const Node& node : stage_->model.nodes) size = std::max(size, (node.position - centre_).norm());
   for (const Interface& interface : stage_->model.interfaces)  // of a single body, whose only node is the centre

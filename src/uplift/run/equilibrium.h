@@ -23,6 +23,7 @@ struct Equilibrium {
   struct Instant {
     double time = 0;  // s
     Sum inertia, damping, internal, joint, second_order, applied, reactions, residual;
+    double largest_reaction = 0;  // N: on one unknown
   };
   std::vector<Instant> instants;
   double residual = 0;  // largest residual force or moment, over the largest of the other sums and reactions at any of the instants

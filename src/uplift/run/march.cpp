@@ -21,7 +21,7 @@ double sum_round_off(const Sparse& stiffness, const Vector& displacement) {
 }  // namespace
 
 void Runner::note_views() {
-  StepRecord& steps = result_.steps;
+  StepRecord& steps = run_.result.steps;
   steps.add(seen_->time, views_, plan_.gap_tolerance);
   if (seen_->time >= planned_ - tail_)
     for (std::size_t k = 0; k < views_.size(); ++k) steps.tail[k].push_back(viewer_.pose(*seen_, k, views_[k]));
@@ -43,7 +43,7 @@ void Runner::note_impulses(const Stepper& stepper) {
   for (std::size_t k = 0; k < model_.interfaces.size(); ++k) {
     const Batch& batch = model_.interfaces[k].batch;
     const double sum = -impulse.segment(first + batch.normal(), batch.points).sum();
-    StepRecord::Reached& most = result_.steps.extremes[k].impulse;
+    StepRecord::Reached& most = run_.result.steps.extremes[k].impulse;
     if (sum > most.value) most = {sum, seen_->time};
     first += batch.points * batch.components;
   }
@@ -51,32 +51,32 @@ void Runner::note_impulses(const Stepper& stepper) {
 
 /// Peaks and durations of what was noted since this was last called, in a stage with this step.
 void Runner::sum_up(double step) {
-  const StepRecord& steps = result_.steps;
-  Peak& ratio = result_.max_uplifted_ratio;
-  for (; summed_up_ < steps.size(); ++summed_up_) {
-    const double time = steps.time[summed_up_];
+  const StepRecord& steps = run_.result.steps;
+  Peak& ratio = run_.result.max_uplifted_ratio;
+  for (; run_.summed_up < steps.size(); ++run_.summed_up) {
+    const double time = steps.time[run_.summed_up];
     bool open = false;
     for (std::size_t k = 0; k < steps.extremes.size(); ++k) {
       if (is_wall(k)) continue;
-      const StepRecord::Instant& at = steps.at(summed_up_, k);
+      const StepRecord::Instant& at = steps.at(run_.summed_up, k);
       if (at.open_area > ratio.value) ratio.value = at.open_area, ratio.time = time;
       open = open || at.open_area > 0;
     }
     if (!open) continue;
-    if (result_.first_uplift < 0) result_.first_uplift = time;
-    if (summed_up_ > 0) result_.time_uplifted += step;
+    if (run_.result.first_uplift < 0) run_.result.first_uplift = time;
+    if (run_.summed_up > 0) run_.result.time_uplifted += step;
   }
   for (std::size_t k = 0; k < steps.extremes.size(); ++k) {
     const StepRecord::Extremes& most = steps.extremes[k];
-    result_.max_penetration = std::max(result_.max_penetration, most.penetration.value);
+    run_.result.max_penetration = std::max(run_.result.max_penetration, most.penetration.value);
     if (is_wall(k)) continue;
     const auto take = [](Peak& peak, const StepRecord::Reached& reached) {
       if (reached.value > peak.value) peak.value = reached.value, peak.time = reached.time;
     };
-    take(result_.max_opening, most.max_opening);
-    take(result_.max_pressure, most.max_pressure);
+    take(run_.result.max_opening, most.max_opening);
+    take(run_.result.max_pressure, most.max_pressure);
   }
-  result_.full_loss = steps.full_loss_time(plan_.is_wall);
+  run_.result.full_loss = steps.full_loss_time(plan_.is_wall);
 }
 
 /// Energy created and lost by the computation so far (lost: by the filters of the scheme, and what the balance lacks); the scale is the
@@ -86,12 +86,12 @@ void Runner::sum_up(double step) {
 void Runner::finish_energy(const Stepper& stepper) {
   const Energies& energies = stepper.energies();
   const double created = energies.residual + std::max(0.0, -energies.impact);
-  if (created > result_.energy_created) result_.energy_created = created, result_.energy_created_time = seen_->time;
+  if (created > run_.result.energy_created) run_.result.energy_created = created, run_.result.energy_created_time = seen_->time;
   const double lost = energies.algorithmic - std::min(0.0, energies.residual);
-  if (lost > result_.energy_lost) result_.energy_lost = lost, result_.energy_lost_time = seen_->time;
-  result_.energy_scale = std::max(stepper.largest_external(), initial_scale_);
-  if (result_.energy_scale <= 0) result_.energy_scale = stepper.initial_energy();
-  result_.energy_scale = std::max(result_.energy_scale, round_off_energy_);
+  if (lost > run_.result.energy_lost) run_.result.energy_lost = lost, run_.result.energy_lost_time = seen_->time;
+  run_.result.energy_scale = std::max(stepper.largest_external(), run_.initial_scale);
+  if (run_.result.energy_scale <= 0) run_.result.energy_scale = stepper.initial_energy();
+  run_.result.energy_scale = std::max(run_.result.energy_scale, run_.round_off_energy);
 }
 
 /// The present instant in messages.
@@ -106,8 +106,8 @@ bool Runner::check_limits(const Stepper& stepper) {
     fail(fmt::format("the energy is not finite at t = {:.6g} s", seen_->time), stepper.problem());
     return false;
   }
-  const bool creates = result_.energy_scale > 0 && result_.energy_created > plan_.created_limit * result_.energy_scale;
-  if (creates && (plan_.stop_at_limit || result_.energy_created > 1e6 * result_.energy_scale)) return false;
+  const bool creates = run_.result.energy_scale > 0 && run_.result.energy_created > plan_.created_limit * run_.result.energy_scale;
+  if (creates && (plan_.stop_at_limit || run_.result.energy_created > 1e6 * run_.result.energy_scale)) return false;
   if (creates) return true;
   return moves_little(model_, rotations_);
 }
@@ -116,9 +116,9 @@ bool Runner::check_limits(const Stepper& stepper) {
 bool Runner::moves_little(const Model& model, const std::vector<int>& rotations) {
   for (int unknown : rotations)
     if (std::abs(seen_->displacement[unknown]) > plan_.rotation_limit) {
-      result_.status = RunStatus::overturned;
-      result_.reason = fmt::format("{} passed {:.3g} rad at {}, the limit of the small-displacement model",
-                                   model.unknown_names[static_cast<std::size_t>(unknown)], plan_.rotation_limit, when());
+      run_.result.status = RunStatus::overturned;
+      run_.result.reason = fmt::format("{} passed {:.3g} rad at {}, the limit of the small-displacement model",
+                                       model.unknown_names[static_cast<std::size_t>(unknown)], plan_.rotation_limit, when());
       return false;
     }
   return (!rotations.empty() || surfaces_turn_little()) &&
@@ -131,9 +131,9 @@ bool Runner::surfaces_turn_little() {
     if (is_wall(k)) continue;
     const std::array<double, 2>& slope = views_[k].rotation;
     if (!(std::hypot(slope[0], slope[1]) > plan_.rotation_limit)) continue;
-    result_.status = RunStatus::overturned;
-    result_.reason = fmt::format("'{}' passed a slope of {:.3g} rad between its sides at {}, the limit of the small-displacement model",
-                                 model_.interfaces[k].name, plan_.rotation_limit, when());
+    run_.result.status = RunStatus::overturned;
+    run_.result.reason = fmt::format("'{}' passed a slope of {:.3g} rad between its sides at {}, the limit of the small-displacement model",
+                                     model_.interfaces[k].name, plan_.rotation_limit, when());
     return false;
   }
   return true;
@@ -146,15 +146,26 @@ bool Runner::surfaces_stay_near() {
     if (is_wall(k)) continue;
     if (!(views_[k].least_opening > plan_.separation_limit)) continue;
     if (!(views_[k].least_opening - interface.gap.maxCoeff() > plan_.separation_limit)) continue;
-    result_.status = RunStatus::separated;
-    result_.reason = fmt::format("'{}' is open everywhere by more than {:.3g} m at {}, the limit of the small-displacement model",
-                                 interface.name, plan_.separation_limit, when());
+    run_.result.status = RunStatus::separated;
+    run_.result.reason = fmt::format("'{}' is open everywhere by more than {:.3g} m at {}, the limit of the small-displacement model",
+                                     interface.name, plan_.separation_limit, when());
     return false;
   }
   return true;
 }
 
-bool Runner::dynamics(const Stage& stage, const Bulk& bulk) {
+/// Hands out the state of the run after this step of the stage. The run goes on as one that begins there.
+void Runner::keep(Stepper& stepper, Recorder& recorder, EquilibriumCheck& equilibrium, long step) {
+  stepper.reenter();
+  recorder.keep(run_);
+  equilibrium.finish(run_.result.equilibrium);
+  sum_up(plan_.stages[run_.stage].step);
+  run_.step = step;
+  run_.march = stepper.march_state();
+  keeping_.keep(run_);
+}
+
+StepOptions Runner::step_options(const Stage& stage) const {
   StepOptions options;
   options.scheme = stage.scheme;
   options.step = stage.step;
@@ -162,25 +173,52 @@ bool Runner::dynamics(const Stage& stage, const Bulk& bulk) {
   options.halvings = stage.halvings;
   options.monolithic = plan_.monolithic;
   options.oracle_tolerance = plan_.oracle_tolerance;
-  if (held_.size() > 0) options.held = &held_;
+  if (run_.held.size() > 0) options.held = &run_.held;
   if (stage.p_delta && !second_order_loads_.empty()) options.second_order = &second_order_loads_;
-  if (ledger_ && !(march_ && march_->p_delta == stage.p_delta && march_->scheme == stage.scheme)) ledger_->acceleration = false;
-  Stepper stepper(model_, bulk, b_, gap_, *laws_, *plan_.method, *plan_.impact, *plan_.solver, options, linear_);
-  stepper.start(std::move(state_), ledger_ ? &*ledger_ : nullptr);
+  return options;
+}
+
+/// Puts the stepper where the stage begins or goes on.
+void Runner::start(const Stage& stage, const LinearCounts& counts, Stepper& stepper) {
+  if (run_.step > 0) {
+    stepper.resume(std::move(run_.march));
+    run_.linear = counts;  // what is factorised again has been counted
+    return;
+  }
+  const auto carries_on = [&] {  // the accelerations of the stage before are those of the same scheme
+    if (!run_.marched) return false;
+    const Stage& before = plan_.stages[*run_.marched];
+    return before.p_delta == stage.p_delta && before.scheme == stage.scheme;
+  };
+  if (run_.ledger && !carries_on()) run_.ledger->acceleration = false;
+  stepper.start(std::move(run_.state), run_.ledger ? &*run_.ledger : nullptr);
+}
+
+/// What the energy error of the dynamic stages is held against.
+void Runner::begin_scales(const Stepper& stepper, const Bulk& bulk) {
+  if (!run_.ledger) {
+    const Energies& energies = stepper.energies();
+    run_.initial_scale = energies.kinetic;
+    run_.round_off_energy = 1e-8 * (energies.strain + energies.stored);
+    run_.round_off_energy += 100 * sum_round_off(bulk.stiffness_matrix, stepper.state().displacement);
+  }
+  for (const TimeLoad& time_load : model_.time_loads)
+    if (time_load.dead)
+      run_.round_off_energy += 1e-10 * time_load.shape.lpNorm<1>() * std::abs(time_load.function->value(stepper.state().time));
+}
+
+bool Runner::dynamics(const Stage& stage, const Bulk& bulk) {
+  const LinearCounts counts = run_.linear;
+  Stepper stepper(model_, bulk, b_, gap_, *laws_, *plan_.method, *plan_.impact, *plan_.solver, step_options(stage), run_.linear);
+  start(stage, counts, stepper);
   seen_ = &stepper.state();
-  result_.step_means = result_.step_means || stepper.averages_acceleration();
-  const long steps = std::max(1L, std::lround(stage.duration / stage.step));
+  run_.result.step_means = run_.result.step_means || stepper.averages_acceleration();
+  const long steps = std::max(1L, std::lround(stage.duration / stage.step)), begin = run_.step;
   const ForceStage force_stage = this->force_stage(stage);
-  Recorder recorder(model_, plan_, *seen_, stepper.energies(), &stepper, views_, force_stage, steps, stage.step, result_);
+  Recorder recorder(model_, plan_, *seen_, stepper.energies(), &stepper, views_, force_stage, steps, stage.step, run_.result);
   EquilibriumCheck equilibrium(force_stage);
   constexpr long checks = 4;  // of the equilibrium in a stage
-  long next_check = 1;
   const long picture_every = plan_.frames > 0 ? std::max(1L, steps / plan_.frames) : 0;
-  if (!ledger_) initial_scale_ = stepper.energies().kinetic;
-  if (!ledger_) round_off_energy_ = 1e-8 * (stepper.energies().strain + stepper.energies().stored);
-  if (!ledger_) round_off_energy_ += 100 * sum_round_off(bulk.stiffness_matrix, stepper.state().displacement);
-  for (const TimeLoad& time_load : model_.time_loads)
-    if (time_load.dead) round_off_energy_ += 1e-10 * time_load.shape.lpNorm<1>() * std::abs(time_load.function->value(seen_->time));
   const auto observe = [&](long step) {
     viewer_.look(seen_->opening, seen_->mean_force, views_);
     note_views();
@@ -189,18 +227,24 @@ bool Runner::dynamics(const Stage& stage, const Bulk& bulk) {
     if (picture_every > 0) recorder.note_largest_uplift();
     if (picture_every > 0 && step % picture_every == 0) recorder.picture(*seen_);
   };
-  result_.steps.reserve(model_.interfaces.size(), static_cast<std::size_t>(steps) + 1,
-                        static_cast<std::size_t>(std::min(static_cast<double>(steps) + 1, tail_ / stage.step + 2)));
-  if (!ledger_) {  // else the end of the stage before is there already
-    observe(0);
-    show(stage, &stepper, 0, false);
+  run_.result.steps.reserve(model_.interfaces.size(), static_cast<std::size_t>(steps) + 1,
+                            static_cast<std::size_t>(std::min(static_cast<double>(steps) + 1, tail_ / stage.step + 2)));
+  if (begin > 0) {
+    recorder.resume(run_);
+  } else {
+    run_.next_check = 1;
+    begin_scales(stepper, bulk);
+    if (!run_.ledger) {  // else the end of the stage before is there already
+      observe(0);
+      show(stage, &stepper, 0, false);
+    }
   }
   bool go_on = true;
   // steps from one report of progress to the next; an observer may want to end the run after any step
   const long between = observe_ ? 1 : bulk.small ? 256 : 8;
   auto first_done = std::chrono::steady_clock::now();
   double shown_before = shown_;
-  for (long step = 1; step <= steps && go_on; ++step) {
+  for (long step = begin + 1; step <= steps && go_on; ++step) {
     if (!stepper.advance()) {
       fail(fmt::format("step at t = {:.6g} s failed down to dt = {:.3g} s: {}", seen_->time, stepper.failed_step(), stepper.why()),
            stepper.problem());
@@ -209,50 +253,51 @@ bool Runner::dynamics(const Stage& stage, const Bulk& bulk) {
     }
     finish_energy(stepper);
     observe(step);
-    if (step * checks >= next_check * steps) equilibrium.note(stepper.balance({})), ++next_check;
+    if (step * checks >= run_.next_check * steps) equilibrium.note(stepper.balance({})), ++run_.next_check;
     go_on = check_limits(stepper);
-    if (step == 1) first_done = std::chrono::steady_clock::now(), shown_before = shown_;
+    if (step == begin + 1) first_done = std::chrono::steady_clock::now(), shown_before = shown_;
     if (watch_ && step % between == 0 && go_on) {
       const double open = views_.empty() ? 0 : views_.front().open_area;
-      const double scale = result_.energy_scale > 0 ? result_.energy_scale : 1;
+      const double scale = run_.result.energy_scale > 0 ? run_.result.energy_scale : 1;
       if (!watch_({static_cast<double>(step) / static_cast<double>(steps), seen_->time, stage.step, open,
                    stepper.energies().residual / scale})) {
-        result_.status = RunStatus::interrupted;
-        result_.reason = fmt::format("interrupted at t = {:.6g} s", seen_->time);
+        run_.result.status = RunStatus::interrupted;
+        run_.result.reason = fmt::format("interrupted at t = {:.6g} s", seen_->time);
         go_on = false;
       }
     }
     show(stage, &stepper, step, step == steps || !go_on);
+    if (keeping_.keep && step % keeping_.every == 0 && step < steps && go_on) keep(stepper, recorder, equilibrium, step);
   }
-  if (stepper.counts().steps > 1)
-    result_.step_seconds =
+  if (stepper.counts().steps > begin + 1)
+    run_.result.step_seconds =
         (std::chrono::duration<double>(std::chrono::steady_clock::now() - first_done).count() - (shown_ - shown_before)) /
-        static_cast<double>(stepper.counts().steps - 1);
+        static_cast<double>(stepper.counts().steps - begin - 1);
   recorder.finish();
-  equilibrium.finish(result_.equilibrium);
+  equilibrium.finish(run_.result.equilibrium);
   sum_up(stage.step);
-  state_ = stepper.state();
-  seen_ = &state_;
-  ledger_ = stepper.ledger();
-  march_ = stage;
-  result_.counts.steps += stepper.counts().steps;
-  result_.counts.retries += stepper.counts().retries;
-  result_.counts.iterations += stepper.counts().iterations;
-  result_.counts.cycles += stepper.counts().cycles;
-  result_.final_energy = stepper.energies();
-  result_.end_time = seen_->time;
+  run_.state = stepper.state();
+  seen_ = &run_.state;
+  run_.ledger = stepper.ledger();
+  run_.marched = run_.stage;
+  run_.result.counts.steps += stepper.counts().steps;
+  run_.result.counts.retries += stepper.counts().retries;
+  run_.result.counts.iterations += stepper.counts().iterations;
+  run_.result.counts.cycles += stepper.counts().cycles;
+  run_.result.final_energy = stepper.energies();
+  run_.result.end_time = seen_->time;
   if (stepper.counts().deepest > 0)
-    result_.notes.push_back(
+    run_.result.notes.push_back(
         fmt::format("the step was halved up to {} times ({} retries)", stepper.counts().deepest, stepper.counts().retries));
   if (stepper.counts().cycles > 0)
-    result_.notes.push_back(fmt::format("{} cycles of the contact status were met and treated", stepper.counts().cycles));
-  const bool creates = result_.energy_scale > 0 && result_.energy_created > plan_.created_limit * result_.energy_scale;
-  if (creates && result_.status != RunStatus::interrupted && result_.status != RunStatus::failed) {
-    result_.status = RunStatus::failed;
-    result_.reason = fmt::format("energy was created: {} of the external work (limit {:.3g} %), at t = {:.6g} s", result_.created_percent(),
-                                 100 * plan_.created_limit, result_.energy_created_time);
+    run_.result.notes.push_back(fmt::format("{} cycles of the contact status were met and treated", stepper.counts().cycles));
+  const bool creates = run_.result.energy_scale > 0 && run_.result.energy_created > plan_.created_limit * run_.result.energy_scale;
+  if (creates && run_.result.status != RunStatus::interrupted && run_.result.status != RunStatus::failed) {
+    run_.result.status = RunStatus::failed;
+    run_.result.reason = fmt::format("energy was created: {} of the external work (limit {:.3g} %), at t = {:.6g} s",
+                                     run_.result.created_percent(), 100 * plan_.created_limit, run_.result.energy_created_time);
   }
-  return go_on && result_.status == RunStatus::completed;
+  return go_on && run_.result.status == RunStatus::completed;
 }
 
 }  // namespace uplift

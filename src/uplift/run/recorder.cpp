@@ -256,6 +256,19 @@ void Recorder::finish() {
   if (next == result_.frames.end() || next->time != peak_frame_.time) result_.frames.insert(next, std::move(peak_frame_));
 }
 
+void Recorder::keep(RunState& run) {
+  flush();
+  run.recorded_until = before_;
+  run.peak_frame = peak_frame_;
+  run.peak_uplift = peak_uplift_;
+}
+
+void Recorder::resume(const RunState& run) {
+  before_ = run.recorded_until;
+  peak_frame_ = run.peak_frame;
+  peak_uplift_ = run.peak_uplift;
+}
+
 void Recorder::picture(const State& state) {
   result_.frames.push_back(frame_of(state));
 }

@@ -9,6 +9,7 @@
 #include "uplift/run/floor_record.h"
 #include "uplift/run/force_record.h"
 #include "uplift/run/run.h"
+#include "uplift/run/run_state.h"
 
 namespace uplift {
 
@@ -25,6 +26,10 @@ class Recorder {
   void record(bool row, double abscissa);
   /// Peaks and rows of the last steps, and the frame of the largest uplift; nothing is recorded after it.
   void finish();
+  /// Writes all rows so far and notes in the state what the recorder of a run that goes on from there has to know.
+  void keep(RunState& run);
+  /// Goes on from there.
+  void resume(const RunState& run);
   /// Keeps a frame for the animation.
   void picture(const State& state);
   /// Keeps the state as a frame when a larger share of an interface is uplifted than ever before. The frames at regular times miss a short

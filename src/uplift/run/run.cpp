@@ -85,64 +85,65 @@ Vector stack_gaps(const Model& model) {
 }  // namespace
 
 Runner::Runner(const Model& model, const RunPlan& plan, const std::vector<const Values*>& behaviours, const Watch& watch,
-               const Observe& observe)
+               const Observe& observe, const Keeping& keeping)
     : model_(model),
       plan_(plan),
       parameters_(behaviours),
       watch_(watch),
       observe_(observe),
+      keeping_(keeping),
       b_(stack_interfaces(model)),
       gap_(stack_gaps(model)),
       viewer_(model, plan.gap_tolerance, plan.bases, plan.facets),
       rest_(plan.rest.get()),
       views_(model.interfaces.size()) {
   has_walls_ = std::ranges::any_of(plan.is_wall, [](char wall) { return wall != 0; });
-  result_.name = plan.name;
-  result_.label = plan.label;
-  result_.group = plan.group;
-  result_.expected_to_fail = plan.expected_to_fail;
-  result_.max_uplifted_ratio = {"max_uplifted_ratio", "1", 0, 0};
-  result_.max_opening = {"max_opening", "m", 0, 0};
-  result_.max_base_moment = {"max_base_moment", "N m", 0, 0};
-  result_.max_base_shear = {"max_base_shear", "N", 0, 0};
-  result_.max_pressure = {"max_pressure", "Pa", 0, 0};
+  run_.result.name = plan.name;
+  run_.result.label = plan.label;
+  run_.result.group = plan.group;
+  run_.result.expected_to_fail = plan.expected_to_fail;
+  run_.result.max_uplifted_ratio = {"max_uplifted_ratio", "1", 0, 0};
+  run_.result.max_opening = {"max_opening", "m", 0, 0};
+  run_.result.max_base_moment = {"max_base_moment", "N m", 0, 0};
+  run_.result.max_base_shear = {"max_base_shear", "N", 0, 0};
+  run_.result.max_pressure = {"max_pressure", "Pa", 0, 0};
 }
 
 RunResult Runner::go() {
   const auto start = std::chrono::steady_clock::now();
   execute();
   check_tables();
-  result_.steps.average(plan_.window);
+  run_.result.steps.average(plan_.window);
   take_window_peaks();
-  result_.wall = std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count() - shown_;
-  result_.counts.factorisations = linear_.factorisations;
-  if (!linear_.notice.empty()) result_.notes.push_back(linear_.notice);
-  result_.counts.back_solves = linear_.back_solves;
-  result_.counts.systems = linear_.systems;
-  return std::move(result_);
+  run_.result.wall = std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count() - shown_;
+  run_.result.counts.factorisations = run_.linear.factorisations;
+  if (!run_.linear.notice.empty()) run_.result.notes.push_back(run_.linear.notice);
+  run_.result.counts.back_solves = run_.linear.back_solves;
+  run_.result.counts.systems = run_.linear.systems;
+  return std::move(run_.result);
 }
 
 /// A run with a number in its tables that is not finite has failed, also where its energies are finite.
 void Runner::check_tables() {
-  for (const std::vector<std::vector<double>>* table : {&result_.table, &result_.load_steps})
+  for (const std::vector<std::vector<double>>* table : {&run_.result.table, &run_.result.load_steps})
     for (std::size_t k = 1; k < table->size(); ++k) {
       const std::vector<double>& column = (*table)[k];
       if (std::isfinite(ConstMap(column.data(), std::ssize(column)).sum())) continue;  // finds them fast, and a few sums too large
       const auto bad = std::ranges::find_if_not(column, [](double value) { return std::isfinite(value); });
-      if (bad == column.end() || result_.status == RunStatus::failed) continue;
-      result_.status = RunStatus::failed;
+      if (bad == column.end() || run_.result.status == RunStatus::failed) continue;
+      run_.result.status = RunStatus::failed;
       const double at = table->front()[static_cast<std::size_t>(bad - column.begin())];
-      const bool over_time = table == &result_.table && !statics_alone(plan_);
-      result_.reason = fmt::format("{} is not finite at {}", plan_.requests[k - 1].name,
-                                   over_time ? fmt::format("t = {:.6g} s", at) : fmt::format("the load factor {:.6g}", at));
+      const bool over_time = table == &run_.result.table && !statics_alone(plan_);
+      run_.result.reason = fmt::format("{} is not finite at {}", plan_.requests[k - 1].name,
+                                       over_time ? fmt::format("t = {:.6g} s", at) : fmt::format("the load factor {:.6g}", at));
     }
 }
 
 /// Largest forces of the bases as means over the window, which the verdict shows.
 void Runner::take_window_peaks() {
-  const StepRecord& steps = result_.steps;
-  result_.max_step_pressure = result_.max_pressure;
-  for (Peak* peak : {&result_.max_base_moment, &result_.max_base_shear, &result_.max_pressure}) peak->value = peak->time = 0;
+  const StepRecord& steps = run_.result.steps;
+  run_.result.max_step_pressure = run_.result.max_pressure;
+  for (Peak* peak : {&run_.result.max_base_moment, &run_.result.max_base_shear, &run_.result.max_pressure}) peak->value = peak->time = 0;
   const auto note = [](Peak& peak, double value, double time) {
     if (std::abs(value) > std::abs(peak.value)) peak.value = value, peak.time = time;
   };
@@ -154,25 +155,25 @@ void Runner::take_window_peaks() {
     for (const Place& place : model_.interfaces[k].position) arm = std::max(arm, (place - model_.interfaces[k].reference).norm());
     for (std::size_t i = 0; i < steps.size(); ++i) {
       const StepRecord::Instant& now = steps.at(i, k);
-      note(result_.max_base_moment, plane ? now.moment_1 : std::hypot(now.moment_1, now.moment_2), steps.time[i]);
-      note(result_.max_base_shear, plane ? now.shear_1 : std::hypot(now.shear_1, now.shear_2), steps.time[i]);
+      note(run_.result.max_base_moment, plane ? now.moment_1 : std::hypot(now.moment_1, now.moment_2), steps.time[i]);
+      note(run_.result.max_base_shear, plane ? now.shear_1 : std::hypot(now.shear_1, now.shear_2), steps.time[i]);
       const double size = std::hypot(now.axial, now.shear_1, now.shear_2);
       force = std::max(force, size), moment = std::max(moment, arm * size);
     }
-    note(result_.max_pressure, steps.extremes[k].max_pressure.value, steps.extremes[k].max_pressure.time);
+    note(run_.result.max_pressure, steps.extremes[k].max_pressure.value, steps.extremes[k].max_pressure.time);
   }
   constexpr double round_off = 1e-9, least = 1e-9;  // share of it; N, N m
-  if (std::abs(result_.max_base_shear.value) < std::max(round_off * force, least))
-    result_.max_base_shear.value = result_.max_base_shear.time = 0;
-  if (std::abs(result_.max_base_moment.value) < std::max(round_off * moment, least))
-    result_.max_base_moment.value = result_.max_base_moment.time = 0;
+  if (std::abs(run_.result.max_base_shear.value) < std::max(round_off * force, least))
+    run_.result.max_base_shear.value = run_.result.max_base_shear.time = 0;
+  if (std::abs(run_.result.max_base_moment.value) < std::max(round_off * moment, least))
+    run_.result.max_base_moment.value = run_.result.max_base_moment.time = 0;
 }
 
 void Runner::fail(std::string why, const InterfaceProblem* problem) {
-  result_.status = RunStatus::failed;
-  result_.reason = std::move(why);
-  result_.end_time = seen_->time;
-  if (problem != nullptr && problem->rows() > 0) result_.problem = save_problem(*problem, parameters_, result_.reason);
+  run_.result.status = RunStatus::failed;
+  run_.result.reason = std::move(why);
+  run_.result.end_time = seen_->time;
+  if (problem != nullptr && problem->rows() > 0) run_.result.problem = save_problem(*problem, parameters_, run_.result.reason);
 }
 
 void Runner::execute() {
@@ -182,44 +183,67 @@ void Runner::execute() {
   for (const Interface& interface : model_.interfaces) cones = cones || interface.cone != nullptr;
   if (dynamic != nullptr && cones && !plan_.method->constrains()) {
     std::string why;
-    compliance = probe(model_, Bulk(model_, nullptr), b_, *dynamic, *plan_.solver, linear_, why);
+    compliance = probe(model_, Bulk(model_, nullptr), b_, *dynamic, *plan_.solver, run_.linear, why);
     if (!why.empty()) return fail(why, nullptr);
   }
   laws_ = std::make_unique<Behaviours>(model_, *plan_.method, compliance.rows() > 0 ? &compliance : nullptr);
   laws_->solver = plan_.interface_solver;
 
-  const Eigen::Index n = rest_ != nullptr ? rest_->free() : model_.free();
-  state_.displacement = state_.velocity = state_.acceleration = Vector::Zero(n);
-  if (!plan_.stages.empty() && plan_.stages.front().type == Stage::Type::statics) state_.load_factor = 0;
-  state_.opening = gap_;
-  if (state_.load_factor > 0) model_.add_prescribed_opening(0, state_.opening);
-  state_.force = state_.mean_force = Vector::Zero(b_.rows());
-  state_.history.setZero(laws_->history);
-  remember_gaps();
   for (const Stage& stage : plan_.stages) planned_ += stage.type == Stage::Type::dynamics ? stage.duration : 0;
   if (dynamic != nullptr) tail_ = 0.1 * planned_ + 0.5 * dynamic->step;
-
+  if (keeping_.from == nullptr)
+    begin();
+  else if (!resume())
+    return fail("the state that the run begins with belongs to another model", nullptr);
   run_stages();
-  result_.end_time = state_.time;
+  run_.result.end_time = run_.state.time;
   if (statics_alone(plan_))
     stand();
   else
-    result_.load_steps = std::move(load_steps_.table);
+    run_.result.load_steps = std::move(run_.load_steps.table);
+}
+
+void Runner::begin() {
+  const Eigen::Index n = rest_ != nullptr ? rest_->free() : model_.free();
+  run_.state.displacement = run_.state.velocity = run_.state.acceleration = Vector::Zero(n);
+  if (!plan_.stages.empty() && plan_.stages.front().type == Stage::Type::statics) run_.state.load_factor = 0;
+  run_.state.opening = gap_;
+  if (run_.state.load_factor > 0) model_.add_prescribed_opening(0, run_.state.opening);
+  run_.state.force = run_.state.mean_force = Vector::Zero(b_.rows());
+  run_.state.history.setZero(laws_->history);
+  remember_gaps();
+}
+
+/// Takes over a kept state; false when it does not fit the model or the plan.
+bool Runner::resume() {
+  const RunState& from = *keeping_.from;
+  const State& state = from.march.state;
+  if (from.stage >= plan_.stages.size() || plan_.stages[from.stage].type != Stage::Type::dynamics || from.step < 1 ||
+      state.displacement.size() != model_.free() || state.opening.size() != b_.rows() || state.history.size() != laws_->history ||
+      from.result.table.size() != plan_.requests.size() + 1 || from.result.floors.size() != plan_.floors.size() ||
+      from.result.envelopes.size() != plan_.envelopes.size() || from.result.steps.extremes.size() != model_.interfaces.size())
+    return false;
+  run_ = from;
+  run_.result.columns = plan_.requests;
+  if (run_.released) rest_ = nullptr;
+  if (run_.second_order) use_second_order();
+  rotations_ = rotations_on_interfaces(model_, b_);
+  return true;
 }
 
 /// Ends at the first stage that fails or ends the run.
 void Runner::run_stages() {
-  bool moving = false;
-  for (const Stage& stage : plan_.stages) {
+  for (; run_.stage < plan_.stages.size(); ++run_.stage, run_.step = 0) {
+    const Stage& stage = plan_.stages[run_.stage];
     if (stage.type == Stage::Type::statics) {
-      march_.reset();
+      run_.marched.reset();
       if (!statics(stage)) return;
       continue;
     }
     if (stage.p_delta && geometric_ == nullptr && !second_order()) return;
     if (rest_ != nullptr) release();
-    if (!std::exchange(moving, true)) {
-      if (&stage != plan_.stages.data()) note_rest();
+    if (!std::exchange(run_.moving, true)) {
+      if (run_.stage > 0) note_rest();
       add_initial_state();
       rotations_ = rotations_on_interfaces(model_, b_);
     }
@@ -238,7 +262,7 @@ void Runner::remember_gaps() {
     Vector traction(block.rows());
     LawResponse response;
     response.traction = traction.data();
-    response.now = state_.history.data() + block.first_history;
+    response.now = run_.state.history.data() + block.first_history;
     block.law->respond(block.batch, closed.data(), gap.data(), old.data() + block.first_history, response);
   }
 }
@@ -247,35 +271,35 @@ void Runner::remember_gaps() {
 /// constraint that is opened by it has no force any more.
 void Runner::add_initial_state() {
   const Eigen::Index n = model_.free();
-  if (plan_.initial_velocity.size() == n) state_.velocity += plan_.initial_velocity;
+  if (plan_.initial_velocity.size() == n) run_.state.velocity += plan_.initial_velocity;
   if (plan_.initial_displacement.size() != n || plan_.initial_displacement.isZero(0)) return;
-  state_.displacement += plan_.initial_displacement;
-  const Vector from = state_.opening;
-  state_.opening += b_ * plan_.initial_displacement;
-  const Vector old = state_.history;
+  run_.state.displacement += plan_.initial_displacement;
+  const Vector from = run_.state.opening;
+  run_.state.opening += b_ * plan_.initial_displacement;
+  const Vector old = run_.state.history;
   for (const Block& block : blocks_of(model_, *laws_).blocks) {
     const int points = block.batch.points, normal = block.first + block.batch.normal();
     if (block.law != nullptr) {
       LawResponse response;
-      response.traction = state_.force.data() + block.first;
-      response.now = state_.history.data() + block.first_history;
-      block.law->respond(block.batch, from.data() + block.first, state_.opening.data() + block.first, old.data() + block.first_history,
+      response.traction = run_.state.force.data() + block.first;
+      response.now = run_.state.history.data() + block.first_history;
+      block.law->respond(block.batch, from.data() + block.first, run_.state.opening.data() + block.first, old.data() + block.first_history,
                          response);
     }
     for (int c = 0; c < block.batch.components; ++c)
       for (int i = 0; i < points; ++i) {
-        double& force = state_.force[block.first + c * points + i];
+        double& force = run_.state.force[block.first + c * points + i];
         if (block.law != nullptr)
           force *= block.area[static_cast<std::size_t>(i)];
-        else if (state_.opening[normal + i] > 0)
+        else if (run_.state.opening[normal + i] > 0)
           force = 0;
       }
   }
-  state_.mean_force = state_.force;
+  run_.state.mean_force = run_.state.force;
 }
 
 ForceStage Runner::force_stage(const Stage& stage) const {
-  return {model_, stage.p_delta ? &second_order_ : nullptr, held_.size() > 0 ? &held_ : nullptr};
+  return {model_, stage.p_delta && run_.second_order ? &*run_.second_order : nullptr, run_.held.size() > 0 ? &run_.held : nullptr};
 }
 
 /// Tells the observer, if there is one, of the present state. Its time is not that of the run.
@@ -286,13 +310,14 @@ void Runner::show(const Stage& stage, const Stepper* stepper, long step, bool la
   std::optional<State> resting;
   if (rest_ != nullptr) resting = carried();
   const ForceStage forces = force_stage(stage);
-  observe_({resting ? *resting : *seen_, stepper, result_, static_cast<std::size_t>(&stage - plan_.stages.data()), step, last, forces});
+  observe_({resting ? *resting : *seen_, stepper, run_.result, static_cast<std::size_t>(&stage - plan_.stages.data()), step, last, forces});
   shown_ += std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
 }
 
 RunResult run(const Model& model, const RunPlan& plan, const std::vector<const Values*>& behaviours, const Watch& watch,
-              const Observe& observe) {
-  return Runner(model, plan, behaviours, watch, observe).go();
+              const Observe& observe, const Keeping* keeping) {
+  const Keeping nothing;
+  return Runner(model, plan, behaviours, watch, observe, keeping != nullptr ? *keeping : nothing).go();
 }
 
 }  // namespace uplift

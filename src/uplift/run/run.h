@@ -20,6 +20,7 @@ namespace uplift {
 class Stepper;
 struct Facets;
 struct ForceStage;
+struct Keeping;
 
 // ---- what is to be done ----
 
@@ -223,9 +224,9 @@ struct Snapshot {
 using Observe = std::function<void(const Snapshot&)>;
 
 /// Runs all stages. `behaviours` are the checked parameters of the interfaces' laws (for problem files). Never throws for numerical
-/// reasons; what the observer throws ends it.
+/// reasons; what the observer throws ends it. `keeping` (run_state.h): states of the run that another run can go on from; null: none.
 RunResult run(const Model& model, const RunPlan& plan, const std::vector<const Values*>& behaviours, const Watch& watch = {},
-              const Observe& observe = {});
+              const Observe& observe = {}, const Keeping* keeping = nullptr);
 
 /// What `uplift check` says of an interface: stiffness of a closed joint times compliance at the dynamic step.
 struct StiffnessRatio {

@@ -22,16 +22,16 @@ std::vector<int> rotations_on_interfaces(const Model& model, const Sparse& b) {
 bool Runner::statics(const Stage& stage) {
   const Model& resting = rest_ != nullptr ? *rest_ : model_;
   const std::vector<int> rotations = rotations_on_interfaces(resting, rest_ != nullptr ? stack_interfaces(*rest_) : b_);
-  const Energies before = ledger_ ? ledger_->energies : static_energies_;
+  const Energies before = run_.ledger ? run_.ledger->energies : run_.static_energies;
   Energies energies = before;
-  Recorder recorder(resting, plan_, state_, energies, nullptr, views_, {resting}, stage.steps, 0, load_steps_);
+  Recorder recorder(resting, plan_, run_.state, energies, nullptr, views_, {resting}, stage.steps, 0, run_.load_steps);
   const auto record = [&](const StaticProgress& progress) {
     energies = static_energies(resting, before, progress);
-    viewer_.look(state_.opening, state_.mean_force, views_);
-    recorder.record(true, static_stages_ + progress.share);
+    viewer_.look(run_.state.opening, run_.state.mean_force, views_);
+    recorder.record(true, run_.static_stages + progress.share);
   };
-  if (state_.load_factor == 0) {
-    unloaded_energy_ = static_energies(resting, before, {}).sum();
+  if (run_.state.load_factor == 0) {
+    run_.unloaded_energy = static_energies(resting, before, {}).sum();
     record({});
   }
   const bool solved = solve(stage, nullptr, nullptr, [&](const StaticProgress& progress) {
@@ -42,9 +42,9 @@ bool Runner::statics(const Stage& stage) {
   });
   static_share_.reset();
   recorder.finish();
-  ++static_stages_;
-  static_energies_ = energies;
-  if (ledger_) result_.final_energy = ledger_->energies = energies;
+  ++run_.static_stages;
+  run_.static_energies = energies;
+  if (run_.ledger) run_.result.final_energy = run_.ledger->energies = energies;
   show(stage, nullptr, stage.steps, true);
   return solved;
 }
@@ -56,11 +56,12 @@ bool Runner::solve(const Stage& stage, const Sparse* geometric, const std::vecto
   const Sparse b = rest_ != nullptr ? stack_interfaces(*rest_) : b_;
   const Bulk bulk(resting, geometric);
   const StaticOptions options{stage.steps, stage.halvings, second_order, {}, after_step};
-  const StaticOutcome outcome = solve_statics(resting, bulk, b, gap_, *laws_, *plan_.method, *plan_.solver, options, state_, linear_);
-  result_.counts.load_steps += outcome.steps;
-  result_.counts.retries += outcome.retries;
-  result_.counts.iterations += outcome.iterations;
-  result_.not_unique = outcome.not_unique;
+  const StaticOutcome outcome =
+      solve_statics(resting, bulk, b, gap_, *laws_, *plan_.method, *plan_.solver, options, run_.state, run_.linear);
+  run_.result.counts.load_steps += outcome.steps;
+  run_.result.counts.retries += outcome.retries;
+  run_.result.counts.iterations += outcome.iterations;
+  run_.result.not_unique = outcome.not_unique;
   if (!outcome.why.empty()) fail(outcome.why, outcome.failed ? &*outcome.failed : nullptr);
   return outcome.converged;
 }
@@ -73,25 +74,25 @@ Energies Runner::static_energies(const Model& resting, const Energies& before, c
   energies.external += progress.work;
   energies.plastic += progress.dissipated;
   energies.friction += progress.friction;
-  energies.strain = 0.5 * state_.displacement.dot(resting.stiffness * state_.displacement);
+  energies.strain = 0.5 * run_.state.displacement.dot(resting.stiffness * run_.state.displacement);
   if (const PlasticBulk yielding(resting); yielding.any())
-    energies.strain += yielding.energy(state_.displacement, state_.instant(), yielding.state(state_.bulk_history));
+    energies.strain += yielding.energy(run_.state.displacement, run_.state.instant(), yielding.state(run_.state.bulk_history));
   InterfaceEnergy interfaces;
-  interfaces.update(blocks_of(model_, *laws_).blocks, state_.opening, state_.history);
+  interfaces.update(blocks_of(model_, *laws_).blocks, run_.state.opening, run_.state.history);
   energies.stored = interfaces.stored, energies.interface_dissipated = interfaces.dissipated + energies.friction;
-  if (ledger_)
+  if (run_.ledger)
     energies.stop += before.sum() - energies.sum();
   else
-    energies.residual = energies.sum() - unloaded_energy_;
+    energies.residual = energies.sum() - run_.unloaded_energy;
   return energies;
 }
 
 /// What the verdict holds the rest of the run against.
 void Runner::note_rest() {
-  viewer_.look(state_.opening, state_.mean_force, views_);
+  viewer_.look(run_.state.opening, run_.state.mean_force, views_);
   for (std::size_t k = 0; k < views_.size(); ++k) {
-    result_.steps.rest.push_back(views_[k].resultant);
-    result_.steps.rest_poses.push_back(viewer_.pose(state_, k, views_[k]));
+    run_.result.steps.rest.push_back(views_[k].resultant);
+    run_.result.steps.rest_poses.push_back(viewer_.pose(run_.state, k, views_[k]));
   }
 }
 
@@ -102,28 +103,28 @@ void Runner::stand() {
     const ForceStage resting{rest_ != nullptr ? *rest_ : model_};
     const Vector still = Vector::Zero(resting.model.free());
     EquilibriumCheck equilibrium(resting);
-    equilibrium.note(StepBalance::at_rest(state_, still));
-    equilibrium.finish(result_.equilibrium);
+    equilibrium.note(StepBalance::at_rest(run_.state, still));
+    equilibrium.finish(run_.result.equilibrium);
   }
-  if (rest_ != nullptr) state_ = carried();
-  result_.final_energy = static_energies_;
-  result_.steps.reserve(model_.interfaces.size(), 1, 1);
-  viewer_.look(state_.opening, state_.mean_force, views_);
+  if (rest_ != nullptr) run_.state = carried();
+  run_.result.final_energy = run_.static_energies;
+  run_.result.steps.reserve(model_.interfaces.size(), 1, 1);
+  viewer_.look(run_.state.opening, run_.state.mean_force, views_);
   note_views();
   sum_up(0);
-  for (const InterfaceView& view : views_) result_.steps.rest.push_back(view.resultant);
-  Recorder recorder(model_, plan_, state_, result_.final_energy, nullptr, views_, {model_}, 0, 0, result_);
+  for (const InterfaceView& view : views_) run_.result.steps.rest.push_back(view.resultant);
+  Recorder recorder(model_, plan_, run_.state, run_.result.final_energy, nullptr, views_, {model_}, 0, 0, run_.result);
   recorder.record(true);
   recorder.finish();
-  result_.table = std::move(load_steps_.table);
-  if (plan_.frames > 0) recorder.picture(state_);
+  run_.result.table = std::move(run_.load_steps.table);
+  if (plan_.frames > 0) recorder.picture(run_.state);
 }
 
 /// The geometric stiffness of the present static state, and equilibrium with it.
 bool Runner::second_order() {
   const Model& resting = rest_ != nullptr ? *rest_ : model_;
-  second_order_ = uplift::second_order(resting, state_);
-  geometric_ = std::make_unique<Sparse>(model_.reduction.transpose() * second_order_.stiffness * model_.reduction);
+  run_.second_order = uplift::second_order(resting, run_.state);
+  use_second_order();
   if (const auto share = buckling_share(model_, *geometric_, *plan_.solver)) {
     fail(fmt::format("P-delta: the structure buckles under {:.4g} times its dead loads: with the whole of them K + K_g is not positive "
                      "definite, even with all interfaces bonded",
@@ -131,30 +132,35 @@ bool Runner::second_order() {
          nullptr);
     return false;
   }
-  second_order_loads_ = second_order_loads(model_);
-  if (state_.displacement.isZero(0)) return true;
+  if (run_.state.displacement.isZero(0)) return true;
   Stage again;
   again.type = Stage::Type::statics;
   again.steps = 1;
   if (rest_ == nullptr) return solve(again, geometric_.get(), &second_order_loads_, {});
-  const Sparse geometric = resting.reduction.transpose() * second_order_.stiffness * resting.reduction;
+  const Sparse geometric = resting.reduction.transpose() * run_.second_order->stiffness * resting.reduction;
   const std::vector<TimeLoad> time_loads = second_order_loads(resting);
   return solve(again, &geometric, &time_loads, {});
+}
+
+/// What follows from the second order for the free unknowns of the dynamic stages.
+void Runner::use_second_order() {
+  geometric_ = std::make_unique<Sparse>(model_.reduction.transpose() * run_.second_order->stiffness * model_.reduction);
+  second_order_loads_ = second_order_loads(model_);
 }
 
 /// What prescribed motions do through the geometric stiffness.
 std::vector<TimeLoad> Runner::second_order_loads(const Model& model) const {
   std::vector<TimeLoad> time_loads;
   for (const PrescribedMotion& motion : model.motions)
-    if (Vector force = -(model.reduction.transpose() * (second_order_.stiffness * motion.shape)); !force.isZero(0))
+    if (Vector force = -(model.reduction.transpose() * (run_.second_order->stiffness * motion.shape)); !force.isZero(0))
       time_loads.push_back({motion.name, std::move(force), motion.function});
   return time_loads;
 }
 
 /// The state of the model with all supports on the free unknowns of the one without those of static stages alone: the same displacements.
 State Runner::carried() const {
-  State state = state_;
-  const Vector full = rest_->full(state_.displacement, 0, state_.instant());
+  State state = run_.state;
+  const Vector full = rest_->full(run_.state.displacement, 0, run_.state.instant());
   const Eigen::Index n = model_.free();
   state.displacement.resize(n);
   for (Eigen::Index i = 0; i < n; ++i) state.displacement[i] = full[model_.kept[static_cast<std::size_t>(i)]];
@@ -165,14 +171,15 @@ State Runner::carried() const {
 /// Goes over to the model without these supports. What is missing for equilibrium, r = K u + B^T p - f, is what they have borne; from now
 /// on it is a constant load, so that nothing moves when nothing shakes (docs/theory, eq 22).
 void Runner::release() {
-  state_ = carried();
-  held_ = model_.stiffness * state_.displacement;
-  if (geometric_ != nullptr) held_ += *geometric_ * state_.displacement;
-  if (const PlasticBulk yielding(model_); yielding.any()) held_ += yielding.state(state_.bulk_history).force;
-  if (b_.rows() > 0) held_ += b_.transpose() * state_.force;
+  run_.state = carried();
+  run_.held = model_.stiffness * run_.state.displacement;
+  if (geometric_ != nullptr) run_.held += *geometric_ * run_.state.displacement;
+  if (const PlasticBulk yielding(model_); yielding.any()) run_.held += yielding.state(run_.state.bulk_history).force;
+  if (b_.rows() > 0) run_.held += b_.transpose() * run_.state.force;
   for (const TimeLoad& time_load : model_.time_loads)
-    if (time_load.is_static()) held_ -= time_load.factor(state_.time) * time_load.shape;
-  for (const TimeLoad& time_load : second_order_loads_) held_ -= time_load.factor(state_.time) * time_load.shape;
+    if (time_load.is_static()) run_.held -= time_load.factor(run_.state.time) * time_load.shape;
+  for (const TimeLoad& time_load : second_order_loads_) run_.held -= time_load.factor(run_.state.time) * time_load.shape;
+  run_.released = true;
   rest_ = nullptr;
 }
 
