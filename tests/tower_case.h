@@ -1,31 +1,26 @@
 #pragma once
+#include <string>
 
-// The structure of the trust tests: a mass of 24 t on a column of 5 m over a footing that rests on nothing yet. An interface, gravity and
-// stages make it a case.
+// The structure of many tests: a mass on a column of 5 m over a footing that rests on nothing yet. An interface, loads and stages make it a
+// case. Each test states what it changes.
 namespace uplift::support {
 
-inline constexpr const char* tower_structure = R"(
-[nodes]
-top = [0, 5]
-base = [0, 0]
-[[beam]]
-name = "column"
-nodes = ["base", "top"]
-E = "20 GPa"
-I = "0.2 m4"
-[[mass]]
-node = "top"
-mass = 24000
-[[rigid]]
-name = "footing"
-node = "base"
-mass = 1e4
-inertia = 7500
-[[support]]
-node = "base"
-fixed = ["ux"]
-[gravity]
-acceleration = [0, -9.81]
-)";
+struct Tower {
+  std::string height = "5", young = "\"20 GPa\"", inertia = "\"0.2 m4\"";     // values of keys
+  std::string mass = "mass = 24000", footing = "mass = 1e4\ninertia = 7500";  // lines of [[mass]] and [[rigid]]
+  std::string nodes, beam;                                                    // further lines of [nodes] and [[beam]]
+  bool held = true;                                                           // the footing cannot move sideways
+
+  std::string text() const {
+    const auto lines = [](const std::string& more) { return more.empty() ? more : more + "\n"; };
+    return "\n[nodes]\ntop = [0, " + height + "]\nbase = [0, 0]\n" + lines(nodes) +
+           "[[beam]]\nname = \"column\"\nnodes = [\"base\", \"top\"]\nE = " + young + "\nI = " + inertia + "\n" + lines(beam) +
+           "[[mass]]\nnode = \"top\"\n" + mass + "\n[[rigid]]\nname = \"footing\"\nnode = \"base\"\n" + footing + "\n" +
+           (held ? "[[support]]\nnode = \"base\"\nfixed = [\"ux\"]\n" : "");
+  }
+};
+
+/// Weight of all masses.
+inline constexpr const char* weight = "[gravity]\nacceleration = [0, -9.81]\n";
 
 }  // namespace uplift::support

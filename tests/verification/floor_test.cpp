@@ -13,6 +13,7 @@
 #include "data_support.h"
 #include "manual.h"
 #include "support.h"
+#include "tower_case.h"
 #include "uplift/io/text/toml.h"
 #include "uplift/verdict/floor_spectra.h"
 
@@ -171,14 +172,12 @@ struct Column {
     // With average acceleration a harmonic acceleration has velocities and displacements of this frequency, in the discrete run exactly.
     const double omega = std::tan(pi * frequency * step) * 2 / step;
     std::string text = fmt::format(
-        "title = \"column\"\nimpact = \"none\"\n{}\n[nodes]\ntop = [0, 5]\nbase = [0, 0]\n"
-        "[[beam]]\nname = \"column\"\nnodes = [\"base\", \"top\"]\nE = \"20000 MPa\"\nI = 0.20\n[[mass]]\nnode = \"top\"\nmass = 24317\n"
-        "[[rigid]]\nname = \"footing\"\nnode = \"base\"\nmass = 1e4\ninertia = 7500\n"
+        "title = \"column\"\nimpact = \"none\"\n{}{}"
         "[[interface]]\nname = \"soil\"\nlaw = {}\n[interface.footing]\nbody = \"base\"\nwidth = 3\npoints = 40\n"
         "[[load]]\nnode = \"top\"\nforce = [0, -1e6]\n"
         "[[function]]\nname = \"quake\"\nshape = {{ type = \"harmonic\", frequency = {} }}\n[[stage]]\ntype = \"static\"\n"
         "[[stage]]\ntype = \"dynamic\"\nduration = {}\nstep = {}\n",
-        options, law, frequency, duration, step);
+        options, support::Tower{.mass = "mass = 24317", .held = false}.text(), law, frequency, duration, step);
     if (absolute)
       text += fmt::format(
           "[[motion]]\nnode = \"base\"\ndirection = \"ux\"\namplitude = {}\nfunction = \"quake\"\n"

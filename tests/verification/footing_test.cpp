@@ -1,6 +1,7 @@
 // Uplifting footings: half width b, vertical load W, rotation imposed on the body in statics, moment at its
 // middle. Two springs k at +-b: M_u = W b, theta_u = W/(2 k b). Winkler strip k_w: M_u = W b/3, theta_u = W/(2 k_w b^2), beyond it M/M_u =
 // 3 - 2 sqrt(theta_u/theta), contact ratio sqrt(theta_u/theta), heel jump 2 b theta (1 - sqrt(theta_u/theta)).
+#include <fmt/format.h>
 #include <gtest/gtest.h>
 
 #include <cmath>
@@ -8,6 +9,7 @@
 
 #include "manual.h"
 #include "support.h"
+#include "tower_case.h"
 
 namespace uplift::verification {
 namespace {
@@ -224,18 +226,15 @@ TEST(Footing, BondedFrequency) {
   for (const int points : {2, 401}) {
     const double k_theta = points == 2 ? 2 * (bed * b) * b * b : 2.0 / 3 * bed * b * b * b;
     const double exact = f0 / std::sqrt(1 + w0 * w0 * mass * height * height / k_theta);
-    char text[2500];
-    std::snprintf(text, sizeof text,
-                  "title = \"Bonded\"\n[nodes]\ntop = [0, 5]\nbase = [0, 0]\n[[beam]]\nname = \"column\"\nnodes = [\"base\", \"top\"]\nE = "
-                  "%.17g\nI = 1\n"
-                  "[[mass]]\nnode = \"top\"\nmass = 2e4\n[[rigid]]\nname = \"footing\"\nnode = \"base\"\nmass = 1\ninertia = 1\n"
-                  "[[support]]\nnode = \"base\"\nfixed = [\"ux\"]\n[[interface]]\nname = \"soil\"\nlaw = { type = \"springs\", K_n = 2e8, "
-                  "tangential = "
-                  "\"none\" }\nfooting = { body = \"base\", width = 3, points = %d }\n[[load]]\nnode = \"base\"\nforce = [0, -1e6]\n"
-                  "[[initial]]\nnode = \"top\"\nvelocity = [1e-3, 0]\n[[stage]]\ntype = \"static\"\nsteps = 1\n"
-                  "[[stage]]\ntype = \"dynamic\"\nduration = %.17g\nstep = %.17g\n[output]\nframes = 0\n",
-                  EI, points, 10.6 / exact, 1 / exact / 2000);
-    const History run = run_text(text);
+    const support::Tower column{
+        .young = fmt::format("{:.17g}", EI), .inertia = "1", .mass = "mass = 2e4", .footing = "mass = 1\ninertia = 1"};
+    const History run =
+        run_text("title = \"Bonded\"" + column.text() +
+                 fmt::format("[[interface]]\nname = \"soil\"\nlaw = {{ type = \"springs\", K_n = 2e8, tangential = \"none\" }}\n"
+                             "footing = {{ body = \"base\", width = 3, points = {} }}\n[[load]]\nnode = \"base\"\nforce = [0, -1e6]\n"
+                             "[[initial]]\nnode = \"top\"\nvelocity = [1e-3, 0]\n[[stage]]\ntype = \"static\"\nsteps = 1\n"
+                             "[[stage]]\ntype = \"dynamic\"\nduration = {:.17g}\nstep = {:.17g}\n[output]\nframes = 0\n",
+                             points, 10.6 / exact, 1 / exact / 2000));
     ASSERT_EQ(run.status, "completed") << run.reason;
     VERIFY_EQ("uplifted share", "1", run.peak("soil.uplifted_ratio"), 0);
     const std::vector<double> times = crossings(run, "top.ux");

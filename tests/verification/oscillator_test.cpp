@@ -2,6 +2,7 @@
 // on a tensionless Winkler base by 1 MN and hit by a half-sine pulse. Everything is compared with an integration of its own here: exact
 // contact length, classical Runge-Kutta with 1e-5 s (error below 1e-9 of the peaks), and with the curves of the reference folder when that
 // is there.
+#include <fmt/format.h>
 #include <gtest/gtest.h>
 
 #include <algorithm>
@@ -11,6 +12,7 @@
 
 #include "manual.h"
 #include "support.h"
+#include "tower_case.h"
 
 namespace uplift::verification {
 namespace {
@@ -90,20 +92,16 @@ struct Oscillator {
   std::string damping;
 
   std::string text() const {
-    char out[3000];
-    std::snprintf(
-        out, sizeof out,
-        "title = \"Reference oscillator\"\nimpact = \"%s\"\n%s\n[nodes]\ntop = [0, 5]\nbase = [0, 0]\n"
-        "[[beam]]\nname = \"column\"\nnodes = [\"base\", \"top\"]\nE = \"20000 MPa\"\nI = 0.20\n"
-        "[[mass]]\nnode = \"top\"\nmass = %.17g\n[[rigid]]\nname = \"footing\"\nnode = \"base\"\nmass = 1e4\ninertia = 7500\n"
-        "[[support]]\nnode = \"base\"\nfixed = [\"ux\"]\n"
-        "[[interface]]\nname = \"soil\"\nlaw = %s\n[interface.footing]\nbody = \"base\"\nwidth = 3\npoints = %d\nrule = \"%s\"\n%s\n"
-        "[[load]]\nnode = \"top\"\nforce = [0, -1e6]\n[[function]]\nname = \"pulse\"\nshape = { type = \"half_sine\", duration = 0.1 }\n"
-        "[[load]]\nnode = \"top\"\nforce = [%.17g, 0]\nfunction = \"pulse\"\n%s\n"
-        "[[stage]]\ntype = \"static\"\nsteps = 1\n[[stage]]\ntype = \"dynamic\"\nduration = %.17g\nstep = %.17g\n"
-        "[energy]\ncreated_limit = 1e9\n[output]\nframes = 0\n",
-        impact.c_str(), method.c_str(), mass, law.c_str(), points, rule.c_str(), bed.c_str(), pulse, damping.c_str(), duration, step);
-    return out;
+    return fmt::format("title = \"Reference oscillator\"\nimpact = \"{}\"\n{}", impact, method) +
+           support::Tower{.mass = fmt::format("mass = {:.17g}", mass)}.text() +
+           fmt::format(
+               "[[interface]]\nname = \"soil\"\nlaw = {}\n[interface.footing]\nbody = \"base\"\nwidth = 3\npoints = {}\nrule = \"{}\"\n{}\n"
+               "[[load]]\nnode = \"top\"\nforce = [0, -1e6]\n[[function]]\nname = \"pulse\"\n"
+               "shape = {{ type = \"half_sine\", duration = 0.1 }}\n"
+               "[[load]]\nnode = \"top\"\nforce = [{:.17g}, 0]\nfunction = \"pulse\"\n{}\n"
+               "[[stage]]\ntype = \"static\"\nsteps = 1\n[[stage]]\ntype = \"dynamic\"\nduration = {:.17g}\nstep = {:.17g}\n"
+               "[energy]\ncreated_limit = 1e9\n[output]\nframes = 0\n",
+               law, points, rule, bed, pulse, damping, duration, step);
   }
 };
 

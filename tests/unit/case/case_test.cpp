@@ -9,6 +9,7 @@
 #include <numbers>
 #include <regex>
 
+#include "tower_case.h"
 #include "uplift/case/build/names.h"
 #include "uplift/case/schema/sections.h"
 #include "uplift/io/text/toml.h"
@@ -18,28 +19,8 @@
 namespace uplift {
 namespace {
 
-constexpr const char* base_text = R"(
-title = "test"
-[nodes]
-top = [0, 5]
-base = [0, 0]
-[[beam]]
-name = "column"
-nodes = ["base", "top"]
-E = "20000 MPa"
-I = "0.2 m4"
-[[mass]]
-node = "top"
-tuned_frequency = "10 Hz"
-[[rigid]]
-name = "footing"
-node = "base"
-mass = 1e4
-inertia = 7500
-[[support]]
-node = "base"
-fixed = ["ux"]
-[[interface]]
+const std::string base_text =
+    "\ntitle = \"test\"" + support::Tower{.young = "\"20000 MPa\"", .mass = "tuned_frequency = \"10 Hz\""}.text() + R"([[interface]]
 name = "soil"
 [interface.footing]
 body = "base"

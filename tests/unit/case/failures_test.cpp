@@ -41,7 +41,7 @@ constexpr const char* tip_history = "[[output.history]]\nnode = \"top\"\nquantit
 // ---- joints far stiffer than the structure ----
 
 std::string stiff_tower(const std::string& stiffness, double force, const std::string& tangential = "none") {
-  return "title = \"t\"\n" + std::string(support::tower_structure) +
+  return "title = \"t\"\n" + support::Tower{}.text() + support::weight +
          "[[interface]]\nname = \"soil\"\nfooting = { body = \"base\", width = 3, points = 21 }\n"
          "law = { type = \"springs\", K_n = " +
          stiffness + ", tangential = \"" + tangential + "\" }\n[[load]]\nnode = \"top\"\nforce = [" + std::to_string(force) + ", 0]\n" +

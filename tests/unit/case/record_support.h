@@ -11,6 +11,7 @@
 #include <vector>
 
 #include "text_support.h"
+#include "tower_case.h"
 #include "uplift/case/case.h"
 #include "uplift/io/text/toml.h"
 
@@ -56,33 +57,14 @@ class RecordCase : public testing::Test {
 
 /// A tower on a rigid footing, held by two joints to the ground.
 inline std::string tower(const std::string& stage, const std::string& ground) {
-  return R"(title = "tower"
-[nodes]
-top = [0, 6]
-base = [0, 0]
-left = [-1.5, 0]
-right = [1.5, 0]
-ground_left = [-1.5, 0]
-ground_right = [1.5, 0]
-[[beam]]
-name = "column"
-nodes = ["base", "top"]
-E = 2e10
-I = 0.05
-A = 0.8
-mass = "consistent"
-density = 2500
-damping_beta = 1e-3
-[[mass]]
-node = "top"
-mass = 2e4
-[[rigid]]
-name = "footing"
-node = "base"
-slaves = ["left", "right"]
-mass = 1e4
-inertia = 7500
-[[interface]]
+  const support::Tower column{.height = "6",
+                              .inertia = "0.05",
+                              .mass = "mass = 2e4",
+                              .footing = "slaves = [\"left\", \"right\"]\nmass = 1e4\ninertia = 7500",
+                              .nodes = "left = [-1.5, 0]\nright = [1.5, 0]\nground_left = [-1.5, 0]\nground_right = [1.5, 0]",
+                              .beam = "A = 0.8\nmass = \"consistent\"\ndensity = 2500\ndamping_beta = 1e-3",
+                              .held = false};
+  return "title = \"tower\"" + column.text() + R"([[interface]]
 name = "soil"
 law = { type = "springs", K_n = 4e8, K_t = 2e8, tangential = "bonded" }
 [interface.pairs]

@@ -12,7 +12,7 @@ namespace uplift {
 namespace {
 
 std::string tower(const std::string& law, const std::string& more = "") {
-  return "title = \"tower\"\n" + more + support::tower_structure + R"([[interface]]
+  return "title = \"tower\"\n" + more + support::Tower{}.text() + support::weight + R"([[interface]]
 name = "soil"
 law = )" +
          law +

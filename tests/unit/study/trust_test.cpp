@@ -12,7 +12,7 @@ namespace uplift {
 namespace {
 
 /// A mass on a column that a push makes rock on tensionless springs.
-const std::string rocking = std::string("title = \"tower\"\n") + support::tower_structure + R"([[interface]]
+const std::string rocking = "title = \"tower\"\n" + support::Tower{}.text() + support::weight + R"([[interface]]
 name = "soil"
 law = { type = "springs", K_n = "200 MPa/m", tangential = "none" }
 [interface.footing]

@@ -1,6 +1,7 @@
 // Bases and walls of embedded foundations: forces by hand, division by normals, what is asked of a wall.
 #include <cmath>
 
+#include "tower_case.h"
 #include "unit/verdict/verdict_support.h"
 #include "uplift/verdict/foundation.h"
 #include "uplift/verdict/verdict.h"
@@ -369,26 +370,14 @@ type = "static"
 
 TEST(VerdictMotion, DeformationOfAColumnOnARockingFooting) {
   // in the plane: P h3/(3 E I) is left without the rotation of the base, P h2/k_rock with it
-  const BuiltCase built = built_of(R"(title = "column"
-bonded = false
-[nodes]
-base = [0, 0]
-top = [0, 6]
-[[rigid]]
-name = "footing"
-node = "base"
-mass = 1e4
-inertia = 1e4
-[[beam]]
-name = "column"
-nodes = ["base", "top"]
-E = "30 GPa"
-A = 1
-I = 0.1
-[[mass]]
-node = "top"
-mass = 1000
-[[interface]]
+  const support::Tower column{.height = "6",
+                              .young = "\"30 GPa\"",
+                              .inertia = "0.1",
+                              .mass = "mass = 1000",
+                              .footing = "mass = 1e4\ninertia = 1e4",
+                              .beam = "A = 1",
+                              .held = false};
+  const BuiltCase built = built_of("title = \"column\"\nbonded = false" + column.text() + R"([[interface]]
 name = "soil"
 footing = { body = "base", width = 4, points = 3 }
 law = { type = "elastic", K_n = 2e8, K_t = 1e8 }
