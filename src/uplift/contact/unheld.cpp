@@ -24,4 +24,29 @@ std::string unheld_motion(const InterfaceProblem& problem, const InterfaceSoluti
   return text;
 }
 
+std::string softening_joint(const InterfaceProblem& problem, const InterfaceSolution& solution) {
+  if (solution.opening.size() != problem.rows() || !solution.opening.allFinite()) return {};
+  Vector traction(problem.rows()), now(problem.old.size()), slope;
+  double steepest = 0;
+  std::string text;
+  for (const Block& block : problem.model->blocks) {
+    if (block.law == nullptr) continue;
+    slope.setZero(block.slopes());
+    law_force(problem, block, solution.opening.data(),
+              {.traction = traction.data() + block.first, .slope = slope.data(), .now = now.data() + block.first_history});
+    const int points = block.batch.points, components = block.batch.components;
+    for (int c = 0; c < components; ++c)
+      for (int i = 0; i < points; ++i) {
+        const double own = slope[(c * components + c) * points + i];
+        if (own >= steepest) continue;
+        steepest = own;
+        text = fmt::format(
+            "the joint '{}' softens at point {}, and no static equilibrium was found near the last one: it may let go at "
+            "once; apply this load in a dynamic stage, or give the joint more fracture energy or no strength",
+            block.name, i + 1);
+      }
+  }
+  return text;
+}
+
 }  // namespace uplift

@@ -13,4 +13,8 @@ inline constexpr double runaway_ratio = 1e3;
 /// joint that is taken back among them, so that a method may converge there.
 std::string unheld_motion(const InterfaceProblem& problem, const InterfaceSolution& solution, double ratio);
 
+/// Where a law softens at the last openings of a static step that has no solution: its point with the steepest descent. Empty where none
+/// does. A joint that loses strength faster than the structure unloads it lets go at once, and no equilibrium follows.
+std::string softening_joint(const InterfaceProblem& problem, const InterfaceSolution& solution);
+
 }  // namespace uplift

@@ -53,6 +53,18 @@ Bulk::Bulk(const Model& model, const Sparse* axial)
 
 namespace {
 
+/// "diagonal entries reach from 1.2e+03 at top.ux to 4.1e+19 at base.uy"
+std::string diagonal_range(const Vector& diagonal, const Model& model) {
+  Index least = 0, most = 0;
+  diagonal.minCoeff(&least);
+  diagonal.maxCoeff(&most);
+  const auto name = [&](Index i) {
+    return static_cast<std::size_t>(i) < model.unknown_names.size() ? model.unknown_names[static_cast<std::size_t>(i)]
+                                                                    : fmt::format("{}", i);
+  };
+  return fmt::format("diagonal entries reach from {:.1e} at {} to {:.1e} at {}", diagonal[least], name(least), diagonal[most], name(most));
+}
+
 /// Hands the inverse of a small matrix out as a factor, for spread_through.
 class InverseFactor final : public Factor {
  public:
@@ -92,7 +104,7 @@ void BulkFactor::factorise(const Sparse& matrix, const Sparse* b, const LinearSo
   }
   if (result.factor == nullptr) {
     too_large_ = result.too_large;
-    fail(model, result.failed_unknown, result.why);
+    fail(model, matrix, result.failed_unknown, result.why);
     return;
   }
   factor_ = std::move(result.factor);
@@ -112,7 +124,7 @@ void BulkFactor::factorise_split(const Sparse& matrix, const LinearSolver& solve
     if (result.factor != nullptr || !result.why.empty()) ++counts.analyses;
   }
   too_large_ = result.too_large;
-  if (!result.why.empty()) return fail(model, result.failed_unknown, result.why);
+  if (!result.why.empty()) return fail(model, matrix, result.failed_unknown, result.why);
   split_ = std::move(result.factor);
 }
 
@@ -135,22 +147,17 @@ void BulkFactor::try_out(const Sparse& matrix, const Model& model, LinearCounts&
   if (residual <= counts.residual) return;
   counts.residual = residual;
   if (residual <= 1e-9) return;
-  Index least = 0, most = 0;
-  diagonal.minCoeff(&least);
-  diagonal.maxCoeff(&most);
-  const auto name = [&](Index i) {
-    return static_cast<std::size_t>(i) < model.unknown_names.size() ? model.unknown_names[static_cast<std::size_t>(i)]
-                                                                    : fmt::format("{}", i);
-  };
-  counts.notice = fmt::format(
-      "back-solves meet their equations to {:.1e} of the load only, so many digits are lost: diagonal entries reach "
-      "from {:.1e} at {} to {:.1e} at {}",
-      residual, diagonal[least], name(least), diagonal[most], name(most));
+  counts.notice = fmt::format("back-solves meet their equations to {:.1e} of the load only, so many digits are lost: {}", residual,
+                              diagonal_range(diagonal, model));
 }
 
-void BulkFactor::fail(const Model& model, int unknown, const std::string& why) {
+/// A mechanism is refused before a run begins. What is left is a structure whose soft motions are lost in the round-off of its stiff parts.
+void BulkFactor::fail(const Model& model, const Sparse& matrix, int unknown, const std::string& why) {
   const bool named = unknown >= 0 && unknown < static_cast<int>(model.unknown_names.size());
-  why_ = named ? fmt::format("the matrix is not positive definite at {}", model.unknown_names[static_cast<std::size_t>(unknown)]) : why;
+  why_ = why;
+  if (!named) return;
+  why_ = fmt::format("the matrix is not positive definite at {}: {}; {}", model.unknown_names[static_cast<std::size_t>(unknown)],
+                     diagonal_range(matrix.diagonal(), model), too_much_contrast);
 }
 
 void BulkFactor::solve(const Vector& b, Vector& x, BulkWork& work) const {

@@ -1,6 +1,7 @@
 #pragma once
 #include <memory>
 #include <string>
+#include <string_view>
 
 #include "uplift/contact/compliance.h"
 #include "uplift/contact/problem.h"
@@ -59,6 +60,12 @@ struct BulkWork {
   Vector half;
 };
 
+/// What to do where the stiffnesses of a model differ so much that its soft parts are lost in the round-off of its stiff ones.
+inline constexpr std::string_view too_much_contrast =
+    "the stiffest and the softest part of the model differ by more than double precision resolves; make the stiffest part rigid "
+    "([[rigid]], "
+    "or a beam without A) or less stiff, or divide its beams into fewer elements";
+
 /// A factored matrix of the bulk: the inverse itself when small; with the unknowns that the interfaces touch last when that is asked for
 /// and the solver can.
 ///
@@ -92,7 +99,7 @@ class BulkFactor {
                  const BulkFactor* like);
   void factorise_split(const Sparse& matrix, const LinearSolver& solver, const Model& model, LinearCounts& counts, const BulkFactor* like);
   void try_out(const Sparse& matrix, const Model& model, LinearCounts& counts);
-  void fail(const Model& model, int unknown, const std::string& why);
+  void fail(const Model& model, const Sparse& matrix, int unknown, const std::string& why);
 
   bool small_ = false, too_large_ = false;
   std::string why_;

@@ -77,11 +77,16 @@ class LoadSteps {
   std::unique_ptr<StepSolver> condensed(std::shared_ptr<const BulkFactor> made) const {
     return std::make_unique<Condensed>(model_, b_, gap_, !motion_.isZero(0), std::move(made), blocks_, method_, counts_);
   }
+  void assemble();
+  void soften_joint();
   void find_loads();
   double load_factor(double share) const { return share < 1 ? first_factor_ + share * (1 - first_factor_) : 1; }
   bool go(double from, double to, int depth);
+  bool go_on();
+  bool retry_with_softer_joint();
   std::string solve(double to, int depth);
-  bool in_balance(const Vector& unbalanced, const Vector& moved) const;
+  std::string imbalance(const Vector& unbalanced, const Vector& moved) const;
+  bool nothing_acts();
   void take_solution();
   void book(double to);
   void accept(double to);
@@ -106,6 +111,7 @@ class LoadSteps {
   std::shared_ptr<const BulkFactor> tangent_;  // the last one, whose analysis serves the next one
   std::unique_ptr<PlasticNewton> newton_;
   const StepSolver* last_ = nullptr;  // solver of the last load step
+  bool softens_ = false;              // a joint, where the last load step failed
   PlasticState plastic_now_, plastic_next_;
   Vector load_, product_, reaction_, moved_, increment_;
   Vector opening_, force_, history_;  // of the interfaces at the end of the load step
@@ -133,14 +139,32 @@ LoadSteps::LoadSteps(const Model& model, const Bulk& bulk, const Sparse& b, cons
       motion_(Vector::Zero(gap.size())),
       blocks_(blocks_of(model, behaviours)) {
   blocks_.shift = closed_joint(model, behaviours);
-  matrix_ = bulk.stiffness_matrix.triangularView<upper_triangle>();
-  if (b.rows() > 0) matrix_ += Sparse(Sparse(b.transpose() * blocks_.shift.asDiagonal() * b).triangularView<upper_triangle>());
+  assemble();
   if (yielding_.any()) {
     newton_ = std::make_unique<PlasticNewton>(yielding_, matrix_, options.plastic);
     plastic_now_ = yielding_.state(state.bulk_history);
   }
   product_ = reaction_ = increment_ = Vector::Zero(bulk.unknowns);
   find_loads();
+}
+
+/// K + B^T D B with the closed joint D.
+void LoadSteps::assemble() {
+  matrix_ = bulk_.stiffness_matrix.triangularView<upper_triangle>();
+  if (b_.rows() > 0) matrix_ += Sparse(Sparse(b_.transpose() * blocks_.shift.asDiagonal() * b_).triangularView<upper_triangle>());
+}
+
+/// Where the matrix or a load step fails: a joint that is no stiffer than the parts that it joins. It is as exact (any stiffness is), but
+/// soft parts on both sides are not lost in its round-off.
+void LoadSteps::soften_joint() {
+  const Vector diagonal = bulk_.stiffness_matrix.diagonal();
+  Vector compliance = Vector::Zero(b_.rows());
+  for (int column = 0; column < b_.outerSize(); ++column)
+    for (Sparse::InnerIterator entry(b_, column); entry; ++entry)
+      if (diagonal[column] > 0) compliance[entry.row()] += entry.value() * entry.value() / diagonal[column];
+  for (Index i = 0; i < compliance.size(); ++i)
+    if (compliance[i] > 0) blocks_.shift[i] = std::min(blocks_.shift[i], 1 / compliance[i]);
+  assemble();
 }
 
 void LoadSteps::find_loads() {
@@ -162,14 +186,41 @@ void LoadSteps::find_loads() {
 /// the loads, is not. `unbalanced` is that difference; what round-off makes of K u does not count, unless it is so much that nothing can be
 /// told. A stage without loads is measured against the forces at its beginning, and against those of the interfaces, which may balance each
 /// other: a footing that supports press down has a moment of none.
-bool LoadSteps::in_balance(const Vector& unbalanced, const Vector& moved) const {
-  if (!unbalanced.allFinite()) return false;
+/// Why this is no equilibrium; empty when it is one.
+std::string LoadSteps::imbalance(const Vector& unbalanced, const Vector& moved) const {
+  if (unbalanced.size() == 0) return {};
+  if (!unbalanced.allFinite()) return "the forces are not finite";
   double size = std::max({size_of(load_), size_of(reaction_), size_of(first_load_)});
   if (b_.rows() > 0) size = std::max(size, size_of(b_.cwiseAbs().transpose() * force_.cwiseAbs()));
-  double round_off = 0;
-  for (int i = 0; i < bulk_.unknowns; ++i) round_off = std::max(round_off, std::abs(bulk_.stiffness_matrix.coeff(i, i) * moved[i]));
+  Index stiffest = 0, worst = 0;
+  const double round_off = bulk_.stiffness_matrix.diagonal().cwiseProduct(moved).cwiseAbs().maxCoeff(&stiffest);
   const double lost = 64 * std::numeric_limits<double>::epsilon() * round_off;
-  return lost <= 1e-3 * size && size_of(unbalanced) <= 1e-6 * size + lost;
+  if (lost > 1e-3 * size)
+    return fmt::format(
+        "the balance of the structure is lost in round-off: at {} stiffness times displacement is {:.1e} times the largest "
+        "force; {}",
+        model_.unknown_names[static_cast<std::size_t>(stiffest)], round_off / std::max(size, 1e-300), too_much_contrast);
+  if (const double rest = unbalanced.cwiseAbs().maxCoeff(&worst); rest > 1e-6 * size + lost)
+    return fmt::format("the balance of the structure is not met at {}: {:.1e} of the largest force is left",
+                       model_.unknown_names[static_cast<std::size_t>(worst)], rest / std::max(size, 1e-300));
+  return {};
+}
+
+/// No load, no motion, no force in structure and joints: a structure above its gaps stays where it is. There is nothing to iterate on, and
+/// nothing that round-off could be compared with. The state is then the solution.
+bool LoadSteps::nothing_acts() {
+  if (!change_.isZero(0) || !first_load_.isZero(0) || !motion_.isZero(0) || !state_.force.isZero(0) || yielding_.any()) return false;
+  moved_ = state_.displacement, opening_ = state_.opening, force_ = state_.force, history_ = state_.history;
+  for (const Block& block : blocks_.blocks) {
+    if (block.law != nullptr) {
+      block.law->respond(block.batch, opening_.data() + block.first, opening_.data() + block.first,
+                         state_.history.data() + block.first_history,
+                         {.traction = force_.data() + block.first, .now = history_.data() + block.first_history});
+    } else if (opening_.segment(block.first + block.batch.normal(), block.batch.points).minCoeff() < 0) {
+      return false;
+    }
+  }
+  return force_.isZero(0);
 }
 
 /// Solves for a share of the stage; why there is no equilibrium, or empty.
@@ -185,6 +236,7 @@ std::string LoadSteps::solve(double to, int depth) {
   const StepStart start{state_.displacement, state_.opening, state_.history};
   Outcome step;
   last_ = linear_.get();
+  if (nothing_acts()) return {};
   if (yielding_.any()) {
     const PlasticNewton::Make soften = [this](const Sparse& d, std::string& why) -> std::unique_ptr<StepSolver> {
       std::shared_ptr<const BulkFactor> softer = factor(matrix_ + d, tangent_ != nullptr ? tangent_.get() : linear_->factor());
@@ -201,7 +253,9 @@ std::string LoadSteps::solve(double to, int depth) {
   }
   outcome_.iterations += step.iterations;
   if (!step.converged) {
-    const std::string found = b_.rows() > 0 && depth >= options_.halvings ? diagnose(last_->problem(), method_) : "";
+    if (b_.rows() == 0 || depth < options_.halvings) return step.why;
+    std::string found = diagnose(last_->problem(), method_);
+    if (found.empty()) found = softening_joint(last_->problem(), last_->solution()), softens_ = !found.empty();
     return found.empty() ? step.why : found + "; " + step.why;
   }
   take_solution();
@@ -210,9 +264,10 @@ std::string LoadSteps::solve(double to, int depth) {
   if (yielding_.any()) unbalanced -= plastic_next_.force;
   if (b_.rows() > 0) reaction_.noalias() = b_.transpose() * force_;
   unbalanced -= reaction_;
-  if (in_balance(unbalanced, moved_)) return {};
-  const std::string unheld = b_.rows() > 0 ? unheld_motion(last_->problem(), last_->solution(), runaway_ratio) : "";
-  return unheld.empty() ? "the balance of the structure is not met" : unheld;
+  const std::string trouble = imbalance(unbalanced, moved_);
+  if (trouble.empty() || b_.rows() == 0) return trouble;
+  const std::string unheld = unheld_motion(last_->problem(), last_->solution(), runaway_ratio);
+  return unheld.empty() ? trouble : unheld;
 }
 
 /// What the solver has found for a load step, without motions that nothing determines.
@@ -284,16 +339,44 @@ bool LoadSteps::go(double from, double to, int depth) {
   return false;
 }
 
+/// The load steps that are not reached yet.
+bool LoadSteps::go_on() {
+  for (int k = 0; k < options_.steps; ++k) {
+    const double from = static_cast<double>(k) / options_.steps, to = static_cast<double>(k + 1) / options_.steps;
+    if (to > outcome_.reached && !go(std::max(from, outcome_.reached), to, 0)) return false;
+  }
+  return true;
+}
+
+/// Where that led no farther, the first reason is kept: it belongs to the joint as it is.
+bool LoadSteps::retry_with_softer_joint() {
+  const double reached = outcome_.reached;
+  const std::string why = outcome_.why;
+  const std::optional<InterfaceProblem> failed = std::exchange(outcome_.failed, std::nullopt);
+  soften_joint();
+  std::shared_ptr<const BulkFactor> made = factor(matrix_, nullptr);
+  if (made->ok()) {
+    linear_ = condensed(std::move(made));
+    if (go_on()) return true;
+    if (!outcome_.failed || outcome_.reached > reached) return false;
+  }
+  outcome_.why = why, outcome_.failed = failed;
+  return false;
+}
+
 StaticOutcome LoadSteps::run() {
   std::shared_ptr<const BulkFactor> made = factor(matrix_, nullptr);
+  if (!made->ok() && !made->too_large() && b_.rows() > 0) {
+    soften_joint();
+    made = factor(matrix_, nullptr);
+  }
   if (!made->ok()) {
     outcome_.why = "static stage: " + made->why();
     return std::move(outcome_);
   }
   linear_ = condensed(std::move(made));
-  bool all = true;
-  for (int k = 0; k < options_.steps && all; ++k)
-    all = go(static_cast<double>(k) / options_.steps, static_cast<double>(k + 1) / options_.steps, 0);
+  bool all = go_on();
+  if (!all && outcome_.failed && b_.rows() > 0 && !softens_ && !yielding_.any()) all = retry_with_softer_joint();
   state_.velocity.setZero();
   state_.acceleration.setZero();
   state_.filter = {};

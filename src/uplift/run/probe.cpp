@@ -1,11 +1,26 @@
 #include "uplift/run/probe.h"
 
 #include <algorithm>
+#include <utility>
 
 #include "uplift/dynamics/split_response.h"
+#include "uplift/dynamics/statics.h"
 #include "uplift/dynamics/step.h"
 
 namespace uplift {
+
+namespace {
+
+/// `contact` with the compliance of this matrix; without one, and with the reason, where it cannot be factorised.
+ContactModel with_compliance(ContactModel contact, const Sparse& matrix, const Sparse& b, const Model& model, const Bulk& bulk,
+                             const LinearSolver& solver, LinearCounts& counts, std::string& why) {
+  BulkFactor factor(matrix, &b, bulk.small, solver, model, counts);
+  why = factor.why();
+  if (factor.ok()) contact.factor = factor.split() != nullptr ? SplitResponse(factor, b, counts).factor() : factor.spread(b, counts).factor;
+  return contact;
+}
+
+}  // namespace
 
 ContactModel probe(const Model& model, const Bulk& bulk, const Sparse& b, const Stage& stage, const LinearSolver& solver,
                    LinearCounts& counts, std::string& why) {
@@ -15,13 +30,16 @@ ContactModel probe(const Model& model, const Bulk& bulk, const Sparse& b, const 
       bulk.stiffness_matrix + s.gamma / (s.beta * dt) * bulk.damping_matrix + (1 - s.alpha_m) / (w * s.beta * dt * dt) * bulk.mass_matrix;
   ContactModel contact = blocks_of(model, Behaviours(model, NoContact(), nullptr));
   contact.step = stage.step;
-  BulkFactor factor(matrix, &b, bulk.small, solver, model, counts);
-  if (!factor.ok()) {
-    why = factor.why();
-    return contact;
-  }
-  contact.factor = factor.split() != nullptr ? SplitResponse(factor, b, counts).factor() : factor.spread(b, counts).factor;
-  return contact;
+  return with_compliance(std::move(contact), matrix, b, model, bulk, solver, counts, why);
+}
+
+ContactModel static_probe(const Model& model, const LinearSolver& solver, LinearCounts& counts, std::string& why) {
+  const Bulk bulk(model, nullptr);
+  const Sparse b = stack_interfaces(model);
+  const Behaviours behaviours(model, NoContact(), nullptr);
+  Sparse matrix = bulk.stiffness_matrix.triangularView<upper_triangle>();
+  matrix += Sparse(Sparse(b.transpose() * closed_joint(model, behaviours).asDiagonal() * b).triangularView<upper_triangle>());
+  return with_compliance(blocks_of(model, behaviours), matrix, b, model, bulk, solver, counts, why);
 }
 
 std::vector<StiffnessRatio> stiffness_ratios(const Model& model, const Stage& stage, const LinearSolver& solver) {

@@ -181,10 +181,11 @@ void Runner::execute() {
   ContactModel compliance;
   bool cones = false;
   for (const Interface& interface : model_.interfaces) cones = cones || interface.cone != nullptr;
-  if (dynamic != nullptr && cones && !plan_.method->constrains()) {
+  if (cones && !plan_.method->constrains()) {
     std::string why;
-    compliance = probe(model_, Bulk(model_, nullptr), b_, *dynamic, *plan_.solver, run_.linear, why);
-    if (!why.empty()) return fail(why, nullptr);
+    compliance = dynamic != nullptr ? probe(model_, Bulk(model_, nullptr), b_, *dynamic, *plan_.solver, run_.linear, why)
+                                    : static_probe(rest_ != nullptr ? *rest_ : model_, *plan_.solver, run_.linear, why);
+    if (!why.empty()) return fail(dynamic != nullptr ? why : "static stage: " + why, nullptr);
   }
   laws_ = std::make_unique<Behaviours>(model_, *plan_.method, compliance.rows() > 0 ? &compliance : nullptr);
   laws_->solver = plan_.interface_solver;
