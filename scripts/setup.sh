@@ -15,7 +15,7 @@ case "${1:-run}" in
   docs) wanted="$run $docs" ;;
   packages) wanted="$run $packages" ;;
   develop) wanted="$run $test $develop" ;;
-  *) echo "setup.sh: wanted run, test, docs, packages or develop, found \"$1\"" >&2; exit 2 ;;
+  *) echo "setup.sh: expected run, test, docs, packages or develop, found \"$1\"" >&2; exit 2 ;;
 esac
 
 if ! command -v dpkg-query >/dev/null; then

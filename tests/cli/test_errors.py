@@ -1,4 +1,4 @@
-"""Bad input: every mistake is refused before the first step, with the place, what was wanted and what was found."""
+"""Bad input: every mistake is refused before the first step, with the place, what was expected and what was found."""
 
 import resource
 
@@ -16,42 +16,42 @@ class BadInput(CliTest):
 
     def test_unknown_key(self):
         text = self.replace("width = 3\n", "widht = 3\n")
-        self.refused(text, f'{{file}}:{line_of(text, "widht")}: interface[0].footing.widht: wanted a key of footing, found "widht" (did you mean "width"?)')
+        self.refused(text, f'{{file}}:{line_of(text, "widht")}: interface[0].footing.widht: expected a key of footing, found "widht" (did you mean "width"?)')
 
     def test_missing_file(self):
         self.write(BASE)
         done = self.uplift("check", "cast.toml", expect=2)
-        self.assertEqual(done.stderr.strip(), 'error: cast.toml: wanted a file, found no file of this name (did you mean "case.toml"?)')
+        self.assertEqual(done.stderr.strip(), 'error: cast.toml: expected a file, found no file of this name (did you mean "case.toml"?)')
 
     def test_missing_file_of_a_function(self):
         text = self.replace('shape = { type = "half_sine", duration = 0.1 }', 'shape = { type = "csv", file = "none.csv" }')
-        self.refused(text, f'{{file}}:{line_of(text, "none.csv")}: function[0].shape.file: wanted a file, found "none.csv"')
+        self.refused(text, f'{{file}}:{line_of(text, "none.csv")}: function[0].shape.file: expected a file, found "none.csv"')
 
     def test_unknown_command(self):
         done = self.uplift("chek", "case.toml", expect=2)
-        self.assertRegex(done.stderr, r'^error: uplift: wanted a command: new, check, .*, found "chek" \(did you mean "check"\?\)$')
+        self.assertRegex(done.stderr, r'^error: uplift: expected a command: new, check, .*, found "chek" \(did you mean "check"\?\)$')
         self.write(BASE)
         self.assertIn('found "case.toml"', self.uplift("case.toml", expect=2).stderr)
 
     def test_tons_are_refused(self):
         text = self.replace("mass = 24317", 'mass = "24 tons"')
-        self.refused(text, f'{{file}}:{line_of(text, "24 tons")}: mass[0].mass: wanted a mass > 0 kg, found "24 tons" (a ton is 907, 1000 or 1016 kg; t is 1000 kg) (did you mean "t"?)')
+        self.refused(text, f'{{file}}:{line_of(text, "24 tons")}: mass[0].mass: expected a mass > 0 kg, found "24 tons" (a ton is 907, 1000 or 1016 kg; t is 1000 kg) (did you mean "t"?)')
 
     def test_wrong_dimension(self):
         text = self.replace("E = 2e10", 'E = "20000 kN"')
-        self.refused(text, f'{{file}}:{line_of(text, "E = ")}: beam[0].E: wanted a pressure > 0 Pa, found "20000 kN" (a force)')
+        self.refused(text, f'{{file}}:{line_of(text, "E = ")}: beam[0].E: expected a pressure > 0 Pa, found "20000 kN" (a force)')
 
     def test_unknown_unit(self):
         text = self.replace("E = 2e10", 'E = "20000 MPaa"')
-        self.refused(text, f'{{file}}:{line_of(text, "E = ")}: beam[0].E: wanted a pressure > 0 Pa, found "20000 MPaa" (unknown unit "MPaa") (did you mean "MPa"?)')
+        self.refused(text, f'{{file}}:{line_of(text, "E = ")}: beam[0].E: expected a pressure > 0 Pa, found "20000 MPaa" (unknown unit "MPaa") (did you mean "MPa"?)')
 
     def test_wrong_type(self):
         text = self.replace("points = 11", 'points = "many"')
-        self.refused(text, f'{{file}}:{line_of(text, "points")}: interface[0].footing.points: wanted an integer from 1 to 100000, found the text "many"')
+        self.refused(text, f'{{file}}:{line_of(text, "points")}: interface[0].footing.points: expected an integer from 1 to 100000, found the text "many"')
 
     def test_missing_key(self):
         text = self.replace("I = 0.2\n", "")
-        self.refused(text, f'{{file}}:{line_of(text, "[[beam]]")}: beam[0].I: wanted a second moment of area > 0 m4, found nothing')
+        self.refused(text, f'{{file}}:{line_of(text, "[[beam]]")}: beam[0].I: expected a second moment of area > 0 m4, found nothing')
 
     def test_duplicate_key(self):
         text = self.replace("I = 0.2\n", "I = 0.2\nI = 0.3\n")
@@ -63,53 +63,53 @@ class BadInput(CliTest):
         text = BASE + '[[function]]\nname = "pulse"\nshape = "constant"\n'
         first = line_of(text, 'name = "pulse"')
         last = len(text.splitlines()) - 1
-        self.refused(text, f'{{file}}:{last}: function[1].name: wanted a name that no other function has, found "pulse", which line {first} uses already')
+        self.refused(text, f'{{file}}:{last}: function[1].name: expected a name that no other function has, found "pulse", which line {first} uses already')
 
     def test_dangling_node(self):
         text = self.replace('nodes = ["base", "top"]', 'nodes = ["base", "tpo"]')
-        self.refused(text, f'{{file}}:{line_of(text, "tpo")}: beam[0].nodes: wanted the name of a node, found "tpo" (did you mean "top"?)')
+        self.refused(text, f'{{file}}:{line_of(text, "tpo")}: beam[0].nodes: expected the name of a node, found "tpo" (did you mean "top"?)')
 
     def test_dangling_function(self):
         text = self.replace('function = "pulse"', 'function = "puls"')
-        self.refused(text, f'{{file}}:{line_of(text, "puls")}: load[1].function: wanted the name of a function, found "puls" (did you mean "pulse"?)'.replace(
+        self.refused(text, f'{{file}}:{line_of(text, "puls")}: load[1].function: expected the name of a function, found "puls" (did you mean "pulse"?)'.replace(
             str(line_of(text, "puls")), str(line_of(text, 'function = "puls"')), 1))
 
     def test_dangling_interface_of_a_history(self):
         text = BASE + '[[output.history]]\ninterface = "sol"\nquantity = "moment"\n'
-        self.refused(text, f'{{file}}:{line_of(text, "sol" + chr(34))}: output.history[0].interface: wanted the name of an interface, found "sol" (did you mean "soil"?)')
+        self.refused(text, f'{{file}}:{line_of(text, "sol" + chr(34))}: output.history[0].interface: expected the name of an interface, found "sol" (did you mean "soil"?)')
 
     def test_unknown_history_quantity(self):
         text = BASE + '[[output.history]]\ninterface = "soil"\nquantity = "momnt"\n'
-        self.refused(text, f'{{file}}:{line_of(text, "momnt")}: output.history[0].quantity: wanted a quantity of an interface: axial, shear, moment, rotation, '
+        self.refused(text, f'{{file}}:{line_of(text, "momnt")}: output.history[0].quantity: expected a quantity of an interface: axial, shear, moment, rotation, '
                            'settlement, tilt, uplifted_ratio, max_opening, max_pressure, found "momnt" (did you mean "moment"?)')
 
     def test_point_beyond_the_interface(self):
         text = BASE + '[[output.history]]\ninterface = "soil"\npoint = 12\nquantity = "opening"\n'
-        self.refused(text, f'{{file}}:{line_of(text, "point = 12")}: output.history[0].point: wanted a point of "soil", from 1 to 11, found 12')
+        self.refused(text, f'{{file}}:{line_of(text, "point = 12")}: output.history[0].point: expected a point of "soil", from 1 to 11, found 12')
 
     def test_zero_mass_where_mass_is_needed(self):
         text = self.replace("mass = 24317\n", "mass = 0\n")
-        self.refused(text, f'{{file}}:{line_of(text, "mass = 0")}: mass[0].mass: wanted a mass > 0 kg, found 0 kg')
+        self.refused(text, f'{{file}}:{line_of(text, "mass = 0")}: mass[0].mass: expected a mass > 0 kg, found 0 kg')
 
     def test_massless_footing(self):
         text = self.replace("mass = 1e4\ninertia = 7500\n", "").replace('type = "springs"\nK_n = 2e8\n', 'type = "unilateral"\n')
-        self.refused(text, f'{{file}}:{line_of(text, "[[interface]]")}: interface.soil: wanted a mass on everything that the interface touches, '
+        self.refused(text, f'{{file}}:{line_of(text, "[[interface]]")}: interface.soil: expected a mass on everything that the interface touches, '
                            'found zero mass where mass is needed: base.rz has none')
 
     def test_snap_back(self):
         text = self.replace('type = "springs"\nK_n = 2e8\n', 'type = "sdm"\nK_n = 1e6\nF_u = 1e5\nG_f = 100\nF_c = -1e3\n')
         done = self.uplift("check", self.write(text).name, expect=2)
         # K > F_u^2/G_f = 1e8 Pa/m: the inequality with both numbers
-        self.assertRegex(done.stderr, r"^error: case\.toml:\d+: interface\[0\]\.law\.K_n: wanted .*F_u.*G_f.*1e\+?0?8")
+        self.assertRegex(done.stderr, r"^error: case\.toml:\d+: interface\[0\]\.law\.K_n: expected .*F_u.*G_f.*1e\+?0?8")
         self.assertRegex(done.stderr, r"found .*1e\+?0?6|found 1000000")
 
     def test_negative_step(self):
         text = self.replace("step = 1e-3", "step = -1e-3")
-        self.refused(text, f'{{file}}:{line_of(text, "step = -")}: stage[1].step: wanted a time > 0 s, found -0.001 s')
+        self.refused(text, f'{{file}}:{line_of(text, "step = -")}: stage[1].step: expected a time > 0 s, found -0.001 s')
 
     def test_step_longer_than_the_stage(self):
         text = self.replace("step = 1e-3", "step = 1")
-        self.refused(text, f'{{file}}:{line_of(text, "step = 1")}: stage[1].step: wanted a step shorter than the duration of 0.5 s, found 1 s')
+        self.refused(text, f'{{file}}:{line_of(text, "step = 1")}: stage[1].step: expected a step shorter than the duration of 0.5 s, found 1 s')
 
     def test_mechanism_names_the_loose_body(self):
         text = self.replace('[[support]]\nnode = "base"\nfixed = ["ux"]\n', "")
@@ -125,22 +125,22 @@ class BadInput(CliTest):
 
     def test_no_stage(self):
         text = BASE[: BASE.index("[[stage]]")]
-        self.refused(text, "{file}: wanted at least one [[stage]], found none")
+        self.refused(text, "{file}: expected at least one [[stage]], found none")
 
     def test_newton_with_a_cone(self):
         text = self.replace('[interface.law]\ntype = "springs"\nK_n = 2e8\n', 'law = "unilateral"\n') .replace('title = "test"\n', 'title = "test"\nmethod = "newton"\n')
         text = text.replace('law = "unilateral"\n', "").replace('name = "soil"\n', 'name = "soil"\nlaw = "unilateral"\n')
-        self.refused(text, f'{{file}}:{line_of(text, "newton")}: method: wanted a method for cones (penalty, augmented_lagrangian, lagrange), or a traction law, '
+        self.refused(text, f'{{file}}:{line_of(text, "newton")}: method: expected a method for cones (penalty, augmented_lagrangian, lagrange), or a traction law, '
                            'found "newton" with a cone')
 
     def test_path_average_with_another_scheme(self):
         text = self.replace("step = 1e-3", 'step = 1e-3\nscheme = "hht"\ntraction = "path"')
-        self.refused(text, f'{{file}}:{line_of(text, "traction = ")}: stage[1].traction: wanted traction = "end" with this scheme (the path average belongs to the '
+        self.refused(text, f'{{file}}:{line_of(text, "traction = ")}: stage[1].traction: expected traction = "end" with this scheme (the path average belongs to the '
                            'average acceleration), found "path"')
 
     def test_mass_and_tuned_frequency(self):
         text = self.replace("mass = 24317\n", 'mass = 24317\ntuned_frequency = "10 Hz"\n')
-        self.refused(text, f'{{file}}:{line_of(text, "tuned")}: mass[0].tuned_frequency: wanted either mass or tuned_frequency, found both')
+        self.refused(text, f'{{file}}:{line_of(text, "tuned")}: mass[0].tuned_frequency: expected either mass or tuned_frequency, found both')
 
     def test_every_variant_is_checked(self):
         text = BASE + '[[variant]]\nname = "a"\n[[variant]]\nname = "b"\nlaw = "unilateral"\nmethod = "newton"\n'
@@ -149,7 +149,7 @@ class BadInput(CliTest):
 
     def test_compared_columns_must_exist(self):
         text = BASE + '[compare]\nagree_on = ["top.uxx"]\n'
-        self.refused(text, f'{{file}}:{line_of(text, "agree_on")}: compare.agree_on: wanted the name of a column of the output, found "top.uxx" (did you mean "top.ux"?)')
+        self.refused(text, f'{{file}}:{line_of(text, "agree_on")}: compare.agree_on: expected the name of a column of the output, found "top.uxx" (did you mean "top.ux"?)')
 
     def test_variant_names_name_files(self):
         text = BASE + '[[variant]]\nname = "../a"\n'

@@ -438,9 +438,9 @@ class Errors(CliTest):
         self.refused(text, f"{{file}}:{line_of(text, key)}: {message}")
 
     def test_what_is_not_there(self):
-        self.refuse('quantities = ["stres"]\n', "quantities =", 'output.fields.quantities: wanted "displacement", "velocity", "acceleration", "stress" or "section_forces", found "stres" (did you mean "stress"?)')
-        self.refuse('groups = ["blok"]\n', "groups =", 'output.fields.groups: wanted "soil_1" or "block", found "blok" (did you mean "block"?)')
-        self.refuse("", "[output.fields]", "output.fields: wanted a [mesh], on which fields are written, found none", text=BASE)
+        self.refuse('quantities = ["stres"]\n', "quantities =", 'output.fields.quantities: expected "displacement", "velocity", "acceleration", "stress" or "section_forces", found "stres" (did you mean "stress"?)')
+        self.refuse('groups = ["blok"]\n', "groups =", 'output.fields.groups: expected "soil_1" or "block", found "blok" (did you mean "block"?)')
+        self.refuse("", "[output.fields]", "output.fields: expected a [mesh], on which fields are written, found none", text=BASE)
 
 
 if __name__ == "__main__":

@@ -92,7 +92,7 @@ class Records(CliTest):
             (("--generate", "rg_1_60"), "pga"),
             (("--generate", "rg_1_60", "pga"), "KEY=VALUE"),
             (("--generate", "rg_1_60", "pga=3", "to=200"), "to"),
-            (("--generate", "rg_1_60", "pga=3", "step=0.01", "--step", "0.02"), "step: wanted one value, found two"),
+            (("--generate", "rg_1_60", "pga=3", "step=0.01", "--step", "0.02"), "step: expected one value, found two"),
             (("--generate", "rg_1_60", "pga=3", "--unit", "g"), "no options for files"),
             (("quake.csv", "--frequencies", "1,0"), 'frequencies > 0 Hz with commas, FROM:TO:COUNT or rg_1_122, found "0"'),
             (("quake.csv", "--frequencies", "5"), "found one"),

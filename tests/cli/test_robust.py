@@ -111,9 +111,9 @@ class Targets(RobustTest):
     def test_targets_are_checked_before_the_run(self):
         (self.folder / "link").symlink_to("nowhere/at/all")
         self.refused_target("link", "found a symbolic link to nowhere/at/all, which does not exist")
-        self.refused_target("n" * 250, "wanted a folder that can be made for the results, found File name too long")
+        self.refused_target("n" * 250, "expected a folder that can be made for the results, found File name too long")
         self.refused_target("/proc", "found a mount point")
-        self.refused_target("case.toml", "wanted a folder for the results, found a file")
+        self.refused_target("case.toml", "expected a folder for the results, found a file")
         self.assertEqual(self.names(), ["case.toml", "link"])
 
     def test_a_link_passes_results_to_its_target(self):
@@ -129,7 +129,7 @@ class Targets(RobustTest):
     def test_long_name_of_a_variant(self):
         text = BASE + SPRINGS.format("v" * 65, "2e8")
         line = line_of(text, '"vvvv')
-        self.refused(text, f"{{file}}:{line}: variant[0].name: wanted a name of at most 64 characters (it names files; `label` may be longer), "
+        self.refused(text, f"{{file}}:{line}: variant[0].name: expected a name of at most 64 characters (it names files; `label` may be longer), "
                      "found 65 characters", command="compare")
 
 
@@ -212,11 +212,11 @@ class Names(RobustTest):
             text = BASE + self.HISTORY.format(name)
             line = len(text.splitlines())
             with self.subTest(name=name):
-                self.refused(text, f"{{file}}:{line}: output.history[0].name: wanted a name for the column{'' if why[0] == ',' else ' '}{why}")
+                self.refused(text, f"{{file}}:{line}: output.history[0].name: expected a name for the column{'' if why[0] == ',' else ' '}{why}")
         text = BASE + self.HISTORY.format('"time"')
-        self.refused(text, f'{{file}}:{len(text.splitlines())}: output.history[0].name: wanted a name other than that of the first column, found "time"')
+        self.refused(text, f'{{file}}:{len(text.splitlines())}: output.history[0].name: expected a name other than that of the first column, found "time"')
         text = BASE + self.HISTORY.format('"top.ux"')
-        self.refused(text, f"{{file}}:{len(text.splitlines())}: output.history[0].name: wanted a name that no other column has, found \"top.ux\", "
+        self.refused(text, f"{{file}}:{len(text.splitlines())}: output.history[0].name: expected a name that no other column has, found \"top.ux\", "
                      "which is there automatically")
 
     def test_long_texts_are_shortened(self):
@@ -244,9 +244,9 @@ class Inputs(RobustTest):
         for words in (("check",), ("motion",), ("replay",)):
             for file in ("pipe", "/dev/zero"):
                 done = self.uplift(*words, file, expect=2, timeout=20)
-                self.assertEqual(done.stderr.strip(), f"error: {file}: wanted a regular file, found a pipe, a device or a socket (write its content to a file first)")
+                self.assertEqual(done.stderr.strip(), f"error: {file}: expected a regular file, found a pipe, a device or a socket (write its content to a file first)")
         self.write(BASE + '[[record]]\nname = "quake"\nfile = "pipe"\n')
-        self.assertIn('record[0].file: wanted a file, found "pipe"', self.uplift("check", "case.toml", expect=2, timeout=20).stderr)
+        self.assertIn('record[0].file: expected a file, found "pipe"', self.uplift("check", "case.toml", expect=2, timeout=20).stderr)
         self.write(BASE + '[mesh]\nfile = "pipe"\n')
         self.uplift("check", "case.toml", expect=2, timeout=20)
 
@@ -255,7 +255,7 @@ class Inputs(RobustTest):
         with open(record, "w") as file:
             file.truncate(101_000_000)
         done = self.uplift("motion", "quake.csv", expect=2)
-        self.assertEqual(done.stderr.strip(), "error: quake.csv: wanted a file of at most 100 MB (the environment variable UPLIFT_MAX_FILE_MB raises "
+        self.assertEqual(done.stderr.strip(), "error: quake.csv: expected a file of at most 100 MB (the environment variable UPLIFT_MAX_FILE_MB raises "
                          "this limit), found 101 MB")
         self.write(BASE)
         self.assertIn("of at most 0 bytes", self.uplift("check", "case.toml", expect=2, env={**os.environ, "UPLIFT_MAX_FILE_MB": "0"}).stderr)
@@ -270,7 +270,7 @@ class Inputs(RobustTest):
                 ("mass = 24317", "mass = 1e31", "mass[0].mass", "a mass of at most 1e+30 kg, found 1e+31 kg"),
                 ("step = 1e-3", "step = 1e-300", "stage[1].step", "a time of at least 1e-30 s, found 1e-300 s")):
             text = BASE.replace(before, after)
-            self.refused(text, f"{{file}}:{line_of(text, after)}: {path}: wanted {why}")
+            self.refused(text, f"{{file}}:{line_of(text, after)}: {path}: expected {why}")
 
     def test_motions_stay_finite(self):
         record = self.folder / "a.csv"
@@ -280,7 +280,7 @@ class Inputs(RobustTest):
                            (["a.csv", "--process", "scale factor=1e308"], "a number of at most 1e+30, found 1e+308"),
                            (["a.csv", "--process", "scale factor=1e20"], "values of a ground motion, at most 1e+06 m/s2, found 1e+20 m/s2"),
                            (["--generate", "rg_1_60", "pga=1e300"], "an acceleration of at most 1e+30 m/s2, found 1e+300 m/s2")):
-            self.assertIn("wanted " + why, self.uplift("motion", *words, expect=2).stderr)
+            self.assertIn("expected " + why, self.uplift("motion", *words, expect=2).stderr)
         text = BASE + '[[record]]\nname = "quake"\nfile = "a.csv"\nprocess = [{ do = { type = "scale", factor = 1e20 } }]\n'
         self.write(text)
         self.assertIn("values of a ground motion, at most 1e+06 m/s2", self.uplift("check", "case.toml", expect=2).stderr)
@@ -289,7 +289,7 @@ class Inputs(RobustTest):
         problem = json.loads((pathlib.Path(__file__).parent / "stored_problem.json").read_text())
         problem["blocks"][0]["area"][0] = "inf"
         self.write(json.dumps(problem), "problem.json")
-        self.assertIn("blocks[0].area: wanted finite areas > 0, found inf", self.uplift("replay", "problem.json", expect=2).stderr)
+        self.assertIn("blocks[0].area: expected finite areas > 0, found inf", self.uplift("replay", "problem.json", expect=2).stderr)
 
     def test_soil_box_is_counted_first(self):
         box = ('[mesh.soil_box]\nsoil = {{ width = 60, length = 60, size = 10, layers = [{{ thickness = {}, size = {} }}] }}\n'
@@ -305,7 +305,7 @@ class Inputs(RobustTest):
     def test_histories_that_do_not_fit(self):
         self.write(BASE.replace("duration = 0.5", "duration = 1e9"))  # 1e12 steps
         err = self.uplift("run", "case.toml", expect=2, timeout=20).stderr
-        self.assertIn("output.every: wanted histories that fit into the ", err)
+        self.assertIn("output.every: expected histories that fit into the ", err)
         self.assertIn(" for 1e+12 steps (a larger step, a shorter duration or a larger `every` takes less)", err)
         self.write(BASE)
         told = json.loads(self.uplift("check", "case.toml", "--json").stdout)["histories"]
@@ -345,13 +345,13 @@ class Energy(RobustTest):
 class Places(RobustTest):
     def test_messages_have_a_place(self):
         bare = BASE[:BASE.index("[[stage]]")]
-        self.refused(bare, "{file}: wanted at least one [[stage]], found none")
+        self.refused(bare, "{file}: expected at least one [[stage]], found none")
         loose = BASE[:BASE.index("[[rigid]]")] + BASE[BASE.index("[[load]]"):]
-        self.refused(loose, '{file}: wanted a structure that its supports hold, found a mechanism: "top", "base" can move '
+        self.refused(loose, '{file}: expected a structure that its supports hold, found a mechanism: "top", "base" can move '
                      "along (1, 0) without resistance")
         sweep = BASE.replace('type = "dynamic"', 'type = "dynamic"\nscheme = { type = "generalised_alpha", rho = 0.8 }') + (
             SPRINGS.format("a", "2e8") + '[compare.stiffness_sweep]\nlaw = { type = "springs", K_n = 2e8 }\nratios = [1]\n')
-        self.refused(sweep, f"{{file}}:{len(sweep.splitlines()) - 1}: compare.stiffness_sweep: wanted stages with the average acceleration: the sweep "
+        self.refused(sweep, f"{{file}}:{len(sweep.splitlines()) - 1}: compare.stiffness_sweep: expected stages with the average acceleration: the sweep "
                      'compares both tractions, found "generalised_alpha"', command="compare")
 
     def test_amplitude_of_a_motion(self):
@@ -365,7 +365,7 @@ class Places(RobustTest):
             peaks.append(run["peaks"]["base.ux"]["value"])
         self.assertEqual(peaks, [2e-3] * 3)  # the largest value of the half sine is 1
         text = free + motion.format("ux", '"2 mrad"')
-        self.refused(text, f"{{file}}:{line_of(text, 'mrad')}: motion[0].amplitude: wanted a length [m], found \"2 mrad\" (an angle)")
+        self.refused(text, f"{{file}}:{line_of(text, 'mrad')}: motion[0].amplitude: expected a length [m], found \"2 mrad\" (an angle)")
 
 
 if __name__ == "__main__":

@@ -147,22 +147,22 @@ class MeshFile(CliTest):
         self.assertEqual(run["max_uplifted_ratio"]["value"], 0)
 
     def test_missing_file(self):
-        self.refused(BLOCK, '{file}:3: wanted a mesh file (Gmsh .msh or MED), found no file "soil.msh"')
+        self.refused(BLOCK, '{file}:3: expected a mesh file (Gmsh .msh or MED), found no file "soil.msh"')
 
     def test_missing_group(self):
         self.write(gmsh(4, 8, 4), "soil.msh")
         text = BLOCK.replace('group = "bottom"', 'group = "botom"')
-        self.refused(text, f'{{file}}:{line_of(text, "botom")}: support[0].group: wanted a group of the mesh, found no group "botom" in the mesh (did you mean "bottom"?)')
+        self.refused(text, f'{{file}}:{line_of(text, "botom")}: support[0].group: expected a group of the mesh, found no group "botom" in the mesh (did you mean "bottom"?)')
 
     def test_surface_elsewhere(self):
         self.write(gmsh(4, 8, 4), "soil.msh")
         text = BLOCK.replace('group = "contact"', 'group = "roof"')
         done = self.uplift("check", self.write(text).name, expect=2)
-        self.assertTrue(done.stderr.startswith(f'error: case.toml:{line_of(text, "roof")}: group "roof": wanted faces between a cell of the lower side and one of the upper side, found 4 of 4 elsewhere; '), done.stderr)
+        self.assertTrue(done.stderr.startswith(f'error: case.toml:{line_of(text, "roof")}: group "roof": expected faces between a cell of the lower side and one of the upper side, found 4 of 4 elsewhere; '), done.stderr)
 
     def test_both_a_file_and_a_soil_box(self):
         text = BLOCK.replace('file = "soil.msh"', 'file = "soil.msh"\nsoil_box = { soil = { width = 10 }, block = { width = 2, height = 2 } }')
-        self.refused(text, "{file}:2: mesh: wanted either file or soil_box, found both")
+        self.refused(text, "{file}:2: mesh: expected either file or soil_box, found both")
 
 
 if __name__ == "__main__":

@@ -22,7 +22,7 @@ std::string message(const Where& where, const std::string& path, const std::stri
   std::string place = where.file;
   if (where.line > 0) place += (place.empty() ? "line " : ":") + std::to_string(where.line);
   std::string what;
-  if (!wanted.empty()) what = "wanted " + wanted;
+  if (!wanted.empty()) what = "expected " + wanted;
   if (!found.empty()) what += (what.empty() ? "found " : ", found ") + shortened(found);
   if (!nearest.empty()) what += (what.empty() ? "did you mean " : " (did you mean ") + in_quotes(nearest) + (what.empty() ? "?" : "?)");
   std::string out;

@@ -14,7 +14,7 @@ struct Where {
 };
 
 /// Bad input, found before the first step. The text reads
-/// `FILE:LINE: PATH: wanted WANTED, found FOUND (did you mean "NEAREST"?)`.
+/// `FILE:LINE: PATH: expected EXPECTED, found FOUND (did you mean "NEAREST"?)`.
 class InputError : public std::runtime_error {
  public:
   /// `path` is the key as the user would write it ("interface[0].law.K_n"); any part may be empty.

@@ -270,7 +270,7 @@ bool is_letter(char c) {
 std::string fault_of(std::string_view unit) {
   if (unit.size() > 80) return "a unit that is too long";
   if (unit.find('@') != unit.npos) return "a unit with an origin";
-  if (unit[0] == ',') return "a decimal point is wanted, not a comma";
+  if (unit[0] == ',') return "use a decimal point, not a comma";
   for (const char c : unit)  // UDUNITS prints some of the others
     if (!is_letter(c) && !is_digit(c) && std::string_view(" .*/^-+()%_'").find(c) == std::string_view::npos)
       return "no unit has the character " + in_quotes({&c, 1});

@@ -122,93 +122,93 @@ TEST(Check, KeepsPlacesAndPaths) {
 TEST(Check, APartMayBeABareName) {
   EXPECT_EQ(read("method = \"lagrange\"\n" + least).part("method").type(), "lagrange");
   EXPECT_EQ(error_of("method = \"penalty\"\n" + least),
-            "case.toml:1: method.stiffness: wanted a pressure per length > 0 Pa/m, found nothing");
+            "case.toml:1: method.stiffness: expected a pressure per length > 0 Pa/m, found nothing");
 }
 
 TEST(Check, UnknownKeys) {
-  EXPECT_EQ(error_of("titel = \"t\"\n"), "case.toml:1: titel: wanted a key of sample, found \"titel\" (did you mean \"title\"?)");
+  EXPECT_EQ(error_of("titel = \"t\"\n"), "case.toml:1: titel: expected a key of sample, found \"titel\" (did you mean \"title\"?)");
   EXPECT_EQ(error_of("title = \"t\"\n[limits]\ntemperature = 3\n"),
-            "case.toml:3: limits.temperature: wanted a key of limits: rotation or tolerance, found \"temperature\"");
+            "case.toml:3: limits.temperature: expected a key of limits: rotation or tolerance, found \"temperature\"");
   EXPECT_EQ(error_of("method = {type = \"penalty\", stifness = 1}\n"),
-            "case.toml:1: method.stifness: wanted a key of penalty, found \"stifness\" (did you mean \"stiffness\"?)");
+            "case.toml:1: method.stifness: expected a key of penalty, found \"stifness\" (did you mean \"stiffness\"?)");
   EXPECT_EQ(error_of("method = {type = \"lagrange\", rounds = 1}\n"),
-            "case.toml:1: method.rounds: wanted no key, as lagrange has no parameters, found \"rounds\"");
+            "case.toml:1: method.rounds: expected no key, as lagrange has no parameters, found \"rounds\"");
 }
 
 TEST(Check, MissingKeys) {
-  EXPECT_EQ(error_of(""), "case.toml: title: wanted a text, found nothing");
+  EXPECT_EQ(error_of(""), "case.toml: title: expected a text, found nothing");
   EXPECT_EQ(error_of("title = \"t\"\n\n[[beam]]\nnodes = [\"a\", \"b\"]\n"),
-            "case.toml:3: beam[0].E: wanted a pressure > 0 Pa, found nothing");
-  EXPECT_EQ(error_of("title = \"t\"\n[cases.a]\n"), "case.toml:2: cases.a.factor: wanted a number, found nothing");
+            "case.toml:3: beam[0].E: expected a pressure > 0 Pa, found nothing");
+  EXPECT_EQ(error_of("title = \"t\"\n[cases.a]\n"), "case.toml:2: cases.a.factor: expected a number, found nothing");
 }
 
 TEST(Check, UnitsAndDimensions) {
   EXPECT_EQ(error_of("title = \"t\"\n[limits]\ntolerance = \"3 Pa\"\n"),
-            "case.toml:3: limits.tolerance: wanted a length [m], found \"3 Pa\" (a pressure)");
+            "case.toml:3: limits.tolerance: expected a length [m], found \"3 Pa\" (a pressure)");
   EXPECT_EQ(error_of("title = \"t\"\n[[beam]]\nnodes=[]\nE = \"3 m\"\n"),
-            "case.toml:4: beam[0].E: wanted a pressure > 0 Pa, found \"3 m\" (a length)");
+            "case.toml:4: beam[0].E: expected a pressure > 0 Pa, found \"3 m\" (a length)");
   EXPECT_EQ(error_of("title = \"t\"\n[[beam]]\nE = \"3 MPaa\"\n"),
-            "case.toml:3: beam[0].E: wanted a pressure > 0 Pa, found \"3 MPaa\" (unknown unit \"MPaa\") (did you mean \"MPa\"?)");
+            "case.toml:3: beam[0].E: expected a pressure > 0 Pa, found \"3 MPaa\" (unknown unit \"MPaa\") (did you mean \"MPa\"?)");
   EXPECT_EQ(error_of("gravity = [0, \"1 g\"]\n"),
-            "case.toml:1: gravity[1]: wanted an acceleration [m/s2], found \"1 g\" (g is the gram; standard gravity is g_n)");
+            "case.toml:1: gravity[1]: expected an acceleration [m/s2], found \"1 g\" (g is the gram; standard gravity is g_n)");
   EXPECT_EQ(error_of("[[beam]]\nE = 1\nstiffness = \"rigit\"\n"),
-            "case.toml:3: beam[0].stiffness: wanted a number from 0 to 10 or \"rigid\", found \"rigit\" (did you mean \"rigid\"?)");
+            "case.toml:3: beam[0].stiffness: expected a number from 0 to 10 or \"rigid\", found \"rigit\" (did you mean \"rigid\"?)");
 }
 
 TEST(Check, Bounds) {
-  EXPECT_EQ(error_of("[[beam]]\nE = 0\n"), "case.toml:2: beam[0].E: wanted a pressure > 0 Pa, found 0 Pa");
-  EXPECT_EQ(error_of("[[beam]]\nE = \"-5 MPa\"\n"), "case.toml:2: beam[0].E: wanted a pressure > 0 Pa, found \"-5 MPa\" (-5000000 Pa)");
+  EXPECT_EQ(error_of("[[beam]]\nE = 0\n"), "case.toml:2: beam[0].E: expected a pressure > 0 Pa, found 0 Pa");
+  EXPECT_EQ(error_of("[[beam]]\nE = \"-5 MPa\"\n"), "case.toml:2: beam[0].E: expected a pressure > 0 Pa, found \"-5 MPa\" (-5000000 Pa)");
   EXPECT_EQ(error_of("[[beam]]\nstiffness = 10.5\n"),
-            "case.toml:2: beam[0].stiffness: wanted a number from 0 to 10 or \"rigid\", found 10.5");
-  EXPECT_EQ(error_of("count = 0\n"), "case.toml:1: count: wanted an integer from 1 to 10, found 0");
-  EXPECT_EQ(error_of("count = 11\n"), "case.toml:1: count: wanted an integer from 1 to 10, found 11");
-  EXPECT_EQ(error_of("[limits]\nrotation = -1\n"), "case.toml:2: limits.rotation: wanted an angle >= 0 rad, found -1 rad");
+            "case.toml:2: beam[0].stiffness: expected a number from 0 to 10 or \"rigid\", found 10.5");
+  EXPECT_EQ(error_of("count = 0\n"), "case.toml:1: count: expected an integer from 1 to 10, found 0");
+  EXPECT_EQ(error_of("count = 11\n"), "case.toml:1: count: expected an integer from 1 to 10, found 11");
+  EXPECT_EQ(error_of("[limits]\nrotation = -1\n"), "case.toml:2: limits.rotation: expected an angle >= 0 rad, found -1 rad");
   EXPECT_EQ(read("count = 1\n" + least).integer("count"), 1);
   EXPECT_EQ(read("count = 10\n" + least).integer("count"), 10);
-  EXPECT_EQ(error_of("[damping]\nslope = 0\n"), "case.toml:2: damping.slope: wanted a number < 0, found 0");
+  EXPECT_EQ(error_of("[damping]\nslope = 0\n"), "case.toml:2: damping.slope: expected a number < 0, found 0");
 }
 
 TEST(Check, NotANumberAndInfinityAreRefusedEverywhere) {
-  EXPECT_EQ(error_of("[[beam]]\nE = nan\n"), "case.toml:2: beam[0].E: wanted a pressure > 0 Pa, found nan Pa");
-  EXPECT_EQ(error_of("[limits]\ntolerance = inf\n"), "case.toml:2: limits.tolerance: wanted a length [m], found inf m");
-  EXPECT_EQ(error_of("gravity = [-inf, 0]\n"), "case.toml:1: gravity[0]: wanted an acceleration [m/s2], found -inf m/s2");
-  EXPECT_EQ(error_of("count = nan\n"), "case.toml:1: count: wanted an integer from 1 to 10, found nan");
+  EXPECT_EQ(error_of("[[beam]]\nE = nan\n"), "case.toml:2: beam[0].E: expected a pressure > 0 Pa, found nan Pa");
+  EXPECT_EQ(error_of("[limits]\ntolerance = inf\n"), "case.toml:2: limits.tolerance: expected a length [m], found inf m");
+  EXPECT_EQ(error_of("gravity = [-inf, 0]\n"), "case.toml:1: gravity[0]: expected an acceleration [m/s2], found -inf m/s2");
+  EXPECT_EQ(error_of("count = nan\n"), "case.toml:1: count: expected an integer from 1 to 10, found nan");
 }
 
 TEST(Check, Integers) {
   EXPECT_EQ(read("count = 4.0\n" + least).integer("count"), 4);
-  EXPECT_EQ(error_of("count = 3.5\n"), "case.toml:1: count: wanted an integer from 1 to 10, found 3.5");
-  EXPECT_EQ(error_of("count = \"3\"\n"), "case.toml:1: count: wanted an integer from 1 to 10, found the text \"3\"");
-  EXPECT_EQ(error_of("frames = 3000000000\n"), "case.toml:1: frames: wanted an integer from -2147483648 to 2147483647, found 3000000000");
-  EXPECT_EQ(error_of("frames = 1e300\n"), "case.toml:1: frames: wanted an integer from -2147483648 to 2147483647, found 1e+300");
+  EXPECT_EQ(error_of("count = 3.5\n"), "case.toml:1: count: expected an integer from 1 to 10, found 3.5");
+  EXPECT_EQ(error_of("count = \"3\"\n"), "case.toml:1: count: expected an integer from 1 to 10, found the text \"3\"");
+  EXPECT_EQ(error_of("frames = 3000000000\n"), "case.toml:1: frames: expected an integer from -2147483648 to 2147483647, found 3000000000");
+  EXPECT_EQ(error_of("frames = 1e300\n"), "case.toml:1: frames: expected an integer from -2147483648 to 2147483647, found 1e+300");
   EXPECT_EQ(read("frames = -2147483648\n" + least).integer("frames"), std::numeric_limits<int>::min());
 }
 
 TEST(Check, ChoicesAndParts) {
   EXPECT_EQ(error_of("rule = \"nodel\"\n"),
-            "case.toml:1: rule: wanted \"nodal\", \"midpoint\" or \"gauss\", found \"nodel\" (did you mean \"nodal\"?)");
-  EXPECT_EQ(error_of("rule = \"simpson\"\n"), "case.toml:1: rule: wanted \"nodal\", \"midpoint\" or \"gauss\", found \"simpson\"");
+            "case.toml:1: rule: expected \"nodal\", \"midpoint\" or \"gauss\", found \"nodel\" (did you mean \"nodal\"?)");
+  EXPECT_EQ(error_of("rule = \"simpson\"\n"), "case.toml:1: rule: expected \"nodal\", \"midpoint\" or \"gauss\", found \"simpson\"");
   EXPECT_EQ(error_of("method = \"lagrang\"\n"),
-            "case.toml:1: method: wanted \"lagrange\" or \"penalty\", found \"lagrang\" (did you mean \"lagrange\"?)");
+            "case.toml:1: method: expected \"lagrange\" or \"penalty\", found \"lagrang\" (did you mean \"lagrange\"?)");
   EXPECT_EQ(error_of("[method]\ntype = \"penality\"\n"),
-            "case.toml:2: method.type: wanted \"lagrange\" or \"penalty\", found \"penality\" (did you mean \"penalty\"?)");
-  EXPECT_EQ(error_of("[method]\nstiffness = 3\n"), "case.toml:1: method.type: wanted \"lagrange\" or \"penalty\", found nothing");
-  EXPECT_EQ(error_of("[method]\ntype = 3\n"), "case.toml:2: method.type: wanted \"lagrange\" or \"penalty\", found 3");
-  EXPECT_EQ(error_of("method = 3\n"), "case.toml:1: method: wanted \"lagrange\" or \"penalty\", found 3");
+            "case.toml:2: method.type: expected \"lagrange\" or \"penalty\", found \"penality\" (did you mean \"penalty\"?)");
+  EXPECT_EQ(error_of("[method]\nstiffness = 3\n"), "case.toml:1: method.type: expected \"lagrange\" or \"penalty\", found nothing");
+  EXPECT_EQ(error_of("[method]\ntype = 3\n"), "case.toml:2: method.type: expected \"lagrange\" or \"penalty\", found 3");
+  EXPECT_EQ(error_of("method = 3\n"), "case.toml:1: method: expected \"lagrange\" or \"penalty\", found 3");
 }
 
 TEST(Check, TablesThatAreNone) {
-  EXPECT_EQ(error_of("[beam]\nE = 1\n"), "case.toml:1: beam: wanted tables [[beam]], found a table");
-  EXPECT_EQ(error_of("[[limits]]\nrotation = 1\n"), "case.toml:1: limits: wanted a table [limits], found a list of tables");
-  EXPECT_EQ(error_of("beam = [1]\n"), "case.toml:1: beam[0]: wanted a table, found 1");
-  EXPECT_EQ(error_of("nodes = 3\n"), "case.toml:1: nodes: wanted a table [nodes] of names, found 3");
-  EXPECT_EQ(error_of("[cases]\na = 3\n"), "case.toml:2: cases.a: wanted a table, found 3");
-  EXPECT_EQ(error_of("nodes = {a = 3}\n"), "case.toml:1: nodes.a: wanted a list of 2 numbers [m], found 3");
-  EXPECT_EQ(error_of("nodes = {a = [1]}\n"), "case.toml:1: nodes.a: wanted a list of 2 numbers [m], found 1 number");
-  EXPECT_EQ(error_of("gravity = []\n"), "case.toml:1: gravity: wanted a list of 2 numbers [m/s2], found an empty list");
-  EXPECT_EQ(error_of("gravity = [1, [2]]\n"), "case.toml:1: gravity[1]: wanted an acceleration [m/s2], found a list");
-  EXPECT_EQ(error_of("keys = \"a\"\n"), "case.toml:1: keys: wanted a list of texts, found the text \"a\"");
-  EXPECT_EQ(error_of("keys = [\"a\", 2]\n"), "case.toml:1: keys[1]: wanted a text, found 2");
+  EXPECT_EQ(error_of("[beam]\nE = 1\n"), "case.toml:1: beam: expected tables [[beam]], found a table");
+  EXPECT_EQ(error_of("[[limits]]\nrotation = 1\n"), "case.toml:1: limits: expected a table [limits], found a list of tables");
+  EXPECT_EQ(error_of("beam = [1]\n"), "case.toml:1: beam[0]: expected a table, found 1");
+  EXPECT_EQ(error_of("nodes = 3\n"), "case.toml:1: nodes: expected a table [nodes] of names, found 3");
+  EXPECT_EQ(error_of("[cases]\na = 3\n"), "case.toml:2: cases.a: expected a table, found 3");
+  EXPECT_EQ(error_of("nodes = {a = 3}\n"), "case.toml:1: nodes.a: expected a list of 2 numbers [m], found 3");
+  EXPECT_EQ(error_of("nodes = {a = [1]}\n"), "case.toml:1: nodes.a: expected a list of 2 numbers [m], found 1 number");
+  EXPECT_EQ(error_of("gravity = []\n"), "case.toml:1: gravity: expected a list of 2 numbers [m/s2], found an empty list");
+  EXPECT_EQ(error_of("gravity = [1, [2]]\n"), "case.toml:1: gravity[1]: expected an acceleration [m/s2], found a list");
+  EXPECT_EQ(error_of("keys = \"a\"\n"), "case.toml:1: keys: expected a list of texts, found the text \"a\"");
+  EXPECT_EQ(error_of("keys = [\"a\", 2]\n"), "case.toml:1: keys[1]: expected a text, found 2");
   EXPECT_EQ(read("beam = []\ntitle = \"t\"\n").tables("beam").size(), 0u);
   EXPECT_EQ(read("nodes = {a = {value = [1, 2]}}\n" + least).tables("nodes")[0].numbers("value"), (std::vector<double>{1, 2}));
 }
@@ -253,7 +253,7 @@ TEST(Check, RawWithoutAFile) {
     check_part(raw, sample_methods());
     ADD_FAILURE();
   } catch (const InputError& error) {
-    EXPECT_STREQ(error.what(), "stiffness: wanted a pressure per length > 0 Pa/m, found -1 Pa/m");
+    EXPECT_STREQ(error.what(), "stiffness: expected a pressure per length > 0 Pa/m, found -1 Pa/m");
   }
   EXPECT_THROW(check(Raw{}, sample_section()), InputError);
 }

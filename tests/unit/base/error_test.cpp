@@ -13,20 +13,20 @@ std::string text_of(const InputError& error) {
 
 TEST(InputError, SaysPlacePathWantedFoundAndNearest) {
   const InputError error({"case.toml", 12}, "beam[0].E", "a pressure [Pa]", "\"3 m\" (a length)", "MPa");
-  EXPECT_EQ(text_of(error), "case.toml:12: beam[0].E: wanted a pressure [Pa], found \"3 m\" (a length) (did you mean \"MPa\"?)");
+  EXPECT_EQ(text_of(error), "case.toml:12: beam[0].E: expected a pressure [Pa], found \"3 m\" (a length) (did you mean \"MPa\"?)");
   EXPECT_EQ(error.where().file, "case.toml");
   EXPECT_EQ(error.where().line, 12);
   EXPECT_EQ(error.path(), "beam[0].E");
 }
 
 TEST(InputError, LeavesOutEmptyPartsCleanly) {
-  EXPECT_EQ(text_of({{"case.toml", 0}, "", "a file", "a folder"}), "case.toml: wanted a file, found a folder");
-  EXPECT_EQ(text_of({{"", 0}, "beam", "a table", "3"}), "beam: wanted a table, found 3");
-  EXPECT_EQ(text_of({{"", 0}, "", "a table", ""}), "wanted a table");
+  EXPECT_EQ(text_of({{"case.toml", 0}, "", "a file", "a folder"}), "case.toml: expected a file, found a folder");
+  EXPECT_EQ(text_of({{"", 0}, "beam", "a table", "3"}), "beam: expected a table, found 3");
+  EXPECT_EQ(text_of({{"", 0}, "", "a table", ""}), "expected a table");
   EXPECT_EQ(text_of({{"f", 3}, "a", "", "two tables"}), "f:3: a: found two tables");
-  EXPECT_EQ(text_of({{"f", 3}, "a", "b", "", "c"}), "f:3: a: wanted b (did you mean \"c\"?)");
+  EXPECT_EQ(text_of({{"f", 3}, "a", "b", "", "c"}), "f:3: a: expected b (did you mean \"c\"?)");
   EXPECT_EQ(text_of({{"f", 3}, "a", "", "", "c"}), "f:3: a: did you mean \"c\"?");
-  EXPECT_EQ(text_of({{"", 3}, "", "b", "c"}), "line 3: wanted b, found c");
+  EXPECT_EQ(text_of({{"", 3}, "", "b", "c"}), "line 3: expected b, found c");
   EXPECT_EQ(text_of({{}, "", "", ""}), "bad input");
 }
 

@@ -81,10 +81,10 @@ TEST_F(FileTest, AMissingFileNamesTheNearest) {
   fs::create_directory(folder / "cases");
   const std::string place = folder.string();
   EXPECT_EQ(error_of_reading(folder / "csae.toml"),
-            place + "/csae.toml: wanted a file, found no file of this name (did you mean \"" + place + "/case.toml\"?)");
-  EXPECT_EQ(error_of_reading(folder / "other.txt"), place + "/other.txt: wanted a file, found no file of this name");
-  EXPECT_EQ(error_of_reading(folder / "none/a"), place + "/none/a: wanted a file, found no folder \"" + place + "/none\"");
-  EXPECT_EQ(error_of_reading(folder / "cases"), place + "/cases: wanted a file, found a folder");
+            place + "/csae.toml: expected a file, found no file of this name (did you mean \"" + place + "/case.toml\"?)");
+  EXPECT_EQ(error_of_reading(folder / "other.txt"), place + "/other.txt: expected a file, found no file of this name");
+  EXPECT_EQ(error_of_reading(folder / "none/a"), place + "/none/a: expected a file, found no folder \"" + place + "/none\"");
+  EXPECT_EQ(error_of_reading(folder / "cases"), place + "/cases: expected a file, found a folder");
 }
 
 // Reading a socket, a pipe or a device might never end.
@@ -97,7 +97,7 @@ TEST_F(FileTest, WhatIsNoRegularFileIsAnError) {
   const int socket = ::socket(AF_UNIX, SOCK_STREAM, 0);
   ASSERT_EQ(::bind(socket, reinterpret_cast<const sockaddr*>(&address), sizeof address), 0);
   EXPECT_EQ(error_of_reading(path),
-            path.string() + ": wanted a regular file, found a pipe, a device or a socket (write its content to a file first)");
+            path.string() + ": expected a regular file, found a pipe, a device or a socket (write its content to a file first)");
   ::close(socket);
 }
 

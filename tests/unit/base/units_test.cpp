@@ -95,8 +95,8 @@ TEST(Units, RefusesNumbersBeyondTheRange) {
 
 TEST(Units, RefusesTrailingTextAndFactorsInsideUnits) {
   EXPECT_EQ(why_not("3 m x", "m"), "\"3 m x\" (unknown unit \"m x\")");
-  EXPECT_EQ(why_not("1,5 m", "m"), "\"1,5 m\" (a decimal point is wanted, not a comma)");
-  EXPECT_EQ(why_not("1,5", "m"), "\"1,5\" (a decimal point is wanted, not a comma)");
+  EXPECT_EQ(why_not("1,5 m", "m"), "\"1,5 m\" (use a decimal point, not a comma)");
+  EXPECT_EQ(why_not("1,5", "m"), "\"1,5\" (use a decimal point, not a comma)");
   EXPECT_EQ(why_not("5 10 m", "m"), "\"5 10 m\" (a number inside the unit)");
   EXPECT_EQ(why_not("1.5.2", "m"), "\"1.5.2\" (a number inside the unit)");
   EXPECT_EQ(why_not("2 m 3", "m"), "\"2 m 3\" (a number inside the unit)");   // UDUNITS: 6 m

@@ -244,7 +244,7 @@ TEST(CaseBeamGroup, ColumnThatEndsOnSolidsIsHinged) {
   const Mesh mesh = column_on_raft(0);
   const int foot = mesh.cell(mesh.groups.at("column").cells.front())[0];
   EXPECT_EQ(refusal(raft_text(""), mesh),
-            "case.toml: wanted a structure that its supports hold, found a mechanism: \"mesh." + std::to_string(foot + 1) +
+            "case.toml: expected a structure that its supports hold, found a mechanism: \"mesh." + std::to_string(foot + 1) +
                 "\", \"mesh.21\", \"mesh.22\", \"tip\" can turn about the point (2, 0) m without resistance; beams end in hinges of "
                 "solids: \"mesh." +
                 std::to_string(foot + 1) + "\" at (2, 0) m");
@@ -325,23 +325,23 @@ TEST(CaseBeamGroup, MistakesAreNamed) {
   EXPECT_EQ(refusal(good, mesh), "accepted");
   const auto with = [&](const std::string& group) { return support::replaced(good, "group = \"column\"", group); };
   EXPECT_EQ(refusal(with("group = \"colum\""), mesh),
-            "case.toml:16: beam[0].group: wanted a group of lines, found no group \"colum\" in the mesh (did you mean \"column\"?)");
-  EXPECT_EQ(refusal(with("group = \"raft\""), mesh), "case.toml:16: beam[0].group: wanted a group of lines, found a group of cells");
-  EXPECT_EQ(refusal(with("group = \"tip\""), mesh), "case.toml:16: beam[0].group: wanted a group of lines, found a group of nodes");
-  EXPECT_EQ(refusal(with(""), mesh), "case.toml:14: beam[0]: wanted either nodes or group, found neither");
+            "case.toml:16: beam[0].group: expected a group of lines, found no group \"colum\" in the mesh (did you mean \"column\"?)");
+  EXPECT_EQ(refusal(with("group = \"raft\""), mesh), "case.toml:16: beam[0].group: expected a group of lines, found a group of cells");
+  EXPECT_EQ(refusal(with("group = \"tip\""), mesh), "case.toml:16: beam[0].group: expected a group of lines, found a group of nodes");
+  EXPECT_EQ(refusal(with(""), mesh), "case.toml:14: beam[0]: expected either nodes or group, found neither");
   EXPECT_EQ(refusal(with("group = \"column\"\nnodes = [\"tip\", \"mesh.1\"]"), mesh),
-            "case.toml:16: beam[0].group: wanted either nodes or group, found both");
+            "case.toml:16: beam[0].group: expected either nodes or group, found both");
   const auto cell = [&](const char* group, std::size_t i) { return describe_cell(mesh, mesh.groups.at(group).cells[i]); };
-  EXPECT_EQ(refusal(with("group = \"twice\""), mesh), "case.toml:16: beam[0].group: wanted lines without another beam, found " +
+  EXPECT_EQ(refusal(with("group = \"twice\""), mesh), "case.toml:16: beam[0].group: expected lines without another beam, found " +
                                                           cell("twice", 1) + ", between whose nodes the group has another line");
-  EXPECT_EQ(
-      refusal(good + support::replaced(beam("group = \"some\"", "I = 0.02"), "mast", "other"), mesh),
-      "case.toml:31: beam[1].group: wanted lines without another beam, found " + cell("some", 0) + ", which is the beam \"mast\" already");
+  EXPECT_EQ(refusal(good + support::replaced(beam("group = \"some\"", "I = 0.02"), "mast", "other"), mesh),
+            "case.toml:31: beam[1].group: expected lines without another beam, found " + cell("some", 0) +
+                ", which is the beam \"mast\" already");
   EXPECT_EQ(refusal(good + "[[absorbing]]\ngroup = \"column\"\n", mesh),
-            "case.toml:16: beam[0].group: wanted lines that are beams alone, found " + cell("column", 0) +
+            "case.toml:16: beam[0].group: expected lines that are beams alone, found " + cell("column", 0) +
                 ", which is absorbing too (\"column\")");
   EXPECT_EQ(refusal("title = \"t\"\n" + beam("group = \"column\"", "I = 0.02") + static_stage, {}),
-            "case.toml:4: beam[0].group: wanted a [mesh] with this group, found none");
+            "case.toml:4: beam[0].group: expected a [mesh] with this group, found none");
 }
 
 TEST(CaseBeamGroup, LinesWhereTheMeshOpensAreNoBeams) {
@@ -349,7 +349,7 @@ TEST(CaseBeamGroup, LinesWhereTheMeshOpensAreNoBeams) {
   add_lines(mesh, "base", Cell::line2, {{10, 11}, {11, 12}, {12, 13}, {13, 14}});
   const std::string text = support::replaced(raft_text(""), "group = \"column\"", "group = \"base\"") +
                            "[[interface]]\nname = \"joint\"\nsurface = { group = \"base\", lower = [\"soil\"] }\nlaw = \"unilateral\"\n";
-  EXPECT_EQ(refusal(text, mesh), "case.toml:16: beam[0].group: wanted lines that are beams alone, found " +
+  EXPECT_EQ(refusal(text, mesh), "case.toml:16: beam[0].group: expected lines that are beams alone, found " +
                                      describe_cell(mesh, mesh.groups.at("base").cells[0]) + ", where the interface \"joint\" opens");
 }
 
@@ -358,13 +358,13 @@ TEST(CaseBeamGroup, DirectionAlongALineIsNamed) {
   add_lines(mesh, "frame", Cell::line2, {{0, 1}, {1, 2}});
   const std::string text =
       std::string("title = \"t\"\n") + mesh_table + beam("group = \"frame\"", "I = 0.02\nJ = 0.03\nA = 0.3\nup = [2, 0, 0]") + static_stage;
-  EXPECT_EQ(refusal(text, mesh), "case.toml:12: beam[0].up: wanted a direction that is along none of its lines, found one along " +
+  EXPECT_EQ(refusal(text, mesh), "case.toml:12: beam[0].up: expected a direction that is along none of its lines, found one along " +
                                      describe_cell(mesh, mesh.groups.at("frame").cells[1]));
   mesh.nodes.push_back(mesh.nodes[1]);
   mesh.groups.clear();
   mesh.blocks.clear();
   add_lines(mesh, "frame", Cell::line3, {{0, 1, 3}});
-  EXPECT_EQ(refusal(text, mesh), "case.toml:6: beam[0].group: wanted lines between different places, found " +
+  EXPECT_EQ(refusal(text, mesh), "case.toml:6: beam[0].group: expected lines between different places, found " +
                                      describe_cell(mesh, mesh.groups.at("frame").cells[0]) + ", a part of which has no length");
 }
 
@@ -376,7 +376,7 @@ TEST(CaseBeamGroup, GroupsOfOneNodeNameItUnlessAnotherNodeHasTheName) {
   EXPECT_EQ(built.model.find_node("mesh.5"), 4);
   EXPECT_EQ(refusal(support::replaced(along_lines(1, mast_section) + rest, "node = \"tip\"", "node = \"mesh.5\""), mesh), "accepted");
   EXPECT_EQ(refusal(support::replaced(along_lines(1, mast_section) + rest, "node = \"tip\"", "node = \"tipp\""), mesh),
-            "case.toml:22: mass[0].node: wanted the name of a node, found \"tipp\" (did you mean \"tip\"?)");
+            "case.toml:22: mass[0].node: expected the name of a node, found \"tipp\" (did you mean \"tip\"?)");
   const std::string own = "[nodes]\ntip = [0, 6]\n" + std::string("[[rigid]]\nname = \"top\"\nnode = \"tip\"\nslaves = [\"mesh.5\"]\n");
   const BuiltCase other = build(read_text(along_lines(1, mast_section) + rest + own, mesh), RunSpec{});
   EXPECT_EQ(other.model.find_node("tip"), 0);
@@ -388,7 +388,7 @@ TEST(CaseBeamGroup, RigidBodiesWithoutANodeTurnAboutTheMiddleOfTheirGroup) {
   for (const auto& element : built.model.elements)
     if (element->nodes().size() == 1) EXPECT_NEAR(built.model.nodes[static_cast<std::size_t>(element->nodes()[0])].position.x(), 2, 1e-12);
   EXPECT_EQ(refusal(raft_text("[[rigid]]\nname = \"raft\"\n"), column_on_raft(0)),
-            "case.toml:27: rigid[0]: wanted node, or a group of the mesh, found neither");
+            "case.toml:27: rigid[0]: expected node, or a group of the mesh, found neither");
 }
 
 TEST(CaseBeamGroup, RigidBodiesOfManySolidsAreNoMechanisms) {

@@ -235,18 +235,18 @@ TEST(Case, NamesAreCheckedWithTheirPlace) {
   EXPECT_EQ(complaint([&] {
               names.add("top", {"f", 5}, "x");
             }),
-            "f:5: x: wanted a name that no other node has, found \"top\", which line 3 uses already");
+            "f:5: x: expected a name that no other node has, found \"top\", which line 3 uses already");
   EXPECT_EQ(complaint([&] {
               names.find("tpo", {"f", 7}, "y");
             }),
-            "f:7: y: wanted the name of a node, found \"tpo\" (did you mean \"top\"?)");
+            "f:7: y: expected the name of a node, found \"tpo\" (did you mean \"top\"?)");
 }
 
 TEST(Case, ExactlyOnePlaceOfAnInterface) {
   const std::string text = changed("[interface.law]", "[interface.pairs]\nupper = [\"base\"]\narea = 1\n[interface.law]");
   const Case file = read("", text);
   EXPECT_NE(
-      complaint([&] { build(file, runs_of_case(file).front()); }).find("wanted exactly one of footing, pairs, line and surface, found 2"),
+      complaint([&] { build(file, runs_of_case(file).front()); }).find("expected exactly one of footing, pairs, line and surface, found 2"),
       std::string::npos);
 }
 

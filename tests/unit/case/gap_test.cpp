@@ -157,7 +157,7 @@ TEST(InitialGap, ThatMakesNoSenseIsRefused) {
       "title = \"gap\"\n[nodes]\nbody = [0, 0]\n[[mass]]\nnode = \"body\"\nmass = 1e3\ninertia = 1e3\n[[interface]]\nname = \"foot\"\n"
       "footing = { body = \"body\", width = 2, points = 5 }\nlaw = \"unilateral\"\ngap = \"geometry\"\n"
       "[[stage]]\ntype = \"dynamic\"\nduration = 0.01\nstep = 0.01\n";
-  EXPECT_NE(refusal(footing).find("case.toml:12: interface[0].gap: wanted a gap in m for an interface whose faces are not both drawn"),
+  EXPECT_NE(refusal(footing).find("case.toml:12: interface[0].gap: expected a gap in m for an interface whose faces are not both drawn"),
             std::string::npos)
       << refusal(footing);
   const std::string offset = refusal(pairs_text("gap = \"geometry\"\n", "[1.1, \"4 mm\"]"));

@@ -215,7 +215,7 @@ TEST(CaseGround, ReleasedSupportsDoNotComeBack) {
   const Mesh mesh = ground(Cell::quad4, 2, true);
   const std::string text = soil + building(elastic) + supports(false) + boundaries(false, "", false) + stages(0.2, 2e-3);
   EXPECT_EQ(refusal(text, mesh), "accepted");
-  EXPECT_NE(refusal(text + "[[stage]]\ntype = \"static\"\n", mesh).find("wanted no static stage after a dynamic one"), std::string::npos);
+  EXPECT_NE(refusal(text + "[[stage]]\ntype = \"static\"\n", mesh).find("expected no static stage after a dynamic one"), std::string::npos);
   EXPECT_NE(refusal(text + "[[stage]]\ntype = \"dynamic\"\nduration = 1\nstep = 0.1\np_delta = true\n", mesh).find("p_delta later"),
             std::string::npos);
 }
@@ -342,7 +342,7 @@ TEST(CaseGround, FreeFieldSaysWhatItNeeds) {
   const std::string rest = soil + supports(false) + stages(0.1, 2e-3);
   EXPECT_EQ(refusal(rest + boundaries(false, "wave = \"P\"", true), mesh), "accepted");
   EXPECT_NE(
-      refusal(rest + boundaries(false, "", true), mesh).find("wanted an absorbing face with an incident wave at its foot, found none"),
+      refusal(rest + boundaries(false, "", true), mesh).find("expected an absorbing face with an incident wave at its foot, found none"),
       std::string::npos);
   EXPECT_NE(
       refusal(rest + boundaries(false, "wave = \"P\"", true) + "[damping]\nmodal = [0.05]\nmodes = 2\n", mesh).find("found modal damping"),
@@ -385,9 +385,10 @@ TEST(CaseGround, TiesNeedAnOppositeSide) {
   Mesh mesh = ground(Cell::quad4, 2, false);
   const std::string rest = soil + supports(false) + bottom_only(boundaries(false, "wave = \"P\"", false)) + stages(0.1, 2e-3);
   EXPECT_EQ(refusal(rest + tied(false), mesh), "accepted");
-  EXPECT_NE(refusal(rest + support::replaced(tied(false), "soil_right", "soil_left"), mesh).find("wanted the opposite side of the ground"),
-            std::string::npos);
-  EXPECT_NE(refusal(rest + support::replaced(tied(false), "\"uy\"", "\"rz\""), mesh).find("wanted ux or uy, found \"rz\""),
+  EXPECT_NE(
+      refusal(rest + support::replaced(tied(false), "soil_right", "soil_left"), mesh).find("expected the opposite side of the ground"),
+      std::string::npos);
+  EXPECT_NE(refusal(rest + support::replaced(tied(false), "\"uy\"", "\"rz\""), mesh).find("expected ux or uy, found \"rz\""),
             std::string::npos);
   for (Vec3& place : mesh.nodes)
     if (place.x() > width / 2 - 1e-9 && std::abs(place.y() + 2) < 1e-9) place.y() -= 0.1;

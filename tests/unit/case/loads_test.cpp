@@ -190,12 +190,12 @@ TEST(CaseLoads, PressureThatMakesNoSenseIsRefused) {
   };
   const std::string profile = "group = \"left\"\npressure = 1\nprofile = ";
   EXPECT_EQ(refusal("group = \"left\"\npressure = 1\n"), "accepted");
-  EXPECT_NE(refusal("group = \"between\"\npressure = 1\n").find("case.toml:18: load[0].group: wanted edges on the surface of a solid"),
+  EXPECT_NE(refusal("group = \"between\"\npressure = 1\n").find("case.toml:18: load[0].group: expected edges on the surface of a solid"),
             std::string::npos)
       << refusal("group = \"between\"\npressure = 1\n");
   EXPECT_NE(refusal("group = \"left\"\npressure = 1\ntraction = [1, 0]\n").find("only one of pressure, traction, force"),
             std::string::npos);
-  EXPECT_NE(refusal("node = \"mesh.1\"\npressure = 1\n").find("wanted force or moment on a node"), std::string::npos);
+  EXPECT_NE(refusal("node = \"mesh.1\"\npressure = 1\n").find("expected force or moment on a node"), std::string::npos);
   EXPECT_NE(refusal("group = \"left\"\nforce = [1, 0]\nprofile = { along = \"y\", positions = [0, 1], factors = [1, 0] }\n")
                 .find("profile with pressure or traction"),
             std::string::npos);
@@ -203,7 +203,7 @@ TEST(CaseLoads, PressureThatMakesNoSenseIsRefused) {
             std::string::npos);
   EXPECT_EQ(refusal(profile + "{ along = \"y\", positions = [2, 5], factors = [1, 0] }\n"), "accepted");
   EXPECT_NE(refusal(profile + "{ along = \"y\", positions = [3, 5], factors = [1, 0] }\n")
-                .find("load[0].profile.positions: wanted positions that reach the surface, which lies from y = 0 to 2 m, found 3 to 5 m"),
+                .find("load[0].profile.positions: expected positions that reach the surface, which lies from y = 0 to 2 m, found 3 to 5 m"),
             std::string::npos)
       << refusal(profile + "{ along = \"y\", positions = [3, 5], factors = [1, 0] }\n");
   EXPECT_NE(refusal(profile + "{ along = \"y\", positions = [0, 0], factors = [1, 0] }\n").find("positions in ascending order"),

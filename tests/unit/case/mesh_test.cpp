@@ -300,9 +300,9 @@ TEST(CaseMesh, AbsorbingFacesNeedTheMaterialOfRock) {
   EXPECT_EQ(refusal(good, mesh), "accepted");
   EXPECT_EQ(
       refusal(support::replaced(good, "density = 700\n", "density = 700\nplane = \"stress\"\n"), mesh),
-      "case.toml:45: absorbing[0].group: wanted edges of a solid in plane strain, found edges of the solid \"block\" in plane stress");
+      "case.toml:45: absorbing[0].group: expected edges of a solid in plane strain, found edges of the solid \"block\" in plane stress");
   EXPECT_EQ(refusal(support::replaced(good, "\"block_top\"", "\"block\""), mesh),
-            "case.toml:44: absorbing[0].group: wanted a group of edges, found a group of cells");
+            "case.toml:44: absorbing[0].group: expected a group of edges, found a group of cells");
 }
 
 TEST(CaseMesh, MistakesAreNamed) {
@@ -310,29 +310,29 @@ TEST(CaseMesh, MistakesAreNamed) {
   const std::string good = column_text(1e9, side_supports);
   EXPECT_EQ(refusal(good, mesh), "accepted");
   EXPECT_EQ(refusal(support::replaced(good, "[[solid]]\ngroup = \"block\"\nE = 2e9\npoisson = 0.3\ndensity = 700\n", ""), mesh),
-            "case.toml:3: solid: wanted a [[solid]] for every cell of the mesh, found none for \"block\"");
+            "case.toml:3: solid: expected a [[solid]] for every cell of the mesh, found none for \"block\"");
   EXPECT_EQ(refusal(support::replaced(good, "group = \"block\"", "group = \"blok\""), mesh),
-            "case.toml:11: solid[1].group: wanted a group of cells, found no group \"blok\" in the mesh (did you mean \"block\"?)");
+            "case.toml:11: solid[1].group: expected a group of cells, found no group \"blok\" in the mesh (did you mean \"block\"?)");
   EXPECT_EQ(refusal(support::replaced(good, "group = \"block\"", "group = \"soil\""), mesh),
-            "case.toml:11: solid[1].group: wanted cells without another solid, found " +
+            "case.toml:11: solid[1].group: expected cells without another solid, found " +
                 describe_cell(mesh, mesh.groups.at("soil").cells.front()) + ", which belongs to the solid \"soil\" too");
   EXPECT_EQ(refusal(support::replaced(good, "group = \"block\"", "group = \"block_top\""), mesh),
-            "case.toml:11: solid[1].group: wanted a group of cells, found a group of edges");
+            "case.toml:11: solid[1].group: expected a group of cells, found a group of edges");
   EXPECT_EQ(refusal(support::replaced(good, "E = 2e9\n", ""), mesh),
-            "case.toml:10: solid[1]: wanted either E or shear_wave_speed, found neither");
+            "case.toml:10: solid[1]: expected either E or shear_wave_speed, found neither");
   EXPECT_EQ(refusal(support::replaced(good, "density = 700\n", ""), mesh),
-            "case.toml:10: solid[1]: wanted density, or mass = \"none\", found none");
+            "case.toml:10: solid[1]: expected density, or mass = \"none\", found none");
   EXPECT_EQ(refusal(support::replaced(good, "[mesh]\nfile = \"column.msh\"\n", ""), mesh),
-            "case.toml:15: interface[0].surface: wanted a [mesh] for the surface, found none");
+            "case.toml:15: interface[0].surface: expected a [mesh] for the surface, found none");
   EXPECT_EQ(refusal(good + "[[support]]\nfixed = [\"ux\"]\n", mesh),
-            "case.toml:43: support[5]: wanted either node or group, found neither");
+            "case.toml:43: support[5]: expected either node or group, found neither");
   EXPECT_EQ(refusal(good + "[[support]]\ngroup = \"block_top\"\nfixed = [\"rz\"]\n", mesh),
-            "case.toml:45: support[5].fixed: wanted ux or uy for a group of the mesh, found \"rz\"");
+            "case.toml:45: support[5].fixed: expected ux or uy for a group of the mesh, found \"rz\"");
   EXPECT_EQ(refusal(good + "[[load]]\ngroup = \"block_top\"\nforce = [1, 0]\n", mesh), "accepted");  // it needs no name
   EXPECT_EQ(refusal(good + "[[motion]]\ngroup = \"soil_bottom\"\ndirection = \"uz\"\nfunction = \"f\"\n", mesh),
-            "case.toml:45: motion[0].direction: wanted ux or uy for a group of the mesh, found \"uz\"");
+            "case.toml:45: motion[0].direction: expected ux or uy for a group of the mesh, found \"uz\"");
   EXPECT_EQ(refusal(good + "[[load]]\nname = \"a\"\ngroup = \"block\"\nforce = [1, 0]\n", mesh),
-            "case.toml:45: load[0].group: wanted a group of edges, found a group of cells");
+            "case.toml:45: load[0].group: expected a group of edges, found a group of cells");
 }
 
 TEST(CaseMesh, MeshesThatWereDrawnOtherwiseAreNamed) {
@@ -342,7 +342,7 @@ TEST(CaseMesh, MeshesThatWereDrawnOtherwiseAreNamed) {
   for (Vec3& place : turned.nodes) place = {place.x(), 0, place.y()};
   EXPECT_EQ(
       refusal(good, turned),
-      "case.toml:4: mesh.file: wanted cells of space (tet, hex, wedge), or a mesh in the plane: x to the right, y up, all z equal, found "
+      "case.toml:4: mesh.file: expected cells of space (tet, hex, wedge), or a mesh in the plane: x to the right, y up, all z equal, found "
       "no solid cells, nodes with x from -1 to 1, y from 0 to 0, z from -6 to 4");
   Mesh nameless = column(Cell::quad4);
   nameless.groups = {{"1", nameless.groups.at("soil")}, {"2", nameless.groups.at("block")}};

@@ -184,13 +184,13 @@ TEST_F(MotionCase, RefusesNamesThatDriveNothing) {
     const std::string said = support::refusal_of([&] { comparison_of_case(read(text)); });
     EXPECT_EQ(said, name() + ":" + std::to_string(line_of(text, with)) + ": " + rest);
   };
-  says("by = [\"ex\", \"ey\"]", "by = [\"ex\"]", "compare.motion[0].by: wanted as many names as in replace (2), found 1");
+  says("by = [\"ex\", \"ey\"]", "by = [\"ex\"]", "compare.motion[0].by: expected as many names as in replace (2), found 1");
   says("by = [\"strong\"]", "by = [\"storng\"]",
-       "compare.motion[1].by: wanted the name of a function or record, found \"storng\" (did you mean \"strong\"?)");
+       "compare.motion[1].by: expected the name of a function or record, found \"storng\" (did you mean \"strong\"?)");
   says("replace = [\"ex\"]", "replace = [\"strong\"]",
-       "compare.motion[1].replace: wanted the name of a function or record that drives the case, found \"strong\"");
+       "compare.motion[1].replace: expected the name of a function or record that drives the case, found \"strong\"");
   says("name = \"two\"", "name = \"to/\"",
-       "compare.motion[1].name: wanted letters, digits, '_', '-' and '.' (it names files; `label` may be anything), found \"to/\"");
+       "compare.motion[1].name: expected letters, digits, '_', '-' and '.' (it names files; `label` may be anything), found \"to/\"");
 }
 
 TEST_F(MotionCase, SaysWhereTheMotionsComeFrom) {

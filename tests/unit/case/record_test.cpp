@@ -146,18 +146,18 @@ TEST_F(RecordCase, NamesWhatIsWrong) {
   };
   const std::string unknown = replaced(good, "function = \"ey\"", "function = \"eyy\"");
   says(unknown, "function = \"eyy\"",
-       "ground_acceleration[1].function: wanted the name of a function or record, found \"eyy\" (did you mean \"ey\"?)");
+       "ground_acceleration[1].function: expected the name of a function or record, found \"eyy\" (did you mean \"ey\"?)");
   const std::string missing = replaced(good, "file = \"ey.txt\"", "file = \"up.txt\"");
-  says(missing, "file = \"up.txt\"", "record[1].file: wanted a file, found \"up.txt\"");
+  says(missing, "file = \"up.txt\"", "record[1].file: expected a file, found \"up.txt\"");
   const std::string turned = tower(quick, replaced(absolute_frame(), "direction = \"ux\"", "direction = \"rz\""));
   says(replaced(turned, "fixed = [\"rz\"]", "fixed = [\"ux\"]"), "function = \"ex\"",
-       "motion[0].function: wanted a function (a record is a motion: no load, no rotation), found the record \"ex\"");
+       "motion[0].function: expected a function (a record is a motion: no load, no rotation), found the record \"ex\"");
   const std::string loaded = good + "[[load]]\nnode = \"top\"\nforce = [1, 0]\nfunction = \"ex\" # load\n";
   says(loaded, "function = \"ex\" # load",
-       "load[0].function: wanted a function (a record is a motion: no load, no rotation), found the record \"ex\"");
+       "load[0].function: expected a function (a record is a motion: no load, no rotation), found the record \"ex\"");
   const std::string twice = good + "[[function]]\nname = \"ey\"\nshape = \"constant\"\n";
   says(twice, "name = \"ey\"",
-       "record[1].name: wanted a name that no other function or record has, found \"ey\", which line " +
+       "record[1].name: expected a name that no other function or record has, found \"ey\", which line " +
            std::to_string(line_of(twice, "[[function]]") + 1) + " uses already");
 }
 
@@ -183,9 +183,10 @@ TEST_F(RecordCase, TakesOneComponentOfAFile) {
     EXPECT_NE(said.find(rest), std::string::npos) << said;
   };
   const std::string all = R"("1" ("360 Deg"), "2" ("Up") or "3" ("360 Deg"))";
-  says("", "record[0]: wanted component, one of " + all + " in this file, found none");
-  says("component = \"360 Deg\"", "record[0].component: wanted a number: one of " + all + ", found \"360 Deg\", which several are called");
-  says("component = \"4\"", "record[0].component: wanted one of " + all + ", found \"4\"");
+  says("", "record[0]: expected component, one of " + all + " in this file, found none");
+  says("component = \"360 Deg\"",
+       "record[0].component: expected a number: one of " + all + ", found \"360 Deg\", which several are called");
+  says("component = \"4\"", "record[0].component: expected one of " + all + ", found \"4\"");
 }
 
 TEST_F(RecordCase, WarnsOfStepsThatDoNotFit) {
@@ -306,16 +307,16 @@ TEST_F(RecordCase, RefusesRecordsFromNowhereAndFromTwoPlaces) {
     EXPECT_EQ(refusal(text), "case.toml:" + std::to_string(line_of(text, marker)) + ": " + rest);
   };
   const auto with = [](const std::string& records) { return tower(quick, replaced(moving_frame, two_records, records)); };
-  says(with("[[record]] # none\nname = \"ex\"\n"), "[[record]] # none", "record[0]: wanted either file or generate, found neither");
+  says(with("[[record]] # none\nname = \"ex\"\n"), "[[record]] # none", "record[0]: expected either file or generate, found neither");
   says(with(generated("ex", short_motion) + "file = \"ex.txt\"\n"), "generate = {",
-       "record[0].generate: wanted either file or generate, found both");
+       "record[0].generate: expected either file or generate, found both");
   says(with(generated("ex", short_motion) + "unit = \"g\"\n"), "unit = \"g\"",
-       "record[0].unit: wanted a key of generate, found unit, which is for files");
+       "record[0].unit: expected a key of generate, found unit, which is for files");
   says(with(generated("ex", short_motion + ", seed = 4") + generated("ey", "duration = 5, step = 0.02, from = 1.5, to = 10, seed = 4")),
        "duration = 5",
-       "record[1].generate.seed: wanted a seed of its own (the record \"ex\" has this one with other times or another band), found 4");
+       "record[1].generate.seed: expected a seed of its own (the record \"ex\" has this one with other times or another band), found 4");
   const std::string unit = "[[record]]\nname = \"ex\"\nfile = \"ex.txt\"\nunit = \"furlong\"\n";
-  EXPECT_EQ(refusal(with(unit)).find("case.toml:" + std::to_string(line_of(with(unit), "furlong")) + ": record[0].unit: wanted "), 0u);
+  EXPECT_EQ(refusal(with(unit)).find("case.toml:" + std::to_string(line_of(with(unit), "furlong")) + ": record[0].unit: expected "), 0u);
 }
 
 }  // namespace

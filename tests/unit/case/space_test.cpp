@@ -165,18 +165,18 @@ TEST(CaseSpace, MistakesAreNamed) {
   const std::string good = std::string(tower) + at_rest;
   EXPECT_EQ(refusal(good), "accepted");
   EXPECT_EQ(refusal(support::replaced(good, "[0, 0, 8]", "[0, 8]")),
-            "case.toml:4: nodes.top.value: wanted three numbers [x, y, z] in a model in space, found 2");
+            "case.toml:4: nodes.top.value: expected three numbers [x, y, z] in a model in space, found 2");
   EXPECT_EQ(refusal(support::replaced(good, "[0, 0, -9.81]", "[0, -9.81]")),
-            "case.toml:28: gravity.acceleration: wanted three numbers [x, y, z] in a model in space, found 2");
+            "case.toml:28: gravity.acceleration: expected three numbers [x, y, z] in a model in space, found 2");
   EXPECT_EQ(refusal(support::replaced(good, "J = 0.4\n", "")),
-            "case.toml:5: beam[0]: wanted J, the torsion constant, in a model in space, found none");
-  EXPECT_EQ(refusal(support::replaced(good, "I_z = 0.5\n", "")), "case.toml:5: beam[0]: wanted either I, or I_y and I_z, found neither");
+            "case.toml:5: beam[0]: expected J, the torsion constant, in a model in space, found none");
+  EXPECT_EQ(refusal(support::replaced(good, "I_z = 0.5\n", "")), "case.toml:5: beam[0]: expected either I, or I_y and I_z, found neither");
   EXPECT_EQ(refusal(support::replaced(good, "J = 0.4\n", "J = 0.4\nup = [0, 0, 2]\n")),
-            "case.toml:12: beam[0].up: wanted a direction that is not along the beam, found one along it");
+            "case.toml:12: beam[0].up: expected a direction that is not along the beam, found one along it");
   EXPECT_EQ(refusal(support::replaced(good, "length = 4, ", "")),
-            "case.toml:25: interface[0].footing.length: wanted length and points_across in space, found none");
+            "case.toml:25: interface[0].footing.length: expected length and points_across in space, found none");
   EXPECT_EQ(refusal(good + "[[support]]\nnode = \"top\"\nfixed = [\"rw\"]\n"),
-            "case.toml:33: support[0].fixed: wanted ux, uy, uz, rx, ry or rz, found \"rw\" (did you mean \"rx\"?)");
+            "case.toml:33: support[0].fixed: expected ux, uy, uz, rx, ry or rz, found \"rw\" (did you mean \"rx\"?)");
 }
 
 /// case.resolved.toml holds every default; it must be a case itself, of the same model.

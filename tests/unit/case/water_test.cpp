@@ -145,7 +145,7 @@ TEST(WaterUnderABase, ThatMakesNoSenseIsRefused) {
   EXPECT_NE(refusal("water = { }\n").find("either level or head"), std::string::npos);
   EXPECT_NE(refusal("water = { level = 3, head = 2 }\n").find("either level or head"), std::string::npos);
   EXPECT_NE(refusal("water = { head = -2 }\n").find("head"), std::string::npos);
-  EXPECT_NE(refusal("water = { level = -1 }\n").find("case.toml:17: interface[0].water.level: wanted a level above the lowest point"),
+  EXPECT_NE(refusal("water = { level = -1 }\n").find("case.toml:17: interface[0].water.level: expected a level above the lowest point"),
             std::string::npos)
       << refusal("water = { level = -1 }\n");
 }

@@ -100,18 +100,19 @@ TEST(Joint, FootingRules) {
 
 TEST(Joint, RefusesWhatMakesNoSense) {
   const auto message = [](auto call) { return support::refusal(call); };
-  EXPECT_EQ(message([] { footing_points({.width = 3, .points = 1}, here); }), "case.toml:7: interface.points: wanted at least 2, found 1");
+  EXPECT_EQ(message([] { footing_points({.width = 3, .points = 1}, here); }),
+            "case.toml:7: interface.points: expected at least 2, found 1");
   EXPECT_EQ(message([] { footing_points({.width = -3, .points = 4}, here); }),
-            "case.toml:7: interface.width: wanted a width > 0 m, found -3");
+            "case.toml:7: interface.width: expected a width > 0 m, found -3");
   const SideNode a{0, {0, 0}}, b{1, {0, 1}}, c{2, {1, 0}}, d{3, {1, 1}};
   EXPECT_EQ(message([&] {
               pair_points({b}, {a, c}, {0, 1}, 1, 0, Space{2}, here);
             }),
-            "case.toml:7: interface.lower: wanted as many nodes as the upper side (1), found 2");
+            "case.toml:7: interface.lower: expected as many nodes as the upper side (1), found 2");
   EXPECT_EQ(message([&] {
               pair_points({b}, {a}, {0, -1}, 1, 0, Space{2}, here);
             }),
-            "case.toml:7: interface.normal: wanted a normal from the lower to the upper side, found an interface inside out: the upper "
+            "case.toml:7: interface.normal: expected a normal from the lower to the upper side, found an interface inside out: the upper "
             "node at (0, 1) m lies on "
             "the lower side of its partner at (0, 0) m");
   EXPECT_EQ(message([&] { pair_points({b}, {a}, {0, 1}, 1, 0, Space{2}, here); }), "");
@@ -119,23 +120,23 @@ TEST(Joint, RefusesWhatMakesNoSense) {
   EXPECT_EQ(message([&] {
               pair_points({b}, {a}, {0, -1, 0}, 1, 0, Space{3}, here);
             }),
-            "case.toml:7: interface.normal: wanted a normal from the lower to the upper side, found an interface inside out: the upper "
+            "case.toml:7: interface.normal: expected a normal from the lower to the upper side, found an interface inside out: the upper "
             "node at (0, 1, 0) m lies on "
             "the lower side of its partner at (0, 0, 0) m");
   EXPECT_EQ(message([&] {
               pair_points({b}, {a}, {0, 1}, 0, 0, Space{2}, here);
             }),
-            "case.toml:7: interface.area: wanted an area > 0 m2, found 0");
+            "case.toml:7: interface.area: expected an area > 0 m2, found 0");
   EXPECT_EQ(message([&] { line_points({.upper = {b, d}, .lower = {a, c}}, here); }), "");
   EXPECT_NE(message([&] { line_points({.upper = {d, b}, .lower = {c, a}}, here); }).find("inside out"), std::string::npos);
   EXPECT_EQ(message([&] {
               line_points({.upper = {a, c, d, b}, .lower = {}, .nodes_per_element = 3}, here);
             }),
-            "case.toml:7: interface.upper: wanted 3 nodes for the first joint element and 2 more for each further one, found 4 nodes");
+            "case.toml:7: interface.upper: expected 3 nodes for the first joint element and 2 more for each further one, found 4 nodes");
   EXPECT_EQ(message([&] {
               line_points({.upper = {a, a}, .lower = {}}, here);
             }),
-            "case.toml:7: interface.upper: wanted nodes in order along a line, found neighbours that coincide");
+            "case.toml:7: interface.upper: expected nodes in order along a line, found neighbours that coincide");
 }
 
 Interface plane_interface() {

@@ -51,7 +51,7 @@ class XmlParser {
   explicit XmlParser(std::string_view text) : text_(text) {}
   bool next_is(std::string_view part) const { return text_.substr(at_, part.size()) == part; }
   void expect(std::string_view part) {
-    if (!next_is(part)) throw std::runtime_error("wanted " + std::string(part) + " at " + std::string(text_.substr(at_, 40)));
+    if (!next_is(part)) throw std::runtime_error("expected " + std::string(part) + " at " + std::string(text_.substr(at_, 40)));
     at_ += part.size();
   }
   void space() {
@@ -60,7 +60,7 @@ class XmlParser {
   std::string name() {
     const std::size_t begin = at_;
     while (at_ < text_.size() && (std::isalnum(static_cast<unsigned char>(text_[at_])) || text_[at_] == '_')) ++at_;
-    if (at_ == begin) throw std::runtime_error("wanted a name");
+    if (at_ == begin) throw std::runtime_error("expected a name");
     return std::string(text_.substr(begin, at_ - begin));
   }
   std::string characters(char end) {

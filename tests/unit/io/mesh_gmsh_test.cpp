@@ -258,26 +258,27 @@ std::string error_with(const std::string& text, const std::string& from, const s
 TEST(Gmsh, ErrorsHaveTheirLine) {
   ASSERT_NO_THROW(read_gmsh(plane, "a.msh"));
   ASSERT_NO_THROW(read_gmsh(plane_2, "a.msh"));
-  EXPECT_EQ(error_with(plane, "1 0 0\n", "1 x 0\n"), "a.msh:11: $Nodes: wanted a coordinate (a finite number), found \"x\"");
-  EXPECT_EQ(error_with(plane, "1 0 0\n", "1 nan 0\n"), "a.msh:11: $Nodes: wanted a coordinate (a finite number), found \"nan\"");
-  EXPECT_EQ(error_with(plane, "1 0 0\n", "1 1e999 0\n"), "a.msh:11: $Nodes: wanted a coordinate (a finite number), found \"1e999\"");
-  EXPECT_EQ(error_with(plane, "1 1 2 3", "1 1 2 4"), "a.msh:17: $Elements: wanted the tag of a node, found 4");
-  EXPECT_EQ(error_with(plane, "1 1 2 3", "1 1 -2 3"), "a.msh:17: $Elements: wanted a node tag (an integer, not negative), found \"-2\"");
-  EXPECT_EQ(error_with(plane, "2 1 2 1\n", "2 1 7 1\n").substr(0, 51), "a.msh:16: $Elements: wanted points, lines of 2 or 3");
+  EXPECT_EQ(error_with(plane, "1 0 0\n", "1 x 0\n"), "a.msh:11: $Nodes: expected a coordinate (a finite number), found \"x\"");
+  EXPECT_EQ(error_with(plane, "1 0 0\n", "1 nan 0\n"), "a.msh:11: $Nodes: expected a coordinate (a finite number), found \"nan\"");
+  EXPECT_EQ(error_with(plane, "1 0 0\n", "1 1e999 0\n"), "a.msh:11: $Nodes: expected a coordinate (a finite number), found \"1e999\"");
+  EXPECT_EQ(error_with(plane, "1 1 2 3", "1 1 2 4"), "a.msh:17: $Elements: expected the tag of a node, found 4");
+  EXPECT_EQ(error_with(plane, "1 1 2 3", "1 1 -2 3"), "a.msh:17: $Elements: expected a node tag (an integer, not negative), found \"-2\"");
+  EXPECT_EQ(error_with(plane, "2 1 2 1\n", "2 1 7 1\n").substr(0, 51), "a.msh:16: $Elements: expected points, lines of 2 or 3");
   EXPECT_TRUE(error_with(plane, "2 1 2 1\n", "2 1 7 1\n").ends_with("found a 5-node pyramid (type 7)"));
-  EXPECT_EQ(error_with(plane, "2 1 2 1\n", "1 1 2 1\n"), "a.msh:16: $Elements: wanted elements of dimension 1, found tri3 (type 2)");
+  EXPECT_EQ(error_with(plane, "2 1 2 1\n", "1 1 2 1\n"), "a.msh:16: $Elements: expected elements of dimension 1, found tri3 (type 2)");
   EXPECT_EQ(error_with(plane, "1\n2\n3\n", "1\n2\n2\n").substr(0, 17), "a.msh:5: $Nodes: ");
-  EXPECT_EQ(error_with(plane_2, "2 1 0 0", "-2 1 0 0"), "a.msh:7: $Nodes: wanted a node tag (not negative), found -2");
+  EXPECT_EQ(error_with(plane_2, "2 1 0 0", "-2 1 0 0"), "a.msh:7: $Nodes: expected a node tag (not negative), found -2");
   EXPECT_EQ(error_with(plane, "4.1 0 8", "4.0 0 8"),
-            "a.msh:2: $MeshFormat: wanted format 4.1 or 2.2 (Gmsh: Save As, or -format msh41), found version \"4.0\"");
-  EXPECT_EQ(error_with(plane, "4.1 0 8", "4.1 0 4"), "a.msh:2: $MeshFormat: wanted numbers of 8 bytes, found 4");
+            "a.msh:2: $MeshFormat: expected format 4.1 or 2.2 (Gmsh: Save As, or -format msh41), found version \"4.0\"");
+  EXPECT_EQ(error_with(plane, "4.1 0 8", "4.1 0 4"), "a.msh:2: $MeshFormat: expected numbers of 8 bytes, found 4");
   const std::string elements_at = std::to_string(plane.find("$Elements"));
   EXPECT_EQ(error_with(plane, "$EndElements", "$EndElement"),
-            "a.msh:14: byte " + elements_at + ": wanted \"$EndElements\" after \"$Elements\", found the end of the file");
+            "a.msh:14: byte " + elements_at + ": expected \"$EndElements\" after \"$Elements\", found the end of the file");
   EXPECT_EQ(error_with(plane, "$Nodes\n", "$Node\n").substr(0, 9), "a.msh:13:");
   EXPECT_EQ(error_with(plane, "$EndNodes\n", "$EndNodes\nnoise\n"),
-            "a.msh:14: byte " + elements_at + ": wanted the beginning of a section ($Name), found \"noise\"");
-  EXPECT_EQ(error_with(plane, "1 1 2 3\n", "1 1 2 3 4\n"), "a.msh:17: $Elements: wanted $EndElements after the last element, found \"4\"");
+            "a.msh:14: byte " + elements_at + ": expected the beginning of a section ($Name), found \"noise\"");
+  EXPECT_EQ(error_with(plane, "1 1 2 3\n", "1 1 2 3 4\n"),
+            "a.msh:17: $Elements: expected $EndElements after the last element, found \"4\"");
 }
 
 TEST(Gmsh, CountsThatTheFileCannotHoldAreRefusedBeforeMemoryIsTaken) {
@@ -300,8 +301,9 @@ TEST(Gmsh, SectionsMayComeInAnyOrderButOnce) {
   EXPECT_EQ(read_gmsh(head + elements + nodes, "a.msh").cells(), 1);
   EXPECT_EQ(read_gmsh("$Comments\nwhatever\n$EndComments\n" + plane, "a.msh").cells(), 1);
   EXPECT_EQ(error_of([&] { read_gmsh(head + nodes + nodes + elements, "a.msh"); }),
-            "a.msh:15: $Nodes: wanted one section $Nodes, found a second one");
-  EXPECT_EQ(error_of([&] { read_gmsh(head + elements, "a.msh"); }), "a.msh: wanted a section $Nodes, found only $MeshFormat or $Elements");
+            "a.msh:15: $Nodes: expected one section $Nodes, found a second one");
+  EXPECT_EQ(error_of([&] { read_gmsh(head + elements, "a.msh"); }),
+            "a.msh: expected a section $Nodes, found only $MeshFormat or $Elements");
   std::string windows;
   for (const char c : plane) windows += c == '\n' ? std::string("\r\n") : std::string(1, c);
   EXPECT_EQ(read_gmsh(windows, "a.msh").nodes.size(), 3u);
@@ -325,7 +327,7 @@ TEST(Gmsh, AnEntityIsInAHundredGroupsAtMost) {
     return error_with(plane, "$Nodes", entity + " 0\n$EndEntities\n$Nodes");
   };
   EXPECT_EQ(in_groups(100), "no error");
-  EXPECT_EQ(in_groups(101), "a.msh:6: $Entities: wanted at most 100 physical groups for an entity, found 101");
+  EXPECT_EQ(in_groups(101), "a.msh:6: $Entities: expected at most 100 physical groups for an entity, found 101");
 }
 
 TEST(Gmsh, ParametersOfNodesAreSkipped) {

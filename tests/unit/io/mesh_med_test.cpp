@@ -209,10 +209,10 @@ TEST(Med, SeveralMeshesNeedAName) {
   SampleFile file;
   file.group("/ENS_MAA/raft");
   EXPECT_EQ(error_of([&] { read_image(file); }),
-            "a.med: /ENS_MAA: wanted one mesh, or the name of the one to take, found \"raft\" or \"soil\"");
+            "a.med: /ENS_MAA: expected one mesh, or the name of the one to take, found \"raft\" or \"soil\"");
   EXPECT_EQ(read_image(file, "soil").cells(), num_cell_types);
   EXPECT_EQ(error_of([&] { read_image(file, "soli"); }),
-            "a.med: /ENS_MAA: wanted one of the meshes \"raft\" or \"soil\", found \"soli\" (did you mean \"soil\"?)");
+            "a.med: /ENS_MAA: expected one of the meshes \"raft\" or \"soil\", found \"soli\" (did you mean \"soil\"?)");
 }
 
 // ---- what is wrong ----
@@ -234,30 +234,30 @@ TEST(Med, ErrorsNameTheObject) {
   const auto nodes = [&](const std::vector<int>& values) {
     return error_after([&](SampleFile& file) { file.remove(nod), file.integers(nod, values); });
   };
-  EXPECT_EQ(nodes({1, 2, 3, 0}), at + "wanted nodes from 1 to 126, found 0 in cell 1");
-  EXPECT_EQ(nodes({1, 2, 3, 127}), at + "wanted nodes from 1 to 126, found 127 in cell 1");
-  EXPECT_EQ(nodes({1, 2, 3, -2147483647}), at + "wanted nodes from 1 to 126, found -2147483647 in cell 1");
-  EXPECT_EQ(nodes({1, 2, 3}), at + "wanted 4 nodes for each cell, found 3 numbers");
-  EXPECT_EQ(error_after([&](SampleFile& file) { file.attribute(nod, "NBR", 5); }), at + "wanted 5 items (attribute \"NBR\"), found 1");
-  EXPECT_EQ(error_after([&](SampleFile& file) { file.remove(nod); }), at + "wanted this group or data set, found nothing of this name");
+  EXPECT_EQ(nodes({1, 2, 3, 0}), at + "expected nodes from 1 to 126, found 0 in cell 1");
+  EXPECT_EQ(nodes({1, 2, 3, 127}), at + "expected nodes from 1 to 126, found 127 in cell 1");
+  EXPECT_EQ(nodes({1, 2, 3, -2147483647}), at + "expected nodes from 1 to 126, found -2147483647 in cell 1");
+  EXPECT_EQ(nodes({1, 2, 3}), at + "expected 4 nodes for each cell, found 3 numbers");
+  EXPECT_EQ(error_after([&](SampleFile& file) { file.attribute(nod, "NBR", 5); }), at + "expected 5 items (attribute \"NBR\"), found 1");
+  EXPECT_EQ(error_after([&](SampleFile& file) { file.remove(nod); }), at + "expected this group or data set, found nothing of this name");
   EXPECT_EQ(error_after([&](SampleFile& file) { file.attribute("/ENS_MAA/soil", "ESP", 4); }),
-            mesh + ": wanted 1, 2 or 3 coordinates (attribute \"ESP\"), found 4");
+            mesh + ": expected 1, 2 or 3 coordinates (attribute \"ESP\"), found 4");
   EXPECT_EQ(error_after([&](SampleFile& file) { file.attribute("/ENS_MAA/soil", "TYP", 1); }),
-            mesh + ": wanted an unstructured mesh (attribute \"TYP\" 0), found a grid");
+            mesh + ": expected an unstructured mesh (attribute \"TYP\" 0), found a grid");
   EXPECT_EQ(error_after([&](SampleFile& file) { file.attribute("/INFOS_GENERALES", "MAJ", 2); }),
-            "a.med: /INFOS_GENERALES: wanted MED format 3 or later, found 2");
+            "a.med: /INFOS_GENERALES: expected MED format 3 or later, found 2");
   EXPECT_TRUE(error_after([&](SampleFile& file) {
                 file.integers(step + "/MAI/PY5/NOD", {1, 2, 3, 4, 5});
               }).ends_with("found a 5-node pyramid (\"PY5\")"));
   EXPECT_TRUE(error_after([&](SampleFile& file) {
                 file.remove("/FAS/soil/ELEME/FAM_8");
-              }).ends_with("wanted a family of /FAS/soil, found family -9"));
+              }).ends_with("expected a family of /FAS/soil, found family -9"));
   EXPECT_EQ(error_after([&](SampleFile& file) {
               std::vector<double> x(378, 1.0);
               x[127] = NAN;
               file.remove(step + "/NOE/COO"), file.numbers(step + "/NOE/COO", x);
             }),
-            "a.med: " + step + "/NOE/COO: wanted finite coordinates, found nan at node 2");
+            "a.med: " + step + "/NOE/COO: expected finite coordinates, found nan at node 2");
   EXPECT_TRUE(error_after([&](SampleFile& file) {
                 file.group("/ENS_MAA/soil/-0000000000000000002-0000000000000000001"), file.remove(step);
               }).starts_with("a.med: /ENS_MAA/soil/"));
@@ -266,7 +266,7 @@ TEST(Med, ErrorsNameTheObject) {
 TEST(Med, TypesAndLengthsThatDoNotFitAreRefused) {
   const std::string x = step + "/NOE/COO", nod = step + "/MAI/TE4/NOD", names = "/FAS/soil/ELEME/FAM_3/GRO/NOM";
   EXPECT_EQ(error_with_data(x, H5T_C_S1, {378}),
-            "a.med: " + x + ": wanted 378 bytes of data, found 0 bytes in a file of " + std::to_string(SampleFile().image().size()));
+            "a.med: " + x + ": expected 378 bytes of data, found 0 bytes in a file of " + std::to_string(SampleFile().image().size()));
   EXPECT_NE(error_with_data(nod, H5T_IEEE_F64LE, {4}), "no error");
   EXPECT_NE(error_with_data(nod, H5T_STD_I64LE, {}), "no error");
   EXPECT_NE(error_with_data(nod, H5T_STD_I64LE, {0}), error_with_data(nod, H5T_STD_I64LE, {4}));  // no cells is not wrong here
@@ -278,13 +278,13 @@ TEST(Med, TypesAndLengthsThatDoNotFitAreRefused) {
 TEST(Med, ClaimsThatTheFileCannotHoldAreRefusedBeforeMemoryIsTaken) {
   const std::string x = step + "/NOE/COO";
   constexpr hsize_t huge = hsize_t{1} << 50;
-  EXPECT_TRUE(error_with_data(x, H5T_IEEE_F64LE, {3 * huge}).starts_with("a.med: " + x + ": wanted 27021597764222976 bytes of data"));
+  EXPECT_TRUE(error_with_data(x, H5T_IEEE_F64LE, {3 * huge}).starts_with("a.med: " + x + ": expected 27021597764222976 bytes of data"));
   const hid_t storage = H5Pcreate(H5P_DATASET_CREATE);
   const hsize_t chunk = hsize_t{1} << 28;
   H5Pset_chunk(storage, 1, &chunk);
   H5Pset_deflate(storage, 9);
   EXPECT_TRUE(error_with_data(x, H5T_IEEE_F64LE, {huge}, storage)
-                  .starts_with("a.med: " + x + ": wanted chunks that the file can hold, found 2147483648 bytes"));
+                  .starts_with("a.med: " + x + ": expected chunks that the file can hold, found 2147483648 bytes"));
   H5Pclose(storage);
 }
 
@@ -298,7 +298,7 @@ TEST(Med, AFamilyIsInAHundredGroupsAtMost) {
     });
   };
   EXPECT_EQ(in_groups(100), "no error");
-  EXPECT_EQ(in_groups(101), "a.med: /FAS/soil/ELEME/FAM_3/GRO/NOM: wanted at most 100 groups for a family, found 101");
+  EXPECT_EQ(in_groups(101), "a.med: /FAS/soil/ELEME/FAM_3/GRO/NOM: expected at most 100 groups for a family, found 101");
 }
 
 TEST(Med, CompressedDataAreRead) {
@@ -322,7 +322,7 @@ TEST(Med, DataOfOtherFilesAreNotTouched) {
   const std::string x = step + "/NOE/COO";
   const hid_t storage = H5Pcreate(H5P_DATASET_CREATE);
   H5Pset_external(storage, "/etc/hostname", 0, 3024);
-  EXPECT_EQ(error_with_data(x, H5T_IEEE_F64LE, {378}, storage), "a.med: " + x + ": wanted data in this file, found data in another one");
+  EXPECT_EQ(error_with_data(x, H5T_IEEE_F64LE, {378}, storage), "a.med: " + x + ": expected data in this file, found data in another one");
   H5Pclose(storage);
   const auto link = [&](bool external) {
     return error_after([&](SampleFile& file) {
@@ -333,8 +333,8 @@ TEST(Med, DataOfOtherFilesAreNotTouched) {
         H5Lcreate_soft("/INFOS_GENERALES", file.file, x.c_str(), H5P_DEFAULT, H5P_DEFAULT);
     });
   };
-  EXPECT_EQ(link(true), "a.med: " + x + ": wanted an object of this file, found a link");
-  EXPECT_EQ(link(false), "a.med: " + x + ": wanted an object of this file, found a link");
+  EXPECT_EQ(link(true), "a.med: " + x + ": expected an object of this file, found a link");
+  EXPECT_EQ(link(false), "a.med: " + x + ": expected an object of this file, found a link");
 }
 
 TEST(Med, ACutFileIsAnError) {
@@ -415,12 +415,12 @@ TEST(MedApart, TheMeshAndTheErrorsAreThoseOfTheReader) {
   both_errors("x", "it is wanted here, found there.med");
   file.attribute("/ENS_MAA/soil", "ESP", 4);
   both_errors("", "a.med");
-  EXPECT_EQ(error_of([&] { read_med_bytes("no HDF5", "b.med"); }).substr(0, 29), "b.med: wanted an HDF5 file, f");
+  EXPECT_EQ(error_of([&] { read_med_bytes("no HDF5", "b.med"); }).substr(0, 29), "b.med: expected an HDF5 file, f");
 }
 
 TEST(MedApart, AMessageThatIsNotWholeIsADamagedFile) {
   const std::string message = message_of(read_image(SampleFile()));
-  const std::string wanted = "a.med: wanted a sound MED file, found a damaged one: the HDF5 library failed while reading it";
+  const std::string wanted = "a.med: expected a sound MED file, found a damaged one: the HDF5 library failed while reading it";
   expect_whole(mesh_of_message(message, {"a.med", 0}));
   for (std::size_t n = 0; n < message.size(); n += 1 + n / 300)
     ASSERT_EQ(error_of([&] { mesh_of_message(std::string_view(message).substr(0, n), {"a.med", 0}); }), wanted) << n;
@@ -493,7 +493,7 @@ TEST_F(MeshFileTest, TheContentDecidesWhatAFileIs) {
 TEST_F(MeshFileTest, MissingAndOtherFilesAreReportedWhereTheyAreNamed) {
   write_file_atomically(folder / "soil.msh", "solid ascii\n");
   write_file_atomically(folder / "empty.msh", "");
-  const std::string start = "case.toml:7: wanted a mesh file (Gmsh .msh or MED), found ", path = (folder / "soil.msh").string();
+  const std::string start = "case.toml:7: expected a mesh file (Gmsh .msh or MED), found ", path = (folder / "soil.msh").string();
   EXPECT_EQ(error_of_reading("soil.mhs").substr(0, start.size()), start);
   EXPECT_TRUE(error_of_reading("soil.mhs").ends_with("soil.msh\"?)"));
   EXPECT_EQ(error_of_reading("soil.msh").substr(0, start.size()), start);

@@ -230,10 +230,11 @@ TEST_F(Folder, MovesNothingThatIsNotResults) {
     }
     return "accepted";
   };
-  EXPECT_EQ(refusal("tower"), path("tower") +
-                                  ": wanted a new folder for the results, or one with earlier results, found a folder with something else "
-                                  "in it (it has no summary.json)");
-  EXPECT_EQ(refusal("tower/case.toml"), path("tower/case.toml") + ": wanted a folder for the results, found a file");
+  EXPECT_EQ(refusal("tower"),
+            path("tower") +
+                ": expected a new folder for the results, or one with earlier results, found a folder with something else "
+                "in it (it has no summary.json)");
+  EXPECT_EQ(refusal("tower/case.toml"), path("tower/case.toml") + ": expected a folder for the results, found a file");
   std::filesystem::create_directories(root_ / "empty");
   ResultFolder folder(path("empty"));
   EXPECT_EQ(folder.finish(), "");

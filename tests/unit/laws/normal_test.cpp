@@ -154,7 +154,7 @@ TEST(Cohesive, TooLittleFractureEnergyIsRefused) {
     } catch (const InputError& error) {
       EXPECT_STREQ(
           error.what(),
-          "case.toml:7: law.G_f: wanted G_f > F_u^2/(2 K_n) = 50 J/m2, the energy stored when the strength is reached, found 50 J/m2");
+          "case.toml:7: law.G_f: expected G_f > F_u^2/(2 K_n) = 50 J/m2, the energy stored when the strength is reached, found 50 J/m2");
     }
   }
 }

@@ -14,10 +14,11 @@ TEST(Sdm, SnapBackIsRefusedWithTheInequalityAndBothNumbers) {
     make_law("sdm", {{"K_n", 1e8}, {"F_u", 1e5}, {"G_f", 100.0}, {"F_c", -1e4}});
     FAIL() << "K_n = F_u^2/G_f must be refused";
   } catch (const InputError& error) {
-    EXPECT_STREQ(error.what(),
-                 "case.toml:7: law.K_n: wanted K_n > F_u^2/G_f = 1e+08 Pa/m, else the law snaps back (a softer joint releases more energy "
-                 "than G_f takes), "
-                 "found 1e+08 Pa/m");
+    EXPECT_STREQ(
+        error.what(),
+        "case.toml:7: law.K_n: expected K_n > F_u^2/G_f = 1e+08 Pa/m, else the law snaps back (a softer joint releases more energy "
+        "than G_f takes), "
+        "found 1e+08 Pa/m");
   }
   EXPECT_NO_THROW(make_law("sdm", {{"K_n", 1.0001e8}, {"F_u", 1e5}, {"G_f", 100.0}, {"F_c", -1e4}}));
 }

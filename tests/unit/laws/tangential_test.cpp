@@ -33,17 +33,17 @@ void expect_refusal(const std::string& law, const std::vector<Parameter>& parame
 
 TEST(Tangential, ParametersThatWouldDoNothingAreRefused) {
   expect_refusal("springs", {{"K_n", 1e9}, {"K_t", 1e9}, {"tangential", "none"}},
-                 "case.toml:7: law.K_t: wanted no K_t here: it belongs to tangential = \"bonded\", \"open_free\" or \"coulomb\", found "
+                 "case.toml:7: law.K_t: expected no K_t here: it belongs to tangential = \"bonded\", \"open_free\" or \"coulomb\", found "
                  "tangential = \"none\"");
   expect_refusal(
       "elastic", {{"K_n", 1e9}, {"friction", 0.5}, {"tangential", "bonded"}},
-      "case.toml:7: law.friction: wanted no friction here: it belongs to tangential = \"coulomb\", found tangential = \"bonded\"");
+      "case.toml:7: law.friction: expected no friction here: it belongs to tangential = \"coulomb\", found tangential = \"bonded\"");
   expect_refusal(
       "springs", {{"K_n", 1e9}, {"tangential", "open_free"}, {"cohesion", 1e3}},
-      "case.toml:7: law.cohesion: wanted no cohesion here: it belongs to tangential = \"coulomb\", found tangential = \"open_free\"");
+      "case.toml:7: law.cohesion: expected no cohesion here: it belongs to tangential = \"coulomb\", found tangential = \"open_free\"");
   expect_refusal(
       "springs", {{"K_n", 1e9}, {"tangential", "coulomb"}},
-      "case.toml:7: law.friction: wanted a number (1): tangential = \"coulomb\" needs its coefficient of friction, found nothing");
+      "case.toml:7: law.friction: expected a number (1): tangential = \"coulomb\" needs its coefficient of friction, found nothing");
 }
 
 TEST(Tangential, FollowsWhatIsGiven) {

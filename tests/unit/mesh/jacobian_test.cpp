@@ -68,7 +68,7 @@ TEST(Jacobian, AConcaveCornerIsRefused) {
   Mesh quad = unit_cell(Cell::quad4);
   quad.nodes[node_at(quad, {1, 1, 0})] = {0.3, 0.3, 0};
   EXPECT_EQ(refusal(quad),
-            "case.toml:7: mesh: wanted cells with a positive Jacobian at every corner and integration point, found cell 1 of group "
+            "case.toml:7: mesh: expected cells with a positive Jacobian at every corner and integration point, found cell 1 of group "
             "\"volume\" (quad4 at (0.325, 0.325, 0)) with a scaled Jacobian of -0.6897 at its corner 3 at (0.3, 0.3, 0) m; such a cell "
             "is folded or turned over in part");
   Mesh hex = unit_cell(Cell::hex8);

@@ -186,27 +186,28 @@ TEST(SoilBoxModel, BadValuesAreNamed) {
     change(model);
     return mesh_refusal([&] { soil_box(model, mesh_file); });
   };
-  EXPECT_EQ(refusal([](SoilBox& m) { m.soil.width[1] = -1; }), "case.toml:7: soil.width: wanted a length > 0 m, found -1 m");
-  EXPECT_EQ(refusal([](SoilBox& m) { m.soil.layers.clear(); }), "case.toml:7: soil.layers: wanted at least one layer, found none");
-  EXPECT_EQ(refusal([](SoilBox& m) { m.soil.layers[1].size = 0; }), "case.toml:7: soil.layers.size: wanted a length > 0 m, found 0 m");
-  EXPECT_EQ(refusal([](SoilBox& m) { m.raft.size = NAN; }), "case.toml:7: raft.size: wanted a length > 0 m, found nan m");
+  EXPECT_EQ(refusal([](SoilBox& m) { m.soil.width[1] = -1; }), "case.toml:7: soil.width: expected a length > 0 m, found -1 m");
+  EXPECT_EQ(refusal([](SoilBox& m) { m.soil.layers.clear(); }), "case.toml:7: soil.layers: expected at least one layer, found none");
+  EXPECT_EQ(refusal([](SoilBox& m) { m.soil.layers[1].size = 0; }), "case.toml:7: soil.layers.size: expected a length > 0 m, found 0 m");
+  EXPECT_EQ(refusal([](SoilBox& m) { m.raft.size = NAN; }), "case.toml:7: raft.size: expected a length > 0 m, found nan m");
   EXPECT_EQ(refusal([](SoilBox& m) { m.block.size = 1e-12; }),
-            "case.toml:7: block.size: wanted a length of at least a millionth of the soil's width (4e-05 m), found 1e-12 m");
-  EXPECT_EQ(refusal([](SoilBox& m) { m.growth = 1; }), "case.toml:7: growth: wanted a factor from 1.01 to 2, found 1");
+            "case.toml:7: block.size: expected a length of at least a millionth of the soil's width (4e-05 m), found 1e-12 m");
+  EXPECT_EQ(refusal([](SoilBox& m) { m.growth = 1; }), "case.toml:7: growth: expected a factor from 1.01 to 2, found 1");
   EXPECT_EQ(refusal([](SoilBox& m) { m.raft.height = m.block.height = 0, m.embedment = 1; }),
-            "case.toml:7: embedment: wanted 0 m where there is neither a raft nor a block, found 1 m");
+            "case.toml:7: embedment: expected 0 m where there is neither a raft nor a block, found 1 m");
   EXPECT_EQ(refusal([](SoilBox& m) { m.block.offset[0] = 2.5; }),
-            "case.toml:7: block.width: wanted a block inside the plan of the raft, 8 m wide, found 4 m with its middle at 2.5 m");
+            "case.toml:7: block.width: expected a block inside the plan of the raft, 8 m wide, found 4 m with its middle at 2.5 m");
   EXPECT_EQ(refusal([](SoilBox& m) { m.raft.width[1] = 31; }),
-            "case.toml:7: raft.width: wanted a raft inside the plan of the soil, 30 m wide, found 31 m with its middle at 0 m");
+            "case.toml:7: raft.width: expected a raft inside the plan of the soil, 30 m wide, found 31 m with its middle at 0 m");
   EXPECT_EQ(refusal([](SoilBox& m) { m.raft.offset[0] = 1; }),
-            "case.toml:7: raft.offset: wanted 0 m: the raft is the middle of the model, found 1 m");
-  EXPECT_EQ(refusal([](SoilBox& m) { m.embedment = 10.2; }),
-            "case.toml:7: embedment: wanted a depth from 0 m to less than that of the soil and the height of the structure (10.2 m), found "
-            "10.2 m");
-  EXPECT_EQ(refusal([](SoilBox& m) { m.cell = Cell::quad4; }), "case.toml:7: cell: wanted a cell of dimension 3, found quad4");
+            "case.toml:7: raft.offset: expected 0 m: the raft is the middle of the model, found 1 m");
+  EXPECT_EQ(
+      refusal([](SoilBox& m) { m.embedment = 10.2; }),
+      "case.toml:7: embedment: expected a depth from 0 m to less than that of the soil and the height of the structure (10.2 m), found "
+      "10.2 m");
+  EXPECT_EQ(refusal([](SoilBox& m) { m.cell = Cell::quad4; }), "case.toml:7: cell: expected a cell of dimension 3, found quad4");
   EXPECT_NE(
-      refusal([](SoilBox& m) { m.soil.size = m.raft.size = 1e-3; }).find("soil.size: wanted sizes that make at most 50 million elements"),
+      refusal([](SoilBox& m) { m.soil.size = m.raft.size = 1e-3; }).find("soil.size: expected sizes that make at most 50 million elements"),
       std::string::npos);
 }
 

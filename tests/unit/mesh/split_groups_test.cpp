@@ -74,7 +74,7 @@ TEST(Split, BranchingSurfaceIsRefused) {
   mesh.groups["joint"].cells.pop_back();
   const Mesh before = mesh;
   EXPECT_EQ(mesh_refusal([&] { split(mesh, {"joint"}, {"soil"}, mesh_file); }),
-            "case.toml:7: group \"joint\": wanted a surface with two sides at each of its nodes, found one that branches at (1, 1, 0)");
+            "case.toml:7: group \"joint\": expected a surface with two sides at each of its nodes, found one that branches at (1, 1, 0)");
   EXPECT_EQ(mesh.nodes.size(), before.nodes.size());
   EXPECT_EQ(mesh.groups.size(), before.groups.size());
 }
@@ -86,21 +86,21 @@ TEST(Split, WrongRequests) {
     return mesh_refusal([&] { split(mesh, surfaces, lower, mesh_file); });
   };
   EXPECT_EQ(refusal({"jiont"}, {"soil"}, base),
-            "case.toml:7: wanted the surface to open, found no group \"jiont\" in the mesh (did you mean \"joint\"?)");
+            "case.toml:7: expected the surface to open, found no group \"jiont\" in the mesh (did you mean \"joint\"?)");
   EXPECT_EQ(refusal({"joint"}, {"soli"}, base),
-            "case.toml:7: wanted the lower side of the surface, found no group \"soli\" in the mesh (did you mean \"soil\"?)");
-  EXPECT_EQ(refusal({"joint"}, {}, base), "case.toml:7: wanted a group of the lower side with cells of dimension 2, found no group");
+            "case.toml:7: expected the lower side of the surface, found no group \"soli\" in the mesh (did you mean \"soil\"?)");
+  EXPECT_EQ(refusal({"joint"}, {}, base), "case.toml:7: expected a group of the lower side with cells of dimension 2, found no group");
   EXPECT_EQ(refusal({"joint"}, {"left"}, base),
-            "case.toml:7: wanted a group of the lower side with cells of dimension 2, found none in \"left\"");
-  EXPECT_EQ(refusal({"rest"}, {"soil"}, base), "case.toml:7: group \"rest\": wanted a group of lines, found cells of dimension 2");
-  const std::string between = "wanted faces between a cell of the lower side and one of the upper side, found ";
+            "case.toml:7: expected a group of the lower side with cells of dimension 2, found none in \"left\"");
+  EXPECT_EQ(refusal({"rest"}, {"soil"}, base), "case.toml:7: group \"rest\": expected a group of lines, found cells of dimension 2");
+  const std::string between = "expected faces between a cell of the lower side and one of the upper side, found ";
   EXPECT_EQ(refusal({"left"}, {"soil"}, base),
             "case.toml:7: group \"left\": " + between +
                 "2 of 2 elsewhere; the first, cell 1 of group \"left\" (line2 at (0, 0.5, 0)), lies on the outer boundary");
   EXPECT_EQ(refusal({"joint"}, {"soil", "rest"}, base),
             "case.toml:7: group \"joint\": " + between +
                 "2 of 2 elsewhere; the first, cell 1 of group \"joint\" (line2 at (0.5, 1, 0)), has the lower side on both sides");
-  EXPECT_EQ(refusal({"joint", "joint"}, {"soil"}, base), "case.toml:7: group \"joint\": wanted each surface once, found it twice");
+  EXPECT_EQ(refusal({"joint", "joint"}, {"soil"}, base), "case.toml:7: group \"joint\": expected each surface once, found it twice");
 
   Mesh loose = base;
   auto& lines = loose.block(Cell::line2);
@@ -115,11 +115,11 @@ TEST(Split, WrongRequests) {
   Mesh open = base;
   split(open, {"joint"}, {"soil"}, mesh_file);
   EXPECT_EQ(refusal({"joint"}, {"soil"}, open),
-            "case.toml:7: group \"joint\": wanted a surface that is not open yet, found the group \"joint_upper\" in the mesh");
+            "case.toml:7: group \"joint\": expected a surface that is not open yet, found the group \"joint_upper\" in the mesh");
   Mesh overlap = base;
   auto& quads = overlap.block(Cell::quad4);
   quads.nodes.insert(quads.nodes.end(), {3, 4, 7, 6});
-  EXPECT_NE(refusal({"joint"}, {"soil"}, overlap).find("wanted faces between two cells, found more than two cells at a face of "),
+  EXPECT_NE(refusal({"joint"}, {"soil"}, overlap).find("expected faces between two cells, found more than two cells at a face of "),
             std::string::npos);
 }
 

@@ -73,8 +73,9 @@ TEST(Split, StripOneFaceWide) {
   const auto below = [](int, int, int k) { return k < 1; };
   const auto strip = [](int i, int, int) { return i == 1; };
   Mesh linear = parted({3, 2, 2}, below, Cell::hex8, strip);
-  EXPECT_EQ(mesh_refusal([&] { split(linear, {"joint"}, {"soil"}, mesh_file); }),
-            "case.toml:7: group \"joint\": wanted a surface that can be opened, found one whose nodes all lie on its rim inside the mesh");
+  EXPECT_EQ(
+      mesh_refusal([&] { split(linear, {"joint"}, {"soil"}, mesh_file); }),
+      "case.toml:7: group \"joint\": expected a surface that can be opened, found one whose nodes all lie on its rim inside the mesh");
   EXPECT_EQ(opened(parted({3, 2, 2}, below, Cell::hex27, strip), 1), 2 + 3);  // middles of 2 faces and of 3 edges across the strip
 }
 

@@ -39,7 +39,7 @@ TEST(Interfaces, PrescribedGroundMotionOpensTheJoint) {
 }
 
 TEST(Interfaces, InsideOutIsRefused) {
-  const std::string wanted = "wanted a normal from the lower side (soil) to the upper side (structure), found an interface inside out: ";
+  const std::string wanted = "expected a normal from the lower side (soil) to the upper side (structure), found an interface inside out: ";
   EXPECT_EQ(support::refusal([] {
               support::block_on_ground(2, {0, -1}, false)->finish();
             }),
@@ -100,10 +100,11 @@ TEST(Checks, LoosePartsAreNamed) {
     builder->add_interface(support::linear_interface("base", footing_points({.body = 0, .width = 3, .points = 7}, here), {1e7}), here);
     return builder;
   };
-  EXPECT_EQ(support::refusal([&] { check_static(free_sliding()->finish()); }),
-            "case.toml:7: wanted a structure that stands when all its interfaces are closed, found a mechanism: \"base\", \"top\" can move "
-            "along (1, 0) "
-            "without resistance");
+  EXPECT_EQ(
+      support::refusal([&] { check_static(free_sliding()->finish()); }),
+      "case.toml:7: expected a structure that stands when all its interfaces are closed, found a mechanism: \"base\", \"top\" can move "
+      "along (1, 0) "
+      "without resistance");
   auto held = free_sliding();
   held->fix(0, ux, here);
   EXPECT_NO_THROW(check_static(held->finish()));

@@ -154,7 +154,7 @@ TEST(Elimination, UnknownsThatNothingResistsAreDropped) {
   loaded.add_element(std::make_unique<PointMass>(0, 5.0), here);
   loaded.add_load("twist", {{2, 1.0}}, nullptr, true, here);
   EXPECT_EQ(support::refusal([&] { loaded.finish(); }),
-            "case.toml:7: twist: wanted a load on something that resists, found a load on mass.rz, which nothing holds");
+            "case.toml:7: twist: expected a load on something that resists, found a load on mass.rz, which nothing holds");
 }
 
 TEST(Elimination, RoundOffIsNotStiffness) {
@@ -183,7 +183,7 @@ TEST(Elimination, RepeatedAndContradictingConstraintsAreRefused) {
   };
   const std::string tail =
       ", which follows from the other supports, rigid bodies and inextensible beams: its force would be undetermined; remove it";
-  const std::string head = "case.toml:7: wanted constraints that do not repeat each other, found ";
+  const std::string head = "case.toml:7: expected constraints that do not repeat each other, found ";
   EXPECT_EQ(attempt([](ModelBuilder& b) { b.fix(0, ux, here), b.fix(0, ux, here); }), head + "a support of a.ux" + tail);
   EXPECT_EQ(attempt([](ModelBuilder& b) { b.tie_rigid(0, 1, here), b.tie_rigid(1, 0, here); }),
             head + "a rigid body that ties \"a\" to \"b\"" + tail);
@@ -194,17 +194,18 @@ TEST(Elimination, RepeatedAndContradictingConstraintsAreRefused) {
               b.fix(1, uy, here);  // supports come first, so the beam is the one too many
             }),
             head + "an inextensible beam from \"a\" to \"b\"" + tail + ", or give the beam its area A");
-  EXPECT_EQ(attempt([](ModelBuilder& b) {
-              b.fix(0, uy, here), b.inextensible(0, 1, here);
-              b.prescribe(1, uy, std::make_shared<support::Parabola>(), "jack", here);
-            }),
-            "case.toml:7: wanted constraints that agree, found an inextensible beam from \"a\" to \"b\", which contradicts the prescribed "
-            "motion of "
-            "another constraint (prescribed: jack)");
+  EXPECT_EQ(
+      attempt([](ModelBuilder& b) {
+        b.fix(0, uy, here), b.inextensible(0, 1, here);
+        b.prescribe(1, uy, std::make_shared<support::Parabola>(), "jack", here);
+      }),
+      "case.toml:7: expected constraints that agree, found an inextensible beam from \"a\" to \"b\", which contradicts the prescribed "
+      "motion of "
+      "another constraint (prescribed: jack)");
   EXPECT_EQ(attempt([](ModelBuilder& b) {
               b.add_node("a", {3, 3}, here);
             }),
-            "case.toml:7: nodes.a: wanted a name that no other node has, found \"a\" twice");
+            "case.toml:7: nodes.a: expected a name that no other node has, found \"a\" twice");
   // the same motion on both ends of the beam does not stretch it: one too many, but no contradiction
   EXPECT_EQ(attempt([](ModelBuilder& b) {
               b.tie_rigid(0, 1, here);
@@ -274,7 +275,7 @@ TEST(InitialValues, AreMetOrRefused) {
   EXPECT_NEAR(model.full(1, q, 0, 0), 0.2, 1e-15);
   EXPECT_NE(support::refusal([&] {
               free_values(model, {{3, -0.5}, {5, 0.2}}, here);
-            }).find("case.toml:7: initial: wanted values that supports"),
+            }).find("case.toml:7: initial: expected values that supports"),
             std::string::npos);
 }
 

@@ -93,11 +93,11 @@ TEST(TimeFunctions, Table) {
   EXPECT_EQ(cut->value(1.1), 0);
   EXPECT_NE(support::refusal([] {
               make({{"type", raw(std::string("table"))}, {"times", number_list({0, 2, 1})}, {"values", number_list({2, 4, 0})}});
-            }).find("function[0].times: wanted times in ascending order, found 1 s after 2 s"),
+            }).find("function[0].times: expected times in ascending order, found 1 s after 2 s"),
             std::string::npos);
   EXPECT_NE(support::refusal([] {
               make({{"type", raw(std::string("table"))}, {"times", number_list({0, 2})}, {"values", number_list({2})}});
-            }).find("function[0].values: wanted as many values as times (2), found 1"),
+            }).find("function[0].values: expected as many values as times (2), found 1"),
             std::string::npos);
 }
 
@@ -140,16 +140,17 @@ TEST_F(Csv, ErrorsPointToTheLine) {
   };
   const std::string bad = write("bad.csv", "t,a\n0,1\n1,x\n"), back = write("back.csv", "0,1\n1,2\n1,3\n"),
                     cells = write("cells.csv", "0,1\n1\n"), one = write("one.csv", "t,a\n0,1\n");
-  EXPECT_EQ(message(bad), bad + ":3: wanted a number in column 2, found \"x\"");
-  EXPECT_EQ(message(back), back + ":3: wanted times in ascending order, found 1 s after 1 s");
-  EXPECT_EQ(message(cells), cells + ":2: wanted at least 2 columns, found 1");
-  EXPECT_EQ(message(one), one + ":2: wanted at least two rows of numbers, found 1");
+  EXPECT_EQ(message(bad), bad + ":3: expected a number in column 2, found \"x\"");
+  EXPECT_EQ(message(back), back + ":3: expected times in ascending order, found 1 s after 1 s");
+  EXPECT_EQ(message(cells), cells + ":2: expected at least 2 columns, found 1");
+  EXPECT_EQ(message(one), one + ":2: expected at least two rows of numbers, found 1");
   EXPECT_NE(message(bad, {{"value_column", raw(std::string("b"))}})
-                .find("case.toml:3: function[0].value_column: wanted a column of " + bad + ":1"),
+                .find("case.toml:3: function[0].value_column: expected a column of " + bad + ":1"),
             std::string::npos);
-  EXPECT_NE(message((folder / "missing.csv").string()).find("case.toml:3: function[0].file: wanted a file, found"), std::string::npos);
-  EXPECT_NE(message(bad, {{"unit", raw(std::string("furlong/s3"))}}).find("case.toml:3: function[0].unit: wanted a unit that converts to"),
-            std::string::npos);
+  EXPECT_NE(message((folder / "missing.csv").string()).find("case.toml:3: function[0].file: expected a file, found"), std::string::npos);
+  EXPECT_NE(
+      message(bad, {{"unit", raw(std::string("furlong/s3"))}}).find("case.toml:3: function[0].unit: expected a unit that converts to"),
+      std::string::npos);
 }
 
 }  // namespace

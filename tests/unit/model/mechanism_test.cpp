@@ -148,7 +148,7 @@ TEST(Mechanism, WhatHasNeitherMassNorStiffnessIsRefusedInDynamics) {
   const Model skew = pair.finish();
   EXPECT_NE(support::refusal([&] {
               check_dynamic(skew);
-            }).find("wanted a stiffness, a mass, a dashpot or an interface against every motion, found \"b\" can move"),
+            }).find("expected a stiffness, a mass, a dashpot or an interface against every motion, found \"b\" can move"),
             std::string::npos)
       << support::refusal([&] { check_dynamic(skew); });
 }

@@ -55,77 +55,77 @@ std::vector<double> equal_times(double from = 0) {
 }
 
 TEST(RecordRefusals, StepAndNumberOfPoints) {
-  EXPECT_EQ(refusal(ramp("NPTS= 25, DT= 0 SEC")), "file:4: wanted a time step from 1e-07 s to 1e+06 s, found 0 s");
-  EXPECT_EQ(refusal(ramp("NPTS= 25, DT= -.01 SEC")), "file:4: wanted a time step from 1e-07 s to 1e+06 s, found -0.01 s");
-  EXPECT_EQ(refusal(ramp("NPTS= 1000000000, DT= .01 SEC")), "file:4: wanted 1000000000 points, as announced here, found 25");
-  EXPECT_EQ(refusal(ramp("NPTS= 20, DT= .01 SEC")), "file:4: wanted 20 points, as announced here, found 25");
-  EXPECT_EQ(refusal(ramp("NPTS= 1, DT= .01 SEC")), "file:4: wanted at least two points, found 1");
-  EXPECT_EQ(refusal(ramp("NPTS= 20.5, DT= .01 SEC")), "file:4: wanted a number of points, found 20.5");
+  EXPECT_EQ(refusal(ramp("NPTS= 25, DT= 0 SEC")), "file:4: expected a time step from 1e-07 s to 1e+06 s, found 0 s");
+  EXPECT_EQ(refusal(ramp("NPTS= 25, DT= -.01 SEC")), "file:4: expected a time step from 1e-07 s to 1e+06 s, found -0.01 s");
+  EXPECT_EQ(refusal(ramp("NPTS= 1000000000, DT= .01 SEC")), "file:4: expected 1000000000 points, as announced here, found 25");
+  EXPECT_EQ(refusal(ramp("NPTS= 20, DT= .01 SEC")), "file:4: expected 20 points, as announced here, found 25");
+  EXPECT_EQ(refusal(ramp("NPTS= 1, DT= .01 SEC")), "file:4: expected at least two points, found 1");
+  EXPECT_EQ(refusal(ramp("NPTS= 20.5, DT= .01 SEC")), "file:4: expected a number of points, found 20.5");
   EXPECT_EQ(refusal(ramp("NPTS= 25, DT= UNKNOWN")),
-            "file:4: wanted the number of points and the step, as in \"NPTS= 4000, DT= .005 SEC\", found \"NPTS= 25, DT= UNKNOWN\"");
-  EXPECT_EQ(refusal("0.5\n", {.unit = "g", .step = 0.01}), "file:1: wanted at least two points, found one");
-  EXPECT_EQ(refusal("0.5\n0.6\n", {.unit = "g", .step = 0.0}), "step: wanted a time step from 1e-07 s to 1e+06 s, found 0 s");
+            "file:4: expected the number of points and the step, as in \"NPTS= 4000, DT= .005 SEC\", found \"NPTS= 25, DT= UNKNOWN\"");
+  EXPECT_EQ(refusal("0.5\n", {.unit = "g", .step = 0.01}), "file:1: expected at least two points, found one");
+  EXPECT_EQ(refusal("0.5\n0.6\n", {.unit = "g", .step = 0.0}), "step: expected a time step from 1e-07 s to 1e+06 s, found 0 s");
   EXPECT_EQ(refusal("0.5\n0.6\n", {.unit = "g"}),
-            "file: wanted the time step of a file without times (give it, as in step = 0.01), found none");
+            "file: expected the time step of a file without times (give it, as in step = 0.01), found none");
 }
 
 TEST(RecordRefusals, Units) {
   const std::string known = "g, mg, gal, cm/s2, m/s2, mm/s2, in/s2, ft/s2, cm/s, m/s, mm/s, in/s, ft/s, cm, m, mm, in or ft";
-  EXPECT_EQ(refusal(replaced(ramp(sound), "OF G", "OF FURLONGS")), "file:3: wanted a unit of motion: " + known + ", found \"FURLONGS\"");
+  EXPECT_EQ(refusal(replaced(ramp(sound), "OF G", "OF FURLONGS")), "file:3: expected a unit of motion: " + known + ", found \"FURLONGS\"");
   EXPECT_EQ(refusal(replaced(ramp(sound), "OF G", "OF CM/S")),
-            "file:3: wanted a unit of acceleration, which the file says it holds, found cm/s (of velocity)");
+            "file:3: expected a unit of acceleration, which the file says it holds, found cm/s (of velocity)");
   EXPECT_EQ(
       refusal("0 0\n0.01 -0.5\n"),
-      "file: wanted a unit of the values (the file states none: give it, as in unit = \"g\"), found numbers up to 0.5 without a unit");
+      "file: expected a unit of the values (the file states none: give it, as in unit = \"g\"), found numbers up to 0.5 without a unit");
   EXPECT_EQ(refusal("0 0\n0.01 -0.5\n", {.unit = "cm/s3"}),
-            "unit: wanted a unit of motion: " + known + ", found \"cm/s3\" (did you mean \"cm/s2\"?)");
+            "unit: expected a unit of motion: " + known + ", found \"cm/s3\" (did you mean \"cm/s2\"?)");
   EXPECT_EQ(refusal(cosmos(tone(20, 9), 10, 0, "Uncorrected", "counts(50)").text),
-            "file:45: wanted a unit of motion: " + known + ", found \"COUNTS\"");
+            "file:45: expected a unit of motion: " + known + ", found \"COUNTS\"");
   EXPECT_EQ(refusal(replaced(ramp(sound), "2.5000000E-02", "2.5000000E+99")),
-            "file:3: wanted values of a ground motion, found up to 2.452e+100 m/s2 with the unit g");
+            "file:3: expected values of a ground motion, found up to 2.452e+100 m/s2 with the unit g");
 }
 
 TEST(RecordRefusals, WhatIsNoRecord) {
-  EXPECT_EQ(refusal(""), "file: wanted a record of ground motion, found an empty file");
-  EXPECT_EQ(refusal(" \r\n\n"), "file: wanted a record of ground motion, found an empty file");
+  EXPECT_EQ(refusal(""), "file: expected a record of ground motion, found an empty file");
+  EXPECT_EQ(refusal(" \r\n\n"), "file: expected a record of ground motion, found an empty file");
   EXPECT_EQ(refusal("Dear reader,\nthis is prose.\n"),
-            "file: wanted a record of ground motion (at2, esm, knet, cosmos, csmip, smc or columns), found no row of numbers within the "
+            "file: expected a record of ground motion (at2, esm, knet, cosmos, csmip, smc or columns), found no row of numbers within the "
             "first 2 lines of text");
-  EXPECT_EQ(refusal("0 1\n" + std::string(4'000'001, '1')), "file:2: wanted lines of at most 4000000 characters, found 4000001");
-  EXPECT_EQ(refusal(std::string("0 1\n0 \0 1\n", 10)), "file:2: wanted text, found a zero byte (a binary file, or UTF-16)");
+  EXPECT_EQ(refusal("0 1\n" + std::string(4'000'001, '1')), "file:2: expected lines of at most 4000000 characters, found 4000001");
+  EXPECT_EQ(refusal(std::string("0 1\n0 \0 1\n", 10)), "file:2: expected text, found a zero byte (a binary file, or UTF-16)");
   EXPECT_EQ(refusal(ramp(sound), {.format = "at3"}),
-            "format: wanted at2, esm, knet, cosmos, csmip, smc or columns, found \"at3\" (did you mean \"at2\"?)");
-  EXPECT_EQ(refusal(replaced(ramp(sound), "6.0000000E-03", "6.0000000X-03")), "file:6: wanted numbers, found \"X-03\"");
+            "format: expected at2, esm, knet, cosmos, csmip, smc or columns, found \"at3\" (did you mean \"at2\"?)");
+  EXPECT_EQ(refusal(replaced(ramp(sound), "6.0000000E-03", "6.0000000X-03")), "file:6: expected numbers, found \"X-03\"");
   EXPECT_EQ(
       refusal(smc(tone(20, 9), 1.7e38).text),
-      "file:18: wanted samples per second in the second real of the head, found none (a digitised film with uneven times is not read)");
-  EXPECT_EQ(refusal(smc(tone(20, 9), 100, "5 RESPONSE SPECTRA").text), "file:1: wanted a time history, found \"5 RESPONSE SPECTRA\"");
+      "file:18: expected samples per second in the second real of the head, found none (a digitised film with uneven times is not read)");
+  EXPECT_EQ(refusal(smc(tone(20, 9), 100, "5 RESPONSE SPECTRA").text), "file:1: expected a time history, found \"5 RESPONSE SPECTRA\"");
   EXPECT_EQ(refusal(esm(tone(20, 9), 0.01, "ACCELERATION RESPONSE SPECTRUM").text),
-            "file:11: DATA_TYPE: wanted ACCELERATION, VELOCITY or DISPLACEMENT, found \"ACCELERATION RESPONSE SPECTRUM\"");
+            "file:11: DATA_TYPE: expected ACCELERATION, VELOCITY or DISPLACEMENT, found \"ACCELERATION RESPONSE SPECTRUM\"");
   EXPECT_EQ(refusal(replaced(esm(tone(20, 9), 0.01).text, "NDATA: 20", "NDATA: many")),
-            "file:8: NDATA: wanted the number of points, found \"many\"");
+            "file:8: NDATA: expected the number of points, found \"many\"");
   EXPECT_EQ(refusal(knet(tone(200, 900), 100, "N-S", "3920(gal)/0").text),
-            "file:14: wanted a scale factor such as 3920(gal)/6182761, found \"3920(gal)/0\"");
+            "file:14: expected a scale factor such as 3920(gal)/6182761, found \"3920(gal)/0\"");
   EXPECT_EQ(refusal(replaced(knet(tone(200, 900), 100, "N-S").text, " 100Hz", " 0Hz")),
-            "file:11: wanted a sampling frequency > 0 Hz, found \"0Hz\"");
+            "file:11: expected a sampling frequency > 0 Hz, found \"0Hz\"");
   const std::string channel = cosmos(tone(20, 9), 10, 0).text;
   EXPECT_EQ(refusal(channel.substr(0, channel.find(" 100 Real"))),
-            "file:25: wanted a line \"real-header values follow on ... lines\", found the end of the file");
+            "file:25: expected a line \"real-header values follow on ... lines\", found the end of the file");
 }
 
 TEST(RecordRefusals, TablesAndTheirTimes) {
   std::vector<double> times = equal_times();
-  EXPECT_EQ(refusal("time [s],a [g]\n0,1\n0.02,1\n0.01,1\n"), "file:4: wanted times in ascending order, found 0.01 s after 0.02 s");
-  EXPECT_EQ(refusal("time [s],a [g]\n0,1\n0.01\n"), "file:3: wanted 2 numbers, as in line 2, found 1");
-  EXPECT_EQ(refusal("time [s],a [g]\n0,1\n0.01,x\n"), "file:3: wanted a number, found \"x\"");
-  EXPECT_EQ(refusal("time [s],a [g]\n0,1\nNaN,2\n"), "file:3: wanted a time, found \"NaN\"");
-  EXPECT_EQ(refusal("3 1\n1 2\n5 3\n", {.unit = "g"}), "file:1: wanted two columns: times at equal steps, and values, found \"3 1\"");
+  EXPECT_EQ(refusal("time [s],a [g]\n0,1\n0.02,1\n0.01,1\n"), "file:4: expected times in ascending order, found 0.01 s after 0.02 s");
+  EXPECT_EQ(refusal("time [s],a [g]\n0,1\n0.01\n"), "file:3: expected 2 numbers, as in line 2, found 1");
+  EXPECT_EQ(refusal("time [s],a [g]\n0,1\n0.01,x\n"), "file:3: expected a number, found \"x\"");
+  EXPECT_EQ(refusal("time [s],a [g]\n0,1\nNaN,2\n"), "file:3: expected a time, found \"NaN\"");
+  EXPECT_EQ(refusal("3 1\n1 2\n5 3\n", {.unit = "g"}), "file:1: expected two columns: times at equal steps, and values, found \"3 1\"");
   EXPECT_EQ(refusal("time [s],a [g]\n0,1\n1,2\n", {.column = "b"}),
-            "file:1: column: wanted a column from 1 to 2, or time or a, found \"b\"");
-  EXPECT_EQ(refusal("0.5 -0.0012-0.3\n0.1 0.2\n"), "file:1: wanted a row of numbers, found \"0.5 -0.0012-0.3\"");
-  EXPECT_EQ(refusal("time [s],a [g]\n0,1\n1,2\n", {.column = "1"}), "file:1: column: wanted a column of values, found that of the times");
+            "file:1: column: expected a column from 1 to 2, or time or a, found \"b\"");
+  EXPECT_EQ(refusal("0.5 -0.0012-0.3\n0.1 0.2\n"), "file:1: expected a row of numbers, found \"0.5 -0.0012-0.3\"");
+  EXPECT_EQ(refusal("time [s],a [g]\n0,1\n1,2\n", {.column = "1"}), "file:1: column: expected a column of values, found that of the times");
   times.erase(times.begin() + 11, times.begin() + 13);
-  EXPECT_EQ(refusal(table(times)), "file:13: wanted times at equal steps of 0.01 s, found 0.13 s after 0.1 s");
+  EXPECT_EQ(refusal(table(times)), "file:13: expected times at equal steps of 0.01 s, found 0.13 s after 0.1 s");
 }
 
 TEST(RecordRefusals, MoreColumnsThanARecordHas) {
@@ -135,20 +135,20 @@ TEST(RecordRefusals, MoreColumnsThanARecordHas) {
     for (std::string& row : rows) row += ",0.1";
   }
   const std::string text = head + "\n" + rows[0] + "\n" + rows[1] + "\n" + rows[2] + "\n";
-  EXPECT_EQ(refusal(text), "file:1: wanted at most 100 columns of motion (say which one with `column`), found 101");
+  EXPECT_EQ(refusal(text), "file:1: expected at most 100 columns of motion (say which one with `column`), found 101");
   EXPECT_EQ(refusal(text, {.column = "7"}), "none");
 }
 
 TEST(RecordRefusals, GapsThatCannotBeFilled) {
   const std::string text = ramp(sound);
   EXPECT_EQ(refusal(replaced(replaced(text, "7.0000000E-03", "          NaN"), "8.0000000E-03", "          NaN")),
-            "file:6: wanted a number (only single missing points are interpolated), found \"NaN\"");
+            "file:6: expected a number (only single missing points are interpolated), found \"NaN\"");
   EXPECT_EQ(refusal(replaced(text, "1.0000000E-03", "*************")),
-            "file:5: wanted a number for the first and the last point, found \"*************\"");
+            "file:5: expected a number for the first and the last point, found \"*************\"");
   EXPECT_EQ(refusal(replaced(text, "2.5000000E-02", "          Inf")),
-            "file:9: wanted a number for the first and the last point, found \"Inf\"");
+            "file:9: expected a number for the first and the last point, found \"Inf\"");
   EXPECT_EQ(refusal(replaced(replaced(text, "7.0000000E-03", "          NaN"), "9.0000000E-03", "          NaN")),
-            "file:6: wanted at most one missing point in twenty, found 2 of 25");
+            "file:6: expected at most one missing point in twenty, found 2 of 25");
 }
 
 TEST(RecordRepairs, NumberOfPoints) {

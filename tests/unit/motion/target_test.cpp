@@ -140,7 +140,7 @@ TEST(TargetTable, RefusesWhatIsNoSpectrum) {
     points({1, 3, 2}, {2, 2, 2});
     FAIL();
   } catch (const InputError& error) {
-    EXPECT_STREQ(error.what(), "case.toml:3: target.frequencies: wanted frequencies in ascending order, found 2 Hz after 3 Hz");
+    EXPECT_STREQ(error.what(), "case.toml:3: target.frequencies: expected frequencies in ascending order, found 2 Hz after 3 Hz");
   }
 }
 

@@ -372,8 +372,9 @@ TEST(VerdictCriteria, MetOrNot) {
 TEST(VerdictCriteria, WhatIsRefused) {
   EXPECT_NE(refusal_of("quantity = \"max_uplift_ratio\"\nlimit = 0.3\nsource = \"a\"\n").find("did you mean \"max_uplifted_ratio\"?"),
             std::string::npos);
-  EXPECT_NE(refusal_of("quantity = \"max_opening\"\nlimit = \"3 kN\"\nsource = \"a\"\n").find("limit: wanted a length [m], found \"3 kN\""),
-            std::string::npos);
+  EXPECT_NE(
+      refusal_of("quantity = \"max_opening\"\nlimit = \"3 kN\"\nsource = \"a\"\n").find("limit: expected a length [m], found \"3 kN\""),
+      std::string::npos);
   EXPECT_NE(refusal_of("quantity = \"max_opening\"\nlimit = 0.3\n").find("source"), std::string::npos);
   EXPECT_NE(refusal_of("quantity = \"max_opening\"\nlimit = 0.3\nsource = \" \"\n").find("where the limit comes from"), std::string::npos);
   EXPECT_NE(refusal_of("quantity = \"max_opening\"\nlimit = true\nsource = \"a\"\n").find("a number, or a text with a number and its unit"),

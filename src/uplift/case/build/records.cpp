@@ -54,7 +54,7 @@ Motion read_record(const Values& record) {
     return motion;
   } catch (const InputError& error) {
     // what is wrong with an option has the option's name and no place
-    const std::string said = error.what(), before = error.path() + ": wanted ";
+    const std::string said = error.what(), before = error.path() + ": expected ";
     const bool of_option = error.path() == "format" || error.path() == "unit" || error.path() == "step" || error.path() == "column";
     const std::size_t at = said.find(before);
     if (!of_option || at == said.npos) throw;

@@ -160,9 +160,9 @@ std::string message_of(const Mesh& mesh) {
 }
 
 std::string message_of(const InputError& error) {
-  // PLACE: wanted WANTED, found FOUND. Wherever it is cut behind the place, it is put together to the same text again.
+  // PLACE: expected EXPECTED, found FOUND. Wherever it is cut behind the place, it is put together to the same text again.
   const std::string text = error.what(), found = ", found ";
-  const std::string begin = std::string(InputError(error.where(), error.path(), "", "").what()) + ": wanted ";
+  const std::string begin = std::string(InputError(error.where(), error.path(), "", "").what()) + ": expected ";
   const std::size_t middle = text.rfind(found);
   const bool usual = text.starts_with(begin) && middle != text.npos && begin.size() <= middle;
   Packer to(error_mark);
