@@ -10,8 +10,7 @@ namespace uplift {
 namespace {
 
 struct Format {
-  bool four = false;
-  GmshNumbers numbers;
+  bool four = false, binary = false;
 };
 
 class GmshFile {
@@ -40,7 +39,7 @@ class GmshFile {
     const GmshSection* found = nullptr;
     for (const GmshSection& section : sections_) {
       if (section.name != name) continue;
-      if (found) GmshCursor(bytes_, section, file_, {}).fail("one section $" + std::string(name), "a second one");
+      if (found) GmshCursor(bytes_, section, file_, false).fail("one section $" + std::string(name), "a second one");
       found = &section;
     }
     return found;
@@ -53,12 +52,12 @@ class GmshFile {
       if (names.size() < enough) names.emplace_back("$" + std::string(section.name));
     throw InputError({file_, 0}, "", "a section $" + std::string(name), names.empty() ? "none" : "only " + listed(names));
   }
-  GmshCursor need(std::string_view name) const { return {bytes_, need_section(name), file_, format_.numbers}; }
+  GmshCursor need(std::string_view name) const { return {bytes_, need_section(name), file_, format_.binary}; }
 
   Format read_format() const {
     if (find("NOD"))
       throw InputError({file_, 1}, "", "format 4.1 or 2.2 (Gmsh: Save As, or -format msh41)", "format 1, which has no named groups");
-    GmshCursor at(bytes_, need_section("MeshFormat"), file_, {});
+    GmshCursor at(bytes_, need_section("MeshFormat"), file_, false);
     const Where place = at.where();
     const std::string_view version = at.word("the version of the format");
     Format format;
@@ -68,20 +67,27 @@ class GmshFile {
     const int kind = at.integer("0 for text, 1 for binary"), bytes = at.integer("the size of numbers");
     if (kind != 0 && kind != 1) at.fail("0 for text or 1 for binary", std::to_string(kind));
     if (bytes != 8) at.fail("numbers of 8 bytes", std::to_string(bytes));
+    format.binary = kind == 1;
+    if (format.binary && !format.four)
+      at.fail("format 4.1, or format 2.2 as text (Gmsh: Save As, or -format msh41)", "format 2.2 in binary");
     at.end_line();
-    if (kind == 1) {
-      const std::uint32_t one = at.raw_bytes("the number 1, which tells the order of bytes");
-      if (one != 1 && one != 0x01000000) at.fail("the number 1 in 4 bytes, which tells the order of bytes", std::to_string(one));
-      format.numbers = {true, one != 1};
-    }
+    if (format.binary) read_byte_order(at);
     at.finish("$EndMeshFormat");
     return format;
+  }
+
+  /// A binary file has the number 1 here, in 4 bytes.
+  static void read_byte_order(GmshCursor& at) {
+    const std::uint32_t one = at.raw_bytes("the number 1, which tells the order of bytes");
+    if (one == 0x01000000)
+      at.fail("the order of bytes of this machine (Gmsh: Save As text, or -format msh41 without -bin)", "the other one");
+    if (one != 1) at.fail("the number 1 in 4 bytes, which tells the order of bytes", std::to_string(one));
   }
 
   void read_names() {
     const GmshSection* section = find("PhysicalNames");
     if (!section) return;
-    GmshCursor at(bytes_, *section, file_, {});  // text in binary files too
+    GmshCursor at(bytes_, *section, file_, false);  // text in binary files too
     for (auto left = at.count("a number of names", 8, 8); left > 0; --left) {
       const int dimension = at.integer("a dimension"), tag = at.integer("a tag");
       if (dimension < 0 || dimension > 3) at.fail("a dimension from 0 to 3", std::to_string(dimension));

@@ -9,7 +9,7 @@ namespace uplift {
 /// Does this look like a .msh file? Decided by its first characters.
 bool is_gmsh(std::string_view bytes);
 
-/// Reads a mesh of Gmsh, format 4.1 or 2.x, as text or binary of either byte order; coordinates are metres. `file` is its name in messages.
+/// Reads a mesh of Gmsh, format 4.1 as text or binary, or format 2.x as text; coordinates are metres. `file` is its name in messages.
 /// - Cells: points, lines 2/3, triangles 3/6, quadrilaterals 4/8/9, tetrahedra 4/10, wedges 6/15, hexahedra 8/20/27, in the node order of
 ///   mesh/cells.h; other types are refused by name.
 /// - Physical groups become named groups; without a name, tag 7 of dimension 2 is called "physical_2_7". Cells without a physical group

@@ -3,7 +3,7 @@
 
 #include "uplift/io/mesh/gmsh_parts.h"
 
-// Formats 2.0 to 2.2: Gmsh reference manual, "MSH file format version 2 (Legacy)". Counts are text in binary files too.
+// Formats 2.0 to 2.2: Gmsh reference manual, "MSH file format version 2 (Legacy)". Text only.
 namespace uplift {
 namespace {
 
@@ -46,21 +46,6 @@ std::int64_t tag_count(GmshCursor& at) {
   return tags;
 }
 
-/// Elements of one type with one number of tags. Returns how many.
-std::int64_t read_binary_run(GmshCursor& at, const GmshNodes& nodes, GmshGroups& groups, Mesh& mesh) {
-  const GmshType& type = wanted_gmsh_type(at.integer("a type of elements"), at);
-  const int count = at.integer("a number of elements");
-  const std::int64_t tags = tag_count(at);
-  const auto numbers = static_cast<std::size_t>(info(type.cell).nodes + 1) + static_cast<std::size_t>(tags);
-  at.check_count(count, "a number of elements", numbers, 4 * numbers);
-  if (count == 0) at.fail("at least one element", "0");
-  for (int i = 0; i < count; ++i) {
-    const int number = at.integer("the number of an element");
-    add_element(at, number, tags, type, nodes, groups, mesh);
-  }
-  return count;
-}
-
 /// For each cell of a block the number it has when each set of nodes is taken once.
 std::vector<int> number_each_once(CellBlock& block) {
   const auto count = static_cast<std::size_t>(block.count()), n = static_cast<std::size_t>(info(block.cell).nodes);
@@ -100,7 +85,7 @@ void merge_equal_cells(Mesh& mesh, GmshGroups& groups) {
 }  // namespace
 
 GmshNodeList read_gmsh_nodes_2(GmshCursor at, bool parametric) {
-  const auto count = at.text_count_line("a number of nodes", 8, 28);
+  const auto count = at.count("a number of nodes", 8, 8);
   GmshNodeList list;
   list.tags.reserve(static_cast<std::size_t>(count));
   list.nodes.reserve(static_cast<std::size_t>(count));
@@ -115,17 +100,11 @@ GmshNodeList read_gmsh_nodes_2(GmshCursor at, bool parametric) {
 }
 
 void read_gmsh_elements_2(GmshCursor at, const GmshNodes& nodes, GmshGroups& groups, Mesh& mesh) {
-  const auto count = at.text_count_line("a number of elements", 8, 8);
-  if (at.binary()) {
-    std::int64_t read = 0;
-    while (read < count) read += read_binary_run(at, nodes, groups, mesh);
-    if (read != count) at.fail(std::to_string(count) + " elements in all, as the section begins", std::to_string(read));
-  } else {
-    for (auto left = count; left > 0; --left) {
-      const int number = at.integer("the number of an element");
-      const GmshType& type = wanted_gmsh_type(at.integer("a type of elements"), at);
-      add_element(at, number, tag_count(at), type, nodes, groups, mesh);
-    }
+  const auto count = at.count("a number of elements", 8, 8);
+  for (auto left = count; left > 0; --left) {
+    const int number = at.integer("the number of an element");
+    const GmshType& type = wanted_gmsh_type(at.integer("a type of elements"), at);
+    add_element(at, number, tag_count(at), type, nodes, groups, mesh);
   }
   at.finish("$EndElements after the last element");
   merge_equal_cells(mesh, groups);

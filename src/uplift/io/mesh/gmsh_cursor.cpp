@@ -1,11 +1,9 @@
 #include "uplift/io/mesh/gmsh_cursor.h"
 
 #include <algorithm>
-#include <array>
 #include <charconv>
 #include <cmath>
 #include <cstring>
-#include <utility>
 
 #include "uplift/base/text.h"
 
@@ -51,14 +49,13 @@ std::vector<GmshSection> gmsh_sections(std::string_view bytes, const std::string
   }
 }
 
-GmshCursor::GmshCursor(std::string_view bytes, const GmshSection& section, const std::string& file, GmshNumbers numbers)
+GmshCursor::GmshCursor(std::string_view bytes, const GmshSection& section, const std::string& file, bool binary)
     : begin_(bytes.data()),
       at_(section.content.data()),
       end_(section.content.data() + section.content.size()),
       name_("$" + std::string(section.name)),
       file_(file),
-      binary_(numbers.binary),
-      swapped_(numbers.swapped) {}
+      binary_(binary) {}
 
 Where GmshCursor::where() const {
   if (binary_) return {file_, 0};
@@ -106,11 +103,8 @@ double GmshCursor::text_real(const char* what) {
 template <class T>
 T GmshCursor::raw(const char* what) {
   if (left() < sizeof(T)) fail(std::string(what) + " (" + std::to_string(sizeof(T)) + " bytes)", next_text());
-  std::array<char, sizeof(T)> bytes;
-  std::memcpy(bytes.data(), at_, sizeof(T));
-  if (swapped_) std::reverse(bytes.begin(), bytes.end());
   T value;
-  std::memcpy(&value, bytes.data(), sizeof(T));
+  std::memcpy(&value, at_, sizeof(T));
   at_ += sizeof(T);
   return value;
 }
@@ -134,10 +128,7 @@ double GmshCursor::raw_real(const char* what) {
 }
 
 std::uint32_t GmshCursor::raw_bytes(const char* what) {
-  const bool swapped = std::exchange(swapped_, false);
-  const auto value = raw<std::uint32_t>(what);
-  swapped_ = swapped;
-  return value;
+  return raw<std::uint32_t>(what);
 }
 
 std::int64_t GmshCursor::count(const char* what, std::size_t text_bytes, std::size_t binary_bytes) {
@@ -152,13 +143,6 @@ void GmshCursor::check_count(std::int64_t items, const char* what, std::size_t t
   if (items < 0 || static_cast<std::uint64_t>(items) > room || items >= INT32_MAX)
     fail(std::string(what) + " that the section can hold (at most " + std::to_string(std::min<std::size_t>(room, INT32_MAX - 1)) + ")",
          std::to_string(items));
-}
-
-std::int64_t GmshCursor::text_count_line(const char* what, std::size_t text_bytes, std::size_t binary_bytes) {
-  const std::int64_t items = text_integer(what, 0, INT64_MAX);
-  end_line();
-  check_count(items, what, text_bytes, binary_bytes);
-  return items;
 }
 
 std::string_view GmshCursor::quoted(const char* what) {

@@ -7,7 +7,7 @@
 
 #include "uplift/base/error.h"
 
-// Reading .msh files from one buffer in memory: sections, and numbers that are written as text or as bytes of either order.
+// Reading .msh files from one buffer in memory: sections, and numbers that are written as text or as bytes.
 namespace uplift {
 
 /// One section: $name, its content, $Endname.
@@ -19,18 +19,12 @@ struct GmshSection {
 /// Cuts a file into its sections. Throws InputError with the line or byte when something stands outside of them or an end is missing.
 std::vector<GmshSection> gmsh_sections(std::string_view bytes, const std::string& file);
 
-/// How numbers are written.
-struct GmshNumbers {
-  bool binary = false;
-  bool swapped = false;  // bytes in the other order than this machine's
-};
-
 /// Reads the numbers of a section one after another. Every function throws InputError with the line (text) or the byte (binary) where a
 /// number is missing, out of range or not what was wanted; `what` names it in the message ("a node tag").
 class GmshCursor {
  public:
   /// `section` is part of `bytes`, the whole file.
-  GmshCursor(std::string_view bytes, const GmshSection& section, const std::string& file, GmshNumbers numbers);
+  GmshCursor(std::string_view bytes, const GmshSection& section, const std::string& file, bool binary);
 
   /// An integer of 4 bytes when binary.
   int integer(const char* what) { return binary_ ? raw_integer(what) : static_cast<int>(text_integer(what, -2147483648LL, 2147483647LL)); }
@@ -43,8 +37,6 @@ class GmshCursor {
   std::int64_t count(const char* what, std::size_t text_bytes, std::size_t binary_bytes);
   /// The same check for a count that was read before.
   void check_count(std::int64_t items, const char* what, std::size_t text_bytes, std::size_t binary_bytes);
-  /// The same for counts that are written as text in binary files too; its line ends there.
-  std::int64_t text_count_line(const char* what, std::size_t text_bytes, std::size_t binary_bytes);
   /// A text in double quotes, which ends at the last quote of its line.
   std::string_view quoted(const char* what);
   /// A word up to white space.
@@ -54,9 +46,8 @@ class GmshCursor {
   /// Everything must have been read.
   void finish(const char* what);
 
-  bool binary() const { return binary_; }
   std::size_t left() const { return static_cast<std::size_t>(end_ - at_); }
-  /// The next 4 bytes, whatever their order; advances.
+  /// The next 4 bytes of text; advances.
   std::uint32_t raw_bytes(const char* what);
   /// InputError here.
   [[noreturn]] void fail(const std::string& wanted, const std::string& found) const;
@@ -77,7 +68,7 @@ class GmshCursor {
   const char *begin_, *at_, *end_;
   std::string name_;
   const std::string& file_;
-  bool binary_, swapped_;
+  bool binary_;
 };
 
 }  // namespace uplift
