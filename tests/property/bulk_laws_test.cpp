@@ -22,25 +22,46 @@ double usual(std::string_view unit_name) {
   return unit();
 }
 
+/// The material properties of the behaviours that the law `mfront` is tested with (tests/mfront_behaviours.c), as parameters.
+const PartInfo& behaviour(bool hardens) {
+  static const PartInfo kinematic{
+      "Prager", "", "", "", {number("YieldStrength", "Pa", "").positive(), number("HardeningSlope", "Pa", "").nonnegative()}};
+  static const PartInfo cone{"DruckerPrager",
+                             "",
+                             "",
+                             "",
+                             {number("Cohesion", "Pa", "").nonnegative(), number("FrictionAngle", "rad", "").between(0, 1.5),
+                              number("DilatancyAngle", "rad", "").between(0, 1.5), number("HardeningSlope", "Pa", "").nonnegative()}};
+  return hardens ? kinematic : cone;
+}
+
 struct Law {
+  const PartInfo* drawn;  // whose parameters were drawn
   std::vector<Parameter> parameters;
   ElasticMaterial material;
   std::shared_ptr<const BulkLaw> law;
 };
 
-std::shared_ptr<const BulkLaw> make_law(const BulkLawEntry& entry, const ElasticMaterial& material,
+std::shared_ptr<const BulkLaw> make_law(const BulkLawEntry& entry, const PartInfo& drawn, const ElasticMaterial& material,
                                         const std::vector<Parameter>& parameters) {
-  auto table = std::make_shared<RawTable>();
-  table->entries.emplace_back("type", Raw{std::string(entry.name), {}, "law.type"});
+  const auto text = [](const std::string& value) { return Raw{value, {}, "law"}; };
+  auto table = std::make_shared<RawTable>(), drawn_table = &entry == &drawn ? table : std::make_shared<RawTable>();
+  table->entries.emplace_back("type", text(std::string(entry.name)));
+  if (&entry != &drawn) {
+    table->entries.emplace_back("library", text(UPLIFT_MFRONT_LIBRARY));
+    table->entries.emplace_back("behaviour", text(std::string(drawn.name)));
+  }
   for (const auto& [key, value] : parameters)
-    std::visit([&, &name = key](const auto& given) { table->entries.emplace_back(name, Raw{given, {}, "law." + name}); }, value);
-  return make_part(bulk_law_catalog(), check_part(Raw{table, {}, "law"}, bulk_laws()), material);
+    std::visit([&, &name = key](const auto& given) { drawn_table->entries.emplace_back(name, Raw{given, {}, "law." + name}); }, value);
+  if (&entry != &drawn) table->entries.emplace_back("properties", Raw{drawn_table, {}, "law.properties"});
+  return make_part(bulk_law_catalog(), check_part(Raw{table, {}, "law"}, bulk_laws()), {material, 3});
 }
 
 Law random_law(const BulkLawEntry& entry) {
   const ElasticMaterial material{magnitude(1e7, 1e10), between(0.05, 0.45), 2000};
-  return random_part<Law>(entry, usual, [&](const std::vector<Parameter>& parameters) {
-    return Law{parameters, material, make_law(entry, material, parameters)};
+  const PartInfo& drawn = entry.name == "mfront" ? behaviour(one_in(2)) : entry;
+  return random_part<Law>(drawn, usual, [&](const std::vector<Parameter>& parameters) {
+    return Law{&drawn, parameters, material, make_law(entry, drawn, material, parameters)};
   });
 }
 
@@ -236,7 +257,8 @@ RC_GTEST_PROP(BulkLawProperties, UnitsScale, ()) {
     for (auto& [key, value] : scaled) {
       double* number = std::get_if<double>(&value);
       if (number == nullptr) continue;
-      const auto field = std::find_if(entry.params.begin(), entry.params.end(), [&key = key](const Field& f) { return f.name == key; });
+      const std::vector<Field>& fields = law.drawn->params;
+      const auto field = std::find_if(fields.begin(), fields.end(), [&key = key](const Field& f) { return f.name == key; });
       if (field->unit == "Pa")
         *number *= pressure;
       else
@@ -244,7 +266,7 @@ RC_GTEST_PROP(BulkLawProperties, UnitsScale, ()) {
     }
     Law other = law;
     other.material.young *= pressure;
-    other.law = make_law(entry, other.material, scaled);
+    other.law = make_law(entry, *law.drawn, other.material, scaled);
     Point one(law), two(other);
     for (int step = 0; step < 5; ++step) {
       const Strain to = random_strain(size);

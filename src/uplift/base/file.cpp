@@ -19,16 +19,16 @@ namespace {
 
 namespace fs = std::filesystem;
 
+fs::path folder_of(const fs::path& path) {
+  return path.has_parent_path() ? path.parent_path() : fs::path(".");
+}
+
 [[noreturn]] void missing(const fs::path& path) {
   const Where where{path.string(), 0};
   std::error_code error;
-  const fs::path folder = path.has_parent_path() ? path.parent_path() : fs::path(".");
+  const fs::path folder = folder_of(path);
   if (!fs::is_directory(folder, error)) throw InputError(where, "", "a file", "no folder " + in_quotes(folder.string()));
-  std::vector<std::string> names;
-  for (fs::directory_iterator entry(folder, error), end; !error && entry != end; entry.increment(error))
-    if (!entry->is_directory(error)) names.push_back(entry->path().filename().string());
-  const std::string nearest = nearest_name(path.filename().string(), names);
-  throw InputError(where, "", "a file", "no file of this name", nearest.empty() ? "" : (path.parent_path() / nearest).string());
+  throw InputError(where, "", "a file", "no file of this name", nearest_file(path));
 }
 
 /// A new file beside the target, removed unless it is published.
@@ -79,6 +79,19 @@ class Draft {
 };
 
 }  // namespace
+
+fs::path path_beside(const Where& where, const std::string& given) {
+  return fs::path(where.file).parent_path() / given;  // an absolute path stays
+}
+
+std::string nearest_file(const fs::path& path) {
+  std::error_code error;
+  std::vector<std::string> names;
+  for (fs::directory_iterator entry(folder_of(path), error), end; !error && entry != end; entry.increment(error))
+    if (!entry->is_directory(error)) names.push_back(entry->path().filename().string());
+  const std::string nearest = nearest_name(path.filename().string(), names);
+  return nearest.empty() ? "" : (path.parent_path() / nearest).string();
+}
 
 std::string read_file(const fs::path& path, double most) {
   std::error_code error;

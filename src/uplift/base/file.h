@@ -3,7 +3,15 @@
 #include <string>
 #include <string_view>
 
+#include "uplift/base/error.h"
+
 namespace uplift {
+
+/// A path that an input file names: relative to the folder of that file.
+std::filesystem::path path_beside(const Where& where, const std::string& given);
+
+/// The file in the folder of a path whose name is the nearest to its name; empty when none is near enough to be a likely misspelling.
+std::string nearest_file(const std::filesystem::path& path);
 
 inline constexpr double usual_file_limit = 2000;  // MB
 

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <filesystem>
 
+#include "uplift/base/file.h"
 #include "uplift/base/text.h"
 #include "uplift/case/advice/history_forecast.h"
 #include "uplift/case/build/criteria.h"
@@ -307,6 +308,12 @@ std::vector<std::string> input_files(const Case& read) {
     if (shape.items().contains("file") && shape.has("file")) add(shape);
   }
   if (const Values* mesh = table_if(read.values, "mesh"); mesh && mesh->has("file")) add(*mesh);
+  for (const Values& solid : read.values.tables("solid"))
+    for (const char* key : {"law", "plasticity"})
+      if (solid.has(key) && solid.part(key).items().contains("library")) {
+        const std::filesystem::path path = path_beside(solid.part(key).where("library"), solid.part(key).text("library"));
+        if (std::filesystem::is_regular_file(path)) files.push_back(path.lexically_normal().string());  // else the law refuses it
+      }
   for (const Values& record : read.values.tables("record"))
     if (record.has("file")) files.push_back(record_path(record));
   return files;

@@ -54,9 +54,9 @@ PlasticState PlasticBulk::state(std::vector<double> history) const {
   return made;
 }
 
-BulkResponse PlasticBulk::respond(const Vector& displacement, MotionInstant at, const std::vector<double>& old, PlasticState& now,
-                                  Vector& size) const {
-  const Vector full = model_.full(displacement, 0, at);
+BulkResponse PlasticBulk::respond(const Vector& displacement, const Update& step, PlasticState& now, Vector& size) const {
+  const Vector full = model_.full(displacement, 0, step.at);
+  scratch_.element.duration = step.duration;
   Vector& sizes = scratch_.sizes;
   sizes.setZero(full.size());
   now.history.resize(history_);
@@ -65,7 +65,7 @@ BulkResponse PlasticBulk::respond(const Vector& displacement, MotionInstant at, 
     of_element(*one.element, full, scratch_.displacement);
     const auto history = std::span(now.history).subspan(one.first, static_cast<std::size_t>(one.element->num_history()));
     const BulkResponse response =
-        one.element->respond(scratch_.displacement, history_of(one, old), history, scratch_.element, scratch_.force, nullptr);
+        one.element->respond(scratch_.displacement, history_of(one, step.old), history, scratch_.element, scratch_.force, nullptr);
     if (!response.converged) return response;
     const int each = one.element->unknowns_per_node();
     Index i = 0;
@@ -80,13 +80,14 @@ BulkResponse PlasticBulk::respond(const Vector& displacement, MotionInstant at, 
   return {};
 }
 
-Sparse PlasticBulk::softening(const Vector& displacement, MotionInstant at, const std::vector<double>& old, const PlasticState& now) const {
-  const Vector full = model_.full(displacement, 0, at);
+Sparse PlasticBulk::softening(const Vector& displacement, const Update& step, const PlasticState& now) const {
+  const Vector full = model_.full(displacement, 0, step.at);
+  scratch_.element.duration = step.duration;
   std::vector<Triplet> entries;
   std::vector<double> unused;
   Matrix tangent, elastic;
   for (const One& one : elements_) {
-    const auto before = history_of(one, old);
+    const auto before = history_of(one, step.old);
     unused.assign(before.begin(), before.end());
     of_element(*one.element, full, scratch_.displacement);
     if (one.element->yields(before, history_of(one, now.history)) &&

@@ -24,11 +24,17 @@ class PlasticBulk {
   std::size_t num_history() const { return history_; }
   /// The state of an accepted history; an empty one is the natural state.
   PlasticState state(std::vector<double> history) const;
-  /// Answers displacements (free unknowns) at an instant from an old history. `size`, free unknowns, receives the sums of the elements'
-  /// absolute forces [N]: what the balance is judged by.
-  BulkResponse respond(const Vector& displacement, MotionInstant at, const std::vector<double>& old, PlasticState& now, Vector& size) const;
+  /// The step that is updated: from a history to the instant of its end.
+  struct Update {
+    const std::vector<double>& old;
+    MotionInstant at;
+    double duration;  // s; 0 in a static stage
+  };
+  /// Answers displacements (free unknowns) at the end of the step. `size`, free unknowns, receives the sums of the elements' absolute
+  /// forces [N]: what the balance is judged by.
+  BulkResponse respond(const Vector& displacement, const Update& step, PlasticState& now, Vector& size) const;
   /// Symmetric part of the consistent tangent less the elastic stiffness, free x free, of the state that `respond` has just given.
-  Sparse softening(const Vector& displacement, MotionInstant at, const std::vector<double>& old, const PlasticState& now) const;
+  Sparse softening(const Vector& displacement, const Update& step, const PlasticState& now) const;
 
   /// Of a state: recoverable energy less u.(K u)/2 of the linear bulk [J].
   double energy(const Vector& displacement, MotionInstant at, const PlasticState& state) const;

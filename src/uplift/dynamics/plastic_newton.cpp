@@ -67,7 +67,7 @@ PlasticNewton::~PlasticNewton() = default;
 /// Goes over to the tangent of the present state. A tangent that is not positive definite (no associated flow, or no strength left) gets a
 /// share of the elastic stiffness back.
 bool PlasticNewton::soften(const Step& step, const Make& make, const Vector& increment, const PlasticState& now) {
-  const Sparse full = step.weight * bulk_.softening(step.start.displacement + increment, step.at, step.old.history, now);
+  const Sparse full = step.weight * bulk_.softening(step.start.displacement + increment, {step.old.history, step.at, step.duration}, now);
   std::string why;
   for (const double share : {1.0, 0.9, 0.5}) {
     const Sparse softening = share * full;
@@ -110,7 +110,7 @@ Outcome PlasticNewton::solve(const Step& step, StepSolver& elastic, const Make& 
     }
     moved_ = step.start.displacement + increment;
     if (!moved_.allFinite()) break;
-    if (const BulkResponse response = bulk_.respond(moved_, step.at, step.old.history, now, size_); !response.converged) {
+    if (const BulkResponse response = bulk_.respond(moved_, {step.old.history, step.at, step.duration}, now, size_); !response.converged) {
       outcome.why = response.why;
       return outcome;
     }

@@ -39,7 +39,8 @@ class PlasticNewton {
     const StepStart& start;
     const PlasticState& old;
     MotionInstant at;
-    double weight = 1;  // w
+    double weight = 1;    // w
+    double duration = 0;  // s; 0 in a static stage
   };
   /// `increment` and `now` receive the end of the step.
   Outcome solve(const Step& step, StepSolver& elastic, const Make& make, Vector& increment, PlasticState& now);

@@ -86,8 +86,8 @@ Outcome Stepper::solve(Level& level) {
     level.tangent = factor;
     return std::make_unique<Condensed>(model_, b_, gap_, gap_moves_, std::move(factor), frame_of(level), method_, linear_);
   };
-  Outcome outcome =
-      newton_->solve({right_, start, plastic_now_, next_.time, 1 / options_.scheme.stretch()}, *last, soften, increment_, plastic_next_);
+  Outcome outcome = newton_->solve({right_, start, plastic_now_, next_.time, 1 / options_.scheme.stretch(), level.step}, *last, soften,
+                                   increment_, plastic_next_);
   last = &newton_->last();
   last_ = &last->problem();
   solution_ = &last->solution();

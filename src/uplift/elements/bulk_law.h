@@ -1,6 +1,7 @@
 #pragma once
 #include <memory>
 #include <span>
+#include <string>
 #include <string_view>
 
 #include "uplift/base/catalog.h"
@@ -19,12 +20,13 @@ struct BulkPoints {
   double* now;                     // filled: memory at its end
   Stress* stress;                  // filled: at its end [Pa]
   Mat6* tangent;                   // filled: d stress/d strain of this update [Pa]; null: not wanted
+  double duration = 0;             // of the step [s]; 0 in a static stage
 };
 
 /// How an update ended; not converged: the step is to be cut.
 struct BulkResponse {
   bool converged = true;
-  std::string_view why;
+  std::string why;
 };
 
 /// A quantity that field files show besides the stress.
@@ -57,8 +59,13 @@ class BulkLaw {
   Mat6 elastic_;
 };
 
-/// Made from the elastic material of the solid and the parameters of the law.
-using BulkLawEntry = Entry<BulkLaw, ElasticMaterial>;
+/// The solid that a law is made for.
+struct BulkLawContext {
+  ElasticMaterial material;  // its elastic part
+  int dimension = 3;         // of the mesh; 2: plane strain
+};
+/// Made from that and the parameters of the law.
+using BulkLawEntry = Entry<BulkLaw, BulkLawContext>;
 std::span<const BulkLawEntry* const> bulk_law_catalog();
 std::span<const PartInfo* const> bulk_laws();
 

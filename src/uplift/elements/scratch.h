@@ -7,6 +7,7 @@ namespace uplift {
 
 /// Room for one element at a time during an update. Updates allocate nothing once it has served the largest element.
 struct ElementScratch {
+  double duration = 0;  // of the step that is updated [s]; 0 in a static stage
   // of the integration points
   std::vector<PointGradient> gradient;
   std::vector<Strain> strain;

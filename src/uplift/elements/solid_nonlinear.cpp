@@ -93,8 +93,8 @@ BulkResponse NonlinearSolid::evaluate(const Vector& displacement, std::span<cons
                                       Scratch& scratch) const {
   const double* amplitudes = now.data() + first_amplitude();
   for (std::size_t p = 0; p < scratch.gradient.size(); ++p) scratch.strain[p] = strain(scratch.gradient[p], displacement, amplitudes);
-  const BulkResponse response =
-      law_->respond({scratch.strain, old.data(), now.data(), scratch.stress.data(), tangents ? scratch.tangent.data() : nullptr});
+  const BulkResponse response = law_->respond(
+      {scratch.strain, old.data(), now.data(), scratch.stress.data(), tangents ? scratch.tangent.data() : nullptr, scratch.duration});
   scratch.mode_force.setZero(num_amplitudes());
   if (modes_ > 0)
     for (std::size_t p = 0; p < scratch.gradient.size(); ++p)

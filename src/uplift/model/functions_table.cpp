@@ -105,8 +105,7 @@ std::size_t column_of(const Values& v, std::string_view key, const std::vector<s
 }
 
 std::unique_ptr<const TimeFunction> make_csv(const Values& v) {
-  const std::filesystem::path given = v.text("file");
-  const std::filesystem::path path = given.is_absolute() ? given : std::filesystem::path(v.where("file").file).parent_path() / given;
+  const std::filesystem::path path = path_beside(v.where("file"), v.text("file"));
   if (!std::filesystem::is_regular_file(path)) throw InputError(v.where("file"), v.path("file"), "a file", in_quotes(path.string()));
 
   const double time_factor = unit_factor(v, "time_unit", {"s"});

@@ -144,11 +144,11 @@ SolidSection section_from(const Values& solid) {
   return section;
 }
 
-std::shared_ptr<const BulkLaw> law_from(const Values& solid, const SolidSection& section) {
+std::shared_ptr<const BulkLaw> law_from(const Values& solid, const SolidSection& section, int dimension) {
   if (solid.has("plasticity") && solid.has("law")) fail(solid, "plasticity", "either law or plasticity, its older name", "both");
   const char* key = solid.has("plasticity") ? "plasticity" : "law";
   if (!solid.has(key)) return nullptr;
-  std::shared_ptr<const BulkLaw> law = make_part(bulk_law_catalog(), solid.part(key), section.material);
+  std::shared_ptr<const BulkLaw> law = make_part(bulk_law_catalog(), solid.part(key), {section.material, dimension});
   if (!law->linear() && section.plane == PlaneState::stress)
     fail(solid, "plane", "plane = \"strain\" for a solid whose law is not elastic", "\"stress\"");
   return law;
@@ -225,7 +225,7 @@ CaseSolids::CaseSolids(const Values& root, const CaseMesh& from) : mesh_(&from.m
       solid_here = static_cast<int>(solids_.size());
     }
     const SolidSection section = section_from(solid);
-    solids_.push_back({&solid, section, law_from(solid, section), group.cells});
+    solids_.push_back({&solid, section, law_from(solid, section, mesh_->dimension), group.cells});
   }
   const auto bare = std::ranges::find(solid_of_, -1);
   if (bare != solid_of_.end())

@@ -169,10 +169,10 @@ void DruckerPrager::find_outputs(const double* history, double* values) const {
 
 namespace {
 
-std::unique_ptr<const BulkLaw> made(const ElasticMaterial& material, const Values& values) {
+std::unique_ptr<const BulkLaw> made(const BulkLawContext& solid, const Values& values) {
   using Fit = DruckerPragerParameters::Fit;
   DruckerPragerParameters law;
-  law.elastic = material;
+  law.elastic = solid.material;
   law.cohesion = values.number("cohesion");
   law.friction = values.number("friction_angle");
   law.dilation = values.number("dilatancy_angle");

@@ -24,13 +24,14 @@ class Elastic final : public BulkLaw {
 }  // namespace
 
 const BulkLawEntry& entry_bulk_law_elastic() {
-  static const BulkLawEntry entry{
-      {.name = "elastic",
-       .summary = "linear elastic: what a linear analysis assumes",
-       .equations = "stress = lambda tr(strain) I + 2 G strain, with E and poisson of the solid",
-       .source = "Hooke; docs/theory, section 9",
-       .params = {}},
-      [](const ElasticMaterial& material, const Values&) -> std::unique_ptr<const BulkLaw> { return std::make_unique<Elastic>(material); }};
+  static const BulkLawEntry entry{{.name = "elastic",
+                                   .summary = "linear elastic: what a linear analysis assumes",
+                                   .equations = "stress = lambda tr(strain) I + 2 G strain, with E and poisson of the solid",
+                                   .source = "Hooke; docs/theory, section 9",
+                                   .params = {}},
+                                  [](const BulkLawContext& solid, const Values&) -> std::unique_ptr<const BulkLaw> {
+                                    return std::make_unique<Elastic>(solid.material);
+                                  }};
   return entry;
 }
 
