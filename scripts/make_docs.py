@@ -48,7 +48,7 @@ def gallery(folder):
 def pages(program, record, folder):
     """All pages as Markdown."""
     shutil.rmtree(folder, ignore_errors=True)
-    shutil.copytree(ROOT / "docs", folder, ignore=shutil.ignore_patterns("site", "mkdocs.yml", "reference_keys.txt"))
+    shutil.copytree(ROOT / "docs", folder, ignore=shutil.ignore_patterns("site", "mkdocs.yml"))
     for source, page in (("CONTRIBUTING.md", "contributing.md"), ("CHANGELOG.md", "changelog.md")):
         shutil.copy(ROOT / source, folder / page)
     gallery(folder / "gallery")

@@ -1,6 +1,7 @@
 """Runs the program as a user does. The path of the binary is the first argument of the test program."""
 
 import base64
+import functools
 import json
 import os
 import pathlib
@@ -112,9 +113,55 @@ class CliTest(unittest.TestCase):
         self.assertEqual(done.stdout, "")
 
     def summary(self, folder):
+        """summary.json, which has nothing but what its schema states."""
         text = (self.folder / folder / "summary.json").read_text()
         self.assertNotRegex(text, r"\b(nan|inf)\b")
-        return json.loads(text)
+        summary = json.loads(text)
+        self.assert_valid(summary, "motion" if "intensities" in summary else "results")
+        return summary
+
+    def assert_valid(self, document, schema):
+        """`uplift schema NAME` accepts the document."""
+        self.assertEqual(list(violations(document, schema_of(schema), schema_of(schema))), [])
+
+
+@functools.cache
+def schema_of(document):
+    """`uplift schema DOCUMENT`."""
+    return json.loads(subprocess.run([program(), "schema", document], capture_output=True, text=True, check=True).stdout)
+
+
+TYPES = {"string": str, "integer": int, "number": (int, float), "boolean": bool, "null": type(None), "array": list, "object": dict}
+
+
+def is_a(value, kind):
+    return isinstance(value, TYPES[kind]) and (kind == "boolean" or not isinstance(value, bool))
+
+
+def violations(value, schema, root, path="$"):
+    """Where a document does not follow a schema: the keywords that the schemas of results use."""
+    unknown = set(schema) - {"$schema", "$defs", "title", "description", "unit", "type", "const", "enum", "properties", "required", "additionalProperties", "items", "$ref"}
+    if unknown:
+        yield f"{path}: the schema has keywords that are not checked: {unknown}"
+    if "$ref" in schema:
+        yield from violations(value, root["$defs"][schema["$ref"].removeprefix("#/$defs/")], root, path)
+    kinds = schema.get("type", [])
+    if kinds and not any(is_a(value, kind) for kind in ([kinds] if isinstance(kinds, str) else kinds)):
+        yield f"{path}: {value!r} is not of type {kinds}"
+    if "const" in schema and value != schema["const"] or "enum" in schema and value not in schema["enum"]:
+        yield f"{path}: {value!r} is not {schema.get('const', schema.get('enum'))!r}"
+    if isinstance(value, dict):
+        for key in set(schema.get("required", [])) - set(value):
+            yield f"{path}: {key} is missing"
+        for key, inner in value.items():
+            rule = schema.get("properties", {}).get(key, schema.get("additionalProperties", True))
+            if rule is False:
+                yield f"{path}: {key} is not in the schema"
+            elif rule is not True:
+                yield from violations(inner, rule, root, f"{path}.{key}")
+    if isinstance(value, list) and "items" in schema:
+        for number, inner in enumerate(value):
+            yield from violations(inner, schema["items"], root, f"{path}[{number}]")
 
 
 def report_of(folder):
@@ -132,4 +179,4 @@ def main():
     unittest.main(module="__main__", verbosity=2)
 
 
-__all__ = ["BASE", "program", "CliTest", "json", "line_of", "main", "pathlib", "re", "report_of", "subprocess", "os"]
+__all__ = ["BASE", "program", "CliTest", "json", "line_of", "main", "pathlib", "re", "report_of", "schema_of", "subprocess", "os", "violations"]

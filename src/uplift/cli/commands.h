@@ -29,7 +29,8 @@ int trust(const Options& options);
 int modes(const Options& options, int count);
 /// `family` and `name` may be empty: lists.
 int describe(const std::string& family, const std::string& name);
-int schema();
+/// The JSON Schema of a document: "case", "results" (summary.json), "trust" (trust.json) or "motion" (summary.json of `motion`).
+int schema(const std::string& document);
 int replay(const Options& options, const std::string& method, bool all);
 
 struct MotionOptions {

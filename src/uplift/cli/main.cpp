@@ -25,7 +25,7 @@ constexpr const char* exit_codes =
 
 struct Choices {
   Options options;
-  std::string name, family, method = "lagrange", shell = "bash";
+  std::string name, family, method = "lagrange", shell = "bash", document = "case";
   uplift::cli::MotionOptions motion;
   int modes = 6;
   bool all = false;
@@ -125,7 +125,10 @@ void declare(CLI::App& app, Choices& given) {
                       "law, method, impact, scheme, function, record, process, target, solver, section or quantity");
   command->add_option("name", given.name, "name of the part or table");
 
-  add(app, "schema", "print the JSON Schema of the case file", "  uplift schema > case.schema.json");
+  command = add(app, "schema", "print the JSON Schema of the case file or of a results document",
+                "  uplift schema > case.schema.json\n  uplift schema results > summary.schema.json");
+  command->add_option("document", given.document,
+                      "case (default), results (summary.json), trust (trust.json) or motion (summary.json of uplift motion)");
 
   command = add(app, "replay", "solve a stored interface problem alone, with any method",
                 "  uplift replay out/tower/problem_run.json --method lagrange\n  uplift replay out/tower/problem_run.json --all");
@@ -164,7 +167,7 @@ int dispatch(const CLI::App& app, const Choices& given) {
   if (name == "trust") return cli::trust(given.options);
   if (name == "modes") return cli::modes(given.options, given.modes);
   if (name == "describe") return cli::describe(given.family, given.name);
-  if (name == "schema") return cli::schema();
+  if (name == "schema") return cli::schema(given.document);
   if (name == "motion") return cli::motion(given.options, given.motion);
   if (name == "replay") return cli::replay(given.options, given.method, given.all);
   return cli::completion(given.shell, declared(app));

@@ -1,7 +1,6 @@
 #include <cmath>
 
 #include "uplift/case/mesh/mesh.h"
-#include "uplift/io/report/motions.h"
 #include "uplift/io/results/interface_points.h"
 #include "uplift/io/text/json_writer.h"
 #include "uplift/session/check.h"
@@ -55,7 +54,8 @@ std::string check_json(const LoadedCase& loaded, const CheckedCase& checked) {
         .member("behaviour", interface.behaviour)
         .member("points", interface.batch.points)
         .member("area", interface.area.sum());
-    write_points(json.key("positions"), interface);
+    ResultWriter out(json);
+    write_points(out, interface);
     if (k < found.ratios.size())
       json.member("k_F_least", found.ratios[k].least)
           .member("k_F_most", found.ratios[k].most)

@@ -26,8 +26,8 @@ ReportInput report_input(const LoadedCase& loaded, const Results& results) {
 
 std::string results_json(const LoadedCase& loaded, const Results& results) {
   const ReportInput input = report_input(loaded, results);
-  return summary_json({loaded.from, results.runs, results.verdict, motions_of(input.runs), input.compared, &results.floors,
-                       results.built.empty() ? nullptr : &results.built.front()});
+  return summary_json({loaded.from, results.runs, results.verdict, motions_of(input.runs), input.compared, &results.floors, &results.built,
+                       &results.specs});
 }
 
 std::string results_page(const LoadedCase& loaded, const Results& results) {

@@ -17,16 +17,18 @@ using Quantity = MotionTable::Quantity;
 /// What is compared of a run, with its value.
 std::vector<std::pair<Quantity, double>> peaks_of(const RunSpec& spec, const BuiltCase& built, const RunResult& run) {
   std::vector<std::pair<Quantity, double>> peaks;
+  const std::vector<Quantity> all = motion_quantities();
+  const auto add = [&](const char* key, double value) { peaks.emplace_back(*std::ranges::find(all, key, &Quantity::key), value); };
   const std::optional<Peak> top = top_motion(built, run);
-  if (top) peaks.emplace_back(Quantity{"top", "Top motion", "m"}, std::abs(top->value));
+  if (top) add("top", std::abs(top->value));
   if (built.facts.empty()) return peaks;
   if (!spec.bonded) {
-    peaks.emplace_back(Quantity{"ratio", "Uplifted", "1"}, run.max_uplifted_ratio.value);
-    peaks.emplace_back(Quantity{"opening", "Gap", "m"}, run.max_opening.value);
+    add("ratio", run.max_uplifted_ratio.value);
+    add("opening", run.max_opening.value);
   }
-  peaks.emplace_back(Quantity{"shear", "Base shear", "N"}, std::abs(run.max_base_shear.value));
-  peaks.emplace_back(Quantity{"moment", "Base moment", "N m"}, std::abs(run.max_base_moment.value));
-  peaks.emplace_back(Quantity{"pressure", "Pressure", "Pa"}, run.max_pressure.value);
+  add("shear", std::abs(run.max_base_shear.value));
+  add("moment", std::abs(run.max_base_moment.value));
+  add("pressure", run.max_pressure.value);
   return peaks;
 }
 
@@ -86,6 +88,11 @@ std::string criteria_over_motions(const std::vector<JudgedMotion>& judged) {
 }
 
 }  // namespace
+
+std::vector<MotionTable::Quantity> motion_quantities() {
+  return {{"top", "Top motion", "m"},   {"ratio", "Uplifted", "1"},       {"opening", "Gap", "m"},
+          {"shear", "Base shear", "N"}, {"moment", "Base moment", "N m"}, {"pressure", "Pressure", "Pa"}};
+}
 
 std::size_t hardest(const std::vector<JudgedMotion>& judged) {
   const auto rank = [](const JudgedMotion& each) {

@@ -26,6 +26,9 @@ struct MotionTable {
   std::vector<double> mean, spread;  // spread: standard deviation of the sample (over n - 1); zero for one run
 };
 
+/// The quantities that a table can have.
+std::vector<MotionTable::Quantity> motion_quantities();
+
 /// One table per variant and damping, the bonded model among them; none without [[compare.motion]]. Quantities that a model does not have
 /// (no top, no interface) are left out; a bonded base stretches instead of opening.
 std::vector<MotionTable> motion_tables(const std::vector<RunSpec>& specs, const std::deque<BuiltCase>& built,

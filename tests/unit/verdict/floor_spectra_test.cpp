@@ -167,8 +167,11 @@ TEST(FloorSpectra, SoundRunsOfAGroup) {
   EXPECT_EQ(std::count(csv.begin(), csv.end(), '\n'), 1 + (4 + 1) * 2 * 3);
   EXPECT_EQ(csv.find("nan"), std::string::npos);
   JsonWriter json;
-  write_floors(json, answers.runs[3]);
-  const nlohmann::json written = nlohmann::json::parse(json.take());
+  json.begin_object();
+  ResultWriter out(json);
+  write_floors(out, "floors", answers.runs[3]);
+  json.end_object();
+  const nlohmann::json written = nlohmann::json::parse(json.take())["floors"];
   EXPECT_EQ(written[0]["name"], "roof");
   EXPECT_EQ(written[0]["spectra"][1]["damping"], 0.05);
   EXPECT_NEAR(written[0]["spectra"][0]["beside_bonded"][0]["change"].get<double>(), 0.5, 1e-12);

@@ -155,16 +155,19 @@ void write_fits(JsonWriter& json, const MotionReport& report) {
   json.end_array().end_object();
 }
 
+struct Correlation {
+  std::string first, second;
+  double value = 0;
+};
 /// Pairs of motions with their correlation coefficients.
-void write_correlations(JsonWriter& json, const MotionReport& report) {
-  json.begin_array();
+std::vector<Correlation> correlations_of(const MotionReport& report) {
+  std::vector<Correlation> pairs;
   for (std::size_t i = 0; i < report.motions.size(); ++i)
     for (std::size_t j = i + 1; j < report.motions.size(); ++j) {
       const Motion &first = report.motions[i].now, &second = report.motions[j].now;
-      if (const std::optional<double> value = correlation_of(first, second))
-        json.begin_object().member("first", first.name).member("second", second.name).member("correlation", *value).end_object();
+      if (const std::optional<double> value = correlation_of(first, second)) pairs.push_back({first.name, second.name, *value});
     }
-  json.end_array();
+  return pairs;
 }
 
 void write_correlation_table(JsonWriter& json, const MotionReport& report) {
@@ -176,9 +179,10 @@ void write_correlation_table(JsonWriter& json, const MotionReport& report) {
   write_column(json, {"first", "Motion", "", "text", 0});
   write_column(json, {"second", "Motion", "", "text", 0});
   write_column(json, {"correlation", "Correlation", "", "number", 3});
-  json.end_array().key("rows");
-  write_correlations(json, report);
-  json.end_object();
+  json.end_array().key("rows").begin_array();
+  for (const Correlation& each : correlations_of(report))
+    json.begin_object().member("first", each.first).member("second", each.second).member("correlation", each.value).end_object();
+  json.end_array().end_object();
 }
 
 void write_facts(JsonWriter& json, const MotionReport& report) {
@@ -270,32 +274,67 @@ std::string motion_report_json(const MotionReport& report) {
   return json.take();
 }
 
+namespace {
+
+void write_summary(ResultWriter& out, const MotionReport& report) {
+  out.text("version", report.from.version, "version of the program");
+  out.text("created", report.from.created, "date and time, UTC");
+  out.text("command", report.from.command, "command that was run");
+  write_motions(out, histories_of(report));
+  out.list("intensities", "intensities of the motions after processing", report.motions, [&](const ShownMotion& shown) {
+    const Intensity i = out.is_schema() ? Intensity() : intensity_of(converted(shown.now, MotionKind::acceleration));
+    out.text("name", shown.now.name, "name of the motion");
+    out.number("pga", i.pga, "m/s2", "peak ground acceleration");
+    out.number("pgv", i.pgv, "m/s", "peak ground velocity");
+    out.number("pgd", i.pgd, "m", "peak ground displacement");
+    out.number("arias", i.arias, "m/s", "Arias intensity");
+    out.number("cav", i.cav, "m/s", "cumulative absolute velocity");
+    out.number("significant_duration", i.significant_duration(), "s", "time from 5 % to 95 % of the Arias intensity");
+    out.number("housner", i.housner, "m",
+               "Housner intensity: integral of the pseudo-velocity with 5 % damping over periods from 0.1 s to 2.5 s");
+  });
+  struct Fit {
+    std::string name;
+    SpectrumFit fit{.damping = 0, .frequencies = {0}, .target = {}, .reached = {}};
+  };
+  std::vector<Fit> fits;
+  for (const ShownMotion& shown : report.motions)
+    if (shown.fit) fits.push_back({shown.now.name, *shown.fit});
+  out.list("fits", "fits of generated motions to their target spectra", fits, [&](const Fit& each) {
+    const SpectrumFit& fit = each.fit;
+    out.text("name", each.name, "name of the motion");
+    out.flag("good", fit.good(), "whether the mean error is at most 5 % and no ratio is below 90 %");
+    out.number("damping", fit.damping, "1", "damping ratio of the spectra");
+    out.number("from", fit.frequencies.front(), "Hz", "lower limit of the frequency band");
+    out.number("to", fit.frequencies.back(), "Hz", "upper limit of the frequency band");
+    out.number("mean_error", fit.mean_error, "1", "mean of |ratio - 1|, the ratio being that of the motion's spectrum to the target");
+    out.number("least_ratio", fit.least_ratio, "1", "smallest ratio");
+    out.number("mean_ratio", fit.mean_ratio, "1", "mean ratio");
+    out.number("largest_error", fit.largest_error, "1", "largest of |ratio - 1|");
+  });
+  out.list("correlations", "correlations of motions of equal step and length", correlations_of(report), [&](const Correlation& each) {
+    out.text("first", each.first, "name of a motion");
+    out.text("second", each.second, "name of another motion");
+    out.number("correlation", each.value, "1", "correlation coefficient of their accelerations at equal times");
+  });
+}
+
+}  // namespace
+
 std::string motion_summary_json(const MotionReport& report) {
   JsonWriter json(0, 2);
-  json.begin_object().member("version", report.from.version).member("created", report.from.created).member("command", report.from.command);
-  write_motions(json, histories_of(report));
-  json.key("intensities").begin_array();
-  for (const ShownMotion& shown : report.motions) {
-    const Intensity i = intensity_of(converted(shown.now, MotionKind::acceleration));
-    json.begin_object().member("name", shown.now.name).member("pga", i.pga).member("pgv", i.pgv).member("pgd", i.pgd);
-    json.member("arias", i.arias).member("cav", i.cav).member("significant_duration", i.significant_duration());
-    json.member("housner", i.housner).end_object();
-  }
-  json.end_array().key("fits").begin_array();
-  for (const ShownMotion& shown : report.motions) {
-    if (!shown.fit) continue;
-    const SpectrumFit& fit = *shown.fit;
-    json.begin_object().member("name", shown.now.name).member("good", fit.good()).member("damping", fit.damping);
-    json.member("from", fit.frequencies.front()).member("to", fit.frequencies.back()).member("mean_error", fit.mean_error);
-    json.member("least_ratio", fit.least_ratio)
-        .member("mean_ratio", fit.mean_ratio)
-        .member("largest_error", fit.largest_error)
-        .end_object();
-  }
-  json.end_array().key("correlations");
-  write_correlations(json, report);
+  json.begin_object();
+  ResultWriter out(json);
+  write_summary(out, report);
   json.end_object();
   return json.take();
+}
+
+std::string motion_summary_schema() {
+  ResultWriter out("summary.json of uplift motion",
+                   "Results of `uplift motion`. Numbers are in SI units; the keyword `unit` states the unit of each.");
+  write_summary(out, {});
+  return out.schema();
 }
 
 }  // namespace uplift

@@ -38,5 +38,7 @@ std::string motion_report_json(const MotionReport& report);
 std::string motion_spectra_csv(const MotionReport& report);
 /// summary.json: provenance, `motions` (as in the summary of a run), `intensities`, `fits` and `correlations`.
 std::string motion_summary_json(const MotionReport& report);
+/// Its JSON Schema.
+std::string motion_summary_schema();
 
 }  // namespace uplift

@@ -123,53 +123,6 @@ Histories motions_of(const std::vector<ReportRun>& runs) {
   return found;
 }
 
-void write_motions(JsonWriter& json, const Histories& motions) {
-  json.key("motions").begin_array();
-  for (const auto& history : motions) {
-    const Motion& motion = *history->motion();
-    const Motion acceleration = acceleration_of(*history);
-    const MotionPeak peak = peak_of(acceleration);
-    json.begin_object().member("name", motion.name).member("file", motion.file).member("sha256", motion.sha256);
-    json.member("format", motion.format).member("event", motion.event).member("station", motion.station);
-    json.member("component", motion.component);
-    if (motion.azimuth) json.member("azimuth_degrees", *motion.azimuth * 180 / std::numbers::pi);
-    json.member("quantity", to_string(motion.kind)).member("unit", motion.unit).member("factor", motion.factor);
-    json.key("repairs").texts(motion.repairs).key("processing").texts(motion.processing);
-    json.member("step", motion.step).member("count", static_cast<long>(motion.values.size())).member("duration", motion.duration());
-    json.key("pga").begin_object().member("value", peak.value).member("time", peak.time).member("unit", "m/s2").end_object();
-    json.end_object();
-  }
-  json.end_array();
-}
-
-void write_over_motions(JsonWriter& json, const std::vector<MotionTable>& tables) {
-  json.key("over_motions").begin_array();
-  for (const MotionTable& table : tables) {
-    const auto values = [&](const std::vector<double>& numbers) {
-      json.begin_object();
-      for (std::size_t k = 0; k < numbers.size(); ++k) json.member(table.quantities[k].key, numbers[k]);
-      json.end_object();
-    };
-    json.begin_object().member("run", table.run).member("damping", table.damping).member("counted", table.counted);
-    json.key("units").begin_object();
-    for (const MotionTable::Quantity& quantity : table.quantities) json.member(quantity.key, quantity.unit);
-    json.end_object().key("motions").begin_array();
-    for (const MotionTable::Row& row : table.rows) {
-      json.begin_object().member("motion", row.motion).member("status", to_string(row.status)).key("peaks");
-      values(row.peaks);
-      json.end_object();
-    }
-    json.end_array();
-    for (const auto& [key, numbers] :
-         {std::pair("envelope", &table.envelope), std::pair("mean", &table.mean), std::pair("spread", &table.spread)}) {
-      json.key(key);
-      values(*numbers);
-    }
-    json.end_object();
-  }
-  json.end_array();
-}
-
 void write_motion_numbers(JsonWriter& json, const Histories& motions, std::string_view caption) {
   json.begin_object().member("id", "motions").member("title", "Motions");
   json.member(

@@ -1,11 +1,11 @@
 #pragma once
 #include <set>
-#include <span>
 #include <string>
 #include <string_view>
 #include <vector>
 
 #include "uplift/io/report/report.h"
+#include "uplift/io/results/thin_history.h"
 #include "uplift/io/text/json_writer.h"
 
 // The parts of the reports' documents; used by the files of the reports alone.
@@ -70,11 +70,5 @@ std::vector<Chart> rest_charts(const ReportRun& run);
 std::vector<Chart> beam_charts(const std::vector<ReportRun>& runs);
 /// Eccentricity and safeties of the first interface over time.
 std::vector<Chart> safety_charts(const std::vector<ReportRun>& runs);
-
-/// At most about `most` of the points of a history y over x: the least and the largest of each bucket, so that no peak is lost.
-void thin_history(std::vector<double>& x, std::vector<double>& y, std::size_t most);
-/// Likewise, appended to other vectors. What is not finite is left out.
-void thin_history(std::span<const double> x, std::span<const double> y, std::size_t most, std::vector<double>& thin_x,
-                  std::vector<double>& thin_y);
 
 }  // namespace uplift

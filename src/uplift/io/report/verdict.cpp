@@ -196,10 +196,9 @@ void write_verdict(JsonWriter& json, const ReportInput& input) {
   const Verdict& verdict = *input.verdict;
   json.begin_object().member("level", to_string(verdict.level)).member("headline", verdict.headline);
   json.member("consequence", verdict.consequence);
-  if (!statics_alone(input.runs.front().built->plan)) {
-    json.key("stepCheck");
-    write_step_check(json, verdict.step_check);
-  }
+  ResultWriter out(json);
+  out.when(!statics_alone(input.runs.front().built->plan));
+  write_step_check(out, "stepCheck", verdict.step_check);
   json.key("facts").begin_array();
   for (const Verdict::Fact& fact : verdict.facts)
     if (fact.tile) {
@@ -217,8 +216,8 @@ void write_verdict(JsonWriter& json, const ReportInput& input) {
   for (std::size_t k = 0; k < verdict.numbers.interfaces.size(); ++k) write_interface(json, input, k);
   json.end_array().key("criteria").begin_array();
   for (const CriterionResult& result : verdict.numbers.criteria) write_criterion(json, result);
-  json.end_array().key("floors");
-  write_floor_changes(json, input.floors);
+  json.end_array();
+  write_floor_changes(out, "floors", input.floors);
   json.end_object();
 }
 

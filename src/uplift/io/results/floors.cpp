@@ -2,6 +2,7 @@
 
 #include <algorithm>
 
+#include "uplift/io/results/words.h"
 #include "uplift/io/text/numbers.h"
 
 namespace uplift {
@@ -28,38 +29,50 @@ void write_block(std::string& text, const std::string& head, const FloorSpectra&
   }
 }
 
-void write_peak(JsonWriter& json, std::string_view key, const Spectrum& spectrum) {
-  const auto most = std::ranges::max_element(spectrum.values) - spectrum.values.begin();
-  json.key(key).begin_object().member("value", spectrum.values[static_cast<std::size_t>(most)]);
-  json.member("frequency", spectrum.frequencies[static_cast<std::size_t>(most)]).member("unit", "m/s2").end_object();
+void write_spectrum(ResultWriter& out, const Spectrum& spectrum, const FloorChange* change) {
+  out.number("damping", spectrum.damping, "1", "damping ratio of the equipment");
+  out.object("peak", "peak of the raw spectrum", [&] {
+    const auto most = static_cast<std::size_t>(std::ranges::max_element(spectrum.values) - spectrum.values.begin());
+    const bool any = most < spectrum.values.size();
+    out.number("value", any ? spectrum.values[most] : 0, "m/s2", "largest pseudo-acceleration");
+    out.number("frequency", any ? spectrum.frequencies[most] : 0, "Hz", "frequency at which it occurs");
+    out.unit("m/s2");
+  });
+  out.when(change != nullptr)
+      .list("beside_bonded", "comparison with the bonded reference run in frequency bands",
+            change ? change->bands : std::vector<FloorChange::Band>(), [&](const FloorChange::Band& band) {
+              out.text("band", to_string(band.band), "frequency band");
+              out.number("from", band.band.from, "Hz", "lower limit of the band");
+              out.number_or_null("to", band.band.to, "Hz", "upper limit of the band; null: none");
+              out.number("change", band.change, "1", "change of the largest value in the band: 0.1 is 10 % more than bonded");
+              out.number("least_ratio", band.least, "1", "smallest ratio to the bonded spectrum in the band");
+              out.number("largest_ratio", band.most, "1", "largest ratio to the bonded spectrum in the band");
+            });
 }
 
-void write_change(JsonWriter& json, const FloorChange& change) {
-  json.begin_array();
-  for (const FloorChange::Band& band : change.bands) {
-    json.begin_object().member("band", to_string(band.band)).member("from", band.band.from).key("to");
-    if (band.band.to)
-      json.value(*band.band.to);
-    else
-      json.null();
-    json.member("change", band.change).member("least_ratio", band.least).member("largest_ratio", band.most).end_object();
-  }
-  json.end_array();
+void write_floor(ResultWriter& out, const FloorSpectra& floor, const std::vector<FloorChange>* changes) {
+  out.text("name", floor.name, "name of the floor");
+  write_peak(out, "zero_period_acceleration", floor.zero_period, "m/s2",
+             "largest absolute acceleration of the floor: demand on rigid equipment");
+  struct Damping {
+    const Spectrum* raw = nullptr;
+    const FloorChange* change = nullptr;
+  };
+  std::vector<Damping> dampings;
+  for (std::size_t d = 0; d < floor.raw.size(); ++d) dampings.push_back({&floor.raw[d], changes ? &(*changes)[d] : nullptr});
+  out.list("spectra", "response spectra of the floor, one per damping", dampings,
+           [&](const Damping& each) { write_spectrum(out, each.raw ? *each.raw : Spectrum(), each.change); });
 }
 
-void write_floor(JsonWriter& json, const FloorSpectra& floor, const std::vector<FloorChange>* changes) {
-  const Peak& rigid = floor.zero_period;
-  json.begin_object().member("name", floor.name);
-  json.key("zero_period_acceleration").begin_object().member("value", rigid.value).member("time", rigid.time);
-  json.member("unit", rigid.unit).end_object();
-  json.key("spectra").begin_array();
-  for (std::size_t d = 0; d < floor.raw.size(); ++d) {
-    json.begin_object().member("damping", floor.raw[d].damping);
-    write_peak(json, "peak", floor.raw[d]);
-    if (changes) write_change(json.key("beside_bonded"), (*changes)[d]);
-    json.end_object();
-  }
-  json.end_array().end_object();
+void write_list(ResultWriter& out, std::string_view key, std::string_view meaning, const std::vector<FloorSpectra>& floors,
+                const std::vector<std::vector<FloorChange>>& beside) {
+  struct Floor {
+    const FloorSpectra* spectra = nullptr;
+    const std::vector<FloorChange>* changes = nullptr;
+  };
+  std::vector<Floor> all;
+  for (std::size_t k = 0; k < floors.size(); ++k) all.push_back({&floors[k], beside.empty() ? nullptr : &beside[k]});
+  out.list(key, meaning, all, [&](const Floor& each) { write_floor(out, each.spectra ? *each.spectra : FloorSpectra(), each.changes); });
 }
 
 }  // namespace
@@ -82,21 +95,16 @@ std::string floor_spectra_csv(const std::vector<RunResult>& runs, const FloorAns
   return text;
 }
 
-void write_floors(JsonWriter& json, const FloorRun& run) {
-  json.begin_array();
-  for (std::size_t k = 0; k < run.floors.size(); ++k) write_floor(json, run.floors[k], run.beside.empty() ? nullptr : &run.beside[k]);
-  json.end_array();
+void write_floors(ResultWriter& out, std::string_view key, const FloorRun& run) {
+  write_list(out, key, "floor spectra", run.floors, run.beside);
 }
 
-void write_floor_envelopes(JsonWriter& json, const FloorAnswers& floors) {
-  json.begin_array();
-  for (const FloorEnvelope& envelope : floors.envelopes) {
-    json.begin_object().member("damping_case", envelope.damping).member("runs", envelope.runs).key("floors").begin_array();
-    for (std::size_t k = 0; k < envelope.floors.size(); ++k)
-      write_floor(json, envelope.floors[k], envelope.beside.empty() ? nullptr : &envelope.beside[k]);
-    json.end_array().end_object();
-  }
-  json.end_array();
+void write_floor_envelopes(ResultWriter& out, std::string_view key, const FloorAnswers& floors) {
+  out.list(key, "envelopes of the floor spectra over the runs of a comparison", floors.envelopes, [&](const FloorEnvelope& envelope) {
+    out.text("damping_case", envelope.damping, "label of the damping of the structure; empty where there is only one");
+    out.count("runs", envelope.runs, "number of runs");
+    write_list(out, "floors", "envelopes of the floors", envelope.floors, envelope.beside);
+  });
 }
 
 }  // namespace uplift

@@ -2,7 +2,7 @@
 #include <string>
 #include <vector>
 
-#include "uplift/io/text/json_writer.h"
+#include "uplift/io/results/result_writer.h"
 #include "uplift/verdict/floor_spectra.h"
 
 namespace uplift {
@@ -12,7 +12,7 @@ namespace uplift {
 std::string floor_spectra_csv(const std::vector<RunResult>& runs, const FloorAnswers& floors);
 
 /// For summary.json: the array of the floors of one run, and that of the envelopes.
-void write_floors(JsonWriter& json, const FloorRun& run);
-void write_floor_envelopes(JsonWriter& json, const FloorAnswers& floors);
+void write_floors(ResultWriter& out, std::string_view key, const FloorRun& run);
+void write_floor_envelopes(ResultWriter& out, std::string_view key, const FloorAnswers& floors);
 
 }  // namespace uplift

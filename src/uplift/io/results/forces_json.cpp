@@ -9,53 +9,66 @@ std::string_view unit_of(const std::string& component) {
   return component.starts_with("moment") || component == "torsion" ? "N m" : "N";
 }
 
-void write_sum(JsonWriter& json, const char* key, const Equilibrium::Sum& sum) {
+void write_component(ResultWriter& out, const BeamEnvelope& envelope, std::size_t component) {
+  const std::string& name = envelope.components[component];
+  out.when(true).object(name, "range of this section force over all steps, at every section", [&] {
+    const std::string_view unit = unit_of(name);
+    out.unit(unit);
+    const auto write = [&](const char* key, double ForceRange::*member, std::string_view of, const char* meaning) {
+      std::vector<double> values;
+      for (std::size_t s = 0; s < envelope.sections.size(); ++s) values.push_back(envelope.at(s, component).*member);
+      out.numbers(key, values, of, meaning);
+    };
+    write("max", &ForceRange::most, unit, "largest value");
+    write("max_time", &ForceRange::most_time, "s", "time of the largest value");
+    write("min", &ForceRange::least, unit, "smallest value");
+    write("min_time", &ForceRange::least_time, "s", "time of the smallest value");
+  });
+}
+
+void write_sum(ResultWriter& out, const char* key, const char* meaning, const Equilibrium::Sum& sum) {
   const auto three = [](const Vec3& v) { return std::vector<double>{v.x(), v.y(), v.z()}; };
-  json.key(key).begin_object().key("force").numbers(three(sum.force)).key("moment").numbers(three(sum.moment)).end_object();
+  out.object(key, meaning, [&] {
+    out.numbers("force", three(sum.force), "N", "force, components x, y and z");
+    out.numbers("moment", three(sum.moment), "N m", "moment about the centre of the nodes, components x, y and z");
+  });
 }
 
 }  // namespace
 
-void write_envelopes(JsonWriter& json, const std::vector<BeamEnvelope>& envelopes) {
-  json.begin_array();
-  for (const BeamEnvelope& envelope : envelopes) {
-    json.begin_object().member("beam", envelope.beam);
-    std::vector<double> along;
-    for (const EnvelopeRequest::Section& section : envelope.sections) along.push_back(section.along);
-    json.key("along").begin_object().member("unit", "m").key("value").numbers(along).end_object();
-    for (std::size_t k = 0; k < envelope.components.size(); ++k) {
-      json.key(envelope.components[k]).begin_object().member("unit", unit_of(envelope.components[k]));
-      for (const auto& [name, member] : {std::pair{"max", &ForceRange::most},
-                                         {"max_time", &ForceRange::most_time},
-                                         {"min", &ForceRange::least},
-                                         {"min_time", &ForceRange::least_time}}) {
-        std::vector<double> values;
-        for (std::size_t s = 0; s < envelope.sections.size(); ++s) values.push_back(envelope.at(s, k).*member);
-        json.key(name).numbers(values);
-      }
-      json.end_object();
-    }
-    json.end_object();
-  }
-  json.end_array();
+void write_envelopes(ResultWriter& out, const std::vector<BeamEnvelope>& envelopes) {
+  out.list("beam_envelopes", "section forces along the beams of [[output.beam_envelope]]", envelopes, [&](const BeamEnvelope& given) {
+    BeamEnvelope envelope = given;
+    if (out.is_schema()) envelope.components = {"axial", "shear_y", "shear_z", "torsion", "moment_y", "moment_z", "shear", "moment"};
+    out.text("beam", envelope.beam, "name of the beam");
+    out.object("along", "positions of the sections", [&] {
+      out.unit("m");
+      std::vector<double> along;
+      for (const EnvelopeRequest::Section& section : envelope.sections) along.push_back(section.along);
+      out.numbers("value", along, "m", "distance from the beginning of the beam");
+    });
+    for (std::size_t k = 0; k < envelope.components.size(); ++k) write_component(out, envelope, k);
+  });
 }
 
-void write_equilibrium(JsonWriter& json, const Equilibrium& equilibrium) {
-  json.begin_object().member("largest_relative_residual", equilibrium.residual).member("time", equilibrium.time);
-  json.member("unit_of_forces", "N").member("unit_of_moments", "N m").key("instants").begin_array();
-  for (const Equilibrium::Instant& at : equilibrium.instants) {
-    json.begin_object().member("time", at.time);
-    write_sum(json, "inertia", at.inertia);
-    write_sum(json, "damping", at.damping);
-    write_sum(json, "internal", at.internal);
-    write_sum(json, "interfaces", at.joint);
-    write_sum(json, "second_order", at.second_order);
-    write_sum(json, "applied", at.applied);
-    write_sum(json, "reactions", at.reactions);
-    write_sum(json, "residual", at.residual);
-    json.end_object();
-  }
-  json.end_array().end_object();
+void write_equilibrium(ResultWriter& out, const Equilibrium& equilibrium) {
+  out.object("equilibrium", "equilibrium of the whole model: forces that act on the structure, which add up to zero", [&] {
+    out.number("largest_relative_residual", equilibrium.residual, "1", "largest residual, relative to the largest of the other sums");
+    out.number("time", equilibrium.time, "s", "time of that residual");
+    out.constant("unit_of_forces", "N", "unit of the forces");
+    out.constant("unit_of_moments", "N m", "unit of the moments");
+    out.list("instants", "instants that were examined", equilibrium.instants, [&](const Equilibrium::Instant& at) {
+      out.number("time", at.time, "s", "time");
+      write_sum(out, "inertia", "inertia forces", at.inertia);
+      write_sum(out, "damping", "damping forces, absorbing boundaries included", at.damping);
+      write_sum(out, "internal", "springs to the ground and other parts whose internal forces have a resultant", at.internal);
+      write_sum(out, "interfaces", "interfaces whose sides are at a distance from each other", at.joint);
+      write_sum(out, "second_order", "second-order forces (P-Delta)", at.second_order);
+      write_sum(out, "applied", "loads, gravity, ground acceleration and waves", at.applied);
+      write_sum(out, "reactions", "forces of supports, prescribed motions and ties", at.reactions);
+      write_sum(out, "residual", "sum of all forces", at.residual);
+    });
+  });
 }
 
 }  // namespace uplift

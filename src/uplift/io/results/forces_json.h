@@ -1,12 +1,12 @@
 #pragma once
-#include "uplift/io/text/json_writer.h"
+#include "uplift/io/results/result_writer.h"
 #include "uplift/run/run.h"
 
 namespace uplift {
 
-/// Section forces along the beams: ranges with times.
-void write_envelopes(JsonWriter& json, const std::vector<BeamEnvelope>& envelopes);
-/// Sums of the forces on the whole model at a few instants.
-void write_equilibrium(JsonWriter& json, const Equilibrium& equilibrium);
+/// The member "beam_envelopes": ranges of the section forces along the beams, with times.
+void write_envelopes(ResultWriter& out, const std::vector<BeamEnvelope>& envelopes);
+/// The member "equilibrium": sums of the forces on the whole model at a few instants.
+void write_equilibrium(ResultWriter& out, const Equilibrium& equilibrium);
 
 }  // namespace uplift

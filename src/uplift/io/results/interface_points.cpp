@@ -18,15 +18,18 @@ std::string points_text(const Interface& interface) {
   return text + " m";
 }
 
-void write_points(JsonWriter& json, const Interface& interface) {
+void write_points(ResultWriter& out, const Interface& interface) {
   const auto coordinates = [&](int axis) {
     std::vector<double> values;
     for (const Place& at : interface.position) values.push_back(at[axis]);
     return values;
   };
-  json.begin_object().key("x").numbers(coordinates(0)).key("y").numbers(coordinates(1));
-  if (interface.space.dimension == 3) json.key("z").numbers(coordinates(2));
-  json.key("area").numbers({interface.area.data(), static_cast<std::size_t>(interface.area.size())}).end_object();
+  out.object("positions", "coordinates and areas of all points, in the order of their numbers from 1 on", [&] {
+    out.numbers("x", coordinates(0), "m", "coordinates x");
+    out.numbers("y", coordinates(1), "m", "coordinates y");
+    if (out.is_schema() || interface.space.dimension == 3) out.when(true).numbers("z", coordinates(2), "m", "coordinates z");
+    out.numbers("area", {interface.area.data(), static_cast<std::size_t>(interface.area.size())}, "m2", "areas");
+  });
 }
 
 }  // namespace uplift

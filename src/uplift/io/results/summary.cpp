@@ -1,128 +1,208 @@
 #include "uplift/io/results/summary.h"
 
-#include "uplift/io/report/motions.h"
 #include "uplift/io/results/floors.h"
 #include "uplift/io/results/forces_json.h"
 #include "uplift/io/results/interface_points.h"
+#include "uplift/io/results/motions_json.h"
 #include "uplift/io/results/verdict_json.h"
-#include "uplift/io/text/json_writer.h"
+#include "uplift/io/results/words.h"
 
 namespace uplift {
 namespace {
 
-void write_peak(JsonWriter& json, std::string_view name, double value, double time, std::string_view unit) {
-  json.key(name).begin_object().member("value", value).member("time", time).member("unit", unit).end_object();
+/// A run with what is known of it besides its results.
+struct Entry {
+  const RunResult* result = nullptr;
+  const Agreement* agreement = nullptr;
+  const FloorRun* floors = nullptr;
+  const BuiltCase* built = nullptr;
+  const RunSpec* spec = nullptr;
+};
+
+std::vector<Entry> entries_of(const SummaryInput& input) {
+  std::vector<Entry> entries;
+  for (std::size_t i = 0; i < input.runs.size(); ++i)
+    entries.push_back({&input.runs[i], input.compared ? &input.compared->agreement[i] : nullptr,
+                       input.floors && input.floors->any() ? &input.floors->runs[i] : nullptr, input.built ? &(*input.built)[i] : nullptr,
+                       input.specs ? &(*input.specs)[i] : nullptr});
+  return entries;
 }
 
-void write_peak(JsonWriter& json, std::string_view name, const Peak& peak) {
-  write_peak(json, name, peak.value, peak.time, peak.unit);
+void write_counts(ResultWriter& out, const RunResult& run) {
+  const Counts& counts = run.counts;
+  out.count("steps", counts.steps, "time steps");
+  out.count("load_steps", counts.load_steps, "load steps of the static stages");
+  out.count("retries", counts.retries, "steps that were halved and repeated");
+  out.count("iterations", counts.iterations, "iterations of the contact method");
+  out.count("cycles", counts.cycles, "interface problems whose status repeated itself and that were restarted");
+  out.count("factorisations", counts.factorisations, "factorisations of global matrices");
+  out.count("back_solves", counts.back_solves, "solutions with these factors");
+  out.count("interface_systems_factored", counts.systems.factored, "interface systems solved with a new factor");
+  out.count("interface_systems_iterated", counts.systems.iterated, "interface systems solved iteratively");
+  out.number("wall_seconds", run.wall, "s", "elapsed time");
+  out.number("step_seconds", run.step_seconds, "s", "computing time per step of the last dynamic stage");
+  out.number("end_time", run.end_time, "s", "time reached");
 }
 
-void write_run(JsonWriter& json, const RunResult& run, const Agreement* agreement, const FloorRun* floors) {
-  json.begin_object();
-  json.member("name", run.name).member("label", run.label).member("group", run.group);
-  json.member("status", to_string(run.status)).member("reason", run.reason);
-  json.member("expected", run.expected_to_fail ? "may_fail" : "completes");
-  json.member("steps", run.counts.steps)
-      .member("load_steps", run.counts.load_steps)
-      .member("retries", run.counts.retries)
-      .member("iterations", run.counts.iterations);
-  json.member("cycles", run.counts.cycles)
-      .member("factorisations", run.counts.factorisations)
-      .member("back_solves", run.counts.back_solves)
-      .member("interface_systems_factored", run.counts.systems.factored)
-      .member("interface_systems_iterated", run.counts.systems.iterated);
-  json.member("wall_seconds", run.wall).member("step_seconds", run.step_seconds).member("end_time", run.end_time);
-  write_peak(json, "max_uplifted_ratio", run.max_uplifted_ratio);
-  write_peak(json, "max_opening", run.max_opening);
-  write_peak(json, "max_base_moment", run.max_base_moment);
-  write_peak(json, "max_base_shear", run.max_base_shear);
-  write_peak(json, "max_pressure", run.max_pressure);
-  write_peak(json, "max_step_pressure", run.max_step_pressure);
-  json.member("first_uplift", run.first_uplift).member("time_uplifted", run.time_uplifted).member("full_loss_of_contact", run.full_loss);
-  json.member("max_penetration", run.max_penetration);
-  write_peak(json, "energy_created", run.energy_created, run.energy_created_time, "J");
-  write_peak(json, "energy_lost", run.energy_lost, run.energy_lost_time, "J");
-  json.member("energy_scale", run.energy_scale).member("energy_created_share", created_share(run));
+void write_extremes(ResultWriter& out, const RunResult& run) {
+  write_peak(out, "max_uplifted_ratio", run.max_uplifted_ratio, "1", "largest share of the area with a gap");
+  write_peak(out, "max_opening", run.max_opening, "m", "largest gap");
+  write_peak(out, "max_base_moment", run.max_base_moment, "N m", "largest base moment, mean over the window");
+  write_peak(out, "max_base_shear", run.max_base_shear, "N", "largest base shear, mean over the window");
+  write_peak(out, "max_pressure", run.max_pressure, "Pa", "largest pressure, mean over the window");
+  write_peak(out, "max_step_pressure", run.max_step_pressure, "Pa", "largest pressure, mean over one step");
+  out.number("first_uplift", run.first_uplift, "s", "time at which a gap opens first; -1: never");
+  out.number("time_uplifted", run.time_uplifted, "s", "total time with a gap");
+  out.number("full_loss_of_contact", run.full_loss, "s", "total time without any contact");
+  out.number("max_penetration", run.max_penetration, "m", "largest compression of the joint");
+}
+
+void write_energies(ResultWriter& out, const RunResult& run) {
+  write_peak(out, "energy_created", {"", "J", run.energy_created, run.energy_created_time}, "J",
+             "largest residual of the energy balance: energy created by the computation");
+  write_peak(out, "energy_lost", {"", "J", run.energy_lost, run.energy_lost_time}, "J", "largest energy lost by the computation");
+  out.number("energy_scale", run.energy_scale, "J", "largest external work, or the initial energy without any");
+  out.number("energy_created_share", created_share(run), "1", "energy created, divided by this scale");
   const Energies& end = run.final_energy;
-  json.key("final_energy").begin_object().member("unit", "J");
-  json.member("kinetic", end.kinetic)
-      .member("strain", end.strain)
-      .member("stored", end.stored)
-      .member("interface_dissipated", end.interface_dissipated);
-  if (end.plastic != 0) json.member("plastic", end.plastic);
-  if (end.stop != 0) json.member("stop", end.stop);
-  if (end.algorithmic != 0) json.member("algorithmic", end.algorithmic).member("filter", end.filter);
-  json.member("damping", end.damping)
-      .member("impact", end.impact)
-      .member("external", end.external)
-      .member("residual", end.residual)
-      .end_object();
-  json.key("peaks").begin_object();
-  for (const Peak& peak : run.peaks) write_peak(json, peak.name, peak);
-  json.end_object();
-  if (floors) write_floors(json.key("floor_spectra"), *floors);
-  if (agreement)
-    json.key("agreement")
-        .begin_object()
-        .member("result", to_string(agreement->word))
-        .member("deviation", agreement->deviation)
-        .member("column", agreement->column)
-        .end_object();
-  if (!run.envelopes.empty()) write_envelopes(json.key("beam_envelopes"), run.envelopes);
-  if (!run.equilibrium.instants.empty()) write_equilibrium(json.key("equilibrium"), run.equilibrium);
-  json.key("notes").texts(run.notes);
-  json.end_object();
+  out.object("final_energy", "terms of the energy balance at the end", [&] {
+    out.unit("J");
+    out.number("kinetic", end.kinetic, "J", "kinetic energy");
+    out.number("strain", end.strain, "J", "strain energy of the structure and the soil");
+    out.number("stored", end.stored, "J", "stored in the interfaces");
+    out.number("interface_dissipated", end.interface_dissipated, "J", "dissipated by the interfaces");
+    out.when(end.plastic != 0).number("plastic", end.plastic, "J", "dissipated by yielding solids");
+    out.when(end.stop != 0).number("stop", end.stop, "J", "removed by static stages that follow dynamic ones");
+    out.when(end.algorithmic != 0).number("algorithmic", end.algorithmic, "J", "dissipated by the time scheme");
+    out.when(end.algorithmic != 0).number("filter", end.filter, "J", "stored in the filters of the time scheme");
+    out.number("damping", end.damping, "J", "dissipated by damping");
+    out.number("impact", end.impact, "J", "dissipated by impacts");
+    out.number("external", end.external, "J", "external work");
+    out.number("residual", end.residual, "J", "residual of the balance");
+  });
+}
+
+void write_agreement(ResultWriter& out, const Agreement* given) {
+  const Agreement agreement = given ? *given : Agreement();
+  using enum Agreement::Word;
+  out.when(given != nullptr).object("agreement", "comparison with the other runs of the group", [&] {
+    out.word("result", to_string(agreement.word), {to_string(agrees), to_string(differs), to_string(failed), to_string(not_counted)},
+             "whether the run agrees with the others; -: it is not counted");
+    out.number("deviation", agreement.deviation, "1", "largest deviation from the median");
+    out.text("column", agreement.column, "column or number of the verdict with this deviation");
+  });
+}
+
+void write_run(ResultWriter& out, const Entry& entry) {
+  static const RunResult none;
+  static const FloorRun no_floors;
+  const RunResult& run = entry.result ? *entry.result : none;
+  out.text("name", run.name, "name of the run: `run`, `bonded` or the variant");
+  out.text("label", run.label, "label in tables and figures");
+  out.text("group", run.group, "damping and motion of runs that are compared with each other; empty: one group");
+  out.word("status", to_string(run.status), run_status_words(), "outcome");
+  out.text("reason", run.reason, "why the run failed or stopped; empty: it completed");
+  out.word("expected", run.expected_to_fail ? "may_fail" : "completes", {"completes", "may_fail"}, "outcome that the case expects");
+  out.when(entry.spec != nullptr)
+      .flag("bonded", entry.spec && entry.spec->bonded, "whether it is a bonded reference run, which does not open");
+  write_counts(out, run);
+  const std::optional<Peak> top = entry.built && entry.result ? top_motion(*entry.built, run) : std::nullopt;
+  out.when(top.has_value());
+  write_peak(out, "max_top_motion", top.value_or(Peak{"", "m"}), "m", "largest horizontal motion of the top, over all directions");
+  write_extremes(out, run);
+  write_energies(out, run);
+  out.named(
+      "peaks", "largest magnitude of each recorded column, with its sign and time", run.peaks, [](const Peak& peak) { return peak.name; },
+      [&](const Peak& peak) { write_peak(out, peak, ""); });
+  out.when(entry.floors != nullptr);
+  write_floors(out, "floor_spectra", entry.floors ? *entry.floors : no_floors);
+  write_agreement(out, entry.agreement);
+  out.when(!run.envelopes.empty());
+  write_envelopes(out, run.envelopes);
+  out.when(!run.equilibrium.instants.empty());
+  write_equilibrium(out, run.equilibrium);
+  out.texts("notes", run.notes, "remarks on the computation: repeated steps, warnings of laws");
+}
+
+void write_provenance(ResultWriter& out, const Provenance& from) {
+  out.constant("format", "uplift-summary-1", "format of this document");
+  out.text("version", from.version, "version of the program");
+  out.text("built_with", from.built_with, "compiler");
+  out.text("title", from.title, "title of the case");
+  out.text("command", from.command, "command that was run");
+  out.text("created", from.created, "date and time, UTC");
+  out.object("case", "the case file", [&] {
+    out.text("file", from.case_file, "its name");
+    out.text("sha256", from.case_hash, "its hash");
+  });
+  out.list("inputs", "other files that were read", from.inputs, [&](const std::pair<std::string, std::string>& input) {
+    out.text("file", input.first, "name of the file");
+    out.text("sha256", input.second, "its hash");
+  });
+}
+
+void write_interfaces(ResultWriter& out, const BuiltCase* built) {
+  struct Joint {
+    const Interface* interface = nullptr;
+  };
+  std::vector<Joint> joints;
+  if (built)
+    for (const Interface& interface : built->model.interfaces) joints.push_back({&interface});
+  out.list("interfaces", "the interfaces of the model", joints, [&](const Joint& joint) {
+    static const Interface none;
+    const Interface& interface = joint.interface ? *joint.interface : none;
+    out.text("name", interface.name, "name of the interface");
+    out.count("points", interface.batch.points, "number of points");
+    write_points(out, interface);
+  });
+}
+
+void write_comparison(ResultWriter& out, const ComparisonSummary* given) {
+  static const ComparisonSummary none;
+  const ComparisonSummary& compared = given ? *given : none;
+  const bool any = given != nullptr;
+  out.when(any).number("band", compared.band, "1", "accepted deviation from the median in a comparison");
+  out.when(any).texts("compared_columns", compared.columns, "columns whose peaks are compared; empty: all numbers of the verdict");
+  out.when(any).list("stiffness_sweep", "results of `[compare.stiffness_sweep]`", compared.sweep, [&](const SweepRow& row) {
+    out.number("k_F", row.ratio, "1", "stiffness of the joint times the compliance of the structure at one step");
+    out.number("created_share_path", row.path, "1", "energy created with the path-averaged traction, divided by the external work");
+    out.text("status_path", row.path_status, "outcome of that run");
+    out.number("created_share_end", row.end, "1", "energy created with the end-of-step traction, divided by the external work");
+    out.text("status_end", row.end_status, "outcome of that run");
+  });
+  out.when(!compared.motions.empty());
+  write_over_motions(out, compared.motions);
+}
+
+void write_summary(ResultWriter& out, const SummaryInput& input) {
+  const BuiltCase* first = input.built && !input.built->empty() ? &input.built->front() : nullptr;
+  static const FloorAnswers none;
+  write_provenance(out, input.from);
+  write_motions(out, input.motions);
+  write_interfaces(out, first);
+  out.list("runs", "the runs; the first one is that of the verdict", entries_of(input), [&](const Entry& entry) { write_run(out, entry); });
+  out.when(input.floors && !input.floors->envelopes.empty());
+  write_floor_envelopes(out, "floor_envelopes", input.floors ? *input.floors : none);
+  write_verdict_numbers(out, input.verdict, input.runs, input.floors, first);
+  write_comparison(out, input.compared);
 }
 
 }  // namespace
 
 std::string summary_json(const SummaryInput& input) {
-  const auto& [from, runs, verdict, motions, compared, floors, built] = input;
   JsonWriter json(0, 2);
   json.begin_object();
-  json.member("format", "uplift-summary-1")
-      .member("version", from.version)
-      .member("built_with", from.built_with)
-      .member("title", from.title)
-      .member("command", from.command);
-  json.member("created", from.created);
-  json.key("case").begin_object().member("file", from.case_file).member("sha256", from.case_hash).end_object();
-  json.key("inputs").begin_array();
-  for (const auto& [file, hash] : from.inputs) json.begin_object().member("file", file).member("sha256", hash).end_object();
-  json.end_array();
-  write_motions(json, motions);
-  json.key("interfaces").begin_array();
-  for (std::size_t k = 0; built != nullptr && k < built->model.interfaces.size(); ++k) {
-    const Interface& interface = built->model.interfaces[k];
-    json.begin_object().member("name", interface.name).member("points", interface.batch.points);
-    write_points(json.key("positions"), interface);
-    json.end_object();
-  }
-  json.end_array();
-  json.key("runs").begin_array();
-  for (std::size_t i = 0; i < runs.size(); ++i)
-    write_run(json, runs[i], compared ? &compared->agreement[i] : nullptr, floors && floors->any() ? &floors->runs[i] : nullptr);
-  json.end_array();
-  if (floors && !floors->envelopes.empty()) write_floor_envelopes(json.key("floor_envelopes"), *floors);
-  json.key("verdict");
-  write_verdict_numbers(json, verdict, runs, floors, built);
-  if (compared) {
-    json.member("band", compared->band).key("compared_columns").texts(compared->columns);
-    json.key("stiffness_sweep").begin_array();
-    for (const SweepRow& row : compared->sweep)
-      json.begin_object()
-          .member("k_F", row.ratio)
-          .member("created_share_path", row.path)
-          .member("status_path", row.path_status)
-          .member("created_share_end", row.end)
-          .member("status_end", row.end_status)
-          .end_object();
-    json.end_array();
-    if (!compared->motions.empty()) write_over_motions(json, compared->motions);
-  }
+  ResultWriter out(json);
+  write_summary(out, input);
   json.end_object();
   return json.take() + "\n";
+}
+
+std::string summary_schema() {
+  ResultWriter out("summary.json",
+                   "Results of `uplift run`, `compare` and `trust`. Numbers are in SI units; the keyword `unit` states the unit of each. A "
+                   "number that is not finite is null.");
+  write_summary(out, {Provenance(), {}, Verdict(), {}});
+  return out.schema();
 }
 
 }  // namespace uplift

@@ -36,10 +36,13 @@ struct SummaryInput {
   std::vector<std::shared_ptr<const MotionHistory>> motions;  // those that drive the runs
   const ComparisonSummary* compared = nullptr;                // null for a single run
   const FloorAnswers* floors = nullptr;
-  const BuiltCase* built = nullptr;  // of the first run
+  const std::deque<BuiltCase>* built = nullptr;  // of the runs; null: nothing is written that needs the models
+  const std::vector<RunSpec>* specs = nullptr;   // of the runs
 };
 
 /// summary.json: an object with the provenance, the arrays `motions` and `runs`, and the `verdict`.
 std::string summary_json(const SummaryInput&);
+/// Its JSON Schema.
+std::string summary_schema();
 
 }  // namespace uplift

@@ -2,159 +2,194 @@
 
 #include <algorithm>
 #include <cmath>
-#include <utility>
+#include <tuple>
 
 #include "uplift/base/format.h"
-#include "uplift/io/report/parts.h"
+#include "uplift/io/results/thin_history.h"
+#include "uplift/io/results/words.h"
 
 namespace uplift {
 namespace {
 
-void write_numbers(JsonWriter& json, const std::vector<VerdictNumber>& numbers) {
-  json.begin_object();
-  for (const VerdictNumber& number : numbers) {
-    json.key(number.quantity->name).begin_object().member("value", number.value).member("unit", number.quantity->unit);
-    if (number.time) json.member("time", *number.time);
-    if (number.step_peak) json.member("peak_of_step_mean", *number.step_peak);
-    if (number.coarse) json.member("at_twice_the_step", *number.coarse);
-    if (number.step_change) json.member("step_change_percent", 100 * *number.step_change);
-    if (number.swing) json.member("swing", *number.swing);
-    if (number.bonded) json.member("bonded", *number.bonded);
-    if (number.change) json.member("change_percent", 100 * *number.change);
-    if (number.bonded && !number.change) json.member("change_note", "no excitation in this direction");
-    json.end_object();
-  }
-  json.end_object();
+constexpr std::string_view not_excited = "no excitation in this direction";
+
+void write_number(ResultWriter& out, const VerdictNumber& number) {
+  constexpr std::string_view unit = "as stated in unit";
+  out.number("value", number.value, unit, "value of the run");
+  out.text("unit", number.quantity->unit, "unit of the numbers beside it");
+  out.number("time", number.time, "s", "time at which it is reached");
+  out.number("peak_of_step_mean", number.step_peak, unit, "largest mean over one step, of a number that is a mean over the window");
+  out.number("at_twice_the_step", number.coarse, unit, "value of the companion run with twice the step");
+  std::optional<double> step_change, change;
+  if (number.step_change) step_change = 100 * *number.step_change;
+  if (number.change) change = 100 * *number.change;
+  out.number("step_change_percent", step_change, "%", "change with twice the step, relative to the reference of the number");
+  out.number("swing", number.swing, unit, "half of the range in which a residual value still varies");
+  out.number("bonded", number.bonded, unit, "value of the bonded reference run");
+  out.number("change_percent", change, "%", "change compared with the bonded reference run");
+  out.when(number.bonded && !number.change).constant("change_note", not_excited, "why there is no change");
+}
+
+/// `whose`: the numbers that there can be.
+void write_numbers(ResultWriter& out, const std::vector<VerdictNumber>& numbers, bool (*whose)(const VerdictQuantity&)) {
+  out.object("numbers", "the numbers that apply, by quantity", [&] {
+    const auto write = [&](const VerdictNumber& number) {
+      const VerdictQuantity& quantity = *number.quantity;
+      out.when(true).object_of("number", quantity.name, quantity.unit, quantity.meaning, [&] { write_number(out, number); });
+    };
+    for (const VerdictNumber& number : numbers) write(number);
+    for (const VerdictQuantity& quantity : verdict_quantities())
+      if (out.is_schema() && whose(quantity)) write({.quantity = &quantity});
+  });
 }
 
 /// What the verdict follows over time, in few points that keep its peaks. Safeties that are infinite, or of a base that carries nothing,
 /// are left out.
-void write_over_time(JsonWriter& json, const BuiltCase& built, const RunResult& run, std::size_t interface) {
+void write_over_time(ResultWriter& out, const BuiltCase* built, const RunResult* run, std::size_t interface) {
   constexpr std::size_t points = 200;
   constexpr double highest = 100;
   using enum BaseHistory;
-  json.key("over_time").begin_object();
-  for (const auto& [name, which] : {std::pair{"uplifted_ratio", uplifted_ratio},
-                                    {"eccentricity_1", eccentricity_1},
-                                    {"eccentricity_2", eccentricity_2},
-                                    {"overturning_safety", overturning_safety},
-                                    {"sliding_safety", sliding_safety}}) {
-    const std::vector<double> all = base_history(built, run, interface, which);
-    std::vector<double> time, values;
-    for (std::size_t i = 0; i < all.size(); ++i)
-      if (std::isfinite(all[i])) time.push_back(run.steps.time[i]), values.push_back(std::min(all[i], highest));
-    if (values.empty()) continue;
-    thin_history(time, values, points);
-    json.key(name).begin_object().key("time").numbers(time).key("value").numbers(values).end_object();
-  }
-  json.end_object();
+  const bool any = built != nullptr && run != nullptr && run->steps.size() > 0;
+  out.when(any).object("over_time", "histories in at most 200 points that keep their peaks", [&] {
+    for (const auto& [name, which, meaning] : {std::tuple{"uplifted_ratio", uplifted_ratio, "share of the area with a gap"},
+                                               {"eccentricity_1", eccentricity_1, "eccentricity over the width along t or t1"},
+                                               {"eccentricity_2", eccentricity_2, "in space: eccentricity over the width along t2"},
+                                               {"overturning_safety", overturning_safety, "safety against overturning, at most 100"},
+                                               {"sliding_safety", sliding_safety, "safety against sliding, at most 100"}}) {
+      const std::vector<double> all = any ? base_history(*built, *run, interface, which) : std::vector<double>();
+      std::vector<double> time, values;
+      for (std::size_t i = 0; i < all.size(); ++i)
+        if (std::isfinite(all[i])) time.push_back(run->steps.time[i]), values.push_back(std::min(all[i], highest));
+      if (!values.empty()) thin_history(time, values, points);
+      out.when(!values.empty()).object(name, meaning, [&] {
+        out.numbers("time", time, "s", "times");
+        out.numbers("value", values, "1", "values");
+      });
+    }
+  });
 }
 
-void write_interface(JsonWriter& json, const InterfaceVerdict& said) {
-  json.begin_object().member("name", said.name).member("role", to_string(said.role));
-  if (said.role == Role::wall) {
-    write_numbers(json.key("numbers"), said.numbers);
-    return;
-  }
-  json.key("static_force").begin_object().member("value", said.weight).member("unit", "N").end_object();
-  json.key("mean_pressure").begin_object().member("value", said.mean_pressure).member("unit", "Pa").end_object();
-  json.key("width").begin_object().key("value").numbers(said.width).member("unit", "m").end_object();
-  json.key("numbers");
-  write_numbers(json, said.numbers);
-  json.key("above").begin_array();
-  for (const InterfaceVerdict::Above& above : said.above)
-    json.begin_object().member("uplifted_ratio", above.threshold).member("duration", above.duration).member("unit", "s").end_object();
-  json.end_array().key("full_loss").begin_array();
-  for (const Interval& interval : said.full_loss)
-    json.begin_object().member("from", interval.from).member("to", interval.to).member("unit", "s").end_object();
-  json.end_array();
+void write_base(ResultWriter& out, const InterfaceVerdict& said) {
+  const auto one = [&](const char* key, double value, const char* unit, const char* meaning) {
+    out.when(said.role == Role::base).object(key, meaning, [&] {
+      out.number("value", value, unit, "value");
+      out.unit(unit);
+    });
+  };
+  one("static_force", said.weight, "N", "compression at rest");
+  one("mean_pressure", said.mean_pressure, "Pa", "mean pressure at rest");
+  out.when(said.role == Role::base).object("width", "extent of the interface along t1 and t2 (in the plane along t)", [&] {
+    out.numbers("value", said.width, "m", "extents");
+    out.unit("m");
+  });
 }
 
-void write_criterion(JsonWriter& json, const CriterionResult& result) {
-  const VerdictQuantity& quantity = *result.criterion.quantity;
-  json.begin_object()
-      .member("quantity", quantity.name)
-      .member(quantity.of_beam ? "beam" : "interface", result.interface)
-      .member("result", to_string(result.state));
-  json.key("value");
-  if (result.value)
-    json.value(*result.value);
-  else
-    json.null();
-  if (result.time) json.member("time", *result.time);
-  json.member("limit", result.criterion.limit).member("unit", quantity.unit);
-  json.member("kind", quantity.at_least ? "at_least" : "at_most").member("source", result.criterion.source).end_object();
+void write_interface(ResultWriter& out, const InterfaceVerdict& said, const BuiltCase* built, const RunResult* run, std::size_t k) {
+  const bool base = said.role == Role::base;
+  out.text("name", said.name, "name of the interface");
+  out.word("role", to_string(said.role), {"base", "wall"}, "base, or wall of an embedded base");
+  write_base(out, said);
+  write_numbers(out, said.numbers, [](const VerdictQuantity& quantity) { return quantity.of_interface; });
+  out.when(base).list("above", "how long the uplifted share exceeds the thresholds of the case", said.above,
+                      [&](const InterfaceVerdict::Above& above) {
+                        out.number("uplifted_ratio", above.threshold, "1", "threshold");
+                        out.number("duration", above.duration, "s", "total time above it");
+                        out.unit("s");
+                      });
+  out.when(base);
+  write_intervals(out, "full_loss", said.full_loss, "intervals without any contact");
+  write_over_time(out, base ? built : nullptr, run, k);
+}
+
+void write_criterion(ResultWriter& out, const CriterionResult& result) {
+  static const VerdictQuantity none{"", "", "", ""};
+  const VerdictQuantity& quantity = result.criterion.quantity ? *result.criterion.quantity : none;
+  using enum CriterionResult::State;
+  out.text("quantity", quantity.name, "quantity of the verdict");
+  out.when(!quantity.of_beam).text("interface", result.interface, "interface that it is evaluated for; empty: the run as a whole");
+  out.when(quantity.of_beam).text("beam", result.interface, "beam that it is evaluated for");
+  out.word("result", to_string(result.state), {to_string(met), to_string(not_met), to_string(undetermined)}, "result");
+  constexpr std::string_view unit = "as stated in unit";
+  out.number_or_null("value", result.value, unit, "value of the run; null: not computed");
+  out.number("time", result.time, "s", "time at which the value is reached");
+  out.number("limit", result.criterion.limit, unit, "limit of the case");
+  out.text("unit", quantity.unit, "unit of value and limit");
+  out.word("kind", quantity.at_least ? "at_least" : "at_most", {"at_least", "at_most"}, "side of the limit on which the criterion is met");
+  out.text("source", result.criterion.source, "source of the limit, as the case states it");
 }
 
 }  // namespace
 
-void write_step_check(JsonWriter& json, const StepCheck& check) {
-  json.begin_object().member("result", to_string(check.state)).member("sentence", check.sentence());
-  if (check.coarse_step > 0) json.member("step", check.step).member("coarse_step", check.coarse_step).member("unit", "s");
-  if (check.largest > 0) {
-    json.member("largest_change_percent", 100 * check.largest);
-    json.member("quantity", check.quantity ? check.quantity->name : "floor_spectrum");
-    if (!check.of.empty()) json.member("of", check.of);
-  }
-  if (check.floors_to > 0) json.member("floor_spectra_change_percent", 100 * check.floors).member("floor_spectra_to", check.floors_to);
-  if (check.sufficient_step > 0) json.member("sufficient_step", check.sufficient_step);
-  json.end_object();
+void write_step_check(ResultWriter& out, std::string_view key, const StepCheck& check) {
+  using enum StepCheck::State;
+  out.object(key, "how far the numbers depend on the time step", [&] {
+    out.word("result", to_string(check.state), {to_string(not_made), to_string(converged), to_string(not_converged)}, "result");
+    out.text("sentence", check.sentence(), "the result as a sentence");
+    const bool made = check.coarse_step > 0, changed = check.largest > 0, floors = check.floors_to > 0;
+    out.when(made).number("step", check.step, "s", "time step of the run");
+    out.when(made).number("coarse_step", check.coarse_step, "s", "time step of the companion run");
+    out.when(made).unit("s");
+    out.when(changed).number("largest_change_percent", 100 * check.largest, "%", "largest change of a number of the verdict");
+    out.when(changed).text("quantity", check.quantity ? check.quantity->name : "floor_spectrum", "number with this change");
+    out.when(changed && !check.of.empty()).text("of", check.of, "interface, beam or floor of that number");
+    out.when(floors).number("floor_spectra_change_percent", 100 * check.floors, "%", "largest change of a floor spectrum");
+    out.when(floors).number("floor_spectra_to", check.floors_to, "Hz", "frequency up to which floor spectra were compared");
+    out.when(check.sufficient_step > 0)
+        .number("sufficient_step", check.sufficient_step, "s", "time step that is expected to be sufficient");
+  });
 }
 
-void write_floor_changes(JsonWriter& json, const FloorAnswers* floors) {
-  json.begin_array();
+void write_floor_changes(ResultWriter& out, std::string_view key, const FloorAnswers* floors) {
+  struct Floor {
+    std::string name;
+    FloorChange change;
+  };
+  std::vector<Floor> all;
   const FloorRun none, &run = floors && !floors->runs.empty() ? floors->runs.front() : none;
   for (std::size_t k = 0; k < run.beside.size(); ++k)
-    for (const FloorChange& change : run.beside[k]) {
-      json.begin_object().member("floor", run.floors[k].name).member("damping", change.damping).key("bands").begin_array();
-      for (const FloorChange::Band& band : change.bands)
-        json.begin_object()
-            .member("band", to_string(band.band))
-            .member("change_percent", 100 * band.change)
-            .member("change", format_change(band.change))
-            .end_object();
-      json.end_array();
-      if (change.bands.empty()) json.member("note", "no excitation in this direction");
-      json.end_object();
-    }
-  json.end_array();
+    for (const FloorChange& change : run.beside[k]) all.push_back({run.floors[k].name, {change.damping, {}, {}, {}, change.bands}});
+  out.list(key, "changes of the floor spectra of the run compared with the bonded reference run", all, [&](const Floor& floor) {
+    out.text("floor", floor.name, "name of the floor");
+    out.number("damping", floor.change.damping, "1", "damping ratio of the equipment");
+    out.list("bands", "frequency bands", floor.change.bands, [&](const FloorChange::Band& band) {
+      out.text("band", to_string(band.band), "frequency band");
+      out.number("change_percent", 100 * band.change, "%", "change of the largest value in the band");
+      out.text("change", format_change(band.change), "the same as text");
+    });
+    out.when(floor.change.bands.empty()).constant("note", not_excited, "why there are no bands");
+  });
 }
 
-void write_verdict_numbers(JsonWriter& json, const Verdict& verdict, const std::vector<RunResult>& runs, const FloorAnswers* floors,
+void write_verdict_numbers(ResultWriter& out, const Verdict& verdict, const std::vector<RunResult>& runs, const FloorAnswers* floors,
                            const BuiltCase* built) {
-  json.begin_object().member("level", to_string(verdict.level)).member("headline", verdict.headline);
-  json.member("consequence", verdict.consequence);
-  json.key("step_check");
-  write_step_check(json, verdict.step_check);
-  json.member("run", runs.empty() ? "" : runs.front().name);
-  json.member("per_metre", built && built->is_strip());
-  json.key("full_loss_of_contact").begin_array();
-  for (const Interval& each : verdict.numbers.full_loss)
-    json.begin_object().member("from", each.from).member("to", each.to).member("unit", "s").end_object();
-  json.end_array().key("numbers");
-  write_numbers(json, verdict.numbers.whole);
-  json.key("interfaces").begin_array();
-  for (std::size_t k = 0; k < verdict.numbers.interfaces.size(); ++k) {
-    write_interface(json, verdict.numbers.interfaces[k]);
-    const bool is_base = verdict.numbers.interfaces[k].role == Role::base;
-    if (is_base && built && !runs.empty() && runs.front().steps.size() > 0) write_over_time(json, *built, runs.front(), k);
-    json.end_object();
-  }
-  json.end_array();
-  if (!verdict.numbers.beams.empty()) {
-    json.key("beams").begin_array();
-    for (const BeamVerdict& beam : verdict.numbers.beams) {
-      json.begin_object().member("name", beam.name).key("numbers");
-      write_numbers(json, beam.numbers);
-      json.end_object();
-    }
-    json.end_array();
-  }
-  json.key("criteria").begin_array();
-  for (const CriterionResult& result : verdict.numbers.criteria) write_criterion(json, result);
-  json.end_array().key("floors");
-  write_floor_changes(json, floors);
-  json.end_object();
+  using enum Verdict::Level;
+  const VerdictNumbers& numbers = verdict.numbers;
+  out.object("verdict", "whether the base uplifts and what that changes", [&] {
+    out.word("level", to_string(verdict.level),
+             {to_string(none), to_string(uplift), to_string(overturned), to_string(separated), to_string(failed)}, "outcome in one word");
+    out.text("headline", verdict.headline, "first sentence of the report");
+    out.text("consequence", verdict.consequence, "second sentence: comparison with the bonded model and with the criteria");
+    write_step_check(out, "step_check", verdict.step_check);
+    out.text("run", runs.empty() ? "" : runs.front().name, "name of the run that the verdict describes");
+    out.flag("per_metre", built && built->is_strip(), "whether forces are per metre of depth");
+    write_intervals(out, "full_loss_of_contact", numbers.full_loss, "intervals during which no base has any contact");
+    write_numbers(out, numbers.whole, [](const VerdictQuantity& quantity) { return !quantity.of_interface && !quantity.of_beam; });
+    struct Entry {
+      const InterfaceVerdict* verdict = nullptr;
+      std::size_t k = 0;
+    };
+    std::vector<Entry> interfaces;
+    for (std::size_t k = 0; k < numbers.interfaces.size(); ++k) interfaces.push_back({&numbers.interfaces[k], k});
+    out.list("interfaces", "the interfaces, bases first", interfaces, [&](const Entry& entry) {
+      write_interface(out, entry.verdict ? *entry.verdict : InterfaceVerdict(), built, runs.empty() ? nullptr : &runs.front(), entry.k);
+    });
+    out.when(!numbers.beams.empty()).list("beams", "beams with an envelope", numbers.beams, [&](const BeamVerdict& beam) {
+      out.text("name", beam.name, "name of the beam");
+      write_numbers(out, beam.numbers, [](const VerdictQuantity& quantity) { return quantity.of_beam; });
+    });
+    out.list("criteria", "criteria of the case", numbers.criteria, [&](const CriterionResult& result) { write_criterion(out, result); });
+    write_floor_changes(out, "floors", floors);
+  });
 }
 
 }  // namespace uplift
