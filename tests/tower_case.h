@@ -8,7 +8,7 @@ namespace uplift::support {
 struct Tower {
   std::string height = "5", young = "\"20 GPa\"", inertia = "\"0.2 m4\"";     // values of keys
   std::string mass = "mass = 24000", footing = "mass = 1e4\ninertia = 7500";  // lines of [[mass]] and [[rigid]]
-  std::string nodes, beam;                                                    // further lines of [nodes] and [[beam]]
+  std::string nodes = {}, beam = {};                                          // further lines of [nodes] and [[beam]]
   bool held = true;                                                           // the footing cannot move sideways
 
   std::string text() const {

@@ -258,7 +258,7 @@ TEST(Gmsh, ErrorsHaveTheirLine) {
   EXPECT_EQ(error_with(plane, "1 0 0\n", "1 1e999 0\n"), "a.msh:11: $Nodes: expected a coordinate (a finite number), found \"1e999\"");
   EXPECT_EQ(error_with(plane, "1 1 2 3", "1 1 2 4"), "a.msh:17: $Elements: expected the tag of a node, found 4");
   EXPECT_EQ(error_with(plane, "1 1 2 3", "1 1 -2 3"), "a.msh:17: $Elements: expected a node tag (an integer, not negative), found \"-2\"");
-  EXPECT_EQ(error_with(plane, "2 1 2 1\n", "2 1 7 1\n").substr(0, 51), "a.msh:16: $Elements: expected points, lines of 2 or 3");
+  EXPECT_EQ(error_with(plane, "2 1 2 1\n", "2 1 7 1\n").substr(0, 53), "a.msh:16: $Elements: expected points, lines of 2 or 3");
   EXPECT_TRUE(error_with(plane, "2 1 2 1\n", "2 1 7 1\n").ends_with("found a 5-node pyramid (type 7)"));
   EXPECT_EQ(error_with(plane, "2 1 2 1\n", "1 1 2 1\n"), "a.msh:16: $Elements: expected elements of dimension 1, found tri3 (type 2)");
   EXPECT_EQ(error_with(plane, "1\n2\n3\n", "1\n2\n2\n").substr(0, 17), "a.msh:5: $Nodes: ");

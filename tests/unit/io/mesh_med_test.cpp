@@ -415,7 +415,7 @@ TEST(MedApart, TheMeshAndTheErrorsAreThoseOfTheReader) {
   both_errors("x", "it is wanted here, found there.med");
   file.attribute("/ENS_MAA/soil", "ESP", 4);
   both_errors("", "a.med");
-  EXPECT_EQ(error_of([&] { read_med_bytes("no HDF5", "b.med"); }).substr(0, 29), "b.med: expected an HDF5 file, f");
+  EXPECT_EQ(error_of([&] { read_med_bytes("no HDF5", "b.med"); }).substr(0, 31), "b.med: expected an HDF5 file, f");
 }
 
 TEST(MedApart, AMessageThatIsNotWholeIsADamagedFile) {
