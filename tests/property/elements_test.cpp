@@ -63,20 +63,21 @@ ElementSite random_site(Space space, int nodes) {
   return site;
 }
 
-/// The sites that an element is tried on: one to four nodes, the ends of a line, or a distorted cell (face) of every kind.
+/// The sites that an element is tried on: one to four nodes, the ends of a line, or a distorted cell (face) of any kind.
 std::vector<std::pair<ElementSite, Cell>> random_sites(ElementPlace place, Space space) {
   std::vector<std::pair<ElementSite, Cell>> sites;
   if (place == ElementPlace::nodes)
     for (int nodes = 1; nodes <= 4; ++nodes) sites.emplace_back(random_site(space, nodes), Cell::line2);
   if (place == ElementPlace::lines) sites.emplace_back(random_site(space, 2), Cell::line2);
+  if (!sites.empty()) return sites;
+  std::vector<CellInfo> kinds;
+  for (const CellInfo& each : all_cells())
+    if (each.dimension == space.dimension - (place == ElementPlace::faces)) kinds.push_back(each);
+  const CellInfo& kind = kinds[static_cast<std::size_t>(integer_in(0, static_cast<int>(kinds.size())))];
   std::mt19937 random(static_cast<unsigned>(integer_in(0, 1000000)));
-  if (place == ElementPlace::cells || place == ElementPlace::faces)
-    for (const CellInfo& each : all_cells())
-      if (each.dimension == space.dimension - (place == ElementPlace::faces)) {
-        sites.emplace_back(ElementSite{space, first_numbers(each.nodes), distorted_nodes(each.cell, 0.1, random)}, each.cell);
-        for (Vec3& position : sites.back().first.positions)
-          if (space.dimension == 2) position.z() = 0;
-      }
+  sites.emplace_back(ElementSite{space, first_numbers(kind.nodes), distorted_nodes(kind.cell, 0.1, random)}, kind.cell);
+  for (Vec3& position : sites.back().first.positions)
+    if (space.dimension == 2) position.z() = 0;
   return sites;
 }
 
