@@ -19,7 +19,7 @@ FILES = [("report.html", "the report: one page that opens from disk"),
          ("trust.json", "all values of the repetitions, of `uplift trust`"),
          ("fields/", "displacements, stresses and interface states for ParaView, with `[output.fields]`"),
          ("problem_NAME.json", "the interface problem of a failed step, for `uplift replay`")]
-TITLES = {"law": "Interface laws", "bulk_law": "Bulk laws", "element": "Elements along lines and on nodes", "method": "Contact methods",
+TITLES = {"law": "Interface laws", "bulk_law": "Bulk laws", "element": "Elements", "method": "Contact methods",
           "impact": "Impact rules", "scheme": "Time schemes", "function": "Functions of time", "record": "Record formats",
           "process": "Processing steps", "target": "Target spectra", "solver": "Solvers"}
 

@@ -216,7 +216,7 @@ class Tables:
         plasticity: Optional[Union[Part, str]] = None,
         damping_beta: Optional[Quantity] = None,
     ) -> None:
-        """Materials of the mesh.
+        """What a group of cells of the mesh is made of; every cell needs one.
 
         Parameters:
             group: group of cells.
@@ -243,7 +243,8 @@ class Tables:
         free_field: Optional[bool] = None,
         incident: Optional[Mapping[str, Any]] = None,
     ) -> None:
-        """Absorbing boundaries of the mesh.
+        """A viscous boundary: edges (faces) of the mesh through which waves leave (Lysmer & Kuhlemeyer), with the material of
+        the solid beside them. It holds nothing at rest: static stages need supports elsewhere.
 
         Parameters:
             group: group of edges (faces) of the mesh.

@@ -2,8 +2,11 @@
 #include <rapidcheck/gtest.h>
 
 #include <map>
+#include <optional>
+#include <random>
 
 #include "property/random_parts.h"
+#include "unit/elements/solid_support.h"
 #include "uplift/elements/element_entry.h"
 #include "uplift/math/dense.h"
 
@@ -60,18 +63,47 @@ ElementSite random_site(Space space, int nodes) {
   return site;
 }
 
-/// Runs a property for every element of the catalog on one to four nodes (two along lines); those numbers that it never takes are left out.
-void for_each_element(const std::function<void(const std::string&, const Element&, const ElementSite&)>& property) {
+/// The sites that an element is tried on: one to four nodes, the ends of a line, or a distorted cell (face) of any kind.
+std::vector<std::pair<ElementSite, Cell>> random_sites(ElementPlace place, Space space) {
+  std::vector<std::pair<ElementSite, Cell>> sites;
+  if (place == ElementPlace::nodes)
+    for (int nodes = 1; nodes <= 4; ++nodes) sites.emplace_back(random_site(space, nodes), Cell::line2);
+  if (place == ElementPlace::lines) sites.emplace_back(random_site(space, 2), Cell::line2);
+  if (!sites.empty()) return sites;
+  std::vector<CellInfo> kinds;
+  for (const CellInfo& each : all_cells())
+    if (each.dimension == space.dimension - (place == ElementPlace::faces)) kinds.push_back(each);
+  const CellInfo& kind = kinds[static_cast<std::size_t>(integer_in(0, static_cast<int>(kinds.size())))];
+  std::mt19937 random(static_cast<unsigned>(integer_in(0, 1000000)));
+  sites.emplace_back(ElementSite{space, first_numbers(kind.nodes), distorted_nodes(kind.cell, 0.1, random)}, kind.cell);
+  for (Vec3& position : sites.back().first.positions)
+    if (space.dimension == 2) position.z() = 0;
+  return sites;
+}
+
+/// Faces stand beside soil.
+std::unique_ptr<const Element> make_element(const ElementEntry& entry, const Values& table, const ElementSite& site, Cell cell) {
+  static const SolidSection soil{.material = {5e7, 0.3, 1900}};
+  static const std::string group = "soil";
+  const CellSite on_mesh{cell, site.nodes, std::make_shared<const std::vector<Vec3>>(site.positions)};
+  if (entry.place == ElementPlace::cells) return entry.fill(table, site.space.dimension)->make(on_mesh);
+  if (entry.place == ElementPlace::faces) return entry.cover(on_mesh, table, {soil, group}, site.space);
+  return entry.make(site, table);
+}
+
+/// Runs a property for every element of the catalog on all sites; those that it never takes are left out.
+void for_each_element(const std::function<void(const std::string&, const Element&, const ElementSite&)>& property,
+                      std::optional<ElementPlace> except = {}) {
   for (const ElementEntry* entry : element_catalog()) {
+    if (entry->place == except) continue;
     int made = 0;
     for (const int dimension : {2, 3})
-      for (int nodes = entry->along_lines ? 2 : 1; nodes <= (entry->along_lines ? 2 : 4); ++nodes)
-        for (int trial = 0; trial < (entry->along_lines ? 500 : 10); ++trial) {
-          const ElementSite site = random_site({dimension}, nodes);
+      for (const auto& [site, cell] : random_sites(entry->place, {dimension}))
+        for (int trial = 0; trial < (entry->place == ElementPlace::nodes ? 10 : 500); ++trial) {
           std::vector<Parameter> parameters = random_parameters(*entry, usual);
           std::unique_ptr<const Element> element;
           try {
-            element = entry->make(site, table_of(*entry, parameters, site));
+            element = make_element(*entry, table_of(*entry, parameters, site), site, cell);
           } catch (const InputError&) {
             continue;
           }
@@ -103,16 +135,18 @@ RC_GTEST_PROP(ElementProperties, MatricesAreSymmetricAndNotNegative, ()) {
 }
 
 RC_GTEST_PROP(ElementProperties, OnlyElementsOnTheGroundResistATranslation, ()) {
-  for_each_element([](const std::string& text, const Element& element, const ElementSite& site) {
-    if (site.nodes.size() < 2) return;
-    Matrix k, c;
-    element.form({&k, nullptr, &c});
-    for (int direction = 0; direction < site.space.dimension; ++direction) {
-      Vector u = Vector::Zero(element.unknowns());
-      for (Index i = direction; i < u.size(); i += element.unknowns_per_node()) u[i] = 1;
-      if (!((k * u).norm() <= 1e-12 * k.norm() && (c * u).norm() <= 1e-12 * c.norm())) RC_FAIL(text + ": a translation meets a force");
-    }
-  });
+  for_each_element(
+      [](const std::string& text, const Element& element, const ElementSite& site) {
+        if (site.nodes.size() < 2) return;
+        Matrix k, c;
+        element.form({&k, nullptr, &c});
+        for (int direction = 0; direction < site.space.dimension; ++direction) {
+          Vector u = Vector::Zero(element.unknowns());
+          for (Index i = direction; i < u.size(); i += element.unknowns_per_node()) u[i] = 1;
+          if (!((k * u).norm() <= 1e-12 * k.norm() && (c * u).norm() <= 1e-12 * c.norm())) RC_FAIL(text + ": a translation meets a force");
+        }
+      },
+      ElementPlace::faces);  // what they stand on is the ground
 }
 
 RC_GTEST_PROP(ElementProperties, WithoutDisplacementNothingIsRemembered, ()) {

@@ -201,7 +201,7 @@ Model make_model(const Case& read, const RunSpec& spec, const std::vector<double
   add_functions(read, names);
   add_structure(root, builder, names, tuned, dynamic != nullptr);
   add_ties(root, builder, names);
-  add_absorbing(root, builder, names);
+  add_faces(root, builder, names);
   if (!dynamic)
     add_free_field(root, built.plan.stages, spec.damping ? bulk_damping(*spec.damping) : BulkDamping{}, *bulk_solver(read), builder, names);
   add_interfaces(read, spec, dynamic, builder, names, built);
@@ -308,10 +308,11 @@ std::vector<std::string> input_files(const Case& read) {
     if (shape.items().contains("file") && shape.has("file")) add(shape);
   }
   if (const Values* mesh = table_if(read.values, "mesh"); mesh && mesh->has("file")) add(*mesh);
-  for (const Values& solid : read.values.tables("solid"))
+  for (const Values* solid : element_tables(read.values, ElementPlace::cells))
     for (const char* key : {"law", "plasticity"})
-      if (solid.has(key) && solid.part(key).items().contains("library")) {
-        const std::filesystem::path path = path_beside(solid.part(key).where("library"), solid.part(key).text("library"));
+      if (solid->items().contains(key) && solid->has(key) && solid->part(key).items().contains("library")) {
+        const Values& law = solid->part(key);
+        const std::filesystem::path path = path_beside(law.where("library"), law.text("library"));
         if (std::filesystem::is_regular_file(path)) files.push_back(path.lexically_normal().string());  // else the law refuses it
       }
   for (const Values& record : read.values.tables("record"))

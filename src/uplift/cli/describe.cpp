@@ -30,7 +30,7 @@ struct Family {
 std::vector<Family> families() {
   return {{"law", "what an interface does: traction laws, and cones (contact by constraint)", interface_behaviours()},
           {"bulk_law", "what a solid is made of: stress from strain", bulk_laws()},
-          {"element", "elements along lines and on named nodes: tables [[beam]], [[spring]], [[dashpot]], ...", element_kinds()},
+          {"element", "elements: tables [[beam]], [[spring]], [[dashpot]], [[solid]], [[absorbing]], ...", element_kinds()},
           {"method", "how the interface problem of a step is solved", contact_methods()},
           {"impact", "velocity corrections on impact, for constraints", impact_rules()},
           {"scheme", "time integration", schemes()},

@@ -1,5 +1,5 @@
 #pragma once
-#include "uplift/elements/solid.h"
+#include "uplift/elements/element_entry.h"
 
 namespace uplift {
 
@@ -8,6 +8,9 @@ struct AbsorbingSection {
   double thickness = 1;      // m, faces of plane models only
   bool lumped = false;       // diagonal matrix
 };
+
+/// Of the table [[absorbing]]; InputError where the ground beside cannot carry waves.
+AbsorbingSection absorbing_ground(const Values& absorbing, const FillingBeside& beside, Space space);
 
 /// Viscous boundary (Lysmer & Kuhlemeyer, J. Eng. Mech. Div. ASCE 95 (1969) 859-877): the soil beyond a face answers the velocity v with
 /// the traction

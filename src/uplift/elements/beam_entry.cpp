@@ -123,7 +123,7 @@ const ElementEntry& entry_element_beam() {
              number("damping_beta", "s", "stiffness-proportional damping factor of this beam alone").nonnegative().standard(0.0)}},
        made},
       "",
-      true};
+      ElementPlace::lines};
   return entry;
 }
 

@@ -34,11 +34,17 @@ std::span<const PartInfo* const> element_kinds() {
   return elements;
 }
 
-std::vector<const Values*> tables_along_lines(const Values& root) {
-  std::vector<const Values*> tables;
+std::vector<const ElementEntry*> elements_at(ElementPlace place) {
+  std::vector<const ElementEntry*> found;
   for (const ElementEntry* entry : element_catalog())
-    if (entry->along_lines)
-      for (const Values& table : root.tables(entry->name)) tables.push_back(&table);
+    if (entry->place == place) found.push_back(entry);
+  return found;
+}
+
+std::vector<const Values*> element_tables(const Values& root, ElementPlace place) {
+  std::vector<const Values*> tables;
+  for (const ElementEntry* entry : elements_at(place))
+    for (const Values& table : root.tables(entry->name)) tables.push_back(&table);
   return tables;
 }
 

@@ -32,7 +32,7 @@ void look_at_mesh(const Case& read, CaseFindings& found) {
       const double speed = solid.section.material.density > 0 ? solid.section.material.s_wave_speed() : 0;
       found.solids.push_back({quality, speed, speed > 0 ? highest_frequency(quality, speed, nodes_per_wavelength) : 0});
     }
-  for (const Values* beam : tables_along_lines(read.values))
+  for (const Values* beam : element_tables(read.values, ElementPlace::lines))
     for (const GroupQuality& quality : qualities)
       if (beam->has("group") && quality.name == beam->text("group")) found.beams.push_back(quality);
   found.pieces = connected_pieces(read.mesh->mesh).count();

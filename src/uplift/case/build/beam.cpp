@@ -73,8 +73,7 @@ std::vector<std::vector<int>> add_along(const ElementEntry& entry, const Values&
 void add_beams(const Values& root, ModelBuilder& builder, CaseNames& names) {
   Names beams("beam");
   BeamCells cells(root, names.solids.get());
-  for (const ElementEntry* entry : element_catalog()) {
-    if (!entry->along_lines) continue;
+  for (const ElementEntry* entry : elements_at(ElementPlace::lines)) {
     for (const Values& beam : root.tables(entry->name)) {
       beams.add(beam, "name");
       const int first = builder.num_elements();

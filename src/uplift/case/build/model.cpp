@@ -34,6 +34,12 @@ const CaseSolids& CaseNames::mesh_for(const Values& table) const {
   return *solids;
 }
 
+std::vector<int> CaseNames::nodes_of_cell(CellId cell) const {
+  std::vector<int> found;
+  for (const int node : solids->mesh().cell(cell)) found.push_back(first_of_mesh + node);
+  return found;
+}
+
 std::vector<int> CaseNames::node_or_group(const Values& table) const {
   const bool node_given = table.has("node");
   if (node_given == table.has("group")) fail(table, node_given ? "group" : "", "either node or group", node_given ? "both" : "neither");
@@ -87,14 +93,12 @@ void add_masses(const Values& root, ModelBuilder& builder, CaseNames& names, con
 
 /// The elements on named nodes: one for each table [[name]].
 void add_elements(const Values& root, ModelBuilder& builder, const CaseNames& names) {
-  for (const ElementEntry* entry : element_catalog()) {
-    if (entry->along_lines) continue;
+  for (const ElementEntry* entry : elements_at(ElementPlace::nodes))
     for (const Values& table : root.tables(entry->name)) {
       ElementSite site{names.space, names.nodes_of(table, "nodes"), {}};
       for (const int node : site.nodes) site.positions.push_back(names.positions[static_cast<std::size_t>(node)]);
       builder.add_element(entry->make(site, table), table.where());
     }
-  }
 }
 
 }  // namespace
@@ -188,13 +192,7 @@ void add_mesh(const Case& read, ModelBuilder& builder, CaseNames& names) {
     for (const CellId cell : solid.cells) {
       nodes.clear();
       for (const int node : mesh.cell(cell)) nodes.push_back(names.first_of_mesh + node);
-      std::unique_ptr<Solid> element;
-      if (!solid.law || solid.law->linear())
-        element = std::make_unique<Solid>(mesh.type(cell), nodes, coordinates, solid.section);
-      else
-        element = std::make_unique<NonlinearSolid>(mesh.type(cell), nodes, coordinates, solid.section, solid.law);
-      element->beta = solid.table->number("damping_beta");
-      builder.add_element(std::move(element), solid.table->where());
+      builder.add_element(solid.filling->make({mesh.type(cell), nodes, coordinates}), solid.table->where());
     }
 }
 

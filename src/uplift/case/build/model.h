@@ -31,6 +31,8 @@ struct CaseNames {
   std::vector<BeamLine> beams;               // met so far
   int node(const Values& table, std::string_view key) const { return nodes.find(table, key); }
   std::vector<int> nodes_of(const Values& table, std::string_view key) const;
+  /// Nodes of the model of a cell of the mesh, which there is.
+  std::vector<int> nodes_of_cell(CellId cell) const;
   /// The node of "node" or the nodes of "group": exactly one of the keys must be given.
   std::vector<int> node_or_group(const Values& table) const;
   /// The mesh that "group" speaks of; InputError without one.
@@ -51,8 +53,8 @@ const Values* table_if(const Values& values, std::string_view key);
 void add_nodes(const Values& root, ModelBuilder& builder, CaseNames& names);
 /// Nodes and solids of the mesh.
 void add_mesh(const Case& read, ModelBuilder& builder, CaseNames& names);
-/// Absorbing faces and the waves that come in through them; after the functions.
-void add_absorbing(const Values& root, ModelBuilder& builder, const CaseNames& names);
+/// Elements on faces of the mesh, and the waves that come in through absorbing ones; after the functions.
+void add_faces(const Values& root, ModelBuilder& builder, const CaseNames& names);
 /// A function times an amplitude.
 std::shared_ptr<const TimeFunction> scaled(double factor, std::shared_ptr<const TimeFunction> function);
 /// As stated, else from what it acts on.

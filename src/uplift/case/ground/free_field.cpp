@@ -198,7 +198,7 @@ void add_free_field(const Values& root, const std::vector<Stage>& stages, const 
     if (!damping.modal.empty()) fail(absorbing, "free_field", "Rayleigh damping with a free field", "modal damping");
     const SideFaces side(absorbing, names);
     std::vector<AbsorbingSection> sections;
-    for (const CellId face : side.faces) sections.push_back(absorbing_ground(absorbing, *side.solids.beside(face), names.space));
+    for (const CellId face : side.faces) sections.push_back(absorbing_ground(absorbing, side.solids.beside(face)->beside(), names.space));
     const std::vector<ColumnLayer> rows = side.rows();
     const Values& incident = wave_below(root, side, rows.front().low);
     const Vec3 motion = incident_motion(incident, names.space);

@@ -19,7 +19,5 @@ void add_free_field(const Values& root, const std::vector<Stage>& stages, const 
 Vec3 incident_motion(const Values& incident, Space space);
 /// Velocity of the incoming wave alone [m/s].
 std::shared_ptr<const TimeFunction> incident_velocity(const Values& incident, const CaseNames& names);
-/// Material of the ground behind an absorbing face; InputError where it cannot carry waves.
-AbsorbingSection absorbing_ground(const Values& absorbing, const CaseSolids::Solid& solid, Space space);
 
 }  // namespace uplift

@@ -123,37 +123,6 @@ std::string dimension_word(const Mesh& mesh, int dimension) {
   return std::string("a group of ") + word;
 }
 
-SolidSection section_from(const Values& solid) {
-  SolidSection section;
-  const bool stiffness = solid.has("E");
-  if (stiffness == solid.has("shear_wave_speed"))
-    fail(solid, stiffness ? "shear_wave_speed" : "", "either E or shear_wave_speed", stiffness ? "both" : "neither");
-  const std::string& mass = solid.text("mass");
-  if ((mass != "none" || !stiffness) && !solid.has("density"))
-    fail(solid, "", mass == "none" ? "density, from which E follows with shear_wave_speed" : "density, or mass = \"none\"", "none");
-  const double density = solid.has("density") ? solid.number("density") : 0, poisson = solid.number("poisson");
-  section.material = stiffness ? ElasticMaterial{solid.number("E"), poisson, density}
-                               : material_of_wave_speed(solid.number("shear_wave_speed"), poisson, density);
-  check_material(section.material, solid.where(), solid.path());
-  section.plane = solid.text("plane") == "strain" ? PlaneState::strain : PlaneState::stress;
-  section.thickness = solid.number("thickness");
-  section.mass = mass == "consistent" ? SolidSection::Mass::consistent
-                 : mass == "lumped"   ? SolidSection::Mass::lumped
-                                      : SolidSection::Mass::none;
-  section.incompatible_modes = solid.flag("incompatible_modes");
-  return section;
-}
-
-std::shared_ptr<const BulkLaw> law_from(const Values& solid, const SolidSection& section, int dimension) {
-  if (solid.has("plasticity") && solid.has("law")) fail(solid, "plasticity", "either law or plasticity, its older name", "both");
-  const char* key = solid.has("plasticity") ? "plasticity" : "law";
-  if (!solid.has(key)) return nullptr;
-  std::shared_ptr<const BulkLaw> law = make_part(bulk_law_catalog(), solid.part(key), {section.material, dimension});
-  if (!law->linear() && section.plane == PlaneState::stress)
-    fail(solid, "plane", "plane = \"strain\" for a solid whose law is not elastic", "\"stress\"");
-  return law;
-}
-
 /// The first group of cells that holds the cell, or the cell itself, for messages.
 std::string owner_of(const Mesh& mesh, CellId cell) {
   for (const auto& [name, group] : mesh.groups)
@@ -163,8 +132,8 @@ std::string owner_of(const Mesh& mesh, CellId cell) {
 
 /// A mesh of beams needs no solids.
 bool beams_alone(const Values& root) {
-  return root.tables("solid").empty() &&
-         std::ranges::any_of(tables_along_lines(root), [](const Values* beam) { return beam->has("group"); });
+  return element_tables(root, ElementPlace::cells).empty() &&
+         std::ranges::any_of(element_tables(root, ElementPlace::lines), [](const Values* beam) { return beam->has("group"); });
 }
 
 /// Faces that do not lie in a plane of equal z are taken for a mesh in space, which has nothing to be solid.
@@ -187,8 +156,8 @@ std::shared_ptr<const CaseMesh> mesh_of_case(const Values& root, const std::stri
   if (!mesh) {
     for (const Values& interface : root.tables("interface"))
       if (interface.has("surface")) fail(interface, "surface", "a [mesh] for the surface", "none");
-    for (const char* key : {"solid", "absorbing"})
-      if (!root.tables(key).empty()) fail(root.tables(key).front(), "", "a [mesh] with this group", "none");
+    for (const ElementPlace place : {ElementPlace::cells, ElementPlace::faces})
+      if (const auto tables = element_tables(root, place); !tables.empty()) fail(*tables.front(), "", "a [mesh] with this group", "none");
     return nullptr;
   }
   const bool from_file = mesh->has("file");
@@ -212,25 +181,30 @@ std::shared_ptr<const CaseMesh> mesh_of_case(const Values& root, const std::stri
 CaseSolids::CaseSolids(const Values& root, const CaseMesh& from) : mesh_(&from.mesh), sides_(from.mesh, full_cells(from.mesh)) {
   const std::vector<CellId>& cells = sides_.cells();
   solid_of_.assign(cells.size(), -1);
-  for (const Values& solid : root.tables("solid")) {
-    const Group& group = group_named(*mesh_, solid, "group", "a group of cells");
-    if (group.dimension != mesh_->dimension || group.cells.empty())
-      fail(solid, "group", "a group of cells", dimension_word(*mesh_, group.dimension));
-    for (const CellId cell : group.cells) {
-      int& solid_here = solid_of_[static_cast<std::size_t>(std::ranges::lower_bound(cells, cell) - cells.begin())];
-      if (solid_here >= 0)
-        fail(solid, "group", "cells without another solid",
-             fmt::format("{}, which belongs to the solid {} too", describe_cell(*mesh_, cell),
-                         in_quotes(solids_[at(solid_here)].table->text("group"))));
-      solid_here = static_cast<int>(solids_.size());
-    }
-    const SolidSection section = section_from(solid);
-    solids_.push_back({&solid, section, law_from(solid, section, mesh_->dimension), group.cells});
-  }
+  for (const ElementEntry* entry : elements_at(ElementPlace::cells))
+    for (const Values& table : root.tables(entry->name)) add(*entry, table);
   const auto bare = std::ranges::find(solid_of_, -1);
   if (bare != solid_of_.end())
     throw InputError(root.table("mesh").where(), "solid", "a [[solid]] for every cell of the mesh",
                      "none for " + owner_of(*mesh_, cells[static_cast<std::size_t>(bare - solid_of_.begin())]));
+}
+
+void CaseSolids::add(const ElementEntry& entry, const Values& solid) {
+  const std::vector<CellId>& cells = sides_.cells();
+  const Group& group = group_named(*mesh_, solid, "group", "a group of cells");
+  if (group.dimension != mesh_->dimension || group.cells.empty())
+    fail(solid, "group", "a group of cells", dimension_word(*mesh_, group.dimension));
+  for (const CellId cell : group.cells) {
+    int& solid_here = solid_of_[static_cast<std::size_t>(std::ranges::lower_bound(cells, cell) - cells.begin())];
+    if (solid_here >= 0)
+      fail(solid, "group", "cells without another solid",
+           fmt::format("{}, which belongs to the solid {} too", describe_cell(*mesh_, cell),
+                       in_quotes(solids_[at(solid_here)].table->text("group"))));
+    solid_here = static_cast<int>(solids_.size());
+  }
+  std::shared_ptr<const CellFilling> filling = entry.fill(solid, mesh_->dimension);
+  const SolidSection section = filling->section();
+  solids_.push_back({&solid, section, std::move(filling), group.cells});
 }
 
 const CaseSolids::Solid* CaseSolids::beside(CellId edge) const {

@@ -5,8 +5,7 @@
 #include <vector>
 
 #include "uplift/case/case.h"
-#include "uplift/elements/bulk_law.h"
-#include "uplift/elements/solid.h"
+#include "uplift/elements/element_entry.h"
 #include "uplift/mesh/sides.h"
 #include "uplift/mesh/split.h"
 #include "uplift/model/model.h"
@@ -34,8 +33,9 @@ class CaseSolids {
   struct Solid {
     const Values* table;
     SolidSection section;
-    std::shared_ptr<const BulkLaw> law;  // null: elastic
+    std::shared_ptr<const CellFilling> filling;
     std::vector<CellId> cells;
+    FillingBeside beside() const { return {section, table->text("group")}; }
   };
   const std::vector<Solid>& solids() const { return solids_; }
   /// Of the cell that has this edge; null for an edge of none.
@@ -52,6 +52,9 @@ class CaseSolids {
   const std::vector<CellId>& edges(const Values& table, std::string_view key) const;
 
  private:
+  /// The cells of one table.
+  void add(const ElementEntry& entry, const Values& solid);
+
   const Mesh* mesh_;
   std::vector<Solid> solids_;
   Sides sides_;

@@ -1,7 +1,5 @@
 #include "uplift/case/schema/mesh_sections.h"
 
-#include "uplift/elements/bulk_law.h"
-
 namespace uplift {
 namespace {
 
@@ -76,64 +74,6 @@ const Section& mesh_section() {
                          Fields{text("file", "mesh of Gmsh (.msh) or MED (.med), in metres; in the plane where all z are equal").optional(),
                                 text("name", "the mesh to take when a MED file holds several").optional(),
                                 table("soil_box", soil_box_section(), "a made mesh").optional()}};
-  return s;
-}
-
-const Section& solid_section() {
-  static const Section s{
-      "solid", "what a group of cells of the mesh is made of; every cell needs one",
-      Fields{text("group", "group of cells"), number("E", "Pa", "Young's modulus; or give shear_wave_speed").positive().optional(),
-             number("shear_wave_speed", "m/s", "speed of shear waves, from which E follows: G = density x speed squared")
-                 .positive()
-                 .optional(),
-             number("poisson", "1", "Poisson's ratio, below 0.5").between(0, 0.4999),
-             number("density", "kg/m3", "density; not needed with mass = \"none\" and E").positive().optional(),
-             choice("plane", {"strain", "stress"}, "what is zero out of the plane (plane meshes)").standard("strain"),
-             number("thickness", "m", "length out of the plane (plane meshes)").positive().standard(1.0),
-             choice("mass", {"consistent", "lumped", "none"}, "mass matrix").standard("consistent"),
-             flag("incompatible_modes", "quad4 and hex8: bubbles that let an element bend").standard(true),
-             part("law", bulk_laws,
-                  "stress from strain; absent: elastic. Other laws need plane strain or space, and every step then iterates on them around "
-                  "the linear step")
-                 .optional(),
-             part("plasticity", bulk_laws, "older name of law; without type: drucker_prager").optional().standard_type("drucker_prager"),
-             number("damping_beta", "s", "stiffness-proportional damping factor of this solid alone").nonnegative().standard(0.0)}};
-  return s;
-}
-
-namespace {
-
-const Section& incident_section() {
-  static const Section s{
-      "incident",
-      "a plane wave that comes up through the face; the face then carries 2 rho c times its velocity, and absorbs what comes back",
-      Fields{
-          choice("wave", {"P", "SV", "SH"}, "P: the particles move upwards; SV: along x; SH (in space): along y"),
-          number("azimuth", "rad", "in space: turns the motion of S waves about the vertical, from x to y").standard(0.0),
-          choice("kind", {"outcrop", "incoming"},
-                 "what the function is: the motion that the free surface of the same rock would have (twice the incoming wave), or that of "
-                 "the incoming wave alone. A motion recorded within the ground holds what comes down again: it is no incident wave but "
-                 "a prescribed motion, [[motion]] with the group of the base, and the base then reflects"),
-          number("velocity", "m/s", "velocity that the function multiplies").standard(1.0),
-          text("function", "name of the function of time: a velocity"), text("name", "name").standard("incident wave")}};
-  return s;
-}
-
-}  // namespace
-
-const Section& absorbing_section() {
-  static const Section s{
-      "absorbing",
-      "a viscous boundary: edges (faces) of the mesh through which waves leave (Lysmer & Kuhlemeyer), with the material of the "
-      "solid beside them. It "
-      "holds nothing at rest: static stages need supports elsewhere",
-      Fields{
-          text("group", "group of edges (faces) of the mesh"), flag("lumped", "diagonal damping matrix").standard(false),
-          flag("free_field",
-               "for sides: the boundary follows a column of level ground (the layers beside it) under the incident wave at its foot, and "
-               "absorbs only what differs from it")
-              .standard(false),
-          table("incident", incident_section(), "a wave that comes in; absent: none").optional()}};
   return s;
 }
 

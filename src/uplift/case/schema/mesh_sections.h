@@ -5,9 +5,7 @@
 namespace uplift {
 
 const Section& mesh_section();
-const Section& solid_section();
 const Section& surface_section();
-const Section& absorbing_section();
 const Section& tie_section();
 
 }  // namespace uplift

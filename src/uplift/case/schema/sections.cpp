@@ -278,8 +278,6 @@ const Section& case_section() {
             flag("bonded", "run the model with bonded interfaces too, for comparison").standard(true),
             named("nodes", node_section(), "nodes: name = [x, y], or [x, y, z]"),
             table("mesh", mesh_section(), "mesh of solids, in the plane or in space").optional(),
-            tables("solid", solid_section(), "materials of the mesh"),
-            tables("absorbing", absorbing_section(), "absorbing boundaries of the mesh"),
             tables("tie", tie_section(), "sides of the mesh that move together"),
             tables("mass", mass_section(), "point masses"),
             tables("rigid", rigid_section(), "rigid bodies"),
@@ -312,10 +310,12 @@ const Section& case_section() {
             table("trust", trust_section(), "trust bands"),
             tables("origin", origin_section(), "origin of values"),
             tables("figure", figure_section(), "origin of figures")}};
-    // beams stand before the masses, springs and dashpots behind them
-    for (const bool along_lines : {true, false}) {
-      auto next = std::ranges::find(made.fields, along_lines ? "mass" : "rigid", &Field::name);
-      for (const Section& element : element_sections(along_lines))
+    // the order of the reference: solids and their faces, beams, masses, springs and dashpots
+    const std::pair<ElementPlace, const char*> before[] = {
+        {ElementPlace::cells, "tie"}, {ElementPlace::faces, "tie"}, {ElementPlace::lines, "mass"}, {ElementPlace::nodes, "rigid"}};
+    for (const auto& [place, table] : before) {
+      auto next = std::ranges::find(made.fields, table, &Field::name);
+      for (const Section& element : element_sections(place))
         next = std::next(made.fields.insert(next, tables(element.name, element, element.meaning)));
     }
     return made;

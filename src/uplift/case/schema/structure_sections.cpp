@@ -1,7 +1,8 @@
 #include "uplift/case/schema/structure_sections.h"
 
+#include <array>
+
 #include "uplift/case/build/profile.h"
-#include "uplift/elements/element_entry.h"
 #include "uplift/model/function.h"
 
 namespace uplift {
@@ -34,15 +35,15 @@ const Section& mass_section() {
   return s;
 }
 
-const std::vector<Section>& element_sections(bool along_lines) {
-  const auto sections = [](bool along) {
+const std::vector<Section>& element_sections(ElementPlace place) {
+  const auto sections = [](ElementPlace of) {
     std::vector<Section> made;
-    for (const ElementEntry* element : element_catalog())
-      if (element->along_lines == along) made.push_back({element->name, element->summary, element->params});
+    for (const ElementEntry* element : elements_at(of)) made.push_back({element->name, element->summary, element->params});
     return made;
   };
-  static const std::vector<Section> on_lines = sections(true), on_nodes = sections(false);
-  return along_lines ? on_lines : on_nodes;
+  static const std::array all{sections(ElementPlace::nodes), sections(ElementPlace::lines), sections(ElementPlace::cells),
+                              sections(ElementPlace::faces)};
+  return all[static_cast<std::size_t>(place)];
 }
 
 const Section& rigid_section() {

@@ -36,8 +36,8 @@ const Case& with_mesh(const Values& fields, const Case& read) {
 /// Groups with a solid or a beam that are wanted, in this order.
 std::vector<std::string> wanted_groups(const Values& fields, const Case& read) {
   std::vector<std::string> known;
-  for (const Values& solid : read.values.tables("solid")) known.push_back(solid.text("group"));
-  for (const Values* beam : tables_along_lines(read.values))
+  for (const Values* solid : element_tables(read.values, ElementPlace::cells)) known.push_back(solid->text("group"));
+  for (const Values* beam : element_tables(read.values, ElementPlace::lines))
     if (beam->has("group")) known.push_back(beam->text("group"));
   const std::vector<std::string> asked = fields.has("groups") ? fields.texts("groups") : known;
   for (const std::string& group : asked)
@@ -49,7 +49,7 @@ std::vector<std::string> wanted_groups(const Values& fields, const Case& read) {
 }
 
 const Values& beam_of(const Case& read, const std::string& group) {
-  const std::vector<const Values*> beams = tables_along_lines(read.values);
+  const std::vector<const Values*> beams = element_tables(read.values, ElementPlace::lines);
   return **std::ranges::find_if(beams, [&](const Values* beam) { return beam->has("group") && beam->text("group") == group; });
 }
 

@@ -58,7 +58,7 @@ Drawn drawn_of(const Case& read, const BuiltCase& built) {
   int end_of_mesh = drawn.first_of_mesh;
   if (read.mesh) {
     std::vector<std::string> groups;
-    for (const Values& solid : read.values.tables("solid")) groups.push_back(solid.text("group"));
+    for (const Values* solid : element_tables(read.values, ElementPlace::cells)) groups.push_back(solid->text("group"));
     drawn.outline = outline_of(read.mesh->mesh, groups, most_outline_nodes, most_drawn_cells);
     end_of_mesh += static_cast<int>(read.mesh->mesh.nodes.size());
   }
@@ -215,8 +215,7 @@ void write_small_parts(JsonWriter& json, const Case& read, const BuiltCase& buil
         .end_object();
   json.end_array();
   json.key("springs").begin_array();
-  for (const ElementEntry* element : element_catalog()) {
-    if (element->along_lines) continue;
+  for (const ElementEntry* element : elements_at(ElementPlace::nodes)) {
     for (const Values& spring : read.values.tables(element->name)) {
       const std::vector<std::string>& nodes = spring.texts("nodes");
       json.begin_object().key("nodes").begin_array().value(shown_name(built, nodes.front()));
@@ -308,8 +307,7 @@ std::set<int> nodes_used(const Case& read, const BuiltCase& built) {
   for (const char* kind : {"mass", "support", "load"})
     for (const Values& table : read.values.tables(kind))
       if (table.has("node")) nodes.insert(built.model.find_node(table.text("node")));
-  for (const ElementEntry* element : element_catalog()) {
-    if (element->along_lines) continue;
+  for (const ElementEntry* element : elements_at(ElementPlace::nodes)) {
     for (const Values& table : read.values.tables(element->name))
       for (const std::string& node : table.texts("nodes")) nodes.insert(built.model.find_node(node));
   }

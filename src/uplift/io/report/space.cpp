@@ -62,8 +62,8 @@ Drawn drawn_of(const Case& read, const BuiltCase& built) {
   std::set<int> nodes = nodes_used(read, built);
   for (int i = 0; i < drawn.first_of_mesh; ++i) nodes.insert(i);
   if (read.mesh)
-    for (const Values& solid : read.values.tables("solid")) {
-      drawn.surfaces.push_back(surface_of(read.mesh->mesh, solid.text("group")));
+    for (const Values* solid : element_tables(read.values, ElementPlace::cells)) {
+      drawn.surfaces.push_back(surface_of(read.mesh->mesh, solid->text("group")));
       for (const int node : drawn.surfaces.back().triangles) nodes.insert(drawn.first_of_mesh + node);
     }
   for (const BeamLine& beam : built.beams) nodes.insert(beam.nodes.begin(), beam.nodes.end());

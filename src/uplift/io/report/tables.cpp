@@ -161,10 +161,9 @@ void write_tables(JsonWriter& json, const ReportInput& input) {
 void write_choices(JsonWriter& json, const Case& read, const BuiltCase& built) {
   std::vector<Given> given;
   std::vector<std::string_view> tables{"nodes"};
-  for (const bool along_lines : {true, false}) {
-    for (const ElementEntry* element : element_catalog())
-      if (element->along_lines == along_lines) tables.push_back(element->name);
-    if (along_lines) tables.emplace_back("mass");
+  for (const ElementPlace place : {ElementPlace::lines, ElementPlace::nodes}) {
+    for (const ElementEntry* element : elements_at(place)) tables.push_back(element->name);
+    if (place == ElementPlace::lines) tables.emplace_back("mass");
   }
   for (const char* table : {"rigid", "interface", "gravity", "function", "record", "load", "motion", "ground_acceleration", "initial",
                             "damping", "stage", "compare"})
