@@ -120,6 +120,11 @@ class CliTest(unittest.TestCase):
         self.assert_valid(summary, "motion" if "intensities" in summary else "results")
         return summary
 
+    def assert_page_has(self, summary, report):
+        """The page makes its tables and captions of the summary (web/test/document_checks.mjs), which it has without the histories."""
+        without = {**summary, "verdict": {**summary["verdict"], "interfaces": [{key: value for key, value in each.items() if key != "over_time"} for each in summary["verdict"]["interfaces"]]}}
+        self.assertEqual(report["summary"], without)
+
     def assert_valid(self, document, schema):
         """`uplift schema NAME` accepts the document."""
         self.assertEqual(list(violations(document, schema_of(schema), schema_of(schema))), [])

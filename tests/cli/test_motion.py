@@ -14,7 +14,7 @@ class Records(CliTest):
         done = self.uplift("motion", "quake.csv")
         self.assertRegex(done.stdout, r"PGA \[m/s2\].*D5-95 \[s\].*Housner")
         folder = self.folder / "out/motion_quake"
-        self.assertEqual(report_of(folder)["format"], "uplift-report-1")
+        self.assertEqual(report_of(folder)["format"], "uplift-report-2")
         found = self.summary("out/motion_quake")
         # 1 m/s2 at 2 Hz for 10 whole periods: Arias = pi/(2 g) T/2, CAV = 2 T/pi
         numbers, motion = found["intensities"][0], found["motions"][0]

@@ -234,7 +234,7 @@ class Report(RobustTest):
         title = "<!--<script></script>"
         self.write(BASE.replace('"test"', f'"{title}"'))
         self.uplift("run", "case.toml", "-o", "r", "-q")
-        self.assertEqual(report_of(self.folder / "r")["title"], title)
+        self.assertEqual(report_of(self.folder / "r")["summary"]["title"], title)
         self.assertNotIn("<!--<script", (self.folder / "r" / "report.html").read_text())  # the data is in base64, which has no "<"
 
 

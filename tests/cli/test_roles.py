@@ -62,7 +62,6 @@ class Embedded(CliTest):
         self.assertNotIn("max_eccentricity", walls["numbers"])
         report = report_of(self.folder / "r")
         self.assertEqual([each["name"] for each in report["space"]["interfaces"]], ["skin", "skin walls"])
-        self.assertEqual([each["role"] for each in report["verdict"]["interfaces"]], ["base", "wall"])
 
     def test_a_stated_role_is_kept(self):
         self.write(CASE.replace('name = "skin"\n', 'name = "skin"\nrole = "base"\n'))

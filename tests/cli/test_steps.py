@@ -79,7 +79,7 @@ class StepCheck(CliTest):
             self.assertEqual(verdict["step_check"]["result"], "not made")
             self.assertIn("Error of the time step: not examined.", text)
             self.assertNotIn("not converged", verdict["headline"])
-            self.assertIn("not examined", report_of(self.folder / "r")["verdict"]["stepCheck"]["sentence"])
+            self.assertIn("not examined", report_of(self.folder / "r")["summary"]["verdict"]["step_check"]["sentence"])
 
     def test_check_says_what_limits_the_step(self):
         self.write(BASE)

@@ -1,5 +1,10 @@
-// Reads the JSON document out of the page and fills what an older or shorter document leaves out.
-import { FORMAT, type Model, type QuantisedFrames, type Report, type SpaceAnimation, type SpaceModel } from "./types";
+// Reads the document out of the page and makes of it what the page shows: verdict, tables and figures of summary.json and trust.json, with
+// what only the report has. What a shorter document leaves out is empty.
+import { charts_of, stated } from "./result_charts";
+import { sections_of } from "./result_sections";
+import { tables_of } from "./result_tables";
+import { verdict_of } from "./result_verdict";
+import { FORMAT, type Model, type QuantisedFrames, type RawReport, type Report, type SpaceAnimation, type SpaceModel, type Verdict } from "./types";
 
 export type ReadResult =
   | { kind: "report"; report: Report }
@@ -58,33 +63,39 @@ function complete_animation(raw: SpaceAnimation): SpaceAnimation {
   return { ...raw, displacement: frames_of(raw.displacement), openings: fields(raw.openings), pressures: fields(raw.pressures) };
 }
 
-function complete(raw: Partial<Report>): Report {
-  const verdict = raw.verdict;
+type Results = Pick<Report, "title" | "version" | "created" | "command" | "builtWith" | "case" | "verdict" | "tables" | "sections" | "charts">;
+
+/** Of a report of ground motions, which writes its pages itself. */
+function stated_results(raw: RawReport): Results {
+  const verdict: Verdict = { level: "none", headline: "", facts: [], paragraphs: [], run: "", interfaces: [], criteria: [], floors: [], ...raw.verdict };
+  return {
+    title: raw.title ?? "Untitled case", version: raw.version ?? "", created: raw.created ?? "", command: raw.command ?? "", builtWith: raw.builtWith,
+    case: { file: "", sha256: "", resolved: "", ...raw.case },
+    verdict, tables: raw.tables ?? [], sections: raw.sections ?? [], charts: (raw.charts ?? []).map((chart) => stated(chart, {})),
+  };
+}
+
+/** Of a run or a comparison. */
+function results(raw: RawReport): Results {
+  const { summary, trust, quantities = {}, statics = false, verdict, floorsWarning = "" } = raw;
+  if (!summary) return stated_results(raw);
+  const extras = { facts: verdict?.facts ?? [], paragraphs: verdict?.paragraphs ?? [], uplifted: raw.uplifted ?? [] };
+  return {
+    title: summary.title, version: summary.version, created: summary.created, command: summary.command, builtWith: summary.built_with,
+    case: { ...summary.case, resolved: raw.resolved ?? "", inputs: summary.inputs },
+    verdict: verdict_of(summary, extras, quantities, statics),
+    tables: tables_of(summary, trust, quantities, raw.tables ?? []),
+    sections: raw.sections ?? sections_of(summary, trust, floorsWarning, statics),
+    charts: charts_of(summary, trust, raw.charts ?? [], raw.figures ?? {}),
+  };
+}
+
+function complete(raw: RawReport): Report {
   return {
     format: FORMAT,
-    title: raw.title ?? "Untitled case",
+    ...results(raw),
     subtitle: raw.subtitle,
-    version: raw.version ?? "",
-    created: raw.created ?? "",
-    command: raw.command ?? "",
-    builtWith: raw.builtWith,
-    case: { file: "", sha256: "", resolved: "", ...raw.case },
-    verdict: {
-      level: verdict?.level ?? "none",
-      headline: verdict?.headline ?? "",
-      consequence: verdict?.consequence ?? "",
-      facts: verdict?.facts ?? [],
-      paragraphs: verdict?.paragraphs ?? [],
-      run: verdict?.run ?? "",
-      interfaces: verdict?.interfaces ?? [],
-      criteria: verdict?.criteria ?? [],
-      floors: verdict?.floors ?? [],
-      stepCheck: verdict?.stepCheck,
-    },
     choices: raw.choices ?? [],
-    tables: raw.tables ?? [],
-    sections: raw.sections ?? [],
-    charts: raw.charts ?? [],
     model: complete_model(raw.model),
     animations: raw.animations ?? [],
     space: complete_space(raw.space),
@@ -108,9 +119,9 @@ export async function read_report(): Promise<ReadResult> {
   if (!plain && typeof DecompressionStream === "undefined") {
     return { kind: "error", message: "This browser cannot decompress the data of the report. Please use a version from 2023 or later (Chrome 80, Firefox 113, Safari 16.4)." };
   }
-  let raw: Partial<Report>;
+  let raw: RawReport;
   try {
-    raw = JSON.parse(plain ? held : await inflated(held)) as Partial<Report>;
+    raw = JSON.parse(plain ? held : await inflated(held)) as RawReport;
   } catch (error) {
     return { kind: "error", message: `The data of this report cannot be read: ${(error as Error).message}` };
   }

@@ -19,11 +19,6 @@ function top_of(largest: number): number {
   return [0.05, 0.1, 0.2, 0.4, 0.6, 0.8].find((top) => largest <= 0.95 * top) ?? 1;
 }
 
-/** "85 ms", "2.55 s". */
-function seconds(value: number): string {
-  return value > 0 && value < 0.1 ? `${number(1e3 * value, 3)} ms` : `${number(value, 3)} s`;
-}
-
 export function share_chart(base: BaseVerdict): HTMLElement | null {
   const { time, share, above } = base;
   const largest = share.reduce((m, v) => Math.max(m, v), 0);
@@ -47,13 +42,11 @@ export function share_chart(base: BaseVerdict): HTMLElement | null {
     ...base.lost.map(([a, b]) => s("path", { class: "lost", d: `M${px(x(a))} ${TOP}V${HEIGHT - BOTTOM}H${px(Math.max(x(b), x(a) + 1))}V${TOP}Z` })),
     ...above.map((each) => s("path", { class: "threshold", d: `M${LEFT} ${px(y(each.threshold))}H${WIDTH - RIGHT}` })),
     s("circle", { class: "peak", cx: px(x(time[peak] as number)), cy: px(y(largest)), r: 3.5 }));
-  const words = above.map((each) => each.text ?? `above ${fixed(100 * each.threshold, 0)} % for ${seconds(each.duration)}`);
+  const words = above.map((each) => each.text);
   if (base.lost.length > 0) {
-    const sum = base.lost.reduce((m, [a, b]) => m + b - a, 0);
     const shown = base.lost.slice(0, SHOWN).map(([a, b]) => `${number(a, 4)} to ${number(b, 4)} s`).join(", ");
     const more = base.lost.length > SHOWN ? " and later" : "";
-    const lost = base.lostText ?? `full loss of contact ${base.lost.length === 1 ? "once" : `${base.lost.length} times`}, ${seconds(sum)} in total`;
-    words.push(`${lost} (${shown}${more})`);
+    words.push(`${base.lostText} (${shown}${more})`);
   }
   return h("figure", { class: "share-chart" },
     h("figcaption", {}, h("b", {}, "Uplifted area over time"), words.length > 0 ? ` · ${words.join(" · ")}` : ""), drawing);

@@ -1,7 +1,12 @@
-// The JSON document that the program writes into the page ("uplift-report-1").
+// What the page shows. data.ts makes it from the document that the program writes into the page ("uplift-report-2", RawReport): the results
+// documents summary.json (without its histories) and trust.json, and what only the report has (histories, frames, geometry, sentences of the terminal).
 // All numbers are SI. Opening > 0, tension > 0, pressure > 0 in compression. `null` stands for a gap.
 
-export const FORMAT = "uplift-report-1";
+import type { Figures } from "./result_charts";
+import type { Catalog } from "./result_verdict";
+import type { Summary, Trust } from "./summary";
+
+export const FORMAT = "uplift-report-2";
 
 export type Maybe<T> = T | null | undefined;
 export type Cell = string | number | boolean | null | undefined;
@@ -27,21 +32,19 @@ export interface Fact {
   stepChange?: string;
 }
 
-/** A number of the verdict, SI. */
+/** A number of the verdict, SI, with its texts. */
 export interface VerdictRow {
   label: string;
   value: number;
   unit: string;
+  text: string;
   /** Seconds. */
   time?: number;
   /** The same number of the bonded run. */
   bonded?: number;
-  /** Half of the range in which a residual still moves. */
-  swing?: number;
-  /** The same numbers as the program prints them; without them the page formats the values itself. */
-  text?: string;
   bondedText?: string;
   changeText?: string;
+  /** Half of the range in which a residual still varies; absent when it is at rest. */
   swingText?: string;
   /** By how much the number changes with twice the step. */
   stepText?: string;
@@ -56,15 +59,15 @@ export interface BaseVerdict {
   time: number[];
   share: number[];
   /** Thresholds that the user gave, and for how many seconds the share is above. */
-  above: { threshold: number; duration: number; text?: string }[];
+  above: { threshold: number; duration: number; text: string }[];
   /** Intervals without any contact, seconds. */
   lost: [number, number][];
-  /** How often and how long there is no contact. */
-  lostText?: string;
+  /** How often and how long there is no contact; may be empty. */
+  lostText: string;
   beside: VerdictRow[];
   rest: VerdictRow[];
   /** Shares: what pulls in the bonded run, the uplift that stands for by equal energy (null: no answer), what was computed. */
-  linear?: { tension: number; predicted: number | null; computed: number; tensionText?: string; predictedText?: string; computedText?: string };
+  linear?: { tension: number; predicted: number | null; computed: number; tensionText: string; predictedText: string; computedText: string };
 }
 
 export type CriterionState = "met" | "not met" | "undetermined";
@@ -73,11 +76,8 @@ export interface Criterion {
   label: string;
   interface: string;
   state: CriterionState;
-  value: number | null;
-  limit: number;
-  valueText?: string;
-  limitText?: string;
-  unit: string;
+  valueText: string;
+  limitText: string;
   atLeast: boolean;
   source: string;
 }
@@ -86,7 +86,7 @@ export interface Criterion {
 export interface FloorChange {
   floor: string;
   damping: number;
-  bands: { band: string; change_percent: number; change?: string }[];
+  bands: { band: string; change_percent: number; change: string }[];
   /** Why there are no bands. */
   note?: string;
 }
@@ -417,5 +417,44 @@ export interface Report {
   animations: Animation[];
   /** The model in three dimensions; `model` is then null and `animations` is empty. */
   space?: SpaceModel | null;
+  spaceAnimations?: SpaceAnimation[];
+}
+
+export type RawChart = Omit<Chart, "origin"> & { origin?: string };
+
+/** The document as the program writes it. A report of ground motions has no summary: it has its head, verdict and sections itself. */
+export interface RawReport {
+  format: string;
+  subtitle?: string;
+  /** The case with every default filled in, as TOML text. */
+  resolved?: string;
+  summary?: Summary;
+  trust?: Trust;
+  /** Quantities of the verdict by name. */
+  quantities?: Catalog;
+  /** Static stages alone: nothing happens over time. */
+  statics?: boolean;
+  /** What is to be known of the floor spectra of these runs; may be empty. */
+  floorsWarning?: string;
+  /** Uplifted share over time, by interface. */
+  uplifted?: { time: number[]; share: number[] }[];
+  /** What the case states for single figures. */
+  figures?: Figures;
+  title?: string;
+  version?: string;
+  created?: string;
+  command?: string;
+  builtWith?: string;
+  case?: CaseInfo;
+  /** With a summary: facts and paragraphs alone. */
+  verdict?: Partial<Verdict>;
+  choices?: Choice[];
+  tables?: Table[];
+  sections?: Section[];
+  /** Without origin: that which the case states, or the program. */
+  charts?: RawChart[];
+  model?: Partial<Model> | null;
+  animations?: Animation[];
+  space?: Partial<SpaceModel> | null;
   spaceAnimations?: SpaceAnimation[];
 }

@@ -1,7 +1,7 @@
 // The first page: headline, uplifted share over time, comparison with the bonded model, the criteria of the case, and the estimate from
 // the tension ratio of a linear analysis.
 import { h, s, type Child } from "./dom";
-import { fixed, NEGLIGIBLE, number, pick_scale, quantity_text } from "./format";
+import { number } from "./format";
 import { share_chart } from "./share_chart";
 import { spectrum_chart } from "./spectrum_chart";
 import type { BaseVerdict, Chart, Criterion, CriterionState, FloorChange, Verdict, VerdictLevel, VerdictRow } from "./types";
@@ -38,39 +38,18 @@ function tied(text: string): string {
     .replace(/(\d) (?=(?:%|[µmkMG]?(?:m|s|g|N|Pa|J|Hz|rad|t)(?![a-z])))/g, "$1\u00a0");
 }
 
-/** A value with no more decimals than its remaining variation justifies. */
-function within(value: number, swing: number, unit: string, largest: number): string {
-  const scale = pick_scale(largest, unit);
-  const places = (size: number, digits: number): number => Math.max(0, digits - 1 - Math.floor(Math.log10(size)));
-  const decimals = Math.min(places(swing / scale.factor, 2), places(largest / scale.factor, 3));
-  return fixed(value / scale.factor, decimals) + (scale.unit ? `\u00a0${scale.unit}` : "");
-}
-
-const percent = (share: number): string => `${fixed(100 * share, Math.abs(share) < 0.0995 && share !== 0 ? 1 : 0)}\u00a0%`;
-
-/** "−13 %", "+40 %", and "× 2.6" from twice on. */
-function change(value: number, bonded: number): string {
-  if (!(bonded > 0) || !(value >= 0)) return "–";
-  const ratio = value / bonded;
-  if (ratio >= 2) return `× ${number(ratio, 2)}`;
-  const part = 100 * (ratio - 1);
-  return Math.abs(part) < 0.5 ? "±0\u00a0%" : `${part > 0 ? "+" : ""}${fixed(part, 0)}\u00a0%`;
-}
-
 function beside_table(base: BaseVerdict): HTMLElement | null {
   if (base.beside.length === 0) return null;
   const wall = base.role === "wall";
   const bonded = base.beside.some((row) => row.bonded !== undefined);
   const checked = base.beside.some((row) => row.stepText !== undefined);
-  const row = ({ label, value, unit, time, bonded: other, text, bondedText, changeText, stepText }: VerdictRow): HTMLElement => {
-    const largest = Math.max(Math.abs(value), Math.abs(other ?? 0));
-    return h("tr", {},
+  const row = ({ label, time, text, bondedText, changeText, stepText }: VerdictRow): HTMLElement =>
+    h("tr", {},
       h("th", { scope: "row" }, label),
-      h("td", { title: time === undefined ? null : `at ${number(time, 4)} s` }, text === undefined ? quantity_text(value, unit, largest) : tied(text)),
+      h("td", { title: time === undefined ? null : `at ${number(time, 4)} s` }, tied(text)),
       checked ? h("td", { class: "step-change" }, tied(stepText ?? "–")) : null,
-      bonded ? h("td", {}, other === undefined ? "–" : bondedText === undefined ? quantity_text(other, unit, largest) : tied(bondedText)) : null,
-      bonded ? h("td", { class: "change" }, other === undefined ? "–" : changeText === undefined ? change(value, other) : tied(changeText)) : null);
-  };
+      bonded ? h("td", {}, tied(bondedText ?? "–")) : null,
+      bonded ? h("td", { class: "change" }, tied(changeText ?? "–")) : null);
   const heads = [bonded || !wall ? "" : "Wall", bonded ? "With uplift" : "Largest", ...(checked ? ["Twice the step"] : []), ...(bonded ? ["Bonded", "Change"] : [])];
   return h("table", { class: "beside" },
     h("thead", {}, h("tr", {}, ...heads.map((text) => h("th", { scope: "col" }, text)))),
@@ -81,11 +60,11 @@ function beside_table(base: BaseVerdict): HTMLElement | null {
 function tension_bars(base: BaseVerdict): HTMLElement | null {
   const { linear } = base;
   if (!linear || (linear.tension <= 0 && linear.computed <= 0)) return null;
-  const bar = (kind: string, label: string, share: number | null, text?: string): HTMLElement =>
+  const bar = (kind: string, label: string, share: number | null, text: string): HTMLElement =>
     h("div", { class: `bar bar-${kind}` },
       h("span", { class: "bar-label" }, label),
       h("span", { class: "bar-track" }, share === null ? null : h("i", { style: `width:${Math.min(100, 100 * share).toFixed(1)}%` })),
-      h("b", {}, share === null ? "not applicable" : text === undefined ? percent(share) : tied(text)));
+      h("b", {}, share === null ? "not applicable" : tied(text)));
   return h("div", { class: "tension" },
     h("h3", {}, "Tension ratio of the linear analysis and uplift"),
     bar("linear", "tension, bonded model", linear.tension, linear.tensionText),
@@ -96,12 +75,11 @@ function tension_bars(base: BaseVerdict): HTMLElement | null {
 const STATE_SIGN: Record<CriterionState, string> = { met: "✓", "not met": "✕", undetermined: "?" };
 
 function criterion_row(criterion: Criterion): HTMLElement {
-  const { state, label, value, limit, unit, atLeast, source, valueText, limitText } = criterion;
-  const largest = Math.max(Math.abs(limit), Math.abs(value ?? 0));
+  const { state, label, atLeast, source, valueText, limitText } = criterion;
   return h("li", { class: `criterion is-${state.replace(" ", "-")}` },
     h("span", { class: "state" }, h("i", { "aria-hidden": "true" }, STATE_SIGN[state]), ` ${state}`),
     h("span", { class: "what" }, label + (criterion.interface ? ` (${criterion.interface})` : "")),
-    h("span", { class: "value" }, value === null ? "not computed" : tied(valueText ?? quantity_text(value, unit, largest)), `, limit ${atLeast ? "≥" : "≤"} ${tied(limitText ?? quantity_text(limit, unit, largest))}`),
+    h("span", { class: "value" }, tied(valueText), `, limit ${atLeast ? "≥" : "≤"} ${tied(limitText)}`),
     h("span", { class: "by" }, source));
 }
 
@@ -126,7 +104,7 @@ function floor_block(floors: FloorChange[], charts: Chart[]): HTMLElement | null
   const short = (band: string): string => band.replace(/ Hz$/, "").replace("below ", "< ").replace("above ", "> ").replace(" to ", "–");
   const cell = (floor: FloorChange, band: string): HTMLElement => {
     const found = floor.bands.find((each) => each.band === band);
-    return h("td", {}, found ? (found.change === undefined ? change(1 + found.change_percent / 100, 1) : tied(found.change)) : "–");
+    return h("td", {}, found ? tied(found.change) : "–");
   };
   const most = most_changed(floors);
   const chart = most ? charts.find((each) => each.id === `floor_${most.floor}_${number(100 * most.damping, 4).replace(/\.?0+$/, "")}`) : undefined;
@@ -181,18 +159,14 @@ export function verdict_card(verdict: Verdict, charts: Chart[]): HTMLElement {
 export function rest_table(verdict: Verdict): HTMLElement | null {
   const bases = verdict.interfaces.filter((base) => base.rest.length > 0);
   if (bases.length === 0) return null;
-  const value = ({ value: v, unit, label, swing }: VerdictRow, largest: number): string =>
-    label === "Uplifted area" ? percent(v) : swing !== undefined && swing >= NEGLIGIBLE ? within(v, swing, unit, largest) : quantity_text(v, unit, largest);
   const checked = bases.some((base) => base.rest.some((row) => row.stepText !== undefined));
   const rows = bases.flatMap((base) =>
-    base.rest.map((row) => {
-      const largest = Math.max(Math.abs(row.value), row.swing ?? 0);
-      return h("tr", {},
+    base.rest.map((row) =>
+      h("tr", {},
         h("th", { scope: "row" }, bases.length > 1 ? `${row.label} (${base.name})` : row.label),
-        h("td", {}, row.text === undefined ? value(row, largest) : tied(row.text)),
+        h("td", {}, tied(row.text)),
         checked ? h("td", { class: "step-change" }, tied(row.stepText ?? "–")) : null,
-        h("td", {}, row.swing === undefined || row.swing < NEGLIGIBLE ? "–" : `± ${row.swingText === undefined ? value({ ...row, value: row.swing }, largest) : tied(row.swingText)}`));
-    }));
+        h("td", {}, row.swingText === undefined ? "–" : `± ${tied(row.swingText)}`))));
   return h("figure", { class: "card rest-card" },
     h("table", { class: "beside" },
       h("thead", {}, h("tr", {}, ...["Residual value", "Mean of the last tenth of the run", ...(checked ? ["Twice the step"] : []), "Remaining variation"].map((text) => h("th", { scope: "col" }, text)))),

@@ -208,14 +208,14 @@ function table(runs) {
   };
 }
 
-function verdict(runs, bonded) {
+/** The sentences of the first page. */
+function sentences(runs, bonded) {
   const [sdm] = runs;
   const high = sdm.ratio.indexOf(Math.max(...sdm.ratio));
   const opening = Math.max(...sdm.t.map((_, j) => Math.max(...openings(sdm, j))));
   const change = peak(sdm.moment) / peak(bonded.moment) - 1;
   const spell = sdm.ratio.filter((r) => r > 0).length * STEP * EVERY;
   return {
-    level: "uplift",
     headline: `The footing lifts off: up to ${(100 * sdm.ratio[high]).toFixed(0)} % of the base, ${(1000 * opening).toFixed(1)} mm at the edge.`,
     facts: [
       { label: "Uplifted part of the base", value: `${(100 * sdm.ratio[high]).toFixed(0)} %`, detail: `at ${sdm.t[high].toFixed(3)} s, by gap` },
@@ -230,33 +230,56 @@ function verdict(runs, bonded) {
   };
 }
 
-/** Numbers beside the bonded run, criteria in each state, and what is left; of one base. */
-function bases(runs, bonded) {
-  const [sdm] = runs;
-  const top = { label: "Motion of the top", value: peak(sdm.top), unit: "m", time: 0.4, bonded: peak(bonded.top), stepText: "±0.2 %" };
-  const moment = { label: "Base moment", value: peak(sdm.moment), unit: "N m", time: 0.3, bonded: peak(bonded.moment), stepText: "±7.0 %" };
-  const least = { label: "Safety against overturning", value: 1.1, unit: "1", time: 0.5 };
-  const share = Math.max(...sdm.ratio);
-  const beyond = sdm.ratio.filter((r) => r > 0.3).length * STEP * EVERY;
-  return [{
-    name: "footing", time: sdm.t, share: sdm.ratio, above: [{ threshold: 0.3, duration: beyond }], lost: [[0.5, 0.52], [0.9, 0.93]],
-    beside: [top, moment, least],
-    rest: [{ label: "Rotation", value: 1e-4, unit: "rad", swing: 2e-4 }, { label: "Settlement", value: -2e-4, unit: "m", swing: 1e-5 }, { label: "Uplifted area", value: 0, unit: "1", swing: 0.05 }],
-    linear: { tension: 0.3, predicted: 0.3975, computed: share },
-  }];
+/** A number of the verdict with its bonded value and its value with twice the step. */
+function compared(value, bonded, unit, time, coarse) {
+  return { value, unit, time, at_twice_the_step: coarse * value, bonded, change_percent: 100 * (value / bonded - 1) };
 }
 
-const CRITERIA = [
-  { label: "largest share of the area with a gap", interface: "footing", state: "not met", value: 0.6, limit: 0.3, unit: "1", atLeast: false, source: "specification of the client, 4.2" },
-  { label: "least safety against overturning", interface: "footing", state: "met", value: 1.1, limit: 1, unit: "1", atLeast: true, source: "judgement" },
-  { label: "least safety against sliding", interface: "footing", state: "undetermined", value: null, limit: 1.1, unit: "1", atLeast: true, source: "code <script>" },
-];
+const QUANTITIES = {
+  max_top_motion: { meaning: "largest motion of the top" },
+  max_moment: { meaning: "largest base moment" },
+  min_overturning_safety: { meaning: "least safety against overturning" },
+  min_sliding_safety: { meaning: "least safety against sliding" },
+  residual_rotation: { meaning: "residual rotation of the base", near_zero: true },
+  residual_settlement: { meaning: "residual settlement of the base", near_zero: true },
+  full_loss_time: { meaning: "time without any contact" },
+  ...Object.fromEntries(["max_uplifted_ratio", "residual_uplifted_ratio", "linear_tension_ratio", "predicted_uplifted_ratio"].map((name) => [name, { meaning: name.replaceAll("_", " "), share: true, near_zero: true }])),
+};
 
-const FLOORS = [
-  { floor: "roof", damping: 0.05, bands: [{ band: "below 2 Hz", change_percent: 12.4 }, { band: "2 to 5 Hz", change_percent: -38.2 }, { band: "above 5 Hz", change_percent: 140 }] },
-];
-
-const STEP_CHECK = { result: "not converged", sentence: "Not converged: with twice the step (0.200 ms instead of 0.100 ms) base moment of footing changes by 7.0 %; a step of 0.0500 ms is expected to be sufficient." };
+/** summary.json: numbers compared with the bonded run, criteria in each state, and what is left; of one base. */
+function summary_of(runs, bonded) {
+  const [sdm] = runs;
+  const share = Math.max(...sdm.ratio);
+  return {
+    version: "0.1.0", built_with: "", title: "Rocking oscillator on tensionless springs", command: "uplift compare sample/case.toml", created: "2025-01-15T09:30:00Z",
+    case: { file: "sample/case.toml", sha256: "0".repeat(64) }, inputs: [], motions: [], runs: [],
+    verdict: {
+      level: "uplift", headline: sentences(runs, bonded).headline, consequence: "", per_metre: false,
+      step_check: { result: "not converged", sentence: "Not converged: with twice the step (0.200 ms instead of 0.100 ms) base moment of footing changes by 7.0 %; a step of 0.0500 ms is expected to be sufficient." },
+      numbers: { max_top_motion: compared(peak(sdm.top), peak(bonded.top), "m", 0.4, 0.998) },
+      interfaces: [{
+        name: "footing", role: "base",
+        numbers: {
+          max_moment: compared(peak(sdm.moment), peak(bonded.moment), "N m", 0.3, 0.93),
+          min_overturning_safety: { value: 1.1, unit: "1", time: 0.5 },
+          max_uplifted_ratio: { value: share, unit: "1" }, linear_tension_ratio: { value: 0.3, unit: "1" }, predicted_uplifted_ratio: { value: 0.3975, unit: "1" },
+          residual_rotation: { value: 1e-4, unit: "rad", swing: 2e-4 }, residual_settlement: { value: -2e-4, unit: "m", swing: 1e-5 }, residual_uplifted_ratio: { value: 0, unit: "1", swing: 0.05 },
+          full_loss_time: { value: 0.05, unit: "s" },
+        },
+        above: [{ uplifted_ratio: 0.3, duration: sdm.ratio.filter((r) => r > 0.3).length * STEP * EVERY }],
+        full_loss: [{ from: 0.5, to: 0.52 }, { from: 0.9, to: 0.93 }],
+      }],
+      criteria: [
+        { quantity: "max_uplifted_ratio", unit: "1", interface: "footing", result: "not met", value: 0.6, limit: 0.3, kind: "at_most", source: "specification of the client, 4.2" },
+        { quantity: "min_overturning_safety", unit: "1", interface: "footing", result: "met", value: 1.1, limit: 1, kind: "at_least", source: "judgement" },
+        { quantity: "min_sliding_safety", unit: "1", interface: "footing", result: "undetermined", value: null, limit: 1.1, kind: "at_least", source: "code <script>" },
+      ],
+      floors: [
+        { floor: "roof", damping: 0.05, bands: [{ band: "below 2 Hz", change_percent: 12.4, change: "+12 %" }, { band: "2 to 5 Hz", change_percent: -38.2, change: "-38 %" }, { band: "above 5 Hz", change_percent: 140, change: "+140 %" }] },
+      ],
+    },
+  };
+}
 
 /** Gap along the base at the end. */
 function rest_chart(run) {
@@ -269,10 +292,10 @@ function rest_chart(run) {
 
 function document_of(runs, bonded) {
   return {
-    format: "uplift-report-1", title: "Rocking oscillator on tensionless springs", subtitle: "Sample for the tests of the report page",
-    version: "0.1.0", created: "2025-01-15T09:30:00Z", command: "uplift compare sample/case.toml",
-    case: { file: "sample/case.toml", sha256: "0".repeat(64), resolved: `title = "Rocking oscillator"\n\n[beam.column]\nheight = "${HEIGHT} m"\n\n[footing]\nwidth = "${2 * HALF_WIDTH} m"\nmass = "30 t"\n` },
-    verdict: { ...verdict(runs, bonded), run: runs[0].name, interfaces: bases(runs, bonded), criteria: CRITERIA, floors: FLOORS, stepCheck: STEP_CHECK },
+    format: "uplift-report-2", subtitle: "Sample for the tests of the report page",
+    resolved: `title = "Rocking oscillator"\n\n[beam.column]\nheight = "${HEIGHT} m"\n\n[footing]\nwidth = "${2 * HALF_WIDTH} m"\nmass = "30 t"\n`,
+    summary: summary_of(runs, bonded), quantities: QUANTITIES, uplifted: [{ time: runs[0].t, share: runs[0].ratio }],
+    verdict: { facts: sentences(runs, bonded).facts, paragraphs: sentences(runs, bonded).paragraphs },
     choices: [
       { what: "Fixed-base frequency", value: "2 Hz", origin: "paper" },
       { what: "Points over the width", value: String(POINTS), origin: "our choice", note: "Enough to place the edge of the contact within a tenth of the width." },

@@ -180,7 +180,7 @@ export function space_document(base) {
   const [first] = base.charts;
   return {
     ...base,
-    title: "Block rocking on soil", subtitle: "Sample of a model in three dimensions", tables: [], sections: base.sections.slice(0, 2), charts: [first], model: null, animations: [],
+    summary: { ...base.summary, title: "Block rocking on soil" }, subtitle: "Sample of a model in three dimensions", tables: [], sections: base.sections.slice(0, 2), charts: [first], model: null, animations: [],
     space, spaceAnimations: [animation("SDM, path average", space, 1), animation("Tensionless springs", space, 0.7)],
   };
 }

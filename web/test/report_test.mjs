@@ -7,6 +7,7 @@ import { mkdir, readFile } from "node:fs/promises";
 import { join, resolve } from "node:path";
 import { pathToFileURL } from "node:url";
 import { Checks, DENSE_SAMPLES, inject, inject_packed, open, sample_report, space_report, start_browser, write_page } from "./harness.mjs";
+import { check_documents } from "./document_checks.mjs";
 import { check_space, check_space_sample } from "./space_checks.mjs";
 
 const args = process.argv.slice(2);
@@ -221,9 +222,9 @@ async function check_sample_verdict(page) {
   const bars = await texts(".bar");
   check.ok(bars[1].includes("40 %"), "the uplift by equal energy is given in per cent", bars[1]);
   const [first] = await texts(".criterion");
-  check.ok(/✕ not met .*0\.600, limit ≤ 0\.300.*specification of the client, 4\.2/.test(first), "a criterion shows state, value, limit and source", first);
+  check.ok(/✕ not met .*60 %, limit ≤ 30 %.*specification of the client, 4\.2/.test(first), "a criterion shows state, value, limit and source", first);
   check.ok((await texts(".criteria h3"))[0].includes("1 of 3 met"), "the number of criteria that are met is said");
-  check.equal((await texts(".floors tbody tr"))[0], "roof, 5.0 % +12 % −38 % × 2.4", "the floor spectra's changes are given band by band");
+  check.equal((await texts(".floors tbody tr"))[0], "roof, 5.0 % +12 % −38 % +140 %", "the floor spectra's changes are given band by band");
   const [top] = await page.evaluate(() => window.upliftReport.report.verdict.interfaces[0].beside);
   const change = Math.round(100 * (top.value / top.bonded - 1));
   const shown = (await texts("table.beside .change"))[0];
@@ -466,7 +467,7 @@ async function check_packed() {
   const levels = values.map((row) => row.map((v) => Math.round(v / unit)));
   const changes = levels.map((row, f) => row.map((v, i) => v - (f > 0 ? levels[f - 1][i] : 0)));
   const differences = changes.map((row) => row.map((v, i) => v - (i >= 3 ? row[i - 3] : 0)));
-  const document = { format: "uplift-report-1", title: "Packed ✓", spaceAnimations: [{ run: "r", time: [0, 1, 2], displacement: { unit, stride: 3, differences }, openings: {}, pressures: {} }] };
+  const document = { format: "uplift-report-2", title: "Packed ✓", spaceAnimations: [{ run: "r", time: [0, 1, 2], displacement: { unit, stride: 3, differences }, openings: {}, pressures: {} }] };
   const { context, page, log } = await open(browser, pathToFileURL(await write_page(await inject_packed(document))).href);
   check.equal(await page.locator("h1").innerText(), "Packed ✓", "compressed data are read");
   const read = await page.evaluate(() => window.upliftReport.report.spaceAnimations[0].displacement);
@@ -504,11 +505,11 @@ async function check_other_pages() {
     check.equal(log.console.length, 0, `${what}: without a console message`);
     await context.close();
   }
-  const bare = await open(browser, pathToFileURL(await write_page(await inject({ format: "uplift-report-1", title: "Bare" }))).href);
+  const bare = await open(browser, pathToFileURL(await write_page(await inject({ format: "uplift-report-2", title: "Bare" }))).href);
   check.ok(/Bare/.test(await bare.page.locator("h1").innerText()) && bare.log.console.length === 0, "a document with a title only is shown");
   await bare.context.close();
   for (const [level, word] of [["motion", "GROUND MOTION"], ["separated", "CONTACT LOST"]]) {
-    const other = await open(browser, pathToFileURL(await write_page(await inject({ format: "uplift-report-1", title: "Level", verdict: { level, headline: "h" } }))).href);
+    const other = await open(browser, pathToFileURL(await write_page(await inject({ format: "uplift-report-2", title: "Level", verdict: { level, headline: "h" } }))).href);
     check.equal(await other.page.locator(".verdict-level").innerText(), word, `the level ${level} has its words`);
     check.ok((await other.page.locator(".sign path").getAttribute("d")) && other.log.console.length === 0, `the level ${level} has its sign`);
     await other.context.close();
@@ -570,6 +571,7 @@ await check.group("check_first_frame", check_first_frame);
 await check.group("check_other_pages", check_other_pages);
 await check.group("check_packed", check_packed);
 await check.group("check_closed_maps", check_closed_maps);
+if (!given) await check.group("check_documents", () => check_documents(browser, check));
 if (!given) await check.group("check_space_sample", () => check_space_sample(browser, check, shots));
 check.equal(log.console.length, 0, `no error or warning in the console (${log.console[0] ?? ""})`);
 check.equal(log.network.length, 0, `no request beyond the file (${log.network[0] ?? ""})`);

@@ -7,6 +7,7 @@
 #include "uplift/io/files.h"
 #include "uplift/io/report/report.h"
 #include "uplift/session/load.h"
+#include "uplift/study/trust.h"
 
 // What a user asks for: a run with everything that belongs to it, a comparison, a statement of reliability. The command line and the C
 // interface only differ in how they show progress and hand over the results.

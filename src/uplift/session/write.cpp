@@ -9,29 +9,28 @@
 namespace uplift {
 namespace {
 
-ReportInput report_input(const LoadedCase& loaded, const Results& results) {
-  ReportInput input{&loaded.read,
-                    &loaded.from,
-                    &results.verdict,
-                    {},
-                    results.comparison ? &*results.comparison : nullptr,
-                    results.warnings,
-                    &results.floors,
-                    results.trust ? &*results.trust : nullptr};
-  for (std::size_t i = 0; i < results.runs.size(); ++i) input.runs.push_back({&results.specs[i], &results.built[i], &results.runs[i]});
-  return input;
+std::vector<ReportRun> report_runs(const Results& results) {
+  std::vector<ReportRun> runs;
+  for (std::size_t i = 0; i < results.runs.size(); ++i) runs.push_back({&results.specs[i], &results.built[i], &results.runs[i]});
+  return runs;
+}
+
+std::string summary_of(const LoadedCase& loaded, const Results& results, bool compact) {
+  return summary_json({loaded.from, results.runs, results.verdict, motions_of(report_runs(results)),
+                       results.comparison ? &*results.comparison : nullptr, &results.floors, &results.built, &results.specs, compact});
 }
 
 }  // namespace
 
 std::string results_json(const LoadedCase& loaded, const Results& results) {
-  const ReportInput input = report_input(loaded, results);
-  return summary_json({loaded.from, results.runs, results.verdict, motions_of(input.runs), input.compared, &results.floors, &results.built,
-                       &results.specs});
+  return summary_of(loaded, results, false);
 }
 
 std::string results_page(const LoadedCase& loaded, const Results& results) {
-  return report_template().empty() ? std::string() : report_page(report_json(report_input(loaded, results)));
+  if (report_template().empty()) return {};
+  return report_page(
+      report_json({&loaded.read, &loaded.from, &results.verdict, report_runs(results), results.comparison ? &*results.comparison : nullptr,
+                   results.warnings, &results.floors, summary_of(loaded, results, true), results.trust ? trust_json(*results.trust) : ""}));
 }
 
 bool write_results(const LoadedCase& loaded, const Results& results, ResultFolder& folder) {

@@ -159,26 +159,6 @@ Chart load_chart(const Case& read, const ReportRun& run) {
   return chart;
 }
 
-Chart sweep_chart(const ComparisonSummary& compared) {
-  Chart chart{"stiffness_sweep",
-              "energy",
-              "Spurious energy against the stiffness of the joint",
-              "Largest spurious energy divided by the external work, for the end-of-step traction and the path-averaged traction. "
-              "Values below 1e-16 are drawn at 1e-16.",
-              {"Stiffness ratio k F", "1", true},
-              {"Spurious energy", "1", true},
-              {}};
-  Curve path{"path average", "", {}, {}, false, false}, end{"end of step", "", {}, {}, true, false};
-  for (const SweepRow& row : compared.sweep) {
-    path.x.push_back(row.ratio);
-    path.y.push_back(std::max(row.path, 1e-16));
-    end.x.push_back(row.ratio);
-    end.y.push_back(std::max(row.end, 1e-16));
-  }
-  if (!path.x.empty()) chart.curves = {path, end};
-  return chart;
-}
-
 /// Which rotation is meant.
 std::string about(const BuiltCase& built) {
   if (built.model.space.dimension == 2) return "Counter-clockwise positive.";
@@ -233,53 +213,36 @@ void write_loops(JsonWriter& json, const ReportInput& input, const std::vector<R
         built.model.nodes[static_cast<std::size_t>(built.top)].position[built.model.space.up()] - reference[built.model.space.up()];
     if (height > 0)
       write_chart(
-          json, *input.read,
-          loop_chart({"force_displacement",
-                      "response",
-                      "Force against displacement",
-                      fmt::format("Equivalent horizontal force at the top, positive in the direction of positive displacement: base "
-                                  "moment divided by the height of {:g} m.",
-                                  height),
-                      {"Displacement of the top", "m"},
-                      {"Equivalent force", "N"},
-                      {}},
-                     runs, {Column::displacement, built.top_sway()}, {built.base_moment(), 0}, sign_of_moment(built) / height));
+          json, loop_chart({"force_displacement",
+                            "response",
+                            "Force against displacement",
+                            fmt::format("Equivalent horizontal force at the top, positive in the direction of positive displacement: base "
+                                        "moment divided by the height of {:g} m.",
+                                        height),
+                            {"Displacement of the top", "m"},
+                            {"Equivalent force", "N"},
+                            {}},
+                           runs, {Column::displacement, built.top_sway()}, {built.base_moment(), 0}, sign_of_moment(built) / height));
   }
-  write_chart(json, *input.read,
-              loop_chart({"moment_rotation",
-                          "interface",
-                          "Moment against rotation",
-                          "Base moment against the rotation of the interface.",
-                          {"Rotation", "rad"},
-                          {"Moment", "N m"},
-                          {}},
-                         runs, {built.base_rotation(), 0}, {built.base_moment(), 0}, 1));
+  write_chart(json, loop_chart({"moment_rotation",
+                                "interface",
+                                "Moment against rotation",
+                                "Base moment against the rotation of the interface.",
+                                {"Rotation", "rad"},
+                                {"Moment", "N m"},
+                                {}},
+                               runs, {built.base_rotation(), 0}, {built.base_moment(), 0}, 1));
 }
 
 }  // namespace
 
-void write_chart(JsonWriter& json, const Case& read, const Chart& chart) {
-  if (chart.curves.empty()) return;
-  std::string origin = "added by uplift", caption = chart.caption;
-  for (const Values& figure : read.values.tables("figure"))
-    if (figure.text("chart") == chart.id) {
-      origin = figure.text("origin");
-      if (figure.has("caption")) caption = figure.text("caption");
-    }
-  write_chart(json, chart, origin, caption);
-}
-
-void write_chart(JsonWriter& json, const Chart& chart, std::string_view origin, std::string_view caption) {
+void write_chart(JsonWriter& json, const Chart& chart, std::string_view origin) {
   if (chart.curves.empty()) return;
   const auto axis = [&](const char* key, const Axis& each) {
     json.key(key).begin_object().member("label", each.label).member("unit", each.unit).member("log", each.log).end_object();
   };
-  json.begin_object()
-      .member("id", chart.id)
-      .member("section", chart.section)
-      .member("title", chart.title)
-      .member("caption", caption)
-      .member("origin", origin);
+  json.begin_object().member("id", chart.id).member("section", chart.section).member("title", chart.title).member("caption", chart.caption);
+  if (!origin.empty()) json.member("origin", origin);
   axis("x", chart.x);
   axis("y", chart.y);
   json.key("series").begin_array();
@@ -294,6 +257,16 @@ void write_chart(JsonWriter& json, const Chart& chart, std::string_view origin, 
   json.end_array().end_object();
 }
 
+void write_figures(JsonWriter& json, const Case& read) {
+  json.begin_object();
+  for (const Values& figure : read.values.tables("figure")) {
+    json.key(figure.text("chart")).begin_object().member("origin", figure.text("origin"));
+    if (figure.has("caption")) json.member("caption", figure.text("caption"));
+    json.end_object();
+  }
+  json.end_object();
+}
+
 void write_charts(JsonWriter& json, const ReportInput& input) {
   const BuiltCase& built = *input.runs.front().built;
   std::vector<ReportRun> runs, others;  // the group of the first run, and the rest
@@ -306,26 +279,22 @@ void write_charts(JsonWriter& json, const ReportInput& input) {
   json.begin_array();
   if (statics_alone(built.plan)) {  // nothing over time
     for (const View& view : motion_views(built))
-      if (view.kind != Column::velocity) write_chart(json, *input.read, history_chart(view, runs));
-    for (const View& view : interface_views(built)) write_chart(json, *input.read, history_chart(view, runs));
+      if (view.kind != Column::velocity) write_chart(json, history_chart(view, runs));
+    for (const View& view : interface_views(built)) write_chart(json, history_chart(view, runs));
     if (!built.facts.empty()) write_loops(json, input, runs);
-    for (const Chart& chart : rest_charts(input.runs.front())) write_chart(json, *input.read, chart);
-    for (const Chart& chart : beam_charts(runs)) write_chart(json, *input.read, chart);
-    write_chart(json, *input.read, law_chart(input.runs.front()));
+    for (const Chart& chart : rest_charts(input.runs.front())) write_chart(json, chart);
+    write_chart(json, law_chart(input.runs.front()));
     json.end_array();
     return;
   }
-  write_chart(json, *input.read, load_chart(*input.read, input.runs.front()));
+  write_chart(json, load_chart(*input.read, input.runs.front()));
   write_motion_charts(json, input);
-  for (const View& view : motion_views(built)) write_chart(json, *input.read, history_chart(view, runs));
-  for (const View& view : interface_views(built)) write_chart(json, *input.read, history_chart(view, runs));
-  for (const Chart& chart : safety_charts(runs)) write_chart(json, *input.read, chart);
-  for (const Chart& chart : rest_charts(runs.front())) write_chart(json, *input.read, chart);
+  for (const View& view : motion_views(built)) write_chart(json, history_chart(view, runs));
+  for (const View& view : interface_views(built)) write_chart(json, history_chart(view, runs));
+  for (const Chart& chart : safety_charts(runs)) write_chart(json, chart);
+  for (const Chart& chart : rest_charts(runs.front())) write_chart(json, chart);
   write_loops(json, input, runs);
-  for (const Chart& chart : beam_charts(runs)) write_chart(json, *input.read, chart);
   write_floor_charts(json, input);
-  if (input.trust)
-    for (const Chart& chart : trust_charts(*input.trust)) write_chart(json, *input.read, chart);
   if (!others.empty()) {
     std::vector<View> views = motion_views(built);
     for (View& view : views) {
@@ -335,14 +304,13 @@ void write_charts(JsonWriter& json, const ReportInput& input) {
       Chart chart = history_chart(view, others);
       chart.id = id;
       chart.title = title;
-      write_chart(json, *input.read, chart);
+      write_chart(json, chart);
     }
-    write_chart(json, *input.read, energy_error_chart("other_energy_error", "others", "Energy error, " + other, others));
+    write_chart(json, energy_error_chart("other_energy_error", "others", "Energy error, " + other, others));
   }
-  write_chart(json, *input.read, energy_error_chart("energy_error", "energy", "Energy error", runs));
-  write_chart(json, *input.read, ledger_chart(input.runs.front()));
-  if (input.compared) write_chart(json, *input.read, sweep_chart(*input.compared));
-  write_chart(json, *input.read, law_chart(input.runs.front()));
+  write_chart(json, energy_error_chart("energy_error", "energy", "Energy error", runs));
+  write_chart(json, ledger_chart(input.runs.front()));
+  write_chart(json, law_chart(input.runs.front()));
   json.end_array();
 }
 

@@ -5,7 +5,7 @@
 
 #include "uplift/io/report/parts.h"
 
-// The page's floor spectra: a figure for every floor and damping, one of the ratio to the bonded run, and a table.
+// The page's floor spectra: a figure for every floor and damping, and one of the ratio to the bonded run.
 namespace uplift {
 namespace {
 
@@ -108,18 +108,6 @@ Chart ratio_chart(const ReportInput& input, const FloorRequest& floor, std::size
   return chart;
 }
 
-void write_row(JsonWriter& json, const std::string& run, const std::string& group, const FloorSpectra& floor, const FloorChange* change,
-               std::size_t d) {
-  const Spectrum& raw = floor.raw[d];
-  const auto most = static_cast<std::size_t>(std::ranges::max_element(raw.values) - raw.values.begin());
-  json.begin_object().member("floor", floor.name).member("run", run).member("group", group);
-  json.member("damping", raw.damping).member("rigid", std::abs(floor.zero_period.value));
-  json.member("peak", raw.values[most]).member("at", raw.frequencies[most]);
-  if (change)
-    for (const FloorChange::Band& band : change->bands) json.member(fmt::format("from_{:g}", band.band.from), band.change);
-  json.end_object();
-}
-
 }  // namespace
 
 bool has_floors(const ReportInput& input) {
@@ -130,47 +118,9 @@ void write_floor_charts(JsonWriter& json, const ReportInput& input) {
   if (!has_floors(input)) return;
   const std::vector<FloorRequest>& floors = input.runs.front().built->plan.floors;
   for (std::size_t k = 0; k < floors.size(); ++k) {
-    for (std::size_t d = 0; d < floors[k].dampings.size(); ++d) write_chart(json, *input.read, spectrum_chart(input, floors[k], k, d));
-    write_chart(json, *input.read, ratio_chart(input, floors[k], k));
+    for (std::size_t d = 0; d < floors[k].dampings.size(); ++d) write_chart(json, spectrum_chart(input, floors[k], k, d));
+    write_chart(json, ratio_chart(input, floors[k], k));
   }
-}
-
-void write_floor_table(JsonWriter& json, const ReportInput& input) {
-  if (!has_floors(input)) return;
-  const RunPlan& plan = input.runs.front().built->plan;
-  const bool grouped = !input.runs.front().result->group.empty();
-  json.begin_object().member("id", "floors").member("title", "Floor spectra").member("rowGroup", "floor");
-  json.member(
-      "caption",
-      "Zero period: largest absolute acceleration of the floor, which is the demand on rigid equipment. Peak: largest "
-      "pseudo-acceleration and its frequency. Frequency bands: change of the largest value in the band compared with the bonded model.");
-  json.key("columns").begin_array();
-  write_column(json, {"run", "Run", "", "text", 0});
-  if (grouped) write_column(json, {"group", "Case", "", "text", 0});
-  for (const TableColumn& column : {TableColumn{"damping", "Damping", "", "percent", 2},
-                                    {"rigid", "Zero period", "m/s2", "number", 4},
-                                    {"peak", "Peak", "m/s2", "number", 4},
-                                    {"at", "Peak at", "Hz", "number", 3}})
-    write_column(json, column);
-  const bool beside = std::ranges::any_of(input.floors->runs, [](const FloorRun& run) { return !run.beside.empty(); });
-  for (const FrequencyBand& band : frequency_bands(plan.floor_bands)) {
-    const std::string key = fmt::format("from_{:g}", band.from), label = to_string(band);
-    if (beside) write_column(json, {key.c_str(), label.c_str(), "", "percent", 2});
-  }
-  json.end_array().key("rows").begin_array();
-  for (std::size_t k = 0; k < plan.floors.size(); ++k)
-    for (std::size_t d = 0; d < plan.floors[k].dampings.size(); ++d) {
-      for (std::size_t i = 0; i < input.runs.size(); ++i) {
-        const FloorRun& run = input.floors->runs[i];
-        if (run.floors.empty()) continue;
-        const RunResult& result = *input.runs[i].result;
-        write_row(json, result.label, result.group, run.floors[k], run.beside.empty() ? nullptr : &run.beside[k][d], d);
-      }
-      for (const FloorEnvelope& all : input.floors->envelopes)
-        write_row(json, fmt::format("envelope of {} runs", all.runs), all.damping, all.floors[k],
-                  all.beside.empty() ? nullptr : &all.beside[k][d], d);
-    }
-  json.end_array().end_object();
 }
 
 }  // namespace uplift

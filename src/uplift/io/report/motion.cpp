@@ -211,7 +211,7 @@ std::string sentence(const std::string& name, const std::string& text) {
 
 void write_head(JsonWriter& json, const MotionReport& report) {
   const Provenance& from = report.from;
-  json.member("format", "uplift-report-1").member("title", from.title).member("subtitle", from.subtitle).member("version", from.version);
+  json.member("format", "uplift-report-2").member("title", from.title).member("subtitle", from.subtitle).member("version", from.version);
   json.member("created", from.created).member("command", from.command);
   json.key("case").begin_object().member("file", from.case_file).member("sha256", from.case_hash).member("resolved", from.resolved);
   json.end_object().key("verdict").begin_object().member("level", "motion").member("headline", from.subtitle);
@@ -259,7 +259,7 @@ std::string motion_report_json(const MotionReport& report) {
   if (report.motions.size() > 1) section("together", "Comparison");
   for (std::size_t i = 0; i < report.motions.size(); ++i) section(fmt::format("motion_{}", i + 1), report.motions[i].now.name);
   json.end_array().key("charts").begin_array();
-  const auto write = [&](const Chart& chart) { write_chart(json, chart, origin, chart.caption); };
+  const auto write = [&](const Chart& chart) { write_chart(json, chart, origin); };
   if (report.motions.size() > 1) write(together_chart(report));
   for (std::size_t i = 0; i < report.motions.size(); ++i) {
     const ShownMotion& shown = report.motions[i];

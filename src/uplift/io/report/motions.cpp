@@ -197,10 +197,10 @@ void write_motion_tables(JsonWriter& json, const ReportInput& input) {
 void write_motion_charts(JsonWriter& json, const ReportInput& input) {
   const Histories motions = motions_of(input.runs);
   if (motions.empty()) return;
-  write_chart(json, *input.read, motion_chart(motions, MotionKind::acceleration));
-  write_chart(json, *input.read, spectrum_chart(motions));
-  write_chart(json, *input.read, motion_chart(motions, MotionKind::velocity));
-  write_chart(json, *input.read, motion_chart(motions, MotionKind::displacement));
+  write_chart(json, motion_chart(motions, MotionKind::acceleration));
+  write_chart(json, spectrum_chart(motions));
+  write_chart(json, motion_chart(motions, MotionKind::velocity));
+  write_chart(json, motion_chart(motions, MotionKind::displacement));
 }
 
 }  // namespace uplift

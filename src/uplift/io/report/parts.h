@@ -15,8 +15,10 @@ void write_choices(JsonWriter& json, const Case& read, const BuiltCase& built);
 /// Floor spectra, where there are any.
 bool has_floors(const ReportInput& input);
 void write_floor_charts(JsonWriter& json, const ReportInput& input);
-void write_floor_table(JsonWriter& json, const ReportInput& input);
-void write_verdict(JsonWriter& json, const ReportInput& input);
+/// Facts and paragraphs of the verdict, in the words of the terminal.
+void write_sentences(JsonWriter& json, const ReportInput& input);
+/// Uplifted share over time of every interface; empty for walls and without a dynamic stage.
+void write_uplifted_shares(JsonWriter& json, const ReportInput& input);
 void write_tables(JsonWriter& json, const ReportInput& input);
 void write_charts(JsonWriter& json, const ReportInput& input);
 /// Nodes of the model that masses, supports, loads, springs, dashpots and footings stand on: they are drawn.
@@ -46,12 +48,10 @@ struct Chart {
   Axis x, y;
   std::vector<Curve> curves;
 };
-/// How far the numbers can be trusted: two tables, and a figure for every floor spectrum.
-void write_trust_tables(JsonWriter& json, const TrustAnswer& answer);
-std::vector<Chart> trust_charts(const TrustAnswer& answer);
-/// With the origin and the caption that the case states; nothing without curves.
-void write_chart(JsonWriter& json, const Case& read, const Chart& chart);
-void write_chart(JsonWriter& json, const Chart& chart, std::string_view origin, std::string_view caption);
+/// Nothing without curves. `origin`: where a figure comes from whose case does not state it.
+void write_chart(JsonWriter& json, const Chart& chart, std::string_view origin = {});
+/// What the case states for single figures ([[figure]]): origin and caption, by figure.
+void write_figures(JsonWriter& json, const Case& read);
 
 /// A column of a table of the report.
 struct TableColumn {
@@ -66,8 +66,6 @@ Chart law_chart(const ReportRun& run);
 
 /// The base before and after: gap and pressure along the first interface, plane models with pictures.
 std::vector<Chart> rest_charts(const ReportRun& run);
-/// Section forces along the beams whose envelopes were asked for.
-std::vector<Chart> beam_charts(const std::vector<ReportRun>& runs);
 /// Eccentricity and safeties of the first interface over time.
 std::vector<Chart> safety_charts(const std::vector<ReportRun>& runs);
 

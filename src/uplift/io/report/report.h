@@ -3,12 +3,11 @@
 #include <vector>
 
 #include "uplift/io/results/summary.h"
-#include "uplift/study/trust.h"
 #include "uplift/verdict/floor_spectra.h"
 #include "uplift/verdict/verdict.h"
 
-// The report: one self-contained page. The program writes its data (format "uplift-report-1", declared in web/src/types.ts); the page draws
-// them.
+// The report: one self-contained page. The program writes its data (format "uplift-report-2", declared in web/src/types.ts): the documents
+// summary.json and trust.json, and what they do not contain (histories, frames, geometry). The page makes captions, tables and figures.
 namespace uplift {
 
 /// One run as the report sees it.
@@ -27,7 +26,7 @@ struct ReportInput {
   const ComparisonSummary* compared = nullptr;  // null for a single run
   std::vector<std::string> warnings;
   const FloorAnswers* floors = nullptr;  // as many runs; null: none are asked for
-  const TrustAnswer* trust = nullptr;    // of `uplift trust`
+  std::string summary, trust;            // the documents, the summary compact; trust.json of `uplift trust` alone, else empty
 };
 
 /// The data of the report as JSON text.

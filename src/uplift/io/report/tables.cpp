@@ -1,93 +1,12 @@
 #include <fmt/format.h>
 
-#include <cmath>
-
 #include "uplift/case/build/model.h"
 #include "uplift/elements/element_entry.h"
 #include "uplift/io/report/motions.h"
 
-// The tables: all runs side by side, the stiffness sweep, and where the values come from.
+// The tables of the motions, and where the values of the case come from.
 namespace uplift {
 namespace {
-
-void write_run_row(JsonWriter& json, const ReportInput& input, std::size_t i) {
-  const RunResult& run = *input.runs[i].result;
-  const BuiltCase& built = *input.runs[i].built;
-  json.begin_object().member("group", run.group).member("run", run.label).member("name", run.name);
-  json.member("status",
-              std::string(to_string(run.status)) + (run.expected_to_fail && run.status == RunStatus::failed ? " (expected)" : ""));
-  const std::optional<Peak> top = top_motion(built, run);
-  if (top) json.member("top", std::abs(top->value)).member("top_time", top->time);
-  if (!input.runs[i].spec->bonded)  // a bonded base stretches instead of opening
-    json.member("ratio", run.max_uplifted_ratio.value)
-        .member("opening", run.max_opening.value < nothing_beside("m") ? 0 : run.max_opening.value);
-  json.member("moment", std::abs(run.max_base_moment.value));
-  json.member("pressure", run.max_pressure.value).member("created", created_share(run)).member("retries", run.counts.retries);
-  json.member("wall", run.wall).member("per_step", run.counts.steps > 0 ? run.wall / static_cast<double>(run.counts.steps) * 1e6 : 0.0);
-  if (input.compared) {
-    const Agreement& agreement = input.compared->agreement[i];
-    json.member("agreement", to_string(agreement.word));
-    if (agreement.word == Agreement::Word::agrees || agreement.word == Agreement::Word::differs)
-      json.member("deviation", agreement.deviation);
-  }
-  json.end_object();
-}
-
-void write_runs(JsonWriter& json, const ReportInput& input) {
-  json.begin_object().member("id", "runs").member("title", input.compared ? "Comparison of all runs" : "Runs");
-  std::string caption = "Largest magnitudes. Spurious energy: energy created by the computation, divided by the external work.";
-  if (input.compared)
-    caption += fmt::format(" Runs that passed all checks agree when {} lie within {:g} % of the median of their group.",
-                           compared_text(input.compared->columns), 100 * input.compared->band);
-  json.member("caption", caption).key("columns").begin_array();
-  for (const TableColumn& column : {TableColumn{"run", "Run", "", "text", 0}, {"status", "Status", "", "status", 0}})
-    write_column(json, column);
-  if (input.compared) {
-    write_column(json, {"agreement", "Agreement", "", "status", 0});
-    write_column(json, {"deviation", "Deviation", "", "percent", 2});
-  }
-  for (const TableColumn& column : {TableColumn{"top", "Top motion", "m", "number", 4},
-                                    {"top_time", "at time", "s", "number", 4},
-                                    {"ratio", "Uplifted", "", "percent", 3},
-                                    {"opening", "Gap", "m", "number", 4},
-                                    {"moment", "Base moment", "N m", "number", 4},
-                                    {"pressure", "Pressure", "Pa", "number", 4},
-                                    {"created", "Spurious energy", "", "percent", 3}})
-    write_column(json, column);
-  write_column(json, {"retries", "Retries", "", "number", 6});
-  write_column(json, {"per_step", "Time per step (µs)", "", "number", 3});
-  json.end_array().key("rows").begin_array();
-  for (std::size_t i = 0; i < input.runs.size(); ++i) write_run_row(json, input, i);
-  json.end_array();
-  if (!input.runs.front().result->group.empty()) json.member("rowGroup", "group");
-  json.end_object();
-}
-
-void write_sweep(JsonWriter& json, const std::vector<SweepRow>& rows) {
-  if (rows.empty()) return;
-  json.begin_object().member("id", "sweep").member("title", "Spurious energy against the stiffness of the joint");
-  json.member("caption",
-              "Largest spurious energy divided by the external work. The stiffness ratio k F belongs to the stiffest interface point and "
-              "the time step.")
-      .key("columns")
-      .begin_array();
-  for (const TableColumn& column : {TableColumn{"ratio", "k F", "", "number", 3},
-                                    {"path", "Path average", "", "percent", 3},
-                                    {"path_status", "Status", "", "status", 0},
-                                    {"end", "End of step", "", "percent", 3},
-                                    {"end_status", "Status", "", "status", 0}})
-    write_column(json, column);
-  json.end_array().key("rows").begin_array();
-  for (const SweepRow& row : rows)
-    json.begin_object()
-        .member("ratio", row.ratio)
-        .member("path", row.path)
-        .member("path_status", row.path_status)
-        .member("end", row.end)
-        .member("end_status", row.end_status)
-        .end_object();
-  json.end_array().end_object();
-}
 
 /// One value of the case that the user wrote: the key under which an origin may name it, and the value.
 struct Given {
@@ -150,11 +69,7 @@ void write_column(JsonWriter& json, const TableColumn& column) {
 
 void write_tables(JsonWriter& json, const ReportInput& input) {
   json.begin_array();
-  write_runs(json, input);
   write_motion_tables(json, input);
-  write_floor_table(json, input);
-  if (input.trust) write_trust_tables(json, *input.trust);
-  if (input.compared) write_sweep(json, input.compared->sweep);
   json.end_array();
 }
 

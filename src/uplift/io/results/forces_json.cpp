@@ -36,16 +36,21 @@ void write_sum(ResultWriter& out, const char* key, const char* meaning, const Eq
 
 }  // namespace
 
-void write_envelopes(ResultWriter& out, const std::vector<BeamEnvelope>& envelopes) {
+void write_envelopes(ResultWriter& out, const std::vector<BeamEnvelope>& envelopes, int up) {
   out.list("beam_envelopes", "section forces along the beams of [[output.beam_envelope]]", envelopes, [&](const BeamEnvelope& given) {
     BeamEnvelope envelope = given;
     if (out.is_schema()) envelope.components = {"axial", "shear_y", "shear_z", "torsion", "moment_y", "moment_z", "shear", "moment"};
     out.text("beam", envelope.beam, "name of the beam");
-    out.object("along", "positions of the sections", [&] {
+    std::vector<double> along, elevation;
+    for (const EnvelopeRequest::Section& section : envelope.sections)
+      along.push_back(section.along), elevation.push_back(section.position[up]);
+    out.object("along", "positions of the sections along the beam", [&] {
       out.unit("m");
-      std::vector<double> along;
-      for (const EnvelopeRequest::Section& section : envelope.sections) along.push_back(section.along);
-      out.numbers("value", along, "m", "distance from the beginning of the beam");
+      out.numbers("value", along, "m", "distances from the beginning of the beam");
+    });
+    out.object("elevation", "elevations of the sections", [&] {
+      out.unit("m");
+      out.numbers("value", elevation, "m", "coordinates along the upward axis");
     });
     for (std::size_t k = 0; k < envelope.components.size(); ++k) write_component(out, envelope, k);
   });

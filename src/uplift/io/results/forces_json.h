@@ -4,8 +4,8 @@
 
 namespace uplift {
 
-/// The member "beam_envelopes": ranges of the section forces along the beams, with times.
-void write_envelopes(ResultWriter& out, const std::vector<BeamEnvelope>& envelopes);
+/// The member "beam_envelopes": ranges of the section forces along the beams, with times. `up`: the axis that points upwards.
+void write_envelopes(ResultWriter& out, const std::vector<BeamEnvelope>& envelopes, int up);
 /// The member "equilibrium": sums of the forces on the whole model at a few instants.
 void write_equilibrium(ResultWriter& out, const Equilibrium& equilibrium);
 

@@ -117,7 +117,7 @@ void write_run(ResultWriter& out, const Entry& entry) {
   write_floors(out, "floor_spectra", entry.floors ? *entry.floors : no_floors);
   write_agreement(out, entry.agreement);
   out.when(!run.envelopes.empty());
-  write_envelopes(out, run.envelopes);
+  write_envelopes(out, run.envelopes, (entry.built ? entry.built->model.space : Space()).up());
   out.when(!run.equilibrium.instants.empty());
   write_equilibrium(out, run.equilibrium);
   out.texts("notes", run.notes, "remarks on the computation: repeated steps, warnings of laws");
@@ -182,14 +182,14 @@ void write_summary(ResultWriter& out, const SummaryInput& input) {
   out.list("runs", "the runs; the first one is that of the verdict", entries_of(input), [&](const Entry& entry) { write_run(out, entry); });
   out.when(input.floors && !input.floors->envelopes.empty());
   write_floor_envelopes(out, "floor_envelopes", input.floors ? *input.floors : none);
-  write_verdict_numbers(out, input.verdict, input.runs, input.floors, first);
+  write_verdict_numbers(out, input.verdict, input.runs, input.floors, first, !input.compact);
   write_comparison(out, input.compared);
 }
 
 }  // namespace
 
 std::string summary_json(const SummaryInput& input) {
-  JsonWriter json(0, 2);
+  JsonWriter json(0, input.compact ? 0 : 2);
   json.begin_object();
   ResultWriter out(json);
   write_summary(out, input);

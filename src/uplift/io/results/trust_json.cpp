@@ -28,6 +28,9 @@ void write_band(ResultWriter& out, const TrustBand& band) {
   out.number("value", band.value, unit, "value of the case as it stands");
   out.number("least", band.least, unit, "smallest value of all runs that count");
   out.number("most", band.most, unit, "largest value of all runs that count");
+  out.when(band.swing > 0).number("swing", band.swing, unit, "half of the range in which a residual value of the case still varies");
+  out.number("band", band.quantity ? band.share() : std::nullopt, "1",
+             "half of the range divided by the value; absent where the value can be near zero or does not change");
   out.text("dominant", band.dominant, "choice with the largest deviation; empty: no choice changes the value");
   out.numbers_or_null("values", band.values, unit, "values of the repetitions in the order of `runs`; null: the run has none");
 }

@@ -118,11 +118,9 @@ void write_criterion(ResultWriter& out, const CriterionResult& result) {
   out.text("source", result.criterion.source, "source of the limit, as the case states it");
 }
 
-}  // namespace
-
-void write_step_check(ResultWriter& out, std::string_view key, const StepCheck& check) {
+void write_step_check(ResultWriter& out, const StepCheck& check) {
   using enum StepCheck::State;
-  out.object(key, "how far the numbers depend on the time step", [&] {
+  out.object("step_check", "how far the numbers depend on the time step", [&] {
     out.word("result", to_string(check.state), {to_string(not_made), to_string(converged), to_string(not_converged)}, "result");
     out.text("sentence", check.sentence(), "the result as a sentence");
     const bool made = check.coarse_step > 0, changed = check.largest > 0, floors = check.floors_to > 0;
@@ -139,7 +137,8 @@ void write_step_check(ResultWriter& out, std::string_view key, const StepCheck& 
   });
 }
 
-void write_floor_changes(ResultWriter& out, std::string_view key, const FloorAnswers* floors) {
+/// Change of every floor spectrum of the first run compared with the bonded one in each frequency band.
+void write_floor_changes(ResultWriter& out, const FloorAnswers* floors) {
   struct Floor {
     std::string name;
     FloorChange change;
@@ -148,7 +147,7 @@ void write_floor_changes(ResultWriter& out, std::string_view key, const FloorAns
   const FloorRun none, &run = floors && !floors->runs.empty() ? floors->runs.front() : none;
   for (std::size_t k = 0; k < run.beside.size(); ++k)
     for (const FloorChange& change : run.beside[k]) all.push_back({run.floors[k].name, {change.damping, {}, {}, {}, change.bands}});
-  out.list(key, "changes of the floor spectra of the run compared with the bonded reference run", all, [&](const Floor& floor) {
+  out.list("floors", "changes of the floor spectra of the run compared with the bonded reference run", all, [&](const Floor& floor) {
     out.text("floor", floor.name, "name of the floor");
     out.number("damping", floor.change.damping, "1", "damping ratio of the equipment");
     out.list("bands", "frequency bands", floor.change.bands, [&](const FloorChange::Band& band) {
@@ -160,8 +159,10 @@ void write_floor_changes(ResultWriter& out, std::string_view key, const FloorAns
   });
 }
 
+}  // namespace
+
 void write_verdict_numbers(ResultWriter& out, const Verdict& verdict, const std::vector<RunResult>& runs, const FloorAnswers* floors,
-                           const BuiltCase* built) {
+                           const BuiltCase* built, bool histories) {
   using enum Verdict::Level;
   const VerdictNumbers& numbers = verdict.numbers;
   out.object("verdict", "whether the base uplifts and what that changes", [&] {
@@ -169,7 +170,7 @@ void write_verdict_numbers(ResultWriter& out, const Verdict& verdict, const std:
              {to_string(none), to_string(uplift), to_string(overturned), to_string(separated), to_string(failed)}, "outcome in one word");
     out.text("headline", verdict.headline, "first sentence of the report");
     out.text("consequence", verdict.consequence, "second sentence: comparison with the bonded model and with the criteria");
-    write_step_check(out, "step_check", verdict.step_check);
+    write_step_check(out, verdict.step_check);
     out.text("run", runs.empty() ? "" : runs.front().name, "name of the run that the verdict describes");
     out.flag("per_metre", built && built->is_strip(), "whether forces are per metre of depth");
     write_intervals(out, "full_loss_of_contact", numbers.full_loss, "intervals during which no base has any contact");
@@ -181,14 +182,15 @@ void write_verdict_numbers(ResultWriter& out, const Verdict& verdict, const std:
     std::vector<Entry> interfaces;
     for (std::size_t k = 0; k < numbers.interfaces.size(); ++k) interfaces.push_back({&numbers.interfaces[k], k});
     out.list("interfaces", "the interfaces, bases first", interfaces, [&](const Entry& entry) {
-      write_interface(out, entry.verdict ? *entry.verdict : InterfaceVerdict(), built, runs.empty() ? nullptr : &runs.front(), entry.k);
+      write_interface(out, entry.verdict ? *entry.verdict : InterfaceVerdict(), histories ? built : nullptr,
+                      runs.empty() ? nullptr : &runs.front(), entry.k);
     });
     out.when(!numbers.beams.empty()).list("beams", "beams with an envelope", numbers.beams, [&](const BeamVerdict& beam) {
       out.text("name", beam.name, "name of the beam");
       write_numbers(out, beam.numbers, [](const VerdictQuantity& quantity) { return quantity.of_beam; });
     });
     out.list("criteria", "criteria of the case", numbers.criteria, [&](const CriterionResult& result) { write_criterion(out, result); });
-    write_floor_changes(out, "floors", floors);
+    write_floor_changes(out, floors);
   });
 }
 

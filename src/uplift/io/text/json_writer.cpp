@@ -140,6 +140,12 @@ JsonWriter& JsonWriter::texts(const std::vector<std::string>& values) {
   return end_array();
 }
 
+JsonWriter& JsonWriter::document(std::string_view text) {
+  separate();
+  text_ += text;
+  return *this;
+}
+
 std::string JsonWriter::take() {
   assert(filled_.empty());
   return std::move(text_);

@@ -30,6 +30,8 @@ class JsonWriter {
   /// An array of numbers, on one line.
   JsonWriter& numbers(std::span<const double> values);
   JsonWriter& texts(const std::vector<std::string>& values);
+  /// A finished JSON text as a value.
+  JsonWriter& document(std::string_view text);
   template <class Value>
   JsonWriter& member(std::string_view name, const Value& given) {
     return key(name).value(given);
