@@ -425,6 +425,31 @@ class Tables:
         """
         self._add("support", {"node": node, "fixed": fixed, "group": group, "stages": stages})
 
+    def foundation(
+        self,
+        *,
+        name: str,
+        body: str,
+        width: Quantity,
+        model: Union[Part, str],
+        shape: Optional[str] = None,
+        length: Optional[Quantity] = None,
+        offset: Optional[Sequence[Quantity]] = None,
+    ) -> None:
+        """Foundations on one element of the ground.
+
+        Parameters:
+            name: name.
+            body: node (the master of the footing) that the ground carries.
+            width: width of the underside along the x axis; of a disc its diameter [m], > 0 m.
+            model: what the ground does.
+            shape: plan of the underside; one of "strip", "rectangle", "disc"; default rectangle.
+            length: across the width: in the plane out of the plane, absent 1 m; in space needed but for a disc [m], > 0
+                m.
+            offset: from the node to the middle of the footing's underside [m].
+        """
+        self._add("foundation", {"name": name, "body": body, "width": width, "model": model, "shape": shape, "length": length, "offset": offset})
+
     def function(self, name: str, shape: Union[Part, str]) -> None:
         """Functions of time.
 

@@ -131,7 +131,7 @@ class Pages(CliTest):
         self.assertEqual(len(numbers), len(set(numbers)))
 
     def test_messages_that_are_explained_are_those_of_the_program(self):
-        sources = "".join(path.read_text() for path in sorted((ROOT / "src").rglob("*.cpp")))
+        sources = "".join(path.read_text() for path in sorted((ROOT / "src").rglob("*.[ch]*")))
         joined = re.sub(r'"\s*\n\s*"', "", sources).replace('\\"', '"')
         for quoted in re.findall(r'^\| "(.+?)" \|', (ROOT / "docs/guide/troubleshooting.md").read_text(), re.M):
             self.assertIn(quoted, joined)

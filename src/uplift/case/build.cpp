@@ -1,11 +1,14 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <cmath>
 #include <filesystem>
 
 #include "uplift/base/file.h"
+#include "uplift/base/format.h"
 #include "uplift/base/text.h"
 #include "uplift/case/advice/history_forecast.h"
+#include "uplift/case/build/behaviours.h"
 #include "uplift/case/build/criteria.h"
 #include "uplift/case/build/output.h"
 #include "uplift/case/build/roles.h"
@@ -23,40 +26,14 @@ namespace {
 
 constexpr int most_pictured = 20'000'000;  // numbers kept for the animation: 160 MB
 
-/// Values as they would be read from a file again, with one number replaced.
-Values with_number(const Values& part, std::string_view key, double number) {
-  auto table = std::make_shared<RawTable>();
-  const auto add = [&](std::string_view name, auto data) {
-    table->entries.emplace_back(std::string(name), Raw{std::move(data), part.where(name), part.path(name)});
-  };
-  add("type", part.type());
-  for (const auto& [name, item] : part.items()) {
-    if (name == key || !item.given) continue;
-    if (const auto* flag = std::get_if<bool>(&item.data)) add(name, *flag);
-    if (const auto* whole = std::get_if<std::int64_t>(&item.data)) add(name, *whole);
-    if (const auto* real = std::get_if<double>(&item.data)) add(name, *real);
-    if (const auto* text = std::get_if<std::string>(&item.data)) add(name, *text);
-  }
-  add(key, number);
-  return check_part(Raw{table, part.where(), part.path()}, interface_behaviours());
-}
-
-/// An elastic joint that never opens, with the damping of the one that may: what differs between the runs is the uplift alone.
-Values bonded_behaviour(const Values& like, const std::vector<double>& stiffness) {
-  auto table = std::make_shared<RawTable>();
-  const auto add = [&](const char* name, auto data) { table->entries.emplace_back(name, Raw{std::move(data), like.where(), like.path()}); };
-  add("type", std::string("elastic"));
-  add("K_n", stiffness.back());
-  if (like.items().contains("c") && like.has("c")) add("c", like.number("c"));
-  if (stiffness.size() > 1)
-    add("K_t", stiffness.front());
-  else
-    add("tangential", std::string("none"));
-  return check_part(Raw{table, like.where(), like.path()}, interface_behaviours());
-}
-
 /// The law or cone of an interface in this run.
 const Values& behaviour_of(const InterfacePart& part, const RunSpec& spec) {
+  if (part.footprint) {
+    if (spec.law && spec.interface == part.name)
+      throw InputError(spec.law->where(), spec.law->path(), "the law of an interface",
+                       in_quotes(part.name) + ", a foundation, which has a model");
+    return part.table->part("model");
+  }
   const bool replaced = spec.law && (spec.interface.empty() || spec.interface == part.name);
   return replaced ? *spec.law : part.table->part("law");
 }
@@ -71,14 +48,20 @@ void add_interfaces(const Case& read, const RunSpec& spec, const Model* like, Mo
     const Values& behaviour = behaviour_of(part, spec);
     InterfaceSpec made;
     made.name = part.name;
-    made.components = like ? like->interfaces[built.facts.size()].batch.components : components_of(behaviour, names.space);
+    made.footprint = part.footprint;
+    made.rotations = part.footprint ? part.footprint->rotations() : 0;
+    made.components = part.footprint ? part.footprint->components()
+                      : like         ? like->interfaces[built.facts.size()].batch.components
+                                     : components_of(behaviour, names.space);
     made.points = std::move(joint.points);
     made.reference = joint.reference;
     made.behaviour = behaviour.type();
-    made.law = make_part(law_catalog(), behaviour);
+    made.law = make_law(behaviour, made.footprint);
     if (!made.law) made.cone = make_part(cone_catalog(), behaviour);
     if (behaviour.items().contains("friction") && behaviour.has("friction")) joint.facts.friction = behaviour.number("friction");
     if (behaviour.items().contains("cohesion") && behaviour.has("cohesion")) joint.facts.cohesion = behaviour.number("cohesion");
+    if (made.footprint && behaviour.items().contains("friction_angle") && behaviour.has("friction_angle"))
+      joint.facts.friction = std::tan(behaviour.number("friction_angle"));
     if (made.law) joint.facts.tension = made.law->scales().strength;
     built.facts.push_back(std::move(joint.facts));
     built.behaviours.push_back(&behaviour);
@@ -145,12 +128,33 @@ void add_stages(const Case& read, const RunSpec& spec, RunPlan& plan) {
   if (plan.stages.empty()) fail(read.values, "", "at least one [[stage]]", "none");
 }
 
+/// What a foundation cannot stand beside.
+void check_foundation(const Values& model, bool cone, const RunPlan& plan) {
+  if (cone) fail(model, "", "traction laws in the interfaces beside a foundation, whose ground gives way", "a constraint in one of them");
+  for (const Stage& stage : plan.stages)
+    if (stage.type == Stage::Type::dynamics && stage.scheme.filtered())
+      fail(model, "", "another scheme than energy_decay with a foundation", "energy_decay");
+}
+
+/// The dead load on the only base must be less than what its ground can bear.
+void check_capacity(const BuiltCase& built) {
+  if (built.model.interfaces.size() != 1 || !built.model.interfaces.front().footprint) return;
+  const Values& model = *built.behaviours.front();
+  if (!model.items().contains("V_s") || !model.has("V_s")) return;
+  const char* key = model.has("V_u") ? "V_u" : "V_s";
+  if (built.weight >= model.number(key))
+    fail(model, key, fmt::format("a capacity above the dead load on the foundation, {}", format_quantity(built.weight, "N")),
+         format_quantity(model.number(key), "N"));
+}
+
 /// Method and rule; the method must suit the behaviours.
 void add_method(const Case& read, const RunSpec& spec, BuiltCase& built) {
   const Values& root = read.values;
   const Values* method = spec.method ? spec.method : root.has("method") ? &root.part("method") : nullptr;
   bool cone = false;
   for (const Interface& interface : built.model.interfaces) cone = cone || interface.cone != nullptr;
+  for (std::size_t k = 0; k < built.model.interfaces.size(); ++k)
+    if (built.model.interfaces[k].footprint) check_foundation(*built.behaviours[k], cone && !spec.bonded, built.plan);
   if (spec.bonded) method = nullptr;
   if (method && cone && method->type() == "newton")
     fail(*method, "", "a method for cones (penalty, augmented_lagrangian, lagrange), or a traction law", "\"newton\" with a cone");
@@ -219,7 +223,7 @@ std::shared_ptr<const Model> resting_model(const Case& read, const RunSpec& spec
   auto rest = std::make_shared<Model>(make_model(read, spec, tuned, &built.model, names, scratch));
   for (std::size_t k = 0; k < rest->interfaces.size(); ++k) {
     Interface& interface = rest->interfaces[k];
-    interface.law = make_part(law_catalog(), *built.behaviours[k]);
+    interface.law = make_law(*built.behaviours[k], interface.footprint);
     interface.cone = interface.law ? nullptr : make_part(cone_catalog(), *built.behaviours[k]);
     interface.behaviour = built.model.interfaces[k].behaviour;
   }
@@ -257,7 +261,9 @@ void adapt_laws(const Case& read, const RunSpec& spec, BuiltCase& built) {
     Interface& interface = built.model.interfaces[k];
     const Values& behaviour = *built.behaviours[k];
     std::unique_ptr<const Values> derived;
-    if (spec.bonded) {
+    if (spec.bonded && interface.footprint) {
+      derived = std::make_unique<const Values>(bonded_foundation(behaviour, interface));
+    } else if (spec.bonded) {
       std::vector<double> stiffness(static_cast<std::size_t>(interface.batch.components));
       if (interface.law)
         interface.law->closed_stiffness(interface.batch.components, stiffness.data());
@@ -273,7 +279,7 @@ void adapt_laws(const Case& read, const RunSpec& spec, BuiltCase& built) {
     } else {
       continue;
     }
-    interface.law = make_part(law_catalog(), *derived);
+    interface.law = make_law(*derived, interface.footprint);
     interface.cone.reset();
     interface.behaviour = derived->type();
     built.behaviours[k] = derived.get();
@@ -413,6 +419,7 @@ BuiltCase build(const Case& read, const RunSpec& spec) {
     check_impulses(built.model);
   add_initial(root, names, built);
   find_shown(read, names, built);
+  check_capacity(built);
   plan.created_limit = root.table("energy").number("created_limit");
   plan.stop_at_limit = root.table("energy").flag("stop_at_limit");
   plan.rotation_limit = root.table("limits").number("rotation");

@@ -10,6 +10,10 @@
 namespace uplift {
 namespace {
 
+bool may_open(const Values& root) {
+  return !root.tables("interface").empty() || !root.tables("foundation").empty();
+}
+
 const Values* part_if(const Values& table, std::string_view key) {
   return table.given(key) ? &table.part(key) : nullptr;
 }
@@ -133,7 +137,7 @@ std::vector<RunSpec> runs_of_case(const Case& read) {
   spec.name = "run";
   spec.label = "as in the case";
   std::vector<RunSpec> runs{spec};
-  if (read.values.flag("bonded") && !read.values.tables("interface").empty()) runs.push_back(bonded_run(read));
+  if (read.values.flag("bonded") && may_open(read.values)) runs.push_back(bonded_run(read));
   return runs;
 }
 
@@ -172,7 +176,7 @@ Comparison comparison_of_case(const Case& read) {
     names.add(variant, "name");
     plain.push_back(variant_run(read, variant));
   }
-  if (root.flag("bonded") && !root.tables("interface").empty()) {
+  if (root.flag("bonded") && may_open(root)) {
     names.add("bonded", root.where("bonded"), "variant.name");
     plain.push_back(bonded_run(read));
   }

@@ -52,9 +52,10 @@ void print(const LoadedCase& loaded, const CheckedCase& checked) {
   for (std::size_t k = 0; k < model.interfaces.size(); ++k) {
     const Interface& interface = model.interfaces[k];
     line("interface " + interface.name,
-         fmt::format("{}, {} points, {}, area {:.4g} m2{}", to_string(built.facts[k].role), interface.batch.points, interface.behaviour,
-                     interface.area.sum(), interface.batch.components == 1 ? ", normal only" : ""));
-    line("  points", points_text(interface));
+         fmt::format("{}, {}, {}, area {:.4g} m2{}", to_string(built.facts[k].role),
+                     interface.footprint ? "foundation" : fmt::format("{} points", interface.batch.points), interface.behaviour,
+                     built.facts[k].area, interface.batch.components == 1 ? ", normal only" : ""));
+    if (!interface.footprint) line("  points", points_text(interface));
     if (k < found.ratios.size() && found.ratios[k].most > 0)
       line("  k F_ii at the time step", fmt::format("{:.3g} to {:.3g}", found.ratios[k].least, found.ratios[k].most));
     if (k < found.ratios.size()) line("  compliance F_ii", fmt::format("up to {:.3g} m/N", found.ratios[k].compliance));

@@ -29,6 +29,7 @@ struct Family {
 
 std::vector<Family> families() {
   return {{"law", "what an interface does: traction laws, and cones (contact by constraint)", interface_behaviours()},
+          {"foundation", "what the ground under a whole footing does: [[foundation]]", foundation_models()},
           {"bulk_law", "what a solid is made of: stress from strain", bulk_laws()},
           {"element", "elements: tables [[beam]], [[spring]], [[dashpot]], [[solid]], [[absorbing]], ...", element_kinds()},
           {"method", "how the interface problem of a step is solved", contact_methods()},

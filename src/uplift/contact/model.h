@@ -1,5 +1,6 @@
 #pragma once
 #include <memory>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -22,7 +23,8 @@ struct Block {
   Batch batch;
   const InterfaceLaw* law = nullptr;  // one of the two
   const Cone* cone = nullptr;
-  Vector area;  // m2 per point
+  Vector area;                         // m2 per point
+  std::optional<Footprint> footprint;  // of a whole foundation
   // of a stored problem: the law that a method had put in the cone's place (penalty)
   double substitute_stiffness = 0;        // Pa/m
   std::vector<double> substitute_memory;  // at the beginning of the step

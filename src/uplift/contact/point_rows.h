@@ -11,11 +11,11 @@ namespace uplift {
 ///     P_c = known_c + sum over f of basis_fc q_f          sum over c of (opening_fc g_c - force_fc P_c) = right_f
 /// Equations are scaled so that their residual is a force.
 struct PointRelation {
-  using Local = std::array<double, 3>;
+  using Local = std::array<double, most_components>;
   int count = 0;
   int kind = 0;  // equal kinds have the same unknowns
   Local known{}, right{};
-  std::array<Local, 3> basis{}, opening{}, force{};
+  std::array<Local, most_components> basis{}, opening{}, force{};
 };
 
 /// The linear problem of an interface with many independent rows, as between meshes: opening = free opening - F P with F = C C^T regular,

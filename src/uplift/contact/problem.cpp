@@ -26,7 +26,7 @@ double balance(const InterfaceProblem& problem, const InterfaceSolution& solutio
 double law_error(const InterfaceProblem& problem, const Block& block, const InterfaceSolution& solution, ResidualScratch& scratch) {
   scratch.now.resize(problem.old.size());
   for (Vector* v : {&scratch.traction, &scratch.end, &scratch.plain}) v->resize(problem.rows());
-  for (Vector* v : {&scratch.slope, &scratch.next}) v->resize(3 * problem.rows());
+  for (Vector* v : {&scratch.slope, &scratch.next}) v->resize(most_components * problem.rows());
   law_force(problem, block, solution.opening.data(),
             {.traction = scratch.traction.data(),
              .slope = scratch.slope.data(),

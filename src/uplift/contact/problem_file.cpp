@@ -114,22 +114,42 @@ class Reader {
     return result;
   }
 
+  Footprint footprint(const Json& object, const std::string& path) const {
+    Footprint made;
+    const std::string shape = text(at(object, path, "shape"), path + ".shape");
+    const auto known = footprint_shape(shape);
+    if (!known) refuse(path + ".shape", "strip, rectangle or disc", shape);
+    made.shape = *known;
+    for (const auto& [key, value] : {std::pair{"width", &made.width}, {"length", &made.length}}) {
+      *value = number(at(object, path, key), path + "." + key);
+      if (!(*value > 0 && std::isfinite(*value))) refuse(path + "." + key, "a finite length > 0", std::to_string(*value));
+    }
+    made.dimension = integer(at(object, path, "dimension"), path + ".dimension", 2, 3);
+    return made;
+  }
+
   void block(const Json& object, const std::string& path, ContactModel& model, StoredProblem& stored) const {
     Block block;
     block.name = text(at(object, path, "name"), path + ".name");
     block.batch.points = integer(at(object, path, "points"), path + ".points", 1, 10000000);
-    block.batch.components = integer(at(object, path, "components"), path + ".components", 1, 3);
+    block.batch.components = integer(at(object, path, "components"), path + ".components", 1, most_components);
+    if (object.contains("foundation")) block.footprint = footprint(object["foundation"], path + ".foundation");
+    if (block.footprint) block.batch.rotations = block.footprint->rotations();
+    if (block.footprint ? block.batch.components != block.footprint->components() || block.batch.points != 1 : block.batch.components > 3)
+      refuse(path + ".components", block.footprint ? "one point with the rows of the foundation" : "at most 3 components",
+             std::to_string(block.batch.components));
     const std::vector<double> areas = numbers(at(object, path, "area"), path + ".area");
     block.area = ConstMap(areas.data(), static_cast<Index>(areas.size()));
     if (block.area.size() != block.batch.points)
       refuse(path + ".area", std::to_string(block.batch.points) + " numbers", std::to_string(block.area.size()));
     for (const double area : block.area)
       if (!(area > 0 && std::isfinite(area))) refuse(path + ".area", "finite areas > 0", std::to_string(area));
-    const Values values = check_part(raw(at(object, path, "behaviour"), path + ".behaviour"), interface_behaviours());
+    const Values values =
+        check_part(raw(at(object, path, "behaviour"), path + ".behaviour"), block.footprint ? foundation_models() : interface_behaviours());
     InterfaceProblem& problem = stored.problem;
     for (const Block& other : model.blocks) block.first = other.first + other.rows();
     block.first_history = static_cast<int>(problem.old.size());
-    if (is_cone(values.type())) {
+    if (!block.footprint && is_cone(values.type())) {
       stored.cones.push_back(make_part(cone_catalog(), values));
       block.cone = stored.cones.back().get();
       if (const auto found = object.find("substitute"); found != object.end()) {
@@ -142,7 +162,7 @@ class Reader {
           refuse(inside + ".memory", "as many numbers for each point", std::to_string(block.substitute_memory.size()));
       }
     } else {
-      stored.laws.push_back(make_part(law_catalog(), values));
+      stored.laws.push_back(make_law(values, block.footprint));
       block.law = stored.laws.back().get();
       problem.old.resize(problem.old.size() + block.law->num_history(block.batch.components) * block.batch.points);
     }
@@ -235,15 +255,22 @@ std::string save_problem(const InterfaceProblem& problem, const std::vector<cons
     object["name"] = block.name;
     object["points"] = block.batch.points;
     object["components"] = block.batch.components;
+    if (block.footprint) {
+      const Footprint& under = *block.footprint;
+      object["foundation"] = {{"shape", std::string(to_string(under.shape))},
+                              {"width", to_json(under.width)},
+                              {"length", to_json(under.length)},
+                              {"dimension", under.dimension}};
+    }
     object["behaviour"] = to_json(*behaviours[b]);
     object["area"] = to_json(block.area.data(), block.area.size());
     const double* memory = problem.old.data() + block.first_history;
     const std::size_t values =
         block.law != nullptr ? static_cast<std::size_t>(block.law->num_history(block.batch.components) * block.batch.points) : 0;
-    if (block.law != nullptr && is_cone(behaviours[b]->type())) {
-      double stiffness[3] = {};
+    if (block.law != nullptr && !block.footprint && is_cone(behaviours[b]->type())) {
+      double stiffness[most_components] = {};
       block.law->closed_stiffness(block.batch.components, stiffness);
-      object["substitute"]["stiffness"] = to_json(stiffness[block.batch.components - 1]);
+      object["substitute"]["stiffness"] = to_json(stiffness[block.batch.translations() - 1]);
       object["substitute"]["memory"] = to_json(memory, values);
     } else {
       old.insert(old.end(), memory, memory + values);

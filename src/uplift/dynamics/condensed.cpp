@@ -38,6 +38,7 @@ ContactModel blocks_of(const Model& model, const Behaviours& behaviours) {
     block.law = behaviours.interfaces[i].law;
     block.cone = behaviours.interfaces[i].cone;
     block.area = interface.area;
+    block.footprint = interface.footprint;
     first += block.rows();
     contact.blocks.push_back(std::move(block));
   }

@@ -24,7 +24,7 @@ class JointFilter {
  private:
   struct Part {  // of one interface
     int first = 0, first_slope = 0, points = 0, components = 0;
-    double stiffness[3] = {};   // closed joint [Pa/m]
+    double stiffness[3] = {};   // of a point without rotations: closed joint [Pa/m]
     Vector area, inverse_area;  // m2, 1/m2
   };
   std::vector<Block> blocks_;

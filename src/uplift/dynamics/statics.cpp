@@ -27,7 +27,7 @@ Vector closed_joint(const Model& model, const Behaviours& behaviours) {
   for (std::size_t i = 0; i < model.interfaces.size(); ++i) {
     const Interface& interface = model.interfaces[i];
     const int n = interface.batch.points, components = interface.batch.components;
-    double stiffness[3] = {0, 0, 0};
+    double stiffness[most_components] = {};
     if (behaviours.interfaces[i].law != nullptr) behaviours.interfaces[i].law->closed_stiffness(components, stiffness);
     for (int c = 0; c < components; ++c)
       for (int p = 0; p < n; ++p) {

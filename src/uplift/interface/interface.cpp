@@ -26,7 +26,8 @@ Matrix resultant_rows(const Interface& interface) {
   for (int i = 0; i < points; ++i) {
     const Vec3 arm = interface.position[static_cast<std::size_t>(i)] - interface.reference;
     for (int c = 0; c < components; ++c) {
-      const Vec3 force = component_axis(space, interface.normal[static_cast<std::size_t>(i)], c, components), moment = cross(arm, force);
+      const auto [axis, rotation] = component_axis(space, interface.normal[static_cast<std::size_t>(i)], interface.batch, c);
+      const Vec3 force = rotation ? Vec3(Vec3::Zero()) : axis, moment = rotation ? axis : cross(arm, axis);
       auto column = rows.col(c * points + i);
       for (int k = 0; k < d; ++k) column[k] = force.dot(local_axis(space, mean, k));
       for (int k = 0; k < space.rotations(); ++k) column[d + k] = d == 2 ? moment.z() : moment.dot(local_axis(space, mean, k));

@@ -1,10 +1,11 @@
 #pragma once
 #include <memory>
+#include <optional>
 #include <string>
 #include <vector>
 
 #include "uplift/elements/space.h"
-#include "uplift/laws/law.h"
+#include "uplift/laws/foundation.h"
 
 namespace uplift {
 
@@ -22,7 +23,8 @@ struct Interface {
   Place reference;                          // m: point about which the resultant moment is taken
   std::unique_ptr<const InterfaceLaw> law;  // one of the two
   std::unique_ptr<const Cone> cone;
-  std::string behaviour;  // name of the law or cone
+  std::string behaviour;               // name of the law or cone
+  std::optional<Footprint> footprint;  // of a whole foundation: one point with rotations, area 1
   int rows() const { return batch.points * batch.components; }
 };
 
@@ -30,9 +32,16 @@ struct Interface {
 /// Plane: t is n turned by -90 degrees; n = (0, 1) gives t = (1, 0). Space: t1 is the x axis projected on the face (the y axis where n is
 /// within 26 degrees of x), t2 = n x t1; n = (0, 0, 1) gives t1 = x, t2 = y.
 Vec3 local_axis(Space space, const Vec3& normal, int axis);
-/// The same for one component of an interface; the normal is its last one.
-inline Vec3 component_axis(Space space, const Vec3& normal, int component, int components) {
-  return local_axis(space, normal, component + space.dimension - components);
+/// Along what a component of a point moves, or about what it turns.
+struct ComponentAxis {
+  Vec3 axis;
+  bool rotation = false;
+};
+inline ComponentAxis component_axis(Space space, const Vec3& normal, const Batch& batch, int component) {
+  const int translations = batch.translations();
+  if (component < translations) return {local_axis(space, normal, component + space.dimension - translations)};
+  if (space.dimension == 2) return {Vec3::UnitZ(), true};
+  return {local_axis(space, normal, component - translations), true};
 }
 /// Area-weighted mean of the normals; that of the first point for a closed ring, which has none.
 Vec3 mean_normal(const Interface&);

@@ -6,20 +6,25 @@
 
 // Interface laws. Axes of a point: (t, n) in 2D, (t1, t2, n) in 3D; opening [m] > 0 apart, traction [Pa] > 0 tension.
 // A call takes all points of one interface, as a structure of arrays: component c of point i stands at [c * points + i], the normal
-// component is the last one. Memory of a law: variable h of point i stands at [h * points + i]. Laws are const; memory is passed in and
-// out.
+// component is the last translation. A point that stands for a whole footing has rotations behind it: then "openings" are relative
+// displacements and rotations of both sides, "tractions" forces and moments, and its area is 1. Memory of a law: variable h of point i
+// stands at [h * points + i]. Laws are const; memory is passed in and out.
 namespace uplift {
 
 /// The batch that one call handles.
 struct Batch {
   int points = 0;
-  int components = 2;  // 1: normal only, 2: (t, n), 3: (t1, t2, n)
+  int components = 2;  // rows of a point, rotations included; translations: 1: normal only, 2: (t, n), 3: (t1, t2, n)
   double step = 0;     // s; 0 in statics (rates are zero then)
   // Joint filter of the scheme of filtered energy decay (laws/filter.h); null: none. All components, for `mean` only.
   const double* coefficient = nullptr;  // c of every row [Pa/m]; negative on a normal row: the point is open at the start of the step
   const double* lag = nullptr;          // d_f of every row [m]
-  int normal() const { return (components - 1) * points; }  // offset of the normal component
+  int rotations = 0;                    // rows behind the normal: in the plane 1 (counter-clockwise), in space 3 (about t1, t2, n)
+  int translations() const { return components - rotations; }
+  int normal() const { return (translations() - 1) * points; }  // offset of the normal component
 };
+
+inline constexpr int most_components = 6;
 
 /// What a law returns for a batch. Null is not wanted; the traction always is. `slope` is d traction_r / d opening_c at [(r * components +
 /// c) * points + i] [Pa/m].
@@ -43,6 +48,12 @@ struct LawScales {
   double least_stiffness = 0;  // Pa/m: the law exists above it alone
 };
 
+/// What the contact under a whole footing looks like, for which one point with rotations stands.
+struct FootingContact {
+  double open_share = 0;              // of the area
+  double max_gap = 0, least_gap = 0;  // m, at the edges; all edges open: least_gap > 0
+};
+
 /// A traction law: traction from opening, with memory.
 class InterfaceLaw {
  public:
@@ -62,6 +73,8 @@ class InterfaceLaw {
   /// Stiffness of a closed joint in compression [Pa/m], per component (normal last): for k*F_ii, the static base and suggestions.
   virtual void closed_stiffness(int components, double* stiffness) const = 0;
   virtual LawScales scales() const { return {}; }
+  /// Of a point with rotations: what its rows alone do not tell.
+  virtual FootingContact contact(const Batch&, const double* /*opening*/, const double* /*history*/) const { return {}; }
 };
 
 /// A set that only bounds the contact force (p per point, N or Pa): the unilateral ray, the Coulomb cone. `force` and `trial` use the

@@ -23,12 +23,14 @@ BulkDamping rayleigh(double frequency_1, double ratio_1, double frequency_2, dou
 
 struct InterfaceSpec {
   std::string name;
-  int components = 2;  // 1: normal only; else 2 in the plane, 3 in space
+  int components = 2;  // 1: normal only; else 2 in the plane, 3 in space; more with rotations
+  int rotations = 0;   // see Batch: 1 in the plane, 3 in space
   std::vector<JointPoint> points;
   Place reference;
   std::unique_ptr<const InterfaceLaw> law;  // one of the two
   std::unique_ptr<const Cone> cone;
   std::string behaviour;
+  std::optional<Footprint> footprint;  // see Interface
 };
 
 /// Collects the parts of a model, then eliminates supports, rigid bodies and inextensible beams and assembles. Mistakes that only show here

@@ -8,16 +8,18 @@ namespace uplift {
 
 namespace {
 
-/// One side of one joint: its displacement in the direction d, as entries of a row of B.
-void add_side(Space space, const std::vector<Node>& nodes, const JointPoint& point, bool upper, const Vec3& d, int row,
+/// One side of one joint: its displacement along the axis, or its rotation about it, as entries of a row of B.
+void add_side(Space space, const std::vector<Node>& nodes, const JointPoint& point, bool upper, const ComponentAxis& along, int row,
               std::vector<Triplet>& entries) {
   const double sign = upper ? 1 : -1;
   for (const auto& [node, shape] : upper ? point.upper : point.lower) {
     const bool rigid = upper ? point.rigid_upper : point.rigid_lower;
     const Vec3 r = point.position - nodes[node].position;
-    for (int k = 0; k < (rigid ? space.unknowns() : space.dimension); ++k)
-      if (const double moved = space.motion(k, r).dot(d); moved != 0)
-        entries.emplace_back(row, space.unknowns() * node + k, sign * shape * moved);
+    for (int k = 0; k < (rigid ? space.unknowns() : space.dimension); ++k) {
+      const bool turns = k >= space.dimension;
+      const double moved = !along.rotation ? space.motion(k, r).dot(along.axis) : turns ? space.axis(k).dot(along.axis) : 0;
+      if (moved != 0) entries.emplace_back(row, space.unknowns() * node + k, sign * shape * moved);
+    }
   }
 }
 
@@ -27,13 +29,13 @@ void add_side(Space space, const std::vector<Node>& nodes, const JointPoint& poi
 /// slide there, and the laws then skip the tangential part.
 void ModelBuilder::drop_dead_tangents(const Model& model, const Matrix& motion_shapes) {
   for (InterfaceSpec& spec : interfaces_) {
-    if (spec.components == 1) continue;
+    if (spec.components == 1 || spec.rotations > 0) continue;
     std::vector<Triplet> entries;
     int row = 0;
     for (const JointPoint& point : spec.points) {
       for (int c = 0; c + 1 < spec.components; ++c, ++row)
         for (const bool upper : {true, false})
-          add_side(space_, nodes_, point, upper, local_axis(space_, point.normal.normalized(), c), row, entries);
+          add_side(space_, nodes_, point, upper, {local_axis(space_, point.normal.normalized(), c)}, row, entries);
     }
     Sparse rows(row, model.reduction.rows());
     rows.setFromTriplets(entries.begin(), entries.end());
@@ -57,6 +59,7 @@ void ModelBuilder::place_interfaces(Model& model) {
     face.space = space_;
     face.batch.points = points;
     face.batch.components = spec.components;
+    face.batch.rotations = spec.rotations;
     face.reference = spec.reference;
     face.area.resize(points);
     face.gap = Vector::Zero(face.rows());
@@ -68,8 +71,7 @@ void ModelBuilder::place_interfaces(Model& model) {
       face.gap[face.batch.normal() + i] = point.gap;
       for (const bool upper : {true, false}) {
         for (int c = 0; c < spec.components; ++c)
-          add_side(space_, nodes_, point, upper, component_axis(space_, face.normal[i], c, spec.components), first + c * points + i,
-                   entries);
+          add_side(space_, nodes_, point, upper, component_axis(space_, face.normal[i], face.batch, c), first + c * points + i, entries);
         if (!(upper ? point.rigid_upper : point.rigid_lower)) continue;
         for (const auto& [node, shape] : upper ? point.upper : point.lower)
           model.assembly.arms.push_back({node, static_cast<int>(k), i, shape, upper ? -1.0 : 1.0, point.position - nodes_[node].position});
@@ -78,6 +80,7 @@ void ModelBuilder::place_interfaces(Model& model) {
     face.law = std::move(spec.law);
     face.cone = std::move(spec.cone);
     face.behaviour = spec.behaviour;
+    face.footprint = spec.footprint;
     first += face.rows();
     model.interfaces.push_back(std::move(face));
   }

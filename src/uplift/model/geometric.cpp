@@ -71,10 +71,9 @@ Vec3 arm_force(const Model& model, const State& state, const Assembly::Arm& arm)
   Index first = 0;
   for (int k = 0; k < arm.interface; ++k) first += model.interfaces[k].rows();
   const Interface& face = model.interfaces[arm.interface];
-  const int components = face.batch.components;
   Vec3 p = Vec3::Zero();
-  for (int c = 0; c < components; ++c)
-    p += state.force[first + c * face.batch.points + arm.point] * component_axis(face.space, face.normal[arm.point], c, components);
+  for (int c = 0; c < face.batch.translations(); ++c)
+    p += state.force[first + c * face.batch.points + arm.point] * component_axis(face.space, face.normal[arm.point], face.batch, c).axis;
   return arm.sign * arm.weight * p;
 }
 

@@ -43,9 +43,9 @@ constexpr double much_softer = 10;   // what lies under a joint than the joint, 
 /// Of the closed joint, in compression [Pa/m].
 double normal_stiffness(const Interface& interface) {
   if (interface.law == nullptr) return HUGE_VAL;
-  std::array<double, 3> stiffness{};
+  std::array<double, most_components> stiffness{};
   interface.law->closed_stiffness(interface.batch.components, stiffness.data());
-  return stiffness[static_cast<std::size_t>(interface.batch.components) - 1];
+  return stiffness[static_cast<std::size_t>(interface.batch.translations()) - 1];
 }
 
 bool flat(const Interface& interface) {
@@ -58,12 +58,15 @@ InterfaceViewer::InterfaceViewer(const Model& model, double gap_tolerance, const
                                  const std::vector<std::shared_ptr<const Facets>>& facets)
     : tolerance_(gap_tolerance) {
   for (std::size_t k = 0; k < bases.size(); ++k) bases_.emplace_back(model, model.interfaces[k], bases[k]);
-  int first = 0;
+  int first = 0, first_history = 0;
   for (const Interface& interface : model.interfaces) {
     Layout layout;
     layout.first = first;
+    layout.first_history = first_history;
+    layout.batch = interface.batch;
+    if (interface.batch.rotations > 0) layout.footing = interface.law.get();
     layout.points = interface.batch.points;
-    layout.components = interface.batch.components;
+    layout.translations = interface.batch.translations();
     layout.space = interface.space;
     layout.area = interface.area;
     layout.inverse_area = interface.area.cwiseInverse();
@@ -75,7 +78,7 @@ InterfaceViewer::InterfaceViewer(const Model& model, double gap_tolerance, const
       layout.along[i] = arm.dot(local_axis(interface.space, interface.normal[p], 0));
       layout.across[i] = arm.dot(interface.normal[p]);
     }
-    if (interface.space.dimension == 3 || !flat(interface)) layout.resultant_rows = resultant_rows(interface);
+    if (interface.space.dimension == 3 || layout.footing != nullptr || !flat(interface)) layout.resultant_rows = resultant_rows(interface);
     layout.total = interface.area.sum();
     layout.slope_weight = slope_weights(interface);
     layout.stiffness = normal_stiffness(interface);
@@ -88,6 +91,7 @@ InterfaceViewer::InterfaceViewer(const Model& model, double gap_tolerance, const
     }
     layouts_.push_back(std::move(layout));
     first += interface.rows();
+    if (interface.law != nullptr) first_history += interface.law->num_history(interface.batch.components) * interface.batch.points;
   }
 }
 
@@ -156,11 +160,30 @@ double InterfaceViewer::edge_opening(const Layout& layout, const double* gap) co
   return most;
 }
 
-void InterfaceViewer::look(const Vector& opening, const Vector& force, std::vector<InterfaceView>& views) {
+/// One point with rotations: its law knows how much of the footing is open. A pressure is not among its forces.
+void InterfaceViewer::look_at_footing(const Layout& layout, const Vector& opening, const Vector& force, const Vector& history,
+                                      InterfaceView& view) const {
+  const double* rows = opening.data() + layout.first;
+  const FootingContact contact = layout.footing->contact(layout.batch, rows, history.data() + layout.first_history);
+  view.open_area = contact.open_share;
+  view.tension_area = layout.bonded && force[layout.first + layout.batch.normal()] > 0 ? 1 : 0;
+  view.max_opening = contact.max_gap;
+  view.least_opening = contact.least_gap;
+  view.max_pressure = 0;
+  for (int k = 0; k < std::min(2, layout.batch.rotations); ++k) view.rotation[static_cast<std::size_t>(k)] = rows[layout.translations + k];
+  const Vector sums = layout.resultant_rows * force.segment(layout.first, layout.batch.components);
+  view.resultant = resultant_of(layout.space, sums.data());
+}
+
+void InterfaceViewer::look(const Vector& opening, const Vector& force, const Vector& history, std::vector<InterfaceView>& views) {
   views.resize(layouts_.size());
   for (std::size_t k = 0; k < layouts_.size(); ++k) {
     const Layout& layout = layouts_[k];
-    const int n = layout.points, normal = layout.first + (layout.components - 1) * n;
+    if (layout.footing != nullptr) {
+      look_at_footing(layout, opening, force, history, views[k]);
+      continue;
+    }
+    const int n = layout.points, normal = layout.first + (layout.translations - 1) * n;
     const double *gap = opening.data() + normal, *p = force.data() + normal;
     const double *area = layout.area.data(), *inverse = layout.inverse_area.data(), *along = layout.along.data();
     const double *slope = layout.slope_weight[0].data(), tolerance = tolerance_;
@@ -201,7 +224,7 @@ void InterfaceViewer::look(const Vector& opening, const Vector& force, std::vect
       view.resultant = resultant_of(layout.space, sums.data());
       continue;
     }
-    if (layout.components > 1) {
+    if (layout.translations > 1) {
       const double* t = force.data() + layout.first;
       const double* across = layout.across.data();
 #pragma omp simd reduction(+ : shear, moment)
@@ -216,8 +239,8 @@ BasePose InterfaceViewer::pose(const State& state, std::size_t interface, const 
   const int n = layout.points;
   const double *along = state.opening.data() + layout.first, *area = layout.area.data();
   BasePose pose{.max_opening = view.max_opening, .open_area = view.open_area};
-  if (layout.components > 1) pose.slip_1 = small::dot(n, area, along) / layout.total;
-  if (layout.components > 2) pose.slip_2 = small::dot(n, area, along + n) / layout.total;
+  if (layout.translations > 1) pose.slip_1 = small::dot(n, area, along) / layout.total;
+  if (layout.translations > 2) pose.slip_2 = small::dot(n, area, along + n) / layout.total;
   if (!bases_.empty()) bases_[interface].look(state, pose);
   return pose;
 }

@@ -17,24 +17,29 @@ class InterfaceViewer {
   InterfaceViewer(const Model& model, double gap_tolerance, const std::vector<std::vector<int>>& bases = {},
                   const std::vector<std::shared_ptr<const Facets>>& facets = {});
   /// `force` holds one force per row [N], tension > 0: the mean over the step.
-  void look(const Vector& opening, const Vector& force, std::vector<InterfaceView>& views);
+  /// `history` is the memory of all laws.
+  void look(const Vector& opening, const Vector& force, const Vector& history, std::vector<InterfaceView>& views);
   /// How an interface stands; `view` is what look() saw of it.
   BasePose pose(const State& state, std::size_t interface, const InterfaceView& view) const;
 
  private:
   struct Layout {
-    int first = 0, points = 0, components = 0;
+    int first = 0, points = 0, translations = 0;
     Vector area, inverse_area, along, across;  // along t and along n from the reference point [m]
     std::array<Vector, 2> slope_weight;
     Space space;
-    Matrix resultant_rows;                // in space, and where the normals differ; else empty: the sums are then taken directly
-    double total = 0;                     // m2
-    PositiveShare share;                  // empty: points count as a whole
-    double stiffness = 0;                 // Pa/m of the closed joint; infinite for constraints
-    bool bonded = false;                  // it may pull: the tension share is asked for
-    std::vector<Facets::Corner> corners;  // of the surface that are no points: openings are extrapolated to them
-    bool at_edge = false;                 // pressures too
+    Matrix resultant_rows;                  // in space, and where the normals differ; else empty: the sums are then taken directly
+    double total = 0;                       // m2
+    PositiveShare share;                    // empty: points count as a whole
+    double stiffness = 0;                   // Pa/m of the closed joint; infinite for constraints
+    bool bonded = false;                    // it may pull: the tension share is asked for
+    std::vector<Facets::Corner> corners;    // of the surface that are no points: openings are extrapolated to them
+    bool at_edge = false;                   // pressures too
+    const InterfaceLaw* footing = nullptr;  // the law of a point with rotations, which stands for a whole footing; else null
+    Batch batch;
+    int first_history = 0;
   };
+  void look_at_footing(const Layout& layout, const Vector& opening, const Vector& force, const Vector& history, InterfaceView& view) const;
   double open_share(const Layout& layout, const double* gap, const double* force, const InterfaceView& view);
   double tension_share(const Layout& layout, const double* force);
   static double edge_pressure(const Layout& layout, const double* force);

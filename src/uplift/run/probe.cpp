@@ -52,11 +52,11 @@ std::vector<StiffnessRatio> stiffness_ratios(const Model& model, const Stage& st
   for (std::size_t k = 0; k < contact.blocks.size(); ++k) {
     const Block& block = contact.blocks[k];
     StiffnessRatio ratio{block.name, 1e300, 0, 0};
-    double stiffness[3] = {0, 0, 0};
+    double stiffness[most_components] = {};
     if (block.law != nullptr) block.law->closed_stiffness(block.batch.components, stiffness);
     for (int i = 0; i < block.batch.points; ++i) {
       const double compliance = contact.factor.row(block.first + block.batch.normal() + i).squaredNorm();
-      const double value = stiffness[block.batch.components - 1] * block.area[static_cast<std::size_t>(i)] * compliance;
+      const double value = stiffness[block.batch.translations() - 1] * block.area[static_cast<std::size_t>(i)] * compliance;
       ratio.least = std::min(ratio.least, value);
       ratio.most = std::max(ratio.most, value);
       ratio.compliance = std::max(ratio.compliance, compliance);

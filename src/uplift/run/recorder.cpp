@@ -293,7 +293,14 @@ Frame Recorder::frame_of(const State& state) const {
   frame.opening.resize(points);
   frame.pressure.resize(points);
   int first = 0, point = 0;
-  for (const Interface& interface : model_.interfaces) {
+  for (std::size_t k = 0; k < model_.interfaces.size(); ++k) {
+    const Interface& interface = model_.interfaces[k];
+    if (interface.footprint) {  // its forces are no pressures, and its edges open before its middle
+      frame.opening[point] = views_[k].max_opening;
+      frame.pressure[point++] = 0;
+      first += interface.rows();
+      continue;
+    }
     for (int i = 0; i < interface.batch.points; ++i, ++point) {
       frame.opening[point] = state.opening[first + interface.batch.normal() + i];
       frame.pressure[point] = std::max(0.0, -state.mean_force[first + interface.batch.normal() + i] / interface.area[i]);

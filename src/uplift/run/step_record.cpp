@@ -97,7 +97,7 @@ void StepRecord::average(double window) {
 void StepRecord::add_slip(const std::vector<Interface>& interfaces, const Vector& opening, const std::vector<char>& is_wall) {
   Index first = 0;
   for (std::size_t k = 0; k < interfaces.size(); ++k) {
-    const Index points = interfaces[k].batch.points, tangents = interfaces[k].batch.components - 1;
+    const Index points = interfaces[k].batch.points, tangents = interfaces[k].batch.translations() - 1;
     for (Index i = 0; is_wall[k] && tangents > 0 && i < points; ++i) {
       const double one = opening[first + i], two = tangents > 1 ? opening[first + points + i] : 0;
       note(extremes[k].max_slip, std::hypot(one, two), time.back());

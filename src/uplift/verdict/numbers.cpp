@@ -127,8 +127,9 @@ void add_uplift(const Base& base, const VerdictRequest& request, InterfaceVerdic
 
 void add_pressure(const Base& base, InterfaceVerdict& said) {
   const StepRecord::Reached& pressure = base.extremes().max_pressure;
-  add(said.numbers, "max_toe_pressure", pressure);
-  if (base.pressed()) add(said.numbers, "toe_pressure_ratio", {pressure.value * base.facts.area / base.rest.force, pressure.time});
+  const bool known = !base.interface.footprint;  // a whole foundation has forces, no pressures
+  if (known) add(said.numbers, "max_toe_pressure", pressure);
+  if (known && base.pressed()) add(said.numbers, "toe_pressure_ratio", {pressure.value * base.facts.area / base.rest.force, pressure.time});
   const auto along = [&](std::size_t axis) { return [&base, axis](std::size_t i) { return base.eccentricity(i, axis); }; };
   if (base.interface.space.dimension == 2) {
     add(said.numbers, extreme(base, "max_eccentricity", along(0)));
@@ -244,6 +245,7 @@ void add_bonded(const Base& base, const Base& bonded, std::vector<VerdictNumber>
     const VerdictNumber* number = find_number(numbers, of);
     if (number && number->change) add(numbers, name, *number->change);
   }
+  if (base.interface.footprint) return;  // no tension under parts of it is known
   const StepRecord::Reached& pulls = bonded.extremes().tension_area;
   add(numbers, "linear_tension_ratio", pulls);
   if (const std::optional<double> uplift = uplift_of_tension(pulls.value); uplift && base.pressed())

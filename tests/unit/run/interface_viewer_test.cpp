@@ -42,7 +42,7 @@ double largest_gap(const std::vector<JointPoint>& points, Space space, Facets fa
   Vector gap(model.interfaces.front().batch.points);
   for (std::size_t i = 0; i < points.size(); ++i) gap[static_cast<Index>(i)] = opening(points[i].position);
   std::vector<InterfaceView> views;
-  viewer.look(gap, Vector::Zero(gap.size()), views);
+  viewer.look(gap, Vector::Zero(gap.size()), {}, views);
   return views.front().max_opening;
 }
 

@@ -1,4 +1,4 @@
-// What 100 000 random models showed of static stages: wrong failures, and failures without a reason that a user can act on.
+// What random models showed of static stages: wrong failures, and failures without a reason that a user can act on.
 #include <gtest/gtest.h>
 
 #include <cmath>

@@ -91,6 +91,10 @@ struct Joint {
 /// `open`: the faces that the mesh was opened at for it.
 Joint make_joint(const Values& interface, const std::vector<FacePair>& open, bool rigid_ground, ModelBuilder& builder, CaseNames& names);
 
+/// The underside of a [[foundation]], and its one point.
+Footprint footprint_of(const Values& foundation, Space space);
+Joint foundation_joint(const Values& foundation, const Footprint& footprint, const CaseNames& names);
+
 /// Initial gaps that come from the geometry or from a table; of points with both sides.
 void set_gaps(const Values& interface, std::vector<JointPoint>& points, const CaseNames& names);
 

@@ -150,7 +150,7 @@ Request point_request(const Values& history, const Model& model, int interface, 
   Request request = make(quantity.kind, std::move(name), quantity.unit);
   request.interface = interface;
   request.point = point - 1;
-  request.component = quantity.tangent < 0 ? joint.batch.components - 1 : quantity.tangent;
+  request.component = quantity.tangent < 0 ? joint.batch.translations() - 1 : quantity.tangent;
   return request;
 }
 

@@ -93,6 +93,12 @@ std::vector<InterfacePart> interface_parts(const Case& read, bool rigid_ground, 
       parts.push_back(std::move(part));
     }
   }
+  for (const Values& table : read.values.tables("foundation")) {
+    names.interfaces.add(table, "name");
+    InterfacePart part{&table, table.text("name"), {}, footprint_of(table, names.space)};
+    part.joint = foundation_joint(table, *part.footprint, names);
+    parts.push_back(std::move(part));
+  }
   std::ranges::stable_partition(parts, [](const InterfacePart& part) { return part.joint.facts.role == Role::base; });
   return parts;
 }

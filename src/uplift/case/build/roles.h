@@ -1,4 +1,5 @@
 #pragma once
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -10,11 +11,12 @@ namespace uplift {
 /// Unit vector against gravity; without gravity the vertical axis.
 Vec3 upward(const Values& root, Space space);
 
-/// An interface of the model: an [[interface]] of the case, or its base or its walls.
+/// An interface of the model: an [[interface]] of the case, or its base or its walls; or a [[foundation]].
 struct InterfacePart {
   const Values* table = nullptr;
   std::string name;
   Joint joint;
+  std::optional<Footprint> footprint = {};  // of a foundation
 };
 /// The interfaces of a case, bases first. A surface or a line with faces of both kinds is divided in two: the base keeps the name, the
 /// other part is called "<name> walls". A face is of a base when its normal lies within 45 degrees of the upward direction; where no face

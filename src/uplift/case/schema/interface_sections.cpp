@@ -2,7 +2,7 @@
 
 #include "uplift/case/build/profile.h"
 #include "uplift/case/schema/mesh_sections.h"
-#include "uplift/laws/law.h"
+#include "uplift/laws/foundation.h"
 
 namespace uplift {
 namespace {
@@ -74,6 +74,21 @@ const Section& water_section() {
 }
 
 }  // namespace
+
+const Section& foundation_section() {
+  static const Section s{
+      "foundation",
+      "a rigid footing whose ground is one element with displacements and rotations (macro-element), instead of an interface of points",
+      Fields{text("name", "name"), text("body", "node (the master of the footing) that the ground carries"),
+             choice("shape", {"strip", "rectangle", "disc"}, "plan of the underside").standard("rectangle"),
+             number("width", "m", "width of the underside along the x axis; of a disc its diameter").positive(),
+             number("length", "m", "across the width: in the plane out of the plane, absent 1 m; in space needed but for a disc")
+                 .positive()
+                 .optional(),
+             vector("offset", "m", "from the node to the middle of the footing's underside").optional(),
+             part("model", foundation_models, "what the ground does")}};
+  return s;
+}
 
 const Section& interface_section() {
   static const Section s{

@@ -5,5 +5,7 @@ namespace uplift {
 
 /// [[interface]] with everything below it.
 const Section& interface_section();
+/// [[foundation]].
+const Section& foundation_section();
 
 }  // namespace uplift

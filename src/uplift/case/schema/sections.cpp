@@ -283,6 +283,7 @@ const Section& case_section() {
             tables("rigid", rigid_section(), "rigid bodies"),
             tables("support", support_section(), "supports"),
             tables("interface", interface_section(), "interfaces"),
+            tables("foundation", foundation_section(), "foundations on one element of the ground"),
             table("gravity", gravity_section(), "weight").optional(),
             tables("function", function_section(), "functions of time"),
             tables("record", record_section(), "motions of the ground, recorded or generated"),

@@ -14,7 +14,7 @@ using Terms = std::vector<std::pair<int, double>>;
 
 /// Direction of a local component of an interface point; the normal is the last one.
 Vec3 direction(const Interface& interface, int point, int component) {
-  return component_axis(interface.space, interface.normal[static_cast<std::size_t>(point)], component, interface.batch.components);
+  return component_axis(interface.space, interface.normal[static_cast<std::size_t>(point)], interface.batch, component).axis;
 }
 
 /// From the Gauss points of a face to its nodes: the least-squares fit of the shape functions, weighted with the areas, so that the
@@ -92,15 +92,15 @@ int InterfaceFrames::status(const Surface& surface, double opening, double press
 /// One joint point, added at the end.
 void InterfaceFrames::add_point(const Surface& surface, const State& state, int point, JointValues& values) const {
   const Interface& interface = model_->interfaces[static_cast<std::size_t>(surface.interface)];
-  const int components = interface.batch.components;
+  const int translations = interface.batch.translations();
   Vec3 slip = Vec3::Zero(), shear = Vec3::Zero(), traction = Vec3::Zero();
   double opening = 0, pressure = 0;
-  for (int c = 0; c < components; ++c) {
+  for (int c = 0; c < translations; ++c) {
     const int row = surface.first_row + c * interface.batch.points + point;
     const Vec3 axis = direction(interface, point, c);
     const double stress = state.mean_force[row] / interface.area[point];
     traction += stress * axis;
-    if (c == components - 1) {
+    if (c == translations - 1) {
       opening = state.opening[row];
       pressure = 0.0 - stress;
     } else {

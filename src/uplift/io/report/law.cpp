@@ -35,7 +35,7 @@ Chart law_chart(const ReportRun& run) {
               {}};
   if (run.built->model.interfaces.empty()) return chart;
   const Interface& interface = run.built->model.interfaces.front();
-  if (!interface.law) return chart;
+  if (!interface.law || interface.footprint) return chart;
   const Values& values = *run.built->behaviours.front();
   if (is_external(values)) return chart;  // its function belongs to the caller, who may be gone
   const double opening = shown_opening(interface.law->scales(), run.result->max_opening.value),

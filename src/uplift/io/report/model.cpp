@@ -135,26 +135,24 @@ void write_beams(JsonWriter& json, const Drawn& drawn, const BuiltCase& built) {
 }
 
 /// A footing is drawn as a flat block on its underside.
+void write_body(JsonWriter& json, const BuiltCase& built, const std::string& body, const Interface& joint, double width) {
+  const Vec3 n = joint.normal.front(), half = width / 2 * local_axis(joint.space, n, 0), middle = joint.reference;
+  const auto node = static_cast<std::size_t>(built.model.find_node(body));
+  const Vec3 up = std::max(0.08 * width, (built.model.nodes[node].position - middle).dot(n)) * n;
+  json.begin_object().member("name", body).member("node", shown_name(built, body)).key("outline").begin_array();
+  for (const Vec3& corner : {Vec3(middle - half), Vec3(middle + half), Vec3(middle + half + up), Vec3(middle - half + up)})
+    json.numbers(std::array<double, 2>{corner.x(), corner.y()});
+  json.end_array().end_object();
+}
+
 void write_bodies(JsonWriter& json, const Case& read, const BuiltCase& built) {
   json.begin_array();
-  for (const Values& interface : read.values.tables("interface")) {
-    const Values* footing = table_if(interface, "footing");
-    if (!footing) continue;
-    const int node = built.model.find_node(footing->text("body"));
-    const Interface* joint = nullptr;
-    for (const Interface& each : built.model.interfaces)
-      if (each.name == interface.text("name")) joint = &each;
-    const Vec3 n = joint->normal.front(), t = local_axis(joint->space, n, 0), middle = joint->reference;
-    const double half = footing->number("width") / 2;
-    const double height = std::max(0.08 * 2 * half, (built.model.nodes[static_cast<std::size_t>(node)].position - middle).dot(n));
-    const std::array<Vec3, 4> corners{middle - half * t, middle + half * t, middle + half * t + height * n, middle - half * t + height * n};
-    json.begin_object()
-        .member("name", footing->text("body"))
-        .member("node", shown_name(built, footing->text("body")))
-        .key("outline")
-        .begin_array();
-    for (const Vec3& corner : corners) json.numbers(std::array<double, 2>{corner.x(), corner.y()});
-    json.end_array().end_object();
+  for (const Interface& joint : built.model.interfaces) {
+    for (const Values& interface : read.values.tables("interface"))
+      if (const Values* footing = table_if(interface, "footing"); footing && interface.text("name") == joint.name)
+        write_body(json, built, footing->text("body"), joint, footing->number("width"));
+    for (const Values& foundation : read.values.tables("foundation"))
+      if (foundation.text("name") == joint.name) write_body(json, built, foundation.text("body"), joint, foundation.number("width"));
   }
   json.end_array();
 }
@@ -313,6 +311,7 @@ std::set<int> nodes_used(const Case& read, const BuiltCase& built) {
   }
   for (const Values& interface : read.values.tables("interface"))
     if (const Values* footing = table_if(interface, "footing")) nodes.insert(built.model.find_node(footing->text("body")));
+  for (const Values& foundation : read.values.tables("foundation")) nodes.insert(built.model.find_node(foundation.text("body")));
   return nodes;
 }
 

@@ -122,6 +122,13 @@ void write_bodies(JsonWriter& json, const Case& read, const BuiltCase& built, co
       write_places(json, "corners", {corners.begin(), corners.end()});
       json.end_object();
     }
+  for (const InterfaceFacts& facts : built.facts)
+    for (const Values& foundation : read.values.tables("foundation"))
+      if (foundation.text("name") == facts.name && facts.corners.size() == 4) {
+        json.begin_object().member("name", facts.body).member("node", drawn.number(built.model.find_node(facts.body)));
+        write_places(json, "corners", {facts.corners.begin(), facts.corners.end()});
+        json.end_object();
+      }
   json.end_array();
 }
 

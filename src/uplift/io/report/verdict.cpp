@@ -85,6 +85,7 @@ std::vector<Chart> rest_charts(const ReportRun& run) {
   const std::vector<Frame>& frames = run.result->frames;
   if (model.space.dimension == 3 || model.interfaces.empty() || frames.empty()) return {};
   const Interface& interface = model.interfaces.front();
+  if (interface.footprint) return {};  // one point has no profile
   const Vec3 t = local_axis(model.space, mean_normal(interface), 0);
   std::vector<std::pair<double, int>> order;
   for (int i = 0; i < interface.batch.points; ++i)

@@ -17,6 +17,7 @@ struct Entry {
   const FloorRun* floors = nullptr;
   const BuiltCase* built = nullptr;
   const RunSpec* spec = nullptr;
+  bool compact = false;
 };
 
 std::vector<Entry> entries_of(const SummaryInput& input) {
@@ -24,7 +25,7 @@ std::vector<Entry> entries_of(const SummaryInput& input) {
   for (std::size_t i = 0; i < input.runs.size(); ++i)
     entries.push_back({&input.runs[i], input.compared ? &input.compared->agreement[i] : nullptr,
                        input.floors && input.floors->any() ? &input.floors->runs[i] : nullptr, input.built ? &(*input.built)[i] : nullptr,
-                       input.specs ? &(*input.specs)[i] : nullptr});
+                       input.specs ? &(*input.specs)[i] : nullptr, input.compact});
   return entries;
 }
 
@@ -110,15 +111,16 @@ void write_run(ResultWriter& out, const Entry& entry) {
   write_peak(out, "max_top_motion", top.value_or(Peak{"", "m"}), "m", "largest horizontal motion of the top, over all directions");
   write_extremes(out, run);
   write_energies(out, run);
-  out.named(
-      "peaks", "largest magnitude of each recorded column, with its sign and time", run.peaks, [](const Peak& peak) { return peak.name; },
-      [&](const Peak& peak) { write_peak(out, peak, ""); });
+  if (!entry.compact)
+    out.named(
+        "peaks", "largest magnitude of each recorded column, with its sign and time", run.peaks, [](const Peak& peak) { return peak.name; },
+        [&](const Peak& peak) { write_peak(out, peak, ""); });
   out.when(entry.floors != nullptr);
   write_floors(out, "floor_spectra", entry.floors ? *entry.floors : no_floors);
   write_agreement(out, entry.agreement);
   out.when(!run.envelopes.empty());
   write_envelopes(out, run.envelopes, (entry.built ? entry.built->model.space : Space()).up());
-  out.when(!run.equilibrium.instants.empty());
+  out.when(!run.equilibrium.instants.empty() && !entry.compact);
   write_equilibrium(out, run.equilibrium);
   out.texts("notes", run.notes, "remarks on the computation: repeated steps, warnings of laws");
 }

@@ -38,7 +38,7 @@ struct SummaryInput {
   const FloorAnswers* floors = nullptr;
   const std::deque<BuiltCase>* built = nullptr;  // of the runs; null: nothing is written that needs the models
   const std::vector<RunSpec>* specs = nullptr;   // of the runs
-  bool compact = false;                          // for the report: on one line, without the histories of the verdict
+  bool compact = false;  // for the report: on one line, without what the page does not show (peaks of columns, equilibrium, histories)
 };
 
 /// summary.json: an object with the provenance, the arrays `motions` and `runs`, and the `verdict`.

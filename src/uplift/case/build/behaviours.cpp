@@ -1,0 +1,51 @@
+#include "uplift/case/build/behaviours.h"
+
+namespace uplift {
+
+/// Values as they would be read from a file again, with one number replaced.
+Values with_number(const Values& part, std::string_view key, double number) {
+  auto table = std::make_shared<RawTable>();
+  const auto add = [&](std::string_view name, auto data) {
+    table->entries.emplace_back(std::string(name), Raw{std::move(data), part.where(name), part.path(name)});
+  };
+  add("type", part.type());
+  for (const auto& [name, item] : part.items()) {
+    if (name == key || !item.given) continue;
+    if (const auto* flag = std::get_if<bool>(&item.data)) add(name, *flag);
+    if (const auto* whole = std::get_if<std::int64_t>(&item.data)) add(name, *whole);
+    if (const auto* real = std::get_if<double>(&item.data)) add(name, *real);
+    if (const auto* text = std::get_if<std::string>(&item.data)) add(name, *text);
+  }
+  add(key, number);
+  return check_part(Raw{table, part.where(), part.path()}, interface_behaviours());
+}
+
+/// An elastic joint that never opens, with the damping of the one that may: what differs between the runs is the uplift alone.
+Values bonded_behaviour(const Values& like, const std::vector<double>& stiffness) {
+  auto table = std::make_shared<RawTable>();
+  const auto add = [&](const char* name, auto data) { table->entries.emplace_back(name, Raw{std::move(data), like.where(), like.path()}); };
+  add("type", std::string("elastic"));
+  add("K_n", stiffness.back());
+  if (like.items().contains("c") && like.has("c")) add("c", like.number("c"));
+  if (stiffness.size() > 1)
+    add("K_t", stiffness.front());
+  else
+    add("tangential", std::string("none"));
+  return check_part(Raw{table, like.where(), like.path()}, interface_behaviours());
+}
+
+Values bonded_foundation(const Values& like, const Interface& foundation) {
+  std::vector<double> k(static_cast<std::size_t>(foundation.batch.components));
+  foundation.law->closed_stiffness(foundation.batch.components, k.data());
+  auto table = std::make_shared<RawTable>();
+  const auto add = [&](const char* name, auto data) { table->entries.emplace_back(name, Raw{std::move(data), like.where(), like.path()}); };
+  add("type", std::string("elastic"));
+  if (foundation.space.dimension == 2) {
+    add("K_h", k[0]), add("K_v", k[1]), add("K_r", k[2]);
+  } else {
+    add("K_h", k[0]), add("K_h2", k[1]), add("K_v", k[2]), add("K_r2", k[3]), add("K_r", k[4]), add("K_t", k[5]);
+  }
+  return check_part(Raw{table, like.where(), like.path()}, foundation_models());
+}
+
+}  // namespace uplift

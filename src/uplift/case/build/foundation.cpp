@@ -1,0 +1,62 @@
+#include <cmath>
+#include <numbers>
+
+#include "uplift/case/build/model.h"
+
+// [[foundation]]: a footing on one point with rotations.
+namespace uplift {
+namespace {
+
+/// Edges in the plane, corners in space; of a disc points round it.
+std::vector<Place> corners_of(const Footprint& footprint, Space space, const JointPoint& point) {
+  const Vec3 along = 0.5 * footprint.width * local_axis(space, point.normal, 0);
+  if (space.dimension == 2) return {point.position - along, point.position + along};
+  const Vec3 across = 0.5 * footprint.length * local_axis(space, point.normal, 1);
+  if (footprint.shape != Footprint::Shape::disc)
+    return {point.position - along - across, point.position + along - across, point.position + along + across,
+            point.position - along + across};
+  constexpr int count = 24;
+  std::vector<Place> corners;
+  for (int k = 0; k < count; ++k) {
+    const double angle = 2 * std::numbers::pi * k / count;
+    corners.push_back(point.position + std::cos(angle) * along + std::sin(angle) * across);
+  }
+  return corners;
+}
+
+}  // namespace
+
+Footprint footprint_of(const Values& foundation, Space space) {
+  Footprint made;
+  made.shape = *footprint_shape(foundation.text("shape"));
+  made.width = foundation.number("width");
+  made.dimension = space.dimension;
+  const bool disc = made.shape == Footprint::Shape::disc, strip = made.shape == Footprint::Shape::strip;
+  if (disc && foundation.has("length")) fail(foundation, "length", "no length: the width of a disc is its diameter", "one");
+  if (strip && space.dimension == 3) fail(foundation, "shape", "rectangle or disc in space", "strip");
+  if (space.dimension == 3 && !disc && !foundation.has("length")) fail(foundation, "", "the length of a rectangle in space", "none");
+  made.length = disc ? made.width : foundation.has("length") ? foundation.number("length") : 1;
+  return made;
+}
+
+Joint foundation_joint(const Values& foundation, const Footprint& footprint, const CaseNames& names) {
+  const int body = names.node(foundation, "body");
+  const Space space = names.space;
+  JointPoint point;
+  point.position = names.positions[static_cast<std::size_t>(body)];
+  if (foundation.has("offset")) point.position += vector_of(foundation, "offset", space);
+  point.normal = space.axis(space.up());
+  point.area = 1;
+  point.upper = {{body, 1.0}};
+  point.rigid_upper = true;
+  Joint joint{{point}, {}, point.position};
+  joint.facts.name = foundation.text("name");
+  joint.facts.body = names.nodes[body];
+  joint.facts.upper = {body};
+  joint.facts.area = footprint.area();
+  joint.facts.depth = space.dimension == 2 ? footprint.length : 0;
+  joint.facts.corners = corners_of(footprint, space, point);
+  return joint;
+}
+
+}  // namespace uplift

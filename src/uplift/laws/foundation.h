@@ -1,0 +1,39 @@
+#pragma once
+#include <optional>
+#include <span>
+#include <vector>
+
+#include "uplift/laws/law.h"
+
+// Models of a whole foundation: what lies under a rigid footing in one point with rotations, from the stiffness of the ground and the
+// strength of a geotechnical report. Rows of the point: in the plane (u_t, u_n, theta), in space (u_t1, u_t2, u_n, theta_1, theta_2,
+// theta_n); relative displacements [m] and rotations [rad] of the footing against the ground, opening > 0. Forces [N, N m], area 1.
+namespace uplift {
+
+/// The underside of a rigid footing.
+struct Footprint {
+  enum class Shape { strip, rectangle, disc } shape = Shape::rectangle;
+  double width = 0;     // m: along t1; of a disc its diameter
+  double length = 0;    // m: along t2; of a strip out of the plane
+  int dimension = 2;    // of the model
+  double area() const;  // m2
+  int components() const { return dimension == 2 ? 3 : 6; }
+  int rotations() const { return dimension == 2 ? 1 : 3; }
+};
+
+std::string_view to_string(Footprint::Shape);
+std::optional<Footprint::Shape> footprint_shape(std::string_view name);
+
+using FoundationEntry = Entry<InterfaceLaw, Footprint>;
+std::span<const FoundationEntry* const> foundation_catalog();
+std::span<const PartInfo* const> foundation_models();
+
+/// The law that checked values name: of a foundation with this underside, else of a joint. Null where they name a cone.
+std::unique_ptr<const InterfaceLaw> make_law(const Values& behaviour, const std::optional<Footprint>& footprint);
+
+/// Stiffnesses of a foundation, which every model has [N/m, N m/rad]: in the order of the rows.
+std::vector<Field> foundation_stiffness_fields();
+/// Their values in the order of the rows. Throws InputError where one that the model in space needs is missing.
+std::vector<double> foundation_stiffness(const Footprint& footprint, const Values& values);
+
+}  // namespace uplift

@@ -1,0 +1,100 @@
+#include <cmath>
+#include <limits>
+
+#include "uplift/laws/foundation.h"
+#include "uplift/laws/macro_element.h"
+
+// [[foundation]] model = "macro_element": the parameters of a report become those of the macro-element.
+namespace uplift {
+namespace {
+
+/// Length out of the plane counts in areas alone: forces of a strip are those of its whole length.
+MacroElasticity elasticity_of(const Footprint& footprint, const Values& values, const std::vector<double>& stiffness) {
+  MacroElasticity made;
+  made.disc = footprint.shape == Footprint::Shape::disc;
+  made.shape = values.has("shape_number") ? values.number("shape_number") : footprint.shape == Footprint::Shape::strip ? 4 : 6;
+  made.length[0] = footprint.width, made.length[1] = footprint.length;
+  if (footprint.dimension == 2) {
+    made.vertical = stiffness[1];
+    made.horizontal[0] = made.horizontal[1] = stiffness[0];
+    made.rocking[0] = made.rocking[1] = stiffness[2];
+    return made;
+  }
+  made.vertical = stiffness[2];
+  made.horizontal[0] = stiffness[0], made.horizontal[1] = stiffness[1];
+  made.rocking[0] = stiffness[4], made.rocking[1] = stiffness[3];  // a moment about t2 tilts the width
+  if (made.disc && (stiffness[0] != stiffness[1] || stiffness[3] != stiffness[4]))
+    fail(values, values.has("K_h2") ? "K_h2" : "K_r2", "the same stiffness in all directions of a disc", "two");
+  return made;
+}
+
+MacroStrength strength_of(const Footprint& footprint, const Values& values) {
+  constexpr double none = std::numeric_limits<double>::infinity();
+  MacroStrength made;
+  made.flow = values.text("flow") == "associated" ? MacroStrength::Flow::associated : MacroStrength::Flow::settling;
+  made.service = values.has("V_s") ? values.number("V_s") : none;
+  made.ultimate = values.has("V_u") ? values.number("V_u") : made.service;
+  for (const char* key : {"V_u", "w_ref"})
+    if (values.has(key) && !values.has("V_s")) fail(values, key, "V_s too", "none");
+  if (made.ultimate < made.service) fail(values, "V_u", "an ultimate load of at least V_s", "a smaller one");
+  if (made.ultimate > made.service && !values.has("w_ref"))
+    fail(values, "", "w_ref, the settlement over which V_s grows towards V_u", "none");
+  made.reference = values.has("w_ref") ? values.number("w_ref") : 1;
+  if (values.has("cohesion") && !values.has("friction_angle")) fail(values, "cohesion", "friction_angle too (0 without friction)", "none");
+  made.friction = values.has("friction_angle") ? std::tan(values.number("friction_angle")) : none;
+  made.cohesion = values.has("cohesion") ? values.number("cohesion") * footprint.area() : 0;
+  made.dilation = std::tan(values.number("dilatancy"));
+  made.settlement_share = values.number("settlement_factor");
+  return made;
+}
+
+}  // namespace
+
+const FoundationEntry& entry_foundation_macro_element() {
+  static const FoundationEntry entry = [] {
+    FoundationEntry made;
+    made.name = "macro_element";
+    made.summary = "uplift, bearing capacity and sliding of a shallow foundation in one element: footing and ground near it";
+    made.equations =
+        "M0 = N D/alpha: uplift begins; M/M0 = alpha/2 - (alpha/2 - 1) x^(-1/(alpha/2 - 1)), x = theta K_r/M0 > 1\n"
+        "f2 = N - V (1 - |H|/N)^3 (1 - 2 |M1|/(N D1)) (1 - 2 |M2|/(N D2)) <= 0\n"
+        "V = V_s + (V_u - V_s) p/(p + w_ref), p: sum of |plastic settlement|\n"
+        "f1 = |H| - N tan(friction_angle) - cohesion A (1 - 2 |M1|/(N D1)) (1 - 2 |M2|/(N D2)) <= 0";
+    made.source =
+        "docs/theory/macro_element.md; surfaces of code_aster's law FONDATION (R5.03.31); Crémer, Pecker & Davenne 2001; Chatzigogos, "
+        "Pecker "
+        "& Salençon 2011";
+    made.params = foundation_stiffness_fields();
+    for (const Field& field :
+         {number(
+              "shape_number", "1",
+              "alpha: 4 strip on the half-space, 6 disc on the half-space and strip or rectangle on springs (Winkler), 8 disc on springs; "
+              "absent: 4 of a strip, else 6")
+              .between(4, 8)
+              .optional(),
+          number("V_s", "N", "vertical load at which the ground first yields (serviceability); absent: the ground does not yield")
+              .positive()
+              .optional(),
+          number("V_u", "N", "vertical load that it bears after large settlements; absent: V_s").positive().optional(),
+          number("w_ref", "m", "plastic settlement that brings half of V_u - V_s").positive().optional(),
+          number("friction_angle", "rad", "friction between footing and ground; absent: no sliding").between(0, 1.4).optional(),
+          number("cohesion", "Pa", "shear strength without pressure; absent: 0").nonnegative().optional(),
+          number("dilatancy", "rad", "angle at which a sliding footing rises; settling flow").between(0, 1.4).standard(0.0),
+          choice(
+              "flow", {"settling", "associated"},
+              "where yielding ground goes: settling: always down, as in tests; associated: along the normal of the surface, for comparison "
+              "(a footing with a safety above 2 rises with every cycle)")
+              .standard("settling"),
+          number("settlement_factor", "1", "of settling flow: more settlement for the same rotation above 1").positive().standard(1.0)})
+      made.params.push_back(field);
+    made.make = [](const Footprint& footprint, const Values& values) -> std::unique_ptr<const InterfaceLaw> {
+      const std::vector<double> stiffness = foundation_stiffness(footprint, values);
+      return std::make_unique<MacroElement>(MacroParameters{elasticity_of(footprint, values, stiffness), strength_of(footprint, values),
+                                                            footprint.dimension == 3 ? stiffness.back() : 0});
+    };
+    return made;
+  }();
+  return entry;
+}
+
+}  // namespace uplift

@@ -1,0 +1,223 @@
+#include "uplift/laws/macro_element.h"
+
+#include <algorithm>
+#include <cassert>
+#include <cmath>
+#include <limits>
+
+namespace uplift {
+namespace {
+
+constexpr int most_halvings = 6;  // of an increment whose return fails
+
+/// What a point remembers besides the plastic displacements.
+enum { memory_settlement, memory_slip, memory_dissipated, num_scalars };
+
+}  // namespace
+
+/// Where the rows of a point stand among the variables of the macro-element.
+struct MacroElement::Rows {
+  int points, point, components, count;  // count: rows with plastic displacements
+  const int* variable;
+
+  Rows(int all_points, int i, int c) : points(all_points), point(i), components(c) {
+    static constexpr int plane[] = {macro_h1, macro_n, macro_m1};
+    static constexpr int space[] = {macro_h1, macro_h2, macro_n, macro_m2, macro_m1};
+    assert(c == 3 || c == 6);
+    variable = c == 3 ? plane : space;
+    count = c == 3 ? 3 : 5;
+  }
+  bool has_torsion() const { return components == 6; }
+  int at(int row) const { return row * points + point; }
+  int at(int row, int column) const { return (row * components + column) * points + point; }
+  double sign(int row) const { return variable[row] == macro_n ? -1 : 1; }
+
+  MacroVector get(const double* values) const {
+    MacroVector out = MacroVector::Zero();
+    for (int r = 0; r < count; ++r) out[variable[r]] = sign(r) * values[at(r)];
+    return out;
+  }
+  void put(const MacroVector& vector, double* values) const {
+    for (int r = 0; r < count; ++r) values[at(r)] = sign(r) * vector[variable[r]];
+  }
+  void put(const MacroMatrix& matrix, double factor, double* values) const {
+    for (int r = 0; r < count; ++r)
+      for (int c = 0; c < count; ++c) values[at(r, c)] = factor * sign(r) * sign(c) * matrix(variable[r], variable[c]);
+  }
+  void put_torsion(double stiffness, double* slope) const {
+    for (int r = 0; r < components; ++r) slope[at(r, components - 1)] = slope[at(components - 1, r)] = 0;
+    slope[at(components - 1, components - 1)] = stiffness;
+  }
+};
+
+/// One step of a point, in as many increments as the return needs. Derivatives are those with respect to the end of the path.
+class MacroElement::Path {
+ public:
+  Path(const MacroElement& law, bool average, const MacroVector& from, const MacroVector& to, const MacroVector& old_plastic,
+       const double (&old)[num_scalars])
+      : plastic(old_plastic), memory{old[0], old[1], old[2]}, law_(law), average_(average), from_(from), step_(to - from) {}
+
+  /// False when the return fails.
+  bool go() { return go(0, 1, 0); }
+
+  MacroVector plastic, mean = MacroVector::Zero(), end = MacroVector::Zero();
+  MacroMatrix mean_slope = MacroMatrix::Zero(), end_slope = MacroMatrix::Zero();
+  double memory[num_scalars];
+
+ private:
+  bool go(double a, double b, int depth);
+  void add_average(double a, double b, const MacroVector& before, const MacroMatrix& before_slope, const MacroElastic& at_before,
+                   const MacroReturned& now, const MacroMatrix& now_slope, const MacroVector& yielded);
+
+  const MacroElement& law_;
+  bool average_;
+  MacroVector from_, step_;
+  MacroMatrix plastic_slope_ = MacroMatrix::Zero();
+  MacroVector settlement_slope_ = MacroVector::Zero();
+};
+
+/// The part of the path between the shares a and b; halved where the return fails.
+bool MacroElement::Path::go(double a, double b, int depth) {
+  const MacroVector before = from_ + a * step_ - plastic, trial = from_ + b * step_ - plastic;
+  const MacroReturned now = macro_return(law_.uplift_, law_.surfaces_, trial, memory[memory_settlement]);
+  if (!now.converged) {
+    const double middle = 0.5 * (a + b);
+    return depth < most_halvings && go(a, middle, depth + 1) && go(middle, b, depth + 1);
+  }
+  const MacroElastic at_before = law_.uplift_.respond(before);
+  const MacroMatrix one = MacroMatrix::Identity(), before_slope = a * one - plastic_slope_;
+  const MacroMatrix now_slope = now.by_trial * (b * one - plastic_slope_) + now.by_settlement * settlement_slope_.transpose();
+  const MacroVector yielded = trial - now.elastic;  // with the shear that a footing without contact forgets
+  if (average_)
+    add_average(a, b, before, before_slope, at_before, now, now_slope, yielded);
+  else
+    memory[memory_dissipated] += now.at.force.dot(yielded) + (now.at.contact ? 0 : at_before.shear_energy);
+
+  plastic += yielded;
+  const MacroMatrix yielded_slope = (b * one - now_slope) - plastic_slope_;
+  plastic_slope_ += yielded_slope;
+  memory[memory_settlement] += std::abs(yielded[macro_n]);
+  settlement_slope_ += (yielded[macro_n] < 0 ? -1 : 1) * yielded_slope.row(macro_n).transpose();
+  if (now.at.contact) memory[memory_slip] += std::hypot(yielded[macro_h1], yielded[macro_h2]);
+  end = now.at.force;
+  end_slope = now.at.stiffness * now_slope;
+  return true;
+}
+
+/// Adds the discrete gradient of the increment. Where the average over a long increment would feed energy in (a reversal while N changes
+/// much), it is raised along the increment until nothing is dissipated.
+void MacroElement::Path::add_average(double a, double b, const MacroVector& before, const MacroMatrix& before_slope,
+                                     const MacroElastic& at_before, const MacroReturned& now, const MacroMatrix& now_slope,
+                                     const MacroVector& yielded) {
+  MacroUplift::Average average = law_.uplift_.average(before, at_before, now.elastic, now.at);
+  MacroMatrix slope = average.by_from * before_slope + average.by_to * now_slope;
+  const double share = b - a;
+  const double dissipated = average.force.dot(yielded);
+  const MacroVector scaled = law_.uplift_.stiffness().cwiseProduct(share * step_);
+  const double square = scaled.dot(share * step_);
+  if (dissipated < 0 && square > 0) {
+    const MacroMatrix yielded_slope = (b * MacroMatrix::Identity() - now_slope) - plastic_slope_;
+    const double raise = -dissipated / square;
+    const MacroVector by_to =
+        -(slope.transpose() * yielded + yielded_slope.transpose() * average.force + 2 * raise * share * scaled) / square;
+    average.force += raise * scaled;
+    slope += scaled * by_to.transpose();
+    slope.diagonal() += raise * share * law_.uplift_.stiffness();
+  } else {
+    memory[memory_dissipated] += dissipated;
+  }
+  mean += share * average.force;
+  mean_slope += share * slope;
+}
+
+MacroElement::MacroElement(const MacroParameters& parameters)
+    : uplift_(parameters.elasticity), surfaces_(uplift_.elasticity(), parameters.strength), torsion_(parameters.torsion) {}
+
+int MacroElement::num_history(int components) const {
+  return (components == 6 ? 5 : 3) + num_scalars;
+}
+
+void MacroElement::advance(bool average, const Batch& batch, const double* from, const double* to, const double* old,
+                           const LawResponse& response) const {
+  const int n = batch.points;
+  for (int i = 0; i < n; ++i) {
+    const Rows rows(n, i, batch.components);
+    double scalars[num_scalars];
+    for (int k = 0; k < num_scalars; ++k) scalars[k] = old[(rows.count + k) * n + i];
+    Path path(*this, average, rows.get(from), rows.get(to), rows.get(old), scalars);
+    if (!path.go()) {
+      path.plastic = rows.get(old);
+      for (int k = 0; k < num_scalars; ++k) path.memory[k] = scalars[k];
+      path.mean.setConstant(std::numeric_limits<double>::quiet_NaN());
+      path.end = path.mean;
+    }
+    rows.put(average ? path.mean : path.end, response.traction);
+    if (response.slope != nullptr) rows.put(average ? path.mean_slope : path.end_slope, 1, response.slope);
+    if (response.end != nullptr) rows.put(path.end, response.end);
+    if (response.next != nullptr) rows.put(path.end_slope, 0.5, response.next);
+    if (response.now != nullptr) {
+      rows.put(path.plastic, response.now);
+      for (int k = 0; k < num_scalars; ++k) response.now[(rows.count + k) * n + i] = path.memory[k];
+    }
+    if (!rows.has_torsion()) continue;
+    const int last = rows.at(batch.components - 1);
+    response.traction[last] = torsion_ * (average ? 0.5 * (from[last] + to[last]) : to[last]);
+    if (response.slope != nullptr) rows.put_torsion(average ? 0.5 * torsion_ : torsion_, response.slope);
+    if (response.end != nullptr) response.end[last] = torsion_ * to[last];
+    if (response.next != nullptr) rows.put_torsion(0.5 * torsion_, response.next);
+  }
+}
+
+void MacroElement::respond(const Batch& batch, const double* from, const double* to, const double* old, const LawResponse& response) const {
+  advance(false, batch, from, to, old, response);
+}
+
+void MacroElement::mean(const Batch& batch, const double* from, const double* to, const double* old, const LawResponse& response) const {
+  assert(batch.coefficient == nullptr);
+  advance(true, batch, from, to, old, response);
+}
+
+void MacroElement::energy(const Batch& batch, const double* opening, const double* history, double* stored, double* dissipated) const {
+  for (int i = 0; i < batch.points; ++i) {
+    const Rows rows(batch.points, i, batch.components);
+    if (stored != nullptr) {
+      const MacroElastic at = uplift_.respond(rows.get(opening) - rows.get(history));
+      const double twist = rows.has_torsion() ? opening[rows.at(batch.components - 1)] : 0;
+      stored[i] = at.energy + at.shear_energy + 0.5 * torsion_ * twist * twist;
+    }
+    if (dissipated != nullptr) dissipated[i] = history[(rows.count + memory_dissipated) * batch.points + i];
+  }
+}
+
+void MacroElement::closed_stiffness(int components, double* stiffness) const {
+  const Rows rows(1, 0, components);
+  for (int r = 0; r < rows.count; ++r) stiffness[r] = uplift_.stiffness()[rows.variable[r]];
+  if (rows.has_torsion()) stiffness[components - 1] = torsion_;
+}
+
+FootingContact MacroElement::contact(const Batch& batch, const double* opening, const double* history) const {
+  const Rows rows(batch.points, 0, batch.components);
+  const MacroVector elastic = rows.get(opening) - rows.get(history);
+  const MacroElasticity& ground = uplift_.elasticity();
+  const double one = ground.length[0] * std::abs(elastic[macro_m1]), two = ground.length[1] * std::abs(elastic[macro_m2]);
+  const double edge = 0.5 * (ground.disc ? std::hypot(one, two) : one + two), toe = elastic[macro_n] + edge;
+  return {1 - uplift_.respond(elastic).contact_share, std::max(0.0, edge - elastic[macro_n]), -toe};
+}
+
+MacroState MacroElement::state(int components, const double* opening, const double* history) const {
+  const Rows rows(1, 0, components);
+  const MacroVector plastic = rows.get(history);
+  const MacroElastic at = uplift_.respond(rows.get(opening) - plastic);
+  const double* scalars = history + rows.count;
+  return {.vertical = at.force[macro_n],
+          .heave = at.heave,
+          .uplifted_share = 1 - at.contact_share,
+          .bearing = surfaces_.bearing_utilisation(at.force, surfaces_.capacity(scalars[memory_settlement])),
+          .sliding = surfaces_.sliding_utilisation(at.force),
+          .settlement = plastic[macro_n],
+          .accumulated = scalars[memory_settlement],
+          .slip = scalars[memory_slip],
+          .dissipated = scalars[memory_dissipated]};
+}
+
+}  // namespace uplift

@@ -1,0 +1,169 @@
+#include "uplift/laws/macro_surfaces.h"
+
+#include <cmath>
+#include <limits>
+
+namespace uplift {
+namespace {
+
+/// The corners of the bearing surface at H = 0 and M = 0 are rounded for the associated flow over this share of V, so that it has a normal
+/// there.
+constexpr double rounding_share = 1e-6;
+
+}  // namespace
+
+/// Forces without their direction: N and v = (|H|, 2 |M_1|/D_1, 2 |M_2|/D_2), which all lie between 0 and N.
+struct MacroSurfaces::Reduced {
+  double n;
+  Vec3 v;
+  Fixed<3, 5> by_force;    // d v/d force
+  MacroMatrix curving[3];  // second derivatives of v
+
+  /// v_k = factor |part of the force|, rounded near zero.
+  void put(int k, double factor, int first, int size, const MacroVector& force, double rounding) {
+    const auto part = force.segment(first, size);
+    const double length = std::sqrt(part.squaredNorm() + rounding * rounding);
+    v[k] = factor * (length - rounding);
+    if (!(length > 0)) return;
+    by_force.row(k).segment(first, size) = factor / length * part.transpose();
+    curving[k].block(first, first, size, size).diagonal().setConstant(factor / length);
+    curving[k].block(first, first, size, size) -= factor / (length * length * length) * part * part.transpose();
+  }
+};
+
+/// E = (1 - r_0)^power (1 - r_1)(1 - r_2), r = v/N, with power 3 or 0, and its derivatives with respect to the forces.
+struct MacroSurfaces::Product {
+  double value;
+  MacroVector gradient;
+  MacroMatrix second;
+
+  Product(const Reduced& f, int power, bool with_second) {
+    const Vec3 r = f.v / f.n;
+    const double shear = power == 0 ? 1 : std::pow(1 - r[0], 3), b1 = 1 - r[1], b2 = 1 - r[2];
+    const double rate = power == 0 ? 0 : -3 * (1 - r[0]) * (1 - r[0]), rate_rate = power == 0 ? 0 : 6 * (1 - r[0]);
+    value = shear * b1 * b2;
+    const Vec3 d(rate * b1 * b2, -shear * b2, -shear * b1);
+    MacroVector by_n = MacroVector::Zero();
+    by_n[macro_n] = 1;
+    gradient = (f.by_force.transpose() * d - r.dot(d) * by_n) / f.n;
+    if (!with_second) return;
+    Mat3 dd;
+    dd << rate_rate * b1 * b2, -rate * b2, -rate * b1, -rate * b2, 0, shear, -rate * b1, shear, 0;
+    const Vec3 cross_n = d + dd * r;
+    const MacroVector cross = f.by_force.transpose() * cross_n;
+    second = f.by_force.transpose() * dd * f.by_force - cross * by_n.transpose() - by_n * cross.transpose();
+    second(macro_n, macro_n) += 2 * r.dot(d) + r.dot(dd * r);
+    second /= f.n * f.n;
+    for (int k = 0; k < 3; ++k) second += d[k] / f.n * f.curving[k];
+  }
+};
+
+MacroSurfaces::MacroSurfaces(const MacroElasticity& e, const MacroStrength& strength)
+    : disc_(e.disc), length_{e.length[0], e.length[1]}, strength_(strength) {
+  if (!(strength_.ultimate > strength_.service)) strength_.ultimate = strength_.service;
+  const double v = strength_.service, h = strength_.settlement_share * v * 27 / 256;
+  ellipsoid_ << 1 / v, v / (h * h), v / (h * h), 0, 0;
+  for (int i = 0; i < 2; ++i) {
+    const double m = strength_.settlement_share * v * length_[i] / 8;
+    ellipsoid_[macro_m1 + i] = v / (m * m);
+  }
+}
+
+MacroSurfaces::Reduced MacroSurfaces::reduce(const MacroVector& force, double rounding) const {
+  Reduced out{force[macro_n], Vec3::Zero(), Fixed<3, 5>::Zero(), {MacroMatrix::Zero(), MacroMatrix::Zero(), MacroMatrix::Zero()}};
+  out.put(0, 1, macro_h1, 2, force, rounding);
+  if (disc_) {
+    out.put(1, 2 / length_[0], macro_m1, 2, force, rounding * length_[0]);
+  } else {
+    out.put(1, 2 / length_[0], macro_m1, 1, force, rounding * length_[0]);
+    out.put(2, 2 / length_[1], macro_m2, 1, force, rounding * length_[1]);
+  }
+  return out;
+}
+
+bool MacroSurfaces::has_bearing() const {
+  return std::isfinite(strength_.service);
+}
+
+bool MacroSurfaces::has_sliding() const {
+  return std::isfinite(strength_.friction);
+}
+
+double MacroSurfaces::capacity(double p) const {
+  if (!(strength_.ultimate > strength_.service)) return strength_.service;
+  return strength_.service + (strength_.ultimate - strength_.service) * p / (p + strength_.reference);
+}
+
+double MacroSurfaces::hardening(double p) const {
+  if (!(strength_.ultimate > strength_.service)) return 0;
+  const double sum = p + strength_.reference;
+  return (strength_.ultimate - strength_.service) * strength_.reference / (sum * sum);
+}
+
+MacroSurface MacroSurfaces::bearing(const MacroVector& force, double capacity) const {
+  const bool associated = strength_.flow == MacroStrength::Flow::associated;
+  const Product e(reduce(force, associated ? rounding_share * strength_.service : 0), 3, false);
+  MacroSurface out{force[macro_n] - capacity * e.value, -capacity * e.gradient, -e.value};
+  out.gradient[macro_n] += 1;
+  return out;
+}
+
+MacroSurface MacroSurfaces::sliding(const MacroVector& force) const {
+  const Reduced r = reduce(force, 0);
+  MacroSurface out{r.v[0] - force[macro_n] * strength_.friction, r.by_force.row(0).transpose(), 0};
+  out.gradient[macro_n] -= strength_.friction;
+  if (strength_.cohesion > 0) {
+    const Product e(r, 0, false);
+    out.value -= strength_.cohesion * e.value;
+    out.gradient -= strength_.cohesion * e.gradient;
+  }
+  return out;
+}
+
+MacroFlow MacroSurfaces::bearing_flow(const MacroVector& force, double capacity) const {
+  MacroFlow out;
+  if (strength_.flow == MacroStrength::Flow::settling) {
+    out.direction = ellipsoid_.cwiseProduct(force);
+    out.slope.diagonal() = ellipsoid_;
+    return out;
+  }
+  const Product e(reduce(force, rounding_share * strength_.service), 3, true);
+  out.direction = -capacity * e.gradient;
+  out.direction[macro_n] += 1;
+  out.slope = -capacity * e.second;
+  out.by_capacity = -e.gradient;
+  return out;
+}
+
+MacroFlow MacroSurfaces::sliding_flow(const MacroVector& force) const {
+  const Reduced r = reduce(force, 0);
+  MacroFlow out;
+  out.direction = r.by_force.row(0).transpose();
+  out.slope = r.curving[0];
+  if (strength_.flow == MacroStrength::Flow::settling) {
+    out.direction[macro_n] -= strength_.dilation;
+    return out;
+  }
+  out.direction[macro_n] -= strength_.friction;
+  if (strength_.cohesion > 0) {
+    const Product e(r, 0, true);
+    out.direction -= strength_.cohesion * e.gradient;
+    out.slope -= strength_.cohesion * e.second;
+  }
+  return out;
+}
+
+double MacroSurfaces::bearing_utilisation(const MacroVector& force, double capacity) const {
+  if (!(force[macro_n] > 0)) return 0;
+  const Reduced r = reduce(force, 0);
+  const double share = Product(r, 3, false).value;
+  return r.v.maxCoeff() < r.n ? r.n / (capacity * share) : std::numeric_limits<double>::infinity();
+}
+
+double MacroSurfaces::sliding_utilisation(const MacroVector& force) const {
+  if (!(force[macro_n] > 0)) return 0;
+  const Reduced r = reduce(force, 0);
+  return r.v[0] > 0 ? r.v[0] / (r.n * strength_.friction + strength_.cohesion * Product(r, 0, false).value) : 0;
+}
+
+}  // namespace uplift

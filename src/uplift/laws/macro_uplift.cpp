@@ -1,0 +1,205 @@
+#include "uplift/laws/macro_uplift.h"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+
+namespace uplift {
+namespace {
+
+/// The uplift curve of one axis at x = theta/theta_0 (eq M2).
+struct Curve {
+  double y = 1;         // x^(1/gamma), 1 before uplift: contact share 1/y
+  double moment;        // m = M/M_0
+  double compliance;    // g'' = d x/d m
+  double slack;         // 1 - 2 M/(N D), distance from the edge
+  double log_like = 0;  // (y^(gamma - 1) - 1)/(gamma - 1); ln y for gamma = 1
+  double heave;         // -h = m x - 2 g
+  double from_edge;     // h + beta x
+};
+
+Curve curve(double x, double beta, double gamma) {
+  Curve c;
+  if (x <= 1) {
+    c.moment = x;
+    c.compliance = 1;
+    c.slack = 1 - x / beta;
+    c.heave = 0;
+    c.from_edge = beta * x;
+    return c;
+  }
+  const double log_y = std::log(x) / gamma, t = (gamma - 1) * log_y;
+  c.y = std::exp(log_y);
+  c.moment = beta - gamma / c.y;
+  c.compliance = x * c.y;
+  c.slack = gamma / (beta * c.y);
+  c.log_like = std::abs(t) < 1e-14 ? log_y : std::expm1(t) / t * log_y;
+  const double twice_energy = 1 + 2 * gamma * c.log_like;
+  c.heave = c.moment * x - twice_energy;
+  c.from_edge = twice_energy + gamma * x / c.y;
+  return c;
+}
+
+}  // namespace
+
+/// What the rotation about each axis brings; a disc has one axis, that of its rotation.
+struct MacroUplift::Axes {
+  int count = 2;
+  double rotation[2];    // |theta| [rad]
+  double offset[2];      // x N [N]
+  double factor[2];      // (D/alpha)^2/K_r [m/N]
+  MacroVector along[2];  // direction of the rotation
+
+  Axes(const MacroElasticity& e, const MacroVector& q) {
+    along[0].setZero(), along[1].setZero();
+    if (e.disc) {
+      count = 1;
+      rotation[0] = std::hypot(q[macro_m1], q[macro_m2]);
+      if (rotation[0] > 0) along[0].tail<2>() = q.tail<2>() / rotation[0];
+    } else {
+      for (int i = 0; i < 2; ++i) {
+        rotation[i] = std::abs(q[macro_m1 + i]);
+        along[i][macro_m1 + i] = q[macro_m1 + i] < 0 ? -1 : 1;
+      }
+    }
+    for (int i = 0; i < count; ++i) {
+      const double arm = e.length[i] / e.shape;
+      offset[i] = e.rocking[i] * rotation[i] / arm;
+      factor[i] = arm * arm / e.rocking[i];
+    }
+  }
+};
+
+MacroUplift::MacroUplift(const MacroElasticity& elasticity)
+    : elastic_(elasticity), beta_(elasticity.shape / 2), gamma_(elasticity.shape / 2 - 1) {
+  const auto second = [](double(&value)[2]) {
+    if (!(value[1] > 0)) value[1] = value[0];
+  };
+  second(elastic_.length), second(elastic_.horizontal), second(elastic_.rocking);
+  if (elastic_.disc) elastic_.length[1] = elastic_.length[0], elastic_.rocking[1] = elastic_.rocking[0];
+  stiffness_ << elastic_.vertical, elastic_.horizontal[0], elastic_.horizontal[1], elastic_.rocking[0], elastic_.rocking[1];
+}
+
+/// N at the settlement w: the root of N/K_z + sum factor N (h + beta x) = w + sum D |theta|/2, whose left side grows with N and is concave.
+/// Newton's method on the logarithms, kept in a bracket. Zero without contact.
+double MacroUplift::vertical_force(double w, const Axes& axes) const {
+  double toe = w, largest = 0;
+  for (int i = 0; i < axes.count; ++i) {
+    toe += 0.5 * elastic_.length[i] * axes.rotation[i];
+    largest = std::max(largest, axes.offset[i]);
+  }
+  if (w > 0 && largest <= elastic_.vertical * w) return elastic_.vertical * w;
+  if (!(toe > 0)) return 0;
+  double low = 0, high = elastic_.vertical * toe, n = w > 0 ? std::min(high, std::max(elastic_.vertical * w, 1e-3 * high)) : 0.1 * high;
+  for (int iteration = 0; iteration < 200; ++iteration) {
+    double value = n / elastic_.vertical, rate = 1 / elastic_.vertical;
+    for (int i = 0; i < axes.count; ++i) {
+      const Curve c = curve(axes.offset[i] / n, beta_, gamma_);
+      value += axes.factor[i] * n * c.from_edge;
+      rate += axes.factor[i] * (gamma_ + 1) * c.log_like;
+    }
+    (value > toe ? high : low) = n;
+    double next = n * std::exp(-std::log(value / toe) * value / (n * rate));
+    if (!(next > low && next < high)) next = low > 0 ? std::sqrt(low * high) : 1e-3 * high;
+    const double moved = std::abs(next - n);
+    n = next;
+    if (moved <= 2 * std::numeric_limits<double>::epsilon() * n || high - low <= std::numeric_limits<double>::epsilon() * high) break;
+  }
+  return n;
+}
+
+MacroElastic MacroUplift::respond(const MacroVector& q) const {
+  MacroElastic out;
+  const Axes axes(elastic_, q);
+  const double n = vertical_force(q[macro_n], axes);
+  // at rest without load the stiffness is that of the closed base, so that the first load finds something to stand on
+  const bool at_rest = q.cwiseAbs().maxCoeff() == 0;
+  if (!(n > 0) && !at_rest) {
+    out.contact = false;
+    out.contact_share = 0;
+    return out;
+  }
+  out.force[macro_n] = n;
+  out.force.segment<2>(macro_h1) = stiffness_.segment<2>(macro_h1).cwiseProduct(q.segment<2>(macro_h1));
+  out.stiffness.diagonal() << 0, stiffness_[macro_h1], stiffness_[macro_h2], stiffness_[macro_m1], stiffness_[macro_m2];
+  out.shear_energy = 0.5 * out.force.segment<2>(macro_h1).dot(q.segment<2>(macro_h1));
+
+  double toe = q[macro_n], vertical = 1 / elastic_.vertical;  // dw/dN at fixed rotation
+  MacroVector coupling = MacroVector::Zero();                 // -dw/dtheta at fixed N
+  coupling[macro_n] = 1;
+  for (int i = 0; i < axes.count; ++i) {
+    const double x = n > 0 ? axes.offset[i] / n : 0, arm = elastic_.length[i] / elastic_.shape, half = 0.5 * elastic_.length[i];
+    const Curve c = curve(x, beta_, gamma_);
+    const double moment = arm * n * c.moment;
+    out.force += moment * axes.along[i];
+    out.heave += axes.factor[i] * n * c.heave;
+    out.contact_share /= c.y;
+    toe += half * axes.rotation[i] * (1 - c.slack);
+    vertical += axes.factor[i] * (gamma_ + 1) * c.log_like;
+    coupling -= arm * (x / c.compliance - c.moment) * axes.along[i];
+    const double along = elastic_.rocking[i] / c.compliance;
+    if (elastic_.disc) {
+      const double across = axes.rotation[i] > 0 ? moment / axes.rotation[i] : elastic_.rocking[i];
+      out.stiffness.diagonal().tail<2>().setConstant(across);
+      out.stiffness += (along - across) * axes.along[i] * axes.along[i].transpose();
+    } else {
+      out.stiffness(macro_m1 + i, macro_m1 + i) = along;
+    }
+  }
+  out.stiffness += coupling * coupling.transpose() / vertical;
+  out.energy = 0.5 * n * toe;  // (N w + M theta)/2, homogeneous of degree two
+  return out;
+}
+
+MacroVector MacroUplift::displacement(const MacroVector& force) const {
+  MacroVector q = force.cwiseQuotient(stiffness_);
+  const double n = force[macro_n];
+  const Axes axes(elastic_, q);  // of a disc: the direction
+  for (int i = 0; i < axes.count; ++i) {
+    const double arm = elastic_.length[i] / elastic_.shape, m = axes.rotation[i] * elastic_.rocking[i] / (arm * n);
+    if (!(m > 1)) continue;
+    const double x = std::pow(gamma_ / (beta_ - m), gamma_);
+    q[macro_n] -= axes.factor[i] * n * curve(x, beta_, gamma_).heave;
+    q += (x / m - 1) * axes.rotation[i] * axes.along[i];
+  }
+  return q;
+}
+
+MacroUplift::Average MacroUplift::average(const MacroVector& from, const MacroElastic& at_from, const MacroVector& to,
+                                          const MacroElastic& at_to) const {
+  const MacroVector middle = 0.5 * (from + to);
+  const MacroElastic half = respond(middle);
+  MacroVector step = to - from, mid_force = half.force;
+  MacroMatrix mid = 0.5 * half.stiffness;
+  step.segment<2>(macro_h1).setZero();  // the shear is linear while in contact: its average is the plain mean below
+  mid_force.segment<2>(macro_h1).setZero();
+  mid.middleRows<2>(macro_h1).setZero();
+
+  Average out{mid_force, mid, mid};
+  const MacroVector scaled = stiffness_.cwiseProduct(step);
+  const double square = step.dot(scaled), work = mid_force.dot(step), lacking = at_to.energy - at_from.energy - work;
+  const double round_off =
+      16 * std::numeric_limits<double>::epsilon() * (at_to.energy + at_from.energy + mid_force.cwiseProduct(middle).cwiseAbs().sum());
+  if (std::abs(lacking) > round_off && square > 0) {
+    const double share = lacking / square;
+    const MacroVector bend = mid.transpose() * step;
+    MacroVector by_to = at_to.force - mid_force - bend - 2 * share * scaled,
+                by_from = -at_from.force + mid_force - bend + 2 * share * scaled;
+    by_to.segment<2>(macro_h1).setZero(), by_from.segment<2>(macro_h1).setZero();
+    MacroVector diagonal = share * stiffness_;
+    diagonal.segment<2>(macro_h1).setZero();
+    out.force += share * scaled;
+    out.by_to += scaled * by_to.transpose() / square;
+    out.by_from += scaled * by_from.transpose() / square;
+    out.by_to.diagonal() += diagonal;
+    out.by_from.diagonal() -= diagonal;
+  }
+  for (int i = macro_h1; i <= macro_h2; ++i) {
+    out.force[i] = 0.5 * (at_from.force[i] + at_to.force[i]);
+    out.by_from(i, i) = at_from.contact ? 0.5 * stiffness_[i] : 0;
+    out.by_to(i, i) = at_to.contact ? 0.5 * stiffness_[i] : 0;
+  }
+  return out;
+}
+
+}  // namespace uplift

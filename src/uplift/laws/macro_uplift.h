@@ -1,0 +1,63 @@
+#pragma once
+#include "uplift/math/fixed.h"
+
+// Uplift of a shallow foundation as a potential (docs/theory/macro_element.md, eqs M1 to M4): elastic ground, contact that only pushes.
+// The vectors of the macro-element: forces (N, H_1, H_2, M_1, M_2) [N, N m] and displacements (w, u_1, u_2, theta_1, theta_2) [m, rad],
+// N > 0 compression, w > 0 settlement. Index 1 is the motion in the plane (t1, n), index 2 that in the plane (t2, n).
+namespace uplift {
+
+using MacroVector = Fixed<5, 1>;
+using MacroMatrix = Fixed<5, 5>;
+enum MacroRow { macro_n, macro_h1, macro_h2, macro_m1, macro_m2 };
+
+/// Elastic constants of the foundation and its ground.
+struct MacroElasticity {
+  bool disc = false;              // true: isotropic, with the values of index 0; else each axis lifts for itself (strip, rectangle)
+  double shape = 6;               // alpha > 2: uplift begins at M = N D/alpha
+  double length[2] = {0, 0};      // D: plan dimension along t1, t2 [m]; diameter of a disc
+  double vertical = 0;            // K_z [N/m]
+  double horizontal[2] = {0, 0};  // K_h along t1, t2 [N/m]
+  double rocking[2] = {0, 0};     // K_r in the planes (t1, n), (t2, n) [N m/rad]
+};
+
+/// Forces at an elastic displacement.
+struct MacroElastic {
+  bool contact = true;
+  MacroVector force = MacroVector::Zero();
+  MacroMatrix stiffness = MacroMatrix::Zero();  // d force/d displacement
+  double energy = 0;                            // J, of w and theta
+  double shear_energy = 0;                      // J, of u
+  double heave = 0;                             // upward displacement of the centre through uplift [m]
+  double contact_share = 1;                     // of the base
+};
+
+/// The foundation without yielding.
+class MacroUplift {
+ public:
+  explicit MacroUplift(const MacroElasticity& elasticity);
+  const MacroElasticity& elasticity() const { return elastic_; }
+  /// K_z, K_h, K_h, K_r, K_r of the foundation in full contact.
+  const MacroVector& stiffness() const { return stiffness_; }
+
+  /// Forces from displacements; without contact there are none.
+  MacroElastic respond(const MacroVector& displacement) const;
+  /// Displacements from forces with N > 0 and |M| < N D/2 (the derivative of the complementary energy).
+  MacroVector displacement(const MacroVector& force) const;
+  /// The path average of the force between two displacements: discrete gradient (M12), so that average . (to - from) is the change of
+  /// energy, and its derivatives with respect to both ends.
+  struct Average {
+    MacroVector force;
+    MacroMatrix by_from, by_to;
+  };
+  Average average(const MacroVector& from, const MacroElastic& at_from, const MacroVector& to, const MacroElastic& at_to) const;
+
+ private:
+  struct Axes;
+  double vertical_force(double w, const Axes& axes) const;
+
+  MacroElasticity elastic_;
+  MacroVector stiffness_;
+  double beta_, gamma_;
+};
+
+}  // namespace uplift

@@ -1,0 +1,340 @@
+// [[foundation]]: the ground under a whole footing as one point with rotations, in whole runs.
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <string>
+
+#include "text_support.h"
+#include "uplift/case/case.h"
+#include "uplift/io/text/toml.h"
+#include "uplift/run/run_state.h"
+#include "uplift/verdict/verdict.h"
+
+namespace uplift {
+namespace {
+
+using support::refusal_of;
+using support::replaced;
+
+constexpr const char* plane_text = R"(
+title = "foundation"
+[nodes]
+base = [0, 0]
+top = [0, 10]
+[[mass]]
+node = "top"
+mass = 100e3
+[[beam]]
+name = "column"
+nodes = ["base", "top"]
+E = 3e10
+A = 1
+I = 0.2
+[[rigid]]
+name = "footing"
+node = "base"
+mass = 30e3
+inertia = 60e3
+# ground
+[gravity]
+[damping]
+rayleigh = [{ frequency = 1, ratio = 0.02 }, { frequency = 10, ratio = 0.02 }]
+[[function]]
+name = "pulse"
+shape = { type = "half_sine", duration = 0.4 }
+[[ground_acceleration]]
+function = "pulse"
+amplitude = 4
+[[stage]]
+type = "static"
+[[stage]]
+type = "dynamic"
+duration = 2
+step = 2e-3
+[output]
+frames = 0
+automatic = false
+[[output.history]]
+node = "top"
+quantity = "ux"
+[[output.history]]
+node = "base"
+quantity = "ux"
+[[output.history]]
+node = "base"
+quantity = "uy"
+[[output.history]]
+node = "base"
+quantity = "rz"
+)";
+
+constexpr const char* space_text = R"(
+title = "foundation"
+[nodes]
+base = [0, 0, 0]
+top = [0, 0, 10]
+[[mass]]
+node = "top"
+mass = 100e3
+inertia = 1e5
+[[beam]]
+name = "column"
+nodes = ["base", "top"]
+E = 3e10
+A = 1
+I_y = 0.2
+I_z = 0.2
+J = 0.3
+[[rigid]]
+name = "footing"
+node = "base"
+mass = 30e3
+inertias = [60e3, 60e3, 100e3]
+# ground
+[gravity]
+[damping]
+rayleigh = [{ frequency = 1, ratio = 0.02 }, { frequency = 10, ratio = 0.02 }]
+[[function]]
+name = "pulse"
+shape = { type = "half_sine", duration = 0.4 }
+[[ground_acceleration]]
+direction = [0.8, 0.6, 0]
+function = "pulse"
+amplitude = 4
+[[stage]]
+type = "static"
+[[stage]]
+type = "dynamic"
+duration = 1
+step = 2e-3
+[output]
+frames = 0
+automatic = false
+[[output.history]]
+node = "top"
+quantity = "ux"
+[[output.history]]
+node = "top"
+quantity = "uy"
+[[output.history]]
+node = "base"
+quantity = "rx"
+[[output.history]]
+node = "base"
+quantity = "ry"
+[[output.history]]
+node = "base"
+quantity = "uz"
+)";
+
+std::string with_ground(const std::string& text, const std::string& ground) {
+  return replaced(text, "# ground", ground);
+}
+
+struct Ran {
+  Case file;
+  BuiltCase built;
+  RunResult result;
+};
+
+Ran run_text(const std::string& text, std::size_t which = 0) {
+  Ran ran{check_case(read_toml_text(text, "case.toml"), "case.toml"), {}, {}};
+  ran.built = build(ran.file, runs_of_case(ran.file)[which]);
+  ran.result = run(ran.built.model, ran.built.plan, ran.built.behaviours);
+  EXPECT_NE(ran.result.status, RunStatus::failed) << ran.result.reason;
+  return ran;
+}
+
+std::size_t column(const RunResult& result, const std::string& name) {
+  for (std::size_t k = 0; k < result.columns.size(); ++k)
+    if (result.columns[k].name == name) return k;
+  ADD_FAILURE() << "no column " << name;
+  return 0;
+}
+
+void expect_same_motion(const RunResult& one, const RunResult& other, const std::string& name, double tolerance) {
+  const std::size_t a = column(one, name), b = column(other, name);
+  ASSERT_EQ(one.table[a + 1].size(), other.table[b + 1].size());
+  EXPECT_GT(std::abs(other.peaks[b].value), 1e-5) << name;
+  for (std::size_t i = 0; i < one.table[a + 1].size(); ++i)
+    ASSERT_NEAR(one.table[a + 1][i], other.table[b + 1][i], tolerance * std::abs(other.peaks[b].value)) << name << " in row " << i;
+}
+
+/// Stiffness-proportional damping acts in springs, not in foundations.
+std::string damped_by_mass(const std::string& text) {
+  return replaced(text, "rayleigh = [{ frequency = 1, ratio = 0.02 }, { frequency = 10, ratio = 0.02 }]", "alpha = 0.3");
+}
+
+// Springs from the node to the ground are elements of the structure; the foundation is condensed like a joint.
+TEST(Foundation, ElasticOneIsThreeSprings) {
+  const std::string plane = damped_by_mass(plane_text);
+  const Ran foundation = run_text(with_ground(plane, R"([[foundation]]
+name = "soil"
+body = "base"
+width = 6
+model = { type = "elastic", K_v = 4e8, K_h = 3e8, K_r = 2e9 })"));
+  const Ran springs = run_text(with_ground(plane, R"([[spring]]
+nodes = ["base"]
+direction = [0, 1]
+stiffness = 4e8
+[[spring]]
+nodes = ["base"]
+direction = [1, 0]
+stiffness = 3e8
+[[spring]]
+nodes = ["base"]
+rotational_stiffness = 2e9)"));
+  for (const char* name : {"top.ux", "base.ux", "base.uy", "base.rz"}) expect_same_motion(foundation.result, springs.result, name, 1e-8);
+  EXPECT_NEAR(foundation.result.steps.rest.front().axial, -130e3 * 9.80665, 1e-3 * 130e3 * 9.81);
+  // the moment that the ground bears is K theta, a mean over the window
+  const double moment = 2e9 * std::abs(foundation.result.peaks[column(foundation.result, "base.rz")].value);
+  EXPECT_NEAR(std::abs(foundation.result.max_base_moment.value), moment, 1e-2 * moment);
+}
+
+TEST(Foundation, ElasticOneInSpaceIsSixSprings) {
+  const std::string space = damped_by_mass(space_text);
+  std::string six;
+  const auto spring = [&](const char* direction, const char* kind, const char* stiffness) {
+    six += std::string("[[spring]]\nnodes = [\"base\"]\ndirection = ") + direction + "\n" + kind + " = " + stiffness + "\n";
+  };
+  spring("[1, 0, 0]", "stiffness", "3e8");
+  spring("[0, 1, 0]", "stiffness", "2e8");
+  spring("[0, 0, 1]", "stiffness", "4e8");
+  spring("[1, 0, 0]", "rotational_stiffness", "1e9");
+  spring("[0, 1, 0]", "rotational_stiffness", "2e9");
+  spring("[0, 0, 1]", "rotational_stiffness", "3e9");
+  const Ran springs = run_text(with_ground(space, six));
+  const Ran foundation = run_text(with_ground(space, R"([[foundation]]
+name = "soil"
+body = "base"
+width = 6
+length = 5
+model = { type = "elastic", K_v = 4e8, K_h = 3e8, K_h2 = 2e8, K_r = 2e9, K_r2 = 1e9, K_t = 3e9 })"));
+  for (const char* name : {"top.ux", "top.uy", "base.uz", "base.rx", "base.ry"})
+    expect_same_motion(foundation.result, springs.result, name, 1e-8);
+}
+
+const std::string macro = R"([[foundation]]
+name = "soil"
+body = "base"
+width = 6
+model = { type = "macro_element", shape_number = 6, K_v = 6e8, K_h = 3e8, K_r = 1.8e9 })";
+
+// With shape number 6 and K_r = K_v D^2/12 the potential is the strip on tensionless springs (docs/theory/macro_element.md).
+TEST(Foundation, MacroElementIsTheStripOnSpringsThatLiftsOff) {
+  const Ran element = run_text(with_ground(plane_text, macro));
+  const Ran joint = run_text(with_ground(plane_text, R"([[interface]]
+name = "soil"
+[interface.footing]
+body = "base"
+width = 6
+points = 301
+rule = "midpoint"
+[interface.law]
+type = "springs"
+K_n = 1e8
+K_t = 5e7
+tangential = "bonded")"));
+  EXPECT_GT(joint.result.max_uplifted_ratio.value, 0.2);
+  for (const char* name : {"top.ux", "base.ux", "base.uy", "base.rz"}) expect_same_motion(element.result, joint.result, name, 2e-3);
+  EXPECT_NEAR(element.result.max_uplifted_ratio.value, joint.result.max_uplifted_ratio.value, 5e-3);
+  EXPECT_NEAR(element.result.max_base_moment.value, joint.result.max_base_moment.value,
+              2e-3 * std::abs(joint.result.max_base_moment.value));
+  EXPECT_NEAR(element.result.max_opening.value, joint.result.max_opening.value, 5e-3 * joint.result.max_opening.value);
+  EXPECT_LT(std::abs(element.result.final_energy.residual), 1e-10 * element.result.energy_scale);
+}
+
+// Uplift, yielding and sliding: the ledger closes, the footing settles and stays settled, and the bonded run does none of it.
+TEST(Foundation, YieldingMacroElementClosesTheLedger) {
+  const std::string yielding =
+      replaced(macro, "K_r = 1.8e9", "K_r = 1.8e9, V_s = 3e6, V_u = 5e6, w_ref = 0.02, friction_angle = \"30 deg\"");
+  const std::string text = with_ground(plane_text, yielding);
+  for (const char* step : {"2e-3", "10e-3"}) {
+    const Ran ran = run_text(replaced(text, "step = 2e-3", std::string("step = ") + step));
+    const RunResult& result = ran.result;
+    EXPECT_LT(result.energy_created, 1e-10 * result.energy_scale) << step;
+    EXPECT_LT(std::abs(result.final_energy.residual), 1e-10 * result.energy_scale) << step;
+    EXPECT_GT(result.final_energy.interface_dissipated, 0.02 * result.energy_scale);
+    EXPECT_LT(result.table[column(result, "base.uy") + 1].back(), 1.5 * result.table[column(result, "base.uy") + 1].front());  // settled
+  }
+  const RunResult bonded = run_text(text, 1).result;
+  EXPECT_EQ(bonded.max_uplifted_ratio.value, 0);
+  EXPECT_EQ(bonded.final_energy.interface_dissipated, 0);
+}
+
+TEST(Foundation, InSpaceMovesAsInThePlane) {
+  const Ran flat = run_text(with_ground(plane_text, macro));
+  std::string text = with_ground(replaced(space_text, "[0.8, 0.6, 0]", "[1, 0, 0]"), R"([[foundation]]
+name = "soil"
+body = "base"
+width = 6
+length = 5
+model = { type = "macro_element", shape_number = 6, K_v = 6e8, K_h = 3e8, K_r = 1.8e9, K_t = 1e9 })");
+  text = replaced(replaced(text, "inertia = 1e5\n", ""), "duration = 1\n", "duration = 2\n");
+  const RunResult deep = run_text(text).result;
+  const std::size_t a = column(deep, "base.ry"), b = column(flat.result, "base.rz");
+  const double size = std::abs(flat.result.peaks[b].value);
+  for (std::size_t i = 0; i < deep.table[a + 1].size(); ++i)
+    ASSERT_NEAR(deep.table[a + 1][i], -flat.result.table[b + 1][i], 1e-6 * size) << i;
+}
+
+// A run that is kept in the middle goes on to the last bit, with what the ground remembers.
+TEST(Foundation, ARunGoesOn) {
+  const std::string text = with_ground(plane_text, replaced(macro, "K_r = 1.8e9", "K_r = 1.8e9, V_s = 3e6"));
+  const Case read = check_case(read_toml_text(text, "case.toml"), "case.toml");
+  const BuiltCase built = build(read, runs_of_case(read).front());
+  std::vector<std::string> states;
+  Keeping keeping;
+  keeping.keep = [&](const RunState& state) { states.push_back(write_run_state(state)); };
+  const RunResult straight = run(built.model, built.plan, built.behaviours, {}, {}, &keeping);
+  std::string why;
+  const std::optional<RunState> middle = read_run_state(states.at(1), why);
+  ASSERT_TRUE(middle) << why;
+  keeping.from = &*middle;
+  const RunResult resumed = run(built.model, built.plan, built.behaviours, {}, {}, &keeping);
+  EXPECT_EQ(resumed.table, straight.table);
+}
+
+TEST(Foundation, StandsBesideNoConstraintAndNoFilter) {
+  const auto refusal = [](const std::string& text) {
+    return refusal_of([&] {
+      const Case read = check_case(read_toml_text(text, "case.toml"), "case.toml");
+      build(read, runs_of_case(read).front());
+    });
+  };
+  EXPECT_NE(refusal(with_ground(replaced(plane_text, "step = 2e-3", "step = 2e-3\nscheme = \"energy_decay\""), macro)).find("energy_decay"),
+            std::string::npos);
+  const std::string wall = macro + R"(
+[[interface]]
+name = "stop"
+[interface.pairs]
+upper = ["top"]
+normal = [1, 0]
+area = 1
+[interface.law]
+type = "unilateral")";
+  EXPECT_NE(refusal(with_ground(plane_text, wall)).find("beside a foundation"), std::string::npos);
+}
+
+TEST(Foundation, MistakesAreRefused) {
+  const auto refusal = [](const std::string& ground) {
+    return refusal_of([&] {
+      const Case read = check_case(read_toml_text(with_ground(plane_text, ground), "case.toml"), "case.toml");
+      build(read, runs_of_case(read).front());
+    });
+  };
+  const std::string good =
+      "[[foundation]]\nname = \"soil\"\nbody = \"base\"\nwidth = 6\nmodel = { type = \"elastic\", K_v = 4e8, K_h = 3e8, K_r = 2e9 }";
+  EXPECT_EQ(refusal(good), "accepted");
+  EXPECT_NE(refusal(replaced(good, "\"base\"", "\"bse\"")).find("did you mean \"base\""), std::string::npos);
+  EXPECT_NE(refusal(replaced(good, "width = 6", "width = -6")).find("> 0"), std::string::npos);
+  EXPECT_NE(refusal(replaced(good, "K_v = 4e8, ", "")).find("K_v"), std::string::npos);
+  EXPECT_NE(refusal(replaced(good, "K_r = 2e9", "K_r = 2e9, K_t = 1e9")).find("in the plane"), std::string::npos);
+  EXPECT_NE(refusal(replaced(macro, "K_r = 1.8e9", "K_r = 1.8e9, V_s = 1e6")).find("a capacity above the dead load"), std::string::npos);
+  EXPECT_NE(refusal(replaced(macro, "K_r = 1.8e9", "K_r = 1.8e9, V_s = 3e6, V_u = 2e6")).find("at least V_s"), std::string::npos);
+  EXPECT_NE(refusal(replaced(macro, "K_r = 1.8e9", "K_r = 1.8e9, w_ref = 0.01")).find("V_s too"), std::string::npos);
+  EXPECT_NE(refusal(replaced(good, "\"elastic\"", "\"macro\"")).find("macro_element"), std::string::npos);
+}
+
+}  // namespace
+}  // namespace uplift

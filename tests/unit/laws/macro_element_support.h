@@ -1,0 +1,119 @@
+#pragma once
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <fstream>
+#include <map>
+#include <numbers>
+#include <sstream>
+#include <string>
+#include <vector>
+
+#include "tests/data_support.h"
+#include "uplift/laws/macro_element.h"
+
+// What the tests of the macro-element share: a footing with its memory and paths at a constant vertical force.
+namespace uplift::macro_test {
+
+using Numbers = std::vector<double>;
+
+/// Set P1: a square of 10 m on a half-space with G = 80 MPa, nu = 0.3 (stiffness after Pais & Kausel 1988), V_s = 60 MN.
+inline MacroParameters square() {
+  MacroParameters p;
+  p.elasticity = {.shape = 6,
+                  .length = {10, 10},
+                  .vertical = 80e6 * 5 / 0.7 * 4.7,
+                  .horizontal = {80e6 * 5 / 1.7 * 9.2, 80e6 * 5 / 1.7 * 9.2},
+                  .rocking = {80e6 * 125 / 0.7 * 4, 80e6 * 125 / 0.7 * 4}};
+  p.strength = {.service = 60e6, .friction = std::tan(std::numbers::pi / 6)};
+  p.torsion = 8.31e10;
+  return p;
+}
+
+/// A square for the plane with nothing but uplift.
+inline MacroParameters lifting(double shape, double width, double vertical, double rocking) {
+  MacroParameters p;
+  p.elasticity = {.shape = shape, .length = {width}, .vertical = vertical, .horizontal = {vertical}, .rocking = {rocking}};
+  p.strength = {.service = HUGE_VAL, .friction = HUGE_VAL};
+  return p;
+}
+
+/// One foundation with its memory. Openings and forces in the rows of the law.
+class Footing {
+ public:
+  Footing(const MacroParameters& parameters, int components) : law(parameters), batch{1, components, 0} {
+    const auto n = static_cast<std::size_t>(components);
+    opening.assign(n, 0.0), force.assign(n, 0.0), end.assign(n, 0.0);
+    slope.assign(n * n, 0.0), next.assign(n * n, 0.0);
+    memory.assign(static_cast<std::size_t>(law.num_history(components)), 0.0), now = memory;
+  }
+
+  const Numbers& respond(const Numbers& to) {
+    law.respond(batch, opening.data(), to.data(), memory.data(), {.traction = force.data(), .slope = slope.data(), .now = now.data()});
+    return force;
+  }
+  const Numbers& mean(const Numbers& to) {
+    law.mean(batch, opening.data(), to.data(), memory.data(), {force.data(), slope.data(), now.data(), end.data(), next.data()});
+    return force;
+  }
+  void accept(const Numbers& to) { opening = to, memory = now; }
+  const Numbers& go(const Numbers& to) {
+    respond(to);
+    accept(to);
+    return force;
+  }
+
+  double stored(const Numbers& at, const Numbers& history) const { return energies(at, history).first; }
+  double dissipated(const Numbers& history) const { return energies(opening, history).second; }
+  MacroState state() const { return law.state(batch.components, opening.data(), memory.data()); }
+  double slope_at(int row, int column) const { return slope[static_cast<std::size_t>(row * batch.components + column)]; }
+
+  /// Goes to the rotation theta at the constant vertical force n and H = M/arm, end of step (plane; arm = 0: H = 0).
+  void hold(double theta, double n, double arm) {
+    Numbers to{opening[0], opening[1], theta};
+    for (int iteration = 0; iteration < 100; ++iteration) {
+      respond(to);
+      const double inverse = arm > 0 ? 1 / arm : 0, r0 = force[0] - inverse * force[2], r1 = force[1] + n;
+      if (std::hypot(r0, r1) < 1e-12 * n) break;
+      const double a = slope_at(0, 0) - inverse * slope_at(2, 0), b = slope_at(0, 1) - inverse * slope_at(2, 1), c = slope_at(1, 0),
+                   d = slope_at(1, 1), det = a * d - b * c;
+      to[0] -= (d * r0 - b * r1) / det;
+      to[1] -= (a * r1 - c * r0) / det;
+    }
+    EXPECT_NEAR(-force[1], n, 1e-9 * n) << "theta " << theta;
+    accept(to);
+  }
+
+  MacroElement law;
+  Batch batch;
+  Numbers opening, force, end, slope, next, memory, now;
+
+ private:
+  std::pair<double, double> energies(const Numbers& at, const Numbers& history) const {
+    double kept = 0, lost = 0;
+    law.energy(batch, at.data(), history.data(), &kept, &lost);
+    return {kept, lost};
+  }
+};
+
+/// Rows of a table of tests/data/reference by column name; the values that are no numbers as they are.
+inline std::vector<std::map<std::string, std::string>> table(const std::string& name) {
+  std::ifstream file(support::data_file("reference/" + name));
+  std::string line, cell;
+  std::vector<std::string> head;
+  std::vector<std::map<std::string, std::string>> rows;
+  while (std::getline(file, line)) {
+    std::stringstream cells(line);
+    std::vector<std::string> values;
+    while (std::getline(cells, cell, ',')) values.push_back(cell);
+    if (head.empty()) {
+      head = values;
+      continue;
+    }
+    rows.emplace_back();
+    for (std::size_t i = 0; i < values.size() && i < head.size(); ++i) rows.back()[head[i]] = values[i];
+  }
+  return rows;
+}
+
+}  // namespace uplift::macro_test
