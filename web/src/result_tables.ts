@@ -50,7 +50,7 @@ function runs_table(summary: Summary): Table {
       column("ratio", "Uplifted", "percent", "", 3),
       column("opening", "Gap", "number", "m", 4),
       column("moment", "Base moment", "number", "N m", 4),
-      column("pressure", "Pressure", "number", "Pa", 4),
+      ...(runs.some((run) => run.max_pressure.value) ? [column("pressure", "Pressure", "number", "Pa", 4)] : []),
       column("created", "Spurious energy", "percent", "", 3),
       column("retries", "Retries", "number", "", 6),
       column("per_step", "Time per step (µs)", "number", "", 3),

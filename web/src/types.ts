@@ -348,6 +348,8 @@ export interface SpaceInterface {
   node?: number[];
   /** Index in the bodies. */
   body?: number;
+  /** One point that stands for a whole foundation: it has no map and no pressure. */
+  foundation?: boolean;
 }
 
 export interface SpaceLoad {

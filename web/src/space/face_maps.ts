@@ -33,7 +33,7 @@ export class FaceMaps {
     // A map without any value would be an empty grey area: the summary below the maps says "in contact everywhere".
     const has_values = (q: Quantity): boolean =>
       animations.some((a) => (FRAMES[q](a, face.name) ?? []).some((frame) => frame.some((v) => (q === "pressure" ? v !== 0 : v > NEGLIGIBLE))));
-    const quantities = (["gap", "pressure", "slip"] as Quantity[]).filter(has_values);
+    const quantities = face.foundation ? [] : (["gap", "pressure", "slip"] as Quantity[]).filter(has_values);
     const range = (q: Quantity): Range => {
       const found = range_of(sound.flatMap((a) => (FRAMES[q](a, face.name) ?? []).flat()));
       // Closed points may lie a little below zero: no part of the scale of gaps.
@@ -84,7 +84,7 @@ export class FaceMaps {
   private summary(): string {
     const gap = Math.max(0, ...this.values("gap"));
     const words = [gap > NEGLIGIBLE ? `largest gap ${quantity_text(gap, "m")}` : "in contact everywhere"];
-    if (this.values("pressure").length > 0) words.push(`largest pressure ${quantity_text(this.largest("pressure"), "Pa")}`);
+    if (!this.face.foundation && this.values("pressure").length > 0) words.push(`largest pressure ${quantity_text(this.largest("pressure"), "Pa")}`);
     if (this.values("slip").length > 0) words.push(`largest slip ${quantity_text(this.largest("slip"), "m")}`);
     return words.join(", ");
   }

@@ -285,7 +285,10 @@ void write_interfaces(JsonWriter& json, const Case& read, const BuiltCase& built
     write_places(json, "points", {joint.position.begin(), joint.position.end()});
     json.key("plan").numbers(plan).key("axes").texts({axis_name(s, "s"), axis_name(t, "t")});
     json.key("normal").numbers(std::array<double, 3>{normal.x(), normal.y(), normal.z()});
-    json.key("area").numbers(std::span<const double>(joint.area.data(), at(joint.batch.points)));
+    if (joint.footprint)
+      json.key("area").numbers(std::array<double, 1>{built.facts[k].area}).member("foundation", true);
+    else
+      json.key("area").numbers(std::span<const double>(joint.area.data(), at(joint.batch.points)));
     write_whole(json, "triangles", triangles_of(read, joint, built.facts[k]));
     if (footing_of(read, joint)) {
       json.member("body", bodies++);
