@@ -11,7 +11,7 @@ All quantities are in SI units; an opening > 0 separates the faces of an interfa
 
 from __future__ import annotations
 
-from . import bulk_laws, functions, impacts, laws, methods, processes, schemes, targets
+from . import bulk_laws, foundations, functions, impacts, laws, methods, processes, schemes, targets
 from ._case import Case, load, parse
 from ._laws import ExternalLaw, law
 from ._library import InputError, OutputError, UpliftError, library
@@ -25,8 +25,8 @@ from .laws import bilinear, coulomb, elastic, exponential, sdm, springs, unilate
 __all__ = [
     "Case", "Comparison", "ExternalLaw", "Floor", "Histories", "InputError", "March", "Motion", "OutputError", "Part", "Run",
     "StepView", "Trust", "UpliftError", "Verdict", "VerdictNumber", "bilinear", "bulk_laws", "coulomb", "elastic", "exponential",
-    "functions", "impacts", "law", "laws", "load", "march", "methods", "motion", "parse", "processes", "psa", "schemes", "sdm",
-    "springs", "targets", "unilateral", "version",
+    "foundations", "functions", "impacts", "law", "laws", "load", "march", "methods", "motion", "parse", "processes", "psa", "schemes",
+    "sdm", "springs", "targets", "unilateral", "version",
 ]
 
 

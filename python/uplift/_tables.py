@@ -427,8 +427,8 @@ class Tables:
 
     def foundation(
         self,
-        *,
         name: str,
+        *,
         body: str,
         width: Quantity,
         model: Union[Part, str],

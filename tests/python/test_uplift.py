@@ -188,6 +188,31 @@ class Runs(unittest.TestCase):
         with self.assertRaisesRegex(ValueError, "coefficient of friction"):
             pier(up.springs(K_n=K, tangential="bonded"), "4 s").compare("lagrange")
 
+    def test_a_foundation_on_one_element(self):
+        """Uplift alone dissipates nothing; yielding limits the moment to the capacity (docs/theory/macro_element.md)."""
+        def case(**strength):
+            made = up.Case("foundation")
+            made.node("base", 0, 0), made.node("top", 0, 10)
+            made.mass("top", mass="100 t")
+            made.beam("column", ["base", "top"], E="30 GPa", A=1, I=0.2)
+            made.rigid("footing", "base", mass="30 t", inertia="60 t m2")
+            made.gravity()
+            made.damping(rayleigh=[(1, 0.02), (10, 0.02)])
+            made.function("pulse", shape=up.functions.half_sine(duration=0.4))
+            made.ground_acceleration(function="pulse", amplitude="4 m/s2")
+            made.static(), made.dynamic("1 s", step="2 ms")
+            made.foundation("ground", body="base", width="6 m",
+                            model=up.foundations.macro_element(shape_number=6, K_v="600 MN/m", K_h="300 MN/m", K_r="1.8 GN m/rad", **strength))
+            return made
+        elastic, yielding = case().run(), case(V_s="3 MN").run()
+        self.assertGreater(elastic.verdict.uplift, 0.2)
+        self.assertEqual(elastic.energy.interface_dissipated, 0)
+        self.assertGreater(yielding.energy.interface_dissipated, 0)
+        # capacity of the base with its weight, M <= N B/2 (1 - N/V), is what yielding leaves of the moment; N swings about the weight
+        weight = 130e3 * 9.80665
+        self.assertLess(abs(yielding["ground.moment"]).max(), 1.1 * weight * 3 * (1 - weight / 3e6))
+        self.assertGreater(abs(elastic["ground.moment"]).max(), 1.1 * weight * 3 * (1 - weight / 3e6))
+
     def test_directions_follow_the_space_of_the_case(self):
         case = up.Case("a mass on a column")
         case.gravity()  # before the nodes are known
