@@ -72,6 +72,22 @@ class Signals(RobustTest):
         self.assertIn(f"note: r.part-{killed.pid}-2/ holds the files of a command that was killed", done.stderr)
         self.assertEqual(set(self.names()), {"case.toml", "long.toml", "r", f"{gone}-2", f"r.part-{os.getpid()}", "r.part-time"})
 
+    def test_a_killed_process_leaves_the_histories_so_far(self):
+        killed = self.start("run", self.write(LONG, "long.toml").name, "-o", "r")
+        deadline = time.monotonic() + 60
+        while time.monotonic() < deadline:
+            time.sleep(0.1)
+            if [file for file in self.folder.glob("r.part-*/histories.csv") if file.read_text().count("\n") > 20]:
+                break
+        killed.kill()
+        killed.communicate()
+        (left,) = self.folder.glob("r.part-*/histories.csv")
+        rows = left.read_text().splitlines()
+        self.assertGreater(len(rows), 20)
+        self.write(LONG.replace("20000", "20"))  # the same rows, to the last digit, as those of a run that ends
+        self.uplift("run", "case.toml", "-o", "short")
+        self.assertEqual(rows[:20], (self.folder / "short" / "histories.csv").read_text().splitlines()[:20])
+
     def test_interrupted_comparison_does_not_agree(self):
         self.write(LONG.replace("20000", "200").replace("bonded = false\n", "bonded = false\nenergy = { created_limit = 1e6 }\n")
                    + '[[variant]]\nname = "quick"\nstep = 0.05\n[[variant]]\nname = "long"\nstep = 1e-5\n')

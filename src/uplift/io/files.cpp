@@ -129,13 +129,13 @@ void ResultFolder::note_failure(const std::string& name, const std::string& reas
 }
 
 void ResultFolder::write(const std::string& name, std::string_view text) {
-  const std::string path = place(name);
+  const std::string place = this->place(name), path = place + ".new";  // what is there stays until all of it is written
   errno = 0;
   File file(std::fopen(path.c_str(), "wb"));
   if (!file) return note_failure(name, std::strerror(errno));
   const bool written = std::fwrite(text.data(), 1, text.size(), file.get()) == text.size();
   const int reason = errno;
-  if (std::fclose(file.release()) == 0 && written) return;
+  if (std::fclose(file.release()) == 0 && written && std::rename(path.c_str(), place.c_str()) == 0) return;
   note_failure(name, std::strerror(written ? errno : reason));
   std::error_code ignored;
   fs::remove(path, ignored);

@@ -27,7 +27,7 @@ class ResultFolder {
   /// Removes the working folder when it has no files.
   ~ResultFolder();
 
-  /// Writes a file, `name` may hold a subfolder. When the system refuses, nothing of this file stays, others can still be written, and
+  /// Writes a file, `name` may hold a subfolder. When the system refuses, what stood there before stays, others can still be written, and
   /// finish() throws. May be called from several threads.
   void write(const std::string& name, std::string_view text);
   /// For those who write a file bit by bit: it could not be written.

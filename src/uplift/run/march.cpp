@@ -256,6 +256,7 @@ bool Runner::dynamics(const Stage& stage, const Bulk& bulk) {
     if (step * checks >= run_.next_check * steps) equilibrium.note(stepper.balance({})), ++run_.next_check;
     go_on = check_limits(stepper);
     if (step == begin + 1) first_done = std::chrono::steady_clock::now(), shown_before = shown_;
+    if (keeping_.follow && step % between == 0) keeping_.follow(run_.result);
     if (watch_ && step % between == 0 && go_on) {
       const double open = views_.empty() ? 0 : views_.front().open_area;
       const double scale = run_.result.energy_scale > 0 ? run_.result.energy_scale : 1;

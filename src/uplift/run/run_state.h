@@ -48,8 +48,10 @@ std::string write_run_state(const RunState& state);
 /// The state that such bytes hold. Bytes that are cut off or changed are refused: then `why` says so, and nothing is returned.
 std::optional<RunState> read_run_state(const std::string& bytes, std::string& why);
 
-/// How a run is kept, so that another one can go on from where it was.
+/// How a run is kept, so that another one can go on from where it was, and what there is of it while it goes on.
 struct Keeping {
+  /// Told now and then of the results so far. The table lacks the rows of the last steps, up to 64.
+  std::function<void(const RunResult&)> follow;
   /// Called after every `every` steps of a dynamic stage. There the run drops its first guesses: from there it depends on this state alone,
   /// and a run that begins with it takes the same steps to the last bit.
   std::function<void(const RunState&)> keep;

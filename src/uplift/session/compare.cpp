@@ -9,16 +9,17 @@
 namespace uplift {
 namespace {
 
-/// Builds and runs one list of specs; stops after an interrupted run.
+/// Builds and runs one list of specs; stops after an interrupted run. `with_histories`: they are written.
 void run_all(const LoadedCase& loaded, const Control& control, const std::vector<RunSpec>& specs, std::size_t before, std::size_t total,
-             bool with_fields, Results& results) {
+             bool with_histories, bool with_fields, Results& results) {
   for (const RunSpec& spec : specs) {
     if (control.is_stopped()) return;
     results.specs.push_back(spec);
     results.built.push_back(build_run(loaded, spec));
     if (results.runs.empty()) results.warnings = warnings(loaded.read, spec, results.built.back());
     const std::string label = fmt::format("[{}/{}] {}", before + results.runs.size() + 1, total, spec.name);
-    results.runs.push_back(run_built(loaded, results.built.back(), label, control, false, with_fields ? &results.field_lists : nullptr));
+    results.runs.push_back(run_built(loaded, results.built.back(), label, control, false, with_fields ? &results.field_lists : nullptr,
+                                     with_histories ? "histories/" + spec.name + ".csv" : ""));
     free_matrices(results.built.back());
   }
 }
@@ -93,8 +94,8 @@ Results compare_case(const LoadedCase& loaded, const Control& control) {
   Results results, sweep;
   const Values& output = loaded.read.values.table("output");
   const bool with_fields = output.has("fields") && output.table("fields").flag("variants");
-  run_all(loaded, control, plan.runs, 0, total, with_fields, results);
-  run_all(loaded, control, plan.sweep, plan.runs.size(), total, false, sweep);
+  run_all(loaded, control, plan.runs, 0, total, true, with_fields, results);
+  run_all(loaded, control, plan.sweep, plan.runs.size(), total, false, false, sweep);
 
   ComparisonSummary& compared = results.comparison.emplace();
   compared.motions = motion_tables(results.specs, results.built, results.runs);

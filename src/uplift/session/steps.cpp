@@ -2,6 +2,8 @@
 
 #include "uplift/base/text.h"
 #include "uplift/io/fields/run.h"
+#include "uplift/run/run_state.h"
+#include "uplift/session/history_file.h"
 
 namespace uplift {
 
@@ -36,18 +38,25 @@ BuiltCase build_run(const LoadedCase& loaded, const RunSpec& spec) {
 }
 
 RunResult run_built(const LoadedCase& loaded, const BuiltCase& built, const std::string& label, const Control& control, bool first,
-                    std::vector<std::string>* field_lists) {
+                    std::vector<std::string>* field_lists, const std::string& histories) {
   Watch watch;
   if (control.watch) watch = control.watch(label);
   if (!watch && control.stopped) watch = [&control](const Progress&) { return !control.stopped(); };
   const Observe observe = first ? control.observe : Observe();
+  std::optional<HistoryFile> file;
+  Keeping keeping;
+  if (control.folder != nullptr && !histories.empty()) {
+    file.emplace(*control.folder, histories);
+    keeping.follow = [&](const RunResult& so_far) { file->follow(so_far); };
+  }
   if (field_lists == nullptr || control.folder == nullptr || !loaded.read.values.table("output").has("fields"))
-    return run(built.model, built.plan, built.behaviours, watch, observe);
+    return run(built.model, built.plan, built.behaviours, watch, observe, &keeping);
   FieldRun fields(loaded.read, built, *control.folder);
-  RunResult result = run(built.model, built.plan, built.behaviours, watch, [&](const Snapshot& snapshot) {
+  const Observe both = [&](const Snapshot& snapshot) {
     fields.see(snapshot);
     if (observe) observe(snapshot);
-  });
+  };
+  RunResult result = run(built.model, built.plan, built.behaviours, watch, both, &keeping);
   fields.finish(result);
   field_lists->push_back(fields.list());
   return result;

@@ -7,8 +7,9 @@ namespace uplift {
 /// Builds one run of a case and connects the caller's laws. Throws InputError, also for a law that the caller does not have.
 BuiltCase build_run(const LoadedCase& loaded, const RunSpec& spec);
 /// Runs it, observed by the caller where it is the first one, and writes its fields where the case asks for them and there is a folder.
+/// `histories`: file of the folder to which its rows are written while it runs; empty: none.
 RunResult run_built(const LoadedCase& loaded, const BuiltCase& built, const std::string& label, const Control& control, bool first,
-                    std::vector<std::string>* field_lists);
+                    std::vector<std::string>* field_lists, const std::string& histories = {});
 /// Frees the matrices of a model whose run is over: results are written without them.
 void free_matrices(BuiltCase& built);
 
