@@ -5,7 +5,6 @@
 #include <filesystem>
 
 #include "uplift/base/file.h"
-#include "uplift/base/format.h"
 #include "uplift/base/text.h"
 #include "uplift/case/advice/history_forecast.h"
 #include "uplift/case/build/behaviours.h"
@@ -67,6 +66,8 @@ void add_interfaces(const Case& read, const RunSpec& spec, const Model* like, Mo
     built.behaviours.push_back(&behaviour);
     builder.add_interface(std::move(made), part.table->where());
   }
+  if (spec.law && std::ranges::all_of(parts, [](const InterfacePart& part) { return part.footprint.has_value(); }))
+    throw InputError(spec.law->where(), spec.law->path(), "an interface that takes this law", "foundations alone, which have a model");
   if (spec.law && !spec.interface.empty()) names.interfaces.find(spec.interface, spec.law->where(), spec.law->path());
 }
 
@@ -134,17 +135,6 @@ void check_foundation(const Values& model, bool cone, const RunPlan& plan) {
   for (const Stage& stage : plan.stages)
     if (stage.type == Stage::Type::dynamics && stage.scheme.filtered())
       fail(model, "", "another scheme than energy_decay with a foundation", "energy_decay");
-}
-
-/// The dead load on the only base must be less than what its ground can bear.
-void check_capacity(const BuiltCase& built) {
-  if (built.model.interfaces.size() != 1 || !built.model.interfaces.front().footprint) return;
-  const Values& model = *built.behaviours.front();
-  if (!model.items().contains("V_s") || !model.has("V_s")) return;
-  const char* key = model.has("V_u") ? "V_u" : "V_s";
-  if (built.weight >= model.number(key))
-    fail(model, key, fmt::format("a capacity above the dead load on the foundation, {}", format_quantity(built.weight, "N")),
-         format_quantity(model.number(key), "N"));
 }
 
 /// Method and rule; the method must suit the behaviours.
@@ -419,7 +409,6 @@ BuiltCase build(const Case& read, const RunSpec& spec) {
     check_impulses(built.model);
   add_initial(root, names, built);
   find_shown(read, names, built);
-  check_capacity(built);
   plan.created_limit = root.table("energy").number("created_limit");
   plan.stop_at_limit = root.table("energy").flag("stop_at_limit");
   plan.rotation_limit = root.table("limits").number("rotation");

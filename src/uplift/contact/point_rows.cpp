@@ -71,7 +71,7 @@ void PointRows::linearise(std::size_t b, const double* slope, const Vector& forc
       relation.basis[f] = relation.force[f] = {};
       relation.basis[f][static_cast<std::size_t>(r)] = 1;
       relation.force[f][static_cast<std::size_t>(r)] = weight;
-      for (std::size_t c = 0; c < most_components; ++c) relation.opening[f][c] = weight * k[c];
+      for (std::size_t c = 0; c < static_cast<std::size_t>(components); ++c) relation.opening[f][c] = weight * k[c];
       relation.right[f] = weight * (moved - now);
     }
   }

@@ -117,11 +117,34 @@ Outcome Condensed::solve(const Vector& right, const StepStart& start, Vector& in
   return problem_.rows() == 0 ? free_step(right, increment) : contact_step(right, start, increment);
 }
 
+namespace {
+
+/// The first guess of a static stage. The closed joint D goes through the origin; the ground of a foundation that has settled or slid
+/// stands elsewhere: with p = D (g - g_p), z = C^T D g_p, and D g_p = D g - p of the old state. Empty without foundations, and in dynamics.
+Vector guess_of_foundations(const InterfaceProblem& problem) {
+  const ContactModel& model = *problem.model;
+  const auto is_whole = [](const Block& block) { return block.footprint.has_value(); };
+  if (model.shift.size() == 0 || std::ranges::none_of(model.blocks, is_whole)) return {};
+  Vector permanent = Vector::Zero(model.rows());
+  for (const Block& block : model.blocks) {
+    if (!block.footprint) continue;
+    Vector force(block.rows()), now(block.law->num_history(block.batch.components));
+    const double* from = problem.from.data() + block.first;
+    block.law->respond(block.batch, from, from, problem.old.data() + block.first_history, {.traction = force.data(), .now = now.data()});
+    permanent.segment(block.first, block.rows()) =
+        model.shift.segment(block.first, block.rows()).cwiseProduct(problem.from.segment(block.first, block.rows())) - force;
+  }
+  return model.factor.transpose() * permanent;
+}
+
+}  // namespace
+
 Outcome Condensed::contact_step(const Vector& right, const StepStart& start, Vector& increment) {
   free_opening(right, start.displacement);
   small::copy(start.opening.size(), start.opening.data(), problem_.from.data());
   small::copy(start.history.size(), start.history.data(), problem_.old.data());
   if (start.filter != nullptr) problem_.filter = *start.filter;
+  if (solution_.z.size() == 0) solution_.z = guess_of_foundations(problem_);
   Outcome outcome = method_.solve(problem_, *method_work_, solution_);
   const InterfaceSystems solved = std::exchange(solution_.systems, {});
   work_.counts->systems.factored += solved.factored;

@@ -43,6 +43,10 @@ MacroStrength strength_of(const Footprint& footprint, const Values& values) {
   if (values.has("cohesion") && !values.has("friction_angle")) fail(values, "cohesion", "friction_angle too (0 without friction)", "none");
   made.friction = values.has("friction_angle") ? std::tan(values.number("friction_angle")) : none;
   made.cohesion = values.has("cohesion") ? values.number("cohesion") * footprint.area() : 0;
+  if (values.given("dilatancy") && made.flow == MacroStrength::Flow::associated)
+    fail(values, "dilatancy", "settling flow: associated flow dilates by the angle of friction", "associated flow");
+  if (values.number("dilatancy") > (values.has("friction_angle") ? values.number("friction_angle") : 0))
+    fail(values, "dilatancy", "an angle up to friction_angle", values.has("friction_angle") ? "a larger one" : "no friction_angle");
   made.dilation = std::tan(values.number("dilatancy"));
   made.settlement_share = values.number("settlement_factor");
   return made;

@@ -201,7 +201,10 @@ FootingContact MacroElement::contact(const Batch& batch, const double* opening, 
   const MacroElasticity& ground = uplift_.elasticity();
   const double one = ground.length[0] * std::abs(elastic[macro_m1]), two = ground.length[1] * std::abs(elastic[macro_m2]);
   const double edge = 0.5 * (ground.disc ? std::hypot(one, two) : one + two), toe = elastic[macro_n] + edge;
-  return {1 - uplift_.respond(elastic).contact_share, std::max(0.0, edge - elastic[macro_n]), -toe};
+  const MacroElastic at = uplift_.respond(elastic);
+  const double open = 1 - at.contact_share;
+  // what has lifted off is straight: its slope is the rotation
+  return {open, at.contact ? open * std::hypot(one, two) : edge - elastic[macro_n], -toe};
 }
 
 MacroState MacroElement::state(int components, const double* opening, const double* history) const {

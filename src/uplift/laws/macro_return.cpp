@@ -56,6 +56,8 @@ class Return {
   void jacobian(const State& state, double* a, Fixed<size_most, 6>* by_data) const;
   bool step(const State& state, State& next) const;
   bool start(double limit, State& state) const;
+  bool start_with_less_shear(double share, State& state) const;
+  bool guess(State& state) const;
   bool accept(const State& state) const;
   bool attempt(Active active, State& state);
   void linearise(const State& state, MacroReturned& out) const;
@@ -174,17 +176,32 @@ bool Return::start(double limit, State& state) const {
     force.tail<2>() /= excess;
     state.e = uplift_.displacement(force);
   }
+  return limit > 0 ? guess(state) : evaluate(state);
+}
+
+/// The trial state with so much shear, of its N: where the footing lands on its toe N is next to nothing, and a moment that is cut leads
+/// far away.
+bool Return::start_with_less_shear(double share, State& state) const {
+  state = {};
+  state.e = trial_;
+  const MacroVector force = uplift_.respond(trial_).force;
+  const double shear = std::hypot(force[macro_h1], force[macro_h2]), most = share * force[macro_n];
+  if (!(shear > most)) return false;
+  state.e.segment<2>(macro_h1) *= most / shear;
+  return guess(state);
+}
+
+/// Completes a first guess of the displacement by its multiplier.
+bool Return::guess(State& state) const {
   const MacroVector force = uplift_.respond(state.e).force, lost = trial_ - state.e;
-  if (limit > 0) {
-    const auto project = [&](const MacroVector& direction) {
-      const MacroVector scaled = uplift_.stiffness().cwiseProduct(direction);
-      return std::max(scaled.dot(lost) / scaled.dot(direction), 0.0);
-    };
-    if (bearing())
-      state.multiplier[0] = project(surfaces_.bearing_flow(force, capacity(state.e)).direction);
-    else
-      state.multiplier[1] = project(surfaces_.sliding_flow(force).direction);
-  }
+  const auto project = [&](const MacroVector& direction) {
+    const MacroVector scaled = uplift_.stiffness().cwiseProduct(direction);
+    return std::max(scaled.dot(lost) / scaled.dot(direction), 0.0);
+  };
+  if (bearing())
+    state.multiplier[0] = project(surfaces_.bearing_flow(force, capacity(state.e)).direction);
+  else
+    state.multiplier[1] = project(surfaces_.sliding_flow(force).direction);
   return evaluate(state);
 }
 
@@ -200,6 +217,8 @@ bool Return::attempt(Active active, State& state) {
   if ((bearing() && !surfaces_.has_bearing()) || (sliding() && !surfaces_.has_sliding())) return false;
   for (const double limit : {0.0, 0.97, 0.3})
     if (start(limit, state) && newton(state) && accept(state)) return true;
+  for (const double share : {0.95, 0.7, 0.3, 0.05})
+    if (start_with_less_shear(share, state) && newton(state) && accept(state)) return true;
   return false;
 }
 

@@ -65,8 +65,16 @@ class Base {
   double overturning(std::size_t step) const { return pressed() ? shape.overturning_safety(rest, thrust(step)) : nothing; }
   double sliding(std::size_t step) const {
     if (facts.friction < 0 || interface.batch.components == 1 || !carries(step)) return nothing;
-    const double holds = -facts.friction * at(step).axial + facts.cohesion * facts.area * (1 - at(step).open_area);
+    const double holds = -facts.friction * at(step).axial + facts.cohesion * facts.area * cohesive_share(step);
     return shear(step) > least_force ? holds / shear(step) : nothing;
+  }
+
+  /// Of the area: where it is in contact; under a whole foundation the effective area (docs/theory/macro_element.md, eq M6).
+  double cohesive_share(std::size_t step) const {
+    if (!interface.footprint) return 1 - at(step).open_area;
+    const double one = 2 * std::abs(eccentricity(step, 0)), two = interface.space.dimension == 3 ? 2 * std::abs(eccentricity(step, 1)) : 0;
+    const bool disc = interface.footprint->shape == Footprint::Shape::disc;
+    return disc ? std::max(0.0, 1 - length(one, two)) : std::max(0.0, 1 - one) * std::max(0.0, 1 - two);
   }
 
   const RunResult& run;

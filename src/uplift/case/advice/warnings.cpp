@@ -176,6 +176,24 @@ void warn_floating(const Case& read, const BuiltCase& built, std::vector<std::st
                              format_quantity(-built.weight, "N")));
 }
 
+void warn_foundations(const Case& read, const BuiltCase& built, std::vector<std::string>& said) {
+  const auto comes_in = [](const Values& face) { return face.has("incident"); };
+  const bool waves = std::ranges::any_of(read.values.tables("absorbing"), comes_in);
+  for (const Values& foundation : read.values.tables("foundation")) {
+    const Values& model = foundation.part("model");
+    const std::string place = fmt::format("{}:{}: ", foundation.where().file, foundation.where().line);
+    if (waves)
+      said.push_back(place +
+                     fmt::format("the ground under \"{}\" does not move with the incident wave: it stands still", foundation.text("name")));
+    if (read.values.tables("foundation").size() > 1 || !model.items().contains("V_s") || !model.has("V_s")) continue;
+    const double capacity = model.number(model.has("V_u") ? "V_u" : "V_s");
+    if (built.model.interfaces.size() == 1 && built.weight >= capacity)
+      said.push_back(place + fmt::format("the dead load is {}, the capacity of \"{}\" {}: unless other parts bear the rest, there is no "
+                                         "equilibrium",
+                                         format_quantity(built.weight, "N"), foundation.text("name"), format_quantity(capacity, "N")));
+  }
+}
+
 /// docs/theory, eq (3): a closure stress above 1 % of the bearing pressure resists the closing of gaps noticeably.
 void warn_closure(const BuiltCase& built, std::vector<std::string>& said) {
   double area = 0;
@@ -384,6 +402,7 @@ std::vector<std::string> warnings(const Case& read, const RunSpec& spec, const B
   warn_sides(read, said);
   warn_held_faces(read, built, said);
   warn_sides_exchanged(read, built, said);
+  warn_foundations(read, built, said);
   warn_floating(read, built, said);
   warn_hinges(built, said);
   warn_embedded_feet(built, said);

@@ -323,6 +323,12 @@ Outcome Newton<R>::solve(int done) {
   for (outcome.iterations = done; outcome.iterations < options_.most_iterations; ++outcome.iterations) {
     if (!std::isfinite(size_)) {
       outcome.why = "the interface forces are not finite";
+      for (const Block& block : model_.blocks)
+        if (block.footprint && !solution_.force.segment(block.first, block.rows()).allFinite())
+          outcome.why = fmt::format(
+              "the ground under \"{}\" has no state for this motion: its bearing capacity is exhausted, or its footing "
+              "lands on an edge",
+              block.name);
       return outcome;
     }
     const double reference = balance_scale();
