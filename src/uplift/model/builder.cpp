@@ -60,7 +60,7 @@ void ModelBuilder::inextensible(int a, int b, Where where) {
 }
 
 void ModelBuilder::add_interface(InterfaceSpec spec, Where where) {
-  assert(spec.components == 1 || spec.components == space_.dimension);
+  assert(spec.components - spec.rotations == 1 || spec.components - spec.rotations == space_.dimension);
   assert(!spec.law != !spec.cone);
   if (spec.points.empty()) throw InputError(std::move(where), "interface." + spec.name, "at least one point", "none");
   for (const JointPoint& point : spec.points)
