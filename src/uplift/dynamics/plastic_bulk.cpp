@@ -64,7 +64,7 @@ BulkResponse PlasticBulk::respond(const Vector& displacement, const Update& step
   for (const One& one : elements_) {
     of_element(*one.element, full, scratch_.displacement);
     const auto history = std::span(now.history).subspan(one.first, static_cast<std::size_t>(one.element->num_history()));
-    const BulkResponse response =
+    BulkResponse response =
         one.element->respond(scratch_.displacement, history_of(one, step.old), history, scratch_.element, scratch_.force, nullptr);
     if (!response.converged) return response;
     const int each = one.element->unknowns_per_node();

@@ -264,7 +264,7 @@ std::string LoadSteps::solve(double to, int depth) {
   if (yielding_.any()) unbalanced -= plastic_next_.force;
   if (b_.rows() > 0) reaction_.noalias() = b_.transpose() * force_;
   unbalanced -= reaction_;
-  const std::string trouble = imbalance(unbalanced, moved_);
+  std::string trouble = imbalance(unbalanced, moved_);
   if (trouble.empty() || b_.rows() == 0) return trouble;
   const std::string unheld = unheld_motion(last_->problem(), last_->solution(), runaway_ratio);
   return unheld.empty() ? trouble : unheld;
