@@ -8,10 +8,10 @@
 namespace uplift {
 namespace {
 
-/// Keys and names of the input may be of any length.
-std::string shortened(const std::string& text) {
+/// Keys and names of the input may be of any length. Paths of files end with what matters: one that the system can open stays whole.
+std::string shortened(const std::string& text, std::size_t accepted = 300) {
   constexpr std::size_t most = 300;
-  if (text.size() <= most) return text;
+  if (text.size() <= accepted) return text;
   std::size_t end = most;
   while (end > 0 && (static_cast<unsigned char>(text[end]) & 0xC0) == 0x80) --end;  // no character is cut in two
   return text.substr(0, end) + "...";
@@ -19,14 +19,15 @@ std::string shortened(const std::string& text) {
 
 std::string message(const Where& where, const std::string& path, const std::string& wanted, const std::string& found,
                     const std::string& nearest) {
-  std::string place = where.file;
+  constexpr std::size_t longest_path = 4096;
+  std::string place = shortened(where.file, longest_path);
   if (where.line > 0) place += (place.empty() ? "line " : ":") + std::to_string(where.line);
   std::string what;
   if (!wanted.empty()) what = "expected " + wanted;
   if (!found.empty()) what += (what.empty() ? "found " : ", found ") + shortened(found);
-  if (!nearest.empty()) what += (what.empty() ? "did you mean " : " (did you mean ") + in_quotes(nearest) + (what.empty() ? "?" : "?)");
+  if (!nearest.empty()) what += (what.empty() ? "did you mean " : " (did you mean ") + escaped(nearest) + (what.empty() ? "?" : "?)");
   std::string out;
-  for (const std::string& part : {shortened(place), shortened(path), what}) {
+  for (const std::string& part : {place, shortened(path), what}) {
     if (part.empty()) continue;
     if (!out.empty()) out += ": ";
     out += part;

@@ -27,7 +27,7 @@ fs::path folder_of(const fs::path& path) {
   const Where where{path.string(), 0};
   std::error_code error;
   const fs::path folder = folder_of(path);
-  if (!fs::is_directory(folder, error)) throw InputError(where, "", "a file", "no folder " + in_quotes(folder.string()));
+  if (!fs::is_directory(folder, error)) throw InputError(where, "", "a file", "no folder " + escaped(folder.string()));
   throw InputError(where, "", "a file", "no file of this name", nearest_file(path));
 }
 

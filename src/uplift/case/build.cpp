@@ -296,7 +296,7 @@ std::vector<std::string> input_files(const Case& read) {
   std::vector<std::string> files;
   const auto add = [&](const Values& table) {
     const std::filesystem::path path = std::filesystem::path(read.file).parent_path() / table.text("file");
-    if (!std::filesystem::is_regular_file(path)) fail(table, "file", "a file", in_quotes(path.string()));
+    if (!std::filesystem::is_regular_file(path)) fail(table, "file", "a file", escaped(path.string()));
     files.push_back(path.lexically_normal().string());
   };
   for (const Values& function : read.values.tables("function")) {

@@ -40,10 +40,12 @@ std::string softening_joint(const InterfaceProblem& problem, const InterfaceSolu
         const double own = slope[(c * components + c) * points + i];
         if (own >= steepest) continue;
         steepest = own;
-        text = fmt::format(
-            "the joint '{}' softens at point {}, and no static equilibrium was found near the last one: it may let go at "
-            "once; apply this load in a dynamic stage, or give the joint more fracture energy or no strength",
-            block.name, i + 1);
+        text = block.footprint
+                   ? fmt::format("the ground under '{}' gives way: its bearing capacity is exhausted", block.name)
+                   : fmt::format(
+                         "the joint '{}' softens at point {}, and no static equilibrium was found near the last one: it may let go at "
+                         "once; apply this load in a dynamic stage, or give the joint more fracture energy or no strength",
+                         block.name, i + 1);
       }
   }
   return text;

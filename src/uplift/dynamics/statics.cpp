@@ -181,12 +181,11 @@ void LoadSteps::find_loads() {
   model_.add_prescribed_opening(state_.time, motion_);
 }
 
-/// A structure that nothing holds has no equilibrium, but the balance of an interface problem is relative to its own forces, the closed
-/// joint that is taken back among them: it is met at infinity by every method. The balance of the whole structure, f - K u - B^T p against
-/// the loads, is not. `unbalanced` is that difference; what round-off makes of K u does not count, unless it is so much that nothing can be
-/// told. A stage without loads is measured against the forces at its beginning, and against those of the interfaces, which may balance each
-/// other: a footing that supports press down has a moment of none.
-/// Why this is no equilibrium; empty when it is one.
+/// Why this is no equilibrium; empty when it is one. A structure that nothing holds has none, but the balance of an interface problem is
+/// relative to its own forces, the closed joint that is taken back among them: it is met at infinity by every method. The balance of the
+/// whole structure, f - K u - B^T p against the loads, is not. `unbalanced` is that difference; what round-off makes of K u does not count,
+/// unless it is so much that nothing can be told. A stage without loads is measured against the forces at its beginning, and against those
+/// of the interfaces, which may balance each other: a footing that supports press down has a moment of none.
 std::string LoadSteps::imbalance(const Vector& unbalanced, const Vector& moved) const {
   if (unbalanced.size() == 0) return {};
   if (!unbalanced.allFinite()) return "the forces are not finite";

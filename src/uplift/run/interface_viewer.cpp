@@ -171,8 +171,15 @@ void InterfaceViewer::look_at_footing(const Layout& layout, const Vector& openin
   view.least_opening = contact.least_gap;
   view.max_pressure = 0;
   for (int k = 0; k < std::min(2, layout.batch.rotations); ++k) view.rotation[static_cast<std::size_t>(k)] = rows[layout.translations + k];
-  const Vector sums = layout.resultant_rows * force.segment(layout.first, layout.batch.components);
-  view.resultant = resultant_of(layout.space, sums.data());
+  view.resultant = resultant_by_rows(layout, force);
+}
+
+Resultant InterfaceViewer::resultant_by_rows(const Layout& layout, const Vector& force) {
+  std::array<double, 6> sums{};
+  for (Index row = 0; row < layout.resultant_rows.cols(); ++row)
+    for (Index c = 0; c < layout.resultant_rows.rows(); ++c)
+      sums[static_cast<std::size_t>(c)] += layout.resultant_rows(c, row) * force[layout.first + row];
+  return resultant_of(layout.space, sums.data());
 }
 
 void InterfaceViewer::look(const Vector& opening, const Vector& force, const Vector& history, std::vector<InterfaceView>& views) {
@@ -217,11 +224,7 @@ void InterfaceViewer::look(const Vector& opening, const Vector& force, const Vec
     view.rotation = {sum(slopes), 0};
     if (layout.slope_weight[1].size() > 0) view.rotation[1] = small::dot(n, layout.slope_weight[1].data(), gap);
     if (layout.resultant_rows.size() > 0) {
-      std::array<double, 6> sums{};
-      for (Index row = 0; row < layout.resultant_rows.cols(); ++row)
-        for (Index c = 0; c < layout.resultant_rows.rows(); ++c)
-          sums[static_cast<std::size_t>(c)] += layout.resultant_rows(c, row) * force[layout.first + row];
-      view.resultant = resultant_of(layout.space, sums.data());
+      view.resultant = resultant_by_rows(layout, force);
       continue;
     }
     if (layout.translations > 1) {

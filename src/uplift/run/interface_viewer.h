@@ -40,6 +40,7 @@ class InterfaceViewer {
     int first_history = 0;
   };
   void look_at_footing(const Layout& layout, const Vector& opening, const Vector& force, const Vector& history, InterfaceView& view) const;
+  static Resultant resultant_by_rows(const Layout& layout, const Vector& force);
   double open_share(const Layout& layout, const double* gap, const double* force, const InterfaceView& view);
   double tension_share(const Layout& layout, const double* force);
   static double edge_pressure(const Layout& layout, const double* force);

@@ -53,18 +53,18 @@ void Runner::note_impulses(const Stepper& stepper) {
 void Runner::sum_up(double step) {
   const StepRecord& steps = run_.result.steps;
   Peak& ratio = run_.result.max_uplifted_ratio;
-  for (; run_.summed_up < steps.size(); ++run_.summed_up) {
-    const double time = steps.time[run_.summed_up];
+  for (; summed_up_ < steps.size(); ++summed_up_) {
+    const double time = steps.time[summed_up_];
     bool open = false;
     for (std::size_t k = 0; k < steps.extremes.size(); ++k) {
       if (is_wall(k)) continue;
-      const StepRecord::Instant& at = steps.at(run_.summed_up, k);
+      const StepRecord::Instant& at = steps.at(summed_up_, k);
       if (at.open_area > ratio.value) ratio.value = at.open_area, ratio.time = time;
       open = open || at.open_area > 0;
     }
     if (!open) continue;
     if (run_.result.first_uplift < 0) run_.result.first_uplift = time;
-    if (run_.summed_up > 0) run_.result.time_uplifted += step;
+    if (summed_up_ > 0) run_.result.time_uplifted += step;
   }
   for (std::size_t k = 0; k < steps.extremes.size(); ++k) {
     const StepRecord::Extremes& most = steps.extremes[k];

@@ -226,7 +226,8 @@ bool Runner::resume() {
     return false;
   run_ = from;
   run_.result.columns = plan_.requests;
-  if (run_.released) rest_ = nullptr;
+  summed_up_ = run_.result.steps.size();
+  rest_ = nullptr;  // of static stages before
   if (run_.second_order) use_second_order();
   rotations_ = rotations_on_interfaces(model_, b_);
   return true;
@@ -243,7 +244,7 @@ void Runner::run_stages() {
     }
     if (stage.p_delta && geometric_ == nullptr && !second_order()) return;
     if (rest_ != nullptr) release();
-    if (!std::exchange(run_.moving, true)) {
+    if (!run_.ledger && run_.step == 0) {  // the first dynamic stage begins
       if (run_.stage > 0) note_rest();
       add_initial_state();
       rotations_ = rotations_on_interfaces(model_, b_);

@@ -22,8 +22,6 @@ struct RunState {
   State state;
   std::optional<Ledger> ledger;             // of the dynamic stages; empty before the first one
   std::optional<std::size_t> marched;       // the dynamic stage before, as long as nothing came in between
-  bool moving = false;                      // a dynamic stage has begun
-  bool released = false;                    // the supports of static stages alone are gone
   Vector held;                              // what they have borne, on the free unknowns [N, N m]
   std::optional<SecondOrder> second_order;  // of P-delta, before elimination
   Energies static_energies;                 // at the end of the static stages before the first dynamic one
@@ -35,7 +33,6 @@ struct RunState {
   // what was recorded
   RunResult result;
   RunResult load_steps;       // table of the static stages
-  std::size_t summed_up = 0;  // instants of the record that peaks and durations know
   long next_check = 1;        // of the equilibrium in the present stage
   double recorded_until = 0;  // s: accelerations are means from here to the next instant
   Frame peak_frame;           // at the largest uplift of the present stage; empty when that of an earlier stage is larger

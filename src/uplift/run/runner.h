@@ -79,6 +79,7 @@ class Runner {
   const State* seen_ = &run_.state;           // the present one, wherever it lives
   std::vector<InterfaceView> views_;
   std::vector<int> rotations_;     // of the dynamic stages: rotations_on_interfaces
+  std::size_t summed_up_ = 0;      // instants of the record that peaks and durations know
   bool has_walls_ = false;         // some interface is no base
   double farthest_ = 0;            // m: largest of the bases' least openings, now
   double planned_ = 0, tail_ = 0;  // s: of the dynamic stages; at their end the base's pose is kept for this long

@@ -179,7 +179,6 @@ void Runner::release() {
   for (const TimeLoad& time_load : model_.time_loads)
     if (time_load.is_static()) run_.held -= time_load.factor(run_.state.time) * time_load.shape;
   for (const TimeLoad& time_load : second_order_loads_) run_.held -= time_load.factor(run_.state.time) * time_load.shape;
-  run_.released = true;
   rest_ = nullptr;
 }
 

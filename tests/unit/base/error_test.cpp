@@ -30,6 +30,13 @@ TEST(InputError, LeavesOutEmptyPartsCleanly) {
   EXPECT_EQ(text_of({{}, "", "", ""}), "bad input");
 }
 
+TEST(InputError, ShowsPathsInFull) {
+  const std::string folder = "/" + std::string(400, 'd');
+  const std::string text = text_of({{folder + "/case.toml", 7}, "mesh.file", "a file", "no file \"raft.mhs\"", folder + "/raft.msh"});
+  EXPECT_EQ(text.find(folder + "/case.toml:7: mesh.file: "), 0U);
+  EXPECT_NE(text.find("did you mean \"" + folder + "/raft.msh\"?"), std::string::npos) << text;
+}
+
 TEST(NearestName, FindsMisspellings) {
   const std::vector<std::string> names{"stiffness", "damping", "mass", "nodes", "K_n", "G_f", "augmented_lagrangian", "E", "I"};
   EXPECT_EQ(nearest_name("stifness", names), "stiffness");      // a letter lost

@@ -47,7 +47,7 @@ Motion read_record(const Values& record) {
   if (record.has("step")) options.step = record.number("step");
   if (record.has("column")) options.column = record.text("column");
   const std::string path = record_path(record);
-  if (!std::filesystem::is_regular_file(path)) fail(record, "file", "a file", in_quotes(path));
+  if (!std::filesystem::is_regular_file(path)) fail(record, "file", "a file", escaped(path));
   try {
     Motion motion = component_of(record, read_motions(path, options));
     motion.file = record.text("file");

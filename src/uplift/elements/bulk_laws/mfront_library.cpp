@@ -30,7 +30,7 @@ std::shared_ptr<void> open_library(const Values& law, const std::filesystem::pat
   const auto refuse = [&](const std::string& found, const std::string& nearest = {}) {
     fail(law, "library", "a shared library made by MFront", found, nearest);
   };
-  if (!std::filesystem::is_regular_file(path)) refuse("no file " + in_quotes(path.string()), nearest_file(path));
+  if (!std::filesystem::is_regular_file(path)) refuse("no file " + escaped(path.string()), nearest_file(path));
   void* handle = ::dlopen(std::filesystem::absolute(path).c_str(), RTLD_NOW | RTLD_LOCAL);
   if (handle == nullptr) refuse(::dlerror());
   return {handle, [](void* opened) { ::dlclose(opened); }};

@@ -4,8 +4,8 @@
 #include <filesystem>
 #include <fstream>
 #include <string_view>
-#include <vector>
 
+#include "uplift/base/file.h"
 #include "uplift/base/text.h"
 #include "uplift/io/mesh/gmsh.h"
 #include "uplift/io/mesh/med_file.h"
@@ -17,23 +17,12 @@ namespace fs = std::filesystem;
 constexpr std::string_view hdf5_signature = "\x89HDF\r\n\x1a\n";
 constexpr const char* wanted = "a mesh file (Gmsh .msh or MED)";
 
-[[noreturn]] void missing(const fs::path& path, const Where& where) {
-  std::error_code error;
-  std::vector<std::string> names;
-  const fs::path folder = path.has_parent_path() ? path.parent_path() : fs::path(".");
-  for (fs::directory_iterator entry(folder, error), end; !error && entry != end; entry.increment(error))
-    names.push_back(entry->path().filename().string());
-  const std::string nearest = nearest_name(path.filename().string(), names);
-  throw InputError(where, "", wanted, "no file " + in_quotes(path.string()),
-                   nearest.empty() ? "" : (path.parent_path() / nearest).string());
-}
-
 /// The first `most` bytes of a file.
 std::string beginning(const fs::path& path, std::uintmax_t most, const Where& where) {
   std::ifstream in(path, std::ios::binary);
   std::string bytes(static_cast<std::size_t>(most), '\0');
   if (!in || (most > 0 && !in.read(bytes.data(), static_cast<std::streamsize>(most))))
-    throw InputError(where, "", "a file that can be read", in_quotes(path.string()));
+    throw InputError(where, "", "a file that can be read", escaped(path.string()));
   return bytes;
 }
 
@@ -42,14 +31,14 @@ std::string beginning(const fs::path& path, std::uintmax_t most, const Where& wh
 Mesh read_mesh(const std::string& path, const Where& where, const std::string& mesh, bool isolated) {
   std::error_code error;
   const fs::file_status status = fs::status(path, error);
-  if (!fs::exists(status)) missing(path, where);
-  if (!fs::is_regular_file(status)) throw InputError(where, "", wanted, in_quotes(path) + ", which is no file");
+  if (!fs::exists(status)) throw InputError(where, "", wanted, "no file " + escaped(path), nearest_file(path));
+  if (!fs::is_regular_file(status)) throw InputError(where, "", wanted, escaped(path) + ", which is no file");
   const std::uintmax_t size = fs::file_size(path, error);
-  if (error) throw InputError(where, "", "a file that can be read", in_quotes(path) + ": " + error.message());
+  if (error) throw InputError(where, "", "a file that can be read", escaped(path) + ": " + error.message());
   if (beginning(path, std::min<std::uintmax_t>(size, hdf5_signature.size()), where) == hdf5_signature)
     return isolated ? read_med_file(path, mesh) : read_med_here(path, mesh);
   const std::string bytes = beginning(path, size, where);
-  if (!is_gmsh(bytes)) throw InputError(where, "", wanted, in_quotes(path) + ", which begins with " + in_quotes(bytes.substr(0, 20)));
+  if (!is_gmsh(bytes)) throw InputError(where, "", wanted, escaped(path) + ", which begins with " + in_quotes(bytes.substr(0, 20)));
   return read_gmsh(bytes, path);
 }
 
