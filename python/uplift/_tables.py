@@ -435,6 +435,7 @@ class Tables:
         shape: Optional[str] = None,
         length: Optional[Quantity] = None,
         offset: Optional[Sequence[Quantity]] = None,
+        soil: Optional[Mapping[str, Any]] = None,
     ) -> None:
         """Foundations on one element of the ground.
 
@@ -447,8 +448,9 @@ class Tables:
             length: across the width: in the plane out of the plane, absent 1 m; in space needed but for a disc [m], > 0
                 m.
             offset: from the node to the middle of the footing's underside [m].
+            soil: gives the stiffnesses that the model leaves out.
         """
-        self._add("foundation", {"name": name, "body": body, "width": width, "model": model, "shape": shape, "length": length, "offset": offset})
+        self._add("foundation", {"name": name, "body": body, "width": width, "model": model, "shape": shape, "length": length, "offset": offset, "soil": soil})
 
     def function(self, name: str, shape: Union[Part, str]) -> None:
         """Functions of time.

@@ -12,9 +12,9 @@ from ._parts import Part, Quantity, part
 
 def elastic(
     *,
-    K_v: Quantity,
-    K_h: Quantity,
-    K_r: Quantity,
+    K_v: Optional[Quantity] = None,
+    K_h: Optional[Quantity] = None,
+    K_r: Optional[Quantity] = None,
     K_h2: Optional[Quantity] = None,
     K_r2: Optional[Quantity] = None,
     K_t: Optional[Quantity] = None,
@@ -22,7 +22,8 @@ def elastic(
     """Linear springs that hold tension: what a linear analysis assumes.
 
     Parameters:
-        K_v: vertical stiffness of the ground under the whole foundation [N/m], > 0 N/m.
+        K_v: vertical stiffness of the ground under the whole foundation; absent: of [foundation.soil], as the
+            others [N/m], > 0 N/m.
         K_h: horizontal stiffness along the width [N/m], > 0 N/m.
         K_r: rocking stiffness for moments that tilt the width [N m/rad], > 0 N m/rad.
         K_h2: in space: horizontal stiffness along the length; absent: K_h [N/m], > 0 N/m.
@@ -34,9 +35,9 @@ def elastic(
 
 def macro_element(
     *,
-    K_v: Quantity,
-    K_h: Quantity,
-    K_r: Quantity,
+    K_v: Optional[Quantity] = None,
+    K_h: Optional[Quantity] = None,
+    K_r: Optional[Quantity] = None,
     K_h2: Optional[Quantity] = None,
     K_r2: Optional[Quantity] = None,
     K_t: Optional[Quantity] = None,
@@ -53,7 +54,8 @@ def macro_element(
     """Uplift, bearing capacity and sliding of a shallow foundation in one element: footing and ground near it.
 
     Parameters:
-        K_v: vertical stiffness of the ground under the whole foundation [N/m], > 0 N/m.
+        K_v: vertical stiffness of the ground under the whole foundation; absent: of [foundation.soil], as the
+            others [N/m], > 0 N/m.
         K_h: horizontal stiffness along the width [N/m], > 0 N/m.
         K_r: rocking stiffness for moments that tilt the width [N m/rad], > 0 N m/rad.
         K_h2: in space: horizontal stiffness along the length; absent: K_h [N/m], > 0 N/m.

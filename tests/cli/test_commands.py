@@ -1,6 +1,7 @@
 """The other commands: new, check, modes, describe, schema, replay, completion, help."""
 
 import math
+import re
 
 from support import *
 
@@ -182,6 +183,48 @@ class Replay(CliTest):
 
     def stored(self):
         return pathlib.Path(__file__).with_name("stored_problem.json")
+
+
+class Soil(CliTest):
+    """Stiffness of a square footing of 10 m, G = 80 MPa, poisson 0.3 after Pais and Kausel: K_z = G B/(1 - nu) 4.7, B = 5 m."""
+    WORDS = ("width=10 m", "length=1000 cm", "G=80 MPa", "poisson=0.3")
+
+    def motions(self, *words):
+        found = json.loads(self.uplift("soil", *words, "--json").stdout)["footings"]
+        return [{each["motion"]: each for each in footing["soil"]["motions"]} for footing in found]
+
+    def test_of_words(self):
+        motions, = self.motions(*self.WORDS)
+        self.assertAlmostEqual(motions["vertical"]["stiffness"] / (80e6 * 5 / 0.7 * 4.7), 1, 12)
+        self.assertEqual(motions["vertical"]["damping"], 0)  # without density
+        text = self.uplift("soil", *self.WORDS).stdout
+        for part in ("Pais & Kausel", 'K_v = "2.68571429e+09 N/m"', "tilting the width: 39 % of the stiffness", "K_n = 2.68571e+07 Pa/m"):
+            self.assertIn(part, text)
+
+    def test_what_it_prints_is_the_model_of_a_foundation(self):
+        printed = re.findall(r'(K_\w+ = "[^"]+")', self.uplift("soil", *self.WORDS).stdout)
+        foundation = '[[foundation]]\nname = "ground"\nbody = "base"\nwidth = 10\nlength = 10\n'
+        plane = ", ".join(line for line in printed if line.split()[0] in ("K_v", "K_h", "K_r"))
+        before, after = BASE.split("[[interface]]")[0], "[[load]]" + BASE.split("[[load]]", 1)[1]
+        self.write(before + foundation + 'model = { type = "elastic", ' + plane + " }\n" + after, "stated.toml")
+        self.write(before + foundation + 'model = "elastic"\n[foundation.soil]\nG = "80 MPa"\npoisson = 0.3\n' + after, "soil.toml")
+        stated, soil = (json.loads(self.uplift("check", name, "--json").stdout) for name in ("stated.toml", "soil.toml"))
+        for one, other in zip(stated["frequencies_bonded"], soil["frequencies_bonded"]):
+            self.assertAlmostEqual(one / other, 1, 7)
+        self.assertEqual(self.motions("soil.toml"), self.motions(*self.WORDS))
+
+    def test_refusals(self):
+        for words, parts in (((*self.WORDS, "lenght=3"), ("uplift soil: lenght", 'did you mean "length"')), (("width=2", "width=3"), ("width", "two")),
+                             (("width=10", "G=1", "poisson=0.2"), ("the length of a rectangle",)), (("a=b",), ("uplift soil: a: expected a key",)),
+                             (("nowhere.toml",), ("nowhere.toml", "no file")), (("x.toml", "y.toml"), ("y.toml",)),
+                             (("shape=strip", "width=2", "G=1e6", "poisson=0.2"), ("rock_depth",)), (("width=-1", "length=1"), ("a length > 0 m",))):
+            self.refused_words(words, parts)
+
+    def refused_words(self, words, parts):
+        done = self.uplift("soil", *words, expect=2)
+        for part in parts:
+            self.assertIn(part, done.stderr)
+        self.assertEqual(done.stdout, "")
 
 
 class Shell(CliTest):

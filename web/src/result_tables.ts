@@ -1,8 +1,8 @@
 // Tables made from summary.json and trust.json: runs, floor spectra, trust bands, stiffness sweep.
 import { NEGLIGIBLE } from "./format";
-import { format_within, percent, significant } from "./quantity";
+import { format_quantity, format_within, percent, significant } from "./quantity";
 import { quantity_of, type Catalog } from "./result_verdict";
-import type { FloorSummary, RunSummary, Summary, Trust } from "./summary";
+import type { FloorSummary, RunSummary, SoilSummary, Summary, Trust } from "./summary";
 import type { Column, ColumnKind, Row, Table } from "./types";
 
 function column(key: string, label: string, kind: ColumnKind, unit = "", digits?: number): Column {
@@ -183,8 +183,36 @@ function sweep_table(summary: Summary): Table[] {
   }];
 }
 
+function soil_table(name: string, soil: SoilSummary, only: boolean): Table {
+  const frequency = soil.frequency > 0 ? ` Frequency factors and dashpots of rotations belong to ${significant(soil.frequency, 3)} Hz.` : " Static stiffness.";
+  const dashpots = soil.radiation ? " The dashpots of the radiated waves are part of the model." : " The dashpots of the radiated waves are not part of the model.";
+  return {
+    id: only ? "soil" : `soil_${name}`,
+    title: `Stiffness of the ground, foundation “${name}”`,
+    caption: `Source: ${soil.source}. Stiffnesses that the case states itself replace these.${frequency}${dashpots}`,
+    columns: [
+      column("motion", "Motion", "text"), column("modulus", "Shear modulus", "number", "Pa", 3), column("depth", "Mean down to", "number", "m", 3),
+      column("surface", "At the surface", "text"), column("embedment", "Embedment", "number", "", 4), column("dynamic", "Frequency", "number", "", 4),
+      column("stiffness", "Stiffness", "text"), column("damping", "Dashpot", "text"),
+    ],
+    rows: soil.motions.map((each, k) => {
+      const unit = k < soil.motions.filter(({ motion }) => motion === "vertical" || motion.startsWith("along")).length ? "N/m" : "N m/rad";
+      return {
+        motion: each.motion, modulus: each.shear_modulus, depth: each.depth, surface: format_quantity(each.at_surface, unit),
+        embedment: each.embedment_factor, dynamic: each.dynamic_factor, stiffness: format_quantity(each.stiffness, unit),
+        damping: each.damping ? format_quantity(each.damping, unit === "N/m" ? "N s/m" : "N m s/rad") : "–",
+      };
+    }),
+  };
+}
+
+function soil_tables(summary: Summary): Table[] {
+  const grounds = summary.interfaces.flatMap(({ name, soil }) => (soil ? [{ name, soil }] : []));
+  return grounds.map(({ name, soil }) => soil_table(name, soil, grounds.length === 1));
+}
+
 /** All of them; `others`: tables of the program on the motions, which follow that of the runs. */
 export function tables_of(summary: Summary, trust: Trust | undefined, catalog: Catalog, others: Table[]): Table[] {
   const runs = summary.runs.length > 0 ? [runs_table(summary)] : [];
-  return [...runs, ...others, ...floors_table(summary), ...(trust ? trust_tables(trust, catalog) : []), ...sweep_table(summary)];
+  return [...runs, ...others, ...floors_table(summary), ...(trust ? trust_tables(trust, catalog) : []), ...sweep_table(summary), ...soil_tables(summary)];
 }

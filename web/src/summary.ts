@@ -112,6 +112,17 @@ export interface VerdictSummary {
   floors: { floor: string; damping: number; bands: { band: string; change_percent: number; change: string }[]; note?: string }[];
 }
 
+/** Ground under a footing, from published formulas. */
+export interface SoilSummary {
+  source: string;
+  embedment: number;
+  frequency: number;
+  radiation: boolean;
+  motions: {
+    motion: string; shear_modulus: Maybe; depth: Maybe; at_surface: Maybe; embedment_factor: Maybe; dynamic_factor: Maybe; stiffness: Maybe; damping: Maybe;
+  }[];
+}
+
 export interface Summary {
   version: string;
   built_with: string;
@@ -120,6 +131,7 @@ export interface Summary {
   created: string;
   case: { file: string; sha256: string };
   inputs: { file: string; sha256: string }[];
+  interfaces: { name: string; soil?: SoilSummary }[];
   motions: unknown[];
   runs: RunSummary[];
   floor_envelopes?: { damping_case: string; runs: number; floors: FloorSummary[] }[];

@@ -60,6 +60,16 @@ const SUMMARY = {
     criteria: [{ quantity: "change_of_moment", unit: "1", interface: "soil", result: "met", value: -0.519, limit: 0.1, kind: "at_most", source: "x" }],
   },
   band: 0.02, compared_columns: [],
+  interfaces: [{ name: "wall" }, {
+    name: "soil",
+    soil: {
+      source: "Pais & Kausel", embedment: 0, frequency: 2, radiation: true,
+      motions: [
+        { motion: "vertical", shear_modulus: 80e6, depth: 5, at_surface: 2.5e9, embedment_factor: 1, dynamic_factor: 0.99, stiffness: 2.475e9, damping: 7e7 },
+        { motion: "tilting the width", shear_modulus: 80e6, depth: 5, at_surface: 5e10, embedment_factor: 1, dynamic_factor: 1, stiffness: 5e10, damping: 0 },
+      ],
+    },
+  }],
   stiffness_sweep: [{ k_F: 0.1, created_share_path: 0, status_path: "completed", created_share_end: 0.4, status_end: "failed (expected)" }],
 };
 
@@ -106,7 +116,7 @@ function check_verdict(check, { interfaces: [base, wall], criteria: [criterion] 
 
 function check_tables(check, tables) {
   const table = (id) => tables.find((each) => each.id === id) ?? { rows: [], columns: [] };
-  check.equal(tables.map((each) => each.id).join(), "runs,floors,trust,trust_reaches,trust_runs,sweep", "tables in their order");
+  check.equal(tables.map((each) => each.id).join(), "runs,floors,trust,trust_reaches,trust_runs,sweep,soil", "tables in their order");
   const [first, bonded, failed] = table("runs").rows;
   check.equal([first.top, first.top_time, first.ratio, first.opening, first.moment, first.per_step].join(), "0.0359,0.75,0.25,0,1370000,4", "magnitudes of a run; a gap below the precision is 0");
   check.equal([bonded.ratio, bonded.opening, bonded.deviation].join(), ",,", "a bonded base has no gap, and is not compared");
@@ -120,6 +130,9 @@ function check_tables(check, tables) {
   check.equal(table("trust_reaches").rows[0].above, "12 % at 8 Hz", "an excess over the broadened curve");
   check.equal(table("trust_runs").rows.map((row) => row.status).join(), "completed,not changed", "changed choices");
   check.equal(table("sweep").rows[0].end, 0.4, "the stiffness sweep");
+  const ground = table("soil").rows.map((row) => [row.motion, row.stiffness, row.damping].join()).join("; ");
+  check.equal(ground, "vertical,2.48 GN/m,7.00·10⁷ N s/m; tilting the width,5.00·10¹⁰ N m/rad,–", "the ground under a footing");
+  check.ok(table("soil").caption.includes("belong to 2 Hz"), "the frequency is stated", table("soil").caption);
 }
 
 function check_charts(check, charts) {

@@ -252,7 +252,7 @@ function summary_of(runs, bonded) {
   const share = Math.max(...sdm.ratio);
   return {
     version: "0.1.0", built_with: "", title: "Rocking oscillator on tensionless springs", command: "uplift compare sample/case.toml", created: "2025-01-15T09:30:00Z",
-    case: { file: "sample/case.toml", sha256: "0".repeat(64) }, inputs: [], motions: [], runs: [],
+    case: { file: "sample/case.toml", sha256: "0".repeat(64) }, inputs: [], interfaces: [{ name: "footing" }], motions: [], runs: [],
     verdict: {
       level: "uplift", headline: sentences(runs, bonded).headline, consequence: "", per_metre: false,
       step_check: { result: "not converged", sentence: "Not converged: with twice the step (0.200 ms instead of 0.100 ms) base moment of footing changes by 7.0 %; a step of 0.0500 ms is expected to be sufficient." },

@@ -64,6 +64,8 @@ void add_interfaces(const Case& read, const RunSpec& spec, const Model* like, Mo
     if (made.law) joint.facts.tension = made.law->scales().strength;
     built.facts.push_back(std::move(joint.facts));
     built.behaviours.push_back(&behaviour);
+    if (auto dashpot = part.footprint ? radiation_dashpot(*part.table, *part.footprint, names) : nullptr)
+      builder.add_element(std::move(dashpot), part.table->table("soil").where("radiation"));
     builder.add_interface(std::move(made), part.table->where());
   }
   if (spec.law && std::ranges::all_of(parts, [](const InterfacePart& part) { return part.footprint.has_value(); }))

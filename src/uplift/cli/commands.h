@@ -31,6 +31,8 @@ int modes(const Options& options, int count);
 int describe(const std::string& family, const std::string& name);
 /// The JSON Schema of a document: "case", "results" (summary.json), "trust" (trust.json) or "motion" (summary.json of `motion`).
 int schema(const std::string& document);
+/// Stiffness and dashpots of the ground under a footing: of KEY=VALUE words, or of the foundations of a case.
+int soil(const Options& options, const std::vector<std::string>& words);
 int replay(const Options& options, const std::string& method, bool all);
 
 struct MotionOptions {

@@ -27,6 +27,7 @@ struct Choices {
   Options options;
   std::string name, family, method = "lagrange", shell = "bash", document = "case";
   uplift::cli::MotionOptions motion;
+  std::vector<std::string> words;  // of `soil`
   int modes = 6;
   bool all = false;
 };
@@ -119,6 +120,17 @@ void declare(CLI::App& app, Choices& given) {
   command->add_option("-n,--count", given.modes, "number of modes")->check(CLI::Range(1, 1000));
   take_json(command, options);
 
+  command = add(app, "soil", "stiffness and radiation damping of the ground under a rigid footing, from published formulas",
+                "  uplift soil width=\"12 m\" length=\"8 m\" G=\"80 MPa\" poisson=0.3 density=\"1900 kg/m3\"\n"
+                "  uplift soil shape=disc width=\"40 m\" shear_wave_velocity=600 poisson=0.35 density=2100 embedment=5\n"
+                "  uplift soil tower/case.toml");
+  command
+      ->add_option("words", given.words,
+                   "KEY=VALUE words: shape, width, length and the keys of uplift describe section foundation.soil; or a case with "
+                   "[foundation.soil]")
+      ->required();
+  take_json(command, options);
+
   command = add(app, "describe", "print equations, parameters, units and sources of every part, and the tables of a case file",
                 "  uplift describe\n  uplift describe law\n  uplift describe law sdm\n  uplift describe section interface.footing");
   command->add_option("family", given.family,
@@ -166,6 +178,7 @@ int dispatch(const CLI::App& app, const Choices& given) {
   if (name == "compare") return cli::compare(given.options);
   if (name == "trust") return cli::trust(given.options);
   if (name == "modes") return cli::modes(given.options, given.modes);
+  if (name == "soil") return cli::soil(given.options, given.words);
   if (name == "describe") return cli::describe(given.family, given.name);
   if (name == "schema") return cli::schema(given.document);
   if (name == "motion") return cli::motion(given.options, given.motion);

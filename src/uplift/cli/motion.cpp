@@ -13,9 +13,9 @@
 #include "uplift/cli/commands.h"
 #include "uplift/cli/console.h"
 #include "uplift/cli/load.h"
+#include "uplift/cli/words.h"
 #include "uplift/io/files.h"
 #include "uplift/io/report/report.h"
-#include "uplift/io/text/toml.h"
 #include "uplift/motion/formats/convert.h"
 #include "uplift/motion/formats/write.h"
 #include "uplift/motion/intensity.h"
@@ -27,29 +27,8 @@ namespace {
 
 namespace fs = std::filesystem;
 
-/// KEY=VALUE, the value as in a case file; a text may stand there without quotes.
-std::pair<std::string, Raw> pair_of(const std::string& word, const std::string& place) {
-  const std::size_t sign = word.find('=');
-  if (sign == 0 || sign == std::string::npos) throw InputError({place, 0}, "", "KEY=VALUE", in_quotes(word));
-  const std::string key(trim(word.substr(0, sign))), text(trim(word.substr(sign + 1)));
-  Raw value{text, {place, 0}, key};
-  try {
-    const Raw read = read_toml_text("v = " + text, place);
-    if (const Raw* found = std::get<std::shared_ptr<RawTable>>(read.data)->find("v")) value.data = found->data;
-  } catch (const InputError&) {
-    value.data = text;  // `0.3 g_n`, `vertical`
-  }
-  return {key, value};
-}
-
-using Pairs = std::vector<std::pair<std::string, Raw>>;
-
-Raw table_of(Pairs pairs, const std::string& place) {
-  return {std::make_shared<RawTable>(RawTable{std::move(pairs)}), {place, 0}, ""};
-}
-
 /// "NAME KEY=VALUE KEY=VALUE": a part. Blanks around a unit (`0.3 g_n`) belong to the value before.
-Pairs part_of(const std::string& text, const std::string& place) {
+Words part_of(const std::string& text, const std::string& place) {
   std::vector<std::string> words;
   for (std::size_t begin = 0; (begin = text.find_first_not_of(' ', begin)) != std::string::npos;) {
     const std::size_t end = std::min(text.find(' ', begin), text.size());
@@ -61,8 +40,8 @@ Pairs part_of(const std::string& text, const std::string& place) {
     begin = end;
   }
   if (words.empty()) throw InputError({place, 0}, "", "the name of a part", in_quotes(text));
-  Pairs pairs{{"type", {words.front(), {place, 0}, "type"}}};
-  for (std::size_t i = 1; i < words.size(); ++i) pairs.push_back(pair_of(words[i], place));
+  Words pairs{{"type", {words.front(), {place, 0}, "type"}}};
+  for (std::size_t i = 1; i < words.size(); ++i) pairs.push_back(word_of(words[i], place));
   return pairs;
 }
 
@@ -107,26 +86,20 @@ std::vector<double> frequencies_of(const std::string& text) {
 }
 
 /// KEY=VALUE words that belong to the generation itself, and those that belong to the targets.
-std::pair<Pairs, Pairs> sorted_words(const std::vector<std::string>& words, const std::string& place) {
-  std::pair<Pairs, Pairs> sorted;
+std::pair<Words, Words> sorted_words(const std::vector<std::string>& words, const std::string& place) {
+  std::pair<Words, Words> sorted;
   for (const std::string& word : words) {
-    auto pair = pair_of(word, place);
+    auto pair = word_of(word, place);
     const bool own = std::ranges::any_of(generate_section().fields, [&](const Field& field) { return field.name == pair.first; });
     (own ? sorted.first : sorted.second).push_back(std::move(pair));
   }
   return sorted;
 }
 
-void refuse_twice(const Pairs& pairs, const std::string& place) {
-  for (std::size_t i = 0; i < pairs.size(); ++i)
-    for (std::size_t j = 0; j < i; ++j)
-      if (pairs[i].first == pairs[j].first) throw InputError({place, 0}, pairs[i].first, "one value", "two");
-}
-
-std::vector<std::unique_ptr<const TargetSpectrum>> targets_of(const MotionOptions& given, const Pairs& common, const std::string& place) {
+std::vector<std::unique_ptr<const TargetSpectrum>> targets_of(const MotionOptions& given, const Words& common, const std::string& place) {
   std::vector<std::unique_ptr<const TargetSpectrum>> targets;
   for (const std::string& text : given.generate) {
-    Pairs pairs = part_of(text, place);
+    Words pairs = part_of(text, place);
     refuse_twice(pairs, place);
     for (const auto& pair : common)
       if (std::ranges::none_of(pairs, [&](const auto& own) { return own.first == pair.first; })) pairs.push_back(pair);
@@ -141,7 +114,7 @@ std::vector<ShownMotion> generate_all(const MotionOptions& given, std::vector<st
   const std::string place = "uplift motion --generate";
   auto [own, common] = sorted_words(given.files, place);
   if (given.record.step) own.push_back({"step", {*given.record.step, {place, 0}, "step"}});
-  for (const Pairs* pairs : {&own, &common}) refuse_twice(*pairs, place);
+  for (const Words* pairs : {&own, &common}) refuse_twice(*pairs, place);
   for (const std::string* word : {&given.record.unit, &given.record.format, &given.record.column})
     if (!word->empty()) throw InputError({place, 0}, "", "no options for files", in_quotes(*word));
   targets = targets_of(given, common, place);

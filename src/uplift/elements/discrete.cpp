@@ -33,6 +33,19 @@ void form_none(Matrix* wanted, Index size) {
   if (wanted) wanted->setZero(size, size);
 }
 
+/// On the unknowns of a node, of a point that is rigidly offset from it: values along the axes on its translations, about them on its
+/// rotations.
+Matrix at_point(Space space, const Vec3& along, const Vec3& about, const Vec3& offset) {
+  const int n = space.unknowns();
+  Matrix matrix(n, n);
+  for (int i = 0; i < n; ++i)
+    for (int j = 0; j < n; ++j) {
+      matrix(i, j) = space.motion(i, offset).dot(along.cwiseProduct(space.motion(j, offset)));
+      if (i == j && space.is_rotation(i)) matrix(i, j) += about.dot(space.axis(i));
+    }
+  return matrix;
+}
+
 }  // namespace
 
 PointMass::PointMass(int node, double mass, double inertia, Place offset) : PointMass({2}, node, mass, {0, 0, inertia}, offset) {}
@@ -41,16 +54,18 @@ PointMass::PointMass(Space space, int node, double mass, const Vec3& inertia, co
     : space_(space), node_(node), mass_(mass), inertia_(inertia), offset_(offset) {}
 
 void PointMass::form(Local local) const {
-  const int n = space_.unknowns();
-  form_none(local.stiffness, n);
-  form_none(local.damping, n);
-  if (!local.mass) return;
-  local.mass->resize(n, n);
-  for (int i = 0; i < n; ++i)
-    for (int j = 0; j < n; ++j) {
-      (*local.mass)(i, j) = mass_ * space_.motion(i, offset_).dot(space_.motion(j, offset_));
-      if (i == j && space_.is_rotation(i)) (*local.mass)(i, j) += inertia_.dot(space_.axis(i));
-    }
+  form_none(local.stiffness, space_.unknowns());
+  form_none(local.damping, space_.unknowns());
+  if (local.mass) *local.mass = at_point(space_, Vec3::Constant(mass_), inertia_, offset_);
+}
+
+PointDashpot::PointDashpot(Space space, int node, const Vec3& along, const Vec3& about, const Vec3& offset)
+    : space_(space), node_(node), along_(along), about_(about), offset_(offset) {}
+
+void PointDashpot::form(Local local) const {
+  form_none(local.stiffness, space_.unknowns());
+  form_none(local.mass, space_.unknowns());
+  if (local.damping) *local.damping = at_point(space_, along_, about_, offset_);
 }
 
 Spring::Spring(Connection connection, double stiffness)

@@ -26,6 +26,21 @@ class PointMass : public Element {
   Vec3 inertia_, offset_;
 };
 
+/// Dashpots from one point to fixed ground, along the global axes [N s/m] and about them [N m s/rad]; the point is rigidly offset from the
+/// node [m]. In the plane the first two and the last one count.
+class PointDashpot : public Element {
+ public:
+  PointDashpot(Space space, int node, const Vec3& along, const Vec3& about, const Vec3& offset);
+  std::span<const int> nodes() const override { return {&node_, 1}; }
+  int unknowns_per_node() const override { return space_.unknowns(); }
+  void form(Local local) const override;
+
+ private:
+  Space space_;
+  int node_;
+  Vec3 along_, about_, offset_;
+};
+
 /// What a spring or dashpot connects: one node to fixed ground, or two nodes; their translations or rotations along a fixed direction.
 /// Its force is value * d . (u_b - u_a), the direction d does not turn with the nodes.
 struct Connection {

@@ -43,9 +43,11 @@ double Footprint::area() const {
 }
 
 std::vector<Field> foundation_stiffness_fields() {
-  return {number("K_v", "N/m", "vertical stiffness of the ground under the whole foundation").positive(),
-          number("K_h", "N/m", "horizontal stiffness along the width").positive(),
-          number("K_r", "N m/rad", "rocking stiffness for moments that tilt the width").positive(),
+  return {number("K_v", "N/m", "vertical stiffness of the ground under the whole foundation; absent: of [foundation.soil], as the others")
+              .positive()
+              .optional(),
+          number("K_h", "N/m", "horizontal stiffness along the width").positive().optional(),
+          number("K_r", "N m/rad", "rocking stiffness for moments that tilt the width").positive().optional(),
           number("K_h2", "N/m", "in space: horizontal stiffness along the length; absent: K_h").positive().optional(),
           number("K_r2", "N m/rad", "in space: rocking stiffness for moments that tilt the length; absent: K_r").positive().optional(),
           number("K_t", "N m/rad", "in space: stiffness against torsion about the normal").positive().optional()};
@@ -55,12 +57,23 @@ std::vector<double> foundation_stiffness(const Footprint& footprint, const Value
   const bool space = footprint.dimension == 3;
   for (const char* key : {"K_h2", "K_r2", "K_t"})
     if (!space && values.has(key)) fail(values, key, "K_v, K_h and K_r in the plane", key);
-  const double vertical = values.number("K_v"), horizontal = values.number("K_h"), rocking = values.number("K_r");
-  if (!space) return {horizontal, vertical, rocking};
-  if (!values.has("K_t")) fail(values, "", "K_t, the torsional stiffness, of a foundation in space", "none");
-  const auto second = [&](const char* key, double first) { return values.has(key) ? values.number(key) : first; };
+  using enum SoilMotion;
+  std::optional<SoilSprings> soil;
+  if (footprint.soil) soil = soil_springs(*footprint.soil);
+  const auto stiffness = [&](const char* key, SoilMotion motion) {
+    if (values.has(key)) return values.number(key);
+    if (!soil) fail(values, "", std::string(key) + ", or [foundation.soil], which gives it", "neither");
+    return (*soil)[motion].stiffness();
+  };
+  const double vertical_one = stiffness("K_v", vertical), along = stiffness("K_h", along_width), tilting = stiffness("K_r", tilting_width);
+  if (!space) return {along, vertical_one, tilting};
+  // what is not given in the second direction is as in the first where that is given, else of the soil
+  const auto second = [&](const char* key, const char* first, SoilMotion motion) {
+    return values.has(key) ? values.number(key) : values.has(first) ? values.number(first) : stiffness(key, motion);
+  };
   // a moment about t1 tilts the length, one about t2 the width
-  return {horizontal, second("K_h2", horizontal), vertical, second("K_r2", rocking), rocking, values.number("K_t")};
+  return {
+      along, second("K_h2", "K_h", along_length), vertical_one, second("K_r2", "K_r", tilting_length), tilting, stiffness("K_t", torsion)};
 }
 
 }  // namespace uplift

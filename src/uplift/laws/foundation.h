@@ -4,6 +4,7 @@
 #include <vector>
 
 #include "uplift/laws/law.h"
+#include "uplift/laws/soil_stiffness.h"
 
 // Models of a whole foundation: what lies under a rigid footing in one point with rotations, from the stiffness of the ground and the
 // strength of a geotechnical report. Rows of the point: in the plane (u_t, u_n, theta), in space (u_t1, u_t2, u_n, theta_1, theta_2,
@@ -13,10 +14,11 @@ namespace uplift {
 /// The underside of a rigid footing.
 struct Footprint {
   enum class Shape { strip, rectangle, disc } shape = Shape::rectangle;
-  double width = 0;     // m: along t1; of a disc its diameter
-  double length = 0;    // m: along t2; of a strip out of the plane
-  int dimension = 2;    // of the model
-  double area() const;  // m2
+  double width = 0;                   // m: along t1; of a disc its diameter
+  double length = 0;                  // m: along t2; of a strip out of the plane
+  int dimension = 2;                  // of the model
+  std::optional<FootingOnSoil> soil;  // [foundation.soil]: gives the stiffnesses that the model leaves out
+  double area() const;                // m2
   int components() const { return dimension == 2 ? 3 : 6; }
   int rotations() const { return dimension == 2 ? 1 : 3; }
 };
@@ -33,7 +35,7 @@ std::unique_ptr<const InterfaceLaw> make_law(const Values& behaviour, const std:
 
 /// Stiffnesses of a foundation, which every model has [N/m, N m/rad]: in the order of the rows.
 std::vector<Field> foundation_stiffness_fields();
-/// Their values in the order of the rows. Throws InputError where one that the model in space needs is missing.
+/// Their values in the order of the rows: as given, else of the soil. Throws InputError where one is missing.
 std::vector<double> foundation_stiffness(const Footprint& footprint, const Values& values);
 
 }  // namespace uplift

@@ -2,6 +2,7 @@
 #include <numbers>
 
 #include "uplift/case/build/model.h"
+#include "uplift/elements/discrete.h"
 
 // [[foundation]]: a footing on one point with rotations.
 namespace uplift {
@@ -36,7 +37,27 @@ Footprint footprint_of(const Values& foundation, Space space) {
   if (strip && space.dimension == 3) fail(foundation, "shape", "rectangle or disc in space", "strip");
   if (space.dimension == 3 && !disc && !foundation.has("length")) fail(foundation, "", "the length of a rectangle in space", "none");
   made.length = disc ? made.width : foundation.has("length") ? foundation.number("length") : 1;
+  const Values* soil = table_if(foundation, "soil");
+  if (soil && !disc && !strip && !foundation.has("length")) fail(foundation, "", "the length of a rectangle on [foundation.soil]", "none");
+  if (soil) made.soil = footing_on_soil(*soil, made);
   return made;
+}
+
+std::unique_ptr<const Element> radiation_dashpot(const Values& foundation, const Footprint& footprint, const CaseNames& names) {
+  if (!footprint.soil || !footprint.soil->radiation) return nullptr;
+  using enum SoilMotion;
+  const SoilSprings springs = soil_springs(*footprint.soil);
+  const auto damping = [&](SoilMotion motion) { return springs[motion].damping; };
+  const Space space = names.space;
+  Vec3 along, about, offset = Vec3::Zero();
+  if (space.dimension == 2) {
+    along = {damping(along_width), damping(vertical), 0}, about = {0, 0, damping(tilting_width)};
+  } else {
+    along = {damping(along_width), damping(along_length), damping(vertical)};
+    about = {damping(tilting_length), damping(tilting_width), damping(torsion)};
+  }
+  if (foundation.has("offset")) offset = vector_of(foundation, "offset", space);
+  return std::make_unique<PointDashpot>(space, names.node(foundation, "body"), along, about, offset);
 }
 
 Joint foundation_joint(const Values& foundation, const Footprint& footprint, const CaseNames& names) {

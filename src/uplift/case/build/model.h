@@ -94,6 +94,8 @@ Joint make_joint(const Values& interface, const std::vector<FacePair>& open, boo
 /// The underside of a [[foundation]], and its one point.
 Footprint footprint_of(const Values& foundation, Space space);
 Joint foundation_joint(const Values& foundation, const Footprint& footprint, const CaseNames& names);
+/// Of [foundation.soil] with `radiation`; else null.
+std::unique_ptr<const Element> radiation_dashpot(const Values& foundation, const Footprint& footprint, const CaseNames& names);
 
 /// Initial gaps that come from the geometry or from a table; of points with both sides.
 void set_gaps(const Values& interface, std::vector<JointPoint>& points, const CaseNames& names);

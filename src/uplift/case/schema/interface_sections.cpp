@@ -86,6 +86,7 @@ const Section& foundation_section() {
                  .positive()
                  .optional(),
              vector("offset", "m", "from the node to the middle of the footing's underside").optional(),
+             table("soil", footing_soil_section(), "gives the stiffnesses that the model leaves out").optional(),
              part("model", foundation_models, "what the ground does")}};
   return s;
 }

@@ -4,6 +4,7 @@
 #include "uplift/io/results/forces_json.h"
 #include "uplift/io/results/interface_points.h"
 #include "uplift/io/results/motions_json.h"
+#include "uplift/io/results/soil.h"
 #include "uplift/io/results/verdict_json.h"
 #include "uplift/io/results/words.h"
 
@@ -155,6 +156,9 @@ void write_interfaces(ResultWriter& out, const BuiltCase* built) {
     out.text("name", interface.name, "name of the interface");
     out.count("points", interface.batch.points, "number of points");
     write_points(out, interface);
+    const bool on_soil = interface.footprint && interface.footprint->soil;
+    out.when(on_soil);
+    write_soil(out, on_soil ? *interface.footprint->soil : FootingOnSoil());
   });
 }
 
