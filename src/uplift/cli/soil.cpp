@@ -74,7 +74,7 @@ void print_springs(const FootingOnSoil& footing, const SoilSprings& springs) {
   if (footing.formulas == SoilFormulas::pais_kausel && !dynamic) say("Without a frequency, the rotations have no dashpots.");
 }
 
-/// What a joint of points can have of it, and what not. See docs/theory/soil_stiffness.md, eq (G13).
+/// What a joint of points can have of it, and what not. See docs/theory/soil_stiffness.md, eq (H13).
 void print_bed(const FootingOnSoil& footing, const SoilSprings& springs, double area) {
   using enum SoilMotion;
   say("\nAs an [[interface]] of springs with the vertical stiffness:");

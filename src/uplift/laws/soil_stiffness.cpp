@@ -35,7 +35,7 @@ double radius_of(const FootingOnSoil& footing) {
   return 0.5 * footing.width;
 }
 
-/// (G2): half the side of the square with the same area, or the same second moment of area for a rotation.
+/// (H2): half the side of the square with the same area, or the same second moment of area for a rotation.
 double depth_of(const FootingOnSoil& footing, SoilMotion motion) {
   const double a = footing.width, b = footing.length;
   const bool disc = footing.formulas == SoilFormulas::disc;
@@ -46,7 +46,7 @@ double depth_of(const FootingOnSoil& footing, SoilMotion motion) {
   return 0.5 * pow(6 * (disc ? 2 * disc_moment : a * b * (a * a + b * b) / 12), 0.25);
 }
 
-/// (G1): time of travel of shear waves, means over the depth of the density and of Poisson's ratio.
+/// (H1): time of travel of shear waves, means over the depth of the density and of Poisson's ratio.
 Ground mean_ground(const FootingOnSoil& footing, double depth) {
   if (footing.layers.size() == 1) return footing.layers.front().ground;
   double top = -footing.embedment, time = 0, mass = 0, poisson = 0;  // m, below the underside
@@ -64,7 +64,7 @@ Ground mean_ground(const FootingOnSoil& footing, double depth) {
   return {density * velocity * velocity, poisson / depth, density};
 }
 
-/// Velocity of the waves that a face radiates along its normal over that of shear waves: (G5).
+/// Velocity of the waves that a face radiates along its normal over that of shear waves: (H5).
 double normal_velocity_ratio(double poisson) {
   return poisson < 0.5 ? std::min(sqrt(2 * (1 - poisson) / (1 - 2 * poisson)), 2.5) : 2.5;
 }

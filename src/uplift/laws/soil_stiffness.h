@@ -68,13 +68,13 @@ class SoilSprings {
  private:
   std::array<SoilSpring, 6> springs_;
 };
-/// docs/theory/soil_stiffness.md, eqs (G1) to (G12).
+/// docs/theory/soil_stiffness.md, eqs (H1) to (H12).
 SoilSprings soil_springs(const FootingOnSoil& footing);
 /// Where the formulas come from.
 std::string_view source_of(SoilFormulas formulas);
 
 /// A bed of springs, the same everywhere, with the right vertical stiffness has this share of the rocking stiffness about one axis. See
-/// (G14).
+/// (H14).
 double share_of_uniform_bed(const FootingOnSoil& footing, const SoilSprings& springs, SoilMotion rocking);
 
 /// Throws InputError for what the formulas of this shape do not cover.

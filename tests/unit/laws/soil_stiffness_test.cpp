@@ -89,7 +89,7 @@ TEST(SoilStiffness, StripOnALayerAgainstFiniteElements) {
   }
 }
 
-// (G6), (G7) at high frequency: power per squared velocity of all faces that touch the ground, psi along the normal, 1 in the plane.
+// (H6), (H7) at high frequency: power per squared velocity of all faces that touch the ground, psi along the normal, 1 in the plane.
 TEST(SoilStiffness, DashpotsAreThoseOfTheFacesAtHighFrequency) {
   const double a = 7, b = 3, depth = 0.8, psi = std::sqrt(2 * 0.7 / 0.4), impedance = std::sqrt(80e6 * 1900.0);
   FootingOnSoil made = footing(SoilFormulas::pais_kausel, 2 * a, 2 * b);
@@ -159,7 +159,7 @@ TEST(SoilStiffness, LayersOfOneGroundAreThisGround) {
   }
 }
 
-// (G1): 2 m of 100 m/s over 200 m/s under a square of 8 m: translations reach 4 m, half of it in each layer.
+// (H1): 2 m of 100 m/s over 200 m/s under a square of 8 m: translations reach 4 m, half of it in each layer.
 TEST(SoilStiffness, LayersByTimeOfTravel) {
   FootingOnSoil made = footing(SoilFormulas::pais_kausel, 8, 8);
   const Ground soft{1800 * 100.0 * 100, 0.2, 1800}, stiff{2000 * 200.0 * 200, 0.4, 2000};
