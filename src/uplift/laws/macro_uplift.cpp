@@ -28,12 +28,17 @@ Curve curve(double x, double beta, double gamma) {
     c.from_edge = beta * x;
     return c;
   }
-  const double log_y = std::log(x) / gamma, t = (gamma - 1) * log_y;
-  c.y = std::exp(log_y);
+  if (gamma == 2) {  // the usual case, without logarithms
+    c.y = std::sqrt(x);
+    c.log_like = c.y - 1;
+  } else {
+    const double log_y = std::log(x) / gamma, t = (gamma - 1) * log_y;
+    c.y = std::exp(log_y);
+    c.log_like = std::abs(t) < 1e-14 ? log_y : std::expm1(t) / t * log_y;
+  }
   c.moment = beta - gamma / c.y;
   c.compliance = x * c.y;
   c.slack = gamma / (beta * c.y);
-  c.log_like = std::abs(t) < 1e-14 ? log_y : std::expm1(t) / t * log_y;
   const double twice_energy = 1 + 2 * gamma * c.log_like;
   c.heave = c.moment * x - twice_energy;
   c.from_edge = twice_energy + gamma * x / c.y;
@@ -80,6 +85,20 @@ MacroUplift::MacroUplift(const MacroElasticity& elasticity)
   stiffness_ << elastic_.vertical, elastic_.horizontal[0], elastic_.horizontal[1], elastic_.rocking[0], elastic_.rocking[1];
 }
 
+/// (M4) for alpha = 6 is quadratic in the square root of N: with x = offset/N for every axis that lifts,
+///   N/K_z - sum D |theta|/2 (1 - sqrt(N/offset))^2 = w.
+/// `count`: the axes that lift, from the largest offset on.
+double MacroUplift::quadratic_force(double w, const Axes& axes, const int* lifting, int count) const {
+  double toe = w, square = 1 / elastic_.vertical, linear = 0;
+  for (int k = 0; k < count; ++k) {
+    const int i = lifting[k];
+    const double half = 0.5 * elastic_.length[i] * axes.rotation[i];
+    toe += half, square -= half / axes.offset[i], linear += 2 * half / std::sqrt(axes.offset[i]);
+  }
+  const double root = 2 * toe / (linear + std::sqrt(std::max(0.0, linear * linear + 4 * square * toe)));
+  return toe > 0 ? root * root : 0;
+}
+
 /// N at the settlement w: the root of N/K_z + sum factor N (h + beta x) = w + sum D |theta|/2, whose left side grows with N and is concave.
 /// Newton's method on the logarithms, kept in a bracket. Zero without contact.
 double MacroUplift::vertical_force(double w, const Axes& axes) const {
@@ -90,6 +109,15 @@ double MacroUplift::vertical_force(double w, const Axes& axes) const {
   }
   if (w > 0 && largest <= elastic_.vertical * w) return elastic_.vertical * w;
   if (!(toe > 0)) return 0;
+  if (gamma_ == 2) {
+    const bool second_first = axes.count == 2 && axes.offset[1] > axes.offset[0];
+    const int order[2] = {second_first ? 1 : 0, second_first ? 0 : 1};
+    if (axes.count == 2 && axes.offset[order[1]] > 0) {
+      const double both = quadratic_force(w, axes, order, 2);
+      if (both < axes.offset[order[1]]) return both;
+    }
+    return quadratic_force(w, axes, order, 1);
+  }
   double low = 0, high = elastic_.vertical * toe, n = w > 0 ? std::min(high, std::max(elastic_.vertical * w, 1e-3 * high)) : 0.1 * high;
   for (int iteration = 0; iteration < 200; ++iteration) {
     double value = n / elastic_.vertical, rate = 1 / elastic_.vertical;

@@ -54,6 +54,7 @@ class MacroUplift {
  private:
   struct Axes;
   double vertical_force(double w, const Axes& axes) const;
+  double quadratic_force(double w, const Axes& axes, const int* lifting, int count) const;
 
   MacroElasticity elastic_;
   MacroVector stiffness_;

@@ -40,6 +40,28 @@ TEST(MacroUplift, TensionlessSpringsUnderAStrip) {
   }
 }
 
+// (M3) gives the displacements that belong to the forces of (M4): of one or two axes that lift, of any stiffness.
+TEST(MacroUplift, DisplacementsOfTheForcesAreThoseGiven) {
+  std::mt19937 random(11);
+  std::uniform_real_distribution<double> unit(0, 1);
+  int both = 0;
+  for (int i = 0; i < 3000; ++i) {
+    MacroElasticity e{
+        .disc = i % 3 == 0, .shape = i % 2 == 0 ? 6 : 4 + 4 * unit(random), .length = {2 + 8 * unit(random), 2 + 8 * unit(random)}};
+    e.vertical = 1e9, e.horizontal[0] = e.horizontal[1] = 1e9;
+    for (int axis = 0; axis < 2; ++axis) e.rocking[axis] = e.vertical * std::pow(e.length[axis], 2) / 12 * (0.3 + 3 * unit(random));
+    const MacroUplift uplift(e);
+    MacroVector q(unit(random) * 2e-2 - 1e-2, 0, 0, (unit(random) - 0.5) * 2e-2, (unit(random) - 0.5) * 2e-2);
+    const MacroElastic at = uplift.respond(q);
+    if (!at.contact) continue;
+    const MacroVector back = uplift.displacement(at.force);
+    both += at.contact_share < 0.5;
+    for (const int row : {macro_n, macro_m1, macro_m2})
+      EXPECT_NEAR(back[row], q[row], 1e-9 * (std::abs(back[row]) + 1e-2)) << "seed 11, " << i;
+  }
+  EXPECT_GT(both, 500);
+}
+
 TEST(MacroUplift, MomentAndHeaveAtConstantForce) {
   // tests/data/reference/macro_uplift_constant_N.csv: closed form (M2, M3)
   for (const auto& row : table("macro_uplift_constant_N.csv")) {
