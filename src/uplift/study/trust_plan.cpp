@@ -39,7 +39,9 @@ class Planner {
   TrustPlan plan() {
     halve_step();
     if (root_.tables("interface").empty()) {
-      leave_out("interface", "the case has no interface");
+      leave_out("interface", root_.tables("foundation").empty()
+                                 ? "the case has no interface"
+                                 : "a foundation has the stiffness of its ground, which the computation does not choose");
     } else {
       change_stiffness();
       add_points();
