@@ -375,7 +375,7 @@ class Comparison(Results):
                 max_opening=run["max_opening"]["value"],
                 max_base_moment=run["max_base_moment"]["value"],
                 max_base_shear=run["max_base_shear"]["value"],
-                max_pressure=run["max_pressure"]["value"],
+                max_pressure=run.get("max_pressure", {}).get("value"),
                 energy_created_share=run["energy_created_share"],
             )
             if "agreement" in run:

@@ -22,6 +22,8 @@ const OF_BASE: Captions = [
   ["max_eccentricity", "Eccentricity e/B"],
   ["min_overturning_safety", "Safety against overturning"],
   ["min_sliding_safety", "Safety against sliding"],
+  ["max_bearing_utilisation", "Utilisation of bearing capacity"],
+  ["max_sliding_utilisation", "Utilisation of sliding resistance"],
 ];
 const OF_WALL: Captions = [
   ["max_opening", "Largest gap"],

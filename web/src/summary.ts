@@ -72,7 +72,8 @@ export interface RunSummary {
   max_uplifted_ratio: Peak;
   max_opening: Peak;
   max_base_moment: Peak;
-  max_pressure: Peak;
+  /** Absent where all interfaces are whole foundations, which have no pressure. */
+  max_pressure?: Peak;
   energy_created_share: Maybe;
   floor_spectra?: FloorSummary[];
   beam_envelopes?: BeamEnvelope[];

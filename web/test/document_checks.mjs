@@ -8,7 +8,7 @@ const peak = (value, unit, time = 1) => ({ value, unit, time });
 function run(name, label, more = {}) {
   return {
     name, label, group: "", status: "completed", expected: "completes", bonded: false, steps: 1000, retries: 2, wall_seconds: 0.004,
-    max_top_motion: peak(-0.0359, "m", 0.75), max_uplifted_ratio: peak(0.25, "1"), max_opening: peak(4e-10, "m"), max_base_moment: peak(-1.37e6, "N m"), max_pressure: peak(2e5, "Pa"),
+    max_top_motion: peak(-0.0359, "m", 0.75), max_uplifted_ratio: peak(0.25, "1"), max_opening: peak(4e-10, "m"), max_base_moment: peak(-1.37e6, "N m"),
     energy_created_share: 0.002, agreement: { result: "agrees", deviation: 0.003 }, ...more,
   };
 }
@@ -47,6 +47,7 @@ const SUMMARY = {
         numbers: {
           max_shear: { value: 999.9e3, unit: "N", bonded: 714e3, change_percent: 40.04, at_twice_the_step: 999.95e3 },
           max_moment: { value: 1.37e6, unit: "N m", bonded: 2.85e6, change_percent: -51.9, at_twice_the_step: 1.3e6 },
+          max_bearing_utilisation: { value: 0.87312, unit: "1", time: 3.2, at_twice_the_step: 0.8732 },
           min_compression: { value: 1e-12, unit: "N", bonded: 1e-13, change_note: "no excitation in this direction" },
           max_uplifted_ratio: { value: 0.6931, unit: "1" },
           residual_rotation: { value: 1.2e-6, unit: "rad", swing: 2.2e-5, at_twice_the_step: 1.3e-6 },
@@ -91,7 +92,7 @@ export const DOCUMENT = {
 function check_verdict(check, { interfaces: [base, wall], criteria: [criterion] }) {
   const row = (label) => [...base.beside, ...base.rest, ...wall.beside].find((each) => each.label === label) ?? {};
   const same = (label, key, text) => check.equal(row(label)[key], text, `${label}: ${key}`);
-  check.equal(base.beside.map((each) => each.label).join("; "), "Motion of the top; Base shear per metre; Base moment per metre; Least compression per metre; Moment of column", "captions in their order");
+  check.equal(base.beside.map((each) => each.label).join("; "), "Motion of the top; Base shear per metre; Base moment per metre; Least compression per metre; Utilisation of bearing capacity; Moment of column", "captions in their order");
   same("Motion of the top", "text", "35.9 mm");
   same("Motion of the top", "changeText", "120 times as large");
   same("Motion of the top", "stepText", "±0.6 %");
@@ -104,6 +105,8 @@ function check_verdict(check, { interfaces: [base, wall], criteria: [criterion] 
   same("Base moment per metre", "stepText", "±5.1 %");
   same("Least compression per metre", "text", "0 N");
   same("Least compression per metre", "changeText", "no excitation in this direction");
+  same("Utilisation of bearing capacity", "text", "0.873");
+  same("Utilisation of bearing capacity", "stepText", "< 0.1 %");
   same("Rotation", "text", "0.001 mrad"); // no finer than it varies
   same("Rotation", "swingText", "0.022 mrad");
   same("Rotation", "stepText", "±0");
@@ -121,6 +124,7 @@ function check_tables(check, tables) {
   check.equal([first.top, first.top_time, first.ratio, first.opening, first.moment, first.per_step].join(), "0.0359,0.75,0.25,0,1370000,4", "magnitudes of a run; a gap below the precision is 0");
   check.equal([bonded.ratio, bonded.opening, bonded.deviation].join(), ",,", "a bonded base has no gap, and is not compared");
   check.equal([failed.status, failed.top, failed.per_step].join(), "failed (expected),,0", "a run that was expected to fail");
+  check.ok(!table("runs").columns.some((each) => each.key === "pressure"), "runs of whole foundations have no pressure", "a column of pressures");
   check.ok(table("runs").caption.includes("agree when all numbers of the verdict lie within 2 % of the median"), "the band is stated", table("runs").caption);
   check.equal(table("floors").columns.map((each) => each.label).join("; "), "Run; Damping; Zero period; Peak; Peak at; below 2 Hz; above 2 Hz", "columns of the floor spectra");
   check.equal(table("floors").rows.map((row) => [row.run, row.rigid, row.peak, row.at, row.from_0, row.from_2].join()).join("; "), "springs,3,9,4,0.1,-0.25; bonded,3,9,4,,; envelope of 2 runs,3,9,4,0.1,-0.25", "rows of the floor spectra");

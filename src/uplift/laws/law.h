@@ -52,6 +52,9 @@ struct LawScales {
 struct FootingContact {
   double open_share = 0;              // of the area
   double max_gap = 0, least_gap = 0;  // m, at the edges; all edges open: least_gap > 0
+  // How much of its strength the ground uses, up to 1; 0 where it has no such limit
+  double bearing_utilisation = 0, sliding_utilisation = 0;
+  double bearing_capacity = 0;  // N, of a vertical load alone
 };
 
 /// A traction law: traction from opening, with memory.

@@ -204,7 +204,13 @@ FootingContact MacroElement::contact(const Batch& batch, const double* opening, 
   const MacroElastic at = uplift_.respond(elastic);
   const double open = 1 - at.contact_share;
   // what has lifted off is straight: its slope is the rotation
-  return {open, at.contact ? open * std::hypot(one, two) : edge - elastic[macro_n], -toe};
+  FootingContact made{open, at.contact ? open * std::hypot(one, two) : edge - elastic[macro_n], -toe};
+  if (surfaces_.has_bearing()) {
+    made.bearing_capacity = surfaces_.capacity(history[rows.count + memory_settlement]);
+    made.bearing_utilisation = std::min(1.0, surfaces_.bearing_utilisation(at.force, made.bearing_capacity));
+  }
+  if (surfaces_.has_sliding()) made.sliding_utilisation = std::min(1.0, surfaces_.sliding_utilisation(at.force));
+  return made;
 }
 
 MacroState MacroElement::state(int components, const double* opening, const double* history) const {

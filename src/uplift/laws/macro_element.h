@@ -41,9 +41,11 @@ class MacroElement final : public InterfaceLaw {
   void mean(const Batch&, const double* from, const double* to, const double* old, const LawResponse&) const override;
   void energy(const Batch&, const double* opening, const double* history, double* stored, double* dissipated) const override;
   void closed_stiffness(int components, double* stiffness) const override;
-  /// Gaps at the edges, against the ground that has settled.
+  /// Gaps at the edges, against the ground that has settled; utilisations at most 1, since the return keeps the forces on the surfaces.
   FootingContact contact(const Batch&, const double* opening, const double* history) const override;
 
+  const MacroElasticity& elasticity() const { return uplift_.elasticity(); }
+  const MacroSurfaces& surfaces() const { return surfaces_; }
   /// Of one point.
   MacroState state(int components, const double* opening, const double* history) const;
 
@@ -56,5 +58,10 @@ class MacroElement final : public InterfaceLaw {
   MacroSurfaces surfaces_;
   double torsion_;
 };
+
+/// The macro-element that a law is; null: another one.
+inline const MacroElement* as_macro_element(const InterfaceLaw* law) {
+  return dynamic_cast<const MacroElement*>(law);
+}
 
 }  // namespace uplift

@@ -1,7 +1,7 @@
 #include "uplift/laws/macro_surfaces.h"
 
+#include <algorithm>
 #include <cmath>
-#include <limits>
 
 namespace uplift {
 namespace {
@@ -9,6 +9,8 @@ namespace {
 /// The corners of the bearing surface at H = 0 and M = 0 are rounded for the associated flow over this share of V, so that it has a normal
 /// there.
 constexpr double rounding_share = 1e-6;
+/// A footing that carries less than this share of V uses none of it: the return keeps a force only within a share of V.
+constexpr double least_share = 1e-9;
 
 }  // namespace
 
@@ -153,17 +155,34 @@ MacroFlow MacroSurfaces::sliding_flow(const MacroVector& force) const {
   return out;
 }
 
+/// The product of 1 - 2 |M_i|/(N D_i), for N > 0.
+double MacroSurfaces::moment_share(const MacroVector& force) const {
+  const double n = force[macro_n], one = 2 * std::abs(force[macro_m1]) / (n * length_[0]);
+  if (disc_) return std::max(0.0, 1 - 2 * std::hypot(force[macro_m1], force[macro_m2]) / (n * length_[0]));
+  const double two = force[macro_m2] == 0 ? 0 : 2 * std::abs(force[macro_m2]) / (n * length_[1]);
+  return std::max(0.0, 1 - one) * std::max(0.0, 1 - two);
+}
+
 double MacroSurfaces::bearing_utilisation(const MacroVector& force, double capacity) const {
-  if (!(force[macro_n] > 0)) return 0;
-  const Reduced r = reduce(force, 0);
-  const double share = Product(r, 3, false).value;
-  return r.v.maxCoeff() < r.n ? r.n / (capacity * share) : std::numeric_limits<double>::infinity();
+  const double n = force[macro_n];
+  if (!(n > least_share * capacity)) return 0;
+  const double slope = std::hypot(force[macro_h1], force[macro_h2]) / n, left = std::max(0.0, 1 - slope);
+  return n / (capacity * left * left * left * moment_share(force));
 }
 
 double MacroSurfaces::sliding_utilisation(const MacroVector& force) const {
-  if (!(force[macro_n] > 0)) return 0;
-  const Reduced r = reduce(force, 0);
-  return r.v[0] > 0 ? r.v[0] / (r.n * strength_.friction + strength_.cohesion * Product(r, 0, false).value) : 0;
+  const double shear = std::hypot(force[macro_h1], force[macro_h2]);
+  if (!(force[macro_n] > 0) || !(shear > 0)) return 0;
+  const double cohesion = strength_.cohesion > 0 ? strength_.cohesion * moment_share(force) : 0;
+  return shear / (force[macro_n] * strength_.friction + cohesion);
+}
+
+double MacroSurfaces::largest_moment(int axis, double n, double capacity) const {
+  return 0.5 * n * length_[axis] * (1 - n / capacity);
+}
+
+double MacroSurfaces::largest_shear(double n, double capacity) const {
+  return n * (1 - std::cbrt(n / capacity));
 }
 
 }  // namespace uplift

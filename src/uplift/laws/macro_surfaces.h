@@ -43,15 +43,20 @@ class MacroSurfaces {
   MacroSurface sliding(const MacroVector& force) const;
   MacroFlow bearing_flow(const MacroVector& force, double capacity) const;
   MacroFlow sliding_flow(const MacroVector& force) const;
-  /// Share of the bearing capacity that the forces use: divided by it, they lie on the surface. Infinite for |H| >= N.
+  /// N over the capacity that H and M leave (eq M15): 1 on the surface. Infinite where they leave none.
   double bearing_utilisation(const MacroVector& force, double capacity) const;
-  /// |H| over the resistance to sliding.
+  /// |H| over the resistance to sliding (eq M16): 1 on the surface. Infinite where there is none.
   double sliding_utilisation(const MacroVector& force) const;
+
+  /// The moment of an axis (0 or 1) [N m] and the shear [N] that alone with N bring the ground to yield, 0 < N < V.
+  double largest_moment(int axis, double n, double capacity) const;
+  double largest_shear(double n, double capacity) const;
 
  private:
   struct Reduced;
   struct Product;
   Reduced reduce(const MacroVector& force, double rounding) const;
+  double moment_share(const MacroVector& force) const;
 
   bool disc_;
   double length_[2];

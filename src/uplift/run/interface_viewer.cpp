@@ -170,6 +170,9 @@ void InterfaceViewer::look_at_footing(const Layout& layout, const Vector& openin
   view.max_opening = contact.max_gap;
   view.least_opening = contact.least_gap;
   view.max_pressure = 0;
+  view.bearing_utilisation = contact.bearing_utilisation;
+  view.sliding_utilisation = contact.sliding_utilisation;
+  view.bearing_capacity = contact.bearing_capacity;
   for (int k = 0; k < std::min(2, layout.batch.rotations); ++k) view.rotation[static_cast<std::size_t>(k)] = rows[layout.translations + k];
   view.resultant = resultant_by_rows(layout, force);
 }

@@ -27,6 +27,7 @@ void Runner::note_views() {
     for (std::size_t k = 0; k < views_.size(); ++k) steps.tail[k].push_back(viewer_.pose(*seen_, k, views_[k]));
   find_farthest();
   if (has_walls_) steps.add_slip(model_.interfaces, seen_->opening, plan_.is_wall);
+  if (has_strength_) steps.add_strength(views_);
 }
 
 void Runner::find_farthest() {

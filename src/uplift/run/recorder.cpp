@@ -123,6 +123,12 @@ Recorder::Source Recorder::source_of(const Request& request, const SparseRows& r
       return {.place = &view->max_opening};
     case What::max_pressure:
       return {.place = &view->max_pressure};
+    case What::bearing_utilisation:
+      return {.place = &view->bearing_utilisation};
+    case What::sliding_utilisation:
+      return {.place = &view->sliding_utilisation};
+    case What::bearing_capacity:
+      return {.place = &view->bearing_capacity};
     case What::kinetic:
       return {.place = &energies_.kinetic};
     case What::strain:

@@ -7,6 +7,7 @@
 #include <cmath>
 #include <utility>
 
+#include "uplift/laws/macro_element.h"
 #include "uplift/run/probe.h"
 #include "uplift/run/runner.h"
 
@@ -98,6 +99,10 @@ Runner::Runner(const Model& model, const RunPlan& plan, const std::vector<const 
       rest_(plan.rest.get()),
       views_(model.interfaces.size()) {
   has_walls_ = std::ranges::any_of(plan.is_wall, [](char wall) { return wall != 0; });
+  has_strength_ = std::ranges::any_of(model.interfaces, [](const Interface& interface) {
+    const MacroElement* foundation = as_macro_element(interface.law.get());
+    return foundation != nullptr && (foundation->surfaces().has_bearing() || foundation->surfaces().has_sliding());
+  });
   run_.result.name = plan.name;
   run_.result.label = plan.label;
   run_.result.group = plan.group;

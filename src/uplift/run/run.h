@@ -59,6 +59,9 @@ struct Request {
     uplifted_ratio,
     max_opening,
     max_pressure,  // interface
+    bearing_utilisation,
+    sliding_utilisation,
+    bearing_capacity,  // of a whole foundation, at the end of the step
     kinetic,
     strain,
     stored,

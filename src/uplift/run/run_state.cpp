@@ -191,7 +191,7 @@ void list_parts(Archive& archive, T& interval) {
 template <class Archive, SameAs<StepRecord::Extremes> T>
 void list_parts(Archive& archive, T& e) {
   archive(e.max_opening, e.max_pressure, e.tension_area, e.penetration, e.max_slip, e.full_loss, e.least_opening, e.impulse, e.step_shear,
-          e.step_moment, e.step_compression, e.step_pressure);
+          e.step_moment, e.step_compression, e.step_pressure, e.bearing_utilisation, e.sliding_utilisation, e.bearing_capacity);
 }
 
 template <class Archive, SameAs<StepRecord> T>
@@ -225,7 +225,7 @@ void list_parts(Archive& archive, T& run) {
 
 namespace {
 
-constexpr std::string_view magic = "uplift run state 1\n";
+constexpr std::string_view magic = "uplift run state 2\n";
 
 std::size_t checksum(std::string_view bytes) {
   return crc32_z(0, reinterpret_cast<const Bytef*>(bytes.data()), bytes.size());

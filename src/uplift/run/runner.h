@@ -81,6 +81,7 @@ class Runner {
   std::vector<int> rotations_;     // of the dynamic stages: rotations_on_interfaces
   std::size_t summed_up_ = 0;      // instants of the record that peaks and durations know
   bool has_walls_ = false;         // some interface is no base
+  bool has_strength_ = false;      // the ground under some foundation yields or lets it slide
   double farthest_ = 0;            // m: largest of the bases' least openings, now
   double planned_ = 0, tail_ = 0;  // s: of the dynamic stages; at their end the base's pose is kept for this long
   double shown_ = 0;               // s: taken by the observer

@@ -106,6 +106,14 @@ void StepRecord::add_slip(const std::vector<Interface>& interfaces, const Vector
   }
 }
 
+void StepRecord::add_strength(const std::vector<InterfaceView>& views) {
+  for (std::size_t k = 0; k < views.size(); ++k) {
+    note(extremes[k].bearing_utilisation, views[k].bearing_utilisation, time.back());
+    note(extremes[k].sliding_utilisation, views[k].sliding_utilisation, time.back());
+    extremes[k].bearing_capacity = views[k].bearing_capacity;
+  }
+}
+
 double StepRecord::full_loss_time(const std::vector<char>& is_wall) const {
   const auto common = [&](const auto& self, std::size_t k, double from, double to, bool any) -> double {  // of the interfaces from k on
     while (k < extremes.size() && !is_wall.empty() && is_wall[k]) ++k;

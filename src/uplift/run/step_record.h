@@ -14,6 +14,8 @@ struct InterfaceView {
   double open_area = 0, tension_area = 0;     // shares of the area: with a gap; that pulls
   double max_opening = 0, least_opening = 0;  // m
   double max_pressure = 0;                    // Pa
+  // Of a whole foundation whose ground has a strength, see FootingContact; at the end of the step
+  double bearing_utilisation = 0, sliding_utilisation = 0, bearing_capacity = 0;  // 1, 1, N
   // Slope of the plane that fits the normal opening best (area-weighted): relative rotation of the upper side [rad]. In the plane the first
   // number, counter-clockwise > 0; in space about the two tangents of the mean normal.
   std::array<double, 2> rotation{};
@@ -48,7 +50,9 @@ class StepRecord {
   /// Of one interface: largest values, and when there was no contact at all.
   struct Extremes {
     Reached max_opening, max_pressure, tension_area, penetration;
-    Reached max_slip;  // of walls: length of the tangential opening
+    Reached max_slip;                                  // of walls: length of the tangential opening
+    Reached bearing_utilisation, sliding_utilisation;  // of a whole foundation
+    double bearing_capacity = 0;                       // N: likewise, at the last instant
     std::vector<Interval> full_loss;
     double least_opening = 0;  // at the last instant
     Reached impulse;           // N s: momentum that an impact of constraints transferred in one step
@@ -62,6 +66,8 @@ class StepRecord {
   void add(double time, const std::vector<InterfaceView>& views, double gap_tolerance);
   /// The slip [m] of the walls at the last instant: `is_wall` says which interfaces are walls.
   void add_slip(const std::vector<Interface>& interfaces, const Vector& opening, const std::vector<char>& is_wall);
+  /// The strength that the ground under whole foundations uses at the last instant.
+  void add_strength(const std::vector<InterfaceView>& views);
   /// Times [s] in which none of the interfaces that are no walls has any contact.
   std::vector<Interval> full_loss(const std::vector<char>& is_wall) const;
   /// Their sum [s].

@@ -28,7 +28,8 @@ std::vector<std::pair<Quantity, double>> peaks_of(const RunSpec& spec, const Bui
   }
   add("shear", std::abs(run.max_base_shear.value));
   add("moment", std::abs(run.max_base_moment.value));
-  add("pressure", run.max_pressure.value);
+  const auto has_pressure = [](const Interface& interface) { return !interface.footprint; };
+  if (std::ranges::any_of(built.model.interfaces, has_pressure)) add("pressure", run.max_pressure.value);
   return peaks;
 }
 

@@ -6,6 +6,7 @@
 #include <utility>
 
 #include "uplift/base/format.h"
+#include "uplift/laws/macro_element.h"
 #include "uplift/verdict/base_shape.h"
 #include "uplift/verdict/beams.h"
 #include "uplift/verdict/criteria.h"
@@ -152,6 +153,14 @@ void add_pressure(const Base& base, InterfaceVerdict& said) {
                         base, "min_overturning_safety", [&](std::size_t i) { return base.overturning(i); }, true));
   add(said.numbers, extreme(
                         base, "min_sliding_safety", [&](std::size_t i) { return base.sliding(i); }, true));
+}
+
+/// How much of its strength the ground under a whole foundation uses, at the end of a step.
+void add_strength(const Base& base, std::vector<VerdictNumber>& numbers) {
+  const MacroElement* foundation = as_macro_element(base.interface.law.get());
+  if (foundation == nullptr) return;
+  if (foundation->surfaces().has_bearing()) add(numbers, "max_bearing_utilisation", base.extremes().bearing_utilisation);
+  if (foundation->surfaces().has_sliding()) add(numbers, "max_sliding_utilisation", base.extremes().sliding_utilisation);
 }
 
 void add_full_loss(const Base& base, InterfaceVerdict& said) {
@@ -318,6 +327,7 @@ InterfaceVerdict base_of(const BuiltCase& built, const RunResult& run, const Run
   if (base.pressed()) said.weight = base.rest.force, said.mean_pressure = base.rest.force / base.facts.area;
   said.width = base.shape.width;
   add_uplift(base, built.verdict_request, said);
+  add_strength(base, said.numbers);
   add_full_loss(base, said);
   add_residuals(base, said.numbers);
   if (bonded) add_bonded(base, Base(built, *bonded, number), said.numbers);

@@ -25,6 +25,8 @@ constexpr Said numbers[] = {{"max_uplifted_ratio", "Uplifted area"},
                             {"max_moment", "Base moment"},
                             {"max_eccentricity", "Eccentricity e/B"},
                             {"min_sliding_safety", "Safety against sliding"},
+                            {"max_bearing_utilisation", "Utilisation of bearing capacity"},
+                            {"max_sliding_utilisation", "Utilisation of sliding resistance"},
                             {"share_of_horizontal_force", "Share of the horizontal force"},
                             {"share_of_base_moment", "Share of the base moment"}};
 

@@ -170,6 +170,9 @@ void say_forces(const BuiltCase& built, const RunResult& run, Verdict& verdict) 
     say(find_number(said.numbers, "max_eccentricity"), "Eccentricity e/B" + of, "largest of M/N over the width", verdict);
     say(find_number(said.numbers, "min_overturning_safety"), "Safety against overturning" + of, "least, about the toe", verdict);
     say(find_number(said.numbers, "min_sliding_safety"), "Safety against sliding" + of, "least", verdict);
+    say(find_number(said.numbers, "max_bearing_utilisation"), "Utilisation of bearing capacity" + of,
+        "largest, of the capacity under the shear and the moment at that time", verdict);
+    say(find_number(said.numbers, "max_sliding_utilisation"), "Utilisation of sliding resistance" + of, "largest", verdict);
     const VerdictNumber* ratio = find_number(said.numbers, "toe_pressure_ratio");
     say(find_number(said.numbers, "max_toe_pressure"), "Largest pressure" + of,
         ratio ? fmt::format("{:.3g} times the mean {}", ratio->value, format_quantity(said.mean_pressure, "Pa")) : "", verdict);

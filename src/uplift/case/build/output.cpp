@@ -44,8 +44,10 @@ struct Quantity {
   Column kind;
   std::string_view unit;
 };
-/// In space `shear`, `moment` and `rotation` are the lengths of their parts along (about) the two tangents.
-std::vector<Quantity> interface_quantities(Space space) {
+/// In space `shear`, `moment` and `rotation` are the lengths of their parts along (about) the two tangents. A whole foundation has forces,
+/// no pressures.
+std::vector<Quantity> interface_quantities(const Interface& interface, const Values& behaviour) {
+  const Space space = interface.space;
   std::vector<Quantity> made{{"axial", Column::axial, "N"},
                              {"shear", Column::shear, "N"},
                              {"moment", Column::moment, "N m"},
@@ -59,10 +61,33 @@ std::vector<Quantity> interface_quantities(Space space) {
   made.push_back({"settlement", Column::settlement, "m"});
   if (space.dimension == 2) made.push_back({"tilt", Column::tilt_1, "rad"});
   if (space.dimension == 3) made.push_back({"tilt_1", Column::tilt_1, "rad"}), made.push_back({"tilt_2", Column::tilt_2, "rad"});
-  for (const Quantity& each : {Quantity{"uplifted_ratio", Column::uplifted_ratio, "1"}, Quantity{"max_opening", Column::max_opening, "m"},
-                               Quantity{"max_pressure", Column::max_pressure, "Pa"}})
-    made.push_back(each);
+  made.push_back({"uplifted_ratio", Column::uplifted_ratio, "1"});
+  made.push_back({"max_opening", Column::max_opening, "m"});
+  if (!interface.footprint) {
+    made.push_back({"max_pressure", Column::max_pressure, "Pa"});
+    return made;
+  }
+  const auto given = [&](const char* key) { return behaviour.items().contains(key) && behaviour.has(key); };
+  if (given("V_s")) made.push_back({"bearing_utilisation", Column::bearing_utilisation, "1"});
+  if (given("V_s") && given("V_u") && behaviour.number("V_u") > behaviour.number("V_s"))
+    made.push_back({"bearing_capacity", Column::bearing_capacity, "N"});
+  if (given("friction_angle")) made.push_back({"sliding_utilisation", Column::sliding_utilisation, "1"});
   return made;
+}
+/// The law of an interface, or the model of a foundation, as the case states it: that of a bonded run is another one.
+const Values& stated_behaviour(const Case& read, const BuiltCase& built, std::size_t interface) {
+  for (const Values& foundation : read.values.tables("foundation"))
+    if (foundation.text("name") == built.model.interfaces[interface].name) return foundation.part("model");
+  return *built.behaviours[interface];
+}
+/// Whether a run has this quantity of an interface; a bonded one has no strength.
+bool has_quantity(const BuiltCase& built, const Request& request) {
+  const auto k = static_cast<std::size_t>(request.interface);
+  if (request.kind != Column::bearing_utilisation && request.kind != Column::bearing_capacity &&
+      request.kind != Column::sliding_utilisation)
+    return true;
+  const std::vector<Quantity> all = interface_quantities(built.model.interfaces[k], *built.behaviours[k]);
+  return std::ranges::find(all, request.kind, &Quantity::kind) != all.end();
 }
 /// Motions of the base above an interface.
 bool is_base_motion(Column kind) {
@@ -106,7 +131,7 @@ std::vector<PointQuantity> point_quantities(Space space) {
 
 /// The entry with this word; InputError with the list and the nearest word when there is none.
 template <class Table>
-auto find_quantity(const Table& table, const Values& history, const char* of) {
+auto find_quantity(const Table& table, const Values& history, std::string_view of) {
   const std::string& word = history.text("quantity");
   std::vector<std::string> words;
   for (const auto& entry : table) {
@@ -147,7 +172,8 @@ Request point_request(const Values& history, const Model& model, int interface, 
     fail(history, "quantity", fmt::format("a normal quantity: \"{}\" has no tangential part", joint.name),
          "\"" + history.text("quantity") + "\"");
   if (name.empty()) name = fmt::format("{}.{}.{}", joint.name, point, quantity.word);
-  Request request = make(quantity.kind, std::move(name), quantity.unit);
+  const bool force = joint.footprint && quantity.unit == "Pa";  // the point of a foundation stands for its whole area
+  Request request = make(quantity.kind, std::move(name), force ? "N" : quantity.unit);
   request.interface = interface;
   request.point = point - 1;
   request.component = quantity.tangent < 0 ? joint.batch.translations() - 1 : quantity.tangent;
@@ -167,7 +193,8 @@ int nearest_node(const Values& table, const std::string& what, BuiltCase& built)
   return nearest;
 }
 
-Request asked_request(const Values& history, BuiltCase& built, const CaseNames& names, const Names& nodes, const Names& interfaces) {
+Request asked_request(const Values& history, const Case& read, BuiltCase& built, const CaseNames& names, const Names& nodes,
+                      const Names& interfaces) {
   const std::string name = history.has("name") ? history.text("name") : "";
   if (history.has("beam") || history.has("level") || history.has("group")) return force_request(history, built, names);
   const int given = history.has("node") + history.has("at") + history.has("interface");
@@ -180,9 +207,11 @@ Request asked_request(const Values& history, BuiltCase& built, const CaseNames& 
   }
   const int interface = interfaces.find(history, "interface");
   if (history.has("point")) return point_request(history, built.model, interface, name);
-  const Quantity quantity = find_quantity(interface_quantities(built.model.space), history, "an interface");
-  Request request =
-      make(quantity.kind, name.empty() ? fmt::format("{}.{}", built.model.interfaces[interface].name, quantity.word) : name, quantity.unit);
+  const Interface& joint = built.model.interfaces[interface];
+  const std::string owner = joint.footprint ? "the foundation " + in_quotes(joint.name) : "an interface";
+  const Quantity quantity =
+      find_quantity(interface_quantities(joint, stated_behaviour(read, built, static_cast<std::size_t>(interface))), history, owner);
+  Request request = make(quantity.kind, name.empty() ? fmt::format("{}.{}", joint.name, quantity.word) : name, quantity.unit);
   request.interface = interface;
   return request;
 }
@@ -222,7 +251,7 @@ void add_requests(const Case& read, const CaseNames& names, BuiltCase& built) {
     // the drift of the top needs the tilt of the base, which nodes of solids do not have
     const bool nodes_turn_not = built.top >= 0 && built.base >= 0 && !moves(model, built.base_turn());
     for (std::size_t k = 0; k < model.interfaces.size(); ++k)
-      for (const Quantity& quantity : interface_quantities(model.space)) {
+      for (const Quantity& quantity : interface_quantities(model.interfaces[k], *built.behaviours[k])) {
         if (is_shear(quantity.kind) && model.interfaces[k].batch.components == 1) continue;
         if (is_base_motion(quantity.kind) && !(nodes_turn_not && k == 0 && quantity.kind != Column::settlement)) continue;
         requests.push_back(make(quantity.kind, fmt::format("{}.{}", model.interfaces[k].name, quantity.word), quantity.unit));
@@ -235,7 +264,8 @@ void add_requests(const Case& read, const CaseNames& names, BuiltCase& built) {
   for (const Request& request : requests) columns.add(request.name, {}, {});
   for (const Values& history : output.tables("history")) {
     if (history.has("name")) check_name(history.text("name"), "the column", history.where("name"), history.path("name"));
-    Request request = asked_request(history, built, names, nodes, interfaces);
+    Request request = asked_request(history, read, built, names, nodes, interfaces);
+    if (!has_quantity(built, request)) continue;
     const bool there = std::any_of(requests.begin(), requests.end(), [&](const Request& other) { return other.name == request.name; });
     if (there && !history.has("name")) continue;  // one of the automatic ones
     if (request.name == "time") fail(history, "name", "a name other than that of the first column", in_quotes(request.name));

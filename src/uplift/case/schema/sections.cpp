@@ -115,8 +115,10 @@ const Section& history_section() {
              text("quantity",
                   "node: ux uy rz, vx vy vrz, ax ay arz, and the absolute accelerations abs_ax abs_ay, which are others than ax ay under a "
                   "ground acceleration; interface: axial shear moment rotation uplifted_ratio max_opening max_pressure, and "
-                  "settlement tilt of the upper side (in space tilt_1 tilt_2, about x and y); "
-                  "point: opening slip traction shear_traction mean_traction mean_shear_traction. In space: all three axes; also shear_1 "
+                  "settlement tilt of the upper side (in space tilt_1 tilt_2, about x and y); of a foundation, which has no pressure, "
+                  "bearing_utilisation (with V_s), bearing_capacity (with V_u > V_s) and sliding_utilisation (with friction_angle); "
+                  "point: opening slip traction shear_traction mean_traction mean_shear_traction (tractions of a foundation are forces). "
+                  "In space: all three axes; also shear_1 "
                   "shear_2 moment_1 moment_2 torsion rotation_1 rotation_2, and slip_1 slip_2 ... of a point. beam: axial shear moment, in "
                   "space also shear_y shear_z torsion moment_y moment_z; level: storey_shear, in space storey_shear_x storey_shear_y; node "
                   "and below: drift_x drift_ratio_x (drift_y ...); node or group: reaction_x reaction_y reaction_moment (in space "

@@ -13,7 +13,7 @@ namespace {
 
 constexpr bool whole = false, at_least = true, wall_too = true, of_beam = true;
 
-constexpr std::array<VerdictQuantity, 47> quantities{{
+constexpr std::array<VerdictQuantity, 49> quantities{{
     {"max_top_motion", "m", "largest horizontal motion of the top, over all directions", "top motion", whole},
     {"change_of_top_motion", "1", "change of the motion of the top compared with the bonded reference run", "change of top motion", whole},
     {"max_drift", "m", "largest horizontal motion of the top relative to the base, rotation of the base included", "drift of the top",
@@ -36,6 +36,9 @@ constexpr std::array<VerdictQuantity, 47> quantities{{
     {"min_overturning_safety", "1", "least safety against overturning, stabilising over driving moment about the toe",
      "safety against overturning", true, at_least},
     {"min_sliding_safety", "1", "least safety against sliding, (mu N + c A)/V", "safety against sliding", true, at_least},
+    {"max_bearing_utilisation", "1", "largest vertical force of a foundation over the bearing capacity under its shear and moment",
+     "use of bearing capacity"},
+    {"max_sliding_utilisation", "1", "largest shear of a foundation over its resistance to sliding", "use of sliding resistance"},
     {"full_loss_time", "s", "time without any contact", "time without contact"},
     {"longest_full_loss", "s", "longest interval without any contact", "longest loss of contact"},
     {"max_shear", "N", "largest base shear", "base shear"},

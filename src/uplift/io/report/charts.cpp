@@ -63,24 +63,6 @@ Chart history_chart(const View& view, const std::vector<ReportRun>& runs) {
   return chart;
 }
 
-/// Two columns against each other; every n-th point.
-Chart loop_chart(Chart chart, const std::vector<ReportRun>& runs, std::pair<Column, int> x, std::pair<Column, int> y, double factor) {
-  for (const ReportRun& run : runs) {
-    const std::vector<double>* along = find_column(*run.result, x.first, x.second);
-    const std::vector<double>* up = find_column(*run.result, y.first, y.second);
-    if (!along || !up) continue;
-    Curve curve = curve_of(run);
-    const std::size_t stride = std::max<std::size_t>(1, along->size() / (2 * points_per_curve));
-    for (std::size_t i = 0; i < along->size(); i += stride) {
-      curve.x.push_back((*along)[i]);
-      curve.y.push_back(factor * (*up)[i]);
-    }
-    keep_finite(curve);
-    if (!curve.x.empty()) chart.curves.push_back(std::move(curve));
-  }
-  return chart;
-}
-
 /// What the computation created (positive) or lost, relative to the energy put in.
 Chart energy_error_chart(const char* id, const char* section, const std::string& title, const std::vector<ReportRun>& runs) {
   Chart chart{id,
@@ -193,16 +175,27 @@ std::vector<View> motion_views(const BuiltCase& built) {
 }
 
 std::vector<View> interface_views(const BuiltCase& built) {
-  return {{"base_moment", "interface", "Base moment", "Moment of the interface about its centre. " + about(built), "Moment", "N m",
-           built.base_moment(), 0, 1},
-          {"base_axial", "interface", "Vertical force of the base", "Compression is negative.", "Force", "N", Column::axial, 0, 1},
-          {"base_shear", "interface", "Base shear", "Shear force in the interface.", "Force", "N", Column::shear, 0, 1},
-          {"uplifted_ratio", "interface", "Uplifted area of the base", "Share of the area with a gap.", "Uplifted share", "1",
-           Column::uplifted_ratio, 0, 1},
-          {"max_opening", "interface", "Largest gap", "Largest opening of the interface, up to its edges.", "Gap", "m", Column::max_opening,
-           0, 1},
-          {"max_pressure", "interface", "Largest pressure", "Largest pressure of all points, at the end of each step.", "Pressure", "Pa",
-           Column::max_pressure, 0, 1}};
+  return {
+      {"base_moment", "interface", "Base moment", "Moment of the interface about its centre. " + about(built), "Moment", "N m",
+       built.base_moment(), 0, 1},
+      {"base_axial", "interface", "Vertical force of the base", "Compression is negative.", "Force", "N", Column::axial, 0, 1},
+      {"base_shear", "interface", "Base shear", "Shear force in the interface.", "Force", "N", Column::shear, 0, 1},
+      {"uplifted_ratio", "interface", "Uplifted area of the base", "Share of the area with a gap.", "Uplifted share", "1",
+       Column::uplifted_ratio, 0, 1},
+      {"max_opening", "interface", "Largest gap", "Largest opening of the interface, up to its edges.", "Gap", "m", Column::max_opening, 0,
+       1},
+      {"max_pressure", "interface", "Largest pressure", "Largest pressure of all points, at the end of each step.", "Pressure", "Pa",
+       Column::max_pressure, 0, 1},
+      {"bearing_utilisation", "interface", "Utilisation of bearing capacity",
+       "Vertical force over the bearing capacity under the shear and the moment of the same time. The ground yields at 1. At the end of "
+       "each step.",
+       "Utilisation", "1", Column::bearing_utilisation, 0, 1},
+      {"bearing_capacity", "interface", "Bearing capacity",
+       "Vertical load that the ground bears without shear and moment. It grows with the permanent settlement.", "Capacity", "N",
+       Column::bearing_capacity, 0, 1},
+      {"sliding_utilisation", "interface", "Utilisation of sliding resistance",
+       "Shear over the resistance of friction and cohesion. The footing slides at 1. At the end of each step.", "Utilisation", "1",
+       Column::sliding_utilisation, 0, 1}};
 }
 
 void write_loops(JsonWriter& json, const ReportInput& input, const std::vector<ReportRun>& runs) {
@@ -222,19 +215,39 @@ void write_loops(JsonWriter& json, const ReportInput& input, const std::vector<R
                             {"Displacement of the top", "m"},
                             {"Equivalent force", "N"},
                             {}},
-                           runs, {Column::displacement, built.top_sway()}, {built.base_moment(), 0}, sign_of_moment(built) / height));
+                           runs, {Column::displacement, built.top_sway()}, {built.base_moment(), 0, sign_of_moment(built) / height}));
   }
-  write_chart(json, loop_chart({"moment_rotation",
-                                "interface",
-                                "Moment against rotation",
-                                "Base moment against the rotation of the interface.",
-                                {"Rotation", "rad"},
-                                {"Moment", "N m"},
-                                {}},
-                               runs, {built.base_rotation(), 0}, {built.base_moment(), 0}, 1));
+  if (!built.model.interfaces.front().footprint)
+    write_chart(json, loop_chart({"moment_rotation",
+                                  "interface",
+                                  "Moment against rotation",
+                                  "Base moment against the rotation of the interface.",
+                                  {"Rotation", "rad"},
+                                  {"Moment", "N m"},
+                                  {}},
+                                 runs, {built.base_rotation(), 0}, {built.base_moment(), 0}));
+  for (std::size_t k = 0; k < built.model.interfaces.size(); ++k)
+    for (const Chart& chart : foundation_charts(runs, k)) write_chart(json, chart);
 }
 
 }  // namespace
+
+Chart loop_chart(Chart chart, const std::vector<ReportRun>& runs, const LoopAxis& x, const LoopAxis& y) {
+  for (const ReportRun& run : runs) {
+    const std::vector<double>* along = find_column(*run.result, x.column, x.of);
+    const std::vector<double>* up = find_column(*run.result, y.column, y.of);
+    if (!along || !up) continue;
+    Curve curve = curve_of(run);
+    const std::size_t stride = std::max<std::size_t>(1, along->size() / (2 * points_per_curve));
+    for (std::size_t i = 0; i < along->size(); i += stride) {
+      curve.x.push_back(x.factor * (*along)[i]);
+      curve.y.push_back(y.factor * (*up)[i]);
+    }
+    keep_finite(curve);
+    if (!curve.x.empty()) chart.curves.push_back(std::move(curve));
+  }
+  return chart;
+}
 
 void write_chart(JsonWriter& json, const Chart& chart, std::string_view origin) {
   if (chart.curves.empty()) return;

@@ -50,6 +50,14 @@ struct Chart {
 };
 /// Nothing without curves. `origin`: where a figure comes from whose case does not state it.
 void write_chart(JsonWriter& json, const Chart& chart, std::string_view origin = {});
+/// What an axis of a loop shows: a column times a factor.
+struct LoopAxis {
+  Request::Kind column;
+  int of;  // full unknown or interface
+  double factor = 1;
+};
+/// Adds the curves of two columns against each other, of all runs that recorded both.
+Chart loop_chart(Chart chart, const std::vector<ReportRun>& runs, const LoopAxis& x, const LoopAxis& y);
 /// What the case states for single figures ([[figure]]): origin and caption, by figure.
 void write_figures(JsonWriter& json, const Case& read);
 
@@ -66,6 +74,8 @@ Chart law_chart(const ReportRun& run);
 
 /// The base before and after: gap and pressure along the first interface, plane models with pictures.
 std::vector<Chart> rest_charts(const ReportRun& run);
+/// Moment, rotation, vertical and horizontal force of a foundation against each other, with what limits them.
+std::vector<Chart> foundation_charts(const std::vector<ReportRun>& runs, std::size_t interface);
 /// Eccentricity and safeties of the first interface over time.
 std::vector<Chart> safety_charts(const std::vector<ReportRun>& runs);
 

@@ -46,12 +46,15 @@ void write_counts(ResultWriter& out, const RunResult& run) {
   out.number("end_time", run.end_time, "s", "time reached");
 }
 
-void write_extremes(ResultWriter& out, const RunResult& run) {
+/// `pressure`: whether there is an interface with pressures; a whole foundation has forces alone.
+void write_extremes(ResultWriter& out, const RunResult& run, bool pressure) {
   write_peak(out, "max_uplifted_ratio", run.max_uplifted_ratio, "1", "largest share of the area with a gap");
   write_peak(out, "max_opening", run.max_opening, "m", "largest gap");
   write_peak(out, "max_base_moment", run.max_base_moment, "N m", "largest base moment, mean over the window");
   write_peak(out, "max_base_shear", run.max_base_shear, "N", "largest base shear, mean over the window");
+  out.when(pressure);
   write_peak(out, "max_pressure", run.max_pressure, "Pa", "largest pressure, mean over the window");
+  out.when(pressure);
   write_peak(out, "max_step_pressure", run.max_step_pressure, "Pa", "largest pressure, mean over one step");
   out.number("first_uplift", run.first_uplift, "s", "time at which a gap opens first; -1: never");
   out.number("time_uplifted", run.time_uplifted, "s", "total time with a gap");
@@ -110,7 +113,9 @@ void write_run(ResultWriter& out, const Entry& entry) {
   const std::optional<Peak> top = entry.built && entry.result ? top_motion(*entry.built, run) : std::nullopt;
   out.when(top.has_value());
   write_peak(out, "max_top_motion", top.value_or(Peak{"", "m"}), "m", "largest horizontal motion of the top, over all directions");
-  write_extremes(out, run);
+  const auto whole = [](const Interface& interface) { return interface.footprint.has_value(); };
+  const auto* interfaces = entry.built ? &entry.built->model.interfaces : nullptr;
+  write_extremes(out, run, !interfaces || interfaces->empty() || !std::ranges::all_of(*interfaces, whole));
   write_energies(out, run);
   if (!entry.compact)
     out.named(

@@ -1,0 +1,134 @@
+"""[[foundation]] as a user runs it: columns, numbers and figures of the strength of its ground."""
+import math
+
+from support import CliTest, main, report_of
+
+CASE = """title = "pier"
+[nodes]
+base = [0, 0, 0]
+top = [0, 0, 10]
+[[mass]]
+node = "top"
+mass = 100e3
+inertia = 1e5
+[[beam]]
+name = "column"
+nodes = ["base", "top"]
+E = 3e10
+A = 1
+I_y = 0.2
+I_z = 0.2
+J = 0.3
+[[rigid]]
+name = "footing"
+node = "base"
+mass = 30e3
+inertias = [60e3, 60e3, 100e3]
+[[foundation]]
+name = "soil"
+body = "base"
+width = 6
+length = 5
+[foundation.model]
+type = "macro_element"
+K_v = 6e8
+K_h = 3e8
+K_r = 1.8e9
+K_t = 1e9
+V_s = 3e6
+V_u = 5e6
+w_ref = 0.02
+friction_angle = "30 deg"
+cohesion = 5e3
+shape_number = 4
+[gravity]
+[damping]
+alpha = 0.3
+[[function]]
+name = "pulse"
+shape = { type = "half_sine", duration = 0.4 }
+[[ground_acceleration]]
+direction = [0.8, 0.6, 0]
+function = "pulse"
+amplitude = 4
+[[stage]]
+type = "static"
+[[stage]]
+type = "dynamic"
+duration = 1
+step = 5e-3
+"""
+V_S = 3e6
+
+
+class Foundation(CliTest):
+    def run_case(self, text):
+        self.write(text)
+        self.uplift("run", "case.toml", "-o", "r", "--no-step-check")
+        summary = self.summary("r")
+        charts = {}
+        if (self.folder / "r" / "report.html").exists():
+            charts = {chart["id"]: chart for chart in report_of(self.folder / "r")["charts"]}
+        head = (self.folder / "r" / "histories.csv").read_text().splitlines()[0].split(",")
+        return summary, charts, head
+
+    def test_strength_is_in_histories_and_summary(self):
+        summary, _, head = self.run_case(CASE)
+        self.assertIn("soil.bearing_utilisation [1]", head)
+        self.assertIn("soil.bearing_capacity [N]", head)
+        self.assertIn("soil.sliding_utilisation [1]", head)
+        run, bonded = summary["runs"]
+        numbers = summary["verdict"]["interfaces"][0]["numbers"]
+        for name in ("bearing_utilisation", "sliding_utilisation"):
+            self.assertEqual(numbers["max_" + name]["value"], run["peaks"]["soil." + name]["value"])
+            self.assertNotIn("soil." + name, bonded["peaks"])
+        self.assertGreater(run["peaks"]["soil.bearing_capacity"]["value"], V_S)
+
+    def test_no_pressure_is_stated(self):
+        summary, charts, head = self.run_case(CASE)
+        self.assertEqual([name for name in head if "pressure" in name or "[Pa" in name], [])
+        self.assertEqual([key for run in summary["runs"] for key in run if "pressure" in key], [])
+        self.assertNotIn("max_pressure", charts)
+
+    def test_elastic_ground_has_no_strength(self):
+        model = '[foundation.model]\ntype = "elastic"\nK_v = 6e8\nK_h = 3e8\nK_r = 1.8e9\nK_t = 1e9\n'
+        start, end = CASE.index("[foundation.model]"), CASE.index("[gravity]")
+        summary, charts, head = self.run_case(CASE[:start] + model + CASE[end:])
+        self.assertEqual([name for name in head if "utilisation" in name or "capacity" in name], [])
+        self.assertFalse([name for name in summary["verdict"]["interfaces"][0]["numbers"] if "utilisation" in name])
+        for chart in charts.values():
+            if chart["id"].startswith(("moment_vertical", "shear_vertical")):
+                self.assertEqual({series["label"] for series in chart["series"]} - {series.get("run") for series in chart["series"]}, set())
+
+    def test_figures_show_the_limits(self):
+        """The formulas of docs/theory/macro_element.md at H = 0 and at M = 0, for both axes."""
+        summary, charts, _ = self.run_case(CASE)
+        if not charts:
+            self.skipTest("the program was built without web/dist/report.html")
+        grown = summary["runs"][0]["peaks"]["soil.bearing_capacity"]["value"]
+        friction, cohesion = math.tan(math.pi / 6), 5e3 * 6 * 5
+        for suffix, length in (("", 6), ("_soil_y", 5)):
+            moment, shear = charts["moment_vertical" + suffix]["series"], charts["shear_vertical" + suffix]["series"]
+            self.assertIn("moment_rotation" + suffix, charts)
+            for part, limit in (
+                (self.series(moment, "bearing capacity at the beginning"), lambda n: n * length / 2 * (1 - n / V_S)),
+                (self.series(moment, "bearing capacity at the end"), lambda n: n * length / 2 * (1 - n / grown)),
+                (self.series(moment, "limit of uplift"), lambda n: n * length / 2),
+                (self.series(moment, "first uplift, N D/4"), lambda n: n * length / 4),
+                (self.series(shear, "sliding resistance"), lambda n: n * friction + cohesion),
+            ):
+                self.assertGreater(max(part["x"]), 0.5e6)
+                for n, value in zip(part["x"], part["y"]):
+                    self.assertAlmostEqual(abs(value), limit(n), delta=1e-5 * V_S)  # the page has rounded numbers
+                self.assertLess(min(part["y"]), 0)
+            for n, h in zip(*(self.series(shear, "bearing capacity at the beginning")[key] for key in "xy")):
+                if n > 0:
+                    self.assertAlmostEqual(V_S * (1 - abs(h) / n) ** 3, n, delta=1e-5 * V_S)
+
+    def series(self, all_series, label):
+        (found,) = [each for each in all_series if each["label"].startswith(label)]
+        return found
+
+
+if __name__ == "__main__":
+    main()

@@ -1,0 +1,221 @@
+// How much of its strength the ground under a [[foundation]] uses: columns and verdict against the formulas of
+// docs/theory/macro_element.md, eqs (M5), (M6), (M15), (M16), evaluated with the loads of the case.
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <cmath>
+#include <numbers>
+#include <string>
+
+#include "text_support.h"
+#include "uplift/case/case.h"
+#include "uplift/io/text/toml.h"
+#include "uplift/verdict/motion.h"
+#include "uplift/verdict/numbers.h"
+
+namespace uplift {
+namespace {
+
+using support::refusal_of;
+using support::replaced;
+using Column = Request::Kind;
+
+constexpr const char* plane = R"(
+title = "loads on a footing"
+[nodes]
+base = [0, 0]
+[[rigid]]
+name = "footing"
+node = "base"
+mass = 1e5
+inertia = 3e5
+[[foundation]]
+name = "soil"
+body = "base"
+width = 6
+length = 5
+model = { type = "macro_element", K_v = 6e8, K_h = 3e8, K_r = 1.8e9, V_s = 4e6, friction_angle = "30 deg" }
+[[load]]
+node = "base"
+force = [1e5, -1e6]
+moment = -1.2e6
+[[stage]]
+type = "static"
+# more
+)";
+
+constexpr const char* space = R"(
+title = "loads on a footing"
+[nodes]
+base = [0, 0, 0]
+[[rigid]]
+name = "footing"
+node = "base"
+mass = 1e5
+inertias = [3e5, 3e5, 3e5]
+[[foundation]]
+name = "soil"
+body = "base"
+width = 6
+length = 5
+model = { type = "macro_element", K_v = 6e8, K_h = 3e8, K_r = 1.8e9, K_t = 1e9, V_s = 4e6, friction_angle = "30 deg" }
+[[load]]
+node = "base"
+force = [1e5, 0.5e5, -1e6]
+moments = [0.5e6, 0.9e6, 0]
+[[stage]]
+type = "static"
+)";
+
+struct Ran {
+  Case file;
+  BuiltCase built;
+  RunResult result;
+
+  double last(Column kind) const {
+    const std::vector<double>* column = find_column(result, kind, 0);
+    return column ? column->back() : NAN;
+  }
+  double verdict(const char* name) const {
+    const VerdictNumbers numbers = numbers_of(built, result, nullptr);
+    const VerdictNumber* number = find_number(numbers.interfaces.front().numbers, name);
+    return number ? number->value : NAN;
+  }
+};
+
+Ran run_text(const std::string& text, std::size_t which = 0) {
+  Ran ran{check_case(read_toml_text(text, "case.toml"), "case.toml"), {}, {}};
+  ran.built = build(ran.file, runs_of_case(ran.file)[which]);
+  ran.result = run(ran.built.model, ran.built.plan, ran.built.behaviours);
+  EXPECT_EQ(ran.result.status, RunStatus::completed) << ran.result.reason;
+  return ran;
+}
+
+/// (1 - |H|/N)^3
+double shear_share(double h, double n) {
+  return std::pow(1 - std::abs(h) / n, 3);
+}
+
+TEST(FoundationStrength, UtilisationsOfGivenLoads) {
+  const Ran ran = run_text(plane);
+  const double n = 1e6, h = 1e5, m = 1.2e6, bearing = n / (4e6 * shear_share(h, n) * (1 - 2 * m / (n * 6))),
+               sliding = h / (n * std::tan(std::numbers::pi / 6));
+  EXPECT_NEAR(ran.last(Column::bearing_utilisation), bearing, 1e-9);
+  EXPECT_NEAR(ran.last(Column::sliding_utilisation), sliding, 1e-9);
+  EXPECT_NEAR(ran.verdict("max_bearing_utilisation"), bearing, 1e-9);
+  EXPECT_NEAR(ran.verdict("max_sliding_utilisation"), sliding, 1e-9);
+  EXPECT_NEAR(ran.verdict("min_sliding_safety"), 1 / sliding, 1e-7);
+  EXPECT_EQ(find_column(ran.result, Column::bearing_capacity, 0), nullptr);  // it does not grow
+}
+
+TEST(FoundationStrength, CohesionActsOnTheEffectiveArea) {
+  const Ran ran = run_text(replaced(plane, "friction_angle = \"30 deg\"", "friction_angle = \"20 deg\", cohesion = 10e3"));
+  const double n = 1e6, effective = 6 * 5 * (1 - 2 * 1.2e6 / (n * 6));
+  EXPECT_NEAR(ran.last(Column::sliding_utilisation), 1e5 / (n * std::tan(std::numbers::pi / 9) + 10e3 * effective), 1e-9);
+}
+
+TEST(FoundationStrength, InSpaceBothAxesReduceTheCapacity) {
+  const double n = 1e6, h = std::hypot(1e5, 0.5e5), sliding = h / (n * std::tan(std::numbers::pi / 6));
+  const Ran rectangle = run_text(space);  // the moment about x tilts the length
+  EXPECT_NEAR(rectangle.last(Column::bearing_utilisation),
+              n / (4e6 * shear_share(h, n) * (1 - 2 * 0.9e6 / (n * 6)) * (1 - 2 * 0.5e6 / (n * 5))), 1e-9);
+  EXPECT_NEAR(rectangle.last(Column::sliding_utilisation), sliding, 1e-9);
+  const Ran disc = run_text(replaced(space, "length = 5", "shape = \"disc\""));
+  EXPECT_NEAR(disc.last(Column::bearing_utilisation), n / (4e6 * shear_share(h, n) * (1 - 2 * std::hypot(0.9e6, 0.5e6) / (n * 6))), 1e-9);
+  EXPECT_NEAR(disc.last(Column::sliding_utilisation), sliding, 1e-9);
+}
+
+// V = V_s + (V_u - V_s) p/(p + w_ref) grows until it carries the load, N = V: p = w_ref (N - V_s)/(V_u - N).
+TEST(FoundationStrength, CapacityThatGrowsReachesTheLoad) {
+  std::string text = replaced(plane, "V_s = 4e6", "V_s = 0.8e6, V_u = 2e6, w_ref = 0.01");
+  text = replaced(replaced(text, "force = [1e5, -1e6]", "force = [0, -1e6]"), "moment = -1.2e6\n", "");
+  const Ran ran = run_text(text + "\n[output]\n[[output.history]]\nnode = \"base\"\nquantity = \"uy\"\n");
+  EXPECT_NEAR(ran.last(Column::bearing_capacity), 1e6, 1e-9 * 1e6);
+  EXPECT_NEAR(ran.last(Column::bearing_utilisation), 1, 1e-9);
+  const auto settlement = std::ranges::find(ran.result.columns, "base.uy", &Request::name) - ran.result.columns.begin();
+  const double plastic = 0.01 * (1e6 - 0.8e6) / (2e6 - 1e6);
+  EXPECT_NEAR(ran.result.table[static_cast<std::size_t>(settlement) + 1].back(), -(1e6 / 6e8 + plastic), 1e-9 * plastic);
+}
+
+const std::string shaken = replaced(plane, "# more", R"([[function]]
+name = "pulse"
+shape = { type = "half_sine", duration = 0.4 }
+[[load]]
+node = "base"
+force = [0.5e5, 0]
+moment = -0.3e6
+function = "pulse"
+[[stage]]
+type = "dynamic"
+duration = 1
+step = 1e-3
+traction = "end"
+[energy]
+created_limit = 1)");
+
+// With end-of-step tractions all force columns belong to the same instants as the utilisations.
+TEST(FoundationStrength, OverTimeItFollowsTheForces) {
+  const Ran ran = run_text(replaced(shaken, "V_s = 4e6", "V_s = 2.5e6, V_u = 3e6, w_ref = 0.01"));
+  const auto column = [&](Column kind) { return *find_column(ran.result, kind, 0); };
+  const std::vector<double> axial = column(Column::axial), shear = column(Column::shear), moment = column(Column::moment);
+  const std::vector<double> bearing = column(Column::bearing_utilisation), sliding = column(Column::sliding_utilisation);
+  const std::vector<double> capacity = column(Column::bearing_capacity);
+  double most_bearing = 0, most_sliding = 0;
+  for (std::size_t i = 0; i < axial.size(); ++i) {
+    const double n = -axial[i];
+    ASSERT_GT(n, 0);
+    ASSERT_NEAR(bearing[i], n / (capacity[i] * shear_share(shear[i], n) * (1 - 2 * std::abs(moment[i]) / (n * 6))), 1e-9) << i;
+    ASSERT_NEAR(sliding[i], std::abs(shear[i]) / (n * std::tan(std::numbers::pi / 6)), 1e-9) << i;
+    if (i > 0) ASSERT_GE(capacity[i], capacity[i - 1]);
+    most_bearing = std::max(most_bearing, bearing[i]), most_sliding = std::max(most_sliding, sliding[i]);
+  }
+  EXPECT_NEAR(most_bearing, 1, 1e-9);  // it yields
+  EXPECT_GT(capacity.back(), capacity.front() * 1.001);
+  EXPECT_LT(capacity.back(), 3e6);
+  EXPECT_EQ(ran.verdict("max_bearing_utilisation"), most_bearing);
+  EXPECT_EQ(ran.verdict("max_sliding_utilisation"), most_sliding);
+}
+
+// The numbers of the verdict are those of all steps, whatever the output records.
+TEST(FoundationStrength, VerdictDoesNotDependOnTheOutput) {
+  const Ran all = run_text(shaken), few = run_text(shaken + "\n[output]\nevery = 7\nautomatic = false\n");
+  EXPECT_EQ(all.verdict("max_bearing_utilisation"), few.verdict("max_bearing_utilisation"));
+  EXPECT_EQ(all.verdict("max_sliding_utilisation"), few.verdict("max_sliding_utilisation"));
+}
+
+TEST(FoundationStrength, OnlyGroundWithAStrengthHasTheColumns) {
+  const Ran uplifting = run_text(replaced(plane, ", V_s = 4e6, friction_angle = \"30 deg\"", ""));
+  for (const Column kind : {Column::bearing_utilisation, Column::sliding_utilisation, Column::bearing_capacity})
+    EXPECT_EQ(find_column(uplifting.result, kind, 0), nullptr);
+  EXPECT_TRUE(std::isnan(uplifting.verdict("max_bearing_utilisation")));
+  EXPECT_TRUE(std::isnan(uplifting.verdict("max_sliding_utilisation")));
+}
+
+// A history that the case asks for is none of the bonded run, whose ground does not yield.
+TEST(FoundationStrength, ABondedRunHasNoStrength) {
+  const std::string text =
+      shaken + "\n[output]\nautomatic = false\n[[output.history]]\ninterface = \"soil\"\nquantity = \"bearing_utilisation\"\n";
+  EXPECT_NE(find_column(run_text(text).result, Column::bearing_utilisation, 0), nullptr);
+  EXPECT_EQ(find_column(run_text(text, 1).result, Column::bearing_utilisation, 0), nullptr);
+}
+
+TEST(FoundationStrength, AFoundationHasForcesAndNoPressure) {
+  const std::string history = "\n[output]\n[[output.history]]\ninterface = \"soil\"\n";
+  const Ran ran = run_text(plane + history + "point = 1\nquantity = \"traction\"\n");
+  EXPECT_EQ(find_column(ran.result, Column::max_pressure, 0), nullptr);
+  const std::vector<double>* force = find_column(ran.result, Column::traction, 0);
+  ASSERT_NE(force, nullptr);
+  EXPECT_NEAR(force->back(), -1e6, 1e-3);
+  EXPECT_EQ(std::ranges::find(ran.result.columns, Column::traction, &Request::kind)->unit, "N");
+  const auto refusal = [&](const std::string& text) {
+    return refusal_of([&] {
+      const Case read = check_case(read_toml_text(text, "case.toml"), "case.toml");
+      build(read, runs_of_case(read).front());
+    });
+  };
+  EXPECT_NE(refusal(plane + history + "quantity = \"max_pressure\"\n").find("a quantity of the foundation \"soil\""), std::string::npos);
+  EXPECT_NE(refusal(plane + history + "quantity = \"bearing_capacity\"\n").find("bearing_utilisation"), std::string::npos);
+}
+
+}  // namespace
+}  // namespace uplift
