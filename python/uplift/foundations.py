@@ -26,8 +26,9 @@ def elastic(
             others [N/m], > 0 N/m.
         K_h: horizontal stiffness along the width [N/m], > 0 N/m.
         K_r: rocking stiffness for moments that tilt the width [N m/rad], > 0 N m/rad.
-        K_h2: in space: horizontal stiffness along the length; absent: K_h [N/m], > 0 N/m.
-        K_r2: in space: rocking stiffness for moments that tilt the length; absent: K_r [N m/rad], > 0 N m/rad.
+        K_h2: in space: horizontal stiffness along the length; absent: of the soil, else K_h [N/m], > 0 N/m.
+        K_r2: in space: rocking stiffness for moments that tilt the length; absent: of the soil, else K_r [N m/rad],
+            > 0 N m/rad.
         K_t: in space: stiffness against torsion about the normal [N m/rad], > 0 N m/rad.
     """
     return part("elastic", K_v=K_v, K_h=K_h, K_r=K_r, K_h2=K_h2, K_r2=K_r2, K_t=K_t)
@@ -58,8 +59,9 @@ def macro_element(
             others [N/m], > 0 N/m.
         K_h: horizontal stiffness along the width [N/m], > 0 N/m.
         K_r: rocking stiffness for moments that tilt the width [N m/rad], > 0 N m/rad.
-        K_h2: in space: horizontal stiffness along the length; absent: K_h [N/m], > 0 N/m.
-        K_r2: in space: rocking stiffness for moments that tilt the length; absent: K_r [N m/rad], > 0 N m/rad.
+        K_h2: in space: horizontal stiffness along the length; absent: of the soil, else K_h [N/m], > 0 N/m.
+        K_r2: in space: rocking stiffness for moments that tilt the length; absent: of the soil, else K_r [N m/rad],
+            > 0 N m/rad.
         K_t: in space: stiffness against torsion about the normal [N m/rad], > 0 N m/rad.
         shape_number: alpha: 4 strip on the half-space, 6 disc on the half-space and strip or rectangle on springs
             (Winkler), 8 disc on springs; absent: 4 of a strip, else 6, from 4 to 8.

@@ -216,7 +216,8 @@ class Soil(CliTest):
     def test_refusals(self):
         for words, parts in (((*self.WORDS, "lenght=3"), ("uplift soil: lenght", 'did you mean "length"')), (("width=2", "width=3"), ("width", "two")),
                              (("width=10", "G=1", "poisson=0.2"), ("the length of a rectangle",)), (("a=b",), ("uplift soil: a: expected a key",)),
-                             (("nowhere.toml",), ("nowhere.toml", "no file")), (("x.toml", "y.toml"), ("y.toml",)),
+                             (("width=10", "length=9", "layers=[{G=8e7, poisson=0.3, density=1900, thick=3}]"), ("layers[0].thick", 'thickness')),
+                             (("wi\ndth=3",), ("on one line",)), (("nowhere.toml",), ("nowhere.toml", "no file")), (("x.toml", "y.toml"), ("y.toml",)),
                              (("shape=strip", "width=2", "G=1e6", "poisson=0.2"), ("rock_depth",)), (("width=-1", "length=1"), ("a length > 0 m",))):
             self.refused_words(words, parts)
 

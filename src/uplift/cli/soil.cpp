@@ -71,7 +71,11 @@ void print_springs(const FootingOnSoil& footing, const SoilSprings& springs) {
   }
   print_table(rows);
   say("source: " + std::string(source_of(footing.formulas)));
-  if (footing.formulas == SoilFormulas::pais_kausel && !dynamic) say("Without a frequency, the rotations have no dashpots.");
+  if (footing.formulas == SoilFormulas::strip) say(fmt::format("Of a length of {:g} m.", footing.length));
+  if (springs[SoilMotion::vertical].ground.density == 0 && footing.formulas != SoilFormulas::strip)
+    say("Without a density, there are no dashpots.");
+  else if (footing.formulas == SoilFormulas::pais_kausel && !dynamic)
+    say("Without a frequency, the rotations have no dashpots.");
 }
 
 /// What a joint of points can have of it, and what not. See docs/theory/soil_stiffness.md, eq (H13).

@@ -8,11 +8,12 @@ namespace uplift::cli {
 std::pair<std::string, Raw> word_of(const std::string& word, const std::string& place) {
   const std::size_t sign = word.find('=');
   if (sign == 0 || sign == std::string::npos) throw InputError({place, 0}, "", "KEY=VALUE", in_quotes(word));
+  if (word.find('\n') != std::string::npos) throw InputError({place, 0}, "", "KEY=VALUE on one line", in_quotes(word));
   const std::string key(trim(word.substr(0, sign))), text(trim(word.substr(sign + 1)));
   Raw value{text, {place, 0}, key};
   try {
-    const Raw read = read_toml_text("v = " + text, place);
-    if (const Raw* found = std::get<std::shared_ptr<RawTable>>(read.data)->find("v")) value.data = found->data;
+    const Raw read = read_toml_text(escaped(key) + " = " + text, place);
+    if (const Raw* found = std::get<std::shared_ptr<RawTable>>(read.data)->find(key)) value.data = found->data;
   } catch (const InputError&) {
     value.data = text;  // `0.3 g_n`, `vertical`
   }

@@ -38,6 +38,7 @@ Ground ground_of(const Values& table, bool density_needed) {
 
 std::vector<GroundLayer> layers_of(const Values& soil, bool density_needed) {
   const std::vector<Values>& tables = soil.tables("layers");
+  if (tables.empty() && soil.given("layers")) fail(soil, "layers", "at least one layer", "none");
   if (tables.empty()) return {{ground_of(soil, density_needed)}};
   for (const char* key : {"G", "shear_wave_velocity", "poisson", "density"})
     if (soil.has(key)) fail(soil, key, "the ground in layers, or here", "both");
@@ -59,7 +60,7 @@ void refuse_shallow(const FootingOnSoil& footing, const Values& soil) {
   for (const SoilMotion motion : soil_motions) needed = std::max(needed, springs[motion].depth);
   if (depth < needed)
     fail(soil, "layers", fmt::format("layers down to {:.4g} m below the underside (a last layer without thickness goes on)", needed),
-         fmt::format("layers down to {:.4g} m", depth));
+         depth > 0 ? fmt::format("layers down to {:.4g} m", depth) : fmt::format("layers that end {:.4g} m above it", -depth));
 }
 
 SoilFormulas formulas_of(const Values& soil, const Footprint& footprint) {
@@ -106,7 +107,9 @@ const Section& footing_soil_section() {
                  "static stiffness, no dashpots of rotations")
               .positive()
               .optional(),
-          flag("radiation", "dashpots beside the ground, for the waves that the footing radiates; they act also while it is open")
+          flag("radiation",
+               "dashpots beside the ground, for the waves that the footing radiates; they act also while it is open, and the forces of the "
+               "foundation do not contain theirs")
               .standard(false)})
       made.fields.push_back(field);
     return made;
@@ -120,6 +123,8 @@ FootingOnSoil footing_on_soil(const Values& soil, const Footprint& footprint) {
   refuse_unknown(soil, footing.formulas);
   footing.width = footprint.width, footing.length = footprint.length;
   footing.embedment = soil.number("embedment");
+  if (footing.embedment > 2 * std::min(footing.width, footing.length))
+    fail(soil, "embedment", "an embedment of at most twice the width (a deeper foundation is a caisson or a pile)", "a deeper one");
   footing.sidewall = soil.has("sidewall") ? soil.number("sidewall") : footing.embedment;
   if (footing.sidewall > footing.embedment) fail(soil, "sidewall", "at most the embedment", "more");
   if (soil.has("rock_depth")) footing.rock_depth = soil.number("rock_depth");

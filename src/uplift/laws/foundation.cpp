@@ -48,8 +48,10 @@ std::vector<Field> foundation_stiffness_fields() {
               .optional(),
           number("K_h", "N/m", "horizontal stiffness along the width").positive().optional(),
           number("K_r", "N m/rad", "rocking stiffness for moments that tilt the width").positive().optional(),
-          number("K_h2", "N/m", "in space: horizontal stiffness along the length; absent: K_h").positive().optional(),
-          number("K_r2", "N m/rad", "in space: rocking stiffness for moments that tilt the length; absent: K_r").positive().optional(),
+          number("K_h2", "N/m", "in space: horizontal stiffness along the length; absent: of the soil, else K_h").positive().optional(),
+          number("K_r2", "N m/rad", "in space: rocking stiffness for moments that tilt the length; absent: of the soil, else K_r")
+              .positive()
+              .optional(),
           number("K_t", "N m/rad", "in space: stiffness against torsion about the normal").positive().optional()};
 }
 
@@ -67,13 +69,15 @@ std::vector<double> foundation_stiffness(const Footprint& footprint, const Value
   };
   const double vertical_one = stiffness("K_v", vertical), along = stiffness("K_h", along_width), tilting = stiffness("K_r", tilting_width);
   if (!space) return {along, vertical_one, tilting};
-  // what is not given in the second direction is as in the first where that is given, else of the soil
-  const auto second = [&](const char* key, const char* first, SoilMotion motion) {
-    return values.has(key) ? values.number(key) : values.has(first) ? values.number(first) : stiffness(key, motion);
+  // what is not given in the second direction is that of the soil; without one, and of a disc, as in the first
+  const bool same = !soil || footprint.shape == Footprint::Shape::disc;
+  const auto second = [&](const char* key, double first, SoilMotion motion) {
+    return same && !values.has(key) ? first : stiffness(key, motion);
   };
   // a moment about t1 tilts the length, one about t2 the width
-  return {
-      along, second("K_h2", "K_h", along_length), vertical_one, second("K_r2", "K_r", tilting_length), tilting, stiffness("K_t", torsion)};
+  return {along,        second("K_h2", along, along_length),
+          vertical_one, second("K_r2", tilting, tilting_length),
+          tilting,      stiffness("K_t", torsion)};
 }
 
 }  // namespace uplift

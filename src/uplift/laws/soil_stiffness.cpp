@@ -154,7 +154,7 @@ void gazetas(const FootingOnSoil& footing, SoilSprings& springs) {
   {
     SoilSpring& s = springs[plan.tilting_long()];
     s.at_surface = s.ground.shear_modulus / (1 - s.ground.poisson) * pow(Iy, 0.75) * 3 * pow(1 / q, 0.15);
-    if (wall > 0) s.embedment = 1 + 0.92 * pow(wall / B, 0.6) * (1.5 + pow(wall / L, 1.9) * pow(wall / D, -0.6));
+    if (wall > 0) s.embedment = 1 + 0.92 * pow(wall / L, 0.6) * (1.5 + pow(wall / L, 1.9) * pow(wall / D, -0.6));
   }
   SoilSpring& s = springs[torsion];
   s.at_surface = s.ground.shear_modulus * pow(Ix + Iy, 0.75) * (4 + 11 * pow(1 - q, 10));

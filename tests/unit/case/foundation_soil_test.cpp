@@ -177,6 +177,20 @@ automatic = false
   }
 }
 
+TEST(FoundationSoil, WhatTheModelLeavesOutIsThatOfTheSoil) {
+  using enum SoilMotion;
+  const SoilSprings k = soil_springs(ground_of(6, 9, 3));
+  const std::string text = tower(true, std::string("[[foundation]]\nname = \"ground\"\nbody = \"base\"\nwidth = 6\nlength = 9\n") +
+                                           "model = { type = \"elastic\", K_h = 1e9, K_r = 1e10 }\n[foundation.soil]\n" + layers);
+  const Case read = check_case(read_toml_text(text, "case.toml"), "case.toml");
+  const BuiltCase built = build(read, runs_of_case(read).front());
+  std::array<double, 6> rows{};
+  built.model.interfaces.front().law->closed_stiffness(6, rows.data());
+  const std::array<double, 6> wanted{1e9,  k[along_length].stiffness(), k[vertical].stiffness(), k[tilting_length].stiffness(),
+                                     1e10, k[torsion].stiffness()};
+  for (std::size_t i = 0; i < 6; ++i) EXPECT_DOUBLE_EQ(rows[i], wanted[i]) << i;
+}
+
 TEST(FoundationSoil, WhatTheFormulasDoNotKnowIsRefused) {
   const auto refusal = [](const std::string& keys, const std::string& soil, const std::string& model = "\"elastic\"") {
     return refusal_of([&] {
@@ -203,6 +217,8 @@ TEST(FoundationSoil, WhatTheFormulasDoNotKnowIsRefused) {
   expect(refusal(plan, ground + "formulas = \"gazetas\"\nfrequency = 2\n"), {"soil.frequency", "pais_kausel"});
   expect(refusal(plan, ground + "embedment = 1\nsidewall = 1\n"), {"soil.sidewall", "gazetas"});
   expect(refusal(plan, ground + "formulas = \"gazetas\"\nembedment = 1\nsidewall = 2\n"), {"soil.sidewall", "embedment"});
+  expect(refusal(plan, ground + "embedment = 13\n"), {"soil.embedment", "twice the width"});
+  expect(refusal(plan, "layers = []\n"), {"soil.layers", "at least one"});
   expect(refusal(plan, ground + "rock_depth = 20\n"), {"soil.rock_depth", "strip"});
   expect(refusal("width = 6\nlength = 150\n", ground), {"1 to 20", "1 to 25"});
   expect(refusal("width = 6\nshape = \"strip\"\n", ground), {"rock_depth"});

@@ -148,6 +148,18 @@ TEST(SoilStiffness, EmbedmentStiffensAndWallsWithoutContactAddNothingToRocking) 
   for (const SoilMotion motion : {tilting_width, tilting_length, torsion}) EXPECT_EQ(springs[motion].embedment, 1);
 }
 
+// FEMA 356 (2000), figure 4-4, writes the factors of Gazetas with the whole sides.
+TEST(SoilStiffness, EmbedmentOfRockingAfterGazetas) {
+  FootingOnSoil made = footing(SoilFormulas::gazetas, 20, 8);
+  made.embedment = 3, made.sidewall = 2;
+  const SoilSprings k = soil_springs(made);
+  const double wall = 2, depth = 3, length = 20, width = 8;
+  EXPECT_NEAR(k[tilting_width].embedment,
+              1 + 1.4 * std::pow(wall / length, 0.6) * (1.5 + 3.7 * std::pow(wall / length, 1.9) * std::pow(wall / depth, -0.6)), 0.01);
+  EXPECT_NEAR(k[tilting_length].embedment,
+              1 + 2.5 * wall / width * (1 + 2 * wall / width * std::pow(wall / depth, -0.2) * std::sqrt(width / length)), 0.01);
+}
+
 TEST(SoilStiffness, LayersOfOneGroundAreThisGround) {
   for (const SoilFormulas formulas : {SoilFormulas::pais_kausel, SoilFormulas::gazetas, SoilFormulas::disc}) {
     FootingOnSoil made = footing(formulas, 9, 9);

@@ -176,12 +176,27 @@ void warn_floating(const Case& read, const BuiltCase& built, std::vector<std::st
                              format_quantity(-built.weight, "N")));
 }
 
+bool states_all_stiffnesses(const Values& model, Space space) {
+  const std::vector<const char*> keys = space.dimension == 2 ? std::vector<const char*>{"K_v", "K_h", "K_r"}
+                                                             : std::vector<const char*>{"K_v", "K_h", "K_r", "K_h2", "K_r2", "K_t"};
+  return std::ranges::all_of(keys, [&](const char* key) { return model.has(key); });
+}
+
 void warn_foundations(const Case& read, const BuiltCase& built, std::vector<std::string>& said) {
   const auto comes_in = [](const Values& face) { return face.has("incident"); };
   const bool waves = std::ranges::any_of(read.values.tables("absorbing"), comes_in);
   for (const Values& foundation : read.values.tables("foundation")) {
     const Values& model = foundation.part("model");
     const std::string place = fmt::format("{}:{}: ", foundation.where().file, foundation.where().line);
+    const Values* soil = table_if(foundation, "soil");
+    const bool radiates = soil != nullptr && soil->flag("radiation");
+    if (radiates)
+      said.push_back(place +
+                     fmt::format("the forces of \"{}\" do not contain those of the radiation dashpots beside it, which the structure "
+                                 "feels too",
+                                 foundation.text("name")));
+    if (soil != nullptr && !radiates && states_all_stiffnesses(model, built.model.space))
+      said.push_back(place + fmt::format("the soil of \"{}\" has no effect: the model states all stiffnesses", foundation.text("name")));
     if (waves)
       said.push_back(place +
                      fmt::format("the ground under \"{}\" does not move with the incident wave: it stands still", foundation.text("name")));
