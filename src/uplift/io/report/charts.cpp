@@ -200,6 +200,7 @@ std::vector<View> interface_views(const BuiltCase& built) {
 
 void write_loops(JsonWriter& json, const ReportInput& input, const std::vector<ReportRun>& runs) {
   const BuiltCase& built = *input.runs.front().built;
+  if (built.model.interfaces.empty()) return;
   if (built.top >= 0 && built.base >= 0) {
     const Vec3 reference = built.model.interfaces.front().reference;
     const double height =
@@ -294,7 +295,7 @@ void write_charts(JsonWriter& json, const ReportInput& input) {
     for (const View& view : motion_views(built))
       if (view.kind != Column::velocity) write_chart(json, history_chart(view, runs));
     for (const View& view : interface_views(built)) write_chart(json, history_chart(view, runs));
-    if (!built.facts.empty()) write_loops(json, input, runs);
+    write_loops(json, input, runs);
     for (const Chart& chart : rest_charts(input.runs.front())) write_chart(json, chart);
     write_chart(json, law_chart(input.runs.front()));
     json.end_array();
