@@ -4,7 +4,8 @@ import { charts_of, stated } from "./result_charts";
 import { sections_of } from "./result_sections";
 import { tables_of } from "./result_tables";
 import { verdict_of } from "./result_verdict";
-import { FORMAT, type Model, type QuantisedFrames, type RawReport, type Report, type SpaceAnimation, type SpaceModel, type Verdict } from "./types";
+import type { QuantisedFrames, SpaceAnimation, SpaceModel } from "./space_types";
+import { FORMAT, type Model, type RawReport, type Report, type Verdict } from "./types";
 
 export type ReadResult =
   | { kind: "report"; report: Report }

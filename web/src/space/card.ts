@@ -4,7 +4,7 @@ import { round_down } from "../geometry";
 import { largest_opening, Player, uplifted_ratio, type Track } from "../player";
 import type { Runs } from "../runs";
 import type { ThemeSwitch } from "../theme";
-import type { SpaceAnimation, SpaceModel } from "../types";
+import type { SpaceAnimation, SpaceModel } from "../space_types";
 import { FaceMaps } from "./face_maps";
 import { ink_of } from "./ink";
 import { structure_box } from "./shape";

@@ -1,7 +1,7 @@
 // Surfaces as polygons for the painter: two triangles that share an inner edge of a cell become one quadrilateral, so
 // that no seam shows along the diagonal.
 import { sharp_edges } from "./shape";
-import type { SpacePart } from "../types";
+import type { SpacePart } from "../space_types";
 
 /** A side may be an edge of an element, a sharp edge of the surface, or neither. */
 export type Edge = "none" | "cell" | "sharp";

@@ -5,7 +5,7 @@ import { uplifted_share } from "../player";
 import type { Ink } from "./ink";
 import { PlanMap } from "./map";
 import { range_of, type Quantity, type Range } from "./raster";
-import type { SpaceAnimation, SpaceInterface } from "../types";
+import type { SpaceAnimation, SpaceInterface } from "../space_types";
 
 const FRAMES: Record<Quantity, (animation: SpaceAnimation, name: string) => number[][] | undefined> = {
   gap: (animation, name) => animation.openings[name],

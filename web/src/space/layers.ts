@@ -1,7 +1,7 @@
 // What the reader can show and hide in the space view.
 import { is_ground } from "./shape";
 import type { Ink } from "./ink";
-import type { SpaceModel } from "../types";
+import type { SpaceModel } from "../space_types";
 
 // More supports than this would hide the model behind their marks.
 const FEW_SUPPORTS = 40;

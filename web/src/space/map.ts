@@ -5,7 +5,7 @@ import { linear_ticks, tick_labels } from "../ticks";
 import { rgb, type Ink } from "./ink";
 import { boundary, Colours, fill_triangles, type Plan, type Quantity, type Range } from "./raster";
 import { rim_edges } from "./shape";
-import type { SpaceInterface } from "../types";
+import type { SpaceInterface } from "../space_types";
 
 const LEFT = 44;
 const BAR_GAP = 14;

@@ -6,7 +6,7 @@ import { arrow } from "../symbols";
 import { project, type Frame } from "./frame";
 import type { Pose } from "./pose";
 import { dot, unit, type Vec3 } from "./vector";
-import type { SpaceModel } from "../types";
+import type { SpaceModel } from "../space_types";
 
 const AXIS = 26;
 const LOAD = 46;

@@ -3,7 +3,7 @@
 // computed opening times the factor.
 import { plate_of, skin_of, type Skin } from "./shape";
 import { add, cross, point, sub, type Vec3 } from "./vector";
-import type { SpaceAnimation, SpaceModel } from "../types";
+import type { SpaceAnimation, SpaceModel } from "../space_types";
 
 const STILL: Vec3 = [0, 0, 0];
 

@@ -1,7 +1,7 @@
 // The maps of every interface in the last frame of a run: the state of the base after the shaking.
 import { h } from "../dom";
 import type { ThemeSwitch } from "../theme";
-import type { SpaceAnimation, SpaceModel } from "../types";
+import type { SpaceAnimation, SpaceModel } from "../space_types";
 import { FaceMaps } from "./face_maps";
 import { ink_of, type Ink } from "./ink";
 

@@ -12,7 +12,7 @@ import type { FacePose, Pose } from "./pose";
 import { plate_of, sharp_edges, structure_box } from "./shape";
 import { cross, dot, sub, unit, type Vec3 } from "./vector";
 import type { ViewInput } from "./view";
-import type { SpaceModel } from "../types";
+import type { SpaceModel } from "../space_types";
 
 export interface Item {
   /** The layer that shows it. */

@@ -1,6 +1,6 @@
 // What follows from the model once and for all: which parts are ground, edges of surfaces, plates, skins of interfaces.
 import { add, Box3, cross, dot, length, point, sub, unit, type Vec3 } from "./vector";
-import type { SpaceBody, SpaceInterface, SpaceModel, SpacePart } from "../types";
+import type { SpaceBody, SpaceInterface, SpaceModel, SpacePart } from "../space_types";
 
 const SHARP = Math.cos((30 * Math.PI) / 180);
 

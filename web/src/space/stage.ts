@@ -11,7 +11,7 @@ import { Pose } from "./pose";
 import { plate_of } from "./shape";
 import { Box3, point, sub, unit, type Vec3 } from "./vector";
 import type { MakeScene, View, ViewInput } from "./view";
-import type { SpaceModel } from "../types";
+import type { SpaceModel } from "../space_types";
 
 const MAX_DENSITY = 2;
 type Side = "3D" | "x" | "y" | "z";

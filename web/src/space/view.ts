@@ -3,7 +3,7 @@ import type { Direction, Frame } from "./frame";
 import type { Layer, Look } from "./layers";
 import type { Pose } from "./pose";
 import type { Box3 } from "./vector";
-import type { SpaceModel } from "../types";
+import type { SpaceModel } from "../space_types";
 
 export interface View {
   readonly canvas: HTMLCanvasElement;
