@@ -311,7 +311,7 @@ class Inputs(RobustTest):
         box = ('[mesh.soil_box]\nsoil = {{ width = 60, length = 60, size = 10, layers = [{{ thickness = {}, size = {} }}] }}\n'
                'raft = {{ width = 10, length = 10, height = 1, size = 1 }}\n')
         few = lambda: resource.setrlimit(resource.RLIMIT_AS, (2_000_000_000, 2_000_000_000))
-        if self.cannot_be_limited(few):
+        if self.cannot_be_limited():
             return
         for thickness, size, why in ((1e10, 10, "sizes that make at most 50 million elements, found a grid of at least "),
                                      (1e4, 1, "elements, whose matrices fit into memory, found a grid of ")):
@@ -335,7 +335,7 @@ class Inputs(RobustTest):
 
     def test_threads_of_blas(self):
         limit = lambda: resource.setrlimit(resource.RLIMIT_AS, (150_000_000, 150_000_000))
-        if not self.cannot_be_limited(limit):
+        if not self.cannot_be_limited():
             self.uplift("--version", timeout=20, preexec_fn=limit, env={**os.environ, "OPENBLAS_NUM_THREADS": "2"})
         self.write(LONG)
         process = self.start("run", "case.toml", "-o", "r", "-q", "--no-step-check", env={**os.environ, "OPENBLAS_NUM_THREADS": "2"})

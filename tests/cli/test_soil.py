@@ -89,8 +89,8 @@ class Example(CliTest):
             self.assertEqual([(face["group"], face["incident"], face["freeField"]) for face in model["absorbing"]],
                              [("soil_bottom", True, False), ("soil_left", False, True), ("soil_right", False, True)])
             self.assertAlmostEqual(sum(abs(x2 - x1) for x1, _, x2, _ in model["absorbing"][0]["edges"]), 60, places=3)
-        # The report of a mesh stays small.
-        self.assertLess((self.folder / "r" / "report.html").stat().st_size, 3e6)
+        # The report of a mesh stays small: 0.8 MB of it are the page itself.
+        self.assertLess((self.folder / "r" / "report.html").stat().st_size, 3.5e6)
 
     def test_check_tells_of_the_mesh(self):
         told = json.loads(self.uplift("check", "--json", EXAMPLE).stdout)
