@@ -2,6 +2,7 @@
 
 #include <fmt/format.h>
 
+#include <filesystem>
 #include <numbers>
 
 #include "uplift/base/format.h"
@@ -138,7 +139,7 @@ std::vector<std::pair<std::string, FootingOnSoil>> footings_of_case(const Option
 }  // namespace
 
 int soil(const Options& options, const std::vector<std::string>& words) {
-  const bool described = words.front().find('=') != std::string::npos;
+  const bool described = words.front().find('=') != std::string::npos && !std::filesystem::exists(words.front());
   if (!described && words.size() > 1) throw InputError({place, 0}, "", "one case, or KEY=VALUE words", in_quotes(words[1]));
   Options of_case = options;
   of_case.file = words.front();

@@ -263,6 +263,12 @@ std::string save_problem(const InterfaceProblem& problem, const std::vector<cons
                               {"dimension", under.dimension}};
     }
     object["behaviour"] = to_json(*behaviours[b]);
+    if (block.footprint && block.footprint->soil) {  // the problem states what the soil has given
+      double stiffness[most_components] = {};
+      block.law->closed_stiffness(block.batch.components, stiffness);
+      const auto keys = foundation_stiffness_keys(block.batch.components);
+      for (std::size_t r = 0; r < keys.size(); ++r) object["behaviour"][keys[r]] = to_json(stiffness[r]);
+    }
     object["area"] = to_json(block.area.data(), block.area.size());
     const double* memory = problem.old.data() + block.first_history;
     const std::size_t values =

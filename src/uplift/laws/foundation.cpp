@@ -42,6 +42,13 @@ double Footprint::area() const {
   return shape == Shape::disc ? std::numbers::pi / 4 * width * width : width * length;
 }
 
+std::span<const char* const> foundation_stiffness_keys(int components) {
+  static constexpr std::array plane{"K_h", "K_v", "K_r"};
+  static constexpr std::array space{"K_h", "K_h2", "K_v", "K_r2", "K_r", "K_t"};  // a moment about t1 tilts the length
+  if (components == 3) return plane;
+  return space;
+}
+
 std::vector<Field> foundation_stiffness_fields() {
   return {number("K_v", "N/m", "vertical stiffness of the ground under the whole foundation; absent: of [foundation.soil], as the others")
               .positive()
@@ -74,7 +81,6 @@ std::vector<double> foundation_stiffness(const Footprint& footprint, const Value
   const auto second = [&](const char* key, double first, SoilMotion motion) {
     return same && !values.has(key) ? first : stiffness(key, motion);
   };
-  // a moment about t1 tilts the length, one about t2 the width
   return {along,        second("K_h2", along, along_length),
           vertical_one, second("K_r2", tilting, tilting_length),
           tilting,      stiffness("K_t", torsion)};

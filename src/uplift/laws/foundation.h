@@ -33,6 +33,8 @@ std::span<const PartInfo* const> foundation_models();
 /// The law that checked values name: of a foundation with this underside, else of a joint. Null where they name a cone.
 std::unique_ptr<const InterfaceLaw> make_law(const Values& behaviour, const std::optional<Footprint>& footprint);
 
+/// Keys of the stiffnesses of a foundation in the order of the rows; `components`: of its point.
+std::span<const char* const> foundation_stiffness_keys(int components);
 /// Stiffnesses of a foundation, which every model has [N/m, N m/rad]: in the order of the rows.
 std::vector<Field> foundation_stiffness_fields();
 /// Their values in the order of the rows: as given, else of the soil. Throws InputError where one is missing.

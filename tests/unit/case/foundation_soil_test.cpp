@@ -3,11 +3,9 @@
 #include <gtest/gtest.h>
 
 #include <cmath>
-#include <numbers>
 #include <string>
 
 #include "text_support.h"
-#include "tower_case.h"
 #include "uplift/case/case.h"
 #include "uplift/io/text/toml.h"
 #include "uplift/laws/foundation.h"

@@ -148,6 +148,24 @@ TEST(SoilStiffness, EmbedmentStiffensAndWallsWithoutContactAddNothingToRocking) 
   for (const SoilMotion motion : {tilting_width, tilting_length, torsion}) EXPECT_EQ(springs[motion].embedment, 1);
 }
 
+// Sides 12 x 8 m, embedment 2 m, at the frequency with a = 2 pi f B/V = 1: factors computed from (H3), (H4) outside of the program.
+TEST(SoilStiffness, FactorsOfPaisAndKausel) {
+  FootingOnSoil made = footing(SoilFormulas::pais_kausel, 12, 8);
+  made.embedment = 2;
+  made.frequency = site.wave_velocity() / (2 * pi * 4);
+  const SoilSprings k = soil_springs(made);
+  const auto expect = [&](SoilMotion motion, double embedment, double dynamic) {
+    EXPECT_NEAR(k[motion].embedment, embedment, 1e-6) << to_string(motion);
+    EXPECT_NEAR(k[motion].dynamic, dynamic, 1e-6) << to_string(motion);
+  };
+  expect(vertical, 1.2393122, 0.8933333);
+  expect(along_width, 1.4973864, 1.0000000);
+  expect(along_length, 1.4973864, 1.0000000);
+  expect(tilting_width, 1.5739030, 0.7270221);
+  expect(tilting_length, 1.7162162, 0.8302379);
+  expect(torsion, 2.1682331, 0.8169279);
+}
+
 // FEMA 356 (2000), figure 4-4, writes the factors of Gazetas with the whole sides.
 TEST(SoilStiffness, EmbedmentOfRockingAfterGazetas) {
   FootingOnSoil made = footing(SoilFormulas::gazetas, 20, 8);

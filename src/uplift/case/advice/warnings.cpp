@@ -177,9 +177,7 @@ void warn_floating(const Case& read, const BuiltCase& built, std::vector<std::st
 }
 
 bool states_all_stiffnesses(const Values& model, Space space) {
-  const std::vector<const char*> keys = space.dimension == 2 ? std::vector<const char*>{"K_v", "K_h", "K_r"}
-                                                             : std::vector<const char*>{"K_v", "K_h", "K_r", "K_h2", "K_r2", "K_t"};
-  return std::ranges::all_of(keys, [&](const char* key) { return model.has(key); });
+  return std::ranges::all_of(foundation_stiffness_keys(space.dimension == 2 ? 3 : 6), [&](const char* key) { return model.has(key); });
 }
 
 void warn_foundations(const Case& read, const BuiltCase& built, std::vector<std::string>& said) {

@@ -40,11 +40,8 @@ Values bonded_foundation(const Values& like, const Interface& foundation) {
   auto table = std::make_shared<RawTable>();
   const auto add = [&](const char* name, auto data) { table->entries.emplace_back(name, Raw{std::move(data), like.where(), like.path()}); };
   add("type", std::string("elastic"));
-  if (foundation.space.dimension == 2) {
-    add("K_h", k[0]), add("K_v", k[1]), add("K_r", k[2]);
-  } else {
-    add("K_h", k[0]), add("K_h2", k[1]), add("K_v", k[2]), add("K_r2", k[3]), add("K_r", k[4]), add("K_t", k[5]);
-  }
+  const auto keys = foundation_stiffness_keys(foundation.batch.components);
+  for (std::size_t r = 0; r < keys.size(); ++r) add(keys[r], k[r]);
   return check_part(Raw{table, like.where(), like.path()}, foundation_models());
 }
 
