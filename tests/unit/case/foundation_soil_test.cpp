@@ -7,6 +7,7 @@
 
 #include "text_support.h"
 #include "uplift/case/case.h"
+#include "uplift/contact/method.h"
 #include "uplift/io/text/toml.h"
 #include "uplift/laws/foundation.h"
 #include "uplift/verdict/verdict.h"
@@ -187,6 +188,57 @@ TEST(FoundationSoil, WhatTheModelLeavesOutIsThatOfTheSoil) {
   const std::array<double, 6> wanted{1e9,  k[along_length].stiffness(), k[vertical].stiffness(), k[tilting_length].stiffness(),
                                      1e10, k[torsion].stiffness()};
   for (std::size_t i = 0; i < 6; ++i) EXPECT_DOUBLE_EQ(rows[i], wanted[i]) << i;
+}
+
+// On the compliance F = 1/K of every row the opening of an elastic foundation, g = g_free - F K g, is half of what it would be free.
+TEST(FoundationSoil, AStoredProblemIsReplayedWithTheStiffnessesOfTheSoil) {
+  using enum SoilMotion;
+  const SoilSprings k = soil_springs(ground_of(6, 9, 3));
+  const auto newton = make_part(method_catalog(), check_part(Raw{std::string("newton"), {"test", 0}, ""}, contact_methods()));
+  for (const bool space : {false, true})
+    for (const std::string model : {"elastic", "macro_element"})
+      for (const std::string stated : {"", ", K_h = 1.5e9, K_r = 1e10"}) {
+        SCOPED_TRACE(fmt::format("{} {} {}", space ? "space" : "plane", model, stated));
+        const std::string foundation = "[[foundation]]\nname = \"ground\"\nbody = \"base\"\nwidth = 6\nlength = 9\nmodel = { type = \"" +
+                                       model + "\"" + stated + " }\n[foundation.soil]\n";
+        const Case read = check_case(read_toml_text(tower(space, foundation + layers), "case.toml"), "case.toml");
+        const BuiltCase built = build(read, runs_of_case(read).front());
+        const Interface& ground = built.model.interfaces.front();
+        std::vector<double> wanted{k[along_width].stiffness(), k[vertical].stiffness(), k[tilting_width].stiffness()};
+        if (space)
+          wanted = {wanted[0], k[along_length].stiffness(), wanted[1], k[tilting_length].stiffness(), wanted[2], k[torsion].stiffness()};
+        if (!stated.empty()) wanted[0] = 1.5e9, wanted[space ? 4 : 2] = 1e10;
+
+        const auto rows = static_cast<Index>(wanted.size());
+        auto contact = std::make_shared<ContactModel>();
+        Block block;
+        block.name = ground.name, block.batch = ground.batch, block.area = ground.area, block.footprint = ground.footprint;
+        block.law = ground.law.get();
+        contact->blocks.push_back(block);
+        contact->factor = Matrix::Zero(rows, rows);
+        for (Index r = 0; r < rows; ++r) contact->factor(r, r) = 1 / std::sqrt(wanted[static_cast<std::size_t>(r)]);
+        InterfaceProblem problem = problem_of(contact);
+        problem.free_opening = Vector::Constant(rows, 1e-4);
+        problem.free_opening[ground.batch.normal()] = -4e-3;
+        problem.from = Vector::Zero(rows);
+        problem.old = Vector::Zero(block.law->num_history(ground.batch.components));
+
+        const std::string text = save_problem(problem, built.behaviours, "a reason");
+        EXPECT_EQ(text.find("soil"), std::string::npos);
+        const StoredProblem stored = load_problem(text, "problem.json");
+        std::vector<double> found(wanted.size());
+        stored.problem.model->blocks.front().law->closed_stiffness(ground.batch.components, found.data());
+        for (std::size_t r = 0; r < wanted.size(); ++r) EXPECT_DOUBLE_EQ(found[r], wanted[r]) << r;
+        InterfaceSolution first, replayed;
+        ASSERT_TRUE(newton->solve(problem, first).converged);
+        ASSERT_TRUE(newton->solve(stored.problem, replayed).converged);
+        for (Index r = 0; r < rows; ++r) {
+          EXPECT_EQ(replayed.opening[r], first.opening[r]) << r;
+          EXPECT_EQ(replayed.force[r], first.force[r]) << r;
+          const double half = 0.5 * problem.free_opening[r];
+          EXPECT_NEAR(replayed.opening[r], half, 1e-9 * std::abs(half)) << r;  // closed: both models are linear
+        }
+      }
 }
 
 TEST(FoundationSoil, WhatTheFormulasDoNotKnowIsRefused) {
