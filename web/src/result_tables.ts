@@ -185,7 +185,7 @@ function sweep_table(summary: Summary): Table[] {
 
 function soil_table(name: string, soil: SoilSummary, only: boolean): Table {
   const frequency = soil.frequency > 0 ? ` Frequency factors and dashpots of rotations belong to ${significant(soil.frequency, 3)} Hz.` : " Static stiffness.";
-  const dashpots = soil.radiation ? " The dashpots of the radiated waves are part of the model; the forces of the foundation do not contain theirs." : " The dashpots of the radiated waves are not part of the model.";
+  const dashpots = soil.radiation ? " The dashpots of the radiated waves are part of the model; the forces of the foundation contain theirs." : " The dashpots of the radiated waves are not part of the model.";
   return {
     id: only ? "soil" : `soil_${name}`,
     title: `Stiffness of the ground, foundation “${name}”`,

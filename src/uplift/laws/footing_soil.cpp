@@ -108,8 +108,8 @@ const Section& footing_soil_section() {
               .positive()
               .optional(),
           flag("radiation",
-               "dashpots beside the ground, for the waves that the footing radiates; they act also while it is open, and the forces of the "
-               "foundation do not contain theirs")
+               "dashpots beside the ground, for the waves that the footing radiates; they act also while it is open. The forces of the "
+               "foundation contain theirs")
               .standard(false)})
       made.fields.push_back(field);
     return made;

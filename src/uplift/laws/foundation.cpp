@@ -86,4 +86,15 @@ std::vector<double> foundation_stiffness(const Footprint& footprint, const Value
           tilting,      stiffness("K_t", torsion)};
 }
 
+std::vector<double> radiation_damping(const Footprint& footprint) {
+  if (!footprint.soil || !footprint.soil->radiation) return {};
+  using enum SoilMotion;
+  std::vector<SoilMotion> rows{along_width, vertical, tilting_width};
+  if (footprint.dimension == 3) rows = {along_width, along_length, vertical, tilting_length, tilting_width, torsion};
+  const SoilSprings springs = soil_springs(*footprint.soil);
+  std::vector<double> damping;
+  for (const SoilMotion motion : rows) damping.push_back(springs[motion].damping);
+  return damping;
+}
+
 }  // namespace uplift

@@ -39,5 +39,7 @@ std::span<const char* const> foundation_stiffness_keys(int components);
 std::vector<Field> foundation_stiffness_fields();
 /// Their values in the order of the rows: as given, else of the soil. Throws InputError where one is missing.
 std::vector<double> foundation_stiffness(const Footprint& footprint, const Values& values);
+/// The dashpots that [foundation.soil] with `radiation` puts beside the law, in the order of the rows [N s/m, N m s/rad]; empty without it.
+std::vector<double> radiation_damping(const Footprint& footprint);
 
 }  // namespace uplift

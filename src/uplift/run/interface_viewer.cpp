@@ -162,7 +162,7 @@ double InterfaceViewer::edge_opening(const Layout& layout, const double* gap) co
 
 /// One point with rotations: its law knows how much of the footing is open. A pressure is not among its forces.
 void InterfaceViewer::look_at_footing(const Layout& layout, const Vector& opening, const Vector& force, const Vector& history,
-                                      InterfaceView& view) const {
+                                      const Vector* radiation, InterfaceView& view) const {
   const double* rows = opening.data() + layout.first;
   const FootingContact contact = layout.footing->contact(layout.batch, rows, history.data() + layout.first_history);
   view.open_area = contact.open_share;
@@ -174,23 +174,27 @@ void InterfaceViewer::look_at_footing(const Layout& layout, const Vector& openin
   view.sliding_utilisation = contact.sliding_utilisation;
   view.bearing_capacity = contact.bearing_capacity;
   for (int k = 0; k < std::min(2, layout.batch.rotations); ++k) view.rotation[static_cast<std::size_t>(k)] = rows[layout.translations + k];
-  view.resultant = resultant_by_rows(layout, force);
+  view.resultant = view.in_law = resultant_by_rows(layout, force);
+  if (radiation != nullptr) view.resultant = resultant_by_rows(layout, force, radiation);
 }
 
-Resultant InterfaceViewer::resultant_by_rows(const Layout& layout, const Vector& force) {
+Resultant InterfaceViewer::resultant_by_rows(const Layout& layout, const Vector& force, const Vector* more) {
   std::array<double, 6> sums{};
-  for (Index row = 0; row < layout.resultant_rows.cols(); ++row)
-    for (Index c = 0; c < layout.resultant_rows.rows(); ++c)
-      sums[static_cast<std::size_t>(c)] += layout.resultant_rows(c, row) * force[layout.first + row];
+  for (Index row = 0; row < layout.resultant_rows.cols(); ++row) {
+    const Index at = layout.first + row;
+    const double value = more != nullptr ? force[at] + (*more)[at] : force[at];
+    for (Index c = 0; c < layout.resultant_rows.rows(); ++c) sums[static_cast<std::size_t>(c)] += layout.resultant_rows(c, row) * value;
+  }
   return resultant_of(layout.space, sums.data());
 }
 
-void InterfaceViewer::look(const Vector& opening, const Vector& force, const Vector& history, std::vector<InterfaceView>& views) {
+void InterfaceViewer::look(const Vector& opening, const Vector& force, const Vector& history, std::vector<InterfaceView>& views,
+                           const Vector* radiation) {
   views.resize(layouts_.size());
   for (std::size_t k = 0; k < layouts_.size(); ++k) {
     const Layout& layout = layouts_[k];
     if (layout.footing != nullptr) {
-      look_at_footing(layout, opening, force, history, views[k]);
+      look_at_footing(layout, opening, force, history, radiation, views[k]);
       continue;
     }
     const int n = layout.points, normal = layout.first + (layout.translations - 1) * n;

@@ -17,8 +17,9 @@ class InterfaceViewer {
   InterfaceViewer(const Model& model, double gap_tolerance, const std::vector<std::vector<int>>& bases = {},
                   const std::vector<std::shared_ptr<const Facets>>& facets = {});
   /// `force` holds one force per row [N], tension > 0: the mean over the step.
-  /// `history` is the memory of all laws.
-  void look(const Vector& opening, const Vector& force, const Vector& history, std::vector<InterfaceView>& views);
+  /// `history` is the memory of all laws. `radiation`: forces of the dashpots beside foundations at the same rows; null: there are none.
+  void look(const Vector& opening, const Vector& force, const Vector& history, std::vector<InterfaceView>& views,
+            const Vector* radiation = nullptr);
   /// How an interface stands; `view` is what look() saw of it.
   BasePose pose(const State& state, std::size_t interface, const InterfaceView& view) const;
 
@@ -39,8 +40,10 @@ class InterfaceViewer {
     Batch batch;
     int first_history = 0;
   };
-  void look_at_footing(const Layout& layout, const Vector& opening, const Vector& force, const Vector& history, InterfaceView& view) const;
-  static Resultant resultant_by_rows(const Layout& layout, const Vector& force);
+  void look_at_footing(const Layout& layout, const Vector& opening, const Vector& force, const Vector& history, const Vector* radiation,
+                       InterfaceView& view) const;
+  /// `more`: forces that are added; null: none.
+  static Resultant resultant_by_rows(const Layout& layout, const Vector& force, const Vector* more = nullptr);
   double open_share(const Layout& layout, const double* gap, const double* force, const InterfaceView& view);
   double tension_share(const Layout& layout, const double* force);
   static double edge_pressure(const Layout& layout, const double* force);

@@ -129,6 +129,22 @@ Recorder::Source Recorder::source_of(const Request& request, const SparseRows& r
       return {.place = &view->sliding_utilisation};
     case What::bearing_capacity:
       return {.place = &view->bearing_capacity};
+    case What::law_axial:
+      return {.place = &view->in_law.axial};
+    case What::law_shear:
+      return {.place = &view->in_law.shear};
+    case What::law_moment:
+      return {.place = &view->in_law.moment};
+    case What::law_shear_1:
+      return {.place = &view->in_law.shear_1};
+    case What::law_shear_2:
+      return {.place = &view->in_law.shear_2};
+    case What::law_moment_1:
+      return {.place = &view->in_law.moment_1};
+    case What::law_moment_2:
+      return {.place = &view->in_law.moment_2};
+    case What::law_torsion:
+      return {.place = &view->in_law.torsion};
     case What::kinetic:
       return {.place = &energies_.kinetic};
     case What::strain:

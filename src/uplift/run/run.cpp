@@ -60,6 +60,14 @@ bool is_step_mean(Request::Kind kind) {
     case moment_1:
     case moment_2:
     case torsion:
+    case law_axial:
+    case law_shear:
+    case law_moment:
+    case law_shear_1:
+    case law_shear_2:
+    case law_moment_1:
+    case law_moment_2:
+    case law_torsion:
     case max_pressure:
       return true;
     default:
@@ -96,6 +104,7 @@ Runner::Runner(const Model& model, const RunPlan& plan, const std::vector<const 
       b_(stack_interfaces(model)),
       gap_(stack_gaps(model)),
       viewer_(model, plan.gap_tolerance, plan.bases, plan.facets),
+      radiation_(model, b_),
       rest_(plan.rest.get()),
       views_(model.interfaces.size()) {
   has_walls_ = std::ranges::any_of(plan.is_wall, [](char wall) { return wall != 0; });

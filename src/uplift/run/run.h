@@ -62,6 +62,14 @@ struct Request {
     bearing_utilisation,
     sliding_utilisation,
     bearing_capacity,  // of a whole foundation, at the end of the step
+    law_axial,
+    law_shear,
+    law_moment,
+    law_shear_1,
+    law_shear_2,
+    law_moment_1,
+    law_moment_2,
+    law_torsion,  // of a whole foundation: InterfaceView::in_law
     kinetic,
     strain,
     stored,

@@ -7,6 +7,7 @@
 #include "uplift/dynamics/statics.h"
 #include "uplift/dynamics/step.h"
 #include "uplift/run/interface_viewer.h"
+#include "uplift/run/radiation.h"
 #include "uplift/run/recorder.h"
 #include "uplift/run/run.h"
 #include "uplift/run/run_state.h"
@@ -70,6 +71,7 @@ class Runner {
   const Sparse b_;
   const Vector gap_;
   InterfaceViewer viewer_;
+  RadiationForces radiation_;
   RunState run_;
   std::unique_ptr<Behaviours> laws_;
   std::unique_ptr<Sparse> geometric_;

@@ -10,7 +10,8 @@ namespace uplift {
 
 /// What one interface looks like at one instant.
 struct InterfaceView {
-  Resultant resultant;
+  Resultant resultant;                        // of all that the ground exerts: law and radiation dashpots
+  Resultant in_law;                           // of a whole foundation: without the dashpots
   double open_area = 0, tension_area = 0;     // shares of the area: with a gap; that pulls
   double max_opening = 0, least_opening = 0;  // m
   double max_pressure = 0;                    // Pa

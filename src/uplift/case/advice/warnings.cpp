@@ -188,11 +188,6 @@ void warn_foundations(const Case& read, const BuiltCase& built, std::vector<std:
     const std::string place = fmt::format("{}:{}: ", foundation.where().file, foundation.where().line);
     const Values* soil = table_if(foundation, "soil");
     const bool radiates = soil != nullptr && soil->flag("radiation");
-    if (radiates)
-      said.push_back(place +
-                     fmt::format("the forces of \"{}\" do not contain those of the radiation dashpots beside it, which the structure "
-                                 "feels too",
-                                 foundation.text("name")));
     if (soil != nullptr && !radiates && states_all_stiffnesses(model, built.model.space))
       said.push_back(place + fmt::format("the soil of \"{}\" has no effect: the model states all stiffnesses", foundation.text("name")));
     if (waves)

@@ -44,18 +44,13 @@ Footprint footprint_of(const Values& foundation, Space space) {
 }
 
 std::unique_ptr<const Element> radiation_dashpot(const Values& foundation, const Footprint& footprint, const CaseNames& names) {
-  if (!footprint.soil || !footprint.soil->radiation) return nullptr;
-  using enum SoilMotion;
-  const SoilSprings springs = soil_springs(*footprint.soil);
-  const auto damping = [&](SoilMotion motion) { return springs[motion].damping; };
+  const std::vector<double> damping = radiation_damping(footprint);
+  if (damping.empty()) return nullptr;
   const Space space = names.space;
-  Vec3 along, about, offset = Vec3::Zero();
-  if (space.dimension == 2) {
-    along = {damping(along_width), damping(vertical), 0}, about = {0, 0, damping(tilting_width)};
-  } else {
-    along = {damping(along_width), damping(along_length), damping(vertical)};
-    about = {damping(tilting_length), damping(tilting_width), damping(torsion)};
-  }
+  const bool plane = space.dimension == 2;
+  const Vec3 along(damping[0], damping[1], plane ? 0 : damping[2]);
+  const Vec3 about = plane ? Vec3(0, 0, damping[2]) : Vec3(damping[3], damping[4], damping[5]);
+  Vec3 offset = Vec3::Zero();
   if (foundation.has("offset")) offset = vector_of(foundation, "offset", space);
   return std::make_unique<PointDashpot>(space, names.node(foundation, "body"), along, about, offset);
 }

@@ -44,6 +44,19 @@ struct Quantity {
   Column kind;
   std::string_view unit;
 };
+/// Of a foundation with radiation dashpots, whose other forces contain those of the dashpots.
+std::vector<Quantity> forces_in_law(Space space) {
+  std::vector<Quantity> made{
+      {"law_axial", Column::law_axial, "N"}, {"law_shear", Column::law_shear, "N"}, {"law_moment", Column::law_moment, "N m"}};
+  if (space.dimension == 3)
+    for (const Quantity& each :
+         {Quantity{"law_shear_1", Column::law_shear_1, "N"}, Quantity{"law_shear_2", Column::law_shear_2, "N"},
+          Quantity{"law_moment_1", Column::law_moment_1, "N m"}, Quantity{"law_moment_2", Column::law_moment_2, "N m"},
+          Quantity{"law_torsion", Column::law_torsion, "N m"}})
+      made.push_back(each);
+  return made;
+}
+
 /// In space `shear`, `moment` and `rotation` are the lengths of their parts along (about) the two tangents. A whole foundation has forces,
 /// no pressures.
 std::vector<Quantity> interface_quantities(const Interface& interface, const Values& behaviour) {
@@ -67,6 +80,8 @@ std::vector<Quantity> interface_quantities(const Interface& interface, const Val
     made.push_back({"max_pressure", Column::max_pressure, "Pa"});
     return made;
   }
+  if (!radiation_damping(*interface.footprint).empty())
+    for (const Quantity& each : forces_in_law(space)) made.push_back(each);
   const auto given = [&](const char* key) { return behaviour.items().contains(key) && behaviour.has(key); };
   if (given("V_s")) made.push_back({"bearing_utilisation", Column::bearing_utilisation, "1"});
   if (given("V_s") && given("V_u") && behaviour.number("V_u") > behaviour.number("V_s"))

@@ -18,15 +18,18 @@ constexpr int points_per_side = 60;  // of a limit; with fewer than 40 the page 
 
 /// One direction in which a foundation tilts: its columns, and which plan length is concerned.
 struct Tilt {
-  Column rotation, moment, shear;
+  Column rotation, moment;
+  Column law_moment, law_shear;         // what the strength of the ground limits
   int axis;                             // of the macro-element: 0 along t1, 1 along t2
   const char *about = "", *along = "";  // in space
 };
 
-std::vector<Tilt> tilts_of(Space space) {
-  if (space.dimension == 2) return {{Column::rotation, Column::moment, Column::shear, 0}};
-  return {{Column::rotation_2, Column::moment_2, Column::shear_1, 0, "y", "x"},
-          {Column::rotation_1, Column::moment_1, Column::shear_2, 1, "x", "y"}};
+std::vector<Tilt> tilts_of(Space space, bool radiates) {
+  using enum Column;
+  const auto pick = [&](Column all, Column law) { return radiates ? law : all; };
+  if (space.dimension == 2) return {{rotation, moment, pick(moment, law_moment), pick(shear, law_shear), 0}};
+  return {{rotation_2, moment_2, pick(moment_2, law_moment_2), pick(shear_1, law_shear_1), 0, "y", "x"},
+          {rotation_1, moment_1, pick(moment_1, law_moment_1), pick(shear_2, law_shear_2), 1, "x", "y"}};
 }
 
 /// Both signs of a limit y(N), for N from 0 to `most` [N].
@@ -98,40 +101,43 @@ std::vector<Chart> foundation_charts(const std::vector<ReportRun>& runs, std::si
   const MacroElement* ground = as_macro_element(joint.law.get());
   const StepRecord& steps = runs.front().result->steps;
   const double capacity = steps.extremes.empty() ? 0 : steps.extremes[interface].bearing_capacity;
-  const bool space = joint.space.dimension == 3;
+  const bool space = joint.space.dimension == 3, radiates = !radiation_damping(*joint.footprint).empty();
+  const char* part = radiates ? " These are the forces in its law, without those of the radiation dashpots." : "";
+  const Column axial = radiates ? Column::law_axial : Column::axial;
   const int k = static_cast<int>(interface);
   const Axis vertical{"Vertical force, compression", "N"};
   std::vector<Chart> charts;
-  for (const Tilt& tilt : tilts_of(joint.space)) {
+  for (const Tilt& tilt : tilts_of(joint.space, radiates)) {
     const bool main = interface == 0 && (!space || (built.sway == ux) == (tilt.axis == 0));
     const std::string suffix = main ? "" : "_" + joint.name + (space ? std::string("_") + tilt.along : "");
     const std::string of = built.model.interfaces.size() > 1 ? ": " + joint.name : "";
     const std::string about = (space ? fmt::format(", about {}", tilt.about) : "") + of;
     const std::string along = (space ? fmt::format(", along {}", tilt.along) : "") + of;
-    charts.push_back(loop_chart({"moment_rotation" + suffix,
-                                 "interface",
-                                 "Moment against rotation" + about,
-                                 "Base moment against the rotation of the foundation.",
-                                 {"Rotation", "rad"},
-                                 {"Moment", "N m"},
-                                 {}},
-                                runs, {tilt.rotation, k}, {tilt.moment, k}));
+    charts.push_back(loop_chart(
+        {"moment_rotation" + suffix,
+         "interface",
+         "Moment against rotation" + about,
+         std::string("Base moment against the rotation of the foundation.") + (radiates ? " It includes the radiation dashpots." : ""),
+         {"Rotation", "rad"},
+         {"Moment", "N m"},
+         {}},
+        runs, {tilt.rotation, k}, {tilt.moment, k}));
     Chart moment = loop_chart({"moment_vertical" + suffix,
                                "interface",
                                "Moment against vertical force" + about,
-                               "Base moment against the vertical force of the foundation.",
+                               std::string("Base moment against the vertical force of the foundation.") + part,
                                vertical,
                                {"Moment", "N m"},
                                {}},
-                              runs, {Column::axial, k, -1}, {tilt.moment, k});
+                              runs, {axial, k, -1}, {tilt.law_moment, k});
     Chart shear = loop_chart({"shear_vertical" + suffix,
                               "interface",
                               "Horizontal force against vertical force" + along,
-                              "Base shear against the vertical force of the foundation.",
+                              std::string("Base shear against the vertical force of the foundation.") + part,
                               vertical,
                               {"Horizontal force", "N"},
                               {}},
-                             runs, {Column::axial, k, -1}, {tilt.shear, k});
+                             runs, {axial, k, -1}, {tilt.law_shear, k});
     if (ground != nullptr && !moment.curves.empty()) add_moment_limits(moment, *ground, tilt.axis, capacity);
     if (ground != nullptr && !shear.curves.empty()) add_shear_limits(shear, ground->surfaces(), capacity);
     charts.push_back(std::move(moment));
