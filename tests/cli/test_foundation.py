@@ -125,6 +125,34 @@ class Foundation(CliTest):
                 if n > 0:
                     self.assertAlmostEqual(V_S * (1 - abs(h) / n) ** 3, n, delta=1e-5 * V_S)
 
+    def test_radiation_is_part_of_the_ground_force_and_not_of_the_strength(self):
+        """The law keeps |M| below N D/2 at the end of every step; the dashpots know no such limit."""
+        stiffness = "K_v = 6e8\nK_h = 3e8\nK_r = 1.8e9\nK_t = 1e9\n"
+        soil = "[foundation.soil]\nG = 60e6\npoisson = 0.3\ndensity = 1900\nfrequency = 3\nradiation = true\n"
+        text = CASE.replace(stiffness, "").replace("[gravity]", soil + "[gravity]").replace("step = 5e-3", 'step = 5e-3\ntraction = "end"')
+        summary, charts, head = self.run_case(text)
+        names = [name.split(" [")[0] for name in head]
+        rows = [dict(zip(names, map(float, line.split(",")))) for line in (self.folder / "r" / "histories.csv").read_text().splitlines()[1:]]
+        for k, length in ((2, 6), (1, 5)):
+            for row in rows:
+                self.assertLessEqual(abs(row[f"soil.law_moment_{k}"]), -row["soil.law_axial"] * length / 2 + 1)
+        for run in summary["runs"]:  # the bonded one has the same dashpots
+            self.assertNotAlmostEqual(run["peaks"]["soil.shear"]["value"], run["peaks"]["soil.law_shear"]["value"], delta=1e3)
+        numbers = summary["verdict"]["interfaces"][0]["numbers"]
+        self.assertAlmostEqual(numbers["max_moment"]["peak_of_step_mean"], max(row["soil.moment"] for row in rows), delta=1)
+        if not charts:
+            self.skipTest("the program was built without web/dist/report.html")
+        for figure, column in (("moment_vertical", "soil.law_moment_2"), ("shear_vertical", "soil.law_shear_1")):
+            loop = self.series(charts[figure]["series"], "as in the case")
+            self.assertEqual(len(loop["x"]), len(rows))
+            for n, force, row in zip(loop["x"], loop["y"], rows):
+                self.assertAlmostEqual(n, -row["soil.law_axial"], delta=1e-5 * V_S)  # the page has rounded numbers
+                self.assertAlmostEqual(force, row[column], delta=1e-5 * V_S)
+            self.assertIn("without those of the radiation dashpots", charts[figure]["caption"])
+        loop = self.series(charts["moment_rotation"]["series"], "as in the case")
+        for moment, row in zip(loop["y"], rows):
+            self.assertAlmostEqual(moment, row["soil.moment_2"], delta=1e-5 * V_S)
+
     def series(self, all_series, label):
         (found,) = [each for each in all_series if each["label"].startswith(label)]
         return found
