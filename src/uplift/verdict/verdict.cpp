@@ -179,6 +179,16 @@ void say_forces(const BuiltCase& built, const RunResult& run, Verdict& verdict) 
   }
 }
 
+/// Which forces the numbers of a foundation with radiation dashpots are made of.
+void say_radiation(const BuiltCase& built, Verdict& verdict) {
+  for (const Interface& interface : built.model.interfaces)
+    if (interface.footprint && !radiation_damping(*interface.footprint).empty())
+      verdict.paragraphs.push_back(
+          fmt::format("The forces of {} are those of its law and of the radiation dashpots beside it: base shear, moment, eccentricity and "
+                      "safeties contain both, uplift and utilisations belong to the law.",
+                      interface.name));
+}
+
 void say_top(Verdict& verdict) {
   const auto fact = [&](const char* name, const char* label, const std::string& detail, bool tile) {
     const VerdictNumber* number = find_number(verdict.numbers.whole, name);
@@ -368,6 +378,7 @@ Verdict judge(const BuiltCase& built, const RunResult& run, const RunResult* bon
   if (verdict.step_check.state == StepCheck::State::not_converged) verdict.headline += " (not converged)";
   say_uplift(built, run, verdict);
   say_forces(built, run, verdict);
+  say_radiation(built, verdict);
   say_top(verdict);
   if (bonded) say_compared(built, *bonded, verdict);
   say_consequence(floors, verdict);

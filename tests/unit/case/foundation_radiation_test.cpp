@@ -12,7 +12,7 @@
 #include "uplift/case/case.h"
 #include "uplift/io/text/toml.h"
 #include "uplift/verdict/motion.h"
-#include "uplift/verdict/numbers.h"
+#include "uplift/verdict/verdict.h"
 
 namespace uplift {
 namespace {
@@ -335,6 +335,8 @@ TEST(FoundationRadiation, TheVerdictStatesTheGroundForcesAndTheStrengthThatTheLa
   EXPECT_NEAR(ran.verdict("min_sliding_safety"), safety, 1e-12 * safety);
   EXPECT_NEAR(ran.verdict("max_bearing_utilisation"), std::min(1.0, bearing), 1e-9);
   EXPECT_NEAR(ran.verdict("max_sliding_utilisation"), std::min(1.0, sliding), 1e-9);
+  const std::vector<std::string> said = judge(ran.built, ran.result, nullptr).paragraphs;
+  EXPECT_TRUE(std::ranges::any_of(said, [](const std::string& each) { return each.find("radiation dashpots") != each.npos; }));
   EXPECT_GT(ran.largest("ground.moment"), 1.02 * ran.largest("ground.law_moment"));
   EXPECT_EQ(ran.result.max_base_moment.value * ran.result.max_base_moment.value, std::pow(ran.largest("ground.moment"), 2));
 }
