@@ -43,7 +43,17 @@ def macro_element(
     K_r2: Optional[Quantity] = None,
     K_t: Optional[Quantity] = None,
     shape_number: Optional[Quantity] = None,
+    surface: Optional[str] = None,
     V_s: Optional[Quantity] = None,
+    a: Optional[Quantity] = None,
+    b: Optional[Quantity] = None,
+    c: Optional[Quantity] = None,
+    d: Optional[Quantity] = None,
+    e: Optional[Quantity] = None,
+    f: Optional[Quantity] = None,
+    soil_type: Optional[str] = None,
+    soil_inertia: Optional[Quantity] = None,
+    model_factor: Optional[Quantity] = None,
     V_u: Optional[Quantity] = None,
     w_ref: Optional[Quantity] = None,
     friction_angle: Optional[Quantity] = None,
@@ -65,8 +75,22 @@ def macro_element(
         K_t: in space: stiffness against torsion about the normal [N m/rad], > 0 N m/rad.
         shape_number: alpha: 4 strip on the half-space, 6 disc on the half-space and strip or rectangle on springs
             (Winkler), 8 disc on springs; absent: 4 of a strip, else 6, from 4 to 8.
-        V_s: vertical load at which the ground first yields (serviceability); absent: the ground does not yield [N],
-            > 0 N.
+        surface: bearing capacity under shear and moment: effective_width: Meyerhof's, with the inclination of
+            code_aster; power_law: form of Crémer and Grange with your a to f; en_1998_5: Annex F of the standard
+            (strip on homogeneous soil); one of "effective_width", "power_law", "en_1998_5"; default
+            effective_width.
+        V_s: vertical load at which the ground first yields (serviceability), N_max of en_1998_5; absent: the ground
+            does not yield [N], > 0 N.
+        a: power_law: size of the largest shear, |H|/V <= a n^c (1 - n)^d, n = N/V, > 0.
+        b: power_law: size of the largest moment, |M|/(D V) <= b n^e (1 - n)^f, > 0.
+        c: power_law: exponent of n in the largest shear, from 0 to 1.2.
+        d: power_law: exponent of 1 - n in the largest shear, from 0.1 to 1.5.
+        e: power_law: exponent of n in the largest moment, from 0 to 1.2.
+        f: power_law: exponent of 1 - n in the largest moment, from 0.1 to 1.5.
+        soil_type: en_1998_5: column of Table F.1; one of "cohesive", "cohesionless".
+        soil_inertia: en_1998_5: F, inertia of the soil: rho a_g S B/c of cohesive soil, a_g/(g tan(phi)) of
+            cohesionless soil, >= 0; default 0.0.
+        model_factor: en_1998_5: gamma_Rd, by which the capacity is divided, > 0; default 1.0.
         V_u: vertical load that it bears after large settlements; absent: V_s [N], > 0 N.
         w_ref: plastic settlement that brings half of V_u - V_s [m], > 0 m.
         friction_angle: friction between footing and ground; absent: no sliding [rad], from 0 to 1.4 rad.
@@ -77,4 +101,4 @@ def macro_element(
             "associated"; default settling.
         settlement_factor: of settling flow: more settlement for the same rotation above 1, > 0; default 1.0.
     """
-    return part("macro_element", K_v=K_v, K_h=K_h, K_r=K_r, K_h2=K_h2, K_r2=K_r2, K_t=K_t, shape_number=shape_number, V_s=V_s, V_u=V_u, w_ref=w_ref, friction_angle=friction_angle, cohesion=cohesion, dilatancy=dilatancy, flow=flow, settlement_factor=settlement_factor)
+    return part("macro_element", K_v=K_v, K_h=K_h, K_r=K_r, K_h2=K_h2, K_r2=K_r2, K_t=K_t, shape_number=shape_number, surface=surface, V_s=V_s, a=a, b=b, c=c, d=d, e=e, f=f, soil_type=soil_type, soil_inertia=soil_inertia, model_factor=model_factor, V_u=V_u, w_ref=w_ref, friction_angle=friction_angle, cohesion=cohesion, dilatancy=dilatancy, flow=flow, settlement_factor=settlement_factor)

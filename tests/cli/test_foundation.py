@@ -153,6 +153,49 @@ class Foundation(CliTest):
         for moment, row in zip(loop["y"], rows):
             self.assertAlmostEqual(moment, row["soil.moment_2"], delta=1e-5 * V_S)
 
+    def test_figures_of_the_other_surfaces(self):
+        """M = D V b n^e (1 - n)^f and H = V a n^c (1 - n)^d; Annex F with its N_max divided by the model factor."""
+        power = {"a": 0.5, "b": 0.45, "c": 0.3, "d": 0.6, "e": 0.8, "f": 0.9}
+        clay = {"a": 1 / 2.57, "b": 1 / 1.85, "c": 0.70 / 2, "d": 1.29 / 2, "e": 2.14 / 2, "f": 1.81 / 2}
+        keys = 'surface = "power_law"\n' + "".join(f"{key} = {value}\n" for key, value in power.items())
+        standard = 'surface = "en_1998_5"\nsoil_type = "cohesive"\nmodel_factor = 1.15\n'
+        for added, of, capacity in ((keys, power, V_S), (standard, clay, V_S / 1.15)):
+            summary, charts, head = self.run_case(CASE.replace("V_u = 5e6\n", "V_u = 5e6\n" + added))
+            self.assertIn("soil.bearing_utilisation [1]", head)
+            self.assertLessEqual(summary["verdict"]["interfaces"][0]["numbers"]["max_bearing_utilisation"]["value"], 1 + 1e-9)
+            if not charts:
+                continue
+            for suffix, length in (("", 6), ("_soil_y", 5)):
+                moment, shear = charts["moment_vertical" + suffix]["series"], charts["shear_vertical" + suffix]["series"]
+                (moment,) = [each for each in moment if each["label"].startswith("bearing capacity") and "end" not in each["label"]]
+                (shear,) = [each for each in shear if each["label"].startswith("bearing capacity") and "end" not in each["label"]]
+                self.assertAlmostEqual(max(moment["x"]), capacity, delta=1e-5 * V_S)
+                for part, size, low, high in ((moment, of["b"] * length, of["e"], of["f"]), (shear, of["a"], of["c"], of["d"])):
+                    for x, value in zip(part["x"], part["y"]):
+                        n = min(x / capacity, 1)
+                        if n >= 0.0501:  # below, the exponent of n is at most 0.9
+                            self.assertAlmostEqual(abs(value), capacity * size * n**low * (1 - n) ** high, delta=3e-5 * V_S)
+
+    def test_a_reduced_capacity_below_the_dead_load_is_said(self):
+        """1.28 MN on N_max/gamma_Rd = 1 MN."""
+        keys = 'V_s = 1.5e6\nsurface = "en_1998_5"\nsoil_type = "cohesive"\n'
+        text = CASE.replace("V_s = 3e6\nV_u = 5e6\nw_ref = 0.02\n", keys)
+        self.write(text)
+        self.assertNotIn("no equilibrium", self.said_by_check())
+        self.write(text.replace("V_s = 1.5e6", "V_s = 1.5e6\nmodel_factor = 1.5"))
+        said = self.said_by_check()
+        self.assertIn('capacity of "soil" 1.00 MN', said)
+        self.assertIn("equilibrium up to 78.41 % of the load", said)  # 1 MN of 130 t
+
+    def said_by_check(self):
+        made = self.uplift("check", "case.toml")
+        return made.stdout + made.stderr
+
+    def test_describe_names_the_surfaces(self):
+        said = self.uplift("describe", "foundation", "macro_element").stdout
+        for word in ("effective_width", "power_law", "en_1998_5", "soil_type", "soil_inertia", "model_factor"):
+            self.assertIn(word, said)
+
     def series(self, all_series, label):
         (found,) = [each for each in all_series if each["label"].startswith(label)]
         return found

@@ -75,7 +75,7 @@ bool Return::evaluate(State& state) const {
   state.at = uplift_.respond(state.e);
   const MacroVector& force = state.at.force;
   if (!state.at.contact || !(force[macro_n] > 0)) return false;
-  if (bearing() && !(std::hypot(force[macro_h1], force[macro_h2]) < force[macro_n])) return false;
+  if (bearing() && !surfaces_.bears(force)) return false;
   const double v = capacity(state.e);
   MacroVector r = state.e - trial_;
   int row = 5;

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 
 namespace uplift {
 namespace {
@@ -11,6 +12,11 @@ namespace {
 constexpr double rounding_share = 1e-6;
 /// A footing that carries less than this share of V uses none of it: the return keeps a force only within a share of V.
 constexpr double least_share = 1e-9;
+
+/// |M/D| of both axes together, for the power law.
+double moment_over_length(const MacroVector& force, const double (&length)[2]) {
+  return std::hypot(force[macro_m1] / length[0], force[macro_m2] / length[1]);
+}
 
 }  // namespace
 
@@ -63,10 +69,12 @@ struct MacroSurfaces::Product {
 MacroSurfaces::MacroSurfaces(const MacroElasticity& e, const MacroStrength& strength)
     : disc_(e.disc), length_{e.length[0], e.length[1]}, strength_(strength) {
   if (!(strength_.ultimate > strength_.service)) strength_.ultimate = strength_.service;
-  const double v = strength_.service, h = strength_.settlement_share * v * 27 / 256;
+  const double v = strength_.service, radius = strength_.settlement_share * v;
+  const double h = radius * (strength_.power_law ? strength_.power_law->shear.most() : 27.0 / 256);
+  const double most_moment = strength_.power_law ? strength_.power_law->moment.most() : 1.0 / 8;
   ellipsoid_ << 1 / v, v / (h * h), v / (h * h), 0, 0;
   for (int i = 0; i < 2; ++i) {
-    const double m = strength_.settlement_share * v * length_[i] / 8;
+    const double m = radius * length_[i] * most_moment;
     ellipsoid_[macro_m1 + i] = v / (m * m);
   }
 }
@@ -102,7 +110,30 @@ double MacroSurfaces::hardening(double p) const {
   return (strength_.ultimate - strength_.service) * strength_.reference / (sum * sum);
 }
 
+bool MacroSurfaces::bears(const MacroVector& force) const {
+  return strength_.power_law || std::hypot(force[macro_h1], force[macro_h2]) < force[macro_n];
+}
+
+MacroPowerLaw::Left MacroSurfaces::left(const MacroVector& force, double capacity) const {
+  return strength_.power_law->left(force[macro_n] / capacity, std::hypot(force[macro_h1], force[macro_h2]) / capacity,
+                                   moment_over_length(force, length_) / capacity);
+}
+
+/// f_2 = N - V left(N/V, |H|/V, |M|/(D V)).
+MacroSurface MacroSurfaces::power_bearing(const MacroVector& force, double capacity) const {
+  const MacroPowerLaw::Left left = this->left(force, capacity);
+  const double shear = std::hypot(force[macro_h1], force[macro_h2]), moment = moment_over_length(force, length_);
+  MacroSurface out{force[macro_n] - capacity * left.share, MacroVector::Zero(), 0};
+  out.gradient[macro_n] = 1 - left.rate[0];
+  if (shear > 0) out.gradient.segment<2>(macro_h1) = -left.rate[1] / shear * force.segment<2>(macro_h1);
+  for (int i = 0; i < 2 && moment > 0; ++i)
+    out.gradient[macro_m1 + i] = -left.rate[2] / moment * force[macro_m1 + i] / (length_[i] * length_[i]);
+  out.by_capacity = -left.share + left.rate.dot(Vec3(force[macro_n], shear, moment)) / capacity;
+  return out;
+}
+
 MacroSurface MacroSurfaces::bearing(const MacroVector& force, double capacity) const {
+  if (strength_.power_law) return power_bearing(force, capacity);
   const bool associated = strength_.flow == MacroStrength::Flow::associated;
   const Product e(reduce(force, associated ? rounding_share * strength_.service : 0), 3, false);
   MacroSurface out{force[macro_n] - capacity * e.value, -capacity * e.gradient, -e.value};
@@ -166,6 +197,10 @@ double MacroSurfaces::moment_share(const MacroVector& force) const {
 double MacroSurfaces::bearing_utilisation(const MacroVector& force, double capacity) const {
   const double n = force[macro_n];
   if (!(n > least_share * capacity)) return 0;
+  if (strength_.power_law) {
+    const double share = left(force, capacity).share;
+    return share > 0 ? n / (capacity * share) : std::numeric_limits<double>::infinity();
+  }
   const double slope = std::hypot(force[macro_h1], force[macro_h2]) / n, left = std::max(0.0, 1 - slope);
   return n / (capacity * left * left * left * moment_share(force));
 }
@@ -178,10 +213,12 @@ double MacroSurfaces::sliding_utilisation(const MacroVector& force) const {
 }
 
 double MacroSurfaces::largest_moment(int axis, double n, double capacity) const {
+  if (strength_.power_law) return capacity * length_[axis] * strength_.power_law->moment.at(n / capacity);
   return 0.5 * n * length_[axis] * (1 - n / capacity);
 }
 
 double MacroSurfaces::largest_shear(double n, double capacity) const {
+  if (strength_.power_law) return capacity * strength_.power_law->shear.at(n / capacity);
   return n * (1 - std::cbrt(n / capacity));
 }
 

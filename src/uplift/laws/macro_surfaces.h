@@ -1,19 +1,24 @@
 #pragma once
+#include <optional>
+
+#include "uplift/laws/macro_power_law.h"
 #include "uplift/laws/macro_uplift.h"
 
-// What a shallow foundation can bear: bearing capacity f_2, sliding f_1 and their flow (docs/theory/macro_element.md, eqs M5 to M10).
+// What a shallow foundation can bear: bearing capacity f_2, sliding f_1 and their flow (docs/theory/macro_element.md, eqs M5 to M10 and
+// M17 to M22).
 namespace uplift {
 
 /// Parameters of yielding, as in a geotechnical report.
 struct MacroStrength {
   enum class Flow { settling, associated } flow = Flow::settling;
-  double service = 0;           // V_s: vertical load at which the ground first yields; infinite: no bearing surface [N]
-  double ultimate = 0;          // V_u >= V_s: vertical load that it bears after large settlements [N]
-  double reference = 1;         // w_ref > 0: plastic settlement that brings half of V_u - V_s [m]
-  double friction = 0;          // tan(phi) of the base; infinite: no sliding
-  double cohesion = 0;          // c times the area of the base [N]
-  double dilation = 0;          // tan(psi) of settling flow; associated flow has that of the friction
-  double settlement_share = 1;  // chi of settling flow: > 1 more settlement per rotation
+  std::optional<MacroPowerLaw> power_law = {};  // bearing surface; none: that of the effective width (M5). With settling flow only
+  double service = 0;                           // V_s: vertical load at which the ground first yields; infinite: no bearing surface [N]
+  double ultimate = 0;                          // V_u >= V_s: vertical load that it bears after large settlements [N]
+  double reference = 1;                         // w_ref > 0: plastic settlement that brings half of V_u - V_s [m]
+  double friction = 0;                          // tan(phi) of the base; infinite: no sliding
+  double cohesion = 0;                          // c times the area of the base [N]
+  double dilation = 0;                          // tan(psi) of settling flow; associated flow has that of the friction
+  double settlement_share = 1;                  // chi of settling flow: > 1 more settlement per rotation
 };
 
 /// A yield function or a flow direction at given forces.
@@ -35,6 +40,8 @@ class MacroSurfaces {
 
   bool has_bearing() const;
   bool has_sliding() const;
+  /// Whether the bearing surface has a value at these forces with N > 0: that of the effective width only for |H| < N.
+  bool bears(const MacroVector& force) const;
   /// V = V_s + R(p) of the accumulated plastic settlement p [m], and dV/dp [N/m].
   double capacity(double p) const;
   double hardening(double p) const;
@@ -43,7 +50,7 @@ class MacroSurfaces {
   MacroSurface sliding(const MacroVector& force) const;
   MacroFlow bearing_flow(const MacroVector& force, double capacity) const;
   MacroFlow sliding_flow(const MacroVector& force) const;
-  /// N over the capacity that H and M leave (eq M15): 1 on the surface. Infinite where they leave none.
+  /// N over the capacity that H and M leave (eqs M15, M22): 1 on the surface. Infinite where they leave none.
   double bearing_utilisation(const MacroVector& force, double capacity) const;
   /// |H| over the resistance to sliding (eq M16): 1 on the surface. Infinite where there is none.
   double sliding_utilisation(const MacroVector& force) const;
@@ -56,6 +63,8 @@ class MacroSurfaces {
   struct Reduced;
   struct Product;
   Reduced reduce(const MacroVector& force, double rounding) const;
+  MacroPowerLaw::Left left(const MacroVector& force, double capacity) const;
+  MacroSurface power_bearing(const MacroVector& force, double capacity) const;
   double moment_share(const MacroVector& force) const;
 
   bool disc_;

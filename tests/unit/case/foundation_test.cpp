@@ -406,6 +406,28 @@ TEST(Foundation, MistakesAreRefused) {
   EXPECT_NE(refusal(replaced(macro, "K_r = 1.8e9", "K_r = 1.8e9, V_s = 3e6, V_u = 2e6")).find("at least V_s"), std::string::npos);
   EXPECT_NE(refusal(replaced(macro, "K_r = 1.8e9", "K_r = 1.8e9, w_ref = 0.01")).find("V_s too"), std::string::npos);
   EXPECT_NE(refusal(replaced(good, "\"elastic\"", "\"macro\"")).find("macro_element"), std::string::npos);
+
+  const auto refused_with = [&](const std::string& keys) { return refusal(replaced(macro, "K_r = 1.8e9", "K_r = 1.8e9, " + keys)); };
+  const auto says = [&](const std::string& keys, const std::string& words) {
+    const std::string said = refused_with(keys);
+    EXPECT_NE(said.find(words), std::string::npos) << keys << ": " << said;
+  };
+  const std::string power = "surface = \"power_law\", V_s = 3e6, a = 0.3, b = 0.4, c = 0.3, d = 0.5, e = 0.8";
+  EXPECT_EQ(refused_with(power + ", f = 0.8"), "accepted");
+  says(power, "f of the power law");
+  says(power + ", f = 0", "0.1");
+  says(replaced(power, "a = 0.3", "a = 0") + ", f = 0.8", "> 0");
+  says(replaced(power, "V_s = 3e6, ", "") + ", f = 0.8", "V_s too");
+  says(power + ", f = 0.8, flow = \"associated\"", "settling");
+  says(power + ", f = 0.8, soil_inertia = 0.1", "surface = \"en_1998_5\"");
+  says("V_s = 3e6, b = 0.4", "surface = \"power_law\"");
+  says("V_s = 3e6, surface = \"en_1998_4\"", "en_1998_5");
+  says("V_s = 3e6, surface = \"en_1998_5\"", "soil_type");
+  const std::string standard = "V_s = 3e6, surface = \"en_1998_5\", soil_type = \"cohesionless\"";
+  EXPECT_EQ(refused_with(standard + ", soil_inertia = 1, model_factor = 1.15"), "accepted");
+  says(standard + ", soil_inertia = 1.05", "less than 1.042");  // 1/0.96
+  says(standard + ", soil_inertia = -0.1", ">= 0");
+  says(standard + ", model_factor = 0", "> 0");
 }
 
 }  // namespace

@@ -116,5 +116,26 @@ TEST(MacroRocking, YieldingBlockLosesWhatTheGroundDissipates) {
   }
 }
 
+TEST(MacroRocking, TheSameOnPowerLawGround) {
+  for (const MacroPowerLaw& law :
+       {MacroPowerLaw{{0.32, 0.25, 0.55, 2}, {0.37, 0.8, 0.8, 2}}, MacroPowerLaw{{0.5, 1, 1, 2}, {0.4, 1, 1, 2}},
+        en_1998_5_surface(En1998Soil::cohesive, 0.5)->law, en_1998_5_surface(En1998Soil::cohesionless, 0.2)->law}) {
+    MacroParameters p = square();
+    p.strength.power_law = law;
+    p.strength.ultimate = 120e6, p.strength.reference = 0.05;
+    double lost[2] = {0, 0};
+    int k = 0;
+    for (const double step : {2e-3, 1e-2}) {
+      const Motion motion = rock(p, {2e6, 1e8, 8, 9.81}, 0.2, step, 4);
+      ASSERT_TRUE(motion.ended) << step;
+      EXPECT_LT(motion.residual, 1e-10) << step;
+      EXPECT_GT(motion.settlement, 0);
+      lost[k++] = motion.dissipated;
+    }
+    EXPECT_GT(lost[0], 0.1 * 0.5 * (1e8 + 2e6 * 64) * 0.04);
+    EXPECT_NEAR(lost[1], lost[0], 0.1 * lost[0]);
+  }
+}
+
 }  // namespace
 }  // namespace uplift

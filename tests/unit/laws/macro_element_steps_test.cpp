@@ -1,5 +1,4 @@
 #include <algorithm>
-#include <random>
 
 #include "tests/unit/laws/macro_element_support.h"
 
@@ -8,35 +7,6 @@ namespace uplift {
 namespace {
 
 using namespace macro_test;
-
-/// Random openings about the plastic ones: N from none to above V_s, shear and rotation up to `size` times those of set P1 at uplift.
-class RandomPath {
- public:
-  RandomPath(int components, double size, unsigned seed) : components_(components), size_(size), random_(seed) {}
-
-  Numbers next(const Numbers& plastic) {
-    const double w = 20e6 / square().elasticity.vertical, theta = 20e6 * 10 / 6 / square().elasticity.rocking[0];
-    const auto normal = components_ == 3 ? 1u : 2u;
-    Numbers to(static_cast<std::size_t>(components_));
-    for (std::size_t r = 0; r < to.size(); ++r) {
-      const double offset = r < to.size() - (components_ == 6 ? 1 : 0) ? plastic[r] : 0;
-      to[r] = offset + (r < normal    ? size_ * w * any()
-                        : r == normal ? -w * (1 + std::min(1.3 * size_, 2.0) * any())
-                                      : size_ * theta * any());
-    }
-    return to;
-  }
-
- private:
-  double any() { return std::uniform_real_distribution<double>(-1, 1)(random_); }
-  int components_;
-  double size_;
-  std::mt19937 random_;
-};
-
-bool finite(const Numbers& values) {
-  return std::ranges::all_of(values, [](double value) { return std::isfinite(value); });
-}
 
 MacroParameters variant(int number) {
   MacroParameters p = square();

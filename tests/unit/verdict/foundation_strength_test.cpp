@@ -1,5 +1,5 @@
 // How much of its strength the ground under a [[foundation]] uses: columns and verdict against the formulas of
-// docs/theory/macro_element.md, eqs (M5), (M6), (M15), (M16), evaluated with the loads of the case.
+// docs/theory/macro_element.md, eqs (M5), (M6), (M15) to (M22), evaluated with the loads of the case.
 #include <gtest/gtest.h>
 
 #include <algorithm>
@@ -123,6 +123,61 @@ TEST(FoundationStrength, InSpaceBothAxesReduceTheCapacity) {
   const Ran disc = run_text(replaced(space, "length = 5", "shape = \"disc\""));
   EXPECT_NEAR(disc.last(Column::bearing_utilisation), n / (4e6 * shear_share(h, n) * (1 - 2 * std::hypot(0.9e6, 0.5e6) / (n * 6))), 1e-9);
   EXPECT_NEAR(disc.last(Column::sliding_utilisation), sliding, 1e-9);
+}
+
+/// y with (H/(a V n^c y^d))^2 + (M/(b D V n^e y^f))^2 = 1, by halving.
+double left_of_n(double a, double b, double c, double d, double e, double f, double n, double h, double m) {
+  double low = 0, high = 10;
+  for (int i = 0; i < 100; ++i) {
+    const double y = 0.5 * (low + high);
+    (std::hypot(h / (a * std::pow(n, c) * std::pow(y, d)), m / (b * std::pow(n, e) * std::pow(y, f))) > 1 ? low : high) = y;
+  }
+  return low;
+}
+
+TEST(FoundationStrength, PowerLawUsesTheResultants) {
+  const std::string keys = "V_s = 4e6, surface = \"power_law\", a = 0.5, b = 0.45, c = 0.3, d = 0.6, e = 0.8, f = 0.9";
+  const double n = 1e6 / 4e6;
+  const auto expected = [&](double h, double m) { return n / (1 - left_of_n(0.5, 0.45, 0.3, 0.6, 0.8, 0.9, n, h / 4e6, m / 4e6)); };
+  EXPECT_NEAR(run_text(replaced(plane, "V_s = 4e6", keys)).verdict("max_bearing_utilisation"), expected(1e5, 1.2e6 / 6), 1e-9);
+  const std::string deep = replaced(space, "V_s = 4e6", keys);  // the moment about x tilts the length
+  EXPECT_NEAR(run_text(deep).last(Column::bearing_utilisation), expected(std::hypot(1e5, 0.5e5), std::hypot(0.9e6 / 6, 0.5e6 / 5)), 1e-9);
+  EXPECT_NEAR(run_text(replaced(deep, "length = 5", "shape = \"disc\"")).last(Column::bearing_utilisation),
+              expected(std::hypot(1e5, 0.5e5), std::hypot(0.9e6, 0.5e6) / 6), 1e-9);
+}
+
+// Annex F for cohesive soil: the soil's inertia F and the model factor reduce the vertical capacity to N_max (1 - 0.21 F^1.22)/gamma_Rd.
+TEST(FoundationStrength, AnnexFUnderVerticalLoad) {
+  std::string text = replaced(plane, "V_s = 4e6", "V_s = 4e6, surface = \"en_1998_5\", soil_type = \"cohesive\"");
+  text = replaced(replaced(text, "force = [1e5, -1e6]", "force = [0, -1e6]"), "moment = -1.2e6\n", "");
+  EXPECT_NEAR(run_text(text).last(Column::bearing_utilisation), 0.25, 1e-12);
+  const std::string reduced = replaced(text, "\"cohesive\"", "\"cohesive\", soil_inertia = 0.7, model_factor = 1.15");
+  EXPECT_NEAR(run_text(reduced).last(Column::bearing_utilisation), 0.25 * 1.15 / (1 - 0.21 * std::pow(0.7, 1.22)), 1e-12);
+}
+
+// A building on ground of the standard that rocks and yields: the energy balance closes at any step.
+TEST(FoundationStrength, TheLedgerClosesOnYieldingPowerLawGround) {
+  for (const char* surface : {"surface = \"en_1998_5\", soil_type = \"cohesive\"", "surface = \"en_1998_5\", soil_type = \"cohesionless\"",
+                              "surface = \"power_law\", a = 0.5, b = 0.45, c = 1, d = 1, e = 1, f = 1"})
+    for (const char* step : {"2e-3", "10e-3"}) {
+      std::string text = replaced(plane, "V_s = 4e6", std::string("V_s = 2.5e6, V_u = 4e6, w_ref = 0.02, ") + surface);
+      text = replaced(text, "# more", std::string(R"([[function]]
+name = "pulse"
+shape = { type = "half_sine", duration = 0.4 }
+[[load]]
+node = "base"
+force = [3e5, 0]
+moment = -1.6e6
+function = "pulse"
+[[stage]]
+type = "dynamic"
+duration = 1
+step = )") + step);
+      const Ran ran = run_text(replaced(text, "moment = -1.2e6\n", ""));
+      EXPECT_LT(std::abs(ran.result.final_energy.residual), 1e-10 * ran.result.energy_scale) << surface << step;
+      EXPECT_GT(ran.result.final_energy.interface_dissipated, 0.01 * ran.result.energy_scale) << surface << step;
+      EXPECT_NEAR(ran.verdict("max_bearing_utilisation"), 1, 1e-9) << surface << step;
+    }
 }
 
 // V = V_s + (V_u - V_s) p/(p + w_ref) grows until it carries the load, N = V: p = w_ref (N - V_s)/(V_u - N).

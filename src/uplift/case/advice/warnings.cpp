@@ -9,6 +9,7 @@
 #include "uplift/case/advice/step_suggestion.h"
 #include "uplift/case/ground/ground.h"
 #include "uplift/case/mesh/mesh.h"
+#include "uplift/laws/macro_element.h"
 #include "uplift/model/damping.h"
 #include "uplift/model/hinges.h"
 #include "uplift/model/tuned_mass.h"
@@ -193,9 +194,11 @@ void warn_foundations(const Case& read, const BuiltCase& built, std::vector<std:
     if (waves)
       said.push_back(place +
                      fmt::format("the ground under \"{}\" does not move with the incident wave: it stands still", foundation.text("name")));
-    if (read.values.tables("foundation").size() > 1 || !model.items().contains("V_s") || !model.has("V_s")) continue;
-    const double capacity = model.number(model.has("V_u") ? "V_u" : "V_s");
-    if (built.model.interfaces.size() == 1 && built.weight >= capacity)
+    if (built.model.interfaces.size() != 1) continue;
+    const MacroElement* ground = as_macro_element(built.model.interfaces.front().law.get());
+    if (ground == nullptr || !ground->surfaces().has_bearing()) continue;
+    const double capacity = ground->surfaces().strength().ultimate;
+    if (built.weight >= capacity)
       said.push_back(place + fmt::format("the dead load is {}, the capacity of \"{}\" {}: unless other parts bear the rest, there is no "
                                          "equilibrium",
                                          format_quantity(built.weight, "N"), foundation.text("name"), format_quantity(capacity, "N")));
