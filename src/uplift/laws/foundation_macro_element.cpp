@@ -37,9 +37,15 @@ MacroElasticity elasticity_of(const Footprint& footprint, const Values& values, 
 constexpr const char* power_law_keys[] = {"a", "b", "c", "d", "e", "f"};
 constexpr const char* en_1998_5_keys[] = {"soil_type", "soil_inertia", "model_factor"};
 
+/// The standard values of a surface that is not taken: a stored problem states them.
+bool has_no_effect(const Values& values, std::string_view key) {
+  return (key == "soil_inertia" && values.number(key) == 0) || (key == "model_factor" && values.number(key) == 1);
+}
+
 void refuse_keys(const Values& values, std::span<const char* const> keys, const char* surface) {
   for (const char* key : keys)
-    if (values.given(key)) fail(values, key, fmt::format("surface = \"{}\"", surface), in_quotes(values.text("surface")));
+    if (values.given(key) && !has_no_effect(values, key))
+      fail(values, key, fmt::format("surface = \"{}\"", surface), in_quotes(values.text("surface")));
 }
 
 MacroPowerLaw power_law_of(const Values& values) {

@@ -224,7 +224,7 @@ TEST(FoundationSoil, AStoredProblemIsReplayedWithTheStiffnessesOfTheSoil) {
         problem.old = Vector::Zero(block.law->num_history(ground.batch.components));
 
         const std::string text = save_problem(problem, built.behaviours, "a reason");
-        EXPECT_EQ(text.find("soil"), std::string::npos);
+        EXPECT_EQ(text.find("\"soil\""), std::string::npos);
         const StoredProblem stored = load_problem(text, "problem.json");
         std::vector<double> found(wanted.size());
         stored.problem.model->blocks.front().law->closed_stiffness(ground.batch.components, found.data());
