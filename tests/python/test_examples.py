@@ -1,6 +1,5 @@
 """Every example in Python runs and prints the numbers of the program: python3 tests/python/test_examples.py PROGRAM LIBRARY."""
 
-import importlib.util
 import json
 import os
 import pathlib
@@ -17,14 +16,13 @@ ENVIRONMENT = {**os.environ, "UPLIFT_LIBRARY": LIBRARY, "PYTHONPATH": str(ROOT /
 
 def printed(name):
     with tempfile.TemporaryDirectory() as folder:
-        figure = [folder + "/figure.png"] if importlib.util.find_spec("matplotlib") else []
-        words = [sys.executable, "-B", str(ROOT / "examples" / name / "example.py"), *figure]
+        figure = folder + "/figure.png"
+        words = [sys.executable, "-B", str(ROOT / "examples" / name / "example.py"), figure]
         done = subprocess.run(words, env=ENVIRONMENT, capture_output=True, text=True)
         if done.returncode != 0:
             raise AssertionError(done.stderr)
-        for each in figure:
-            if os.path.getsize(each) < 5000:
-                raise AssertionError("the figure is empty")
+        if os.path.getsize(figure) < 5000:
+            raise AssertionError("the figure is empty")
         return done.stdout
 
 
