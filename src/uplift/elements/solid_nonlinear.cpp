@@ -135,12 +135,11 @@ void NonlinearSolid::find_mode_tangent(Scratch& scratch, double elastic_share) c
 
 // No force works on the modes: K_aa a + K_au u - int G^T D e dV = 0 with the inelastic strains e.
 void NonlinearSolid::add_inelastic_amplitudes(std::span<const double> history, const Scratch& scratch, double* amplitudes) const {
-  const int n = num_amplitudes();
   double force[3 * 3] = {};
   for (std::size_t p = 0; p < scratch.gradient.size(); ++p)
     add_force(scratch.gradient[p], dimension(), static_cast<int>(nodes().size()), modes_, law_->elastic() * inelastic_strain(history, p),
               force);
-  Map(amplitudes, n).noalias() += mode_flexibility_.lazyProduct(ConstMap(force, n));
+  small::multiply_add(mode_flexibility_, force, amplitudes);
 }
 
 BulkResponse NonlinearSolid::balance_modes(const Vector& displacement, std::span<const double> old, std::span<double> now, bool tangents,
@@ -184,7 +183,8 @@ BulkResponse NonlinearSolid::respond(const Vector& displacement, std::span<const
   scratch.stress.resize(scratch.gradient.size());
   scratch.tangent.resize(scratch.gradient.size());
   if (modes_ > 0) {
-    Map(now.data() + first_amplitude(), num_amplitudes()).noalias() = modes_of_nodes_.lazyProduct(displacement);
+    // not a Map: what Eigen's lazy product rounds depends on where the memory begins
+    small::multiply_any(modes_of_nodes_, displacement.data(), now.data() + first_amplitude());
     if (has_yielded(old)) add_inelastic_amplitudes(old, scratch, now.data() + first_amplitude());
   }
   BulkResponse outcome = evaluate(displacement, old, now, tangents, scratch);

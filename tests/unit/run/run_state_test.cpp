@@ -127,10 +127,10 @@ void expect_same_from_everywhere(const std::string& text) {
     std::string why;
     const std::optional<RunState> state = read_run_state(straight.states[k], why);
     ASSERT_TRUE(state) << why;
-    EXPECT_EQ(write_run_state(*state), straight.states[k]);
+    EXPECT_TRUE(write_run_state(*state) == straight.states[k]);
     const Kept resumed = run_kept(built, &*state);
     EXPECT_EQ(resumed.states.size(), straight.states.size() - k - 1);
-    ASSERT_EQ(bytes_of(resumed.result), expected) << "from state " << k;
+    ASSERT_TRUE(bytes_of(resumed.result) == expected) << "from state " << k;
   }
 }
 
