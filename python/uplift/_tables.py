@@ -42,6 +42,7 @@ class Tables:
         offset: Optional[Sequence[Quantity]] = None,
         normal: Optional[Sequence[Quantity]] = None,
         bed: Optional[Mapping[str, Any]] = None,
+        cut: Optional[Mapping[str, Any]] = None,
         gap: Optional[Quantity] = None,
         gap_profile: Optional[Mapping[str, Any]] = None,
         water: Optional[Mapping[str, Any]] = None,
@@ -64,6 +65,7 @@ class Tables:
             offset: from the node to the middle of the footing's underside [m].
             normal: from the ground to the structure; absent: up.
             bed: elastic ground under the joint; absent: fixed ground.
+            cut: on a plane through cells of the mesh.
             gap: initial gap of every point; geometry: the distance along the normal at which both sides are drawn, of
                 pairs, lines and surfaces with two groups [m]; default 0.0.
             gap_profile: initial gaps that vary over the interface, added to gap.
@@ -73,7 +75,7 @@ class Tables:
                 of gravity (of the vertical axis without gravity); a surface with faces of both kinds is divided, the
                 walls of "soil" become "soil walls"; one of "base", "wall".
         """
-        self._interface({"name": name, "law": law, "gap": gap, "gap_profile": gap_profile, "water": water, "role": role}, "footing", {"body": body, "width": width, "thickness": thickness, "length": length, "points": points, "points_across": points_across, "azimuth": azimuth, "rule": rule, "offset": offset, "normal": normal, "bed": bed})
+        self._interface({"name": name, "law": law, "cut": cut, "gap": gap, "gap_profile": gap_profile, "water": water, "role": role}, "footing", {"body": body, "width": width, "thickness": thickness, "length": length, "points": points, "points_across": points_across, "azimuth": azimuth, "rule": rule, "offset": offset, "normal": normal, "bed": bed})
 
     def pairs(
         self,
@@ -84,6 +86,7 @@ class Tables:
         area: Quantity,
         lower: Optional[Sequence[str]] = None,
         normal: Optional[Sequence[Quantity]] = None,
+        cut: Optional[Mapping[str, Any]] = None,
         gap: Optional[Quantity] = None,
         gap_profile: Optional[Mapping[str, Any]] = None,
         water: Optional[Mapping[str, Any]] = None,
@@ -98,6 +101,7 @@ class Tables:
             area: area of each pair [m2], > 0 m2.
             lower: nodes of the ground, in the same order; absent: fixed ground.
             normal: from the ground to the structure; absent: up.
+            cut: on a plane through cells of the mesh.
             gap: initial gap of every point; geometry: the distance along the normal at which both sides are drawn, of
                 pairs, lines and surfaces with two groups [m]; default 0.0.
             gap_profile: initial gaps that vary over the interface, added to gap.
@@ -107,7 +111,7 @@ class Tables:
                 of gravity (of the vertical axis without gravity); a surface with faces of both kinds is divided, the
                 walls of "soil" become "soil walls"; one of "base", "wall".
         """
-        self._interface({"name": name, "law": law, "gap": gap, "gap_profile": gap_profile, "water": water, "role": role}, "pairs", {"upper": upper, "lower": lower, "normal": normal, "area": area})
+        self._interface({"name": name, "law": law, "cut": cut, "gap": gap, "gap_profile": gap_profile, "water": water, "role": role}, "pairs", {"upper": upper, "lower": lower, "normal": normal, "area": area})
 
     def line(
         self,
@@ -119,6 +123,7 @@ class Tables:
         nodes_per_element: Optional[int] = None,
         quadrature: Optional[str] = None,
         thickness: Optional[Quantity] = None,
+        cut: Optional[Mapping[str, Any]] = None,
         gap: Optional[Quantity] = None,
         gap_profile: Optional[Mapping[str, Any]] = None,
         water: Optional[Mapping[str, Any]] = None,
@@ -134,6 +139,7 @@ class Tables:
             nodes_per_element: 2 (linear) or 3 (quadratic), from 2 to 3; default 2.
             quadrature: integration points of an element; one of "nodal", "gauss"; default nodal.
             thickness: length out of the plane [m], > 0 m; default 1.0.
+            cut: on a plane through cells of the mesh.
             gap: initial gap of every point; geometry: the distance along the normal at which both sides are drawn, of
                 pairs, lines and surfaces with two groups [m]; default 0.0.
             gap_profile: initial gaps that vary over the interface, added to gap.
@@ -143,7 +149,7 @@ class Tables:
                 of gravity (of the vertical axis without gravity); a surface with faces of both kinds is divided, the
                 walls of "soil" become "soil walls"; one of "base", "wall".
         """
-        self._interface({"name": name, "law": law, "gap": gap, "gap_profile": gap_profile, "water": water, "role": role}, "line", {"upper": upper, "lower": lower, "nodes_per_element": nodes_per_element, "quadrature": quadrature, "thickness": thickness})
+        self._interface({"name": name, "law": law, "cut": cut, "gap": gap, "gap_profile": gap_profile, "water": water, "role": role}, "line", {"upper": upper, "lower": lower, "nodes_per_element": nodes_per_element, "quadrature": quadrature, "thickness": thickness})
 
     def surface(
         self,
@@ -156,6 +162,7 @@ class Tables:
         upper_group: Optional[str] = None,
         quadrature: Optional[str] = None,
         thickness: Optional[Quantity] = None,
+        cut: Optional[Mapping[str, Any]] = None,
         gap: Optional[Quantity] = None,
         gap_profile: Optional[Mapping[str, Any]] = None,
         water: Optional[Mapping[str, Any]] = None,
@@ -173,6 +180,7 @@ class Tables:
             quadrature: where the joint points stand: at the pairs of nodes, or at Gauss points; one of "nodal",
                 "gauss"; default nodal.
             thickness: length out of the plane (plane meshes); absent: that of the solids (the smaller one) [m], > 0 m.
+            cut: on a plane through cells of the mesh.
             gap: initial gap of every point; geometry: the distance along the normal at which both sides are drawn, of
                 pairs, lines and surfaces with two groups [m]; default 0.0.
             gap_profile: initial gaps that vary over the interface, added to gap.
@@ -182,7 +190,7 @@ class Tables:
                 of gravity (of the vertical axis without gravity); a surface with faces of both kinds is divided, the
                 walls of "soil" become "soil walls"; one of "base", "wall".
         """
-        self._interface({"name": name, "law": law, "gap": gap, "gap_profile": gap_profile, "water": water, "role": role}, "surface", {"group": group, "lower": lower, "lower_group": lower_group, "upper_group": upper_group, "quadrature": quadrature, "thickness": thickness})
+        self._interface({"name": name, "law": law, "cut": cut, "gap": gap, "gap_profile": gap_profile, "water": water, "role": role}, "surface", {"group": group, "lower": lower, "lower_group": lower_group, "upper_group": upper_group, "quadrature": quadrature, "thickness": thickness})
 
     def mesh(
         self,

@@ -17,10 +17,10 @@ struct FacePoint {
   double area;  // m2
 };
 
-std::vector<FacePoint> face_points(Cell cell, std::span<const int> nodes, const std::vector<Vec3>& coordinates, double thickness) {
+std::vector<FacePoint> face_points(Cell cell, const CellRule& rule, std::span<const int> nodes, const std::vector<Vec3>& coordinates,
+                                   double thickness) {
   std::vector<Vec3> positions;
   for (const int node : nodes) positions.push_back(coordinates[static_cast<std::size_t>(node)]);
-  const CellRule rule = cell_rule(cell, info(cell).nodes == info(cell).corners ? 3 : 5);  // N_a N_b on plane faces
   std::vector<FacePoint> points;
   for (std::size_t p = 0; p < rule.point.size(); ++p) {
     const CellShape shape = cell_shape(cell, rule.point[p]);
@@ -33,24 +33,25 @@ std::vector<FacePoint> face_points(Cell cell, std::span<const int> nodes, const 
 
 }  // namespace
 
-AbsorbingFace::AbsorbingFace(Cell cell, std::span<const int> nodes, Coordinates coordinates, AbsorbingSection section)
+AbsorbingFace::AbsorbingFace(Cell cell, std::span<const int> nodes, Coordinates coordinates, AbsorbingSection section, const CellRule* part)
     : cell_(cell),
       dimension_(info(cell).dimension + 1),
       nodes_(nodes.begin(), nodes.end()),
       coordinates_(std::move(coordinates)),
-      section_(section) {
+      section_(section),
+      rule_(part ? *part : cell_rule(cell, info(cell).nodes == info(cell).corners ? 3 : 5)) {  // N_a N_b on plane faces
   assert((dimension_ == 2 || dimension_ == 3) && static_cast<int>(nodes_.size()) == info(cell).nodes);
   assert(section_.material.density > 0 && section_.thickness > 0);
 }
 
 double AbsorbingFace::area() const {
   double sum = 0;
-  for (const FacePoint& p : face_points(cell_, nodes_, *coordinates_, dimension_ == 2 ? section_.thickness : 1)) sum += p.area;
+  for (const FacePoint& p : face_points(cell_, rule_, nodes_, *coordinates_, dimension_ == 2 ? section_.thickness : 1)) sum += p.area;
   return sum;
 }
 
 Matrix AbsorbingFace::damping() const {
-  const auto points = face_points(cell_, nodes_, *coordinates_, dimension_ == 2 ? section_.thickness : 1);
+  const auto points = face_points(cell_, rule_, nodes_, *coordinates_, dimension_ == 2 ? section_.thickness : 1);
   const auto n = nodes_.size();
   double all = 0, of_squares = 0;  // the area, and the sum of int N_a^2 dA
   for (const FacePoint& p : points) {

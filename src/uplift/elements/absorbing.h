@@ -22,7 +22,7 @@ AbsorbingSection absorbing_ground(const Values& absorbing, const FillingBeside& 
 /// at the corners); with those two a uniform wave is met in the mean only, so consistent is better there. The sign of n does not matter.
 class AbsorbingFace : public Element {
  public:
-  AbsorbingFace(Cell cell, std::span<const int> nodes, Coordinates coordinates, AbsorbingSection section);
+  AbsorbingFace(Cell cell, std::span<const int> nodes, Coordinates coordinates, AbsorbingSection section, const CellRule* part = nullptr);
   std::span<const int> nodes() const override { return nodes_; }
   int unknowns_per_node() const override { return dimension_; }
   void form(Local local) const override;
@@ -41,6 +41,7 @@ class AbsorbingFace : public Element {
   std::vector<int> nodes_;
   Coordinates coordinates_;
   AbsorbingSection section_;
+  CellRule rule_;
 };
 
 /// Waves that come up vertically: compression, shear in the plane of the azimuth, shear across it.

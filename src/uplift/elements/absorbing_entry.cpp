@@ -56,7 +56,8 @@ const ElementEntry& entry_element_absorbing() {
       ElementPlace::faces,
       nullptr,
       [](const CellSite& site, const Values& absorbing, const FillingBeside& beside, Space space) -> std::unique_ptr<Element> {
-        return std::make_unique<AbsorbingFace>(site.cell, site.nodes, site.coordinates, absorbing_ground(absorbing, beside, space));
+        return std::make_unique<AbsorbingFace>(site.cell, site.nodes, site.coordinates, absorbing_ground(absorbing, beside, space),
+                                               site.part);
       }};
   return entry;
 }

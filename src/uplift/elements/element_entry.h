@@ -21,6 +21,7 @@ struct CellSite {
   Cell cell;
   std::span<const int> nodes;
   Coordinates coordinates;
+  const CellRule* part = nullptr;  // the cell is filled in part (mesh/cut.h); null: it is whole
 };
 
 /// What fills the cells of a group: read once from its table, then asked for one element a cell. The elements state continuum() and cell().

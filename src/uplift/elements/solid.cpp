@@ -8,12 +8,14 @@
 
 namespace uplift {
 
-Solid::Solid(Cell cell, std::span<const int> nodes, Coordinates coordinates, SolidSection section)
+Solid::Solid(Cell cell, std::span<const int> nodes, Coordinates coordinates, SolidSection section, const CellRule* part)
     : cell_(cell),
       dimension_(info(cell).dimension),
       nodes_(nodes.begin(), nodes.end()),
       coordinates_(std::move(coordinates)),
-      section_(section) {
+      section_(section),
+      part_(part ? std::make_shared<const CellRule>(*part) : nullptr) {
+  if (part_) section_.incompatible_modes = false;  // their patch test is that of whole cells
   assert(dimension_ >= 2 && static_cast<int>(nodes_.size()) == info(cell).nodes);
   assert(section_.thickness > 0);
 }
@@ -25,7 +27,12 @@ void Solid::form(Local local) const {
 }
 
 int Solid::num_points() const {
-  return solid_tables(cell_).stiffness.points();
+  return part_ ? static_cast<int>(part_->weight.size()) : solid_tables(cell_).stiffness.points();
+}
+
+std::shared_ptr<const SolidTables> Solid::tables() const {
+  if (part_) return std::make_shared<const SolidTables>(part_tables(cell_, *part_));
+  return {std::shared_ptr<const SolidTables>(), &solid_tables(cell_)};
 }
 
 int Solid::num_modes() const {
@@ -41,7 +48,7 @@ double Solid::volume() const {
 std::vector<Vec3> Solid::point_positions() const {
   std::vector<Vec3> corners, positions;
   for (const int node : nodes_) corners.push_back((*coordinates_)[static_cast<std::size_t>(node)]);
-  for (const Vec3& local : solid_tables(cell_).stiffness.local) positions.push_back(cell_position(cell_shape(cell_, local), corners));
+  for (const Vec3& local : tables()->stiffness.local) positions.push_back(cell_position(cell_shape(cell_, local), corners));
   return positions;
 }
 
@@ -92,7 +99,8 @@ std::vector<Stress> Solid::point_stress(const Vector& displacement) const {
 }
 
 std::vector<Stress> Solid::extrapolate(const std::vector<Stress>& at_points) const {
-  const Matrix& to_nodes = solid_tables(cell_).to_nodes;
+  const std::shared_ptr<const SolidTables> made = tables();
+  const Matrix& to_nodes = made->to_nodes;
   std::vector<Stress> at_nodes(nodes_.size(), Stress::Zero());
   for (Index a = 0; a < to_nodes.rows(); ++a)
     for (Index p = 0; p < to_nodes.cols(); ++p)
@@ -101,7 +109,8 @@ std::vector<Stress> Solid::extrapolate(const std::vector<Stress>& at_points) con
 }
 
 std::vector<double> Solid::extrapolate(const std::vector<double>& at_points) const {
-  const Matrix& to_nodes = solid_tables(cell_).to_nodes;
+  const std::shared_ptr<const SolidTables> made = tables();
+  const Matrix& to_nodes = made->to_nodes;
   const Vector at_nodes = to_nodes * ConstMap(at_points.data(), to_nodes.cols());
   return {at_nodes.begin(), at_nodes.end()};
 }

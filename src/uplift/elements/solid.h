@@ -5,6 +5,7 @@
 
 #include "uplift/elements/element.h"
 #include "uplift/elements/material.h"
+#include "uplift/mesh/cell_quadrature.h"
 #include "uplift/mesh/cells.h"
 
 namespace uplift {
@@ -22,6 +23,7 @@ struct SolidSection {
 };
 
 struct PointGradient;  // elements/solid_rules.h
+struct SolidTables;
 
 /// Small-strain isoparametric solid on any cell of dimension 2 (in the plane z = 0: plane strain or plane stress) or 3; unknowns (ux, uy)
 /// or (ux, uy, uz) [m] of each node.
@@ -43,7 +45,8 @@ class Solid : public Element {
  public:
   /// `nodes` as many as the cell has, numbered as in VTK, indices into `coordinates`. The Jacobian must be positive at every integration
   /// point (checked by assertion; meshes are checked on reading).
-  Solid(Cell cell, std::span<const int> nodes, Coordinates coordinates, SolidSection section);
+  /// `part`: the cell is filled in part (mesh/cut.h); it has no incompatible modes then, and the stress at its nodes is its mean.
+  Solid(Cell cell, std::span<const int> nodes, Coordinates coordinates, SolidSection section, const CellRule* part = nullptr);
   std::span<const int> nodes() const override { return nodes_; }
   int unknowns_per_node() const override { return dimension_; }
   void form(Local local) const override;
@@ -79,6 +82,8 @@ class Solid : public Element {
  private:
   void form_stiffness(Matrix& stiffness) const;
   void form_mass(Matrix& mass) const;
+  /// Of the cell, or made for its part.
+  std::shared_ptr<const SolidTables> tables() const;
   Vector mode_amplitudes(const std::vector<PointGradient>& points, const Vector& displacement) const;
   Stress elastic_stress(const Strain& strain) const;
 
@@ -87,6 +92,7 @@ class Solid : public Element {
   std::vector<int> nodes_;
   Coordinates coordinates_;
   SolidSection section_;
+  std::shared_ptr<const CellRule> part_;  // null: the cell is whole
 };
 
 }  // namespace uplift

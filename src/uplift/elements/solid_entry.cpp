@@ -45,9 +45,9 @@ class SolidFilling final : public CellFilling {
   std::unique_ptr<Element> make(const CellSite& site) const override {
     std::unique_ptr<Element> element;
     if (!law_ || law_->linear())
-      element = std::make_unique<Solid>(site.cell, site.nodes, site.coordinates, section_);
+      element = std::make_unique<Solid>(site.cell, site.nodes, site.coordinates, section_, site.part);
     else
-      element = std::make_unique<NonlinearSolid>(site.cell, site.nodes, site.coordinates, section_, law_);
+      element = std::make_unique<NonlinearSolid>(site.cell, site.nodes, site.coordinates, section_, law_, site.part);
     element->beta = beta_;
     return element;
   }

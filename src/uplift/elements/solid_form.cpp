@@ -261,18 +261,19 @@ Positions gather(std::span<const int> nodes, const std::vector<Vec3>& coordinate
 void Solid::form_stiffness(Matrix& out) const {
   out.resize(unknowns(), unknowns());
   const Positions at = gather(nodes_, *coordinates_);
-  const SolidTables& tables = solid_tables(cell_);
+  const std::shared_ptr<const SolidTables> made = tables();
   const double lambda = dimension_ == 2 ? section_.material.plane_lame(section_.plane) : section_.material.lame();
   const double mu = section_.material.shear(), thickness = dimension_ == 2 ? section_.thickness : 1;
   with_sizes(cell_, section_.incompatible_modes,
-             [&]<int Dim, int Nodes, int Modes>() { stiffness<Dim, Nodes, Modes>(at, tables, lambda, mu, thickness, out.data()); });
+             [&]<int Dim, int Nodes, int Modes>() { stiffness<Dim, Nodes, Modes>(at, *made, lambda, mu, thickness, out.data()); });
 }
 
 void Solid::form_mass(Matrix& out) const {
   out.setZero(unknowns(), unknowns());
   if (section_.mass == SolidSection::Mass::none) return;
   const Positions at = gather(nodes_, *coordinates_);
-  const SolidRule& rule = solid_tables(cell_).mass;
+  const std::shared_ptr<const SolidTables> made = tables();
+  const SolidRule& rule = made->mass;
   const double thickness = dimension_ == 2 ? section_.thickness : 1;
   const bool linear_cell = info(cell_).nodes == info(cell_).corners;
   with_sizes(cell_, false, [&]<int Dim, int Nodes, int Modes>() { mass<Dim, Nodes>(at, rule, thickness, section_, linear_cell, out); });
@@ -286,7 +287,8 @@ std::vector<PointGradient> Solid::gradients() const {
 
 void Solid::find_gradients(std::vector<PointGradient>& all) const {
   const Positions at = gather(nodes_, *coordinates_);
-  const SolidTables& tables = solid_tables(cell_);
+  const std::shared_ptr<const SolidTables> of_cell = this->tables();
+  const SolidTables& tables = *of_cell;
   const double thickness = dimension_ == 2 ? section_.thickness : 1;
   all.resize(static_cast<std::size_t>(tables.stiffness.points()));
   with_sizes(cell_, section_.incompatible_modes, [&]<int Dim, int Nodes, int Modes>() {

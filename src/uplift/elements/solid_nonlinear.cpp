@@ -43,8 +43,8 @@ double NonlinearSolid::node_gradient(const PointGradient& at) const {
 }
 
 NonlinearSolid::NonlinearSolid(Cell cell, std::span<const int> nodes, Coordinates coordinates, SolidSection section,
-                               std::shared_ptr<const BulkLaw> law)
-    : Solid(cell, nodes, std::move(coordinates), with_material(section, law->material())),
+                               std::shared_ptr<const BulkLaw> law, const CellRule* part)
+    : Solid(cell, nodes, std::move(coordinates), with_material(section, law->material()), part),
       law_(std::move(law)),
       size_(law_->num_history()),
       points_(num_points()),

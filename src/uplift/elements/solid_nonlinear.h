@@ -17,7 +17,8 @@ namespace uplift {
 class NonlinearSolid : public Solid {
  public:
   /// section.material is not looked at: the elastic part is that of the law. Plane stress is not available (assertion).
-  NonlinearSolid(Cell cell, std::span<const int> nodes, Coordinates coordinates, SolidSection section, std::shared_ptr<const BulkLaw> law);
+  NonlinearSolid(Cell cell, std::span<const int> nodes, Coordinates coordinates, SolidSection section, std::shared_ptr<const BulkLaw> law,
+                 const CellRule* part = nullptr);
 
   using Scratch = ElementScratch;
   int num_history() const override;

@@ -49,8 +49,6 @@ SolidTables make_tables(Cell cell) {
   return tables;
 }
 
-/// Places of the strains (xx, yy, zz, xy, yz, zx) in a symmetric tensor.
-
 }  // namespace
 
 const SolidTables& solid_tables(Cell cell) {
@@ -60,6 +58,13 @@ const SolidTables& solid_tables(Cell cell) {
     return tables;
   }();
   return all[static_cast<std::size_t>(cell)];
+}
+
+SolidTables part_tables(Cell cell, const CellRule& rule) {
+  const SolidRule table = tabulate(cell, rule);
+  const Index points = table.points();
+  const Vector weight = ConstMap(rule.weight.data(), points);
+  return {table, table, {}, Vector::Ones(info(cell).nodes) * (weight / weight.sum()).transpose()};
 }
 
 int num_bubbles(Cell cell) {

@@ -2,6 +2,7 @@
 #include <vector>
 
 #include "uplift/elements/material.h"
+#include "uplift/mesh/cell_quadrature.h"
 #include "uplift/mesh/cells.h"
 
 // Inside of the solid elements: what depends on the cell type only, computed once per type, and the gradients at a point.
@@ -25,6 +26,8 @@ struct SolidTables {
   Matrix to_nodes;  // nodal values from those at the points of `stiffness`
 };
 const SolidTables& solid_tables(Cell cell);
+/// Those of a cell that is filled in part, for the rule of the part: one rule for stiffness and mass; nodes get the mean of the points.
+SolidTables part_tables(Cell cell, const CellRule& rule);
 
 /// g[i][a] = dN_a/dx_i [1/m] of the nodes, then of the bubbles; `volume`: what the point stands for [m3].
 struct PointGradient {

@@ -183,6 +183,11 @@ int Mesh::cells() const {
   return sum;
 }
 
+const CellPart* Mesh::part(CellId id) const {
+  const auto found = parts.find(id);
+  return found == parts.end() ? nullptr : &found->second;
+}
+
 std::vector<int> nodes_of(const Mesh& mesh, const Group& group) {
   std::vector<int> nodes = group.nodes;
   for (const CellId id : group.cells) {

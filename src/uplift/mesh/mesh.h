@@ -2,10 +2,12 @@
 #include <cstdint>
 #include <map>
 #include <string>
+#include <utility>
 #include <vector>
 
 #include "uplift/base/error.h"
 #include "uplift/math/linalg.h"
+#include "uplift/mesh/cell_quadrature.h"
 #include "uplift/mesh/cells.h"
 
 namespace uplift {
@@ -35,17 +37,36 @@ struct Group {
   std::vector<int> nodes;     // of a group of nodes, ascending
 };
 
+/// What a plane leaves of a cell that it cuts (mesh/cut.h): the cell's nodes and shape functions, integrated over one side of the plane.
+struct CellPart {
+  CellRule rule;  // over the part, in the cell's local coordinates; the weights add up to the part's share of the reference cell
+  struct Piece {
+    Cell cell = Cell::point;
+    std::vector<int> nodes = {};  // of the mesh, also followers
+  };
+  std::vector<Piece> pieces;  // the part itself, for drawings
+};
+
+/// A node of drawings alone: it moves as these nodes with these weights.
+struct Follower {
+  int node = 0;
+  std::vector<std::pair<int, double>> of;
+};
+
 /// Nodes, cells, named groups. In plane models z = 0. A value: checked by `check_mesh`, never half valid.
 struct Mesh {
   int dimension = 3;              // 2: all z equal
   std::vector<Vec3> nodes;        // m
   std::vector<CellBlock> blocks;  // at most one per type
   std::map<std::string, Group> groups;
-  CellBlock& block(Cell cell);      // made when it is not there (references to other blocks end then)
-  int find_block(Cell cell) const;  // -1 when absent
+  std::map<CellId, CellPart> parts = {};  // of cells that are filled in part; all others are whole
+  std::vector<Follower> followers = {};   // used by the pieces of parts
+  CellBlock& block(Cell cell);            // made when it is not there (references to other blocks end then)
+  int find_block(Cell cell) const;        // -1 when absent
   std::span<const int> cell(CellId id) const { return blocks[static_cast<std::size_t>(id.block)][id.index]; }
   Cell type(CellId id) const { return blocks[static_cast<std::size_t>(id.block)].cell; }
   int cells() const;
+  const CellPart* part(CellId id) const;  // null: the cell is whole
 };
 
 /// Nodes of a group: of its cells, or its own; ascending, each once.

@@ -48,6 +48,10 @@ void ModelBuilder::tie_equal(int a, int b, Dof dof, Where where) {
   equals_.push_back({a, b, dof, std::move(where)});
 }
 
+void ModelBuilder::follow(int node, std::vector<std::pair<int, double>> of, Where where) {
+  follows_.push_back({node, std::move(of), std::move(where)});
+}
+
 void ModelBuilder::tie_rigid(int master, int slave, Where where) {
   ties_.push_back({master, slave, std::move(where)});
 }

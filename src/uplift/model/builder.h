@@ -52,6 +52,8 @@ class ModelBuilder {
   void prescribe(const std::vector<int>& nodes, Dof dof, std::shared_ptr<const TimeFunction> motion, std::string name, const Where& where);
   /// Both nodes have the same value of one unknown. A tie that follows from other constraints is left out.
   void tie_equal(int a, int b, Dof dof, Where where);
+  /// The node, which has no element of its own, moves as these nodes with these weights.
+  void follow(int node, std::vector<std::pair<int, double>> of, Where where);
   /// The slave's translations and rotations follow the master rigidly (small displacements); chains are allowed.
   void tie_rigid(int master, int slave, Where where);
   /// The distance of the two nodes does not change (beam without axial flexibility).
@@ -87,6 +89,11 @@ class ModelBuilder {
   struct Equal {
     int first, second;
     Dof dof;
+    Where where;
+  };
+  struct Follow {
+    int node;
+    std::vector<std::pair<int, double>> of;
     Where where;
   };
   struct TableOfLoads {
@@ -128,6 +135,7 @@ class ModelBuilder {
   std::vector<Support> supports_;
   std::vector<Pair> ties_, links_;
   std::vector<Equal> equals_;
+  std::vector<Follow> follows_;
   std::vector<Motion> motions_;
   std::vector<InterfaceSpec> interfaces_;
   std::vector<Where> interface_where_;

@@ -6,10 +6,10 @@
 
 #include "uplift/base/format.h"
 #include "uplift/case/advice/content.h"
+#include "uplift/case/advice/interface_warnings.h"
 #include "uplift/case/advice/step_suggestion.h"
 #include "uplift/case/ground/ground.h"
 #include "uplift/case/mesh/mesh.h"
-#include "uplift/laws/macro_element.h"
 #include "uplift/model/damping.h"
 #include "uplift/model/hinges.h"
 #include "uplift/model/tuned_mass.h"
@@ -51,29 +51,6 @@ void warn_magnitudes(const Case& read, std::vector<std::string>& said) {
     for (const Values& table : read.values.tables(each.table)) warn_magnitude(table, each, said);
   for (const Values& interface : read.values.tables("interface"))
     if (const Values* water = table_if(interface, "water")) warn_magnitude(*water, water_weight, said);
-}
-
-/// Largest distance between nodes and points of interfaces, in one direction [m].
-double extent(const Model& model) {
-  Vec3 least = model.nodes.front().position, most = least;
-  const auto take = [&](const Vec3& place) { least = least.cwiseMin(place), most = most.cwiseMax(place); };
-  for (const Node& node : model.nodes) take(node.position);
-  for (const Interface& interface : model.interfaces)
-    for (const Vec3& place : interface.position) take(place);
-  return (most - least).maxCoeff();
-}
-
-/// Gaps are small beside a structure.
-void warn_gaps(const BuiltCase& built, std::vector<std::string>& said) {
-  constexpr double most = 0.1;
-  if (built.model.nodes.empty()) return;
-  const double size = extent(built.model);
-  for (const Interface& interface : built.model.interfaces)
-    if (const double gap = interface.gap.maxCoeff(); size > 0 && gap > most * size)
-      said.push_back(
-          fmt::format("interface \"{}\": an initial gap of {} in a model of {} will hardly close (joints have gaps of "
-                      "millimetres to centimetres); is the unit right?",
-                      interface.name, format_quantity(gap, "m"), format_quantity(size, "m")));
 }
 
 /// Static stages apply what is constant, and motions as they are at t = 0.
@@ -159,70 +136,6 @@ void warn_held_faces(const Case& read, const BuiltCase& built, std::vector<std::
       else if (count == dimension)
         said.push_back(place + "no wave leaves there; take stages = \"static\"");
     }
-}
-
-void warn_sides_exchanged(const Case& read, const BuiltCase& built, std::vector<std::string>& said) {
-  const std::vector<Values>& interfaces = read.values.tables("interface");
-  if (interfaces.size() != 1 || !interfaces.front().has("surface") || !(built.weight < 0)) return;
-  if (interfaces.front().has("water") || !interfaces.front().table("surface").has("lower")) return;  // see warn_floating
-  const Values& surface = interfaces.front().table("surface");
-  said.push_back(fmt::format("{}:{}: the dead load of {} pulls the upper side off the lower one: does `lower` name the side that bears?",
-                             surface.where("lower").file, surface.where("lower").line, format_quantity(-built.weight, "N")));
-}
-
-void warn_floating(const Case& read, const BuiltCase& built, std::vector<std::string>& said) {
-  const std::vector<Values>& interfaces = read.values.tables("interface");
-  if (built.weight > 0 || std::ranges::none_of(interfaces, [](const Values& interface) { return interface.has("water"); })) return;
-  said.push_back(fmt::format("the water pressure exceeds the dead load on \"{}\" by {}: the structure floats", built.facts.front().name,
-                             format_quantity(-built.weight, "N")));
-}
-
-bool states_all_stiffnesses(const Values& model, Space space) {
-  return std::ranges::all_of(foundation_stiffness_keys(space.dimension == 2 ? 3 : 6), [&](const char* key) { return model.has(key); });
-}
-
-void warn_foundations(const Case& read, const BuiltCase& built, std::vector<std::string>& said) {
-  const auto comes_in = [](const Values& face) { return face.has("incident"); };
-  const bool waves = std::ranges::any_of(read.values.tables("absorbing"), comes_in);
-  for (const Values& foundation : read.values.tables("foundation")) {
-    const Values& model = foundation.part("model");
-    const std::string place = fmt::format("{}:{}: ", foundation.where().file, foundation.where().line);
-    const Values* soil = table_if(foundation, "soil");
-    const bool radiates = soil != nullptr && soil->flag("radiation");
-    if (soil != nullptr && !radiates && states_all_stiffnesses(model, built.model.space))
-      said.push_back(place + fmt::format("the soil of \"{}\" has no effect: the model states all stiffnesses", foundation.text("name")));
-    if (waves)
-      said.push_back(place +
-                     fmt::format("the ground under \"{}\" does not move with the incident wave: it stands still", foundation.text("name")));
-    if (built.model.interfaces.size() != 1) continue;
-    const MacroElement* ground = as_macro_element(built.model.interfaces.front().law.get());
-    if (ground == nullptr || !ground->surfaces().has_bearing()) continue;
-    const double capacity = ground->surfaces().strength().ultimate;
-    if (built.weight >= capacity)
-      said.push_back(place + fmt::format("the dead load is {}, the capacity of \"{}\" {}: unless other parts bear the rest, there is no "
-                                         "equilibrium",
-                                         format_quantity(built.weight, "N"), foundation.text("name"), format_quantity(capacity, "N")));
-  }
-}
-
-/// docs/theory, eq (3): a closure stress above 1 % of the bearing pressure resists the closing of gaps noticeably.
-void warn_closure(const BuiltCase& built, std::vector<std::string>& said) {
-  double area = 0;
-  for (const InterfaceFacts& facts : built.facts) area += facts.area;
-  const double mean = area > 0 ? built.weight / area : 0;
-  for (std::size_t k = 0; k < built.behaviours.size(); ++k) {
-    const Values& law = *built.behaviours[k];
-    const Interface& interface = built.model.interfaces[k];
-    const double closure = interface.law != nullptr ? interface.law->scales().closure : 0;
-    if (!(closure > 0)) continue;
-    if (mean > 0 && closure > 0.01 * mean)
-      said.push_back(fmt::format(
-          "{}:{}: the closure stress of {} is {} of the mean bearing pressure {}: the joint pushes before its gap is closed; keep it below "
-          "1 %",
-          law.where().file, law.where().line, format_quantity(closure, "Pa"), percent(closure / mean), format_quantity(mean, "Pa")));
-    if (!(mean > 0))
-      said.push_back(fmt::format("{}: nothing presses the structure down: the interface opens under any load", built.facts[k].name));
-  }
 }
 
 /// Twenty steps per period of the fastest of the first three modes below 50 Hz (earthquakes hold little above 33 Hz).
@@ -344,77 +257,15 @@ void warn_embedded_feet(const BuiltCase& built, std::vector<std::string>& said) 
 
 }  // namespace
 
-namespace {
-
-/// Modes of the motions that the columns of `held` span.
-std::vector<Mode> modes_within(const Sparse& held, const Sparse& stiffness, const Sparse& mass, int count) {
-  if (held.cols() == 0) return {};
-  const Sparse to_held = held.transpose();
-  std::vector<Mode> found = modes(to_held * stiffness * held, to_held * mass * held, count);
-  for (Mode& mode : found) mode.shape = held * mode.shape;
-  return found;
-}
-
-/// Nodes of all interfaces that are on the upper (lower) side: those whose shape functions have a positive (negative) integral in the
-/// normal openings.
-std::vector<int> nodes_of_sides(const Model& model, bool upper) {
-  Vector integral = Vector::Zero(static_cast<Index>(model.nodes.size()));
-  const SparseRows rows = model.assembly.b;
-  Index row = 0;
-  for (const Interface& face : model.interfaces) {
-    row += face.batch.normal();
-    for (int i = 0; i < face.batch.points; ++i, ++row)
-      for (SparseRows::InnerIterator entry(rows, row); entry; ++entry)
-        if (const int dof = model.space.index_of(entry.col()); dof < model.space.dimension)
-          integral[model.space.node_of(entry.col())] += face.area[i] * entry.value() * face.normal[static_cast<std::size_t>(i)][dof];
-    row += face.rows() - face.batch.normal() - face.batch.points;
-  }
-  std::vector<int> nodes;
-  for (int node = 0; node < static_cast<int>(integral.size()); ++node)
-    if (upper ? integral[node] > 0 : integral[node] < 0) nodes.push_back(node);
-  return nodes;
-}
-
-/// Only the columns that move something else than ground: what is connected to lower sides alone stands still.
-Sparse without_ground(const Sparse& held, const Model& model) {
-  const std::vector<char> above = part_of(model, nodes_of_sides(model, true)), below = part_of(model, nodes_of_sides(model, false));
-  std::vector<Triplet> chosen;
-  for (int column = 0, next = 0; column < static_cast<int>(held.cols()); ++column) {
-    bool ground = true;
-    for (Sparse::InnerIterator entry(held, column); entry; ++entry) {
-      const auto node = static_cast<std::size_t>(model.space.node_of(model.kept[static_cast<std::size_t>(entry.row())]));
-      ground = ground && below[node] && !above[node];
-    }
-    if (!ground) chosen.emplace_back(column, next++, 1.0);
-  }
-  Sparse select(held.cols(), static_cast<Index>(chosen.size()));
-  select.setFromTriplets(chosen.begin(), chosen.end());
-  return held * select;
-}
-
-}  // namespace
-
-std::vector<Mode> bonded_modes(const Model& model, int count) {
-  return modes_within(cones_held(model), bonded_stiffness(model), model.mass, count);
-}
-
-std::vector<Mode> fixed_base_modes(const Model& model, int count) {
-  return modes_within(without_ground(base_held(model), model), model.stiffness, model.mass, count);
-}
-
 std::vector<std::string> warnings(const Case& read, const RunSpec& spec, const BuiltCase& built) {
   std::vector<std::string> said;
   warn_magnitudes(read, said);
-  warn_gaps(built, said);
+  warn_interfaces(read, built, said);
   warn_idle_functions(read, built, said);
   warn_sudden_weight(built, said);
   warn_duration(built, said);
-  warn_closure(built, said);
   warn_sides(read, said);
   warn_held_faces(read, built, said);
-  warn_sides_exchanged(read, built, said);
-  warn_foundations(read, built, said);
-  warn_floating(read, built, said);
   warn_hinges(built, said);
   warn_embedded_feet(built, said);
   warn_step(built, said);

@@ -6,6 +6,7 @@
 #include "uplift/case/build/model.h"
 #include "uplift/case/build/water.h"
 #include "uplift/elements/discrete.h"
+#include "uplift/interface/cut_joint.h"
 #include "uplift/interface/facets.h"
 #include "uplift/laws/tangential.h"
 
@@ -116,24 +117,42 @@ void add_surface(const Values& interface, const Values& surface, const std::vect
       for (auto& [node, shape] : *side) node += names.first_of_mesh;
 }
 
+/// Cones hold their points by constraints, which are too many on inclined faces: their tractions would not be determined.
+void add_cut(const Values& interface, const Values& cut, const std::vector<CutFace>& faces, const CaseNames& names, Joint& joint) {
+  const Mesh& mesh = names.solids->mesh();
+  const double thickness = mesh.dimension == 2 ? thickness_of(*names.solids, faces, cut) : 1;
+  CutJoints made = cut_joints(mesh, faces, normal_of_cut(cut, mesh.dimension), thickness, uniform_gap(interface));
+  joint.facts.facets = std::make_shared<Facets>(std::move(made.facets));
+  joint.facts.level = !made.inclined;
+  for (const CutFace& face : faces) joint.facts.corners.insert(joint.facts.corners.end(), face.corners.begin(), face.corners.end());
+  joint.points = std::move(made.points);
+  for (JointPoint& point : joint.points)
+    for (auto* side : {&point.upper, &point.lower})
+      for (auto& [node, shape] : *side) node += names.first_of_mesh;
+}
+
 /// See InterfaceFacts::depth.
-double depth_of(const Values& interface, const std::vector<FacePair>& open, const CaseNames& names) {
+double depth_of(const Values& interface, const std::vector<FacePair>& open, const std::vector<CutFace>& cut, const CaseNames& names) {
   if (names.space.dimension == 3) return 0;
   for (const char* kind : {"footing", "line"})
     if (const Values* table = table_if(interface, kind)) return table->number("thickness");
+  if (const Values* table = table_if(interface, "cut")) return thickness_of(*names.solids, cut, *table);
   const Values* surface = table_if(interface, "surface");
   return surface ? thickness_of(*names.solids, open, *surface) : 0;
 }
 
 }  // namespace
 
-Joint make_joint(const Values& interface, const std::vector<FacePair>& open, bool rigid_ground, ModelBuilder& builder, CaseNames& names) {
+Joint make_joint(const Values& interface, const std::vector<FacePair>& open, const std::vector<CutFace>& cut_faces, bool rigid_ground,
+                 ModelBuilder& builder, CaseNames& names) {
   const Values* footing = table_if(interface, "footing");
   const Values* pairs = table_if(interface, "pairs");
   const Values* line = table_if(interface, "line");
   const Values* surface = table_if(interface, "surface");
-  const int kinds = (footing != nullptr) + (pairs != nullptr) + (line != nullptr) + (surface != nullptr);
-  if (kinds != 1) fail(interface, "", "exactly one of footing, pairs, line and surface", kinds == 0 ? "none" : fmt::format("{}", kinds));
+  const Values* cut = table_if(interface, "cut");
+  const int kinds = (footing != nullptr) + (pairs != nullptr) + (line != nullptr) + (surface != nullptr) + (cut != nullptr);
+  if (kinds != 1)
+    fail(interface, "", "exactly one of footing, pairs, line, surface and cut", kinds == 0 ? "none" : fmt::format("{}", kinds));
   Joint joint;
   if (footing) joint = footing_joint(interface, *footing, rigid_ground, builder, names);
   if (pairs)
@@ -148,8 +167,9 @@ Joint make_joint(const Values& interface, const std::vector<FacePair>& open, boo
     joint.facts.facets = std::make_shared<Facets>(line_facets(joint.points, made.thickness));
   }
   if (surface) add_surface(interface, *surface, open, names, joint);
+  if (cut) add_cut(interface, *cut, cut_faces, names, joint);
   if (surface) joint.facts.faces = open, joint.facts.nodal = surface->text("quadrature") == "nodal";
-  joint.facts.depth = depth_of(interface, open, names);
+  joint.facts.depth = depth_of(interface, open, cut_faces, names);
   set_gaps(interface, joint.points, names);
   set_water(interface, joint.points, names);
   const Place reference = joint.reference;

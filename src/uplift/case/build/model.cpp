@@ -187,12 +187,18 @@ void add_mesh(const Case& read, ModelBuilder& builder, CaseNames& names) {
     }
   }
   names.coordinates = coordinates;
+  for (const Follower& follower : mesh.followers) {
+    std::vector<std::pair<int, double>> of = follower.of;
+    for (auto& [node, weight] : of) node += names.first_of_mesh;
+    builder.follow(names.first_of_mesh + follower.node, std::move(of), table.where());
+  }
   std::vector<int> nodes;
   for (const CaseSolids::Solid& solid : names.solids->solids())
     for (const CellId cell : solid.cells) {
       nodes.clear();
       for (const int node : mesh.cell(cell)) nodes.push_back(names.first_of_mesh + node);
-      builder.add_element(solid.filling->make({mesh.type(cell), nodes, coordinates}), solid.table->where());
+      const CellPart* part = mesh.part(cell);
+      builder.add_element(solid.filling->make({mesh.type(cell), nodes, coordinates, part ? &part->rule : nullptr}), solid.table->where());
     }
 }
 

@@ -88,8 +88,9 @@ struct Joint {
   InterfaceFacts facts;
   Place reference;
 };
-/// `open`: the faces that the mesh was opened at for it.
-Joint make_joint(const Values& interface, const std::vector<FacePair>& open, bool rigid_ground, ModelBuilder& builder, CaseNames& names);
+/// `open`: the faces that the mesh was opened at for it; `cut`: those that its plane has cut.
+Joint make_joint(const Values& interface, const std::vector<FacePair>& open, const std::vector<CutFace>& cut, bool rigid_ground,
+                 ModelBuilder& builder, CaseNames& names);
 
 /// The underside of a [[foundation]], and its one point.
 Footprint footprint_of(const Values& foundation, Space space);

@@ -38,9 +38,9 @@ std::pair<std::vector<Item>, std::vector<Item>> divided(const std::vector<Item>&
 }
 
 /// The joints of one [[interface]] with their roles: one, or base and walls.
-std::vector<Joint> joints_of(const Values& table, const std::vector<FacePair>& open, const Vec3& up, bool rigid_ground,
-                             ModelBuilder& builder, CaseNames& names) {
-  const auto joint_of = [&](const std::vector<FacePair>& faces) { return make_joint(table, faces, rigid_ground, builder, names); };
+std::vector<Joint> joints_of(const Values& table, const std::vector<FacePair>& open, const std::vector<CutFace>& cut, const Vec3& up,
+                             bool rigid_ground, ModelBuilder& builder, CaseNames& names) {
+  const auto joint_of = [&](const std::vector<FacePair>& faces) { return make_joint(table, faces, cut, rigid_ground, builder, names); };
   if (table.has("role")) {
     Joint joint = joint_of(open);
     joint.facts.role = table.text("role") == "base" ? Role::base : Role::wall;
@@ -84,7 +84,9 @@ std::vector<InterfacePart> interface_parts(const Case& read, bool rigid_ground, 
     const std::string& name = tables[k].text("name");
     names.interfaces.add(tables[k], "name");
     const std::vector<FacePair> none;
-    std::vector<Joint> joints = joints_of(tables[k], read.mesh ? read.mesh->open[k] : none, up, rigid_ground, builder, names);
+    const std::vector<CutFace> no_cut;
+    std::vector<Joint> joints = joints_of(tables[k], read.mesh ? read.mesh->open[k] : none, read.mesh ? read.mesh->cut[k] : no_cut, up,
+                                          rigid_ground, builder, names);
     for (Joint& joint : joints) {
       const bool second = &joint != &joints.front();
       InterfacePart part{&tables[k], second ? name + " walls" : name, std::move(joint)};

@@ -43,7 +43,7 @@ std::vector<SurfaceShare> surface_shares(const CaseSolids& solids, const std::ve
     const double thickness = mesh.dimension == 2 ? solids.beside(face)->section.thickness : 1;
     positions.clear();
     for (const int node : nodes) positions.push_back(mesh.nodes[static_cast<std::size_t>(node)]);
-    CellRule rule = cell_rule(cell, degree);
+    CellRule rule = rule_on_face(mesh, face, nodes, degree);
     if (profile != nullptr && profile->bends_within(positions)) rule = divided_rule(cell, rule, mesh.dimension == 2 ? 64 : 32);
     const std::size_t first = shares.size();
     for (const int node : nodes) shares.push_back({.node = node});

@@ -19,6 +19,12 @@ std::shared_ptr<const TimeFunction> incident_velocity(const Values& incident, co
 
 namespace {
 
+/// Null: the face is whole.
+const CellRule* rule_of_part(const CaseSolids& solids, CellId face) {
+  const CellPart* part = solids.mesh().part(face);
+  return part ? &part->rule : nullptr;
+}
+
 /// The wave that comes in through the faces of a table: their pattern of forces, times its velocity.
 void add_incident(const Values& faces, const Values& incident, ModelBuilder& builder, const CaseNames& names) {
   const CaseSolids& solids = names.mesh_for(faces);
@@ -28,7 +34,7 @@ void add_incident(const Values& faces, const Values& incident, ModelBuilder& bui
   for (const CellId edge : solids.edges(faces, "group")) {
     const std::vector<int> nodes = names.nodes_of_cell(edge);
     const AbsorbingFace face(solids.mesh().type(edge), nodes, names.coordinates,
-                             absorbing_ground(faces, solids.beside(edge)->beside(), names.space));
+                             absorbing_ground(faces, solids.beside(edge)->beside(), names.space), rule_of_part(solids, edge));
     const Vector force = face.incident(motion);
     for (Index i = 0; i < force.size(); ++i)
       if (force[i] != 0)
@@ -45,9 +51,9 @@ void add_faces(const Values& root, ModelBuilder& builder, const CaseNames& names
       const CaseSolids& solids = names.mesh_for(table);
       for (const CellId edge : solids.edges(table, "group")) {
         const std::vector<int> nodes = names.nodes_of_cell(edge);
-        builder.add_element(
-            entry->cover({solids.mesh().type(edge), nodes, names.coordinates}, table, solids.beside(edge)->beside(), names.space),
-            table.where());
+        builder.add_element(entry->cover({solids.mesh().type(edge), nodes, names.coordinates, rule_of_part(solids, edge)}, table,
+                                         solids.beside(edge)->beside(), names.space),
+                            table.where());
       }
     }
   for (const Values& absorbing : root.tables("absorbing"))

@@ -110,6 +110,51 @@ void open_surfaces(const std::vector<Values>& interfaces, CaseMesh& made) {
       made.open[k] = facing_pairs(made.mesh, surface->text("lower_group"), surface->text("upper_group"), surface->where("upper_group"));
 }
 
+/// Least and largest coordinate along an axis as half-spaces.
+void add_outline(const Values& cut, const char* key, const Vec3& axis, std::vector<HalfSpace>& within) {
+  if (!cut.has(key)) return;
+  const std::vector<double>& ends = cut.numbers(key);
+  if (ends.size() != 2 || !(ends[0] < ends[1]))
+    fail(cut, key, "two numbers, the least and the largest",
+         ends.size() == 2 ? fmt::format("{:g} and {:g}", ends[0], ends[1]) : fmt::format("{} numbers", ends.size()));
+  within.push_back({-axis, -ends[0]});
+  within.push_back({axis, ends[1]});
+}
+
+CutPlane plane_of(const Values& cut, int dimension) {
+  const Vec3 normal = normal_of_cut(cut, dimension), up = dimension == 2 ? Vec3::UnitY() : Vec3::UnitZ();
+  CutPlane plane{cut.texts("through"), {}};
+  if (plane.through.empty()) fail(cut, "through", "at least one group of cells", "none");
+  double level = 0;
+  if (cut.has("level"))
+    level = normal.dot(up) * cut.number("level");
+  else
+    level = normal.dot(vector_of(cut, "point", {dimension}));
+  plane.below = {normal, level};
+  if (cut.has("upper")) plane.upper = cut.text("upper");
+  add_outline(cut, "x", Vec3::UnitX(), plane.within);
+  if (dimension == 2 && cut.has("y")) fail(cut, "y", "no y in a plane mesh: height limits the outline", "one");
+  add_outline(cut, "y", Vec3::UnitY(), plane.within);
+  if (cut.has("height")) plane.within.push_back({normal, level + cut.number("height")});
+  return plane;
+}
+
+void cut_planes(const std::vector<Values>& interfaces, CaseMesh& made) {
+  made.cut.resize(interfaces.size());
+  std::vector<CutPlane> planes;
+  std::vector<Where> where;
+  std::vector<std::size_t> of;
+  for (std::size_t k = 0; k < interfaces.size(); ++k)
+    if (const Values* cut = table_if(interfaces[k], "cut")) {
+      planes.push_back(plane_of(*cut, made.mesh.dimension));
+      where.push_back(cut->where());
+      of.push_back(k);
+    }
+  if (planes.empty()) return;
+  std::vector<std::vector<CutFace>> faces = cut(made.mesh, planes, where);
+  for (std::size_t i = 0; i < of.size(); ++i) made.cut[of[i]] = std::move(faces[i]);
+}
+
 const Group& group_named(const Mesh& mesh, const Values& table, std::string_view key, const std::string& what) {
   const std::string& name = table.text(key);
   const auto found = mesh.groups.find(name);
@@ -155,7 +200,8 @@ std::shared_ptr<const CaseMesh> mesh_of_case(const Values& root, const std::stri
   const Values* mesh = table_if(root, "mesh");
   if (!mesh) {
     for (const Values& interface : root.tables("interface"))
-      if (interface.has("surface")) fail(interface, "surface", "a [mesh] for the surface", "none");
+      for (const char* key : {"surface", "cut"})
+        if (interface.has(key)) fail(interface, key, fmt::format("a [mesh] for the {}", key), "none");
     for (const ElementPlace place : {ElementPlace::cells, ElementPlace::faces})
       if (const auto tables = element_tables(root, place); !tables.empty()) fail(*tables.front(), "", "a [mesh] with this group", "none");
     return nullptr;
@@ -174,7 +220,9 @@ std::shared_ptr<const CaseMesh> mesh_of_case(const Values& root, const std::stri
     made->from = "soil_box";
     made->mesh = make_soil_box(mesh->table("soil_box"));
   }
+  cut_planes(root.tables("interface"), *made);
   open_surfaces(root.tables("interface"), *made);
+  if (!made->mesh.parts.empty()) made->pieces = drawn_mesh(made->mesh);
   return made;
 }
 
@@ -205,6 +253,12 @@ void CaseSolids::add(const ElementEntry& entry, const Values& solid) {
   std::shared_ptr<const CellFilling> filling = entry.fill(solid, mesh_->dimension);
   const SolidSection section = filling->section();
   solids_.push_back({&solid, section, std::move(filling), group.cells});
+}
+
+const CaseSolids::Solid& CaseSolids::of(CellId cell) const {
+  const auto found = std::ranges::lower_bound(sides_.cells(), cell);
+  assert(found != sides_.cells().end() && *found == cell);
+  return solids_[at(solid_of_[static_cast<std::size_t>(found - sides_.cells().begin())])];
 }
 
 const CaseSolids::Solid* CaseSolids::beside(CellId edge) const {
@@ -260,7 +314,7 @@ std::vector<std::pair<int, double>> tributary_areas(const CaseSolids& solids, co
     const std::span<const int> nodes = mesh.cell(edge);
     positions.clear();
     for (const int node : nodes) positions.push_back(mesh.nodes[at(node)]);
-    const CellRule rule = cell_rule(cell, 4);
+    const CellRule rule = rule_on_face(mesh, edge, nodes, 4);
     for (std::size_t a = 0; a < nodes.size(); ++a) {
       double area = 0;
       for (std::size_t i = 0; i < rule.point.size(); ++i) {
@@ -271,6 +325,37 @@ std::vector<std::pair<int, double>> tributary_areas(const CaseSolids& solids, co
     }
   }
   return areas;
+}
+
+CellRule rule_on_face(const Mesh& mesh, CellId face, std::span<const int> nodes, int degree) {
+  const Cell cell = mesh.type(face);
+  const CellPart* part = mesh.part(face);
+  if (!part) return cell_rule(cell, degree);
+  std::vector<Vec3> before, now;
+  for (const int node : mesh.cell(face)) before.push_back(mesh.nodes[at(node)]);
+  for (const int node : nodes) now.push_back(mesh.nodes[at(node)]);
+  CellRule rule = part->rule;
+  for (Vec3& point : rule.point) point = local_coordinates(cell, now, cell_position(cell_shape(cell, point), before));
+  return rule;
+}
+
+Vec3 normal_of_cut(const Values& cut, int dimension) {
+  const bool level = cut.has("level");
+  if (level == cut.has("point") || (!level && !cut.has("normal")))
+    fail(cut, "", "either level, or point and normal", level ? "both" : cut.has("point") ? "no normal" : "neither");
+  if (level && cut.has("normal")) fail(cut, "normal", "either level, or point and normal", "level and normal");
+  if (level) return dimension == 2 ? Vec3::UnitY() : Vec3::UnitZ();
+  const Vec3 normal = vector_of(cut, "normal", {dimension});
+  if (normal.norm() == 0) fail(cut, "normal", "a direction", "one of length zero");
+  return normal.normalized();
+}
+
+double thickness_of(const CaseSolids& solids, const std::vector<CutFace>& faces, const Values& cut) {
+  if (cut.has("thickness")) return cut.number("thickness");
+  double least = std::numeric_limits<double>::infinity();
+  for (const CutFace& face : faces)
+    least = std::min({least, solids.of(face.lower).section.thickness, solids.of(face.upper).section.thickness});
+  return least;
 }
 
 double thickness_of(const CaseSolids& solids, const std::vector<FacePair>& faces, const Values& surface) {

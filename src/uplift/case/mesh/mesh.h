@@ -6,6 +6,7 @@
 
 #include "uplift/case/case.h"
 #include "uplift/elements/element_entry.h"
+#include "uplift/mesh/cut.h"
 #include "uplift/mesh/sides.h"
 #include "uplift/mesh/split.h"
 #include "uplift/model/model.h"
@@ -13,11 +14,14 @@
 // The mesh of a case: where it comes from, how its interfaces are opened, what its cells are made of.
 namespace uplift {
 
-/// A mesh, opened along the surfaces of the case's interfaces.
+/// A mesh, cut and opened along the surfaces of the case's interfaces.
 struct CaseMesh {
   Mesh mesh;
+  std::optional<Mesh> pieces = {};  // the mesh as it is drawn, with the pieces of cut cells; absent: as it is
+  const Mesh& drawn() const { return pieces ? *pieces : mesh; }
   std::string from;                         // the file, or "soil_box"
   std::vector<std::vector<FacePair>> open;  // per interface of the case; empty for one without a surface
+  std::vector<std::vector<CutFace>> cut;    // per interface of the case; empty for one without a cut
 };
 
 /// Reads or makes the mesh, checks it, opens it. Surfaces with the same lower side are opened together, others one after another. Null when
@@ -38,6 +42,8 @@ class CaseSolids {
     FillingBeside beside() const { return {section, table->text("group")}; }
   };
   const std::vector<Solid>& solids() const { return solids_; }
+  /// Of a cell.
+  const Solid& of(CellId cell) const;
   /// Of the cell that has this edge; null for an edge of none.
   const Solid* beside(CellId edge) const;
   /// Nodes of such an edge, numbered with the normal out of its cell; empty for an edge between two cells.
@@ -63,6 +69,13 @@ class CaseSolids {
 
 /// Uniform traction on edges: nodes of the mesh with the integrals of their shape functions [m2].
 std::vector<std::pair<int, double>> tributary_areas(const CaseSolids& solids, const std::vector<CellId>& edges);
+
+/// The rule of a face of the mesh, or of the part of it that is filled, for its nodes in this order.
+CellRule rule_on_face(const Mesh& mesh, CellId face, std::span<const int> nodes, int degree);
+
+/// Normal of the plane of a [interface.cut], from its lower to its upper side.
+Vec3 normal_of_cut(const Values& cut, int dimension);
+double thickness_of(const CaseSolids& solids, const std::vector<CutFace>& faces, const Values& cut);
 
 /// Thickness of an opened surface [m]: the smaller one of the solids on both sides. Throws InputError at the table when it changes along
 /// the surface.

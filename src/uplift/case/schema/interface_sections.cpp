@@ -93,11 +93,12 @@ const Section& foundation_section() {
 
 const Section& interface_section() {
   static const Section s{
-      "interface", "a surface that may open: exactly one of footing, pairs, line and surface says where",
+      "interface", "a surface that may open: exactly one of footing, pairs, line, surface and cut says where",
       Fields{
           text("name", "name"), table("footing", footing_section(), "under a rigid footing").optional(),
           table("pairs", pairs_section(), "isolated points").optional(), table("line", line_section(), "along a line").optional(),
           table("surface", surface_section(), "along faces (edges) inside the mesh").optional(),
+          table("cut", cut_section(), "on a plane through cells of the mesh").optional(),
           number("gap", "m",
                  "initial gap of every point; geometry: the distance along the normal at which both sides are drawn, of pairs, lines and "
                  "surfaces with two groups")

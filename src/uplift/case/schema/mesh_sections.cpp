@@ -104,4 +104,24 @@ const Section& surface_section() {
   return s;
 }
 
+const Section& cut_section() {
+  static const Section s{
+      "cut",
+      "a plane through cells of the mesh that ignore it: level, or point and normal. Below it the groups stay as they are. Above it they "
+      "are filled within the outline alone (x, y, height), or everywhere without one",
+      Fields{texts("through", "groups of cells that the plane cuts"),
+             number("level", "m", "height of a horizontal plane (y in the plane, z in space); or give point and normal").optional(),
+             vector("point", "m", "a point of the plane").optional(),
+             vector("normal", "1", "its normal, from the ground to the structure").optional(),
+             text("upper", "group of the cells above the plane, a new name or a group of the mesh; absent: they stay in their groups")
+                 .optional(),
+             vector("x", "m", "outline above the plane: least and largest x; absent: no limit").optional(),
+             vector("y", "m", "in space: least and largest y of the outline; absent: no limit").optional(),
+             number("height", "m", "height of the outline above the plane; absent: no limit").positive().optional(),
+             number("thickness", "m", "length out of the plane (plane meshes); absent: that of the solids (the smaller one)")
+                 .positive()
+                 .optional()}};
+  return s;
+}
+
 }  // namespace uplift

@@ -6,6 +6,7 @@ namespace uplift {
 
 const Section& mesh_section();
 const Section& surface_section();
+const Section& cut_section();
 const Section& tie_section();
 
 }  // namespace uplift

@@ -89,7 +89,7 @@ RunFrames::RunFrames(const Values& fields, const Case& read, const BuiltCase& bu
   check_quantities(fields, elements);
   const std::vector<std::string> groups = wanted_groups(fields, read);
   for (std::size_t k = 0; k < groups.size(); ++k) {
-    blocks_.push_back(field_mesh(mesh, groups[k], {groups[k]}, fields.where("groups")));
+    blocks_.push_back(field_mesh(read.mesh->drawn(), groups[k], {groups[k]}, fields.where("groups")));
     CellMark& mark = blocks_.back().marks.front();  // programs that put the blocks together tell them apart by it
     mark.values.assign(mark.values.size(), static_cast<int>(k));
     mark.meanings = groups;
@@ -100,8 +100,8 @@ RunFrames::RunFrames(const Values& fields, const Case& read, const BuiltCase& bu
       continue;
     }
     solids_.push_back(elements[static_cast<std::size_t>(solid - solids.solids().begin())]);
-    assert(blocks_.back().cell == solid->cells);
   }
+  for (const Follower& follower : mesh.followers) followers_[follower.node] = follower.of;
   std::size_t first_history = 0;
   for (const auto& element : model_->elements)
     if (const int size = element->num_history(); size > 0) {
@@ -149,31 +149,40 @@ std::vector<double> RunFrames::motion(const FieldMesh& block, const Vector& full
 /// At the nodes, the mean of the cells of this material.
 std::vector<double> RunFrames::of_elements(std::size_t block, std::size_t output, const Vector& full,
                                            const std::vector<double>& history) const {
-  const std::size_t points = blocks_[block].points.size();
   const auto width = static_cast<std::size_t>(solids_[block].front()->outputs()[output].components);
-  std::vector<double> sum(width * points, 0), count(points, 0);
-  auto element = solids_[block].begin();
-  for (const CellBlock& type : blocks_[block].blocks)
-    for (int cell = 0; cell < type.count(); ++cell) {
-      const Element& solid = **element++;
-      Vector displacement(solid.unknowns());
-      const std::span<const int> nodes = solid.nodes();
-      for (std::size_t a = 0; a < nodes.size(); ++a)
-        displacement.segment(dimension_ * static_cast<Index>(a), dimension_) =
-            full.segment(static_cast<Index>(stride_) * nodes[a], dimension_);
-      std::span<const double> memory;
-      if (const auto first = first_history_.find(&solid); first != first_history_.end() && !history.empty())
-        memory = std::span(history).subspan(first->second, static_cast<std::size_t>(solid.num_history()));
-      const std::vector<double> values = solid.at_nodes(output, displacement, memory);
-      for (std::size_t a = 0; a < nodes.size(); ++a) {
-        const auto point = static_cast<std::size_t>(type[cell][a]);
-        count[point] += 1;
-        for (std::size_t c = 0; c < width; ++c) sum[width * point + c] += values[width * a + c];
-      }
+  const std::size_t nodes_of_mesh = static_cast<std::size_t>(full.size()) / stride_ - first_ / stride_;
+  std::vector<double> sum(width * nodes_of_mesh, 0), count(nodes_of_mesh, 0);
+  for (const Element* element : solids_[block]) {
+    Vector displacement(element->unknowns());
+    const std::span<const int> nodes = element->nodes();
+    for (std::size_t a = 0; a < nodes.size(); ++a)
+      displacement.segment(dimension_ * static_cast<Index>(a), dimension_) =
+          full.segment(static_cast<Index>(stride_) * nodes[a], dimension_);
+    std::span<const double> memory;
+    if (const auto first = first_history_.find(element); first != first_history_.end() && !history.empty())
+      memory = std::span(history).subspan(first->second, static_cast<std::size_t>(element->num_history()));
+    const std::vector<double> values = element->at_nodes(output, displacement, memory);
+    for (std::size_t a = 0; a < nodes.size(); ++a) {
+      const std::size_t node = static_cast<std::size_t>(nodes[a]) - first_ / stride_;
+      count[node] += 1;
+      for (std::size_t c = 0; c < width; ++c) sum[width * node + c] += values[width * a + c];
     }
-  for (std::size_t point = 0; point < points; ++point)
-    for (std::size_t c = 0; c < width; ++c) sum[width * point + c] /= count[point];
-  return sum;
+  }
+  const auto mean = [&](int node, double weight, double* to) {
+    const auto n = static_cast<std::size_t>(node);
+    for (std::size_t c = 0; c < width; ++c) to[c] += weight * sum[width * n + c] / count[n];
+  };
+  std::vector<double> at_points(width * blocks_[block].node.size(), 0);
+  for (std::size_t point = 0; point < blocks_[block].node.size(); ++point) {
+    const int node = blocks_[block].node[point];
+    const auto follower = followers_.find(node);
+    if (follower == followers_.end()) {
+      mean(node, 1, &at_points[width * point]);
+    } else {
+      for (const auto& [of, weight] : follower->second) mean(of, weight, &at_points[width * point]);
+    }
+  }
+  return at_points;
 }
 
 FieldFrame RunFrames::of(const State& state, const Vector* acceleration, const std::vector<double>& section_forces, double time) const {

@@ -87,8 +87,9 @@ class RunFrames {
   const Model* model_;
   std::vector<std::string> quantities_;  // empty: all
   std::vector<FieldMesh> blocks_;
-  std::vector<std::vector<const Element*>> solids_;      // of the first blocks, in the order of their cells
-  std::map<const Element*, std::size_t> first_history_;  // of the elements with memory: where the state has it
+  std::vector<std::vector<const Element*>> solids_;               // of the first blocks, in the order of their cells
+  std::map<const Element*, std::size_t> first_history_;           // of the elements with memory: where the state has it
+  std::map<int, std::vector<std::pair<int, double>>> followers_;  // nodes of the pieces of cut cells, as in Mesh
   InterfaceFrames interfaces_;
   BeamFrames beams_;                    // of the blocks behind those of the solids
   std::size_t stride_ = 0, first_ = 0;  // unknowns of a node; the first of the mesh's first node

@@ -59,7 +59,7 @@ Drawn drawn_of(const Case& read, const BuiltCase& built) {
   if (read.mesh) {
     std::vector<std::string> groups;
     for (const Values* solid : element_tables(read.values, ElementPlace::cells)) groups.push_back(solid->text("group"));
-    drawn.outline = outline_of(read.mesh->mesh, groups, most_outline_nodes, most_drawn_cells);
+    drawn.outline = outline_of(read.mesh->drawn(), groups, most_outline_nodes, most_drawn_cells);
     end_of_mesh += static_cast<int>(read.mesh->mesh.nodes.size());
   }
   drawn.beams = drawn_beams(built);
@@ -118,7 +118,7 @@ void write_outline(JsonWriter& json, const Drawn& drawn, const Case& read, const
   }
   json.end_array().key("grid").begin_array();
   for (const auto& [a, b] : drawn.outline.edges) {
-    const Vec3 &from = read.mesh->mesh.nodes[static_cast<std::size_t>(a)], &to = read.mesh->mesh.nodes[static_cast<std::size_t>(b)];
+    const Vec3 &from = read.mesh->drawn().nodes[static_cast<std::size_t>(a)], &to = read.mesh->drawn().nodes[static_cast<std::size_t>(b)];
     json.numbers(std::array<double, 4>{from.x(), from.y(), to.x(), to.y()});
   }
   json.end_array();

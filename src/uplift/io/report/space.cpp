@@ -63,7 +63,7 @@ Drawn drawn_of(const Case& read, const BuiltCase& built) {
   for (int i = 0; i < drawn.first_of_mesh; ++i) nodes.insert(i);
   if (read.mesh)
     for (const Values* solid : element_tables(read.values, ElementPlace::cells)) {
-      drawn.surfaces.push_back(surface_of(read.mesh->mesh, solid->text("group")));
+      drawn.surfaces.push_back(surface_of(read.mesh->drawn(), solid->text("group")));
       for (const int node : drawn.surfaces.back().triangles) nodes.insert(drawn.first_of_mesh + node);
     }
   for (const BeamLine& beam : built.beams) nodes.insert(beam.nodes.begin(), beam.nodes.end());

@@ -1,0 +1,143 @@
+#include "uplift/case/advice/interface_warnings.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+
+#include "uplift/base/format.h"
+#include "uplift/case/ground/ground.h"
+#include "uplift/case/mesh/mesh.h"
+#include "uplift/laws/macro_element.h"
+
+namespace uplift {
+namespace {
+
+/// Largest distance between nodes and points of interfaces, in one direction [m].
+double extent(const Model& model) {
+  Vec3 least = model.nodes.front().position, most = least;
+  const auto take = [&](const Vec3& place) { least = least.cwiseMin(place), most = most.cwiseMax(place); };
+  for (const Node& node : model.nodes) take(node.position);
+  for (const Interface& interface : model.interfaces)
+    for (const Vec3& place : interface.position) take(place);
+  return (most - least).maxCoeff();
+}
+
+/// Gaps are small beside a structure.
+void warn_gaps(const BuiltCase& built, std::vector<std::string>& said) {
+  constexpr double most = 0.1;
+  if (built.model.nodes.empty()) return;
+  const double size = extent(built.model);
+  for (const Interface& interface : built.model.interfaces)
+    if (const double gap = interface.gap.maxCoeff(); size > 0 && gap > most * size)
+      said.push_back(
+          fmt::format("interface \"{}\": an initial gap of {} in a model of {} will hardly close (joints have gaps of "
+                      "millimetres to centimetres); is the unit right?",
+                      interface.name, format_quantity(gap, "m"), format_quantity(size, "m")));
+}
+
+void warn_sides_exchanged(const Case& read, const BuiltCase& built, std::vector<std::string>& said) {
+  const std::vector<Values>& interfaces = read.values.tables("interface");
+  if (interfaces.size() != 1 || !interfaces.front().has("surface") || !(built.weight < 0)) return;
+  if (interfaces.front().has("water") || !interfaces.front().table("surface").has("lower")) return;  // see warn_floating
+  const Values& surface = interfaces.front().table("surface");
+  said.push_back(fmt::format("{}:{}: the dead load of {} pulls the upper side off the lower one: does `lower` name the side that bears?",
+                             surface.where("lower").file, surface.where("lower").line, format_quantity(-built.weight, "N")));
+}
+
+void warn_floating(const Case& read, const BuiltCase& built, std::vector<std::string>& said) {
+  const std::vector<Values>& interfaces = read.values.tables("interface");
+  if (built.weight > 0 || std::ranges::none_of(interfaces, [](const Values& interface) { return interface.has("water"); })) return;
+  said.push_back(fmt::format("the water pressure exceeds the dead load on \"{}\" by {}: the structure floats", built.facts.front().name,
+                             format_quantity(-built.weight, "N")));
+}
+
+bool states_all_stiffnesses(const Values& model, Space space) {
+  return std::ranges::all_of(foundation_stiffness_keys(space.dimension == 2 ? 3 : 6), [&](const char* key) { return model.has(key); });
+}
+
+void warn_foundations(const Case& read, const BuiltCase& built, std::vector<std::string>& said) {
+  const auto comes_in = [](const Values& face) { return face.has("incident"); };
+  const bool waves = std::ranges::any_of(read.values.tables("absorbing"), comes_in);
+  for (const Values& foundation : read.values.tables("foundation")) {
+    const Values& model = foundation.part("model");
+    const std::string place = fmt::format("{}:{}: ", foundation.where().file, foundation.where().line);
+    const Values* soil = table_if(foundation, "soil");
+    const bool radiates = soil != nullptr && soil->flag("radiation");
+    if (soil != nullptr && !radiates && states_all_stiffnesses(model, built.model.space))
+      said.push_back(place + fmt::format("the soil of \"{}\" has no effect: the model states all stiffnesses", foundation.text("name")));
+    if (waves)
+      said.push_back(place +
+                     fmt::format("the ground under \"{}\" does not move with the incident wave: it stands still", foundation.text("name")));
+    if (built.model.interfaces.size() != 1) continue;
+    const MacroElement* ground = as_macro_element(built.model.interfaces.front().law.get());
+    if (ground == nullptr || !ground->surfaces().has_bearing()) continue;
+    const double capacity = ground->surfaces().strength().ultimate;
+    if (built.weight >= capacity)
+      said.push_back(place + fmt::format("the dead load is {}, the capacity of \"{}\" {}: unless other parts bear the rest, there is no "
+                                         "equilibrium",
+                                         format_quantity(built.weight, "N"), foundation.text("name"), format_quantity(capacity, "N")));
+  }
+}
+
+/// Where a plane cuts its cells at an angle, tractions of joints much stiffer than the cells vary from point to point (docs/theory).
+void warn_inclined_cuts(const Case& read, const BuiltCase& built, std::vector<std::string>& said) {
+  constexpr double most = 100;
+  for (std::size_t k = 0; k < built.facts.size(); ++k) {
+    const InterfaceLaw* law = built.model.interfaces[k].law.get();
+    if (built.facts[k].level || law == nullptr) continue;
+    const CaseSolids solids(read.values, *read.mesh);
+    const std::vector<Values>& tables = read.values.tables("interface");
+    double softest = 0;  // m/Pa: size over Young's modulus
+    for (std::size_t t = 0; t < tables.size(); ++t)
+      if (tables[t].text("name") == built.facts[k].name)
+        for (const CutFace& face : read.mesh->cut[t])
+          for (const CellId cell : {face.lower, face.upper}) {
+            const int dimension = solids.mesh().dimension;
+            const double size = std::pow(signed_size(solids.mesh(), cell), 1.0 / dimension);
+            if (!face.level) softest = std::max(softest, size / solids.of(cell).section.material.young);
+          }
+    std::array<double, 3> stiffness{};
+    law->closed_stiffness(built.model.interfaces[k].batch.components, stiffness.data());
+    const double ratio = stiffness[static_cast<std::size_t>(built.model.interfaces[k].batch.components) - 1] * softest;
+    if (ratio > most)
+      said.push_back(
+          fmt::format("\"{}\" cuts its cells at an angle, and its stiffness is {:.3g} times E/h of the softer cells: the pressures of its "
+                      "points vary from one to the next; forces and moments are right; keep K_n below {:g} E/h, or turn the mesh",
+                      built.facts[k].name, ratio, most));
+  }
+}
+
+/// docs/theory, eq (3): a closure stress above 1 % of the bearing pressure resists the closing of gaps noticeably.
+void warn_closure(const BuiltCase& built, std::vector<std::string>& said) {
+  double area = 0;
+  for (const InterfaceFacts& facts : built.facts) area += facts.area;
+  const double mean = area > 0 ? built.weight / area : 0;
+  for (std::size_t k = 0; k < built.behaviours.size(); ++k) {
+    const Values& law = *built.behaviours[k];
+    const Interface& interface = built.model.interfaces[k];
+    const double closure = interface.law != nullptr ? interface.law->scales().closure : 0;
+    if (!(closure > 0)) continue;
+    if (mean > 0 && closure > 0.01 * mean)
+      said.push_back(fmt::format(
+          "{}:{}: the closure stress of {} is {} of the mean bearing pressure {}: the joint pushes before its gap is closed; keep it below "
+          "1 %",
+          law.where().file, law.where().line, format_quantity(closure, "Pa"), percent(closure / mean), format_quantity(mean, "Pa")));
+    if (!(mean > 0))
+      said.push_back(fmt::format("{}: nothing presses the structure down: the interface opens under any load", built.facts[k].name));
+  }
+}
+
+}  // namespace
+
+void warn_interfaces(const Case& read, const BuiltCase& built, std::vector<std::string>& said) {
+  warn_gaps(built, said);
+  warn_closure(built, said);
+  warn_sides_exchanged(read, built, said);
+  warn_foundations(read, built, said);
+  warn_inclined_cuts(read, built, said);
+  warn_floating(read, built, said);
+}
+
+}  // namespace uplift

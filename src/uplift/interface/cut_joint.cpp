@@ -1,0 +1,161 @@
+#include "uplift/interface/cut_joint.h"
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <map>
+#include <numeric>
+
+#include "uplift/interface/interface.h"
+#include "uplift/mesh/cell_shapes.h"
+
+namespace uplift {
+namespace {
+
+std::size_t at(int i) {
+  return static_cast<std::size_t>(i);
+}
+
+using Weights = std::vector<std::pair<int, double>>;
+
+/// Nodes of a cell with their shape functions at a place.
+Weights weights_at(const Mesh& mesh, CellId id, const Vec3& place) {
+  std::vector<Vec3> corners;
+  for (const int node : mesh.cell(id)) corners.push_back(mesh.nodes[at(node)]);
+  const CellShape shape = cell_shape(mesh.type(id), local_coordinates(mesh.type(id), corners, place));
+  Weights weights;
+  for (std::size_t a = 0; a < corners.size(); ++a)
+    if (std::abs(shape.value[a]) > 1e-13) weights.emplace_back(mesh.cell(id)[a], shape.value[a]);
+  std::ranges::sort(weights);
+  return weights;
+}
+
+/// Points that faces share are one point with the sum of their areas.
+class Points {
+ public:
+  Points(const Mesh& mesh, const Vec3& normal, double gap) : mesh_(mesh), normal_(normal), gap_(gap) {}
+  int add(const CutFace& face, const Vec3& place, double area) {
+    const Weights upper = weights_at(mesh_, face.upper, place), lower = weights_at(mesh_, face.lower, place);
+    std::vector<int> nodes;
+    for (const Weights* side : {&upper, &lower})
+      for (const auto& [node, weight] : *side) nodes.push_back(node);
+    for (const int known : at_nodes_[nodes]) {
+      JointPoint& point = points[at(known)];
+      if (!same(point.upper, upper) || !same(point.lower, lower)) continue;
+      point.area += area;
+      return known;
+    }
+    at_nodes_[nodes].push_back(static_cast<int>(points.size()));
+    JointPoint& point = points.emplace_back();
+    point.position = place;
+    point.normal = normal_;
+    point.area = area;
+    point.gap = gap_;
+    point.upper = upper;
+    point.lower = lower;
+    return static_cast<int>(points.size()) - 1;
+  }
+  std::vector<JointPoint> points;
+
+ private:
+  static bool same(const Weights& a, const Weights& b) {
+    for (std::size_t i = 0; i < a.size(); ++i)
+      if (std::abs(a[i].second - b[i].second) > 1e-9) return false;
+    return true;
+  }
+  const Mesh& mesh_;
+  Vec3 normal_;
+  double gap_;
+  std::map<std::vector<int>, std::vector<int>> at_nodes_;
+};
+
+double triangle_area(const Vec3& a, const Vec3& b, const Vec3& c) {
+  return cross(b - a, c - a).norm() / 2;
+}
+
+void add_line(const CutFace& face, double thickness, Points& points) {
+  const Vec3 &a = face.corners[0], &b = face.corners[1];
+  const double area = thickness * (b - a).norm();
+  points.add(face, a, area / (face.level ? 2 : 6));
+  points.add(face, b, area / (face.level ? 2 : 6));
+  if (!face.level) points.add(face, (a + b) / 2, area * 2 / 3);
+}
+
+void add_level_quadrilateral(const CutFace& face, Points& points, Facets& facets) {
+  const std::vector<Vec3>& x = face.corners;
+  const double area = triangle_area(x[0], x[1], x[2]) + triangle_area(x[0], x[2], x[3]);
+  std::array<int, 4> p{};
+  for (std::size_t k = 0; k < 4; ++k) p[k] = points.add(face, x[k], area / 4);
+  for (const auto& [a, b, c] : {std::array<std::size_t, 3>{0, 1, 2}, {0, 2, 3}, {0, 1, 3}, {1, 2, 3}})  // halved both ways
+    facets.pieces.push_back({{p[a], p[b], p[c]}, triangle_area(x[a], x[b], x[c]) / 2});
+}
+
+void add_triangles(const CutFace& face, Points& points, Facets& facets) {
+  const std::vector<Vec3>& x = face.corners;
+  for (std::size_t k = 2; k < x.size(); ++k) {
+    const std::array<Vec3, 3> corner{x[0], x[k - 1], x[k]};
+    const double area = triangle_area(corner[0], corner[1], corner[2]);
+    if (area == 0) continue;
+    std::array<int, 3> c{}, m{};
+    for (std::size_t i = 0; i < 3; ++i) c[i] = points.add(face, corner[i], area * (face.level ? 1.0 / 3 : 1.0 / 20));
+    if (face.level) {
+      facets.pieces.push_back({{c[0], c[1], c[2]}, area});
+      continue;
+    }
+    for (std::size_t i = 0; i < 3; ++i) m[i] = points.add(face, (corner[i] + corner[(i + 1) % 3]) / 2, area * 2 / 15);
+    const int middle = points.add(face, (corner[0] + corner[1] + corner[2]) / 3, area * 9 / 20);
+    for (std::size_t i = 0; i < 3; ++i) {
+      facets.pieces.push_back({{c[i], m[i], middle}, area / 6});
+      facets.pieces.push_back({{m[i], c[(i + 1) % 3], middle}, area / 6});
+    }
+  }
+}
+
+/// Order of the points along the line, or by rows.
+std::vector<int> order_of(const std::vector<JointPoint>& points, const Vec3& normal, int dimension) {
+  std::vector<int> order(points.size());
+  std::iota(order.begin(), order.end(), 0);
+  const Vec3 t1 = local_axis({dimension}, normal, 0), t2 = dimension == 3 ? local_axis({3}, normal, 1) : Vec3::Zero().eval();
+  double size = 0;
+  for (const JointPoint& point : points) size = std::max(size, (point.position - points.front().position).norm());
+  const auto row = [&](int i) { return size > 0 ? std::lround(t2.dot(points[at(i)].position) / (1e-9 * size)) : 0; };
+  std::ranges::stable_sort(order, [&](int a, int b) {
+    const long at_a = row(a), at_b = row(b);
+    return std::abs(at_a - at_b) > 1 ? at_a < at_b : t1.dot(points[at(a)].position) < t1.dot(points[at(b)].position);
+  });
+  return order;
+}
+
+}  // namespace
+
+CutJoints cut_joints(const Mesh& mesh, const std::vector<CutFace>& faces, const Vec3& normal, double thickness, double gap) {
+  Points points(mesh, normal, gap);
+  CutJoints made;
+  for (const CutFace& face : faces) {
+    made.inclined = made.inclined || !face.level;
+    if (mesh.dimension == 2)
+      add_line(face, thickness, points);
+    else if (face.level && face.corners.size() == 4 && info(mesh.type(face.upper)).corners > 4)
+      add_level_quadrilateral(face, points, made.facets);
+    else
+      add_triangles(face, points, made.facets);
+  }
+  const std::vector<int> order = order_of(points.points, normal, mesh.dimension);
+  std::vector<int> number(order.size());
+  for (std::size_t i = 0; i < order.size(); ++i) {
+    number[at(order[i])] = static_cast<int>(i);
+    made.points.push_back(std::move(points.points[at(order[i])]));
+  }
+  if (mesh.dimension == 2) {
+    made.facets = line_facets(made.points, thickness);
+    return made;
+  }
+  for (Facets::Piece& piece : made.facets.pieces)
+    for (int& corner : piece.corner) corner = number[at(corner)];
+  made.facets.num_points = static_cast<int>(made.points.size());
+  made.facets.dimension = 3;
+  made.facets.at_edge = true;
+  return made;
+}
+
+}  // namespace uplift

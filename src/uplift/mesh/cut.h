@@ -1,0 +1,42 @@
+#pragma once
+#include <string>
+#include <vector>
+
+#include "uplift/mesh/clip.h"
+#include "uplift/mesh/mesh.h"
+
+// Cuts a mesh along planes that its cells ignore, so that both sides can part there (docs/theory/cut_elements.md). A cut cell becomes two
+// cells on the same place, one for each side: each has the shape functions of the whole cell, integrated over its side (Hansbo & Hansbo,
+// CMAME 193 (2004) 3523-3540; the phantom nodes of Areias & Belytschko, IJNME 66 (2006) 1039-1043). It keeps the nodes on its own side; the
+// nodes beyond the plane are doubled, one double for all cells around it.
+namespace uplift {
+
+/// A plane and what lies above it.
+struct CutPlane {
+  std::vector<std::string> through;    // groups of cells that it cuts
+  HalfSpace below;                     // the lower side; its normal points from the lower to the upper side
+  std::string upper = {};              // group of what lies above, of a new name or not; empty: what lies above stays in its groups
+  std::vector<HalfSpace> within = {};  // above the plane the groups `through` are filled within all of these alone; none: everywhere
+};
+
+/// The part of a plane that one cell, or two cells with a face on the plane, have in common.
+struct CutFace {
+  CellId lower, upper;
+  std::vector<Vec3> corners;  // m; in the plane two, in space three or more in the order of the outline
+  bool level = false;  // parallel to faces of a cell with parallel sides, as the edges of the outline, or the cell is a triangle or tet
+};
+
+/// Cuts the mesh and removes what is not filled: cells, and nodes that no cell uses. For each plane its faces.
+/// - Cells of the groups `through` alone are cut; all others must lie on one side of the plane, or outside of `within`.
+/// - Nodes within 1e-8 of the shortest edge from a plane count as on it; where all nodes of a face are, the mesh is opened there as by
+///   `split`.
+/// - Faces (edges in the plane) of groups are cut and removed with their cells; a group of nodes that has a node gets its double too.
+///   Cells of lower dimension (beams, points) on the plane go with the upper side.
+/// Throws InputError: a group absent (with the nearest name) or of something else, cut cells of the second degree, a cell that two planes
+/// cut, a plane that cuts nothing. The mesh is unchanged then.
+std::vector<std::vector<CutFace>> cut(Mesh& mesh, const std::vector<CutPlane>& planes, const std::vector<Where>& where);
+
+/// The mesh as it is drawn: parts are replaced by their pieces. Nodes keep their numbers.
+Mesh drawn_mesh(const Mesh& mesh);
+
+}  // namespace uplift

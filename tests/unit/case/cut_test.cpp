@@ -1,0 +1,197 @@
+#include <fmt/format.h>
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <numbers>
+
+#include "text_support.h"
+#include "uplift/case/case.h"
+#include "uplift/case/mesh/mesh.h"
+#include "uplift/io/text/toml.h"
+#include "uplift/mesh/box.h"
+
+// Interfaces on planes that the mesh ignores: against closed forms, and against the aligned joint.
+namespace uplift {
+namespace {
+
+Case read_text(const std::string& text, const Mesh& mesh) {
+  return check_case(read_toml_text(text, "case.toml"), "case.toml",
+                    [&](const std::string&, const Where&, const std::string&) { return mesh; });
+}
+
+RunResult run_text(const std::string& text, const Mesh& mesh) {
+  BuiltCase built = build(read_text(text, mesh), RunSpec{});
+  RunResult result = run(built.model, built.plan, built.behaviours);
+  EXPECT_EQ(to_string(result.status), "completed") << result.reason;
+  return result;
+}
+
+std::span<const double> history(const RunResult& result, const std::string& column) {
+  for (std::size_t k = 0; k < result.columns.size(); ++k)
+    if (result.columns[k].name == column) return result.table[k + 1];
+  ADD_FAILURE() << "no column " << column;
+  return {};
+}
+
+double at_rest(const RunResult& result, const std::string& column) {
+  return history(result, column).front();
+}
+
+constexpr const char* at_rest_stages = R"(
+[[stage]]
+type = "static"
+[[stage]]
+type = "dynamic"
+duration = 1e-3
+step = 1e-3
+)";
+
+std::string solid(const std::string& group, double young, double poisson, double density, const std::string& extra = {}) {
+  return fmt::format("[[solid]]\ngroup = \"{}\"\nE = {}\npoisson = {}\ndensity = {}\n{}", group, young, poisson, density, extra);
+}
+
+// ---- the patch test: a bar in tension, cut at 25 degrees, with an elastic joint ----
+
+constexpr double young = 2e10, poisson = 0.2, traction = 1e6, joint_stiffness = 1e11;
+
+std::string bar(const std::string& normal, int dimension) {
+  const std::string zeros = dimension == 2 ? "0" : "0, 0";
+  return "title = \"bar\"\n[mesh]\nfile = \"bar.msh\"\n" + solid("volume", young, poisson, 2000) + solid("beyond", young, poisson, 2000) +
+         "[[support]]\ngroup = \"left\"\nfixed = [\"ux\"]\n" +
+         (dimension == 2 ? "[[support]]\nnode = \"mesh.1\"\nfixed = [\"uy\"]\n"
+                         : "[[support]]\ngroup = \"front\"\nfixed = [\"uy\"]\n[[support]]\ngroup = \"bottom\"\nfixed = [\"uz\"]\n") +
+         fmt::format("[[load]]\nname = \"pull\"\ngroup = \"right\"\ntraction = [{}, {}]\n", traction, zeros) +
+         fmt::format(
+             "[[interface]]\nname = \"crack\"\ncut = {{ through = [\"volume\"], point = [2.03, 0.47{}], normal = {}, upper = "
+             "\"beyond\" }}\nlaw = {{ type = \"elastic\", K_n = {}, K_t = {} }}\n",
+             dimension == 2 ? "" : ", 0.5", normal, joint_stiffness, joint_stiffness) +
+         fmt::format("[[output.history]]\nname = \"end\"\nat = [4, 1{}]\nquantity = \"ux\"\n", dimension == 2 ? "" : ", 1") +
+         at_rest_stages;
+}
+
+TEST(CutCase, BarWithAnInclinedCrackHasUniformStress) {
+  // sigma L (1 - nu^2)/E + cos a delta_n + sigma sin^2 a cos a/K_t with K_n delta_n = sigma cos^2 a; in space uniaxial stress
+  const double a = 25 * std::numbers::pi / 180, c = std::cos(a), s = std::sin(a);
+  const double jump = traction * c * c / joint_stiffness * c + traction * s * s * c / joint_stiffness;
+  const auto x = uniform_lines(0, 4, 9), y = uniform_lines(0, 1, 3);
+  for (const Cell cell : {Cell::tri3, Cell::quad4}) {
+    const RunResult result = run_text(bar(fmt::format("[{}, {}]", c, s), 2), rectangle(x, y, cell));
+    const double expected = traction * 4 * (1 - poisson * poisson) / young + jump;
+    EXPECT_NEAR(at_rest(result, "end"), expected, 1e-9 * expected) << info(cell).name;
+  }
+  for (const Cell cell : {Cell::tet4, Cell::wedge6, Cell::hex8}) {
+    const std::string upright = fmt::format("[{}, 0, {}]", c, s);
+    std::string text = bar(upright, 3);
+    const std::string held = "[[support]]\ngroup = \"bottom\"\nfixed = [\"uz\"]\n";
+    text.replace(text.find(held), held.size(), "[[support]]\nnode = \"mesh.1\"\nfixed = [\"uz\"]\n");
+    const RunResult result = run_text(text, box(x, y, y, cell));
+    const double expected = traction * 4 / young + jump;
+    EXPECT_NEAR(at_rest(result, "end"), expected, 1e-9 * expected) << info(cell).name;
+  }
+}
+
+// ---- a column of soil and block that is one group in the mesh ----
+
+constexpr double depth = 5.63, height = 4.37, soil_young = 5e7, block_young = 2e9, soil_density = 1900, block_density = 700, gravity = 10;
+
+std::string column(double level, const std::string& law, bool block = true) {
+  return "title = \"column\"\n[mesh]\nfile = \"column.msh\"\n" + solid("volume", soil_young, 0.3, soil_density) +
+         (block ? solid("block", block_young, 0.3, block_density) : "") +
+         "[[support]]\ngroup = \"bottom\"\nfixed = [\"ux\", \"uy\"]\n[[support]]\ngroup = \"left\"\nfixed = [\"ux\"]\n"
+         "[[support]]\ngroup = \"right\"\nfixed = [\"ux\"]\n"
+         "[gravity]\nacceleration = [0, -10]\n" +
+         fmt::format("[[interface]]\nname = \"base\"\ncut = {{ through = [\"volume\"], level = {}, upper = \"block\" }}\nlaw = {}\n", level,
+                     law) +
+         "[[output.history]]\nname = \"top\"\nat = [0, 10]\nquantity = \"uy\"\n" + at_rest_stages;
+}
+
+TEST(CutCase, ColumnOfTwoMaterialsSettlesByTheClosedForm) {
+  // One-dimensional strain: the elements are exact at their nodes, cut ones too.
+  const auto constrained = [](double e) { return e * 0.7 / (1.3 * 0.4); };
+  const double pressure = block_density * gravity * height, joint = 3e7;
+  const double soil = soil_density * gravity * depth * depth / (2 * constrained(soil_young)) + pressure * depth / constrained(soil_young);
+  const double block = block_density * gravity * height * height / (2 * constrained(block_young));
+  const RunResult result = run_text(column(depth, fmt::format("{{ type = \"elastic\", K_n = {}, tangential = \"bonded\" }}", joint)),
+                                    rectangle(uniform_lines(-1, 1, 2), uniform_lines(0, 10, 10)));
+  const double expected = -(soil + pressure / joint + block);
+  EXPECT_NEAR(at_rest(result, "top"), expected, 1e-9 * std::abs(expected));
+  EXPECT_NEAR(at_rest(result, "base.axial"), -pressure * 2, 1e-9 * pressure);
+}
+
+TEST(CutCase, ThroughNodesItIsTheAlignedJoint) {
+  const Grid lines{uniform_lines(-1, 1, 4), uniform_lines(0, 10, 10), {}};
+  const Mesh parted = grid(
+      lines, [](int, int j, int) { return j < 6 ? 0 : 1; }, {"volume", "block"},
+      [](int part, Direction direction, int other) -> std::string {
+        if (part == 0 && other == 1) return "interface";
+        return other >= 0 ? "" : std::string(name_of(direction));
+      });
+  const std::string law = "{ type = \"springs\", K_n = 1e10, K_t = 1e10 }";
+  std::string text = column(6, law);
+  const std::string push =
+      "[[function]]\nname = \"push\"\nshape = { type = \"harmonic\", frequency = 2, amplitude = 12e3 }\n"
+      "[[load]]\ngroup = \"top\"\ntraction = [1, 0]\nfunction = \"push\"\n";
+  const std::string sides = "[[support]]\ngroup = \"left\"\nfixed = [\"ux\"]\n[[support]]\ngroup = \"right\"\nfixed = [\"ux\"]\n";
+  text.replace(text.find(sides), sides.size(), push);
+  text.replace(text.find("duration = 1e-3"), 15, "duration = 0.3 ");
+  std::string aligned = text;
+  const std::string cut = "cut = { through = [\"volume\"], level = 6, upper = \"block\" }";
+  aligned.replace(aligned.find(cut), cut.size(), "surface = { group = \"interface\", lower = [\"volume\"] }");
+  Mesh one = rectangle(lines.x, lines.y);
+  const RunResult a = run_text(text, one), b = run_text(aligned, parted);
+  double open = 0;
+  for (const char* name : {"base.moment", "base.axial", "top"}) {
+    const auto x = history(a, name), y = history(b, name);
+    ASSERT_EQ(x.size(), y.size());
+    double most = 0, off = 0;
+    for (std::size_t i = 0; i < x.size(); ++i) most = std::max(most, std::abs(y[i])), off = std::max(off, std::abs(x[i] - y[i]));
+    EXPECT_LT(off, 1e-9 * most) << name;
+  }
+  for (const double ratio : history(a, "base.uplifted_ratio")) open = std::max(open, ratio);
+  EXPECT_GT(open, 0.1);
+}
+
+// ---- a rigid block on tensionless springs; published values of a cut mesh (not of this program) ----
+
+TEST(CutCase, RockingBlockOnTensionlessSprings) {
+  // W = 3 m, plane at 0.37 m in rows of 0.25 m, k = 2e8 Pa/m, N = 1 MN/m: theta/theta_u at M/M_u = 1.5, 2, 2.5 with six elements
+  const std::array<double, 3> moments{1.5, 2, 2.5}, expected{1.671500, 3.461825, 9.000952};
+  constexpr double width = 3, force = 1e6, k = 2e8, top = 1.0;
+  const double lift_off = force / (k * width) / (width / 2);  // theta_u = 2 N/(k W^2)
+  for (std::size_t i = 0; i < moments.size(); ++i) {
+    const double moment = moments[i] * force * width / 6, shear = moment / (top - 0.37);
+    std::string text = "title = \"block\"\n[mesh]\nfile = \"block.msh\"\n" + solid("volume", 1e13, 0.2, 2000) +
+                       solid("block", 1e13, 0.2, 2000) + "[[support]]\ngroup = \"bottom\"\nfixed = [\"ux\", \"uy\"]\n" +
+                       fmt::format("[[load]]\nname = \"weight\"\ngroup = \"top\"\ntraction = [{}, {}]\n", shear / width, -force / width) +
+                       fmt::format(
+                           "[[interface]]\nname = \"base\"\ncut = {{ through = [\"volume\"], level = 0.37, upper = \"block\" }}\n"
+                           "law = {{ type = \"springs\", K_n = {}, K_t = {}, tangential = \"bonded\" }}\n",
+                           k, 100 * k) +
+                       at_rest_stages;
+    const RunResult result = run_text(text, rectangle(uniform_lines(-1.5, 1.5, 6), uniform_lines(0, 1, 4)));
+    EXPECT_NEAR(std::abs(at_rest(result, "base.rotation")) / lift_off, expected[i], 2e-4 * expected[i]) << moments[i];
+  }
+}
+
+TEST(CutCase, RefusesWithFileAndKey) {
+  const Mesh mesh = rectangle(uniform_lines(-1, 1, 2), uniform_lines(0, 10, 10));
+  const std::string law = "{ type = \"elastic\", K_n = 1e9 }";
+  const auto refusal = [&](const std::string& from, const std::string& to) {
+    std::string text = column(depth, law);
+    const std::size_t place = text.find(from);
+    EXPECT_NE(place, std::string::npos);
+    text.replace(place, from.size(), to);
+    return support::refusal_of([&] { build(read_text(text, mesh), RunSpec{}); });
+  };
+  EXPECT_NE(refusal("level = 5.63", "level = 12").find("above it"), std::string::npos);
+  EXPECT_NE(refusal("level = 5.63, ", "").find("level, or point and normal"), std::string::npos);
+  EXPECT_NE(refusal("level = 5.63", "level = 5.63, x = [1, -1]").find("least and the largest"), std::string::npos);
+  EXPECT_NE(refusal("[\"volume\"]", "[\"volumes\"]").find("\"volume\""), std::string::npos);
+  EXPECT_NE(refusal("level = 5.63, upper = \"block\" }\nlaw = " + law,
+                    "point = [0, 5.63], normal = [0.3, 1], upper = \"block\" }\nlaw = \"unilateral\"")
+                .find("angle"),
+            std::string::npos);
+}
+
+}  // namespace
+}  // namespace uplift

@@ -1,0 +1,230 @@
+#include "uplift/mesh/cut.h"
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <random>
+
+#include "unit/mesh/mesh_support.h"
+#include "uplift/mesh/box.h"
+#include "uplift/mesh/cell_shapes.h"
+#include "uplift/mesh/quality.h"
+
+// Cut cells against the geometry: volumes and first moments of both sides, nodes and groups.
+namespace uplift {
+namespace {
+
+std::vector<double> lines(int cells) {
+  return uniform_lines(0, 1, cells);
+}
+
+Mesh unit_mesh(Cell cell, int cells) {
+  return info(cell).dimension == 2 ? rectangle(lines(cells), lines(cells), cell) : box(lines(cells), lines(cells), lines(cells), cell);
+}
+
+/// Moves the inner nodes by up to a share of the size of a cell.
+void shake(Mesh& mesh, double size, std::mt19937& random) {
+  std::uniform_real_distribution<double> move(-size, size);
+  for (Vec3& x : mesh.nodes) {
+    const Vec3 before = x;
+    for (int k = 0; k < mesh.dimension; ++k)
+      if (before[k] > 1e-9 && before[k] < 1 - 1e-9) x[k] += move(random);
+  }
+}
+
+struct Content {
+  double volume = 0;
+  Vec3 moment = Vec3::Zero();
+};
+
+/// Of a group: integrated with the rules of its parts and those of its whole cells.
+Content content(const Mesh& mesh, const std::string& group) {
+  Content sum;
+  for (const CellId id : mesh.groups.at(group).cells) {
+    const Cell cell = mesh.type(id);
+    std::vector<Vec3> x;
+    for (const int node : mesh.cell(id)) x.push_back(mesh.nodes[static_cast<std::size_t>(node)]);
+    const CellRule rule = mesh.part(id) ? mesh.part(id)->rule : cell_rule(cell, 5);
+    for (std::size_t p = 0; p < rule.point.size(); ++p) {
+      EXPECT_GT(rule.weight[p], 0);
+      const CellShape shape = cell_shape(cell, rule.point[p]);
+      const Vec3 a = cell_tangent(shape, x, 0), b = cell_tangent(shape, x, 1);
+      const double jacobian = mesh.dimension == 2 ? cross(a, b).z() : cross(a, b).dot(cell_tangent(shape, x, 2));
+      sum.volume += rule.weight[p] * jacobian;
+      sum.moment += rule.weight[p] * jacobian * cell_position(shape, x);
+    }
+  }
+  return sum;
+}
+
+double area_of(const std::vector<CutFace>& faces, int dimension) {
+  double sum = 0;
+  for (const CutFace& face : faces) {
+    if (dimension == 2) sum += (face.corners[1] - face.corners[0]).norm();
+    for (std::size_t k = 2; dimension == 3 && k < face.corners.size(); ++k)
+      sum += cross(face.corners[k - 1] - face.corners[0], face.corners[k] - face.corners[0]).norm() / 2;
+  }
+  return sum;
+}
+
+TEST(Cut, BothSidesFillTheWhole) {
+  std::mt19937 random(7);
+  std::normal_distribution<double> component;
+  std::uniform_real_distribution<double> place(0.2, 0.8);
+  for (const Cell cell : {Cell::tri3, Cell::quad4, Cell::tet4, Cell::wedge6, Cell::hex8})
+    for (int repeat = 0; repeat < 40; ++repeat) {
+      Mesh mesh = unit_mesh(cell, 3);
+      if (repeat % 2) shake(mesh, 0.05, random);
+      const int d = mesh.dimension;
+      Vec3 normal(component(random), component(random), d == 3 ? component(random) : 0);
+      normal.normalize();
+      const Vec3 point(place(random), place(random), d == 3 ? place(random) : 0);
+      const Content whole = content(mesh, "volume");
+      const auto faces = cut(mesh, {{{"volume"}, {normal, normal.dot(point)}, "above"}}, {{}});
+      const Content below = content(mesh, "volume"), above = content(mesh, "above");
+      EXPECT_NEAR(below.volume + above.volume, 1, 1e-12) << info(cell).name;
+      const bool warped = repeat % 2 && (cell == Cell::wedge6 || cell == Cell::hex8);  // faces are then divided into triangles
+      EXPECT_NEAR((below.moment + above.moment - whole.moment).norm(), 0, warped ? 1e-4 : 1e-12) << info(cell).name;
+      EXPECT_GT(below.volume, 0);
+      EXPECT_GT(above.volume, 0);
+      // The area of the section is the derivative of the volume below by the level.
+      const double step = 1e-5;
+      Mesh lower = unit_mesh(cell, 3), upper = lower;
+      cut(lower, {{{"volume"}, {normal, normal.dot(point) - step}, "above"}}, {{}});
+      cut(upper, {{{"volume"}, {normal, normal.dot(point) + step}, "above"}}, {{}});
+      const double slope = (content(upper, "volume").volume - content(lower, "volume").volume) / (2 * step);
+      EXPECT_NEAR(area_of(faces[0], d), slope, 1e-4) << info(cell).name;
+    }
+}
+
+TEST(Cut, BoxOfAnOutlineIsExact) {
+  // The unit square or cube, level cut at 0.37, above it x from 0.21 to 0.83 and height 0.4: volumes, centres and areas are those of boxes.
+  for (const Cell cell : {Cell::tri3, Cell::quad4, Cell::tet4, Cell::wedge6, Cell::hex8}) {
+    Mesh mesh = unit_mesh(cell, 4);
+    const int d = mesh.dimension;
+    const Vec3 up = d == 2 ? Vec3::UnitY() : Vec3::UnitZ();
+    CutPlane plane{{"volume"}, {up, 0.37}, "raft"};
+    plane.within = {{-Vec3::UnitX(), -0.21}, {Vec3::UnitX(), 0.83}, {up, 0.77}};
+    const auto faces = cut(mesh, {plane}, {{}});
+    const Content below = content(mesh, "volume"), above = content(mesh, "raft");
+    EXPECT_NEAR(below.volume, 0.37, 1e-13) << info(cell).name;
+    EXPECT_NEAR(above.volume, 0.62 * 0.4, 1e-13) << info(cell).name;
+    EXPECT_NEAR(above.moment.x() / above.volume, 0.52, 1e-12);
+    EXPECT_NEAR(above.moment[d - 1] / above.volume, 0.57, 1e-12);
+    EXPECT_NEAR(area_of(faces[0], d), 0.62, 1e-13) << info(cell).name;
+    if (cell == Cell::quad4 || cell == Cell::hex8)
+      for (const CutFace& face : faces[0]) EXPECT_TRUE(face.level);
+  }
+}
+
+TEST(Cut, ThroughNodesOpensTheMeshThere) {
+  for (const Cell cell : {Cell::tri3, Cell::quad4, Cell::tet4, Cell::wedge6, Cell::hex8}) {
+    Mesh mesh = unit_mesh(cell, 4);
+    const int d = mesh.dimension;
+    const std::size_t nodes = mesh.nodes.size(), layer = d == 2 ? 5 : 25;
+    const int cells = mesh.cells();
+    const auto faces = cut(mesh, {{{"volume"}, {d == 2 ? Vec3::UnitY() : Vec3::UnitZ(), 0.5}, "above"}}, {{}});
+    EXPECT_TRUE(mesh.parts.empty());
+    EXPECT_TRUE(mesh.followers.empty());
+    EXPECT_EQ(mesh.nodes.size(), nodes + layer) << info(cell).name;
+    EXPECT_EQ(mesh.cells(), cells);
+    EXPECT_NEAR(area_of(faces[0], d), 1, 1e-13);
+    EXPECT_EQ(connected_pieces(mesh).count(), 2);
+  }
+}
+
+TEST(Cut, NodesSharesAndGroups) {
+  // 2 x 2 squares, cut at 0.3: doubled are three nodes at y = 0 for the upper part and three at 0.5 for the lower one.
+  Mesh mesh = rectangle(lines(2), lines(2));
+  const auto faces = cut(mesh, {{{"volume"}, {Vec3::UnitY(), 0.3}, "above"}}, {{}});
+  EXPECT_EQ(mesh.nodes.size() - mesh.followers.size(), 9u + 6u);
+  EXPECT_EQ(mesh.groups.at("volume").cells.size(), 2u);
+  EXPECT_EQ(mesh.groups.at("above").cells.size(), 4u);
+  EXPECT_EQ(mesh.groups.at("left").cells.size(), 3u);  // the lower of two edges in two parts
+  EXPECT_EQ(faces[0].size(), 2u);
+  EXPECT_EQ(mesh.followers.size(), 6u);  // three places, each on both sides
+  EXPECT_EQ(connected_pieces(mesh).count(), 2);
+  const Mesh drawn = drawn_mesh(mesh);
+  double area = 0;
+  for (const char* group : {"volume", "above"})
+    for (const CellId id : drawn.groups.at(group).cells) {
+      EXPECT_GT(signed_size(drawn, id), 0);
+      area += signed_size(drawn, id);
+    }
+  EXPECT_NEAR(area, 1, 1e-14);
+}
+
+TEST(Cut, WhatIsOutsideOfTheOutlineIsRemoved) {
+  Mesh mesh = rectangle(lines(8), lines(8));
+  CutPlane plane{{"volume"}, {Vec3::UnitY(), 0.3}, "raft"};
+  plane.within = {{-Vec3::UnitX(), -0.25}, {Vec3::UnitX(), 0.75}};
+  cut(mesh, {plane}, {{}});
+  check_mesh(mesh, {});
+  for (const CellId id : mesh.groups.at("raft").cells) {
+    EXPECT_GT(support::centre(mesh, id).x(), 0.25);
+    EXPECT_LT(support::centre(mesh, id).x(), 0.75);
+  }
+  EXPECT_NEAR(content(mesh, "volume").volume, 0.3, 1e-14);
+  EXPECT_NEAR(content(mesh, "raft").volume, 0.5 * 0.7, 1e-14);
+  std::vector<bool> used(mesh.nodes.size(), false);
+  for (const CellBlock& block : mesh.blocks)
+    for (const int node : block.nodes) used[static_cast<std::size_t>(node)] = true;
+  for (const Follower& follower : mesh.followers) used[static_cast<std::size_t>(follower.node)] = true;
+  EXPECT_EQ(std::ranges::count(used, false), 0);
+}
+
+TEST(Cut, SliversAreRightOrSnapped) {
+  for (const double above : {1e-12, 1e-10, 1e-8, 1e-6, 1e-4})
+    for (const Cell cell : {Cell::tri3, Cell::quad4, Cell::tet4, Cell::hex8}) {
+      Mesh mesh = unit_mesh(cell, 2);
+      const int d = mesh.dimension;
+      const double level = 0.5 + above;
+      cut(mesh, {{{"volume"}, {d == 2 ? Vec3::UnitY() : Vec3::UnitZ(), level}, "above"}}, {{}});
+      EXPECT_NEAR(content(mesh, "volume").volume, level, 1e-8);
+      EXPECT_NEAR(content(mesh, "volume").volume + content(mesh, "above").volume, 1, 1e-13);
+      EXPECT_EQ(mesh.parts.empty(), above < 1e-9);
+    }
+}
+
+TEST(Cut, TwoPlanesAtDifferentPlaces) {
+  Mesh mesh = rectangle(lines(8), lines(8));
+  const auto faces = cut(mesh, {{{"volume"}, {Vec3::UnitY(), 0.3}, "middle"}, {{"middle"}, {Vec3::UnitY(), 0.7}, "upper"}}, {{}, {}});
+  EXPECT_NEAR(content(mesh, "volume").volume, 0.3, 1e-14);
+  EXPECT_NEAR(content(mesh, "middle").volume, 0.4, 1e-14);
+  EXPECT_NEAR(content(mesh, "upper").volume, 0.3, 1e-14);
+  for (const std::vector<CutFace>& of_plane : faces)
+    for (const CutFace& face : of_plane) {
+      EXPECT_TRUE(mesh.part(face.lower));
+      EXPECT_TRUE(mesh.part(face.upper));
+    }
+}
+
+std::string refused(Mesh mesh, const std::vector<CutPlane>& planes) {
+  const Mesh before = mesh;
+  try {
+    cut(mesh, planes, std::vector<Where>(planes.size()));
+  } catch (const InputError& error) {
+    EXPECT_EQ(mesh.nodes.size(), before.nodes.size());
+    return error.what();
+  }
+  return "";
+}
+
+TEST(Cut, RefusesWithASentence) {
+  const Mesh mesh = rectangle(lines(4), lines(4)), curved = rectangle(lines(4), lines(4), Cell::quad8);
+  const auto level = [](double y) { return CutPlane{{"volume"}, {Vec3::UnitY(), y}, "above"}; };
+  EXPECT_NE(refused(mesh, {level(1.5)}).find("from -1.5 m to -0.5 m above it"), std::string::npos) << refused(mesh, {level(1.5)});
+  EXPECT_NE(refused(curved, {level(0.3)}).find("first degree"), std::string::npos);
+  EXPECT_EQ(refused(curved, {level(0.5)}), "");  // along faces
+  CutPlane wrong = level(0.3);
+  wrong.through = {"volumes"};
+  EXPECT_NE(refused(mesh, {wrong}).find("volume"), std::string::npos);
+  CutPlane nothing = level(0.3);
+  nothing.within = {{Vec3::UnitX(), -1}};
+  EXPECT_NE(refused(mesh, {nothing}), "");
+  CutPlane second{{"above"}, {Vec3::UnitY(), 0.31}, "upper"};
+  EXPECT_NE(refused(mesh, {level(0.3), second}).find("same cell"), std::string::npos);
+}
+
+}  // namespace
+}  // namespace uplift
