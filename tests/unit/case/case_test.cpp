@@ -245,9 +245,10 @@ TEST(Case, NamesAreCheckedWithTheirPlace) {
 TEST(Case, ExactlyOnePlaceOfAnInterface) {
   const std::string text = changed("[interface.law]", "[interface.pairs]\nupper = [\"base\"]\narea = 1\n[interface.law]");
   const Case file = read("", text);
-  EXPECT_NE(
-      complaint([&] { build(file, runs_of_case(file).front()); }).find("expected exactly one of footing, pairs, line, surface and cut, found 2"),
-      std::string::npos);
+  EXPECT_NE(complaint([&] {
+              build(file, runs_of_case(file).front());
+            }).find("expected exactly one of footing, pairs, line, surface and cut, found 2"),
+            std::string::npos);
 }
 
 TEST(Case, EveryKeyOfTheDeclarationHasAMeaning) {
