@@ -361,13 +361,14 @@ void OneCut::write_groups() {
 void OneCut::add_face(std::vector<CutFace>& faces, CellId lower, CellId upper, const CellBefore& of, std::vector<Vec3> corners) const {
   corners = clip_section(std::move(corners), plane_.within, of.tolerance);
   if (static_cast<int>(corners.size()) < mesh_.dimension) return;
-  bool level = is_level(of.cell, of.corners, plane_.below);
-  if (mesh_.dimension == 3 && info(of.cell).corners > 4) {
-    level = level && corners.size() == 4;
-    for (const HalfSpace& space : plane_.within)
-      if (side_of_cell(space, of.corners, of.tolerance) == PlaneSide::both) level = level && is_level(of.cell, of.corners, space);
+  const bool faceted = mesh_.dimension == 3 && info(of.cell).corners > 4;  // a hexahedron or a wedge
+  bool level = is_level(of.cell, of.corners, plane_.below) && (!faceted || corners.size() == 4), clipped = false;
+  for (const HalfSpace& space : plane_.within) {
+    if (side_of_cell(space, of.corners, of.tolerance) != PlaneSide::both) continue;
+    clipped = true;
+    level = level && (!faceted || is_level(of.cell, of.corners, space));
   }
-  faces.push_back({lower, upper, std::move(corners), level});
+  faces.push_back({lower, upper, std::move(corners), level, clipped});
 }
 
 std::vector<CutFace> OneCut::faces() {

@@ -23,7 +23,8 @@ struct CutPlane {
 struct CutFace {
   CellId lower, upper;
   std::vector<Vec3> corners;  // m; in the plane two, in space three or more in the order of the outline
-  bool level = false;  // parallel to faces of a cell with parallel sides, as the edges of the outline, or the cell is a triangle or tet
+  bool level = false;    // parallel to faces of a cell with parallel sides, as the edges of the outline, or the cell is a triangle or tet
+  bool clipped = false;  // the outline ends inside the cell
 };
 
 /// Cuts the mesh and removes what is not filled: cells, and nodes that no cell uses. For each plane its faces.

@@ -1,6 +1,7 @@
 #include <fmt/format.h>
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <cmath>
 #include <numbers>
 
@@ -171,6 +172,21 @@ TEST(CutCase, RockingBlockOnTensionlessSprings) {
     const RunResult result = run_text(text, rectangle(uniform_lines(-1.5, 1.5, 6), uniform_lines(0, 1, 4)));
     EXPECT_NEAR(std::abs(at_rest(result, "base.rotation")) / lift_off, expected[i], 2e-4 * expected[i]) << moments[i];
   }
+}
+
+TEST(CutCase, WarnsOfAnOutlineInsideCoarseCells) {
+  const auto said = [](const std::string& outline, int cells) {
+    std::string text = column(depth, "{ type = \"springs\", K_n = 1e9, K_t = 1e9 }");
+    text.replace(text.find("upper = "), 0, outline);
+    const Case read = read_text(text, rectangle(uniform_lines(-1, 1, cells), uniform_lines(0, 10, 10)));
+    const BuiltCase built = build(read, RunSpec{});
+    return std::ranges::any_of(warnings(read, RunSpec{}, built),
+                               [](const std::string& each) { return each.find("ends inside") != each.npos; });
+  };
+  EXPECT_TRUE(said("x = [-0.7, 0.7], ", 2));
+  EXPECT_FALSE(said("x = [-0.5, 0.5], ", 4));     // the edges are sides of cells
+  EXPECT_FALSE(said("x = [-0.7, 0.7], ", 1000));  // fine enough
+  EXPECT_FALSE(said("", 2));
 }
 
 TEST(CutCase, RefusesWithFileAndKey) {

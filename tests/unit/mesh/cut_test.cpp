@@ -2,6 +2,7 @@
 
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <cmath>
 #include <random>
 
@@ -114,6 +115,7 @@ TEST(Cut, BoxOfAnOutlineIsExact) {
     EXPECT_NEAR(area_of(faces[0], d), 0.62, 1e-13) << info(cell).name;
     if (cell == Cell::quad4 || cell == Cell::hex8)
       for (const CutFace& face : faces[0]) EXPECT_TRUE(face.level);
+    EXPECT_TRUE(std::ranges::any_of(faces[0], &CutFace::clipped));
   }
 }
 

@@ -81,32 +81,58 @@ void warn_foundations(const Case& read, const BuiltCase& built, std::vector<std:
   }
 }
 
+double size_of(const Mesh& mesh, CellId cell) {
+  return std::pow(signed_size(mesh, cell), 1.0 / mesh.dimension);  // m
+}
+
 /// Where a plane cuts its cells at an angle, tractions of joints much stiffer than the cells vary from point to point (docs/theory).
-void warn_inclined_cuts(const Case& read, const BuiltCase& built, std::vector<std::string>& said) {
+void warn_inclined_cut(const CaseSolids& solids, const std::vector<CutFace>& faces, const Interface& interface,
+                       std::vector<std::string>& said) {
   constexpr double most = 100;
-  for (std::size_t k = 0; k < built.facts.size(); ++k) {
-    const InterfaceLaw* law = built.model.interfaces[k].law.get();
-    if (built.facts[k].level || law == nullptr) continue;
-    const CaseSolids solids(read.values, *read.mesh);
-    const std::vector<Values>& tables = read.values.tables("interface");
-    double softest = 0;  // m/Pa: size over Young's modulus
-    for (std::size_t t = 0; t < tables.size(); ++t)
-      if (tables[t].text("name") == built.facts[k].name)
-        for (const CutFace& face : read.mesh->cut[t])
-          for (const CellId cell : {face.lower, face.upper}) {
-            const int dimension = solids.mesh().dimension;
-            const double size = std::pow(signed_size(solids.mesh(), cell), 1.0 / dimension);
-            if (!face.level) softest = std::max(softest, size / solids.of(cell).section.material.young);
-          }
-    std::array<double, 3> stiffness{};
-    law->closed_stiffness(built.model.interfaces[k].batch.components, stiffness.data());
-    const double ratio = stiffness[static_cast<std::size_t>(built.model.interfaces[k].batch.components) - 1] * softest;
-    if (ratio > most)
-      said.push_back(
-          fmt::format("\"{}\" cuts its cells at an angle, and its stiffness is {:.3g} times E/h of the softer cells: the pressures of its "
-                      "points vary from one to the next; forces and moments are right; keep K_n below {:g} E/h, or turn the mesh",
-                      built.facts[k].name, ratio, most));
+  if (interface.law == nullptr) return;
+  double softest = 0;  // m/Pa: size over Young's modulus
+  for (const CutFace& face : faces)
+    for (const CellId cell : {face.lower, face.upper})
+      if (!face.level) softest = std::max(softest, size_of(solids.mesh(), cell) / solids.of(cell).section.material.young);
+  std::array<double, 3> stiffness{};
+  interface.law->closed_stiffness(interface.batch.components, stiffness.data());
+  const double ratio = stiffness[static_cast<std::size_t>(interface.batch.components) - 1] * softest;
+  if (ratio > most)
+    said.push_back(
+        fmt::format("\"{}\" cuts its cells at an angle, and its stiffness is {:.3g} times E/h of the softer cells: the pressures of its "
+                    "points vary from one to the next; forces and moments are right; keep K_n below {:g} E/h, or turn the mesh",
+                    interface.name, ratio, most));
+}
+
+/// The surface of a cell that lies under the edge of a base and beside it has no kink there: the base rests on its edge and stands open
+/// behind it, until the cells are small.
+void warn_clipped_cut(const Mesh& mesh, const std::vector<CutFace>& faces, const Interface& interface, std::vector<std::string>& said) {
+  constexpr double least = 25;  // cells along the shorter side
+  double size = 0;              // m
+  Vec3 low = Vec3::Constant(HUGE_VAL), high = -low;
+  for (const CutFace& face : faces) {
+    if (face.clipped) size = std::max(size, size_of(mesh, face.lower));
+    for (const Vec3& corner : face.corners) low = low.cwiseMin(corner), high = high.cwiseMax(corner);
   }
+  const double width = mesh.dimension == 2 ? (high - low).norm() : std::min(high.x() - low.x(), high.y() - low.y());
+  if (size > 0 && least * size > width)
+    said.push_back(
+        fmt::format("the outline of \"{}\" ends inside cells of {}, which carry its edge and the free ground beside it: within "
+                    "one or two cells of the edge, gaps and pressures are inaccurate, even at rest; let sides of cells meet the "
+                    "edge, or take cells below {}",
+                    interface.name, format_quantity(size, "m"), format_quantity(width / least, "m")));
+}
+
+void warn_cuts(const Case& read, const BuiltCase& built, std::vector<std::string>& said) {
+  if (!read.mesh || read.mesh->cut.empty()) return;
+  const CaseSolids solids(read.values, *read.mesh);
+  const std::vector<Values>& tables = read.values.tables("interface");
+  for (std::size_t t = 0; t < tables.size(); ++t)
+    for (const Interface& interface : built.model.interfaces) {
+      if (interface.name != tables[t].text("name") || read.mesh->cut[t].empty()) continue;
+      warn_inclined_cut(solids, read.mesh->cut[t], interface, said);
+      warn_clipped_cut(solids.mesh(), read.mesh->cut[t], interface, said);
+    }
 }
 
 /// docs/theory, eq (3): a closure stress above 1 % of the bearing pressure resists the closing of gaps noticeably.
@@ -136,7 +162,7 @@ void warn_interfaces(const Case& read, const BuiltCase& built, std::vector<std::
   warn_closure(built, said);
   warn_sides_exchanged(read, built, said);
   warn_foundations(read, built, said);
-  warn_inclined_cuts(read, built, said);
+  warn_cuts(read, built, said);
   warn_floating(read, built, said);
 }
 
