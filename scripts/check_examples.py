@@ -1,7 +1,7 @@
 #!/usr/bin/env python3
 """Runs every example and compares it with the table on its page. Usage: scripts/check_examples.py build/release/uplift
 
-A page `examples/NAME/README.md` holds one table with the head `| run | status | top motion [mm] | uplifted [%] | gap [mm] |`: figures are compared to the
+A page `README.md` below `examples` holds one table with the head `| run | status | top motion [mm] | uplifted [%] | gap [mm] |`: figures are compared to the
 tolerance that stands below the table as `tolerance: 2 %` (of the figure)."""
 import json
 import pathlib
@@ -14,7 +14,7 @@ program = pathlib.Path(sys.argv[1]).resolve()
 root = pathlib.Path(__file__).resolve().parent.parent
 mistakes = compared = 0
 
-for page in sorted(root.glob("examples/*/README.md")):
+for page in sorted(root.glob("examples/**/README.md")):
     text = page.read_text()
     rows = [[cell.strip() for cell in line.strip("|\n ").split("|")] for line in text.splitlines() if line.startswith("| `")]
     tolerance = float(re.search(r"tolerance: ([0-9.]+) %", text).group(1)) / 100

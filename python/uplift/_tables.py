@@ -685,6 +685,7 @@ class Tables:
         name: str,
         *,
         label: Optional[str] = None,
+        case: Optional[str] = None,
         law: Optional[Union[Part, ExternalLaw, str]] = None,
         interface: Optional[str] = None,
         method: Optional[Union[Part, str]] = None,
@@ -699,6 +700,9 @@ class Tables:
         Parameters:
             name: name of its runs.
             label: as shown.
+            case: file of another case that is run instead, with nothing of this one: the same structure on another
+                model of the ground; its own variants are left out, and its floor spectra unless they are those of this
+                case.
             law: law or cone of the interface.
             interface: interface that takes the law; absent: all.
             method: contact method.
@@ -709,7 +713,7 @@ class Tables:
             expected: may_fail: a failure is shown and marked, but does not fail the command; the run is not counted as
                 sound; one of "completes", "may_fail"; default completes.
         """
-        self._add("variant", {"name": name, "label": label, "law": law, "interface": interface, "method": method, "impact": impact, "scheme": scheme, "traction": traction, "step": step, "expected": expected})
+        self._add("variant", {"name": name, "label": label, "case": case, "law": law, "interface": interface, "method": method, "impact": impact, "scheme": scheme, "traction": traction, "step": step, "expected": expected})
 
     def comparison(
         self,

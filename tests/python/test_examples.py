@@ -57,6 +57,12 @@ class Examples(unittest.TestCase):
         zero_period = next(each for each in floors if each["name"] == "floor 3, +25 m")["zero_period_acceleration"]["value"]
         self.assertEqual(printed("04_reactor_building").count(f"floor acceleration {abs(zero_period):.2f} m/s2"), 3)
 
+    def test_06_foundation_models(self):
+        lines = printed("06_foundation_models").splitlines()
+        self.assertEqual(len(lines), 6)
+        uplifting = [float(line.split("top motion ")[1].split(" mm")[0]) for line in lines[:-1]]
+        self.assertLess(max(uplifting) - min(uplifting), 0.05 * max(uplifting))
+
     def test_05_bridge_pier(self):
         numbers = of_the_program("05_bridge_pier")["interfaces"][0]["numbers"]["max_moment"]
         shipped = printed("05_bridge_pier").splitlines()[1]

@@ -318,6 +318,11 @@ std::vector<std::string> input_files(const Case& read) {
       }
   for (const Values& record : read.values.tables("record"))
     if (record.has("file")) files.push_back(record_path(record));
+  for (const Values& variant : read.values.tables("variant"))
+    if (variant.has("case")) {
+      const std::filesystem::path path = path_beside(variant.where("case"), variant.text("case"));
+      if (std::filesystem::is_regular_file(path)) files.push_back(path.lexically_normal().string());  // else `compare` refuses it
+    }
   return files;
 }
 

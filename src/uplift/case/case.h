@@ -40,6 +40,7 @@ std::vector<std::string> input_files(const Case&);
 /// One run of a case: what differs from the case as it stands. Null and empty: as in the case. Points into the case's values.
 struct RunSpec {
   std::string name, label, group;
+  std::string other_case;       // file of the case that is run; empty: this one
   const Values* law = nullptr;  // law or cone of the interface ...
   std::string interface;        // ... of this name; empty: of all
   const Values* method = nullptr;
@@ -147,6 +148,7 @@ struct BuiltCase {
   /// The interface's moment and rotation that go with the sway.
   Request::Kind base_moment() const;
   Request::Kind base_rotation() const;
+  Request::Kind base_tilt() const;
   /// The model with all supports, those of static stages alone too.
   const Model& at_rest() const { return plan.rest ? *plan.rest : model; }
   /// Number of interfaces that are bases; they come first. All interfaces of a model without any base count as such in sums over bases.

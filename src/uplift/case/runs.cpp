@@ -2,7 +2,10 @@
 
 #include <algorithm>
 #include <cctype>
+#include <filesystem>
 
+#include "uplift/base/file.h"
+#include "uplift/base/text.h"
 #include "uplift/case/build/names.h"
 #include "uplift/case/case.h"
 
@@ -24,10 +27,23 @@ RunSpec base_run(const Case& read) {
   return spec;
 }
 
+/// The file that a variant names. It says everything itself, and the motions of a comparison are those of this case.
+std::string other_case_of(const Case& read, const Values& variant) {
+  for (const char* key : {"law", "interface", "method", "impact", "scheme", "traction", "step"})
+    if (variant.given(key)) fail(variant, key, "nothing beside another case, which states all itself", "a value");
+  if (const Values* compare = read.values.has("compare") ? &read.values.table("compare") : nullptr)
+    if (!compare->tables("motion").empty())
+      fail(variant, "case", "variants of this case beside [[compare.motion]], whose motions are those of this case", "another case");
+  const std::filesystem::path path = path_beside(variant.where("case"), variant.text("case"));
+  if (!std::filesystem::is_regular_file(path)) fail(variant, "case", "a case file", escaped(path.string()));
+  return path.lexically_normal().string();
+}
+
 RunSpec variant_run(const Case& read, const Values& variant) {
   RunSpec spec = base_run(read);
   spec.name = variant.text("name");
   spec.label = variant.has("label") ? variant.text("label") : spec.name;
+  if (variant.has("case")) spec.other_case = other_case_of(read, variant);
   spec.law = part_if(variant, "law");
   if (variant.has("interface")) spec.interface = variant.text("interface");
   spec.method = part_if(variant, "method");

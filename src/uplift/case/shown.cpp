@@ -114,4 +114,8 @@ Request::Kind BuiltCase::base_rotation() const {
   return sway == ux ? Request::Kind::rotation_2 : Request::Kind::rotation_1;
 }
 
+Request::Kind BuiltCase::base_tilt() const {
+  return model.space.dimension == 3 && sway == ux ? Request::Kind::tilt_2 : Request::Kind::tilt_1;
+}
+
 }  // namespace uplift

@@ -127,7 +127,7 @@ CheckedCase examine(const LoadedCase& loaded) {
   if (compares(loaded.read)) {
     const Comparison comparison = comparison_of_case(loaded.read);
     for (const RunSpec& spec : comparison.runs) {
-      build_run(loaded, spec);  // every variant is checked too
+      build_run(*case_of(loaded, spec), spec);  // every variant is checked too
       checked.runs.push_back(fmt::format("uplift compare: {}{}", spec.label, spec.group.empty() ? "" : ", " + spec.group));
     }
     for (const RunSpec& spec : comparison.sweep) build_run(loaded, spec);

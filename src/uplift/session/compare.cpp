@@ -9,18 +9,41 @@
 namespace uplift {
 namespace {
 
+/// The same run as its own case sees it: with its own damping, unless the comparison states one.
+RunSpec in_its_case(const LoadedCase& loaded, const LoadedCase& mine, RunSpec spec) {
+  if (spec.other_case.empty()) return spec;
+  if (spec.damping == runs_of_case(loaded.read).front().damping) spec.damping = runs_of_case(mine.read).front().damping;
+  spec.pictures = false;  // the page draws one model
+  return spec;
+}
+
+void add_warnings_of_other(const Case& read, const RunSpec& spec, const BuiltCase& built, std::vector<std::string>& said) {
+  for (const std::string& warning : warnings(read, spec, built)) said.push_back(spec.label + ": " + warning);
+}
+
+bool same_floors(const RunPlan& one, const RunPlan& other) {
+  const auto same = [](const FloorRequest& a, const FloorRequest& b) {
+    return a.name == b.name && a.frequencies == b.frequencies && a.dampings == b.dampings;
+  };
+  return std::ranges::equal(one.floors, other.floors, same);
+}
+
 /// Builds and runs one list of specs; stops after an interrupted run. `with_histories`: they are written.
 void run_all(const LoadedCase& loaded, const Control& control, const std::vector<RunSpec>& specs, std::size_t before, std::size_t total,
              bool with_histories, bool with_fields, Results& results) {
   for (const RunSpec& spec : specs) {
     if (control.is_stopped()) return;
+    const std::shared_ptr<const LoadedCase> mine = case_of(loaded, spec);
+    results.others.push_back(mine);
     results.specs.push_back(spec);
-    results.built.push_back(build_run(loaded, spec));
-    if (results.runs.empty()) results.warnings = warnings(loaded.read, spec, results.built.back());
+    BuiltCase& built = results.built.emplace_back(build_run(*mine, in_its_case(loaded, *mine, spec)));
+    if (results.runs.empty()) results.warnings = warnings(loaded.read, spec, built);
+    if (!spec.other_case.empty()) add_warnings_of_other(mine->read, spec, built, results.warnings);
     const std::string label = fmt::format("[{}/{}] {}", before + results.runs.size() + 1, total, spec.name);
-    results.runs.push_back(run_built(loaded, results.built.back(), label, control, false, with_fields ? &results.field_lists : nullptr,
-                                     with_histories ? "histories/" + spec.name + ".csv" : ""));
-    free_matrices(results.built.back());
+    RunResult& run = results.runs.emplace_back(run_built(*mine, built, label, control, false, with_fields ? &results.field_lists : nullptr,
+                                                         with_histories ? "histories/" + spec.name + ".csv" : ""));
+    if (!same_floors(built.plan, results.built.front().plan)) run.floors.clear();
+    free_matrices(built);
   }
 }
 

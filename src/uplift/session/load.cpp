@@ -19,6 +19,7 @@ namespace {
 LoadedCase checked(Raw raw, const std::string& text, const std::string& file, const std::string& command, MeshFiles files) {
   LoadedCase loaded;
   loaded.raw = std::move(raw);
+  loaded.mesh_files = files;
   loaded.read_mesh = [isolated = files == MeshFiles::isolated](const std::string& path, const Where& where, const std::string& name) {
     return read_mesh(path, where, name, isolated);
   };

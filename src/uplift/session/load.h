@@ -17,6 +17,7 @@ struct LoadedCase {
   Raw raw;  // the file as it stands
   Case read;
   Provenance from;
+  MeshFiles mesh_files = MeshFiles::isolated;
   MeshReader read_mesh;                                   // reads the mesh of a changed case
   std::map<std::string, ExternalFunction> external_laws;  // of the caller, by name
 };

@@ -1,6 +1,7 @@
 #pragma once
 #include <deque>
 #include <functional>
+#include <memory>
 #include <string>
 #include <vector>
 
@@ -25,6 +26,7 @@ struct Control {
 
 /// Everything that an analysis computed, ready to be written.
 struct Results {
+  std::vector<std::shared_ptr<const LoadedCase>> others;  // cases beside the given one, into which the models point
   std::vector<RunSpec> specs;
   std::deque<BuiltCase> built;
   std::vector<RunResult> runs;

@@ -26,6 +26,13 @@ void refuse_filtered(const RunPlan& plan, const Values& behaviour) {
 
 }  // namespace
 
+std::shared_ptr<const LoadedCase> case_of(const LoadedCase& loaded, const RunSpec& spec) {
+  if (spec.other_case.empty()) return {std::shared_ptr<const LoadedCase>(), &loaded};
+  auto other = std::make_shared<LoadedCase>(load_case(spec.other_case, loaded.from.command, loaded.mesh_files));
+  other->external_laws = loaded.external_laws;
+  return other;
+}
+
 BuiltCase build_run(const LoadedCase& loaded, const RunSpec& spec) {
   BuiltCase built = build(loaded.read, spec);
   for (std::size_t k = 0; k < built.model.interfaces.size(); ++k) {

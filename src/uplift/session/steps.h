@@ -1,10 +1,16 @@
 #pragma once
+#include <memory>
+
 #include "uplift/session/session.h"
 
 // The pieces that run_case, compare_case and trust_case are made of.
 namespace uplift {
 
-/// Builds one run of a case and connects the caller's laws. Throws InputError, also for a law that the caller does not have.
+/// The case that a run is of: the given one, or the other one that its variant names, read from its file. Models point into it. Throws
+/// InputError.
+std::shared_ptr<const LoadedCase> case_of(const LoadedCase& loaded, const RunSpec& spec);
+/// Builds one run of its own case (case_of) and connects the caller's laws. Throws InputError, also for a law that the caller does not
+/// have.
 BuiltCase build_run(const LoadedCase& loaded, const RunSpec& spec);
 /// Runs it, observed by the caller where it is the first one, and writes its fields where the case asks for them and there is a folder.
 /// `histories`: file of the folder to which its rows are written while it runs; empty: none.

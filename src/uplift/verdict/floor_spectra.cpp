@@ -68,7 +68,7 @@ void add_envelopes(const RunPlan& plan, const std::vector<RunResult>& results, c
   for (const Values* damping : dampings) {
     std::vector<std::size_t> sound, bonded;
     for (std::size_t i = 0; i < results.size(); ++i) {
-      if (specs[i].damping != damping) continue;
+      if (specs[i].damping != damping || answers.runs[i].floors.size() != plan.floors.size()) continue;
       if (is_sound(results[i], specs[i])) sound.push_back(i);
       if (specs[i].bonded && results[i].status == RunStatus::completed) bonded.push_back(i);
     }
@@ -162,7 +162,7 @@ FloorAnswers floor_answers(const RunPlan& plan, const std::vector<RunResult>& re
     if (bonded < 0 || specs[i].bonded) continue;
     const std::vector<FloorSpectra>&floors = answers.runs[i].floors, &references = answers.runs[static_cast<std::size_t>(bonded)].floors;
     const double least = least_excitation(floors, references);
-    for (std::size_t k = 0; k < floors.size(); ++k)
+    for (std::size_t k = 0; k < std::min(floors.size(), references.size()); ++k)
       answers.runs[i].beside.push_back(floor_change(floors[k], references[k], plan.floor_bands, least));
   }
   add_envelopes(plan, results, specs, answers);

@@ -71,7 +71,7 @@ std::vector<FloorChange> floor_change(const FloorSpectra& floor, const FloorSpec
 double least_excitation(const std::vector<FloorSpectra>& floors, const std::vector<FloorSpectra>& bonded);
 /// The same floor of several runs, one at least; broadened by this share where it is > 0.
 FloorSpectra floor_envelope(const std::vector<const FloorSpectra*>& floors, double broadening);
-/// All of this for the runs of a command. The plan is that of any of them: they ask for the same floors.
+/// All of this for the runs of a command. The plan is that of any of them: they ask for the same floors, or have recorded none.
 FloorAnswers floor_answers(const RunPlan& plan, const std::vector<RunResult>& results, const std::vector<RunSpec>& specs);
 
 }  // namespace uplift

@@ -202,17 +202,22 @@ const Section& output_section() {
 
 const Section& variant_section() {
   static const Section s{
-      "variant", "for `uplift compare`: the same case with another law, method, rule, scheme or step",
-      Fields{text("name", "name of its runs"), text("label", "as shown").optional(),
-             part("law", interface_behaviours, "law or cone of the interface").optional(),
-             text("interface", "interface that takes the law; absent: all").optional(),
-             part("method", contact_methods, "contact method").optional(), part("impact", impact_rules, "impact rule").optional(),
-             part("scheme", schemes, "time integration of the dynamic stages").optional(),
-             choice("traction", {"path", "end"}, "traction of the dynamic stages").optional(),
-             number("step", "s", "time step of the dynamic stages").positive().optional(),
-             choice("expected", {"completes", "may_fail"},
-                    "may_fail: a failure is shown and marked, but does not fail the command; the run is not counted as sound")
-                 .standard("completes")}};
+      "variant", "for `uplift compare`: the same case with another law, method, rule, scheme or step, or another case",
+      Fields{
+          text("name", "name of its runs"), text("label", "as shown").optional(),
+          text("case",
+               "file of another case that is run instead, with nothing of this one: the same structure on another model of the ground; its "
+               "own variants are left out, and its floor spectra unless they are those of this case")
+              .optional(),
+          part("law", interface_behaviours, "law or cone of the interface").optional(),
+          text("interface", "interface that takes the law; absent: all").optional(),
+          part("method", contact_methods, "contact method").optional(), part("impact", impact_rules, "impact rule").optional(),
+          part("scheme", schemes, "time integration of the dynamic stages").optional(),
+          choice("traction", {"path", "end"}, "traction of the dynamic stages").optional(),
+          number("step", "s", "time step of the dynamic stages").positive().optional(),
+          choice("expected", {"completes", "may_fail"},
+                 "may_fail: a failure is shown and marked, but does not fail the command; the run is not counted as sound")
+              .standard("completes")}};
   return s;
 }
 

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <optional>
 
 #include "uplift/case/build/model.h"
 #include "uplift/io/report/motions.h"
@@ -54,12 +55,25 @@ void add_history(Chart& chart, const ReportRun& run, Column kind, int of, double
   if (!curve.x.empty()) chart.curves.push_back(std::move(curve));
 }
 
+std::vector<View> motion_views(const BuiltCase& built);
+std::vector<View> interface_views(const BuiltCase& built);
+
+/// The same view of a run of another case, whose unknowns have other numbers; null: it has none.
+std::optional<View> view_of(const View& view, const ReportRun& run) {
+  if (run.spec->other_case.empty()) return view;
+  for (const auto& views : {motion_views(*run.built), interface_views(*run.built)})
+    for (const View& each : views)
+      if (std::string_view(each.id) == view.id) return each;
+  return std::nullopt;
+}
+
 Chart history_chart(const View& view, const std::vector<ReportRun>& runs) {
   const Axis along = statics_alone(runs.front().built->plan) ? Axis{"Load factor", "1"} : Axis{"Time", "s"};
   Chart chart{view.id, view.section, view.title, view.caption, along, {view.label, view.unit}, {}};
   const bool gap = view.kind == Column::uplifted_ratio || view.kind == Column::max_opening;
   for (const ReportRun& run : runs)
-    if (!gap || !run.spec->bonded) add_history(chart, run, view.kind, view.of, view.factor);  // a bonded base stretches instead of opening
+    if (!gap || !run.spec->bonded)  // a bonded base stretches instead of opening
+      if (const std::optional<View> mine = view_of(view, run)) add_history(chart, run, mine->kind, mine->of, mine->factor);
   return chart;
 }
 
@@ -198,55 +212,71 @@ std::vector<View> interface_views(const BuiltCase& built) {
        Column::sliding_utilisation, 0, 1}};
 }
 
+/// Height of the top above the base [m]; 0 without them.
+double height_of_top(const BuiltCase& built) {
+  if (built.top < 0 || built.base < 0 || built.model.interfaces.empty()) return 0;
+  const int up = built.model.space.up();
+  return built.model.nodes[static_cast<std::size_t>(built.top)].position[up] - built.model.interfaces.front().reference[up];
+}
+
+Chart force_displacement_chart(const std::vector<ReportRun>& runs, double height) {
+  Chart chart{"force_displacement",
+              "response",
+              "Force against displacement",
+              fmt::format("Equivalent horizontal force at the top, positive in the direction of positive displacement: base "
+                          "moment divided by the height of {:g} m.",
+                          height),
+              {"Displacement of the top", "m"},
+              {"Equivalent force", "N"},
+              {}};
+  for (const ReportRun& run : runs)
+    if (const double own = height_of_top(*run.built); own > 0)
+      add_loop(chart, run, {Column::displacement, run.built->top_sway()}, {run.built->base_moment(), 0, sign_of_moment(*run.built) / own});
+  return chart;
+}
+
 void write_loops(JsonWriter& json, const ReportInput& input, const std::vector<ReportRun>& runs) {
   const BuiltCase& built = *input.runs.front().built;
   if (built.model.interfaces.empty()) return;
-  if (built.top >= 0 && built.base >= 0) {
-    const Vec3 reference = built.model.interfaces.front().reference;
-    const double height =
-        built.model.nodes[static_cast<std::size_t>(built.top)].position[built.model.space.up()] - reference[built.model.space.up()];
-    if (height > 0)
-      write_chart(
-          json, loop_chart({"force_displacement",
-                            "response",
-                            "Force against displacement",
-                            fmt::format("Equivalent horizontal force at the top, positive in the direction of positive displacement: base "
-                                        "moment divided by the height of {:g} m.",
-                                        height),
-                            {"Displacement of the top", "m"},
-                            {"Equivalent force", "N"},
-                            {}},
-                           runs, {Column::displacement, built.top_sway()}, {built.base_moment(), 0, sign_of_moment(built) / height}));
+  if (const double height = height_of_top(built); height > 0) write_chart(json, force_displacement_chart(runs, height));
+  Chart tilts{"moment_tilt",
+              "interface",
+              "Moment against tilt",
+              "Base moment against the tilt of the base, which contains the deformation of the ground under it.",
+              {"Tilt", "rad"},
+              {"Moment", "N m"},
+              {}};
+  Chart rotations{
+      "moment_rotation", "interface", "Moment against rotation", "Base moment against the rotation of the interface.", {"Rotation", "rad"},
+      {"Moment", "N m"}, {}};
+  for (const ReportRun& run : runs) {
+    add_loop(tilts, run, {run.built->base_tilt(), 0}, {run.built->base_moment(), 0});
+    add_loop(rotations, run, {run.built->base_rotation(), 0}, {run.built->base_moment(), 0});
   }
-  if (!built.model.interfaces.front().footprint)
-    write_chart(json, loop_chart({"moment_rotation",
-                                  "interface",
-                                  "Moment against rotation",
-                                  "Base moment against the rotation of the interface.",
-                                  {"Rotation", "rad"},
-                                  {"Moment", "N m"},
-                                  {}},
-                                 runs, {built.base_rotation(), 0}, {built.base_moment(), 0}));
+  write_chart(json, tilts);
+  if (!built.model.interfaces.front().footprint) write_chart(json, rotations);
   for (std::size_t k = 0; k < built.model.interfaces.size(); ++k)
     for (const Chart& chart : foundation_charts(runs, k)) write_chart(json, chart);
 }
 
 }  // namespace
 
-Chart loop_chart(Chart chart, const std::vector<ReportRun>& runs, const LoopAxis& x, const LoopAxis& y) {
-  for (const ReportRun& run : runs) {
-    const std::vector<double>* along = find_column(*run.result, x.column, x.of);
-    const std::vector<double>* up = find_column(*run.result, y.column, y.of);
-    if (!along || !up) continue;
-    Curve curve = curve_of(run);
-    const std::size_t stride = std::max<std::size_t>(1, along->size() / (2 * points_per_curve));
-    for (std::size_t i = 0; i < along->size(); i += stride) {
-      curve.x.push_back(x.factor * (*along)[i]);
-      curve.y.push_back(y.factor * (*up)[i]);
-    }
-    keep_finite(curve);
-    if (!curve.x.empty()) chart.curves.push_back(std::move(curve));
+void add_loop(Chart& chart, const ReportRun& run, const LoopAxis& x, const LoopAxis& y) {
+  const std::vector<double>* along = find_column(*run.result, x.column, x.of);
+  const std::vector<double>* up = find_column(*run.result, y.column, y.of);
+  if (!along || !up) return;
+  Curve curve = curve_of(run);
+  const std::size_t stride = std::max<std::size_t>(1, along->size() / (2 * points_per_curve));
+  for (std::size_t i = 0; i < along->size(); i += stride) {
+    curve.x.push_back(x.factor * (*along)[i]);
+    curve.y.push_back(y.factor * (*up)[i]);
   }
+  keep_finite(curve);
+  if (!curve.x.empty()) chart.curves.push_back(std::move(curve));
+}
+
+Chart loop_chart(Chart chart, const std::vector<ReportRun>& runs, const LoopAxis& x, const LoopAxis& y) {
+  for (const ReportRun& run : runs) add_loop(chart, run, x, y);
   return chart;
 }
 

@@ -56,7 +56,9 @@ struct LoopAxis {
   int of;  // full unknown or interface
   double factor = 1;
 };
-/// Adds the curves of two columns against each other, of all runs that recorded both.
+/// Adds the curve of two columns against each other where a run recorded both.
+void add_loop(Chart& chart, const ReportRun& run, const LoopAxis& x, const LoopAxis& y);
+/// The same of all runs, with the same numbers of unknowns.
 Chart loop_chart(Chart chart, const std::vector<ReportRun>& runs, const LoopAxis& x, const LoopAxis& y);
 /// What the case states for single figures ([[figure]]): origin and caption, by figure.
 void write_figures(JsonWriter& json, const Case& read);
