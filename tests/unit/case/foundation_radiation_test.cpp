@@ -9,6 +9,7 @@
 #include <numbers>
 #include <string>
 
+#include "ran_support.h"
 #include "uplift/case/case.h"
 #include "uplift/io/text/toml.h"
 #include "uplift/verdict/motion.h"
@@ -19,18 +20,7 @@ namespace {
 
 using Column = Request::Kind;
 
-struct Ran {
-  Case file;
-  BuiltCase built;
-  RunResult result;
-
-  const std::vector<double>& operator[](const std::string& name) const {
-    for (std::size_t k = 0; k < result.columns.size(); ++k)
-      if (result.columns[k].name == name) return result.table[k + 1];
-    ADD_FAILURE() << "no column " << name;
-    return result.table.front();
-  }
-  std::size_t rows() const { return result.table.front().size(); }
+struct Ran : support::Ran {
   double largest(const std::string& name, double from = 0) const {
     double most = 0;
     for (std::size_t i = 0; i < rows(); ++i)
@@ -51,11 +41,9 @@ struct Ran {
 };
 
 Ran run_text(const std::string& text, std::size_t which = 0) {
-  Ran ran{check_case(read_toml_text(text, "case.toml"), "case.toml"), {}, {}};
-  ran.built = build(ran.file, runs_of_case(ran.file)[which]);
-  ran.result = run(ran.built.model, ran.built.plan, ran.built.behaviours);
-  EXPECT_EQ(ran.result.status, RunStatus::completed) << ran.result.reason;
-  return ran;
+  Ran made{support::run_text(text, which)};
+  EXPECT_EQ(made.result.status, RunStatus::completed) << made.result.reason;
+  return made;
 }
 
 std::string histories(const std::string& node, std::initializer_list<const char*> quantities) {

@@ -4,6 +4,7 @@
 #include <cmath>
 #include <string>
 
+#include "ran_support.h"
 #include "text_support.h"
 #include "uplift/case/case.h"
 #include "uplift/io/text/toml.h"
@@ -13,6 +14,7 @@
 namespace uplift {
 namespace {
 
+using support::Ran;
 using support::refusal_of;
 using support::replaced;
 
@@ -131,18 +133,10 @@ std::string with_ground(const std::string& text, const std::string& ground) {
   return replaced(text, "# ground", ground);
 }
 
-struct Ran {
-  Case file;
-  BuiltCase built;
-  RunResult result;
-};
-
 Ran run_text(const std::string& text, std::size_t which = 0) {
-  Ran ran{check_case(read_toml_text(text, "case.toml"), "case.toml"), {}, {}};
-  ran.built = build(ran.file, runs_of_case(ran.file)[which]);
-  ran.result = run(ran.built.model, ran.built.plan, ran.built.behaviours);
-  EXPECT_NE(ran.result.status, RunStatus::failed) << ran.result.reason;
-  return ran;
+  Ran made = support::run_text(text, which);
+  EXPECT_NE(made.result.status, RunStatus::failed) << made.result.reason;
+  return made;
 }
 
 std::size_t column(const RunResult& result, const std::string& name) {

@@ -58,32 +58,7 @@ TEST(MacroSteps, SlopeIsTheDerivative) {
     for (const int components : {3, 6}) {
       Footing footing(variant(number), components);
       RandomPath path(components, 1.0, 9);
-      Numbers scale(static_cast<std::size_t>(components));
-      footing.law.closed_stiffness(components, scale.data());
-      const std::size_t n = scale.size(), normal = components == 3 ? 1 : 2;
-      Numbers errors;
-      for (int i = 0; i < 12; ++i) {
-        const Numbers to = path.next(footing.memory);
-        for (const bool average : {false, true}) {
-          const auto at = [&](const Numbers& where) { return average ? footing.mean(where) : footing.respond(where); };
-          if (!finite(at(to))) continue;
-          const Numbers slope = footing.slope;
-          double error = 0;
-          for (std::size_t c = 0; c < n; ++c) {
-            const double h = c <= normal ? 1e-8 : 1e-9;
-            Numbers moved = to;
-            moved[c] += h;
-            const Numbers up = at(moved);
-            moved[c] -= 2 * h;
-            const Numbers down = at(moved);
-            for (std::size_t r = 0; r < n; ++r)
-              error = std::max(error, std::abs((up[r] - down[r]) / (2 * h) - slope[r * n + c]) / std::sqrt(scale[r] * scale[c]));
-          }
-          errors.push_back(std::isfinite(error) ? error : 1);
-        }
-        if (finite(footing.mean(to))) footing.accept(to);
-      }
-      std::ranges::sort(errors);
+      const Numbers errors = slope_errors(footing, path);
       EXPECT_LT(errors[errors.size() * 95 / 100], 1e-6) << number << " " << components << " seed 9";  // the rest crosses a kink
     }
 }

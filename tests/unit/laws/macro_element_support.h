@@ -127,6 +127,38 @@ inline bool finite(const Numbers& values) {
   return std::ranges::all_of(values, [](double value) { return std::isfinite(value); });
 }
 
+/// The slope beside central differences at the end of 12 steps of a path and in their mean: errors relative to the closed stiffnesses,
+/// ascending.
+inline Numbers slope_errors(Footing& footing, RandomPath& path) {
+  const int components = footing.batch.components;
+  Numbers scale(static_cast<std::size_t>(components)), errors;
+  footing.law.closed_stiffness(components, scale.data());
+  const std::size_t n = scale.size(), normal = components == 3 ? 1 : 2;
+  for (int i = 0; i < 12; ++i) {
+    const Numbers to = path.next(footing.memory);
+    for (const bool average : {false, true}) {
+      const auto at = [&](const Numbers& where) { return average ? footing.mean(where) : footing.respond(where); };
+      if (!finite(at(to))) continue;
+      const Numbers slope = footing.slope;
+      double error = 0;
+      for (std::size_t c = 0; c < n; ++c) {
+        const double h = c <= normal ? 1e-8 : 1e-9;
+        Numbers moved = to;
+        moved[c] += h;
+        const Numbers up = at(moved);
+        moved[c] -= 2 * h;
+        const Numbers down = at(moved);
+        for (std::size_t r = 0; r < n; ++r)
+          error = std::max(error, std::abs((up[r] - down[r]) / (2 * h) - slope[r * n + c]) / std::sqrt(scale[r] * scale[c]));
+      }
+      errors.push_back(std::isfinite(error) ? error : 1);
+    }
+    if (finite(footing.mean(to))) footing.accept(to);
+  }
+  std::ranges::sort(errors);
+  return errors;
+}
+
 /// Rows of a table of tests/data/reference by column name; the values that are no numbers as they are.
 inline std::vector<std::map<std::string, std::string>> table(const std::string& name) {
   std::ifstream file(support::data_file("reference/" + name));

@@ -5,6 +5,7 @@
 #include <limits>
 #include <string>
 
+#include "ran_support.h"
 #include "uplift/io/text/toml.h"
 #include "uplift/verdict/verdict.h"
 
@@ -12,18 +13,8 @@
 namespace uplift {
 namespace {
 
-struct Ran {
-  Case file;
-  BuiltCase built;
-  RunResult result;
-};
-
-Ran run_text(const std::string& text, std::size_t which = 0) {
-  Ran ran{check_case(read_toml_text(text, "case.toml"), "case.toml"), {}, {}};
-  ran.built = build(ran.file, runs_of_case(ran.file)[which]);
-  ran.result = run(ran.built.model, ran.built.plan, ran.built.behaviours);
-  return ran;
-}
+using support::Ran;
+using support::run_text;
 
 // a rigid body of 1 t on 2 m of springs without tension, thrown upwards with 1 m/s
 constexpr const char* thrown = R"(

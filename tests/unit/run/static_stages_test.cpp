@@ -8,6 +8,7 @@
 #include <numbers>
 #include <string>
 
+#include "ran_support.h"
 #include "text_support.h"
 #include "uplift/io/results/histories.h"
 #include "uplift/io/text/toml.h"
@@ -16,17 +17,12 @@
 namespace uplift {
 namespace {
 
-struct Ran {
-  Case file;
-  BuiltCase built;
-  RunResult result;
-
+struct Ran : support::Ran {
   /// Column of the load steps of a case with static stages alone, or of those before dynamic ones.
   const std::vector<double>& load_steps(const std::string& name) const {
     const auto& table = result.load_steps.empty() ? result.table : result.load_steps;
     return table.at(name.empty() ? 0 : column(name));
   }
-  const std::vector<double>& history(const std::string& name) const { return result.table.at(column(name)); }
 
  private:
   std::size_t column(const std::string& name) const {
@@ -38,10 +34,7 @@ struct Ran {
 };
 
 Ran run_text(const std::string& text) {
-  Ran ran{check_case(read_toml_text(text, "case.toml"), "case.toml"), {}, {}};
-  ran.built = build(ran.file, runs_of_case(ran.file).front());
-  ran.result = run(ran.built.model, ran.built.plan, ran.built.behaviours);
-  return ran;
+  return {support::run_text(text)};
 }
 
 constexpr const char* ten_steps = "[[stage]]\ntype = \"static\"\nsteps = 10\n";
@@ -97,8 +90,8 @@ TEST(StaticStages, BesideADynamicStageTheLoadStepsHaveATableOfTheirOwn) {
   ASSERT_EQ(ran.result.status, RunStatus::completed) << ran.result.reason;
   EXPECT_EQ(ran.result.load_steps.front().size(), 11u);
   expect_shares(ran.load_steps("axial"), ran.load_steps(""), -8e5);
-  ASSERT_EQ(ran.history("axial").size(), 101u);  // from t = 0 on, as without load steps
-  for (const double axial : ran.history("axial")) EXPECT_NEAR(axial, -8e5, 1e-3);
+  ASSERT_EQ(ran["axial"].size(), 101u);  // from t = 0 on, as without load steps
+  for (const double axial : ran["axial"]) EXPECT_NEAR(axial, -8e5, 1e-3);
   const std::string csv = load_steps_csv(ran.result, ran.built.plan.requests);
   EXPECT_EQ(std::ranges::count(csv, '\n'), 12);
 }
@@ -155,7 +148,7 @@ TEST(StaticStages, ASupportSettlesWithTheLoadFactor) {
   expect_shares(ran.load_steps("end_moment"), factors, ran.load_steps("end_moment").back());
   EXPECT_NEAR(std::abs(ran.load_steps("end_moment").back()), 6 * rigidity * settlement / std::pow(length, 2), 1);
   // nothing moves afterwards: the settlement does not come as a shock
-  for (const double moved : ran.history("middle")) EXPECT_NEAR(moved, -settlement / 2, 1e-9 * settlement);
+  for (const double moved : ran["middle"]) EXPECT_NEAR(moved, -settlement / 2, 1e-9 * settlement);
   EXPECT_LE(ran.result.final_energy.kinetic, 1e-12 * ran.result.final_energy.strain);
   EXPECT_EQ(ran.result.equilibrium.warning(), "");
 }
@@ -165,7 +158,7 @@ TEST(StaticStages, WithPDeltaTheSettlementStays) {
                            "[[load]]\nnode = \"middle\"\nforce = [2e6, 0]\n";
   const Ran ran = run_text(text);
   ASSERT_EQ(ran.result.status, RunStatus::completed) << ran.result.reason;
-  const std::vector<double>& middle = ran.history("middle");
+  const std::vector<double>& middle = ran["middle"];
   for (const double moved : middle) EXPECT_NEAR(moved, middle.front(), 1e-9);
 }
 
@@ -184,7 +177,7 @@ TEST(StaticStages, AMotionOpensOrPressesAJoint) {
   const double force = heave * first * second / (first + second);
   expect_shares(ran.load_steps("axial"), ran.load_steps(""), -force);
   expect_shares(ran.load_steps("uy"), ran.load_steps(""), force / first);
-  for (const double moved : ran.history("uy")) EXPECT_NEAR(moved, force / first, 1e-9 * heave);
+  for (const double moved : ran["uy"]) EXPECT_NEAR(moved, force / first, 1e-9 * heave);
 }
 
 TEST(StaticStages, AYieldingSpecimenIsPressedByItsSupports) {
@@ -295,7 +288,7 @@ TEST(StaticStages, AfterAFreeVibrationNothingIsLeft) {
   const Ran ran = run_text(text);
   ASSERT_EQ(ran.result.status, RunStatus::completed) << ran.result.reason;
   const std::vector<double>& moved = ran.load_steps("ux");
-  const double left = ran.history("ux").back();
+  const double left = ran["ux"].back();
   EXPECT_GT(std::abs(left), 1e-5);
   ASSERT_EQ(moved.size(), 10u);
   for (std::size_t i = 0; i < moved.size(); ++i) EXPECT_NEAR(moved[i], (1 - ran.load_steps("")[i]) * left, 1e-12);

@@ -7,6 +7,7 @@
 #include <numbers>
 #include <string>
 
+#include "ran_support.h"
 #include "text_support.h"
 #include "uplift/case/case.h"
 #include "uplift/io/text/toml.h"
@@ -67,11 +68,7 @@ moments = [0.5e6, 0.9e6, 0]
 type = "static"
 )";
 
-struct Ran {
-  Case file;
-  BuiltCase built;
-  RunResult result;
-
+struct Ran : support::Ran {
   double last(Column kind) const {
     const std::vector<double>* column = find_column(result, kind, 0);
     return column ? column->back() : NAN;
@@ -84,11 +81,9 @@ struct Ran {
 };
 
 Ran run_text(const std::string& text, std::size_t which = 0) {
-  Ran ran{check_case(read_toml_text(text, "case.toml"), "case.toml"), {}, {}};
-  ran.built = build(ran.file, runs_of_case(ran.file)[which]);
-  ran.result = run(ran.built.model, ran.built.plan, ran.built.behaviours);
-  EXPECT_EQ(ran.result.status, RunStatus::completed) << ran.result.reason;
-  return ran;
+  Ran made{support::run_text(text, which)};
+  EXPECT_EQ(made.result.status, RunStatus::completed) << made.result.reason;
+  return made;
 }
 
 /// (1 - |H|/N)^3
