@@ -202,13 +202,14 @@ ClippedCell filled_simplices(Cell cell, std::span<const Vec3> corners, const std
   ClippedCell made;
   const Cell small = simplex_cell(d);
   const CellRule rule = cell_rule(small, degree_in_simplex(cell));
+  const LocalCoordinates find_local(cell, corners);
   for (const Simplex& simplex : left) {
     const auto of_simplex = std::span(simplex).first(at(d) + 1);
     const double size = measure(simplex, d);
     for (std::size_t p = 0; p < rule.point.size(); ++p) {
-      const Vec3 local = local_coordinates(cell, corners, cell_position(cell_shape(small, rule.point[p]), of_simplex));
+      const Vec3 local = find_local(cell_position(cell_shape(small, rule.point[p]), of_simplex));
       made.rule.point.push_back(local);
-      made.rule.weight.push_back(rule.weight[p] * size / measure(cell, cell_shape(cell, local), corners));
+      made.rule.weight.push_back(rule.weight[p] * size / find_local.measure(local));
     }
     made.pieces.push_back({small, {of_simplex.begin(), of_simplex.end()}});
   }
@@ -279,25 +280,53 @@ std::vector<Vec3> clip_section(std::vector<Vec3> corners, const std::vector<Half
   return corners;
 }
 
-Vec3 local_coordinates(Cell cell, std::span<const Vec3> corners, const Vec3& place) {
+namespace {
+
+/// Gradients of the local coordinates; of those that the cell does not have 0.
+std::array<Vec3, 3> dual_tangents(Cell cell, const CellShape& shape, std::span<const Vec3> corners) {
   const int d = info(cell).dimension;
+  std::array<Vec3, 3> t{}, dual{Vec3::Zero(), Vec3::Zero(), Vec3::Zero()};
+  for (int k = 0; k < d; ++k) t[at(k)] = cell_tangent(shape, corners, k);
+  if (d == 1) t[1] = std::abs(t[0].x()) < 0.9 * t[0].norm() ? Vec3::UnitX() : Vec3::UnitY();
+  if (d < 3) t[2] = cross(t[0], t[1]);
+  if (d == 1) t[1] = cross(t[2], t[0]);
+  const double volume = t[0].dot(cross(t[1], t[2]));
+  for (int k = 0; k < d; ++k) dual[at(k)] = cross(t[at((k + 1) % 3)], t[at((k + 2) % 3)]) / volume;
+  return dual;
+}
+
+}  // namespace
+
+Vec3 local_coordinates(Cell cell, std::span<const Vec3> corners, const Vec3& place) {
+  constexpr double enough = 1e-8;  // Newton's method squares it
   Vec3 local = cell_centre(cell);
-  const double enough = 1e-14 * size_of(corners);
   for (int iteration = 0; iteration < 30; ++iteration) {
     const CellShape shape = cell_shape(cell, local);
     const Vec3 miss = place - cell_position(shape, corners);
-    std::array<Vec3, 3> t{};
-    for (int k = 0; k < d; ++k) t[at(k)] = cell_tangent(shape, corners, k);
-    if (d == 1) t[1] = std::abs(t[0].x()) < 0.9 * t[0].norm() ? Vec3::UnitX() : Vec3::UnitY();
-    if (d < 3) t[2] = cross(t[0], t[1]);
-    if (d == 1) t[1] = cross(t[2], t[0]);
-    const double volume = t[0].dot(cross(t[1], t[2]));
-    Vec3 change = Vec3::Zero();
-    for (int k = 0; k < d; ++k) change[k] = miss.dot(cross(t[at((k + 1) % 3)], t[at((k + 2) % 3)])) / volume;
+    const std::array<Vec3, 3> dual = dual_tangents(cell, shape, corners);
+    const Vec3 change(dual[0].dot(miss), dual[1].dot(miss), dual[2].dot(miss));
     local += change;
-    if (miss.norm() <= enough || (iteration > 0 && change.norm() < 1e-15)) break;
+    if (change.norm() < enough) break;
   }
   return local;
+}
+
+LocalCoordinates::LocalCoordinates(Cell cell, std::span<const Vec3> corners)
+    : cell_(cell), corners_(corners.begin(), corners.end()), parallel_(has_parallel_sides(cell, corners)), middle_(cell_centre(cell)) {
+  const CellShape shape = cell_shape(cell, middle_);
+  origin_ = cell_position(shape, corners);
+  dual_ = dual_tangents(cell, shape, corners);
+  measure_ = uplift::measure(cell, shape, corners);
+}
+
+Vec3 LocalCoordinates::operator()(const Vec3& place) const {
+  if (!parallel_) return local_coordinates(cell_, corners_, place);
+  const Vec3 from = place - origin_;
+  return middle_ + Vec3(dual_[0].dot(from), dual_[1].dot(from), dual_[2].dot(from));
+}
+
+double LocalCoordinates::measure(const Vec3& local) const {
+  return parallel_ ? measure_ : uplift::measure(cell_, cell_shape(cell_, local), corners_);
 }
 
 }  // namespace uplift

@@ -1,4 +1,5 @@
 #pragma once
+#include <array>
 #include <span>
 #include <vector>
 
@@ -46,5 +47,22 @@ std::vector<Vec3> clip_section(std::vector<Vec3> corners, const std::vector<Half
 
 /// Local coordinates of a place in a linear cell; exact for cells with parallel sides and simplices, by Newton's method for others.
 Vec3 local_coordinates(Cell cell, std::span<const Vec3> corners, const Vec3& place);
+
+/// The same for many places in one cell: without iterations where its sides are parallel.
+class LocalCoordinates {
+ public:
+  LocalCoordinates(Cell cell, std::span<const Vec3> corners);
+  Vec3 operator()(const Vec3& place) const;
+  /// Length, area or volume of the cell over that of the reference cell.
+  double measure(const Vec3& local) const;
+
+ private:
+  Cell cell_;
+  std::vector<Vec3> corners_;
+  bool parallel_;
+  Vec3 origin_, middle_;
+  std::array<Vec3, 3> dual_;  // 1/m: gradients of the local coordinates in the middle
+  double measure_;            // in the middle
+};
 
 }  // namespace uplift

@@ -452,8 +452,8 @@ void compact(Work& work, std::vector<std::vector<CutFace>>& faces) {
 class Followers {
  public:
   explicit Followers(Mesh& mesh) : mesh_(mesh) {}
-  int node_at(Cell cell, std::span<const int> nodes, std::span<const Vec3> corners, const Vec3& place) {
-    const CellShape shape = cell_shape(cell, local_coordinates(cell, corners, place));
+  int node_at(Cell cell, std::span<const int> nodes, const LocalCoordinates& find_local, const Vec3& place) {
+    const CellShape shape = cell_shape(cell, find_local(place));
     Follower follower;
     std::vector<std::pair<int, long>> key;
     for (std::size_t a = 0; a < nodes.size(); ++a) {
@@ -491,10 +491,17 @@ void number_pieces(Work& work) {
     const std::vector<int> nodes(mesh.cell(id).begin(), mesh.cell(id).end());
     std::vector<Vec3> corners;
     for (const int node : nodes) corners.push_back(mesh.nodes[at(node)]);
+    const LocalCoordinates find_local(mesh.type(id), corners);
+    std::vector<std::pair<Vec3, int>> known;  // pieces share their corners
+    const auto node_at = [&](const Vec3& place) {
+      for (const auto& [there, node] : known)
+        if (there == place) return node;
+      return known.emplace_back(place, followers.node_at(mesh.type(id), nodes, find_local, place)).second;
+    };
     for (ClippedCell::Piece& piece : pieces) {
       if (is_inside_out(mesh, piece)) std::swap(piece.corners[0], piece.corners[1]);
       CellPart::Piece& made = mesh.parts.at(id).pieces.emplace_back(CellPart::Piece{piece.cell});
-      for (const Vec3& corner : piece.corners) made.nodes.push_back(followers.node_at(mesh.type(id), nodes, corners, corner));
+      for (const Vec3& corner : piece.corners) made.nodes.push_back(node_at(corner));
     }
   }
 }
