@@ -2,6 +2,7 @@
 #include <functional>
 #include <memory>
 #include <optional>
+#include <set>
 #include <string>
 #include <string_view>
 #include <vector>
@@ -140,6 +141,7 @@ struct BuiltCase {
   double weight = 0;
   int top = -1, base = -1;      // nodes whose motion is shown: the highest mass, the first interface's body
   Dof sway = ux;                // horizontal direction that is shown: in space that of the larger loads
+  std::set<int> bare;           // nodes that stand outside of what their cut cells fill
   std::vector<BeamLine> beams;  // every beam of the case, one of a group in as many lines as it takes
   // Full unknowns that are shown; -1 without the node: sway of the top, vertical motion of the base, its rotation in the plane of the sway
   int top_sway() const { return top < 0 ? -1 : model.at(top, sway); }

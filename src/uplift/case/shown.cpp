@@ -3,7 +3,10 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
+#include <set>
 #include <utility>
+
+#include "uplift/mesh/cut.h"
 
 namespace uplift {
 namespace {
@@ -16,11 +19,11 @@ void rename_shown(int node, const std::string& name, Model& model) {
 
 /// The highest node, of equally high ones that nearest to a place; `among` leaves nodes out where it is 0, empty: none. `highest`: a node
 /// to begin with, -1: none.
-int highest_node(const CaseNames& names, const Vec3& near, const std::vector<char>& among, int highest = -1) {
+int highest_node(const CaseNames& names, const std::set<int>& bare, const Vec3& near, const std::vector<char>& among, int highest = -1) {
   const int up = names.space.up();
   const auto position = [&](int node) -> const Place& { return names.positions[static_cast<std::size_t>(node)]; };
   for (int node = 0; node < static_cast<int>(names.positions.size()); ++node) {
-    if (!among.empty() && !among[static_cast<std::size_t>(node)]) continue;
+    if (bare.contains(node) || (!among.empty() && !among[static_cast<std::size_t>(node)])) continue;
     const double higher = highest < 0 ? 1 : position(node)[up] - position(highest)[up];
     const bool nearer = highest >= 0 && (position(node) - near).norm() < (position(highest) - near).norm();
     if (higher > 1e-9 || (higher > -1e-9 && nearer)) highest = node;
@@ -34,14 +37,14 @@ void find_shown_mesh_nodes(const CaseNames& names, BuiltCase& built) {
   if (built.facts.empty()) {
     Vec3 middle = Vec3::Zero();
     for (const Place& place : names.positions) middle += place / static_cast<double>(names.positions.size());
-    built.top = highest_node(names, middle, {}, built.top);
+    built.top = highest_node(names, built.bare, middle, {}, built.top);
     return rename_shown(built.top, "top", built.model);
   }
   const std::vector<int>& upper = built.facts.front().upper;
   const Vec3 middle = built.model.interfaces.front().reference;
   const auto distance = [&](int node) { return (names.positions[static_cast<std::size_t>(node)] - middle).norm(); };
   if (built.base < 0) built.base = *std::ranges::min_element(upper, {}, distance);
-  if (built.top < 0) built.top = highest_node(names, middle, part_of(built.model, upper));
+  if (built.top < 0) built.top = highest_node(names, built.bare, middle, part_of(built.model, upper));
   rename_shown(built.top, "top", built.model);
   rename_shown(built.base, "base", built.model);
 }
@@ -99,6 +102,11 @@ double weight_of(const BuiltCase& built) {
 }  // namespace
 
 void find_shown(const Case& read, const CaseNames& names, BuiltCase& built) {
+  if (names.solids) {
+    const std::vector<bool> bare = bare_nodes(names.solids->mesh());
+    for (std::size_t node = 0; node < bare.size(); ++node)
+      if (bare[node]) built.bare.insert(names.first_of_mesh + static_cast<int>(node));
+  }
   find_shown_nodes(read, names, built);
   built.sway = sway_of(built.model);
   built.weight = weight_of(built);

@@ -6,6 +6,7 @@
 #include <cassert>
 #include <cmath>
 #include <limits>
+#include <set>
 
 #include "uplift/base/text.h"
 #include "uplift/mesh/absent_group.h"
@@ -44,6 +45,7 @@ struct Work {
   Mesh mesh;
   std::vector<std::vector<bool>> removed = {};                    // of each cell
   std::map<CellId, std::vector<ClippedCell::Piece>> pieces = {};  // of the parts
+  std::set<CellId> lines = {};                                    // beams and points, no faces of cells
 };
 
 /// One plane through a mesh.
@@ -64,6 +66,8 @@ class OneCut {
   void find_level_faces();
   void find_doubles();
   void find_neighbours();
+  bool is_within(const Vec3& place, double tolerance) const;
+  void refuse_bond(CellId id, bool below) const;
   void refuse_nothing() const;
   int lower_node(int node) const { return sign(node) > 0 && double_[at(node)] >= 0 ? double_[at(node)] : node; }
   int upper_node(int node) const { return sign(node) <= 0 && double_[at(node)] >= 0 ? double_[at(node)] : node; }
@@ -173,7 +177,9 @@ void OneCut::keep_within(const CellBefore& cell, Halves& halves) const {
     if (side == PlaneSide::outside) halves.upper = false;
     if (side == PlaneSide::both) halves.upper_whole = false;
   }
-  if (halves.upper && !halves.upper_whole) halves.upper = !clip_cell(cell.cell, cell.corners, above(), cell.tolerance).pieces.empty();
+  const bool curved = info(cell.cell).nodes != info(cell.cell).corners;  // is refused
+  if (halves.upper && !halves.upper_whole && !curved)
+    halves.upper = !clip_cell(cell.cell, cell.corners, above(), cell.tolerance).pieces.empty();
 }
 
 Halves OneCut::halves_of(CellId id) const {
@@ -237,6 +243,29 @@ void OneCut::find_doubles() {
     }
 }
 
+bool OneCut::is_within(const Vec3& place, double tolerance) const {
+  return std::ranges::all_of(plane_.within, [&](const HalfSpace& space) { return space.distance(place) <= tolerance; });
+}
+
+/// A cell of another group that meets those of the groups in the plane would stay bonded to them there.
+void OneCut::refuse_bond(CellId id, bool below) const {
+  const CellInfo& type = info(mesh_.type(id));
+  const auto nodes = mesh_.cell(id);
+  std::vector<int> face;
+  for (int s = 0; s < static_cast<int>(type.sides.size()); ++s) {
+    face.clear();
+    for (const int k : side_of(mesh_.type(id), s)) face.push_back(nodes[at(k)]);
+    if (std::ranges::any_of(face, [&](int node) { return sign(node) != 0; })) continue;
+    const int side = sides_.find(type.sides[at(s)], face);
+    if (side < 0 || (below ? halves_[at(side / Sides::stride)].lower : !halves_[at(side / Sides::stride)].lower)) continue;
+    Vec3 middle = Vec3::Zero();
+    for (const int node : face) middle += mesh_.nodes[at(node)] / static_cast<double>(face.size());
+    if (is_within(middle, 0))
+      throw InputError(where_, "", "the groups of all cells that meet in the plane, in `through`",
+                       describe_cell(mesh_, id) + " in none of them");
+  }
+}
+
 /// Cells that are not cut but touch doubled nodes go with their side.
 void OneCut::find_neighbours() {
   for (int b = 0; b < static_cast<int>(mesh_.blocks.size()); ++b) {
@@ -248,6 +277,9 @@ void OneCut::find_neighbours() {
       const bool below = any([&](int node) { return sign(node) < 0; });
       if (!below && any([&](int node) { return sign(node) > 0 && below_[at(node)] && !above_[at(node)]; }))
         throw InputError(where_, "", "an outline that holds what stands above the plane", describe_cell(mesh_, id) + " outside of it");
+      if (!below && any([&](int node) { return above_[at(node)] && !is_within(mesh_.nodes[at(node)], on_plane * edge_[at(node)]); }))
+        throw InputError(where_, "", "an outline that holds what stands above the plane", describe_cell(mesh_, id) + " outside of it");
+      refuse_bond(id, below);
       if (!any([&](int node) { return double_[at(node)] >= 0; })) continue;
       if (below && !mesh_.part(id) && any([&](int node) { return sign(node) > 0; }))
         throw InputError(where_, "", "the groups of all cells that the plane cuts", describe_cell(mesh_, id) + " in none of them");
@@ -313,7 +345,7 @@ void OneCut::write_small(CellId id) {
   const auto nodes = mesh_.cell(id);
   const bool below = std::ranges::any_of(nodes, [&](int node) { return sign(node) < 0; });
   const bool above = std::ranges::any_of(nodes, [&](int node) { return sign(node) > 0; });
-  const bool may_be_face = info(mesh_.type(id)).dimension == mesh_.dimension - 1 && mesh_.dimension > 1;
+  const bool may_be_face = info(mesh_.type(id)).dimension == mesh_.dimension - 1 && mesh_.dimension > 1 && !work_.lines.contains(id);
   const int side = may_be_face ? sides_.find(mesh_.type(id), nodes) : -1, twin = side < 0 ? -1 : sides_.twin(side);
   if (side < 0) {
     if (!below) rename(id, true);
@@ -432,10 +464,12 @@ void compact(Work& work, std::vector<std::vector<CutFace>>& faces) {
   for (const CellBlock& block : mesh.blocks)
     for (const int node : block.nodes) number[at(node)] = 0;
   std::vector<Vec3> nodes;
+  mesh.places.clear();
   for (std::size_t node = 0; node < number.size(); ++node)
     if (number[node] == 0) {
       number[node] = static_cast<int>(nodes.size());
       nodes.push_back(mesh.nodes[node]);
+      mesh.places.push_back(static_cast<int>(node));
     }
   mesh.nodes = std::move(nodes);
   for (CellBlock& block : mesh.blocks)
@@ -508,9 +542,13 @@ void number_pieces(Work& work) {
 
 }  // namespace
 
-std::vector<std::vector<CutFace>> cut(Mesh& mesh, const std::vector<CutPlane>& planes, const std::vector<Where>& where) {
+std::vector<std::vector<CutFace>> cut(Mesh& mesh, const std::vector<CutPlane>& planes, const std::vector<Where>& where,
+                                      const std::vector<std::string>& lines) {
   assert(planes.size() == where.size());
   Work work{mesh};
+  for (const std::string& name : lines)
+    if (const auto group = mesh.groups.find(name); group != mesh.groups.end() && group->second.dimension < mesh.dimension)
+      work.lines.insert(group->second.cells.begin(), group->second.cells.end());
   for (const CellBlock& block : mesh.blocks) work.removed.emplace_back(at(block.count()), false);
   std::vector<std::vector<CutFace>> faces;
   for (std::size_t k = 0; k < planes.size(); ++k) faces.push_back(OneCut(work, planes[k], where[k]).faces());
@@ -518,6 +556,20 @@ std::vector<std::vector<CutFace>> cut(Mesh& mesh, const std::vector<CutPlane>& p
   number_pieces(work);
   mesh = std::move(work.mesh);
   return faces;
+}
+
+std::vector<bool> bare_nodes(const Mesh& mesh) {
+  std::vector<bool> bare(mesh.nodes.size(), false), filled(mesh.nodes.size(), false);
+  for (int b = 0; b < static_cast<int>(mesh.blocks.size()); ++b)
+    for (int i = 0; i < mesh.blocks[at(b)].count(); ++i) {
+      const CellPart* part = mesh.part({b, i});
+      for (const int node : mesh.blocks[at(b)][i]) (part ? bare : filled)[at(node)] = true;
+      if (part)
+        for (const CellPart::Piece& piece : part->pieces)
+          for (const int node : piece.nodes) filled[at(node)] = true;
+    }
+  for (std::size_t node = 0; node < bare.size(); ++node) bare[node] = bare[node] && !filled[node];
+  return bare;
 }
 
 Mesh drawn_mesh(const Mesh& mesh) {

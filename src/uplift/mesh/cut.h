@@ -34,8 +34,13 @@ struct CutFace {
 /// - Faces (edges in the plane) of groups are cut and removed with their cells; a group of nodes that has a node gets its double too.
 ///   Cells of lower dimension (beams, points) on the plane go with the upper side.
 /// Throws InputError: a group absent (with the nearest name) or of something else, cut cells of the second degree, a cell that two planes
-/// cut, a plane that cuts nothing. The mesh is unchanged then.
-std::vector<std::vector<CutFace>> cut(Mesh& mesh, const std::vector<CutPlane>& planes, const std::vector<Where>& where);
+/// cut, a plane that cuts nothing, cells of other groups that meet those of `through` in the plane or stand on what is not filled. The mesh
+/// is unchanged then. `lines`: groups of cells of lower dimension that are no faces, as beams; absent ones count as empty.
+std::vector<std::vector<CutFace>> cut(Mesh& mesh, const std::vector<CutPlane>& planes, const std::vector<Where>& where,
+                                      const std::vector<std::string>& lines = {});
+
+/// Nodes that stand outside of all cells that use them: doubles beyond the plane with nothing of their side around them.
+std::vector<bool> bare_nodes(const Mesh& mesh);
 
 /// The mesh as it is drawn: parts are replaced by their pieces. Nodes keep their numbers.
 Mesh drawn_mesh(const Mesh& mesh);

@@ -183,6 +183,12 @@ int Mesh::cells() const {
   return sum;
 }
 
+int Mesh::number(int node) const {
+  const int known = static_cast<int>(places.size());
+  if (node < known) return places[static_cast<std::size_t>(node)] + 1;
+  return known == 0 ? node + 1 : places.back() + 2 + node - known;
+}
+
 const CellPart* Mesh::part(CellId id) const {
   const auto found = parts.find(id);
   return found == parts.end() ? nullptr : &found->second;

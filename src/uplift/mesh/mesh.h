@@ -61,12 +61,14 @@ struct Mesh {
   std::map<std::string, Group> groups;
   std::map<CellId, CellPart> parts = {};  // of cells that are filled in part; all others are whole
   std::vector<Follower> followers = {};   // used by the pieces of parts
-  CellBlock& block(Cell cell);            // made when it is not there (references to other blocks end then)
-  int find_block(Cell cell) const;        // -1 when absent
+  std::vector<int> places = {};     // of the first nodes, ascending: where each stood before some were removed; empty: where it stands
+  CellBlock& block(Cell cell);      // made when it is not there (references to other blocks end then)
+  int find_block(Cell cell) const;  // -1 when absent
   std::span<const int> cell(CellId id) const { return blocks[static_cast<std::size_t>(id.block)][id.index]; }
   Cell type(CellId id) const { return blocks[static_cast<std::size_t>(id.block)].cell; }
   int cells() const;
   const CellPart* part(CellId id) const;  // null: the cell is whole
+  int number(int node) const;             // by which users call it: from 1 on in the order of the file, then the nodes that were added
 };
 
 /// Nodes of a group: of its cells, or its own; ascending, each once.

@@ -119,6 +119,25 @@ TEST(CutCase, ColumnOfTwoMaterialsSettlesByTheClosedForm) {
   EXPECT_NEAR(at_rest(result, "base.axial"), -pressure * 2, 1e-9 * pressure);
 }
 
+TEST(CutCase, TiedSidesPartAtTheInterface) {
+  // One-dimensional strain by ties instead of supports; also where nodes of both sides of an aligned joint stand at one place.
+  const std::string held = "[[support]]\ngroup = \"left\"\nfixed = [\"ux\"]\n[[support]]\ngroup = \"right\"\nfixed = [\"ux\"]\n";
+  const std::string tied = "[[tie]]\ngroup = \"left\"\nto = \"right\"\nunknowns = [\"ux\", \"uy\"]\n";
+  const std::string law = "{ type = \"springs\", K_n = 3e7, K_t = 3e7 }";
+  for (const Cell cell : {Cell::quad4, Cell::tri3})
+    for (const double level : {5.63, 6.0, 9.5}) {
+      const Mesh mesh = rectangle(uniform_lines(-1, 1, 4), uniform_lines(0, 10, 10), cell);
+      const std::string text = column(level, law);
+      std::string other = text;
+      other.replace(other.find(held), held.size(), tied);
+      const RunResult a = run_text(text, mesh), b = run_text(other, mesh);
+      const double weight = block_density * gravity * (10 - level) * 2, top = at_rest(a, "top");
+      EXPECT_NEAR(at_rest(b, "base.axial"), -weight, 1e-9 * weight) << level;
+      EXPECT_NEAR(at_rest(b, "top"), top, (cell == Cell::quad4 ? 1e-9 : 1e-4) * std::abs(top))
+          << level;  // triangles move sideways a little
+    }
+}
+
 TEST(CutCase, ThroughNodesItIsTheAlignedJoint) {
   const Grid lines{uniform_lines(-1, 1, 4), uniform_lines(0, 10, 10), {}};
   const Mesh parted = grid(
@@ -187,6 +206,75 @@ TEST(CutCase, WarnsOfAnOutlineInsideCoarseCells) {
   EXPECT_FALSE(said("x = [-0.5, 0.5], ", 4));     // the edges are sides of cells
   EXPECT_FALSE(said("x = [-0.7, 0.7], ", 1000));  // fine enough
   EXPECT_FALSE(said("", 2));
+}
+
+// ---- a raft on free ground: names of nodes, places, lines of beams ----
+
+const Mesh& ground_of_8_by_4() {
+  static const Mesh mesh = rectangle(uniform_lines(-4, 4, 8), uniform_lines(0, 4, 4));
+  return mesh;
+}
+std::string raft(const std::string& more) {
+  return "title = \"raft\"\n[mesh]\nfile = \"raft.msh\"\n" + solid("volume", 5e7, 0.3, 1900) + solid("raft", 2e10, 0.2, 2500) +
+         "[[support]]\ngroup = \"bottom\"\nfixed = [\"ux\", \"uy\"]\n[gravity]\nacceleration = [0, -10]\n"
+         "[[interface]]\nname = \"base\"\ncut = { through = [\"volume\"], level = 2.4, upper = \"raft\", x = [-2, 2] }\n"
+         "law = { type = \"elastic\", K_n = 1e9, K_t = 1e9 }\n" +
+         more + at_rest_stages;
+}
+
+TEST(CutCase, NodesKeepTheirNumbers) {
+  // node 41 of the mesh stands at (0, 4), node 45 at (4, 4), where the ground beside the raft is removed
+  const auto loaded = [](int node) { return raft(fmt::format("[[load]]\nnode = \"mesh.{}\"\nforce = [0, -1e5]\n", node)); };
+  ASSERT_EQ(ground_of_8_by_4().nodes[40], Vec3(0, 4, 0));
+  const RunResult result = run_text(loaded(41), ground_of_8_by_4());
+  const double weight = 2500 * 10 * 4 * 1.6 + 1e5;
+  EXPECT_NEAR(at_rest(result, "base.axial"), -weight, 1e-9 * weight);
+  EXPECT_NEAR(at_rest(result, "base.moment"), 0, 1e-9 * weight);
+  EXPECT_NE(support::refusal_of([&] { build(read_text(loaded(45), ground_of_8_by_4()), RunSpec{}); }).find("\"mesh.45\""),
+            std::string::npos);
+}
+
+TEST(CutCase, PlacesAreThoseOfTheGround) {
+  // the doubles of the ground beside the raft reach up to y = 3, the ground ends at 2.4
+  const Case read = read_text(raft("[[output.history]]\nname = \"beside\"\nat = [-3, 3]\nquantity = \"uy\"\n"), ground_of_8_by_4());
+  const BuiltCase built = build(read, RunSpec{});
+  EXPECT_TRUE(std::ranges::any_of(built.notes, [](const std::string& note) { return note.find("0.6 m away") != note.npos; }))
+      << fmt::format("{}", fmt::join(built.notes, "; "));
+}
+
+TEST(CutCase, ALineOfBeamsJoinsBothSides) {
+  // three beams on edges of cells, from y = 1 to y = 4, through the plane at 2.4
+  Mesh mesh = ground_of_8_by_4();
+  Group& pile = mesh.groups["pile"];
+  pile.dimension = 1;
+  CellBlock& lines = mesh.block(Cell::line2);
+  for (int j = 1; j < 4; ++j) {
+    pile.cells.push_back({mesh.find_block(Cell::line2), lines.count()});
+    lines.nodes.insert(lines.nodes.end(), {j * 9 + 4, (j + 1) * 9 + 4});
+  }
+  const double beam = 2500 * 10 * 0.5 * 3, ground = 1900 * 10 * 8 * 2.4, above = 2500 * 10 * 4 * 1.6;
+  const std::string text = raft(
+      "[[beam]]\nname = \"pile\"\ngroup = \"pile\"\nE = 2e10\nA = 0.5\nI = 0.02\nmass = \"consistent\"\ndensity = 2500\n"
+      "[[output.history]]\nname = \"below\"\ngroup = \"bottom\"\nquantity = \"reaction_y\"\n");
+  const RunResult result = run_text(text, mesh);
+  EXPECT_NEAR(at_rest(result, "below"), beam + ground + above, 1e-9 * ground);
+  EXPECT_GT(at_rest(result, "base.axial"), -0.9 * above);  // the pile carries a part of it
+}
+
+TEST(CutCase, RefusesWhatWouldStayBondedOrHang) {
+  // a second group from y = 3 up, within |x| < 2
+  const Grid lines{uniform_lines(-4, 4, 8), uniform_lines(0, 4, 4), {}};
+  const Mesh mesh = grid(
+      lines, [](int i, int j, int) { return j == 3 && i >= 2 && i < 6 ? 1 : 0; }, {"volume", "block"},
+      [](int, Direction direction, int other) -> std::string { return other >= 0 ? "" : std::string(name_of(direction)); });
+  const auto refusal = [&](const std::string& cut, const std::string& new_cut) {
+    std::string text = raft(solid("block", 2e10, 0.2, 2500));
+    text.replace(text.find(cut), cut.size(), new_cut);
+    return support::refusal_of([&] { build(read_text(text, mesh), RunSpec{}); });
+  };
+  EXPECT_NE(refusal("level = 2.4, upper = \"raft\", x = [-2, 2]", "level = 3, upper = \"raft\"").find("in `through`"), std::string::npos);
+  EXPECT_NE(refusal("x = [-2, 2]", "x = [-2, 2], height = 0.4").find("holds what stands above"), std::string::npos);
+  EXPECT_NE(refusal("upper = \"raft\"", "upper = \"volume\"").find("another group than those of `through`"), std::string::npos);
 }
 
 TEST(CutCase, RefusesWithFileAndKey) {

@@ -174,7 +174,7 @@ void add_mesh(const Case& read, ModelBuilder& builder, CaseNames& names) {
   const std::map<int, std::string> named = named_nodes(mesh, names.nodes);
   auto coordinates = std::make_shared<std::vector<Vec3>>(names.positions.size(), Vec3::Zero());
   for (int i = 0; i < static_cast<int>(mesh.nodes.size()); ++i) {
-    const std::string number = fmt::format("mesh.{}", i + 1);
+    const std::string number = fmt::format("mesh.{}", mesh.number(i));
     const auto name = named.find(i);
     coordinates->push_back(mesh.nodes[static_cast<std::size_t>(i)]);
     const int node = names.nodes.add(number, table.where(), table.path());

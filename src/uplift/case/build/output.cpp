@@ -198,10 +198,10 @@ Request point_request(const Values& history, const Model& model, int interface, 
 /// The node nearest to a place; of nodes at the same place (the sides of an interface) the first, that of the lower side.
 int nearest_node(const Values& table, const std::string& what, BuiltCase& built) {
   const Place place = vector_of(table, "at", built.model.space);
-  int nearest = 0;
+  int nearest = -1;
   const auto distance = [&](int node) { return (built.model.nodes[static_cast<std::size_t>(node)].position - place).norm(); };
-  for (int node = 1; node < static_cast<int>(built.model.nodes.size()); ++node)
-    if (distance(node) < distance(nearest) - 1e-9) nearest = node;
+  for (int node = 0; node < static_cast<int>(built.model.nodes.size()); ++node)
+    if (!built.bare.contains(node) && (nearest < 0 || distance(node) < distance(nearest) - 1e-9)) nearest = node;
   const Node& found = built.model.nodes[static_cast<std::size_t>(nearest)];
   built.notes.push_back(fmt::format("{} at {} m: node {} at {} m, {:.3g} m away", what, to_string(place, built.model.space), found.name,
                                     to_string(found.position, built.model.space), distance(nearest)));

@@ -41,6 +41,9 @@ struct SideFaces {
     const Mesh& mesh = solids.mesh();
     const CellInfo& type = info(mesh.type(face));
     const std::span<const int> nodes = mesh.cell(face);
+    if (mesh.part(face))
+      fail(absorbing, "group", "faces that no interface cuts, for their free field: a row of nodes at the level of its plane",
+           "a part of " + describe_cell(mesh, face));
     const CaseSolids::Solid& solid = *solids.beside(face);
     ColumnLayer row{INFINITY, -INFINITY, type.nodes > type.corners, solid.section, solid.table->number("damping_beta")};
     for (int i = 0; i < type.corners; ++i) {

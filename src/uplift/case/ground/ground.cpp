@@ -5,6 +5,7 @@
 #include <algorithm>
 
 #include "uplift/base/text.h"
+#include "uplift/mesh/cells.h"
 
 namespace uplift {
 namespace {
@@ -37,18 +38,26 @@ class Partners {
     apart.cwiseAbs().maxCoeff(&across_);
     tolerance_ = 1e-6 * (from.high.cwiseMax(to.high) - from.low.cwiseMin(to.low)).norm();
     if (across_ == up_ || !(apart.norm() > tolerance_)) fail(tie, "to", "the opposite side of the ground", in_quotes(tie.text("to")));
+    find_cells(names.solids->mesh());
   }
 
-  /// The node of the other side (sorted by height) with the same place; InputError without one.
+  /// The node of the other side (sorted by height) with the same place; of several, as both sides of an interface, the one whose cells lie
+  /// in the same direction. InputError without one.
   int find(int node, const std::vector<int>& others, std::string_view group) const {
     const Vec3& place = at(node);
     const auto height = [&](int other) { return at(other)[up_]; };
+    int best = -1;
+    double least = 0;
     for (auto other = std::ranges::lower_bound(others, place[up_] - tolerance_, {}, height); other != others.end(); ++other) {
       Vec3 apart = at(*other) - place;
       if (apart[up_] > tolerance_) break;
       apart[across_] = 0;
-      if (apart.norm() <= tolerance_) return *other;
+      if (apart.norm() > tolerance_) continue;
+      Vec3 turned = cells_[static_cast<std::size_t>(*other)] - cells_[static_cast<std::size_t>(node)];
+      turned[across_] = 0;
+      if (const double off = turned.norm(); best < 0 || off < least) best = *other, least = off;
     }
+    if (best >= 0) return best;
     fail(tie_, "group", "nodes with a partner on the opposite side, at the same height",
          fmt::format("node {} at ({:g}, {:g}, {:g}) without one in {}", node + 1, place.x(), place.y(), place.z(),
                      in_quotes(std::string(group))));
@@ -56,10 +65,38 @@ class Partners {
 
  private:
   const Vec3& at(int node) const { return places_[static_cast<std::size_t>(node)]; }
+  /// For each node the way to the middle of its cells, or of what is left of them.
+  void find_cells(const Mesh& mesh) {
+    std::vector<int> count(mesh.nodes.size(), 0);
+    cells_.assign(mesh.nodes.size(), Vec3::Zero());
+    for (int b = 0; b < static_cast<int>(mesh.blocks.size()); ++b) {
+      if (info(mesh.blocks[static_cast<std::size_t>(b)].cell).dimension != mesh.dimension) continue;
+      for (int i = 0; i < mesh.blocks[static_cast<std::size_t>(b)].count(); ++i) {
+        const Vec3 middle = middle_of(mesh, {b, i});
+        for (const int node : mesh.cell({b, i}))
+          cells_[static_cast<std::size_t>(node)] += middle - at(node), ++count[static_cast<std::size_t>(node)];
+      }
+    }
+    for (std::size_t node = 0; node < count.size(); ++node)
+      if (count[node] > 0) cells_[node] /= count[node];
+  }
+  static Vec3 middle_of(const Mesh& mesh, CellId id) {
+    Vec3 sum = Vec3::Zero();
+    double count = 0;
+    const auto add = [&](std::span<const int> nodes) {
+      for (const int node : nodes) sum += mesh.nodes[static_cast<std::size_t>(node)], ++count;
+    };
+    if (const CellPart* part = mesh.part(id))
+      for (const CellPart::Piece& piece : part->pieces) add(piece.nodes);
+    else
+      add(mesh.cell(id));
+    return sum / count;
+  }
   const Values& tie_;
   const std::vector<Vec3>& places_;
   int up_, across_ = 0;
-  double tolerance_ = 0;  // m
+  double tolerance_ = 0;     // m
+  std::vector<Vec3> cells_;  // m
 };
 
 std::vector<Dof> unknowns_of(const Values& tie, Space space) {

@@ -132,6 +132,8 @@ CutPlane plane_of(const Values& cut, int dimension) {
     level = normal.dot(vector_of(cut, "point", {dimension}));
   plane.below = {normal, level};
   if (cut.has("upper")) plane.upper = cut.text("upper");
+  if (std::ranges::find(plane.through, plane.upper) != plane.through.end())
+    fail(cut, "upper", "another group than those of `through`, or none", in_quotes(plane.upper));
   add_outline(cut, "x", Vec3::UnitX(), plane.within);
   if (dimension == 2 && cut.has("y")) fail(cut, "y", "no y in a plane mesh: height limits the outline", "one");
   add_outline(cut, "y", Vec3::UnitY(), plane.within);
@@ -139,7 +141,8 @@ CutPlane plane_of(const Values& cut, int dimension) {
   return plane;
 }
 
-void cut_planes(const std::vector<Values>& interfaces, CaseMesh& made) {
+void cut_planes(const Values& root, CaseMesh& made) {
+  const std::vector<Values>& interfaces = root.tables("interface");
   made.cut.resize(interfaces.size());
   std::vector<CutPlane> planes;
   std::vector<Where> where;
@@ -151,7 +154,10 @@ void cut_planes(const std::vector<Values>& interfaces, CaseMesh& made) {
       of.push_back(k);
     }
   if (planes.empty()) return;
-  std::vector<std::vector<CutFace>> faces = cut(made.mesh, planes, where);
+  std::vector<std::string> lines;
+  for (const Values* beam : element_tables(root, ElementPlace::lines))
+    if (beam->has("group")) lines.push_back(beam->text("group"));
+  std::vector<std::vector<CutFace>> faces = cut(made.mesh, planes, where, lines);
   for (std::size_t i = 0; i < of.size(); ++i) made.cut[of[i]] = std::move(faces[i]);
 }
 
@@ -220,7 +226,7 @@ std::shared_ptr<const CaseMesh> mesh_of_case(const Values& root, const std::stri
     made->from = "soil_box";
     made->mesh = make_soil_box(mesh->table("soil_box"));
   }
-  cut_planes(root.tables("interface"), *made);
+  cut_planes(root, *made);
   open_surfaces(root.tables("interface"), *made);
   if (!made->mesh.parts.empty()) made->pieces = drawn_mesh(made->mesh);
   return made;
