@@ -6,7 +6,7 @@
 #include <set>
 #include <utility>
 
-#include "uplift/mesh/cut.h"
+#include "uplift/mesh/parts.h"
 
 namespace uplift {
 namespace {

@@ -39,10 +39,4 @@ struct CutFace {
 std::vector<std::vector<CutFace>> cut(Mesh& mesh, const std::vector<CutPlane>& planes, const std::vector<Where>& where,
                                       const std::vector<std::string>& lines = {});
 
-/// Nodes that stand outside of all cells that use them: doubles beyond the plane with nothing of their side around them.
-std::vector<bool> bare_nodes(const Mesh& mesh);
-
-/// The mesh as it is drawn: parts are replaced by their pieces. Nodes keep their numbers.
-Mesh drawn_mesh(const Mesh& mesh);
-
 }  // namespace uplift

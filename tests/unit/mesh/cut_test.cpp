@@ -9,6 +9,7 @@
 #include "unit/mesh/mesh_support.h"
 #include "uplift/mesh/box.h"
 #include "uplift/mesh/cell_shapes.h"
+#include "uplift/mesh/parts.h"
 #include "uplift/mesh/quality.h"
 
 // Cut cells against the geometry: volumes and first moments of both sides, nodes and groups.

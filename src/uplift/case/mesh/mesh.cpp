@@ -15,6 +15,7 @@
 #include "uplift/mesh/cell_quadrature.h"
 #include "uplift/mesh/cell_shapes.h"
 #include "uplift/mesh/facing.h"
+#include "uplift/mesh/parts.h"
 #include "uplift/mesh/soil_box.h"
 
 namespace uplift {
