@@ -1,6 +1,7 @@
 #pragma once
 #include <gtest/gtest.h>
 
+#include <memory>
 #include <string>
 #include <vector>
 
@@ -11,7 +12,7 @@ namespace uplift::support {
 
 /// A case that has run, with all that its results point into.
 struct Ran {
-  Case file;
+  std::unique_ptr<Case> file;  // behind a pointer: the model points into it
   BuiltCase built;
   RunResult result;
 
@@ -27,8 +28,8 @@ struct Ran {
 
 /// Runs a case: itself, or another of runs_of_case().
 inline Ran run_text(const std::string& text, std::size_t which = 0) {
-  Ran made{check_case(read_toml_text(text, "case.toml"), "case.toml"), {}, {}};
-  made.built = build(made.file, runs_of_case(made.file)[which]);
+  Ran made{std::make_unique<Case>(check_case(read_toml_text(text, "case.toml"), "case.toml")), {}, {}};
+  made.built = build(*made.file, runs_of_case(*made.file)[which]);
   made.result = run(made.built.model, made.built.plan, made.built.behaviours);
   return made;
 }

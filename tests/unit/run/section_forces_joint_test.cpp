@@ -52,7 +52,7 @@ type = "static"
   text += node_histories({"head"}, {"vx", "vy", "vz", "vrx", "vry", "vrz"});
   text += history("level = 0\nquantity = \"storey_shear_x\"") + history("level = 0\nquantity = \"storey_shear_y\"");
   for (const char* mass : {"consistent", "lumped", "none"}) {
-    const Ran ran = run_text(support::replaced(text, "MASS", mass));
+    const Ran ran = run_balanced(support::replaced(text, "MASS", mass));
     const Vec3 head(3, 2, 6), along = head / 7;
     const Mat3 axes = beam_axes(head, std::nullopt).value();
     const auto of = [&](const char* x, std::size_t i) {
@@ -141,7 +141,7 @@ TEST(SectionForces, FootOfAPierPlusTheInertiaOfItsFootingIsWhatTheJointCarries) 
       text += history(fmt::format("interface = \"soil\"\npoint = {}\nquantity = \"{}\"", point, word));
   text += history("interface = \"soil\"\nquantity = \"uplifted_ratio\"");
   text += "[[output.beam_envelope]]\nbeam = \"pier\"\n";
-  const Ran ran = run_text(text);
+  const Ran ran = run_balanced(text);
   const Interface& joint = ran.built.model.interfaces.front();
   const auto sum = [&](const char* word, std::size_t i, bool lever) {
     double total = 0;
@@ -185,7 +185,7 @@ TEST(SectionForces, EquilibriumHoldsForOtherSchemesAndForConstraints) {
       text += "[[support]]\nnode = \"base\"\nfixed = [\"ux\"]\n";
       if (std::string(law).find("unilateral") != std::string::npos) text += "[method]\ntype = \"lagrange\"\n";
       text += node_histories({"base"}, {"reaction_x"}) + history("beam = \"pier\"\nposition = 0\nquantity = \"shear\"");
-      run_text(text);
+      run_balanced(text);
     }
 }
 

@@ -5,37 +5,20 @@
 #include <algorithm>
 #include <cmath>
 #include <functional>
-#include <memory>
 #include <string>
 #include <vector>
 
+#include "ran_support.h"
 #include "text_support.h"
-#include "uplift/case/case.h"
-#include "uplift/io/text/toml.h"
 
 // What the tests of section forces share: cases from text, columns of their output, a pulse.
 namespace uplift::support {
 
 using Column = std::vector<double>;
 
-/// A case that was run, and its columns by name.
-struct Ran {
-  BuiltCase built;
-  RunResult result;
-  const Column& operator[](const std::string& name) const {
-    for (std::size_t k = 0; k < result.columns.size(); ++k)
-      if (result.columns[k].name == name) return result.table[k + 1];
-    ADD_FAILURE() << "no column " << name;
-    return result.table[0];
-  }
-  std::size_t rows() const { return result.table[0].size(); }
-};
-
-inline Ran run_text(const std::string& text) {
-  static std::vector<std::unique_ptr<Case>> kept;  // a model points into its case
-  kept.push_back(std::make_unique<Case>(check_case(read_toml_text(text, "case.toml"), "case.toml")));
-  Ran ran{build(*kept.back(), runs_of_case(*kept.back()).front()), {}};
-  ran.result = run(ran.built.model, ran.built.plan, ran.built.behaviours);
+/// A run of a case that completed, with every section in equilibrium to round-off.
+inline Ran run_balanced(const std::string& text) {
+  Ran ran = run_text(text);
   EXPECT_EQ(ran.result.status, RunStatus::completed) << ran.result.reason;
   EXPECT_LT(ran.result.equilibrium.residual, 1e-9);
   EXPECT_FALSE(ran.result.equilibrium.instants.empty());

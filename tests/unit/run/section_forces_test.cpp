@@ -56,7 +56,7 @@ TEST(SectionForces, MastWithDistributedMassBalancesTheFreeBodyAboveEverySection)
     if (z < 12) text += history(fmt::format("level = {}\nquantity = \"storey_shear\"", z));
   }
   text += node_histories({"foot"}, {"reaction_x", "reaction_y", "reaction_moment"});
-  const Ran ran = run_text(text);
+  const Ran ran = run_balanced(text);
   const double alpha = ran.built.model.assembly.mass_damping;
   EXPECT_GT(alpha, 0);
   const double rho = 2500 * 0.8;
@@ -123,7 +123,7 @@ TEST(SectionForces, WeightOfACantileverGivesTheParabola) {
         const std::string more = history(fmt::format("beam = \"mast\"\nposition = {}\nquantity = \"{}\"", x, word));
         standing += more, lying += more;
       }
-    const Ran up = run_text(standing), along = run_text(lying);
+    const Ran up = run_balanced(standing), along = run_balanced(lying);
     const double q = 2500 * 0.8 * 10, total = q * 12;
     for (const double x : {0.0, 1.3, 6.0, 7.7}) {
       const auto name = [&](const char* word) { return fmt::format("mast.{:.6g}.{}", x, word); };
@@ -213,7 +213,7 @@ TEST(SectionForces, PortalOnMovingBasesBalancesItsMassesAndItsJoints) {
   text += node_histories({"a0", "b0"}, {"reaction_x", "reaction_y", "reaction_moment"});
   text += history("node = \"a1\"\nbelow = \"a0\"\nquantity = \"drift_x\"") +
           history("node = \"a1\"\nbelow = \"a0\"\nquantity = \"drift_ratio_x\"");
-  const Ran ran = run_text(text);
+  const Ran ran = run_balanced(text);
   // horizontal: point masses, and the girder as the integral of its consistent (linear) axial inertia
   const double rho = 2500 * 0.2, l = 3;
   const auto inertia_x = [&](std::size_t i) {
@@ -265,7 +265,7 @@ TEST(SectionForces, InextensibleGirderCarriesItsConstraintForce) {
   for (const char* word : {"axial", "shear"})
     text += history(fmt::format("beam = \"left\"\nposition = 4\nquantity = \"{}\"", word)) +
             history(fmt::format("beam = \"girder\"\nposition = 3\nquantity = \"{}\"", word));
-  const Ran ran = run_text(text);
+  const Ran ran = run_balanced(text);
   expect_column(
       ran, ran["girder.3.axial"],
       [&](std::size_t i) {
@@ -288,7 +288,7 @@ TEST(SectionForces, PDeltaMovesTheWeightToItsDisplacedPlace) {
   for (const double z : {0.0, 6.0})
     for (const char* word : {"shear", "moment"}) text += history(fmt::format("beam = \"mast\"\nposition = {}\nquantity = \"{}\"", z, word));
   text += node_histories({"foot"}, {"reaction_x", "reaction_moment"});
-  const Ran ran = run_text(text);
+  const Ran ran = run_balanced(text);
   const double m = 60000, alpha = ran.built.model.assembly.mass_damping;
   for (const double z : {0.0, 6.0}) {
     const auto horizontal = [&](std::size_t i) {  // on the part below, along x
@@ -329,12 +329,12 @@ TEST(SectionForces, PDeltaKnowsOnlyDisplacementsRelativeToTheBase) {
   };
   const double w = 3 * M_PI;
   const Ran relative =
-      run_text(text + wave("a", -0.2 * w * w) + "[[ground_acceleration]]\nname = \"quake\"\ndirection = [1, 0]\nfunction = \"a\"\n");
+      run_balanced(text + wave("a", -0.2 * w * w) + "[[ground_acceleration]]\nname = \"quake\"\ndirection = [1, 0]\nfunction = \"a\"\n");
   std::string moving = support::replaced(text, "fixed = [\"ux\", \"uy\", \"rz\"]", "fixed = [\"uy\", \"rz\"]");
   moving += wave("d", 0.2) + "[[motion]]\nnode = \"foot\"\ndirection = \"ux\"\nfunction = \"d\"\n";
   // the base starts with 0.2 w: so does everything on it
   for (const char* node : {"head", "mast.1"}) moving += fmt::format("[[initial]]\nnode = \"{}\"\nvelocity = [{:.17g}, 0]\n", node, 0.2 * w);
-  const Ran absolute = run_text(moving);
+  const Ran absolute = run_balanced(moving);
   const Column& expected = relative["mast.3.moment"];
   double peak = 0, error = 0;
   for (std::size_t i = 1; i < expected.size(); ++i) {
@@ -350,7 +350,7 @@ TEST(SectionForces, PDeltaKnowsOnlyDisplacementsRelativeToTheBase) {
 TEST(SectionForces, RefusesWhatTheModelDoesNotHave) {
   const auto said = [](const std::string& keys) {
     const std::string text = support::replaced(portal, "GIRDER", "A = 0.2") + moving_bases() + shaking + history(keys);
-    return support::refusal_of([&] { run_text(text); });
+    return support::refusal_of([&] { run_balanced(text); });
   };
   EXPECT_NE(said("beam = \"lefd\"\nposition = 1\nquantity = \"moment\"").find("did you mean \"left\""), std::string::npos)
       << said("beam = \"lefd\"\nposition = 1\nquantity = \"moment\"");
