@@ -740,6 +740,7 @@ class Tables:
         *,
         stiffness_factor: Optional[Quantity] = None,
         mesh_factor: Optional[Quantity] = None,
+        mesh_shift: Optional[Quantity] = None,
         spectrum_band: Optional[Quantity] = None,
     ) -> None:
         """Trust bands.
@@ -749,10 +750,12 @@ class Tables:
                 and 2 for a footing on fixed ground, whose joint is the soil itself: the factor is then what the
                 stiffness of the soil is uncertain by, from 1 to 1000000.
             mesh_factor: sizes of a made mesh are multiplied by this; 1: not changed, from 0.1 to 1; default 0.7.
+            mesh_shift: the mesh around interface.cut is moved by this share of a cell, to both sides; 0: not moved,
+                from 0 to 0.45; default 0.3.
             spectrum_band: a floor spectrum speaks up to the frequency where its runs differ by more than this share, >
                 0; default 0.1.
         """
-        self._set("trust", {"stiffness_factor": stiffness_factor, "mesh_factor": mesh_factor, "spectrum_band": spectrum_band})
+        self._set("trust", {"stiffness_factor": stiffness_factor, "mesh_factor": mesh_factor, "mesh_shift": mesh_shift, "spectrum_band": spectrum_band})
 
     def origin(self, label: str, keys: Sequence[str], *, note: Optional[str] = None) -> None:
         """Origin of values.

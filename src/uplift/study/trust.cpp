@@ -233,6 +233,10 @@ std::string most_frequent(const std::vector<TrustBand>& bands) {
   return found;
 }
 
+bool changes_mesh(std::string_view path) {
+  return path.starts_with("mesh") || path.ends_with(".cut.mesh_shift");
+}
+
 }  // namespace
 
 std::optional<double> TrustBand::share() const {
@@ -250,14 +254,20 @@ std::size_t TrustAnswer::counted() const {
 }
 
 TrustAnswer trust(const Raw& raw, const Case& read, const MeshReader& read_mesh, const TrustBase& base, int threads, const Watch& watch) {
-  const TrustPlan plan = trust_plan(read);
+  TrustPlan plan = trust_plan(read);
   std::vector<Case> cases;
-  for (const TrustChange& change : plan.changes) {
-    const bool same_mesh = std::ranges::none_of(change.edits, [](const CaseEdit& edit) { return edit.path.starts_with("mesh"); });
-    cases.push_back(check_case_like(read, same_mesh, edited(raw, change.edits), read_mesh));
+  std::vector<TrustChange> changes;
+  for (TrustChange& change : plan.changes) {
+    const bool same_mesh = std::ranges::none_of(change.edits, [](const CaseEdit& edit) { return changes_mesh(edit.path); });
+    try {
+      cases.push_back(check_case_like(read, same_mesh, edited(raw, change.edits), read_mesh));
+      changes.push_back(std::move(change));
+    } catch (const InputError& error) {  // of the changed case: the case itself was read
+      plan.left_out.push_back({change.choice + ", " + change.label, error.what()});
+    }
   }
   Watcher watcher(cases.size(), watch);
-  std::vector<Repetition> repetitions = compute_all(cases, plan.changes, threads, watcher);
+  std::vector<Repetition> repetitions = compute_all(cases, changes, threads, watcher);
   repetitions.insert(repetitions.begin(), repetition_of({"base", "", "as in the case", {}}, base.built, base.run, base.bonded));
 
   TrustAnswer made;

@@ -49,6 +49,7 @@ class Planner {
       change_method();
     }
     refine();
+    move_mesh();
     return std::move(plan_);
   }
 
@@ -212,6 +213,23 @@ class Planner {
     for (const char* part : {"raft", "block"})
       if (box.has(part)) edits.push_back({path + part + ".size", factor * box.table(part).number("size")});
     add("finer", "mesh", fmt::format("elements {:g} times as large", factor), std::move(edits));
+  }
+
+  /// Planes that the mesh ignores: the mesh is moved beside them.
+  void move_mesh() {
+    const double share = trust_.number("mesh_shift");
+    const std::vector<Values>& interfaces = root_.tables("interface");
+    if (std::ranges::none_of(interfaces, [](const Values& each) { return each.has("cut"); })) return;
+    if (share == 0) return leave_out("place of the mesh", "mesh_shift = 0");
+    for (const double by : {share, -share}) {
+      std::vector<CaseEdit> edits;
+      for (std::size_t k = 0; k < interfaces.size(); ++k)
+        if (interfaces[k].has("cut"))
+          edits.push_back({fmt::format("interface[{}].cut.mesh_shift", k),
+                           std::clamp(interfaces[k].table("cut").number("mesh_shift") + by, -0.45, 0.45)});
+      add(by > 0 ? "mesh_forth" : "mesh_back", "place of the mesh",
+          fmt::format("mesh moved {:g} of a cell {} the normal of the cut", share, by > 0 ? "along" : "against"), std::move(edits));
+    }
   }
 
   const Values &root_, &trust_;

@@ -27,7 +27,8 @@ struct TrustPlan {
 };
 
 /// Half the time step; the stiffness of every traction law (or penalty) times and over the case's factor; a tolerance ten times smaller;
-/// another sound method for the same interface; a finer mesh, where the mesh is made by the case.
+/// another sound method for the same interface; a finer mesh, where the mesh is made by the case; the mesh moved
+/// against the planes of interface.cut.
 TrustPlan trust_plan(const Case&);
 
 }  // namespace uplift

@@ -6,50 +6,16 @@
 #include <numbers>
 
 #include "text_support.h"
+#include "unit/case/cut_support.h"
 #include "uplift/case/case.h"
 #include "uplift/case/mesh/mesh.h"
-#include "uplift/io/text/toml.h"
 #include "uplift/mesh/box.h"
 
 // Interfaces on planes that the mesh ignores: against closed forms, and against the aligned joint.
 namespace uplift {
 namespace {
 
-Case read_text(const std::string& text, const Mesh& mesh) {
-  return check_case(read_toml_text(text, "case.toml"), "case.toml",
-                    [&](const std::string&, const Where&, const std::string&) { return mesh; });
-}
-
-RunResult run_text(const std::string& text, const Mesh& mesh) {
-  BuiltCase built = build(read_text(text, mesh), RunSpec{});
-  RunResult result = run(built.model, built.plan, built.behaviours);
-  EXPECT_EQ(to_string(result.status), "completed") << result.reason;
-  return result;
-}
-
-std::span<const double> history(const RunResult& result, const std::string& column) {
-  for (std::size_t k = 0; k < result.columns.size(); ++k)
-    if (result.columns[k].name == column) return result.table[k + 1];
-  ADD_FAILURE() << "no column " << column;
-  return {};
-}
-
-double at_rest(const RunResult& result, const std::string& column) {
-  return history(result, column).front();
-}
-
-constexpr const char* at_rest_stages = R"(
-[[stage]]
-type = "static"
-[[stage]]
-type = "dynamic"
-duration = 1e-3
-step = 1e-3
-)";
-
-std::string solid(const std::string& group, double young, double poisson, double density, const std::string& extra = {}) {
-  return fmt::format("[[solid]]\ngroup = \"{}\"\nE = {}\npoisson = {}\ndensity = {}\n{}", group, young, poisson, density, extra);
-}
+using namespace support;
 
 // ---- the patch test: a bar in tension, cut at 25 degrees, with an elastic joint ----
 
@@ -76,7 +42,7 @@ TEST(CutCase, BarWithAnInclinedCrackHasUniformStress) {
   const double jump = traction * c * c / joint_stiffness * c + traction * s * s * c / joint_stiffness;
   const auto x = uniform_lines(0, 4, 9), y = uniform_lines(0, 1, 3);
   for (const Cell cell : {Cell::tri3, Cell::quad4}) {
-    const RunResult result = run_text(bar(fmt::format("[{}, {}]", c, s), 2), rectangle(x, y, cell));
+    const RunResult result = run_on(bar(fmt::format("[{}, {}]", c, s), 2), rectangle(x, y, cell));
     const double expected = traction * 4 * (1 - poisson * poisson) / young + jump;
     EXPECT_NEAR(at_rest(result, "end"), expected, 1e-9 * expected) << info(cell).name;
   }
@@ -85,7 +51,7 @@ TEST(CutCase, BarWithAnInclinedCrackHasUniformStress) {
     std::string text = bar(upright, 3);
     const std::string held = "[[support]]\ngroup = \"bottom\"\nfixed = [\"uz\"]\n";
     text.replace(text.find(held), held.size(), "[[support]]\nnode = \"mesh.1\"\nfixed = [\"uz\"]\n");
-    const RunResult result = run_text(text, box(x, y, y, cell));
+    const RunResult result = run_on(text, box(x, y, y, cell));
     const double expected = traction * 4 / young + jump;
     EXPECT_NEAR(at_rest(result, "end"), expected, 1e-9 * expected) << info(cell).name;
   }
@@ -112,8 +78,8 @@ TEST(CutCase, ColumnOfTwoMaterialsSettlesByTheClosedForm) {
   const double pressure = block_density * gravity * height, joint = 3e7;
   const double soil = soil_density * gravity * depth * depth / (2 * constrained(soil_young)) + pressure * depth / constrained(soil_young);
   const double block = block_density * gravity * height * height / (2 * constrained(block_young));
-  const RunResult result = run_text(column(depth, fmt::format("{{ type = \"elastic\", K_n = {}, tangential = \"bonded\" }}", joint)),
-                                    rectangle(uniform_lines(-1, 1, 2), uniform_lines(0, 10, 10)));
+  const RunResult result = run_on(column(depth, fmt::format("{{ type = \"elastic\", K_n = {}, tangential = \"bonded\" }}", joint)),
+                                  rectangle(uniform_lines(-1, 1, 2), uniform_lines(0, 10, 10)));
   const double expected = -(soil + pressure / joint + block);
   EXPECT_NEAR(at_rest(result, "top"), expected, 1e-9 * std::abs(expected));
   EXPECT_NEAR(at_rest(result, "base.axial"), -pressure * 2, 1e-9 * pressure);
@@ -130,7 +96,7 @@ TEST(CutCase, TiedSidesPartAtTheInterface) {
       const std::string text = column(level, law);
       std::string other = text;
       other.replace(other.find(held), held.size(), tied);
-      const RunResult a = run_text(text, mesh), b = run_text(other, mesh);
+      const RunResult a = run_on(text, mesh), b = run_on(other, mesh);
       const double weight = block_density * gravity * (10 - level) * 2, top = at_rest(a, "top");
       EXPECT_NEAR(at_rest(b, "base.axial"), -weight, 1e-9 * weight) << level;
       EXPECT_NEAR(at_rest(b, "top"), top, (cell == Cell::quad4 ? 1e-9 : 1e-4) * std::abs(top))
@@ -158,7 +124,7 @@ TEST(CutCase, ThroughNodesItIsTheAlignedJoint) {
   const std::string cut = "cut = { through = [\"volume\"], level = 6, upper = \"block\" }";
   aligned.replace(aligned.find(cut), cut.size(), "surface = { group = \"interface\", lower = [\"volume\"] }");
   Mesh one = rectangle(lines.x, lines.y);
-  const RunResult a = run_text(text, one), b = run_text(aligned, parted);
+  const RunResult a = run_on(text, one), b = run_on(aligned, parted);
   double open = 0;
   for (const char* name : {"base.moment", "base.axial", "top"}) {
     const auto x = history(a, name), y = history(b, name);
@@ -188,7 +154,7 @@ TEST(CutCase, RockingBlockOnTensionlessSprings) {
                            "law = {{ type = \"springs\", K_n = {}, K_t = {}, tangential = \"bonded\" }}\n",
                            k, 100 * k) +
                        at_rest_stages;
-    const RunResult result = run_text(text, rectangle(uniform_lines(-1.5, 1.5, 6), uniform_lines(0, 1, 4)));
+    const RunResult result = run_on(text, rectangle(uniform_lines(-1.5, 1.5, 6), uniform_lines(0, 1, 4)));
     EXPECT_NEAR(std::abs(at_rest(result, "base.rotation")) / lift_off, expected[i], 2e-4 * expected[i]) << moments[i];
   }
 }
@@ -197,7 +163,7 @@ TEST(CutCase, WarnsOfAnOutlineInsideCoarseCells) {
   const auto said = [](const std::string& outline, int cells) {
     std::string text = column(depth, "{ type = \"springs\", K_n = 1e9, K_t = 1e9 }");
     text.replace(text.find("upper = "), 0, outline);
-    const Case read = read_text(text, rectangle(uniform_lines(-1, 1, cells), uniform_lines(0, 10, 10)));
+    const Case read = read_on(text, rectangle(uniform_lines(-1, 1, cells), uniform_lines(0, 10, 10)));
     const BuiltCase built = build(read, RunSpec{});
     return std::ranges::any_of(warnings(read, RunSpec{}, built),
                                [](const std::string& each) { return each.find("ends inside") != each.npos; });
@@ -226,17 +192,16 @@ TEST(CutCase, NodesKeepTheirNumbers) {
   // node 41 of the mesh stands at (0, 4), node 45 at (4, 4), where the ground beside the raft is removed
   const auto loaded = [](int node) { return raft(fmt::format("[[load]]\nnode = \"mesh.{}\"\nforce = [0, -1e5]\n", node)); };
   ASSERT_EQ(ground_of_8_by_4().nodes[40], Vec3(0, 4, 0));
-  const RunResult result = run_text(loaded(41), ground_of_8_by_4());
+  const RunResult result = run_on(loaded(41), ground_of_8_by_4());
   const double weight = 2500 * 10 * 4 * 1.6 + 1e5;
   EXPECT_NEAR(at_rest(result, "base.axial"), -weight, 1e-9 * weight);
   EXPECT_NEAR(at_rest(result, "base.moment"), 0, 1e-9 * weight);
-  EXPECT_NE(support::refusal_of([&] { build(read_text(loaded(45), ground_of_8_by_4()), RunSpec{}); }).find("\"mesh.45\""),
-            std::string::npos);
+  EXPECT_NE(support::refusal_of([&] { build(read_on(loaded(45), ground_of_8_by_4()), RunSpec{}); }).find("\"mesh.45\""), std::string::npos);
 }
 
 TEST(CutCase, PlacesAreThoseOfTheGround) {
   // the doubles of the ground beside the raft reach up to y = 3, the ground ends at 2.4
-  const Case read = read_text(raft("[[output.history]]\nname = \"beside\"\nat = [-3, 3]\nquantity = \"uy\"\n"), ground_of_8_by_4());
+  const Case read = read_on(raft("[[output.history]]\nname = \"beside\"\nat = [-3, 3]\nquantity = \"uy\"\n"), ground_of_8_by_4());
   const BuiltCase built = build(read, RunSpec{});
   EXPECT_TRUE(std::ranges::any_of(built.notes, [](const std::string& note) { return note.find("0.6 m away") != note.npos; }))
       << fmt::format("{}", fmt::join(built.notes, "; "));
@@ -256,7 +221,7 @@ TEST(CutCase, ALineOfBeamsJoinsBothSides) {
   const std::string text = raft(
       "[[beam]]\nname = \"pile\"\ngroup = \"pile\"\nE = 2e10\nA = 0.5\nI = 0.02\nmass = \"consistent\"\ndensity = 2500\n"
       "[[output.history]]\nname = \"below\"\ngroup = \"bottom\"\nquantity = \"reaction_y\"\n");
-  const RunResult result = run_text(text, mesh);
+  const RunResult result = run_on(text, mesh);
   EXPECT_NEAR(at_rest(result, "below"), beam + ground + above, 1e-9 * ground);
   EXPECT_GT(at_rest(result, "base.axial"), -0.9 * above);  // the pile carries a part of it
 }
@@ -270,7 +235,7 @@ TEST(CutCase, RefusesWhatWouldStayBondedOrHang) {
   const auto refusal = [&](const std::string& cut, const std::string& new_cut) {
     std::string text = raft(solid("block", 2e10, 0.2, 2500));
     text.replace(text.find(cut), cut.size(), new_cut);
-    return support::refusal_of([&] { build(read_text(text, mesh), RunSpec{}); });
+    return support::refusal_of([&] { build(read_on(text, mesh), RunSpec{}); });
   };
   EXPECT_NE(refusal("level = 2.4, upper = \"raft\", x = [-2, 2]", "level = 3, upper = \"raft\"").find("in `through`"), std::string::npos);
   EXPECT_NE(refusal("x = [-2, 2]", "x = [-2, 2], height = 0.4").find("holds what stands above"), std::string::npos);
@@ -285,7 +250,7 @@ TEST(CutCase, RefusesWithFileAndKey) {
     const std::size_t place = text.find(from);
     EXPECT_NE(place, std::string::npos);
     text.replace(place, from.size(), to);
-    return support::refusal_of([&] { build(read_text(text, mesh), RunSpec{}); });
+    return support::refusal_of([&] { build(read_on(text, mesh), RunSpec{}); });
   };
   EXPECT_NE(refusal("level = 5.63", "level = 12").find("above it"), std::string::npos);
   EXPECT_NE(refusal("level = 5.63, ", "").find("level, or point and normal"), std::string::npos);

@@ -178,5 +178,44 @@ mesh_factor = 0.5
       << "springs with dashpots have no other law";
 }
 
+TEST(TrustPlan, MeshesMoveBesideTheirCuts) {
+  const std::string text = R"(
+title = "block"
+[mesh.soil_box.soil]
+width = "40 m"
+size = "4 m"
+[[mesh.soil_box.soil.layers]]
+thickness = "8 m"
+size = "2 m"
+[[solid]]
+group = "soil_1"
+E = 1e8
+poisson = 0.3
+density = 2000
+[[solid]]
+group = "raft"
+E = 1e10
+poisson = 0.2
+density = 2500
+[[support]]
+group = "soil_bottom"
+fixed = ["ux", "uy"]
+[[interface]]
+name = "base"
+law = { type = "springs", K_n = 1e10, K_t = 1e10, tangential = "coulomb", friction = 0.5 }
+cut = { through = ["soil_1"], level = -2.9, upper = "raft", mesh_shift = 0.2, x = [-8, 8] }
+[[stage]]
+type = "dynamic"
+duration = 1
+step = 1e-2
+)";
+  const auto shift = [](const Case& read) { return read.values.tables("interface")[0].table("cut").number("mesh_shift"); };
+  const Planned tested = planned(text);
+  EXPECT_DOUBLE_EQ(shift(changed(tested, "mesh_forth")), 0.45) << "0.2 and 0.3, but less than half a cell";
+  EXPECT_NEAR(shift(changed(tested, "mesh_back")), -0.1, 1e-15);
+  EXPECT_EQ(reason(planned(text + "[trust]\nmesh_shift = 0\n"), "place of the mesh"), "mesh_shift = 0");
+  EXPECT_TRUE(reason(tested, "place of the mesh").empty());
+}
+
 }  // namespace
 }  // namespace uplift

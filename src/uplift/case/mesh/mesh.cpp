@@ -16,6 +16,7 @@
 #include "uplift/mesh/cell_shapes.h"
 #include "uplift/mesh/facing.h"
 #include "uplift/mesh/parts.h"
+#include "uplift/mesh/shift.h"
 #include "uplift/mesh/soil_box.h"
 
 namespace uplift {
@@ -142,6 +143,17 @@ CutPlane plane_of(const Values& cut, int dimension) {
   return plane;
 }
 
+void shift_mesh(const Values& cut, const CutPlane& plane, const std::vector<std::string>& lines, Mesh& mesh) {
+  const double share = cut.number("mesh_shift");
+  if (share == 0) return;
+  shift_nodes(mesh, plane, share, lines);
+  try {
+    check_mesh(mesh, cut.where());
+  } catch (const InputError&) {
+    fail(cut, "mesh_shift", "a smaller shift, or 0", fmt::format("{:g}, which turns cells inside out", share));
+  }
+}
+
 void cut_planes(const Values& root, CaseMesh& made) {
   const std::vector<Values>& interfaces = root.tables("interface");
   made.cut.resize(interfaces.size());
@@ -158,6 +170,7 @@ void cut_planes(const Values& root, CaseMesh& made) {
   std::vector<std::string> lines;
   for (const Values* beam : element_tables(root, ElementPlace::lines))
     if (beam->has("group")) lines.push_back(beam->text("group"));
+  for (std::size_t i = 0; i < of.size(); ++i) shift_mesh(interfaces[of[i]].table("cut"), planes[i], lines, made.mesh);
   std::vector<std::vector<CutFace>> faces = cut(made.mesh, planes, where, lines);
   for (std::size_t i = 0; i < of.size(); ++i) made.cut[of[i]] = std::move(faces[i]);
 }

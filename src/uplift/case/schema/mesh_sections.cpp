@@ -118,6 +118,11 @@ const Section& cut_section() {
              vector("x", "m", "outline above the plane: least and largest x; absent: no limit").optional(),
              vector("y", "m", "in space: least and largest y of the outline; absent: no limit").optional(),
              number("height", "m", "height of the outline above the plane; absent: no limit").positive().optional(),
+             number("mesh_shift", "1",
+                    "the nodes near the plane are moved along its normal by this share of the height of the cells there, to see whether it "
+                    "matters how the plane lies in the mesh (trust)")
+                 .between(-0.45, 0.45)
+                 .standard(0.0),
              number("thickness", "m", "length out of the plane (plane meshes); absent: that of the solids (the smaller one)")
                  .positive()
                  .optional()}};

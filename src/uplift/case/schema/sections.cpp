@@ -254,6 +254,9 @@ const Section& trust_section() {
                  .between(1, 1e6)
                  .optional(),
              number("mesh_factor", "1", "sizes of a made mesh are multiplied by this; 1: not changed").between(0.1, 1).standard(0.7),
+             number("mesh_shift", "1", "the mesh around interface.cut is moved by this share of a cell, to both sides; 0: not moved")
+                 .between(0, 0.45)
+                 .standard(0.3),
              number("spectrum_band", "1", "a floor spectrum speaks up to the frequency where its runs differ by more than this share")
                  .positive()
                  .standard(0.1)}};
