@@ -6,8 +6,6 @@
 #include <set>
 #include <utility>
 
-#include "uplift/mesh/parts.h"
-
 namespace uplift {
 namespace {
 
@@ -102,11 +100,7 @@ double weight_of(const BuiltCase& built) {
 }  // namespace
 
 void find_shown(const Case& read, const CaseNames& names, BuiltCase& built) {
-  if (names.solids) {
-    const std::vector<bool> bare = bare_nodes(names.solids->mesh());
-    for (std::size_t node = 0; node < bare.size(); ++node)
-      if (bare[node]) built.bare.insert(names.first_of_mesh + static_cast<int>(node));
-  }
+  built.bare = names.bare;
   find_shown_nodes(read, names, built);
   built.sway = sway_of(built.model);
   built.weight = weight_of(built);

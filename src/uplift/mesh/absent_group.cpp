@@ -2,11 +2,15 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
+
 #include "uplift/base/text.h"
 
 namespace uplift {
 
 InputError absent_group(const Mesh& mesh, const std::string& name, const Where& where, const std::string& path, const std::string& wanted) {
+  if (std::ranges::find(mesh.emptied, name) != mesh.emptied.end())
+    return {where, path, wanted, fmt::format("the group {}, of which the planes of interface.cut leave nothing", in_quotes(name))};
   constexpr std::size_t most = 12;
   std::vector<std::string> names;
   for (const auto& [other, group] : mesh.groups) names.push_back(other);

@@ -26,6 +26,7 @@ constexpr double on_plane = 1e-8;  // of the shortest edge: nodes so near count 
 struct Halves {
   bool lower = false, upper = false;
   bool lower_whole = true, upper_whole = true;
+  int outline = 0;  // that holds the upper part
 };
 
 constexpr CellId no_cell{-1, -1};
@@ -69,6 +70,7 @@ class OneCut {
   bool is_within(const Vec3& place, double tolerance) const;
   void refuse_bond(CellId id, bool below) const;
   void refuse_nothing() const;
+  bool has_outline() const { return !plane_.outlines.front().within.empty(); }
   int lower_node(int node) const { return sign(node) > 0 && double_[at(node)] >= 0 ? double_[at(node)] : node; }
   int upper_node(int node) const { return sign(node) <= 0 && double_[at(node)] >= 0 ? double_[at(node)] : node; }
   MadeCells write_cell(CellId id, const Halves& halves);
@@ -77,8 +79,8 @@ class OneCut {
   void set_part(CellId id, const CellBefore& before, const std::vector<HalfSpace>& within);
   void write_small(CellId id);
   void write_groups();
-  std::vector<HalfSpace> above() const;
-  void add_face(std::vector<CutFace>& faces, CellId lower, CellId upper, const CellBefore& of, std::vector<Vec3> corners) const;
+  std::vector<HalfSpace> above(int outline) const;
+  void add_face(std::vector<CutFace>& faces, CutFace face, const CellBefore& of) const;
 
   Work& work_;
   Mesh& mesh_;
@@ -132,9 +134,10 @@ CellBefore OneCut::before(CellId id) const {
   return cell;
 }
 
-std::vector<HalfSpace> OneCut::above() const {
+std::vector<HalfSpace> OneCut::above(int outline) const {
   std::vector<HalfSpace> spaces{plane_.below.other_side()};
-  spaces.insert(spaces.end(), plane_.within.begin(), plane_.within.end());
+  const std::vector<HalfSpace>& within = plane_.outlines[at(outline)].within;
+  spaces.insert(spaces.end(), within.begin(), within.end());
   return spaces;
 }
 
@@ -154,32 +157,51 @@ void OneCut::find_signs() {
   }
 }
 
+/// Whether an outline holds all of the corners, none of what is between them or a part.
+PlaneSide side_of_outline(const CutOutline& outline, std::span<const Vec3> corners, double tolerance) {
+  PlaneSide found = PlaneSide::inside;
+  for (const HalfSpace& space : outline.within) {
+    const PlaneSide side = side_of_cell(space, corners, tolerance);
+    if (side == PlaneSide::outside) return side;
+    if (side == PlaneSide::both) found = side;
+  }
+  return found;
+}
+
 /// What an earlier plane has left of a cell lies on one side of this one, and within its outline or outside of it.
 Halves OneCut::halves_of_part(CellId id) const {
   std::vector<Vec3> corners;
   for (const ClippedCell::Piece& piece : work_.pieces.at(id)) corners.insert(corners.end(), piece.corners.begin(), piece.corners.end());
   const double tolerance = before(id).tolerance;
   const PlaneSide side = side_of_cell(plane_.below, corners, tolerance);
-  bool inside = true, cut = side == PlaneSide::both;
-  for (const HalfSpace& space : plane_.within) {
-    const PlaneSide within = side_of_cell(space, corners, tolerance);
-    inside = inside && within != PlaneSide::outside;
-    cut = cut || (side == PlaneSide::outside && within == PlaneSide::both);
+  Halves halves{side == PlaneSide::inside, false};
+  bool cut = side == PlaneSide::both;
+  for (int k = 0; k < static_cast<int>(plane_.outlines.size()) && side == PlaneSide::outside; ++k) {
+    const PlaneSide within = side_of_outline(plane_.outlines[at(k)], corners, tolerance);
+    cut = cut || within == PlaneSide::both;
+    if (within == PlaneSide::inside) halves.upper = true, halves.outline = k;
   }
   if (cut) throw InputError(where_, "", "planes that do not cut the same cell", "two of them in " + describe_cell(mesh_, id));
-  return {side == PlaneSide::inside, side == PlaneSide::outside && inside};
+  return halves;
 }
 
-/// The upper part lies within the outline.
+/// The upper part lies within an outline.
 void OneCut::keep_within(const CellBefore& cell, Halves& halves) const {
-  for (const HalfSpace& space : plane_.within) {
-    const PlaneSide side = side_of_cell(space, cell.corners, cell.tolerance);
-    if (side == PlaneSide::outside) halves.upper = false;
-    if (side == PlaneSide::both) halves.upper_whole = false;
-  }
   const bool curved = info(cell.cell).nodes != info(cell.cell).corners;  // is refused
-  if (halves.upper && !halves.upper_whole && !curved)
-    halves.upper = !clip_cell(cell.cell, cell.corners, above(), cell.tolerance).pieces.empty();
+  halves.upper = false;
+  for (int k = 0; k < static_cast<int>(plane_.outlines.size()); ++k) {
+    const PlaneSide side = side_of_outline(plane_.outlines[at(k)], cell.corners, cell.tolerance);
+    if (side == PlaneSide::outside) continue;
+    const bool whole = halves.upper_whole && side == PlaneSide::inside;
+    if (!whole && !curved && clip_cell(cell.cell, cell.corners, above(k), cell.tolerance).pieces.empty()) continue;
+    if (halves.upper)
+      throw InputError(where_, "", "outlines on one plane that are at least a cell apart",
+                       fmt::format("two of them in the {} at ({:g}, {:g}, {:g})", info(cell.cell).name, cell.corners[0].x(),
+                                   cell.corners[0].y(), cell.corners[0].z()));
+    halves.upper = true, halves.outline = k;
+  }
+  if (halves.upper && side_of_outline(plane_.outlines[at(halves.outline)], cell.corners, cell.tolerance) == PlaneSide::both)
+    halves.upper_whole = false;
 }
 
 Halves OneCut::halves_of(CellId id) const {
@@ -223,7 +245,7 @@ void OneCut::refuse_nothing() const {
     }
   throw InputError(where_, "", "a plane with cells of the groups on both sides",
                    fmt::format("none: they reach from {:g} m to {:g} m above it{}", least, most,
-                               plane_.within.empty() ? "" : ", and what lies above must lie within the outline"));
+                               has_outline() ? ", and what lies above must lie within the outline" : ""));
 }
 
 void OneCut::find_doubles() {
@@ -244,7 +266,9 @@ void OneCut::find_doubles() {
 }
 
 bool OneCut::is_within(const Vec3& place, double tolerance) const {
-  return std::ranges::all_of(plane_.within, [&](const HalfSpace& space) { return space.distance(place) <= tolerance; });
+  return std::ranges::any_of(plane_.outlines, [&](const CutOutline& outline) {
+    return std::ranges::all_of(outline.within, [&](const HalfSpace& space) { return space.distance(place) <= tolerance; });
+  });
 }
 
 /// A cell of another group that meets those of the groups in the plane would stay bonded to them there.
@@ -333,7 +357,7 @@ MadeCells OneCut::write_cell(CellId id, const Halves& halves) {
   const bool cut = (halves.lower && !halves.lower_whole) || (halves.upper && !halves.upper_whole);
   const CellBefore cell = cut ? before(id) : CellBefore{};
   if (halves.lower && !halves.lower_whole) set_part(made.lower, cell, {plane_.below});
-  if (halves.upper && !halves.upper_whole) set_part(made.upper, cell, above());
+  if (halves.upper && !halves.upper_whole) set_part(made.upper, cell, above(halves.outline));
   if (halves.upper) rename(made.upper, true);
   if (halves.lower) rename(made.lower, false);
   return made;
@@ -361,13 +385,14 @@ void OneCut::write_small(CellId id) {
 /// The parts below the plane stay in the groups of their cell, those above as well, or leave the groups `through` for `upper`.
 void OneCut::write_groups() {
   for (auto& [name, group] : mesh_.groups) {
-    const bool leaves = !plane_.upper.empty() && std::ranges::find(plane_.through, name) != plane_.through.end();
+    const bool may_leave = std::ranges::find(plane_.through, name) != plane_.through.end();
     std::vector<CellId> cells;
     for (const CellId id : group.cells) {
       const int number = number_[at(id.block)][at(id.index)];
       const auto small = number < 0 ? made_small_.find(id) : made_small_.end();
       const MadeCells made = number >= 0 ? made_[at(number)] : small != made_small_.end() ? small->second : MadeCells{id, no_cell};
       if (made.lower != no_cell) cells.push_back(made.lower);
+      const bool leaves = may_leave && number >= 0 && !plane_.outlines[at(halves_[at(number)].outline)].upper.empty();
       if (made.upper != no_cell && !leaves) cells.push_back(made.upper);
     }
     group.cells = std::move(cells);
@@ -375,14 +400,16 @@ void OneCut::write_groups() {
     for (std::size_t i = 0; i < count; ++i)
       if (const int twin = double_[at(group.nodes[i])]; twin >= 0) group.nodes.push_back(twin);
   }
-  if (!plane_.upper.empty()) {
-    Group& group = mesh_.groups[plane_.upper];
+  for (int k = 0; k < static_cast<int>(plane_.outlines.size()); ++k) {
+    const std::string& name = plane_.outlines[at(k)].upper;
+    if (name.empty()) continue;
+    Group& group = mesh_.groups[name];
     if (group.dimension != mesh_.dimension && !(group.cells.empty() && group.nodes.empty()))
-      throw InputError(where_, "group " + in_quotes(plane_.upper), "a new name, or that of a group of cells",
+      throw InputError(where_, "group " + in_quotes(name), "a new name, or that of a group of cells",
                        "a group of dimension " + std::to_string(group.dimension));
     group.dimension = mesh_.dimension;
-    for (const MadeCells& made : made_)
-      if (made.upper != no_cell) group.cells.push_back(made.upper);
+    for (std::size_t i = 0; i < made_.size(); ++i)
+      if (made_[i].upper != no_cell && halves_[i].outline == k) group.cells.push_back(made_[i].upper);
   }
   for (auto& [name, group] : mesh_.groups) {
     std::ranges::sort(group.cells);
@@ -390,17 +417,19 @@ void OneCut::write_groups() {
   }
 }
 
-void OneCut::add_face(std::vector<CutFace>& faces, CellId lower, CellId upper, const CellBefore& of, std::vector<Vec3> corners) const {
-  corners = clip_section(std::move(corners), plane_.within, of.tolerance);
-  if (static_cast<int>(corners.size()) < mesh_.dimension) return;
+/// Adds what lies within its outline.
+void OneCut::add_face(std::vector<CutFace>& faces, CutFace face, const CellBefore& of) const {
+  const std::vector<HalfSpace>& within = plane_.outlines[at(face.outline)].within;
+  face.corners = clip_section(std::move(face.corners), within, of.tolerance);
+  if (static_cast<int>(face.corners.size()) < mesh_.dimension) return;
   const bool faceted = mesh_.dimension == 3 && info(of.cell).corners > 4;  // a hexahedron or a wedge
-  bool level = is_level(of.cell, of.corners, plane_.below) && (!faceted || corners.size() == 4), clipped = false;
-  for (const HalfSpace& space : plane_.within) {
+  face.level = is_level(of.cell, of.corners, plane_.below) && (!faceted || face.corners.size() == 4);
+  for (const HalfSpace& space : within) {
     if (side_of_cell(space, of.corners, of.tolerance) != PlaneSide::both) continue;
-    clipped = true;
-    level = level && (!faceted || is_level(of.cell, of.corners, space));
+    face.clipped = true;
+    face.level = face.level && (!faceted || is_level(of.cell, of.corners, space));
   }
-  faces.push_back({lower, upper, std::move(corners), level, clipped});
+  faces.push_back(std::move(face));
 }
 
 std::vector<CutFace> OneCut::faces() {
@@ -421,10 +450,20 @@ std::vector<CutFace> OneCut::faces() {
   write_groups();
   std::vector<CutFace> found;
   for (const auto& [k, cell] : cells)
-    if (halves_[at(k)].lower && halves_[at(k)].upper)
-      add_face(found, made_[at(k)].lower, made_[at(k)].upper, cell, section(cell.cell, cell.corners, plane_.below, cell.tolerance));
+    if (const Halves& halves = halves_[at(k)]; halves.lower && halves.upper)
+      add_face(found,
+               {.lower = made_[at(k)].lower,
+                .upper = made_[at(k)].upper,
+                .corners = section(cell.cell, cell.corners, plane_.below, cell.tolerance),
+                .outline = halves.outline},
+               cell);
   for (const LevelFace& face : level_)
-    add_face(found, made_[at(face.lower)].lower, made_[at(face.upper)].upper, cells.at(face.upper), face.corners);
+    add_face(found,
+             {.lower = made_[at(face.lower)].lower,
+              .upper = made_[at(face.upper)].upper,
+              .corners = face.corners,
+              .outline = halves_[at(face.upper)].outline},
+             cells.at(face.upper));
   if (found.empty()) throw InputError(where_, "", "an interface on the plane", "none: nothing above the plane lies within the outline");
   return found;
 }
@@ -479,7 +518,11 @@ void compact(Work& work, std::vector<std::vector<CutFace>>& faces) {
     for (int& node : group.nodes) node = number[at(node)];
     std::ranges::sort(group.nodes);
   }
-  std::erase_if(mesh.groups, [](const auto& group) { return group.second.cells.empty() && group.second.nodes.empty(); });
+  std::erase_if(mesh.groups, [&](const auto& group) {
+    const bool empty = group.second.cells.empty() && group.second.nodes.empty();
+    if (empty) mesh.emptied.push_back(group.first);
+    return empty;
+  });
 }
 
 }  // namespace

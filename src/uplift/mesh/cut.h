@@ -11,12 +11,17 @@
 // nodes beyond the plane are doubled, one double for all cells around it.
 namespace uplift {
 
+/// What stands on a plane.
+struct CutOutline {
+  std::vector<HalfSpace> within = {};  // above the plane the groups `through` are filled within all of these; none: everywhere
+  std::string upper = {};              // group of what lies above, of a new name or not; empty: what lies above stays in its groups
+};
+
 /// A plane and what lies above it.
 struct CutPlane {
-  std::vector<std::string> through;    // groups of cells that it cuts
-  HalfSpace below;                     // the lower side; its normal points from the lower to the upper side
-  std::string upper = {};              // group of what lies above, of a new name or not; empty: what lies above stays in its groups
-  std::vector<HalfSpace> within = {};  // above the plane the groups `through` are filled within all of these alone; none: everywhere
+  std::vector<std::string> through;         // groups of cells that it cuts
+  HalfSpace below;                          // the lower side; its normal points from the lower to the upper side
+  std::vector<CutOutline> outlines = {{}};  // at least one; what lies above the plane and outside of all of them is not filled
 };
 
 /// The part of a plane that one cell, or two cells with a face on the plane, have in common.
@@ -25,17 +30,19 @@ struct CutFace {
   std::vector<Vec3> corners;  // m; in the plane two, in space three or more in the order of the outline
   bool level = false;    // parallel to faces of a cell with parallel sides, as the edges of the outline, or the cell is a triangle or tet
   bool clipped = false;  // the outline ends inside the cell
+  int outline = 0;       // of the plane's, in their order
 };
 
 /// Cuts the mesh and removes what is not filled: cells, and nodes that no cell uses. For each plane its faces.
-/// - Cells of the groups `through` alone are cut; all others must lie on one side of the plane, or outside of `within`.
+/// - Cells of the groups `through` alone are cut; all others must lie on one side of the plane, or outside of the outlines.
 /// - Nodes within 1e-8 of the shortest edge from a plane count as on it; where all nodes of a face are, the mesh is opened there as by
 ///   `split`.
 /// - Faces (edges in the plane) of groups are cut and removed with their cells; a group of nodes that has a node gets its double too.
 ///   Cells of lower dimension (beams, points) on the plane go with the upper side.
 /// Throws InputError: a group absent (with the nearest name) or of something else, cut cells of the second degree, a cell that two planes
-/// cut, a plane that cuts nothing, cells of other groups that meet those of `through` in the plane or stand on what is not filled. The mesh
-/// is unchanged then. `lines`: groups of cells of lower dimension that are no faces, as beams; absent ones count as empty.
+/// cut or two outlines share, a plane that cuts nothing, cells of other groups that meet those of `through` in the plane or stand on what
+/// is not filled. The mesh is unchanged then. `lines`: groups of cells of lower dimension that are no faces, as beams; absent ones count as
+/// empty.
 std::vector<std::vector<CutFace>> cut(Mesh& mesh, const std::vector<CutPlane>& planes, const std::vector<Where>& where,
                                       const std::vector<std::string>& lines = {});
 

@@ -61,6 +61,7 @@ struct Mesh {
   std::map<std::string, Group> groups;
   std::map<CellId, CellPart> parts = {};  // of cells that are filled in part; all others are whole
   std::vector<Follower> followers = {};   // used by the pieces of parts
+  std::vector<std::string> emptied = {};  // groups of which nothing is left, for messages
   std::vector<int> places = {};     // of the first nodes, ascending: where each stood before some were removed; empty: where it stands
   CellBlock& block(Cell cell);      // made when it is not there (references to other blocks end then)
   int find_block(Cell cell) const;  // -1 when absent

@@ -3,6 +3,7 @@
 #include <gtest/gtest.h>
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <random>
 
@@ -82,7 +83,7 @@ TEST(Cut, BothSidesFillTheWhole) {
       normal.normalize();
       const Vec3 point(place(random), place(random), d == 3 ? place(random) : 0);
       const Content whole = content(mesh, "volume");
-      const auto faces = cut(mesh, {{{"volume"}, {normal, normal.dot(point)}, "above"}}, {{}});
+      const auto faces = cut(mesh, {{{"volume"}, {normal, normal.dot(point)}, {{{}, "above"}}}}, {{}});
       const Content below = content(mesh, "volume"), above = content(mesh, "above");
       EXPECT_NEAR(below.volume + above.volume, 1, 1e-12) << info(cell).name;
       const bool warped = repeat % 2 && (cell == Cell::wedge6 || cell == Cell::hex8);  // faces are then divided into triangles
@@ -92,8 +93,8 @@ TEST(Cut, BothSidesFillTheWhole) {
       // The area of the section is the derivative of the volume below by the level.
       const double step = 1e-5;
       Mesh lower = unit_mesh(cell, 3), upper = lower;
-      cut(lower, {{{"volume"}, {normal, normal.dot(point) - step}, "above"}}, {{}});
-      cut(upper, {{{"volume"}, {normal, normal.dot(point) + step}, "above"}}, {{}});
+      cut(lower, {{{"volume"}, {normal, normal.dot(point) - step}, {{{}, "above"}}}}, {{}});
+      cut(upper, {{{"volume"}, {normal, normal.dot(point) + step}, {{{}, "above"}}}}, {{}});
       const double slope = (content(upper, "volume").volume - content(lower, "volume").volume) / (2 * step);
       EXPECT_NEAR(area_of(faces[0], d), slope, 1e-4) << info(cell).name;
     }
@@ -105,8 +106,8 @@ TEST(Cut, BoxOfAnOutlineIsExact) {
     Mesh mesh = unit_mesh(cell, 4);
     const int d = mesh.dimension;
     const Vec3 up = d == 2 ? Vec3::UnitY() : Vec3::UnitZ();
-    CutPlane plane{{"volume"}, {up, 0.37}, "raft"};
-    plane.within = {{-Vec3::UnitX(), -0.21}, {Vec3::UnitX(), 0.83}, {up, 0.77}};
+    CutPlane plane{{"volume"}, {up, 0.37}, {{{}, "raft"}}};
+    plane.outlines.front().within = {{-Vec3::UnitX(), -0.21}, {Vec3::UnitX(), 0.83}, {up, 0.77}};
     const auto faces = cut(mesh, {plane}, {{}});
     const Content below = content(mesh, "volume"), above = content(mesh, "raft");
     EXPECT_NEAR(below.volume, 0.37, 1e-13) << info(cell).name;
@@ -126,7 +127,7 @@ TEST(Cut, ThroughNodesOpensTheMeshThere) {
     const int d = mesh.dimension;
     const std::size_t nodes = mesh.nodes.size(), layer = d == 2 ? 5 : 25;
     const int cells = mesh.cells();
-    const auto faces = cut(mesh, {{{"volume"}, {d == 2 ? Vec3::UnitY() : Vec3::UnitZ(), 0.5}, "above"}}, {{}});
+    const auto faces = cut(mesh, {{{"volume"}, {d == 2 ? Vec3::UnitY() : Vec3::UnitZ(), 0.5}, {{{}, "above"}}}}, {{}});
     EXPECT_TRUE(mesh.parts.empty());
     EXPECT_TRUE(mesh.followers.empty());
     EXPECT_EQ(mesh.nodes.size(), nodes + layer) << info(cell).name;
@@ -139,7 +140,7 @@ TEST(Cut, ThroughNodesOpensTheMeshThere) {
 TEST(Cut, NodesSharesAndGroups) {
   // 2 x 2 squares, cut at 0.3: doubled are three nodes at y = 0 for the upper part and three at 0.5 for the lower one.
   Mesh mesh = rectangle(lines(2), lines(2));
-  const auto faces = cut(mesh, {{{"volume"}, {Vec3::UnitY(), 0.3}, "above"}}, {{}});
+  const auto faces = cut(mesh, {{{"volume"}, {Vec3::UnitY(), 0.3}, {{{}, "above"}}}}, {{}});
   EXPECT_EQ(mesh.nodes.size() - mesh.followers.size(), 9u + 6u);
   EXPECT_EQ(mesh.groups.at("volume").cells.size(), 2u);
   EXPECT_EQ(mesh.groups.at("above").cells.size(), 4u);
@@ -159,8 +160,8 @@ TEST(Cut, NodesSharesAndGroups) {
 
 TEST(Cut, WhatIsOutsideOfTheOutlineIsRemoved) {
   Mesh mesh = rectangle(lines(8), lines(8));
-  CutPlane plane{{"volume"}, {Vec3::UnitY(), 0.3}, "raft"};
-  plane.within = {{-Vec3::UnitX(), -0.25}, {Vec3::UnitX(), 0.75}};
+  CutPlane plane{{"volume"}, {Vec3::UnitY(), 0.3}, {{{}, "raft"}}};
+  plane.outlines.front().within = {{-Vec3::UnitX(), -0.25}, {Vec3::UnitX(), 0.75}};
   cut(mesh, {plane}, {{}});
   check_mesh(mesh, {});
   for (const CellId id : mesh.groups.at("raft").cells) {
@@ -182,7 +183,7 @@ TEST(Cut, SliversAreRightOrSnapped) {
       Mesh mesh = unit_mesh(cell, 2);
       const int d = mesh.dimension;
       const double level = 0.5 + above;
-      cut(mesh, {{{"volume"}, {d == 2 ? Vec3::UnitY() : Vec3::UnitZ(), level}, "above"}}, {{}});
+      cut(mesh, {{{"volume"}, {d == 2 ? Vec3::UnitY() : Vec3::UnitZ(), level}, {{{}, "above"}}}}, {{}});
       EXPECT_NEAR(content(mesh, "volume").volume, level, 1e-8);
       EXPECT_NEAR(content(mesh, "volume").volume + content(mesh, "above").volume, 1, 1e-13);
       EXPECT_EQ(mesh.parts.empty(), above < 1e-9);
@@ -191,7 +192,8 @@ TEST(Cut, SliversAreRightOrSnapped) {
 
 TEST(Cut, TwoPlanesAtDifferentPlaces) {
   Mesh mesh = rectangle(lines(8), lines(8));
-  const auto faces = cut(mesh, {{{"volume"}, {Vec3::UnitY(), 0.3}, "middle"}, {{"middle"}, {Vec3::UnitY(), 0.7}, "upper"}}, {{}, {}});
+  const auto faces =
+      cut(mesh, {{{"volume"}, {Vec3::UnitY(), 0.3}, {{{}, "middle"}}}, {{"middle"}, {Vec3::UnitY(), 0.7}, {{{}, "upper"}}}}, {{}, {}});
   EXPECT_NEAR(content(mesh, "volume").volume, 0.3, 1e-14);
   EXPECT_NEAR(content(mesh, "middle").volume, 0.4, 1e-14);
   EXPECT_NEAR(content(mesh, "upper").volume, 0.3, 1e-14);
@@ -200,6 +202,33 @@ TEST(Cut, TwoPlanesAtDifferentPlaces) {
       EXPECT_TRUE(mesh.part(face.lower));
       EXPECT_TRUE(mesh.part(face.upper));
     }
+}
+
+TEST(Cut, TwoOutlinesOnOnePlane) {
+  for (const Cell cell : {Cell::tri3, Cell::quad4, Cell::tet4, Cell::hex8}) {
+    Mesh mesh = unit_mesh(cell, 8);
+    const int d = mesh.dimension;
+    const Vec3 up = d == 2 ? Vec3::UnitY() : Vec3::UnitZ();
+    const auto between = [&](double from, double to) { return std::vector<HalfSpace>{{-Vec3::UnitX(), -from}, {Vec3::UnitX(), to}}; };
+    CutPlane plane{{"volume"}, {up, 0.3}, {{between(0.1, 0.32), "first"}, {between(0.6, 0.95), "second"}}};
+    plane.outlines[1].within.push_back({up, 0.8});
+    const auto faces = cut(mesh, {plane}, {{}});
+    ASSERT_EQ(faces.size(), 1U);
+    std::array<std::vector<CutFace>, 2> of;
+    for (const CutFace& face : faces[0]) of[static_cast<std::size_t>(face.outline)].push_back(face);
+    EXPECT_NEAR(area_of(of[0], d), 0.22, 1e-13) << info(cell).name;
+    EXPECT_NEAR(area_of(of[1], d), 0.35, 1e-13) << info(cell).name;
+    EXPECT_NEAR(content(mesh, "volume").volume, 0.3, 1e-13) << info(cell).name;
+    EXPECT_NEAR(content(mesh, "first").volume, 0.22 * 0.7, 1e-13) << info(cell).name;
+    EXPECT_NEAR(content(mesh, "second").volume, 0.35 * 0.5, 1e-13) << info(cell).name;
+  }
+}
+
+TEST(Cut, KeepsTheNamesOfGroupsOfWhichNothingIsLeft) {
+  Mesh mesh = rectangle(lines(4), lines(4));
+  cut(mesh, {{{"volume"}, {Vec3::UnitY(), 0.3}, {{{{-Vec3::UnitX(), -0.3}, {Vec3::UnitY(), 0.6}}, "raft"}}}}, {{}});
+  EXPECT_FALSE(mesh.groups.contains("top"));
+  EXPECT_EQ(mesh.emptied, std::vector<std::string>{"top"});
 }
 
 std::string refused(Mesh mesh, const std::vector<CutPlane>& planes) {
@@ -215,7 +244,7 @@ std::string refused(Mesh mesh, const std::vector<CutPlane>& planes) {
 
 TEST(Cut, RefusesWithASentence) {
   const Mesh mesh = rectangle(lines(4), lines(4)), curved = rectangle(lines(4), lines(4), Cell::quad8);
-  const auto level = [](double y) { return CutPlane{{"volume"}, {Vec3::UnitY(), y}, "above"}; };
+  const auto level = [](double y) { return CutPlane{{"volume"}, {Vec3::UnitY(), y}, {{{}, "above"}}}; };
   EXPECT_NE(refused(mesh, {level(1.5)}).find("from -1.5 m to -0.5 m above it"), std::string::npos) << refused(mesh, {level(1.5)});
   EXPECT_NE(refused(curved, {level(0.3)}).find("first degree"), std::string::npos);
   EXPECT_EQ(refused(curved, {level(0.5)}), "");  // along faces
@@ -223,9 +252,12 @@ TEST(Cut, RefusesWithASentence) {
   wrong.through = {"volumes"};
   EXPECT_NE(refused(mesh, {wrong}).find("volume"), std::string::npos);
   CutPlane nothing = level(0.3);
-  nothing.within = {{Vec3::UnitX(), -1}};
+  nothing.outlines.front().within = {{Vec3::UnitX(), -1}};
   EXPECT_NE(refused(mesh, {nothing}), "");
-  CutPlane second{{"above"}, {Vec3::UnitY(), 0.31}, "upper"};
+  CutPlane near = level(0.3);
+  near.outlines = {{{{Vec3::UnitX(), 0.3}}, "one"}, {{{-Vec3::UnitX(), -0.4}}, "two"}};
+  EXPECT_NE(refused(mesh, {near}).find("at least a cell apart, found two of them"), std::string::npos) << refused(mesh, {near});
+  CutPlane second{{"above"}, {Vec3::UnitY(), 0.31}, {{{}, "upper"}}};
   EXPECT_NE(refused(mesh, {level(0.3), second}).find("same cell"), std::string::npos);
 }
 

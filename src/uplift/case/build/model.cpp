@@ -9,6 +9,7 @@
 #include "uplift/base/text.h"
 #include "uplift/elements/discrete.h"
 #include "uplift/elements/solid_nonlinear.h"
+#include "uplift/mesh/parts.h"
 
 namespace uplift {
 
@@ -25,8 +26,15 @@ const Values* table_if(const Values& values, std::string_view key) {
 std::vector<int> CaseNames::nodes_of(const Values& table, std::string_view key) const {
   std::vector<int> found;
   if (!table.has(key)) return found;
-  for (const std::string& name : table.texts(key)) found.push_back(nodes.find(name, table.where(key), table.path(key)));
+  for (const std::string& name : table.texts(key))
+    found.push_back(standing(nodes.find(name, table.where(key), table.path(key)), table, key));
   return found;
+}
+
+int CaseNames::standing(int node, const Values& table, std::string_view key) const {
+  if (bare.contains(node))
+    fail(table, key, "a node of what is filled", in_quotes(nodes[node]) + ", around which the planes of interface.cut leave nothing");
+  return node;
 }
 
 const CaseSolids& CaseNames::mesh_for(const Values& table) const {
@@ -187,6 +195,9 @@ void add_mesh(const Case& read, ModelBuilder& builder, CaseNames& names) {
     }
   }
   names.coordinates = coordinates;
+  const std::vector<bool> bare = bare_nodes(mesh);
+  for (std::size_t i = 0; i < bare.size(); ++i)
+    if (bare[i]) names.bare.insert(names.first_of_mesh + static_cast<int>(i));
   for (const Follower& follower : mesh.followers) {
     std::vector<std::pair<int, double>> of = follower.of;
     for (auto& [node, weight] : of) node += names.first_of_mesh;

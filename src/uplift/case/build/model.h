@@ -29,8 +29,11 @@ struct CaseNames {
   int first_of_mesh = 0;                     // node of the model that the mesh's first node is
   Coordinates coordinates;                   // of the nodes up to the mesh's last
   std::vector<BeamLine> beams;               // met so far
-  int node(const Values& table, std::string_view key) const { return nodes.find(table, key); }
+  std::set<int> bare;                        // nodes that stand outside of what their cut cells fill
+  /// A node that is named; InputError where nothing stands at it.
+  int node(const Values& table, std::string_view key) const { return standing(nodes.find(table, key), table, key); }
   std::vector<int> nodes_of(const Values& table, std::string_view key) const;
+  int standing(int node, const Values& table, std::string_view key) const;
   /// Nodes of the model of a cell of the mesh, which there is.
   std::vector<int> nodes_of_cell(CellId cell) const;
   /// The node of "node" or the nodes of "group": exactly one of the keys must be given.

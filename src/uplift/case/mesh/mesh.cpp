@@ -7,6 +7,7 @@
 #include <filesystem>
 #include <limits>
 #include <numeric>
+#include <set>
 
 #include "uplift/base/text.h"
 #include "uplift/case/build/model.h"
@@ -126,6 +127,7 @@ void add_outline(const Values& cut, const char* key, const Vec3& axis, std::vect
 CutPlane plane_of(const Values& cut, int dimension) {
   const Vec3 normal = normal_of_cut(cut, dimension), up = dimension == 2 ? Vec3::UnitY() : Vec3::UnitZ();
   CutPlane plane{cut.texts("through"), {}};
+  CutOutline& outline = plane.outlines.front();
   if (plane.through.empty()) fail(cut, "through", "at least one group of cells", "none");
   double level = 0;
   if (cut.has("level"))
@@ -133,13 +135,13 @@ CutPlane plane_of(const Values& cut, int dimension) {
   else
     level = normal.dot(vector_of(cut, "point", {dimension}));
   plane.below = {normal, level};
-  if (cut.has("upper")) plane.upper = cut.text("upper");
-  if (std::ranges::find(plane.through, plane.upper) != plane.through.end())
-    fail(cut, "upper", "another group than those of `through`, or none", in_quotes(plane.upper));
-  add_outline(cut, "x", Vec3::UnitX(), plane.within);
+  if (cut.has("upper")) outline.upper = cut.text("upper");
+  if (std::ranges::find(plane.through, outline.upper) != plane.through.end())
+    fail(cut, "upper", "another group than those of `through`, or none", in_quotes(outline.upper));
+  add_outline(cut, "x", Vec3::UnitX(), outline.within);
   if (dimension == 2 && cut.has("y")) fail(cut, "y", "no y in a plane mesh: height limits the outline", "one");
-  add_outline(cut, "y", Vec3::UnitY(), plane.within);
-  if (cut.has("height")) plane.within.push_back({normal, level + cut.number("height")});
+  add_outline(cut, "y", Vec3::UnitY(), outline.within);
+  if (cut.has("height")) outline.within.push_back({normal, level + cut.number("height")});
   return plane;
 }
 
@@ -154,25 +156,53 @@ void shift_mesh(const Values& cut, const CutPlane& plane, const std::vector<std:
   }
 }
 
+/// Whether two planes through the same groups are one, on which several outlines stand.
+bool is_same_plane(const CutPlane& one, const CutPlane& other) {
+  const auto groups = [](const CutPlane& plane) { return std::set<std::string>(plane.through.begin(), plane.through.end()); };
+  const double level = one.below.level;
+  return groups(one) == groups(other) && (one.below.normal - other.below.normal).norm() < 1e-12 &&
+         std::abs(level - other.below.level) <= 1e-9 * std::max(1.0, std::abs(level)) && !one.outlines.front().within.empty() &&
+         !other.outlines.front().within.empty();
+}
+
 void cut_planes(const Values& root, CaseMesh& made) {
   const std::vector<Values>& interfaces = root.tables("interface");
   made.cut.resize(interfaces.size());
   std::vector<CutPlane> planes;
-  std::vector<Where> where;
-  std::vector<std::size_t> of;
+  std::vector<std::vector<std::size_t>> of;  // interfaces of each plane, in the order of its outlines
   for (std::size_t k = 0; k < interfaces.size(); ++k)
     if (const Values* cut = table_if(interfaces[k], "cut")) {
-      planes.push_back(plane_of(*cut, made.mesh.dimension));
-      where.push_back(cut->where());
-      of.push_back(k);
+      CutPlane plane = plane_of(*cut, made.mesh.dimension);
+      const auto same = std::ranges::find_if(planes, [&](const CutPlane& other) { return is_same_plane(plane, other); });
+      if (same == planes.end()) {
+        planes.push_back(std::move(plane));
+        of.push_back({k});
+      } else {
+        same->outlines.push_back(std::move(plane.outlines.front()));
+        of[static_cast<std::size_t>(same - planes.begin())].push_back(k);
+      }
     }
   if (planes.empty()) return;
   std::vector<std::string> lines;
   for (const Values* beam : element_tables(root, ElementPlace::lines))
     if (beam->has("group")) lines.push_back(beam->text("group"));
-  for (std::size_t i = 0; i < of.size(); ++i) shift_mesh(interfaces[of[i]].table("cut"), planes[i], lines, made.mesh);
-  std::vector<std::vector<CutFace>> faces = cut(made.mesh, planes, where, lines);
-  for (std::size_t i = 0; i < of.size(); ++i) made.cut[of[i]] = std::move(faces[i]);
+  std::vector<Where> where;
+  for (std::size_t i = 0; i < of.size(); ++i) {
+    const Values& first = interfaces[of[i].front()].table("cut");
+    where.push_back(first.where());
+    for (const std::size_t k : of[i])
+      if (const Values& cut = interfaces[k].table("cut"); cut.number("mesh_shift") != first.number("mesh_shift"))
+        fail(cut, "mesh_shift", fmt::format("{:g}, as of the other outline on this plane", first.number("mesh_shift")),
+             fmt::format("{:g}", cut.number("mesh_shift")));
+    shift_mesh(first, planes[i], lines, made.mesh);
+  }
+  const std::vector<std::vector<CutFace>> faces = cut(made.mesh, planes, where, lines);
+  for (std::size_t i = 0; i < of.size(); ++i) {
+    for (const CutFace& face : faces[i]) made.cut[of[i][static_cast<std::size_t>(face.outline)]].push_back(face);
+    for (const std::size_t k : of[i])
+      if (made.cut[k].empty())
+        fail(interfaces[k].table("cut"), "", "an interface on the plane", "none: nothing above the plane lies within the outline");
+  }
 }
 
 const Group& group_named(const Mesh& mesh, const Values& table, std::string_view key, const std::string& what) {
