@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <array>
+#include <cassert>
 #include <cmath>
 #include <map>
 #include <numeric>
@@ -126,7 +127,60 @@ std::vector<int> order_of(const std::vector<JointPoint>& points, const Vec3& nor
   return order;
 }
 
+/// The jump at each node of a cut cell: of its two nodes there one is the double, the other one the node itself.
+class CellJump {
+ public:
+  CellJump(const Mesh& mesh, const CutFace& face, const Vec3& normal) : lower_(mesh.cell(face.lower)), upper_(mesh.cell(face.upper)) {
+    for (const int node : lower_) {
+      places_.push_back(mesh.nodes[at(node)]);
+      above_.push_back(normal.dot(places_.back() - face.corners.front()) > 0);
+    }
+  }
+  std::size_t size() const { return places_.size(); }
+  Vec3 arm(std::size_t i) const { return places_[i] - places_.front(); }
+  /// Adds the jump, upper less lower, of one node times a factor; the double comes first.
+  void add(std::size_t i, int component, double factor, JumpEquation& to) const {
+    to.push_back({above_[i] ? lower_[i] : upper_[i], component, above_[i] ? -factor : factor});
+    to.push_back({above_[i] ? upper_[i] : lower_[i], component, above_[i] ? factor : -factor});
+  }
+
+ private:
+  std::span<const int> lower_, upper_;
+  std::vector<Vec3> places_;
+  std::vector<bool> above_;
+};
+
 }  // namespace
+
+std::vector<JumpEquation> jump_equations(const Mesh& mesh, const CutFace& face, const Vec3& normal, JumpShape shape) {
+  assert(mesh.dimension == 2);
+  const CellJump jump(mesh, face, normal);
+  std::vector<JumpEquation> equations;
+  const auto add = [&](std::size_t i, int component, const Vec3& turned) {  // jump_i = jump_0 + rotation turned
+    JumpEquation& equation = equations.emplace_back();
+    jump.add(i, component, 1, equation);
+    jump.add(0, component, -1, equation);
+    if (turned[component] == 0) return;
+    const Vec3 arm = jump.arm(1), across(-arm.y(), arm.x(), 0);  // the rotation is (jump_1 - jump_0) . across/|arm|^2
+    for (const int k : {0, 1}) {
+      const double factor = turned[component] * across[k] / arm.squaredNorm();
+      if (factor == 0) continue;
+      jump.add(1, k, -factor, equation);
+      jump.add(0, k, factor, equation);
+    }
+  };
+  if (shape == JumpShape::rigid) {  // nothing stretches from node 0 to node 1
+    const Vec3 arm = jump.arm(1).normalized();
+    JumpEquation& equation = equations.emplace_back();
+    for (const int k : std::abs(arm.x()) > std::abs(arm.y()) ? std::array{0, 1} : std::array{1, 0}) {
+      jump.add(1, k, arm[k], equation);
+      jump.add(0, k, -arm[k], equation);
+    }
+  }
+  for (std::size_t i = shape == JumpShape::rigid ? 2 : 1; i < jump.size(); ++i)
+    for (const int k : {0, 1}) add(i, k, shape == JumpShape::rigid ? Vec3(-jump.arm(i).y(), jump.arm(i).x(), 0) : Vec3(Vec3::Zero()));
+  return equations;
+}
 
 CutJoints cut_joints(const Mesh& mesh, const std::vector<CutFace>& faces, const Vec3& normal, double thickness, double gap) {
   Points points(mesh, normal, gap);

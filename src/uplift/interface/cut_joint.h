@@ -16,4 +16,18 @@ struct CutJoints {
 };
 CutJoints cut_joints(const Mesh& mesh, const std::vector<CutFace>& faces, const Vec3& normal, double thickness, double gap);
 
+/// What the jump between both sides may be within a cell of its own doubles (CutPlane::own_doubles).
+enum class JumpShape { constant, rigid };
+
+/// A linear equation between displacements of nodes of the mesh: sum of factor x component = 0. The first one is that of a double.
+struct JumpTerm {
+  int node = 0, component = 0;
+  double factor = 0;
+};
+using JumpEquation = std::vector<JumpTerm>;
+
+/// What makes the jump of a cut cell of the plane constant, or a rigid motion of one side against the other: then both sides have one
+/// strain, and the cell is that of the element-condensed discontinuity "KOS" (docs/theory/element_jumps.md). `normal`: of the plane.
+std::vector<JumpEquation> jump_equations(const Mesh& mesh, const CutFace& face, const Vec3& normal, JumpShape shape);
+
 }  // namespace uplift

@@ -75,6 +75,7 @@ class OneCut {
   int upper_node(int node) const { return sign(node) <= 0 && double_[at(node)] >= 0 ? double_[at(node)] : node; }
   MadeCells write_cell(CellId id, const Halves& halves);
   void rename(CellId id, bool upper);
+  void add_own_doubles(const MadeCells& made);
   CellId add_copy(CellId id);
   void set_part(CellId id, const CellBefore& before, const std::vector<HalfSpace>& within);
   void write_small(CellId id);
@@ -252,6 +253,13 @@ void OneCut::find_doubles() {
   below_.assign(mesh_.nodes.size(), false);
   above_.assign(mesh_.nodes.size(), false);
   double_.assign(mesh_.nodes.size(), -1);
+  if (plane_.own_doubles) {
+    for (const CellId id : sides_.cells())
+      if (std::ranges::any_of(mesh_.cell(id), [&](int node) { return sign(node) == 0; }))
+        throw InputError(where_, "", "a plane that meets no node, since the jump is not linear",
+                         "a node of the " + describe_cell(mesh_, id) + " on it");
+    return;
+  }
   for (std::size_t k = 0; k < halves_.size(); ++k)
     for (const int node : mesh_.cell(sides_.cells()[k])) {
       if (halves_[k].lower) below_[at(node)] = true;
@@ -336,6 +344,20 @@ void OneCut::rename(CellId id, bool upper) {
   CellBlock& block = mesh_.blocks[at(id.block)];
   const auto n = at(info(block.cell).nodes);
   for (int& node : std::span(block.nodes).subspan(at(id.index) * n, n)) node = upper ? upper_node(node) : lower_node(node);
+}
+
+/// The nodes of both parts of a cell beyond the plane become nodes that no other cell has.
+void OneCut::add_own_doubles(const MadeCells& made) {
+  if (made.lower == no_cell || made.upper == no_cell) return;
+  for (const CellId id : {made.lower, made.upper}) {
+    CellBlock& block = mesh_.blocks[at(id.block)];
+    const auto n = at(info(block.cell).nodes);
+    for (int& node : std::span(block.nodes).subspan(at(id.index) * n, n))
+      if (sign(node) == (id == made.lower ? 1 : -1)) {
+        mesh_.nodes.push_back(Vec3(mesh_.nodes[at(node)]));
+        node = static_cast<int>(mesh_.nodes.size()) - 1;
+      }
+  }
 }
 
 void OneCut::set_part(CellId id, const CellBefore& before, const std::vector<HalfSpace>& within) {
@@ -446,6 +468,8 @@ std::vector<CutFace> OneCut::faces() {
       if (!removed_[b][at(i)]) write_small({static_cast<int>(b), i});
   }
   for (std::size_t k = 0; k < halves_.size(); ++k) made_.push_back(write_cell(sides_.cells()[k], halves_[k]));
+  if (plane_.own_doubles)
+    for (const MadeCells& made : made_) add_own_doubles(made);
   for (const auto& [id, upper] : neighbours_) rename(id, upper);
   write_groups();
   std::vector<CutFace> found;

@@ -48,8 +48,18 @@ void ModelBuilder::tie_equal(int a, int b, Dof dof, Where where) {
   equals_.push_back({a, b, dof, std::move(where)});
 }
 
-void ModelBuilder::follow(int node, std::vector<std::pair<int, double>> of, Where where) {
-  follows_.push_back({node, std::move(of), std::move(where)});
+void ModelBuilder::follow(int node, const std::vector<std::pair<int, double>>& of, const Where& where) {
+  const int each = space_.unknowns();
+  for (int k = 0; k < each; ++k) {
+    std::vector<std::pair<int, double>> terms{{each * node + k, 1}};
+    if (!space_.is_rotation(k))
+      for (const auto& [other, weight] : of) terms.emplace_back(each * other + k, -weight);
+    relate(std::move(terms), where);
+  }
+}
+
+void ModelBuilder::relate(std::vector<std::pair<int, double>> terms, Where where) {
+  relations_.push_back({std::move(terms), std::move(where)});
 }
 
 void ModelBuilder::tie_rigid(int master, int slave, Where where) {

@@ -53,7 +53,9 @@ class ModelBuilder {
   /// Both nodes have the same value of one unknown. A tie that follows from other constraints is left out.
   void tie_equal(int a, int b, Dof dof, Where where);
   /// The node, which has no element of its own, moves as these nodes with these weights.
-  void follow(int node, std::vector<std::pair<int, double>> of, Where where);
+  void follow(int node, const std::vector<std::pair<int, double>>& of, const Where& where);
+  /// The sum of full unknowns times factors is zero; the first one is eliminated where that is possible.
+  void relate(std::vector<std::pair<int, double>> terms, Where where);
   /// The slave's translations and rotations follow the master rigidly (small displacements); chains are allowed.
   void tie_rigid(int master, int slave, Where where);
   /// The distance of the two nodes does not change (beam without axial flexibility).
@@ -91,9 +93,8 @@ class ModelBuilder {
     Dof dof;
     Where where;
   };
-  struct Follow {
-    int node;
-    std::vector<std::pair<int, double>> of;
+  struct Relation {
+    std::vector<std::pair<int, double>> terms;
     Where where;
   };
   struct TableOfLoads {
@@ -135,7 +136,7 @@ class ModelBuilder {
   std::vector<Support> supports_;
   std::vector<Pair> ties_, links_;
   std::vector<Equal> equals_;
-  std::vector<Follow> follows_;
+  std::vector<Relation> relations_;
   std::vector<Motion> motions_;
   std::vector<InterfaceSpec> interfaces_;
   std::vector<Where> interface_where_;

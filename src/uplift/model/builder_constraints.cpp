@@ -1,7 +1,7 @@
 // Supports, rigid bodies and inextensible beams as linear constraints on the full unknowns, eliminated exactly:
 //   support       u = prescribed
 //   equal tie     u_b = u_a
-//   follower      u_f = sum of w_a u_a,  rotation_f = 0     (drawn nodes of cut cells)
+//   relation      sum of c_i x_i = 0: followers (drawn nodes of cut cells) u_f = sum of w_a u_a,  rotation_f = 0; doubles of cut cells
 //   rigid tie     u_s = u_m + rotation_m x r,  rotation_s = rotation_m,   r = slave - master     (small displacements)
 //   inextensible  e . (u_b - u_a) = 0,   e the unit vector from a to b
 #include <fmt/format.h>
@@ -107,14 +107,12 @@ void ModelBuilder::eliminate(Model& model, Matrix& motion_shapes) const {
     const int a = space_.at(tie.first, tie.dof), b = space_.at(tie.second, tie.dof);
     list.add({{{a, -1}, {b, 1}}, {}}, b, fmt::format("a tie of {} to {}", name_of(a), name_of(b)), "", names, tie.where, true);
   }
-  for (const Follow& follow : follows_)
-    for (int k = 0; k < space_.unknowns(); ++k) {
-      const int unknown = space_.unknowns() * follow.node + k;
-      Elimination::Row row{{{unknown, 1}}, {}};
-      if (!space_.is_rotation(k))
-        for (const auto& [node, weight] : follow.of) row.unknowns[space_.unknowns() * node + k] = -weight;
-      list.add(row, unknown, fmt::format("a motion of {} that follows those of others", name_of(unknown)), "", names, follow.where);
-    }
+  for (const Relation& relation : relations_) {
+    const int unknown = relation.terms.front().first;
+    Elimination::Row row;
+    for (const auto& [each, factor] : relation.terms) row.unknowns[each] += factor;
+    list.add(row, unknown, fmt::format("a motion of {} that follows those of others", name_of(unknown)), "", names, relation.where);
+  }
   model.assembly.first_link = list.rows();
   for (const Pair& link : links_) {
     const int a = link.first, b = link.second;

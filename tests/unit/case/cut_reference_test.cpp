@@ -79,23 +79,8 @@ TEST(CutReference, BarWithACrackThatSoftensClosesAndOpensAgain) {
 
 // ---- a rigid block on tensionless springs ----
 
-/// Rotation over that at the beginning of uplift, 2 N/(k W^2), under N and M = ratio N W/6 at the top.
-double block_rotation(double ratio, double level, int cells, const std::string& more = {}, double young = 1e15) {
-  constexpr double width = 3, force = 1e6, k = 2e8;
-  const std::string text =
-      "title = \"block\"\n[mesh]\nfile = \"block.msh\"\n" + solid("volume", young, 0.2, 2000) + solid("block", young, 0.2, 2000) +
-      "[[support]]\ngroup = \"bottom\"\nfixed = [\"ux\", \"uy\"]\n" +
-      fmt::format(
-          "[[load]]\ngroup = \"top\"\ntraction = [0, {}]\n[load.profile]\nalong = \"x\"\npositions = [-1.5, 1.5]\n"
-          "factors = [{}, {}]\n",
-          -force / width, 1 - ratio, 1 + ratio) +
-      fmt::format("[[interface]]\nname = \"base\"\ncut = {{ through = [\"volume\"], level = {}, upper = \"block\"{} }}\n", level, more) +
-      fmt::format("law = {{ type = \"springs\", K_n = {}, K_t = {}, tangential = \"bonded\" }}\n", k, k) + at_rest_stages;
-  const RunResult result = run_on(text, rectangle(uniform_lines(-1.5, 1.5, cells), uniform_lines(0, 1, 4)));
-  return std::abs(at_rest(result, "base.rotation")) / (2 * force / (k * width * width));
-}
-
-/// The same for a rigid block on springs at equal distances, each with the length that the rule of the interface gives it.
+/// The rotation of `block_rotation` for a rigid block on springs at equal distances, each with the length that the rule of the interface
+/// gives it.
 double block_on_springs(double ratio, int cells) {
   constexpr double width = 3, k = 2e8, force = 1e6;
   const double moment = ratio * force * width / 6, length = width / cells;

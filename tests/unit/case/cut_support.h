@@ -2,11 +2,13 @@
 #include <fmt/format.h>
 #include <gtest/gtest.h>
 
+#include <cmath>
 #include <span>
 #include <string>
 
 #include "uplift/case/case.h"
 #include "uplift/io/text/toml.h"
+#include "uplift/mesh/box.h"
 #include "uplift/mesh/mesh.h"
 
 // Cases on meshes of a test: what the tests of cut interfaces share.
@@ -47,6 +49,23 @@ step = 1e-3
 
 inline std::string solid(const std::string& group, double young, double poisson, double density, const std::string& extra = {}) {
   return fmt::format("[[solid]]\ngroup = \"{}\"\nE = {}\npoisson = {}\ndensity = {}\n{}", group, young, poisson, density, extra);
+}
+
+/// Rotation of a block on a base of the same material that the plane parts from it, on tensionless springs, over that at the beginning of
+/// uplift, 2 N/(k W^2), under N and M = ratio N W/6 at the top.
+inline double block_rotation(double ratio, double level, int cells, const std::string& more = {}, double young = 1e15) {
+  constexpr double width = 3, force = 1e6, k = 2e8;
+  const std::string text =
+      "title = \"block\"\n[mesh]\nfile = \"block.msh\"\n" + solid("volume", young, 0.2, 2000) + solid("block", young, 0.2, 2000) +
+      "[[support]]\ngroup = \"bottom\"\nfixed = [\"ux\", \"uy\"]\n" +
+      fmt::format(
+          "[[load]]\ngroup = \"top\"\ntraction = [0, {}]\n[load.profile]\nalong = \"x\"\npositions = [-1.5, 1.5]\n"
+          "factors = [{}, {}]\n",
+          -force / width, 1 - ratio, 1 + ratio) +
+      fmt::format("[[interface]]\nname = \"base\"\ncut = {{ through = [\"volume\"], level = {}, upper = \"block\"{} }}\n", level, more) +
+      fmt::format("law = {{ type = \"springs\", K_n = {}, K_t = {}, tangential = \"bonded\" }}\n", k, k) + at_rest_stages;
+  const RunResult result = run_on(text, rectangle(uniform_lines(-1.5, 1.5, cells), uniform_lines(0, 1, 4)));
+  return std::abs(at_rest(result, "base.rotation")) / (2 * force / (k * width * width));
 }
 
 }  // namespace uplift::support

@@ -123,6 +123,19 @@ void warn_clipped_cut(const Mesh& mesh, const std::vector<CutFace>& faces, const
                     interface.name, format_quantity(size, "m"), format_quantity(width / least, "m")));
 }
 
+/// docs/theory/element_jumps.md
+void warn_element_jumps(const Values& cut, const std::vector<CutFace>& faces, const Interface& interface, std::vector<std::string>& said) {
+  if (cut.text("jump") == "linear") return;
+  const bool level = std::ranges::all_of(faces, &CutFace::level);
+  said.push_back(
+      fmt::format("the jump of \"{}\" is {} in each cell, a form of the literature for comparisons: {}{}; the linear jump has none of "
+                  "this",
+                  interface.name, cut.text("jump"),
+                  cut.text("jump") == "constant" ? "a base that turns is held by stresses in the cells and locks"
+                                                 : "both sides of a cell have one strain, also where their materials differ",
+                  level ? "" : ", and on cells that are cut at an angle even uniform stresses are wrong"));
+}
+
 void warn_cuts(const Case& read, const BuiltCase& built, std::vector<std::string>& said) {
   if (!read.mesh || read.mesh->cut.empty()) return;
   const CaseSolids solids(read.values, *read.mesh);
@@ -130,6 +143,7 @@ void warn_cuts(const Case& read, const BuiltCase& built, std::vector<std::string
   for (std::size_t t = 0; t < tables.size(); ++t)
     for (const Interface& interface : built.model.interfaces) {
       if (interface.name != tables[t].text("name") || read.mesh->cut[t].empty()) continue;
+      warn_element_jumps(tables[t].table("cut"), read.mesh->cut[t], interface, said);
       warn_inclined_cut(solids, read.mesh->cut[t], interface, said);
       warn_clipped_cut(solids.mesh(), read.mesh->cut[t], interface, said);
     }

@@ -117,13 +117,29 @@ void add_surface(const Values& interface, const Values& surface, const std::vect
       for (auto& [node, shape] : *side) node += names.first_of_mesh;
 }
 
+/// Of cells with doubles of their own: see jump_equations.
+void limit_jumps(const Values& cut, const std::vector<CutFace>& faces, const Vec3& normal, const CaseNames& names, ModelBuilder& builder) {
+  const JumpShape shape = cut.text("jump") == "rigid" ? JumpShape::rigid : JumpShape::constant;
+  for (const CutFace& face : faces)
+    for (const JumpEquation& equation : jump_equations(names.solids->mesh(), face, normal, shape)) {
+      std::vector<std::pair<int, double>> terms;
+      for (const JumpTerm& term : equation)
+        terms.emplace_back(names.space.unknowns() * (names.first_of_mesh + term.node) + term.component, term.factor);
+      builder.relate(std::move(terms), cut.where("jump"));
+    }
+}
+
 /// Cones hold their points by constraints, which are too many on inclined faces: their tractions would not be determined.
-void add_cut(const Values& interface, const Values& cut, const std::vector<CutFace>& faces, const CaseNames& names, Joint& joint) {
+void add_cut(const Values& interface, const Values& cut, const std::vector<CutFace>& faces, const CaseNames& names, ModelBuilder& builder,
+             Joint& joint) {
   const Mesh& mesh = names.solids->mesh();
   const double thickness = mesh.dimension == 2 ? thickness_of(*names.solids, faces, cut) : 1;
-  CutJoints made = cut_joints(mesh, faces, normal_of_cut(cut, mesh.dimension), thickness, uniform_gap(interface));
+  const Vec3 normal = normal_of_cut(cut, mesh.dimension);
+  CutJoints made = cut_joints(mesh, faces, normal, thickness, uniform_gap(interface));
+  if (cut.text("jump") != "linear") limit_jumps(cut, faces, normal, names, builder);
   joint.facts.facets = std::make_shared<Facets>(std::move(made.facets));
-  joint.facts.level = !made.inclined;
+  if (made.inclined) joint.facts.too_many_for_cones = "a plane that cuts its cells at an angle";
+  if (cut.text("jump") != "linear") joint.facts.too_many_for_cones = "a plane with constant or rigid jumps";
   for (const CutFace& face : faces) joint.facts.corners.insert(joint.facts.corners.end(), face.corners.begin(), face.corners.end());
   joint.points = std::move(made.points);
   for (JointPoint& point : joint.points)
@@ -167,7 +183,7 @@ Joint make_joint(const Values& interface, const std::vector<FacePair>& open, con
     joint.facts.facets = std::make_shared<Facets>(line_facets(joint.points, made.thickness));
   }
   if (surface) add_surface(interface, *surface, open, names, joint);
-  if (cut) add_cut(interface, *cut, cut_faces, names, joint);
+  if (cut) add_cut(interface, *cut, cut_faces, names, builder, joint);
   if (surface) joint.facts.faces = open, joint.facts.nodal = surface->text("quadrature") == "nodal";
   joint.facts.depth = depth_of(interface, open, cut_faces, names);
   set_gaps(interface, joint.points, names);

@@ -201,7 +201,7 @@ void add_mesh(const Case& read, ModelBuilder& builder, CaseNames& names) {
   for (const Follower& follower : mesh.followers) {
     std::vector<std::pair<int, double>> of = follower.of;
     for (auto& [node, weight] : of) node += names.first_of_mesh;
-    builder.follow(names.first_of_mesh + follower.node, std::move(of), table.where());
+    builder.follow(names.first_of_mesh + follower.node, of, table.where());
   }
   std::vector<int> nodes;
   for (const CaseSolids::Solid& solid : names.solids->solids())

@@ -142,6 +142,10 @@ CutPlane plane_of(const Values& cut, int dimension) {
   if (dimension == 2 && cut.has("y")) fail(cut, "y", "no y in a plane mesh: height limits the outline", "one");
   add_outline(cut, "y", Vec3::UnitY(), outline.within);
   if (cut.has("height")) outline.within.push_back({normal, level + cut.number("height")});
+  plane.own_doubles = cut.text("jump") != "linear";
+  if (plane.own_doubles && dimension == 3) fail(cut, "jump", "linear in space", in_quotes(cut.text("jump")));
+  if (plane.own_doubles && !outline.within.empty())
+    fail(cut, "jump", "linear, since the ground has a free surface beside the outline", in_quotes(cut.text("jump")));
   return plane;
 }
 
@@ -163,6 +167,15 @@ bool is_same_plane(const CutPlane& one, const CutPlane& other) {
   return groups(one) == groups(other) && (one.below.normal - other.below.normal).norm() < 1e-12 &&
          std::abs(level - other.below.level) <= 1e-9 * std::max(1.0, std::abs(level)) && !one.outlines.front().within.empty() &&
          !other.outlines.front().within.empty();
+}
+
+/// In a triangle one node is alone on its side: the other side can turn about it without any strain.
+void refuse_undetermined_jumps(const Values& cut, const std::vector<CutFace>& faces, const Mesh& mesh) {
+  if (cut.text("jump") != "rigid") return;
+  for (const CutFace& face : faces)
+    if (mesh.type(face.lower) != Cell::quad4)
+      fail(cut, "jump", "constant or linear in triangles, where one node alone leaves the rotation of a rigid jump undetermined",
+           in_quotes("rigid"));
 }
 
 void cut_planes(const Values& root, CaseMesh& made) {
@@ -202,6 +215,7 @@ void cut_planes(const Values& root, CaseMesh& made) {
     for (const std::size_t k : of[i])
       if (made.cut[k].empty())
         fail(interfaces[k].table("cut"), "", "an interface on the plane", "none: nothing above the plane lies within the outline");
+    refuse_undetermined_jumps(interfaces[of[i].front()].table("cut"), faces[i], made.mesh);
   }
 }
 

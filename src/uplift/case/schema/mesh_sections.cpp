@@ -118,6 +118,10 @@ const Section& cut_section() {
              vector("x", "m", "outline above the plane: least and largest x; absent: no limit").optional(),
              vector("y", "m", "in space: least and largest y of the outline; absent: no limit").optional(),
              number("height", "m", "height of the outline above the plane; absent: no limit").positive().optional(),
+             choice("jump", {"linear", "constant", "rigid"},
+                    "how the opening varies within a cell: linear, as the displacements, each side with strains of its own; constant or "
+                    "rigid: the element-condensed form of the literature, one strain for both sides (plane meshes, to compare with it)")
+                 .standard("linear"),
              number("mesh_shift", "1",
                     "the nodes near the plane are moved along its normal by this share of the height of the cells there, to see whether it "
                     "matters how the plane lies in the mesh (trust)")
