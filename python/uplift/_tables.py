@@ -641,6 +641,7 @@ class Tables:
         floor_spectrum: Optional[Sequence[Mapping[str, Any]]] = None,
         beam_envelope: Optional[Sequence[Mapping[str, Any]]] = None,
         floor_bands: Optional[Sequence[Quantity]] = None,
+        checkpoint: Optional[Quantity] = None,
         fields: Optional[Mapping[str, Any]] = None,
     ) -> None:
         """Output.
@@ -655,9 +656,11 @@ class Tables:
             beam_envelope: envelopes of section forces.
             floor_bands: frequencies that part the bands in which floor spectra are compared with those of the bonded
                 run; absent: 2, 5, 10, 20 [Hz].
+            checkpoint: `uplift run` keeps the state of a run after this much time on the clock, from which `uplift
+                resume` goes on; absent: never [s], > 0 s.
             fields: fields on the mesh; absent: none.
         """
-        self._set("output", {"every": every, "automatic": automatic, "energies": energies, "frames": frames, "history": history, "floor_spectrum": floor_spectrum, "beam_envelope": beam_envelope, "floor_bands": floor_bands, "fields": fields})
+        self._set("output", {"every": every, "automatic": automatic, "energies": energies, "frames": frames, "history": history, "floor_spectrum": floor_spectrum, "beam_envelope": beam_envelope, "floor_bands": floor_bands, "checkpoint": checkpoint, "fields": fields})
 
     def verdict(
         self,

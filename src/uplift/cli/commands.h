@@ -23,6 +23,8 @@ struct Options {
 int new_case(const std::string& name);
 int check(const Options& options);
 int run(const Options& options);
+/// Goes on with a run that was interrupted; options.file is the folder of its results.
+int resume(const Options& options);
 int compare(const Options& options);
 /// Repeats the run with every choice of the computation changed.
 int trust(const Options& options);

@@ -102,6 +102,12 @@ void declare(CLI::App& app, Choices& given) {
   command->add_flag("--no-step-check", options.no_step_check, "do not run the case with twice the step to estimate the error of the step");
   take_json(command, options);
 
+  command = add(app, "resume", "go on with a run of a case with [output] checkpoint that was interrupted or killed",
+                "  uplift resume out/tower\n  uplift resume out/tower --out out/tower_complete");
+  command->add_option("results", options.file, "folder of the results of the run, as it was given to `uplift run`")->required();
+  take_output(command, options);
+  take_json(command, options);
+
   command = add(app, "compare", "run all variants of a case and compare them", "  uplift compare examples/01_oscillator/case.toml");
   take_case(command, options);
   take_output(command, options);
@@ -175,6 +181,7 @@ int dispatch(const CLI::App& app, const Choices& given) {
   if (name == "new") return cli::new_case(given.name);
   if (name == "check") return cli::check(given.options);
   if (name == "run") return cli::run(given.options);
+  if (name == "resume") return cli::resume(given.options);
   if (name == "compare") return cli::compare(given.options);
   if (name == "trust") return cli::trust(given.options);
   if (name == "modes") return cli::modes(given.options, given.modes);

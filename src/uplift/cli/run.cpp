@@ -1,11 +1,13 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <optional>
 
 #include "uplift/base/file.h"
 #include "uplift/base/format.h"
 #include "uplift/cli/console.h"
 #include "uplift/cli/load.h"
+#include "uplift/session/checkpoint.h"
 
 namespace uplift::cli {
 namespace {
@@ -34,12 +36,21 @@ std::string counted(long count, const char* one, const char* several) {
   return fmt::format("{} {}", count, count == 1 ? one : several);
 }
 
-}  // namespace
-
-int run(const Options& options) {
+/// `from`: folder of earlier checkpoints; empty: the runs begin at the beginning.
+int run_from(const Options& options, const std::string& from) {
   const LoadedCase loaded = load(options);
   OutputFolder folder(options, result_path(options, loaded.read));
-  const Results results = run_case(loaded, control_of(options, &folder));
+  Control control = control_of(options, &folder);
+  std::optional<Checkpoints> checkpoints;
+  if (const Values& output = loaded.read.values.table("output"); output.has("checkpoint")) {
+    checkpoints.emplace(origin_of(loaded, control.step_check), output.number("checkpoint"), folder, from);
+    control.checkpoints = &*checkpoints;
+  }
+  Results results = run_case(loaded, control);
+  if (checkpoints) {
+    if (!interrupt_asked()) checkpoints->remove();
+    for (std::string& note : checkpoints->notes()) results.warnings.push_back(std::move(note));
+  }
   const RunResult& main = results.runs.front();
   finish_results(options, loaded, results, folder);
 
@@ -64,11 +75,13 @@ int run(const Options& options) {
   }
   if (main.status == RunStatus::interrupted) {
     if (!options.quiet) complain(fmt::format("{} at t = {:g} s: the files hold everything up to there", interrupt_text(), main.end_time));
+    if (checkpoints && !options.quiet) complain(fmt::format("uplift resume {} goes on from there", folder.path()));
     return interrupt_exit_code();
   }
   if (interrupt_asked()) {
     if (!options.quiet)
       complain(interrupt_text() + ": the bonded run or the run with twice the step is not complete; what is compared with it is missing");
+    if (checkpoints && !options.quiet) complain(fmt::format("uplift resume {} goes on from there", folder.path()));
     return interrupt_exit_code();
   }
   if (main.status == RunStatus::failed) {
@@ -79,6 +92,22 @@ int run(const Options& options) {
     return Exit::numerical_failure;
   }
   return Exit::done;
+}
+
+}  // namespace
+
+int run(const Options& options) {
+  return run_from(options, "");
+}
+
+int resume(const Options& given) {
+  Options options = given;
+  const std::string from = checkpoints_at(given.file);
+  const CheckpointOrigin origin = origin_of_checkpoints(from);
+  options.file = case_file_of(origin);
+  options.no_step_check = !origin.step_check;
+  if (options.out.empty()) options.out = given.file;
+  return run_from(options, from);
 }
 
 }  // namespace uplift::cli

@@ -14,12 +14,15 @@
 // interface only differ in how they show progress and hand over the results.
 namespace uplift {
 
+class Checkpoints;
+
 /// How the caller follows and stops an analysis. Every member may be empty.
 struct Control {
   std::function<Watch(const std::string& label)> watch;  // makes what is told of the progress of one run
   std::function<bool()> stopped;                         // asked between runs, and during runs that are not watched
   Observe observe;                                       // sees the steps of the case's own run
   ResultFolder* folder = nullptr;                        // where fields are written; null: none are written
+  Checkpoints* checkpoints = nullptr;                    // run_case: states of the runs are kept there; null: none are
   bool step_check = true;                                // run_case: the companion run with twice the step
   bool is_stopped() const { return stopped && stopped(); }
 };

@@ -3,6 +3,7 @@
 #include "uplift/base/text.h"
 #include "uplift/io/fields/run.h"
 #include "uplift/run/run_state.h"
+#include "uplift/session/checkpoint.h"
 #include "uplift/session/history_file.h"
 
 namespace uplift {
@@ -56,6 +57,8 @@ RunResult run_built(const LoadedCase& loaded, const BuiltCase& built, const std:
     file.emplace(*control.folder, histories);
     keeping.follow = [&](const RunResult& so_far) { file->follow(so_far); };
   }
+  KeptRun kept(control.checkpoints, label, built.model.free());
+  kept.attach(keeping, watch);
   if (field_lists == nullptr || control.folder == nullptr || !loaded.read.values.table("output").has("fields"))
     return run(built.model, built.plan, built.behaviours, watch, observe, &keeping);
   FieldRun fields(loaded.read, built, *control.folder);

@@ -196,6 +196,11 @@ const Section& output_section() {
           numbers("floor_bands", "Hz",
                   "frequencies that part the bands in which floor spectra are compared with those of the bonded run; absent: 2, 5, 10, 20")
               .optional(),
+          number(
+              "checkpoint", "s",
+              "`uplift run` keeps the state of a run after this much time on the clock, from which `uplift resume` goes on; absent: never")
+              .positive()
+              .optional(),
           table("fields", fields_section(), "fields on the mesh; absent: none").optional()}};
   return s;
 }

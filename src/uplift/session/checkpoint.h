@@ -1,0 +1,94 @@
+#pragma once
+#include <chrono>
+#include <map>
+#include <memory>
+#include <mutex>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "uplift/io/files.h"
+#include "uplift/run/run_state.h"
+#include "uplift/session/load.h"
+
+// Checkpoints: states of runs on disk, from which `uplift resume` goes on. A run that resumes takes the same steps to the last bit as one
+// that was never interrupted (docs/guide/checkpoints.md).
+namespace uplift {
+
+/// What a checkpoint belongs to.
+struct CheckpointOrigin {
+  std::string case_file;                                    // as the command named it
+  std::string from_folder;                                  // where the command was given
+  std::string resolved;                                     // the case with all its values
+  std::vector<std::pair<std::string, std::string>> inputs;  // files that the case names, with their SHA-256
+  std::string program;                                      // SHA-256 of the executable file
+  std::string processor;                                    // results are the same to the last bit on one kind of processor alone
+  bool step_check = true;                                   // Control::step_check
+};
+
+CheckpointOrigin origin_of(const LoadedCase& loaded, bool step_check);
+
+/// One state of one run as it is on disk.
+struct Checkpoint {
+  CheckpointOrigin origin;
+  std::string label;  // of the run
+  std::string state;  // write_run_state
+};
+/// The file's bytes, with a checksum over all of them.
+std::string write_checkpoint(const Checkpoint& checkpoint);
+/// Bytes that are cut off or changed are refused: then `why` says so.
+std::optional<Checkpoint> read_checkpoint(std::string_view bytes, std::string& why);
+
+/// The folder with the checkpoints of earlier results at `path`: of a process that was killed (PATH.part-N), else of the results there.
+/// Throws InputError: none, or a process that still computes them.
+std::string checkpoints_at(const std::string& path);
+/// The case file of the checkpoints, as a command given here would name it.
+std::string case_file_of(const CheckpointOrigin& origin);
+/// What the checkpoints of a folder belong to. Throws InputError: all of them are damaged.
+CheckpointOrigin origin_of_checkpoints(const std::string& folder);
+
+/// The checkpoints of the runs of one command. May be used from several threads.
+class Checkpoints {
+ public:
+  /// New ones go to the subfolder `checkpoint` of the results. `from`: a folder with earlier ones; empty: the runs begin at the beginning.
+  /// Throws InputError where the case, its files or the program are not those of the earlier ones.
+  Checkpoints(CheckpointOrigin origin, double seconds, const ResultFolder& folder, const std::string& from);
+  /// The state with which a run goes on; empty: it begins at the beginning.
+  std::optional<RunState> begin(const std::string& label);
+  /// Writes the state of a run. False: it could not be written, and why() tells the reason.
+  bool write(const std::string& label, const RunState& state);
+  double seconds() const { return seconds_; }
+  /// Removes what was written: the results are complete.
+  void remove();
+  /// What the user should know: runs that could not go on bit for bit, files that could not be read or written.
+  std::vector<std::string> notes() const;
+  static constexpr const char* subfolder = "checkpoint";
+
+ private:
+  void note(std::string text);
+  const CheckpointOrigin origin_;
+  const double seconds_;
+  const std::string folder_, from_;
+  mutable std::mutex mutex_;
+  std::vector<std::string> notes_;
+};
+
+/// Keeps one run: a state now and then, and one before the run ends because it was asked to.
+class KeptRun {
+ public:
+  /// `checkpoints` may be null: nothing is kept. `unknowns`: of the model.
+  KeptRun(Checkpoints* checkpoints, std::string label, Index unknowns);
+  /// Adds what is kept to what the run does, and lets `watch` end the run at a step that is kept.
+  void attach(Keeping& keeping, Watch& watch);
+
+ private:
+  using Clock = std::chrono::steady_clock;
+  Checkpoints* checkpoints_;
+  const std::string label_;
+  const long every_;
+  std::optional<RunState> from_;
+  Clock::time_point last_ = Clock::now();
+  bool stop_asked_ = false, stop_ = false;
+};
+
+}  // namespace uplift

@@ -1,0 +1,76 @@
+"""Runs that were interrupted or killed go on from their checkpoints, to the same files byte for byte."""
+
+import shutil
+import signal
+import time
+
+from support import *
+
+KEPT = BASE.replace("bonded = false\n", "").replace("duration = 0.5", "duration = 100") + '[output]\nevery = 100\ncheckpoint = "0.02 s"\n'
+TIMES = re.compile(r'("(?:wall_seconds|step_seconds|created|command)": )("[^"]*"|[-+.e0-9]+)')
+
+
+class Resume(CliTest):
+    def files(self, folder):
+        """Names and contents of all results; times that computations took and the command are left out."""
+        return {path.name: TIMES.sub(r"\1", path.read_text()) for path in (self.folder / folder).iterdir() if path.name != "report.html"}
+
+    def ended(self, number, after, *words):
+        """What a run says that gets a signal some time after its first checkpoint."""
+        process = subprocess.Popen([program(), "run", *words], cwd=self.folder, stdout=subprocess.PIPE, stderr=subprocess.PIPE, text=True)
+        deadline = time.monotonic() + 60
+        while not list(self.folder.glob("r.part-*/checkpoint/*.ckp")) and process.poll() is None and time.monotonic() < deadline:
+            time.sleep(0.002)
+        time.sleep(after)
+        process.send_signal(number)
+        _, err = process.communicate(timeout=120)
+        self.assertIn(process.returncode, (-number, 128 + number), err)
+        return err
+
+    def test_killed_and_interrupted_runs_end_with_the_same_files(self):
+        self.write(KEPT)
+        self.uplift("run", "case.toml", "-o", "straight")
+        expected = self.files("straight")
+        for number, after in ((signal.SIGKILL, 0), (signal.SIGTERM, 0.02), (signal.SIGKILL, 0.05)):
+            with self.subTest(number=number, after=after):
+                err = self.ended(number, after, "case.toml", "-o", "r")
+                if number == signal.SIGTERM:
+                    self.assertIn("uplift resume r goes on from there", err)
+                    self.assertLess(self.summary("r")["runs"][0]["end_time"], 100)
+                self.uplift("resume", "r")
+                made = self.files("r")
+                self.assertEqual(sorted(made), sorted(expected))
+                self.assertEqual([name for name in made if made[name] != expected[name]], [])
+                for path in self.folder.glob("r*"):
+                    shutil.rmtree(path)
+
+    def test_a_damaged_checkpoint_is_not_used(self):
+        self.write(KEPT)
+        self.uplift("run", "case.toml", "-o", "straight")
+        self.ended(signal.SIGKILL, 0.1, "case.toml", "-o", "r")
+        (folder,) = self.folder.glob("r.part-*/checkpoint")
+        for path in folder.glob("*.ckp"):
+            if ".before" not in path.name:
+                content = bytearray(path.read_bytes())
+                content[len(content) // 2] ^= 1
+                path.write_bytes(content)
+        done = self.uplift("resume", "r", "--out", "r2")
+        self.assertIn("damaged", done.stderr)
+        self.assertTrue((self.folder / "r2/histories.csv").read_text() == (self.folder / "straight/histories.csv").read_text())
+        for path in folder.glob("*.ckp"):
+            path.write_bytes(path.read_bytes()[:100])
+        self.assertIn("expected a checkpoint that is whole", self.uplift("resume", "r", expect=2).stderr)
+
+    def test_a_changed_case_is_refused(self):
+        self.write(KEPT)
+        self.ended(signal.SIGTERM, 0, "case.toml", "-o", "r")
+        self.write(KEPT.replace("mass = 24317", "mass = 24318"))
+        self.assertIn("expected the case as it was, found `mass = 24318", self.uplift("resume", "r", expect=2).stderr)
+        self.write(KEPT)
+        self.uplift("resume", "r", "-q")
+        self.assertIn("found no checkpoint", self.uplift("resume", "r", expect=2).stderr)
+        self.assertIn("found no checkpoint", self.uplift("resume", "nowhere", expect=2).stderr)
+
+
+if __name__ == "__main__":
+    main()
