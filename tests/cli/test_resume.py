@@ -68,7 +68,7 @@ class Resume(CliTest):
         self.assertIn("expected the case as it was, found `mass = 24318", self.uplift("resume", "r", expect=2).stderr)
         self.write(KEPT)
         self.uplift("resume", "r", "-q")
-        self.assertIn("found no checkpoint", self.uplift("resume", "r", expect=2).stderr)
+        self.assertIn("found results that are complete", self.uplift("resume", "r", expect=2).stderr)
         self.assertIn("found no checkpoint", self.uplift("resume", "nowhere", expect=2).stderr)
 
 

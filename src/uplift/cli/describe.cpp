@@ -241,7 +241,8 @@ int describe(const std::string& family, const std::string& name) {
       print_part(each, *part);
       return Exit::done;
     }
-    throw InputError({"uplift describe " + family, 0}, "", "the name of a " + family, "\"" + name + "\"", nearest_name(name, parts));
+    throw InputError({"uplift describe " + family, 0}, "", "the name of a " + family + " (`uplift describe " + family + "` lists them)",
+                     "\"" + name + "\"", nearest_name(name, parts));
   }
   throw InputError({"uplift describe", 0}, "", fmt::format("one of {}", fmt::join(known, ", ")), "\"" + family + "\"",
                    nearest_name(family, known));

@@ -174,7 +174,8 @@ std::string checkpoints_at(const std::string& path) {
   if (!found.empty()) return std::ranges::max(found).second;
   const fs::path inside = place / Checkpoints::subfolder;
   if (fs::is_directory(inside, error)) return inside.string();
-  throw InputError({path, 0}, "", "results of a run with [output] checkpoint that was interrupted", "no checkpoint");
+  throw InputError({path, 0}, "", "results of a run with [output] checkpoint that was interrupted",
+                   fs::exists(place / "summary.json", error) ? "results that are complete, or without a checkpoint" : "no checkpoint");
 }
 
 CheckpointOrigin origin_of_checkpoints(const std::string& folder) {
