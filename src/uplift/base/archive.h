@@ -136,4 +136,9 @@ class ArchiveReader {
   bool failed_ = false;
 };
 
+/// Bytes with what they are in front of them (`kind`, a line of text) and a checksum.
+std::string sealed(std::string_view kind, std::string_view content);
+/// The content of such bytes. Other bytes, and those that are cut off or changed, are refused: then `why` says so.
+std::optional<std::string_view> unsealed(std::string_view kind, std::string_view bytes, std::string& why);
+
 }  // namespace uplift

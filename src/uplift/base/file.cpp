@@ -1,6 +1,7 @@
 #include "uplift/base/file.h"
 
 #include <fcntl.h>
+#include <sys/file.h>
 #include <unistd.h>
 
 #include <cerrno>
@@ -60,6 +61,9 @@ class Draft {
       text.remove_prefix(static_cast<std::size_t>(written));
     }
   }
+  void flush(const fs::path& target) const {
+    if (::fdatasync(descriptor_) != 0) fail(target);
+  }
   void publish(const fs::path& target) {
     const int closed = ::close(descriptor_);
     descriptor_ = -1;
@@ -117,6 +121,25 @@ void write_file_atomically(const fs::path& path, std::string_view text) {
   Draft draft(path);
   draft.write(text, path);
   draft.publish(path);
+}
+
+void write_file_durably(const fs::path& path, std::string_view text) {
+  Draft draft(path);
+  draft.write(text, path);
+  draft.flush(path);
+  draft.publish(path);
+  if (const int folder = ::open(folder_of(path).c_str(), O_RDONLY | O_DIRECTORY | O_CLOEXEC); folder >= 0) {
+    ::fsync(folder);
+    ::close(folder);
+  }
+}
+
+FolderLock::FolderLock(const std::string& folder)
+    : descriptor_(::open(folder.c_str(), O_RDONLY | O_DIRECTORY | O_CLOEXEC)),
+      taken_(descriptor_ >= 0 && ::flock(descriptor_, LOCK_EX | LOCK_NB) != 0 && errno == EWOULDBLOCK) {}
+
+FolderLock::~FolderLock() {
+  if (descriptor_ >= 0) ::close(descriptor_);
 }
 
 }  // namespace uplift

@@ -24,6 +24,24 @@ std::string read_file(const std::filesystem::path& path, double most = usual_fil
 /// Throws std::filesystem::filesystem_error with the reason; an older file is kept then.
 void write_file_atomically(const std::filesystem::path& path, std::string_view text);
 
+/// The same, and the text is on the disk before the file appears: it outlives a power cut.
+void write_file_durably(const std::filesystem::path& path, std::string_view text);
+
+/// The mark of a process that uses a folder. The system removes it with the process, however that ends.
+class FolderLock {
+ public:
+  explicit FolderLock(const std::string& folder);
+  ~FolderLock();
+  FolderLock(const FolderLock&) = delete;
+  FolderLock& operator=(const FolderLock&) = delete;
+  /// Another process (or another lock of this one) had it already.
+  bool is_taken() const { return taken_; }
+
+ private:
+  int descriptor_;
+  bool taken_;
+};
+
 /// SHA-256 (FIPS 180-4) of a text, as 64 hexadecimal digits. It says whether inputs are the same; it protects nothing.
 std::string sha256(std::string_view text);
 

@@ -57,9 +57,8 @@ void add_interfaces(const Case& read, const RunSpec& spec, const Model* like, Mo
     made.behaviour = behaviour.type();
     made.law = make_law(behaviour, made.footprint);
     if (!made.law) made.cone = make_part(cone_catalog(), behaviour);
-    if (made.cone && !joint.facts.too_many_for_cones.empty())
-      fail(behaviour, "",
-           fmt::format("a traction law on {}: constraints at all of its points are too many", joint.facts.too_many_for_cones),
+    if (made.cone && !joint.facts.why_no_cones.empty())
+      fail(behaviour, "", fmt::format("a traction law on {}: constraints at all of its points are too many", joint.facts.why_no_cones),
            in_quotes(behaviour.type()));
     if (behaviour.items().contains("friction") && behaviour.has("friction")) joint.facts.friction = behaviour.number("friction");
     if (behaviour.items().contains("cohesion") && behaviour.has("cohesion")) joint.facts.cohesion = behaviour.number("cohesion");

@@ -97,7 +97,7 @@ struct InterfaceFacts {
   Role role = Role::base;
   double depth = 0;                      // m out of the plane; 0 in space and for isolated pairs, which have only an area
   std::vector<FacePair> faces;           // of the mesh, opened along it
-  std::string too_many_for_cones;        // why constraints at all of its points would be too many; empty: they are not
+  std::string why_no_cones;              // where its points are too many for constraints, in words; empty: they are not
   bool nodal = true;                     // its points stand at node pairs; of faces only
   std::shared_ptr<const Facets> facets;  // the surface between the points; null for node pairs on their own
 };

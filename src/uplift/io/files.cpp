@@ -80,14 +80,6 @@ pid_t owner_of(const std::string& name, const std::string& stem) {
 
 }  // namespace
 
-bool belongs_to_a_process(const std::string& folder) {
-  const std::string name = fs::path(folder).filename().string();
-  const std::size_t at = name.rfind(part_suffix);
-  if (at == std::string::npos) return false;
-  const pid_t owner = owner_of(name, name.substr(0, at + part_suffix.size()));
-  return owner > 0 && (kill(owner, 0) == 0 || errno != ESRCH);
-}
-
 ResultFolder::ResultFolder(const std::string& path) : path_(resolved(path)) {
   check_place(path_);
   find_abandoned();

@@ -54,7 +54,4 @@ class ResultFolder {
   bool finished_ = false;
 };
 
-/// Whether a folder is the working folder (NAME.part-N) of a process that lives.
-bool belongs_to_a_process(const std::string& folder);
-
 }  // namespace uplift

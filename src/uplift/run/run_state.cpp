@@ -1,7 +1,5 @@
 #include "uplift/run/run_state.h"
 
-#include <zlib.h>
-
 #include <algorithm>
 #include <string_view>
 
@@ -227,36 +225,19 @@ namespace {
 
 constexpr std::string_view magic = "uplift run state 2\n";
 
-std::size_t checksum(std::string_view bytes) {
-  return crc32_z(0, reinterpret_cast<const Bytef*>(bytes.data()), bytes.size());
-}
-
 }  // namespace
 
 std::string write_run_state(const RunState& state) {
   ArchiveWriter content;
   content(state);
-  ArchiveWriter head;
-  head(content.bytes().size(), checksum(content.bytes()));
-  return std::string(magic) + head.bytes() + content.bytes();
+  return sealed(magic, content.bytes());
 }
 
 std::optional<RunState> read_run_state(const std::string& bytes, std::string& why) {
-  const std::string_view all = bytes;
-  why = "it is not the state of a run";
-  if (!all.starts_with(magic)) return {};
-  std::size_t size = 0, sum = 0;
-  const std::string_view rest = all.substr(magic.size());
-  constexpr std::size_t head = 2 * sizeof(std::size_t);
-  why = "it is cut off";
-  if (rest.size() < head) return {};
-  ArchiveReader(rest.substr(0, head))(size, sum);
-  const std::string_view content = rest.substr(head);
-  if (content.size() < size) return {};
-  why = "it is damaged";
-  if (content.size() > size || checksum(content) != sum) return {};
+  const std::optional<std::string_view> content = unsealed(magic, bytes, why);
+  if (!content) return {};
   std::optional<RunState> state(std::in_place);
-  ArchiveReader reader(content);
+  ArchiveReader reader(*content);
   reader(*state);
   why = "it was written by another version of the program";
   if (reader.failed() || !reader.at_end()) return {};

@@ -1,13 +1,8 @@
 #include "uplift/session/checkpoint.h"
 
-#include <fcntl.h>
 #include <fmt/format.h>
-#include <unistd.h>
-#include <zlib.h>
 
 #include <algorithm>
-#include <cerrno>
-#include <cstring>
 #include <filesystem>
 #include <fstream>
 
@@ -38,10 +33,6 @@ namespace {
 constexpr std::string_view magic = "uplift checkpoint 1\n";
 constexpr const char *ending = ".ckp", *before_ending = ".before.ckp";
 
-std::size_t checksum(std::string_view bytes) {
-  return crc32_z(0, reinterpret_cast<const Bytef*>(bytes.data()), bytes.size());
-}
-
 /// Name and flags of the processor, which decide what the libraries compute with.
 std::string processor() {
   std::ifstream info("/proc/cpuinfo");
@@ -58,34 +49,6 @@ std::string stem_of(std::string label) {
   return label;
 }
 
-/// Everything is on the disk, or nothing has changed. Empty, or the reason why it could not be written.
-std::string write_durably(const fs::path& path, const fs::path& before, std::string_view bytes) {
-  const std::string beside = path.string() + ".new";
-  const int file = open(beside.c_str(), O_WRONLY | O_CREAT | O_TRUNC, 0666);
-  if (file < 0) return std::strerror(errno);
-  std::size_t written = 0;
-  while (written < bytes.size()) {
-    const ssize_t now = ::write(file, bytes.data() + written, bytes.size() - written);
-    if (now < 0 && errno == EINTR) continue;
-    if (now <= 0) break;
-    written += static_cast<std::size_t>(now);
-  }
-  std::string why;
-  if (written < bytes.size() || fdatasync(file) != 0) why = std::strerror(errno);
-  if (close(file) != 0 && why.empty()) why = std::strerror(errno);
-  if (why.empty() && fs::exists(path) && std::rename(path.c_str(), before.c_str()) != 0) why = std::strerror(errno);
-  if (why.empty() && std::rename(beside.c_str(), path.c_str()) != 0) why = std::strerror(errno);
-  if (!why.empty()) {
-    std::remove(beside.c_str());
-    return why;
-  }
-  if (const int folder = open(path.parent_path().c_str(), O_RDONLY | O_DIRECTORY); folder >= 0) {
-    fsync(folder);
-    close(folder);
-  }
-  return {};
-}
-
 std::optional<Checkpoint> read_checkpoint_file(const fs::path& path, std::string& why) {
   try {
     return read_checkpoint(read_file(path), why);
@@ -95,7 +58,7 @@ std::optional<Checkpoint> read_checkpoint_file(const fs::path& path, std::string
   }
 }
 
-/// The first line that differs, as "`a` where the checkpoint has `b`".
+/// The first line that differs, as "`a` instead of `b`".
 std::string difference(const std::string& now, const std::string& then) {
   std::size_t a = 0, b = 0;
   while (true) {
@@ -127,59 +90,49 @@ std::string case_file_of(const CheckpointOrigin& origin) {
 std::string write_checkpoint(const Checkpoint& checkpoint) {
   ArchiveWriter content;
   content(checkpoint);
-  ArchiveWriter head;
-  head(content.bytes().size(), checksum(content.bytes()));
-  return std::string(magic) + head.bytes() + content.bytes();
+  return sealed(magic, content.bytes());
 }
 
 std::optional<Checkpoint> read_checkpoint(std::string_view bytes, std::string& why) {
-  constexpr std::size_t head = 2 * sizeof(std::size_t);
-  why = "no checkpoint";
-  if (!bytes.starts_with(magic)) return {};
-  bytes.remove_prefix(magic.size());
-  why = "cut off";
-  if (bytes.size() < head) return {};
-  std::size_t size = 0, sum = 0;
-  ArchiveReader(bytes.substr(0, head))(size, sum);
-  bytes.remove_prefix(head);
-  if (bytes.size() < size) return {};
-  why = "damaged";
-  if (bytes.size() > size || checksum(bytes) != sum) return {};
+  const std::optional<std::string_view> content = unsealed(magic, bytes, why);
+  if (!content) return {};
   std::optional<Checkpoint> checkpoint(std::in_place);
-  ArchiveReader reader(bytes);
+  ArchiveReader reader(*content);
   reader(*checkpoint);
-  if (reader.failed() || !reader.at_end()) return {};
-  why.clear();
-  return checkpoint;
+  if (!reader.failed() && reader.at_end()) return checkpoint;
+  why = "it was written by another version of the program";
+  return {};
 }
 
 std::string checkpoints_at(const std::string& path) {
   fs::path place = fs::path(path).lexically_normal();
   if (!place.has_filename()) place = place.parent_path();
   std::error_code error;
-  std::vector<std::pair<fs::file_time_type, std::string>> found;
   const fs::path above = place.has_parent_path() ? place.parent_path() : fs::path(".");
-  const std::string parts = place.filename().string() + ".part-";
+  const std::string own = place.filename().string(), parts = own + ".part-";
+  std::pair<fs::file_time_type, std::string> newest{fs::file_time_type::min(), ""};
+  if (fs::exists(place / "summary.json", error)) newest.first = fs::last_write_time(place / "summary.json", error);
+  const bool has_results = newest.first != fs::file_time_type::min();
   for (fs::directory_iterator entry(above, error), end; !error && entry != end; entry.increment(error)) {
     const std::string name = entry->path().filename().string();
     const fs::path inside = entry->path() / Checkpoints::subfolder;
-    if (!name.starts_with(parts) || !fs::is_directory(inside, error)) continue;
-    if (belongs_to_a_process(entry->path().string()))
-      throw InputError({path, 0}, "", "results that no process computes any more", "the folder " + name + " of a running one");
-    fs::file_time_type newest = fs::file_time_type::min();
-    for (fs::directory_iterator file(inside, error), last; !error && file != last; file.increment(error))
-      if (file->path().extension() == ending) newest = std::max(newest, file->last_write_time());
-    if (newest != fs::file_time_type::min()) found.emplace_back(newest, inside.string());
+    if ((name != own && !name.starts_with(parts)) || !fs::is_directory(inside, error)) continue;
+    if (FolderLock(inside.string()).is_taken())
+      throw InputError({path, 0}, "", "results that no process computes any more", "a running one that writes to " + name);
+    for (fs::directory_iterator file(inside, error), last; !error && file != last; file.increment(error)) {
+      if (file->path().extension() != ending) continue;
+      // the results of an interrupted run are written after its checkpoints
+      const fs::file_time_type time = name == own ? std::max(newest.first, file->last_write_time()) : file->last_write_time();
+      if (time > newest.first || (name == own && newest.second.empty())) newest = {time, inside.string()};
+    }
   }
-  if (!found.empty()) return std::ranges::max(found).second;
-  const fs::path inside = place / Checkpoints::subfolder;
-  if (fs::is_directory(inside, error)) return inside.string();
+  if (!newest.second.empty()) return newest.second;
   throw InputError({path, 0}, "", "results of a run with [output] checkpoint that was interrupted",
-                   fs::exists(place / "summary.json", error) ? "results that are complete, or without a checkpoint" : "no checkpoint");
+                   has_results ? "results that are complete, or without a checkpoint" : "no checkpoint");
 }
 
 CheckpointOrigin origin_of_checkpoints(const std::string& folder) {
-  std::string why = "no file", first;
+  std::string why = "no file";
   std::error_code error;
   for (fs::directory_iterator entry(folder, error), end; !error && entry != end; entry.increment(error)) {
     if (entry->path().extension() != ending) continue;
@@ -190,6 +143,9 @@ CheckpointOrigin origin_of_checkpoints(const std::string& folder) {
 
 Checkpoints::Checkpoints(CheckpointOrigin origin, double seconds, const ResultFolder& folder, const std::string& from)
     : origin_(std::move(origin)), seconds_(seconds), folder_((fs::path(folder.working_path()) / subfolder).string()), from_(from) {
+  std::error_code error;
+  fs::create_directories(folder_, error);
+  lock_.emplace(folder_);
   if (from_.empty()) return;
   const CheckpointOrigin then = origin_of_checkpoints(from_);
   const Where where{from_, 0};
@@ -218,15 +174,21 @@ std::optional<RunState> Checkpoints::begin(const std::string& label) {
   return {};
 }
 
-bool Checkpoints::write(const std::string& label, const RunState& state) {
-  const fs::path folder(folder_);
+Checkpoints::~Checkpoints() {
   std::error_code error;
-  fs::create_directories(folder, error);
-  const std::string bytes = write_checkpoint({origin_, label, write_run_state(state)});
-  const std::string why = write_durably(folder / (stem_of(label) + ending), folder / (stem_of(label) + before_ending), bytes);
-  if (why.empty()) return true;
-  note(fmt::format("a checkpoint of \"{}\" could not be written: {}", label, why));
-  return false;
+  if (fs::is_empty(folder_, error)) fs::remove(folder_, error);
+}
+
+void Checkpoints::write(const std::string& label, const RunState& state) {
+  const fs::path stem = fs::path(folder_) / stem_of(label);
+  const std::string newest = stem.string() + ending, next = newest + ".next";
+  try {
+    write_file_durably(next, write_checkpoint({origin_, label, write_run_state(state)}));
+    if (fs::exists(newest)) fs::rename(newest, stem.string() + before_ending);
+    fs::rename(next, newest);
+  } catch (const fs::filesystem_error& problem) {
+    note(fmt::format("a checkpoint of \"{}\" could not be written: {}", label, problem.code().message()));
+  }
 }
 
 void Checkpoints::remove() {

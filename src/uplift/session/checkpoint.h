@@ -1,12 +1,11 @@
 #pragma once
 #include <chrono>
-#include <map>
-#include <memory>
 #include <mutex>
 #include <optional>
 #include <string>
 #include <vector>
 
+#include "uplift/base/file.h"
 #include "uplift/io/files.h"
 #include "uplift/run/run_state.h"
 #include "uplift/session/load.h"
@@ -26,6 +25,7 @@ struct CheckpointOrigin {
   bool step_check = true;                                   // Control::step_check
 };
 
+/// Of a case that this program runs now.
 CheckpointOrigin origin_of(const LoadedCase& loaded, bool step_check);
 
 /// One state of one run as it is on disk.
@@ -39,8 +39,8 @@ std::string write_checkpoint(const Checkpoint& checkpoint);
 /// Bytes that are cut off or changed are refused: then `why` says so.
 std::optional<Checkpoint> read_checkpoint(std::string_view bytes, std::string& why);
 
-/// The folder with the checkpoints of earlier results at `path`: of a process that was killed (PATH.part-N), else of the results there.
-/// Throws InputError: none, or a process that still computes them.
+/// The folder with the newest checkpoints of results at `path`: of the results there, or of a process that was killed (PATH.part-N) after
+/// they were written. Throws InputError: none, or a process that still computes them.
 std::string checkpoints_at(const std::string& path);
 /// The case file of the checkpoints, as a command given here would name it.
 std::string case_file_of(const CheckpointOrigin& origin);
@@ -53,10 +53,13 @@ class Checkpoints {
   /// New ones go to the subfolder `checkpoint` of the results. `from`: a folder with earlier ones; empty: the runs begin at the beginning.
   /// Throws InputError where the case, its files or the program are not those of the earlier ones.
   Checkpoints(CheckpointOrigin origin, double seconds, const ResultFolder& folder, const std::string& from);
+  Checkpoints(const Checkpoints&) = delete;
+  Checkpoints& operator=(const Checkpoints&) = delete;
+  ~Checkpoints();
   /// The state with which a run goes on; empty: it begins at the beginning.
   std::optional<RunState> begin(const std::string& label);
-  /// Writes the state of a run. False: it could not be written, and why() tells the reason.
-  bool write(const std::string& label, const RunState& state);
+  /// Writes the state of a run. Where that is not possible, notes() says so.
+  void write(const std::string& label, const RunState& state);
   double seconds() const { return seconds_; }
   /// Removes what was written: the results are complete.
   void remove();
@@ -69,6 +72,7 @@ class Checkpoints {
   const CheckpointOrigin origin_;
   const double seconds_;
   const std::string folder_, from_;
+  std::optional<FolderLock> lock_;  // as long as this process may write
   mutable std::mutex mutex_;
   std::vector<std::string> notes_;
 };

@@ -183,12 +183,10 @@ double patch_error(double degrees, const std::string& jump) {
 }
 
 TEST(ElementJump, PassesThePatchTestOnLevelCutsAlone) {
-  for (const char* jump : {"linear", "constant", "rigid"}) {
-    EXPECT_NEAR(patch_error(0, jump), 0, 1e-9) << jump;
-  }
+  for (const char* jump : {"linear", "constant", "rigid"}) EXPECT_NEAR(patch_error(0, jump), 0, 1e-9) << jump;
   EXPECT_NEAR(patch_error(25, "linear"), 0, 1e-9);
-  EXPECT_NEAR(patch_error(25, "constant"), -0.031, 1e-3);  // of the equations above, too: see the first test
-  EXPECT_NEAR(patch_error(25, "rigid"), -0.099, 1e-3);
+  EXPECT_LT(patch_error(25, "constant"), -0.01);
+  EXPECT_LT(patch_error(25, "rigid"), -0.01);
 }
 
 TEST(ElementJump, AConstantOneLocksWhereABaseTurns) {
@@ -200,8 +198,8 @@ TEST(ElementJump, AConstantOneLocksWhereABaseTurns) {
   EXPECT_NEAR(rotation(48, "constant"), 0.003, 5e-4);
 }
 
-/// Rotation of a stiff block on soft ground of elastic springs; the rows of cells meet at the base, or not.
-double rotation_on_ground(const std::string& jump, bool aligned, int across, double ratio) {
+/// Displacement of the corner [m] of a block that a moment turns on its ground; the rows of cells meet at the base (aligned), or not.
+double corner_on_ground(const std::string& jump, bool aligned, int across, double ratio) {
   std::vector<double> rows = uniform_lines(0, 1, across * 3 / 2);
   if (aligned) {
     rows = uniform_lines(0, 0.37, across * 9 / 16);
@@ -223,12 +221,27 @@ double rotation_on_ground(const std::string& jump, bool aligned, int across, dou
 
 TEST(ElementJump, HasOneStrainForTwoMaterials) {
   const auto error = [](const char* jump, double ratio) {
-    return rotation_on_ground(jump, false, 16, ratio) / rotation_on_ground("linear", true, 16, ratio) - 1;
+    return corner_on_ground(jump, false, 16, ratio) / corner_on_ground("linear", true, 16, ratio) - 1;
   };
   for (const char* jump : {"linear", "constant", "rigid"}) EXPECT_NEAR(error(jump, 1), 0, 3e-4) << jump;
   EXPECT_NEAR(error("linear", 200), 0, 3e-5);
   EXPECT_LT(error("constant", 200), -0.05);  // one strain is too stiff where one side is hard
   EXPECT_LT(error("rigid", 200), -0.05);
+}
+
+TEST(ElementJump, FrozenFiguresOfTheTheoryPage) {
+  // The program's own output, so that docs/theory/element_jumps.md stays true. That it is right is shown by the other tests.
+  EXPECT_NEAR(patch_error(25, "constant"), -0.031, 5e-4);
+  EXPECT_NEAR(patch_error(25, "rigid"), -0.099, 5e-4);
+  EXPECT_NEAR(block_rotation(2, 0.37, 6, ", jump = \"constant\"", 1e13), 0.0003, 5e-5);
+  const std::array<int, 3> across{8, 16, 32};
+  const std::array<double, 3> linear{1.3e-3, 1e-5, 4e-6}, constant{-0.15, -0.098, -0.051}, rigid{-0.088, -0.084, -0.037};
+  for (std::size_t i = 0; i < across.size(); ++i) {
+    const double aligned = corner_on_ground("linear", true, across[i], 200);
+    EXPECT_NEAR(corner_on_ground("linear", false, across[i], 200) / aligned - 1, linear[i], 0.1 * linear[i]);
+    EXPECT_NEAR(corner_on_ground("constant", false, across[i], 200) / aligned - 1, constant[i], 1e-3);
+    EXPECT_NEAR(corner_on_ground("rigid", false, across[i], 200) / aligned - 1, rigid[i], 1e-3);
+  }
 }
 
 TEST(ElementJump, IsRefusedWhereItMeansNothing) {

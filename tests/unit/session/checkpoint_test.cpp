@@ -1,7 +1,9 @@
 #include "uplift/session/checkpoint.h"
 
 #include <gtest/gtest.h>
+#include <unistd.h>
 
+#include <chrono>
 #include <filesystem>
 #include <fstream>
 #include <random>
@@ -71,7 +73,7 @@ TEST(Checkpoint, IsRefusedWithAnyBitFlippedOrCutAnywhere) {
 TEST_F(CheckpointFiles, TheOneBeforeIsTakenWhereTheLastOneIsDamaged) {
   const ResultFolder folder(results("tower"));
   Checkpoints written(some_origin(), 60, folder, "");
-  for (const long step : {256, 512, 768}) EXPECT_TRUE(written.write("as in the case", some_state(step)));
+  for (const long step : {256, 512, 768}) written.write("as in the case", some_state(step));
   const std::string from = folder.working_path() + "/" + Checkpoints::subfolder;
   const ResultFolder next(results("next"));
   const auto step_of = [&] {
@@ -123,9 +125,52 @@ TEST_F(CheckpointFiles, ThatCannotBeWrittenAreSaidToBeSo) {
   const ResultFolder folder(results("tower"));
   std::ofstream(folder.working_path() + "/" + Checkpoints::subfolder) << "a file in the place of the folder";
   Checkpoints written(some_origin(), 60, folder, "");
-  EXPECT_FALSE(written.write("as in the case", some_state(256)));
+  written.write("as in the case", some_state(256));
   ASSERT_EQ(written.notes().size(), 1u);
   EXPECT_NE(written.notes().front().find("could not be written"), std::string::npos);
+}
+
+TEST_F(CheckpointFiles, TheNewestOnesAreFound) {
+  const auto age = [](const fs::path& path, int minutes) {
+    fs::last_write_time(path, fs::file_time_type::clock::now() - std::chrono::minutes(minutes));
+  };
+  const auto make = [&](const std::string& name, int minutes) {
+    const fs::path folder = root_ / name / Checkpoints::subfolder;
+    fs::create_directories(folder);
+    std::ofstream(folder / "as_in_the_case.ckp") << "some";
+    age(folder / "as_in_the_case.ckp", minutes);
+    return folder.string();
+  };
+  const auto summary = [&](int minutes) {
+    std::ofstream(root_ / "tower" / "summary.json") << "{}";
+    age(root_ / "tower" / "summary.json", minutes);
+  };
+  EXPECT_THROW(checkpoints_at(results("tower")), InputError);
+  const std::string killed = make("tower.part-999999", 10);
+  EXPECT_EQ(checkpoints_at(results("tower")), killed);
+  EXPECT_EQ(checkpoints_at(results("tower") + "/"), killed);
+  make("tower.part-999998", 20);
+  make("tower2.part-999997", 1);
+  EXPECT_EQ(checkpoints_at(results("tower")), killed);
+  const std::string interrupted = make("tower", 6);  // its checkpoints are older than its results
+  summary(5);
+  EXPECT_EQ(checkpoints_at(results("tower")), interrupted);
+  age(killed + "/as_in_the_case.ckp", 1);  // resumed, and killed then
+  EXPECT_EQ(checkpoints_at(results("tower")), killed);
+  fs::remove_all(interrupted);
+  summary(0);  // complete
+  EXPECT_THROW(checkpoints_at(results("tower")), InputError);
+  summary(15);  // of an earlier run
+  EXPECT_EQ(checkpoints_at(results("tower")), killed);
+  const FolderLock running(killed);
+  EXPECT_FALSE(running.is_taken());
+  EXPECT_THROW(checkpoints_at(results("tower")), InputError);
+}
+
+TEST_F(CheckpointFiles, OnesThatWereNotWrittenLeaveNoFolder) {
+  const ResultFolder folder(results("tower"));
+  { const Checkpoints none(some_origin(), 60, folder, ""); }
+  EXPECT_FALSE(fs::exists(folder.working_path() + "/" + Checkpoints::subfolder));
 }
 
 }  // namespace

@@ -138,8 +138,8 @@ void add_cut(const Values& interface, const Values& cut, const std::vector<CutFa
   CutJoints made = cut_joints(mesh, faces, normal, thickness, uniform_gap(interface));
   if (cut.text("jump") != "linear") limit_jumps(cut, faces, normal, names, builder);
   joint.facts.facets = std::make_shared<Facets>(std::move(made.facets));
-  if (made.inclined) joint.facts.too_many_for_cones = "a plane that cuts its cells at an angle";
-  if (cut.text("jump") != "linear") joint.facts.too_many_for_cones = "a plane with constant or rigid jumps";
+  if (made.inclined) joint.facts.why_no_cones = "a plane that cuts its cells at an angle";
+  if (cut.text("jump") != "linear") joint.facts.why_no_cones = "a plane with constant or rigid jumps";
   for (const CutFace& face : faces) joint.facts.corners.insert(joint.facts.corners.end(), face.corners.begin(), face.corners.end());
   joint.points = std::move(made.points);
   for (JointPoint& point : joint.points)

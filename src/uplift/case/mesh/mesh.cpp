@@ -113,112 +113,6 @@ void open_surfaces(const std::vector<Values>& interfaces, CaseMesh& made) {
       made.open[k] = facing_pairs(made.mesh, surface->text("lower_group"), surface->text("upper_group"), surface->where("upper_group"));
 }
 
-/// Least and largest coordinate along an axis as half-spaces.
-void add_outline(const Values& cut, const char* key, const Vec3& axis, std::vector<HalfSpace>& within) {
-  if (!cut.has(key)) return;
-  const std::vector<double>& ends = cut.numbers(key);
-  if (ends.size() != 2 || !(ends[0] < ends[1]))
-    fail(cut, key, "two numbers, the least and the largest",
-         ends.size() == 2 ? fmt::format("{:g} and {:g}", ends[0], ends[1]) : fmt::format("{} numbers", ends.size()));
-  within.push_back({-axis, -ends[0]});
-  within.push_back({axis, ends[1]});
-}
-
-CutPlane plane_of(const Values& cut, int dimension) {
-  const Vec3 normal = normal_of_cut(cut, dimension), up = dimension == 2 ? Vec3::UnitY() : Vec3::UnitZ();
-  CutPlane plane{cut.texts("through"), {}};
-  CutOutline& outline = plane.outlines.front();
-  if (plane.through.empty()) fail(cut, "through", "at least one group of cells", "none");
-  double level = 0;
-  if (cut.has("level"))
-    level = normal.dot(up) * cut.number("level");
-  else
-    level = normal.dot(vector_of(cut, "point", {dimension}));
-  plane.below = {normal, level};
-  if (cut.has("upper")) outline.upper = cut.text("upper");
-  if (std::ranges::find(plane.through, outline.upper) != plane.through.end())
-    fail(cut, "upper", "another group than those of `through`, or none", in_quotes(outline.upper));
-  add_outline(cut, "x", Vec3::UnitX(), outline.within);
-  if (dimension == 2 && cut.has("y")) fail(cut, "y", "no y in a plane mesh: height limits the outline", "one");
-  add_outline(cut, "y", Vec3::UnitY(), outline.within);
-  if (cut.has("height")) outline.within.push_back({normal, level + cut.number("height")});
-  plane.own_doubles = cut.text("jump") != "linear";
-  if (plane.own_doubles && dimension == 3) fail(cut, "jump", "linear in space", in_quotes(cut.text("jump")));
-  if (plane.own_doubles && !outline.within.empty())
-    fail(cut, "jump", "linear, since the ground has a free surface beside the outline", in_quotes(cut.text("jump")));
-  return plane;
-}
-
-void shift_mesh(const Values& cut, const CutPlane& plane, const std::vector<std::string>& lines, Mesh& mesh) {
-  const double share = cut.number("mesh_shift");
-  if (share == 0) return;
-  shift_nodes(mesh, plane, share, lines);
-  try {
-    check_mesh(mesh, cut.where());
-  } catch (const InputError&) {
-    fail(cut, "mesh_shift", "a smaller shift, or 0", fmt::format("{:g}, which turns cells inside out", share));
-  }
-}
-
-/// Whether two planes through the same groups are one, on which several outlines stand.
-bool is_same_plane(const CutPlane& one, const CutPlane& other) {
-  const auto groups = [](const CutPlane& plane) { return std::set<std::string>(plane.through.begin(), plane.through.end()); };
-  const double level = one.below.level;
-  return groups(one) == groups(other) && (one.below.normal - other.below.normal).norm() < 1e-12 &&
-         std::abs(level - other.below.level) <= 1e-9 * std::max(1.0, std::abs(level)) && !one.outlines.front().within.empty() &&
-         !other.outlines.front().within.empty();
-}
-
-/// In a triangle one node is alone on its side: the other side can turn about it without any strain.
-void refuse_undetermined_jumps(const Values& cut, const std::vector<CutFace>& faces, const Mesh& mesh) {
-  if (cut.text("jump") != "rigid") return;
-  for (const CutFace& face : faces)
-    if (mesh.type(face.lower) != Cell::quad4)
-      fail(cut, "jump", "constant or linear in triangles, where one node alone leaves the rotation of a rigid jump undetermined",
-           in_quotes("rigid"));
-}
-
-void cut_planes(const Values& root, CaseMesh& made) {
-  const std::vector<Values>& interfaces = root.tables("interface");
-  made.cut.resize(interfaces.size());
-  std::vector<CutPlane> planes;
-  std::vector<std::vector<std::size_t>> of;  // interfaces of each plane, in the order of its outlines
-  for (std::size_t k = 0; k < interfaces.size(); ++k)
-    if (const Values* cut = table_if(interfaces[k], "cut")) {
-      CutPlane plane = plane_of(*cut, made.mesh.dimension);
-      const auto same = std::ranges::find_if(planes, [&](const CutPlane& other) { return is_same_plane(plane, other); });
-      if (same == planes.end()) {
-        planes.push_back(std::move(plane));
-        of.push_back({k});
-      } else {
-        same->outlines.push_back(std::move(plane.outlines.front()));
-        of[static_cast<std::size_t>(same - planes.begin())].push_back(k);
-      }
-    }
-  if (planes.empty()) return;
-  std::vector<std::string> lines;
-  for (const Values* beam : element_tables(root, ElementPlace::lines))
-    if (beam->has("group")) lines.push_back(beam->text("group"));
-  std::vector<Where> where;
-  for (std::size_t i = 0; i < of.size(); ++i) {
-    const Values& first = interfaces[of[i].front()].table("cut");
-    where.push_back(first.where());
-    for (const std::size_t k : of[i])
-      if (const Values& cut = interfaces[k].table("cut"); cut.number("mesh_shift") != first.number("mesh_shift"))
-        fail(cut, "mesh_shift", fmt::format("{:g}, as of the other outline on this plane", first.number("mesh_shift")),
-             fmt::format("{:g}", cut.number("mesh_shift")));
-    shift_mesh(first, planes[i], lines, made.mesh);
-  }
-  const std::vector<std::vector<CutFace>> faces = cut(made.mesh, planes, where, lines);
-  for (std::size_t i = 0; i < of.size(); ++i) {
-    for (const CutFace& face : faces[i]) made.cut[of[i][static_cast<std::size_t>(face.outline)]].push_back(face);
-    for (const std::size_t k : of[i])
-      if (made.cut[k].empty())
-        fail(interfaces[k].table("cut"), "", "an interface on the plane", "none: nothing above the plane lies within the outline");
-    refuse_undetermined_jumps(interfaces[of[i].front()].table("cut"), faces[i], made.mesh);
-  }
-}
-
 const Group& group_named(const Mesh& mesh, const Values& table, std::string_view key, const std::string& what) {
   const std::string& name = table.text(key);
   const auto found = mesh.groups.find(name);
@@ -401,17 +295,6 @@ CellRule rule_on_face(const Mesh& mesh, CellId face, std::span<const int> nodes,
   CellRule rule = part->rule;
   for (Vec3& point : rule.point) point = local_coordinates(cell, now, cell_position(cell_shape(cell, point), before));
   return rule;
-}
-
-Vec3 normal_of_cut(const Values& cut, int dimension) {
-  const bool level = cut.has("level");
-  if (level == cut.has("point") || (!level && !cut.has("normal")))
-    fail(cut, "", "either level, or point and normal", level ? "both" : cut.has("point") ? "no normal" : "neither");
-  if (level && cut.has("normal")) fail(cut, "normal", "either level, or point and normal", "level and normal");
-  if (level) return dimension == 2 ? Vec3::UnitY() : Vec3::UnitZ();
-  const Vec3 normal = vector_of(cut, "normal", {dimension});
-  if (normal.norm() == 0) fail(cut, "normal", "a direction", "one of length zero");
-  return normal.normalized();
 }
 
 double thickness_of(const CaseSolids& solids, const std::vector<CutFace>& faces, const Values& cut) {

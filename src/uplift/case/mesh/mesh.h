@@ -73,6 +73,8 @@ std::vector<std::pair<int, double>> tributary_areas(const CaseSolids& solids, co
 /// The rule of a face of the mesh, or of the part of it that is filled, for its nodes in this order.
 CellRule rule_on_face(const Mesh& mesh, CellId face, std::span<const int> nodes, int degree);
 
+/// Cuts the mesh along the planes of the case's [interface.cut], and fills `cut`.
+void cut_planes(const Values& root, CaseMesh& made);
 /// Normal of the plane of a [interface.cut], from its lower to its upper side.
 Vec3 normal_of_cut(const Values& cut, int dimension);
 double thickness_of(const CaseSolids& solids, const std::vector<CutFace>& faces, const Values& cut);
