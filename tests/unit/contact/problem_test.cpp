@@ -247,8 +247,7 @@ TEST(ProblemFile, bad_files_are_refused_with_position) {
 
 std::vector<std::filesystem::path> stored_problems() {
   std::vector<std::filesystem::path> paths;
-  for (const auto& entry : std::filesystem::directory_iterator(support::source_folder() + "/tests/problems"))
-    paths.push_back(entry.path());
+  for (const auto& entry : std::filesystem::directory_iterator(support::source_folder() + "/tests/problems")) paths.push_back(entry.path());
   std::sort(paths.begin(), paths.end());
   return paths;
 }
