@@ -7,7 +7,7 @@ run="g++ cmake ninja-build pkg-config libeigen3-dev libsuitesparse-dev libopenbl
 test="libgtest-dev librapidcheck-dev python3 python3-jsonschema python3-numpy python3-pandas python3-matplotlib python3-yaml mypy patchelf"
 docs="python3 mkdocs mkdocs-material libjs-katex fonts-katex"
 packages="python3 patchelf dpkg-dev debhelper dh-python help2man lintian"
-develop="libbenchmark-dev clang-14 libclang-rt-14-dev clang-format-14 clang-tidy-14 nodejs npm chromium ca-certificates"
+develop="libbenchmark-dev clang-14 libclang-rt-14-dev clang-format-14 clang-tidy-14 ccache nodejs npm chromium ca-certificates"
 
 case "${1:-run}" in
   run) wanted="$run" ;;

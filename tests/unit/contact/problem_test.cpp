@@ -6,6 +6,7 @@
 #include <limits>
 #include <sstream>
 
+#include "data_support.h"
 #include "text_support.h"
 #include "unit/contact/contact_support.h"
 
@@ -246,8 +247,7 @@ TEST(ProblemFile, bad_files_are_refused_with_position) {
 
 std::vector<std::filesystem::path> stored_problems() {
   std::vector<std::filesystem::path> paths;
-  for (const auto& entry : std::filesystem::directory_iterator(std::string(UPLIFT_SOURCE_DIR) + "/tests/problems"))
-    paths.push_back(entry.path());
+  for (const auto& entry : std::filesystem::directory_iterator(support::source_folder() + "/tests/problems")) paths.push_back(entry.path());
   std::sort(paths.begin(), paths.end());
   return paths;
 }
@@ -283,7 +283,7 @@ TEST(StoredProblems, every_method_by_one_yardstick) {
 
 // The status of this one repeats in the primal-dual active set: it must be noticed, treated and reported.
 TEST(StoredProblems, repeating_status_is_reported) {
-  const StoredProblem stored = load(std::string(UPLIFT_SOURCE_DIR) + "/tests/problems/repeating_status.json");
+  const StoredProblem stored = load(support::source_folder() + "/tests/problems/repeating_status.json");
   InterfaceSolution solution;
   const Outcome outcome = method("lagrange")->solve(stored.problem, solution);
   ASSERT_TRUE(outcome.converged) << outcome.why;

@@ -5,6 +5,7 @@
 #include <cmath>
 #include <random>
 
+#include "data_support.h"
 #include "text_support.h"
 #include "uplift/elements/bulk_laws/drucker_prager.h"
 #include "uplift/io/text/toml.h"
@@ -207,7 +208,7 @@ TEST(Mfront, RefusesALibraryThatDoesNotFit) {
   const auto refused_library = [](const std::string& library) {
     return support::refusal_of([&] {
       const Raw file = read_toml_text("[law]\ntype = \"mfront\"\nlibrary = \"" + library + "\"\nbehaviour = \"Linear\"\n",
-                                      UPLIFT_SOURCE_DIR "/tests/case.toml");
+                                      support::source_folder() + "/tests/case.toml");
       make_part(bulk_law_catalog(), check_part(*std::get<std::shared_ptr<RawTable>>(file.data)->find("law"), bulk_laws()), {material, 3});
     });
   };

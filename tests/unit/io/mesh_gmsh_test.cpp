@@ -8,6 +8,7 @@
 #include <cstring>
 #include <numeric>
 
+#include "data_support.h"
 #include "text_support.h"
 #include "unit/io/mesh_file_support.h"
 #include "uplift/base/file.h"
@@ -204,7 +205,7 @@ TEST(Gmsh, GroupsComeFromPhysicalGroupsInEveryFormat) {
 
 TEST(Gmsh, FilesOfGmshItself) {
   // Written by Gmsh 4.8: a rectangle 1 m x 2 m of two 9-node quadrilaterals, its bottom line, group 3 of two lines, a point.
-  const std::string folder = UPLIFT_SOURCE_DIR "/fuzz/corpus/gmsh/";
+  const std::string folder = support::source_folder() + "/fuzz/corpus/gmsh/";
   for (const char* file : {"plane_msh22_text.msh", "plane_msh41_text.msh", "plane_msh41_binary.msh"}) {
     SCOPED_TRACE(file);
     const Mesh mesh = read_gmsh(read_file(folder + file), file);
@@ -357,7 +358,7 @@ TEST(Gmsh, TextCalledBinaryAndBinaryCalledTextAreErrors) {
 }
 
 TEST(Gmsh, BinaryFormat2AndTheOtherOrderOfBytesAreRefusedWithWhatToDo) {
-  const std::string folder = UPLIFT_SOURCE_DIR "/fuzz/corpus/gmsh/";
+  const std::string folder = support::source_folder() + "/fuzz/corpus/gmsh/";
   const std::string old = error_of([&] { read_gmsh(read_file(folder + "plane_msh22_binary.msh"), "a.msh"); });
   EXPECT_TRUE(old.starts_with("a.msh:2: ")) << old;
   EXPECT_NE(old.find("-format msh41"), std::string::npos) << old;
