@@ -336,7 +336,7 @@ class Run(Results):
                 pointer = ctypes.cast(column.values, ctypes.POINTER(ctypes.c_double))
                 return Floor(name, step.value, array_of(pointer, column.count, self._handle))
             index += 1
-        raise KeyError(f"no floor {name!r}; the floors of the case are {', '.join(known) or 'none'}")
+        raise KeyError(f"no floor {name!r}; the floors of the case are {', '.join(known) or 'none'} (case.floor_spectrum(...) asks for one before the run)")
 
     def to_frame(self) -> Any:
         """All histories as a pandas DataFrame."""
