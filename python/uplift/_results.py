@@ -109,7 +109,7 @@ class Verdict(Record):
     def converged(self) -> Optional[bool]:
         """Whether no number moves by more than 5 % with twice the step; None: not examined."""
         result = self._table["step_check"]["result"]
-        return {"converged": True, "not_converged": False}.get(result)
+        return {"converged": True, "not converged": False}.get(result)
 
     @property
     def bases(self) -> Dict[str, Dict[str, Any]]:
