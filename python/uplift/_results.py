@@ -109,7 +109,7 @@ class Verdict(Record):
     def converged(self) -> Optional[bool]:
         """Whether no number moves by more than 5 % with twice the step; None: not examined."""
         result = self._table["step_check"]["result"]
-        return {"converged": True, "not_converged": False}.get(result)
+        return {"converged": True, "not converged": False}.get(result)
 
     @property
     def bases(self) -> Dict[str, Dict[str, Any]]:
@@ -336,7 +336,7 @@ class Run(Results):
                 pointer = ctypes.cast(column.values, ctypes.POINTER(ctypes.c_double))
                 return Floor(name, step.value, array_of(pointer, column.count, self._handle))
             index += 1
-        raise KeyError(f"no floor {name!r}; the floors of the case are {', '.join(known) or 'none'}")
+        raise KeyError(f"no floor {name!r}; the floors of the case are {', '.join(known) or 'none'} (case.floor_spectrum(...) asks for one before the run)")
 
     def to_frame(self) -> Any:
         """All histories as a pandas DataFrame."""

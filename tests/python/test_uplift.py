@@ -143,6 +143,13 @@ class Runs(unittest.TestCase):
         with self.assertRaisesRegex(KeyError, "no floor"):
             run.floor("roof")
 
+    def test_a_coarse_step_is_not_converged(self):
+        case = pier(soil(), duration="2 s")
+        case.dynamic("1 s", step="50 ms")
+        verdict = case.run().verdict
+        self.assertIs(verdict.converged, False, verdict.headline)
+        self.assertIn("not converged", verdict.headline)
+
     def test_motions_take_the_place_of_the_loads(self):
         case = pier(soil())
         record = ROOT / "tests/data/records/tone_peer_new.AT2"

@@ -18,7 +18,7 @@
 namespace uplift {
 namespace {
 
-constexpr int small_model = 3000, quick_modes = 30'000;  // unknowns: nothing to foresee below; only the bonded modes beyond
+constexpr int little_to_foresee = 3000, quick_modes = 30'000;  // unknowns: nothing to foresee below; only the bonded modes beyond
 constexpr double trial_seconds = 5;
 
 /// Quality and resolution of the groups that have a material.
@@ -90,7 +90,7 @@ CaseFindings find(const Case& read, const RunSpec& spec, const BuiltCase& built)
   found.record_bytes = floor_record_bytes(built.plan);
   found.histories = forecast_histories(built.plan, built.model.interfaces.size());
   const int unknowns = built.model.free();
-  if (unknowns > small_model) {
+  if (unknowns > little_to_foresee) {
     BulkUse use;
     use.impacts = built.plan.method->constrains();
     use.propagates = use.impacts && built.plan.impact->needs_dynamic();

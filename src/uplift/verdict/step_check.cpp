@@ -99,8 +99,8 @@ std::string how_it_ended(const RunResult& run) {
 }
 
 void judge(StepCheck& check) {
-  const bool moves = check.largest > accepted_step_change;
-  check.state = moves ? StepCheck::State::not_converged : StepCheck::State::converged;
+  const bool moves = check.largest > accepted_step_change, by_chance = check.part.change > accepted_step_change;
+  check.state = moves || by_chance ? StepCheck::State::not_converged : StepCheck::State::converged;
   check.sufficient_step = moves ? rounded_down(check.step * accepted_step_change / check.largest) : 0;
 }
 
@@ -110,6 +110,28 @@ std::string change_in_words(const VerdictNumber& number, double difference) {
   const double share = size > nothing_beside(number.quantity->unit) ? difference / size : 0;
   return share < 0.0005 ? "< 0.1 %" : "\u00b1" + percent(share);
 }
+
+using Instant = StepRecord::Instant;
+using OfInstant = double (*)(const Instant&);
+constexpr std::pair<std::string_view, OfInstant> forces_of_a_base[] = {
+    {"max_moment", [](const Instant& now) { return std::sqrt(now.moment_1 * now.moment_1 + now.moment_2 * now.moment_2); }},
+    {"max_compression", [](const Instant& now) { return -now.axial; }},
+    {"max_toe_pressure", [](const Instant& now) { return now.pressure; }}};
+
+/// A force on a base over time.
+struct History {
+  const StepRecord& steps;
+  std::size_t interface;
+  OfInstant of;
+  /// The largest value from one time to another [s]; 0 where there is none above it.
+  double peak(double from, double to) const {
+    double largest = 0;
+    for (auto i = static_cast<std::size_t>(std::ranges::lower_bound(steps.time, from) - steps.time.begin());
+         i < steps.size() && steps.time[i] <= to; ++i)
+      largest = std::max(largest, of(steps.at(i, interface)));
+    return largest;
+  }
+};
 
 }  // namespace
 
@@ -156,6 +178,25 @@ void compare_floors(const std::vector<FloorSpectra>& floors, const std::vector<F
   judge(check);
 }
 
+void compare_parts(const StepRecord& steps, const StepRecord& coarse, const VerdictNumbers& numbers, StepCheck& check) {
+  if (steps.size() < 2 || coarse.size() < 2) return;
+  for (std::size_t k = 0; k < numbers.bases(); ++k)
+    for (const auto& [name, of] : forces_of_a_base) {
+      const VerdictNumber* number = find_number(numbers.interfaces[k].numbers, name);
+      if (!number || !number->coarse || !(number->value > number->least)) continue;
+      const History fine{steps, k, of}, other{coarse, k, of};
+      const double peak = std::max(number->value, *number->coarse), length = (steps.time.back() - steps.time.front()) / parts_of_time;
+      for (int i = 0; i < parts_of_time; ++i) {
+        const double from = steps.time.front() + i * length, to = from + length, beside = length / 10;
+        const double change = std::max(fine.peak(from, to) - other.peak(from - beside, to + beside),
+                                       other.peak(from, to) - fine.peak(from - beside, to + beside)) /
+                              peak;
+        if (change > check.part.change) check.part = {change, number->quantity, numbers.interfaces[k].name, from, to};
+      }
+    }
+  judge(check);
+}
+
 StepCheck check_step(const BuiltCase& built, const RunResult& run, const FloorRun* floors, const Companion& companion,
                      VerdictNumbers& numbers) {
   StepCheck check;
@@ -169,6 +210,7 @@ StepCheck check_step(const BuiltCase& built, const RunResult& run, const FloorRu
     check.reason = "with twice the step the run " + how_it_ended(*companion.run);
   } else {
     compare_steps(numbers, numbers_of(*companion.built, *companion.run, companion.bonded), check);
+    compare_parts(run.steps, companion.run->steps, numbers, check);
     if (floors) compare_floors(floors->floors, floor_spectra(companion.built->plan, *companion.run), check);
   }
   return check;
@@ -184,6 +226,10 @@ std::string StepCheck::sentence() const {
   if (state == State::converged)
     return fmt::format("Converged: with twice the step ({}) no number of the verdict changes by more than {}{}.", steps, percent(largest),
                        which.empty() ? "" : " (" + which + ")");
+  if (largest <= accepted_step_change)
+    return fmt::format("Not converged: with twice the step ({}) the {} of {} agrees by chance: from {} to {} its peaks differ by {}.",
+                       steps, part.quantity->brief, part.of, format_quantity(part.from, "s"), format_quantity(part.to, "s"),
+                       percent(part.change));
   return fmt::format("Not converged: with twice the step ({}) {} changes by {}; a step of {} is expected to be sufficient.", steps, which,
                      percent(largest), format_quantity(sufficient_step, "s"));
 }

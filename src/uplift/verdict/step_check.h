@@ -27,14 +27,24 @@ struct StepCheck {
   std::string of;                             // its interface, beam or floor; empty: of the whole run
   double floors = 0, floors_to = 0;           // largest change of a floor spectrum, up to this frequency [Hz]; 0 Hz: there is none
   double sufficient_step = 0;                 // s: where an error proportional to the step is accepted_step_change; 0 where unknown
-  std::string reason;                         // why it was not made, or how the companion ended
+  /// The largest change of a peak of the forces on a base within a part of the time, relative to the peak of all of it. Where impacts make
+  /// two runs go different ways, their overall peaks may still agree by chance; those of every part do not.
+  struct Part {
+    double change = 0;
+    const VerdictQuantity* quantity = nullptr;
+    std::string of;           // the base
+    double from = 0, to = 0;  // s
+  } part;
+  std::string reason;  // why it was not made, or how the companion ended
   /// One sentence for the terminal and the first page.
   std::string sentence() const;
 };
 std::string_view to_string(StepCheck::State);
 
-/// Share of its reference by which a number may change when the step is doubled.
+/// Share of its reference by which a number, or a peak within a part of the time, may change when the step is doubled.
 inline constexpr double accepted_step_change = 0.05;
+/// Parts of the time whose peaks are compared.
+inline constexpr int parts_of_time = 20;
 
 /// Adds to every number its value and its change with twice the step; numbers that one of the two runs lacks have none. A change is
 /// relative to the larger of the two values; of shares of an area to at least 0.1 (to the whole area for the residual one), of
@@ -47,6 +57,9 @@ StepCheck check_step(const BuiltCase& built, const RunResult& run, const FloorRu
                      VerdictNumbers& numbers);
 /// The comparison alone: fills the rest of a check whose steps are known.
 void compare_steps(VerdictNumbers& numbers, const VerdictNumbers& coarse, StepCheck& check);
+/// The peaks of moment, compression and pressure of every base in twentieths of the time. One that the other run reaches a tenth of
+/// a part earlier or later, in the part beside it, counts as reached. `numbers`: of the run; its bases come first.
+void compare_parts(const StepRecord& steps, const StepRecord& coarse, const VerdictNumbers& numbers, StepCheck& check);
 /// The same for the spectra of floors, in the same order.
 void compare_floors(const std::vector<FloorSpectra>& floors, const std::vector<FloorSpectra>& coarse, StepCheck& check);
 

@@ -118,6 +118,51 @@ TEST(StepCheck, NothingThatStaysNothingDoesNotChange) {
   EXPECT_EQ(change_of_one("min_overturning_safety", 0, 0), 0);
 }
 
+/// Two peaks of compression [N], each of 0.1 s, in a run of 10 s whose parts last 0.5 s.
+StepRecord two_peaks(double step, double first_at, double first, double second_at, double second) {
+  StepRecord steps;
+  steps.extremes.resize(1);
+  for (double time = 0; time < 10 + step / 2; time += step) {
+    const auto peak = [&](double at, double size) { return size * std::max(0.0, 1 - std::abs(time - at) / 0.05); };
+    steps.time.push_back(time);
+    StepRecord::Instant& now = steps.instants.emplace_back();
+    now.axial = -peak(first_at, first) - peak(second_at, second);
+  }
+  return steps;
+}
+
+StepCheck parts_compared(const StepRecord& fine, const StepRecord& coarse) {
+  VerdictNumbers numbers = numbers_with({number("max_compression", 2e6)});
+  const VerdictNumbers other = numbers_with({number("max_compression", 2e6)});
+  StepCheck check = compared(numbers, other);
+  EXPECT_EQ(check.state, StepCheck::State::converged);
+  compare_parts(fine, coarse, numbers, check);
+  return check;
+}
+
+/// Both runs reach 2 MN, at different impacts: of the impact at 7.2 s one has 1.5 MN, the other 2 MN.
+TEST(StepCheck, PeaksThatAgreeByChanceAreNotConverged) {
+  const StepCheck check = parts_compared(two_peaks(1e-3, 3.2, 2e6, 7.2, 1.5e6), two_peaks(2e-3, 3.2, 1.9e6, 7.2, 2e6));
+  EXPECT_EQ(check.state, StepCheck::State::not_converged);
+  EXPECT_NEAR(check.part.change, 0.25, 1e-6);
+  EXPECT_EQ(check.part.quantity->name, "max_compression");
+  EXPECT_NEAR(check.part.from, 7, 1e-9);
+  EXPECT_NEAR(check.part.to, 7.5, 1e-9);
+  EXPECT_EQ(check.sufficient_step, 0) << "the change is not proportional to the step";
+  EXPECT_EQ(check.sentence(),
+            "Not converged: with twice the step (2.00 ms instead of 1.00 ms) the largest compression of soil agrees by chance: from 7.00 s "
+            "to 7.50 s its peaks differ by 25 %.");
+}
+
+/// A peak just before the end of a part in one run, just after it in the other: 0.04 s apart, less than a tenth of a part.
+TEST(StepCheck, PeaksBesideTheBorderOfAPartCount) {
+  const StepCheck near = parts_compared(two_peaks(1e-3, 3.2, 2e6, 6.98, 1.5e6), two_peaks(2e-3, 3.2, 2e6, 7.02, 1.5e6));
+  EXPECT_EQ(near.state, StepCheck::State::converged);
+  EXPECT_LT(near.part.change, 1e-6);
+  const StepCheck apart = parts_compared(two_peaks(1e-3, 3.2, 2e6, 6.9, 1.5e6), two_peaks(2e-3, 3.2, 2e6, 7.1, 1.5e6));
+  EXPECT_NEAR(apart.part.change, 0.75, 1e-6);
+}
+
 /// Twenty steps of 2 ms a period: up to 25 Hz. The value at 10 Hz counts beside a tenth of the peak, 1 m/s2.
 TEST(StepCheck, FloorSpectra) {
   FloorSpectra fine, coarse;

@@ -39,37 +39,38 @@ std::vector<NodeQuantity> node_quantities(Space space) {
   return made;
 }
 
-struct Quantity {
+struct InterfaceQuantity {
   std::string_view word;
   Column kind;
   std::string_view unit;
 };
 /// Of a foundation with radiation dashpots, whose other forces contain those of the dashpots.
-std::vector<Quantity> forces_in_law(Space space) {
-  std::vector<Quantity> made{
+std::vector<InterfaceQuantity> forces_in_law(Space space) {
+  std::vector<InterfaceQuantity> made{
       {"law_axial", Column::law_axial, "N"}, {"law_shear", Column::law_shear, "N"}, {"law_moment", Column::law_moment, "N m"}};
   if (space.dimension == 3)
-    for (const Quantity& each :
-         {Quantity{"law_shear_1", Column::law_shear_1, "N"}, Quantity{"law_shear_2", Column::law_shear_2, "N"},
-          Quantity{"law_moment_1", Column::law_moment_1, "N m"}, Quantity{"law_moment_2", Column::law_moment_2, "N m"},
-          Quantity{"law_torsion", Column::law_torsion, "N m"}})
+    for (const InterfaceQuantity& each :
+         {InterfaceQuantity{"law_shear_1", Column::law_shear_1, "N"}, InterfaceQuantity{"law_shear_2", Column::law_shear_2, "N"},
+          InterfaceQuantity{"law_moment_1", Column::law_moment_1, "N m"}, InterfaceQuantity{"law_moment_2", Column::law_moment_2, "N m"},
+          InterfaceQuantity{"law_torsion", Column::law_torsion, "N m"}})
       made.push_back(each);
   return made;
 }
 
 /// In space `shear`, `moment` and `rotation` are the lengths of their parts along (about) the two tangents. A whole foundation has forces,
 /// no pressures.
-std::vector<Quantity> interface_quantities(const Interface& interface, const Values& behaviour) {
+std::vector<InterfaceQuantity> interface_quantities(const Interface& interface, const Values& behaviour) {
   const Space space = interface.space;
-  std::vector<Quantity> made{{"axial", Column::axial, "N"},
-                             {"shear", Column::shear, "N"},
-                             {"moment", Column::moment, "N m"},
-                             {"rotation", Column::rotation, "rad"}};
+  std::vector<InterfaceQuantity> made{{"axial", Column::axial, "N"},
+                                      {"shear", Column::shear, "N"},
+                                      {"moment", Column::moment, "N m"},
+                                      {"rotation", Column::rotation, "rad"}};
   if (space.dimension == 3)
-    for (const Quantity& each : {Quantity{"shear_1", Column::shear_1, "N"}, Quantity{"shear_2", Column::shear_2, "N"},
-                                 Quantity{"moment_1", Column::moment_1, "N m"}, Quantity{"moment_2", Column::moment_2, "N m"},
-                                 Quantity{"torsion", Column::torsion, "N m"}, Quantity{"rotation_1", Column::rotation_1, "rad"},
-                                 Quantity{"rotation_2", Column::rotation_2, "rad"}})
+    for (const InterfaceQuantity& each :
+         {InterfaceQuantity{"shear_1", Column::shear_1, "N"}, InterfaceQuantity{"shear_2", Column::shear_2, "N"},
+          InterfaceQuantity{"moment_1", Column::moment_1, "N m"}, InterfaceQuantity{"moment_2", Column::moment_2, "N m"},
+          InterfaceQuantity{"torsion", Column::torsion, "N m"}, InterfaceQuantity{"rotation_1", Column::rotation_1, "rad"},
+          InterfaceQuantity{"rotation_2", Column::rotation_2, "rad"}})
       made.push_back(each);
   made.push_back({"settlement", Column::settlement, "m"});
   if (space.dimension == 2) made.push_back({"tilt", Column::tilt_1, "rad"});
@@ -81,7 +82,7 @@ std::vector<Quantity> interface_quantities(const Interface& interface, const Val
     return made;
   }
   if (!radiation_damping(*interface.footprint).empty())
-    for (const Quantity& each : forces_in_law(space)) made.push_back(each);
+    for (const InterfaceQuantity& each : forces_in_law(space)) made.push_back(each);
   const auto given = [&](const char* key) { return behaviour.items().contains(key) && behaviour.has(key); };
   if (given("V_s")) made.push_back({"bearing_utilisation", Column::bearing_utilisation, "1"});
   if (given("V_s") && given("V_u") && behaviour.number("V_u") > behaviour.number("V_s"))
@@ -101,8 +102,8 @@ bool has_quantity(const BuiltCase& built, const Request& request) {
   if (request.kind != Column::bearing_utilisation && request.kind != Column::bearing_capacity &&
       request.kind != Column::sliding_utilisation)
     return true;
-  const std::vector<Quantity> all = interface_quantities(built.model.interfaces[k], *built.behaviours[k]);
-  return std::ranges::find(all, request.kind, &Quantity::kind) != all.end();
+  const std::vector<InterfaceQuantity> all = interface_quantities(built.model.interfaces[k], *built.behaviours[k]);
+  return std::ranges::find(all, request.kind, &InterfaceQuantity::kind) != all.end();
 }
 /// Motions of the base above an interface.
 bool is_base_motion(Column kind) {
@@ -113,14 +114,14 @@ bool is_shear(Column kind) {
   return kind == Column::shear || kind == Column::shear_1 || kind == Column::shear_2 || kind == Column::torsion;
 }
 
-constexpr std::array<Quantity, 8> energy_quantities{{{"kinetic", Column::kinetic, "J"},
-                                                     {"strain", Column::strain, "J"},
-                                                     {"stored", Column::stored, "J"},
-                                                     {"interface_dissipated", Column::interface_dissipated, "J"},
-                                                     {"damping", Column::damping, "J"},
-                                                     {"impact", Column::impact, "J"},
-                                                     {"external", Column::external, "J"},
-                                                     {"residual", Column::residual, "J"}}};
+constexpr std::array<InterfaceQuantity, 8> energy_quantities{{{"kinetic", Column::kinetic, "J"},
+                                                              {"strain", Column::strain, "J"},
+                                                              {"stored", Column::stored, "J"},
+                                                              {"interface_dissipated", Column::interface_dissipated, "J"},
+                                                              {"damping", Column::damping, "J"},
+                                                              {"impact", Column::impact, "J"},
+                                                              {"external", Column::external, "J"},
+                                                              {"residual", Column::residual, "J"}}};
 
 struct PointQuantity {
   std::string word;
@@ -224,7 +225,7 @@ Request asked_request(const Values& history, const Case& read, BuiltCase& built,
   if (history.has("point")) return point_request(history, built.model, interface, name);
   const Interface& joint = built.model.interfaces[interface];
   const std::string owner = joint.footprint ? "the foundation " + in_quotes(joint.name) : "an interface";
-  const Quantity quantity =
+  const InterfaceQuantity quantity =
       find_quantity(interface_quantities(joint, stated_behaviour(read, built, static_cast<std::size_t>(interface))), history, owner);
   Request request = make(quantity.kind, name.empty() ? fmt::format("{}.{}", joint.name, quantity.word) : name, quantity.unit);
   request.interface = interface;
@@ -268,7 +269,7 @@ void add_requests(const Case& read, const CaseNames& names, BuiltCase& built) {
     // the drift of the top needs the tilt of the base, which nodes of solids do not have
     const bool nodes_turn_not = built.top >= 0 && built.base >= 0 && !moves(model, built.base_turn());
     for (std::size_t k = 0; k < model.interfaces.size(); ++k)
-      for (const Quantity& quantity : interface_quantities(model.interfaces[k], *built.behaviours[k])) {
+      for (const InterfaceQuantity& quantity : interface_quantities(model.interfaces[k], *built.behaviours[k])) {
         if (is_shear(quantity.kind) && model.interfaces[k].batch.components == 1) continue;
         if (is_base_motion(quantity.kind) && !(nodes_turn_not && k == 0 && quantity.kind != Column::settlement)) continue;
         requests.push_back(make(quantity.kind, fmt::format("{}.{}", model.interfaces[k].name, quantity.word), quantity.unit));
@@ -291,7 +292,7 @@ void add_requests(const Case& read, const CaseNames& names, BuiltCase& built) {
   }
   add_envelopes(output, built);
   if (output.flag("energies")) {
-    for (const Quantity& quantity : energy_quantities)
+    for (const InterfaceQuantity& quantity : energy_quantities)
       requests.push_back(make(quantity.kind, fmt::format("energy.{}", quantity.word), quantity.unit));
     if (PlasticBulk(model).any()) requests.push_back(make(Column::plastic, "energy.plastic", "J"));
     if (!stopping_stages(built.plan).empty()) requests.push_back(make(Column::stop, "energy.stop", "J"));

@@ -24,9 +24,9 @@ constexpr std::string_view file_head =
     "<VTKFile type=\"UnstructuredGrid\" version=\"1.0\" byte_order=\"LittleEndian\" header_type=\"UInt64\">\n"
     "<UnstructuredGrid>\n<FieldData>\n";
 constexpr std::string_view file_tail = "</PointData>\n</Piece>\n</UnstructuredGrid>\n</VTKFile>\n";
-constexpr std::string_view list_head =
+constexpr std::string_view collection_head =
     "<?xml version=\"1.0\"?>\n<VTKFile type=\"Collection\" version=\"1.0\" byte_order=\"LittleEndian\">\n<Collection>\n";
-constexpr std::string_view list_tail = "</Collection>\n</VTKFile>\n";
+constexpr std::string_view collection_tail = "</Collection>\n</VTKFile>\n";
 
 /// A text, or its length alone.
 class Text {
@@ -178,11 +178,11 @@ std::optional<FieldTrouble> VtuWriter::write(const FieldFrame& frame) {
 
 void VtuWriter::finish() {
   for (std::size_t b = 0; b < blocks_.size(); ++b) write_(fmt::format("{}/{}_names.csv", stem_, files_[b]), meanings_text(blocks_[b]));
-  write_(stem_ + ".pvd", std::string(list_head) + in_order_of_time(list_) + std::string(list_tail));
+  write_(stem_ + ".pvd", std::string(collection_head) + in_order_of_time(list_) + std::string(collection_tail));
 }
 
 FieldSize vtu_size(const std::vector<FieldMesh>& blocks, const FieldFrame& frame, FieldPrecision precision) {
-  FieldSize size{static_cast<std::int64_t>(list_head.size() + list_tail.size()), 0};
+  FieldSize size{static_cast<std::int64_t>(collection_head.size() + collection_tail.size()), 0};
   const std::vector<std::string> files = plain_names(blocks);
   for (std::size_t b = 0; b < blocks.size(); ++b) {
     Text text(true);

@@ -18,10 +18,10 @@
 namespace uplift {
 namespace {
 
-constexpr std::string_view list_head =
+constexpr std::string_view domain_head =
     "<?xml version=\"1.0\"?>\n<Xdmf Version=\"2.0\">\n<Domain>\n"
     "<Grid Name=\"frames\" GridType=\"Collection\" CollectionType=\"Temporal\">\n";
-constexpr std::string_view list_tail = "</Grid>\n</Domain>\n</Xdmf>\n";
+constexpr std::string_view domain_tail = "</Grid>\n</Domain>\n</Xdmf>\n";
 
 /// The long names: the only ones that both readers know ("Hex_27" stops one, "Tri_6" the other).
 std::string_view topology_name(Cell cell) {
@@ -228,7 +228,7 @@ FieldSize records_of_hdf5(const std::vector<FieldMesh>& blocks, const FieldFrame
 FieldSize xdmf_size(const std::vector<FieldMesh>& blocks, const FieldFrame& frame, FieldPrecision precision) {
   const std::string text = frame_text("./fields.h5", plain_names(blocks), blocks, frame, 0, precision);
   FieldSize size = records_of_hdf5(blocks, frame, precision);
-  size.once += static_cast<std::int64_t>(list_head.size() + list_tail.size());
+  size.once += static_cast<std::int64_t>(domain_head.size() + domain_tail.size());
   size.per_frame += static_cast<std::int64_t>(text.size());
   for (std::size_t b = 0; b < blocks.size(); ++b) {
     size.once += mesh_bytes(blocks[b]);
@@ -254,7 +254,7 @@ std::optional<FieldTrouble> XdmfWriter::write(const FieldFrame& frame) {
 
 void XdmfWriter::finish(const WriteFile& write) {
   data_.flush();
-  write(stem_ + ".xdmf", std::string(list_head) + in_order_of_time(list_) + std::string(list_tail));
+  write(stem_ + ".xdmf", std::string(domain_head) + in_order_of_time(list_) + std::string(domain_tail));
 }
 
 void XdmfWriter::finish_with_data(const WriteFile& write) {

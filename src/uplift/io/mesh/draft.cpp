@@ -14,9 +14,9 @@ constexpr int tri3[] = {0, 2, 1};
 constexpr int tri6[] = {0, 2, 1, 5, 4, 3};
 constexpr int quad4[] = {0, 3, 2, 1};
 constexpr int quad9[] = {0, 3, 2, 1, 7, 6, 5, 4, 8};  // its first eight: quad8
-constexpr int tet10[] = {0, 2, 1, 3, 6, 5, 4, 7, 9, 8};
-constexpr int wedge15[] = {0, 2, 1, 3, 5, 4, 8, 7, 6, 11, 10, 9, 12, 14, 13};
-constexpr int hex27[] = {0, 3, 2, 1, 4, 7, 6, 5, 11, 10, 9, 8, 15, 14, 13, 12, 16, 19, 18, 17, 22, 23, 20, 21, 24, 25, 26};
+constexpr int mirrored_tet10[] = {0, 2, 1, 3, 6, 5, 4, 7, 9, 8};
+constexpr int mirrored_wedge15[] = {0, 2, 1, 3, 5, 4, 8, 7, 6, 11, 10, 9, 12, 14, 13};
+constexpr int mirrored_hex27[] = {0, 3, 2, 1, 4, 7, 6, 5, 11, 10, 9, 8, 15, 14, 13, 12, 16, 19, 18, 17, 22, 23, 20, 21, 24, 25, 26};
 
 void drop_unused_nodes(Mesh& mesh, std::vector<DraftGroup>& groups) {
   std::vector<int> number(mesh.nodes.size(), 0);
@@ -116,19 +116,19 @@ std::span<const int> mirrored_nodes(Cell cell) {
     case Cell::quad9:
       return quad9;
     case Cell::tet4:
-      return std::span(tet10).first(4);
+      return std::span(mirrored_tet10).first(4);
     case Cell::tet10:
-      return tet10;
+      return mirrored_tet10;
     case Cell::wedge6:
-      return std::span(wedge15).first(6);
+      return std::span(mirrored_wedge15).first(6);
     case Cell::wedge15:
-      return wedge15;
+      return mirrored_wedge15;
     case Cell::hex8:
-      return std::span(hex27).first(8);
+      return std::span(mirrored_hex27).first(8);
     case Cell::hex20:
-      return std::span(hex27).first(20);
+      return std::span(mirrored_hex27).first(20);
     case Cell::hex27:
-      return hex27;
+      return mirrored_hex27;
   }
   return {};
 }

@@ -15,7 +15,7 @@ namespace {
 
 namespace fs = std::filesystem;
 constexpr std::string_view hdf5_signature = "\x89HDF\r\n\x1a\n";
-constexpr const char* wanted = "a mesh file (Gmsh .msh or MED)";
+constexpr const char* a_mesh_file = "a mesh file (Gmsh .msh or MED)";
 
 /// The first `most` bytes of a file.
 std::string beginning(const fs::path& path, std::uintmax_t most, const Where& where) {
@@ -31,14 +31,14 @@ std::string beginning(const fs::path& path, std::uintmax_t most, const Where& wh
 Mesh read_mesh(const std::string& path, const Where& where, const std::string& mesh, bool isolated) {
   std::error_code error;
   const fs::file_status status = fs::status(path, error);
-  if (!fs::exists(status)) throw InputError(where, "", wanted, "no file " + escaped(path), nearest_file(path));
-  if (!fs::is_regular_file(status)) throw InputError(where, "", wanted, escaped(path) + ", which is no file");
+  if (!fs::exists(status)) throw InputError(where, "", a_mesh_file, "no file " + escaped(path), nearest_file(path));
+  if (!fs::is_regular_file(status)) throw InputError(where, "", a_mesh_file, escaped(path) + ", which is no file");
   const std::uintmax_t size = fs::file_size(path, error);
   if (error) throw InputError(where, "", "a file that can be read", escaped(path) + ": " + error.message());
   if (beginning(path, std::min<std::uintmax_t>(size, hdf5_signature.size()), where) == hdf5_signature)
     return isolated ? read_med_file(path, mesh) : read_med_here(path, mesh);
   const std::string bytes = beginning(path, size, where);
-  if (!is_gmsh(bytes)) throw InputError(where, "", wanted, escaped(path) + ", which begins with " + in_quotes(bytes.substr(0, 20)));
+  if (!is_gmsh(bytes)) throw InputError(where, "", a_mesh_file, escaped(path) + ", which begins with " + in_quotes(bytes.substr(0, 20)));
   return read_gmsh(bytes, path);
 }
 

@@ -23,36 +23,36 @@ struct MedType {
   std::string_view name;
   Cell cell;
 };
-constexpr std::array<MedType, num_cell_types> types{{{"PO1", Cell::point},
-                                                     {"SE2", Cell::line2},
-                                                     {"SE3", Cell::line3},
-                                                     {"TR3", Cell::tri3},
-                                                     {"TR6", Cell::tri6},
-                                                     {"QU4", Cell::quad4},
-                                                     {"QU8", Cell::quad8},
-                                                     {"QU9", Cell::quad9},
-                                                     {"TE4", Cell::tet4},
-                                                     {"T10", Cell::tet10},
-                                                     {"PE6", Cell::wedge6},
-                                                     {"P15", Cell::wedge15},
-                                                     {"HE8", Cell::hex8},
-                                                     {"H20", Cell::hex20},
-                                                     {"H27", Cell::hex27}}};
+constexpr std::array<MedType, num_cell_types> med_types{{{"PO1", Cell::point},
+                                                         {"SE2", Cell::line2},
+                                                         {"SE3", Cell::line3},
+                                                         {"TR3", Cell::tri3},
+                                                         {"TR6", Cell::tri6},
+                                                         {"QU4", Cell::quad4},
+                                                         {"QU8", Cell::quad8},
+                                                         {"QU9", Cell::quad9},
+                                                         {"TE4", Cell::tet4},
+                                                         {"T10", Cell::tet10},
+                                                         {"PE6", Cell::wedge6},
+                                                         {"P15", Cell::wedge15},
+                                                         {"HE8", Cell::hex8},
+                                                         {"H20", Cell::hex20},
+                                                         {"H27", Cell::hex27}}};
 
-constexpr int hex27[] = {0, 3, 2, 1, 4, 7, 6, 5, 11, 10, 9, 8, 15, 14, 13, 12, 16, 19, 18, 17, 21, 23, 24, 22, 20, 25, 26};
+constexpr int med_hex27[] = {0, 3, 2, 1, 4, 7, 6, 5, 11, 10, 9, 8, 15, 14, 13, 12, 16, 19, 18, 17, 21, 23, 24, 22, 20, 25, 26};
 
 /// Node k of a cell here is MED's node nodes_in_med(cell)[k]; empty: the same order.
 std::span<const int> nodes_in_med(Cell cell) {
   if (info(cell).dimension < 3) return {};
-  return cell == Cell::hex27 ? std::span<const int>(hex27) : mirrored_nodes(cell);
+  return cell == Cell::hex27 ? std::span<const int>(med_hex27) : mirrored_nodes(cell);
 }
 
-struct Other {
+struct OtherMedType {
   std::string_view name, meaning;
 };
-constexpr Other others[] = {{"SE4", "4-node line"},     {"TR7", "7-node triangle"},   {"PY5", "5-node pyramid"},
-                            {"P13", "13-node pyramid"}, {"P18", "18-node wedge"},     {"O12", "12-node prism"},
-                            {"POG", "polygon"},         {"PO2", "quadratic polygon"}, {"POE", "polyhedron"}};
+constexpr OtherMedType other_med_types[] = {{"SE4", "4-node line"},     {"TR7", "7-node triangle"},   {"PY5", "5-node pyramid"},
+                                            {"P13", "13-node pyramid"}, {"P18", "18-node wedge"},     {"O12", "12-node prism"},
+                                            {"POG", "polygon"},         {"PO2", "quadratic polygon"}, {"POE", "polyhedron"}};
 
 class MedMesh {
  public:
@@ -162,13 +162,13 @@ class MedMesh {
   }
 
   Cell cell_type(const std::string& path, const std::string& name) const {
-    for (const MedType& type : types)
+    for (const MedType& type : med_types)
       if (type.name == name) return type.cell;
     std::string found = in_quotes(name);
-    for (const Other& other : others)
+    for (const OtherMedType& other : other_med_types)
       if (other.name == name) found = fmt::format("a {} ({})", other.meaning, in_quotes(name));
     std::vector<std::string> names;
-    for (const MedType& type : types) names.emplace_back(type.name);
+    for (const MedType& type : med_types) names.emplace_back(type.name);
     file_.fail(path, "cells " + listed(names), found);
   }
 

@@ -13,7 +13,6 @@ namespace uplift {
 namespace {
 
 using Column = Request::Kind;
-constexpr std::size_t points_per_curve = 1500;
 
 /// What a figure shows of every run: a column over time, or two columns against each other.
 struct View {

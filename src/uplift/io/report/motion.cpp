@@ -13,7 +13,7 @@
 namespace uplift {
 namespace {
 
-constexpr std::size_t points_per_curve = 3000, points_per_fit = 800;
+constexpr std::size_t points_per_motion = 3000, points_per_fit = 800;
 constexpr std::string_view origin = "uplift motion";
 
 Histories histories_of(const MotionReport& report) {
@@ -30,7 +30,7 @@ bool was_processed(const ShownMotion& shown) {
 Curve history_curve(const Motion& motion, MotionKind kind, std::string label, bool dash) {
   Curve curve{std::move(label), "", {}, converted(motion, kind).values, dash, false};
   for (std::size_t i = 0; i < curve.y.size(); ++i) curve.x.push_back(motion.step * static_cast<double>(i));
-  thin_history(curve.x, curve.y, points_per_curve);
+  thin_history(curve.x, curve.y, points_per_motion);
   return curve;
 }
 

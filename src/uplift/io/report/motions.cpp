@@ -16,7 +16,6 @@ namespace {
 
 constexpr double spectrum_damping = 0.05, least_frequency = 0.1, most_frequency = 50;  // 1, Hz
 constexpr int spectrum_points = 300;
-constexpr std::size_t points_per_curve = 1500;
 
 Motion acceleration_of(const MotionHistory& history) {
   return converted(*history.motion(), MotionKind::acceleration);

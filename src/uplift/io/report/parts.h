@@ -34,6 +34,8 @@ double uplifted_share(const Model& model, const Frame& frame);
 /// The same two for a model in space: the members "space" and "spaceAnimations".
 void write_space(JsonWriter& json, const ReportInput& input);
 
+/// Of a curve that is drawn: as many as a wide page shows.
+inline constexpr std::size_t points_per_curve = 1500;
 struct Axis {
   std::string label, unit;
   bool log = false;

@@ -49,15 +49,15 @@ Surface surface_of(const Mesh& mesh, const std::string& group) {
 }
 
 /// What is drawn: surfaces of solids, nodes of the case, of beams and of rigid bodies.
-struct Drawn {
+struct DrawnInSpace {
   std::vector<Surface> surfaces;
   std::vector<int> nodes;  // of the model, ascending
   int first_of_mesh = 0;
   int number(int node) const { return static_cast<int>(std::ranges::lower_bound(nodes, node) - nodes.begin()); }
 };
 
-Drawn drawn_of(const Case& read, const BuiltCase& built) {
-  Drawn drawn;
+DrawnInSpace drawn_in_space(const Case& read, const BuiltCase& built) {
+  DrawnInSpace drawn;
   drawn.first_of_mesh = static_cast<int>(read.values.tables("nodes").size());
   std::set<int> nodes = nodes_used(read, built);
   for (int i = 0; i < drawn.first_of_mesh; ++i) nodes.insert(i);
@@ -84,7 +84,7 @@ void write_places(JsonWriter& json, std::string_view key, const std::vector<Vec3
   json.key(key).numbers(numbers);
 }
 
-void write_surfaces(JsonWriter& json, const Drawn& drawn) {
+void write_surfaces(JsonWriter& json, const DrawnInSpace& drawn) {
   json.key("parts").begin_array();
   for (const Surface& surface : drawn.surfaces) {
     json.begin_object().member("name", surface.name);
@@ -113,7 +113,7 @@ const Values* footing_of(const Case& read, const Interface& joint) {
   return nullptr;
 }
 
-void write_bodies(JsonWriter& json, const Case& read, const BuiltCase& built, const Drawn& drawn) {
+void write_bodies(JsonWriter& json, const Case& read, const BuiltCase& built, const DrawnInSpace& drawn) {
   json.key("bodies").begin_array();
   for (const Interface& joint : built.model.interfaces)
     if (const Values* footing = footing_of(read, joint)) {
@@ -132,7 +132,7 @@ void write_bodies(JsonWriter& json, const Case& read, const BuiltCase& built, co
   json.end_array();
 }
 
-void write_small_parts(JsonWriter& json, const Case& read, const BuiltCase& built, const Drawn& drawn) {
+void write_small_parts(JsonWriter& json, const Case& read, const BuiltCase& built, const DrawnInSpace& drawn) {
   json.key("masses").begin_array();
   for (const Values& mass : read.values.tables("mass"))
     json.begin_object()
@@ -168,7 +168,7 @@ void write_small_parts(JsonWriter& json, const Case& read, const BuiltCase& buil
 }
 
 /// Triangles over the faces of a group on the outer surface, counter-clockwise from outside.
-std::vector<int> faces_of(const Mesh& mesh, const Sides& sides, const std::string& group, const Drawn& drawn) {
+std::vector<int> faces_of(const Mesh& mesh, const Sides& sides, const std::string& group, const DrawnInSpace& drawn) {
   std::vector<int> triangles, nodes;
   for (const CellId cell : mesh.groups.at(group).cells) {
     const int side = info(mesh.type(cell)).dimension == 2 ? sides.find(mesh.type(cell), mesh.cell(cell)) : -1;
@@ -181,7 +181,7 @@ std::vector<int> faces_of(const Mesh& mesh, const Sides& sides, const std::strin
 }
 
 /// Faces that supports hold, and absorbing ones; a face that is held in the static stages alone and absorbs then counts as absorbing.
-void write_borders(JsonWriter& json, const Case& read, const Drawn& drawn) {
+void write_borders(JsonWriter& json, const Case& read, const DrawnInSpace& drawn) {
   json.key("borders").begin_array();
   if (!read.mesh) {
     json.end_array();
@@ -258,7 +258,7 @@ std::string axis_name(const Vec3& direction, const char* otherwise) {
 }
 
 /// The drawn node of the upper side that is nearest to each point: the point is drawn moving with it.
-std::vector<int> carriers(const Interface& joint, const InterfaceFacts& facts, const BuiltCase& built, const Drawn& drawn) {
+std::vector<int> carriers(const Interface& joint, const InterfaceFacts& facts, const BuiltCase& built, const DrawnInSpace& drawn) {
   std::vector<int> nodes;
   for (int i = 0; i < joint.batch.points; ++i) {
     int nearest = -1;
@@ -273,7 +273,7 @@ std::vector<int> carriers(const Interface& joint, const InterfaceFacts& facts, c
   return nodes;
 }
 
-void write_interfaces(JsonWriter& json, const Case& read, const BuiltCase& built, const Drawn& drawn) {
+void write_interfaces(JsonWriter& json, const Case& read, const BuiltCase& built, const DrawnInSpace& drawn) {
   json.key("interfaces").begin_array();
   int bodies = 0;
   for (std::size_t k = 0; k < built.model.interfaces.size(); ++k) {
@@ -300,7 +300,7 @@ void write_interfaces(JsonWriter& json, const Case& read, const BuiltCase& built
   json.end_array();
 }
 
-void write_model(JsonWriter& json, const Case& read, const BuiltCase& built, const Drawn& drawn) {
+void write_model(JsonWriter& json, const Case& read, const BuiltCase& built, const DrawnInSpace& drawn) {
   std::vector<Vec3> places;
   for (const int node : drawn.nodes) places.push_back(built.model.nodes[at(node)].position);
   json.begin_object();
@@ -406,7 +406,7 @@ void write_displacements(JsonWriter& json, const Space& space, const std::vector
   quantised.end();
 }
 
-void write_animation(JsonWriter& json, const Case& read, const ReportRun& run, const Drawn& drawn) {
+void write_animation(JsonWriter& json, const Case& read, const ReportRun& run, const DrawnInSpace& drawn) {
   const BuiltCase& built = *run.built;
   const Space space = built.model.space;
   const std::vector<const Frame*> frames = chosen_frames(built.model, *run.result, drawn.nodes.size());
@@ -432,7 +432,7 @@ void write_animation(JsonWriter& json, const Case& read, const ReportRun& run, c
 }  // namespace
 
 void write_space(JsonWriter& json, const ReportInput& input) {
-  const Drawn drawn = drawn_of(*input.read, *input.runs.front().built);
+  const DrawnInSpace drawn = drawn_in_space(*input.read, *input.runs.front().built);
   json.key("space");
   write_model(json, *input.read, *input.runs.front().built, drawn);
   json.key("spaceAnimations").begin_array();

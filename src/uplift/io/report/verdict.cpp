@@ -10,7 +10,7 @@ namespace uplift {
 namespace {
 
 constexpr double highest_safety = 10;  // safeties are drawn up to here
-constexpr std::size_t points_of_history = 400, points_per_curve = 1500;
+constexpr std::size_t points_of_history = 400;
 
 Chart profile(const char* id, const char* title, std::string caption, const char* label, const char* unit) {
   return {id, "rest", title, std::move(caption), {"Along the base", "m"}, {label, unit}, {}};

@@ -14,8 +14,8 @@ namespace {
 
 using Json = nlohmann::ordered_json;
 
-constexpr std::size_t most_bytes = std::size_t{16} << 20;
-constexpr int most_levels = 64;
+constexpr std::size_t most_json_bytes = std::size_t{16} << 20;
+constexpr int most_json_levels = 64;
 
 Where position(std::string_view text, std::size_t byte, const std::string& file) {
   const std::string_view before = text.substr(0, std::min(byte > 0 ? byte - 1 : 0, text.size()));
@@ -87,12 +87,12 @@ std::string json_text(const Raw& raw) {
 }
 
 Raw read_json_text(std::string_view text, const std::string& file) {
-  if (text.size() > most_bytes) throw InputError({file, 0}, "", "at most 16 MiB of JSON", fmt::format("{} bytes", text.size()));
+  if (text.size() > most_json_bytes) throw InputError({file, 0}, "", "at most 16 MiB of JSON", fmt::format("{} bytes", text.size()));
   int levels = 0;
   std::vector<std::vector<std::string>> keys;  // of the objects that are open
   const auto watch = [&](int depth, Json::parse_event_t event, Json& parsed) {
     levels = std::max(levels, depth);
-    if (levels > most_levels) throw InputError({file, 0}, "", fmt::format("at most {} levels of JSON", most_levels), "more");
+    if (levels > most_json_levels) throw InputError({file, 0}, "", fmt::format("at most {} levels of JSON", most_json_levels), "more");
     if (event == Json::parse_event_t::object_start) keys.emplace_back();
     if (event == Json::parse_event_t::object_end) keys.pop_back();
     if (event == Json::parse_event_t::key) {

@@ -34,8 +34,8 @@ struct ParserLost {};
 namespace uplift {
 namespace {
 
-constexpr std::size_t most_bytes = std::size_t{16} << 20;
-constexpr int most_levels = TOML_MAX_NESTED_VALUES;
+constexpr std::size_t most_toml_bytes = std::size_t{16} << 20;
+constexpr int most_key_levels = TOML_MAX_NESTED_VALUES;
 
 int line_of(std::string_view text, std::size_t offset) {
   return 1 + static_cast<int>(std::count(text.begin(), text.begin() + static_cast<std::ptrdiff_t>(offset), '\n'));
@@ -53,8 +53,8 @@ void refuse_deep_keys(std::string_view text, const std::string& file) {
   for (std::size_t i = 0; i < text.size(); ++i) {
     const char c = text[i];
     if (c == '.' && after_key) {
-      if (++dots >= most_levels)
-        throw InputError({file, line_of(text, i)}, "", fmt::format("a key of at most {} levels", most_levels), "a deeper one");
+      if (++dots >= most_key_levels)
+        throw InputError({file, line_of(text, i)}, "", fmt::format("a key of at most {} levels", most_key_levels), "a deeper one");
       after_key = false;
     } else if (part_of_key(c)) {
       after_key = true;
@@ -146,8 +146,8 @@ int lost_line(std::string_view text) {
 }  // namespace
 
 Raw read_toml_text(std::string_view text, const std::string& file) {
-  if (text.size() > most_bytes)
-    throw InputError({file, 0}, "", fmt::format("at most {} MiB of TOML", most_bytes >> 20), fmt::format("{} bytes", text.size()));
+  if (text.size() > most_toml_bytes)
+    throw InputError({file, 0}, "", fmt::format("at most {} MiB of TOML", most_toml_bytes >> 20), fmt::format("{} bytes", text.size()));
   if (const auto offset = invalid_utf8(text))
     throw InputError({file, line_of(text, *offset)}, "", "UTF-8",
                      fmt::format("the byte 0x{:02x}", static_cast<unsigned char>(text[*offset])));
