@@ -150,6 +150,7 @@ LoadSteps::LoadSteps(const Model& model, const Bulk& bulk, const Sparse& b, cons
 
 /// K + B^T D B with the closed joint D.
 void LoadSteps::assemble() {
+  solver_.wait_for_room();
   matrix_ = bulk_.stiffness_matrix.triangularView<upper_triangle>();
   if (b_.rows() > 0) matrix_ += Sparse(Sparse(b_.transpose() * blocks_.shift.asDiagonal() * b_).triangularView<upper_triangle>());
 }
@@ -374,6 +375,7 @@ StaticOutcome LoadSteps::run() {
     return std::move(outcome_);
   }
   linear_ = condensed(std::move(made));
+  if (!yielding_.any()) Sparse().swap(matrix_);  // tangents alone are made of it
   bool all = go_on();
   if (!all && outcome_.failed && b_.rows() > 0 && !softens_ && !yielding_.any()) all = retry_with_softer_joint();
   state_.velocity.setZero();

@@ -10,6 +10,7 @@
 namespace uplift {
 
 Stepper::Level& Stepper::make_level(int halving) {
+  solver_.wait_for_room();
   auto& slot = levels_[static_cast<std::size_t>(halving)];
   slot = std::make_unique<Level>();
   Level& made = *slot;
