@@ -1,6 +1,6 @@
 // Runs of a block on soil (block_on_soil.h) side by side: what a step of one of them costs beside a single run, and how much memory all of
 // them take. The runs differ in their initial velocity. Processor time, which other jobs on the machine disturb least, and elapsed time.
-// Usage: bench_lockstep plane|space SIZE STEPS THREADS RUNS ...   element size in m; RUNS 0: run() alone
+// Usage: bench_lockstep plane|space SIZE STEPS THREADS RUNS ...   element size in m; RUNS 0: run() alone; solve: back-solves
 #include "uplift/run/lockstep.h"
 
 #include <fmt/format.h>
@@ -13,6 +13,9 @@
 #include <string>
 
 #include "bench/block_on_soil.h"
+#include "uplift/dynamics/bulk.h"
+#include "uplift/linear/memory.h"
+#include "uplift/linear/rates.h"
 
 namespace uplift {
 namespace {
@@ -69,6 +72,41 @@ RunPlan plan_of(const Model& model, int steps, std::size_t number) {
   return plan;
 }
 
+/// One back-solve of a step's matrix, and those of several columns at once, by one thread.
+void measure_solves(const Model& model) {
+  const Sparse b = stack_interfaces(model), matrix = model.stiffness + 4 / (2e-3 * 2e-3) * model.mass;
+  const SplitFactorisation made =
+      make_part(solver_catalog(), part(linear_solvers(), "cholmod", {}))->factorise_split(matrix, touched_unknowns(b));
+  const Vector load = Vector::Ones(model.free());
+  Vector half, x;
+  const auto least = [](const auto& work) {
+    double seconds = 1e300;
+    for (int k = 0; k < 5; ++k) {
+      const double start = processor_time();
+      work();
+      seconds = std::min(seconds, processor_time() - start);
+    }
+    return seconds;
+  };
+  const double one = least([&] { made.factor->forward(load, half), made.factor->backward(half, x); });
+  const double entries = made.factor->nonzeros();
+  fmt::print("{:7} unknowns, factor of {:.0f} MB | a back-solve: alone {:.2f} ms, {:.1f} GB/s", model.free(), 8e-6 * entries, 1e3 * one,
+             16e-9 * entries / one);
+  for (const std::size_t count : {8, 16, 32}) {
+    std::vector<Vector> y(count), solution(count);
+    const std::vector<const Vector*> from(count, &load);
+    std::vector<Vector*> to, last;
+    std::vector<const Vector*> halves;
+    for (std::size_t k = 0; k < count; ++k) to.push_back(&y[k]), halves.push_back(&y[k]), last.push_back(&solution[k]);
+    const double all = least([&] { made.factor->forward_all(from, to), made.factor->backward_all(halves, last); });
+    fmt::print("; {} columns {:.2f} ms each, {:.1f} Gflop/s", count, 1e3 * all / static_cast<double>(count),
+               4e-9 * entries * static_cast<double>(count) / all);
+  }
+  const Rates rates = measure_rates(8 * entries);
+  fmt::print(" | dense product {:.1f} Gflop/s, stream {:.1f} GB/s\n", 1e-9 * rates.operations_per_second, 1e-9 * rates.bytes_per_second);
+  std::fflush(stdout);
+}
+
 void measure(const Model& model, int steps, int threads, std::size_t count) {
   std::vector<RunPlan> plans;
   for (std::size_t k = 0; k < std::max<std::size_t>(1, count); ++k) plans.push_back(plan_of(model, steps, k));
@@ -107,6 +145,7 @@ int main(int count, char** words) {
     fmt::print("usage: bench_lockstep plane|space SIZE STEPS THREADS RUNS ...\n");
     return 2;
   }
+  prepare_heap();
   const Model model = block_on_soil(std::atof(words[2]), {{std::string_view(words[1]) == "space" ? 3 : 2}, false});
   for (int k = 5; k < count; ++k) measure(model, std::atoi(words[3]), std::atoi(words[4]), static_cast<std::size_t>(std::atoi(words[k])));
   return 0;

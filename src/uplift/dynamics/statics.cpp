@@ -14,12 +14,12 @@
 
 namespace uplift {
 
-Vector closed_joint(const Model& model, const Behaviours& behaviours) {
+Vector closed_joint(const Model& model, const Sparse& stiffness_matrix, const Behaviours& behaviours) {
   int rows = 0;
   for (const Interface& interface : model.interfaces) rows += interface.rows();
   Vector result = Vector::Zero(rows);
   double largest = 0;
-  for (int i = 0; i < model.free(); ++i) largest = std::max(largest, model.stiffness.coeff(i, i));
+  for (int i = 0; i < model.free(); ++i) largest = std::max(largest, stiffness_matrix.coeff(i, i));
   if (largest <= 0) largest = 1e9;
   // A joint far stiffer than the structure would leave nothing of the structure's stiffness in the factored sum once it is taken back.
   constexpr double stiffest = 1e6;
@@ -138,7 +138,7 @@ LoadSteps::LoadSteps(const Model& model, const Bulk& bulk, const Sparse& b, cons
       gap_(gap),
       motion_(Vector::Zero(gap.size())),
       blocks_(blocks_of(model, behaviours)) {
-  blocks_.shift = closed_joint(model, behaviours);
+  blocks_.shift = closed_joint(model, solver.matrices_of(model).stiffness, behaviours);
   assemble();
   if (yielding_.any()) {
     newton_ = std::make_unique<PlasticNewton>(yielding_, matrix_, options.plastic);

@@ -83,7 +83,8 @@ class Lockstep::SeatSplitFactor final : public SplitFactor {
 
 class Lockstep::SeatSolver final : public LinearSolver {
  public:
-  SeatSolver(Lockstep& all, std::size_t run, std::shared_ptr<const LinearSolver> own) : all_(all), run_(run), own_(std::move(own)) {}
+  SeatSolver(Lockstep& all, std::size_t run, std::shared_ptr<const LinearSolver> own, const Model* model, const Model* matrices)
+      : all_(all), run_(run), own_(std::move(own)), model_(model), matrices_(matrices) {}
   Factorisation factorise(const Sparse& a) const override {
     Made made = all_.factor(run_, *own_, a, nullptr);
     std::unique_ptr<const Factor> mine;
@@ -99,11 +100,13 @@ class Lockstep::SeatSolver final : public LinearSolver {
   FactorCost predict(const Sparse& a, const std::vector<int>& last) const override { return own_->predict(a, last); }
   std::shared_ptr<const SymmetricPair> pair(const Sparse& a, const Sparse& b) const override { return all_.pair(a, b); }
   void wait_for_room() const override { all_.wait_for_room(run_); }
+  const Model& matrices_of(const Model& model) const override { return &model == model_ && matrices_ != nullptr ? *matrices_ : model; }
 
  private:
   Lockstep& all_;
   std::size_t run_;
   std::shared_ptr<const LinearSolver> own_;
+  const Model *model_, *matrices_;
 };
 
 Lockstep::Lockstep(std::size_t runs, int threads) : threads_(std::max(1, threads)) {
@@ -112,8 +115,9 @@ Lockstep::Lockstep(std::size_t runs, int threads) : threads_(std::max(1, threads
 
 Lockstep::~Lockstep() = default;
 
-std::shared_ptr<const LinearSolver> Lockstep::seat(std::size_t run, std::shared_ptr<const LinearSolver> own) {
-  return std::make_shared<const SeatSolver>(*this, run, std::move(own));
+std::shared_ptr<const LinearSolver> Lockstep::seat(std::size_t run, std::shared_ptr<const LinearSolver> own, const Model* model,
+                                                   const Model* matrices) {
+  return std::make_shared<const SeatSolver>(*this, run, std::move(own), model, matrices);
 }
 
 /// Lets as many runs compute as may, in their order; with none left the server has something to do.

@@ -35,7 +35,9 @@ class Lockstep {
   Lockstep(const Lockstep&) = delete;
   Lockstep& operator=(const Lockstep&) = delete;
   /// What run number `run` uses instead of its own solver.
-  std::shared_ptr<const LinearSolver> seat(std::size_t run, std::shared_ptr<const LinearSolver> own);
+  /// `matrices`: the model that has its matrices; null: its own.
+  std::shared_ptr<const LinearSolver> seat(std::size_t run, std::shared_ptr<const LinearSolver> own, const Model* model,
+                                           const Model* matrices);
   /// A thread is about to begin with its run: waits for its turn.
   void begin(std::size_t run);
   /// The run is over, or will never begin. All that it was given by its seat must be gone.

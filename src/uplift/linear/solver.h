@@ -12,6 +12,7 @@
 namespace uplift {
 
 struct Factorisation;
+struct Model;
 
 /// A factorised matrix. Thread-safe; many columns at once.
 class Factor {
@@ -57,6 +58,8 @@ class LinearSolver {
   virtual std::shared_ptr<const SymmetricPair> pair(const Sparse& a, const Sparse& b) const;
   /// To be called before a matrix is assembled that will be factorised: the solver of one of several runs waits here (Lockstep).
   virtual void wait_for_room() const {}
+  /// The model whose stiffness, mass and damping are those of this one: itself, or that of another run that has the same ones.
+  virtual const Model& matrices_of(const Model& model) const { return model; }
   static constexpr double least_pivot = 1e-14;
 };
 

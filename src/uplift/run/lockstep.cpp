@@ -1,5 +1,6 @@
 #include "uplift/run/lockstep.h"
 
+#include <algorithm>
 #include <exception>
 #include <system_error>
 #include <thread>
@@ -13,6 +14,13 @@ namespace {
 /// Whether the matrices of a run change from step to step.
 bool changes(const LockstepRun& one) {
   return one.plan->monolithic || PlasticBulk(*one.model).any();
+}
+
+bool are_equal(const Sparse& a, const Sparse& b) {
+  if (a.rows() != b.rows() || a.cols() != b.cols() || a.nonZeros() != b.nonZeros() || !a.isCompressed() || !b.isCompressed()) return false;
+  return std::equal(a.outerIndexPtr(), a.outerIndexPtr() + a.outerSize() + 1, b.outerIndexPtr()) &&
+         std::equal(a.innerIndexPtr(), a.innerIndexPtr() + a.nonZeros(), b.innerIndexPtr()) &&
+         std::equal(a.valuePtr(), a.valuePtr() + a.nonZeros(), b.valuePtr());
 }
 
 /// One call of run_in_lockstep.
@@ -58,7 +66,7 @@ class Group {
     const LockstepRun& one = runs_[k];
     try {
       RunPlan plan = *one.plan;
-      if (together) plan.solver = together_.seat(k, plan.solver);
+      if (together) plan.solver = together_.seat(k, plan.solver, one.model, one.matrices);
       results_[k] = run(*one.model, plan, *one.behaviours, one.watch, one.observe, one.keeping);
       if (options_.ended) options_.ended(k, results_[k]);
     } catch (...) {
@@ -74,6 +82,14 @@ class Group {
 };
 
 }  // namespace
+
+bool share_matrices(Model& model, const Model& with) {
+  constexpr Sparse Model::*all[] = {&Model::stiffness, &Model::mass, &Model::damping};
+  for (const auto matrix : all)
+    if (!are_equal(model.*matrix, with.*matrix)) return false;
+  for (const auto matrix : all) Sparse().swap(model.*matrix);  // an assignment would keep the memory
+  return true;
+}
 
 std::vector<RunResult> run_in_lockstep(std::span<const LockstepRun> runs, const LockstepOptions& options) {
   return Group(runs, options).go();

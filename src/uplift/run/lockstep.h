@@ -13,10 +13,15 @@ struct LockstepRun {
   const Model* model = nullptr;
   const RunPlan* plan = nullptr;
   const std::vector<const Values*>* behaviours = nullptr;
+  const Model* matrices = nullptr;  // that has the matrices of the model, which gave its own away (share_matrices); null: the model itself
   Watch watch = {};
   Observe observe = {};
   const Keeping* keeping = nullptr;  // null: none
 };
+
+/// Where stiffness, mass and damping of a model are those of another one, number for number, the model gives its own away, which take most
+/// of its memory; nothing but run_in_lockstep can use it then. False: they are not, and it keeps them.
+bool share_matrices(Model& model, const Model& with);
 
 struct LockstepOptions {
   int threads = 1;  // that compute at the same time

@@ -213,6 +213,43 @@ TEST(Lockstep, OtherMatricesAndYieldingSoil) {
   EXPECT_EQ(counts.factorisations, 4);  // of two models, at rest and for the step
 }
 
+// Claim: runs whose models have given their matrices away to the first one, with released supports, P-Delta and other laws among them, are
+// the single runs of whole models.
+TEST(Lockstep, MatricesOfOneModelServeAll) {
+  const std::string released = "[[support]]\ngroup = \"block_top\"\nfixed = [\"ux\"]\nstages = \"static\"\n";
+  for (const std::string& rest : {std::string(), released}) {
+    for (const std::string& behaviour : {plastic_test::springs, multipliers}) {
+      std::vector<Prepared> cases, whole;
+      for (const int force : {30, 45, 55}) {
+        const std::string other = force == 55 && behaviour == plastic_test::springs ? sdm : behaviour;
+        for (std::vector<Prepared>* list : {&cases, &whole})
+          list->push_back(
+              prepared(block_on_soil("", other, rest + support::replaced(shaken_by(force), "step = 5e-3", "step = 5e-3\np_delta = true"))));
+      }
+      std::vector<LockstepRun> runs = side_by_side(cases);
+      for (std::size_t k = 1; k < runs.size(); ++k) {
+        ASSERT_TRUE(share_matrices(cases[k].built.model, cases[0].built.model));
+        EXPECT_EQ(cases[k].built.model.stiffness.nonZeros(), 0);
+        runs[k].matrices = &cases[0].built.model;
+      }
+      const std::vector<RunResult> results = run_in_lockstep(runs);
+      const std::vector<LockstepRun> singles = side_by_side(whole);
+      for (std::size_t k = 0; k < runs.size(); ++k) {
+        const RunResult single = alone(singles[k]);
+        EXPECT_EQ(single.status, RunStatus::completed) << single.reason;
+        EXPECT_LE(difference(results[k], single), 1e-9) << k;
+        expect_same_counts(results[k], single);
+      }
+    }
+  }
+  std::vector<Prepared> others = pushed(plastic_test::springs, {30});
+  std::string stiff = block_on_soil("", plastic_test::springs, shaken_by(30));
+  stiff.replace(stiff.find("E = 5e7"), 7, "E = 6e7");
+  others.push_back(prepared(stiff));
+  EXPECT_FALSE(share_matrices(others[1].built.model, others[0].built.model));
+  EXPECT_GT(others[1].built.model.stiffness.nonZeros(), 0);
+}
+
 TEST(Lockstep, NoRuns) {
   EXPECT_TRUE(run_in_lockstep({}).empty());
 }
