@@ -147,6 +147,11 @@ int main(int count, char** words) {
   }
   prepare_heap();
   const Model model = block_on_soil(std::atof(words[2]), {{std::string_view(words[1]) == "space" ? 3 : 2}, false});
-  for (int k = 5; k < count; ++k) measure(model, std::atoi(words[3]), std::atoi(words[4]), static_cast<std::size_t>(std::atoi(words[k])));
+  for (int k = 5; k < count; ++k) {
+    if (std::string_view(words[k]) == "solve")
+      measure_solves(model);
+    else
+      measure(model, std::atoi(words[3]), std::atoi(words[4]), static_cast<std::size_t>(std::atoi(words[k])));
+  }
   return 0;
 }
