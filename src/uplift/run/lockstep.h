@@ -31,8 +31,8 @@ struct LockstepOptions {
 };
 
 /// run() for several runs that have the same matrices and step sizes, and differ in loads, motions and interfaces. They march side by side:
-/// one factor, and back-solves for all of them at once (Lockstep). Sixteen to thirty-two of a large model take a third to a fifth of the
-/// time of as many single runs, and one factor. A step that fails is halved by its run alone; a run that ends, in whatever way, leaves the
+/// one factor, and back-solves for all of them at once (Lockstep). Sixteen of a large model take about a third of the time of
+/// as many single runs, and one factor. A step that fails is halved by its run alone; a run that ends, in whatever way, leaves the
 /// others.
 ///
 /// Each result is that of run() but for round-off, because sums are made in another order. It does not depend on the other runs, to the
