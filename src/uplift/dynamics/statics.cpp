@@ -14,12 +14,12 @@
 
 namespace uplift {
 
-Vector closed_joint(const Model& model, const Behaviours& behaviours) {
+Vector closed_joint(const Model& model, const Sparse& stiffness_matrix, const Behaviours& behaviours) {
   int rows = 0;
   for (const Interface& interface : model.interfaces) rows += interface.rows();
   Vector result = Vector::Zero(rows);
   double largest = 0;
-  for (int i = 0; i < model.free(); ++i) largest = std::max(largest, model.stiffness.coeff(i, i));
+  for (int i = 0; i < model.free(); ++i) largest = std::max(largest, stiffness_matrix.coeff(i, i));
   if (largest <= 0) largest = 1e9;
   // A joint far stiffer than the structure would leave nothing of the structure's stiffness in the factored sum once it is taken back.
   constexpr double stiffest = 1e6;
@@ -138,7 +138,7 @@ LoadSteps::LoadSteps(const Model& model, const Bulk& bulk, const Sparse& b, cons
       gap_(gap),
       motion_(Vector::Zero(gap.size())),
       blocks_(blocks_of(model, behaviours)) {
-  blocks_.shift = closed_joint(model, behaviours);
+  blocks_.shift = closed_joint(model, solver.matrices_of(model).stiffness, behaviours);
   assemble();
   if (yielding_.any()) {
     newton_ = std::make_unique<PlasticNewton>(yielding_, matrix_, options.plastic);
@@ -150,6 +150,7 @@ LoadSteps::LoadSteps(const Model& model, const Bulk& bulk, const Sparse& b, cons
 
 /// K + B^T D B with the closed joint D.
 void LoadSteps::assemble() {
+  solver_.wait_for_room();
   matrix_ = bulk_.stiffness_matrix.triangularView<upper_triangle>();
   if (b_.rows() > 0) matrix_ += Sparse(Sparse(b_.transpose() * blocks_.shift.asDiagonal() * b_).triangularView<upper_triangle>());
 }
@@ -374,6 +375,7 @@ StaticOutcome LoadSteps::run() {
     return std::move(outcome_);
   }
   linear_ = condensed(std::move(made));
+  if (!yielding_.any()) Sparse().swap(matrix_);  // tangents alone are made of it
   bool all = go_on();
   if (!all && outcome_.failed && b_.rows() > 0 && !softens_ && !yielding_.any()) all = retry_with_softer_joint();
   state_.velocity.setZero();

@@ -60,6 +60,7 @@ Stepper::~Stepper() = default;
 
 const Accelerator& Stepper::accelerator() const {
   if (accelerator_ == nullptr) {
+    solver_.wait_for_room();
     accelerator_ = std::make_unique<Accelerator>(model_, bulk_, impacts_ ? &b_ : nullptr, solver_, linear_);
     if (impacts_ || accelerator_->too_large()) mass_failure_ = accelerator_->why();
   }
@@ -171,7 +172,7 @@ void Stepper::start(State state, const Ledger* before) {
   level(0);
   if (!bulk_.small) {
     give_back_free_memory();  // of the factorisation
-    pair_ = SymmetricPair(bulk_.stiffness_matrix, bulk_.mass_matrix);
+    pair_ = solver_.pair(bulk_.stiffness_matrix, bulk_.mass_matrix);
   }
   if (!filtered_) now_.filter = {};
   follow_state();
@@ -212,7 +213,7 @@ void Stepper::resume(MarchState from) {
   for (const int halving : from.sizes) level(halving);
   if (!bulk_.small) {
     give_back_free_memory();
-    pair_ = SymmetricPair(bulk_.stiffness_matrix, bulk_.mass_matrix);
+    pair_ = solver_.pair(bulk_.stiffness_matrix, bulk_.mass_matrix);
   }
   energies_ = from.ledger.energies;
   initial_energy_ = from.ledger.initial_energy;
@@ -246,7 +247,7 @@ void Stepper::move_gap(double from, double to) {
 
 void Stepper::products(const Vector& u, const Vector& v, Vector& ku, Vector& mv) const {
   if (!bulk_.small) {
-    pair_.multiply(u, v, ku, mv);
+    pair_->multiply(u, v, ku, mv);
     return;
   }
   bulk_.stiffness.multiply(u, ku);

@@ -11,7 +11,6 @@
 #include "uplift/dynamics/plastic_newton.h"
 #include "uplift/dynamics/scheme.h"
 #include "uplift/dynamics/step_balance.h"
-#include "uplift/math/symmetric_pair.h"
 
 namespace uplift {
 
@@ -143,7 +142,7 @@ class Stepper {
   double failed_step_ = 0;
   long iterations_before_ = 0;  // of the interface, before this step
   bool path_ = false, filtered_ = false, impacts_ = false, gap_moves_ = false;
-  SymmetricPair pair_;                                // K and M of large bulks
+  std::shared_ptr<const SymmetricPair> pair_;         // K and M of large bulks
   mutable std::unique_ptr<Accelerator> accelerator_;  // null while it is not needed
   mutable std::string mass_failure_;                  // why no step can be taken: no factor of M where one is needed
   std::unique_ptr<Spread> mass_spread_;

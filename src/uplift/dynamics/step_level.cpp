@@ -10,6 +10,7 @@
 namespace uplift {
 
 Stepper::Level& Stepper::make_level(int halving) {
+  solver_.wait_for_room();
   auto& slot = levels_[static_cast<std::size_t>(halving)];
   slot = std::make_unique<Level>();
   Level& made = *slot;
@@ -59,7 +60,7 @@ Vector Stepper::stiffness_for_massless() const {
     if (bulk_.massless[static_cast<std::size_t>(column)] != 0)
       for (Sparse::InnerIterator entry(b_, column); entry; ++entry) touching[entry.row()] = 1;
   if (touching.isZero(0) || unresisted_motion(model_, Resistance::dynamic_open).size() == 0) return {};
-  return touching.cwiseProduct(closed_joint(model_, behaviours_));
+  return touching.cwiseProduct(closed_joint(model_, solver_.matrices_of(model_).stiffness, behaviours_));
 }
 
 Sparse Stepper::matrix_of(const Level& level) const {

@@ -34,6 +34,18 @@ SplitFactorisation SplitFactor::refactorise(const Sparse&) const {
   return {};
 }
 
+void SplitFactor::forward_all(std::span<const Vector* const> b, std::span<Vector* const> y) const {
+  for (std::size_t k = 0; k < b.size(); ++k) forward(*b[k], *y[k]);
+}
+
+void SplitFactor::backward_all(std::span<const Vector* const> y, std::span<Vector* const> x) const {
+  for (std::size_t k = 0; k < y.size(); ++k) backward(*y[k], *x[k]);
+}
+
+std::shared_ptr<const SymmetricPair> LinearSolver::pair(const Sparse& a, const Sparse& b) const {
+  return std::make_shared<const SymmetricPair>(a, b);
+}
+
 FactorCost LinearSolver::predict(const Sparse& a, const std::vector<int>&) const {
   FactorCost cost;
   cost.unknowns = static_cast<double>(a.rows());

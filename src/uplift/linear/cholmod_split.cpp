@@ -57,6 +57,24 @@ class CholmodSplit : public SplitFactor {
     give_back(std::move(scratch));
   }
 
+  void forward_all(std::span<const Vector* const> b, std::span<Vector* const> y) const override {
+    const auto* order = static_cast<const int*>(factor_->Perm);
+    in_groups(b, y, [&](Columns& columns) {
+      for (std::size_t k = 0; k < factor_->n; ++k) columns.get(order[k], k);
+      solve_lower_columns(supernodes(*factor_), columns.groups(), columns.values.data());
+      for (std::size_t k = 0; k < factor_->n; ++k) columns.put(k, static_cast<Index>(k));
+    });
+  }
+
+  void backward_all(std::span<const Vector* const> y, std::span<Vector* const> x) const override {
+    const auto* order = static_cast<const int*>(factor_->Perm);
+    in_groups(y, x, [&](Columns& columns) {
+      for (std::size_t k = 0; k < factor_->n; ++k) columns.get(static_cast<Index>(k), k);
+      solve_lower_transposed_columns(supernodes(*factor_), columns.groups(), columns.values.data());
+      for (std::size_t k = 0; k < factor_->n; ++k) columns.put(k, order[k]);
+    });
+  }
+
   Matrix last() const override {
     Matrix block = Matrix::Zero(chosen_, chosen_);
     const Index first = static_cast<Index>(factor_->n) - chosen_;
@@ -80,7 +98,36 @@ class CholmodSplit : public SplitFactor {
   double nonzeros() const override { return static_cast<double>(factor_->xsize); }
 
  private:
-  /// Scratch of half a back-solve, kept for the next one: the highest supernode's rows, and a solution.
+  /// Right-hand sides side by side, as solve_lower_columns wants them.
+  struct Columns {
+    std::span<const Vector* const> from;
+    std::span<Vector* const> to;
+    std::vector<double>& values;
+    std::size_t unknowns;
+
+    std::size_t groups() const { return (from.size() + columns_of_a_group - 1) / columns_of_a_group; }
+    double* row(std::size_t group, std::size_t row) const { return values.data() + (group * unknowns + row) * columns_of_a_group; }
+    void get(Index from_row, std::size_t to_row) const {
+      for (std::size_t c = 0; c < from.size(); ++c) row(c / columns_of_a_group, to_row)[c % columns_of_a_group] = (*from[c])[from_row];
+    }
+    void put(std::size_t from_row, Index to_row) const {
+      for (std::size_t c = 0; c < to.size(); ++c) (*to[c])[to_row] = row(c / columns_of_a_group, from_row)[c % columns_of_a_group];
+    }
+  };
+  template <class Work>
+  void in_groups(std::span<const Vector* const> from, std::span<Vector* const> to, const Work& work) const {
+    constexpr std::size_t most = 4 * columns_of_a_group;  // at once: so many rows of x stay in the cache beside the factor's
+    for (std::size_t first = 0; first < from.size(); first += most) {
+      const std::size_t count = std::min(most, from.size() - first);
+      for (Vector* column : to.subspan(first, count)) column->resize(static_cast<Index>(factor_->n));
+      Scratch scratch = take();
+      Columns columns{from.subspan(first, count), to.subspan(first, count), *scratch, factor_->n};
+      scratch->assign(columns.groups() * factor_->n * columns_of_a_group, 0);
+      work(columns);
+      give_back(std::move(scratch));
+    }
+  }
+  /// Scratch of half a back-solve, kept for the next one: the highest supernode's rows, and a solution, or the columns of several.
   using Scratch = std::unique_ptr<std::vector<double>>;
   Scratch take() const {
     const std::lock_guard lock(mutex_);

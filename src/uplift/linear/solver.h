@@ -7,10 +7,12 @@
 #include "uplift/base/catalog.h"
 #include "uplift/linear/split.h"
 #include "uplift/math/linalg.h"
+#include "uplift/math/symmetric_pair.h"
 
 namespace uplift {
 
 struct Factorisation;
+struct Model;
 
 /// A factorised matrix. Thread-safe; many columns at once.
 class Factor {
@@ -52,6 +54,12 @@ class LinearSolver {
   virtual SplitFactorisation factorise_split(const Sparse& a, const std::vector<int>& last) const;
   /// What either would take; `last` empty: in any order. A factor that does not fit into the memory that is left is refused by them, too.
   virtual FactorCost predict(const Sparse& a, const std::vector<int>& last) const;
+  /// Two symmetric matrices for common products. They must stay as they are as long as the pair exists.
+  virtual std::shared_ptr<const SymmetricPair> pair(const Sparse& a, const Sparse& b) const;
+  /// To be called before a matrix is assembled that will be factorised: the solver of one of several runs waits here (Lockstep).
+  virtual void wait_for_room() const {}
+  /// The model whose stiffness, mass and damping are those of this one: itself, or that of another run that has the same ones.
+  virtual const Model& matrices_of(const Model& model) const { return model; }
   static constexpr double least_pivot = 1e-14;
 };
 

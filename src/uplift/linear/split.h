@@ -1,5 +1,6 @@
 #pragma once
 #include <memory>
+#include <span>
 #include <string>
 #include <vector>
 
@@ -20,6 +21,10 @@ class SplitFactor {
   virtual void forward(const Vector& b, Vector& y) const = 0;
   /// x = P^T L^-T y
   virtual void backward(const Vector& y, Vector& x) const = 0;
+  /// The same for many right-hand sides at once. The numbers of each depend on it alone, to the last bit: neither on the others nor on how
+  /// many there are. (They may differ in round-off from those of the functions above.)
+  virtual void forward_all(std::span<const Vector* const> b, std::span<Vector* const> y) const;
+  virtual void backward_all(std::span<const Vector* const> y, std::span<Vector* const> x) const;
   /// L_bb: lower triangle, as many rows as there are chosen unknowns; zero above.
   virtual Matrix last() const = 0;
   virtual double nonzeros() const = 0;  // of the factor, for the physical limit

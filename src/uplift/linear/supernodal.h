@@ -18,4 +18,11 @@ void solve_lower(const Supernodes& factor, double* x, double* scratch);
 /// x = L^-T x in place.
 void solve_lower_transposed(const Supernodes& factor, double* x, double* scratch);
 
+/// Right-hand sides that are solved together stand in groups of so many columns; columns that are not needed are zero.
+inline constexpr std::size_t columns_of_a_group = 8;
+/// The same for `groups` groups of columns: number (i, c) of a group stands at i columns_of_a_group + c, the groups one behind the other.
+/// What becomes of a column depends on nothing but its own numbers.
+void solve_lower_columns(const Supernodes& factor, std::size_t groups, double* x);
+void solve_lower_transposed_columns(const Supernodes& factor, std::size_t groups, double* x);
+
 }  // namespace uplift

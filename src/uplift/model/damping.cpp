@@ -10,7 +10,11 @@
 namespace uplift {
 
 Sparse bonded_stiffness(const Model& model) {
-  Sparse sum = model.stiffness;
+  return bonded_stiffness(model, model.stiffness);
+}
+
+Sparse bonded_stiffness(const Model& model, const Sparse& without) {
+  Sparse sum = without;
   for (const Interface& face : model.interfaces) {
     if (!face.law) continue;
     std::vector<double> closed(face.batch.components);

@@ -14,6 +14,8 @@ Sparse modal_damping(const Model& model, const std::vector<double>& ratios, int 
 
 /// The bonded stiffness of the traction laws, K + sum B^T diag(area k_closed) B; cones add nothing.
 Sparse bonded_stiffness(const Model& model);
+/// The same with a stiffness without interfaces that stands elsewhere.
+Sparse bonded_stiffness(const Model& model, const Sparse& without);
 /// Columns span the motions in which no interface with a cone opens or slips; the identity without cones.
 Sparse cones_held(const Model& model);
 

@@ -7,7 +7,8 @@ namespace uplift {
 std::optional<double> buckling_share(const Model& model, const Sparse& geometric, const LinearSolver& solver) {
   if (model.free() == 0 || geometric.nonZeros() == 0) return std::nullopt;
   const Sparse held = cones_held(model), to_held = held.transpose();
-  const Sparse stiffness = to_held * bonded_stiffness(model) * held, softening = to_held * geometric * held;
+  const Sparse stiffness = to_held * bonded_stiffness(model, solver.matrices_of(model).stiffness) * held,
+               softening = to_held * geometric * held;
   if (stiffness.rows() == 0) return std::nullopt;
   const auto stands = [&](double share) { return solver.factorise(stiffness + share * softening).factor != nullptr; };
   if (stands(1) || !stands(0)) return std::nullopt;

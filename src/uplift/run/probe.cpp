@@ -34,11 +34,12 @@ ContactModel probe(const Model& model, const Bulk& bulk, const Sparse& b, const 
 }
 
 ContactModel static_probe(const Model& model, const LinearSolver& solver, LinearCounts& counts, std::string& why) {
-  const Bulk bulk(model, nullptr);
+  const Bulk bulk(solver.matrices_of(model), nullptr);
   const Sparse b = stack_interfaces(model);
   const Behaviours behaviours(model, NoContact(), nullptr);
   Sparse matrix = bulk.stiffness_matrix.triangularView<upper_triangle>();
-  matrix += Sparse(Sparse(b.transpose() * closed_joint(model, behaviours).asDiagonal() * b).triangularView<upper_triangle>());
+  matrix += Sparse(
+      Sparse(b.transpose() * closed_joint(model, bulk.stiffness_matrix, behaviours).asDiagonal() * b).triangularView<upper_triangle>());
   return with_compliance(blocks_of(model, behaviours), matrix, b, model, bulk, solver, counts, why);
 }
 

@@ -197,8 +197,9 @@ void Runner::execute() {
   for (const Interface& interface : model_.interfaces) cones = cones || interface.cone != nullptr;
   if (cones && !plan_.method->constrains()) {
     std::string why;
-    compliance = dynamic != nullptr ? probe(model_, Bulk(model_, nullptr), b_, *dynamic, *plan_.solver, run_.linear, why)
-                                    : static_probe(rest_ != nullptr ? *rest_ : model_, *plan_.solver, run_.linear, why);
+    compliance = dynamic != nullptr
+                     ? probe(model_, Bulk(plan_.solver->matrices_of(model_), nullptr), b_, *dynamic, *plan_.solver, run_.linear, why)
+                     : static_probe(rest_ != nullptr ? *rest_ : model_, *plan_.solver, run_.linear, why);
     if (!why.empty()) return fail(dynamic != nullptr ? why : "static stage: " + why, nullptr);
   }
   laws_ = std::make_unique<Behaviours>(model_, *plan_.method, compliance.rows() > 0 ? &compliance : nullptr);
@@ -263,7 +264,7 @@ void Runner::run_stages() {
       add_initial_state();
       rotations_ = rotations_on_interfaces(model_, b_);
     }
-    const Bulk stage_bulk(model_, geometric_.get());
+    const Bulk stage_bulk(plan_.solver->matrices_of(model_), geometric_.get());
     if (!dynamics(stage, stage_bulk)) return;
   }
 }

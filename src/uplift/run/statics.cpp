@@ -54,7 +54,7 @@ bool Runner::solve(const Stage& stage, const Sparse* geometric, const std::vecto
                    const std::function<bool(const StaticProgress&)>& after_step) {
   const Model& resting = rest_ != nullptr ? *rest_ : model_;
   const Sparse b = rest_ != nullptr ? stack_interfaces(*rest_) : b_;
-  const Bulk bulk(resting, geometric);
+  const Bulk bulk(plan_.solver->matrices_of(resting), geometric);
   const StaticOptions options{stage.steps, stage.halvings, second_order, {}, after_step};
   const StaticOutcome outcome =
       solve_statics(resting, bulk, b, gap_, *laws_, *plan_.method, *plan_.solver, options, run_.state, run_.linear);
@@ -74,7 +74,7 @@ Energies Runner::static_energies(const Model& resting, const Energies& before, c
   energies.external += progress.work;
   energies.plastic += progress.dissipated;
   energies.friction += progress.friction;
-  energies.strain = 0.5 * run_.state.displacement.dot(resting.stiffness * run_.state.displacement);
+  energies.strain = 0.5 * run_.state.displacement.dot(plan_.solver->matrices_of(resting).stiffness * run_.state.displacement);
   if (const PlasticBulk yielding(resting); yielding.any())
     energies.strain += yielding.energy(run_.state.displacement, run_.state.instant(), yielding.state(run_.state.bulk_history));
   InterfaceEnergy interfaces;
@@ -172,7 +172,7 @@ State Runner::carried() const {
 /// on it is a constant load, so that nothing moves when nothing shakes (docs/theory, eq 22).
 void Runner::release() {
   run_.state = carried();
-  run_.held = model_.stiffness * run_.state.displacement;
+  run_.held = plan_.solver->matrices_of(model_).stiffness * run_.state.displacement;
   if (geometric_ != nullptr) run_.held += *geometric_ * run_.state.displacement;
   if (const PlasticBulk yielding(model_); yielding.any()) run_.held += yielding.state(run_.state.bulk_history).force;
   if (b_.rows() > 0) run_.held += b_.transpose() * run_.state.force;
