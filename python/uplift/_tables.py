@@ -42,6 +42,7 @@ class Tables:
         offset: Optional[Sequence[Quantity]] = None,
         normal: Optional[Sequence[Quantity]] = None,
         bed: Optional[Mapping[str, Any]] = None,
+        soil: Optional[Mapping[str, Any]] = None,
         cut: Optional[Mapping[str, Any]] = None,
         gap: Optional[Quantity] = None,
         gap_profile: Optional[Mapping[str, Any]] = None,
@@ -65,6 +66,9 @@ class Tables:
             offset: from the node to the middle of the footing's underside [m].
             normal: from the ground to the structure; absent: up.
             bed: elastic ground under the joint; absent: fixed ground.
+            soil: the ground of a rectangle width x thickness (in space width x length), in the plane with rock_depth of
+                a strip: makes the joint stiffer towards the edges, so that it has both the vertical and the rocking
+                stiffness, and gives what the law calls "soil" (K_n, K_t, c).
             cut: on a plane through cells of the mesh.
             gap: initial gap of every point; geometry: the distance along the normal at which both sides are drawn, of
                 pairs, lines and surfaces with two groups [m]; default 0.0.
@@ -75,7 +79,7 @@ class Tables:
                 of gravity (of the vertical axis without gravity); a surface with faces of both kinds is divided, the
                 walls of "soil" become "soil walls"; one of "base", "wall".
         """
-        self._interface({"name": name, "law": law, "cut": cut, "gap": gap, "gap_profile": gap_profile, "water": water, "role": role}, "footing", {"body": body, "width": width, "thickness": thickness, "length": length, "points": points, "points_across": points_across, "azimuth": azimuth, "rule": rule, "offset": offset, "normal": normal, "bed": bed})
+        self._interface({"name": name, "law": law, "cut": cut, "gap": gap, "gap_profile": gap_profile, "water": water, "role": role}, "footing", {"body": body, "width": width, "thickness": thickness, "length": length, "points": points, "points_across": points_across, "azimuth": azimuth, "rule": rule, "offset": offset, "normal": normal, "bed": bed, "soil": soil})
 
     def pairs(
         self,

@@ -7,6 +7,7 @@
 #include "uplift/base/file.h"
 #include "uplift/base/text.h"
 #include "uplift/case/advice/history_forecast.h"
+#include "uplift/case/build/bed.h"
 #include "uplift/case/build/behaviours.h"
 #include "uplift/case/build/criteria.h"
 #include "uplift/case/build/output.h"
@@ -37,6 +38,15 @@ const Values& behaviour_of(const InterfacePart& part, const RunSpec& spec) {
   return replaced ? *spec.law : part.table->part("law");
 }
 
+/// With the numbers of the soil.
+const Values& behaviour_on_soil(const Values& behaviour, const InterfaceFacts& facts, const RunSpec& spec, Space space, BuiltCase& built) {
+  auto derived = law_on_soil(behaviour, facts.soil.get(), space.dimension);
+  if (!derived) return behaviour;
+  if (&behaviour == spec.law && spec.stiffness_ratio) fail(behaviour, "", "numbers in the law of a stiffness sweep", "\"soil\"");
+  built.derived.push_back(std::move(derived));
+  return *built.derived.back();
+}
+
 /// `like`: the interfaces get the components that they have in this model; null: as many as their law and supports leave.
 void add_interfaces(const Case& read, const RunSpec& spec, const Model* like, ModelBuilder& builder, CaseNames& names, BuiltCase& built) {
   if (like) builder.keep_tangents();
@@ -44,7 +54,7 @@ void add_interfaces(const Case& read, const RunSpec& spec, const Model* like, Mo
   for (InterfacePart& part : parts) {
     if (std::string note = note_of_water(part); !note.empty()) built.notes.push_back(std::move(note));
     Joint& joint = part.joint;
-    const Values& behaviour = behaviour_of(part, spec);
+    const Values& behaviour = behaviour_on_soil(behaviour_of(part, spec), joint.facts, spec, names.space, built);
     InterfaceSpec made;
     made.name = part.name;
     made.footprint = part.footprint;
@@ -57,6 +67,8 @@ void add_interfaces(const Case& read, const RunSpec& spec, const Model* like, Mo
     made.behaviour = behaviour.type();
     made.law = make_law(behaviour, made.footprint);
     if (!made.law) made.cone = make_part(cone_catalog(), behaviour);
+    if (made.cone && joint.facts.soil)
+      fail(behaviour, "", "a traction law on [interface.footing.soil]: constraints know no stiffness", in_quotes(behaviour.type()));
     if (made.cone && !joint.facts.why_no_cones.empty())
       fail(behaviour, "", fmt::format("a traction law on {}: constraints at all of its points are too many", joint.facts.why_no_cones),
            in_quotes(behaviour.type()));
@@ -135,7 +147,10 @@ void add_stages(const Case& read, const RunSpec& spec, RunPlan& plan) {
 }
 
 /// What a foundation cannot stand beside.
-void check_foundation(const Values& model, bool cone, const RunPlan& plan) {
+void check_foundation(const Values& model, bool cone, const Values* method, const RunPlan& plan) {
+  if (method && method->type() != "newton")
+    fail(*method, "", "method = \"newton\" with a foundation: its ground gives way, and methods of constraints have nothing to hold",
+         in_quotes(method->type()));
   if (cone) fail(model, "", "traction laws in the interfaces beside a foundation, whose ground gives way", "a constraint in one of them");
   for (const Stage& stage : plan.stages)
     if (stage.type == Stage::Type::dynamics && stage.scheme.filtered())
@@ -149,7 +164,8 @@ void add_method(const Case& read, const RunSpec& spec, BuiltCase& built) {
   bool cone = false;
   for (const Interface& interface : built.model.interfaces) cone = cone || interface.cone != nullptr;
   for (std::size_t k = 0; k < built.model.interfaces.size(); ++k)
-    if (built.model.interfaces[k].footprint) check_foundation(*built.behaviours[k], cone && !spec.bonded, built.plan);
+    if (built.model.interfaces[k].footprint)
+      check_foundation(*built.behaviours[k], cone && !spec.bonded, spec.bonded ? nullptr : method, built.plan);
   if (spec.bonded) method = nullptr;
   if (method && cone && method->type() == "newton")
     fail(*method, "", "a method for cones (penalty, augmented_lagrangian, lagrange), or a traction law", "\"newton\" with a cone");

@@ -95,11 +95,12 @@ struct InterfaceFacts {
   double tension = 0;             // Pa: tensile strength of the law, 0 without
   std::vector<int> upper, lower;  // nodes of either side, each once
   Role role = Role::base;
-  double depth = 0;                      // m out of the plane; 0 in space and for isolated pairs, which have only an area
-  std::vector<FacePair> faces;           // of the mesh, opened along it
-  std::string why_no_cones;              // where its points are too many for constraints, in words; empty: they are not
-  bool nodal = true;                     // its points stand at node pairs; of faces only
-  std::shared_ptr<const Facets> facets;  // the surface between the points; null for node pairs on their own
+  double depth = 0;                           // m out of the plane; 0 in space and for isolated pairs, which have only an area
+  std::vector<FacePair> faces;                // of the mesh, opened along it
+  std::string why_no_cones;                   // where its points are too many for constraints, in words; empty: they are not
+  bool nodal = true;                          // its points stand at node pairs; of faces only
+  std::shared_ptr<const FootingOnSoil> soil;  // whose stiffness it has; null: none
+  std::shared_ptr<const Facets> facets;       // the surface between the points; null for node pairs on their own
 };
 
 /// Nodes of the model along beams, one after another, as they are drawn.

@@ -11,6 +11,7 @@
 #include "uplift/cli/load.h"
 #include "uplift/cli/words.h"
 #include "uplift/laws/foundation.h"
+#include "uplift/laws/soil_bed.h"
 
 namespace uplift::cli {
 namespace {
@@ -93,6 +94,17 @@ void print_bed(const FootingOnSoil& footing, const SoilSprings& springs, double 
                     to_string(rocking), 100 * share, per_area(springs[vertical].stiffness() / share, "Pa/m"), 100 / share));
   }
   say("A uniform bed has either the vertical or the rocking stiffness; a [[foundation]] has both.");
+  if (footing.formulas == SoilFormulas::disc) return;
+  say("A bed that is stiffer towards the edges ([interface.footing.soil]; K_n, K_t = \"soil\"):");
+  for (const SoilMotion rocking : {tilting_width, tilting_length}) {
+    if (springs[rocking].at_surface == 0) continue;
+    const double ratio = 1 / share_of_uniform_bed(footing, springs, rocking);
+    const std::optional<BedProfile> profile = bed_profile(ratio);
+    say(profile ? fmt::format("  {}: {:.3g} times the mean at the edge, {:.3g} in the middle; uplift begins at M = {:.2f} N D",
+                              to_string(rocking), profile->edge, profile->middle, ratio / 6)
+                : fmt::format("  {}: none ({:.2f} times the rocking stiffness of a uniform bed; at most 3 with all of it at the edges)",
+                              to_string(rocking), ratio));
+  }
 }
 
 void print_model(const SoilSprings& springs, bool plane) {
@@ -130,9 +142,10 @@ std::vector<std::pair<std::string, FootingOnSoil>> footings_of_case(const Option
   const LoadedCase loaded = load(options);
   const BuiltCase built = build(loaded.read, runs_of_case(loaded.read).front());
   std::vector<std::pair<std::string, FootingOnSoil>> footings;
-  for (const Interface& interface : built.model.interfaces)
-    if (interface.footprint && interface.footprint->soil) footings.emplace_back(interface.name, *interface.footprint->soil);
-  if (footings.empty()) throw InputError({options.file, 0}, "", "a [[foundation]] with [foundation.soil]", "none");
+  for (const InterfaceFacts& facts : built.facts)
+    if (facts.soil) footings.emplace_back(facts.name, *facts.soil);
+  if (footings.empty())
+    throw InputError({options.file, 0}, "", "a [[foundation]] with [foundation.soil], or [interface.footing.soil]", "none");
   return footings;
 }
 

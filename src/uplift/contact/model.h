@@ -23,7 +23,7 @@ struct Block {
   Batch batch;
   const InterfaceLaw* law = nullptr;  // one of the two
   const Cone* cone = nullptr;
-  Vector area;                         // m2 per point
+  Vector area;                         // m2 per point: Interface::weight
   std::optional<Footprint> footprint;  // of a whole foundation
   // of a stored problem: the law that a method had put in the cone's place (penalty)
   double substitute_stiffness = 0;        // Pa/m

@@ -37,7 +37,7 @@ ContactModel blocks_of(const Model& model, const Behaviours& behaviours) {
     block.batch = interface.batch;
     block.law = behaviours.interfaces[i].law;
     block.cone = behaviours.interfaces[i].cone;
-    block.area = interface.area;
+    block.area = interface.weight;
     block.footprint = interface.footprint;
     first += block.rows();
     contact.blocks.push_back(std::move(block));

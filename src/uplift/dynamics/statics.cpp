@@ -33,7 +33,7 @@ Vector closed_joint(const Model& model, const Sparse& stiffness_matrix, const Be
       for (int p = 0; p < n; ++p) {
         double& value = result[first + c * n + p];
         if (behaviours.interfaces[i].law != nullptr)
-          value = std::min(stiffness[c] * interface.area[p], stiffest * largest);
+          value = std::min(stiffness[c] * interface.weight[p], stiffest * largest);
         else if (c == components - 1 || behaviours.interfaces[i].cone->friction() > 0)
           value = largest / n;
       }

@@ -18,6 +18,7 @@ struct Interface {
   std::vector<Place> position;              // m
   std::vector<Place> normal;                // unit
   Vector area;                              // m2 per point: quadrature weight x det J x thickness
+  Vector weight;                            // m2 per point: area x relative stiffness of the ground; force = weight x traction of the law
   Vector gap;                               // m per row: initial gap in the normal component, 0 in the tangential ones
   Sparse b;                                 // (points x components) x free unknowns
   Place reference;                          // m: point about which the resultant moment is taken

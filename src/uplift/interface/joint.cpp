@@ -3,7 +3,7 @@
 #include <fmt/format.h>
 
 #include "uplift/interface/interface.h"
-#include "uplift/math/quadrature.h"
+#include "uplift/laws/soil_bed.h"
 #include "uplift/math/shapes.h"
 
 namespace uplift {
@@ -28,18 +28,6 @@ void check_partners(std::size_t upper, std::size_t lower, const Where& where) {
   if (upper == 0) throw InputError(where, "interface.upper", "at least one node", "none");
   if (lower != 0 && lower != upper)
     throw InputError(where, "interface.lower", fmt::format("as many nodes as the upper side ({})", upper), fmt::format("{}", lower));
-}
-
-Quadrature footing_rule(FootingRule rule, int points) {
-  switch (rule) {
-    case FootingRule::nodal:
-      return trapezoid(points);
-    case FootingRule::midpoint:
-      return midpoint(points);
-    case FootingRule::gauss:
-      break;
-  }
-  return gauss_legendre(points);
 }
 
 void check_points(FootingRule rule, int points, std::string_view key, const Where& where) {
@@ -68,6 +56,10 @@ JointPoint element_point(const LineJoint& joint, std::size_t first, double xi, d
   return point;
 }
 
+Vector relative_stiffness(const Quadrature& points, double ratio) {
+  return ratio > 0 ? bed_distribution(points, ratio).value() : Vector(Vector::Ones(points.point.size()));
+}
+
 /// Direction of the width.
 Vec3 direction_along(const Footing& footing, const Vec3& n) {
   const bool rectangle = footing.length > 0;
@@ -76,6 +68,18 @@ Vec3 direction_along(const Footing& footing, const Vec3& n) {
 }
 
 }  // namespace
+
+Quadrature footing_rule(FootingRule rule, int points) {
+  switch (rule) {
+    case FootingRule::nodal:
+      return trapezoid(points);
+    case FootingRule::midpoint:
+      return midpoint(points);
+    case FootingRule::gauss:
+      break;
+  }
+  return gauss_legendre(points);
+}
 
 std::vector<JointPoint> footing_points(const Footing& footing, const Where& where) {
   const bool rectangle = footing.length > 0;
@@ -87,6 +91,8 @@ std::vector<JointPoint> footing_points(const Footing& footing, const Where& wher
   const Quadrature rule = footing_rule(footing.rule, footing.points);
   const Quadrature rule_across =
       rectangle ? footing_rule(footing.rule, footing.points_across) : Quadrature{Vector::Zero(1), Vector::Ones(1)};
+  const Vector along_stiffness = relative_stiffness(rule, footing.ratio),
+               across_stiffness = relative_stiffness(rule_across, footing.ratio_across);
   const double half = footing.width / 2, half_across = rectangle ? footing.length / 2 : footing.thickness;
   std::vector<JointPoint> points;
   for (Index j = 0; j < rule_across.point.size(); ++j)
@@ -95,6 +101,7 @@ std::vector<JointPoint> footing_points(const Footing& footing, const Where& wher
       point.position = footing.centre + half * rule.point[i] * along + half_across * rule_across.point[j] * across;
       point.normal = n;
       point.area = half * rule.weight[i] * half_across * rule_across.weight[j];
+      point.stiffness = along_stiffness[i] * across_stiffness[j];
       point.gap = footing.gap;
       point.upper = {{footing.body, 1.0}};
       point.rigid_upper = true;

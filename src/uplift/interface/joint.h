@@ -5,6 +5,7 @@
 #include "uplift/base/error.h"
 #include "uplift/elements/space.h"
 #include "uplift/math/linalg.h"
+#include "uplift/math/quadrature.h"
 
 // Zero-thickness joints as lists of points (Goodman's joint; Cherubini, Richard & Frau, eqs 9-14): every point has an area and sees
 //   opening = R^T (u_upper - u_lower),   R = (t, n) in the plane, (t1, t2, n) in space, n from the lower to the upper side (local_axis).
@@ -15,6 +16,7 @@ struct JointPoint {
   Place position{};                               // m
   Place normal{0, 1};                             // from lower to upper
   double area = 0;                                // m2, > 0
+  double stiffness = 1;                           // of the ground here over its mean: factor on the tractions of the law
   double gap = 0;                                 // m, initial
   double water = 0;                               // Pa: pressure of the water in the joint, on both faces
   std::vector<std::pair<int, double>> upper;      // node, shape function
@@ -42,7 +44,12 @@ struct Footing {
   double length = 0;
   int points_across = 0;
   double azimuth = 0;  // rad
+  // Rocking stiffness over that of a uniform bed, for tilting the width and the length (laws/soil_bed.h); 0: uniform. One that the points
+  // can have.
+  double ratio = 0, ratio_across = 0;
 };
+/// The rule along one side.
+Quadrature footing_rule(FootingRule rule, int points);
 /// Points in the order of t; in space those along the width first, line after line. Throws InputError (at `where`) when the width or the
 /// number of points makes no sense.
 std::vector<JointPoint> footing_points(const Footing& footing, const Where& where);

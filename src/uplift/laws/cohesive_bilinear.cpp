@@ -27,18 +27,18 @@ class BilinearLaw final : public CohesiveLaw {
 }  // namespace
 
 const Entry<InterfaceLaw>& entry_law_bilinear() {
-  static const Entry<InterfaceLaw> entry =
-      joint_entry({.name = "bilinear",
-                   .summary = "cohesive law with linear softening and secant unloading",
-                   .equations = "t_n = K_n d_n for d_n < 0\n"
-                                "envelope: K_n d_n up to F_u, then F_u (d_f - d_n)/(d_f - F_u/K_n), zero beyond d_f = 2 G_f/F_u\n"
-                                "unloading along the secant to the origin",
-                   .source = "Camanho & Davila, NASA/TM-2002-211737 (2002), pure mode I",
-                   .params = {number("K_n", "Pa/m", "normal stiffness").positive(), number("F_u", "Pa", "tensile strength").positive(),
-                              number("G_f", "J/m2", "fracture energy, the area under the envelope").positive()}},
-                  "bonded", [](const Values& values) -> std::unique_ptr<const NormalLaw> {
-                    return std::make_unique<BilinearLaw>(values.number("K_n"), values.number("F_u"), checked_fracture_energy(values));
-                  });
+  static const Entry<InterfaceLaw> entry = joint_entry(
+      {.name = "bilinear",
+       .summary = "cohesive law with linear softening and secant unloading",
+       .equations = "t_n = K_n d_n for d_n < 0\n"
+                    "envelope: K_n d_n up to F_u, then F_u (d_f - d_n)/(d_f - F_u/K_n), zero beyond d_f = 2 G_f/F_u\n"
+                    "unloading along the secant to the origin",
+       .source = "Camanho & Davila, NASA/TM-2002-211737 (2002), pure mode I",
+       .params = {number("K_n", "Pa/m", "normal stiffness").positive().or_word("soil"), number("F_u", "Pa", "tensile strength").positive(),
+                  number("G_f", "J/m2", "fracture energy, the area under the envelope").positive()}},
+      "bonded", [](const Values& values) -> std::unique_ptr<const NormalLaw> {
+        return std::make_unique<BilinearLaw>(values.number("K_n"), values.number("F_u"), checked_fracture_energy(values));
+      });
   return entry;
 }
 

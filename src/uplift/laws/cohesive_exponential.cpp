@@ -34,18 +34,18 @@ class ExponentialLaw final : public CohesiveLaw {
 }  // namespace
 
 const Entry<InterfaceLaw>& entry_law_exponential() {
-  static const Entry<InterfaceLaw> entry =
-      joint_entry({.name = "exponential",
-                   .summary = "cohesive law with exponential softening and secant unloading",
-                   .equations = "t_n = K_n d_n for d_n < 0\n"
-                                "envelope: K_n d_n up to F_u, then F_u exp(-b (d_n - F_u/K_n)), b = F_u/(G_f - F_u^2/(2 K_n))\n"
-                                "unloading along the secant to the origin",
-                   .source = "Oliver, Cervera, Oller & Lubliner (1990); secant unloading: Camanho & Davila, NASA/TM-2002-211737 (2002)",
-                   .params = {number("K_n", "Pa/m", "normal stiffness").positive(), number("F_u", "Pa", "tensile strength").positive(),
-                              number("G_f", "J/m2", "fracture energy, the area under the envelope").positive()}},
-                  "bonded", [](const Values& values) -> std::unique_ptr<const NormalLaw> {
-                    return std::make_unique<ExponentialLaw>(values.number("K_n"), values.number("F_u"), checked_fracture_energy(values));
-                  });
+  static const Entry<InterfaceLaw> entry = joint_entry(
+      {.name = "exponential",
+       .summary = "cohesive law with exponential softening and secant unloading",
+       .equations = "t_n = K_n d_n for d_n < 0\n"
+                    "envelope: K_n d_n up to F_u, then F_u exp(-b (d_n - F_u/K_n)), b = F_u/(G_f - F_u^2/(2 K_n))\n"
+                    "unloading along the secant to the origin",
+       .source = "Oliver, Cervera, Oller & Lubliner (1990); secant unloading: Camanho & Davila, NASA/TM-2002-211737 (2002)",
+       .params = {number("K_n", "Pa/m", "normal stiffness").positive().or_word("soil"), number("F_u", "Pa", "tensile strength").positive(),
+                  number("G_f", "J/m2", "fracture energy, the area under the envelope").positive()}},
+      "bonded", [](const Values& values) -> std::unique_ptr<const NormalLaw> {
+        return std::make_unique<ExponentialLaw>(values.number("K_n"), values.number("F_u"), checked_fracture_energy(values));
+      });
   return entry;
 }
 

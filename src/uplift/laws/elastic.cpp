@@ -37,8 +37,8 @@ const Entry<InterfaceLaw>& entry_law_elastic() {
                    .summary = "bonded elastic joint that holds tension: what a linear analysis assumes",
                    .equations = "t_n = K_n d_n + c d'_n",
                    .source = "Cherubini, Richard & Frau, eq 14 with a constant stiffness",
-                   .params = {number("K_n", "Pa/m", "normal stiffness").positive(),
-                              number("c", "Pa s/m", "normal damping").nonnegative().standard(0.0)}},
+                   .params = {number("K_n", "Pa/m", "normal stiffness").positive().or_word("soil"),
+                              number("c", "Pa s/m", "normal damping").nonnegative().or_word("soil").standard(0.0)}},
                   "bonded", [](const Values& values) -> std::unique_ptr<const NormalLaw> {
                     return std::make_unique<ElasticLaw>(values.number("K_n"), values.number("c"));
                   });

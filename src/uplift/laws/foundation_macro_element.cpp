@@ -13,6 +13,19 @@
 namespace uplift {
 namespace {
 
+/// A width of millimetres, or a stiffness in another unit: the footing would turn over at rotations that mean nothing.
+void refuse_magnitudes(const Values& values, const MacroElasticity& ground, int axes) {
+  constexpr double most = 1e4;  // of formulas for the ground, with any embedment, up to 50
+  for (int i = 0; i < axes; ++i) {
+    const double uniform = ground.vertical * ground.length[i] * ground.length[i] / 12, ratio = ground.rocking[i] / uniform;
+    if (!(ratio <= most))
+      fail(values, "",
+           fmt::format("a rocking stiffness of up to {:g} times that of a uniform bed with K_v, {:.3g} N m/rad (ground: 1 to 50 times)",
+                       most, uniform),
+           fmt::format("{:.3g} N m/rad for a side of {:g} m", ground.rocking[i], ground.length[i]));
+  }
+}
+
 /// Length out of the plane counts in areas alone: forces of a strip are those of its whole length.
 MacroElasticity elasticity_of(const Footprint& footprint, const Values& values, const std::vector<double>& stiffness) {
   MacroElasticity made;
@@ -23,6 +36,7 @@ MacroElasticity elasticity_of(const Footprint& footprint, const Values& values, 
     made.vertical = stiffness[1];
     made.horizontal[0] = made.horizontal[1] = stiffness[0];
     made.rocking[0] = made.rocking[1] = stiffness[2];
+    refuse_magnitudes(values, made, 1);
     return made;
   }
   made.vertical = stiffness[2];
@@ -30,6 +44,7 @@ MacroElasticity elasticity_of(const Footprint& footprint, const Values& values, 
   made.rocking[0] = stiffness[4], made.rocking[1] = stiffness[3];  // a moment about t2 tilts the width
   if (made.disc && (stiffness[0] != stiffness[1] || stiffness[3] != stiffness[4]))
     fail(values, values.has("K_h2") ? "K_h2" : "K_r2", "the same stiffness in all directions of a disc", "two");
+  refuse_magnitudes(values, made, 2);
   return made;
 }
 

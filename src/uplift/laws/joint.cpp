@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <utility>
 
+#include "uplift/base/text.h"
 #include "uplift/laws/filter.h"
 #include "uplift/laws/tangential.h"
 
@@ -92,11 +93,18 @@ class JointLaw final : public InterfaceLaw {
   std::unique_ptr<const TangentialPart> tangential_;
 };
 
+/// "soil" is a word for the case, which knows the soil.
+void refuse_words(const Values& values) {
+  for (const char* key : {"K_n", "K_t", "c"})
+    if (values.items().contains(key) && values.is_word(key)) fail(values, key, "a number", in_quotes(values.text(key)));
+}
+
 }  // namespace
 
 Entry<InterfaceLaw> joint_entry(PartInfo info, const char* tangential, std::unique_ptr<const NormalLaw> (*make)(const Values&)) {
   for (Field& field : tangential_fields(tangential)) info.params.push_back(std::move(field));
   return {std::move(info), [make](const Values& values) -> std::unique_ptr<const InterfaceLaw> {
+            refuse_words(values);
             auto normal = make(values);
             const double stiffness = normal->stiffness();
             return std::make_unique<JointLaw>(std::move(normal), make_tangential(values, stiffness));

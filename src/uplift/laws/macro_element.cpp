@@ -66,6 +66,7 @@ class MacroElement::Path {
 
  private:
   bool go(double a, double b, int depth);
+  void go_elastically(const MacroVector& before, const MacroReturned& now);
   void add_average(double a, double b, const MacroVector& before, const MacroMatrix& before_slope, const MacroElastic& at_before,
                    const MacroReturned& now, const MacroMatrix& now_slope, const MacroVector& yielded);
 
@@ -84,7 +85,11 @@ bool MacroElement::Path::go(double a, double b, int depth) {
     const double middle = 0.5 * (a + b);
     return depth < most_halvings && go(a, middle, depth + 1) && go(middle, b, depth + 1);
   }
-  const MacroElastic at_before = law_.uplift_.respond(before);
+  if (a == 0 && b == 1 && !now.yielded && now.at.contact) {
+    go_elastically(before, now);
+    return true;
+  }
+  const MacroElastic at_before = law_.uplift_.respond(before, false);
   const MacroMatrix one = MacroMatrix::Identity(), before_slope = a * one - plastic_slope_;
   const MacroMatrix now_slope = now.by_trial * (b * one - plastic_slope_) + now.by_settlement * settlement_slope_.transpose();
   const MacroVector yielded = trial - now.elastic;  // with the shear that a footing without contact forgets
@@ -102,6 +107,16 @@ bool MacroElement::Path::go(double a, double b, int depth) {
   end = now.at.force;
   end_slope = now.at.stiffness * now_slope;
   return true;
+}
+
+/// The whole step without yielding, in contact at its end: nothing but the potential.
+void MacroElement::Path::go_elastically(const MacroVector& before, const MacroReturned& now) {
+  end = now.at.force;
+  end_slope = now.at.stiffness;
+  if (!average_) return;
+  const MacroUplift::Average average = law_.uplift_.average(before, law_.uplift_.respond(before, false), now.elastic, now.at, false);
+  mean = average.force;
+  mean_slope = average.by_to;
 }
 
 /// Adds the discrete gradient of the increment. Where the average over a long increment would feed energy in (a reversal while N changes
@@ -181,7 +196,7 @@ void MacroElement::energy(const Batch& batch, const double* opening, const doubl
   for (int i = 0; i < batch.points; ++i) {
     const Rows rows(batch.points, i, batch.components);
     if (stored != nullptr) {
-      const MacroElastic at = uplift_.respond(rows.get(opening) - rows.get(history));
+      const MacroElastic at = uplift_.respond(rows.get(opening) - rows.get(history), false);
       const double twist = rows.has_torsion() ? opening[rows.at(batch.components - 1)] : 0;
       stored[i] = at.energy + at.shear_energy + 0.5 * torsion_ * twist * twist;
     }
@@ -201,7 +216,7 @@ FootingContact MacroElement::contact(const Batch& batch, const double* opening, 
   const MacroElasticity& ground = uplift_.elasticity();
   const double one = ground.length[0] * std::abs(elastic[macro_m1]), two = ground.length[1] * std::abs(elastic[macro_m2]);
   const double edge = 0.5 * (ground.disc ? std::hypot(one, two) : one + two), toe = elastic[macro_n] + edge;
-  const MacroElastic at = uplift_.respond(elastic);
+  const MacroElastic at = uplift_.respond(elastic, false);
   const double open = 1 - at.contact_share;
   // what has lifted off is straight: its slope is the rotation
   FootingContact made{open, at.contact ? open * std::hypot(one, two) : edge - elastic[macro_n], -toe};
@@ -216,7 +231,7 @@ FootingContact MacroElement::contact(const Batch& batch, const double* opening, 
 MacroState MacroElement::state(int components, const double* opening, const double* history) const {
   const Rows rows(1, 0, components);
   const MacroVector plastic = rows.get(history);
-  const MacroElastic at = uplift_.respond(rows.get(opening) - plastic);
+  const MacroElastic at = uplift_.respond(rows.get(opening) - plastic, false);
   const double* scalars = history + rows.count;
   return {.vertical = at.force[macro_n],
           .heave = at.heave,

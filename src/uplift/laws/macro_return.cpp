@@ -18,17 +18,19 @@ enum Active { bearing_only = 1, sliding_only = 2, both = 3 };
 /// range of the forces, which is bounded by the edges of the base.
 class Return {
  public:
-  Return(const MacroUplift& uplift, const MacroSurfaces& surfaces, const MacroVector& trial, double settlement)
+  /// `at`: the forces at the trial state.
+  Return(const MacroUplift& uplift, const MacroSurfaces& surfaces, const MacroVector& trial, const MacroElastic& at, double settlement)
       : uplift_(uplift), surfaces_(surfaces), trial_(trial), settlement_(settlement) {
     const double v = surfaces.capacity(settlement);
-    scale_ = std::isfinite(v) ? v : std::max(uplift.respond(trial).force.head<3>().cwiseAbs().maxCoeff(), 1e-300);
+    scale_ = std::isfinite(v) ? v : std::max(at.force.head<3>().cwiseAbs().maxCoeff(), 1e-300);
     const MacroElasticity& e = uplift.elasticity();
     row_scale_ = uplift.stiffness() / scale_;
     row_scale_[macro_m1] /= e.length[0];
     row_scale_[macro_m2] /= e.length[1];
   }
 
-  MacroReturned solve();
+  /// `out`: the trial state in contact with a load.
+  void solve(MacroReturned& out);
 
  private:
   struct State {
@@ -61,6 +63,17 @@ class Return {
   bool accept(const State& state) const;
   bool attempt(Active active, State& state);
   void linearise(const State& state, MacroReturned& out) const;
+  /// Where a footing touches the ground with an edge, without load: `toe` is d toe/d displacement, and M/N there; `flow` the direction of
+  /// the flow, `most` the multiplier that takes the toe out of the ground.
+  struct Edge {
+    MacroVector toe, flow;
+    double most = 0;
+  };
+  Edge edge() const;
+  bool sinks() const;
+  bool beyond(const MacroVector& e) const { return uplift_.beyond_capacity(e, capacity(e)); }
+  bool start_on_edge(State& state) const;
+  bool land(MacroReturned& out) const;
 
   const MacroUplift& uplift_;
   const MacroSurfaces& surfaces_;
@@ -219,7 +232,7 @@ bool Return::attempt(Active active, State& state) {
     if (start(limit, state) && newton(state) && accept(state)) return true;
   for (const double share : {0.95, 0.7, 0.3, 0.05})
     if (start_with_less_shear(share, state) && newton(state) && accept(state)) return true;
-  return false;
+  return start_on_edge(state) && newton(state) && accept(state);
 }
 
 /// d e/d trial and d e/d settlement of the converged state.
@@ -239,36 +252,96 @@ void Return::linearise(const State& state, MacroReturned& out) const {
   }
 }
 
-MacroReturned Return::solve() {
-  MacroReturned out;
-  out.elastic = trial_;
-  out.at = uplift_.respond(trial_);
-  if (!out.at.contact) {
-    out.elastic.segment<2>(macro_h1).setZero();
-    out.by_trial.diagonal().segment<2>(macro_h1).setZero();
-    return out;
+bool Return::sinks() const {
+  return surfaces_.has_bearing() && !surfaces_.strength().power_law && surfaces_.strength().flow == MacroStrength::Flow::settling;
+}
+
+/// At the trial rotation.
+Return::Edge Return::edge() const {
+  const MacroElasticity& ground = uplift_.elasticity();
+  Edge made;
+  made.toe.setZero();
+  made.toe[macro_n] = 1;
+  const double turned = std::hypot(trial_[macro_m1], trial_[macro_m2]);
+  for (int i = 0; i < 2; ++i) {
+    const double theta = trial_[macro_m1 + i];
+    if (theta != 0) made.toe[macro_m1 + i] = 0.5 * ground.length[i] * (ground.disc ? theta / turned : theta < 0 ? -1 : 1);
   }
-  if (out.at.force[macro_n] == 0) return out;  // at rest without load
+  made.flow = surfaces_.bearing_flow(made.toe, surfaces_.strength().service).direction;
+  made.most = made.toe.dot(trial_) / made.toe.dot(made.flow);
+  return made;
+}
+
+/// A guess of small N: so far along the flow of the edge that a contact just bears.
+bool Return::start_on_edge(State& state) const {
+  if (!sinks() || !bearing()) return false;
+  const Edge edge = this->edge();
+  const auto sunk = [&](double multiplier) { return MacroVector(trial_ - multiplier * edge.flow); };
+  if (!beyond(trial_) || beyond(sunk(edge.most))) return false;
+  double low = 0, high = edge.most;
+  for (int i = 0; i < 60; ++i) {
+    const double middle = 0.5 * (low + high);
+    (beyond(sunk(middle)) ? low : high) = middle;
+  }
+  state = {};
+  state.e = sunk(high);
+  const MacroVector force = uplift_.respond(state.e).force;
+  const double shear = std::hypot(force[macro_h1], force[macro_h2]), most = 0.05 * force[macro_n];
+  if (shear > most) state.e.segment<2>(macro_h1) *= most / shear;
+  return guess(state);
+}
+
+/// A footing that comes down on an edge where the contact, however small, is pressed beyond its bearing capacity: it sinks in without load,
+/// along the limit of the flow for N -> 0 (eqs M23, M24), as far as it touches the ground.
+bool Return::land(MacroReturned& out) const {
+  if (!sinks()) return false;
+  const Edge edge = this->edge();
+  MacroVector elastic = trial_ - edge.most * edge.flow;
+  elastic.segment<2>(macro_h1).setZero();
+  const bool turns_back = elastic.tail<2>().cwiseProduct(trial_.tail<2>()).minCoeff() < 0;
+  if (turns_back || !beyond(elastic)) return false;
+  out.elastic = elastic;
+  out.at = {};
+  out.at.contact = false;
+  out.at.contact_share = 0;
+  out.by_trial -= edge.flow * edge.toe.transpose() / edge.toe.dot(edge.flow);
+  out.by_trial.middleRows<2>(macro_h1).setZero();
+  return true;
+}
+
+void Return::solve(MacroReturned& out) {
   const bool bears = within_bearing(out.at.force, surfaces_.capacity(settlement_), 1), grips = within_sliding(out.at.force, 1);
-  if (bears && grips) return out;
+  if (bears && grips) return;
   State state;
   const Active first = bears ? sliding_only : bearing_only, last = bears ? bearing_only : sliding_only;
   out.converged = attempt(first, state);
   if (!out.converged && bears == grips) out.converged = attempt(last, state);
   if (!out.converged) out.converged = attempt(both, state);
   if (!out.converged && bears != grips) out.converged = attempt(last, state);
-  if (!out.converged) return out;
   out.yielded = true;
+  if (!out.converged) {
+    out.converged = land(out);
+    return;
+  }
   out.elastic = state.e;
   out.at = state.at;
   linearise(state, out);
-  return out;
 }
 
 }  // namespace
 
 MacroReturned macro_return(const MacroUplift& uplift, const MacroSurfaces& surfaces, const MacroVector& trial, double settlement) {
-  return Return(uplift, surfaces, trial, settlement).solve();
+  MacroReturned out;
+  out.elastic = trial;
+  out.at = uplift.respond(trial);
+  if (!out.at.contact) {
+    out.elastic.segment<2>(macro_h1).setZero();
+    out.by_trial.diagonal().segment<2>(macro_h1).setZero();
+    return out;
+  }
+  const bool at_rest = out.at.force[macro_n] == 0;  // without load
+  if (!at_rest && (surfaces.has_bearing() || surfaces.has_sliding())) Return(uplift, surfaces, trial, out.at, settlement).solve(out);
+  return out;
 }
 
 }  // namespace uplift

@@ -136,7 +136,7 @@ double MacroUplift::vertical_force(double w, const Axes& axes) const {
   return n;
 }
 
-MacroElastic MacroUplift::respond(const MacroVector& q) const {
+MacroElastic MacroUplift::respond(const MacroVector& q, bool with_stiffness) const {
   MacroElastic out;
   const Axes axes(elastic_, q);
   const double n = vertical_force(q[macro_n], axes);
@@ -156,6 +156,7 @@ MacroElastic MacroUplift::respond(const MacroVector& q) const {
   MacroVector coupling = MacroVector::Zero();                 // -dw/dtheta at fixed N
   coupling[macro_n] = 1;
   for (int i = 0; i < axes.count; ++i) {
+    if (axes.rotation[i] == 0 && !elastic_.disc) continue;
     const double x = n > 0 ? axes.offset[i] / n : 0, arm = elastic_.length[i] / elastic_.shape, half = 0.5 * elastic_.length[i];
     const Curve c = curve(x, beta_, gamma_);
     const double moment = arm * n * c.moment;
@@ -163,6 +164,7 @@ MacroElastic MacroUplift::respond(const MacroVector& q) const {
     out.heave += axes.factor[i] * n * c.heave;
     out.contact_share /= c.y;
     toe += half * axes.rotation[i] * (1 - c.slack);
+    if (!with_stiffness) continue;
     vertical += axes.factor[i] * (gamma_ + 1) * c.log_like;
     coupling -= arm * (x / c.compliance - c.moment) * axes.along[i];
     const double along = elastic_.rocking[i] / c.compliance;
@@ -174,9 +176,22 @@ MacroElastic MacroUplift::respond(const MacroVector& q) const {
       out.stiffness(macro_m1 + i, macro_m1 + i) = along;
     }
   }
-  out.stiffness += coupling * coupling.transpose() / vertical;
+  if (with_stiffness) out.stiffness += coupling * coupling.transpose() / vertical;
   out.energy = 0.5 * n * toe;  // (N w + M theta)/2, homogeneous of degree two
   return out;
+}
+
+/// Every axis that lifts has 1 - 2 |M|/(N D) = (gamma/beta) (N/offset)^(1/gamma).
+bool MacroUplift::beyond_capacity(const MacroVector& q, double capacity) const {
+  const Axes axes(elastic_, q);
+  double power = 0, share = capacity;
+  for (int i = 0; i < axes.count; ++i) {
+    if (!(axes.offset[i] > 0)) continue;
+    power += 1 / gamma_;
+    share *= gamma_ / beta_ * std::pow(axes.offset[i], -1 / gamma_);
+  }
+  constexpr double round_off = 1e-12;
+  return power > 1 + round_off || (power > 1 - round_off && share <= 1);
 }
 
 MacroVector MacroUplift::displacement(const MacroVector& force) const {
@@ -194,37 +209,40 @@ MacroVector MacroUplift::displacement(const MacroVector& force) const {
 }
 
 MacroUplift::Average MacroUplift::average(const MacroVector& from, const MacroElastic& at_from, const MacroVector& to,
-                                          const MacroElastic& at_to) const {
+                                          const MacroElastic& at_to, bool with_from) const {
   const MacroVector middle = 0.5 * (from + to);
   const MacroElastic half = respond(middle);
   MacroVector step = to - from, mid_force = half.force;
-  MacroMatrix mid = 0.5 * half.stiffness;
   step.segment<2>(macro_h1).setZero();  // the shear is linear while in contact: its average is the plain mean below
   mid_force.segment<2>(macro_h1).setZero();
-  mid.middleRows<2>(macro_h1).setZero();
 
-  Average out{mid_force, mid, mid};
+  Average out;
+  out.force = mid_force;
+  out.by_to = 0.5 * half.stiffness;
+  out.by_to.middleRows<2>(macro_h1).setZero();
+  if (with_from) out.by_from = out.by_to;
   const MacroVector scaled = stiffness_.cwiseProduct(step);
   const double square = step.dot(scaled), work = mid_force.dot(step), lacking = at_to.energy - at_from.energy - work;
   const double round_off =
       16 * std::numeric_limits<double>::epsilon() * (at_to.energy + at_from.energy + mid_force.cwiseProduct(middle).cwiseAbs().sum());
   if (std::abs(lacking) > round_off && square > 0) {
     const double share = lacking / square;
-    const MacroVector bend = mid.transpose() * step;
-    MacroVector by_to = at_to.force - mid_force - bend - 2 * share * scaled,
-                by_from = -at_from.force + mid_force - bend + 2 * share * scaled;
-    by_to.segment<2>(macro_h1).setZero(), by_from.segment<2>(macro_h1).setZero();
-    MacroVector diagonal = share * stiffness_;
-    diagonal.segment<2>(macro_h1).setZero();
+    const MacroVector bend = out.by_to.transpose() * step, twice = 2 * share * scaled;
     out.force += share * scaled;
-    out.by_to += scaled * by_to.transpose() / square;
-    out.by_from += scaled * by_from.transpose() / square;
-    out.by_to.diagonal() += diagonal;
-    out.by_from.diagonal() -= diagonal;
+    // derivatives of the share with respect to either end, and of the increment itself
+    const auto add = [&](const MacroVector& difference, double sign, MacroMatrix& by) {
+      MacroVector by_end = (sign * (difference - twice) - bend) / square;
+      by_end.segment<2>(macro_h1).setZero();
+      by += scaled * by_end.transpose();
+      by(macro_n, macro_n) += sign * share * stiffness_[macro_n];
+      by.diagonal().tail<2>() += sign * share * stiffness_.tail<2>();
+    };
+    add(at_to.force - mid_force, 1, out.by_to);
+    if (with_from) add(at_from.force - mid_force, -1, out.by_from);
   }
   for (int i = macro_h1; i <= macro_h2; ++i) {
     out.force[i] = 0.5 * (at_from.force[i] + at_to.force[i]);
-    out.by_from(i, i) = at_from.contact ? 0.5 * stiffness_[i] : 0;
+    if (with_from) out.by_from(i, i) = at_from.contact ? 0.5 * stiffness_[i] : 0;
     out.by_to(i, i) = at_to.contact ? 0.5 * stiffness_[i] : 0;
   }
   return out;

@@ -39,8 +39,10 @@ class MacroUplift {
   /// K_z, K_h, K_h, K_r, K_r of the foundation in full contact.
   const MacroVector& stiffness() const { return stiffness_; }
 
-  /// Forces from displacements; without contact there are none.
-  MacroElastic respond(const MacroVector& displacement) const;
+  /// Forces from displacements; without contact there are none. The stiffness is left zero where it is not wanted.
+  MacroElastic respond(const MacroVector& displacement, bool with_stiffness = true) const;
+  /// Whether a vertical force that vanishes at these rotations exceeds V times the product of 1 - 2 |M_i|/(N D_i): V is `capacity` [N].
+  bool beyond_capacity(const MacroVector& displacement, double capacity) const;
   /// Displacements from forces with N > 0 and |M| < N D/2 (the derivative of the complementary energy).
   MacroVector displacement(const MacroVector& force) const;
   /// The path average of the force between two displacements: discrete gradient (M12), so that average . (to - from) is the change of
@@ -49,7 +51,9 @@ class MacroUplift {
     MacroVector force;
     MacroMatrix by_from, by_to;
   };
-  Average average(const MacroVector& from, const MacroElastic& at_from, const MacroVector& to, const MacroElastic& at_to) const;
+  /// `with_from`: else by_from has no meaning. The stiffness of `at_from` and `at_to` is not needed.
+  Average average(const MacroVector& from, const MacroElastic& at_from, const MacroVector& to, const MacroElastic& at_to,
+                  bool with_from = true) const;
 
  private:
   struct Axes;

@@ -415,7 +415,7 @@ const Entry<InterfaceLaw>& entry_law_sdm() {
                                 "t_n <= F_u exp(-F_u j/G_f)\n"
                                 "eta = 1 for t_n > 0; 1 - t_n/F_c for F_c <= t_n <= 0; 0 below",
                    .source = "Cherubini, Richard & Frau, eqs 15 to 21, in the reading of docs/theory, eqs (2) to (8)",
-                   .params = {number("K_n", "Pa/m", "normal stiffness; above F_u^2/G_f").positive(),
+                   .params = {number("K_n", "Pa/m", "normal stiffness; above F_u^2/G_f").positive().or_word("soil"),
                               number("F_u", "Pa", "tensile strength; 0: no tension, the jump follows the opening").nonnegative(),
                               number("G_f", "J/m2", "cracking energy").positive(),
                               number("F_c", "Pa", "closure stress; its size should stay below 1 % of the bearing pressure").negative()}},

@@ -170,8 +170,8 @@ const Entry<InterfaceLaw>& entry_law_springs() {
                    .equations = "t_n = K_n min(d_n, 0)\n"
                                 "with damping: t_n = min(0, K_n d_n + c d'_n) while d_n < 0, else 0: it never pulls",
                    .source = "Winkler (1867); the dashpot as in Kelvin-Voigt contact, cut off at zero force",
-                   .params = {number("K_n", "Pa/m", "normal stiffness in compression").positive(),
-                              number("c", "Pa s/m", "damping while in contact").nonnegative().standard(0.0)}},
+                   .params = {number("K_n", "Pa/m", "normal stiffness in compression").positive().or_word("soil"),
+                              number("c", "Pa s/m", "damping while in contact").nonnegative().or_word("soil").standard(0.0)}},
                   "none", [](const Values& values) -> std::unique_ptr<const NormalLaw> {
                     return std::make_unique<Springs>(values.number("K_n"), values.number("c"));
                   });

@@ -388,7 +388,7 @@ std::vector<Field> tangential_fields(const char* standard) {
                  "is given, "
                  "bonded where only K_t is")
               .standard(standard),
-          number("K_t", "Pa/m", "tangential stiffness; absent: K_n").positive().optional(),
+          number("K_t", "Pa/m", "tangential stiffness; absent: K_n").positive().or_word("soil").optional(),
           number("friction", "1", "coefficient of friction (coulomb)").nonnegative().optional(),
           number("cohesion", "Pa", "shear strength at zero pressure, lost with damage (coulomb); absent: 0").nonnegative().optional()};
 }

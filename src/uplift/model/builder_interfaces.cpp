@@ -61,13 +61,14 @@ void ModelBuilder::place_interfaces(Model& model) {
     face.batch.components = spec.components;
     face.batch.rotations = spec.rotations;
     face.reference = spec.reference;
-    face.area.resize(points);
+    face.area.resize(points), face.weight.resize(points);
     face.gap = Vector::Zero(face.rows());
     for (int i = 0; i < points; ++i) {
       const JointPoint& point = spec.points[i];
       face.position.push_back(point.position);
       face.normal.push_back(point.normal.normalized());
       face.area[i] = point.area;
+      face.weight[i] = point.area * point.stiffness;
       face.gap[face.batch.normal() + i] = point.gap;
       for (const bool upper : {true, false}) {
         for (int c = 0; c < spec.components; ++c)

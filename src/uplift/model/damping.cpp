@@ -20,7 +20,7 @@ Sparse bonded_stiffness(const Model& model, const Sparse& without) {
     std::vector<double> closed(face.batch.components);
     face.law->closed_stiffness(face.batch.components, closed.data());
     Vector stiffness(face.rows());
-    for (int c = 0; c < face.batch.components; ++c) stiffness.segment(c * face.batch.points, face.batch.points) = closed[c] * face.area;
+    for (int c = 0; c < face.batch.components; ++c) stiffness.segment(c * face.batch.points, face.batch.points) = closed[c] * face.weight;
     sum += Sparse(face.b.transpose() * stiffness.asDiagonal() * face.b);
   }
   return sum;

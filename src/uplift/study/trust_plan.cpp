@@ -4,6 +4,7 @@
 
 #include <algorithm>
 
+#include "uplift/case/build/bed.h"
 #include "uplift/laws/tangential.h"
 
 namespace uplift {
@@ -15,6 +16,14 @@ constexpr double of_soil = 2;              // that of the soil is a property, wh
 
 bool has_number(const Values& part, std::string_view key) {
   return part.items().contains(key) && part.has(key);
+}
+
+/// With the numbers of its soil.
+Values law_of(const Values& interface) {
+  const Values& law = interface.part("law");
+  const Values* footing = interface.has("footing") ? &interface.table("footing") : nullptr;
+  const auto numbers = law_on_soil(law, soil_of(interface).get(), footing && footing->has("length") ? 3 : 2);
+  return numbers ? *numbers : law;
 }
 
 std::string law_path(std::size_t interface) {
@@ -90,7 +99,7 @@ class Planner {
       std::vector<double> factors;
       const std::vector<Values>& interfaces = root_.tables("interface");
       for (std::size_t k = 0; k < interfaces.size(); ++k) {
-        const Values& law = interfaces[k].part("law");
+        const Values law = law_of(interfaces[k]);
         const double factor = factor_of(interfaces[k]), by = stiffer ? factor : 1 / factor;
         if (has_number(law, "K_n")) factors.push_back(factor);
         for (const char* key : {"K_n", "K_t"})
@@ -163,7 +172,7 @@ class Planner {
     const std::vector<Values>& interfaces = root_.tables("interface");
     std::string label;
     for (std::size_t k = 0; k < interfaces.size(); ++k) {
-      const Values& law = interfaces[k].part("law");
+      const Values law = law_of(interfaces[k]);
       const std::string path = law_path(k), type = law.type();
       const bool weak = type == "sdm" && law.number("F_u") == 0;
       const bool undamped = type == "springs" && law.number("c") == 0;

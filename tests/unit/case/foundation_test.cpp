@@ -298,6 +298,11 @@ TEST(Foundation, StandsBesideNoConstraintAndNoFilter) {
   };
   EXPECT_NE(refusal(with_ground(replaced(plane_text, "step = 2e-3", "step = 2e-3\nscheme = \"energy_decay\""), macro)).find("energy_decay"),
             std::string::npos);
+  for (const char* method : {"lagrange", "augmented_lagrangian", "penalty"}) {
+    const std::string named = std::string("title = \"foundation\"\nmethod = \"") + method + "\"\n";
+    const std::string found = refusal(with_ground(replaced(plane_text, "title = \"foundation\"\n", named), macro));
+    EXPECT_NE(found.find("with a foundation"), std::string::npos) << found;
+  }
   const std::string wall = macro + R"(
 [[interface]]
 name = "stop"
@@ -398,6 +403,7 @@ TEST(Foundation, MistakesAreRefused) {
             std::string::npos);
   EXPECT_NE(refusal(replaced(macro, "K_r = 1.8e9", "K_r = 1.8e9, dilatancy = 0.1")).find("up to friction_angle"), std::string::npos);
   EXPECT_NE(refusal(replaced(macro, "K_r = 1.8e9", "K_r = 1.8e9, V_s = 3e6, V_u = 2e6")).find("at least V_s"), std::string::npos);
+  EXPECT_NE(refusal(replaced(macro, "width = 6", "width = \"5 um\"")).find("for a side of 5e-06 m"), std::string::npos);
   EXPECT_NE(refusal(replaced(macro, "K_r = 1.8e9", "K_r = 1.8e9, w_ref = 0.01")).find("V_s too"), std::string::npos);
   EXPECT_NE(refusal(replaced(good, "\"elastic\"", "\"macro\"")).find("macro_element"), std::string::npos);
 

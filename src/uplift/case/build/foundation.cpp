@@ -70,6 +70,7 @@ Joint foundation_joint(const Values& foundation, const Footprint& footprint, con
   joint.facts.body = names.nodes[body];
   joint.facts.upper = {body};
   joint.facts.area = footprint.area();
+  if (footprint.soil) joint.facts.soil = std::make_shared<const FootingOnSoil>(*footprint.soil);
   joint.facts.depth = space.dimension == 2 ? footprint.length : 0;
   joint.facts.corners = corners_of(footprint, space, point);
   return joint;

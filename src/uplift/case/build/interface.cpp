@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "uplift/case/build/bed.h"
 #include "uplift/case/build/model.h"
 #include "uplift/case/build/water.h"
 #include "uplift/elements/discrete.h"
@@ -78,6 +79,8 @@ Joint footing_joint(const Values& interface, const Values& table, bool rigid_gro
   const std::string& rule = table.text("rule");
   footing.rule = rule == "nodal" ? FootingRule::nodal : rule == "midpoint" ? FootingRule::midpoint : FootingRule::gauss;
   Joint joint;
+  joint.facts.soil = soil_of(interface);
+  if (joint.facts.soil) spread_soil(interface, *joint.facts.soil, footing);
   joint.points = footing_points(footing, table.where("points"));
   joint.facts.facets = std::make_shared<Facets>(names.space.dimension == 3 ? rectangle_facets(footing, joint.points)
                                                                            : line_facets(joint.points, footing.thickness));

@@ -35,7 +35,12 @@ const Section& footing_section() {
                                     .standard("nodal"),
                                 vector("offset", "m", "from the node to the middle of the footing's underside").optional(),
                                 vector("normal", "1", "from the ground to the structure; absent: up").optional(),
-                                table("bed", bed_section(), "elastic ground under the joint; absent: fixed ground").optional()}};
+                                table("bed", bed_section(), "elastic ground under the joint; absent: fixed ground").optional(),
+                                table("soil", footing_soil_section(),
+                                      "the ground of a rectangle width x thickness (in space width x length), in the plane with rock_depth "
+                                      "of a strip: makes the joint stiffer towards the edges, so that it has both the vertical and the "
+                                      "rocking stiffness, and gives what the law calls \"soil\" (K_n, K_t, c)")
+                                    .optional()}};
   return s;
 }
 

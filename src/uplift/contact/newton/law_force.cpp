@@ -8,6 +8,13 @@ void to_force(const InterfaceProblem& problem, const Block& block, double* force
   const int n = block.batch.points, components = block.batch.components;
   const double* area = block.area.data();
   const double scale = problem.model->scale;
+  if (n == 1) {
+    const double weight = scale * area[0];
+    for (int c = 0; c < components; ++c) force[c] *= weight;
+    if (slope != nullptr)
+      for (int c = 0; c < components * components; ++c) slope[c] *= weight;
+    return;
+  }
   if (components == 1 && slope != nullptr) {
 #pragma omp simd
     for (int i = 0; i < n; ++i) {

@@ -52,6 +52,8 @@ class Newton {
   void move(double alpha, bool with_hessian);
   void form_gradient(bool with_hessian);
   void add_block(const Block& block, const double* slope, double* g, double* h);
+  template <int components>
+  void add_point(const Block& block, const double* slope, double* g, double* h);
   void add_general(const Block& block, const double* slope, double* g, double* h);
   void take_back_shift(bool with_hessian);
   bool direction();
@@ -78,6 +80,7 @@ class Newton {
 template <int R>
 void Newton<R>::predict() {
   Lanes total[most] = {};
+  double of_points[most] = {};  // of blocks of one point
   for (std::size_t b = 0; b < model_.blocks.size(); ++b) {
     const Block& block = model_.blocks[b];
     const int n = block.batch.points, components = block.batch.components;
@@ -92,6 +95,14 @@ void Newton<R>::predict() {
       });
       continue;
     }
+    if (n == 1) {
+      for (int a = 0; a < components; ++a) {
+        double force = model_.scale * area[0] * end[a];
+        for (int c = 0; c < components; ++c) force += slope[a * components + c] * (free[c] - from[c]);
+        for (Index j = 0; j < r(); ++j) of_points[j] += column(j)[block.first + a] * force;
+      }
+      continue;
+    }
     for (int a = 0; a < components; ++a)
       for_lanes(n, [&](const auto& at) {
         Lanes force = model_.scale * at(area) * at(end + a * n);
@@ -100,7 +111,7 @@ void Newton<R>::predict() {
       });
   }
   if (problem_.filter.acts()) add_lag(total);
-  for (Index j = 0; j < r(); ++j) work_.gradient[j] = sum(total[j]);
+  for (Index j = 0; j < r(); ++j) work_.gradient[j] = of_points[j] + sum(total[j]);
   direction_of_few(solution_.z.data());
 }
 
@@ -129,6 +140,10 @@ void Newton<R>::go_on() {
     const int n = block.batch.points, components = block.batch.components;
     double* slope = work_.slope.data() + work_.first_slope[b];
     const double *next = solution_.next_slope.data() + work_.first_slope[b], *area = block.area.data();
+    if (n == 1) {
+      for (int c = 0; c < components * components; ++c) slope[c] = 2 * area[0] * next[c];
+      continue;
+    }
     for (int c = 0; c < components * components; ++c)
 #pragma omp simd
       for (int i = 0; i < n; ++i) slope[c * n + i] = 2 * area[i] * next[c * n + i];
@@ -182,7 +197,32 @@ template <int R>
     if (block.batch.components == 1)
       return small::gradient_and_gram<R>(block.batch.points, column(0) + block.first, rows_, solution_.force.data() + block.first, slope, g,
                                          h);
+  if (block.batch.points == 1 && block.batch.components == 3) return add_point<3>(block, slope, g, h);
+  if (block.batch.points == 1 && block.batch.components == 6) return add_point<6>(block, slope, g, h);
   add_general(block, slope, g, h);
+}
+
+/// The same for one point, under a whole foundation: products of small matrices.
+template <int R>
+template <int components>
+void Newton<R>::add_point(const Block& block, const double* slope, double* g, double* h) {
+  const double* force = solution_.force.data() + block.first;
+  for (Index j = 0; j < r(); ++j) {
+    const double* right = column(j) + block.first;
+    double pull[components], sum = 0;
+    for (int a = 0; a < components; ++a) {
+      pull[a] = 0;
+      for (int b = 0; b < components; ++b) pull[a] += slope[a * components + b] * right[b];
+      sum += right[a] * force[a];
+    }
+    g[j] += sum;
+    for (Index i = 0; i < r(); ++i) {
+      const double* left = column(i) + block.first;
+      double product = 0;
+      for (int a = 0; a < components; ++a) product += left[a] * pull[a];
+      h[j * r() + i] += product;
+    }
+  }
 }
 
 /// The same where the slope couples the components: k C_block column by column, and its products with every column.

@@ -151,19 +151,19 @@ void write_provenance(ResultWriter& out, const Provenance& from) {
 void write_interfaces(ResultWriter& out, const BuiltCase* built) {
   struct Joint {
     const Interface* interface = nullptr;
+    const FootingOnSoil* soil = nullptr;
   };
   std::vector<Joint> joints;
   if (built)
-    for (const Interface& interface : built->model.interfaces) joints.push_back({&interface});
+    for (std::size_t k = 0; k < built->facts.size(); ++k) joints.push_back({&built->model.interfaces[k], built->facts[k].soil.get()});
   out.list("interfaces", "the interfaces of the model", joints, [&](const Joint& joint) {
     static const Interface none;
     const Interface& interface = joint.interface ? *joint.interface : none;
     out.text("name", interface.name, "name of the interface");
     out.count("points", interface.batch.points, "number of points");
     write_points(out, interface);
-    const bool on_soil = interface.footprint && interface.footprint->soil;
-    out.when(on_soil);
-    write_soil(out, on_soil ? *interface.footprint->soil : FootingOnSoil());
+    out.when(joint.soil != nullptr);
+    write_soil(out, joint.soil ? *joint.soil : FootingOnSoil());
   });
 }
 
