@@ -9,7 +9,6 @@
 #include "uplift/base/format.h"
 #include "uplift/base/units.h"
 #include "uplift/case/build/names.h"
-#include "uplift/statistics/normal.h"
 
 namespace uplift {
 namespace {
@@ -38,11 +37,17 @@ StudyMethod method_of(const Values& part) {
   const std::string& word = part.type();
   method.type = word == "ida" ? ida : word == "truncated_ida" ? truncated_ida : word == "stripes" ? stripes : cloud;
   if (method.searches()) {
-    method.start = part.number("start");
-    method.largest = part.number("largest");
-    method.tolerance = part.number("tolerance");
-    method.most_runs = part.integer("most_runs");
-    if (!(method.largest > method.start)) fail(part, "largest", fmt::format("an intensity above start ({:g})", method.start), fmt::format("{:g}", method.largest));
+    SearchPlan& search = method.search;
+    search.start = part.number("start");
+    search.largest = part.number("largest");
+    search.smallest = part.has("smallest") ? part.number("smallest") : search.start / 100;
+    search.tolerance = part.number("tolerance");
+    search.fill = part.integer("fill");
+    search.most = part.integer("most_runs");
+    if (!(search.largest > search.start))
+      fail(part, "largest", fmt::format("an intensity above start ({:g})", search.start), fmt::format("{:g}", search.largest));
+    if (!(search.smallest <= search.start))
+      fail(part, "smallest", fmt::format("an intensity of at most start ({:g})", search.start), fmt::format("{:g}", search.smallest));
     return method;
   }
   const char* key = method.type == stripes ? "levels" : "factors";
@@ -82,14 +87,11 @@ StudyLimit limit_of(const Values& table) {
 }
 
 StudyVariable variable_of(const Values& table) {
-  using enum StudyVariable::Distribution;
   StudyVariable variable;
   variable.name = table.text("name");
   variable.paths = table.texts("paths");
   if (variable.paths.empty()) fail(table, "paths", "one number of the case at least", "none");
   variable.is_factor = table.text("meaning") == "factor";
-  const std::string& word = table.part("distribution").type();
-  variable.distribution = word == "lognormal" ? lognormal : word == "normal" ? normal : uniform;
   return variable;
 }
 
@@ -125,25 +127,28 @@ std::string_view to_string(StudyMethod::Type type) {
   return words[static_cast<std::size_t>(type)];
 }
 
-std::string_view to_string(StudyVariable::Distribution distribution) {
-  constexpr std::string_view words[] = {"lognormal", "normal", "uniform"};
-  return words[static_cast<std::size_t>(distribution)];
-}
-
-double quantile(const StudyVariable& variable, double probability) {
-  switch (variable.distribution) {
-    case StudyVariable::Distribution::lognormal:
-      return variable.first * std::exp(variable.second * normal_quantile(probability));
-    case StudyVariable::Distribution::normal:
-      return variable.first + variable.second * normal_quantile(probability);
-    case StudyVariable::Distribution::uniform:
-      break;
-  }
-  return variable.first + probability * (variable.second - variable.first);
+Distribution distribution_of(const Values& variable, const std::string& unit) {
+  const Values& part = variable.part("distribution");
+  const auto number = [&](const char* key) {
+    const Quantity value = parse_quantity(part.text(key), unit);
+    if (!value.ok) fail(part, key, quantity_name(unit), value.found, value.nearest);
+    return value.value;
+  };
+  const auto positive = [&](const char* key) {
+    const double value = number(key);
+    if (!(value > 0)) fail(part, key, "a number > 0", part.text(key));
+    return value;
+  };
+  if (part.type() == "lognormal") return Lognormal{positive("median"), part.number("beta")};
+  if (part.type() == "normal") return Normal{number("mean"), positive("deviation")};
+  const Uniform made{number("least"), number("most")};
+  if (!(made.low < made.high)) fail(part, "most", "a number above least", part.text("most"));
+  return made;
 }
 
 StudyPlan study_plan(const Raw& raw) {
   StudyPlan plan;
+  plan.raw = raw;
   plan.values = check(raw, study_section());
   const Values& root = plan.values;
   plan.case_file = path_beside(root.where("case"), root.text("case")).lexically_normal().string();

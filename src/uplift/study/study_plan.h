@@ -4,7 +4,10 @@
 #include <string>
 #include <vector>
 
+#include "uplift/base/declare.h"
 #include "uplift/case/schema/verdict_quantities.h"
+#include "uplift/statistics/capacity_search.h"
+#include "uplift/statistics/distributions.h"
 
 // The plan of a study: one case under many motions, at many intensities, with sampled variables (docs/guide/studies.md).
 namespace uplift {
@@ -26,9 +29,8 @@ struct IntensityMeasure {
 
 struct StudyMethod {
   enum class Type { ida, truncated_ida, stripes, cloud } type = Type::ida;
-  std::vector<double> levels;                      // stripes: intensities, ascending; cloud: factors
-  double start = 0, largest = 0, tolerance = 0.02;  // of the search; largest: no run above it
-  int most_runs = 12;                              // of a record
+  std::vector<double> levels;  // stripes: intensities, ascending; cloud: factors
+  SearchPlan search;           // of the capacity of a motion
   bool searches() const { return type == Type::ida || type == Type::truncated_ida; }
 };
 std::string_view to_string(StudyMethod::Type);
@@ -46,14 +48,9 @@ struct StudyVariable {
   std::string name;
   std::vector<std::string> paths;  // of the case: "interface[0].law.K_n"
   bool is_factor = true;           // of the case's values; else it is their value
-  enum class Distribution { lognormal, normal, uniform } distribution = Distribution::lognormal;
-  double first = 1, second = 0;  // median and standard deviation of the logarithm; mean and standard deviation; least and most
-  std::string unit = "1";        // of `first`
+  Distribution distribution = Lognormal{1, 1};  // of SI values, see unit
+  std::string unit = "1";                       // of the values
 };
-std::string_view to_string(StudyVariable::Distribution);
-/// The value whose probability of not being exceeded is `probability` (between 0 and 1).
-double quantile(const StudyVariable&, double probability);
-
 struct StudyCorrelation {
   std::size_t first = 0, second = 0;  // variables
   double value = 0;
@@ -61,6 +58,7 @@ struct StudyCorrelation {
 
 /// A checked plan.
 struct StudyPlan {
+  Raw raw;        // as read
   Values values;  // of study_section()
   std::string case_file;
   std::uint64_t seed = 1;
@@ -78,7 +76,9 @@ struct StudyPlan {
   int attempts = 3;               // of a run whose worker dies
 };
 
-/// Checks a plan on its own, without its case. Throws InputError.
+/// Checks a plan on its own, without its case: distributions are read later, when the units of their values are known. Throws InputError.
 StudyPlan study_plan(const Raw& raw);
+/// The distribution of a [[variable]] whose values have this unit. Throws InputError.
+Distribution distribution_of(const Values& variable, const std::string& unit);
 
 }  // namespace uplift

@@ -57,9 +57,9 @@ const Section& intensity_section() {
 }
 
 constexpr const char* search_equations =
-    "For every motion and sample the capacity is the intensity at which the limit is exceeded first. Intensities grow from `start` until a "
-    "limit\nis exceeded; then the interval between the largest survived and the smallest exceeded one is divided at its geometric mean, until "
-    "it is\nnarrower than `tolerance` in the logarithm; then gaps are filled. A survival above an exceedance is reported (resurrection).";
+    "For every motion and sample the capacity is the intensity at which a limit is exceeded first. Intensities grow from `start` by growing\n"
+    "factors until it is exceeded; then the interval between the last survival and the first exceedance is halved in the logarithm until "
+    "it\nis within `tolerance`; then the largest gaps are filled. A survival above an exceedance is reported (resurrection).";
 
 Field start_field() {
   return number("start", "1", "first intensity").positive();
@@ -70,6 +70,12 @@ Field tolerance_field() {
 Field most_runs_field() {
   return integer("most_runs", "most runs of a motion for one limit").positive().standard(12);
 }
+Field smallest_field() {
+  return number("smallest", "1", "the search goes no lower; absent: a hundredth of start").positive().optional();
+}
+Field fill_field() {
+  return integer("fill", "intensities of a curve in all: when the capacity is known, the largest gaps below it are filled").nonnegative().standard(0);
+}
 
 const PartInfo& ida() {
   static const PartInfo s{"ida",
@@ -77,7 +83,7 @@ const PartInfo& ida() {
                           search_equations,
                           "Vamvatsikos and Cornell (2002), Earthquake Engineering and Structural Dynamics 31, 491-514",
                           {start_field(), number("largest", "1", "largest intensity: a motion that survives it has a capacity beyond").positive(),
-                           tolerance_field(), most_runs_field()}};
+                           smallest_field(), tolerance_field(), fill_field(), most_runs_field()}};
   return s;
 }
 
@@ -86,7 +92,7 @@ const PartInfo& truncated_ida() {
                           "incremental dynamic analysis up to a largest intensity; capacities beyond it are censored in the fit",
                           search_equations,
                           "Baker (2015), Earthquake Spectra 31, 579-599",
-                          {start_field(), number("largest", "1", "intensity at which the search ends").positive(), tolerance_field(), most_runs_field()}};
+                          {start_field(), number("largest", "1", "intensity at which the search ends").positive(), smallest_field(), tolerance_field(), fill_field(), most_runs_field()}};
   return s;
 }
 
