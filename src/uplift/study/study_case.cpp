@@ -171,6 +171,9 @@ StudyCase study_case(const StudyPlan& plan, const Raw& raw, const MeshReader& re
       names.add(motion, "name");
       check_motion(root, motion);
       study.motions.push_back(motion_of(study, &motion));
+      for (std::size_t k = 0; k + 1 < study.motions.size(); ++k)
+        if (study.motions[k].hash == study.motions.back().hash)
+          fail(motion, "by", "a motion that differs from all others", fmt::format("that of {} again", in_quotes(study.motions[k].name)));
     }
   if (study.motions.empty()) study.motions.push_back(motion_of(study, nullptr));
   return study;

@@ -51,6 +51,12 @@ std::vector<StudyPoint> StudyCurve::wanted(const FindResult& find) {
   return missing;
 }
 
+std::size_t StudyCurve::expected() const {
+  constexpr std::size_t of_search = 8;
+  if (complete_) return runs_.size();
+  return searches_.empty() ? study_.plan.method.levels.size() : std::max(of_search, runs_.size() + 1);
+}
+
 std::vector<StudyCurve> study_curves(const StudyCase& study) {
   std::vector<StudyCurve> curves;
   const std::size_t samples = study.samples.size(), motions = study.motions.size();

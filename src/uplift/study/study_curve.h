@@ -27,6 +27,8 @@ class StudyCurve {
   std::size_t motion() const { return motion_; }
   /// Takes the results that there are now, and says which runs are wanted next: one of a search, all of stripes and clouds.
   std::vector<StudyPoint> wanted(const FindResult& find);
+  /// Runs in all, as far as that is known.
+  std::size_t expected() const;
   /// Nothing is wanted any more.
   bool complete() const { return complete_; }
   struct Run {
