@@ -123,6 +123,17 @@ std::optional<FragilityLikelihood::Maximum> FragilityLikelihood::maximise(const 
   return std::nullopt;
 }
 
+Mat3 FragilityLikelihood::information() const {
+  if (!std::holds_alternative<std::vector<Stripe>>(data)) return evaluate(best.at).curvature;
+  Mat3 sum = Mat3::Zero();
+  for (const Term& t : terms) {
+    const Vec3 row(1, t.x, 0);
+    const double z = row.dot(best.at);
+    sum += (t.above + t.below) * normal_tail(z).hazard * normal_tail(-z).hazard * (row * row.transpose());
+  }
+  return sum;
+}
+
 Mat3 FragilityLikelihood::all_directions() const {
   Mat3 directions = Mat3::Identity();
   if (!regression) directions(2, 2) = 0;
@@ -165,7 +176,7 @@ OrRefused<Fragility> FragilityLikelihood::fragility() && {
   const double t = -a / b, log_theta = centre + width * t, beta = width / b;
   if (!(std::abs(log_theta) < 700) || !(beta < 1e100))
     return Refused{"the fraction of exceedances hardly grows with the intensity: the median is beyond all numbers"};
-  const Mat3 curvature = evaluate(best.at).curvature;
+  const Mat3 curvature = information();
   const Vec3 of_log_theta = Vec3(-1, -t, 0) * (width / b), of_beta = Vec3(0, -1, 0) * (width / (b * b));
   Vec3 to_log_theta, to_beta;
   if (!solve_definite(curvature, of_log_theta, to_log_theta) || !solve_definite(curvature, of_beta, to_beta))

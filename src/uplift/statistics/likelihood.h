@@ -50,6 +50,8 @@ struct FragilityLikelihood {
   void standardise();
   double exact_weight() const;
   Value evaluate(const Vec3& p) const;
+  /// The information matrix at `best`: expected for stripes, whose numbers of runs are planned; observed else.
+  Mat3 information() const;
   /// The largest value over p = start + directions s, from s = 0 by Newton's method with step halving. Zero columns are no directions.
   std::optional<Maximum> maximise(const Vec3& start, const Mat3& directions) const;
   /// Directions of all unknowns.
