@@ -13,7 +13,7 @@ struct SearchPlan {
   double start = 0;         // first intensity
   double smallest = 0;      // the search goes no lower; > 0
   double largest = 0;       // and no higher
-  double factor = 1.5;      // first step of the hunt
+  double factor = 1.37;     // first step of the hunt; 16 tolerances of 2 %, so that four bisections are enough
   double tolerance = 0.02;  // of the capacity, relative
   int fill = 0;             // intensities in all, when the capacity has been found: the largest gaps below it are filled up to this number
   int most = 30;            // runs in all
@@ -21,10 +21,10 @@ struct SearchPlan {
 
 enum class RunOutcome { survived, exceeded, unknown };
 
-/// The search of one record in an incremental dynamic analysis, as a value: hunt with steps ln(factor) * 1, 1, 2, 3, 5 ... from the start
-/// upwards or downwards, bisection in ln im between the last survival and the first exceedance, then the largest gaps.
-/// The state depends on the set of results only: told in any order they give the same next intensity and the same capacity.
-/// Runs without outcome are not repeated: the search goes around them, and the capacity has two ends.
+/// The search of one record in an incremental dynamic analysis, as a value: hunt with steps ln(factor) * 1, 1, 1, 2, 3, 5 ... from the
+/// start upwards or downwards, bisection in ln im between the last survival and the first exceedance, then the largest gaps. The state
+/// depends on the set of results only: told in any order they give the same next intensity and the same capacity. Runs without outcome are
+/// not repeated: the search goes around them, and the capacity has two ends.
 class CapacitySearch {
  public:
   /// A plan with 0 < smallest <= start <= largest, factor > 1, tolerance > 0 (asserted).
@@ -46,6 +46,10 @@ class CapacitySearch {
   const SearchPlan& plan() const { return plan_; }
 
  private:
+  std::optional<double> hunt() const;
+  std::optional<double> bisect() const;
+  std::optional<double> fill() const;
+
   SearchPlan plan_;
   std::map<double, RunOutcome> results_;
 };

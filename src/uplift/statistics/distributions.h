@@ -13,8 +13,13 @@ struct Interval {
 double normal_density(double x);
 /// P(X <= x) of the standard normal distribution, by the complementary error function; relative error 1e-14 in the lower tail too.
 double normal_cdf(double x);
-/// ln P(X <= x), also where the probability underflows.
-double log_normal_cdf(double x);
+/// P(X > z) of the standard normal distribution, also where it underflows.
+struct NormalTail {
+  double log_probability;  // ln P(X > z)
+  double hazard;           // density(z)/P(X > z)
+  double excess;           // hazard - z > 0, without cancellation for large z
+};
+NormalTail normal_tail(double z);
 /// The x with P(X <= x) = p for 0 <= p <= 1 (infinite at the ends): Abramowitz & Stegun 26.2.23, improved by three steps of Halley's
 /// method.
 double normal_quantile(double p);
@@ -30,6 +35,9 @@ double student_two_sided(double level, double freedom);
 /// Clopper & Pearson's interval of a probability from k of n trials, 0 <= k <= n, n >= 1: each end has the error probability
 /// (1 - level)/2 at most. Both ends are always given.
 Interval clopper_pearson(long k, long n, double level);
+
+/// The smallest k with P(K <= k) >= u for K binomial of n trials with probability p; 0 <= p <= 1, 0 < u < 1.
+long binomial_quantile(long n, double p, double u);
 
 struct Normal {
   double mean, deviation;  // deviation > 0

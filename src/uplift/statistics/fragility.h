@@ -44,7 +44,7 @@ class Fragility {
   double probability(double im) const;
   /// Of the maximum of the likelihood; stripes with the binomial coefficients, capacities and demands as densities of their logarithm.
   double log_likelihood() const { return log_likelihood_; }
-  /// Standard errors of ln theta and beta, and their correlation, from the observed information.
+  /// Standard errors of ln theta and beta, and their correlation, from the information matrix (expected for stripes, observed else).
   double se_log_theta() const { return se_log_theta_; }
   double se_beta() const { return se_beta_; }
   double correlation() const { return correlation_; }
