@@ -51,7 +51,7 @@ OrRefused<Fragility> refit(CloudData cloud, const Fragility&, Draw draw) {
 }
 
 /// Percentiles with linear interpolation between the ordered values.
-Interval percentiles(std::vector<double> values, double level) {
+ConfidenceInterval percentiles(std::vector<double> values, double level) {
   std::sort(values.begin(), values.end());
   const auto at = [&values](double share) {
     const double place = share * static_cast<double>(values.size() - 1);
@@ -94,17 +94,17 @@ double Bootstrap::correlation() const {
   return m.first > 0 && m.second > 0 ? m.mixed / std::sqrt(m.first * m.second) : 0;
 }
 
-Interval Bootstrap::theta(double level) const {
+ConfidenceInterval Bootstrap::theta(double level) const {
   std::vector<double> values;
   for (const auto& [log_theta, beta] : draws_) values.push_back(std::exp(log_theta));
   return percentiles(std::move(values), level);
 }
-Interval Bootstrap::beta(double level) const {
+ConfidenceInterval Bootstrap::beta(double level) const {
   std::vector<double> values;
   for (const auto& [log_theta, beta] : draws_) values.push_back(beta);
   return percentiles(std::move(values), level);
 }
-Interval Bootstrap::probability(double im, double level) const {
+ConfidenceInterval Bootstrap::probability(double im, double level) const {
   std::vector<double> values;
   for (const auto& [log_theta, beta] : draws_) values.push_back(normal_cdf((std::log(im) - log_theta) / beta));
   return percentiles(std::move(values), level);

@@ -113,7 +113,7 @@ double student_two_sided(double level, double freedom) {
   return std::sqrt(freedom * (1 - x) / x);
 }
 
-Interval clopper_pearson(long k, long n, double level) {
+ConfidenceInterval clopper_pearson(long k, long n, double level) {
   assert(n >= 1 && k >= 0 && k <= n && level > 0 && level < 1);
   const double each = (1 - level) / 2, hits = static_cast<double>(k), misses = static_cast<double>(n - k);
   return {k == 0 ? 0.0 : incomplete_beta_inverse(hits, misses + 1, each),

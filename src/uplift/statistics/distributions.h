@@ -5,7 +5,7 @@
 namespace uplift {
 
 /// An interval; an end without a value is unbounded (the data do not limit it).
-struct Interval {
+struct ConfidenceInterval {
   std::optional<double> lower, upper;
 };
 
@@ -34,7 +34,7 @@ double student_two_sided(double level, double freedom);
 
 /// Clopper & Pearson's interval of a probability from k of n trials, 0 <= k <= n, n >= 1: each end has the error probability
 /// (1 - level)/2 at most. Both ends are always given.
-Interval clopper_pearson(long k, long n, double level);
+ConfidenceInterval clopper_pearson(long k, long n, double level);
 
 /// The smallest k with P(K <= k) >= u for K binomial of n trials with probability p; 0 <= p <= 1, 0 < u < 1.
 long binomial_quantile(long n, double p, double u);

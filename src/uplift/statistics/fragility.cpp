@@ -97,7 +97,7 @@ BothWays both_ways(OrRefused<Fragility> survived, OrRefused<Fragility> left_out,
       return !lower || !upper || std::abs(difference) < *upper - *lower;
     };
     const auto logarithm = [](const std::optional<double>& value) { return value ? std::optional(std::log(*value)) : std::nullopt; };
-    const Interval theta = middle->theta_interval(level), beta = middle->beta_interval(level);
+    const ConfidenceInterval theta = middle->theta_interval(level), beta = middle->beta_interval(level);
     const bool of_theta = within(std::log(high->theta() / low->theta()), logarithm(theta.lower), logarithm(theta.upper));
     const bool of_beta = within(high->beta() - low->beta(), beta.lower, beta.upper);
     if (!of_theta || !of_beta)

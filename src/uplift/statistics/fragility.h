@@ -26,9 +26,9 @@ class Bootstrap {
   double se_beta() const;
   double correlation() const;
   /// Percentile intervals with the confidence `level`, 0 < level < 1.
-  Interval theta(double level) const;
-  Interval beta(double level) const;
-  Interval probability(double im, double level) const;
+  ConfidenceInterval theta(double level) const;
+  ConfidenceInterval beta(double level) const;
+  ConfidenceInterval probability(double im, double level) const;
 
  private:
   std::vector<std::pair<double, double>> draws_;
@@ -51,9 +51,9 @@ class Fragility {
 
   /// Profile likelihood intervals with the confidence `level`, 0 < level < 1. An unbounded end has no value: the data do not show at this
   /// level that exceedance grows with the intensity. Samples without censoring use Student's distribution (exact for theta).
-  Interval theta_interval(double level) const;
-  Interval beta_interval(double level) const;
-  Interval probability_interval(double im, double level) const;
+  ConfidenceInterval theta_interval(double level) const;
+  ConfidenceInterval beta_interval(double level) const;
+  ConfidenceInterval probability_interval(double im, double level) const;
 
   /// Parametric bootstrap: `draws` data sets of the same size and intensities from this fit, fitted in the same way. Counter-based random
   /// numbers: the same seed gives the same draws. Refused where fewer than half of the draws have a fit.

@@ -104,7 +104,7 @@ double FragilityLikelihood::cutoff(double level) const {
   return all * std::log1p(t * t / freedom);
 }
 
-Interval Fragility::theta_interval(double level) const {
+ConfidenceInterval Fragility::theta_interval(double level) const {
   const FragilityLikelihood& l = *likelihood_;
   Profile profile(l, l.cutoff(level));
   const double t = -l.best.at[0] / l.best.at[1], step = se_log_theta_ / l.width;
@@ -118,18 +118,18 @@ Interval Fragility::theta_interval(double level) const {
   return {threshold(-1), threshold(1)};
 }
 
-Interval Fragility::beta_interval(double level) const {
+ConfidenceInterval Fragility::beta_interval(double level) const {
   const FragilityLikelihood& l = *likelihood_;
   Profile profile(l, l.cutoff(level));
   const double b = l.best.at[1], step = b * std::min(0.5, se_beta_ / beta_);
   const auto steepest = profile.end(at_slope, b, step, 1e12 * b), flattest = profile.end(at_slope, b, -step, 0);
-  Interval result;
+  ConfidenceInterval result;
   result.lower = steepest ? l.width / *steepest : 0;
   if (flattest && *flattest > 0) result.upper = l.width / *flattest;
   return result;
 }
 
-Interval Fragility::probability_interval(double im, double level) const {
+ConfidenceInterval Fragility::probability_interval(double im, double level) const {
   const FragilityLikelihood& l = *likelihood_;
   Profile profile(l, l.cutoff(level));
   const double x = l.standard(im), eta = l.best.at[0] + l.best.at[1] * x;
