@@ -58,7 +58,8 @@ StudyResult StudyComputer::compute(const RunRequest& request) {
   const auto start = std::chrono::steady_clock::now();
   const std::optional<double> timeout = study_.of.plan.timeout;
   Watch watch;
-  if (timeout) watch = [&](const Progress&) { return std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count() < *timeout; };
+  if (timeout)
+    watch = [&](const Progress&) { return std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count() < *timeout; };
   const RunResult run = uplift::run(built.model, built.plan, built.behaviours, watch);
   StudyResult made = result_of(built, run, study_.of.plan.floor_spectra);
   identify(study_, request, made);

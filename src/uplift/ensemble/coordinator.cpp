@@ -31,7 +31,8 @@ class Waiting {
   std::vector<RunRequest> take(std::size_t most, std::optional<std::size_t> preferred, const std::vector<std::size_t>& busy) {
     if (empty()) return {};
     auto found = preferred ? by_sample_.find(*preferred) : by_sample_.end();
-    if (found == by_sample_.end()) found = std::ranges::find_if(by_sample_, [&](const auto& each) { return std::ranges::find(busy, each.first) == busy.end(); });
+    if (found == by_sample_.end())
+      found = std::ranges::find_if(by_sample_, [&](const auto& each) { return std::ranges::find(busy, each.first) == busy.end(); });
     if (found == by_sample_.end()) found = by_sample_.begin();
     std::vector<RunRequest> batch;
     std::deque<RunRequest>& queue = found->second;
@@ -52,7 +53,12 @@ class Waiting {
 class Coordinator {
  public:
   Coordinator(const Study& study, StudyStore& store, const StudyRunControl& control)
-      : study_(study), store_(store), control_(control), curves_(study_curves(study.of)), parts_(study.folder + "/parts"), computer_(study) {
+      : study_(study),
+        store_(store),
+        control_(control),
+        curves_(study_curves(study.of)),
+        parts_(study.folder + "/parts"),
+        computer_(study) {
     std::filesystem::create_directories(study.folder + "/parts");
     for (std::size_t i = 0; i < curves_.size(); ++i)
       if (control.shard.has(i)) ask(i);
@@ -78,7 +84,8 @@ class Coordinator {
     const StudyPlan& plan = study_.of.plan;
     WorkerLimits limits{std::nullopt, plan.memory};
     if (plan.timeout) limits.timeout = 2 * *plan.timeout + 10;
-    WorkerPool pool(control_.workers, limits, [this](const std::vector<RunRequest>& batch, const auto& done) { computer_.compute(batch, done); });
+    WorkerPool pool(control_.workers, limits,
+                    [this](const std::vector<RunRequest>& batch, const auto& done) { computer_.compute(batch, done); });
     last_sample_.resize(pool.size());
     while (!(control_.stopped && control_.stopped())) {
       feed(pool);
@@ -137,7 +144,8 @@ class Coordinator {
         continue;
       }
       const StudyOutcome outcome = death.too_long ? StudyOutcome::timeout : StudyOutcome::crashed;
-      note(result_without_run(study_, request, outcome, death.too_long ? "its worker did not answer any more" : "its worker ended with " + death.how));
+      note(result_without_run(study_, request, outcome,
+                              death.too_long ? "its worker did not answer any more" : "its worker ended with " + death.how));
       write_run_case(study_, request.id, request.sample, request.motion, request.factor);
     }
   }
@@ -187,8 +195,7 @@ StudyStatus status_of(const std::vector<StudyCurve>& curves, const Shard& shard)
     for (const auto& [intensity, run] : curves[i].runs()) ++status.outcomes[static_cast<std::size_t>(run.result->outcome)];
   }
   const bool searches = !curves.empty() && !curves.front().searches().empty();
-  if (searches && status.complete > 0)
-    status.expected = std::max(status.runs, of_complete * status.curves / status.complete);
+  if (searches && status.complete > 0) status.expected = std::max(status.runs, of_complete * status.curves / status.complete);
   return status;
 }
 

@@ -22,8 +22,8 @@ struct StudyStatus {
   std::size_t runs = 0;                  // with a result
   std::size_t expected = 0;              // in all: of searches by the mean of the complete curves
   std::array<std::size_t, std::size(study_outcomes)> outcomes{};
-  std::size_t computed = 0;  // by this command
-  double seconds = 0;        // s of this command
+  std::size_t computed = 0;            // by this command
+  double seconds = 0;                  // s of this command
   std::optional<double> left() const;  // s, by the rate of this command
 };
 StudyStatus status_of(const std::vector<StudyCurve>& curves, const Shard& shard);

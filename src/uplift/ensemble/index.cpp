@@ -17,10 +17,12 @@ namespace {
 constexpr const char* tables =
     "PRAGMA journal_mode = OFF; PRAGMA synchronous = OFF; BEGIN;"
     "CREATE TABLE meta(key TEXT PRIMARY KEY, value TEXT);"
-    "CREATE TABLE motion(name TEXT PRIMARY KEY, label TEXT, sha256 TEXT, step REAL, duration REAL, intensity REAL, pga REAL, pgv REAL, arias REAL, "
+    "CREATE TABLE motion(name TEXT PRIMARY KEY, label TEXT, sha256 TEXT, step REAL, duration REAL, intensity REAL, pga REAL, pgv REAL, "
+    "arias REAL, "
     "cav REAL, significant_duration REAL);"
     "CREATE TABLE sample(sample INTEGER, variable TEXT, value REAL);"
-    "CREATE TABLE run(id TEXT PRIMARY KEY, motion TEXT, sample INTEGER, factor REAL, intensity REAL, outcome TEXT, reason TEXT, attempt INTEGER, "
+    "CREATE TABLE run(id TEXT PRIMARY KEY, motion TEXT, sample INTEGER, factor REAL, intensity REAL, outcome TEXT, reason TEXT, attempt "
+    "INTEGER, "
     "wall REAL, steps INTEGER, retries INTEGER, end_time REAL, created REAL);"
     "CREATE TABLE number(run TEXT, quantity TEXT, of TEXT, value REAL);"
     "CREATE TABLE spectrum(run TEXT, floor TEXT, damping REAL, frequency REAL, psa REAL);";
@@ -88,8 +90,8 @@ class Writer {
 };
 
 void fill(const Study& study, const StudyStore& store, const std::vector<StudyCurve>& curves, Writer& writer) {
-  Writer::Insert meta(writer, "meta", 2), motion(writer, "motion", 11), sample(writer, "sample", 3), run(writer, "run", 13), number(writer, "number", 4),
-      spectrum(writer, "spectrum", 5);
+  Writer::Insert meta(writer, "meta", 2), motion(writer, "motion", 11), sample(writer, "sample", 3), run(writer, "run", 13),
+      number(writer, "number", 4), spectrum(writer, "spectrum", 5);
   meta.row({std::string("format"), std::string("uplift-study-index-1")});
   meta.row({std::string("version"), std::string(UPLIFT_VERSION)});
   meta.row({std::string("plan_sha256"), study.plan_hash});
@@ -97,16 +99,16 @@ void fill(const Study& study, const StudyStore& store, const std::vector<StudyCu
   meta.row({std::string("unit"), study.of.plan.intensity.unit});
   meta.row({std::string("lines_in_several_parts"), static_cast<long>(store.repeated())});
   for (const StudyMotion& each : study.of.motions)
-    motion.row({each.name, each.label, each.hash, each.step, each.duration, each.intensity, each.measures.pga, each.measures.pgv, each.measures.arias,
-                each.measures.cav, each.measures.significant_duration()});
+    motion.row({each.name, each.label, each.hash, each.step, each.duration, each.intensity, each.measures.pga, each.measures.pgv,
+                each.measures.arias, each.measures.cav, each.measures.significant_duration()});
   for (std::size_t i = 0; i < study.of.samples.size(); ++i)
     for (std::size_t k = 0; k < study.of.plan.variables.size(); ++k)
       sample.row({static_cast<long>(i), study.of.plan.variables[k].name, study.of.samples[i].values[k]});
   for (const StudyCurve& curve : curves)
     for (const auto& [intensity, one] : curve.runs()) {
       const StudyResult& result = *one.result;
-      run.row({result.id, result.motion, result.sample, result.factor, intensity, std::string(to_string(result.outcome)), result.reason, result.attempt,
-               result.wall, result.steps, result.retries, result.end_time, result.created});
+      run.row({result.id, result.motion, result.sample, result.factor, intensity, std::string(to_string(result.outcome)), result.reason,
+               result.attempt, result.wall, result.steps, result.retries, result.end_time, result.created});
       for (const StudyNumber& each : result.numbers) number.row({result.id, each.quantity, each.of, each.value});
       for (const StudySpectrum& each : result.spectra)
         for (std::size_t f = 0; f < each.frequencies.size(); ++f)

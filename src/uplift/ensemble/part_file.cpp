@@ -26,7 +26,8 @@ std::string checksum(std::string_view text) {
 
 void write_numbers(JsonWriter& json, const StudyResult& result) {
   json.key("numbers").begin_array();
-  for (const StudyNumber& number : result.numbers) json.begin_array().value(number.quantity).value(number.of).value(number.value).end_array();
+  for (const StudyNumber& number : result.numbers)
+    json.begin_array().value(number.quantity).value(number.of).value(number.value).end_array();
   json.end_array().key("spectra").begin_array();
   for (const StudySpectrum& spectrum : result.spectra)
     json.begin_object()
@@ -54,7 +55,8 @@ StudyResult result_of(const Json& json) {
   result.outcome = static_cast<StudyOutcome>(word - std::begin(study_outcomes));
   result.reason = json.at("reason").get<std::string>();
   result.attempt = json.at("attempt").get<long>();
-  for (const Json& number : json.at("numbers")) result.numbers.push_back({number.at(0).get<std::string>(), number.at(1).get<std::string>(), number.at(2).get<double>()});
+  for (const Json& number : json.at("numbers"))
+    result.numbers.push_back({number.at(0).get<std::string>(), number.at(1).get<std::string>(), number.at(2).get<double>()});
   for (const Json& spectrum : json.at("spectra"))
     result.spectra.push_back({spectrum.at("floor").get<std::string>(), spectrum.at("damping").get<double>(),
                               spectrum.at("frequencies").get<std::vector<double>>(), spectrum.at("psa").get<std::vector<double>>()});
@@ -71,9 +73,16 @@ StudyResult result_of(const Json& json) {
 
 std::string line_of(const StudyResult& result) {
   JsonWriter json;
-  json.begin_object().member("id", result.id).member("motion", result.motion).member("sample", result.sample).member("factor", result.factor);
+  json.begin_object()
+      .member("id", result.id)
+      .member("motion", result.motion)
+      .member("sample", result.sample)
+      .member("factor", result.factor);
   json.member("intensity", result.intensity).member("outcome", to_string(result.outcome)).member("reason", result.reason);
-  json.member("attempt", result.attempt).member("end_time", result.end_time).member("created", result.created).member("steps", result.steps);
+  json.member("attempt", result.attempt)
+      .member("end_time", result.end_time)
+      .member("created", result.created)
+      .member("steps", result.steps);
   json.member("retries", result.retries).member("replay", result.replay).member("wall", result.wall);
   write_numbers(json, result);
   std::string text = json.end_object().take();

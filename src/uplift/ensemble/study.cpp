@@ -35,12 +35,15 @@ Study open_study(const std::string& given) {
   study.case_file = plan.case_file;
   std::error_code error;
   if (fs::is_directory(study.case_file, error)) study.case_file = (fs::path(study.case_file) / "case.toml").lexically_normal().string();
-  if (!fs::is_regular_file(study.case_file, error)) fail(plan.values, "case", "a case file, or a folder with case.toml", escaped(plan.case_file));
+  if (!fs::is_regular_file(study.case_file, error))
+    fail(plan.values, "case", "a case file, or a folder with case.toml", escaped(plan.case_file));
   const std::string case_text = read_file(study.case_file);
   study.case_hash = sha256(case_text);
   StudyPlan located = plan;
   located.case_file = study.case_file;
-  const MeshReader reader = [](const std::string& path, const Where& where, const std::string& name) { return read_mesh(path, where, name, true); };
+  const MeshReader reader = [](const std::string& path, const Where& where, const std::string& name) {
+    return read_mesh(path, where, name, true);
+  };
   study.of = study_case(located, read_toml_text(case_text, study.case_file), reader);
   for (const std::string& input : input_files(study.of.read)) study.inputs.emplace_back(input, sha256(read_file(input)));
   return study;

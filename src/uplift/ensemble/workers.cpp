@@ -64,6 +64,12 @@ bool get(int channel, std::string& bytes) {
   return true;
 }
 
+/// Closes all files but the standard ones and the channel: the lock of the study and the channels of the others are not the worker's.
+void keep_only(int channel) {
+  if (channel > 3) ::close_range(3, static_cast<unsigned>(channel) - 1, 0);
+  ::close_range(static_cast<unsigned>(channel) + 1, ~0U, 0);
+}
+
 std::string how_it_ended(int status) {
   if (WIFSIGNALED(status)) return fmt::format("signal {} ({})", WTERMSIG(status), ::strsignal(WTERMSIG(status)));
   return fmt::format("exit code {}", WEXITSTATUS(status));
@@ -100,9 +106,7 @@ void WorkerPool::start(Worker& worker) {
     if (::getppid() != parent) ::_exit(0);
     for (const int number : {SIGINT, SIGQUIT, SIGHUP}) std::signal(number, SIG_IGN);  // of the terminal: the coordinator answers
     std::signal(SIGTERM, SIG_DFL);
-    ::close(ends[0]);
-    for (const Worker& other : workers_)
-      if (other.channel >= 0) ::close(other.channel);
+    keep_only(ends[1]);
     work(ends[1]);
   }
   ::close(ends[1]);

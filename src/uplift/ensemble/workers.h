@@ -1,10 +1,11 @@
 #pragma once
+#include <sys/types.h>
+
 #include <chrono>
 #include <deque>
 #include <functional>
 #include <optional>
 #include <string>
-#include <sys/types.h>
 #include <vector>
 
 #include "uplift/ensemble/compute.h"

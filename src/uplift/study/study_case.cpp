@@ -102,10 +102,12 @@ void resolve_variables(StudyCase& study) {
     for (const std::string& path : variable.paths) {
       const std::optional<NumberAt> number = number_at(study.read.values, path);
       if (!number) fail(tables[k], "paths", "paths of numbers of the case, as \"interface[0].law.K_n\"", in_quotes(path));
-      if (path.starts_with("record") || path.starts_with("compare")) fail(tables[k], "paths", "no number of a record: a study has motions", in_quotes(path));
+      if (path.starts_with("record") || path.starts_with("compare"))
+        fail(tables[k], "paths", "no number of a record: a study has motions", in_quotes(path));
       study.edits_mesh = study.edits_mesh || path.starts_with("mesh") || path.find(".cut") != path.npos;
       const std::string unit(variable.is_factor ? "1" : number->field->unit);
-      if (path != variable.paths.front() && unit != variable.unit) fail(tables[k], "paths", fmt::format("numbers of the unit {}", variable.unit), in_quotes(path));
+      if (path != variable.paths.front() && unit != variable.unit)
+        fail(tables[k], "paths", fmt::format("numbers of the unit {}", variable.unit), in_quotes(path));
       variable.unit = unit;
     }
     variable.distribution = distribution_of(tables[k], variable.unit);
@@ -119,9 +121,11 @@ Matrix draw(const StudyPlan& plan) {
   if (plan.correlations.empty()) return latin_hypercube(plan.samples, count, plan.seed).probability;
   Matrix target = Matrix::Identity(count, count);
   for (const StudyCorrelation& each : plan.correlations)
-    target(static_cast<Index>(each.first), static_cast<Index>(each.second)) = target(static_cast<Index>(each.second), static_cast<Index>(each.first)) = each.value;
+    target(static_cast<Index>(each.first), static_cast<Index>(each.second)) =
+        target(static_cast<Index>(each.second), static_cast<Index>(each.first)) = each.value;
   OrRefused<LatinHypercube> drawn = latin_hypercube(plan.samples, target, plan.seed);
-  if (const Refused* refused = std::get_if<Refused>(&drawn)) fail(plan.values.tables("correlation").front(), "", "correlations that can be reached", refused->reason);
+  if (const Refused* refused = std::get_if<Refused>(&drawn))
+    fail(plan.values.tables("correlation").front(), "", "correlations that can be reached", refused->reason);
   return std::get<LatinHypercube>(drawn).probability;
 }
 
@@ -149,7 +153,8 @@ std::vector<StudySample> samples_of(const StudyCase& study, const std::string& r
 std::string identity_of_case(const Raw& raw, const Case& read) {
   Case own{check(raw, case_section()), read.file, read.mesh, {}};
   std::string text = to_toml(own.values, decided_texts(own)) + "\n";
-  for (const std::string& file : input_files(own)) text += std::filesystem::path(file).filename().string() + " " + sha256(read_file(file)) + "\n";
+  for (const std::string& file : input_files(own))
+    text += std::filesystem::path(file).filename().string() + " " + sha256(read_file(file)) + "\n";
   return text;
 }
 
@@ -202,7 +207,8 @@ std::string resolved_run(const StudyCase& study, std::size_t sample, std::size_t
 }
 
 std::string run_identity(const StudyCase& study, std::size_t sample, std::size_t motion, double factor) {
-  return sha256(fmt::format("{} {} {:016x} {}", study.samples[sample].hash, study.motions[motion].hash, std::bit_cast<std::uint64_t>(factor), UPLIFT_VERSION));
+  return sha256(fmt::format("{} {} {:016x} {}", study.samples[sample].hash, study.motions[motion].hash,
+                            std::bit_cast<std::uint64_t>(factor), UPLIFT_VERSION));
 }
 
 }  // namespace uplift

@@ -44,7 +44,8 @@ void fit_searches(const std::vector<StudyCurve>& curves, std::size_t limit, Stud
 }
 
 /// Motions in rows, samples in columns.
-OrRefused<TwoWayLayout> layout_of(const StudyCase& study, const std::vector<StudyCurve>& curves, const std::vector<StudyCapacity>& capacities) {
+OrRefused<TwoWayLayout> layout_of(const StudyCase& study, const std::vector<StudyCurve>& curves,
+                                  const std::vector<StudyCapacity>& capacities) {
   const auto rows = static_cast<Index>(study.motions.size()), columns = static_cast<Index>(study.samples.size());
   if (!study.plan.crossed || rows < 2 || columns < 2) return Refused{"it takes two samples and two motions at least, crossed"};
   if (static_cast<Index>(capacities.size()) < rows * columns) return Refused{"not all curves have runs"};
@@ -81,7 +82,8 @@ void fit_cloud_of(const StudyLimit& limit, const std::vector<StudyCurve>& curves
       const StudyOutcome outcome = run.result->outcome;
       const double size = demand ? std::abs(*demand) : 0;
       if (outcome == StudyOutcome::completed && size > 0) fit.cloud.push_back({intensity, size, false});
-      if (outcome == StudyOutcome::overturned || outcome == StudyOutcome::separated) fit.cloud.push_back({intensity, std::max(size, limit.limit), true});
+      if (outcome == StudyOutcome::overturned || outcome == StudyOutcome::separated)
+        fit.cloud.push_back({intensity, std::max(size, limit.limit), true});
       if (outcome_of(limit, *run.result) == RunOutcome::exceeded && !says_something(outcome)) fit.cloud.push_back({intensity, size, true});
     }
   OrRefused<CloudFit> made = fit_cloud(fit.cloud, limit.limit);
@@ -108,7 +110,8 @@ std::vector<std::optional<double>> responses(const StudyCase& study, const std::
   if (capacities.empty())
     for (const StudyCurve& curve : curves)
       for (const auto& [intensity, run] : curve.runs())
-        if (const std::optional<double> demand = demand_of(study.plan.limits[limit], *run.result); demand && says_something(run.result->outcome))
+        if (const std::optional<double> demand = demand_of(study.plan.limits[limit], *run.result);
+            demand && says_something(run.result->outcome))
           add(curve.sample(), std::abs(*demand));
   std::vector<std::optional<double>> means(sum.size());
   for (std::size_t i = 0; i < sum.size(); ++i)
@@ -163,18 +166,18 @@ double percentile(const std::vector<double>& sorted, double share) {
 
 std::vector<StudyFloor> floor_percentiles(const StudyCase& study, const std::vector<StudyCurve>& curves) {
   if (study.plan.method.searches()) return {};  // every motion has intensities of its own
-  struct Group {
+  struct Runs {
     StudyFloor floor;
     std::vector<const StudySpectrum*> spectra;
   };
-  std::map<std::tuple<double, std::string, double>, Group> groups;
+  std::map<std::tuple<double, std::string, double>, Runs> groups;
   for (const StudyCurve& curve : curves)
     for (const auto& [intensity, run] : curve.runs()) {
       const std::vector<double>& levels = study.plan.method.levels;
       const double asked = study.plan.method.type == StudyMethod::Type::cloud ? run.point.factor : intensity;
       const double level = *std::ranges::min_element(levels, {}, [&](double each) { return std::abs(each - asked); });  // round-off
       for (const StudySpectrum& spectrum : run.result->spectra) {
-        Group& group = groups[{level, spectrum.floor, spectrum.damping}];
+        Runs& group = groups[{level, spectrum.floor, spectrum.damping}];
         if (group.spectra.empty()) group.floor = {spectrum.floor, spectrum.damping, level, 0, spectrum.frequencies, {}, {}, {}};
         if (spectrum.frequencies == group.floor.frequencies) group.spectra.push_back(&spectrum);
       }

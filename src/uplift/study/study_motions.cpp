@@ -59,7 +59,8 @@ class ManyMotions {
     if (files && !generate.empty()) fail(values, "generate", "either files or generate", "both");
     const std::size_t given = values.texts("files").size();
     if (files && (given == 0 || given % replace_.size() != 0))
-      fail(values, "files", fmt::format("a file for each of the {} names in replace, motion by motion", replace_.size()), fmt::format("{} files", given));
+      fail(values, "files", fmt::format("a file for each of the {} names in replace, motion by motion", replace_.size()),
+           fmt::format("{} files", given));
     count_ = files ? given / replace_.size() : static_cast<std::size_t>(values.integer("count"));
   }
 
@@ -86,7 +87,8 @@ class ManyMotions {
   Raw record(const std::string& name, std::size_t motion, std::size_t component) const {
     RawTable made = copy_of(raw_);
     std::erase_if(made.entries, [](const auto& entry) {
-      return entry.first == "name" || entry.first == "replace" || entry.first == "files" || entry.first == "count" || entry.first == "generate";
+      return entry.first == "name" || entry.first == "replace" || entry.first == "files" || entry.first == "count" ||
+             entry.first == "generate";
     });
     set(made, "name", text(name));
     if (!values_.texts("files").empty()) {

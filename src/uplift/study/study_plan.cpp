@@ -73,14 +73,17 @@ StudyLimit limit_of(const Values& table) {
   limit.quantity = find_verdict_quantity(name);
   std::vector<std::string> known;
   for (const VerdictQuantity& each : verdict_quantities()) known.emplace_back(each.name);
-  if (!limit.quantity) fail(table, "quantity", fmt::format("a number of the verdict: {}", fmt::join(known, ", ")), "\"" + name + "\"", nearest_name(name, known));
+  if (!limit.quantity)
+    fail(table, "quantity", fmt::format("a number of the verdict: {}", fmt::join(known, ", ")), "\"" + name + "\"",
+         nearest_name(name, known));
   if (!table.has("limit")) fail(table, "", fmt::format("limit, of {}", name), "none");
   const std::string unit(limit.quantity->unit);
   const Quantity value = parse_quantity(table.text("limit"), unit);
   if (!value.ok) fail(table, "limit", quantity_name(unit), value.found, value.nearest);
   limit.limit = value.value;
   if (table.has("of")) {
-    if (!limit.quantity->of_interface && !limit.quantity->of_beam) fail(table, "of", fmt::format("nothing: {} belongs to the whole run", name), "\"" + table.text("of") + "\"");
+    if (!limit.quantity->of_interface && !limit.quantity->of_beam)
+      fail(table, "of", fmt::format("nothing: {} belongs to the whole run", name), "\"" + table.text("of") + "\"");
     limit.of = table.text("of");
   }
   return limit;
@@ -100,7 +103,9 @@ std::vector<StudyCorrelation> correlations_of(const Values& root, const Names& v
   for (const Values& table : root.tables("correlation")) {
     const std::vector<std::string>& names = table.texts("variables");
     if (names.size() != 2 || names[0] == names[1]) fail(table, "variables", "two variables", fmt::format("{}", fmt::join(names, ", ")));
-    const auto find = [&](const std::string& name) { return static_cast<std::size_t>(variables.find(name, table.where("variables"), table.path("variables"))); };
+    const auto find = [&](const std::string& name) {
+      return static_cast<std::size_t>(variables.find(name, table.where("variables"), table.path("variables")));
+    };
     made.push_back({find(names[0]), find(names[1]), table.number("value")});
   }
   return made;
@@ -172,7 +177,8 @@ StudyPlan study_plan(const Raw& raw) {
   if (plan.method.type == StudyMethod::Type::cloud)
     for (std::size_t k = 0; k < plan.limits.size(); ++k)
       if (!plan.limits[k].quantity)
-        fail(root.tables("limit").empty() ? root : root.tables("limit")[k], "", "limits with a quantity: a cloud is regressed on it", "none");
+        fail(root.tables("limit").empty() ? root : root.tables("limit")[k], "", "limits with a quantity: a cloud is regressed on it",
+             "none");
   plan.floor_spectra = root.flag("floor_spectra");
   const Values& run = root.table("run");
   if (run.has("timeout")) plan.timeout = run.number("timeout");

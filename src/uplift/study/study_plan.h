@@ -16,6 +16,8 @@ namespace uplift {
 const Section& study_section();
 /// How intensities are chosen: the parts of `method`.
 std::span<const PartInfo* const> study_methods();
+/// Of the values of its variables.
+std::span<const PartInfo* const> study_distributions();
 
 /// What measures a motion. Intensities are in the unit of the plan throughout.
 struct IntensityMeasure {
@@ -46,8 +48,8 @@ struct StudyLimit {
 /// One or several numbers of the case that vary together.
 struct StudyVariable {
   std::string name;
-  std::vector<std::string> paths;  // of the case: "interface[0].law.K_n"
-  bool is_factor = true;           // of the case's values; else it is their value
+  std::vector<std::string> paths;               // of the case: "interface[0].law.K_n"
+  bool is_factor = true;                        // of the case's values; else it is their value
   Distribution distribution = Lognormal{1, 1};  // of SI values, see unit
   std::string unit = "1";                       // of the values
 };

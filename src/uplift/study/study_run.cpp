@@ -23,7 +23,8 @@ StudyOutcome outcome_of(const BuiltCase& built, const RunResult& run) {
     case RunStatus::failed:
       break;
   }
-  return run.energy_scale > 0 && run.energy_created > built.plan.created_limit * run.energy_scale ? StudyOutcome::energy : StudyOutcome::failed;
+  return run.energy_scale > 0 && run.energy_created > built.plan.created_limit * run.energy_scale ? StudyOutcome::energy
+                                                                                                  : StudyOutcome::failed;
 }
 
 /// How far a number is beyond the limit: > 0.

@@ -15,7 +15,8 @@ namespace uplift {
 
 /// How a run ended. The first three say something of the structure.
 enum class StudyOutcome { completed, overturned, separated, failed, energy, timeout, memory, crashed };
-inline constexpr std::string_view study_outcomes[] = {"completed", "overturned", "separated", "failed", "energy", "timeout", "memory", "crashed"};
+inline constexpr std::string_view study_outcomes[] = {"completed", "overturned", "separated", "failed",
+                                                      "energy",    "timeout",    "memory",    "crashed"};
 inline std::string_view to_string(StudyOutcome outcome) {
   return study_outcomes[static_cast<std::size_t>(outcome)];
 }
@@ -62,8 +63,8 @@ void list_parts(Archive& archive, T& spectrum) {
 }
 template <class Archive, SameAs<StudyResult> T>
 void list_parts(Archive& archive, T& run) {
-  archive(run.id, run.motion, run.sample, run.factor, run.intensity, run.outcome, run.reason, run.attempt, run.numbers, run.spectra, run.end_time,
-          run.created, run.steps, run.retries, run.replay, run.wall);
+  archive(run.id, run.motion, run.sample, run.factor, run.intensity, run.outcome, run.reason, run.attempt, run.numbers, run.spectra,
+          run.end_time, run.created, run.steps, run.retries, run.replay, run.wall);
 }
 
 /// From a run that is over; identity, attempt and intensity are left to the caller. `spectra`: floor spectra are kept.

@@ -13,12 +13,12 @@ Field quantity(std::string_view name, std::string_view meaning) {
 }
 
 const Section& motion_section() {
-  static const Section s{"motion",
-                         "a motion of the study: records that take the places of others, one for each component. Without [[motion]] and "
-                         "[[motions]] the study has those of [[compare.motion]] of the case, and without these its own motion alone",
-                         {text("name", "name"), text("label", "as shown").optional(),
-                          texts("replace", "names of records or functions that drive the case"),
-                          texts("by", "names of the records that take their places, in the same order; of the case or of the plan")}};
+  static const Section s{
+      "motion",
+      "a motion of the study: records that take the places of others, one for each component. Without [[motion]] and "
+      "[[motions]] the study has those of [[compare.motion]] of the case, and without these its own motion alone",
+      {text("name", "name"), text("label", "as shown").optional(), texts("replace", "names of records or functions that drive the case"),
+       texts("by", "names of the records that take their places, in the same order; of the case or of the plan")}};
   return s;
 }
 
@@ -35,7 +35,8 @@ const Section& motions_section() {
       if (field.name == "generate") {
         made.fields.back().kind = Kind::tables;
         made.fields.back().required = false;
-        made.fields.back().meaning = "a target and times for each component in the order of `replace`; motion i has the seed `seed` + i - 1";
+        made.fields.back().meaning =
+            "a target and times for each component in the order of `replace`; motion i has the seed `seed` + i - 1";
       }
     }
     return made;
@@ -57,7 +58,8 @@ const Section& intensity_section() {
 }
 
 constexpr const char* search_equations =
-    "For every motion and sample the capacity is the intensity at which a limit is exceeded first. Intensities grow from `start` by growing\n"
+    "For every motion and sample the capacity is the intensity at which a limit is exceeded first. Intensities grow from `start` by "
+    "growing\n"
     "factors until it is exceeded; then the interval between the last survival and the first exceedance is halved in the logarithm until "
     "it\nis within `tolerance`; then the largest gaps are filled. A survival above an exceedance is reported (resurrection).";
 
@@ -74,16 +76,19 @@ Field smallest_field() {
   return number("smallest", "1", "the search goes no lower; absent: a hundredth of start").positive().optional();
 }
 Field fill_field() {
-  return integer("fill", "intensities of a curve in all: when the capacity is known, the largest gaps below it are filled").nonnegative().standard(0);
+  return integer("fill", "intensities of a curve in all: when the capacity is known, the largest gaps below it are filled")
+      .nonnegative()
+      .standard(0);
 }
 
 const PartInfo& ida() {
-  static const PartInfo s{"ida",
-                          "incremental dynamic analysis: the capacity of every motion is searched",
-                          search_equations,
-                          "Vamvatsikos and Cornell (2002), Earthquake Engineering and Structural Dynamics 31, 491-514",
-                          {start_field(), number("largest", "1", "largest intensity: a motion that survives it has a capacity beyond").positive(),
-                           smallest_field(), tolerance_field(), fill_field(), most_runs_field()}};
+  static const PartInfo s{
+      "ida",
+      "incremental dynamic analysis: the capacity of every motion is searched",
+      search_equations,
+      "Vamvatsikos and Cornell (2002), Earthquake Engineering and Structural Dynamics 31, 491-514",
+      {start_field(), number("largest", "1", "largest intensity: a motion that survives it has a capacity beyond").positive(),
+       smallest_field(), tolerance_field(), fill_field(), most_runs_field()}};
   return s;
 }
 
@@ -92,16 +97,18 @@ const PartInfo& truncated_ida() {
                           "incremental dynamic analysis up to a largest intensity; capacities beyond it are censored in the fit",
                           search_equations,
                           "Baker (2015), Earthquake Spectra 31, 579-599",
-                          {start_field(), number("largest", "1", "intensity at which the search ends").positive(), smallest_field(), tolerance_field(), fill_field(), most_runs_field()}};
+                          {start_field(), number("largest", "1", "intensity at which the search ends").positive(), smallest_field(),
+                           tolerance_field(), fill_field(), most_runs_field()}};
   return s;
 }
 
 const PartInfo& stripes() {
-  static const PartInfo s{"stripes",
-                          "every motion at every one of some intensities; exceedances are counted",
-                          "The number of exceedances at an intensity is binomial with P(exceeded) = Phi(ln(im/theta)/beta); maximum likelihood.",
-                          "Baker (2015), Earthquake Spectra 31, 579-599",
-                          {numbers("levels", "1", "intensities, ascending").positive()}};
+  static const PartInfo s{
+      "stripes",
+      "every motion at every one of some intensities; exceedances are counted",
+      "The number of exceedances at an intensity is binomial with P(exceeded) = Phi(ln(im/theta)/beta); maximum likelihood.",
+      "Baker (2015), Earthquake Spectra 31, 579-599",
+      {numbers("levels", "1", "intensities, ascending").positive()}};
   return s;
 }
 
@@ -130,30 +137,28 @@ const PartInfo& normal() {
 }
 
 const PartInfo& uniform() {
-  static const PartInfo s{"uniform", "all values between two are equally likely", "least <= x <= most", "",
+  static const PartInfo s{"uniform",
+                          "all values between two are equally likely",
+                          "least <= x <= most",
+                          "",
                           {quantity("least", "least value"), quantity("most", "largest value")}};
   return s;
 }
 
-std::span<const PartInfo* const> distributions() {
-  static const PartInfo* const all[] = {&lognormal(), &normal(), &uniform()};
-  return all;
-}
-
 const Section& variable_section() {
-  static const Section s{
-      "variable",
-      "numbers of the case that are uncertain; they vary together. Samples are a Latin hypercube",
-      {text("name", "name"), texts("paths", "numbers of the case that it sets, as \"interface[0].law.K_n\""),
-       choice("meaning", {"factor", "value"}, "a factor on the case's values, or their value").standard("factor"),
-       part("distribution", distributions, "distribution")}};
+  static const Section s{"variable",
+                         "numbers of the case that are uncertain; they vary together. Samples are a Latin hypercube",
+                         {text("name", "name"), texts("paths", "numbers of the case that it sets, as \"interface[0].law.K_n\""),
+                          choice("meaning", {"factor", "value"}, "a factor on the case's values, or their value").standard("factor"),
+                          part("distribution", study_distributions, "distribution")}};
   return s;
 }
 
 const Section& correlation_section() {
-  static const Section s{"correlation",
-                         "rank correlation of two variables; others are independent",
-                         {texts("variables", "names of two variables"), number("value", "1", "correlation coefficient").between(-0.999, 0.999)}};
+  static const Section s{
+      "correlation",
+      "rank correlation of two variables; others are independent",
+      {texts("variables", "names of two variables"), number("value", "1", "correlation coefficient").between(-0.999, 0.999)}};
   return s;
 }
 
@@ -181,6 +186,11 @@ const Section& run_section() {
 
 }  // namespace
 
+std::span<const PartInfo* const> study_distributions() {
+  static const PartInfo* const all[] = {&lognormal(), &normal(), &uniform()};
+  return all;
+}
+
 std::span<const PartInfo* const> study_methods() {
   static const PartInfo* const all[] = {&ida(), &truncated_ida(), &stripes(), &cloud()};
   return all;
@@ -190,9 +200,10 @@ const Section& study_section() {
   static const Section s{
       "study",
       "plan.toml of a study: one case under many motions, at many intensities, with sampled variables",
-      {text("case", "case file, or folder with case.toml; relative to the plan"), integer("seed", "of the samples").nonnegative().standard(1),
-       table("intensity", intensity_section(), "measure of the motions"), part("method", study_methods, "which intensities are run"),
-       tables("motion", motion_section(), "motions"), tables("motions", motions_section(), "motions from files, or generated"),
+      {text("case", "case file, or folder with case.toml; relative to the plan"),
+       integer("seed", "of the samples").nonnegative().standard(1), table("intensity", intensity_section(), "measure of the motions"),
+       part("method", study_methods, "which intensities are run"), tables("motion", motion_section(), "motions"),
+       tables("motions", motions_section(), "motions from files, or generated"),
        tables("record", record_section(), "records beside those of the case"),
        integer("samples", "number of samples of the variables").positive().standard(1),
        choice("pairing", {"crossed", "paired"},

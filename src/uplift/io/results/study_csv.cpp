@@ -25,7 +25,11 @@ std::string fit_cells(const OrRefused<Fragility>& result) {
 
 std::string capacity_cells(const std::optional<RecordCapacity>& capacity) {
   if (!capacity) return "nothing,";
-  return fmt::format("{},{}", capacity->known == Known::exact ? "exact" : capacity->known == Known::at_least ? "at_least" : "at_most", exact(capacity->im));
+  return fmt::format("{},{}",
+                     capacity->known == Known::exact      ? "exact"
+                     : capacity->known == Known::at_least ? "at_least"
+                                                          : "at_most",
+                     exact(capacity->im));
 }
 
 std::string_view word_of(RunOutcome outcome) {
@@ -50,9 +54,9 @@ std::string fits_csv(const StudyDocument& study) {
     const Fragility* fit = std::get_if<Fragility>(&each.fit.fit.middle);
     const ConfidenceInterval theta = fit ? fit->theta_interval(study_confidence) : ConfidenceInterval{},
                              beta = fit ? fit->beta_interval(study_confidence) : ConfidenceInterval{};
-    text += fmt::format("{},{},{},{},{},{},{},{},{},{},{},{}\n", csv_cell(each.limit.name), each.fit.survived, each.fit.exceeded, each.fit.unknown,
-                        fit_cells(each.fit.fit.middle), exact(theta.lower), exact(theta.upper), exact(beta.lower), exact(beta.upper),
-                        fit_cells(each.fit.fit.survived), fit_cells(each.fit.fit.exceeded),
+    text += fmt::format("{},{},{},{},{},{},{},{},{},{},{},{}\n", csv_cell(each.limit.name), each.fit.survived, each.fit.exceeded,
+                        each.fit.unknown, fit_cells(each.fit.fit.middle), exact(theta.lower), exact(theta.upper), exact(beta.lower),
+                        exact(beta.upper), fit_cells(each.fit.fit.survived), fit_cells(each.fit.fit.exceeded),
                         fit ? "" : csv_cell(std::get<Refused>(each.fit.fit.middle).reason));
   }
   return text;
@@ -61,12 +65,13 @@ std::string fits_csv(const StudyDocument& study) {
 std::string study_runs_csv(const StudyDocument& study) {
   std::string text = fmt::format("id,motion,sample,intensity [{}],factor [1],outcome,reason", study.plan.intensity.unit);
   for (const StudyDocument::Limit& each : study.limits)
-    text += "," + csv_cell(each.limit.name) + "," + csv_cell(fmt::format("{} [{}]", each.limit.name, each.limit.quantity ? each.limit.quantity->unit : "1"));
+    text += "," + csv_cell(each.limit.name) + "," +
+            csv_cell(fmt::format("{} [{}]", each.limit.name, each.limit.quantity ? each.limit.quantity->unit : "1"));
   text += "\n";
   for (const StudyDocument::Curve& curve : study.curves)
     for (const StudyDocument::Run& run : curve.runs) {
-      text += fmt::format("{},{},{},{},{},{},{}", run.id, csv_cell(run.motion), run.sample, exact(run.intensity), exact(run.factor), to_string(run.outcome),
-                          csv_cell(run.reason));
+      text += fmt::format("{},{},{},{},{},{},{}", run.id, csv_cell(run.motion), run.sample, exact(run.intensity), exact(run.factor),
+                          to_string(run.outcome), csv_cell(run.reason));
       for (std::size_t k = 0; k < run.states.size(); ++k) text += fmt::format(",{},{}", word_of(run.states[k]), exact(run.demands[k]));
       text += "\n";
     }
@@ -76,14 +81,15 @@ std::string study_runs_csv(const StudyDocument& study) {
 std::string study_curves_csv(const StudyDocument& study) {
   const std::string unit = study.plan.intensity.unit;
   std::string text = fmt::format(
-      "limit,motion,sample,found,capacity,capacity [{0}],unknown survived,unknown survived [{0}],unknown exceeded,unknown exceeded [{0}],resurrections [1]\n",
+      "limit,motion,sample,found,capacity,capacity [{0}],unknown survived,unknown survived [{0}],unknown exceeded,unknown exceeded "
+      "[{0}],resurrections [1]\n",
       unit);
   for (const StudyDocument::Limit& each : study.limits)
     for (const StudyCapacity& capacity : each.fit.capacities) {
       const StudyDocument::Curve& curve = study.curves[capacity.curve];
-      text += fmt::format("{},{},{},{},{},{},{},{}\n", csv_cell(each.limit.name), csv_cell(curve.motion), curve.sample, capacity.found ? "yes" : "no",
-                          capacity_cells(capacity.left_out), capacity_cells(capacity.survived), capacity_cells(capacity.exceeded),
-                          capacity.resurrections.size());
+      text += fmt::format("{},{},{},{},{},{},{},{}\n", csv_cell(each.limit.name), csv_cell(curve.motion), curve.sample,
+                          capacity.found ? "yes" : "no", capacity_cells(capacity.left_out), capacity_cells(capacity.survived),
+                          capacity_cells(capacity.exceeded), capacity.resurrections.size());
     }
   return text;
 }
@@ -91,10 +97,12 @@ std::string study_curves_csv(const StudyDocument& study) {
 std::string study_sentence(const StudyDocument& study, std::size_t number) {
   const StudyDocument::Limit& each = study.limits[number];
   const std::string unit = study.plan.intensity.unit == "1" ? "" : " " + study.plan.intensity.unit;
-  const std::string counts = fmt::format("runs: {} survived, {} exceeded, {} unknown", each.fit.survived, each.fit.exceeded, each.fit.unknown);
+  const std::string counts =
+      fmt::format("runs: {} survived, {} exceeded, {} unknown", each.fit.survived, each.fit.exceeded, each.fit.unknown);
   const auto short_text = [&](const OrRefused<Fragility>& result) {
     const Fragility* fit = std::get_if<Fragility>(&result);
-    return fit ? fmt::format("{:.3g}{}, beta {:.3g}", fit->theta(), unit, fit->beta()) : "no fit (" + std::get<Refused>(result).reason + ")";
+    return fit ? fmt::format("{:.3g}{}, beta {:.3g}", fit->theta(), unit, fit->beta())
+               : "no fit (" + std::get<Refused>(result).reason + ")";
   };
   std::string text = each.limit.name + ": ";
   if (const Fragility* fit = std::get_if<Fragility>(&each.fit.fit.middle))

@@ -41,10 +41,11 @@ void write_provenance(ResultWriter& out, const StudyDocument& study) {
 }
 
 void write_intensity(ResultWriter& out, const IntensityMeasure& measure) {
-  out.word("measure", measure.kind == IntensityMeasure::Kind::pga   ? "pga"
-                      : measure.kind == IntensityMeasure::Kind::pgv ? "pgv"
-                      : measure.kind == IntensityMeasure::Kind::sa  ? "sa"
-                                                                    : "factor",
+  out.word("measure",
+           measure.kind == IntensityMeasure::Kind::pga   ? "pga"
+           : measure.kind == IntensityMeasure::Kind::pgv ? "pgv"
+           : measure.kind == IntensityMeasure::Kind::sa  ? "sa"
+                                                         : "factor",
            {"pga", "pgv", "sa", "factor"}, "measure of the motions");
   out.text("label", measure.label(), "measure in words");
   out.text("unit", measure.unit, "unit of all intensities in this document");
@@ -140,7 +141,8 @@ void write_failure(ResultWriter& out, const StudyDocument::Run& run) {
 
 // ---- fits ----
 
-void write_interval(ResultWriter& out, std::string_view key, const ConfidenceInterval& interval, std::string_view unit, std::string_view meaning) {
+void write_interval(ResultWriter& out, std::string_view key, const ConfidenceInterval& interval, std::string_view unit,
+                    std::string_view meaning) {
   out.object(key, meaning, [&] {
     out.number_or_null("lower", interval.lower, unit, "lower end; null: unbounded");
     out.number_or_null("upper", interval.upper, unit, "upper end; null: unbounded");
@@ -165,9 +167,11 @@ void write_fit(ResultWriter& out, const OrRefused<Fragility>& result, bool with_
   if (!there) return;
   const auto interval = [&](const auto& of) { return fit ? of(*fit) : ConfidenceInterval{}; };
   out.when(there);
-  write_interval(out, "theta_interval", interval([](const Fragility& f) { return f.theta_interval(study_confidence); }), intensity_unit, "interval of theta");
+  write_interval(out, "theta_interval", interval([](const Fragility& f) { return f.theta_interval(study_confidence); }), intensity_unit,
+                 "interval of theta");
   out.when(there);
-  write_interval(out, "beta_interval", interval([](const Fragility& f) { return f.beta_interval(study_confidence); }), "1", "interval of beta");
+  write_interval(out, "beta_interval", interval([](const Fragility& f) { return f.beta_interval(study_confidence); }), "1",
+                 "interval of beta");
   std::vector<double> intensities, probabilities;
   std::vector<std::optional<double>> lower, upper;
   constexpr int points = 41;
@@ -248,15 +252,19 @@ void write_limit(ResultWriter& out, const StudyDocument& study, const StudyDocum
     out.number("sigma", cloud.sigma, "1", "standard deviation of ln demand");
   });
   out.number("confidence", study_confidence, "1", "confidence of all intervals");
-  out.object("fit", "lognormal fragility without runs of unknown outcome, where both ends are near enough", [&] { write_fit(out, fit.fit.middle, true); });
+  out.object("fit", "lognormal fragility without runs of unknown outcome, where both ends are near enough",
+             [&] { write_fit(out, fit.fit.middle, true); });
   out.object("unknown_survived", "with runs of unknown outcome counted as survived", [&] { write_fit(out, fit.fit.survived, false); });
   out.object("unknown_exceeded", "with runs of unknown outcome counted as exceeded", [&] { write_fit(out, fit.fit.exceeded, false); });
   out.object("dispersion", "scatter from motion to motion and from sample to sample", [&] { write_dispersion(out, fit.layout); });
-  out.list("tornado", "how each variable moves the capacity, or the demand where none is searched", fit.tornado, [&](const StudyInfluence& influence) {
-    out.text("variable", influence.variable < study.plan.variables.size() ? study.plan.variables[influence.variable].name : "", "variable");
-    out.number("low", influence.low, "of intensity, or of the demand", "geometric mean over the third of the samples with its smallest values");
-    out.number("high", influence.high, "of intensity, or of the demand", "over the third with its largest values");
-  });
+  out.list("tornado", "how each variable moves the capacity, or the demand where none is searched", fit.tornado,
+           [&](const StudyInfluence& influence) {
+             out.text("variable", influence.variable < study.plan.variables.size() ? study.plan.variables[influence.variable].name : "",
+                      "variable");
+             out.number("low", influence.low, "of intensity, or of the demand",
+                        "geometric mean over the third of the samples with its smallest values");
+             out.number("high", influence.high, "of intensity, or of the demand", "over the third with its largest values");
+           });
 }
 
 void write_floor(ResultWriter& out, const StudyFloor& floor) {
@@ -298,18 +306,21 @@ void write_study(ResultWriter& out, const StudyDocument& study) {
   out.constant("format", "uplift-study-1", "format of this document");
   out.text("name", study.name, "name of the study");
   out.text("title", study.case_title, "title of the case");
-  out.flag("complete", !study.curves.empty() && std::ranges::all_of(study.curves, &StudyDocument::Curve::complete), "whether no run is missing");
+  out.flag("complete", !study.curves.empty() && std::ranges::all_of(study.curves, &StudyDocument::Curve::complete),
+           "whether no run is missing");
   out.object("provenance", "what it was made from", [&] { write_provenance(out, study); });
   out.object("intensity", "measure of the motions", [&] { write_intensity(out, study.plan.intensity); });
   out.object("method", "which intensities are run", [&] { write_method(out, study.plan.method); });
   out.count("samples", std::ssize(study.samples), "number of samples of the variables");
   out.word("pairing", study.plan.crossed ? "crossed" : "paired", {"crossed", "paired"}, "how samples and motions are combined");
   out.list("motions", "motions", study.motions, [&](const StudyMotion& motion) { write_motion(out, motion); });
-  out.list("variables", "uncertain numbers of the case", variables_of(study), [&](const Variable& variable) { write_variable(out, variable); });
+  out.list("variables", "uncertain numbers of the case", variables_of(study),
+           [&](const Variable& variable) { write_variable(out, variable); });
   out.object("outcomes", "number of runs by their outcome", [&] { write_counts(out, study); });
   out.list("limits", "limit states", study.limits, [&](const StudyDocument::Limit& limit) { write_limit(out, study, limit); });
   out.list("curves", "runs of every motion and sample", study.curves, [&](const StudyDocument::Curve& curve) { write_curve(out, curve); });
-  out.list("failures", "runs without a result of the structure", failures_of(study), [&](const StudyDocument::Run& run) { write_failure(out, run); });
+  out.list("failures", "runs without a result of the structure", failures_of(study),
+           [&](const StudyDocument::Run& run) { write_failure(out, run); });
   out.list("floor_spectra", "percentiles of floor spectra", study.floors, [&](const StudyFloor& floor) { write_floor(out, floor); });
 }
 
