@@ -117,7 +117,7 @@ class Study(CliTest):
         self.assertEqual(run["factor [1]"] != "1", True)
 
     def test_killed_processes_lose_nothing(self):
-        plan = IDA.replace("1 mm", "2 mm") + '[[limit]]\nname = "rotation"\nquantity = "max_rotation"\nlimit = 0.002\n'
+        plan = IDA.replace("1 mm", "2 mm") + '[[limit]]\nname = "drift"\nquantity = "max_drift"\nlimit = 0.005\n'
         self.write(CASE.replace("duration = 1\n", "duration = 20\n"))
         self.uplift("study", "run", self.study(plan, "whole.study"), "-q", "-j", "1")
         expected = self.evaluated("whole.study")

@@ -88,6 +88,33 @@ class StudyLine {
   Clock::time_point last_ = Clock::now();
 };
 
+/// What a command tells of itself to `status` in another terminal, every two seconds; removed when it ends.
+class LiveStatus {
+ public:
+  explicit LiveStatus(const Study& study) : path_(file_of(study)) {}
+  LiveStatus(const LiveStatus&) = delete;
+  LiveStatus& operator=(const LiveStatus&) = delete;
+  ~LiveStatus() {
+    std::error_code error;
+    std::filesystem::remove(path_, error);
+  }
+  void operator()(const StudyStatus& status) {
+    const Clock::time_point now = Clock::now();
+    if (now - last_ < std::chrono::seconds(2)) return;
+    last_ = now;
+    try {
+      write_file_atomically(path_, status_text(status) + "\n");
+    } catch (const std::filesystem::filesystem_error&) {  // a full disk is told by the results
+    }
+  }
+  static std::string file_of(const Study& study) { return study.folder + "/status.txt"; }
+
+ private:
+  using Clock = std::chrono::steady_clock;
+  std::string path_;
+  Clock::time_point last_ = Clock::now();
+};
+
 void tell_damage(const StudyStore& store) {
   if (store.damaged() > 0)
     complain(fmt::format("warning: {} lines of the parts are damaged: their runs count as not computed", store.damaged()));
@@ -134,7 +161,12 @@ int run_or_work(const Options& options, const StudyOptions& given, const std::op
   if (shard) control.shard = *shard;
   control.stopped = interrupt_asked;
   StudyLine line(options.quiet);
-  control.follow = [&](const StudyStatus& status) { line(status); };
+  std::optional<LiveStatus> live;
+  if (!shard) live.emplace(study);
+  control.follow = [&](const StudyStatus& status) {
+    line(status);
+    if (live) (*live)(status);
+  };
   StudyStatus status;
   writing([&] { status = run_study(study, store, control); });
   if (!shard) writing([&] { write_index(study, store, curves_with_results(study, store)); });

@@ -37,6 +37,10 @@ std::vector<std::string> warnings_of(const Study& study, const BuiltCase& built,
     if (limit.quantity && !demand_of(limit, trial))
       said.push_back(fmt::format("the limit {}: the first run has no {}{}", in_quotes(limit.name), limit.quantity->name,
                                  limit.of.empty() ? "" : " of " + in_quotes(limit.of)));
+  for (const DrivenBy& place : motions_wanted(read.values))
+    if (place.table->items().contains("amplitude") && place.kind == MotionKind::acceleration && place.table->number("amplitude") != 1)
+      said.push_back(fmt::format("{} multiplies its record by {:g}: the intensities are those of the records",
+                                 place.table->path("amplitude"), place.table->number("amplitude")));
   if (!says_something(trial.outcome))
     said.push_back(fmt::format("the first run ends as \"{}\": {}", to_string(trial.outcome), trial.reason));
   if (study.of.plan.floor_spectra && trial.spectra.empty()) said.emplace_back("floor_spectra: the case has no [[output.floor]]");

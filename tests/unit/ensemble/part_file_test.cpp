@@ -71,7 +71,8 @@ class Store : public testing::Test {
 TEST_F(Store, OneResultARunWhateverTheOrder) {
   const std::string timeout = line_of(result("a", StudyOutcome::timeout)), again = line_of(result("a", StudyOutcome::completed, 2)),
                     same = line_of(result("a", StudyOutcome::failed, 2));
-  for (const auto& [first, second] : {std::pair(timeout + again, same), std::pair(same, again + timeout), std::pair(again + same, timeout)}) {
+  for (const auto& [first, second] :
+       {std::pair(timeout + again, same), std::pair(same, again + timeout), std::pair(again + same, timeout)}) {
     part("1.jsonl", first);
     part("2.jsonl", second);
     const StudyStore read = store();

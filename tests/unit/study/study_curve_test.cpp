@@ -174,8 +174,8 @@ TEST(CaseEdit, NumbersAreFoundByTheirPath) {
   EXPECT_EQ(number_at(read.values, "interface[0].law.K_n")->field->unit, "Pa/m");
   EXPECT_EQ(number_at(read.values, "interface[0].footing.width")->value, 3);
   EXPECT_EQ(number_at(read.values, "ground_acceleration[0].direction[0]")->value, 1);
-  for (const char* path : {"", "[", "interface", "interface[1].law.K_n", "interface[0].law.K_m", "interface[0].law", "interface[x].law.K_n", "interface[0",
-                           "ground_acceleration[0].direction[3]", "title", "stage[1].step.more"})
+  for (const char* path : {"", "[", "interface", "interface[1].law.K_n", "interface[0].law.K_m", "interface[0].law", "interface[x].law.K_n",
+                           "interface[0", "ground_acceleration[0].direction[3]", "title", "stage[1].step.more"})
     EXPECT_FALSE(number_at(read.values, path)) << path;
 }
 
