@@ -21,10 +21,10 @@ TEST(FragilityCloud, FitOfKnownData) {
 /// Median and beta of MASTODON's test in closed form: demand 0.0023599995 im with beta 1.4904, capacity 0.01 with beta 1.3.
 TEST(FragilityCloud, ClosedFormOfDemandAndCapacity) {
   const double theta = 0.01 / 0.0023599995, beta = std::hypot(1.4904453117463, 1.3);
-  EXPECT_NEAR(theta, 4.23728895, 1e-8);
+  EXPECT_NEAR(theta / 4.23728895, 1, 1e-7);
   EXPECT_NEAR(beta, 1.97773285, 1e-8);
   for (const auto& [im, p] : {std::pair{0.3, 0.09030903}, {0.5, 0.13994511}, {0.7, 0.18129639}, {0.9, 0.21670677}})
-    EXPECT_NEAR(cdf(Lognormal{theta, beta}, im), p, 5e-9);
+    EXPECT_NEAR(cdf(Lognormal{theta, beta}, im), p, 1e-7 * p);
 }
 
 /// Fieller's interval: the thresholds t with (ln d - a - b t)^2 <= t_8^2 Var(a + b t), a quadratic equation.
@@ -63,7 +63,7 @@ TEST(FragilityCloud, CensoredDemands) {
   EXPECT_NEAR(fit.fragility.log_likelihood(), log_likelihood(x[0], x[1], x[2]), 1e-11);
   Matrix information(3, 3);
   for (int i = 0; i < 3; ++i) {
-    EXPECT_NEAR(f(i, 1, i, 0) - f(i, -1, i, 0), 0, 1e-9);
+    EXPECT_NEAR((f(i, 0.05, i, 0) - f(i, -0.05, i, 0)) / (0.1 * h), 0, 1e-5);
     for (int j = 0; j < 3; ++j) information(i, j) = -(f(i, 1, j, 1) - f(i, 1, j, -1) - f(i, -1, j, 1) + f(i, -1, j, -1)) / (4 * h * h);
   }
   const Matrix covariance = inverse(information);

@@ -81,10 +81,11 @@ TEST(Nuclear, TwoWayLayoutRefusesWhatItCannotSeparate) {
   EXPECT_NE(reason_of(two_way_layout(table)).find("record 2 with sample 3"), std::string::npos);
 }
 
-/// Integral of P |dH| over ln a by Gauss-Legendre rules on every segment: independent of the closed form.
+/// Integral of P |dH| over ln a by Gauss-Legendre rules on every segment, and all that is above the last point: independent of the closed
+/// form.
 double by_quadrature(const std::vector<HazardPoint>& hazard, double theta, double beta) {
   const Quadrature rule = gauss_legendre(60);
-  double sum = 0;
+  double sum = hazard.back().rate;
   for (std::size_t i = 1; i < hazard.size(); ++i) {
     const double x0 = std::log(hazard[i - 1].im), x1 = std::log(hazard[i].im),
                  k = std::log(hazard[i - 1].rate / hazard[i].rate) / (x1 - x0);
