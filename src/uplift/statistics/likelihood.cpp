@@ -107,7 +107,7 @@ std::optional<FragilityLikelihood::Maximum> FragilityLikelihood::maximise(const 
     double length = 1;
     Vec3 next = p + directions * s;
     Value there = evaluate(next);
-    if (decrement < full_steps) {  // differences of ln L are round-off here
+    if (decrement < std::max(full_steps, 1e-12 * std::abs(now.value))) {  // differences of ln L are round-off here
       ++last_steps;
     } else {
       for (int halving = 0; halving < 100 && !(there.value >= now.value + 1e-4 * length * decrement); ++halving) {

@@ -57,7 +57,7 @@ OrRefused<TwoWayLayout> two_way_layout(const Matrix& capacities);
 struct HazardPoint {
   double im = 0, rate = 0;
 };
-/// Annual rate of failure, and its shares from intensities below the first and above the last point of the hazard curve.
+/// Annual rate of failure, and its shares that rest on rates below the first and above the last point of the hazard curve.
 struct AnnualRisk {
   double rate = 0;  // [1/a]
   double share_below = 0, share_above = 0;
