@@ -35,7 +35,7 @@ TEST(FragilityCloud, IntervalOfTheMedianIsFiellers) {
   for (const CloudPoint& p : ten_demands()) spread += std::pow(std::log(p.im) - mean, 2);
   const double c = std::pow(1.859548038 * fit.sigma, 2), r = std::log(0.01) - fit.a - fit.b * mean;  // t of 8 degrees of freedom, 90 %
   const double qa = fit.b * fit.b - c / spread, qb = -2 * r * fit.b, qc = r * r - c / 10, root = std::sqrt(qb * qb - 4 * qa * qc);
-  const Interval theta = fit.fragility.theta_interval(0.9);
+  const ConfidenceInterval theta = fit.fragility.theta_interval(0.9);
   EXPECT_NEAR(*theta.lower, std::exp(mean + (-qb - root) / (2 * qa)), 1e-8);
   EXPECT_NEAR(*theta.upper, std::exp(mean + (-qb + root) / (2 * qa)), 1e-8);
 }

@@ -53,8 +53,8 @@ TEST(FragilityRandom, TablesGiveAFitOrAReason) {
     EXPECT_TRUE(fit.theta() > 0 && fit.beta() > 0 && std::isfinite(fit.theta() + fit.beta() + fit.log_likelihood())) << i;
     EXPECT_TRUE(fit.se_log_theta() > 0 && fit.se_beta() > 0 && std::isfinite(fit.se_log_theta() + fit.se_beta())) << i;
     EXPECT_LE(std::abs(fit.correlation()), 1) << i;
-    const Interval theta = fit.theta_interval(0.9), beta = fit.beta_interval(0.9), p = fit.probability_interval(1, 0.9);
-    for (const Interval& interval : {theta, beta, p}) EXPECT_TRUE(regular(interval.lower) && regular(interval.upper)) << i;
+    const ConfidenceInterval theta = fit.theta_interval(0.9), beta = fit.beta_interval(0.9), p = fit.probability_interval(1, 0.9);
+    for (const ConfidenceInterval& interval : {theta, beta, p}) EXPECT_TRUE(regular(interval.lower) && regular(interval.upper)) << i;
     EXPECT_TRUE(!theta.lower || *theta.lower < fit.theta()) << i;
     EXPECT_TRUE(!theta.upper || *theta.upper > fit.theta()) << i;
     EXPECT_TRUE(*beta.lower < fit.beta() && (!beta.upper || *beta.upper > fit.beta())) << i;
@@ -67,7 +67,7 @@ struct Coverage {
   int theta = 0, beta = 0, probability = 0;
 };
 
-bool covers(const Interval& interval, double value) {
+bool covers(const ConfidenceInterval& interval, double value) {
   return (!interval.lower || *interval.lower <= value) && (!interval.upper || *interval.upper >= value);
 }
 

@@ -114,7 +114,7 @@ TEST(FragilityStripes, ProfileIntervals) {
   for (const auto& data : {baker(), py_fragility(), three_stripes()}) {
     const Fragility fit = fit_of(fit_stripes(data));
     const Deviance<std::vector<Stripe>> deviance{data, fit.log_likelihood()};
-    const Interval theta = fit.theta_interval(0.9), beta = fit.beta_interval(0.9), p = fit.probability_interval(0.9, 0.9);
+    const ConfidenceInterval theta = fit.theta_interval(0.9), beta = fit.beta_interval(0.9), p = fit.probability_interval(0.9, 0.9);
     EXPECT_NEAR(deviance.theta(*theta.lower), chi_square_90, 1e-7);
     EXPECT_NEAR(deviance.theta(*theta.upper), chi_square_90, 1e-7);
     EXPECT_NEAR(deviance.beta(*beta.lower), chi_square_90, 1e-7);
@@ -135,7 +135,7 @@ TEST(FragilityStripes, FlatDataHaveOpenIntervals) {
   EXPECT_FALSE(fit.beta_interval(0.9).upper);
   EXPECT_TRUE(fit.beta_interval(0.9).lower);
   EXPECT_TRUE(fit.theta_interval(0.05).upper);
-  const Interval p = fit.probability_interval(1.5, 0.9);
+  const ConfidenceInterval p = fit.probability_interval(1.5, 0.9);
   EXPECT_GT(*p.lower, 0.15);
   EXPECT_LT(*p.upper, 0.60);
 }
