@@ -11,6 +11,7 @@
 #include "uplift/base/file.h"
 #include "uplift/base/text.h"
 #include "uplift/cli/console.h"
+#include "uplift/ensemble/compute.h"
 #include "uplift/ensemble/coordinator.h"
 #include "uplift/ensemble/index.h"
 #include "uplift/io/files.h"

@@ -18,7 +18,7 @@ namespace uplift {
 namespace {
 
 using Clock = std::chrono::steady_clock;
-constexpr std::size_t most_of_batch = 16;
+constexpr double most_of_batch = 16;
 constexpr std::chrono::milliseconds between_syncs{100}, longest_wait{200};
 
 /// Runs that wait for a worker, by their sample: those of one sample share its case.
@@ -101,13 +101,21 @@ class Coordinator {
     return true;
   }
 
-  /// Every worker has a batch and the next one.
+  /// How many runs a worker gets at once: so few that all end together, and short ones by the dozen.
+  std::size_t batch_size(const WorkerPool& pool) const {
+    constexpr double long_batch = 0.05;  // s
+    const double mean = computed_ > 0 ? wall_ / static_cast<double>(computed_) : long_batch;
+    const auto most = static_cast<std::size_t>(std::clamp(long_batch / std::max(mean, 1e-6), 1.0, most_of_batch));
+    return std::clamp(waiting_.size() / (4 * pool.size()), std::size_t{1}, most);
+  }
+
+  /// Every worker has a batch, and of short runs the next one too.
   void feed(WorkerPool& pool) {
     for (bool given = true; given && !waiting_.empty();) {
       given = false;
-      const std::size_t batch = std::clamp(waiting_.size() / (4 * pool.size()), std::size_t{1}, most_of_batch);
+      const std::size_t batch = batch_size(pool);
       for (std::size_t i = 0; i < pool.size() && !waiting_.empty(); ++i) {
-        if (pool.outstanding(i).size() > batch / 2 && pool.outstanding(i).size() > 1) continue;
+        if (pool.outstanding(i).size() > (batch > 1 ? batch / 2 : 0)) continue;
         std::vector<std::size_t> busy;
         for (std::size_t other = 0; other < pool.size(); ++other)
           if (other != i && last_sample_[other] && !pool.outstanding(other).empty()) busy.push_back(*last_sample_[other]);
@@ -131,6 +139,7 @@ class Coordinator {
   void note(const StudyResult& result) {
     lines_ += line_of(result);
     ++computed_;
+    wall_ += result.wall;
     store_.add(result);
     changed_.insert(curve_of_.at(result.id));
   }
@@ -172,6 +181,7 @@ class Coordinator {
   std::set<std::size_t> changed_;  // curves with new results
   std::string lines_;              // not written yet
   std::size_t computed_ = 0;
+  double wall_ = 0;  // s of all computed runs
   Clock::time_point started_ = Clock::now(), synced_ = started_;
   StudyStatus status_;
 };
