@@ -216,6 +216,16 @@ StudyDocument document_of(const Study& study, const std::vector<StudyCurve>& cur
   return document;
 }
 
+/// Curves without all of their runs, and capacities that the search has not narrowed down.
+void warn_incomplete(const StudyDocument& document) {
+  const auto missing = std::ranges::count(document.curves, false, &StudyDocument::Curve::complete);
+  if (missing > 0) complain(fmt::format("warning: {} of {} curves are not complete", missing, document.curves.size()));
+  for (const StudyDocument::Limit& each : document.limits)
+    if (const auto open = std::ranges::count(each.fit.capacities, false, &StudyCapacity::found); open > 0 && missing == 0)
+      complain(fmt::format("warning: {}: {} of {} capacities are not within the tolerance (method.most_runs)", each.limit.name, open,
+                           each.fit.capacities.size()));
+}
+
 int fit(const Options& options) {
   const Study study = open_study(options.file);
   const StudyStore store(study.folder);
@@ -229,9 +239,7 @@ int fit(const Options& options) {
     print_text(text);
   } else if (!options.quiet) {
     for (std::size_t k = 0; k < document.limits.size(); ++k) say(study_sentence(document, k));
-    const StudyStatus status = status_of(curves, {});
-    if (status.complete < status.curves)
-      complain(fmt::format("warning: {} of {} curves are not complete", status.curves - status.complete, status.curves));
+    warn_incomplete(document);
     say(fmt::format("results: {0}/study.json, {0}/fits.csv", study.folder));
   }
   return Exit::done;

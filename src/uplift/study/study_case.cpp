@@ -180,6 +180,7 @@ StudyCase study_case(const StudyPlan& plan, const Raw& raw, const MeshReader& re
   if (compare)
     for (const Values& motion : compare->tables("motion")) {
       names.add(motion, "name");
+      if (motion.texts("replace").empty()) fail(motion, "replace", "one name at least", "none");
       check_motion(root, motion);
       study.motions.push_back(motion_of(study, &motion));
       for (std::size_t k = 0; k + 1 < study.motions.size(); ++k)
