@@ -65,6 +65,16 @@ std::string status_text(const StudyStatus& status) {
   return text;
 }
 
+std::string status_json(const StudyStatus& status, const StudyStore& store, bool running) {
+  JsonWriter json(0, 2);
+  json.begin_object().member("runs", static_cast<long>(status.runs)).member("expected", static_cast<long>(status.expected));
+  json.member("curves", static_cast<long>(status.curves)).member("complete", static_cast<long>(status.complete)).member("running", running);
+  json.member("damaged_lines", static_cast<long>(store.damaged())).member("repeated_lines", static_cast<long>(store.repeated()));
+  json.key("outcomes").begin_object();
+  for (std::size_t k = 0; k < status.outcomes.size(); ++k) json.member(study_outcomes[k], static_cast<long>(status.outcomes[k]));
+  return json.end_object().end_object().take() + "\n";
+}
+
 class StudyLine {
  public:
   explicit StudyLine(bool quiet) : quiet_(quiet), terminal_(on_terminal()) {}
@@ -135,8 +145,10 @@ Shard shard_of(const std::string& text) {
   return shard;
 }
 
-int finish(const StudyStatus& status, const Options& options, const Study& study) {
-  if (!options.quiet) {
+int finish(const StudyStatus& status, const StudyStore& store, const Options& options, const Study& study) {
+  if (options.json) {
+    print_text(status_json(status, store, false));
+  } else if (!options.quiet) {
     say(status_text(status));
     if (interrupt_asked())
       complain(fmt::format("{}: every result is kept; the same command goes on from there", interrupt_text()));
@@ -161,7 +173,7 @@ int run_or_work(const Options& options, const StudyOptions& given, const std::op
   control.workers = wanted > 0 ? wanted : shard ? 1 : cores();
   if (shard) control.shard = *shard;
   control.stopped = interrupt_asked;
-  StudyLine line(options.quiet);
+  StudyLine line(options.quiet || options.json);
   std::optional<LiveStatus> live;
   if (!shard) live.emplace(study);
   control.follow = [&](const StudyStatus& status) {
@@ -171,7 +183,7 @@ int run_or_work(const Options& options, const StudyOptions& given, const std::op
   StudyStatus status;
   writing([&] { status = run_study(study, store, control); });
   if (!shard) writing([&] { write_index(study, store, curves_with_results(study, store)); });
-  return finish(status, options, study);
+  return finish(status, store, options, study);
 }
 
 int status(const Options& options) {
@@ -180,16 +192,12 @@ int status(const Options& options) {
   const StudyStatus status = status_of(curves_with_results(study, store), {});
   const bool busy = FolderLock(study.folder).is_taken();
   if (options.json) {
-    JsonWriter json(0, 2);
-    json.begin_object().member("runs", static_cast<long>(status.runs)).member("expected", static_cast<long>(status.expected));
-    json.member("curves", static_cast<long>(status.curves)).member("complete", static_cast<long>(status.complete)).member("running", busy);
-    json.member("damaged_lines", static_cast<long>(store.damaged())).member("repeated_lines", static_cast<long>(store.repeated()));
-    json.key("outcomes").begin_object();
-    for (std::size_t k = 0; k < status.outcomes.size(); ++k) json.member(study_outcomes[k], static_cast<long>(status.outcomes[k]));
-    print_text(json.end_object().end_object().take() + "\n");
+    print_text(status_json(status, store, busy));
     return Exit::done;
   }
-  say(status_text(status));
+  std::error_code error;
+  const std::string live = LiveStatus::file_of(study);
+  say(busy && std::filesystem::exists(live, error) ? std::string(trim(read_file(live))) : status_text(status));
   say(busy                               ? "a process computes it"
       : status.complete == status.curves ? "complete"
                                          : fmt::format("uplift study run {} computes what is missing", study.folder));
@@ -208,6 +216,16 @@ StudyDocument document_of(const Study& study, const std::vector<StudyCurve>& cur
   return document;
 }
 
+/// Curves without all of their runs, and capacities that the search has not narrowed down.
+void warn_incomplete(const StudyDocument& document) {
+  const auto missing = std::ranges::count(document.curves, false, &StudyDocument::Curve::complete);
+  if (missing > 0) complain(fmt::format("warning: {} of {} curves are not complete", missing, document.curves.size()));
+  for (const StudyDocument::Limit& each : document.limits)
+    if (const auto open = std::ranges::count(each.fit.capacities, false, &StudyCapacity::found); open > 0 && missing == 0)
+      complain(fmt::format("warning: {}: {} of {} capacities are not within the tolerance (method.most_runs)", each.limit.name, open,
+                           each.fit.capacities.size()));
+}
+
 int fit(const Options& options) {
   const Study study = open_study(options.file);
   const StudyStore store(study.folder);
@@ -221,9 +239,7 @@ int fit(const Options& options) {
     print_text(text);
   } else if (!options.quiet) {
     for (std::size_t k = 0; k < document.limits.size(); ++k) say(study_sentence(document, k));
-    const StudyStatus status = status_of(curves, {});
-    if (status.complete < status.curves)
-      complain(fmt::format("warning: {} of {} curves are not complete", status.curves - status.complete, status.curves));
+    warn_incomplete(document);
     say(fmt::format("results: {0}/study.json, {0}/fits.csv", study.folder));
   }
   return Exit::done;
