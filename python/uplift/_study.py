@@ -36,9 +36,9 @@ class Study:
         self.folder = pathlib.Path(folder)
         self._interrupted = False
 
-    def check(self) -> str:
-        """What the study will take: runs, time (from one run), memory and disk, with warnings. Raises InputError."""
-        return output_of("study", "check", str(self.folder))
+    def check(self) -> Record:
+        """What the study will take: runs, time (from one run) [s], memory and disk [bytes], and warnings. Raises InputError."""
+        return Record(json.loads(output_of("study", "check", str(self.folder), "--json")))
 
     def run(self, *, progress: Optional[bool] = None, workers: Optional[int] = None, retry: bool = False) -> Record:
         """Computes what is missing, in processes of the program, and returns `status`.
@@ -51,18 +51,20 @@ class Study:
         Ctrl-C ends it in order: every result is kept, `status.interrupted` is True, and `run` again goes on from there.
         Raises InputError, and OutputError where results could not be written.
         """
-        words = [program(), "study", "run", str(self.folder), "--quiet"]
+        words = [program(), "study", "run", str(self.folder), "--json"]
         words += ["--workers", str(workers)] if workers is not None else []
         words += ["--retry"] if retry else []
         self._interrupted = False
         # a group of its own: Ctrl-C is passed on once, on a terminal as in a notebook
-        process = subprocess.Popen(words, stdin=subprocess.DEVNULL, stdout=subprocess.DEVNULL, stderr=subprocess.PIPE, encoding="utf-8", start_new_session=True)
+        process = subprocess.Popen(
+            words, stdin=subprocess.DEVNULL, stdout=subprocess.PIPE, stderr=subprocess.PIPE, encoding="utf-8", start_new_session=True
+        )
         line = _StatusLine(self.folder, sys.stderr.isatty() if progress is None else progress)
-        said = ""
+        made = said = ""
         try:
             while True:
                 try:
-                    said = process.communicate(timeout=0.2)[1]
+                    made, said = process.communicate(timeout=0.2)
                     break
                 except subprocess.TimeoutExpired:
                     line.draw()
@@ -76,13 +78,15 @@ class Study:
                 process.wait()
         if process.returncode not in ((0, 130, -signal.SIGINT) if self._interrupted else (0,)):
             raise error_of(process.returncode, said)
-        return self.status
+        return self._record(made) if made else self.status
 
     @property
     def status(self) -> Record:
         """Numbers of runs and curves, `complete` curves, `running`, `outcomes`; `interrupted`: whether Ctrl-C ended the last `run`."""
-        table = json.loads(output_of("study", "status", str(self.folder), "--json"))
-        return Record({**table, "interrupted": self._interrupted})
+        return self._record(output_of("study", "status", str(self.folder), "--json"))
+
+    def _record(self, text: str) -> Record:
+        return Record({**json.loads(text), "interrupted": self._interrupted})
 
     def fit(self) -> "StudyFit":
         """Fragility curves of what has been computed so far; writes study.json and fits.csv in the folder. Raises InputError."""
@@ -111,23 +115,27 @@ class _StatusLine:
     """Shows the line that the program keeps in status.txt while it computes."""
 
     def __init__(self, folder: pathlib.Path, shown: bool) -> None:
-        self._file, self._shown, self._text, self._drawn = folder / "status.txt", shown, "", 0.0
+        self._file, self._shown, self._drawn = folder / "status.txt", shown, 0.0
+        self._text = self._before = self._read()  # left by a process that was killed
+
+    def _read(self) -> str:
+        try:
+            return self._file.read_text(encoding="utf-8").strip()
+        except OSError:
+            return ""
 
     def draw(self) -> None:
         if not self._shown or time.monotonic() - self._drawn < 0.5:
             return
         self._drawn = time.monotonic()
-        try:
-            text = self._file.read_text(encoding="utf-8").strip()
-        except OSError:
-            return
-        if text != self._text:
+        text = self._read()
+        if text and text != self._text:
             sys.stderr.write("\r" + text.ljust(len(self._text)))
             sys.stderr.flush()
             self._text = text
 
     def clear(self) -> None:
-        if self._text:
+        if self._text != self._before:
             sys.stderr.write("\r" + " " * len(self._text) + "\r")
             sys.stderr.flush()
 

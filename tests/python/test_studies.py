@@ -67,7 +67,7 @@ class Studies(unittest.TestCase):
 
     def test_the_command_line_gives_the_same_bytes(self):
         study = self.study(method=IDA, variables=[STIFFNESS], samples=2)
-        self.assertIn("motions", study.check())
+        self.assertEqual(study.check().done, 0)
         status = study.run(progress=False)
         self.assertEqual((status.complete, status.curves, status.running, status.interrupted), (6, 6, False, False))
         fit = study.fit()

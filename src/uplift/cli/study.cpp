@@ -209,10 +209,13 @@ int status(const Options& options) {
 StudyDocument document_of(const Study& study, const std::vector<StudyCurve>& curves) {
   StudyDocument document = study_document(study.of, curves);
   document.name = study.name;
-  document.case_file = study.case_file;
+  const auto from_study = [folder = std::filesystem::absolute(study.folder).lexically_normal()](const std::string& file) {
+    return std::filesystem::absolute(file).lexically_normal().lexically_proximate(folder).string();
+  };
+  document.case_file = from_study(study.case_file);
   document.case_hash = study.case_hash;
   document.plan_hash = study.plan_hash;
-  document.inputs = study.inputs;
+  for (const auto& [file, hash] : study.inputs) document.inputs.emplace_back(from_study(file), hash);
   return document;
 }
 
@@ -267,12 +270,21 @@ int export_tables(const Options& options, const std::string& id) {
   return Exit::done;
 }
 
+/// A word of a shell.
+std::string in_shell(const std::string& word) {
+  constexpr std::string_view plain = "ABCDEFGHIJKLMNOPQRSTUVWXYZabcdefghijklmnopqrstuvwxyz0123456789_./+:@%=,-";
+  if (word.find_first_not_of(plain) == std::string::npos) return word;
+  std::string quoted = "'";
+  for (const char c : word) quoted += c == '\'' ? "'\\''" : std::string(1, c);
+  return quoted + "'";
+}
+
 int tasks(const Options& options, int count) {
   const Study study = open_study(options.file);
   const auto shards = std::min(static_cast<std::size_t>(count), study_curves(study.of).size());
+  const std::string folder = in_shell(study.folder);
   for (std::size_t k = 1; k <= shards; ++k) {
-    const bool plain = study.folder.find_first_of(" '\"\\$`&;()<>|*?[]#~!{}") == std::string::npos;
-    say(fmt::format("uplift study work {} --shard {}/{}", plain ? study.folder : "\"" + study.folder + "\"", k, shards));
+    say(fmt::format("uplift study work {} --shard {}/{}", folder, k, shards));
   }
   return Exit::done;
 }

@@ -118,13 +118,17 @@ void PartFile::open() {
   if (::gethostname(host.data(), host.size() - 1) != 0) host[0] = '\0';
   std::string name(host.data());
   std::ranges::replace(name, '/', '_');
-  path_ = fmt::format("{}/{}-{}.jsonl", folder_, name, ::getpid());
-  descriptor_ = ::open(path_.c_str(), O_RDWR | O_CREAT | O_APPEND | O_CLOEXEC, 0666);
-  if (descriptor_ < 0) fail(path_);
-  // a process with the same number may have been killed while it wrote a line
-  const off_t size = ::lseek(descriptor_, 0, SEEK_END);
-  char last = '\n';
-  if (size > 0 && ::pread(descriptor_, &last, 1, size - 1) == 1 && last != '\n' && ::write(descriptor_, "\n", 1) != 1) fail(path_);
+  // another process may have had this number before, or have it now on a machine of the same name
+  for (int i = 1; descriptor_ < 0; ++i) {
+    path_ = fmt::format("{}/{}-{}{}.jsonl", folder_, name, ::getpid(), i == 1 ? "" : fmt::format("-{}", i));
+    descriptor_ = ::open(path_.c_str(), O_WRONLY | O_CREAT | O_EXCL | O_APPEND | O_CLOEXEC, 0666);
+    if (descriptor_ < 0 && errno != EEXIST) fail(path_);
+  }
+  const int folder = ::open(folder_.c_str(), O_RDONLY | O_DIRECTORY | O_CLOEXEC);  // the name of the file outlives a power cut, too
+  if (folder < 0) fail(folder_);
+  const bool kept = ::fsync(folder) == 0 || errno == EINVAL;  // EINVAL: a file system without that
+  ::close(folder);
+  if (!kept) fail(folder_);
 }
 
 void PartFile::append(std::string_view lines) {

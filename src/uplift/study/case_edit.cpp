@@ -53,8 +53,9 @@ Raw put(const Raw& raw, std::string_view path, const CaseEdit& edit) {
 std::optional<std::size_t> place_of(std::string_view step) {
   std::size_t place = 0;
   const char *first = step.data() + 1, *last = step.data() + step.size() - 1;
-  if (step.size() < 3 || step.front() != '[' || step.back() != ']' || std::from_chars(first, last, place).ptr != last) return std::nullopt;
-  return place;
+  if (step.size() < 3 || step.front() != '[' || step.back() != ']') return std::nullopt;
+  const auto [end, error] = std::from_chars(first, last, place);
+  return end == last && error == std::errc() ? std::optional(place) : std::nullopt;
 }
 
 const Field* field_of(const Values& table, std::string_view key) {

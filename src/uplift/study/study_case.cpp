@@ -6,6 +6,7 @@
 #include <bit>
 #include <cmath>
 #include <filesystem>
+#include <set>
 
 #include "uplift/base/file.h"
 #include "uplift/base/text.h"
@@ -98,6 +99,7 @@ StudyMotion motion_of(const StudyCase& study, const Values* table) {
 /// Units of the variables, and the distributions of their values.
 void resolve_variables(StudyCase& study) {
   const std::vector<Values>& tables = study.plan.values.tables("variable");
+  std::set<std::string> known;
   for (std::size_t k = 0; k < study.plan.variables.size(); ++k) {
     StudyVariable& variable = study.plan.variables[k];
     for (const std::string& path : variable.paths) {
@@ -105,6 +107,8 @@ void resolve_variables(StudyCase& study) {
       if (!number) fail(tables[k], "paths", "paths of numbers of the case, as \"interface[0].law.K_n\"", in_quotes(path));
       if (path.starts_with("record") || path.starts_with("compare"))
         fail(tables[k], "paths", "no number of a record: a study has motions", in_quotes(path));
+      if (variable.is_factor && number->value == 0) fail(tables[k], "paths", "numbers that are not 0, for a factor", in_quotes(path));
+      if (!known.insert(path).second) fail(tables[k], "paths", "numbers that are set once", in_quotes(path) + " again");
       study.edits_mesh = study.edits_mesh || path.starts_with("mesh") || path.find(".cut") != path.npos;
       const std::string unit(variable.is_factor ? "1" : number->field->unit);
       if (path != variable.paths.front() && unit != variable.unit)
@@ -150,6 +154,48 @@ std::vector<StudySample> samples_of(const StudyCase& study, const std::string& r
   return samples;
 }
 
+/// The least and the largest value of every variable are such as the case takes: what it refuses is said before any run.
+void check_samples(const StudyCase& study) {
+  for (std::size_t k = 0; k < study.plan.variables.size(); ++k) {
+    const std::vector<std::string>& paths = study.plan.variables[k].paths;
+    const auto value_of = [k](const StudySample& sample) { return sample.values[k]; };
+    const auto [least, most] = std::ranges::minmax_element(study.samples, {}, value_of);
+    for (const auto at : {least, most}) {
+      std::vector<CaseEdit> own = at->edits;
+      std::erase_if(own, [&](const CaseEdit& edit) { return std::ranges::find(paths, edit.path) == paths.end(); });
+      try {
+        check(edited(study.raw, own), case_section());
+      } catch (const InputError& error) {
+        fail(study.plan.values.tables("variable")[k], "distribution", "values that the case takes",
+             fmt::format("sample {}: {}", at - study.samples.begin(), error.what()));
+      }
+    }
+  }
+}
+
+/// The numbers of limits are those of an interface, a foundation or a beam that the case has.
+void check_limits(const StudyCase& study) {
+  const Values& root = study.read.values;
+  const auto names = [](const std::vector<Values>& tables, const char* key, std::vector<std::string>& all) {
+    for (const Values& table : tables) all.push_back(table.text(key));
+  };
+  for (std::size_t k = 0; k < study.plan.limits.size(); ++k) {
+    const StudyLimit& limit = study.plan.limits[k];
+    if (limit.quantity == nullptr || (limit.of.empty() && !limit.quantity->of_beam)) continue;
+    const Values& table = study.plan.values.tables("limit")[k];
+    std::vector<std::string> known;
+    if (limit.quantity->of_beam) {
+      names(root.table("output").tables("beam_envelope"), "beam", known);
+      if (known.empty()) fail(table, "quantity", "a case with [[output.beam_envelope]], which gives this number", "none");
+    } else {
+      names(root.tables("interface"), "name", known);
+      names(root.tables("foundation"), "name", known);
+    }
+    if (!limit.of.empty() && std::ranges::find(known, limit.of) == known.end())
+      fail(table, "of", listed(known), in_quotes(limit.of), nearest_name(limit.of, known));
+  }
+}
+
 /// The case without the motions of the plan, and the files that it reads.
 std::string identity_of_case(const Raw& raw, const Case& read) {
   Case own{check(raw, case_section()), read.file, read.mesh, {}};
@@ -175,6 +221,8 @@ StudyCase study_case(const StudyPlan& plan, const Raw& raw, const MeshReader& re
   const Values& root = study.read.values;
   resolve_variables(study);
   study.samples = samples_of(study, identity_of_case(raw, study.read));
+  check_samples(study);
+  check_limits(study);
   const Values* compare = root.has("compare") ? &root.table("compare") : nullptr;
   Names names("motion");
   if (compare)

@@ -25,6 +25,7 @@ IntensityMeasure intensity_of(const Values& table) {
   if (table.has("of")) measure.of = table.text("of");
   const std::string si = measure.kind == factor ? "1" : measure.kind == pgv ? "m/s" : "m/s2";
   measure.unit = table.has("unit") ? table.text("unit") : si;
+  if (measure.unit.find_first_not_of(' ') == std::string::npos) fail(table, "unit", "a unit of " + quantity_name(si), "none");
   const Quantity one = measure.unit == "1" ? Quantity{1, si == "1", "a plain number", ""} : parse_quantity("1 " + measure.unit, si);
   if (!one.ok) fail(table, "unit", "a unit of " + quantity_name(si), one.found, one.nearest);
   measure.in_si = one.value;
@@ -107,6 +108,10 @@ std::vector<StudyCorrelation> correlations_of(const Values& root, const Names& v
       return static_cast<std::size_t>(variables.find(name, table.where("variables"), table.path("variables")));
     };
     made.push_back({find(names[0]), find(names[1]), table.number("value")});
+    const auto same = [&](const StudyCorrelation& each) {
+      return std::minmax(each.first, each.second) == std::minmax(made.back().first, made.back().second);
+    };
+    if (std::ranges::count_if(made, same) > 1) fail(table, "variables", "two variables whose correlation is given once", "both again");
   }
   return made;
 }

@@ -67,7 +67,7 @@ Field start_field() {
   return number("start", "1", "first intensity").positive();
 }
 Field tolerance_field() {
-  return number("tolerance", "1", "width of the interval of the capacity, of its logarithm").positive().standard(0.02);
+  return number("tolerance", "1", "width of the interval of the capacity, of its logarithm").between(1e-6, 1).standard(0.02);
 }
 Field most_runs_field() {
   return integer("most_runs", "most runs of a motion for one limit").between(1, 1000).standard(12);
@@ -77,7 +77,7 @@ Field smallest_field() {
 }
 Field fill_field() {
   return integer("fill", "intensities of a curve in all: when the capacity is known, the largest gaps below it are filled")
-      .nonnegative()
+      .between(0, 1000)
       .standard(0);
 }
 

@@ -178,6 +178,7 @@ void check_motion(const Values& root, const Values& motion) {
     if (std::ranges::find(drives, replaced[i]) == drives.end())
       fail(motion, "replace", "the name of a function or record that drives the case", in_quotes(replaced[i]),
            nearest_name(replaced[i], drives));
+    if (std::ranges::count(replaced, replaced[i]) > 1) fail(motion, "replace", "every name once", in_quotes(replaced[i]) + " again");
   }
 }
 

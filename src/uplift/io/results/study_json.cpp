@@ -30,11 +30,11 @@ std::string_view word_of(Known known) {
 
 void write_provenance(ResultWriter& out, const StudyDocument& study) {
   out.text("version", UPLIFT_VERSION, "version of the program");
-  out.text("case_file", study.case_file, "case file");
+  out.text("case_file", study.case_file, "case file, seen from the study's folder");
   out.text("case_sha256", study.case_hash, "SHA-256 of the case file");
   out.text("plan_sha256", study.plan_hash, "SHA-256 of the plan");
   out.list("inputs", "other files that the case reads", study.inputs, [&](const auto& input) {
-    out.text("file", input.first, "path");
+    out.text("file", input.first, "path, seen from the study's folder");
     out.text("sha256", input.second, "SHA-256");
   });
   out.count("seed", static_cast<long>(study.plan.seed), "seed of the samples");
