@@ -8,11 +8,13 @@
 #include <sys/wait.h>
 #include <unistd.h>
 
+#include <algorithm>
 #include <array>
 #include <cerrno>
 #include <csignal>
 #include <cstdio>
 #include <cstring>
+#include <fstream>
 
 #include "uplift/base/archive.h"
 #include "uplift/io/files.h"
@@ -70,6 +72,13 @@ void keep_only(int channel) {
   ::close_range(static_cast<unsigned>(channel) + 1, ~0U, 0);
 }
 
+/// Bytes of address space of this process, of which the most part is never touched; 0: not known.
+rlim_t address_space() {
+  long pages = 0;
+  std::ifstream("/proc/self/statm") >> pages;
+  return static_cast<rlim_t>(pages) * static_cast<rlim_t>(::sysconf(_SC_PAGESIZE));
+}
+
 std::string how_it_ended(int status) {
   if (WIFSIGNALED(status)) return fmt::format("signal {} ({})", WTERMSIG(status), ::strsignal(WTERMSIG(status)));
   return fmt::format("exit code {}", WEXITSTATUS(status));
@@ -117,7 +126,7 @@ void WorkerPool::start(Worker& worker) {
 
 void WorkerPool::work(int channel) const {
   if (limits_.memory) {
-    const auto bytes = static_cast<rlim_t>(1e6 * *limits_.memory);
+    const auto bytes = address_space() + static_cast<rlim_t>(std::min(1e6 * *limits_.memory, 1e18));
     const rlimit limit{bytes, bytes};
     ::setrlimit(RLIMIT_AS, &limit);
   }

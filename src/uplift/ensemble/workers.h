@@ -15,7 +15,7 @@ namespace uplift {
 /// What a worker may use.
 struct WorkerLimits {
   std::optional<double> timeout;  // s: of one run, far beyond what the run itself keeps to
-  std::optional<double> memory;   // MB of address space
+  std::optional<double> memory;   // MB of address space beyond what it shares at its beginning
 };
 
 /// Processes that are forked from this one and share its memory until they write to it. This process starts no thread before.
