@@ -111,6 +111,13 @@ namespace {
   throw OutputError(fmt::format("cannot write {}: {}", path, std::strerror(errno)));
 }
 
+void sync_folder(const std::string& folder) {
+  const int descriptor = ::open(folder.c_str(), O_RDONLY | O_DIRECTORY | O_CLOEXEC);
+  if (descriptor < 0) return;
+  ::fsync(descriptor);
+  ::close(descriptor);
+}
+
 }  // namespace
 
 void PartFile::open() {
@@ -124,11 +131,8 @@ void PartFile::open() {
     descriptor_ = ::open(path_.c_str(), O_WRONLY | O_CREAT | O_EXCL | O_APPEND | O_CLOEXEC, 0666);
     if (descriptor_ < 0 && errno != EEXIST) fail(path_);
   }
-  const int folder = ::open(folder_.c_str(), O_RDONLY | O_DIRECTORY | O_CLOEXEC);  // the name of the file outlives a power cut, too
-  if (folder < 0) fail(folder_);
-  const bool kept = ::fsync(folder) == 0 || errno == EINVAL;  // EINVAL: a file system without that
-  ::close(folder);
-  if (!kept) fail(folder_);
+  sync_folder(folder_);  // the file and its folder outlive a power cut as what is in the file does
+  sync_folder(folder_ + "/..");
 }
 
 void PartFile::append(std::string_view lines) {
