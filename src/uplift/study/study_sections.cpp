@@ -175,12 +175,13 @@ const Section& limit_section() {
 }
 
 const Section& run_section() {
-  static const Section s{"run",
-                         "how the runs are computed; nothing here changes their results",
-                         {integer("workers", "processes at the same time; absent: one for every core").between(1, 4096).optional(),
-                          number("timeout", "s", "computing time after which a run is ended").positive().optional(),
-                          number("memory", "1", "MB of memory that a worker may use beyond what it shares with the others").positive().optional(),
-                          integer("attempts", "how often a run is tried whose worker dies").positive().standard(3)}};
+  static const Section s{
+      "run",
+      "how the runs are computed; nothing here changes their results",
+      {integer("workers", "processes at the same time; absent: one for every core").between(1, 4096).optional(),
+       number("timeout", "s", "computing time after which a run is ended").positive().optional(),
+       number("memory", "1", "MB of memory that a worker may use beyond what it shares with the others").positive().optional(),
+       integer("attempts", "how often a run is tried whose worker dies").positive().standard(3)}};
   return s;
 }
 
