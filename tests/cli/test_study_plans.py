@@ -77,6 +77,16 @@ class StudyPlans(CliTest):
         self.refused(IDA.replace('replace = ["quake"]', 'replace = ["quake", "quake"]'), "[[motions]]", "expected every name once")
         self.refused(IDA.replace('unit = "g_n"', 'unit = ""'), "unit", "expected a unit of an acceleration")
 
+    def test_memory_is_what_a_run_takes(self):
+        self.write(CASE.replace("duration = 1\n", "duration = 60\n"))
+        plan = STRIPES.replace("[0.2, 0.5, 1.0]", "[0.2]") + "[run]\nmemory = {}\n"
+        for memory, completed in [("1", 0), ("500", 4)]:  # MB; the program alone has reserved more than this
+            name = self.study(plan.format(memory), f"{memory}.study")
+            self.uplift("study", "run", name, "-q")
+            outcomes = json.loads(self.uplift("study", "fit", name, "--json").stdout)["outcomes"]
+            self.assertEqual(outcomes["completed"], completed)
+            self.assertEqual(outcomes["completed"] + outcomes["memory"] + outcomes["crashed"], 4)
+
     def test_results_do_not_depend_on_where_they_are_asked_for(self):
         name = self.study(STRIPES, "it's $HOME.study")
         task = self.uplift("study", "tasks", name, "--count", "1").stdout
