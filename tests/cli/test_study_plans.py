@@ -80,7 +80,7 @@ class StudyPlans(CliTest):
     def test_memory_is_what_a_run_takes(self):
         self.write(CASE.replace("duration = 1\n", "duration = 60\n"))
         plan = STRIPES.replace("[0.2, 0.5, 1.0]", "[0.2]") + "[run]\nmemory = {}\n"
-        for memory, completed in [("1", 0), ("500", 4)]:  # MB; the program alone has reserved more than this
+        for memory, completed in [("1", 0), ("150", 4)]:  # MB; the program alone has reserved more than this
             name = self.study(plan.format(memory), f"{memory}.study")
             self.uplift("study", "run", name, "-q")
             outcomes = json.loads(self.uplift("study", "fit", name, "--json").stdout)["outcomes"]
