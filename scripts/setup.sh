@@ -3,8 +3,9 @@
 set -euo pipefail
 
 run="g++ cmake ninja-build pkg-config libeigen3-dev libsuitesparse-dev libopenblas-dev libspectra-dev libtomlplusplus-dev
-  nlohmann-json3-dev libudunits2-dev libhdf5-dev zlib1g-dev libcli11-dev libfmt-dev"
-test="libgtest-dev librapidcheck-dev python3 python3-jsonschema python3-numpy python3-pandas python3-matplotlib python3-yaml mypy patchelf"
+  nlohmann-json3-dev libudunits2-dev libhdf5-dev zlib1g-dev libsqlite3-dev libcli11-dev libfmt-dev"
+test="libgtest-dev librapidcheck-dev python3 python3-jsonschema python3-numpy python3-pandas python3-matplotlib python3-yaml mypy patchelf
+  parallel slurmctld slurmd slurm-client munge"
 docs="python3 mkdocs mkdocs-material libjs-katex fonts-katex"
 packages="python3 patchelf dpkg-dev debhelper dh-python help2man lintian"
 develop="libbenchmark-dev clang-14 libclang-rt-14-dev clang-format-14 clang-tidy-14 ccache nodejs npm chromium ca-certificates"

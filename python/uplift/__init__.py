@@ -19,13 +19,14 @@ from ._march import March, march
 from ._motion import Motion, motion
 from ._parts import Part
 from ._results import Comparison, Floor, Histories, Run, Trust, Verdict, VerdictNumber, psa, solve_problem
+from ._study import LimitFit, Study, StudyFit, load_study
 from ._watch import StepView
 from .laws import bilinear, coulomb, elastic, exponential, sdm, springs, unilateral
 
 __all__ = [
-    "Case", "Comparison", "ExternalLaw", "Floor", "Histories", "InputError", "March", "Motion", "OutputError", "Part", "Run",
-    "StepView", "Trust", "UpliftError", "Verdict", "VerdictNumber", "bilinear", "bulk_laws", "coulomb", "elastic", "exponential",
-    "foundations", "functions", "impacts", "law", "laws", "load", "march", "methods", "motion", "parse", "processes", "psa", "schemes",
+    "Case", "Comparison", "ExternalLaw", "Floor", "Histories", "InputError", "LimitFit", "March", "Motion", "OutputError", "Part", "Run",
+    "StepView", "Study", "StudyFit", "Trust", "UpliftError", "Verdict", "VerdictNumber", "bilinear", "bulk_laws", "coulomb", "elastic", "exponential",
+    "foundations", "functions", "impacts", "law", "laws", "load", "load_study", "march", "methods", "motion", "parse", "processes", "psa", "schemes",
     "sdm", "springs", "targets", "unilateral", "version",
 ]
 

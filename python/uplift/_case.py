@@ -14,13 +14,14 @@ from ._laws import ExternalLaw
 from ._motion import Motion
 from ._parts import Part, Quantity
 from ._results import Comparison, Run, Trust
+from ._study import Study, plan_of, prepared_folder, written_study
 from ._tables import Tables
 from ._variants import variant
 from ._watch import StepCallback, Watcher
 
 
 class Case(Tables):
-    """A case: structure, interfaces, loads and analysis. Its methods add tables; `run`, `compare` and `trust` compute.
+    """A case: structure, interfaces, loads and analysis. Its methods add tables; `run`, `compare`, `trust` and `study` compute.
 
     Numbers are in SI units, texts may carry units ("30 GPa"). In the plane x points to the right and y up; in space z points up.
     """
@@ -254,6 +255,57 @@ class Case(Tables):
     def trust(self, *, progress: Optional[bool] = None) -> Trust:
         """Repeats the run with every choice of the computation changed, one at a time."""
         return Trust(self._analyse("uplift_trust", Watcher(progress, None, True, None)))
+
+    def study(
+        self,
+        folder: Union[str, "os.PathLike[str]"],
+        *,
+        intensity: Union[str, Mapping[str, Any]],
+        method: Union[Part, Mapping[str, Any]],
+        motions: Sequence[Union[str, "os.PathLike[str]", Motion, Mapping[str, Any]]] = (),
+        replace: Optional[Sequence[str]] = None,
+        limits: Sequence[Mapping[str, Any]] = (),
+        variables: Sequence[Mapping[str, Any]] = (),
+        correlations: Sequence[Mapping[str, Any]] = (),
+        samples: Optional[int] = None,
+        pairing: Optional[str] = None,
+        seed: Optional[int] = None,
+        floor_spectra: Optional[bool] = None,
+        run: Optional[Mapping[str, Any]] = None,
+    ) -> Study:
+        """A study of the case: writes FOLDER/plan.toml, which the program computes (:meth:`Study.run`). Keys as in the plan (guide, "Studies").
+
+        Parameters:
+            folder: folder of the study ("pier.study"). What it has computed is used again, also after a change of the plan.
+            intensity: measure of the motions ("factor", "pga", "pgv" in SI units), or its table with `measure`, `unit`, `period`, `damping`, `of`.
+            method: {"type": "ida", "start": 0.1, "largest": 2}, or truncated_ida, stripes (`levels`), cloud (`factors`).
+            motions: files of records, :func:`uplift.motion`, or tables [[motions]] with `files`, or `count` and `generate`. Without them the
+                motions of the case.
+            replace: names of records or functions of the case that the motions take the place of; default: the only one that moves the ground.
+            limits: limit states, tables with `name`, `quantity`, `limit`, `of` and `source`.
+            variables: uncertain numbers, tables with `name`, `paths`, `distribution` and `meaning`.
+            correlations: rank correlations, tables with `variables` (two names) and `value`.
+            samples: number of samples of the variables.
+            pairing: "crossed" or "paired".
+            seed: of the samples.
+            floor_spectra: keep the floor spectra of every run.
+            run: limits of a run, a table with `workers`, `timeout`, `memory` and `attempts`.
+
+        The plan names the file of a loaded case that was not changed; any other case is written into the folder. A plan that this package
+        has not written is not replaced (ValueError). Raises InputError for what the case or the plan has wrong.
+        """
+        if self._laws:
+            raise ValueError("a law in Python cannot be used by a study, which the program computes")
+        tables: Dict[str, Any] = {"seed": seed, "samples": samples, "pairing": pairing, "floor_spectra": floor_spectra, "limit": list(limits)}
+        tables.update({"variable": list(variables), "correlation": list(correlations), "run": run})
+        own = os.path.join(os.fspath(folder), "case.toml")
+        used = self._text is not None and os.path.isfile(self._file) and pathlib.Path(self._file).read_bytes() == self._text.encode()
+        file = os.path.relpath(self._file, os.fspath(folder)) if used else "case.toml"
+        plan = plan_of(file, self._document, motions, replace, intensity, method, tables)
+        prepared_folder(folder)
+        if not used:
+            self.save(own)
+        return written_study(folder, plan)
 
 
 def load(path: Union[str, "os.PathLike[str]"]) -> Case:

@@ -212,6 +212,7 @@ Model make_model(const Case& read, const RunSpec& spec, const std::vector<double
   add_nodes(root, builder, names);
   add_mesh(read, builder, names);
   names.instead = spec.motion;
+  names.motion_factor = spec.motion_factor;
   names.share = newmark_share(built.plan.stages);
   add_functions(read, names);
   add_structure(root, builder, names, tuned, dynamic != nullptr);
@@ -414,7 +415,7 @@ BuiltCase build(const Case& read, const RunSpec& spec) {
   const bool rests = std::ranges::any_of(built.plan.stages, [](const Stage& stage) { return stage.type == Stage::Type::statics; });
   if (!released && rests) check_static(built.model, root.where());
   if (dynamic_stage(built.plan)) check_dynamic(built.model, root.where());
-  built.motions = motions_used(root, read.records, spec.motion);
+  built.motions = motions_used(root, read.records, spec.motion, spec.motion_factor);
 
   RunPlan& plan = built.plan;
   plan.name = spec.name;

@@ -54,6 +54,7 @@ struct RunSpec {
   std::optional<double> stiffness_ratio;  // the law's stiffness is chosen so that the largest k F_ii is this
   std::string stiffness_parameter;        // parameter of the law that is the stiffness
   const Values* motion = nullptr;         // [[compare.motion]]: records that take the place of others; null: the case's own
+  double motion_factor = 1;               // of everything that moves the ground: records and functions
   std::string motion_label;               // of a comparison over motions; empty: none
   bool bonded = false;                    // elastic interfaces that never open, as stiff as the closed joint
   bool rigid_ground = false;              // elastic beds are left out

@@ -31,7 +31,8 @@ int trust(const Options& options);
 int modes(const Options& options, int count);
 /// `family` and `name` may be empty: lists.
 int describe(const std::string& family, const std::string& name);
-/// The JSON Schema of a document: "case", "results" (summary.json), "trust" (trust.json) or "motion" (summary.json of `motion`).
+/// The JSON Schema of a document: "case", "results" (summary.json), "trust" (trust.json), "study" (study.json) or "motion" (summary.json of
+/// `motion`).
 int schema(const std::string& document);
 /// Stiffness and dashpots of the ground under a footing: of KEY=VALUE words, or of the foundations of a case.
 int soil(const Options& options, const std::vector<std::string>& words);
@@ -46,6 +47,16 @@ struct MotionOptions {
   RecordOptions record;
 };
 int motion(const Options& options, const MotionOptions& given);
+
+struct StudyOptions {
+  std::string verb;        // new, check, run, status, fit, export, tasks, work or index
+  std::string shard, run;  // of `work`: "17/200"; of `export`: the beginning of an identity
+  int workers = 0;         // 0: as in the plan
+  int count = 100;         // of `tasks`
+  bool retry = false;      // of `run` and `work`
+};
+/// options.file: the folder of the study.
+int study(const Options& options, const StudyOptions& given);
 
 /// A command as it was declared, for completion.
 struct Declared {

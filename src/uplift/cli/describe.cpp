@@ -18,6 +18,7 @@
 #include "uplift/motion/generate.h"
 #include "uplift/motion/processing/processing.h"
 #include "uplift/motion/target.h"
+#include "uplift/study/study_plan.h"
 
 namespace uplift::cli {
 namespace {
@@ -39,6 +40,8 @@ std::vector<Family> families() {
           {"record", "formats of recorded ground motions, found by content", record_formats()},
           {"process", "processing steps of ground motions", motion_processes()},
           {"target", "target spectra of generated motions", target_spectra()},
+          {"study_method", "which intensities a study runs", study_methods()},
+          {"distribution", "distributions of the variables of a study", study_distributions()},
           {"solver", "factorisation of the structure's matrices", linear_solvers()}};
 }
 
@@ -62,6 +65,8 @@ std::vector<Place> places() {
   std::vector<Place> all{{"case", &case_section(), Kind::table}};
   collect(case_section(), "", all);
   all.push_back({"generate", &generate_section(), Kind::table});
+  all.push_back({"study", &study_section(), Kind::table});
+  collect(study_section(), "study", all);
   return all;
 }
 
@@ -143,12 +148,15 @@ void print_family(const Family& family) {
 void print_sections() {
   std::vector<std::vector<std::string>> rows;
   for (const Place& place : places()) rows.push_back({"  " + place.path, std::string(place.section->meaning)});
-  say("section: tables of the case file");
+  say("section: tables of the case file, and of the plan of a study");
   print_table(rows);
 }
 
 std::string head_of(const Place& place) {
   if (place.path == "case") return "the keys at the top of a case file";
+  if (place.section == &study_section()) return "the keys at the top of plan.toml of a study";
+  if (place.path.starts_with("study."))
+    return (place.kind == Kind::tables ? "[[" + place.path.substr(6) + "]]" : "[" + place.path.substr(6) + "]") + " of plan.toml";
   if (place.section == &generate_section()) return "KEY=VALUE words of uplift motion --generate";
   return place.kind == Kind::tables ? "[[" + place.path + "]]" : "[" + place.path + "]";
 }

@@ -27,6 +27,7 @@ struct Choices {
   Options options;
   std::string name, family, method = "lagrange", shell = "bash", document = "case";
   uplift::cli::MotionOptions motion;
+  uplift::cli::StudyOptions study;
   std::vector<std::string> words;  // of `soil`
   int modes = 6;
   bool all = false;
@@ -81,6 +82,32 @@ void declare_motion(CLI::App& app, Choices& given) {
                       "frequencies [Hz] of the response spectra: a list separated by commas, FROM:TO:COUNT (logarithmic spacing), or "
                       "rg_1_122 (the 75 frequencies of Regulatory Guide 1.122); default 0.1:100:300");
   take_output(command, given.options);
+  take_json(command, given.options);
+}
+
+void declare_study(CLI::App& app, Choices& given) {
+  uplift::cli::StudyOptions& study = given.study;
+  CLI::App* command =
+      add(app, "study", "run one case under many motions, at many intensities, with sampled variables, and fit fragility curves",
+          "  uplift study new pier        writes pier.study/plan.toml\n"
+          "  uplift study check pier.study; uplift study run pier.study; uplift study fit pier.study\n"
+          "  uplift study tasks pier.study --count 200 | parallel --joblog log --resume-failed\n"
+          "  uplift study work pier.study --shard $SLURM_ARRAY_TASK_ID/200");
+  command
+      ->add_option(
+          "verb", study.verb,
+          "new: write a commented plan; check: estimate runs, time, memory and disk; run: compute what is missing (again: go on); "
+          "status: how far it is; fit: write study.json and fits.csv; export: write runs.csv and curves.csv; tasks: a command line for "
+          "every shard; work: compute one shard; index: make study.db again from the parts")
+      ->required();
+  command->add_option("study", given.options.file, "folder of the study, with plan.toml; of `new` its name")->required();
+  command->add_option("-j,--workers", study.workers, "processes at the same time; default: as in the plan, else one for every core")
+      ->check(CLI::Range(1, 4096));
+  command->add_option("--shard", study.shard, "of `work`: the share K/N of the curves");
+  command->add_option("--count", study.count, "of `tasks`: the number of shards")->check(CLI::Range(1, 1000000));
+  command->add_option("--run", study.run, "of `export`: write the case of this run alone, by the beginning of its identity in runs.csv");
+  command->add_flag("--retry", study.retry, "of `run` and `work`: also compute again what failed or ran out of time or memory");
+  command->add_flag("-q,--quiet", given.options.quiet, "print errors only");
   take_json(command, given.options);
 }
 
@@ -139,14 +166,16 @@ void declare(CLI::App& app, Choices& given) {
 
   command = add(app, "describe", "print equations, parameters, units and sources of every part, and the tables of a case file",
                 "  uplift describe\n  uplift describe law\n  uplift describe law sdm\n  uplift describe section interface.footing");
-  command->add_option("family", given.family,
-                      "law, method, impact, scheme, function, record, process, target, solver, section or quantity");
+  command->add_option(
+      "family", given.family,
+      "law, method, impact, scheme, function, record, process, target, study_method, distribution, solver, section or quantity");
   command->add_option("name", given.name, "name of the part or table");
 
   command = add(app, "schema", "print the JSON Schema of the case file or of a results document",
                 "  uplift schema > case.schema.json\n  uplift schema results > summary.schema.json");
-  command->add_option("document", given.document,
-                      "case (default), results (summary.json), trust (trust.json) or motion (summary.json of uplift motion)");
+  command->add_option(
+      "document", given.document,
+      "case (default), results (summary.json), trust (trust.json), study (study.json) or motion (summary.json of uplift motion)");
 
   command = add(app, "replay", "solve a stored interface problem alone, with any method",
                 "  uplift replay out/tower/problem_run.json --method lagrange\n  uplift replay out/tower/problem_run.json --all");
@@ -156,6 +185,7 @@ void declare(CLI::App& app, Choices& given) {
   take_json(command, options);
 
   declare_motion(app, given);
+  declare_study(app, given);
 
   command = add(app, "completion", "print a completion script for the shell",
                 "  source <(uplift completion bash)\n  source <(uplift completion zsh)");
@@ -189,6 +219,7 @@ int dispatch(const CLI::App& app, const Choices& given) {
   if (name == "describe") return cli::describe(given.family, given.name);
   if (name == "schema") return cli::schema(given.document);
   if (name == "motion") return cli::motion(given.options, given.motion);
+  if (name == "study") return cli::study(given.options, given.study);
   if (name == "replay") return cli::replay(given.options, given.method, given.all);
   return cli::completion(given.shell, declared(app));
 }

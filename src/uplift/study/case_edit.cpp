@@ -49,7 +49,55 @@ Raw put(const Raw& raw, std::string_view path, const CaseEdit& edit) {
   return made;
 }
 
+/// The place of "[3]"; nothing for a key.
+std::optional<std::size_t> place_of(std::string_view step) {
+  std::size_t place = 0;
+  const char *first = step.data() + 1, *last = step.data() + step.size() - 1;
+  if (step.size() < 3 || step.front() != '[' || step.back() != ']') return std::nullopt;
+  const auto [end, error] = std::from_chars(first, last, place);
+  return end == last && error == std::errc() ? std::optional(place) : std::nullopt;
+}
+
+const Field* field_of(const Values& table, std::string_view key) {
+  const std::vector<Field>* fields = table.section() ? &table.section()->fields : table.part_info() ? &table.part_info()->params : nullptr;
+  if (fields == nullptr) return nullptr;
+  const auto found = std::ranges::find(*fields, key, &Field::name);
+  return found == fields->end() ? nullptr : &*found;
+}
+
+/// The table of several that the path goes into.
+const Values* table_at(const std::vector<Values>& tables, const Field& field, std::string_view& path) {
+  if (field.kind == Kind::named) {
+    const auto found = std::ranges::find(tables, next_of(path), &Values::key);
+    return found == tables.end() ? nullptr : &*found;
+  }
+  if (field.kind != Kind::tables) return tables.empty() ? nullptr : &tables.front();
+  const std::optional<std::size_t> place = place_of(next_of(path));
+  return place && *place < tables.size() ? &tables[*place] : nullptr;
+}
+
 }  // namespace
+
+std::optional<NumberAt> number_at(const Values& root, std::string_view path) {
+  const Values* table = &root;
+  std::string_view key = next_of(path);
+  while (true) {
+    const auto found = table->items().find(key);
+    const Field* field = field_of(*table, key);
+    if (found == table->items().end() || field == nullptr) return std::nullopt;
+    if (const auto* number = std::get_if<double>(&found->second.data))
+      return path.empty() ? std::optional(NumberAt{*number, field}) : std::nullopt;
+    if (const auto* numbers = std::get_if<std::vector<double>>(&found->second.data)) {
+      const std::optional<std::size_t> place = place_of(next_of(path));
+      if (!place || *place >= numbers->size() || !path.empty()) return std::nullopt;
+      return NumberAt{(*numbers)[*place], field};
+    }
+    const auto* tables = std::get_if<std::vector<Values>>(&found->second.data);
+    table = tables != nullptr && !path.empty() ? table_at(*tables, *field, path) : nullptr;
+    if (table == nullptr || path.empty()) return std::nullopt;
+    key = path.starts_with('[') ? std::string_view("value") : next_of(path);  // [nodes] top = [0, 5] stands for its only key
+  }
+}
 
 Raw edited(const Raw& raw, const std::vector<CaseEdit>& edits) {
   Raw made = raw;

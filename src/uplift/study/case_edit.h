@@ -1,6 +1,8 @@
 #pragma once
 #include <cstdint>
+#include <optional>
 #include <string>
+#include <string_view>
 #include <variant>
 #include <vector>
 
@@ -17,5 +19,13 @@ struct CaseEdit {
 
 /// A copy of the tree with these values; tables that are missing are made. The tree itself is left as it is.
 Raw edited(const Raw& raw, const std::vector<CaseEdit>& edits);
+
+/// A number of a checked case and its declaration.
+struct NumberAt {
+  double value = 0;  // SI
+  const Field* field = nullptr;
+};
+/// The number at a path of the form of CaseEdit; nothing where there is none. Tables under free keys are found by key: "nodes.top[1]".
+std::optional<NumberAt> number_at(const Values& root, std::string_view path);
 
 }  // namespace uplift

@@ -146,10 +146,10 @@ std::shared_ptr<const TimeFunction> CaseNames::function(const Values& table, std
   if (!table.has("function")) return std::make_shared<One>();
   const std::string& name = name_taken(instead, table.text("function"));
   const auto found = static_cast<std::size_t>(functions.find(name, table.where("function"), table.path("function")));
-  if (functions_made[found]) return functions_made[found];
+  if (functions_made[found]) return kind && motion_factor != 1 ? scaled(motion_factor, functions_made[found]) : functions_made[found];
   const CaseRecord& record = (*records)[found - (functions_made.size() - records->size())];
   if (!kind) fail(table, "function", "a function (a record is a motion: no load, no rotation)", "the record " + in_quotes(name));
-  return std::make_shared<MotionFunction>(giving(record.history, *kind), *kind, share);
+  return std::make_shared<MotionFunction>(giving(scaled(record.history, motion_factor), *kind), *kind, share);
 }
 
 void add_nodes(const Values& root, ModelBuilder& builder, CaseNames& names) {

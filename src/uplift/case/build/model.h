@@ -22,6 +22,7 @@ struct CaseNames {
   std::vector<std::shared_ptr<const TimeFunction>> functions_made;  // then the records: null
   const std::vector<CaseRecord>* records = nullptr;
   const Values* instead = nullptr;  // [[compare.motion]] of the run; null: as in the case
+  double motion_factor = 1;         // see RunSpec
   /// Whether the function of a table is a record, which has a unit.
   bool is_record(const Values& table) const;
   double share = 0;                          // of the displacements of records, see MotionFunction

@@ -150,6 +150,13 @@ std::shared_ptr<const MotionHistory> giving(const std::shared_ptr<const MotionHi
   return std::make_shared<const MotionHistory>(std::make_shared<const Motion>(converted(*history->motion(), kind)));
 }
 
+std::shared_ptr<const MotionHistory> scaled(const std::shared_ptr<const MotionHistory>& history, double factor) {
+  if (factor == 1) return history;
+  Motion motion = *history->motion();
+  for (double& value : motion.values) value *= factor;
+  return std::make_shared<const MotionHistory>(std::make_shared<const Motion>(std::move(motion)));
+}
+
 const std::string& name_taken(const Values* instead, const std::string& name) {
   if (!instead) return name;
   const std::vector<std::string>& replaced = instead->texts("replace");
@@ -171,6 +178,7 @@ void check_motion(const Values& root, const Values& motion) {
     if (std::ranges::find(drives, replaced[i]) == drives.end())
       fail(motion, "replace", "the name of a function or record that drives the case", in_quotes(replaced[i]),
            nearest_name(replaced[i], drives));
+    if (std::ranges::count(replaced, replaced[i]) > 1) fail(motion, "replace", "every name once", in_quotes(replaced[i]) + " again");
   }
 }
 
@@ -184,7 +192,7 @@ std::vector<DrivenBy> motions_wanted(const Values& root) {
   return wanted;
 }
 
-std::vector<MotionUse> motions_used(const Values& root, const std::vector<CaseRecord>& records, const Values* instead) {
+std::vector<MotionUse> motions_used(const Values& root, const std::vector<CaseRecord>& records, const Values* instead, double factor) {
   std::vector<MotionUse> used;
   for (const DrivenBy& place : motions_wanted(root)) {
     const std::string& name = name_taken(instead, place.table->text("function"));
@@ -193,6 +201,7 @@ std::vector<MotionUse> motions_used(const Values& root, const std::vector<CaseRe
     const auto same = [&](const MotionUse& each) { return each.history == record->history && each.kind == place.kind; };
     if (std::ranges::none_of(used, same)) used.push_back({record->history, place.kind});
   }
+  for (MotionUse& use : used) use.history = scaled(use.history, factor);
   return used;
 }
 

@@ -32,6 +32,9 @@ void check_motion(const Values& root, const Values& motion);
 /// A history that gives a quantity: this one, or when it would have to be differentiated, that of its spline (see converted).
 std::shared_ptr<const MotionHistory> giving(const std::shared_ptr<const MotionHistory>& history, MotionKind kind);
 
+/// A history whose given values are multiplied, as the process "scale" does; the same one for the factor 1.
+std::shared_ptr<const MotionHistory> scaled(const std::shared_ptr<const MotionHistory>& history, double factor);
+
 /// The function or record that is taken instead of another: `instead` is a [[compare.motion]], or null.
 const std::string& name_taken(const Values* instead, const std::string& name);
 
@@ -48,7 +51,7 @@ struct MotionUse {
   std::shared_ptr<const MotionHistory> history;
   MotionKind kind;
 };
-std::vector<MotionUse> motions_used(const Values& root, const std::vector<CaseRecord>& records, const Values* instead);
+std::vector<MotionUse> motions_used(const Values& root, const std::vector<CaseRecord>& records, const Values* instead, double factor = 1);
 
 /// What the displacement of a record gets on top, see MotionFunction [s2]: zero when the dynamic stages differ or damp numerically.
 double newmark_share(const std::vector<Stage>& stages);

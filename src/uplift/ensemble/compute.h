@@ -1,0 +1,50 @@
+#pragma once
+#include <functional>
+#include <list>
+#include <memory>
+#include <span>
+
+#include "uplift/ensemble/study.h"
+#include "uplift/study/study_run.h"
+
+namespace uplift {
+
+/// One run to be computed.
+struct RunRequest {
+  std::string id;
+  std::size_t curve = 0, sample = 0, motion = 0;
+  double factor = 1, intensity = 1;
+  long attempt = 1;
+};
+
+template <class Archive, SameAs<RunRequest> T>
+void list_parts(Archive& archive, T& request) {
+  archive(request.id, request.curve, request.sample, request.motion, request.factor, request.intensity, request.attempt);
+}
+
+/// Computes runs of a study. What does not depend on the run is kept: the checked cases of the last samples.
+class StudyComputer {
+ public:
+  explicit StudyComputer(const Study& study) : study_(study) {}
+  /// Makes what the runs of a sample share, so that processes forked from this one have it.
+  void prepare(std::size_t sample) { case_of(sample); }
+  /// Runs of one sample, a group: they are told one by one as they end. Never throws for one of them: what went wrong is its outcome.
+  void compute(std::span<const RunRequest> group, const std::function<void(const StudyResult&)>& done);
+  /// One run; throws what goes wrong.
+  StudyResult compute(const RunRequest& request);
+
+ private:
+  const Case& case_of(std::size_t sample);
+  const Study& study_;
+  std::list<std::pair<std::size_t, std::unique_ptr<const Case>>> cases_;  // the last used one first
+};
+
+/// The result of a run that gave none.
+StudyResult result_without_run(const Study& study, const RunRequest& request, StudyOutcome outcome, const std::string& reason);
+
+/// Folder of a run whose files were written: of one that failed, or was chosen.
+std::string run_folder(const Study& study, const std::string& id);
+/// Writes the case of a run there, as `uplift run` takes it.
+void write_run_case(const Study& study, const std::string& id, std::size_t sample, std::size_t motion, double factor);
+
+}  // namespace uplift

@@ -1,0 +1,117 @@
+#include <fmt/format.h>
+
+#include <algorithm>
+
+#include "uplift/io/results/study_json.h"
+#include "uplift/io/text/numbers.h"
+
+namespace uplift {
+namespace {
+
+std::string exact(double value) {
+  std::string text;
+  append_exact(text, value);
+  return text;
+}
+
+std::string exact(const std::optional<double>& value) {
+  return value ? exact(*value) : "";
+}
+
+std::string fit_cells(const OrRefused<Fragility>& result) {
+  const Fragility* fit = std::get_if<Fragility>(&result);
+  return fit ? exact(fit->theta()) + "," + exact(fit->beta()) : ",";
+}
+
+std::string capacity_cells(const std::optional<RecordCapacity>& capacity) {
+  if (!capacity) return "nothing,";
+  return fmt::format("{},{}",
+                     capacity->known == Known::exact      ? "exact"
+                     : capacity->known == Known::at_least ? "at_least"
+                                                          : "at_most",
+                     exact(capacity->im));
+}
+
+std::string_view word_of(RunOutcome outcome) {
+  return outcome == RunOutcome::survived ? "survived" : outcome == RunOutcome::exceeded ? "exceeded" : "unknown";
+}
+
+std::string interval_text(const Fragility& fit) {
+  const ConfidenceInterval interval = fit.theta_interval(study_confidence);
+  const auto end = [](const std::optional<double>& value) { return value ? fmt::format("{:.3g}", *value) : std::string("unbounded"); };
+  return fmt::format("{:.0f} %: {} to {}", 100 * study_confidence, end(interval.lower), end(interval.upper));
+}
+
+}  // namespace
+
+std::string fits_csv(const StudyDocument& study) {
+  const std::string unit = study.plan.intensity.unit;
+  std::string text = fmt::format(
+      "limit,survived [1],exceeded [1],unknown [1],theta [{0}],beta [1],theta lower [{0}],theta upper [{0}],beta lower [1],beta upper [1],"
+      "theta unknown survived [{0}],beta unknown survived [1],theta unknown exceeded [{0}],beta unknown exceeded [1],refused\n",
+      unit);
+  for (const StudyDocument::Limit& each : study.limits) {
+    const Fragility* fit = std::get_if<Fragility>(&each.fit.fit.middle);
+    const ConfidenceInterval theta = fit ? fit->theta_interval(study_confidence) : ConfidenceInterval{},
+                             beta = fit ? fit->beta_interval(study_confidence) : ConfidenceInterval{};
+    text += fmt::format("{},{},{},{},{},{},{},{},{},{},{},{}\n", csv_cell(each.limit.name), each.fit.survived, each.fit.exceeded,
+                        each.fit.unknown, fit_cells(each.fit.fit.middle), exact(theta.lower), exact(theta.upper), exact(beta.lower),
+                        exact(beta.upper), fit_cells(each.fit.fit.survived), fit_cells(each.fit.fit.exceeded),
+                        fit ? "" : csv_cell(std::get<Refused>(each.fit.fit.middle).reason));
+  }
+  return text;
+}
+
+std::string study_runs_csv(const StudyDocument& study) {
+  std::string text = fmt::format("id,motion,sample,intensity [{}],factor [1],outcome,reason", study.plan.intensity.unit);
+  for (const StudyDocument::Limit& each : study.limits)
+    text += "," + csv_cell(each.limit.name) + "," +
+            csv_cell(fmt::format("{} [{}]", each.limit.name, each.limit.quantity ? each.limit.quantity->unit : "1"));
+  text += "\n";
+  for (const StudyDocument::Curve& curve : study.curves)
+    for (const StudyDocument::Run& run : curve.runs) {
+      text += fmt::format("{},{},{},{},{},{},{}", run.id, csv_cell(run.motion), run.sample, exact(run.intensity), exact(run.factor),
+                          to_string(run.outcome), csv_cell(run.reason));
+      for (std::size_t k = 0; k < run.states.size(); ++k) text += fmt::format(",{},{}", word_of(run.states[k]), exact(run.demands[k]));
+      text += "\n";
+    }
+  return text;
+}
+
+std::string study_curves_csv(const StudyDocument& study) {
+  const std::string unit = study.plan.intensity.unit;
+  std::string text = fmt::format(
+      "limit,motion,sample,found,capacity,capacity [{0}],unknown survived,unknown survived [{0}],unknown exceeded,unknown exceeded "
+      "[{0}],resurrections [1]\n",
+      unit);
+  for (const StudyDocument::Limit& each : study.limits)
+    for (const StudyCapacity& capacity : each.fit.capacities) {
+      const StudyDocument::Curve& curve = study.curves[capacity.curve];
+      text += fmt::format("{},{},{},{},{},{},{},{}\n", csv_cell(each.limit.name), csv_cell(curve.motion), curve.sample,
+                          capacity.found ? "yes" : "no", capacity_cells(capacity.left_out), capacity_cells(capacity.survived),
+                          capacity_cells(capacity.exceeded), capacity.resurrections.size());
+    }
+  return text;
+}
+
+std::string study_sentence(const StudyDocument& study, std::size_t number) {
+  const StudyDocument::Limit& each = study.limits[number];
+  const std::string unit = study.plan.intensity.unit == "1" ? "" : " " + study.plan.intensity.unit;
+  const std::string counts =
+      fmt::format("runs: {} survived, {} exceeded, {} unknown", each.fit.survived, each.fit.exceeded, each.fit.unknown);
+  const auto short_text = [&](const OrRefused<Fragility>& result) {
+    const Fragility* fit = std::get_if<Fragility>(&result);
+    return fit ? fmt::format("{:.3g}{}, beta {:.3g}", fit->theta(), unit, fit->beta())
+               : "no fit (" + std::get<Refused>(result).reason + ")";
+  };
+  std::string text = each.limit.name + ": ";
+  if (const Fragility* fit = std::get_if<Fragility>(&each.fit.fit.middle))
+    text += fmt::format("median {} ({}){}; {}", short_text(each.fit.fit.middle), interval_text(*fit), "", counts);
+  else
+    text += fmt::format("{}; {}", short_text(each.fit.fit.middle), counts);
+  if (each.fit.unknown > 0)
+    text += fmt::format("; unknown as survived: {}, as exceeded: {}", short_text(each.fit.fit.survived), short_text(each.fit.fit.exceeded));
+  return text;
+}
+
+}  // namespace uplift

@@ -1,0 +1,81 @@
+#pragma once
+#include <span>
+#include <string>
+#include <vector>
+
+#include "uplift/math/linalg.h"
+#include "uplift/statistics/refused.h"
+
+// Seismic capacities as nuclear practice states them: docs/theory/fragility.md.
+namespace uplift {
+
+/// Capacity A = A_m e_R e_U; e_R (randomness) and e_U (uncertainty) are lognormal with the median 1.
+struct SeismicCapacity {
+  double median = 0;  // A_m [as the intensity], > 0
+  double beta_r = 0;  // from record to record, >= 0
+  double beta_u = 0;  // of knowledge, >= 0
+
+  /// Composite sqrt(beta_r^2 + beta_u^2).
+  double beta_c() const;
+  /// High confidence of a low probability of failure: 95 % confidence of at most 5 %, A_m exp(-1.65 (beta_r + beta_u)).
+  double hclpf() const;
+  /// The same with the exact quantile 1.644854 instead of 1.65.
+  double hclpf_exact() const;
+  /// 1 % of the composite curve: A_m exp(-2.326 beta_c), and with the exact quantile.
+  double hclpf_composite() const;
+  double hclpf_composite_exact() const;
+  /// Probability of failure at the intensity a that is not exceeded with `confidence` in (0, 1):
+  /// Phi((ln(a/A_m) + beta_u Phi^-1(confidence))/beta_r).
+  double probability(double a, double confidence) const;
+  /// Mean probability of failure at a: Phi(ln(a/A_m)/beta_c).
+  double mean_probability(double a) const;
+};
+
+/// One factor of a separation of variables: a factor of safety with its scatter.
+struct SafetyFactor {
+  std::string name;
+  double median = 1, beta_r = 0, beta_u = 0;
+};
+/// A_m = reference * product of the medians; variances of the logarithms add up. Source: EPRI TR-103959 (1994). Refused where a median or
+/// the reference is not positive, or a beta is negative or not finite (with the factor's name).
+OrRefused<SeismicCapacity> separation_of_variables(double reference, std::span<const SafetyFactor>);
+
+/// Scatter of capacities of every record (row) with every sample of the uncertain variables (column).
+struct TwoWayLayout {
+  double median = 0;            // exp of the mean of ln capacity
+  double beta_r = 0;            // between records
+  double beta_u = 0;            // between samples
+  double beta_interaction = 0;  // what neither explains: records that react differently to the samples
+  /// beta_r with the interaction, which differs from record to record: the capacity to be used in HCLPF and risk.
+  SeismicCapacity capacity() const;
+};
+/// Components of variance of a two-way layout without repetition, by mean squares; negative components count as 0. At least two rows
+/// and two columns of positive numbers, else refused.
+OrRefused<TwoWayLayout> two_way_layout(const Matrix& capacities);
+
+/// Points of a hazard curve: mean annual rate [1/a] with which the intensity is exceeded.
+struct HazardPoint {
+  double im = 0, rate = 0;
+};
+/// Annual rate of failure, and its shares that rest on rates below the first and above the last point of the hazard curve.
+struct AnnualRisk {
+  double rate = 0;  // [1/a]
+  double share_below = 0, share_above = 0;
+};
+/// Hazard k0 a^-k [1/a]: rate k0 theta^-k exp(k^2 beta^2/2). Cornell (1996).
+double risk_of_power_law(double k0, double k, double theta, double beta);
+/// Integral of P(failure | a) |dH| with the lognormal curve (theta, beta >= 0) and a hazard curve that is linear in ln a, ln H between its
+/// points and goes on with the slopes of its ends. Every segment in closed form. Refused unless there are two points with ascending im > 0
+/// and descending rate > 0.
+OrRefused<AnnualRisk> risk_of_curve(std::span<const HazardPoint>, double theta, double beta);
+
+/// The performance that ASCE/SEI 43 asks for: at most about 1 % at the design motion and 10 % at 1.5 times it.
+struct PerformancePair {
+  double at_design = 0, at_one_and_a_half = 0;
+  bool met() const { return at_design <= 0.01 && at_one_and_a_half <= 0.10; }
+};
+PerformancePair performance_pair(double design_im, double theta, double beta);
+/// The pair of a curve with exactly `probability` at the design motion.
+PerformancePair performance_pair_of(double probability, double beta);
+
+}  // namespace uplift

@@ -1,0 +1,202 @@
+#include "uplift/study/study_fit.h"
+
+#include <algorithm>
+#include <cmath>
+#include <map>
+#include <tuple>
+
+namespace uplift {
+namespace {
+
+void count_runs(const StudyLimit& limit, const std::vector<StudyCurve>& curves, StudyLimitFit& fit) {
+  for (const StudyCurve& curve : curves)
+    for (const auto& [intensity, run] : curve.runs()) {
+      const RunOutcome outcome = outcome_of(limit, *run.result);
+      ++(outcome == RunOutcome::survived ? fit.survived : outcome == RunOutcome::exceeded ? fit.exceeded : fit.unknown);
+    }
+}
+
+// ---- capacities ----
+
+std::optional<RecordCapacity> capacity_of(const CapacitySearch& search, Unknown unknown) {
+  std::optional<RecordCapacity> capacity = search.capacity(unknown);
+  if (capacity && capacity->known == Known::exact && !capacity->largest) capacity->largest = search.plan().largest;
+  return capacity;
+}
+
+void fit_searches(const std::vector<StudyCurve>& curves, std::size_t limit, StudyLimitFit& fit) {
+  std::vector<RecordCapacity> survived, left_out, exceeded;
+  for (std::size_t i = 0; i < curves.size(); ++i) {
+    if (curves[i].runs().empty()) continue;
+    const CapacitySearch& search = curves[i].searches()[limit];
+    StudyCapacity one{i,
+                      capacity_of(search, Unknown::survived),
+                      capacity_of(search, Unknown::left_out),
+                      capacity_of(search, Unknown::exceeded),
+                      search.found(),
+                      search.resurrections()};
+    if (one.survived) survived.push_back(*one.survived);
+    if (one.left_out) left_out.push_back(*one.left_out);
+    if (one.exceeded) exceeded.push_back(*one.exceeded);
+    fit.capacities.push_back(std::move(one));
+  }
+  fit.fit = both_ways(fit_capacities(survived), fit_capacities(left_out), fit_capacities(exceeded), study_confidence);
+}
+
+/// Motions in rows, samples in columns.
+OrRefused<TwoWayLayout> layout_of(const StudyCase& study, const std::vector<StudyCurve>& curves,
+                                  const std::vector<StudyCapacity>& capacities) {
+  const auto rows = static_cast<Index>(study.motions.size()), columns = static_cast<Index>(study.samples.size());
+  if (!study.plan.crossed || rows < 2 || columns < 2) return Refused{"it takes two samples and two motions at least, crossed"};
+  if (static_cast<Index>(capacities.size()) < rows * columns) return Refused{"not all curves have runs"};
+  Matrix table(rows, columns);
+  for (const StudyCapacity& each : capacities) {
+    if (!each.left_out || each.left_out->known != Known::exact) return Refused{"not all capacities are known exactly"};
+    table(static_cast<Index>(curves[each.curve].motion()), static_cast<Index>(curves[each.curve].sample())) = each.left_out->im;
+  }
+  return two_way_layout(table);
+}
+
+// ---- stripes and clouds ----
+
+void fit_stripes_of(const StudyLimit& limit, const std::vector<StudyCurve>& curves, StudyLimitFit& fit) {
+  std::map<double, Stripe> stripes;
+  for (const StudyCurve& curve : curves)
+    for (const auto& [intensity, run] : curve.runs()) {
+      Stripe& stripe = stripes[intensity];
+      stripe.im = intensity;
+      ++stripe.runs;
+      const RunOutcome outcome = outcome_of(limit, *run.result);
+      stripe.exceeded += outcome == RunOutcome::exceeded;
+      stripe.unknown += outcome == RunOutcome::unknown;
+    }
+  for (const auto& [intensity, stripe] : stripes) fit.stripes.push_back(stripe);
+  if (!fit.stripes.empty()) fit.fit = fit_stripes_both_ways(fit.stripes, study_confidence);
+}
+
+/// Demands of runs that ended early are lower bounds where they are demands at all; a lost structure has at least the limit.
+void fit_cloud_of(const StudyLimit& limit, const std::vector<StudyCurve>& curves, StudyLimitFit& fit) {
+  for (const StudyCurve& curve : curves)
+    for (const auto& [intensity, run] : curve.runs()) {
+      const std::optional<double> demand = demand_of(limit, *run.result);
+      const StudyOutcome outcome = run.result->outcome;
+      const double size = demand ? std::abs(*demand) : 0;
+      if (outcome == StudyOutcome::completed && size > 0) fit.cloud.push_back({intensity, size, false});
+      if (outcome == StudyOutcome::overturned || outcome == StudyOutcome::separated)
+        fit.cloud.push_back({intensity, std::max(size, limit.limit), true});
+      if (outcome_of(limit, *run.result) == RunOutcome::exceeded && !says_something(outcome)) fit.cloud.push_back({intensity, size, true});
+    }
+  OrRefused<CloudFit> made = fit_cloud(fit.cloud, limit.limit);
+  if (const Refused* refused = std::get_if<Refused>(&made)) {
+    fit.fit = {*refused, *refused, *refused};
+    return;
+  }
+  fit.regression = std::get<CloudFit>(std::move(made));
+  // runs without a demand cannot be counted either way in a regression: they are stated beside it
+  fit.fit = {fit.regression->fragility, fit.regression->fragility, fit.regression->fragility};
+}
+
+// ---- tornado ----
+
+/// Mean logarithm of the response of every sample: of its capacities, or of its demands. Nothing where there is none.
+std::vector<std::optional<double>> responses(const StudyCase& study, const std::vector<StudyCurve>& curves, std::size_t limit,
+                                             const std::vector<StudyCapacity>& capacities) {
+  std::vector<double> sum(study.samples.size()), count(study.samples.size());
+  const auto add = [&](std::size_t sample, double value) {
+    if (value > 0) sum[sample] += std::log(value), count[sample] += 1;
+  };
+  for (const StudyCapacity& each : capacities)
+    if (each.left_out && each.left_out->known == Known::exact) add(curves[each.curve].sample(), each.left_out->im);
+  if (capacities.empty())
+    for (const StudyCurve& curve : curves)
+      for (const auto& [intensity, run] : curve.runs())
+        if (const std::optional<double> demand = demand_of(study.plan.limits[limit], *run.result);
+            demand && says_something(run.result->outcome))
+          add(curve.sample(), std::abs(*demand));
+  std::vector<std::optional<double>> means(sum.size());
+  for (std::size_t i = 0; i < sum.size(); ++i)
+    if (count[i] > 0) means[i] = sum[i] / count[i];
+  return means;
+}
+
+std::vector<StudyInfluence> tornado_of(const StudyCase& study, const std::vector<std::optional<double>>& response) {
+  std::vector<StudyInfluence> tornado;
+  for (std::size_t v = 0; v < study.plan.variables.size(); ++v) {
+    std::vector<std::size_t> order;
+    for (std::size_t i = 0; i < response.size(); ++i)
+      if (response[i]) order.push_back(i);
+    const std::size_t third = order.size() / 3;
+    if (third == 0) continue;
+    std::ranges::stable_sort(order, {}, [&](std::size_t i) { return study.samples[i].values[v]; });
+    const auto mean = [&](std::size_t begin) {
+      double sum = 0;
+      for (std::size_t k = begin; k < begin + third; ++k) sum += *response[order[k]];
+      return std::exp(sum / static_cast<double>(third));
+    };
+    tornado.push_back({v, mean(0), mean(order.size() - third)});
+  }
+  std::ranges::stable_sort(tornado, std::greater{}, [](const StudyInfluence& each) { return std::abs(std::log(each.high / each.low)); });
+  return tornado;
+}
+
+}  // namespace
+
+StudyLimitFit fit_limit(const StudyCase& study, const std::vector<StudyCurve>& curves, std::size_t number) {
+  StudyLimitFit fit;
+  const StudyLimit& limit = study.plan.limits[number];
+  count_runs(limit, curves, fit);
+  if (study.plan.method.searches()) {
+    fit_searches(curves, number, fit);
+    fit.layout = layout_of(study, curves, fit.capacities);
+  } else if (study.plan.method.type == StudyMethod::Type::stripes) {
+    fit_stripes_of(limit, curves, fit);
+  } else {
+    fit_cloud_of(limit, curves, fit);
+  }
+  fit.tornado = tornado_of(study, responses(study, curves, number, fit.capacities));
+  return fit;
+}
+
+double percentile(const std::vector<double>& sorted, double share) {
+  const double at = share * static_cast<double>(sorted.size() - 1);
+  const auto below = static_cast<std::size_t>(at);
+  if (below + 1 >= sorted.size()) return sorted.back();
+  return sorted[below] + (at - static_cast<double>(below)) * (sorted[below + 1] - sorted[below]);
+}
+
+std::vector<StudyFloor> floor_percentiles(const StudyCase& study, const std::vector<StudyCurve>& curves) {
+  if (study.plan.method.searches()) return {};  // every motion has intensities of its own
+  struct Runs {
+    StudyFloor floor;
+    std::vector<const StudySpectrum*> spectra;
+  };
+  std::map<std::tuple<double, std::string, double>, Runs> groups;
+  for (const StudyCurve& curve : curves)
+    for (const auto& [intensity, run] : curve.runs()) {
+      const std::vector<double>& levels = study.plan.method.levels;
+      const double asked = study.plan.method.type == StudyMethod::Type::cloud ? run.point.factor : intensity;
+      const double level = *std::ranges::min_element(levels, {}, [&](double each) { return std::abs(each - asked); });  // round-off
+      for (const StudySpectrum& spectrum : run.result->spectra) {
+        Runs& group = groups[{level, spectrum.floor, spectrum.damping}];
+        if (group.spectra.empty()) group.floor = {spectrum.floor, spectrum.damping, level, 0, spectrum.frequencies, {}, {}, {}};
+        if (spectrum.frequencies == group.floor.frequencies) group.spectra.push_back(&spectrum);
+      }
+    }
+  std::vector<StudyFloor> made;
+  for (auto& [key, group] : groups) {
+    StudyFloor& floor = group.floor;
+    floor.runs = std::ssize(group.spectra);
+    std::vector<double> values(group.spectra.size());
+    for (std::size_t f = 0; f < floor.frequencies.size(); ++f) {
+      std::ranges::transform(group.spectra, values.begin(), [&](const StudySpectrum* spectrum) { return spectrum->values[f]; });
+      std::ranges::sort(values);
+      floor.p16.push_back(percentile(values, 0.16));
+      floor.p50.push_back(percentile(values, 0.5));
+      floor.p84.push_back(percentile(values, 0.84));
+    }
+    made.push_back(std::move(floor));
+  }
+  return made;
+}
+
+}  // namespace uplift

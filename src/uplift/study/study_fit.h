@@ -1,0 +1,55 @@
+#pragma once
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "uplift/statistics/fragility.h"
+#include "uplift/statistics/nuclear.h"
+#include "uplift/study/study_curve.h"
+
+// What the runs of a study say (docs/theory/fragility.md).
+namespace uplift {
+
+/// Confidence of all intervals.
+inline constexpr double study_confidence = 0.9;
+
+/// The capacity of one curve for one limit, with runs of unknown outcome counted in three ways; nothing where it is not known.
+struct StudyCapacity {
+  std::size_t curve = 0;
+  std::optional<RecordCapacity> survived, left_out, exceeded;
+  bool found = false;                 // within the tolerance, or beyond an end of the range
+  std::vector<double> resurrections;  // intensities of survivals above the capacity
+};
+
+/// How a variable moves the result: geometric means over the third of the samples with its smallest and with its largest values.
+struct StudyInfluence {
+  std::size_t variable = 0;
+  double low = 0, high = 0;
+};
+
+/// All of one limit state.
+struct StudyLimitFit {
+  long survived = 0, exceeded = 0, unknown = 0;  // runs
+  std::vector<StudyCapacity> capacities;         // of methods that search
+  std::vector<Stripe> stripes;                   // of stripes
+  std::vector<CloudPoint> cloud;                 // of a cloud
+  std::optional<CloudFit> regression;            // of a cloud
+  BothWays fit{Refused{"there are no runs"}, Refused{"there are no runs"}, Refused{"there are no runs"}};
+  OrRefused<TwoWayLayout> layout = Refused{"it takes two samples and two motions at least, crossed"};
+  std::vector<StudyInfluence> tornado;  // the largest first; of the capacity where it is searched, else of the demand
+};
+StudyLimitFit fit_limit(const StudyCase& study, const std::vector<StudyCurve>& curves, std::size_t limit);
+
+/// Percentiles of a floor spectrum over all runs of a level that say something.
+struct StudyFloor {
+  std::string floor;
+  double damping = 0, level = 0;  // intensity, of clouds the factor
+  long runs = 0;
+  std::vector<double> frequencies, p16, p50, p84;  // Hz, m/s2
+};
+std::vector<StudyFloor> floor_percentiles(const StudyCase& study, const std::vector<StudyCurve>& curves);
+
+/// The value below which a share of sorted values lies, straight between them.
+double percentile(const std::vector<double>& sorted, double share);
+
+}  // namespace uplift

@@ -1,0 +1,194 @@
+#include "uplift/study/study_motions.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <filesystem>
+#include <set>
+
+#include "uplift/base/file.h"
+#include "uplift/base/text.h"
+#include "uplift/base/units.h"
+#include "uplift/case/build/records.h"
+#include "uplift/study/case_edit.h"
+
+namespace uplift {
+namespace {
+
+/// A table that is not shared, to be changed.
+RawTable copy_of(const Raw& raw) {
+  const auto* table = std::get_if<std::shared_ptr<RawTable>>(&raw.data);
+  return table != nullptr ? **table : RawTable{};
+}
+
+Raw as_raw(RawTable table, const Raw& like) {
+  return {std::make_shared<RawTable>(std::move(table)), like.where, like.path};
+}
+
+void set(RawTable& table, const std::string& key, Raw value) {
+  const auto found = std::ranges::find(table.entries, key, [](const auto& entry) -> const std::string& { return entry.first; });
+  if (found != table.entries.end())
+    found->second = std::move(value);
+  else
+    table.entries.emplace_back(key, std::move(value));
+}
+
+RawList list_at(const RawTable& table, std::string_view key) {
+  const Raw* found = table.find(key);
+  const RawList* list = found != nullptr ? std::get_if<RawList>(&found->data) : nullptr;
+  return list != nullptr ? *list : RawList{};
+}
+
+Raw texts_raw(const std::vector<std::string>& texts, const Raw& like) {
+  RawList list;
+  for (const std::string& text : texts) list.push_back({text, like.where, like.path});
+  return {std::move(list), like.where, like.path};
+}
+
+// ---- [[motions]] ----
+
+/// One [[motions]] of a plan, to be written out as records and motions of the case.
+class ManyMotions {
+ public:
+  ManyMotions(const Values& values, const Raw& raw) : values_(values), raw_(raw), replace_(values.texts("replace")) {
+    if (replace_.empty()) fail(values, "replace", "one name at least", "none");
+    const bool files = first_of_two(values, "files", "count");
+    const std::vector<Values>& generate = values.tables("generate");
+    if (!files && generate.size() != replace_.size())
+      fail(values, "generate", fmt::format("as many as names in replace ({})", replace_.size()), fmt::format("{}", generate.size()));
+    if (files && !generate.empty()) fail(values, "generate", "either files or generate", "both");
+    const std::size_t given = values.texts("files").size();
+    if (files && (given == 0 || given % replace_.size() != 0))
+      fail(values, "files", fmt::format("a file for each of the {} names in replace, motion by motion", replace_.size()),
+           fmt::format("{} files", given));
+    count_ = files ? given / replace_.size() : static_cast<std::size_t>(values.integer("count"));
+  }
+
+  void add(RawList& records, RawList& motions) const {
+    for (std::size_t i = 0; i < count_; ++i) {
+      const std::string name = fmt::format("{}-{}", values_.text("name"), i + 1);
+      std::vector<std::string> by;
+      for (std::size_t c = 0; c < replace_.size(); ++c) {
+        by.push_back(replace_.size() == 1 ? name : fmt::format("{}-{}", name, c + 1));
+        records.push_back(record(by.back(), i, c));
+      }
+      RawTable motion;
+      set(motion, "name", text(name));
+      if (!values_.texts("files").empty())
+        set(motion, "label", text(std::filesystem::path(values_.texts("files")[i * replace_.size()]).stem().string()));
+      set(motion, "replace", texts_raw(replace_, raw_));
+      set(motion, "by", texts_raw(by, raw_));
+      motions.push_back(as_raw(std::move(motion), raw_));
+    }
+  }
+
+ private:
+  Raw text(const std::string& value) const { return {value, raw_.where, raw_.path}; }
+  Raw record(const std::string& name, std::size_t motion, std::size_t component) const {
+    RawTable made = copy_of(raw_);
+    std::erase_if(made.entries, [](const auto& entry) {
+      return entry.first == "name" || entry.first == "replace" || entry.first == "files" || entry.first == "count" ||
+             entry.first == "generate";
+    });
+    set(made, "name", text(name));
+    if (!values_.texts("files").empty()) {
+      set(made, "file", text(values_.texts("files")[motion * replace_.size() + component]));
+    } else {
+      RawTable generate = copy_of(list_at(copy_of(raw_), "generate")[component]);
+      const std::int64_t seed = values_.tables("generate")[component].integer("seed");
+      set(generate, "seed", {seed + static_cast<std::int64_t>(motion), raw_.where, raw_.path + ".generate.seed"});
+      set(made, "generate", as_raw(std::move(generate), raw_));
+    }
+    return as_raw(std::move(made), raw_);
+  }
+
+  const Values& values_;
+  const Raw& raw_;
+  const std::vector<std::string>& replace_;
+  std::size_t count_ = 0;
+};
+
+// ---- one motion ----
+
+std::string absolute_beside(const Values& table, std::string_view key) {
+  return std::filesystem::absolute(path_beside(table.where(key), table.text(key))).lexically_normal().string();
+}
+
+/// Every path of a file in the case, absolute.
+std::vector<CaseEdit> absolute_files(const Values& root) {
+  std::vector<CaseEdit> edits;
+  const auto add = [&](const Values& table, const char* key) {
+    if (table.items().contains(key) && table.has(key)) edits.push_back({table.path(key), absolute_beside(table, key)});
+  };
+  const std::vector<Values>& records = root.tables("record");
+  for (std::size_t i = 0; i < records.size(); ++i)  // those of the plan have a path there
+    if (records[i].has("file")) edits.push_back({fmt::format("record[{}].file", i), absolute_beside(records[i], "file")});
+  for (const Values& function : root.tables("function")) add(function.part("shape"), "file");
+  if (root.has("mesh")) add(root.table("mesh"), "file");
+  return edits;
+}
+
+/// The amplitude of what drives by a function, times the factor.
+CaseEdit louder(const DrivenBy& place, double factor) {
+  const Values& table = *place.table;
+  for (const char* key : {"amplitude", "velocity"}) {
+    const auto item = table.items().find(key);
+    if (item == table.items().end()) continue;
+    if (const auto* number = std::get_if<double>(&item->second.data)) return {table.path(key), *number * factor};
+    if (std::holds_alternative<std::string>(item->second.data))
+      return {table.path(key), parse_quantity(table.text(key), place.rotates ? "rad" : "m").value * factor};
+  }
+  return {table.path("amplitude"), factor};
+}
+
+}  // namespace
+
+Raw with_motions(const Raw& raw, const Values& plan, const Raw& plan_raw) {
+  RawTable root = copy_of(raw);
+  const RawTable given = copy_of(plan_raw);
+  RawList records = list_at(root, "record"), motions = list_at(given, "motion");
+  for (const Raw& record : list_at(given, "record")) records.push_back(record);
+  const RawList many = list_at(given, "motions");
+  for (std::size_t k = 0; k < many.size(); ++k) ManyMotions(plan.tables("motions")[k], many[k]).add(records, motions);
+  if (!records.empty()) set(root, "record", {std::move(records), raw.where, "record"});
+  if (!motions.empty()) {
+    const Raw* old = root.find("compare");
+    RawTable compare = old != nullptr ? copy_of(*old) : RawTable{};
+    set(compare, "motion", {std::move(motions), plan_raw.where, "motion"});
+    set(root, "compare", as_raw(std::move(compare), old != nullptr ? *old : plan_raw));
+  }
+  return as_raw(std::move(root), raw);
+}
+
+Raw with_one_motion(const Raw& raw, const Values& root, const Values* motion, double factor) {
+  std::vector<CaseEdit> edits = absolute_files(root);
+  std::set<std::string> drives;
+  for (const DrivenBy& place : motions_wanted(root)) {
+    const std::string& name = name_taken(motion, place.table->text("function"));
+    if (motion != nullptr) edits.push_back({place.table->path("function"), name});
+    const bool is_record = std::ranges::any_of(root.tables("record"), [&](const Values& record) { return record.text("name") == name; });
+    if (is_record)
+      drives.insert(name);
+    else if (factor != 1 && !place.rotates)
+      edits.push_back(louder(place, factor));
+  }
+  RawTable made = copy_of(edited(raw, edits));
+  std::erase_if(made.entries, [](const auto& entry) { return entry.first == "compare" || entry.first == "variant"; });
+  RawList records = list_at(made, "record");
+  for (std::size_t i = 0; i < records.size(); ++i) {
+    if (factor == 1 || !drives.contains(root.tables("record")[i].text("name"))) continue;
+    const auto put = [&](auto value) { return Raw{std::move(value), raw.where, "record"}; };
+    RawTable scale, step, record = copy_of(records[i]);
+    set(scale, "type", put(std::string("scale")));
+    set(scale, "factor", put(factor));
+    set(step, "do", put(std::make_shared<RawTable>(std::move(scale))));
+    RawList process = list_at(record, "process");
+    process.push_back(put(std::make_shared<RawTable>(std::move(step))));
+    set(record, "process", put(std::move(process)));
+    records[i] = as_raw(std::move(record), records[i]);
+  }
+  if (!records.empty()) set(made, "record", {std::move(records), raw.where, "record"});
+  return as_raw(std::move(made), raw);
+}
+
+}  // namespace uplift

@@ -1,0 +1,15 @@
+#pragma once
+#include "uplift/base/declare.h"
+
+// Motions of a study as tables of its case.
+namespace uplift {
+
+/// The case with the records and motions of a plan; those of its own [[compare.motion]] are left out where the plan has any. `plan`: of
+/// study_section(), and as read.
+Raw with_motions(const Raw& raw, const Values& plan, const Raw& plan_raw);
+
+/// The case under one motion alone, times a factor, as `uplift run` takes it: names are replaced, records get the process "scale", paths
+/// of files are absolute. `root`: the checked case; `motion`: of [[compare.motion]], or null for the case's own.
+Raw with_one_motion(const Raw& raw, const Values& root, const Values* motion, double factor);
+
+}  // namespace uplift

@@ -1,0 +1,250 @@
+"""Studies: one case under many motions and intensities, which survive the end of every process that takes part."""
+
+import csv
+import math
+import random
+import shutil
+import signal
+import sqlite3
+import time
+
+from support import *
+
+# The mass of BASE on the moving ground of a record.
+CASE = BASE[: BASE.index("[[function]]")] + """\
+[[record]]
+name = "quake"
+file = "quake.csv"
+[[ground_acceleration]]
+direction = [1, 0]
+function = "quake"
+[[stage]]
+type = "static"
+[[stage]]
+type = "dynamic"
+duration = 1
+step = 1e-3
+"""
+
+IDA = """\
+case = "../case.toml"
+[intensity]
+measure = "pga"
+unit = "g_n"
+[method]
+type = "ida"
+start = 0.1
+largest = 20
+[[motions]]
+name = "m"
+replace = ["quake"]
+files = ["../m1.csv", "../m2.csv", "../m3.csv", "../m4.csv"]
+unit = "m/s2"
+[[limit]]
+name = "uplift"
+quantity = "max_opening"
+limit = "1 mm"
+"""
+
+STRIPES = IDA.replace('type = "ida"\nstart = 0.1\nlargest = 20', 'type = "stripes"\nlevels = [0.2, 0.5, 1.0]')
+
+
+def motion(frequency, decay):
+    """A burst whose largest acceleration is about 1 m/s2, as a table of times and accelerations."""
+    rows = [(i * 0.005, math.exp(-decay * i * 0.005) * math.sin(2 * math.pi * frequency * i * 0.005)) for i in range(161)]
+    return "t [s],a [m/s2]\n" + "".join(f"{t:.3f},{a:.9f}\n" for t, a in rows)
+
+
+class Study(CliTest):
+    def setUp(self):
+        super().setUp()
+        self.write(CASE)
+        self.write(motion(2, 3), "quake.csv")
+        for i, (frequency, decay) in enumerate([(1.5, 2), (3, 3), (6, 3), (10, 4)], 1):
+            self.write(motion(frequency, decay), f"m{i}.csv")
+
+    def study(self, plan=IDA, name="s.study"):
+        self.write(plan, f"{name}/plan.toml")
+        return name
+
+    def evaluated(self, name):
+        """What fit and export write, as bytes."""
+        self.uplift("study", "fit", name, "-q")
+        self.uplift("study", "export", name, "-q")
+        return {file: (self.folder / name / file).read_bytes().replace(name.encode(), b"NAME") for file in ("fits.csv", "runs.csv", "curves.csv")} | {
+            "study.json": (self.folder / name / "study.json").read_text().replace(f'"name": "{name.removesuffix(".study")}"', "")}
+
+    def runs(self, name):
+        with open(self.folder / name / "runs.csv", newline="") as file:
+            return list(csv.DictReader(file))
+
+    def test_a_study_from_end_to_end(self):
+        name = self.study()
+        said = self.uplift("study", "check", name)
+        self.assertIn("motions          4", said.stdout)
+        self.uplift("study", "run", name, "-q")
+        self.assertIn("complete", self.uplift("study", "status", name).stdout)
+        self.evaluated(name)
+        study = json.loads((self.folder / name / "study.json").read_text())
+        self.assert_valid(study, "study")
+        (limit,) = study["limits"]
+        self.assertTrue(study["complete"] and limit["fit"]["fitted"])
+        # every capacity lies between a survival and an exceedance 2 % apart, and the fit has the moments of their logarithms
+        logs = []
+        for curve, capacity in zip(study["curves"], limit["capacities"]):
+            exceeded = [run["intensity"] for run in curve["runs"] if run["demands"][0] > 1e-3]
+            survived = [run["intensity"] for run in curve["runs"] if run["demands"][0] <= 1e-3 and run["intensity"] < min(exceeded)]
+            self.assertLess(min(exceeded) / max(survived), 1.021)
+            self.assertTrue(max(survived) <= capacity["capacity"]["intensity"] <= min(exceeded))
+            logs.append(math.log(capacity["capacity"]["intensity"]))
+            self.assertLessEqual(len(curve["runs"]), 12)
+        mean = sum(logs) / 4
+        self.assertAlmostEqual(limit["fit"]["theta"], math.exp(mean), delta=1e-9)
+        self.assertAlmostEqual(limit["fit"]["beta"], math.sqrt(sum((each - mean) ** 2 for each in logs) / 3), delta=1e-9)
+        base = sqlite3.connect(self.folder / name / "study.db")
+        self.assertEqual(base.execute("SELECT count(*) FROM run").fetchone()[0], len(self.runs(name)))
+        self.assertEqual(base.execute("SELECT count(DISTINCT id) FROM run").fetchone()[0], len(self.runs(name)))
+
+    def test_a_run_is_that_of_uplift_run_bit_for_bit(self):
+        name = self.study(STRIPES)
+        self.uplift("study", "run", name, "-q")
+        self.evaluated(name)
+        run = self.runs(name)[-1]
+        path = self.uplift("study", "export", name, "--run", run["id"][:12]).stdout.strip()
+        self.uplift("run", path, "-o", "alone", "-q", "--no-step-check")
+        numbers = self.summary("alone")["verdict"]["interfaces"][0]["numbers"]
+        self.assertEqual(numbers["max_opening"]["value"], float(run["uplift [m]"]))
+        self.assertEqual(run["factor [1]"] != "1", True)
+
+    def test_killed_processes_lose_nothing(self):
+        plan = IDA.replace("1 mm", "2 mm") + '[[limit]]\nname = "drift"\nquantity = "max_drift"\nlimit = 0.005\n'
+        self.write(CASE.replace("duration = 1\n", "duration = 20\n"))
+        self.uplift("study", "run", self.study(plan, "whole.study"), "-q", "-j", "1")
+        expected = self.evaluated("whole.study")
+        name, lines, draw = self.study(plan), set(), random.Random(7)
+        for attempt in range(12):
+            process = subprocess.Popen([program(), "study", "run", name, "-q"], cwd=self.folder, stdout=subprocess.PIPE, stderr=subprocess.PIPE)
+            time.sleep(draw.uniform(0.05, 0.4))
+            workers = subprocess.run(["pgrep", "-P", str(process.pid)], capture_output=True, text=True).stdout.split()
+            victim = process.pid if attempt % 2 or not workers else int(draw.choice(workers))
+            try:
+                os.kill(victim, signal.SIGKILL)
+            except ProcessLookupError:
+                pass
+            if victim != process.pid:
+                time.sleep(0.1)
+                process.send_signal(signal.SIGTERM)
+            process.communicate(timeout=60)
+            now = {line for part in (self.folder / name / "parts").glob("*.jsonl") for line in part.read_text().splitlines()}
+            self.assertTrue(lines <= now)
+            lines = now
+        for _ in range(50):  # workers of a killed coordinator may hold on for a moment
+            done = self.uplift("study", "run", name, "-q", expect=None)
+            if done.returncode == 0:
+                break
+            time.sleep(0.1)
+        self.assertEqual(done.returncode, 0, done.stderr)
+        self.assertEqual(self.evaluated(name), expected)
+
+    def test_shards_make_the_same_study(self):
+        self.uplift("study", "run", self.study(name="whole.study"), "-q")
+        name = self.study()
+        tasks = self.uplift("study", "tasks", name, "--count", "3").stdout.splitlines()
+        self.assertEqual(tasks, [f"uplift study work s.study --shard {k}/3" for k in (1, 2, 3)])
+        for task in [*reversed(tasks), tasks[0]]:
+            self.uplift(*task.split()[1:], "-q")
+        self.assertEqual(self.evaluated(name), self.evaluated("whole.study"))
+        self.assertIn("K/N", self.uplift("study", "work", name, "--shard", "4/3", expect=2).stderr)
+
+    def test_damaged_parts(self):
+        name = self.study(STRIPES)
+        self.uplift("study", "run", name, "-q")
+        expected = self.evaluated(name)
+        (part,) = (self.folder / name / "parts").glob("*.jsonl")
+        content = part.read_bytes()
+        lines = content.splitlines(keepends=True)
+        changed = bytearray(lines[2])
+        changed[len(changed) // 2] ^= 1
+        part.write_bytes(b"".join([lines[0], lines[0], bytes(changed), *lines[3:]])[:-40])  # repeated, damaged, torn
+        said = self.uplift("study", "status", name)
+        self.assertIn("1 lines of the parts are damaged", said.stderr)
+        self.assertIn("9/12 runs", said.stdout)
+        self.uplift("study", "run", name, "-q")
+        self.assertEqual(self.evaluated(name), expected)
+        (self.folder / name / "study.db").write_text("no data base")
+        self.uplift("study", "index", name)
+        self.assertEqual(sqlite3.connect(self.folder / name / "study.db").execute("SELECT count(*) FROM run").fetchone()[0], 12)
+
+    def test_a_changed_plan_runs_what_is_new(self):
+        name = self.study(STRIPES)
+        self.uplift("study", "run", name, "-q")
+        self.study(STRIPES.replace("1.0]", "1.0, 2.0]").replace("1 mm", "3 mm"))
+        self.assertIn("12/16 runs", self.uplift("study", "status", name).stdout)
+        self.uplift("study", "run", name, "-q")
+        lines = sum(len(part.read_text().splitlines()) for part in (self.folder / name / "parts").glob("*.jsonl"))
+        self.assertEqual(lines, 16)
+
+    def test_what_cannot_be_written(self):
+        name = self.study(STRIPES)
+        held = subprocess.Popen(["flock", "--no-fork", name, "sleep", "5"], cwd=self.folder)
+        time.sleep(0.3)
+        self.assertIn("no other process computes", self.uplift("study", "run", name, expect=2).stderr)
+        held.kill()
+        held.wait()
+        (self.folder / name / "parts").mkdir()
+        limited = f"ulimit -f 1; exec '{program()}' study run {name} -q"
+        done = subprocess.run(["bash", "-c", limited], cwd=self.folder, capture_output=True, text=True)
+        self.assertNotEqual(done.returncode, 0)
+        self.assertNotIn("internal", done.stderr)
+        self.uplift("study", "run", name, "-q")
+        self.assertIn("12/12 runs", self.uplift("study", "status", name).stdout)
+
+    def test_runs_without_an_outcome(self):
+        name = self.study(STRIPES + "[run]\ntimeout = 1e-9\n")
+        self.uplift("study", "run", name, "-q")
+        self.evaluated(name)
+        study = json.loads((self.folder / name / "study.json").read_text())
+        self.assertEqual(study["outcomes"]["timeout"], 12)
+        # what was beyond the limit before a run was ended has exceeded it; of the others nothing is known
+        states = [(run["states"][0], run["demands"][0] > 1e-3) for curve in study["curves"] for run in curve["runs"]]
+        self.assertEqual(set(states), {("exceeded", True), ("unknown", False)})
+        self.assertEqual(study["limits"][0]["unknown"], states.count(("unknown", False)))
+        self.assertTrue((self.folder / name / study["failures"][0]["case"]).is_file())
+        self.study(STRIPES)
+        self.uplift("study", "run", name, "-q", "--retry")
+        self.assertEqual(json.loads(self.uplift("study", "fit", name, "--json").stdout)["outcomes"]["completed"], 12)
+
+    def test_samples(self):
+        variable = '[[variable]]\nname = "K"\npaths = ["interface[0].law.K_n"]\ndistribution = { type = "lognormal", median = 1, beta = 0.4 }\n'
+        name = self.study(IDA.replace("seed", "").replace('case = "../case.toml"', 'case = "../case.toml"\nsamples = 6') + variable)
+        self.uplift("study", "run", name, "-q")
+        study = json.loads(self.uplift("study", "fit", name, "--json").stdout)
+        (values,) = [each["values"] for each in study["variables"]]
+        # one value in every sixth of the probability
+        strata = sorted(int(6 * 0.5 * math.erfc(-math.log(value) / 0.4 / math.sqrt(2))) for value in values)
+        self.assertEqual(strata, [0, 1, 2, 3, 4, 5])
+        self.assertEqual(len(study["curves"]), 24)
+        self.assertTrue(study["limits"][0]["dispersion"]["known"])
+        self.assertEqual(study["limits"][0]["tornado"][0]["variable"], "K")
+
+    def test_plans_are_checked(self):
+        for old, new, message in [
+            ('type = "ida"', 'type = "idas"', 'did you mean "ida"'),
+            ("start = 0.1", "start = 30", "expected an intensity above start (30), found 20"),
+            ('unit = "g_n"', 'unit = "m"', "expected a unit of an acceleration [m/s2]"),
+            ('measure = "pga"', 'measure = "sa"', "expected period"),
+            ("max_opening", "max_openin", 'did you mean "max_opening"'),
+            ('limit = "1 mm"', 'limit = "1 kN"', "expected a length [m]"),
+            ('replace = ["quake"]', 'replace = ["quak"]', 'did you mean "quake"'),
+            ("m2.csv", "m1.csv", "expected a motion that differs from all others"),
+            ("m2.csv", "m9.csv", "expected a file"),
+            ('case = "../case.toml"', 'case = "../cas.toml"', "expected a case file"),
+            ('case = "../case.toml"', 'case = "../case.toml"\nsamples = 3', "expected [[variable]] tables"),
+        ]:
+            with self.subTest(new=new):
+                name = self.study(IDA.replace(old, new))
+                self.assertIn(message, self.uplift("study", "check", name, expect=2).stderr)
+
+
+if __name__ == "__main__":
+    main()
