@@ -10,6 +10,7 @@ import { install_palette, run_names } from "./palette";
 import { run_bar } from "./runbar";
 import { Runs } from "./runs";
 import { SpaceCard } from "./space/card";
+import { tornado_cards } from "./study_page";
 import { RestMaps } from "./space/rest_maps";
 import { TableCard } from "./table";
 import { ThemeSwitch } from "./theme";
@@ -145,6 +146,7 @@ function show_report(host: HTMLElement, report: Report): void {
   const rest_maps = space && last && last.time.length > 0 ? new RestMaps(space, last, themes) : null;
   const drawn_late: Drawn[] = [...(rest_maps ? [rest_maps] : []), ...(space_card ? [space_card] : []), ...charts];
 
+  const tornados = report.verdict.study ? tornado_cards(report.verdict.study) : [];
   const figures = chart_parts(report, charts);
   const parts: Part[] = [
     { id: "verdict", title: "Verdict", element: verdict_card(report.verdict, report.charts) },
@@ -153,6 +155,7 @@ function show_report(host: HTMLElement, report: Report): void {
     ...(model ? [part("model", animation ? "Model and motion" : "Model", h("div", { class: "grid" }, model_card(model), animation?.element ?? null))] : []),
     ...(space_card ? [part("space-model", space_card.frames > 0 ? "Model and motion" : "Model", space_card.element)] : []),
     ...figures,
+    ...(tornados.length > 0 ? [part("tornado", "Influence of the uncertain numbers", h("div", { class: "grid" }, ...tornados))] : []),
     ...(choices.length > 0 ? [part("choices", "Choices", choices_card(choices))] : []),
     part("case", "How to reproduce the results", repeat_card(report)),
   ];

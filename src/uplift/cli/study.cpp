@@ -1,10 +1,12 @@
 #include "uplift/cli/study.h"
 
+#include <fmt/chrono.h>
 #include <fmt/format.h>
 #include <sched.h>
 
 #include <algorithm>
 #include <cstdio>
+#include <ctime>
 #include <filesystem>
 
 #include "uplift/base/error.h"
@@ -15,6 +17,8 @@
 #include "uplift/ensemble/coordinator.h"
 #include "uplift/ensemble/index.h"
 #include "uplift/io/files.h"
+#include "uplift/io/report/report.h"
+#include "uplift/io/report/study.h"
 #include "uplift/io/results/study_json.h"
 #include "uplift/io/text/json_writer.h"
 
@@ -135,13 +139,67 @@ Shard shard_of(const std::string& text) {
   return shard;
 }
 
+StudyDocument document_of(const Study& study, const std::vector<StudyCurve>& curves) {
+  StudyDocument document = study_document(study.of, curves);
+  document.name = study.name;
+  document.case_file = study.case_file;
+  document.case_hash = study.case_hash;
+  document.plan_hash = study.plan_hash;
+  document.inputs = study.inputs;
+  return document;
+}
+
+/// Writes what the runs say: study.json and fits.csv.
+std::string write_fits(const Study& study, const StudyDocument& document) {
+  std::string text = study_json(document);
+  write_in(study, "study.json", text);
+  write_in(study, "fits.csv", fits_csv(document));
+  return text;
+}
+
+/// Writes report.html; `text`: study.json.
+void write_report(const Options& options, const Study& study, const StudyDocument& document, const std::string& text) {
+  Provenance from;
+  from.title = document.case_title;
+  from.subtitle = "study \"" + document.name + "\"";
+  from.command = options.command;
+  from.version = UPLIFT_VERSION;
+  from.created = fmt::format("{:%Y-%m-%dT%H:%M:%SZ}", fmt::gmtime(std::time(nullptr)));
+  from.case_file = study.folder + "/plan.toml";
+  from.case_hash = study.plan_hash;
+  from.resolved = read_file(from.case_file);
+  const std::string page = report_page(study_report_json(text, from));
+  if (!page.empty()) {
+    write_in(study, "report.html", page);
+    if (!options.quiet && !options.json) say(fmt::format("results: {}/report.html", study.folder));
+  } else if (!options.quiet) {
+    complain("note: this program was built without the report's page (web/dist/report.html): no report.html is written");
+  }
+}
+
+void print_sentences(const StudyDocument& document) {
+  for (std::size_t k = 0; k < document.limits.size(); ++k) say(study_sentence(document, k));
+}
+
+/// What stands in study.json, and on the page.
+int report(const Options& options) {
+  const Study study = open_study(options.file);
+  const StudyStore store(study.folder);
+  tell_damage(store);
+  const StudyDocument document = document_of(study, curves_with_results(study, store));
+  const std::string text = write_fits(study, document);
+  if (options.json) print_text(text);
+  write_report(options, study, document, text);
+  return Exit::done;
+}
+
 int finish(const StudyStatus& status, const Options& options, const Study& study) {
   if (!options.quiet) {
     say(status_text(status));
     if (interrupt_asked())
       complain(fmt::format("{}: every result is kept; the same command goes on from there", interrupt_text()));
-    else if (status.complete == status.curves)
-      say(fmt::format("uplift study fit {} evaluates them", study.folder));
+    else if (status.complete < status.curves)
+      say(fmt::format("uplift study report {} evaluates what is there", study.folder));
   }
   return interrupt_asked() ? interrupt_exit_code() : Exit::done;
 }
@@ -170,8 +228,16 @@ int run_or_work(const Options& options, const StudyOptions& given, const std::op
   };
   StudyStatus status;
   writing([&] { status = run_study(study, store, control); });
-  if (!shard) writing([&] { write_index(study, store, curves_with_results(study, store)); });
-  return finish(status, options, study);
+  if (shard) return finish(status, options, study);
+  const std::vector<StudyCurve> curves = curves_with_results(study, store);
+  writing([&] { write_index(study, store, curves); });
+  const int code = finish(status, options, study);
+  if (status.complete < status.curves) return code;
+  const StudyDocument document = document_of(study, curves);
+  const std::string text = write_fits(study, document);
+  if (!options.quiet && !options.json) print_sentences(document);
+  write_report(options, study, document, text);
+  return code;
 }
 
 int status(const Options& options) {
@@ -198,29 +264,17 @@ int status(const Options& options) {
   return Exit::done;
 }
 
-StudyDocument document_of(const Study& study, const std::vector<StudyCurve>& curves) {
-  StudyDocument document = study_document(study.of, curves);
-  document.name = study.name;
-  document.case_file = study.case_file;
-  document.case_hash = study.case_hash;
-  document.plan_hash = study.plan_hash;
-  document.inputs = study.inputs;
-  return document;
-}
-
 int fit(const Options& options) {
   const Study study = open_study(options.file);
   const StudyStore store(study.folder);
   tell_damage(store);
   const std::vector<StudyCurve> curves = curves_with_results(study, store);
   const StudyDocument document = document_of(study, curves);
-  const std::string text = study_json(document);
-  write_in(study, "study.json", text);
-  write_in(study, "fits.csv", fits_csv(document));
+  const std::string text = write_fits(study, document);
   if (options.json) {
     print_text(text);
   } else if (!options.quiet) {
-    for (std::size_t k = 0; k < document.limits.size(); ++k) say(study_sentence(document, k));
+    print_sentences(document);
     const StudyStatus status = status_of(curves, {});
     if (status.complete < status.curves)
       complain(fmt::format("warning: {} of {} curves are not complete", status.curves - status.complete, status.curves));
@@ -280,10 +334,11 @@ int study(const Options& options, const StudyOptions& given) {
   if (verb == "work") return run_or_work(options, given, shard_of(given.shard));
   if (verb == "status") return status(options);
   if (verb == "fit") return fit(options);
+  if (verb == "report") return report(options);
   if (verb == "export") return export_tables(options, given.run);
   if (verb == "tasks") return tasks(options, given.count);
   if (verb == "index") return index(options);
-  const std::vector<std::string> verbs{"new", "check", "run", "status", "fit", "export", "tasks", "work", "index"};
+  const std::vector<std::string> verbs{"new", "check", "run", "status", "fit", "report", "export", "tasks", "work", "index"};
   throw InputError({"uplift study", 0}, "", listed(verbs), in_quotes(verb), nearest_name(verb, verbs));
 }
 
