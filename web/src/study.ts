@@ -187,8 +187,11 @@ export function run_count(study: Study): number {
 
 export const searches = (study: Study): boolean => study.method.type === "ida" || study.method.type === "truncated_ida";
 
-/** The exact capacities, and that number of all whose order is known: those that lie beyond the range count as the largest or smallest. */
+/** What a curve is fitted to: of stripes the share of exceedances among the runs of known outcome; of searches the exact capacities in
+    ascending order, the i-th of n at (i - 1/2)/n, where n counts those beyond the range as well. */
 export function empirical(limit: Limit): { intensity: number[]; share: number[] } {
+  const stripes = limit.stripes.filter((stripe) => stripe.runs > stripe.unknown);
+  if (stripes.length > 0) return { intensity: stripes.map((each) => each.intensity), share: stripes.map((each) => each.exceeded / (each.runs - each.unknown)) };
   const known = limit.capacities.filter(({ capacity }) => capacity.known !== "nothing" && capacity.intensity !== null);
   const below = known.filter(({ capacity }) => capacity.known === "at_most").length;
   const exact = known.flatMap(({ capacity }) => (capacity.known === "exact" ? [capacity.intensity as number] : [])).sort((a, b) => a - b);

@@ -36,13 +36,10 @@ function end_curve(label: string, fit: Fit): Series[] {
   return [{ label, x: z.map((each) => theta * Math.exp(beta * each)), y: z.map(normal_cdf), dash: true }];
 }
 
-/** What was counted: shares of stripes, or the capacities in their order. */
 function data_of(limit: Limit): Series[] {
-  const stripes = limit.stripes.filter((stripe) => stripe.runs > stripe.unknown);
-  if (stripes.length > 0)
-    return [{ label: "share of the runs", x: stripes.map((each) => each.intensity), y: stripes.map((each) => each.exceeded / (each.runs - each.unknown)), style: "points", group: "data" }];
   const { intensity, share } = empirical(limit);
-  return intensity.length > 0 ? [{ label: `${intensity.length} capacities`, x: intensity, y: share, style: "points", group: "data" }] : [];
+  const label = limit.stripes.length > 0 ? "share of the runs" : intensity.length === 1 ? "1 capacity" : `${intensity.length} capacities`;
+  return intensity.length > 0 ? [{ label, x: intensity, y: share, style: "points", group: "data" }] : [];
 }
 
 function fragility_chart(study: Study, limit: Limit, k: number): Chart[] {
@@ -78,11 +75,11 @@ function together_chart(study: Study): Chart[] {
 
 type Point = [number, number];
 
-/** Demand and intensity of a curve, ascending in intensity. */
+/** Demand and intensity of the runs of a curve that say something, ascending in intensity. */
 function points_of(curve: StudyCurve, k: number): Point[] {
   return curve.runs.flatMap((run): Point[] => {
     const demand = run.demands[k];
-    return demand === null || demand === undefined ? [] : [[Math.abs(demand), run.intensity]];
+    return demand === null || demand === undefined || run.states[k] === "unknown" ? [] : [[Math.abs(demand), run.intensity]];
   });
 }
 
@@ -117,7 +114,7 @@ function fractiles_of(curves: Point[][], most: number): Series[] {
     const intensities = sorted.map((list) => percentile(list, share));
     const end = intensities.findIndex((value) => !Number.isFinite(value));
     const count = end < 0 ? demands.length : end;
-    return { label, x: [0, ...demands.slice(0, count)], y: [0, ...intensities.slice(0, count)], style: "line" as const, ...(share === 0.5 ? {} : { dash: true }), group: label };
+    return { label, x: [0, ...demands.slice(0, count)], y: [0, ...intensities.slice(0, count)], style: "line" as const, ...(share === 0.5 ? {} : { dash: true }), group: "percentiles" };
   });
 }
 
@@ -195,8 +192,8 @@ function floor_charts(study: Study): Chart[] {
 export function study_charts(study: Study): Chart[] {
   const demands = searches(study) ? ida_chart : points_chart;
   return [
-    ...study.limits.flatMap((limit, k) => fragility_chart(study, limit, k)),
     ...together_chart(study),
+    ...study.limits.flatMap((limit, k) => fragility_chart(study, limit, k)),
     ...study.limits.flatMap((limit, k) => demands(study, limit, k)),
     ...floor_charts(study),
   ];

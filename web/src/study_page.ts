@@ -1,9 +1,9 @@
 // What the page draws of a study beside its figures: the fragility curves of the first page, the outcomes, and the tornado of the variables.
 import { h, px, s } from "./dom";
 import { format_quantity, percent } from "./quantity";
-import { intensity_text, intensity_unit, rounded, run_count, searches, type Limit, type Study } from "./study";
+import { empirical, intensity_text, intensity_unit, rounded, run_count, searches, type Limit, type Study } from "./study";
 import { influence_text } from "./study_tables";
-import { counts_text, limit_text } from "./study_verdict";
+import { counts_text, limit_text, main_limit } from "./study_verdict";
 import { linear_ticks, tick_labels } from "./ticks";
 
 const WIDTH = 460;
@@ -16,6 +16,12 @@ const BOTTOM = 38;
 // So many limit states are drawn on the first page.
 const DRAWN = 4;
 
+/** What the curve was fitted to: shares of stripes, or the capacities in their order. */
+function shares(limit: Limit): [number, number][] {
+  const { intensity, share } = empirical(limit);
+  return intensity.map((im, i) => [im, share[i] as number]);
+}
+
 function curve_paths(limit: Limit, k: number, x: (v: number) => number, y: (v: number) => number): SVGElement[] {
   const { curve } = limit.fit;
   if (!curve) return [];
@@ -24,6 +30,7 @@ function curve_paths(limit: Limit, k: number, x: (v: number) => number, y: (v: n
   return [
     s("path", { class: "fragility-band", style: colour, d: `M${path(curve.upper, 1).join("L")}L${path(curve.lower, 0).reverse().join("L")}Z` }),
     s("path", { class: "fragility-line", style: colour, d: `M${path(curve.probability, 0).join("L")}` }),
+    ...shares(limit).map(([im, share]) => s("circle", { class: "fragility-point", style: colour, cx: px(x(im)), cy: px(y(share)), r: 2.4 })),
   ];
 }
 
@@ -48,7 +55,7 @@ function fragility_drawing(study: Study): HTMLElement | null {
     s("g", { "clip-path": "url(#fragility-clip)" }, ...limits.flatMap(({ limit, k }) => curve_paths(limit, k, x, y))));
   const keys = limits.map(({ limit, k }) =>
     h("span", {}, s("svg", { viewBox: "0 0 22 8", width: 22, height: 8, "aria-hidden": "true" }, s("path", { class: "fragility-line", style: `--c:var(--c${k})`, d: "M0 4H22" })), `${limit.name}: ${intensity_text(study, limit.fit.theta)}`));
-  return h("figure", { class: "share-chart" }, h("figcaption", {}, h("b", {}, "Probability of exceedance"), " \u00b7 fitted curves with their intervals"), drawing, h("div", { class: "spectrum-keys" }, ...keys));
+  return h("figure", { class: "share-chart" }, h("figcaption", {}, h("b", {}, "Probability of exceedance"), " \u00b7 fitted curves, their intervals, and the data"), drawing, h("div", { class: "spectrum-keys" }, ...keys));
 }
 
 const OUTCOME_NOTE: Record<string, string> = {
@@ -68,14 +75,14 @@ function outcome_bars(study: Study): HTMLElement {
   return h("div", { class: "outcomes" }, h("h3", {}, `Outcomes of ${all} runs`), ...bars);
 }
 
-/** One line for each limit after the first, which the headline is about. */
+/** One line for each limit that the headline is not about. */
 function other_limits(study: Study): HTMLElement | null {
-  if (study.limits.length < 2) return null;
-  const lines = study.limits.slice(1).map((limit) => {
+  const lines = study.limits.filter((limit) => limit !== main_limit(study)).map((limit) => {
     const { fit } = limit;
     const median = fit.fitted && fit.theta !== undefined && fit.beta !== undefined ? `median ${intensity_text(study, fit.theta)}, \u03b2 ${rounded(fit.beta)}` : `no fit: ${fit.reason}`;
     return h("li", {}, h("b", {}, limit.name), ` (${limit_text(limit)}): ${median}. ${counts_text(limit)}`);
   });
+  if (lines.length === 0) return null;
   return h("div", { class: "other-limits" }, h("h3", {}, "Other limit states"), h("ul", {}, ...lines));
 }
 
@@ -85,45 +92,43 @@ export function study_block(study: Study): HTMLElement {
 
 // ---- tornado ----
 
-const ROW = 34;
-const NAME = 150;
+const ROW = 42;
 const BAR = 15;
+const NAMES = 150;
+const VALUES = 70;
+const BARS = 260;
 
-/** Bars from the smallest to the largest values of each variable, about the median of the limit. */
+/** Two bars for each variable, its smallest values above its largest, from the median or the mean of all. */
 function tornado_card(study: Study, limit: Limit): HTMLElement | null {
   const all = limit.tornado.filter(({ low, high }) => low > 0 && high > 0);
   if (all.length === 0) return null;
   const found = searches(study);
   const text = (value: number): string => (found ? intensity_text(study, value) : format_quantity(value, limit.unit));
-  const values = all.flatMap(({ low, high }) => [low, high]);
   const centre = Math.exp(all.reduce((sum, { low, high }) => sum + Math.log(low * high) / 2, 0) / all.length);
-  const reach = 1.15 * Math.max(...values.map((v) => Math.abs(v - centre)), 0.02 * centre);
-  const [width, right] = [620, 16];
-  const x = (v: number): number => NAME + 70 + ((v - centre + reach) / (2 * reach)) * (width - NAME - right - 140);
-  const height = all.length * ROW + 34;
-  const rows = all.flatMap(({ variable, low, high }, i) => {
-    const top = 8 + i * ROW;
-    const [least, most] = [Math.min(low, high), Math.max(low, high)];
-    const label = (v: number, end: boolean): SVGElement =>
-      s("text", { x: px(x(v) + (end ? 6 : -6)), y: top + 16, "text-anchor": end ? "start" : "end", class: "tick" }, `${text(v)}`);
+  const reach = Math.max(...all.flatMap(({ low, high }) => [low, high]).map((v) => Math.abs(v - centre)), 0.02 * centre);
+  const middle = NAMES + VALUES + BARS / 2;
+  const x = (v: number): number => middle + ((v - centre) / reach) * (BARS / 2);
+  const [width, bottom] = [NAMES + 2 * VALUES + BARS, all.length * ROW + 4];
+  const bar = (kind: string, value: number, top: number): SVGElement[] => {
+    const right = value >= centre;
     return [
-      s("text", { x: NAME - 8, y: top + 16, "text-anchor": "end", class: "tornado-name" }, variable),
-      s("rect", { class: `tornado-low`, x: px(Math.min(x(low), x(centre))), y: top + 4, width: px(Math.abs(x(centre) - x(low))), height: BAR }),
-      s("rect", { class: `tornado-high`, x: px(Math.min(x(high), x(centre))), y: top + 4, width: px(Math.abs(x(high) - x(centre))), height: BAR }),
-      label(least, false), label(most, true),
+      s("rect", { class: `tornado-${kind}`, x: px(Math.min(x(value), middle)), y: top, width: px(Math.max(1, Math.abs(x(value) - middle))), height: BAR }),
+      s("text", { x: px(x(value) + (right ? 6 : -6)), y: top + 12, "text-anchor": right ? "start" : "end" }, text(value)),
     ];
+  };
+  const rows = all.flatMap(({ variable, low, high }, i) => {
+    const top = 6 + i * ROW;
+    return [s("text", { x: NAMES - 8, y: top + BAR + 4, "text-anchor": "end", class: "tornado-name" }, variable), ...bar("low", low, top), ...bar("high", high, top + BAR + 1)];
   });
-  const bottom = all.length * ROW + 6;
   const what = found ? "capacity" : limit.label;
-  return h("figure", { class: "card tornado is-wide" },
+  const changes = all.map(({ variable, low, high }) => `${variable} ${influence_text(low / centre)} and ${influence_text(high / centre)}`).join("; ");
+  return h("figure", { class: "card tornado" },
     h("header", {}, h("h3", {}, `${limit.name}: ${what}`)),
-    s("svg", { viewBox: `0 0 ${width} ${height}`, role: "img", "aria-label": `Influence of the variables on the ${what}` },
-      ...rows,
-      s("path", { class: "tornado-axis", d: `M${px(x(centre))} 4V${bottom}` }),
-      s("text", { x: px(x(centre)), y: bottom + 18, "text-anchor": "middle", class: "tick" }, text(centre))),
+    s("svg", { viewBox: `0 0 ${width} ${bottom + 22}`, role: "img", "aria-label": `Influence of the variables on the ${what}` },
+      ...rows, s("path", { class: "tornado-axis", d: `M${middle} 2V${bottom}` }), s("text", { x: middle, y: bottom + 16, "text-anchor": "middle" }, text(centre))),
     h("div", { class: "spectrum-keys" },
-      h("span", {}, h("i", { class: "dot tornado-low" }), "third of the samples with the smallest values"), h("span", {}, h("i", { class: "dot tornado-high" }), "with the largest values")),
-    h("figcaption", {}, `Geometric means of the ${what} over each third of the samples. ` + all.map(({ variable, low, high }) => `${variable}: ${influence_text(low / centre)} and ${influence_text(high / centre)}`).join("; ") + "."));
+      h("span", {}, h("i", { class: "dot tornado-low" }), "smallest third of the values"), h("span", {}, h("i", { class: "dot tornado-high" }), "largest third")),
+    h("figcaption", {}, `Geometric means of the ${what} over the samples with the smallest and with the largest third of the values of each variable, and of all: ${changes}.`));
 }
 
 /** One drawing for each limit; none without variables. */

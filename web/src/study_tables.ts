@@ -68,7 +68,7 @@ function capacity_text(limit: Limit, motion: string): string {
     `${capacity.known === "at_least" ? "> " : capacity.known === "at_most" ? "< " : ""}${rounded(capacity.intensity as number)}`;
   const sorted = [...mine].sort((a, b) => (a.capacity.intensity as number) - (b.capacity.intensity as number));
   const [least, most] = [sorted[0] as (typeof sorted)[number], sorted[sorted.length - 1] as (typeof sorted)[number]];
-  if (sorted.length === 1) return text(least);
+  if (text(least) === text(most)) return text(least);
   return `${rounded(percentile(sorted.map(({ capacity }) => capacity.intensity as number), 0.5))} (${text(least)} to ${text(most)})`;
 }
 
@@ -87,7 +87,7 @@ function motions_table(study: Study): Table[] {
       (risen ? " Resurrections: runs that survive above the capacity." : ""),
     columns: [
       column("name", "Motion", "text"), ...(study.intensity.measure === "factor" ? [] : [column("intensity", study.intensity.label, "number", unit)]),
-      ...(measured ? [column("pga", "PGA", "number", "m/s2"), column("pgv", "PGV", "number", "m/s"), column("arias", "Arias", "number", "m/s"), column("d", "D5\u201395", "number", "s")] : []),
+      ...(measured ? [...(study.intensity.measure === "pga" ? [] : [column("pga", "PGA", "number", "m/s2")]), column("pgv", "PGV", "number", "m/s"), column("arias", "Arias", "number", "m/s"), column("d", "D5\u201395", "number", "s")] : []),
       ...study.limits.map(({ name }, k) => (found ? column(`limit_${k}`, `${name}${unit ? ` (${unit})` : ""}`, "text") : column(`limit_${k}`, name, "text"))),
       ...(risen ? [column("resurrections", "Resurrections", "number", "", 6)] : []),
     ],

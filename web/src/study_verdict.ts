@@ -22,6 +22,11 @@ export function unknown_change(limit: Limit): number | null {
   return Math.max(Math.abs(survived / middle - 1), Math.abs(exceeded / middle - 1));
 }
 
+/** The limit of the headline: the first one of the plan that has a curve. */
+export function main_limit(study: Study): Limit | undefined {
+  return study.limits.find(({ fit }) => fit.fitted) ?? study.limits[0];
+}
+
 function headline(study: Study, limit: Limit): string {
   const { fit, unknown_survived: survived, unknown_exceeded: exceeded } = limit;
   if (fit.fitted && fit.theta !== undefined && fit.beta !== undefined)
@@ -62,7 +67,7 @@ function facts_of(study: Study, limit: Limit): Fact[] {
 }
 
 export function study_verdict(study: Study): Verdict {
-  const [first] = study.limits;
+  const first = main_limit(study);
   const missing = study.curves.filter(({ complete }) => !complete).length;
   const warning = missing > 0 ? `The study is not complete: ${missing} of ${plural(study.curves.length, "curve")} lack runs. The numbers will change.` : undefined;
   return {
