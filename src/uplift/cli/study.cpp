@@ -1,12 +1,10 @@
 #include "uplift/cli/study.h"
 
-#include <fmt/chrono.h>
 #include <fmt/format.h>
 #include <sched.h>
 
 #include <algorithm>
 #include <cstdio>
-#include <ctime>
 #include <filesystem>
 
 #include "uplift/base/error.h"
@@ -17,27 +15,11 @@
 #include "uplift/ensemble/coordinator.h"
 #include "uplift/ensemble/index.h"
 #include "uplift/io/files.h"
-#include "uplift/io/report/report.h"
-#include "uplift/io/report/study.h"
 #include "uplift/io/results/study_json.h"
 #include "uplift/io/text/json_writer.h"
 
 namespace uplift::cli {
 namespace {
-
-/// What the system refuses is an output error.
-template <class Write>
-void writing(const Write& write) {
-  try {
-    write();
-  } catch (const std::filesystem::filesystem_error& error) {
-    throw OutputError(error.what());
-  }
-}
-
-void write_in(const Study& study, const std::string& name, const std::string& text) {
-  writing([&] { write_file_atomically(study.folder + "/" + name, text); });
-}
 
 int cores() {
   cpu_set_t set;
@@ -67,6 +49,16 @@ std::string status_text(const StudyStatus& status) {
     text += fmt::format("; {:.3g} runs a second", static_cast<double>(status.computed) / status.seconds);
   if (const std::optional<double> left = status.left(); left && *left > 0) text += fmt::format(", {} left", time_text(*left));
   return text;
+}
+
+std::string status_json(const StudyStatus& status, const StudyStore& store, bool running) {
+  JsonWriter json(0, 2);
+  json.begin_object().member("runs", static_cast<long>(status.runs)).member("expected", static_cast<long>(status.expected));
+  json.member("curves", static_cast<long>(status.curves)).member("complete", static_cast<long>(status.complete)).member("running", running);
+  json.member("damaged_lines", static_cast<long>(store.damaged())).member("repeated_lines", static_cast<long>(store.repeated()));
+  json.key("outcomes").begin_object();
+  for (std::size_t k = 0; k < status.outcomes.size(); ++k) json.member(study_outcomes[k], static_cast<long>(status.outcomes[k]));
+  return json.end_object().end_object().take() + "\n";
 }
 
 class StudyLine {
@@ -120,11 +112,6 @@ class LiveStatus {
   Clock::time_point last_ = Clock::now();
 };
 
-void tell_damage(const StudyStore& store) {
-  if (store.damaged() > 0)
-    complain(fmt::format("warning: {} lines of the parts are damaged: their runs count as not computed", store.damaged()));
-}
-
 Shard shard_of(const std::string& text) {
   Shard shard;
   const auto refuse = [&] { throw InputError({"uplift study work", 0}, "--shard", "K/N with 1 <= K <= N, as 17/200", in_quotes(text)); };
@@ -139,62 +126,19 @@ Shard shard_of(const std::string& text) {
   return shard;
 }
 
-StudyDocument document_of(const Study& study, const std::vector<StudyCurve>& curves) {
-  StudyDocument document = study_document(study.of, curves);
-  document.name = study.name;
-  document.case_file = study.case_file;
-  document.case_hash = study.case_hash;
-  document.plan_hash = study.plan_hash;
-  document.inputs = study.inputs;
-  return document;
-}
-
-/// Writes what the runs say: study.json and fits.csv.
-std::string write_fits(const Study& study, const StudyDocument& document) {
-  std::string text = study_json(document);
-  write_in(study, "study.json", text);
-  write_in(study, "fits.csv", fits_csv(document));
-  return text;
-}
-
-/// Writes report.html; `text`: study.json.
-void write_report(const Options& options, const Study& study, const StudyDocument& document, const std::string& text) {
-  Provenance from;
-  from.title = document.case_title;
-  from.subtitle = "study \"" + document.name + "\"";
-  from.command = options.command;
-  from.version = UPLIFT_VERSION;
-  from.created = fmt::format("{:%Y-%m-%dT%H:%M:%SZ}", fmt::gmtime(std::time(nullptr)));
-  from.case_file = study.folder + "/plan.toml";
-  from.case_hash = study.plan_hash;
-  from.resolved = read_file(from.case_file);
-  const std::string page = report_page(study_report_json(text, from));
-  if (!page.empty()) {
-    write_in(study, "report.html", page);
-    if (!options.quiet && !options.json) say(fmt::format("results: {}/report.html", study.folder));
-  } else if (!options.quiet) {
-    complain("note: this program was built without the report's page (web/dist/report.html): no report.html is written");
-  }
-}
-
-void print_sentences(const StudyDocument& document) {
-  for (std::size_t k = 0; k < document.limits.size(); ++k) say(study_sentence(document, k));
-}
-
-/// What stands in study.json, and on the page.
-int report(const Options& options) {
+/// What stands in study.json, and on the page where it is asked for.
+int evaluate(const Options& options, bool with_page) {
   const Study study = open_study(options.file);
   const StudyStore store(study.folder);
   tell_damage(store);
-  const StudyDocument document = document_of(study, curves_with_results(study, store));
-  const std::string text = write_fits(study, document);
-  if (options.json) print_text(text);
-  write_report(options, study, document, text);
+  write_results(study, curves_with_results(study, store), options, with_page);
   return Exit::done;
 }
 
-int finish(const StudyStatus& status, const Options& options, const Study& study) {
-  if (!options.quiet) {
+int finish(const StudyStatus& status, const StudyStore& store, const Options& options, const Study& study) {
+  if (options.json) {
+    print_text(status_json(status, store, false));
+  } else if (!options.quiet) {
     say(status_text(status));
     if (interrupt_asked())
       complain(fmt::format("{}: every result is kept; the same command goes on from there", interrupt_text()));
@@ -219,7 +163,7 @@ int run_or_work(const Options& options, const StudyOptions& given, const std::op
   control.workers = wanted > 0 ? wanted : shard ? 1 : cores();
   if (shard) control.shard = *shard;
   control.stopped = interrupt_asked;
-  StudyLine line(options.quiet);
+  StudyLine line(options.quiet || options.json);
   std::optional<LiveStatus> live;
   if (!shard) live.emplace(study);
   control.follow = [&](const StudyStatus& status) {
@@ -228,15 +172,16 @@ int run_or_work(const Options& options, const StudyOptions& given, const std::op
   };
   StudyStatus status;
   writing([&] { status = run_study(study, store, control); });
-  if (shard) return finish(status, options, study);
+  const int code = finish(status, store, options, study);
+  if (shard) return code;
   const std::vector<StudyCurve> curves = curves_with_results(study, store);
   writing([&] { write_index(study, store, curves); });
-  const int code = finish(status, options, study);
-  if (status.complete < status.curves) return code;
-  const StudyDocument document = document_of(study, curves);
-  const std::string text = write_fits(study, document);
-  if (!options.quiet && !options.json) print_sentences(document);
-  write_report(options, study, document, text);
+  if (status.complete == status.curves) {
+    Options after = options;  // the status was printed already
+    after.quiet = options.quiet || options.json;
+    after.json = false;
+    write_results(study, curves, after, true);
+  }
   return code;
 }
 
@@ -246,40 +191,17 @@ int status(const Options& options) {
   const StudyStatus status = status_of(curves_with_results(study, store), {});
   const bool busy = FolderLock(study.folder).is_taken();
   if (options.json) {
-    JsonWriter json(0, 2);
-    json.begin_object().member("runs", static_cast<long>(status.runs)).member("expected", static_cast<long>(status.expected));
-    json.member("curves", static_cast<long>(status.curves)).member("complete", static_cast<long>(status.complete)).member("running", busy);
-    json.member("damaged_lines", static_cast<long>(store.damaged())).member("repeated_lines", static_cast<long>(store.repeated()));
-    json.key("outcomes").begin_object();
-    for (std::size_t k = 0; k < status.outcomes.size(); ++k) json.member(study_outcomes[k], static_cast<long>(status.outcomes[k]));
-    print_text(json.end_object().end_object().take() + "\n");
+    print_text(status_json(status, store, busy));
     return Exit::done;
   }
-  say(status_text(status));
+  std::error_code error;
+  const std::string live = LiveStatus::file_of(study);
+  say(busy && std::filesystem::exists(live, error) ? std::string(trim(read_file(live))) : status_text(status));
   say(busy                               ? "a process computes it"
       : status.complete == status.curves ? "complete"
                                          : fmt::format("uplift study run {} computes what is missing", study.folder));
   if (store.repeated() > 0) say(fmt::format("{} lines of the parts repeat a run, which counts once", store.repeated()));
   tell_damage(store);
-  return Exit::done;
-}
-
-int fit(const Options& options) {
-  const Study study = open_study(options.file);
-  const StudyStore store(study.folder);
-  tell_damage(store);
-  const std::vector<StudyCurve> curves = curves_with_results(study, store);
-  const StudyDocument document = document_of(study, curves);
-  const std::string text = write_fits(study, document);
-  if (options.json) {
-    print_text(text);
-  } else if (!options.quiet) {
-    print_sentences(document);
-    const StudyStatus status = status_of(curves, {});
-    if (status.complete < status.curves)
-      complain(fmt::format("warning: {} of {} curves are not complete", status.curves - status.complete, status.curves));
-    say(fmt::format("results: {0}/study.json, {0}/fits.csv", study.folder));
-  }
   return Exit::done;
 }
 
@@ -326,6 +248,15 @@ int index(const Options& options) {
 
 }  // namespace
 
+void tell_damage(const StudyStore& store) {
+  if (store.damaged() > 0)
+    complain(fmt::format("warning: {} lines of the parts are damaged: their runs count as not computed", store.damaged()));
+}
+
+void write_in(const Study& study, const std::string& name, const std::string& text) {
+  writing([&] { write_file_atomically(study.folder + "/" + name, text); });
+}
+
 int study(const Options& options, const StudyOptions& given) {
   const std::string& verb = given.verb;
   if (verb == "new") return new_study(options.file);
@@ -333,8 +264,8 @@ int study(const Options& options, const StudyOptions& given) {
   if (verb == "run") return run_or_work(options, given, std::nullopt);
   if (verb == "work") return run_or_work(options, given, shard_of(given.shard));
   if (verb == "status") return status(options);
-  if (verb == "fit") return fit(options);
-  if (verb == "report") return report(options);
+  if (verb == "fit") return evaluate(options, false);
+  if (verb == "report") return evaluate(options, true);
   if (verb == "export") return export_tables(options, given.run);
   if (verb == "tasks") return tasks(options, given.count);
   if (verb == "index") return index(options);

@@ -11,6 +11,7 @@
 #include "uplift/ensemble/compute.h"
 #include "uplift/ensemble/coordinator.h"
 #include "uplift/ensemble/part_file.h"
+#include "uplift/io/text/json_writer.h"
 
 namespace uplift::cli {
 namespace {
@@ -56,6 +57,43 @@ std::vector<std::string> warnings_of(const Study& study, const BuiltCase& built,
   return said;
 }
 
+/// What a study will take, from one run.
+struct Forecast {
+  StudyStatus status;
+  double seconds = 0, memory = 0, line = 0;  // s of a run; bytes of a worker; bytes of a run's results
+  double left() const { return seconds * static_cast<double>(status.expected - status.runs); }
+  double disk() const { return line * static_cast<double>(status.expected); }
+};
+
+std::string json_of(const Forecast& forecast, const std::vector<std::string>& warnings) {
+  JsonWriter json(0, 2);
+  json.begin_object().member("runs", static_cast<long>(forecast.status.expected)).member("done", static_cast<long>(forecast.status.runs));
+  json.member("seconds_of_a_run", forecast.seconds)
+      .member("seconds_on_one_core", forecast.left())
+      .member("bytes_of_memory", forecast.memory);
+  return json.member("bytes_on_disk", forecast.disk()).key("warnings").texts(warnings).end_object().take() + "\n";
+}
+
+void print(const Study& study, const Forecast& forecast) {
+  const StudyPlan& plan = study.of.plan;
+  say(fmt::format("{}: {}", study.name, study.of.read.values.text("title")));
+  line("motions", fmt::format("{}", study.of.motions.size()));
+  line("samples",
+       fmt::format("{} of {} variables, {}", study.of.samples.size(), plan.variables.size(), plan.crossed ? "crossed" : "paired"));
+  line("intensities", intensities(plan));
+  for (const StudyLimit& limit : plan.limits)
+    line("limit", limit.name + ": " +
+                      (limit.quantity ? fmt::format("{} {} {}", limit.quantity->name, limit.quantity->at_least ? "at least" : "at most",
+                                                    format_value(*limit.quantity, limit.limit))
+                                      : std::string("overturned or separated")));
+  line("runs",
+       fmt::format("{}{}, of which {} are done", plan.method.searches() ? "about " : "", forecast.status.expected, forecast.status.runs));
+  line("time", fmt::format("{} a run; {} on one core for all that are missing", format_quantity(forecast.seconds, "s"),
+                           format_quantity(forecast.left(), "s")));
+  line("memory", fmt::format("{} a worker", format_bytes(forecast.memory)));
+  line("disk", format_bytes(forecast.disk()));
+}
+
 }  // namespace
 
 int check_study(const Options& options) {
@@ -77,26 +115,14 @@ int check_study(const Options& options) {
   const double seconds = std::chrono::duration<double>(std::chrono::steady_clock::now() - before).count();
   rusage usage{};
   ::getrusage(RUSAGE_SELF, &usage);
-  const double each = static_cast<double>(line_of(trial).size());
-  const auto runs = static_cast<double>(status.expected);
-
-  say(fmt::format("{}: {}", study.name, study.of.read.values.text("title")));
-  line("motions", fmt::format("{}", study.of.motions.size()));
-  line("samples", fmt::format("{} of {} variables, {}", study.of.samples.size(), study.of.plan.variables.size(),
-                              study.of.plan.crossed ? "crossed" : "paired"));
-  line("intensities", intensities(study.of.plan));
-  for (const StudyLimit& limit : study.of.plan.limits)
-    line("limit",
-         fmt::format("{}: {}", limit.name,
-                     limit.quantity ? fmt::format("{} {} {}", limit.quantity->name, limit.quantity->at_least ? "at least" : "at most",
-                                                  format_value(*limit.quantity, limit.limit))
-                                    : "overturned or separated"));
-  line("runs", fmt::format("{}{}, of which {} are done", study.of.plan.method.searches() ? "about " : "", status.expected, status.runs));
-  line("time", fmt::format("{} a run; {} on one core for all", format_quantity(seconds, "s"),
-                           format_quantity(seconds * (runs - static_cast<double>(status.runs)), "s")));
-  line("memory", fmt::format("{} a worker at most", format_bytes(1024.0 * static_cast<double>(usage.ru_maxrss))));
-  line("disk", format_bytes(each * runs));
-  for (const std::string& warning : warnings_of(study, built, spec, read, trial)) complain("warning: " + warning);
+  const Forecast forecast{status, seconds, 1024.0 * static_cast<double>(usage.ru_maxrss), static_cast<double>(line_of(trial).size())};
+  const std::vector<std::string> said = warnings_of(study, built, spec, read, trial);
+  if (options.json) {
+    print_text(json_of(forecast, said));
+    return Exit::done;
+  }
+  print(study, forecast);
+  for (const std::string& warning : said) complain("warning: " + warning);
   return Exit::done;
 }
 

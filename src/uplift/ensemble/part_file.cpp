@@ -111,6 +111,13 @@ namespace {
   throw OutputError(fmt::format("cannot write {}: {}", path, std::strerror(errno)));
 }
 
+void sync_folder(const std::string& folder) {
+  const int descriptor = ::open(folder.c_str(), O_RDONLY | O_DIRECTORY | O_CLOEXEC);
+  if (descriptor < 0) return;
+  ::fsync(descriptor);
+  ::close(descriptor);
+}
+
 }  // namespace
 
 void PartFile::open() {
@@ -121,6 +128,8 @@ void PartFile::open() {
   path_ = fmt::format("{}/{}-{}.jsonl", folder_, name, ::getpid());
   descriptor_ = ::open(path_.c_str(), O_RDWR | O_CREAT | O_APPEND | O_CLOEXEC, 0666);
   if (descriptor_ < 0) fail(path_);
+  sync_folder(folder_);  // the file and its folder outlive a power cut as what is in the file does
+  sync_folder(folder_ + "/..");
   // a process with the same number may have been killed while it wrote a line
   const off_t size = ::lseek(descriptor_, 0, SEEK_END);
   char last = '\n';

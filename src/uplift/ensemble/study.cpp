@@ -4,6 +4,7 @@
 
 #include "uplift/base/file.h"
 #include "uplift/base/text.h"
+#include "uplift/io/files.h"
 #include "uplift/io/mesh/file.h"
 #include "uplift/io/text/toml.h"
 
@@ -44,8 +45,15 @@ Study open_study(const std::string& given) {
   const MeshReader reader = [](const std::string& path, const Where& where, const std::string& name) {
     return read_mesh(path, where, name, true);
   };
-  study.of = study_case(located, read_toml_text(case_text, study.case_file), reader);
-  for (const std::string& input : input_files(study.of.read)) study.inputs.emplace_back(input, sha256(read_file(input)));
+  const std::string motions = study.folder + "/motions";
+  try {
+    study.of = study_case(located, read_toml_text(case_text, study.case_file), reader, motions);
+  } catch (const fs::filesystem_error& failed) {
+    throw OutputError(failed.what());
+  }
+  for (const std::string& input : input_files(study.of.read))
+    if (fs::path(input).parent_path() != fs::absolute(motions).lexically_normal())
+      study.inputs.emplace_back(input, sha256(read_file(input)));
   return study;
 }
 

@@ -14,6 +14,7 @@
 #include "uplift/case/schema/sections.h"
 #include "uplift/motion/spectrum.h"
 #include "uplift/statistics/latin_hypercube.h"
+#include "uplift/study/study_generated.h"
 #include "uplift/study/study_motions.h"
 
 namespace uplift {
@@ -160,11 +161,16 @@ std::string identity_of_case(const Raw& raw, const Case& read) {
 
 }  // namespace
 
-StudyCase study_case(const StudyPlan& plan, const Raw& raw, const MeshReader& read_mesh) {
+StudyCase study_case(const StudyPlan& plan, const Raw& raw, const MeshReader& read_mesh, const std::string& motions) {
   StudyCase study;
   study.plan = plan;
   study.raw = with_motions(raw, plan.values, plan.raw);
   study.read_mesh = read_mesh;
+  const GeneratedRecords generated(study.raw, motions);
+  if (generated.any()) {
+    if (!generated.kept()) generated.keep(check_case(study.raw, plan.case_file, read_mesh).records);
+    study.raw = generated.from_files(study.raw);
+  }
   study.read = check_case(study.raw, plan.case_file, read_mesh);
   const Values& root = study.read.values;
   resolve_variables(study);
@@ -174,6 +180,7 @@ StudyCase study_case(const StudyPlan& plan, const Raw& raw, const MeshReader& re
   if (compare)
     for (const Values& motion : compare->tables("motion")) {
       names.add(motion, "name");
+      if (motion.texts("replace").empty()) fail(motion, "replace", "one name at least", "none");
       check_motion(root, motion);
       study.motions.push_back(motion_of(study, &motion));
       for (std::size_t k = 0; k + 1 < study.motions.size(); ++k)

@@ -38,8 +38,9 @@ struct StudyCase {
   bool edits_mesh = false;
 };
 
-/// Joins a plan and its case. `raw`: the case as read. Throws InputError.
-StudyCase study_case(const StudyPlan& plan, const Raw& raw, const MeshReader& read_mesh);
+/// Joins a plan and its case. `raw`: the case as read; `motions`: folder where generated records are kept, empty: nowhere. Throws
+/// InputError.
+StudyCase study_case(const StudyPlan& plan, const Raw& raw, const MeshReader& read_mesh, const std::string& motions = {});
 
 /// The case of a sample, checked. The mesh and the records are shared where no variable changes them. Throws InputError.
 Case case_of_sample(const StudyCase& study, std::size_t sample);

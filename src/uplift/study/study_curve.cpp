@@ -6,7 +6,10 @@ namespace uplift {
 
 StudyCurve::StudyCurve(const StudyCase& study, std::size_t number, std::size_t sample, std::size_t motion)
     : study_(study), number_(number), sample_(sample), motion_(motion) {
-  if (study.plan.method.searches()) searches_.assign(study.plan.limits.size(), CapacitySearch(study.plan.method.search));
+  if (!study.plan.method.searches()) return;
+  SearchPlan plan = study.plan.method.search;
+  plan.most *= static_cast<int>(study.plan.limits.size());  // every search is told the runs of all
+  searches_.assign(study.plan.limits.size(), CapacitySearch(plan));
 }
 
 StudyPoint StudyCurve::point(double intensity) const {

@@ -120,7 +120,9 @@ std::vector<CaseEdit> absolute_files(const Values& root) {
   const auto add = [&](const Values& table, const char* key) {
     if (table.items().contains(key) && table.has(key)) edits.push_back({table.path(key), absolute_beside(table, key)});
   };
-  for (const Values& record : root.tables("record")) add(record, "file");
+  const std::vector<Values>& records = root.tables("record");
+  for (std::size_t i = 0; i < records.size(); ++i)  // those of the plan have a path there
+    if (records[i].has("file")) edits.push_back({fmt::format("record[{}].file", i), absolute_beside(records[i], "file")});
   for (const Values& function : root.tables("function")) add(function.part("shape"), "file");
   if (root.has("mesh")) add(root.table("mesh"), "file");
   return edits;

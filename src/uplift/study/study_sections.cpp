@@ -28,7 +28,7 @@ const Section& motions_section() {
     made.fields = {text("name", "beginning of their names: NAME-1, NAME-2, ..."),
                    texts("replace", "names of records or functions that drive the case, one for each component"),
                    texts("files", "files of the records; of several components the files of one motion stand side by side").optional(),
-                   integer("count", "number of generated motions").positive().optional()};
+                   integer("count", "number of generated motions").between(1, 100000).optional()};
     for (const Field& field : record_section().fields) {
       if (field.name == "name" || field.name == "file" || field.name == "component") continue;
       made.fields.push_back(field);
@@ -70,7 +70,7 @@ Field tolerance_field() {
   return number("tolerance", "1", "width of the interval of the capacity, of its logarithm").positive().standard(0.02);
 }
 Field most_runs_field() {
-  return integer("most_runs", "most runs of a motion for one limit").positive().standard(12);
+  return integer("most_runs", "most runs of a motion for one limit").between(1, 1000).standard(12);
 }
 Field smallest_field() {
   return number("smallest", "1", "the search goes no lower; absent: a hundredth of start").positive().optional();
@@ -177,7 +177,7 @@ const Section& limit_section() {
 const Section& run_section() {
   static const Section s{"run",
                          "how the runs are computed; nothing here changes their results",
-                         {integer("workers", "processes at the same time; absent: one for every core").positive().optional(),
+                         {integer("workers", "processes at the same time; absent: one for every core").between(1, 4096).optional(),
                           number("timeout", "s", "computing time after which a run is ended").positive().optional(),
                           number("memory", "1", "MB of memory that a worker may use").positive().optional(),
                           integer("attempts", "how often a run is tried whose worker dies").positive().standard(3)}};
@@ -205,7 +205,7 @@ const Section& study_section() {
        part("method", study_methods, "which intensities are run"), tables("motion", motion_section(), "motions"),
        tables("motions", motions_section(), "motions from files, or generated"),
        tables("record", record_section(), "records beside those of the case"),
-       integer("samples", "number of samples of the variables").positive().standard(1),
+       integer("samples", "number of samples of the variables").between(1, 100000).standard(1),
        choice("pairing", {"crossed", "paired"},
               "crossed: every sample with every motion; paired: sample i with motion i, and the motions again from the first one on")
            .standard("crossed"),

@@ -1,9 +1,12 @@
 #include "uplift/study/study_curve.h"
 
 #include <gtest/gtest.h>
+#include <unistd.h>
 
 #include <cmath>
+#include <filesystem>
 #include <map>
+#include <set>
 
 #include "tower_case.h"
 #include "uplift/io/text/toml.h"
@@ -66,9 +69,24 @@ paths = ["interface[0].law.K_n"]
 distribution = { type = "lognormal", median = 1, beta = 0.3 }
 )";
 
-StudyCase study_of(const std::string& plan, const std::string& text = tower()) {
-  StudyPlan made = study_plan(read_toml_text(plan, "plan.toml"));
-  return study_case(made, read_toml_text(text, "case.toml"), {});
+/// Where generated records are kept, for this process.
+class Folder {
+ public:
+  Folder() : path_(std::filesystem::temp_directory_path() / ("uplift_motions_" + std::to_string(::getpid()))) {}
+  ~Folder() { std::filesystem::remove_all(path_); }
+  std::string path() const { return path_.string(); }
+
+ private:
+  std::filesystem::path path_;
+};
+
+std::string motions() {
+  static const Folder folder;
+  return folder.path();
+}
+
+StudyCase study_of(const std::string& plan, const std::string& text = tower(), const std::string& folder = motions()) {
+  return study_case(study_plan(read_toml_text(plan, "plan.toml")), read_toml_text(text, "case.toml"), {}, folder);
 }
 
 /// A run whose opening is `opening` [m].
@@ -131,6 +149,17 @@ TEST(StudyRun, IdentityIsWhatIsComputed) {
   std::string same = "# a comment\n" + tower();
   same.replace(same.find("20 MPa/m"), 8, "2e7 Pa/m");
   EXPECT_EQ(id, run_identity(study_of(searching, same), 0, 0, 0.3));
+}
+
+TEST(StudyRun, KeptRecordsAreTheGeneratedOnesToTheLastBit) {
+  const StudyCase generated = study_of(searching, tower(), ""), kept = study_of(searching);
+  ASSERT_EQ(generated.read.records.size(), 2U);
+  for (std::size_t i = 0; i < 2; ++i) {
+    EXPECT_EQ(generated.read.records[i].motion().values, kept.read.records[i].motion().values);
+    EXPECT_EQ(generated.read.records[i].motion().step, kept.read.records[i].motion().step);
+    EXPECT_NE(kept.read.records[i].motion().file, "");
+  }
+  EXPECT_EQ(run_identity(generated, 0, 1, 0.3), run_identity(kept, 0, 1, 0.3));
 }
 
 TEST(StudyRun, AFactorIsTheProcessScale) {
