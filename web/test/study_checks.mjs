@@ -4,30 +4,35 @@ import { pathToFileURL } from "node:url";
 import { inject, open, write_page } from "./harness.mjs";
 import { BETA, BETA_R, BETA_U, THETA, cloud_study, ida_study, page_of, stripes_study } from "./make_study.mjs";
 
+/** Nothing reaches beyond the page or its tile. */
+async function check_width(page, check, width, shot) {
+  const found = await page.evaluate(() => ({
+    page: document.documentElement.scrollWidth - document.documentElement.clientWidth,
+    cut: [...document.querySelectorAll(".fact, .fact *, .bar > *")].filter((e) => e.scrollWidth > e.clientWidth + 1).map((e) => e.className),
+    tables: [...document.querySelectorAll(".table-box")].filter((e) => e.scrollWidth > e.clientWidth + 1).length,
+  }));
+  check.ok(found.page <= 0, `the report of a study is not wider than ${width} px`, `${found.page} px too wide`);
+  check.equal(found.cut.join(), "", `its tiles hold their text at ${width} px`);
+  if (width === 1400) check.equal(found.tables, 0, "its tables show their last column");
+  if (shot) await page.screenshot({ path: join(shot.folder, `${shot.name}_${width}.png`), fullPage: true });
+}
+
 /** Opens the report of a study, draws everything, and hands its texts over. */
 async function shown(browser, check, study, body, shot) {
-  const { context, page, log } = await open(browser, pathToFileURL(await write_page(await inject(page_of(study)))).href, { viewport: { width: 1400, height: 1000 } });
+  const url = pathToFileURL(await write_page(await inject(page_of(study)))).href;
+  const { context, page, log } = await open(browser, url, { viewport: { width: 1400, height: 1000 } });
   await page.evaluate(() => window.upliftReport.renderAll());
   const report = await page.evaluate(() => window.upliftReport.report);
   const text = (await page.locator("#verdict").innerText()).replace(/[\s\u00a0]+/g, " ");
   await body({ page, report, text });
   const ink = await page.evaluate(() => window.upliftReport.charts.map((c) => [c.id, c.inkedPixels(), /NaN|undefined|Infinity/.test(c.svg())]));
   for (const [id, pixels, broken] of ink) check.ok(pixels > 20 && !broken, `chart ${id} of a study is drawn`, `${pixels} pixels`);
-  for (const width of [1400, 390]) {
-    await page.setViewportSize({ width, height: 900 });
-    await page.waitForTimeout(60);
-    const found = await page.evaluate(() => ({
-      page: document.documentElement.scrollWidth - document.documentElement.clientWidth,
-      cut: [...document.querySelectorAll(".fact, .fact *, .bar > *")].filter((e) => e.scrollWidth > e.clientWidth + 1).map((e) => e.className),
-      tables: [...document.querySelectorAll(".table-box")].filter((e) => e.scrollWidth > e.clientWidth + 1).length,
-    }));
-    check.ok(found.page <= 0, `the report of a study is not wider than ${width} px`, `${found.page} px too wide`);
-    check.equal(found.cut.join(), "", `its tiles hold their text at ${width} px`);
-    if (width === 1400) check.equal(found.tables, 0, "its tables show their last column");
-    if (shot) await page.screenshot({ path: join(shot.folder, `${shot.name}_${width}.png`), fullPage: true });
-  }
+  await check_width(page, check, 1400, shot);
   check.equal(log.console.length + log.network.length, 0, `a study without a message or a request (${log.console[0] ?? ""})`);
   await context.close();
+  const phone = await open(browser, url, { viewport: { width: 390, height: 844 } });
+  await check_width(phone.page, check, 390, shot);
+  await phone.context.close();
 }
 
 const rows_of = (report, id) => report.tables.find((table) => table.id === id)?.rows ?? [];
