@@ -16,11 +16,13 @@ function limits_table(study: Study): Table[] {
   if (study.limits.length === 0) return [];
   const unknown = study.limits.some((limit) => limit.unknown > 0);
   const apart = study.limits.some(({ dispersion }) => dispersion.known);
+  const shared = study.samples > 1 && study.pairing === "crossed";
   return [{
     id: "limits",
     title: "Limit states",
     caption:
       `Median and dispersion of the fitted lognormal curve, with the interval of ${significant(100 * (study.limits[0]?.confidence ?? 0.9), 3)} % confidence. ` +
+      (shared ? "The interval takes all curves as independent; where the motions scatter more than the samples (\u03b2_R), it is too narrow. " : "") +
       (apart ? "\u03b2_R: scatter between motions; \u03b2_U: between samples; HCLPF: median \u00b7 exp(\u22121.65 (\u03b2_R + \u03b2_U)). " : "") +
       (unknown ? "Runs of unknown outcome are left out of the fit; the last two columns count them as survived and as exceeded." : ""),
     columns: [
