@@ -3,10 +3,10 @@
 #include <string>
 #include <vector>
 
-#include "uplift/base/error.h"
 #include "uplift/cli/commands.h"
 #include "uplift/ensemble/store.h"
 #include "uplift/ensemble/study.h"
+#include "uplift/io/files.h"
 #include "uplift/io/results/study_json.h"
 #include "uplift/study/study_curve.h"
 
