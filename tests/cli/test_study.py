@@ -118,7 +118,7 @@ class Study(CliTest):
 
     def test_killed_processes_lose_nothing(self):
         plan = IDA.replace("1 mm", "2 mm") + '[[limit]]\nname = "drift"\nquantity = "max_drift"\nlimit = 0.005\n'
-        self.write(CASE.replace("duration = 1\n", "duration = 20\n"))
+        self.write(CASE.replace("duration = 1\n", "duration = 10\n"))
         self.uplift("study", "run", self.study(plan, "whole.study"), "-q", "-j", "1")
         expected = self.evaluated("whole.study")
         name, lines, draw = self.study(plan), set(), random.Random(7)
