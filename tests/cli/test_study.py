@@ -119,7 +119,7 @@ class Study(CliTest):
 
     def test_killed_processes_lose_nothing(self):
         plan = IDA.replace("1 mm", "2 mm") + '[[limit]]\nname = "drift"\nquantity = "max_drift"\nlimit = 0.005\n'
-        self.write(CASE.replace("duration = 1\n", "duration = 20\n"))
+        self.write(CASE.replace("duration = 1\n", "duration = 10\n"))
         self.uplift("study", "run", self.study(plan, "whole.study"), "-q", "-j", "1")
         expected = self.evaluated("whole.study")
         name, lines, draw = self.study(plan), set(), random.Random(7)
@@ -214,6 +214,21 @@ class Study(CliTest):
         self.study(STRIPES)
         self.uplift("study", "run", name, "-q", "--retry")
         self.assertEqual(json.loads(self.uplift("study", "fit", name, "--json").stdout)["outcomes"]["completed"], 12)
+
+    def test_a_run_without_enough_memory(self):
+        if self.cannot_be_limited():
+            self.skipTest("the address space cannot be limited")
+        name = self.study(STRIPES + "[run]\nmemory = 20\n")
+        self.uplift("study", "run", name, "-q")
+        study = json.loads(self.uplift("study", "fit", name, "--json").stdout)
+        self.assertEqual(study["outcomes"]["memory"], 12)
+        self.assertTrue(all((self.folder / name / failure["case"]).is_file() for failure in study["failures"]))
+
+    def test_a_sample_that_is_no_case(self):
+        variable = '[[variable]]\nname = "K"\npaths = ["interface[0].law.K_n"]\ndistribution = { type = "normal", mean = 0, deviation = 1 }\n'
+        name = self.study(IDA.replace('case = "../case.toml"', 'case = "../case.toml"\nsamples = 6') + variable)
+        for verb in ("check", "run"):
+            self.assertRegex(self.uplift("study", verb, name, expect=2).stderr, r"interface\[0\]\.law\.K_n: expected .* > 0 Pa/m, found -")
 
     def test_samples(self):
         variable = '[[variable]]\nname = "K"\npaths = ["interface[0].law.K_n"]\ndistribution = { type = "lognormal", median = 1, beta = 0.4 }\n'
