@@ -190,8 +190,8 @@ export function has_markers(curve: Curve): boolean {
 export const BAND_OPACITY = 0.17;
 export const THIN_OPACITY = 0.5;
 
-/** Order of drawing: bands and thin curves lie below the others, failed curves below the sound ones. */
+/** Order of drawing: bands lie below thin curves, and these below all others. */
 export function below_first(curves: Curve[]): Curve[] {
-  const height = ({ style, failed }: Curve): number => (style === "band" ? 0 : style === "thin" ? 1 : failed ? 2 : 3);
+  const height = ({ style }: Curve): number => (style === "band" ? 0 : style === "thin" ? 1 : 2);
   return [...curves].sort((a, b) => height(a) - height(b));
 }

@@ -172,7 +172,8 @@ export class Plot {
     ctx.rect(bbox.left, bbox.top, bbox.width, bbox.height);
     ctx.clip();
     ctx.lineJoin = "round";
-    const order = below_first(this.model_.shown());
+    // Failed curves lie below the sound ones.
+    const order = below_first([...this.model_.shown()].sort((a, b) => Number(b.failed) - Number(a.failed)));
     for (const curve of order) this.draw_curve(ctx, curve, view, map);
     ctx.restore();
   }
