@@ -1,6 +1,7 @@
 """Studies: one case under many motions and intensities, which survive the end of every process that takes part."""
 
 import csv
+import hashlib
 import math
 import random
 import shutil
@@ -118,7 +119,7 @@ class Study(CliTest):
 
     def test_killed_processes_lose_nothing(self):
         plan = IDA.replace("1 mm", "2 mm") + '[[limit]]\nname = "drift"\nquantity = "max_drift"\nlimit = 0.005\n'
-        self.write(CASE.replace("duration = 1\n", "duration = 20\n"))
+        self.write(CASE.replace("duration = 1\n", "duration = 10\n"))
         self.uplift("study", "run", self.study(plan, "whole.study"), "-q", "-j", "1")
         expected = self.evaluated("whole.study")
         name, lines, draw = self.study(plan), set(), random.Random(7)
@@ -214,6 +215,21 @@ class Study(CliTest):
         self.uplift("study", "run", name, "-q", "--retry")
         self.assertEqual(json.loads(self.uplift("study", "fit", name, "--json").stdout)["outcomes"]["completed"], 12)
 
+    def test_a_run_without_enough_memory(self):
+        if self.cannot_be_limited():
+            self.skipTest("the address space cannot be limited")
+        name = self.study(STRIPES + "[run]\nmemory = 20\n")
+        self.uplift("study", "run", name, "-q")
+        study = json.loads(self.uplift("study", "fit", name, "--json").stdout)
+        self.assertEqual(study["outcomes"]["memory"], 12)
+        self.assertTrue(all((self.folder / name / failure["case"]).is_file() for failure in study["failures"]))
+
+    def test_a_sample_that_is_no_case(self):
+        variable = '[[variable]]\nname = "K"\npaths = ["interface[0].law.K_n"]\ndistribution = { type = "normal", mean = 0, deviation = 1 }\n'
+        name = self.study(IDA.replace('case = "../case.toml"', 'case = "../case.toml"\nsamples = 6') + variable)
+        for verb in ("check", "run"):
+            self.assertRegex(self.uplift("study", verb, name, expect=2).stderr, r"interface\[0\]\.law\.K_n: expected .* > 0 Pa/m, found -")
+
     def test_samples(self):
         variable = '[[variable]]\nname = "K"\npaths = ["interface[0].law.K_n"]\ndistribution = { type = "lognormal", median = 1, beta = 0.4 }\n'
         name = self.study(IDA.replace("seed", "").replace('case = "../case.toml"', 'case = "../case.toml"\nsamples = 6') + variable)
@@ -226,6 +242,20 @@ class Study(CliTest):
         self.assertEqual(len(study["curves"]), 24)
         self.assertTrue(study["limits"][0]["dispersion"]["known"])
         self.assertEqual(study["limits"][0]["tornado"][0]["variable"], "K")
+
+    def test_the_report(self):
+        name = self.study(STRIPES)
+        said = self.uplift("study", "run", name)
+        self.assertIn(f"results: {name}/report.html", said.stdout)
+        told = report_of(self.folder / name)
+        self.assertEqual(told["study"], json.loads((self.folder / name / "study.json").read_text()))
+        self.assertEqual(told["resolved"], STRIPES)
+        self.assertEqual(told["case"], {"file": f"{name}/plan.toml", "sha256": hashlib.sha256(STRIPES.encode()).hexdigest()})
+        # more levels: no page of its own before the new runs are there, and `report` says what is missing
+        self.study(STRIPES.replace("1.0]", "1.0, 1.5]"))
+        self.assertIn("warning: 4 of 4 curves are not complete", self.uplift("study", "report", name).stderr)
+        self.assertFalse(report_of(self.folder / name)["study"]["complete"])
+        self.assertEqual(json.loads(self.uplift("study", "report", name, "--json").stdout)["outcomes"]["completed"], 12)
 
     def test_plans_are_checked(self):
         for old, new, message in [

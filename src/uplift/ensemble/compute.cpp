@@ -64,9 +64,9 @@ StudyResult StudyComputer::compute(const RunRequest& request) {
   StudyResult made = result_of(built, run, study_.of.plan.floor_spectra);
   identify(study_, request, made);
   if (made.outcome == StudyOutcome::timeout) made.reason = fmt::format("it took longer than {:g} s", *timeout);
-  if (!says_something(made.outcome)) {
-    write_run_case(study_, request.id, request.sample, request.motion, request.factor);
-    if (made.replay) write_file_atomically(run_folder(study_, request.id) + "/problem.json", run.problem);
+  if (made.replay) {
+    std::filesystem::create_directories(run_folder(study_, request.id));
+    write_file_atomically(run_folder(study_, request.id) + "/problem.json", run.problem);
   }
   return made;
 }

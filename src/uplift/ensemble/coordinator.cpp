@@ -65,7 +65,10 @@ class Coordinator {
   }
 
   StudyStatus go() {
-    if (!waiting_.empty()) compute();
+    if (!waiting_.empty()) {
+      check_samples();
+      compute();
+    }
     tell();
     return status_;
   }
@@ -77,6 +80,15 @@ class Coordinator {
     for (const StudyPoint& point : curve.wanted(store_.finder()))
       if (curve_of_.emplace(point.id, number).second)
         waiting_.add({point.id, number, curve.sample(), curve.motion(), point.factor, point.intensity, store_.attempts(point.id) + 1});
+  }
+
+  /// Refuses samples that are no case before anything is computed; a mesh is not made for it.
+  void check_samples() const {
+    if (study_.of.edits_mesh || study_.of.samples.size() == 1) return;
+    std::set<std::size_t> samples;
+    for (std::size_t i = 0; i < curves_.size(); ++i)
+      if (control_.shard.has(i) && !curves_[i].complete()) samples.insert(curves_[i].sample());
+    for (const std::size_t sample : samples) case_of_sample(study_.of, sample);
   }
 
   void compute() {
@@ -141,21 +153,26 @@ class Coordinator {
     ++computed_;
     wall_ += result.wall;
     store_.add(result);
-    changed_.insert(curve_of_.at(result.id));
+    const std::size_t number = curve_of_.at(result.id);
+    changed_.insert(number);
+    if (!says_something(result.outcome))
+      write_run_case(study_, result.id, curves_[number].sample(), curves_[number].motion(), result.factor);
   }
 
-  /// A run whose worker dies is tried again a few times. Runs behind it are given to others.
+  /// A run whose worker dies is tried again a few times, more often where the run itself is not to blame. Runs behind it are given to
+  /// others.
   void take(const WorkerPool::Death& death) {
+    constexpr int most_kills = 10;
+    const int most = death.killed ? std::max(most_kills, study_.of.plan.attempts) : study_.of.plan.attempts;
     for (std::size_t i = 0; i < death.lost.size(); ++i) {
       const RunRequest& request = death.lost[i];
-      if (i > 0 || (!death.too_long && ++tries_[request.id] < study_.of.plan.attempts)) {
+      if (i > 0 || (!death.too_long && ++tries_[request.id] < most)) {
         waiting_.add(request);
         continue;
       }
       const StudyOutcome outcome = death.too_long ? StudyOutcome::timeout : StudyOutcome::crashed;
       note(result_without_run(study_, request, outcome,
                               death.too_long ? "its worker did not answer any more" : "its worker ended with " + death.how));
-      write_run_case(study_, request.id, request.sample, request.motion, request.factor);
     }
   }
 

@@ -168,7 +168,8 @@ WorkerPool::Death WorkerPool::bury(Worker& worker) {
   int status = 0;
   while (::waitpid(worker.process, &status, 0) < 0 && errno == EINTR) {
   }
-  Death death{std::move(worker.outstanding), worker.too_long, how_it_ended(status)};
+  const bool killed = WIFSIGNALED(status) && WTERMSIG(status) == SIGKILL;
+  Death death{std::move(worker.outstanding), worker.too_long, killed && !worker.too_long, how_it_ended(status)};
   ::close(worker.channel);
   worker.channel = -1;
   start(worker);

@@ -39,6 +39,7 @@ class WorkerPool {
   struct Death {
     std::deque<RunRequest> lost;  // the first one was computed
     bool too_long = false;        // it was ended because of its time
+    bool killed = false;          // from outside: by the user, or by the system for want of memory
     std::string how;              // "signal 11 (Segmentation fault)"
   };
   struct Events {

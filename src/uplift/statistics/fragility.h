@@ -40,7 +40,7 @@ class Fragility {
  public:
   double theta() const { return theta_; }
   double beta() const { return beta_; }
-  /// P(limit exceeded | im), im > 0.
+  /// P(limit exceeded | im), 0 at im = 0.
   double probability(double im) const;
   /// Of the maximum of the likelihood; stripes with the binomial coefficients, capacities and demands as densities of their logarithm.
   double log_likelihood() const { return log_likelihood_; }

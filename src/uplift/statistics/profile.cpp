@@ -130,6 +130,7 @@ ConfidenceInterval Fragility::beta_interval(double level) const {
 }
 
 ConfidenceInterval Fragility::probability_interval(double im, double level) const {
+  if (!(im > 0)) return {0, 0};
   const FragilityLikelihood& l = *likelihood_;
   Profile profile(l, l.cutoff(level));
   const double x = l.standard(im), eta = l.best.at[0] + l.best.at[1] * x;

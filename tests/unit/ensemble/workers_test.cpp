@@ -74,6 +74,7 @@ TEST(WorkerPool, ADeadWorkerLosesItsBatchAndIsReplaced) {
   EXPECT_EQ(events.deaths[0].lost.size(), 2U);
   EXPECT_EQ(events.deaths[0].lost.front().id, "die");
   EXPECT_FALSE(events.deaths[0].too_long);
+  EXPECT_TRUE(events.deaths[0].killed);
   EXPECT_TRUE(events.deaths[0].how.starts_with("signal 9")) << events.deaths[0].how;
   pool.send(0, {request("b")});
   EXPECT_EQ(all_of(pool).results.size(), 1U);

@@ -128,6 +128,26 @@ TEST(FragilityStripes, ProfileIntervals) {
   }
 }
 
+/// A band over all intensities: around the curve, growing with the intensity.
+TEST(FragilityStripes, IntervalsOfTheWholeCurve) {
+  const OrRefused<Fragility> fits[] = {fit_stripes(baker()), fit_stripes(stripes({1, 2}, {10}, {3, 4})),
+                                       fit_capacities(sixteen_capacities(1.0)), fit_capacities(sixteen_capacities())};
+  for (const auto& result : fits) {
+    const Fragility fit = fit_of(result);
+    EXPECT_EQ(fit.probability(0), 0);
+    EXPECT_EQ(fit.probability_interval(0, 0.9).upper, 0);
+    ConfidenceInterval before{0, 0};
+    for (double im = 1e-9; im < 1e9; im *= 1.7) {
+      const ConfidenceInterval band = fit.probability_interval(im, 0.9);
+      EXPECT_LE(*band.lower, fit.probability(im)) << im;
+      EXPECT_GE(*band.upper, fit.probability(im)) << im;
+      EXPECT_GE(*band.lower, *before.lower * (1 - 1e-9)) << im;
+      EXPECT_GE(*band.upper, *before.upper * (1 - 1e-9)) << im;
+      before = band;
+    }
+  }
+}
+
 /// Where a constant fraction is as good at the confidence level, the median and beta are not bounded.
 TEST(FragilityStripes, FlatDataHaveOpenIntervals) {
   const Fragility fit = fit_of(fit_stripes(stripes({1, 2}, {10}, {3, 4})));

@@ -32,10 +32,6 @@ std::string capacity_cells(const std::optional<RecordCapacity>& capacity) {
                      exact(capacity->im));
 }
 
-std::string_view word_of(RunOutcome outcome) {
-  return outcome == RunOutcome::survived ? "survived" : outcome == RunOutcome::exceeded ? "exceeded" : "unknown";
-}
-
 std::string interval_text(const Fragility& fit) {
   const ConfidenceInterval interval = fit.theta_interval(study_confidence);
   const auto end = [](const std::optional<double>& value) { return value ? fmt::format("{:.3g}", *value) : std::string("unbounded"); };

@@ -10,16 +10,17 @@
 #include "uplift/io/results/result_writer.h"
 
 namespace uplift {
+
+std::string_view word_of(RunOutcome outcome) {
+  return outcome == RunOutcome::survived ? "survived" : outcome == RunOutcome::exceeded ? "exceeded" : "unknown";
+}
+
 namespace {
 
 constexpr std::string_view intensity_unit = "as stated in intensity.unit", limit_unit = "as stated in unit";
 
 std::vector<std::string_view> outcome_words() {
   return {std::begin(study_outcomes), std::end(study_outcomes)};
-}
-
-std::string_view word_of(RunOutcome outcome) {
-  return outcome == RunOutcome::survived ? "survived" : outcome == RunOutcome::exceeded ? "exceeded" : "unknown";
 }
 
 std::string_view word_of(Known known) {

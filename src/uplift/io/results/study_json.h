@@ -1,5 +1,6 @@
 #pragma once
 #include <string>
+#include <string_view>
 #include <vector>
 
 #include "uplift/study/study_fit.h"
@@ -37,6 +38,9 @@ struct StudyDocument {
   std::vector<Limit> limits;
   std::vector<StudyFloor> floors;
 };
+
+/// "survived", "exceeded", "unknown".
+std::string_view word_of(RunOutcome);
 
 /// From the curves with their results. `name` and files are left to the caller.
 StudyDocument study_document(const StudyCase& study, const std::vector<StudyCurve>& curves);
