@@ -16,7 +16,7 @@
 namespace uplift::cli {
 namespace {
 
-constexpr const char* place = "uplift soil";
+constexpr const char* soil_words = "uplift soil";
 
 const Section& words_section() {
   static const Section section = [] {
@@ -33,9 +33,9 @@ const Section& words_section() {
 
 FootingOnSoil footing_of_words(const std::vector<std::string>& given) {
   Words words;
-  for (const std::string& word : given) words.push_back(word_of(word, place));
-  refuse_twice(words, place);
-  const Values values = check(table_of(std::move(words), place), words_section());
+  for (const std::string& word : given) words.push_back(word_of(word, soil_words));
+  refuse_twice(words, soil_words);
+  const Values values = check(table_of(std::move(words), soil_words), words_section());
   Footprint footprint;
   footprint.shape = *footprint_shape(values.text("shape"));
   footprint.width = values.number("width");
@@ -153,7 +153,7 @@ std::vector<std::pair<std::string, FootingOnSoil>> footings_of_case(const Option
 
 int soil(const Options& options, const std::vector<std::string>& words) {
   const bool described = words.front().find('=') != std::string::npos && !std::filesystem::exists(words.front());
-  if (!described && words.size() > 1) throw InputError({place, 0}, "", "one case, or KEY=VALUE words", in_quotes(words[1]));
+  if (!described && words.size() > 1) throw InputError({soil_words, 0}, "", "one case, or KEY=VALUE words", in_quotes(words[1]));
   Options of_case = options;
   of_case.file = words.front();
   const auto footings =

@@ -11,7 +11,7 @@
 namespace uplift::cli {
 namespace {
 
-constexpr const char* template_text =
+constexpr const char* study_template =
     R"TOML(# A study for uplift: one case under many motions, at many intensities. `uplift describe section study` explains every key.
 #     uplift study check {0}; uplift study run {0}; uplift study report {0}
 # Files are relative to this plan. Numbers may carry units; a bare number is SI.
@@ -63,7 +63,7 @@ int new_study(const std::string& name) {
   fs::create_directories(folder, error);
   if (error) throw InputError({folder.string(), 0}, "", "a folder that can be created", error.message());
   try {
-    write_file_atomically(file, fmt::format(template_text, folder.string(), folder.stem().string()));
+    write_file_atomically(file, fmt::format(study_template, folder.string(), folder.stem().string()));
   } catch (const fs::filesystem_error& failed) {
     throw OutputError(failed.what());
   }
