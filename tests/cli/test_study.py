@@ -47,6 +47,48 @@ quantity = "max_opening"
 limit = "1 mm"
 """
 
+# A block on soil with more than 5000 unknowns, whose runs march in lockstep.
+LARGE = """\
+[mesh.soil_box.soil]
+width = 50
+size = 0.5
+[[mesh.soil_box.soil.layers]]
+thickness = 12
+size = 0.5
+[mesh.soil_box.block]
+width = 4
+height = 8
+size = 0.5
+[[solid]]
+group = "soil_1"
+shear_wave_speed = 300
+poisson = 0.3
+density = 1900
+[[solid]]
+group = "block"
+E = 2e9
+poisson = 0.2
+density = 400
+[[support]]
+group = "soil_bottom"
+fixed = ["ux", "uy"]
+[[interface]]
+name = "underside"
+[interface.surface]
+group = "interface"
+lower = ["soil_1"]
+[interface.law]
+type = "springs"
+K_n = 2e10
+K_t = 1e10
+tangential = "coulomb"
+friction = 0.7
+[gravity]
+acceleration = [0, -9.81]
+[damping]
+rayleigh = [{ frequency = 1, ratio = 0.03 }, { frequency = 8, ratio = 0.03 }]
+""" + CASE[CASE.index("[[record]]"):].replace("duration = 1\nstep = 1e-3", "duration = 0.6\nstep = 5e-3")
+
 STRIPES = IDA.replace('type = "ida"\nstart = 0.1\nlargest = 20', 'type = "stripes"\nlevels = [0.2, 0.5, 1.0]')
 
 
@@ -116,6 +158,23 @@ class Study(CliTest):
         numbers = self.summary("alone")["verdict"]["interfaces"][0]["numbers"]
         self.assertEqual(numbers["max_opening"]["value"], float(run["uplift [m]"]))
         self.assertEqual(run["factor [1]"] != "1", True)
+
+    def test_runs_of_a_large_model_march_in_lockstep(self):
+        self.write(LARGE)
+        plan = STRIPES.replace("[0.2, 0.5, 1.0]", "[0.3, 0.6]").replace('"../m3.csv", "../m4.csv"', "").replace('"1 mm"', '"0.1 mm"')
+        name, one_by_one = self.study(plan), self.study(plan, "t.study")
+        self.uplift("study", "run", name, "-q")
+        for shard in range(1, 3):
+            self.uplift("study", "work", one_by_one, "--shard", f"{shard}/2", "-q")
+        self.assertEqual(self.evaluated(name), self.evaluated(one_by_one))  # the result of a run does not depend on those beside it
+        run = max(self.runs(name), key=lambda each: float(each["uplift [m]"]))
+        path = self.uplift("study", "export", name, "--run", run["id"][:12]).stdout.strip()
+        self.uplift("run", path, "-o", "alone", "-q", "--no-step-check")
+        summary = self.summary("alone")
+        self.assertGreater(summary["model"]["free_unknowns"], 5000)
+        alone = summary["verdict"]["interfaces"][0]["numbers"]["max_opening"]["value"]
+        self.assertGreater(alone, 1e-6)
+        self.assertAlmostEqual(float(run["uplift [m]"]) / alone, 1, delta=1e-9)
 
     def test_killed_processes_lose_nothing(self):
         plan = IDA.replace("1 mm", "2 mm") + '[[limit]]\nname = "drift"\nquantity = "max_drift"\nlimit = 0.005\n'

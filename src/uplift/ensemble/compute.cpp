@@ -3,10 +3,13 @@
 #include <fmt/format.h>
 
 #include <chrono>
+#include <deque>
 #include <filesystem>
 #include <new>
+#include <set>
 
 #include "uplift/base/file.h"
+#include "uplift/run/lockstep.h"
 
 namespace uplift {
 namespace {
@@ -52,18 +55,28 @@ const Case& StudyComputer::case_of(std::size_t sample) {
   return *cases_.front().second;
 }
 
-StudyResult StudyComputer::compute(const RunRequest& request) {
+BuiltCase StudyComputer::build_run(const RunRequest& request) {
   const Case& read = case_of(request.sample);
-  const BuiltCase built = build(read, run_of_study(study_.of, read, request.motion, request.factor));
-  const auto start = std::chrono::steady_clock::now();
-  const std::optional<double> timeout = study_.of.plan.timeout;
-  Watch watch;
-  if (timeout)
-    watch = [&](const Progress&) { return std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count() < *timeout; };
-  const RunResult run = uplift::run(built.model, built.plan, built.behaviours, watch);
+  return build(read, run_of_study(study_.of, read, request.motion, request.factor));
+}
+
+/// Where a run has a limit of time or memory of its own, it is computed alone.
+bool StudyComputer::marches_in_lockstep(const BuiltCase& built) const {
+  constexpr int large = 5000;  // free unknowns: from here on the time goes into back-solves
+  return built.model.free() >= large && !study_.of.plan.timeout && !study_.of.plan.memory;
+}
+
+std::size_t StudyComputer::best_together(const RunRequest& one) try {
+  constexpr std::size_t most = 16;  // docs/decisions/0008-runs-in-lockstep.md
+  return marches_in_lockstep(build_run(one)) ? most : 1;
+} catch (const std::exception&) {
+  return 1;  // the run itself will say why
+}
+
+StudyResult StudyComputer::finish(const RunRequest& request, const BuiltCase& built, const RunResult& run) const {
   StudyResult made = result_of(built, run, study_.of.plan.floor_spectra);
   identify(study_, request, made);
-  if (made.outcome == StudyOutcome::timeout) made.reason = fmt::format("it took longer than {:g} s", *timeout);
+  if (made.outcome == StudyOutcome::timeout) made.reason = fmt::format("it took longer than {:g} s", study_.of.plan.timeout.value_or(0));
   if (made.replay) {
     std::filesystem::create_directories(run_folder(study_, request.id));
     write_file_atomically(run_folder(study_, request.id) + "/problem.json", run.problem);
@@ -71,17 +84,63 @@ StudyResult StudyComputer::compute(const RunRequest& request) {
   return made;
 }
 
-void StudyComputer::compute(std::span<const RunRequest> group, const std::function<void(const StudyResult&)>& done) {
+StudyResult StudyComputer::compute(const RunRequest& request, const BuiltCase& built) const {
+  const auto start = std::chrono::steady_clock::now();
+  const std::optional<double> timeout = study_.of.plan.timeout;
+  Watch watch;
+  if (timeout)
+    watch = [&](const Progress&) { return std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count() < *timeout; };
+  return finish(request, built, run(built.model, built.plan, built.behaviours, watch));
+}
+
+/// A run of a large model is always marched in this way, with others or not: its result does not depend on them, to the last bit.
+void StudyComputer::compute_in_lockstep(std::span<const RunRequest> group, BuiltCase first,
+                                        const std::function<void(const StudyResult&)>& done) {
+  std::deque<BuiltCase> built;
+  std::vector<LockstepRun> runs;
   for (const RunRequest& request : group) {
-    StudyResult made;
+    built.push_back(runs.empty() ? std::move(first) : build_run(request));
+    const bool shares = !runs.empty() && share_matrices(built.back().model, built.front().model);
+    runs.push_back({&built.back().model, &built.back().plan, &built.back().behaviours, shares ? &built.front().model : nullptr});
+  }
+  LockstepOptions options;
+  options.ended = [&](std::size_t number, RunResult& run) {
+    run.wall /= static_cast<double>(group.size());
+    done(finish(group[number], built[number], run));
+  };
+  run_in_lockstep(runs, options);
+}
+
+StudyResult StudyComputer::compute(const RunRequest& request) {
+  BuiltCase built = build_run(request);
+  if (!marches_in_lockstep(built)) return compute(request, built);
+  StudyResult made;
+  compute_in_lockstep({&request, 1}, std::move(built), [&](const StudyResult& result) { made = result; });
+  return made;
+}
+
+void StudyComputer::compute(std::span<const RunRequest> group, const std::function<void(const StudyResult&)>& done) {
+  std::set<std::string> told;
+  const auto tell = [&](const StudyResult& result) {
+    told.insert(result.id);
+    done(result);
+  };
+  for (const RunRequest& request : group) {
+    if (told.contains(request.id)) continue;
+    const auto not_computed = [&](StudyOutcome outcome, const char* why) {
+      if (!told.contains(request.id)) tell(result_without_run(study_, request, outcome, why));
+    };
     try {
-      made = compute(request);
+      BuiltCase built = build_run(request);
+      if (marches_in_lockstep(built))
+        compute_in_lockstep(group.subspan(static_cast<std::size_t>(&request - group.data())), std::move(built), tell);
+      else
+        tell(compute(request, built));
     } catch (const std::bad_alloc&) {
-      made = result_without_run(study_, request, StudyOutcome::memory, "it needed more memory than there is");
+      not_computed(StudyOutcome::memory, "it needed more memory than there is");
     } catch (const std::exception& error) {
-      made = result_without_run(study_, request, StudyOutcome::failed, error.what());
+      not_computed(StudyOutcome::failed, error.what());
     }
-    done(made);
   }
 }
 

@@ -28,6 +28,8 @@ class StudyComputer {
   explicit StudyComputer(const Study& study) : study_(study) {}
   /// Makes what the runs of a sample share, so that processes forked from this one have it.
   void prepare(std::size_t sample) { case_of(sample); }
+  /// How many runs of one sample are best computed together: several where the model is so large that they march in lockstep.
+  std::size_t best_together(const RunRequest& one);
   /// Runs of one sample, a group: they are told one by one as they end. Never throws for one of them: what went wrong is its outcome.
   void compute(std::span<const RunRequest> group, const std::function<void(const StudyResult&)>& done);
   /// One run; throws what goes wrong.
@@ -35,6 +37,12 @@ class StudyComputer {
 
  private:
   const Case& case_of(std::size_t sample);
+  bool marches_in_lockstep(const BuiltCase& built) const;
+  StudyResult finish(const RunRequest& request, const BuiltCase& built, const RunResult& run) const;
+  StudyResult compute(const RunRequest& request, const BuiltCase& built) const;
+  void compute_in_lockstep(std::span<const RunRequest> group, BuiltCase first, const std::function<void(const StudyResult&)>& done);
+  BuiltCase build_run(const RunRequest& request);
+
   const Study& study_;
   std::list<std::pair<std::size_t, std::unique_ptr<const Case>>> cases_;  // the last used one first
 };

@@ -27,6 +27,7 @@ class Waiting {
   void add(RunRequest request) { by_sample_[request.sample].push_back(std::move(request)), ++size_; }
   bool empty() const { return size_ == 0; }
   std::size_t size() const { return size_; }
+  const RunRequest& first() const { return by_sample_.begin()->second.front(); }
   /// The next runs of one sample, of `preferred` where it has any; else of the first sample that no other worker is busy with.
   std::vector<RunRequest> take(std::size_t most, std::optional<std::size_t> preferred, const std::vector<std::size_t>& busy) {
     if (empty()) return {};
@@ -93,6 +94,7 @@ class Coordinator {
 
   void compute() {
     if (study_.of.samples.size() == 1) computer_.prepare(0);
+    together_ = computer_.best_together(waiting_.first());
     const StudyPlan& plan = study_.of.plan;
     WorkerLimits limits{std::nullopt, plan.memory};
     if (plan.timeout) limits.timeout = 2 * *plan.timeout + 10;
@@ -115,6 +117,7 @@ class Coordinator {
 
   /// How many runs a worker gets at once: so few that all end together, and short ones by the dozen.
   std::size_t batch_size(const WorkerPool& pool) const {
+    if (together_ > 1) return std::clamp((waiting_.size() + pool.size() - 1) / pool.size(), std::size_t{1}, together_);
     constexpr double long_batch = 0.05;  // s
     const double mean = computed_ > 0 ? wall_ / static_cast<double>(computed_) : long_batch;
     const auto most = static_cast<std::size_t>(std::clamp(long_batch / std::max(mean, 1e-6), 1.0, most_of_batch));
@@ -127,7 +130,7 @@ class Coordinator {
       given = false;
       const std::size_t batch = batch_size(pool);
       for (std::size_t i = 0; i < pool.size() && !waiting_.empty(); ++i) {
-        if (pool.outstanding(i).size() > (batch > 1 ? batch / 2 : 0)) continue;
+        if (pool.outstanding(i).size() > (batch > 1 && together_ == 1 ? batch / 2 : 0)) continue;
         std::vector<std::size_t> busy;
         for (std::size_t other = 0; other < pool.size(); ++other)
           if (other != i && last_sample_[other] && !pool.outstanding(other).empty()) busy.push_back(*last_sample_[other]);
@@ -192,6 +195,7 @@ class Coordinator {
   PartFile parts_;
   StudyComputer computer_;
   Waiting waiting_;
+  std::size_t together_ = 1;                               // runs of a sample that are best computed at once
   std::unordered_map<std::string, std::size_t> curve_of_;  // of every run that was asked for
   std::unordered_map<std::string, int> tries_;
   std::vector<std::optional<std::size_t>> last_sample_;
