@@ -11,7 +11,7 @@ class Pod {
   Pod(const EnergyProduct& product, Index unknowns, double least, Index most)
       : product_(product), least_(least), most_(most), basis_(unknowns, 0), values_(0) {}
   /// Adds displacements, one a column.
-  void add(Matrix displacements);
+  void add(const Matrix& displacements);
   const Matrix& basis() const { return basis_; }
   /// Singular values, descending: square roots of sums of energies.
   const Vector& values() const { return values_; }

@@ -29,7 +29,8 @@ std::string not_represented(const BuiltCase& built) {
   if (std::ranges::any_of(plan.stages, &Stage::p_delta)) return "p_delta, which changes the stiffness";
   if (!stopping_stages(plan).empty()) return "a static stage after a dynamic one";
   const auto is_cone = [](const Interface& interface) { return interface.cone != nullptr; };
-  if (!plan.method->constrains() && std::ranges::any_of(built.model.interfaces, is_cone)) return "a penalty, which follows from the structure";
+  if (!plan.method->constrains() && std::ranges::any_of(built.model.interfaces, is_cone))
+    return "a penalty, which follows from the structure";
   const auto is_force = [](const Request& request) { return request.kind == Request::Kind::force; };
   if (!plan.envelopes.empty() || std::ranges::any_of(plan.requests, is_force)) return "an output of forces inside the structure";
   return {};

@@ -76,7 +76,8 @@ TEST(LinearMarch, SwingsWithTheFrequencyOfTheTrapezoidalRule) {
   const double h = 0.02;
   const Vector stiffness{{400.0, 9e3}}, mass{{2.0, 3.0}};
   const Sparse k = diagonal(stiffness), c(2, 2), m = diagonal(mass);
-  const std::unique_ptr<const LinearSolver> solver = solver_catalog().front()->make(check_part(Raw{std::string("dense"), {}, "solver"}, linear_solvers()));
+  const std::unique_ptr<const LinearSolver> solver =
+      solver_catalog().front()->make(check_part(Raw{std::string("dense"), {}, "solver"}, linear_solvers()));
   LinearMarch march(k, c, m, h, *solver);
   ASSERT_EQ(march.why(), "");
   march.start(2);

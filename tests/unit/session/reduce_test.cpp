@@ -9,28 +9,30 @@
 #include <cmath>
 #include <random>
 
-#include "uplift/math/dense.h"
-#include "uplift/run/run_state.h"
+#include "uplift/reduction/projection.h"
 #include "uplift/session/steps.h"
 
 namespace uplift {
 namespace {
 
-/// A tower of `beams` beams with masses, 4 m wide at its base on springs with friction that may lift off, pushed by an earthquake of one sine
-/// with growing amplitude.
-std::string tower(int beams, const std::string& damping = "rayleigh = [{ frequency = 1, ratio = 0.02 }, { frequency = 10, ratio = 0.02 }]") {
+/// A tower of `beams` beams with masses, 4 m wide at its base on springs with friction that may lift off, pushed by an earthquake of one
+/// sine with growing amplitude.
+std::string tower(int beams,
+                  const std::string& damping = "rayleigh = [{ frequency = 1, ratio = 0.02 }, { frequency = 10, ratio = 0.02 }]") {
   std::string text = "title = \"tower\"\nbonded = false\n[nodes]\nn0 = [0, 0]\n", parts;
   for (int k = 1; k <= beams; ++k) {
     text += fmt::format("n{} = [0, {}]\n", k, 2.5 * k);
-    parts += fmt::format("[[beam]]\nname = \"b{0}\"\nnodes = [\"n{1}\", \"n{0}\"]\nE = 2e10\nI = 0.2\nA = 1\n[[mass]]\nnode = \"n{0}\"\nmass = {2}\ninertia = 500\n",
-                         k, k - 1, 4000 + 500 * k);
+    parts += fmt::format(
+        "[[beam]]\nname = \"b{0}\"\nnodes = [\"n{1}\", \"n{0}\"]\nE = 2e10\nI = 0.2\nA = 1\n[[mass]]\nnode = \"n{0}\"\nmass = {2}\ninertia "
+        "= 500\n",
+        k, k - 1, 4000 + 500 * k);
   }
   return text + parts +
          "[[rigid]]\nname = \"footing\"\nnode = \"n0\"\nmass = 1e4\ninertia = 2e4\n"
          "[[interface]]\nname = \"soil\"\nfooting = { body = \"n0\", width = 4, thickness = 2, points = 8, rule = \"midpoint\" }\n"
          "law = { type = \"springs\", K_n = 1e8, K_t = 5e7, tangential = \"coulomb\", friction = 0.6 }\n"
          "[gravity]\nacceleration = [0, -9.81]\n[[function]]\nname = \"shake\"\nshape = { type = \"ricker\", frequency = 1.5 }\n"
-         "[[ground_acceleration]]\ndirection = [1, 0]\nfunction = \"shake\"\nfactor = 6\n[damping]\n" +
+         "[[ground_acceleration]]\ndirection = [1, 0]\nfunction = \"shake\"\namplitude = 6\n[damping]\n" +
          damping + "\n[[stage]]\ntype = \"static\"\n[[stage]]\ntype = \"dynamic\"\nduration = 2\nstep = 2e-3\n[output]\nenergies = true\n";
 }
 
@@ -94,7 +96,8 @@ TEST(ReducedRun, WithAFullBasisIsTheRunOfTheWholeModel) {
     const bool is_energy = k > 0 && full.columns[k - 1].unit == "J";
     const double size = is_energy ? energy : largest(full.table[k]);
     for (std::size_t i = 0; i < full.table[k].size(); ++i)
-      ASSERT_NEAR(reduced.table[k][i], full.table[k][i], 1e-10 * size + 1e-14) << (k == 0 ? "time" : full.columns[k - 1].name) << " row " << i;
+      ASSERT_NEAR(reduced.table[k][i], full.table[k][i], 1e-10 * size + 1e-14)
+          << (k == 0 ? "time" : full.columns[k - 1].name) << " row " << i;
   }
 }
 
@@ -144,8 +147,10 @@ TEST(ReducedRun, IsRefusedForAnotherStructureAndForOneThatChanges) {
   };
   EXPECT_EQ(refusal(with("step = 2e-3", "step = 1e-3"), reduced), "");
   EXPECT_EQ(refusal(with("friction = 0.6", "friction = 0.3"), reduced), "");
-  for (const auto& [from, to] : {std::pair<std::string, std::string>{"E = 2e10", "E = 2.0001e10"}, {"mass = 4500", "mass = 4501"},
-                                 {"ratio = 0.02", "ratio = 0.021"}, {"width = 4", "width = 4.1"}})
+  for (const auto& [from, to] : {std::pair<std::string, std::string>{"E = 2e10", "E = 2.0001e10"},
+                                 {"mass = 4500", "mass = 4501"},
+                                 {"ratio = 0.02", "ratio = 0.021"},
+                                 {"width = 4", "width = 4.1"}})
     EXPECT_NE(refusal(with(from, to), reduced).find("have changed since `uplift reduce`"), std::string::npos) << to;
   EXPECT_NE(refusal(with("type = \"dynamic\"", "type = \"dynamic\"\np_delta = true"), reduced).find("p_delta"), std::string::npos);
 }
