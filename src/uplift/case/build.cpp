@@ -333,6 +333,8 @@ std::vector<std::string> input_files(const Case& read) {
         const std::filesystem::path path = path_beside(law.where("library"), law.text("library"));
         if (std::filesystem::is_regular_file(path)) files.push_back(path.lexically_normal().string());  // else the law refuses it
       }
+  if (read.values.has("reduced_model"))
+    files.push_back(path_beside(read.values.where("reduced_model"), read.values.text("reduced_model")).lexically_normal().string());
   for (const Values& record : read.values.tables("record"))
     if (record.has("file")) files.push_back(record_path(record));
   for (const Values& variant : read.values.tables("variant"))

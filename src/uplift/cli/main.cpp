@@ -8,6 +8,7 @@
 #include "uplift/base/text.h"
 #include "uplift/cli/commands.h"
 #include "uplift/cli/console.h"
+#include "uplift/cli/reduce.h"
 #include "uplift/io/files.h"
 #include "uplift/linear/memory.h"
 
@@ -28,6 +29,8 @@ struct Choices {
   std::string name, family, method = "lagrange", shell = "bash", document = "case";
   uplift::cli::MotionOptions motion;
   uplift::cli::StudyOptions study;
+  uplift::ReduceOptions reduce;
+  std::vector<double> scale{0.5, 1.5};  // of `reduce`
   std::vector<std::string> words;  // of `soil`
   int modes = 6;
   bool all = false;
@@ -148,6 +151,31 @@ void declare(CLI::App& app, Choices& given) {
   take_output(command, options);
   take_json(command, options);
 
+  command = add(app, "reduce", "make a reduced model of a case, with which runs of the case take a fraction of the time",
+                "  uplift reduce tower --controls 19\n  uplift reduce tower --size 120 --out tower/coarse.rom\n"
+                "Then reduced_model = \"tower.rom\" in the case file makes its runs use it.");
+  take_case(command, options);
+  command->add_option("-o,--out", options.out,
+                      "the file (default NAME.rom beside the case file); an earlier one is moved to NAME.rom.1, ...");
+  command->add_option("-f,--frequency", given.reduce.frequency, "motions up to about this frequency [Hz] are represented (default 25)")
+      ->check(CLI::Range(0.01, 1e4));
+  command->add_option("--size", given.reduce.size, "number of coordinates; default: as many as the target asks for")
+      ->check(CLI::Range(1, 400));
+  command->add_option("--target", given.reduce.target, "largest transfer error where --size is not given (default 0.001)")
+      ->check(CLI::Range(1e-9, 0.5));
+  command
+      ->add_option("--controls", given.reduce.controls,
+                   "control runs, full and reduced, that state the error (59: 95 % of all runs with 95 % confidence)")
+      ->check(CLI::Range(0, 10000));
+  command
+      ->add_option("--scale", given.scale,
+                   "FROM,TO: the motions of the control runs are multiplied by factors between these (default 0.5,1.5)")
+      ->delimiter(',')
+      ->expected(2)
+      ->check(CLI::Range(0.0, 1e6));
+  command->add_option("--seed", given.reduce.seed, "of the random numbers of the control runs (default 1)");
+  command->add_flag("-q,--quiet", options.quiet, "print errors only");
+
   command = add(app, "modes", "compute natural frequencies and mode shapes, with the base bonded and with the base free",
                 "  uplift modes tower\n  uplift modes tower --count 10 --json");
   take_case(command, options);
@@ -215,6 +243,11 @@ int dispatch(const CLI::App& app, const Choices& given) {
   if (name == "resume") return cli::resume(given.options);
   if (name == "compare") return cli::compare(given.options);
   if (name == "trust") return cli::trust(given.options);
+  if (name == "reduce") {
+    ReduceOptions wanted = given.reduce;
+    wanted.least_scale = given.scale.front(), wanted.most_scale = given.scale.back();
+    return cli::reduce(given.options, wanted);
+  }
   if (name == "modes") return cli::modes(given.options, given.modes);
   if (name == "soil") return cli::soil(given.options, given.words);
   if (name == "describe") return cli::describe(given.family, given.name);

@@ -7,6 +7,7 @@
 
 #include "uplift/dynamics/split_response.h"
 #include "uplift/math/small.h"
+#include "uplift/model/reduced.h"
 
 namespace uplift {
 
@@ -37,7 +38,7 @@ Sparse second_order(const Model& model, const Sparse* geometric) {
 Bulk::Bulk(const Model& model, const Sparse* axial)
     : second_order_(second_order(model, axial)),
       unknowns(model.free()),
-      small(model.free() <= small_bulk),
+      small(model.free() <= small_bulk || is_reduced(model)),
       stiffness_matrix(axial != nullptr ? second_order_ : model.stiffness),
       mass_matrix(model.mass),
       damping_matrix(model.damping),

@@ -233,11 +233,13 @@ void Runner::begin() {
 /// Takes over a kept state; false when it does not fit the model or the plan.
 bool Runner::resume() {
   const RunState& from = *keeping_.from;
-  const State& state = from.march.state;
-  if (from.stage >= plan_.stages.size() || plan_.stages[from.stage].type != Stage::Type::dynamics || from.step < 1 ||
-      state.displacement.size() != model_.free() || state.opening.size() != b_.rows() || state.history.size() != laws_->history ||
-      from.result.table.size() != plan_.requests.size() + 1 || from.result.floors.size() != plan_.floors.size() ||
-      from.result.envelopes.size() != plan_.envelopes.size() || from.result.steps.extremes.size() != model_.interfaces.size())
+  const State& state = from.step > 0 ? from.march.state : from.state;
+  if (from.stage >= plan_.stages.size() || plan_.stages[from.stage].type != Stage::Type::dynamics || from.step < 0 ||
+      state.displacement.size() != model_.free() || state.opening.size() != b_.rows() || state.history.size() != laws_->history)
+    return false;
+  if (from.step > 0 &&
+      (from.result.table.size() != plan_.requests.size() + 1 || from.result.floors.size() != plan_.floors.size() ||
+       from.result.envelopes.size() != plan_.envelopes.size() || from.result.steps.extremes.size() != model_.interfaces.size()))
     return false;
   run_ = from;
   run_.result.columns = plan_.requests;
@@ -259,10 +261,11 @@ void Runner::run_stages() {
     }
     if (stage.p_delta && geometric_ == nullptr && !second_order()) return;
     if (rest_ != nullptr) release();
-    if (!run_.ledger && run_.step == 0) {  // the first dynamic stage begins
+    if (!run_.ledger && run_.step == 0 && keeping_.from == nullptr) {  // the first dynamic stage begins
       if (run_.stage > 0) note_rest();
       add_initial_state();
       rotations_ = rotations_on_interfaces(model_, b_);
+      if (keeping_.begin) return keeping_.begin(run_);
     }
     const Bulk stage_bulk(plan_.solver->matrices_of(model_), geometric_.get());
     if (!dynamics(stage, stage_bulk)) return;

@@ -53,6 +53,9 @@ struct Keeping {
   /// and a run that begins with it takes the same steps to the last bit.
   std::function<void(const RunState&)> keep;
   long every = 256;
+  /// Called where the first dynamic stage begins, with the static stages and the initial state behind it; the run ends there. Another run
+  /// of the same stages can begin with this state, also one of a reduced model with the state in its coordinates. Empty: the run goes on.
+  std::function<void(const RunState&)> begin;
   const RunState* from = nullptr;  // where the run begins: a state of a run with the same model, plan and `every`; null: at the beginning
 };
 

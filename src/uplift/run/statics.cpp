@@ -4,6 +4,7 @@
 
 #include "uplift/dynamics/plastic_bulk.h"
 #include "uplift/model/geometric.h"
+#include "uplift/model/reduced.h"
 #include "uplift/run/buckling.h"
 #include "uplift/run/runner.h"
 
@@ -11,6 +12,7 @@ namespace uplift {
 
 std::vector<int> rotations_on_interfaces(const Model& model, const Sparse& b) {
   std::vector<int> rotations;
+  if (is_reduced(model)) return rotations;  // its unknowns are not those of nodes
   for (int column = 0; column < b.outerSize(); ++column)
     if (Sparse::InnerIterator(b, column) && model.space.is_rotation(model.kept[static_cast<std::size_t>(column)]))
       rotations.push_back(column);

@@ -38,6 +38,7 @@ void run_all(const LoadedCase& loaded, const Control& control, const std::vector
     results.specs.push_back(spec);
     BuiltCase& built = results.built.emplace_back(build_run(*mine, in_its_case(loaded, *mine, spec)));
     if (results.runs.empty()) results.warnings = warnings(loaded.read, spec, built);
+    if (results.runs.empty()) add_statement(loaded, results.warnings);
     if (!spec.other_case.empty()) add_warnings_of_other(mine->read, spec, built, results.warnings);
     const std::string label = fmt::format("[{}/{}] {}", before + results.runs.size() + 1, total, spec.name);
     RunResult& run = results.runs.emplace_back(run_built(*mine, built, label, control, false, with_fields ? &results.field_lists : nullptr,

@@ -10,6 +10,7 @@
 #include "uplift/io/mesh/file.h"
 #include "uplift/io/text/json_reader.h"
 #include "uplift/io/text/toml.h"
+#include "uplift/session/reduce.h"
 
 namespace uplift {
 namespace fs = std::filesystem;
@@ -25,6 +26,8 @@ LoadedCase checked(Raw raw, const std::string& text, const std::string& file, co
   };
   loaded.read = check_case(loaded.raw, file, loaded.read_mesh);
   Provenance& from = loaded.from;
+  from.reduced = read_reduced_model_of(loaded.read.values);
+  if (from.reduced != nullptr) from.reduced_file = loaded.read.values.text("reduced_model");
   from.title = loaded.read.values.text("title");
   if (loaded.read.values.has("description")) from.subtitle = loaded.read.values.text("description");
   from.command = command;

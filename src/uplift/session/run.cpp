@@ -62,6 +62,7 @@ Results run_case(const LoadedCase& loaded, const Control& control) {
     results.built.push_back(build_run(loaded, spec));
     if (first) companions.begin(results.built.front());
     if (first) results.warnings = warnings(loaded.read, spec, results.built.front());
+    if (first) add_statement(loaded, results.warnings);
     results.runs.push_back(
         run_built(loaded, results.built.back(), spec.label, control, first, &results.field_lists, first ? "histories.csv" : ""));
     free_matrices(results.built.back());

@@ -5,6 +5,7 @@
 #include "uplift/run/run_state.h"
 #include "uplift/session/checkpoint.h"
 #include "uplift/session/history_file.h"
+#include "uplift/session/reduce.h"
 
 namespace uplift {
 
@@ -45,7 +46,7 @@ BuiltCase build_run(const LoadedCase& loaded, const RunSpec& spec) {
   return built;
 }
 
-RunResult run_built(const LoadedCase& loaded, const BuiltCase& built, const std::string& label, const Control& control, bool first,
+RunResult run_built(const LoadedCase& loaded, BuiltCase& built, const std::string& label, const Control& control, bool first,
                     std::vector<std::string>* field_lists, const std::string& histories) {
   Watch watch;
   if (control.watch) watch = control.watch(label);
@@ -58,6 +59,14 @@ RunResult run_built(const LoadedCase& loaded, const BuiltCase& built, const std:
     keeping.follow = [&](const RunResult& so_far) { file->follow(so_far); };
   }
   KeptRun kept(control.checkpoints, label, built.model.free());
+  std::optional<RunState> begin;
+  if (const ReducedModel* reduced = loaded.from.reduced.get(); reduced != nullptr) {
+    const Values& root = loaded.read.values;
+    RunResult resting;
+    begin = begin_reduced(*reduced, root.where("reduced_model"), built, watch, resting);
+    if (!begin) return resting;
+    keeping.from = &*begin;
+  }
   kept.attach(keeping, watch);
   if (field_lists == nullptr || control.folder == nullptr || !loaded.read.values.table("output").has("fields"))
     return run(built.model, built.plan, built.behaviours, watch, observe, &keeping);
@@ -70,6 +79,10 @@ RunResult run_built(const LoadedCase& loaded, const BuiltCase& built, const std:
   fields.finish(result);
   field_lists->push_back(fields.list());
   return result;
+}
+
+void add_statement(const LoadedCase& loaded, std::vector<std::string>& warnings) {
+  if (loaded.from.reduced != nullptr) warnings.insert(warnings.begin(), loaded.from.reduced->statement(loaded.from.reduced_file));
 }
 
 void free_matrices(BuiltCase& built) {

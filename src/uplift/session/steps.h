@@ -13,9 +13,12 @@ std::shared_ptr<const LoadedCase> case_of(const LoadedCase& loaded, const RunSpe
 /// have.
 BuiltCase build_run(const LoadedCase& loaded, const RunSpec& spec);
 /// Runs it, observed by the caller where it is the first one, and writes its fields where the case asks for them and there is a folder.
-/// `histories`: file of the folder to which its rows are written while it runs; empty: none.
-RunResult run_built(const LoadedCase& loaded, const BuiltCase& built, const std::string& label, const Control& control, bool first,
+/// With a reduced model the model of `built` is put into its coordinates. `histories`: file of the folder to which its rows are written
+/// while it runs; empty: none.
+RunResult run_built(const LoadedCase& loaded, BuiltCase& built, const std::string& label, const Control& control, bool first,
                     std::vector<std::string>* field_lists, const std::string& histories = {});
+/// What is known of the error of the reduced model, where the case names one.
+void add_statement(const LoadedCase& loaded, std::vector<std::string>& warnings);
 /// Frees the matrices of a model whose run is over: results are written without them.
 void free_matrices(BuiltCase& built);
 

@@ -19,6 +19,9 @@ void refuse_external(const BuiltCase& built) {
 }  // namespace
 
 Results trust_case(const LoadedCase& loaded, const Control& control) {
+  if (loaded.from.reduced != nullptr)
+    throw InputError(loaded.read.values.where("reduced_model"), "reduced_model", "the whole model for a statement of reliability",
+                     "a reduced model, which belongs to one mesh and one damping");
   Results results;
   for (const RunSpec& spec : runs_of_case(loaded.read)) {
     const bool first = results.runs.empty();

@@ -319,6 +319,10 @@ const Section& case_section() {
                    "none from 300 unknown forces on (automatic), a factor every time (direct), conjugate residuals on the compliance "
                    "(krylov)")
                 .standard("automatic"),
+            text("reduced_model",
+                 "file of a reduced model of this case, made by `uplift reduce`, with which dynamic stages are computed; absent: the whole "
+                 "model")
+                .optional(),
             table("energy", energy_section(), "energy gate"),
             table("limits", limits_section(), "limits"),
             table("output", output_section(), "output"),

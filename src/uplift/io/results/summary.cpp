@@ -148,6 +148,34 @@ void write_provenance(ResultWriter& out, const Provenance& from) {
   });
 }
 
+/// The reduced model that was used, with the statement of its error.
+void write_reduced(ResultWriter& out, const Provenance& from) {
+  static const ReducedModel none;
+  static const ControlErrors no_errors;
+  const ReducedModel& reduced = from.reduced ? *from.reduced : none;
+  const ControlErrors& errors = reduced.controls ? *reduced.controls : no_errors;
+  out.when(from.reduced != nullptr).object("reduced_model", "the reduced model with which the dynamic stages were computed", [&] {
+    out.text("file", from.reduced_file, "its file");
+    out.count("coordinates", reduced.vectors.cols(), "coordinates of its basis");
+    out.count("unknowns", reduced.vectors.rows(), "unknowns of the whole model");
+    out.number("frequency", reduced.frequency, "Hz", "highest frequency of the motions that it was made for");
+    out.number("transfer_error", reduced.transfer_error, "1", "error of the linear response to loads that it was not made of");
+    out.when(reduced.controls.has_value() || !from.reduced);
+    out.object("control_errors", "largest errors over the control runs, as shares of the values of the whole model", [&] {
+      out.count("runs", errors.runs, "control runs");
+      out.count("different", errors.different, "control runs whose outcome was another one; left out");
+      out.text("motions", errors.motions, "what was drawn at random");
+      out.number("least_scale", errors.least_scale, "1", "smallest factor of the motions");
+      out.number("most_scale", errors.most_scale, "1", "largest factor of the motions");
+      out.number("confidence", errors.confidence(), "1", "with which each of the errors bounds that of 95 % of the runs drawn like these");
+      out.number("opening", errors.opening, "1", "error of the largest opening");
+      out.number("moment", errors.moment, "1", "error of the largest base moment");
+      out.number("history", errors.history, "1", "error of the openings over time, 2-norm");
+      out.number("floor_spectrum", errors.floor_spectrum, "1", "error of the broadened floor spectra; 0: none were asked for");
+    });
+  });
+}
+
 void write_interfaces(ResultWriter& out, const BuiltCase* built) {
   struct Joint {
     const Interface* interface = nullptr;
@@ -188,6 +216,7 @@ void write_summary(ResultWriter& out, const SummaryInput& input) {
   const BuiltCase* first = input.built && !input.built->empty() ? &input.built->front() : nullptr;
   static const FloorAnswers none;
   write_provenance(out, input.from);
+  write_reduced(out, input.from);
   write_motions(out, input.motions);
   write_interfaces(out, first);
   out.list("runs", "the runs; the first one is that of the verdict", entries_of(input), [&](const Entry& entry) { write_run(out, entry); });

@@ -1,8 +1,10 @@
 #pragma once
+#include <memory>
 #include <string>
 #include <utility>
 #include <vector>
 
+#include "uplift/reduction/reduced_model.h"
 #include "uplift/verdict/compare.h"
 #include "uplift/verdict/compare_motions.h"
 #include "uplift/verdict/floor_spectra.h"
@@ -17,6 +19,8 @@ struct Provenance {
   std::string case_file, case_hash;                         // SHA-256 of the case file
   std::vector<std::pair<std::string, std::string>> inputs;  // other input files with their SHA-256
   std::string resolved;                                     // the case with all defaults, TOML
+  std::shared_ptr<const ReducedModel> reduced;              // with which dynamic stages are computed; null: with the whole model
+  std::string reduced_file;                                 // as the case names it
 };
 
 /// What `uplift compare` adds.

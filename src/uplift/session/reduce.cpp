@@ -1,0 +1,229 @@
+#include "uplift/session/reduce.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+#include <filesystem>
+#include <random>
+#include <utility>
+
+#include "uplift/base/file.h"
+#include "uplift/base/text.h"
+#include "uplift/dynamics/plastic_bulk.h"
+#include "uplift/reduction/projection.h"
+#include "uplift/reduction/training.h"
+#include "uplift/session/steps.h"
+
+namespace uplift {
+
+namespace {
+
+constexpr const char* key = "reduced_model";
+
+/// Of the present state of the input: what a reduced model does not represent, in words; empty without any.
+std::string not_represented(const BuiltCase& built) {
+  const RunPlan& plan = built.plan;
+  if (dynamic_stage(plan) == nullptr) return "static stages alone";
+  if (PlasticBulk(built.model).any()) return "a solid that yields";
+  if (std::ranges::any_of(plan.stages, &Stage::p_delta)) return "p_delta, which changes the stiffness";
+  if (!stopping_stages(plan).empty()) return "a static stage after a dynamic one";
+  const auto is_cone = [](const Interface& interface) { return interface.cone != nullptr; };
+  if (!plan.method->constrains() && std::ranges::any_of(built.model.interfaces, is_cone))
+    return "a penalty, which follows from the structure";
+  const auto is_force = [](const Request& request) { return request.kind == Request::Kind::force; };
+  if (!plan.envelopes.empty() || std::ranges::any_of(plan.requests, is_force)) return "an output of forces inside the structure";
+  return {};
+}
+
+void refuse(const BuiltCase& built, const Where& where) {
+  if (std::string found = not_represented(built); !found.empty())
+    throw InputError(where, key,
+                     "an elastic structure whose stiffness does not change, in dynamic stages, with outputs of motions and of "
+                     "interfaces, for a reduced model",
+                     found);
+}
+
+/// The vector in coordinates of the basis; exact where the basis holds it.
+Vector coordinates(const EnergyProduct& product, const Matrix& basis, const Vector& x) {
+  return basis.transpose() * product.times(x);
+}
+
+/// Full unknowns whose accelerations are asked for.
+std::vector<int> floor_unknowns(const BuiltCase& built) {
+  std::vector<int> unknowns;
+  for (const FloorRequest& floor : built.plan.floors)
+    for (int axis = 0; axis < built.model.space.dimension; ++axis)
+      if (floor.direction[axis] != 0) unknowns.push_back(built.model.space.unknowns() * floor.node + axis);
+  if (unknowns.empty() && built.top >= 0) unknowns.push_back(built.top_sway());
+  return unknowns;
+}
+
+/// The motions of a case times a factor.
+void scale_motions(Model& model, double factor) {
+  for (TimeLoad& load : model.time_loads)
+    if (!load.constant && !load.dead) load.shape *= factor;
+  for (TimeLoadTable& table : model.time_load_tables) table.pattern *= factor;
+  for (PrescribedMotion& motion : model.motions) motion.shape *= factor, motion.opening *= factor;
+  for (GroundAcceleration& ground : model.grounds) ground.direction *= factor;
+}
+
+/// One run for the control of another: its openings over time and its floor spectra.
+struct ControlRun {
+  RunResult result;
+  std::vector<Vector> openings;  // of all rows, at the beginning and after every step
+  std::vector<FloorSpectra> floors;
+};
+
+ControlRun control_run(BuiltCase built, const ReducedModel* reduced, const Watch& watch) {
+  ControlRun made;
+  built.plan.frames = 0;
+  const Observe observe = [&](const Snapshot& at) {
+    if (at.stepper != nullptr) made.openings.push_back(at.state.opening);
+  };
+  Keeping keeping;
+  std::optional<RunState> begin;
+  if (reduced != nullptr) {
+    begin = begin_reduced(*reduced, {}, built, watch, made.result);
+    if (!begin) return made;
+    keeping.from = &*begin;
+  }
+  made.result = run(built.model, built.plan, built.behaviours, watch, observe, &keeping);
+  made.floors = floor_spectra(built.plan, made.result);
+  return made;
+}
+
+void take(double& most, double full, double reduced) {
+  if (full != 0) most = std::max(most, std::abs(reduced - full) / std::abs(full));
+}
+
+void take_history(const ControlRun& full, const ControlRun& reduced, ControlErrors& errors) {
+  double difference = 0, size = 0;
+  for (std::size_t i = 0; i < std::min(full.openings.size(), reduced.openings.size()); ++i) {
+    difference += (full.openings[i] - reduced.openings[i]).squaredNorm();
+    size += (full.openings[i] - full.openings.front()).squaredNorm();
+  }
+  if (size > 0) errors.history = std::max(errors.history, std::sqrt(difference / size));
+}
+
+void take_floors(const ControlRun& full, const ControlRun& reduced, double highest, ControlErrors& errors) {
+  for (std::size_t k = 0; k < std::min(full.floors.size(), reduced.floors.size()); ++k) {
+    const FloorSpectra &one = full.floors[k], &other = reduced.floors[k];
+    const bool broadened = !one.broadened.empty();
+    const std::vector<Spectrum>&spectra = broadened ? one.broadened : one.raw, &others = broadened ? other.broadened : other.raw;
+    for (std::size_t d = 0; d < spectra.size(); ++d)
+      for (std::size_t i = 0; i < spectra[d].values.size(); ++i)
+        if (const double frequency = spectra[d].frequencies[i]; frequency <= highest)
+          take(errors.floor_spectrum, spectra[d].values[i], value_at(others[d], frequency));
+  }
+}
+
+ControlErrors control_errors(const LoadedCase& loaded, const ReducedModel& reduced, const ReduceOptions& options, const Control& control) {
+  RunSpec own = runs_of_case(loaded.read).front();
+  own.pictures = false;
+  std::vector<const Values*> motions{nullptr};
+  if (loaded.read.values.has("compare"))
+    for (const Values& motion : loaded.read.values.table("compare").tables("motion")) motions.push_back(&motion);
+  ControlErrors errors;
+  errors.runs = options.controls;
+  errors.least_scale = options.least_scale, errors.most_scale = options.most_scale;
+  errors.motions = motions.size() == 1 ? "the motion of the case" : fmt::format("one of the {} motions of the case", motions.size());
+  errors.motions += " with either sign";
+  std::mt19937_64 random(options.seed);
+  const auto share = [&] { return static_cast<double>(random() >> 11U) * 0x1p-53; };
+  for (int k = 0; k < options.controls && !control.is_stopped(); ++k) {
+    RunSpec spec = own;
+    spec.motion = motions[static_cast<std::size_t>(share() * static_cast<double>(motions.size()))];
+    const double scale = (share() < 0.5 ? -1 : 1) * (options.least_scale + (options.most_scale - options.least_scale) * share());
+    const auto make = [&] {
+      BuiltCase built = build_run(loaded, spec);
+      scale_motions(built.model, scale);
+      return built;
+    };
+    const std::string label = fmt::format("control run {} of {}", k + 1, options.controls);
+    const auto watch = [&](const std::string& which) { return control.watch ? control.watch(label + which) : Watch(); };
+    const ControlRun full = control_run(make(), nullptr, watch("")), other = control_run(make(), &reduced, watch(", reduced"));
+    if (full.result.status != other.result.status) {
+      ++errors.different;
+      continue;
+    }
+    take(errors.opening, full.result.max_opening.value, other.result.max_opening.value);
+    take(errors.moment, full.result.max_base_moment.value, other.result.max_base_moment.value);
+    take_history(full, other, errors);
+    take_floors(full, other, reduced.frequency, errors);
+  }
+  return errors;
+}
+
+}  // namespace
+
+std::optional<ReducedModel> reduce_case(const LoadedCase& loaded, const ReduceOptions& options, const Control& control) {
+  const Where where = loaded.read.values.where();
+  RunSpec spec = runs_of_case(loaded.read).front();
+  spec.pictures = false;
+  std::optional<ReducedModel> reduced(std::in_place);
+  {
+    const BuiltCase built = build_run(loaded, spec);
+    refuse(built, where);
+    TrainingOptions training{.frequency = options.frequency, .size = options.size, .target = options.target};
+    for (const Stage& stage : built.plan.stages)
+      if (stage.type == Stage::Type::dynamics) training.duration += stage.duration;
+    training.floors = floor_unknowns(built);
+    if (const Watch watch = control.watch ? control.watch("basis") : Watch(); watch)
+      training.go_on = [watch, &training](double share) {
+        return watch({.fraction = share, .time = share * training.duration, .step = training.duration});
+      };
+    Basis basis = train(built.model, *built.plan.solver, training);
+    if (control.is_stopped()) return {};
+    if (!basis.why.empty()) throw InputError(where, "", "a structure with a reduced model", basis.why);
+    reduced->version = UPLIFT_VERSION;
+    reduced->matrices = matrices_hash(built.model);
+    reduced->frequency = options.frequency;
+    reduced->energy_frequency = basis.energy_frequency;
+    reduced->transfer_error = basis.transfer_error;
+    reduced->rigid = basis.rigid;
+    reduced->vectors = std::move(basis.vectors);
+  }
+  if (options.controls > 0) {
+    ControlErrors errors = control_errors(loaded, *reduced, options, control);
+    if (control.is_stopped()) return {};
+    reduced->controls = std::move(errors);
+  }
+  return reduced;
+}
+
+std::shared_ptr<const ReducedModel> read_reduced_model_of(const Values& root) {
+  if (!root.has(key)) return nullptr;
+  const std::filesystem::path path = path_beside(root.where(key), root.text(key));
+  std::string why;
+  std::optional<ReducedModel> found = read_reduced_model(read_file(path), why);
+  if (!found) throw InputError(root.where(key), key, "a file that `uplift reduce` has written", in_quotes(path.string()) + ": " + why);
+  return std::make_shared<const ReducedModel>(std::move(*found));
+}
+
+std::optional<RunState> begin_reduced(const ReducedModel& reduced, const Where& where, BuiltCase& built, const Watch& watch,
+                                      RunResult& result) {
+  refuse(built, where);
+  if (matrices_hash(built.model) != reduced.matrices)
+    throw InputError(where, key, "the reduced model of this structure",
+                     "that of another one: its stiffness, mass, damping, absorbing faces or mesh have changed since `uplift reduce`");
+  std::optional<RunState> begin;
+  Keeping keeping;
+  keeping.begin = [&](const RunState& state) { begin = state; };
+  result = run(built.model, built.plan, built.behaviours, watch, {}, &keeping);
+  if (!begin) return {};
+  const EnergyProduct product(built.model.stiffness, built.model.mass, reduced.energy_frequency);
+  Matrix basis = reduced.vectors;
+  constexpr double least = 1e-11;  // share of the state that is left out
+  State& state = begin->state;
+  for (const Vector* part : {&state.displacement, &state.velocity}) append(product, *part, least, basis);
+  state.displacement = coordinates(product, basis, state.displacement);
+  state.velocity = coordinates(product, basis, state.velocity);
+  state.acceleration.setZero(basis.cols());
+  if (begin->held.size() > 0) begin->held = (basis.transpose() * begin->held).eval();
+  project(built.model, basis);
+  built.plan.rest.reset();
+  return begin;
+}
+
+}  // namespace uplift

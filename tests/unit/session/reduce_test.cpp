@@ -1,0 +1,207 @@
+// Runs with a reduced model: equal to those of the whole model with a full basis, never energy from nothing with any other, refused where
+// the structure has changed.
+#include "uplift/session/reduce.h"
+
+#include <fmt/format.h>
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <cmath>
+#include <random>
+
+#include "uplift/reduction/projection.h"
+#include "uplift/session/steps.h"
+
+namespace uplift {
+namespace {
+
+/// A tower of `beams` beams with masses, 4 m wide at its base on springs with friction that may lift off, pushed by an earthquake of one
+/// sine with growing amplitude.
+std::string tower(int beams,
+                  const std::string& damping = "rayleigh = [{ frequency = 1, ratio = 0.02 }, { frequency = 10, ratio = 0.02 }]") {
+  std::string text = "title = \"tower\"\nbonded = false\n[nodes]\nn0 = [0, 0]\n", parts;
+  for (int k = 1; k <= beams; ++k) {
+    text += fmt::format("n{} = [0, {}]\n", k, 2.5 * k);
+    parts += fmt::format(
+        "[[beam]]\nname = \"b{0}\"\nnodes = [\"n{1}\", \"n{0}\"]\nE = 2e10\nI = 0.2\nA = 1\n[[mass]]\nnode = \"n{0}\"\nmass = {2}\ninertia "
+        "= 500\n",
+        k, k - 1, 4000 + 500 * k);
+  }
+  return text + parts +
+         "[[rigid]]\nname = \"footing\"\nnode = \"n0\"\nmass = 1e4\ninertia = 2e4\n"
+         "[[interface]]\nname = \"soil\"\nfooting = { body = \"n0\", width = 4, thickness = 2, points = 8, rule = \"midpoint\" }\n"
+         "law = { type = \"springs\", K_n = 1e8, K_t = 5e7, tangential = \"coulomb\", friction = 0.6 }\n"
+         "[gravity]\nacceleration = [0, -9.81]\n[[function]]\nname = \"shake\"\nshape = { type = \"ricker\", frequency = 1.5 }\n"
+         "[[ground_acceleration]]\ndirection = [1, 0]\nfunction = \"shake\"\namplitude = 6\n[damping]\n" +
+         damping + "\n[[stage]]\ntype = \"static\"\n[[stage]]\ntype = \"dynamic\"\nduration = 2\nstep = 2e-3\n[output]\nenergies = true\n";
+}
+
+LoadedCase loaded(const std::string& text) {
+  return load_case_text(text, "case.toml", "test", MeshFiles::in_process);
+}
+
+BuiltCase built_of(const LoadedCase& read) {
+  return build_run(read, runs_of_case(read.read).front());
+}
+
+constexpr double w = 60;  // rad/s
+
+/// Random vectors, orthonormal in the energy product.
+ReducedModel random_basis(const Model& model, Index size, unsigned seed) {
+  const EnergyProduct product(model.stiffness, model.mass, w);
+  std::mt19937 random(seed);
+  std::normal_distribution<double> normal;
+  ReducedModel reduced;
+  reduced.matrices = matrices_hash(model);
+  reduced.energy_frequency = w;
+  reduced.vectors.resize(model.free(), 0);
+  while (reduced.vectors.cols() < size) {
+    Vector x(model.free());
+    for (double& value : x) value = normal(random);
+    append(product, x, 1e-8, reduced.vectors);
+  }
+  return reduced;
+}
+
+RunResult run_reduced(const LoadedCase& read, const ReducedModel& reduced) {
+  BuiltCase built = built_of(read);
+  RunResult result;
+  const std::optional<RunState> begin = begin_reduced(reduced, {}, built, {}, result);
+  EXPECT_TRUE(begin) << result.reason;
+  Keeping keeping;
+  keeping.from = &*begin;
+  return run(built.model, built.plan, built.behaviours, {}, {}, &keeping);
+}
+
+double largest(const std::vector<double>& values) {
+  double most = 0;
+  for (const double value : values) most = std::max(most, std::abs(value));
+  return most;
+}
+
+TEST(ReducedRun, WithAFullBasisIsTheRunOfTheWholeModel) {
+  const LoadedCase read = loaded(tower(4));
+  const BuiltCase built = built_of(read);
+  const RunResult full = run(built.model, built.plan, built.behaviours);
+  ASSERT_EQ(full.status, RunStatus::completed) << full.reason;
+  ASSERT_GT(full.max_uplifted_ratio.value, 0.3);
+  const RunResult reduced = run_reduced(read, random_basis(built.model, built.model.free(), 1));
+  ASSERT_EQ(reduced.status, RunStatus::completed) << reduced.reason;
+  ASSERT_EQ(reduced.table.size(), full.table.size());
+  double energy = 0;
+  for (std::size_t k = 1; k < full.table.size(); ++k)
+    if (full.columns[k - 1].unit == "J") energy = std::max(energy, largest(full.table[k]));
+  for (std::size_t k = 0; k < full.table.size(); ++k) {
+    ASSERT_EQ(reduced.table[k].size(), full.table[k].size());
+    const bool is_energy = k > 0 && full.columns[k - 1].unit == "J";
+    const double size = is_energy ? energy : largest(full.table[k]);
+    for (std::size_t i = 0; i < full.table[k].size(); ++i)
+      ASSERT_NEAR(reduced.table[k][i], full.table[k][i], 1e-10 * size + 1e-14)
+          << (k == 0 ? "time" : full.columns[k - 1].name) << " row " << i;
+  }
+}
+
+TEST(ReducedRun, KeepsTheStaticStateInAnyBasis) {
+  const LoadedCase read = loaded(tower(3));
+  const BuiltCase built = built_of(read);
+  const RunResult full = run(built.model, built.plan, built.behaviours), reduced = run_reduced(read, random_basis(built.model, 2, 3));
+  for (std::size_t k = 1; k < full.table.size(); ++k)
+    EXPECT_NEAR(reduced.table[k].front(), full.table[k].front(), 1e-9 * std::max(1e-6, largest(full.table[k]))) << full.columns[k - 1].name;
+  ASSERT_EQ(reduced.load_steps.size(), full.load_steps.size());
+  EXPECT_EQ(reduced.load_steps, full.load_steps);
+}
+
+TEST(ReducedRun, NeverCreatesEnergyWhateverTheBasis) {
+  for (unsigned seed = 1; seed <= 12; ++seed) {
+    const LoadedCase read = loaded(tower(2 + static_cast<int>(seed % 3)));
+    const BuiltCase built = built_of(read);
+    const Index size = 1 + static_cast<Index>(seed) % (built.model.free() - 1);
+    const RunResult reduced = run_reduced(read, random_basis(built.model, size, seed));
+    ASSERT_EQ(reduced.status, RunStatus::completed) << "seed " << seed << ": " << reduced.reason;
+    EXPECT_LE(reduced.energy_created, 1e-10 * reduced.energy_scale) << "seed " << seed;
+    EXPECT_LE(reduced.energy_lost, 1e-10 * reduced.energy_scale) << "seed " << seed;
+  }
+}
+
+std::string refusal(const std::string& text, const ReducedModel& reduced) {
+  const LoadedCase read = loaded(text);
+  BuiltCase built = built_of(read);
+  RunResult result;
+  try {
+    begin_reduced(reduced, {}, built, {}, result);
+  } catch (const InputError& error) {
+    return error.what();
+  }
+  return {};
+}
+
+TEST(ReducedRun, IsRefusedForAnotherStructureAndForOneThatChanges) {
+  const BuiltCase built = built_of(loaded(tower(2)));
+  const ReducedModel reduced = random_basis(built.model, 4, 1);
+  const std::string given = tower(2);
+  EXPECT_EQ(refusal(given, reduced), "");
+  const auto with = [&](const std::string& from, const std::string& to) {
+    std::string text = given;
+    text.replace(text.find(from), from.size(), to);
+    return text;
+  };
+  EXPECT_EQ(refusal(with("step = 2e-3", "step = 1e-3"), reduced), "");
+  EXPECT_EQ(refusal(with("friction = 0.6", "friction = 0.3"), reduced), "");
+  for (const auto& [from, to] : {std::pair<std::string, std::string>{"E = 2e10", "E = 2.0001e10"},
+                                 {"mass = 4500", "mass = 4501"},
+                                 {"ratio = 0.02", "ratio = 0.021"},
+                                 {"width = 4", "width = 4.1"}})
+    EXPECT_NE(refusal(with(from, to), reduced).find("have changed since `uplift reduce`"), std::string::npos) << to;
+  EXPECT_NE(refusal(with("type = \"dynamic\"", "type = \"dynamic\"\np_delta = true"), reduced).find("p_delta"), std::string::npos);
+}
+
+TEST(ReducedCase, IsChosenByItsTransferErrorAndCloseToTheWholeModel) {
+  const LoadedCase read = loaded(tower(12));
+  ReduceOptions options{.target = 1e-4, .controls = 3, .least_scale = 0.8, .most_scale = 1.2};
+  const std::optional<ReducedModel> reduced = reduce_case(read, options, {});
+  ASSERT_TRUE(reduced);
+  EXPECT_LE(reduced->transfer_error, 1e-4);
+  EXPECT_LT(reduced->vectors.cols(), reduced->vectors.rows());
+  ASSERT_TRUE(reduced->controls);
+  EXPECT_EQ(reduced->controls->runs, 3);
+  EXPECT_EQ(reduced->controls->different, 0);
+  EXPECT_LT(reduced->controls->opening, 0.01);
+  EXPECT_LT(reduced->controls->moment, 0.02);
+  EXPECT_LT(reduced->controls->history, 0.02);
+  EXPECT_NEAR(reduced->controls->confidence(), 1 - 0.95 * 0.95 * 0.95, 1e-15);
+
+  options.controls = 0, options.size = 3;
+  const std::optional<ReducedModel> small = reduce_case(read, options, {});
+  ASSERT_TRUE(small);
+  EXPECT_EQ(small->vectors.cols(), 3);
+  EXPECT_GT(small->transfer_error, reduced->transfer_error);
+}
+
+TEST(ReducedModelFile, IsReadAsWrittenAndRefusedWithAnyBitFlippedOrCutAnywhere) {
+  ReducedModel written;
+  written.version = "1", written.matrices = "ab", written.frequency = 25, written.energy_frequency = w, written.transfer_error = 1e-3;
+  written.vectors = Matrix::Random(5, 3);
+  written.controls.emplace();
+  written.controls->runs = 59, written.controls->opening = 0.01;
+  const std::string bytes = write_reduced_model(written);
+  std::string why;
+  const std::optional<ReducedModel> read = read_reduced_model(bytes, why);
+  ASSERT_TRUE(read) << why;
+  EXPECT_TRUE(read->vectors == written.vectors);
+  EXPECT_EQ(read->matrices, "ab");
+  ASSERT_TRUE(read->controls);
+  EXPECT_EQ(read->controls->opening, 0.01);
+  EXPECT_NEAR(read->controls->confidence(), 0.9515, 5e-5);  // Wilks
+  std::mt19937 random(1);
+  std::uniform_int_distribution<std::size_t> any_byte(0, bytes.size() - 1);
+  for (int i = 0; i < 1000; ++i) {
+    std::string changed = bytes;
+    changed[any_byte(random)] ^= static_cast<char>(1 << (i % 8));
+    ASSERT_FALSE(read_reduced_model(changed, why)) << i;
+    ASSERT_FALSE(why.empty());
+  }
+  for (std::size_t size = 0; size < bytes.size(); ++size) ASSERT_FALSE(read_reduced_model(std::string_view(bytes).substr(0, size), why));
+}
+
+}  // namespace
+}  // namespace uplift
