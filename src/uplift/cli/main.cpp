@@ -31,7 +31,7 @@ struct Choices {
   uplift::cli::StudyOptions study;
   uplift::ReduceOptions reduce;
   std::vector<double> scale{0.5, 1.5};  // of `reduce`
-  std::vector<std::string> words;  // of `soil`
+  std::vector<std::string> words;       // of `soil`
   int modes = 6;
   bool all = false;
 };
