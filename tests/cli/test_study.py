@@ -1,6 +1,7 @@
 """Studies: one case under many motions and intensities, which survive the end of every process that takes part."""
 
 import csv
+import hashlib
 import math
 import random
 import shutil
@@ -226,6 +227,20 @@ class Study(CliTest):
         self.assertEqual(len(study["curves"]), 24)
         self.assertTrue(study["limits"][0]["dispersion"]["known"])
         self.assertEqual(study["limits"][0]["tornado"][0]["variable"], "K")
+
+    def test_the_report(self):
+        name = self.study(STRIPES)
+        said = self.uplift("study", "run", name)
+        self.assertIn(f"results: {name}/report.html", said.stdout)
+        told = report_of(self.folder / name)
+        self.assertEqual(told["study"], json.loads((self.folder / name / "study.json").read_text()))
+        self.assertEqual(told["resolved"], STRIPES)
+        self.assertEqual(told["case"], {"file": f"{name}/plan.toml", "sha256": hashlib.sha256(STRIPES.encode()).hexdigest()})
+        # more levels: no page of its own before the new runs are there, and `report` says what is missing
+        self.study(STRIPES.replace("1.0]", "1.0, 1.5]"))
+        self.assertIn("warning: 4 of 4 curves are not complete", self.uplift("study", "report", name).stderr)
+        self.assertFalse(report_of(self.folder / name)["study"]["complete"])
+        self.assertEqual(json.loads(self.uplift("study", "report", name, "--json").stdout)["outcomes"]["completed"], 12)
 
     def test_plans_are_checked(self):
         for old, new, message in [

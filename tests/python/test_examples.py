@@ -68,5 +68,9 @@ class Examples(unittest.TestCase):
         shipped = printed("05_bridge_pier").splitlines()[1]
         self.assertIn(f"base moment {numbers['value'] / 1e6:.2f} MN m, bonded {numbers['bonded'] / 1e6:.2f} MN m", shipped)
 
+    def test_07_pier_fragility(self):
+        drift = of_the_program("07_pier_fragility")["numbers"]["max_drift"]["value"]
+        self.assertIn(f"1.0 times the motion: drift {1e3 * drift:.1f} mm", printed("07_pier_fragility"))
+
 
 unittest.main()

@@ -1,7 +1,7 @@
 // One figure: heading, live plot, legend, notes, caption, downloads. Drawn when scrolled near.
 import { chart_csv, download } from "./export";
 import { chart_svg, dash_of } from "./chart_svg";
-import type { Curve, View } from "./curve";
+import { BAND_OPACITY, type Curve, type View } from "./curve";
 import { ChartModel } from "./chart_model";
 import { h, s } from "./dom";
 import { file_name, number } from "./format";
@@ -9,14 +9,18 @@ import { Readout } from "./hover";
 import { colour_variable } from "./palette";
 import { Plot } from "./plot";
 import type { Runs } from "./runs";
-import type { Chart } from "./types";
+import type { Chart, SeriesStyle } from "./types";
 
-/** A dashed or plain line, or a dot, in the colour of a curve. */
-export function swatch(slot: number, dash: number[], on_paper = dash): SVGElement {
+/** A dashed or plain line, a dot or a patch in the colour of a curve. */
+export function swatch(slot: number, dash: number[], on_paper = dash, style?: SeriesStyle): SVGElement {
+  const colour = colour_variable(slot);
+  const box = { class: "swatch", width: 22, height: 8, viewBox: "0 0 22 8", "aria-hidden": "true" };
+  if (style === "points") return s("svg", box, s("path", { d: "M8 4a3 3 0 1 0 6 0a3 3 0 1 0 -6 0", style: `fill:${colour}` }));
+  if (style === "band") return s("svg", box, s("path", { d: "M0 0H22V8H0Z", style: `fill:${colour};fill-opacity:${2 * BAND_OPACITY}` }));
   return s(
     "svg",
-    { class: "swatch", width: 22, height: 8, viewBox: "0 0 22 8", "aria-hidden": "true" },
-    s("path", { d: "M0 4H22", style: `stroke:${colour_variable(slot)};--print-dash:${on_paper.join(" ") || "none"}`, "stroke-width": 2.2, fill: "none", "stroke-dasharray": dash.join(" ") || null }),
+    box,
+    s("path", { d: "M0 4H22", style: `stroke:${colour};--print-dash:${on_paper.join(" ") || "none"}`, "stroke-width": 2.2, fill: "none", "stroke-dasharray": dash.join(" ") || null }),
   );
 }
 
@@ -176,7 +180,7 @@ export class ChartCard {
             title: "Click to hide or show this curve. Shift-click to show only this curve.",
             onclick: (event) => this.toggle(curve, (event as MouseEvent).shiftKey),
           },
-          swatch(curve.slot, curve.dash, dash_of(curve, true)),
+          swatch(curve.slot, curve.dash, dash_of(curve, true), curve.style),
           h("span", {}, curve.label),
           curve.failed ? h("em", {}, "failed") : null,
         ),

@@ -121,6 +121,10 @@ export class ChartModel {
     return pick_scale(range ? Math.max(Math.abs(range.min), Math.abs(range.max)) : 0, axis.unit);
   }
 
+  private group_of(i: number): string | undefined {
+    return this.chart.series[i]?.group;
+  }
+
   /** Colour by run; by curve where one run has all the curves (energies of one run, law curves). */
   private assign_styles(): void {
     const names = new Set(this.curves.map((curve) => curve.run ?? ""));
@@ -131,6 +135,7 @@ export class ChartModel {
       if (by_run && curve.run !== undefined) used.add(this.runs.slot(curve.run) % SLOTS);
     }
     let free = 0;
+    const groups = new Map<string, number>();
     this.curves.forEach((curve, i) => {
       let repeat = 0;
       if (by_run && curve.run !== undefined) {
@@ -139,11 +144,15 @@ export class ChartModel {
         seen.set(curve.run, before + 1);
         curve.slot = slot;
         repeat = before + Math.floor(slot / SLOTS);
+      } else if (this.group_of(i) !== undefined && groups.has(this.group_of(i) as string)) {
+        curve.slot = groups.get(this.group_of(i) as string) as number;
       } else {
         while (used.has(free % SLOTS) && free < SLOTS) free++;
         curve.slot = free % SLOTS;
         repeat = Math.floor(free / SLOTS);
         free++;
+        const group = this.group_of(i);
+        if (group !== undefined) groups.set(group, curve.slot);
       }
       if (curve.failed) curve.dash = FAILED_DASH;
       else if (this.chart.series[i]?.dash) curve.dash = DASHES[1] ?? [];

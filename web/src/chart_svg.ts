@@ -1,6 +1,6 @@
 // A chart as a free-standing SVG: for the download and for print, where pixels of a canvas would look coarse.
 // Always in the light colours.
-import { has_markers, trace, type Curve, type Pen, type Projection, type View } from "./curve";
+import { BAND_OPACITY, below_first, has_markers, THIN_OPACITY, trace, type Curve, type Pen, type Projection, type View } from "./curve";
 import type { ChartModel } from "./chart_model";
 import { light_colour, print_dash } from "./palette";
 import { linear_ticks, log_ticks, tick_labels } from "./ticks";
@@ -98,7 +98,7 @@ function is_shaken(curve: Curve): boolean {
 
 /** The dash of a curve, on paper that of its slot where it has none. */
 export function dash_of(curve: Curve, on_paper: boolean): number[] {
-  return on_paper && curve.dash.length === 0 && !is_shaken(curve) ? print_dash(curve.slot) : curve.dash;
+  return on_paper && curve.style !== "thin" && curve.dash.length === 0 && !is_shaken(curve) ? print_dash(curve.slot) : curve.dash;
 }
 
 function curve_svg(curve: Curve, view: View, frame: Frame, on_paper: boolean): string {
@@ -107,7 +107,10 @@ function curve_svg(curve: Curve, view: View, frame: Frame, on_paper: boolean): s
   const colour = light_colour(curve.slot);
   const dashes = dash_of(curve, on_paper);
   const dash = dashes.length > 0 ? ` stroke-dasharray="${dashes.join(" ")}"` : "";
-  let out = `<path d="${pen.d}" fill="none" stroke="${colour}" stroke-width="1.3" stroke-linejoin="round"${dash}/>`;
+  const line = curve.style === "thin" ? ` stroke-width="0.7" stroke-opacity="${THIN_OPACITY}"` : ` stroke-width="1.3"`;
+  let out = curve.style === "points" ? "" : curve.style === "band"
+    ? `<path d="${pen.d}Z" fill="${colour}" fill-opacity="${BAND_OPACITY}"/>`
+    : `<path d="${pen.d}" fill="none" stroke="${colour}"${line} stroke-linejoin="round"${dash}/>`;
   if (has_markers(curve)) {
     for (let i = 0; i < curve.length; i++) {
       const x = frame.x(curve.x[i] as number);
@@ -116,6 +119,15 @@ function curve_svg(curve: Curve, view: View, frame: Frame, on_paper: boolean): s
     }
   }
   return out;
+}
+
+/** A line, a dot or a patch. */
+function legend_key(curve: Curve, x: number, y: number): string {
+  const colour = light_colour(curve.slot);
+  if (curve.style === "points") return `<circle cx="${round(x + 10)}" cy="${round(y)}" r="3" fill="${colour}"/>`;
+  if (curve.style === "band") return `<rect x="${round(x)}" y="${round(y - 4)}" width="20" height="8" fill="${colour}" fill-opacity="${2 * BAND_OPACITY}"/>`;
+  const dash = curve.dash.length > 0 ? ` stroke-dasharray="${curve.dash.join(" ")}"` : "";
+  return `<path d="M${round(x)} ${round(y)}h20" stroke="${colour}" stroke-width="${curve.style === "thin" ? 1 : 2}"${dash}/>`;
 }
 
 /** Legend lines, filled from the left; widths are estimated because text cannot be measured in a string. */
@@ -130,8 +142,7 @@ function legend_svg(curves: Curve[], left: number, top: number, width: number): 
       x = left;
       y += 17;
     }
-    const dash = curve.dash.length > 0 ? ` stroke-dasharray="${curve.dash.join(" ")}"` : "";
-    out += `<path d="M${round(x)} ${round(y - 4)}h20" stroke="${light_colour(curve.slot)}" stroke-width="2"${dash}/>`;
+    out += legend_key(curve, x, y - 4);
     out += text(x + 25, y, "start", INK, label);
     x += wide + 12;
   }
@@ -163,6 +174,6 @@ export function chart_svg(model: ChartModel, view: View, options: SvgOptions): s
     (standalone ? `<rect width="${width}" height="${height}" fill="#fff"/>` : "") +
     title + legend + axes_svg(model, frame, { x, y }) +
     `<clipPath id="${clip}"><rect x="${round(left)}" y="${round(top)}" width="${round(right - left)}" height="${round(bottom - top)}"/></clipPath>` +
-    `<g clip-path="url(#${clip})">${curves.map((curve) => curve_svg(curve, view, frame, !standalone)).join("")}</g></svg>\n`
+    `<g clip-path="url(#${clip})">${below_first(curves).map((curve) => curve_svg(curve, view, frame, !standalone)).join("")}</g></svg>\n`
   );
 }

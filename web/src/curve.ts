@@ -1,6 +1,6 @@
 // A curve as arrays, and how it is traced on any surface with moveTo/lineTo (canvas or SVG).
 // uPlot's own paths want one shared, increasing x; moment-rotation loops have neither, so curves are traced here.
-import type { Series } from "./types";
+import type { Series, SeriesStyle } from "./types";
 
 export interface Extent {
   min: number;
@@ -61,6 +61,7 @@ export class Curve {
   readonly label: string;
   readonly run: string | undefined;
   readonly failed: boolean;
+  readonly style: SeriesStyle | undefined;
   readonly x: Float64Array;
   readonly y: Float64Array;
   readonly length: number;
@@ -76,6 +77,7 @@ export class Curve {
     this.label = series.label;
     this.run = series.run;
     this.failed = series.failed ?? false;
+    this.style = series.style;
     this.hidden = series.hidden ?? false;
     this.length = Math.min(series.x.length, series.y.length);
     this.x = to_array(series.x, this.length);
@@ -181,5 +183,15 @@ export function trace(curve: Curve, view: View, map: Projection, pen: Pen): void
 
 /** Few points are a table of results rather than a history: they get markers. */
 export function has_markers(curve: Curve): boolean {
+  if (curve.style) return curve.style === "points";
   return curve.length > 0 && curve.length <= 40;
+}
+
+export const BAND_OPACITY = 0.17;
+export const THIN_OPACITY = 0.5;
+
+/** Order of drawing: bands and thin curves lie below the others, failed curves below the sound ones. */
+export function below_first(curves: Curve[]): Curve[] {
+  const height = ({ style, failed }: Curve): number => (style === "band" ? 0 : style === "thin" ? 1 : failed ? 2 : 3);
+  return [...curves].sort((a, b) => height(a) - height(b));
 }

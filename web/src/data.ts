@@ -4,6 +4,9 @@ import { charts_of, stated } from "./result_charts";
 import { sections_of } from "./result_sections";
 import { tables_of } from "./result_tables";
 import { verdict_of } from "./result_verdict";
+import { study_charts, STUDY_SECTIONS } from "./study_charts";
+import { study_tables } from "./study_tables";
+import { study_choices, study_verdict } from "./study_verdict";
 import type { QuantisedFrames, SpaceAnimation, SpaceModel } from "./space_types";
 import { FORMAT, type Model, type RawReport, type Report, type Verdict } from "./types";
 
@@ -76,10 +79,22 @@ function stated_results(raw: RawReport): Results {
   };
 }
 
+/** Of a study: its plan stands in the place of the case, its case among the files. */
+function study_results(raw: RawReport): Results {
+  const { study } = raw;
+  if (!study) return stated_results(raw);
+  const { case_file: file, case_sha256: sha256, inputs } = study.provenance;
+  return {
+    ...stated_results(raw),
+    case: { file: "", sha256: "", ...raw.case, resolved: raw.resolved ?? "", inputs: [{ file, sha256 }, ...inputs] },
+    verdict: study_verdict(study), tables: study_tables(study), sections: STUDY_SECTIONS, charts: study_charts(study),
+  };
+}
+
 /** Of a run or a comparison. */
 function results(raw: RawReport): Results {
   const { summary, trust, quantities = {}, statics = false, verdict, floorsWarning = "" } = raw;
-  if (!summary) return stated_results(raw);
+  if (!summary) return study_results(raw);
   const extras = { facts: verdict?.facts ?? [], paragraphs: verdict?.paragraphs ?? [], uplifted: raw.uplifted ?? [] };
   return {
     title: summary.title, version: summary.version, created: summary.created, command: summary.command, builtWith: summary.built_with,
@@ -96,7 +111,7 @@ function complete(raw: RawReport): Report {
     format: FORMAT,
     ...results(raw),
     subtitle: raw.subtitle,
-    choices: raw.choices ?? [],
+    choices: raw.study ? study_choices(raw.study) : (raw.choices ?? []),
     model: complete_model(raw.model),
     animations: raw.animations ?? [],
     space: complete_space(raw.space),

@@ -10,6 +10,7 @@ import { install_palette, run_names } from "./palette";
 import { run_bar } from "./runbar";
 import { Runs } from "./runs";
 import { SpaceCard } from "./space/card";
+import { tornado_cards } from "./study_page";
 import { RestMaps } from "./space/rest_maps";
 import { TableCard } from "./table";
 import { ThemeSwitch } from "./theme";
@@ -138,6 +139,9 @@ function show_report(host: HTMLElement, report: Report): void {
   const say_origin = new Set(report.charts.map((chart) => chart.origin)).size > 1;
   const charts = in_page_order(report).map((chart, i) => new ChartCard(chart, runs, i + 1, say_origin));
   const tables = report.tables.map((table) => new TableCard(table, runs));
+  // The motions of a study can be many: they follow the figures.
+  const late = report.verdict.study ? tables.filter(({ table }) => table.id === "motions") : [];
+  const early = tables.filter((table) => !late.includes(table));
   const { model, animations, choices, space } = report;
   const animation = model && animations.length > 0 ? new AnimationCard(model, animations, runs) : null;
   const space_card = space ? new SpaceCard(space, report.spaceAnimations ?? [], runs, themes) : null;
@@ -145,14 +149,17 @@ function show_report(host: HTMLElement, report: Report): void {
   const rest_maps = space && last && last.time.length > 0 ? new RestMaps(space, last, themes) : null;
   const drawn_late: Drawn[] = [...(rest_maps ? [rest_maps] : []), ...(space_card ? [space_card] : []), ...charts];
 
+  const tornados = report.verdict.study ? tornado_cards(report.verdict.study) : [];
   const figures = chart_parts(report, charts);
   const parts: Part[] = [
     { id: "verdict", title: "Verdict", element: verdict_card(report.verdict, report.charts) },
     ...after_shock(report, charts, rest_maps),
-    ...(tables.length > 0 ? [part("tables", tables.length > 1 ? "Tables" : "Comparison", ...tables.map((t) => t.element))] : []),
+    ...(early.length > 0 ? [part("tables", report.verdict.study ? "Limit states" : early.length > 1 ? "Tables" : "Comparison", ...early.map((t) => t.element))] : []),
     ...(model ? [part("model", animation ? "Model and motion" : "Model", h("div", { class: "grid" }, model_card(model), animation?.element ?? null))] : []),
     ...(space_card ? [part("space-model", space_card.frames > 0 ? "Model and motion" : "Model", space_card.element)] : []),
     ...figures,
+    ...(tornados.length > 0 ? [part("tornado", "Influence of the uncertain numbers", h("div", { class: "grid" }, ...tornados))] : []),
+    ...(late.length > 0 ? [part("motions", "Motions", ...late.map((t) => t.element))] : []),
     ...(choices.length > 0 ? [part("choices", "Choices", choices_card(choices))] : []),
     part("case", "How to reproduce the results", repeat_card(report)),
   ];

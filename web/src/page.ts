@@ -80,23 +80,42 @@ function step(...words: (Node | string)[]): HTMLElement {
   return h("li", {}, ...words);
 }
 
+const code = (text: string): HTMLElement => h("code", {}, text);
+
+function case_steps({ case: from, command }: Report): HTMLElement[] {
+  const subcommand = /^uplift (\w+)/.exec(command)?.[1] ?? "run";
+  return [
+    step("Run ", code(command), "."),
+    step("Without the files, save the resolved case below as ", code("case.toml"), " and run ", code(`uplift ${subcommand} case.toml`),
+      ". It contains all default values of this version, so that a later version uses the same ones", (from.inputs ?? []).length > 0 ? ". The input files are still needed." : "."),
+  ];
+}
+
+function study_steps(): HTMLElement[] {
+  return [
+    step("Run ", code("uplift study run FOLDER"), " on a new folder with the plan below as ", code("plan.toml"),
+      ". The number of processes, the order of the runs and interruptions have no influence on ", code("study.json"), "."),
+    step("For a single run, ", code("uplift study export FOLDER --run ID"), " writes its case, and ", code("uplift run"), " repeats it bit for bit. ", code("runs.csv"), " lists the identities."),
+  ];
+}
+
 /** Program, files with their hashes, command, and the case with all default values: what is needed to reproduce the results. */
 export function repeat_card(report: Report): HTMLElement {
   const { case: from, command } = report;
+  const { study } = report.verdict;
   const lines: [string, string][] = [
     ["Program", report.version ? `uplift ${report.version}${report.builtWith ? `, ${report.builtWith}` : ""}` : ""],
     ["Created", created_text(report.created)],
-    ["Case file", from.file],
+    [study ? "Plan" : "Case file", from.file],
     ["SHA-256", from.sha256],
     ...(from.inputs ?? []).flatMap(({ file, sha256 }): [string, string][] => [["Input file", file], ["SHA-256", sha256]]),
+    ...(study ? [["Seed of the samples", String(study.provenance.seed)] as [string, string]] : []),
     ["Command", command],
   ];
   const source = h("pre", { tabindex: 0 }, h("code", {}, from.resolved));
   const button = h("button", { type: "button", class: "copy" }, "Copy");
   button.addEventListener("click", () => void copy(from.resolved, button, source));
   const files = [from.file, ...(from.inputs ?? []).map(({ file }) => file)].filter(Boolean);
-  const code = (text: string): HTMLElement => h("code", {}, text);
-  const subcommand = /^uplift (\w+)/.exec(command)?.[1] ?? "run";
   return h(
     "div",
     { class: "card case-card" },
@@ -105,12 +124,10 @@ export function repeat_card(report: Report): HTMLElement {
       ? h("ol", { class: "repeat" },
           step("Use the same program: ", code("uplift --version"), ` prints ${report.version}.`),
           step("Check the files: ", code(`sha256sum ${files.join(" ")}`), " must print the hashes above."),
-          step("Run ", code(command), "."),
-          step("Without the files, save the resolved case below as ", code("case.toml"), " and run ", code(`uplift ${subcommand} case.toml`),
-            ". It contains all default values of this version, so that a later version uses the same ones", (from.inputs ?? []).length > 0 ? ". The input files are still needed." : "."))
+          ...(study ? study_steps() : case_steps(report)))
       : null,
     from.resolved
-      ? h("details", { class: "in-print" }, h("summary", {}, "Resolved case with all default values"), h("div", { class: "source" }, button, source))
+      ? h("details", { class: "in-print" }, h("summary", {}, study ? "Plan of the study" : "Resolved case with all default values"), h("div", { class: "source" }, button, source))
       : null,
   );
 }

@@ -1,6 +1,6 @@
 // The live plot of a chart: uPlot gives canvas, axes, scales, drag zoom and cursor; curves are traced by curve.ts.
 import uPlot from "uplot";
-import { has_markers, trace, type Curve, type Projection, type View } from "./curve";
+import { BAND_OPACITY, below_first, has_markers, THIN_OPACITY, trace, type Curve, type Projection, type View } from "./curve";
 import type { ChartModel } from "./chart_model";
 import { current_colour } from "./palette";
 import { css_colour } from "./theme";
@@ -172,20 +172,27 @@ export class Plot {
     ctx.rect(bbox.left, bbox.top, bbox.width, bbox.height);
     ctx.clip();
     ctx.lineJoin = "round";
-    // Failed curves lie below the sound ones.
-    const order = [...this.model_.shown()].sort((a, b) => Number(b.failed) - Number(a.failed));
+    const order = below_first(this.model_.shown());
     for (const curve of order) this.draw_curve(ctx, curve, view, map);
     ctx.restore();
   }
 
-  private draw_curve(ctx: CanvasRenderingContext2D, curve: Curve, view: View, map: Projection): void {
+  private draw_line(ctx: CanvasRenderingContext2D, curve: Curve, view: View, map: Projection): void {
     const ratio = devicePixelRatio;
     ctx.beginPath();
-    ctx.strokeStyle = ctx.fillStyle = current_colour(curve.slot);
-    ctx.lineWidth = (curve.failed ? 1.1 : 1.5) * ratio;
+    ctx.lineWidth = (curve.style === "thin" ? 0.8 : curve.failed ? 1.1 : 1.5) * ratio;
+    ctx.globalAlpha = curve.style === "thin" ? THIN_OPACITY : curve.style === "band" ? BAND_OPACITY : 1;
     ctx.setLineDash(curve.dash.map((d) => d * ratio));
     trace(curve, view, map, ctx);
-    ctx.stroke();
+    if (curve.style === "band") ctx.fill();
+    else ctx.stroke();
+    ctx.globalAlpha = 1;
+  }
+
+  private draw_curve(ctx: CanvasRenderingContext2D, curve: Curve, view: View, map: Projection): void {
+    const ratio = devicePixelRatio;
+    ctx.strokeStyle = ctx.fillStyle = current_colour(curve.slot);
+    if (curve.style !== "points") this.draw_line(ctx, curve, view, map);
     if (!has_markers(curve)) return;
     ctx.beginPath();
     for (let i = 0; i < curve.length; i++) {

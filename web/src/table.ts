@@ -23,7 +23,7 @@ const LONG = 40;
 function status_parts(text: string): { kind: string; mark: string; expected: boolean } {
   const expected = /expect/i.test(text) && !/unexpect/i.test(text);
   if (/overturn/i.test(text)) return { kind: "overturned", mark: "◣", expected };
-  if (/fail|error|diverg|time/i.test(text)) return { kind: "failed", mark: "✕", expected };
+  if (/fail|error|diverg|time|memory|crash|energy/i.test(text)) return { kind: "failed", mark: "✕", expected };
   if (/complete|ok|pass|sound|done/i.test(text)) return { kind: "completed", mark: "✓", expected };
   return { kind: "other", mark: "•", expected };
 }

@@ -4,6 +4,7 @@
 import type { Figures } from "./result_charts";
 import type { Catalog } from "./result_verdict";
 import type { SpaceAnimation, SpaceModel } from "./space_types";
+import type { Study } from "./study";
 import type { Summary, Trust } from "./summary";
 
 export const FORMAT = "uplift-report-2";
@@ -21,8 +22,8 @@ export interface CaseInfo {
   inputs?: { file: string; sha256: string }[];
 }
 
-/** "motion": the report is one of ground motions, without a structure. */
-export type VerdictLevel = "none" | "uplift" | "overturned" | "separated" | "failed" | "motion";
+/** "motion": the report is one of ground motions, without a structure; "fragility": of a study. */
+export type VerdictLevel = "none" | "uplift" | "overturned" | "separated" | "failed" | "motion" | "fragility";
 
 export interface Fact {
   label: string;
@@ -105,6 +106,10 @@ export interface Verdict {
   floors: FloorChange[];
   /** How far the numbers depend on the time step; absent for static stages alone. */
   stepCheck?: StepCheck;
+  /** What restricts all numbers: a study that is not complete. */
+  warning?: string;
+  /** Of a study. */
+  study?: Study;
 }
 
 export interface StepCheck {
@@ -163,7 +168,12 @@ export interface Series {
   dash?: boolean;
   hidden?: boolean;
   failed?: boolean;
+  /** "line": without markers; "thin": one of many; "points": markers alone; "band": a closed outline, filled. Absent: by the number of points. */
+  style?: SeriesStyle;
+  /** Curves without a run that belong together have one colour. */
+  group?: string;
 }
+export type SeriesStyle = "line" | "thin" | "points" | "band";
 
 export interface Chart {
   id: string;
@@ -320,6 +330,8 @@ export interface RawReport {
   resolved?: string;
   summary?: Summary;
   trust?: Trust;
+  /** study.json, of a study; `resolved` is then its plan, and `case` the file of it. */
+  study?: Study;
   /** Quantities of the verdict by name. */
   quantities?: Catalog;
   /** Static stages alone: nothing happens over time. */

@@ -4,6 +4,7 @@ import { h, s, type Child } from "./dom";
 import { number } from "./format";
 import { share_chart } from "./share_chart";
 import { spectrum_chart } from "./spectrum_chart";
+import { study_block } from "./study_page";
 import type { BaseVerdict, Chart, Criterion, CriterionState, FloorChange, Verdict, VerdictLevel, VerdictRow } from "./types";
 
 const LEVEL_WORD: Record<VerdictLevel, string> = {
@@ -13,9 +14,10 @@ const LEVEL_WORD: Record<VerdictLevel, string> = {
   separated: "Contact lost",
   failed: "Run failed",
   motion: "Ground motion",
+  fragility: "Fragility",
 };
 
-// A tick, a lifted edge, a toppled block, a separated block, a cross, a seismogram: the shape shows the level without colour.
+// A tick, a lifted edge, a toppled block, a separated block, a cross, a seismogram, a fragility curve: the shape shows the level without colour.
 const LEVEL_SIGN: Record<VerdictLevel, string> = {
   none: "M5 12.5L10 17.5L19 7",
   uplift: "M3 20H21M4 17L20 10M20 10V5M17.5 7.5L20 5L22.5 7.5",
@@ -23,6 +25,7 @@ const LEVEL_SIGN: Record<VerdictLevel, string> = {
   separated: "M3 20H21M5 13H19M12 10V3M9 6L12 3L15 6",
   failed: "M6 6L18 18M18 6L6 18",
   motion: "M2 12H6L8 6L11 18L14 4L17 15L19 12H22",
+  fragility: "M3 3V20H21M4 19C12 19 11 6 20 5",
 };
 
 function level_sign(level: VerdictLevel): SVGElement {
@@ -146,8 +149,9 @@ export function verdict_card(verdict: Verdict, charts: Chart[]): HTMLElement {
     { class: `verdict verdict-${verdict.level}`, id: "verdict", "aria-label": "Verdict" },
     h("div", { class: "verdict-head" },
       level_sign(verdict.level),
-      h("div", {}, h("p", { class: "verdict-level" }, LEVEL_WORD[verdict.level] ?? verdict.level), h("h2", {}, tied(verdict.headline)), verdict.consequence ? h("p", { class: "so-what" }, tied(verdict.consequence)) : null, step_check(verdict))),
+      h("div", {}, h("p", { class: "verdict-level" }, verdict.study && verdict.level === "failed" ? "No fit" : (LEVEL_WORD[verdict.level] ?? verdict.level)), h("h2", {}, tied(verdict.headline)), verdict.consequence ? h("p", { class: "so-what" }, tied(verdict.consequence)) : null, step_check(verdict), verdict.warning ? h("p", { class: "step-check is-not-converged" }, verdict.warning) : null)),
     facts.length > 0 ? h("dl", { class: "facts" }, ...facts) : null,
+    verdict.study ? study_block(verdict.study) : null,
     ...blocks,
     floor_block(verdict.floors ?? [], charts),
     verdict.interfaces.length > 0 ? criteria_list(verdict.criteria) : null,

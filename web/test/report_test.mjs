@@ -8,6 +8,7 @@ import { join, resolve } from "node:path";
 import { pathToFileURL } from "node:url";
 import { Checks, DENSE_SAMPLES, inject, inject_packed, open, sample_report, space_report, start_browser, write_page } from "./harness.mjs";
 import { check_documents } from "./document_checks.mjs";
+import { check_studies } from "./study_checks.mjs";
 import { check_space, check_space_sample } from "./space_checks.mjs";
 
 const args = process.argv.slice(2);
@@ -572,6 +573,7 @@ await check.group("check_other_pages", check_other_pages);
 await check.group("check_packed", check_packed);
 await check.group("check_closed_maps", check_closed_maps);
 if (!given) await check.group("check_documents", () => check_documents(browser, check));
+if (!given) await check.group("check_studies", () => check_studies(browser, check, shots));
 if (!given) await check.group("check_space_sample", () => check_space_sample(browser, check, shots));
 check.equal(log.console.length, 0, `no error or warning in the console (${log.console[0] ?? ""})`);
 check.equal(log.network.length, 0, `no request beyond the file (${log.network[0] ?? ""})`);

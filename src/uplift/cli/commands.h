@@ -49,7 +49,7 @@ struct MotionOptions {
 int motion(const Options& options, const MotionOptions& given);
 
 struct StudyOptions {
-  std::string verb;        // new, check, run, status, fit, export, tasks, work or index
+  std::string verb;        // new, check, run, status, fit, report, export, tasks, work or index
   std::string shard, run;  // of `work`: "17/200"; of `export`: the beginning of an identity
   int workers = 0;         // 0: as in the plan
   int count = 100;         // of `tasks`

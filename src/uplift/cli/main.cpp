@@ -90,15 +90,16 @@ void declare_study(CLI::App& app, Choices& given) {
   CLI::App* command =
       add(app, "study", "run one case under many motions, at many intensities, with sampled variables, and fit fragility curves",
           "  uplift study new pier        writes pier.study/plan.toml\n"
-          "  uplift study check pier.study; uplift study run pier.study; uplift study fit pier.study\n"
+          "  uplift study check pier.study; uplift study run pier.study; uplift study report pier.study\n"
           "  uplift study tasks pier.study --count 200 | parallel --joblog log --resume-failed\n"
           "  uplift study work pier.study --shard $SLURM_ARRAY_TASK_ID/200");
   command
-      ->add_option(
-          "verb", study.verb,
-          "new: write a commented plan; check: estimate runs, time, memory and disk; run: compute what is missing (again: go on); "
-          "status: how far it is; fit: write study.json and fits.csv; export: write runs.csv and curves.csv; tasks: a command line for "
-          "every shard; work: compute one shard; index: make study.db again from the parts")
+      ->add_option("verb", study.verb,
+                   "new: write a commented plan; check: estimate runs, time, memory and disk; run: compute what is missing (again: go on), "
+                   "then fit and report; "
+                   "status: how far it is; fit: write study.json and fits.csv; report: write report.html as well; export: write runs.csv "
+                   "and curves.csv; tasks: a command line for "
+                   "every shard; work: compute one shard; index: make study.db again from the parts")
       ->required();
   command->add_option("study", given.options.file, "folder of the study, with plan.toml; of `new` its name")->required();
   command->add_option("-j,--workers", study.workers, "processes at the same time; default: as in the plan, else one for every core")

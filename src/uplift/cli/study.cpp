@@ -21,20 +21,6 @@
 namespace uplift::cli {
 namespace {
 
-/// What the system refuses is an output error.
-template <class Write>
-void writing(const Write& write) {
-  try {
-    write();
-  } catch (const std::filesystem::filesystem_error& error) {
-    throw OutputError(error.what());
-  }
-}
-
-void write_in(const Study& study, const std::string& name, const std::string& text) {
-  writing([&] { write_file_atomically(study.folder + "/" + name, text); });
-}
-
 int cores() {
   cpu_set_t set;
   CPU_ZERO(&set);
@@ -126,11 +112,6 @@ class LiveStatus {
   Clock::time_point last_ = Clock::now();
 };
 
-void tell_damage(const StudyStore& store) {
-  if (store.damaged() > 0)
-    complain(fmt::format("warning: {} lines of the parts are damaged: their runs count as not computed", store.damaged()));
-}
-
 Shard shard_of(const std::string& text) {
   Shard shard;
   const auto refuse = [&] { throw InputError({"uplift study work", 0}, "--shard", "K/N with 1 <= K <= N, as 17/200", in_quotes(text)); };
@@ -145,6 +126,15 @@ Shard shard_of(const std::string& text) {
   return shard;
 }
 
+/// What stands in study.json, and on the page where it is asked for.
+int evaluate(const Options& options, bool with_page) {
+  const Study study = open_study(options.file);
+  const StudyStore store(study.folder);
+  tell_damage(store);
+  write_results(study, curves_with_results(study, store), options, with_page);
+  return Exit::done;
+}
+
 int finish(const StudyStatus& status, const StudyStore& store, const Options& options, const Study& study) {
   if (options.json) {
     print_text(status_json(status, store, false));
@@ -152,8 +142,8 @@ int finish(const StudyStatus& status, const StudyStore& store, const Options& op
     say(status_text(status));
     if (interrupt_asked())
       complain(fmt::format("{}: every result is kept; the same command goes on from there", interrupt_text()));
-    else if (status.complete == status.curves)
-      say(fmt::format("uplift study fit {} evaluates them", study.folder));
+    else if (status.complete < status.curves)
+      say(fmt::format("uplift study report {} evaluates what is there", study.folder));
   }
   return interrupt_asked() ? interrupt_exit_code() : Exit::done;
 }
@@ -182,8 +172,17 @@ int run_or_work(const Options& options, const StudyOptions& given, const std::op
   };
   StudyStatus status;
   writing([&] { status = run_study(study, store, control); });
-  if (!shard) writing([&] { write_index(study, store, curves_with_results(study, store)); });
-  return finish(status, store, options, study);
+  const int code = finish(status, store, options, study);
+  if (shard) return code;
+  const std::vector<StudyCurve> curves = curves_with_results(study, store);
+  writing([&] { write_index(study, store, curves); });
+  if (status.complete == status.curves) {
+    Options after = options;  // the status was printed already
+    after.quiet = options.quiet || options.json;
+    after.json = false;
+    write_results(study, curves, after, true);
+  }
+  return code;
 }
 
 int status(const Options& options) {
@@ -203,48 +202,6 @@ int status(const Options& options) {
                                          : fmt::format("uplift study run {} computes what is missing", study.folder));
   if (store.repeated() > 0) say(fmt::format("{} lines of the parts repeat a run, which counts once", store.repeated()));
   tell_damage(store);
-  return Exit::done;
-}
-
-StudyDocument document_of(const Study& study, const std::vector<StudyCurve>& curves) {
-  StudyDocument document = study_document(study.of, curves);
-  document.name = study.name;
-  const auto from_study = [folder = std::filesystem::absolute(study.folder).lexically_normal()](const std::string& file) {
-    return std::filesystem::absolute(file).lexically_normal().lexically_proximate(folder).string();
-  };
-  document.case_file = from_study(study.case_file);
-  document.case_hash = study.case_hash;
-  document.plan_hash = study.plan_hash;
-  for (const auto& [file, hash] : study.inputs) document.inputs.emplace_back(from_study(file), hash);
-  return document;
-}
-
-/// Curves without all of their runs, and capacities that the search has not narrowed down.
-void warn_incomplete(const StudyDocument& document) {
-  const auto missing = std::ranges::count(document.curves, false, &StudyDocument::Curve::complete);
-  if (missing > 0) complain(fmt::format("warning: {} of {} curves are not complete", missing, document.curves.size()));
-  for (const StudyDocument::Limit& each : document.limits)
-    if (const auto open = std::ranges::count(each.fit.capacities, false, &StudyCapacity::found); open > 0 && missing == 0)
-      complain(fmt::format("warning: {}: {} of {} capacities are not within the tolerance (method.most_runs)", each.limit.name, open,
-                           each.fit.capacities.size()));
-}
-
-int fit(const Options& options) {
-  const Study study = open_study(options.file);
-  const StudyStore store(study.folder);
-  tell_damage(store);
-  const std::vector<StudyCurve> curves = curves_with_results(study, store);
-  const StudyDocument document = document_of(study, curves);
-  const std::string text = study_json(document);
-  write_in(study, "study.json", text);
-  write_in(study, "fits.csv", fits_csv(document));
-  if (options.json) {
-    print_text(text);
-  } else if (!options.quiet) {
-    for (std::size_t k = 0; k < document.limits.size(); ++k) say(study_sentence(document, k));
-    warn_incomplete(document);
-    say(fmt::format("results: {0}/study.json, {0}/fits.csv", study.folder));
-  }
   return Exit::done;
 }
 
@@ -300,6 +257,15 @@ int index(const Options& options) {
 
 }  // namespace
 
+void tell_damage(const StudyStore& store) {
+  if (store.damaged() > 0)
+    complain(fmt::format("warning: {} lines of the parts are damaged: their runs count as not computed", store.damaged()));
+}
+
+void write_in(const Study& study, const std::string& name, const std::string& text) {
+  writing([&] { write_file_atomically(study.folder + "/" + name, text); });
+}
+
 int study(const Options& options, const StudyOptions& given) {
   const std::string& verb = given.verb;
   if (verb == "new") return new_study(options.file);
@@ -307,11 +273,12 @@ int study(const Options& options, const StudyOptions& given) {
   if (verb == "run") return run_or_work(options, given, std::nullopt);
   if (verb == "work") return run_or_work(options, given, shard_of(given.shard));
   if (verb == "status") return status(options);
-  if (verb == "fit") return fit(options);
+  if (verb == "fit") return evaluate(options, false);
+  if (verb == "report") return evaluate(options, true);
   if (verb == "export") return export_tables(options, given.run);
   if (verb == "tasks") return tasks(options, given.count);
   if (verb == "index") return index(options);
-  const std::vector<std::string> verbs{"new", "check", "run", "status", "fit", "export", "tasks", "work", "index"};
+  const std::vector<std::string> verbs{"new", "check", "run", "status", "fit", "report", "export", "tasks", "work", "index"};
   throw InputError({"uplift study", 0}, "", listed(verbs), in_quotes(verb), nearest_name(verb, verbs));
 }
 

@@ -13,7 +13,7 @@ namespace {
 
 constexpr const char* template_text =
     R"TOML(# A study for uplift: one case under many motions, at many intensities. `uplift describe section study` explains every key.
-#     uplift study check {0}; uplift study run {0}; uplift study fit {0}
+#     uplift study check {0}; uplift study run {0}; uplift study report {0}
 # Files are relative to this plan. Numbers may carry units; a bare number is SI.
 case = "../{1}/case.toml"
 seed = 1                              # of the samples of [[variable]]
