@@ -7,6 +7,7 @@
 #include "uplift/cli/commands.h"
 #include "uplift/ensemble/store.h"
 #include "uplift/ensemble/study.h"
+#include "uplift/io/files.h"
 #include "uplift/io/results/study_json.h"
 #include "uplift/study/study_curve.h"
 
