@@ -188,6 +188,11 @@ def solve_problem(problem: Union[str, Mapping[str, Any]], method: Optional[str] 
     return [Record(each) for each in answers]
 
 
+def framed(page: str) -> str:
+    """An HTML page as part of a notebook."""
+    return f'<iframe srcdoc="{html.escape(page, quote=True)}" style="width: 100%; height: 800px; border: 0"></iframe>'
+
+
 class Histories(Mapping[str, "Array"]):
     """Histories of one run by name, as NumPy views; `time` is their common abscissa."""
 
@@ -272,7 +277,7 @@ class Results:
         _library.library().uplift_text_free(pointer)
 
     def _repr_html_(self) -> str:
-        return f'<iframe srcdoc="{html.escape(self.report, quote=True)}" style="width: 100%; height: 800px; border: 0"></iframe>'
+        return framed(self.report)
 
 
 class Run(Results):

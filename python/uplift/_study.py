@@ -16,7 +16,7 @@ from . import _toml
 from ._motion import Motion
 from ._parts import Part
 from ._program import error_of, output_of, program
-from ._results import Record
+from ._results import Record, framed
 
 if TYPE_CHECKING:
     import numpy as np
@@ -92,6 +92,11 @@ class Study:
         """Fragility curves of what has been computed so far; writes study.json and fits.csv in the folder. Raises InputError."""
         return StudyFit(json.loads(output_of("study", "fit", str(self.folder), "--json")))
 
+    def report(self) -> str:
+        """The report of what has been computed so far, as one HTML page; writes report.html, study.json and fits.csv. A notebook shows it."""
+        output_of("study", "report", str(self.folder), "--quiet")
+        return (self.folder / "report.html").read_text(encoding="utf-8")
+
     def runs(self) -> List[Dict[str, str]]:
         """The rows of runs.csv, which it writes: every run with its numbers. `pandas.DataFrame(study.runs())` is a table of texts."""
         output_of("study", "export", str(self.folder), "--quiet")
@@ -106,6 +111,9 @@ class Study:
         shards = len(output_of("study", "tasks", str(self.folder), "--count", str(count)).splitlines())
         folder = str(self.folder.resolve())
         return [[program(), "study", "work", folder, "--shard", f"{number}/{shards}", "--quiet"] for number in range(1, shards + 1)]
+
+    def _repr_html_(self) -> Optional[str]:
+        return framed(self.report()) if self.status.runs > 0 else None
 
     def __repr__(self) -> str:
         return f"Study({str(self.folder)!r})"

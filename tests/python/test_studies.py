@@ -1,9 +1,11 @@
 """Studies from Python: python3 tests/python/test_studies.py PROGRAM LIBRARY. Needs NumPy."""
 
 import concurrent.futures
+import html
 import math
 import os
 import pathlib
+import re
 import shutil
 import signal
 import subprocess
@@ -132,6 +134,14 @@ class Studies(unittest.TestCase):
         self.assertGreater(status.runs, 0)
         self.assertLess(status.complete, status.curves)
         self.assertFalse(study.fit().complete)
+
+    def test_a_notebook_shows_the_report(self):
+        study = self.study()
+        self.assertIsNone(study._repr_html_())  # nothing is computed
+        study.run(progress=False)
+        page = study.report()
+        self.assertIn("uplift-study-1", page)
+        self.assertEqual(html.unescape(re.search('srcdoc="([^"]*)"', study._repr_html_()).group(1)).count("\n"), page.count("\n"))
 
     def test_a_changed_plan_keeps_its_runs(self):
         self.study().run(progress=False)

@@ -3,6 +3,7 @@
 
 #include <algorithm>
 #include <ctime>
+#include <filesystem>
 
 #include "uplift/base/file.h"
 #include "uplift/cli/console.h"
@@ -47,10 +48,13 @@ bool write_page(const Study& study, const Options& options, const StudyDocument&
 StudyDocument document_of(const Study& study, const std::vector<StudyCurve>& curves) {
   StudyDocument document = study_document(study.of, curves);
   document.name = study.name;
-  document.case_file = study.case_file;
+  const auto from_study = [folder = std::filesystem::absolute(study.folder).lexically_normal()](const std::string& file) {
+    return std::filesystem::absolute(file).lexically_normal().lexically_proximate(folder).string();
+  };
+  document.case_file = from_study(study.case_file);
   document.case_hash = study.case_hash;
   document.plan_hash = study.plan_hash;
-  document.inputs = study.inputs;
+  for (const auto& [file, hash] : study.inputs) document.inputs.emplace_back(from_study(file), hash);
   return document;
 }
 
