@@ -49,6 +49,7 @@ limit = "1 mm"
 
 # A block on soil with more than 5000 unknowns, whose runs march in lockstep.
 LARGE = """\
+title = "A block on soil"
 [mesh.soil_box.soil]
 width = 50
 size = 0.5
@@ -171,7 +172,7 @@ class Study(CliTest):
         path = self.uplift("study", "export", name, "--run", run["id"][:12]).stdout.strip()
         self.uplift("run", path, "-o", "alone", "-q", "--no-step-check")
         summary = self.summary("alone")
-        self.assertGreater(summary["model"]["free_unknowns"], 5000)
+        self.assertGreater(json.loads(self.uplift("check", path, "--json").stdout)["unknowns"], 5000)
         alone = summary["verdict"]["interfaces"][0]["numbers"]["max_opening"]["value"]
         self.assertGreater(alone, 1e-6)
         self.assertAlmostEqual(float(run["uplift [m]"]) / alone, 1, delta=1e-9)
@@ -287,7 +288,7 @@ class Study(CliTest):
         variable = '[[variable]]\nname = "K"\npaths = ["interface[0].law.K_n"]\ndistribution = { type = "normal", mean = 0, deviation = 1 }\n'
         name = self.study(IDA.replace('case = "../case.toml"', 'case = "../case.toml"\nsamples = 6') + variable)
         for verb in ("check", "run"):
-            self.assertRegex(self.uplift("study", verb, name, expect=2).stderr, r"interface\[0\]\.law\.K_n: expected .* > 0 Pa/m, found -")
+            self.assertRegex(self.uplift("study", verb, name, expect=2).stderr, r"interface\[0\]\.law\.K_n: expected .* > 0 Pa/m.*, found -")
 
     def test_samples(self):
         variable = '[[variable]]\nname = "K"\npaths = ["interface[0].law.K_n"]\ndistribution = { type = "lognormal", median = 1, beta = 0.4 }\n'
