@@ -1,7 +1,9 @@
 """Studies from Python: python3 tests/python/test_studies.py PROGRAM LIBRARY. Needs NumPy."""
 
+import base64
 import concurrent.futures
 import html
+import json
 import math
 import os
 import pathlib
@@ -13,6 +15,7 @@ import sys
 import tempfile
 import threading
 import unittest
+import zlib
 
 ROOT = pathlib.Path(__file__).resolve().parents[2]
 PROGRAM = os.path.abspath(sys.argv.pop(1))
@@ -140,7 +143,8 @@ class Studies(unittest.TestCase):
         self.assertIsNone(study._repr_html_())  # nothing is computed
         study.run(progress=False)
         page = study.report()
-        self.assertIn("uplift-study-1", page)
+        packed = re.search(r'<script[^>]*id="uplift-data"[^>]*>([^<]*)</script>', page).group(1)
+        self.assertEqual(json.loads(zlib.decompress(base64.b64decode(packed)))["study"]["format"], "uplift-study-1")
         self.assertEqual(html.unescape(re.search('srcdoc="([^"]*)"', study._repr_html_()).group(1)).count("\n"), page.count("\n"))
 
     def test_a_changed_plan_keeps_its_runs(self):

@@ -22,7 +22,8 @@ function limits_table(study: Study): Table[] {
     title: "Limit states",
     caption:
       `Median and dispersion of the fitted lognormal curve, with the interval of ${significant(100 * (study.limits[0]?.confidence ?? 0.9), 3)} % confidence. ` +
-      (shared ? "The interval takes all curves as independent; where the motions scatter more than the samples (\u03b2_R), it is too narrow. " : "") +
+      (shared && apart ? "The interval of the median follows from the scatter between motions and between samples, which the curves share. " : "") +
+      (shared && !apart ? "The interval takes all curves as independent; where the motions scatter more than the samples (\u03b2_R), it is too narrow. " : "") +
       (apart ? "\u03b2_R: scatter between motions; \u03b2_U: between samples; HCLPF: median \u00b7 exp(\u22121.65 (\u03b2_R + \u03b2_U)). " : "") +
       (unknown ? "Runs of unknown outcome are left out of the fit; the last two columns count them as survived and as exceeded." : ""),
     columns: [

@@ -87,7 +87,17 @@ OrRefused<TwoWayLayout> two_way_layout(const Matrix& capacities) {
   const double of_rest = (rest.rowwise() - column.transpose()).squaredNorm() / ((i - 1) * (j - 1));
   const double of_rows = j * row.squaredNorm() / (i - 1), of_columns = i * column.squaredNorm() / (j - 1);
   const auto deviation = [of_rest](double mean_square, double count) { return std::sqrt(std::max(0.0, mean_square - of_rest) / count); };
-  return TwoWayLayout{std::exp(mean), deviation(of_rows, j), deviation(of_columns, i), std::sqrt(of_rest)};
+  // Var(mean) = s_r^2/I + s_u^2/J + s^2/(I J), in which the mean squares stand as below; no less than that of the rest alone
+  const double sum = std::max(of_rest, of_rows + of_columns - of_rest);
+  const double spread = of_rows * of_rows / (i - 1) + of_columns * of_columns / (j - 1) + of_rest * of_rest / ((i - 1) * (j - 1));
+  const double freedom = spread > 0 ? std::max(1.0, sum * sum / spread) : 1;
+  return TwoWayLayout{std::exp(mean),     deviation(of_rows, j),    deviation(of_columns, i),
+                      std::sqrt(of_rest), std::sqrt(sum / (i * j)), freedom};
+}
+
+ConfidenceInterval TwoWayLayout::median_interval(double level) const {
+  const double half = student_two_sided(level, freedom) * se_log_median;
+  return {median * std::exp(-half), median * std::exp(half)};
 }
 
 double risk_of_power_law(double k0, double k, double theta, double beta) {

@@ -4,6 +4,7 @@
 #include <vector>
 
 #include "uplift/math/linalg.h"
+#include "uplift/statistics/distributions.h"
 #include "uplift/statistics/refused.h"
 
 // Seismic capacities as nuclear practice states them: docs/theory/fragility.md.
@@ -46,8 +47,12 @@ struct TwoWayLayout {
   double beta_r = 0;            // between records
   double beta_u = 0;            // between samples
   double beta_interaction = 0;  // what neither explains: records that react differently to the samples
+  double se_log_median = 0;     // standard error of ln median: records and samples are drawn, not their pairs
+  double freedom = 1;           // its degrees of freedom, after Satterthwaite
   /// beta_r with the interaction, which differs from record to record: the capacity to be used in HCLPF and risk.
   SeismicCapacity capacity() const;
+  /// Of the median, with the confidence `level`, 0 < level < 1.
+  ConfidenceInterval median_interval(double level) const;
 };
 /// Components of variance of a two-way layout without repetition, by mean squares; negative components count as 0. At least two rows
 /// and two columns of positive numbers, else refused.

@@ -141,6 +141,22 @@ std::vector<StudyInfluence> tornado_of(const StudyCase& study, const std::vector
 
 }  // namespace
 
+ConfidenceInterval StudyLimitFit::theta_interval() const {
+  const TwoWayLayout* crossed = std::get_if<TwoWayLayout>(&layout);
+  return crossed ? crossed->median_interval(study_confidence) : std::get<Fragility>(fit.middle).theta_interval(study_confidence);
+}
+
+ConfidenceInterval StudyLimitFit::probability_interval(double im) const {
+  const Fragility& curve = std::get<Fragility>(fit.middle);
+  ConfidenceInterval made = curve.probability_interval(im, study_confidence);
+  if (!std::holds_alternative<TwoWayLayout>(layout)) return made;
+  const ConfidenceInterval median = theta_interval();
+  const auto moved = [&](double theta) { return normal_cdf(std::log(im / theta) / curve.beta()); };
+  if (made.lower) made.lower = std::min(*made.lower, moved(*median.upper));
+  if (made.upper) made.upper = std::max(*made.upper, moved(*median.lower));
+  return made;
+}
+
 StudyLimitFit fit_limit(const StudyCase& study, const std::vector<StudyCurve>& curves, std::size_t number) {
   StudyLimitFit fit;
   const StudyLimit& limit = study.plan.limits[number];

@@ -36,6 +36,11 @@ struct StudyLimitFit {
   std::optional<CloudFit> regression;            // of a cloud
   BothWays fit{Refused{"there are no runs"}, Refused{"there are no runs"}, Refused{"there are no runs"}};
   OrRefused<TwoWayLayout> layout = Refused{"it takes two samples and two motions at least, crossed"};
+  /// Of the median of the fit in the middle, which exists. Crossed curves share their motions and their samples: where the layout is known,
+  /// its interval; else all curves count as independent.
+  ConfidenceInterval theta_interval() const;
+  /// Of P(exceed | im), im > 0: that of the likelihood, and at least what the interval of the median makes of the curve.
+  ConfidenceInterval probability_interval(double im) const;
   std::vector<StudyInfluence> tornado;  // the largest first; of the capacity where it is searched, else of the demand
 };
 StudyLimitFit fit_limit(const StudyCase& study, const std::vector<StudyCurve>& curves, std::size_t limit);

@@ -32,8 +32,7 @@ std::string capacity_cells(const std::optional<RecordCapacity>& capacity) {
                      exact(capacity->im));
 }
 
-std::string interval_text(const Fragility& fit) {
-  const ConfidenceInterval interval = fit.theta_interval(study_confidence);
+std::string text_of(const ConfidenceInterval& interval) {
   const auto end = [](const std::optional<double>& value) { return value ? fmt::format("{:.3g}", *value) : std::string("unbounded"); };
   return fmt::format("{:.0f} %: {} to {}", 100 * study_confidence, end(interval.lower), end(interval.upper));
 }
@@ -48,7 +47,7 @@ std::string fits_csv(const StudyDocument& study) {
       unit);
   for (const StudyDocument::Limit& each : study.limits) {
     const Fragility* fit = std::get_if<Fragility>(&each.fit.fit.middle);
-    const ConfidenceInterval theta = fit ? fit->theta_interval(study_confidence) : ConfidenceInterval{},
+    const ConfidenceInterval theta = fit ? each.fit.theta_interval() : ConfidenceInterval{},
                              beta = fit ? fit->beta_interval(study_confidence) : ConfidenceInterval{};
     text += fmt::format("{},{},{},{},{},{},{},{},{},{},{},{}\n", csv_cell(each.limit.name), each.fit.survived, each.fit.exceeded,
                         each.fit.unknown, fit_cells(each.fit.fit.middle), exact(theta.lower), exact(theta.upper), exact(beta.lower),
@@ -101,8 +100,8 @@ std::string study_sentence(const StudyDocument& study, std::size_t number) {
                : "no fit (" + std::get<Refused>(result).reason + ")";
   };
   std::string text = each.limit.name + ": ";
-  if (const Fragility* fit = std::get_if<Fragility>(&each.fit.fit.middle))
-    text += fmt::format("median {} ({}){}; {}", short_text(each.fit.fit.middle), interval_text(*fit), "", counts);
+  if (std::holds_alternative<Fragility>(each.fit.fit.middle))
+    text += fmt::format("median {} ({}); {}", short_text(each.fit.fit.middle), text_of(each.fit.theta_interval()), counts);
   else
     text += fmt::format("{}; {}", short_text(each.fit.fit.middle), counts);
   if (each.fit.unknown > 0)

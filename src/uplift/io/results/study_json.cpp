@@ -151,7 +151,7 @@ void write_interval(ResultWriter& out, std::string_view key, const ConfidenceInt
 }
 
 /// A fit, or why there is none; with its intervals and its curve where wanted.
-void write_fit(ResultWriter& out, const OrRefused<Fragility>& result, bool with_curve) {
+void write_fit(ResultWriter& out, const OrRefused<Fragility>& result, const StudyLimitFit* with_curve) {
   const Fragility* fit = std::get_if<Fragility>(&result);
   const Fragility none;
   const Fragility& shown = fit ? *fit : none;
@@ -166,19 +166,17 @@ void write_fit(ResultWriter& out, const OrRefused<Fragility>& result, bool with_
   out.when(there).number("se_beta", shown.se_beta(), "1", "standard error of beta");
   out.when(there).number("correlation", shown.correlation(), "1", "correlation of both errors");
   if (!there) return;
-  const auto interval = [&](const auto& of) { return fit ? of(*fit) : ConfidenceInterval{}; };
   out.when(there);
-  write_interval(out, "theta_interval", interval([](const Fragility& f) { return f.theta_interval(study_confidence); }), intensity_unit,
-                 "interval of theta");
+  write_interval(out, "theta_interval", fit ? with_curve->theta_interval() : ConfidenceInterval{}, intensity_unit,
+                 "interval of theta; where motions and samples are crossed and all capacities known, it follows from the two-way layout");
   out.when(there);
-  write_interval(out, "beta_interval", interval([](const Fragility& f) { return f.beta_interval(study_confidence); }), "1",
-                 "interval of beta");
+  write_interval(out, "beta_interval", fit ? fit->beta_interval(study_confidence) : ConfidenceInterval{}, "1", "interval of beta");
   std::vector<double> intensities, probabilities;
   std::vector<std::optional<double>> lower, upper;
   constexpr int points = 41;
   for (int i = 0; fit && i < points; ++i) {
     const double im = fit->theta() * std::exp(fit->beta() * (6.0 * i / (points - 1) - 3));
-    const ConfidenceInterval probability = fit->probability_interval(im, study_confidence);
+    const ConfidenceInterval probability = with_curve->probability_interval(im);
     intensities.push_back(im);
     probabilities.push_back(fit->probability(im));
     lower.push_back(probability.lower);
@@ -254,9 +252,9 @@ void write_limit(ResultWriter& out, const StudyDocument& study, const StudyDocum
   });
   out.number("confidence", study_confidence, "1", "confidence of all intervals");
   out.object("fit", "lognormal fragility without runs of unknown outcome, where both ends are near enough",
-             [&] { write_fit(out, fit.fit.middle, true); });
-  out.object("unknown_survived", "with runs of unknown outcome counted as survived", [&] { write_fit(out, fit.fit.survived, false); });
-  out.object("unknown_exceeded", "with runs of unknown outcome counted as exceeded", [&] { write_fit(out, fit.fit.exceeded, false); });
+             [&] { write_fit(out, fit.fit.middle, &fit); });
+  out.object("unknown_survived", "with runs of unknown outcome counted as survived", [&] { write_fit(out, fit.fit.survived, nullptr); });
+  out.object("unknown_exceeded", "with runs of unknown outcome counted as exceeded", [&] { write_fit(out, fit.fit.exceeded, nullptr); });
   out.object("dispersion", "scatter from motion to motion and from sample to sample", [&] { write_dispersion(out, fit.layout); });
   out.list("tornado", "how each variable moves the capacity, or the demand where none is searched", fit.tornado,
            [&](const StudyInfluence& influence) {
