@@ -118,8 +118,13 @@ TEST(ReducedRun, NeverCreatesEnergyWhateverTheBasis) {
     const Index size = 1 + static_cast<Index>(seed) % (built.model.free() - 1);
     const RunResult reduced = run_reduced(read, random_basis(built.model, size, seed));
     ASSERT_EQ(reduced.status, RunStatus::completed) << "seed " << seed << ": " << reduced.reason;
-    EXPECT_LE(reduced.energy_created, 1e-10 * reduced.energy_scale) << "seed " << seed;
-    EXPECT_LE(reduced.energy_lost, 1e-10 * reduced.energy_scale) << "seed " << seed;
+    // of the external work, which is small where a basis hardly moves; the balance is a difference of stored energies, which are not
+    double stored = 0;
+    for (std::size_t k = 1; k < reduced.table.size(); ++k)
+      if (reduced.columns[k - 1].unit == "J") stored = std::max(stored, largest(reduced.table[k]));
+    const double round_off = 1e-10 * reduced.energy_scale + 1e-14 * stored;
+    EXPECT_LE(reduced.energy_created, round_off) << "seed " << seed;
+    EXPECT_LE(reduced.energy_lost, round_off) << "seed " << seed;
   }
 }
 
