@@ -78,6 +78,8 @@ class StudyPlans(CliTest):
         self.refused(IDA.replace('unit = "g_n"', 'unit = ""'), "unit", "expected a unit of an acceleration")
 
     def test_memory_is_what_a_run_takes(self):
+        if self.cannot_be_limited():
+            self.skipTest("the address space cannot be limited")
         self.write(CASE.replace("duration = 1\n", "duration = 60\n"))
         plan = STRIPES.replace("[0.2, 0.5, 1.0]", "[0.2]") + "[run]\nmemory = {}\n"
         for memory, completed in [("1", 0), ("150", 4)]:  # MB; the program alone has reserved more than this
