@@ -228,7 +228,7 @@ class Study(CliTest):
         changed[len(changed) // 2] ^= 1
         part.write_bytes(b"".join([lines[0], lines[0], bytes(changed), *lines[3:]])[:-40])  # repeated, damaged, torn
         said = self.uplift("study", "status", name)
-        self.assertIn("1 lines of the parts are damaged", said.stderr)
+        self.assertIn("damaged lines of the parts, whose runs count as not computed: 1", said.stderr)
         self.assertIn("9/12 runs", said.stdout)
         self.uplift("study", "run", name, "-q")
         self.assertEqual(self.evaluated(name), expected)

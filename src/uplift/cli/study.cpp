@@ -200,7 +200,7 @@ int status(const Options& options) {
   say(busy                               ? "a process computes it"
       : status.complete == status.curves ? "complete"
                                          : fmt::format("uplift study run {} computes what is missing", study.folder));
-  if (store.repeated() > 0) say(fmt::format("{} lines of the parts repeat a run, which counts once", store.repeated()));
+  if (store.repeated() > 0) say(fmt::format("lines of the parts that repeat a run, which counts once: {}", store.repeated()));
   tell_damage(store);
   return Exit::done;
 }
@@ -259,7 +259,7 @@ int index(const Options& options) {
 
 void tell_damage(const StudyStore& store) {
   if (store.damaged() > 0)
-    complain(fmt::format("warning: {} lines of the parts are damaged: their runs count as not computed", store.damaged()));
+    complain(fmt::format("warning: damaged lines of the parts, whose runs count as not computed: {}", store.damaged()));
 }
 
 void write_in(const Study& study, const std::string& name, const std::string& text) {

@@ -57,6 +57,8 @@ timeout = "10 min"                    # of one run
 int new_study(const std::string& name) {
   namespace fs = std::filesystem;
   const fs::path given(name);
+  if (given.filename().empty() || given.stem() == "." || given.stem() == "..")
+    throw InputError({name, 0}, "", "the name of a new study", in_quotes(name));
   const fs::path folder = given.extension() == ".study" ? given : fs::path(name + ".study"), file = folder / "plan.toml";
   std::error_code error;
   if (fs::exists(file, error)) throw InputError({file.string(), 0}, "", "the name of a new study", "a study that exists already");

@@ -23,7 +23,7 @@ StudyStore::StudyStore(const std::string& folder) {
   std::vector<std::string> paths;
   std::error_code error;
   for (const auto& entry : std::filesystem::directory_iterator(folder + "/parts", error))
-    if (entry.path().extension() == ".jsonl") paths.push_back(entry.path().string());
+    if (entry.path().extension() == ".jsonl" && entry.is_regular_file(error)) paths.push_back(entry.path().string());
   std::ranges::sort(paths);
   for (const std::string& path : paths) read(path);
 }
@@ -33,8 +33,9 @@ void StudyStore::read(const std::string& path) {
   std::string_view rest = text;
   while (!rest.empty()) {
     const std::size_t end = rest.find('\n');
-    const std::string_view line = rest.substr(0, end);
+    std::string_view line = rest.substr(0, end);
     rest.remove_prefix(end == rest.npos ? rest.size() : end + 1);
+    if (line.ends_with('\r')) line.remove_suffix(1);  // copied through a system that ends lines with two characters
     if (line.empty()) continue;
     if (std::optional<StudyResult> result = read_line(line))
       add(std::move(*result));

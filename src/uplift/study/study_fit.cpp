@@ -81,6 +81,7 @@ void fit_cloud_of(const StudyLimit& limit, const std::vector<StudyCurve>& curves
       const std::optional<double> demand = demand_of(limit, *run.result);
       const StudyOutcome outcome = run.result->outcome;
       const double size = demand ? std::abs(*demand) : 0;
+      if (outcome == StudyOutcome::completed && size == 0) ++fit.without_demand;
       if (outcome == StudyOutcome::completed && size > 0) fit.cloud.push_back({intensity, size, false});
       if (outcome == StudyOutcome::overturned || outcome == StudyOutcome::separated)
         fit.cloud.push_back({intensity, std::max(size, limit.limit), true});

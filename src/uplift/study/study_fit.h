@@ -33,6 +33,7 @@ struct StudyLimitFit {
   std::vector<StudyCapacity> capacities;         // of methods that search
   std::vector<Stripe> stripes;                   // of stripes
   std::vector<CloudPoint> cloud;                 // of a cloud
+  long without_demand = 0;                       // runs of a cloud whose demand is 0, which has no logarithm: not in the regression
   std::optional<CloudFit> regression;            // of a cloud
   BothWays fit{Refused{"there are no runs"}, Refused{"there are no runs"}, Refused{"there are no runs"}};
   OrRefused<TwoWayLayout> layout = Refused{"it takes two samples and two motions at least, crossed"};

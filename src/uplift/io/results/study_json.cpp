@@ -249,6 +249,7 @@ void write_limit(ResultWriter& out, const StudyDocument& study, const StudyDocum
     out.number("a", cloud.a, "1", "constant");
     out.number("b", cloud.b, "1", "slope");
     out.number("sigma", cloud.sigma, "1", "standard deviation of ln demand");
+    out.count("without_demand", fit.without_demand, "runs with demand 0, which has no logarithm: not in the regression");
   });
   out.number("confidence", study_confidence, "1", "confidence of all intervals");
   out.object("fit", "lognormal fragility without runs of unknown outcome, where both ends are near enough",
