@@ -201,6 +201,26 @@ class Soil(CliTest):
         for part in ("Pais & Kausel", 'K_v = "2.68571429e+09 N/m"', "tilting the width: 39 % of the stiffness", "K_n = 2.68571e+07 Pa/m"):
             self.assertIn(part, text)
 
+    def test_bed(self):
+        """(H13) to (H15): K_z/A; a uniform bed rocks with K_z B^2/3; the other one has the mean 1 and the second moment of the ratio."""
+        footing, = json.loads(self.uplift("soil", *self.WORDS, "density=1900 kg/m3", "--json").stdout)["footings"]
+        motions, bed = {each["motion"]: each for each in footing["soil"]["motions"]}, footing["bed"]
+        vertical = motions["vertical"]["stiffness"]
+        self.assertAlmostEqual(bed["K_n"] / (vertical / 100), 1, 12)
+        self.assertAlmostEqual(bed["K_t"] / (motions["along the width"]["stiffness"] / 100), 1, 12)
+        self.assertAlmostEqual(bed["c"] / (motions["vertical"]["damping"] / 100), 1, 12)
+        for rocking in bed["rocking"]:
+            share = vertical * 25 / 3 / motions[rocking["motion"]]["stiffness"]
+            self.assertAlmostEqual(rocking["uniform_share"], share, 12)
+            self.assertAlmostEqual(rocking["uniform_K_n"] * 100 / vertical, 1 / share, 12)
+            at = [(k + 0.5) / 40000 for k in range(40000)]
+            growth = math.log(rocking["edge"] / rocking["middle"])
+            stiffness = [rocking["middle"] * math.exp(growth * x * x) for x in at]
+            self.assertAlmostEqual(sum(stiffness) / 40000, 1, 6)
+            self.assertAlmostEqual(sum(k * x * x for k, x in zip(stiffness, at)) / 40000 * 3, 1 / share, 5)
+        disc, = json.loads(self.uplift("soil", "shape=disc", "width=10", "G=80 MPa", "poisson=0.3", "--json").stdout)["footings"]
+        self.assertEqual([each["edge"] for each in disc["bed"]["rocking"]], [None] * len(disc["bed"]["rocking"]))
+
     def test_what_it_prints_is_the_model_of_a_foundation(self):
         printed = re.findall(r'(K_\w+ = "[^"]+")', self.uplift("soil", *self.WORDS).stdout)
         foundation = '[[foundation]]\nname = "ground"\nbody = "base"\nwidth = 10\nlength = 10\n'

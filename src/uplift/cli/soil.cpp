@@ -3,7 +3,6 @@
 #include <fmt/format.h>
 
 #include <filesystem>
-#include <numbers>
 
 #include "uplift/base/format.h"
 #include "uplift/base/text.h"
@@ -122,7 +121,7 @@ void print(const FootingOnSoil& footing) {
   const SoilSprings springs = soil_springs(footing);
   print_springs(footing, springs);
   print_model(springs, footing.formulas == SoilFormulas::strip);
-  print_bed(footing, springs, (footing.formulas == SoilFormulas::disc ? std::numbers::pi / 4 : 1) * footing.width * footing.length);
+  print_bed(footing, springs, footing_area(footing));
 }
 
 void print_json(const std::vector<std::pair<std::string, FootingOnSoil>>& footings) {
@@ -132,6 +131,7 @@ void print_json(const std::vector<std::pair<std::string, FootingOnSoil>>& footin
     json.begin_object().member("name", name);
     ResultWriter out(json);
     write_soil(out, footing);
+    write_bed(out, footing);
     json.end_object();
   }
   json.end_array().end_object();

@@ -246,6 +246,10 @@ SoilSprings soil_springs(const FootingOnSoil& footing) {
   return springs;
 }
 
+double footing_area(const FootingOnSoil& footing) {
+  return (footing.formulas == SoilFormulas::disc ? pi / 4 : 1) * footing.width * footing.length;
+}
+
 double share_of_uniform_bed(const FootingOnSoil& footing, const SoilSprings& springs, SoilMotion rocking) {
   const double side = rocking == tilting_width ? footing.width : footing.length;
   const double radius2 = footing.formulas == SoilFormulas::disc ? side * side / 16 : side * side / 12;  // second moment over area

@@ -70,6 +70,8 @@ class SoilSprings {
 };
 /// docs/theory/soil_stiffness.md, eqs (H1) to (H12).
 SoilSprings soil_springs(const FootingOnSoil& footing);
+/// Area of the underside [m2]; of a strip that of its length.
+double footing_area(const FootingOnSoil& footing);
 /// Where the formulas come from.
 std::string_view source_of(SoilFormulas formulas);
 

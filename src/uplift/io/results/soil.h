@@ -8,4 +8,8 @@ namespace uplift {
 /// formula are left out.
 void write_soil(ResultWriter& out, const FootingOnSoil& footing);
 
+/// What a joint of points can have of it, as the object "bed": a uniform bed with the vertical stiffness, and the bed that is stiffer
+/// towards the edges. See docs/theory/soil_stiffness.md, eqs (H13) to (H17).
+void write_bed(ResultWriter& out, const FootingOnSoil& footing);
+
 }  // namespace uplift
