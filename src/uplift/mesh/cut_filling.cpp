@@ -1,0 +1,186 @@
+#include "uplift/mesh/cut_filling.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+
+#include "uplift/base/text.h"
+#include "uplift/mesh/absent_group.h"
+#include "uplift/mesh/parts.h"
+
+namespace uplift {
+namespace {
+
+std::size_t at(int i) {
+  return static_cast<std::size_t>(i);
+}
+
+constexpr double on_plane = 1e-8;  // of the shortest edge: nodes so near count as on the plane
+
+/// Whether an outline holds all of the corners, none of what is between them or a part.
+PlaneSide side_of_outline(const CutOutline& outline, std::span<const Vec3> corners, double tolerance) {
+  PlaneSide found = PlaneSide::inside;
+  for (const HalfSpace& space : outline.within) {
+    const PlaneSide side = side_of_cell(space, corners, tolerance);
+    if (side == PlaneSide::outside) return side;
+    if (side == PlaneSide::both) found = side;
+  }
+  return found;
+}
+
+}  // namespace
+
+CutFilling::CutFilling(const CutWork& work, const CutPlane& plane, const Where& where)
+    : work_(work), mesh_(work.mesh), plane_(plane), where_(where), sides_(mesh_, cells_of_groups()) {
+  find_signs();
+  for (const CellId id : sides_.cells()) halves_.push_back(halves_of(id));
+  find_level_faces();
+  refuse_nothing();
+}
+
+std::vector<CellId> CutFilling::cells_of_groups() {
+  for (const CellBlock& block : mesh_.blocks) number_.emplace_back(at(block.count()), -1);
+  for (const std::string& name : plane_.through) {
+    const auto group = mesh_.groups.find(name);
+    if (group == mesh_.groups.end()) throw absent_group(mesh_, name, where_, "", "the cells that the plane cuts");
+    if (group->second.dimension != mesh_.dimension || group->second.cells.empty())
+      throw InputError(where_, "group " + in_quotes(name), "a group of cells of dimension " + std::to_string(mesh_.dimension),
+                       group->second.cells.empty() ? "no cells" : "cells of dimension " + std::to_string(group->second.dimension));
+    for (const CellId id : group->second.cells) number_[at(id.block)][at(id.index)] = 0;
+  }
+  std::vector<CellId> cells;
+  for (int b = 0; b < static_cast<int>(mesh_.blocks.size()); ++b)
+    for (int i = 0; i < mesh_.blocks[at(b)].count(); ++i) {
+      int& number = number_[at(b)][at(i)];
+      if (number < 0 || work_.removed[at(b)][at(i)]) continue;
+      number = static_cast<int>(cells.size());
+      cells.push_back({b, i});
+    }
+  return cells;
+}
+
+CellBefore CutFilling::before(CellId id) const {
+  CellBefore cell{mesh_.type(id), {}, std::numeric_limits<double>::infinity()};
+  for (const int node : mesh_.cell(id).first(at(info(cell.cell).corners))) {
+    cell.corners.push_back(mesh_.nodes[at(node)]);
+    cell.tolerance = std::min(cell.tolerance, on_plane * edge_[at(node)]);
+  }
+  return cell;
+}
+
+std::vector<HalfSpace> CutFilling::above(int outline) const {
+  std::vector<HalfSpace> spaces{plane_.below.other_side()};
+  const std::vector<HalfSpace>& within = plane_.outlines[at(outline)].within;
+  spaces.insert(spaces.end(), within.begin(), within.end());
+  return spaces;
+}
+
+bool CutFilling::is_within(const Vec3& place, double tolerance) const {
+  return std::ranges::any_of(plane_.outlines, [&](const CutOutline& outline) {
+    return std::ranges::all_of(outline.within, [&](const HalfSpace& space) { return space.distance(place) <= tolerance; });
+  });
+}
+
+bool CutFilling::is_within(int node) const {
+  return is_within(mesh_.nodes[at(node)], on_plane * edge_[at(node)]);
+}
+
+void CutFilling::find_signs() {
+  edge_.assign(mesh_.nodes.size(), std::numeric_limits<double>::infinity());
+  for (const CellId id : sides_.cells()) {
+    const std::span<const int> edges = info(mesh_.type(id)).edges, nodes = mesh_.cell(id);
+    for (std::size_t e = 0; e + 1 < edges.size(); e += 2) {
+      const int a = nodes[at(edges[e])], b = nodes[at(edges[e + 1])];
+      const double length = (mesh_.nodes[at(a)] - mesh_.nodes[at(b)]).norm();
+      for (const int node : {a, b}) edge_[at(node)] = std::min(edge_[at(node)], length);
+    }
+  }
+  for (std::size_t node = 0; node < mesh_.nodes.size(); ++node) {
+    const double distance = plane_.below.distance(mesh_.nodes[node]), near = std::isinf(edge_[node]) ? 0 : on_plane * edge_[node];
+    sign_.push_back(distance > near ? 1 : distance < -near ? -1 : 0);
+  }
+}
+
+/// What an earlier plane has left of a cell lies on one side of this one, and within its outline or outside of it.
+Halves CutFilling::halves_of_part(CellId id) const {
+  std::vector<Vec3> corners;
+  for (const ClippedCell::Piece& piece : work_.pieces.at(id)) corners.insert(corners.end(), piece.corners.begin(), piece.corners.end());
+  const double tolerance = before(id).tolerance;
+  const PlaneSide side = side_of_cell(plane_.below, corners, tolerance);
+  Halves halves{side == PlaneSide::inside, false};
+  bool cut = side == PlaneSide::both;
+  for (int k = 0; k < static_cast<int>(plane_.outlines.size()) && side == PlaneSide::outside; ++k) {
+    const PlaneSide within = side_of_outline(plane_.outlines[at(k)], corners, tolerance);
+    cut = cut || within == PlaneSide::both;
+    if (within == PlaneSide::inside) halves.upper = true, halves.outline = k;
+  }
+  if (cut) throw InputError(where_, "", "planes that do not cut the same cell", "two of them in " + describe_cell(mesh_, id));
+  return halves;
+}
+
+/// The upper part lies within an outline.
+void CutFilling::keep_within(const CellBefore& cell, Halves& halves) const {
+  const bool curved = info(cell.cell).nodes != info(cell.cell).corners;  // is refused
+  halves.upper = false;
+  for (int k = 0; k < static_cast<int>(plane_.outlines.size()); ++k) {
+    const PlaneSide side = side_of_outline(plane_.outlines[at(k)], cell.corners, cell.tolerance);
+    if (side == PlaneSide::outside) continue;
+    const bool whole = halves.upper_whole && side == PlaneSide::inside;
+    if (!whole && !curved && clip_cell(cell.cell, cell.corners, above(k), cell.tolerance).pieces.empty()) continue;
+    if (halves.upper)
+      throw InputError(where_, "", "outlines on one plane that are at least a cell apart",
+                       fmt::format("two of them in the {} at ({:g}, {:g}, {:g})", info(cell.cell).name, cell.corners[0].x(),
+                                   cell.corners[0].y(), cell.corners[0].z()));
+    halves.upper = true, halves.outline = k;
+  }
+  if (halves.upper && side_of_outline(plane_.outlines[at(halves.outline)], cell.corners, cell.tolerance) == PlaneSide::both)
+    halves.upper_whole = false;
+}
+
+Halves CutFilling::halves_of(CellId id) const {
+  if (mesh_.part(id)) return halves_of_part(id);
+  const auto nodes = mesh_.cell(id);
+  const bool below = std::ranges::any_of(nodes, [&](int node) { return sign(node) < 0; });
+  const bool above = std::ranges::any_of(nodes, [&](int node) { return sign(node) > 0; });
+  Halves halves{below, above, !above, !below};
+  if (above) keep_within(before(id), halves);
+  const bool whole = (!below || halves.lower_whole) && (!halves.upper || halves.upper_whole);
+  if (!whole && info(mesh_.type(id)).nodes != info(mesh_.type(id)).corners)
+    throw InputError(where_, "", "cells of the first degree (tri3, quad4, tet4, wedge6, hex8) where a plane cuts",
+                     describe_cell(mesh_, id));
+  return halves;
+}
+
+/// Faces on the plane between a cell below and one above it.
+void CutFilling::find_level_faces() {
+  std::vector<int> nodes;
+  for (int k = 0; k < static_cast<int>(halves_.size()); ++k) {
+    if (!halves_[at(k)].lower || halves_[at(k)].upper) continue;
+    for (int s = 0; s < sides_.count(k); ++s) {
+      const int side = Sides::stride * k + s, twin = sides_.twin(side);
+      if (twin < 0 || !halves_[at(twin / Sides::stride)].upper) continue;
+      sides_.nodes_of(mesh_, side, nodes);
+      if (std::ranges::any_of(nodes, [&](int node) { return sign(node) != 0; })) continue;
+      LevelFace& face = level_.emplace_back(LevelFace{k, twin / Sides::stride, {}});
+      const int corners = info(info(mesh_.type(sides_.cells()[at(k)])).sides[at(s)]).corners;
+      for (int c = 0; c < corners; ++c) face.corners.push_back(mesh_.nodes[at(nodes[at(c)])]);
+    }
+  }
+}
+
+void CutFilling::refuse_nothing() const {
+  if (!level_.empty() || std::ranges::any_of(halves_, [](const Halves& halves) { return halves.lower && halves.upper; })) return;
+  double least = std::numeric_limits<double>::infinity(), most = -least;
+  for (const CellId id : sides_.cells())
+    for (const int node : mesh_.cell(id)) {
+      least = std::min(least, plane_.below.distance(mesh_.nodes[at(node)]));
+      most = std::max(most, plane_.below.distance(mesh_.nodes[at(node)]));
+    }
+  throw InputError(where_, "", "a plane with cells of the groups on both sides",
+                   fmt::format("none: they reach from {:g} m to {:g} m above it{}", least, most,
+                               !plane_.outlines.front().within.empty() ? ", and what lies above must lie within the outline" : ""));
+}
+
+}  // namespace uplift

@@ -1,0 +1,87 @@
+#pragma once
+#include <map>
+#include <set>
+#include <vector>
+
+#include "uplift/mesh/cut.h"
+#include "uplift/mesh/sides.h"
+
+// The first part of a cut (cut.cpp): which parts of each cell a plane leaves filled. It changes nothing.
+namespace uplift {
+
+/// A mesh between two cuts. Empty cells are only marked: `compact` removes them after the last plane.
+struct CutWork {
+  Mesh mesh;
+  std::vector<std::vector<bool>> removed = {};                    // of each cell
+  std::map<CellId, std::vector<ClippedCell::Piece>> pieces = {};  // of the parts
+  std::set<CellId> lines = {};                                    // beams and points, no faces of cells
+};
+
+/// Removes marked cells and nodes that nothing uses.
+void compact(CutWork& work, std::vector<std::vector<CutFace>>& faces);
+
+/// Which parts of a cell are filled after a cut.
+struct Halves {
+  bool lower = false, upper = false;
+  bool lower_whole = true, upper_whole = true;
+  int outline = 0;  // that holds the upper part
+};
+
+/// A cell of the mesh as it was before the cut: the numbers of nodes and cells change under way.
+struct CellBefore {
+  Cell cell;
+  std::vector<Vec3> corners;
+  double tolerance;  // m
+};
+
+class CutFilling {
+ public:
+  /// Throws InputError as `cut` does. All arguments must outlive it.
+  CutFilling(const CutWork& work, const CutPlane& plane, const Where& where);
+
+  /// The cells of the groups that are cut, and what is filled of each.
+  const Sides& sides() const { return sides_; }
+  const std::vector<Halves>& halves() const { return halves_; }
+  /// Of a cell of the mesh: its number in sides().cells(), -1 for none.
+  int number(CellId id) const { return number_[static_cast<std::size_t>(id.block)][static_cast<std::size_t>(id.index)]; }
+  /// Of a node: below the plane -1, on it 0, above it 1.
+  int sign(int node) const { return sign_[static_cast<std::size_t>(node)]; }
+  /// Whether a node lies within an outline, on its border included.
+  bool is_within(int node) const;
+  /// Whether a place does.
+  bool is_within(const Vec3& place, double tolerance) const;
+
+  /// Faces on the plane between a cell below and one above it.
+  struct LevelFace {
+    int lower, upper;  // numbers of the cells
+    std::vector<Vec3> corners;
+  };
+  const std::vector<LevelFace>& level_faces() const { return level_; }
+
+  CellBefore before(CellId id) const;
+  /// Limits of what lies above the plane within an outline.
+  std::vector<HalfSpace> above(int outline) const;
+  /// The upper part of a cell lies within an outline.
+  void keep_within(const CellBefore& cell, Halves& halves) const;
+
+ private:
+  std::vector<CellId> cells_of_groups();
+  void find_signs();
+  Halves halves_of(CellId id) const;
+  Halves halves_of_part(CellId id) const;
+  void find_level_faces();
+  void refuse_nothing() const;
+
+  const CutWork& work_;
+  const Mesh& mesh_;
+  const CutPlane& plane_;
+  const Where& where_;
+  std::vector<std::vector<int>> number_;
+  Sides sides_;
+  std::vector<Halves> halves_;
+  std::vector<signed char> sign_;
+  std::vector<double> edge_;  // m: the shortest edge of cells of the groups at each node
+  std::vector<LevelFace> level_;
+};
+
+}  // namespace uplift
