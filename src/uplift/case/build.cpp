@@ -2,9 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
-#include <filesystem>
 
-#include "uplift/base/file.h"
 #include "uplift/base/text.h"
 #include "uplift/case/advice/history_forecast.h"
 #include "uplift/case/build/bed.h"
@@ -12,12 +10,11 @@
 #include "uplift/case/build/criteria.h"
 #include "uplift/case/build/output.h"
 #include "uplift/case/build/roles.h"
+#include "uplift/case/build/stages.h"
 #include "uplift/case/build/water.h"
-#include "uplift/case/decided.h"
 #include "uplift/case/ground/ground.h"
 #include "uplift/case/schema/sections.h"
 #include "uplift/case/shown.h"
-#include "uplift/laws/tangential.h"
 #include "uplift/model/check.h"
 #include "uplift/model/tuned_mass.h"
 
@@ -86,64 +83,6 @@ void add_interfaces(const Case& read, const RunSpec& spec, const Model* like, Mo
   if (spec.law && std::ranges::all_of(parts, [](const InterfacePart& part) { return part.footprint.has_value(); }))
     throw InputError(spec.law->where(), spec.law->path(), "an interface that takes this law", "foundations alone, which have a model");
   if (spec.law && !spec.interface.empty()) names.interfaces.find(spec.interface, spec.law->where(), spec.law->path());
-}
-
-/// With the place that asks for the path average: a stage, a variant or the stiffness sweep.
-[[noreturn]] void fail_traction(const Values& stage, const RunSpec& spec) {
-  const char* wanted = "traction = \"end\" with this scheme (the path average belongs to the average acceleration)";
-  if (spec.stiffness_ratio)
-    throw InputError(spec.law->where(), "compare.stiffness_sweep",
-                     "stages with the average acceleration: the sweep compares both tractions", in_quotes(stage.part("scheme").type()));
-  if (spec.path_average) throw InputError(stage.where("scheme"), "variant \"" + spec.name + "\"", wanted, "traction = \"path\"");
-  fail(stage, "traction", wanted, "\"path\"");
-}
-
-Stage stage_of(const Values& table, const RunSpec& spec) {
-  Stage stage;
-  stage.type = table.text("type") == "static" ? Stage::Type::statics : Stage::Type::dynamics;
-  stage.steps = table.integer("steps");
-  stage.halvings = table.integer("halvings");
-  stage.p_delta = table.flag("p_delta");
-  if (stage.type == Stage::Type::statics) return stage;
-  for (const char* key : {"duration", "step"})
-    if (!table.has(key)) fail(table, "", fmt::format("{} of a dynamic stage", key), "none");
-  stage.duration = spec.duration.value_or(table.number("duration"));
-  stage.step = spec.step_factor * spec.step.value_or(table.number("step"));
-  if (stage.step > stage.duration)
-    fail(table, "step", fmt::format("a step shorter than the duration of {:g} s", stage.duration), fmt::format("{:g} s", stage.step));
-  const Values& scheme = spec.scheme ? *spec.scheme : table.part("scheme");
-  stage.scheme = *make_part(scheme_catalog(), scheme);
-  // The path average closes the energy balance with the trapezoidal rule only: other schemes take the end of the step unless told
-  // otherwise.
-  const bool wanted = spec.path_average.value_or(table.text("traction") == "path");
-  const bool stated = spec.path_average.has_value() || table.given("traction");
-  if (wanted && stated && !stage.scheme.average_acceleration()) fail_traction(table, spec);
-  stage.path_average = wanted && stage.scheme.average_acceleration();
-  return stage;
-}
-
-}  // namespace
-
-DecidedTexts decided_texts(const Case& read) {
-  DecidedTexts decided;
-  for (const Values& stage : read.values.tables("stage"))
-    if (stage.text("type") != "static" && !stage.given("traction") &&
-        stage_of(stage, {}).path_average != (stage.text("traction") == "path"))
-      decided[stage.path("traction")] = "end";
-  for (const char* tables : {"interface", "variant"})
-    for (const Values& table : read.values.tables(tables)) {
-      const Values* law = table.has("law") ? &table.part("law") : nullptr;
-      if (law != nullptr && law->items().contains("tangential") && tangential_kind(*law) != law->text("tangential"))
-        decided[law->path("tangential")] = tangential_kind(*law);
-    }
-  return decided;
-}
-
-namespace {
-
-void add_stages(const Case& read, const RunSpec& spec, RunPlan& plan) {
-  for (const Values& table : read.values.tables("stage")) plan.stages.push_back(stage_of(table, spec));
-  if (plan.stages.empty()) fail(read.values, "", "at least one [[stage]]", "none");
 }
 
 /// What a foundation cannot stand beside.
@@ -242,20 +181,6 @@ std::shared_ptr<const Model> resting_model(const Case& read, const RunSpec& spec
   return rest;
 }
 
-/// Released supports do not come back, and the second order begins with the state that they have borne.
-void check_release(const Values& root, const RunPlan& plan) {
-  const Stage* first = dynamic_stage(plan);
-  const std::vector<Values>& tables = root.tables("stage");
-  for (std::size_t k = 0; first && k < plan.stages.size(); ++k) {
-    const Stage& stage = plan.stages[k];
-    if (&stage < first) continue;
-    if (stage.type == Stage::Type::statics)
-      fail(tables[k], "type", "no static stage after a dynamic one, where supports hold in static stages alone", "one");
-    if (stage.p_delta && !first->p_delta)
-      fail(tables[k], "p_delta", "p_delta from the first dynamic stage on, where supports hold in static stages alone", "p_delta later");
-  }
-}
-
 /// N/m; of rigid bodies alone any number does.
 double largest_stiffness(const Model& model) {
   const double largest = model.free() > 0 ? Vector(model.stiffness.diagonal()).maxCoeff() : 0;
@@ -298,58 +223,6 @@ void adapt_laws(const Case& read, const RunSpec& spec, BuiltCase& built) {
     built.derived.push_back(std::move(derived));
   }
 }
-
-}  // namespace
-
-Case check_case(const Raw& raw, const std::string& file, const MeshReader& read_mesh) {
-  Case read{check(raw, case_section()), file, nullptr, {}};
-  read.mesh = mesh_of_case(read.values, file, read_mesh);
-  read.records = read_records(read.values);
-  return read;
-}
-
-Case check_case_like(const Case& like, bool same_mesh, const Raw& raw, const MeshReader& read_mesh) {
-  Case read{check(raw, case_section()), like.file, like.mesh, like.records};
-  if (!same_mesh) read.mesh = mesh_of_case(read.values, like.file, read_mesh);
-  return read;
-}
-
-std::vector<std::string> input_files(const Case& read) {
-  std::vector<std::string> files;
-  const auto add = [&](const Values& table) {
-    const std::filesystem::path path = std::filesystem::path(read.file).parent_path() / table.text("file");
-    if (!std::filesystem::is_regular_file(path)) fail(table, "file", "a file", escaped(path.string()));
-    files.push_back(path.lexically_normal().string());
-  };
-  for (const Values& function : read.values.tables("function")) {
-    const Values& shape = function.part("shape");
-    if (shape.items().contains("file") && shape.has("file")) add(shape);
-  }
-  if (const Values* mesh = table_if(read.values, "mesh"); mesh && mesh->has("file")) add(*mesh);
-  for (const Values* solid : element_tables(read.values, ElementPlace::cells))
-    for (const char* key : {"law", "plasticity"})
-      if (solid->items().contains(key) && solid->has(key) && solid->part(key).items().contains("library")) {
-        const Values& law = solid->part(key);
-        const std::filesystem::path path = path_beside(law.where("library"), law.text("library"));
-        if (std::filesystem::is_regular_file(path)) files.push_back(path.lexically_normal().string());  // else the law refuses it
-      }
-  if (read.values.has("reduced_model"))
-    files.push_back(path_beside(read.values.where("reduced_model"), read.values.text("reduced_model")).lexically_normal().string());
-  for (const Values& record : read.values.tables("record"))
-    if (record.has("file")) files.push_back(record_path(record));
-  for (const Values& variant : read.values.tables("variant"))
-    if (variant.has("case")) {
-      const std::filesystem::path path = path_beside(variant.where("case"), variant.text("case"));
-      if (std::filesystem::is_regular_file(path)) files.push_back(path.lexically_normal().string());  // else `compare` refuses it
-    }
-  return files;
-}
-
-std::shared_ptr<const LinearSolver> bulk_solver(const Case& read) {
-  return make_part(solver_catalog(), read.values.part("solver"));
-}
-
-namespace {
 
 /// Diagonal of the box around places [m].
 double extent(const std::vector<Place>& places) {
@@ -410,7 +283,7 @@ BuiltCase build(const Case& read, const RunSpec& spec) {
     built.tuned_mass = tuned.front();
     built.notes.push_back(fmt::format("the tuned mass is {:.10g} kg", built.tuned_mass));
   }
-  add_stages(read, spec, built.plan);
+  built.plan.stages = stages_of(read, spec);
   check_second_order_water(root);
   built.model = make_model(read, spec, tuned, nullptr, names, built);
   const bool released = any_released(root);
@@ -428,7 +301,7 @@ BuiltCase build(const Case& read, const RunSpec& spec) {
   plan.interface_solver = interface_solver(root.text("interface_solver"));
   adapt_laws(read, spec, built);
   if (released) {
-    check_release(root, plan);
+    check_release(root, plan.stages);
     plan.rest = resting_model(read, spec, tuned, built);
     check_static(*plan.rest, root.where());
   }

@@ -1,0 +1,87 @@
+#include "uplift/case/build/stages.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+
+#include "uplift/base/text.h"
+#include "uplift/case/decided.h"
+#include "uplift/dynamics/scheme.h"
+#include "uplift/laws/tangential.h"
+
+namespace uplift {
+namespace {
+
+/// With the place that asks for the path average: a stage, a variant or the stiffness sweep.
+[[noreturn]] void fail_traction(const Values& stage, const RunSpec& spec) {
+  const char* wanted = "traction = \"end\" with this scheme (the path average belongs to the average acceleration)";
+  if (spec.stiffness_ratio)
+    throw InputError(spec.law->where(), "compare.stiffness_sweep",
+                     "stages with the average acceleration: the sweep compares both tractions", in_quotes(stage.part("scheme").type()));
+  if (spec.path_average) throw InputError(stage.where("scheme"), "variant \"" + spec.name + "\"", wanted, "traction = \"path\"");
+  fail(stage, "traction", wanted, "\"path\"");
+}
+
+Stage stage_of(const Values& table, const RunSpec& spec) {
+  Stage stage;
+  stage.type = table.text("type") == "static" ? Stage::Type::statics : Stage::Type::dynamics;
+  stage.steps = table.integer("steps");
+  stage.halvings = table.integer("halvings");
+  stage.p_delta = table.flag("p_delta");
+  if (stage.type == Stage::Type::statics) return stage;
+  for (const char* key : {"duration", "step"})
+    if (!table.has(key)) fail(table, "", fmt::format("{} of a dynamic stage", key), "none");
+  stage.duration = spec.duration.value_or(table.number("duration"));
+  stage.step = spec.step_factor * spec.step.value_or(table.number("step"));
+  if (stage.step > stage.duration)
+    fail(table, "step", fmt::format("a step shorter than the duration of {:g} s", stage.duration), fmt::format("{:g} s", stage.step));
+  const Values& scheme = spec.scheme ? *spec.scheme : table.part("scheme");
+  stage.scheme = *make_part(scheme_catalog(), scheme);
+  // The path average closes the energy balance with the trapezoidal rule only: other schemes take the end of the step unless told
+  // otherwise.
+  const bool wanted = spec.path_average.value_or(table.text("traction") == "path");
+  const bool stated = spec.path_average.has_value() || table.given("traction");
+  if (wanted && stated && !stage.scheme.average_acceleration()) fail_traction(table, spec);
+  stage.path_average = wanted && stage.scheme.average_acceleration();
+  return stage;
+}
+
+}  // namespace
+
+std::vector<Stage> stages_of(const Case& read, const RunSpec& spec) {
+  std::vector<Stage> stages;
+  for (const Values& table : read.values.tables("stage")) stages.push_back(stage_of(table, spec));
+  if (stages.empty()) fail(read.values, "", "at least one [[stage]]", "none");
+  return stages;
+}
+
+void check_release(const Values& root, const std::vector<Stage>& stages) {
+  const auto begin = std::ranges::find(stages, Stage::Type::dynamics, &Stage::type);
+  const Stage* first = begin == stages.end() ? nullptr : &*begin;
+  const std::vector<Values>& tables = root.tables("stage");
+  for (std::size_t k = 0; first && k < stages.size(); ++k) {
+    const Stage& stage = stages[k];
+    if (&stage < first) continue;
+    if (stage.type == Stage::Type::statics)
+      fail(tables[k], "type", "no static stage after a dynamic one, where supports hold in static stages alone", "one");
+    if (stage.p_delta && !first->p_delta)
+      fail(tables[k], "p_delta", "p_delta from the first dynamic stage on, where supports hold in static stages alone", "p_delta later");
+  }
+}
+
+DecidedTexts decided_texts(const Case& read) {
+  DecidedTexts decided;
+  for (const Values& stage : read.values.tables("stage"))
+    if (stage.text("type") != "static" && !stage.given("traction") &&
+        stage_of(stage, {}).path_average != (stage.text("traction") == "path"))
+      decided[stage.path("traction")] = "end";
+  for (const char* tables : {"interface", "variant"})
+    for (const Values& table : read.values.tables(tables)) {
+      const Values* law = table.has("law") ? &table.part("law") : nullptr;
+      if (law != nullptr && law->items().contains("tangential") && tangential_kind(*law) != law->text("tangential"))
+        decided[law->path("tangential")] = tangential_kind(*law);
+    }
+  return decided;
+}
+
+}  // namespace uplift

@@ -1,0 +1,14 @@
+#pragma once
+#include <vector>
+
+#include "uplift/case/case.h"
+
+namespace uplift {
+
+/// The stages of a run. Throws InputError where there are none, or where keys of one do not go together.
+std::vector<Stage> stages_of(const Case& read, const RunSpec& spec);
+
+/// Released supports do not come back, and the second order begins with the state that they have borne. Throws InputError.
+void check_release(const Values& root, const std::vector<Stage>& stages);
+
+}  // namespace uplift
