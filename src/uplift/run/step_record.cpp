@@ -64,13 +64,16 @@ void StepRecord::average(double window) {
   std::vector<double> integral(count);  // from the first instant; every value is the mean of the step before its instant
   for (std::size_t k = 0; k < interfaces; ++k) {
     Extremes& most = extremes[k];
+    double shear = 0, moment = 0;  // squares
     for (std::size_t i = 0; i < count; ++i) {
       const Instant& now = at(i, k);
-      most.step_shear = std::max(most.step_shear, std::sqrt(now.shear_1 * now.shear_1 + now.shear_2 * now.shear_2));
-      most.step_moment = std::max(most.step_moment, std::sqrt(now.moment_1 * now.moment_1 + now.moment_2 * now.moment_2));
+      shear = std::max(shear, now.shear_1 * now.shear_1 + now.shear_2 * now.shear_2);
+      moment = std::max(moment, now.moment_1 * now.moment_1 + now.moment_2 * now.moment_2);
       most.step_compression = std::max(most.step_compression, -now.axial);
       most.step_pressure = std::max(most.step_pressure, now.pressure);
     }
+    most.step_shear = std::max(most.step_shear, std::sqrt(shear));
+    most.step_moment = std::max(most.step_moment, std::sqrt(moment));
     for (const Part part : parts) {
       const auto value = [&](std::size_t i) -> double& { return instants[i * interfaces + k].*part; };
       bool any = false;

@@ -6,8 +6,13 @@ namespace uplift {
 
 StudyCurve::StudyCurve(const StudyCase& study, std::size_t number, std::size_t sample, std::size_t motion)
     : study_(study), number_(number), sample_(sample), motion_(motion) {
-  if (!study.plan.method.searches()) return;
-  SearchPlan plan = study.plan.method.search;
+  const StudyMethod& method = study.plan.method;
+  if (!method.searches()) {
+    const double unit = method.type == StudyMethod::Type::cloud ? study.motions[motion].intensity : 1;
+    for (const double level : method.levels) missing_.push_back(point(level * unit));
+    return;
+  }
+  SearchPlan plan = method.search;
   plan.most *= static_cast<int>(study.plan.limits.size());  // every search is told the runs of all
   searches_.assign(study.plan.limits.size(), CapacitySearch(plan));
 }
@@ -44,11 +49,8 @@ std::vector<StudyPoint> StudyCurve::wanted(const FindResult& find) {
       break;
     }
   } else {
-    const double unit = method.type == StudyMethod::Type::cloud ? study_.motions[motion_].intensity : 1;
-    for (const double level : method.levels) {
-      const StudyPoint now = point(level * unit);
-      if (!runs_.contains(now.intensity) && !take(now, find)) missing.push_back(now);
-    }
+    std::erase_if(missing_, [&](const StudyPoint& now) { return take(now, find); });
+    missing = missing_;
   }
   complete_ = missing.empty();
   return missing;

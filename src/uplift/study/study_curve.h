@@ -47,6 +47,7 @@ class StudyCurve {
   const StudyCase& study_;
   std::size_t number_, sample_, motion_;
   std::vector<CapacitySearch> searches_;
+  std::vector<StudyPoint> missing_;  // of a method that does not search: without results
   std::map<double, Run> runs_;
   bool complete_ = false;
 };
