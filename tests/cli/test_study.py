@@ -236,6 +236,89 @@ class Study(CliTest):
         self.uplift("study", "index", name)
         self.assertEqual(sqlite3.connect(self.folder / name / "study.db").execute("SELECT count(*) FROM run").fetchone()[0], 12)
 
+    def test_parts_that_went_through_other_systems(self):
+        name = self.study(STRIPES)
+        self.uplift("study", "run", name, "-q")
+        expected = self.evaluated(name)
+        (part,) = (self.folder / name / "parts").glob("*.jsonl")
+        (self.folder / name / "parts" / "folder.jsonl").mkdir()
+        part.write_bytes(part.read_bytes().replace(b"\n", b"\r\n"))
+        said = self.uplift("study", "status", name)
+        self.assertIn("12/12 runs", said.stdout)
+        self.assertNotIn("damaged", said.stderr)
+        self.assertEqual(self.evaluated(name), expected)
+        for wrong in ("", ".", "..", "a/.."):
+            self.assertIn("expected the name of a new study", self.uplift("study", "new", wrong, expect=2).stderr)
+        self.assertEqual(sorted(path.name for path in self.folder.glob("*.study")), [name])
+
+    def test_a_cloud_states_runs_without_demand(self):
+        plan = IDA.replace('type = "ida"\nstart = 0.1\nlargest = 20', 'type = "cloud"\nfactors = [0.001, 9, 14]')
+        name = self.study(plan)
+        self.uplift("study", "run", name, "-q")
+        study = json.loads(self.uplift("study", "fit", name, "--json").stdout)
+        (limit,) = study["limits"]
+        demands = [run["demands"][0] for curve in study["curves"] for run in curve["runs"]]
+        self.assertEqual(demands.count(0), 4)  # the weight keeps the joint closed under a thousandth of the motions
+        self.assertEqual(limit["regression"]["without_demand"], 4)
+        points = [(math.log(run["intensity"]), math.log(run["demands"][0])) for curve in study["curves"] for run in curve["runs"] if run["demands"][0]]
+        self.assertEqual(len(points), 8)
+        x, y = (sum(point[i] for point in points) / 8 for i in (0, 1))
+        slope = sum((a - x) * (b - y) for a, b in points) / sum((a - x) ** 2 for a, _ in points)
+        self.assertAlmostEqual(limit["regression"]["b"], slope, delta=1e-9)
+        self.assertAlmostEqual(limit["fit"]["theta"], math.exp((math.log(1e-3) - y + slope * x) / slope), delta=1e-9)
+
+    def test_what_the_site_asks_for(self):
+        name = self.study()
+        self.uplift("study", "run", name, "-q")
+        before = json.loads(self.uplift("study", "fit", name, "--json").stdout)
+        self.assertFalse({"design", "hazard"} & set(before))
+        # another title, a comment, a design motion and a hazard curve: nothing is run again
+        self.write("# as built\n" + CASE.replace('title = "test"', 'title = "Another title"'))
+        hazard = [(0.5, 2e-3), (1.0, 5e-4), (3.0, 4e-5)]
+        self.study(IDA + '[design]\nintensity = 0.9\nsource = "site report"\n[hazard]\nintensities = [0.5, 1, 3]\nrates = [2e-3, 5e-4, 4e-5]\n')
+        self.assertIn("complete", self.uplift("study", "status", name).stdout)
+        said = self.uplift("study", "fit", name).stdout
+        study = json.loads((self.folder / name / "study.json").read_text())
+        self.assert_valid(study, "study")
+        self.assertEqual(study["title"], "Another title")
+        self.assertEqual(study["curves"], before["curves"])
+        (limit,) = study["limits"]
+        theta, beta = limit["fit"]["theta"], limit["fit"]["beta"]
+
+        def probability(intensity):
+            return 0.5 * math.erfc(-math.log(intensity / theta) / beta / math.sqrt(2))
+
+        pair = limit["performance"]
+        for key, intensity in (("at_design", 0.9), ("at_one_and_a_half", 1.35)):
+            self.assertAlmostEqual(pair[key] / probability(intensity), 1, delta=1e-9)
+            self.assertTrue(pair[f"{key}_interval"]["lower"] <= pair[key] <= pair[f"{key}_interval"]["upper"])
+            self.assertEqual(pair["unknown_survived"][key], pair[key])  # every run has an outcome
+        self.assertEqual(pair["met"], probability(0.9) <= 0.01 and probability(1.35) <= 0.1)
+
+        def rate(intensity):  # straight in both logarithms
+            (a, p), (b, q) = hazard[:2] if intensity < 1 else hazard[1:]
+            return p * math.exp(math.log(q / p) * math.log(intensity / a) / math.log(b / a))
+
+        # midpoint rule of the integral of P |dH| over ln a, from 12 beta below the median to 12 above
+        count = 20000
+        grid = [theta * math.exp(beta * (24 * i / count - 12)) for i in range(count + 1)]
+        risk = sum(probability(math.sqrt(a * b)) * (rate(a) - rate(b)) for a, b in zip(grid, grid[1:]))
+        self.assertAlmostEqual(limit["risk"]["rate"] / risk, 1, delta=1e-5)
+        self.assertEqual(limit["risk"]["unknown_exceeded"], limit["risk"]["rate"])
+        self.assertAlmostEqual(float(re.search(r"annual rate (\S+)", said)[1]) / risk, 1, delta=5e-3)
+        self.assertIn("aims of ASCE/SEI 43", said)
+        with open(self.folder / name / "fits.csv", newline="") as file:
+            (row,) = csv.DictReader(file)
+        self.assertEqual([float(row["probability at design [1]"]), float(row["annual rate [1/a]"])], [pair["at_design"], limit["risk"]["rate"]])
+        # fractiles of four curves at the limit: straight between the runs on both sides of it
+        crossing = []
+        for curve in study["curves"]:
+            runs = [(0.0, 0.0)] + [(run["intensity"], run["demands"][0]) for run in curve["runs"]]
+            crossing.append(next(a + (b - a) * (1e-3 - d) / (e - d) for (a, d), (b, e) in zip(runs, runs[1:]) if e >= 1e-3))
+        first, second, third, fourth = sorted(crossing)
+        for key, expected in (("p16", first + 0.48 * (second - first)), ("p50", (second + third) / 2), ("p84", third + 0.52 * (fourth - third))):
+            self.assertAlmostEqual(limit["fractiles"][key][-1], expected, delta=1e-12)
+
     def test_a_changed_plan_runs_what_is_new(self):
         name = self.study(STRIPES)
         self.uplift("study", "run", name, "-q")
@@ -330,6 +413,12 @@ class Study(CliTest):
             ("m2.csv", "m9.csv", "expected a file"),
             ('case = "../case.toml"', 'case = "../cas.toml"', "expected a case file"),
             ('case = "../case.toml"', 'case = "../case.toml"\nsamples = 3', "expected [[variable]] tables"),
+            ("[[limit]]", "[design]\nintensity = 0\n[[limit]]", "design.intensity: expected"),
+            ("[[limit]]", "[hazard]\nintensities = [1]\nrates = [1e-3]\n[[limit]]", "expected two intensities at least"),
+            ("[[limit]]", "[hazard]\nintensities = [1, 2]\nrates = [1e-3]\n[[limit]]", "expected a rate for each of the 2 intensities, found 1"),
+            ("[[limit]]", "[hazard]\nintensities = [2, 1]\nrates = [2e-3, 1e-3]\n[[limit]]", "expected ascending numbers, found 1 after 2"),
+            ("[[limit]]", "[hazard]\nintensities = [1, 2]\nrates = [1e-3, 1e-3]\n[[limit]]", "expected rates that fall as the intensity grows"),
+            ("[[limit]]", "[hazard]\nintensities = [1, 2]\nrates = [1e-3, 0]\n[[limit]]", "hazard.rates"),
         ]:
             with self.subTest(new=new):
                 name = self.study(IDA.replace(old, new))

@@ -39,6 +39,15 @@ quantity = "max_opening"              # numbers of the verdict: `uplift describe
 limit = "30 mm"
 source = "judgement"
 
+# ---- what the site asks for ----
+#
+# [design]                            # probabilities at the design motion and at 1.5 times it (ASCE/SEI 43)
+# intensity = 0.3
+#
+# [hazard]                            # annual rate with which each limit is exceeded
+# intensities = [0.1, 0.3, 1.0]
+# rates = [2e-3, 2e-4, 5e-6]          # a year
+
 # ---- uncertain numbers of the case: a Latin hypercube ----
 
 # samples = 20                        # at the top of this file

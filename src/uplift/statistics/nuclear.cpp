@@ -140,7 +140,7 @@ OrRefused<AnnualRisk> risk_of_curve(std::span<const HazardPoint> hazard, double 
 }
 
 PerformancePair performance_pair(double design_im, double theta, double beta) {
-  assert(design_im > 0 && theta > 0 && beta > 0);
+  assert(design_im > 0 && theta > 0 && beta >= 0);
   return {lognormal_cdf(std::log(design_im / theta), beta), lognormal_cdf(std::log(1.5 * design_im / theta), beta)};
 }
 

@@ -79,6 +79,7 @@ struct PerformancePair {
   double at_design = 0, at_one_and_a_half = 0;
   bool met() const { return at_design <= 0.01 && at_one_and_a_half <= 0.10; }
 };
+/// Of the lognormal curve (theta, beta >= 0).
 PerformancePair performance_pair(double design_im, double theta, double beta);
 /// The pair of a curve with exactly `probability` at the design motion.
 PerformancePair performance_pair_of(double probability, double beta);

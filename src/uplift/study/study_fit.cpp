@@ -57,6 +57,28 @@ OrRefused<TwoWayLayout> layout_of(const StudyCase& study, const std::vector<Stud
   return two_way_layout(table);
 }
 
+/// Up to the limit: beyond it few curves have runs.
+std::optional<IdaFractiles> fractiles_of(const StudyLimit& limit, const std::vector<StudyCurve>& curves) {
+  constexpr int count = 40;
+  if (limit.quantity == nullptr || limit.quantity->at_least || !(limit.limit > 0)) return std::nullopt;
+  std::vector<std::vector<IdaPoint>> all;
+  for (const StudyCurve& curve : curves) {
+    std::vector<IdaPoint> points;
+    for (const auto& [intensity, run] : curve.runs()) {
+      const std::optional<double> demand = demand_of(limit, *run.result);
+      const StudyOutcome outcome = run.result->outcome;
+      if (outcome_of(limit, *run.result) == RunOutcome::unknown) continue;
+      points.push_back(
+          {intensity, demand ? std::abs(*demand) : 0, outcome == StudyOutcome::overturned || outcome == StudyOutcome::separated});
+    }
+    if (!points.empty()) all.push_back(std::move(points));
+  }
+  if (all.size() < 3) return std::nullopt;
+  std::vector<double> demands;
+  for (int i = 1; i <= count; ++i) demands.push_back(limit.limit * i / count);
+  return ida_fractiles(all, std::move(demands));
+}
+
 // ---- stripes and clouds ----
 
 void fit_stripes_of(const StudyLimit& limit, const std::vector<StudyCurve>& curves, StudyLimitFit& fit) {
@@ -165,6 +187,7 @@ StudyLimitFit fit_limit(const StudyCase& study, const std::vector<StudyCurve>& c
   if (study.plan.method.searches()) {
     fit_searches(curves, number, fit);
     fit.layout = layout_of(study, curves, fit.capacities);
+    fit.fractiles = fractiles_of(limit, curves);
   } else if (study.plan.method.type == StudyMethod::Type::stripes) {
     fit_stripes_of(limit, curves, fit);
   } else {
@@ -174,11 +197,16 @@ StudyLimitFit fit_limit(const StudyCase& study, const std::vector<StudyCurve>& c
   return fit;
 }
 
-double percentile(const std::vector<double>& sorted, double share) {
-  const double at = share * static_cast<double>(sorted.size() - 1);
-  const auto below = static_cast<std::size_t>(at);
-  if (below + 1 >= sorted.size()) return sorted.back();
-  return sorted[below] + (at - static_cast<double>(below)) * (sorted[below + 1] - sorted[below]);
+std::optional<PerformancePair> performance_of(const StudySite& site, const OrRefused<Fragility>& curve) {
+  const Fragility* fit = std::get_if<Fragility>(&curve);
+  if (!site.design || fit == nullptr) return std::nullopt;
+  return performance_pair(*site.design, fit->theta(), fit->beta());
+}
+
+OrRefused<AnnualRisk> risk_of(const StudySite& site, const OrRefused<Fragility>& curve) {
+  if (const Refused* refused = std::get_if<Refused>(&curve)) return *refused;
+  const Fragility& fit = std::get<Fragility>(curve);
+  return risk_of_curve(site.hazard, fit.theta(), fit.beta());
 }
 
 std::vector<StudyFloor> floor_percentiles(const StudyCase& study, const std::vector<StudyCurve>& curves) {

@@ -4,6 +4,7 @@
 #include <vector>
 
 #include "uplift/statistics/fragility.h"
+#include "uplift/statistics/ida_fractiles.h"
 #include "uplift/statistics/nuclear.h"
 #include "uplift/study/study_curve.h"
 
@@ -42,7 +43,8 @@ struct StudyLimitFit {
   ConfidenceInterval theta_interval() const;
   /// Of P(exceed | im), im > 0: that of the likelihood, and at least what the interval of the median makes of the curve.
   ConfidenceInterval probability_interval(double im) const;
-  std::vector<StudyInfluence> tornado;  // the largest first; of the capacity where it is searched, else of the demand
+  std::optional<IdaFractiles> fractiles;  // of searches: three curves or more, and a limit that grows with the intensity
+  std::vector<StudyInfluence> tornado;    // the largest first; of the capacity where it is searched, else of the demand
 };
 StudyLimitFit fit_limit(const StudyCase& study, const std::vector<StudyCurve>& curves, std::size_t limit);
 
@@ -55,7 +57,9 @@ struct StudyFloor {
 };
 std::vector<StudyFloor> floor_percentiles(const StudyCase& study, const std::vector<StudyCurve>& curves);
 
-/// The value below which a share of sorted values lies, straight between them.
-double percentile(const std::vector<double>& sorted, double share);
+/// Probabilities at the design motion of the site; nothing without one, and without a curve.
+std::optional<PerformancePair> performance_of(const StudySite& site, const OrRefused<Fragility>& curve);
+/// Annual rate with which the limit is exceeded, by the hazard curve of the site; refused without one, and without a curve.
+OrRefused<AnnualRisk> risk_of(const StudySite& site, const OrRefused<Fragility>& curve);
 
 }  // namespace uplift

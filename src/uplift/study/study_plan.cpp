@@ -99,6 +99,30 @@ StudyVariable variable_of(const Values& table) {
   return variable;
 }
 
+StudySite site_of(const Values& root) {
+  StudySite site;
+  if (root.has("design")) {
+    const Values& table = root.table("design");
+    site.design = table.number("intensity");
+    if (table.has("source")) site.design_source = table.text("source");
+  }
+  if (!root.has("hazard")) return site;
+  const Values& table = root.table("hazard");
+  if (table.has("source")) site.hazard_source = table.text("source");
+  const std::vector<double>&intensities = table.numbers("intensities"), &rates = table.numbers("rates");
+  if (intensities.size() < 2) fail(table, "intensities", "two intensities at least", fmt::format("{}", intensities.size()));
+  if (rates.size() != intensities.size())
+    fail(table, "rates", fmt::format("a rate for each of the {} intensities", intensities.size()), fmt::format("{}", rates.size()));
+  for (std::size_t i = 0; i < rates.size(); ++i) {
+    if (i > 0 && !(intensities[i] > intensities[i - 1]))
+      fail(table, "intensities", "ascending numbers", fmt::format("{:g} after {:g}", intensities[i], intensities[i - 1]));
+    if (i > 0 && !(rates[i] < rates[i - 1]))
+      fail(table, "rates", "rates that fall as the intensity grows", fmt::format("{:g} after {:g}", rates[i], rates[i - 1]));
+    site.hazard.push_back({intensities[i], rates[i]});
+  }
+  return site;
+}
+
 std::vector<StudyCorrelation> correlations_of(const Values& root, const Names& variables) {
   std::vector<StudyCorrelation> made;
   for (const Values& table : root.tables("correlation")) {
@@ -184,6 +208,7 @@ StudyPlan study_plan(const Raw& raw) {
       if (!plan.limits[k].quantity)
         fail(root.tables("limit").empty() ? root : root.tables("limit")[k], "", "limits with a quantity: a cloud is regressed on it",
              "none");
+  plan.site = site_of(root);
   plan.floor_spectra = root.flag("floor_spectra");
   const Values& run = root.table("run");
   if (run.has("timeout")) plan.timeout = run.number("timeout");

@@ -8,6 +8,7 @@
 #include "uplift/case/schema/verdict_quantities.h"
 #include "uplift/statistics/capacity_search.h"
 #include "uplift/statistics/distributions.h"
+#include "uplift/statistics/nuclear.h"
 
 // The plan of a study: one case under many motions, at many intensities, with sampled variables (docs/guide/studies.md).
 namespace uplift {
@@ -58,6 +59,13 @@ struct StudyCorrelation {
   double value = 0;
 };
 
+/// What the site asks for: results of the fits, not of the runs.
+struct StudySite {
+  std::optional<double> design;     // intensity of the design motion
+  std::vector<HazardPoint> hazard;  // rates in 1/a; empty: none
+  std::string design_source, hazard_source;
+};
+
 /// A checked plan.
 struct StudyPlan {
   Raw raw;        // as read
@@ -71,6 +79,7 @@ struct StudyPlan {
   int samples = 1;
   bool crossed = true;  // every sample with every motion; else sample i with motion i
   std::vector<StudyLimit> limits;
+  StudySite site;
   bool floor_spectra = false;
   std::optional<double> timeout;  // s of one run
   std::optional<double> memory;   // MB of one worker

@@ -174,6 +174,24 @@ const Section& limit_section() {
   return s;
 }
 
+const Section& design_section() {
+  static const Section s{"design",
+                         "the design motion of the site: the probability that each limit is exceeded there and at 1.5 times it, beside the "
+                         "aims of ASCE/SEI 43 (about 1 % and 10 %)",
+                         {number("intensity", "1", "its intensity").positive(), text("source", "where it comes from").optional()}};
+  return s;
+}
+
+const Section& hazard_section() {
+  static const Section s{"hazard",
+                         "the hazard curve of the site: the annual rate with which each limit is exceeded. Straight in both logarithms "
+                         "between its points and beyond them",
+                         {numbers("intensities", "1", "intensities, ascending").positive(),
+                          numbers("rates", "1", "mean rates per year with which they are exceeded").positive(),
+                          text("source", "where it comes from").optional()}};
+  return s;
+}
+
 const Section& run_section() {
   static const Section s{
       "run",
@@ -212,6 +230,8 @@ const Section& study_section() {
            .standard("crossed"),
        tables("variable", variable_section(), "uncertain numbers of the case"),
        tables("correlation", correlation_section(), "correlations of variables"), tables("limit", limit_section(), "limit states"),
+       table("design", design_section(), "design motion; absent: none").optional(),
+       table("hazard", hazard_section(), "hazard curve; absent: none").optional(),
        flag("floor_spectra", "keep the floor spectra of every run, for percentiles").standard(false),
        table("run", run_section(), "how the runs are computed")}};
   return s;

@@ -126,6 +126,21 @@ TEST(StudyCurve, StripesWantEveryLevelOfEveryMotionAndSample) {
   for (StudyCurve& curve : study_curves(study))
     for (const StudyPoint& point : curve.wanted([](const std::string&) { return nullptr; })) ids.insert(point.id);
   EXPECT_EQ(ids.size(), 3U * 2 * 4);
+  // results come one by one, the last one first; what is left keeps its order
+  StudyCurve curve = study_curves(study).front();
+  std::map<std::string, StudyResult> results;
+  const FindResult find = [&](const std::string& id) { return results.contains(id) ? &results.at(id) : nullptr; };
+  for (std::size_t left = 3; left > 0; --left) {
+    const std::vector<StudyPoint> wanted = curve.wanted(find);
+    ASSERT_EQ(wanted.size(), left);
+    EXPECT_FALSE(curve.complete());
+    for (std::size_t i = 0; i < left; ++i) EXPECT_EQ(wanted[i].intensity, static_cast<double>(i + 1));
+    results.emplace(wanted.back().id, opened(1e-3));
+    EXPECT_EQ(curve.runs().size(), 3 - left);
+  }
+  EXPECT_TRUE(curve.wanted(find).empty());
+  EXPECT_TRUE(curve.complete());
+  EXPECT_EQ(curve.runs().size(), 3U);
   const StudyCase paired = study_of("samples = 4\npairing = \"paired\"\n" + plan + variable);
   EXPECT_EQ(study_curves(paired).size(), 4U);
 }
@@ -147,6 +162,7 @@ TEST(StudyRun, IdentityIsWhatIsComputed) {
   plan.erase(plan.find("[[motion]]\nname = \"other\""), plan.find("[[limit]]") - plan.find("[[motion]]\nname = \"other\""));
   EXPECT_EQ(id, run_identity(study_of(plan), 0, 0, 0.3));
   std::string same = "# a comment\n" + tower();
+  same.replace(same.find("\"tower\""), 7, "\"another title\"");
   same.replace(same.find("20 MPa/m"), 8, "2e7 Pa/m");
   EXPECT_EQ(id, run_identity(study_of(searching, same), 0, 0, 0.3));
 }
@@ -191,10 +207,57 @@ TEST(StudyRun, OutcomesCountForALimit) {
   EXPECT_EQ(outcome_of(other, opened(0.011)), RunOutcome::survived);
 }
 
-TEST(StudyFit, PercentilesLieBetweenTheValues) {
-  EXPECT_EQ(percentile({1, 2, 4}, 0.5), 2);
-  EXPECT_EQ(percentile({1, 2, 4}, 0.75), 3);
-  EXPECT_EQ(percentile({7}, 0.16), 7);
+// Two motions whose opening overturns at twice the intensity of the limit: too few for fractiles; crossed with two samples four are enough.
+TEST(StudyFit, FractilesOfTheCurvesReachTheLimitAtTheirCapacities) {
+  const auto fitted = [](const StudyCase& study) {
+    std::vector<StudyCurve> curves = study_curves(study);
+    static std::map<std::string, StudyResult> results;
+    results.clear();
+    const FindResult find = [](const std::string& id) { return results.contains(id) ? &results.at(id) : nullptr; };
+    for (std::size_t k = 0; k < curves.size(); ++k)
+      for (std::vector<StudyPoint> wanted = curves[k].wanted(find); !wanted.empty(); wanted = curves[k].wanted(find)) {
+        const double part = wanted[0].intensity / (3 + static_cast<double>(k));  // of the intensity that opens it by 10 mm
+        results.emplace(wanted[0].id, opened(0.01 * std::min(part, 2.0), part > 2 ? StudyOutcome::overturned : StudyOutcome::completed));
+      }
+    return fit_limit(study, curves, 0);
+  };
+  EXPECT_FALSE(fitted(study_of(searching)).fractiles);
+  const StudyLimitFit crossed = fitted(study_of("samples = 2\n" + std::string(searching) + variable));
+  ASSERT_TRUE(crossed.fractiles);
+  const IdaFractiles& found = *crossed.fractiles;
+  ASSERT_EQ(found.demands.size(), 40U);
+  EXPECT_DOUBLE_EQ(found.demands.back(), 0.01);
+  for (const std::size_t i : {0U, 19U, 39U}) {  // straight curves through the capacities 3, 4, 5 and 6
+    const double share = found.demands[i] / 0.01;
+    EXPECT_NEAR(*found.p16[i], 3.48 * share, 1e-12);
+    EXPECT_NEAR(*found.p50[i], 4.5 * share, 1e-12);
+    EXPECT_NEAR(*found.p84[i], 5.52 * share, 1e-12);
+  }
+}
+
+TEST(StudyFit, TheSiteAsksForProbabilitiesAndARate) {
+  std::string plan = searching;
+  plan.insert(plan.find("[[limit]]"),
+              "[design]\nintensity = 0.5\n[hazard]\nintensities = [0.5, 1, 2]\nrates = [1e-4, 1.7677669529663688e-5, 3.125e-6]\n");
+  const StudySite site = study_plan(read_toml_text(plan, "plan.toml")).site;
+  const std::vector<RecordCapacity> capacities{{1 / std::exp(0.4 * std::sqrt(1.5)), Known::exact, {}},
+                                               {1, Known::exact, {}},
+                                               {std::exp(0.4 * std::sqrt(0.5)), Known::exact, {}},
+                                               {std::exp(0.4 * std::sqrt(1.5) - 0.4 * std::sqrt(0.5)), Known::exact, {}}};
+  const OrRefused<Fragility> curve = fit_capacities(capacities);
+  const Fragility& fit = std::get<Fragility>(curve);
+  const std::optional<PerformancePair> pair = performance_of(site, curve);
+  ASSERT_TRUE(pair);
+  EXPECT_NEAR(pair->at_design, 0.5 * std::erfc(-std::log(0.5 / fit.theta()) / fit.beta() / std::sqrt(2.0)), 1e-14);
+  EXPECT_NEAR(pair->at_one_and_a_half, 0.5 * std::erfc(-std::log(0.75 / fit.theta()) / fit.beta() / std::sqrt(2.0)), 1e-14);
+  // the three points lie on the power law 1e-4 (a/0.5)^-2.5
+  const AnnualRisk risk = std::get<AnnualRisk>(risk_of(site, curve));
+  const double expected = 1e-4 * std::pow(0.5, 2.5) * std::pow(fit.theta(), -2.5) * std::exp(0.5 * 2.5 * 2.5 * fit.beta() * fit.beta());
+  EXPECT_NEAR(risk.rate / expected, 1, 1e-9);
+  EXPECT_FALSE(performance_of({}, curve));
+  EXPECT_FALSE(performance_of(site, Refused{"no runs"}));
+  EXPECT_TRUE(std::holds_alternative<Refused>(risk_of({}, curve)));
+  EXPECT_EQ(std::get<Refused>(risk_of(site, Refused{"no runs"})).reason, "no runs");
 }
 
 TEST(CaseEdit, NumbersAreFoundByTheirPath) {

@@ -43,15 +43,20 @@ std::string fits_csv(const StudyDocument& study) {
   const std::string unit = study.plan.intensity.unit;
   std::string text = fmt::format(
       "limit,survived [1],exceeded [1],unknown [1],theta [{0}],beta [1],theta lower [{0}],theta upper [{0}],beta lower [1],beta upper [1],"
-      "theta unknown survived [{0}],beta unknown survived [1],theta unknown exceeded [{0}],beta unknown exceeded [1],refused\n",
+      "theta unknown survived [{0}],beta unknown survived [1],theta unknown exceeded [{0}],beta unknown exceeded [1],probability at design "
+      "[1],probability at 1.5 design [1],annual rate [1/a],refused\n",
       unit);
   for (const StudyDocument::Limit& each : study.limits) {
     const Fragility* fit = std::get_if<Fragility>(&each.fit.fit.middle);
     const ConfidenceInterval theta = fit ? each.fit.theta_interval() : ConfidenceInterval{},
                              beta = fit ? fit->beta_interval(study_confidence) : ConfidenceInterval{};
-    text += fmt::format("{},{},{},{},{},{},{},{},{},{},{},{}\n", csv_cell(each.limit.name), each.fit.survived, each.fit.exceeded,
+    const std::optional<PerformancePair> pair = performance_of(study.plan.site, each.fit.fit.middle);
+    const OrRefused<AnnualRisk> risk = risk_of(study.plan.site, each.fit.fit.middle);
+    const AnnualRisk* known = std::get_if<AnnualRisk>(&risk);
+    text += fmt::format("{},{},{},{},{},{},{},{},{},{},{},{},{},{},{}\n", csv_cell(each.limit.name), each.fit.survived, each.fit.exceeded,
                         each.fit.unknown, fit_cells(each.fit.fit.middle), exact(theta.lower), exact(theta.upper), exact(beta.lower),
                         exact(beta.upper), fit_cells(each.fit.fit.survived), fit_cells(each.fit.fit.exceeded),
+                        pair ? exact(pair->at_design) : "", pair ? exact(pair->at_one_and_a_half) : "", known ? exact(known->rate) : "",
                         fit ? "" : csv_cell(std::get<Refused>(each.fit.fit.middle).reason));
   }
   return text;
@@ -104,6 +109,12 @@ std::string study_sentence(const StudyDocument& study, std::size_t number) {
     text += fmt::format("median {} ({}); {}", short_text(each.fit.fit.middle), text_of(each.fit.theta_interval()), counts);
   else
     text += fmt::format("{}; {}", short_text(each.fit.fit.middle), counts);
+  const StudySite& site = study.plan.site;
+  if (const std::optional<PerformancePair> pair = performance_of(site, each.fit.fit.middle))
+    text += fmt::format("; at the design motion {:.2g} %, at 1.5 times it {:.2g} % (aims of ASCE/SEI 43: 1 % and 10 %, {})",
+                        100 * pair->at_design, 100 * pair->at_one_and_a_half, pair->met() ? "met" : "not met");
+  if (const OrRefused<AnnualRisk> risk = risk_of(site, each.fit.fit.middle); std::holds_alternative<AnnualRisk>(risk))
+    text += fmt::format("; annual rate {:.3g}", std::get<AnnualRisk>(risk).rate);
   if (each.fit.unknown > 0)
     text += fmt::format("; unknown as survived: {}, as exceeded: {}", short_text(each.fit.fit.survived), short_text(each.fit.fit.exceeded));
   return text;

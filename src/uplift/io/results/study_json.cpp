@@ -108,6 +108,20 @@ std::vector<Variable> variables_of(const StudyDocument& study) {
   return made;
 }
 
+void write_site(ResultWriter& out, const StudySite& site) {
+  out.when(site.design.has_value() || out.is_schema()).object("design", "design motion of the site", [&] {
+    out.number("intensity", site.design.value_or(0), intensity_unit, "its intensity");
+    out.text("source", site.design_source, "where it comes from");
+  });
+  out.when(!site.hazard.empty() || out.is_schema()).object("hazard", "hazard curve of the site", [&] {
+    std::vector<double> intensities, rates;
+    for (const HazardPoint& point : site.hazard) intensities.push_back(point.im), rates.push_back(point.rate);
+    out.numbers("intensities", intensities, intensity_unit, "intensities");
+    out.numbers("rates", rates, "1/a", "mean annual rates with which they are exceeded");
+    out.text("source", site.hazard_source, "where it comes from");
+  });
+}
+
 // ---- runs ----
 
 void write_run(ResultWriter& out, const StudyDocument::Run& run) {
@@ -222,6 +236,51 @@ void write_dispersion(ResultWriter& out, const OrRefused<TwoWayLayout>& result) 
   out.when(there).number("hclpf", capacity.hclpf(), intensity_unit, "A_m exp(-1.65 (beta_r + beta_u))");
 }
 
+void write_pair(ResultWriter& out, const std::optional<PerformancePair>& pair) {
+  out.number_or_null("at_design", pair ? std::optional(pair->at_design) : std::nullopt, "1", "at the design motion; null: no curve");
+  out.number_or_null("at_one_and_a_half", pair ? std::optional(pair->at_one_and_a_half) : std::nullopt, "1", "at 1.5 times it");
+}
+
+/// ASCE/SEI 43: probabilities at the design motion and at 1.5 times it.
+void write_performance(ResultWriter& out, const StudySite& site, const StudyLimitFit& fit) {
+  const std::optional<PerformancePair> pair = performance_of(site, fit.fit.middle);
+  const double design = site.design.value_or(1);
+  write_pair(out, pair);
+  write_interval(out, "at_design_interval", pair ? fit.probability_interval(design) : ConfidenceInterval{}, "1", "its interval");
+  write_interval(out, "at_one_and_a_half_interval", pair ? fit.probability_interval(1.5 * design) : ConfidenceInterval{}, "1",
+                 "its interval");
+  out.flag("met", pair && pair->met(), "whether they are at most 1 % and 10 %, the aims of ASCE/SEI 43");
+  out.object("unknown_survived", "with runs of unknown outcome counted as survived",
+             [&] { write_pair(out, performance_of(site, fit.fit.survived)); });
+  out.object("unknown_exceeded", "with runs of unknown outcome counted as exceeded",
+             [&] { write_pair(out, performance_of(site, fit.fit.exceeded)); });
+}
+
+void write_risk(ResultWriter& out, const StudySite& site, const StudyLimitFit& fit) {
+  const OrRefused<AnnualRisk> result = risk_of(site, fit.fit.middle);
+  const AnnualRisk* risk = std::get_if<AnnualRisk>(&result);
+  const auto part = [&](double AnnualRisk::*of) { return risk ? std::optional(risk->*of) : std::nullopt; };
+  const auto end = [&](const OrRefused<Fragility>& curve) {
+    const OrRefused<AnnualRisk> other = risk_of(site, curve);
+    return std::holds_alternative<AnnualRisk>(other) ? std::optional(std::get<AnnualRisk>(other).rate) : std::nullopt;
+  };
+  out.number_or_null("rate", part(&AnnualRisk::rate), "1/a", "annual rate with which the limit is exceeded; null: see reason");
+  out.text("reason", risk ? "" : std::get<Refused>(result).reason, "why there is none");
+  out.number_or_null("share_below", part(&AnnualRisk::share_below), "1",
+                     "share that rests on rates below the first point of the hazard curve");
+  out.number_or_null("share_above", part(&AnnualRisk::share_above), "1", "share that rests on rates above its last point");
+  out.number_or_null("unknown_survived", end(fit.fit.survived), "1/a", "the rate with runs of unknown outcome counted as survived");
+  out.number_or_null("unknown_exceeded", end(fit.fit.exceeded), "1/a", "the rate with runs of unknown outcome counted as exceeded");
+}
+
+void write_fractiles(ResultWriter& out, const IdaFractiles& fractiles) {
+  out.numbers("demands", fractiles.demands, limit_unit, "demands up to the limit");
+  out.numbers_or_null("p16", fractiles.p16, intensity_unit,
+                      "intensity at which 16 % of the curves have reached it; null: so many never do");
+  out.numbers_or_null("p50", fractiles.p50, intensity_unit, "median");
+  out.numbers_or_null("p84", fractiles.p84, intensity_unit, "intensity at which 84 % of the curves have reached it");
+}
+
 void write_limit(ResultWriter& out, const StudyDocument& study, const StudyDocument::Limit& each) {
   const StudyLimit& limit = each.limit;
   const StudyLimitFit& fit = each.fit;
@@ -257,6 +316,16 @@ void write_limit(ResultWriter& out, const StudyDocument& study, const StudyDocum
   out.object("unknown_survived", "with runs of unknown outcome counted as survived", [&] { write_fit(out, fit.fit.survived, nullptr); });
   out.object("unknown_exceeded", "with runs of unknown outcome counted as exceeded", [&] { write_fit(out, fit.fit.exceeded, nullptr); });
   out.object("dispersion", "scatter from motion to motion and from sample to sample", [&] { write_dispersion(out, fit.layout); });
+  const StudySite& site = study.plan.site;
+  out.when(site.design.has_value() || out.is_schema()).object("performance", "probabilities that the limit is exceeded, by the fit", [&] {
+    write_performance(out, site, fit);
+  });
+  out.when(!site.hazard.empty() || out.is_schema()).object("risk", "convolution of the fit with the hazard curve", [&] {
+    write_risk(out, site, fit);
+  });
+  out.when(fit.fractiles.has_value() || out.is_schema())
+      .object("fractiles", "of searches: fractiles of the curves of all motions and samples",
+              [&] { write_fractiles(out, fit.fractiles.value_or(IdaFractiles{})); });
   out.list("tornado", "how each variable moves the capacity, or the demand where none is searched", fit.tornado,
            [&](const StudyInfluence& influence) {
              out.text("variable", influence.variable < study.plan.variables.size() ? study.plan.variables[influence.variable].name : "",
@@ -316,6 +385,7 @@ void write_study(ResultWriter& out, const StudyDocument& study) {
   out.list("motions", "motions", study.motions, [&](const StudyMotion& motion) { write_motion(out, motion); });
   out.list("variables", "uncertain numbers of the case", variables_of(study),
            [&](const Variable& variable) { write_variable(out, variable); });
+  write_site(out, study.plan.site);
   out.object("outcomes", "number of runs by their outcome", [&] { write_counts(out, study); });
   out.list("limits", "limit states", study.limits, [&](const StudyDocument::Limit& limit) { write_limit(out, study, limit); });
   out.list("curves", "runs of every motion and sample", study.curves, [&](const StudyDocument::Curve& curve) { write_curve(out, curve); });
