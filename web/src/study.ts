@@ -44,6 +44,12 @@ export interface Stripe {
   unknown: number;
 }
 
+/** Probabilities that a limit is exceeded at the design motion and at 1.5 times it. */
+export interface Pair {
+  at_design: Maybe;
+  at_one_and_a_half: Maybe;
+}
+
 export interface Limit {
   name: string;
   quantity: string;
@@ -58,12 +64,15 @@ export interface Limit {
   unknown: number;
   capacities: Capacity[];
   stripes: Stripe[];
-  regression?: { a: number; b: number; sigma: number };
+  regression?: { a: number; b: number; sigma: number; without_demand: number };
   confidence: number;
   fit: FullFit;
   unknown_survived: Fit;
   unknown_exceeded: Fit;
   dispersion: { known: boolean; reason: string; median?: number; beta_r?: number; beta_u?: number; hclpf?: number };
+  performance?: Pair & { at_design_interval: Interval; at_one_and_a_half_interval: Interval; met: boolean; unknown_survived: Pair; unknown_exceeded: Pair };
+  risk?: { rate: Maybe; reason: string; share_below: Maybe; share_above: Maybe; unknown_survived: Maybe; unknown_exceeded: Maybe };
+  fractiles?: { demands: number[]; p16: Maybe[]; p50: Maybe[]; p84: Maybe[] };
   tornado: { variable: string; low: number; high: number }[];
 }
 
@@ -139,6 +148,8 @@ export interface Study {
   pairing: "crossed" | "paired";
   motions: StudyMotion[];
   variables: Variable[];
+  design?: { intensity: number; source: string };
+  hazard?: { intensities: number[]; rates: number[]; source: string };
   outcomes: Record<string, number>;
   limits: Limit[];
   curves: StudyCurve[];
@@ -198,9 +209,9 @@ export function empirical(limit: Limit): { intensity: number[]; share: number[] 
   return { intensity: exact, share: exact.map((_, i) => (below + i + 0.5) / known.length) };
 }
 
-/** The share of a sorted list, straight between its values; values may be infinite. */
+/** The share of a sorted list, straight between its values. */
 export function percentile(sorted: number[], share: number): number {
   const at = share * (sorted.length - 1);
   const [low, high] = [sorted[Math.floor(at)] ?? NaN, sorted[Math.ceil(at)] ?? NaN];
-  return low === high ? low : low + (at - Math.floor(at)) * (high - low);
+  return low + (at - Math.floor(at)) * (high - low);
 }

@@ -97,24 +97,12 @@ function drawn_part(points: Point[], most: number): Point[] {
   return drawn;
 }
 
-/** The intensity at which a curve first reaches a demand; infinite where it never does. */
-function first_at(points: Point[], demand: number): number {
-  let [before, below]: Point = [0, 0];
-  for (const [reached, intensity] of points) {
-    if (reached >= demand) return reached === before ? intensity : below + ((intensity - below) * (demand - before)) / (reached - before);
-    [before, below] = [reached, intensity];
-  }
-  return Infinity;
-}
-
-function fractiles_of(curves: Point[][], most: number): Series[] {
-  const demands = Array.from({ length: 40 }, (_, i) => (most * (i + 1)) / 40);
-  const sorted = demands.map((demand) => curves.map((points) => first_at(points, demand)).sort((a, b) => a - b));
-  return FRACTILES.map(([share, label]) => {
-    const intensities = sorted.map((list) => percentile(list, share));
-    const end = intensities.findIndex((value) => !Number.isFinite(value));
+/** From the origin up to the first demand that so many curves never reach. */
+function fractiles_of({ demands, p16, p50, p84 }: NonNullable<Limit["fractiles"]>): Series[] {
+  return [p16, p50, p84].map((values, k) => {
+    const end = values.indexOf(null);
     const count = end < 0 ? demands.length : end;
-    return { label, x: [0, ...demands.slice(0, count)], y: [0, ...intensities.slice(0, count)], style: "line" as const, ...(share === 0.5 ? {} : { dash: true }), group: "percentiles" };
+    return { label: FRACTILES[k]?.[1] ?? "", x: [0, ...demands.slice(0, count)], y: [0, ...values.slice(0, count)], style: "line" as const, ...(k === 1 ? {} : { dash: true }), group: "percentiles" };
   });
 }
 
@@ -135,13 +123,16 @@ function ida_chart(study: Study, limit: Limit, k: number): Chart[] {
     x: { label: limit.label.replace(/^./, (c) => c.toUpperCase()), unit: limit.unit }, y: intensity_axis(study),
     series: [
       joined(drawn, study.curves.length === 1 ? "1 curve" : `${curves.length} curves`),
-      ...(curves.length > 2 ? fractiles_of(curves, limit.limit) : []),
+      ...(limit.fractiles ? fractiles_of(limit.fractiles) : []),
       { label: "limit", x: [limit.limit, limit.limit], y: [0, top], style: "line", dash: true, group: "limit" },
     ],
   }];
 }
 
 // ---- stripes and clouds ----
+
+/** A demand of zero has no logarithm. */
+const without_demand = (count: number): string => (count === 0 ? "" : ` ${count === 1 ? "One run whose demand is zero is" : `${count} runs whose demand is zero are`} left out.`);
 
 function points_chart(study: Study, limit: Limit, k: number): Chart[] {
   const all = study.curves.flatMap((curve) => points_of(curve, k)).filter(([demand, intensity]) => demand > 0 && intensity > 0);
@@ -156,7 +147,7 @@ function points_chart(study: Study, limit: Limit, k: number): Chart[] {
   return [{
     id: id_of("demand", k), section: "demands", title: limit.name, origin: ORIGIN,
     caption: regression
-      ? `Regression ln demand = a + b ln intensity with a = ${significant(regression.a, 3)}, b = ${significant(regression.b, 3)}, standard deviation ${significant(regression.sigma, 3)}; dashed: one standard deviation.`
+      ? `Regression ln demand = a + b ln intensity with a = ${significant(regression.a, 3)}, b = ${significant(regression.b, 3)}, standard deviation ${significant(regression.sigma, 3)}; dashed: one standard deviation.${without_demand(regression.without_demand)}`
       : "Every run with a result, and the percentiles of each intensity.",
     x: intensity_axis(study, true), y: { label: limit.label.replace(/^./, (c) => c.toUpperCase()), unit: limit.unit, log: true },
     series: [

@@ -46,6 +46,8 @@ export function counts_text(limit: Limit): string {
   return `${counted(limit)} of ${plural(all, "run")} count; ${effect}.`;
 }
 
+const probability_text = (probability: number): string => `${significant(100 * probability, 2)} %`;
+
 function facts_of(study: Study, limit: Limit): Fact[] {
   const { fit, dispersion } = limit;
   const facts: Fact[] = [];
@@ -58,6 +60,10 @@ function facts_of(study: Study, limit: Limit): Fact[] {
         ? { label: "HCLPF", value: intensity_text(study, dispersion.hclpf), detail: "95 % confidence of less than 5 % probability" }
         : { label: "1 % probability", value: intensity_text(study, fit.theta * Math.exp(-2.3263 * fit.beta)), detail: "of exceedance, by the fitted curve" });
   }
+  const { performance, risk } = limit;
+  if (performance && performance.at_design !== null && performance.at_one_and_a_half !== null)
+    facts.push({ label: `At the design motion, ${intensity_text(study, study.design?.intensity)}`, value: probability_text(performance.at_design), detail: `${probability_text(performance.at_one_and_a_half)} at 1.5 times it; aims of ASCE/SEI 43: 1 % and 10 %, ${performance.met ? "met" : "not met"}` });
+  if (risk && risk.rate !== null) facts.push({ label: "Annual rate", value: risk.rate.toExponential(2), detail: "exceedances a year, by the hazard curve of the plan" });
   const without = study.failures.length;
   facts.push({
     label: "Runs", value: String(run_count(study)),
@@ -113,6 +119,8 @@ export function study_choices(study: Study): Choice[] {
       : []),
     ...study.variables.map((variable) => user(variable.name, distribution_text(variable), variable.paths.join(", "))),
     ...study.limits.map((limit) => user(`Limit ${quoted(limit.name)}`, limit_text(limit), limit.source)),
+    ...(study.design ? [user("Design motion", intensity_text(study, study.design.intensity), study.design.source)] : []),
+    ...(study.hazard ? [user("Hazard curve", study.hazard.intensities.map((each, i) => `${significant(study.hazard?.rates[i] ?? 0, 3)} a year at ${intensity_text(study, each)}`).join(", "), study.hazard.source)] : []),
     { what: "Confidence of intervals", value: `${significant(100 * (study.limits[0]?.confidence ?? 0.9), 3)} %`, origin: "added by uplift", note: "two-sided, by the profile of the likelihood" },
   ];
 }

@@ -5,6 +5,7 @@ export const BETA_R = 0.3;
 export const BETA_U = 0.2;
 export const BETA = Math.hypot(BETA_R, BETA_U);
 const LIMIT = 0.03;
+const DESIGN = 0.2;
 const OUTCOMES = ["completed", "overturned", "separated", "failed", "energy", "timeout", "memory", "crashed"];
 
 /** Quantiles of the standard normal distribution at (i + 1/2)/n (Acklam's rational function is not needed: bisection of the integral). */
@@ -79,21 +80,34 @@ export function ida_study(count = 12, samples = 5) {
     }));
   const counts = { survived: 4 * curves.length, exceeded: 3 * curves.length, unknown: 0 };
   const fit = full_fit(THETA, BETA, 0.06);
+  // fractiles of the curves LIMIT (im/capacity)^1.5: those of the capacities, straight between them in their order
+  const sorted = capacities.map(({ capacity }) => capacity.intensity).sort((a, b) => a - b);
+  const share = (part) => { const at = part * (sorted.length - 1), i = Math.floor(at); return sorted[i] + (at - i) * ((sorted[i + 1] ?? sorted[i]) - sorted[i]); };
+  const demands = Array.from({ length: 40 }, (_, i) => (LIMIT * (i + 1)) / 40);
+  const [p16, p50, p84] = [0.16, 0.5, 0.84].map((part) => demands.map((demand) => share(part) * (demand / LIMIT) ** (2 / 3)));
+  const pair = (fit) => ({ at_design: normal(Math.log(DESIGN / fit.theta) / fit.beta), at_one_and_a_half: normal(Math.log((1.5 * DESIGN) / fit.theta) / fit.beta) });
+  const rate = (fit) => 1e-4 * (DESIGN / fit.theta) ** 2.5 * Math.exp(0.5 * (2.5 * fit.beta) ** 2); // of the hazard 1e-4 (a/DESIGN)^-2.5
+  const site = (fit) => ({
+    performance: { ...pair(fit), at_design_interval: { lower: 0, upper: 1 }, at_one_and_a_half_interval: { lower: 0, upper: 1 }, met: false, unknown_survived: pair(fit), unknown_exceeded: pair(fit) },
+    risk: { rate: rate(fit), reason: "", share_below: 0.1, share_above: 0.01, unknown_survived: rate(fit), unknown_exceeded: rate(fit) },
+  });
   const rotation = limit_of({
     name: "rotation of 2 mrad", quantity: "residual_rotation", label: "residual rotation of the base", unit: "rad", limit: 2e-3, ...counts,
-    fit: full_fit(0.9, 0.5, 0.1), unknown_survived: fitted(0.9, 0.5), unknown_exceeded: fitted(0.9, 0.5),
+    fit: full_fit(0.9, 0.5, 0.1), unknown_survived: fitted(0.9, 0.5), unknown_exceeded: fitted(0.9, 0.5), ...site({ theta: 0.9, beta: 0.5 }),
+    fractiles: { demands: [5e-4, 1e-3, 2e-3], p16: [0.2, 0.4, null], p50: [0.3, null, null], p84: [null, null, null] },
     capacities: capacities.map((each) => ({ ...each, capacity: { known: "at_least", intensity: 6 } })),
   });
   for (const curve of curves) for (const each of curve.runs) (each.states.push("survived"), each.demands.push(each.demands[0] / 40));
   return study_of({
     samples, motions, curves,
+    design: { intensity: DESIGN, source: "site report" }, hazard: { intensities: [DESIGN, 10 * DESIGN], rates: [1e-4, 1e-4 * 10 ** -2.5], source: "" },
     variables: [
       { name: "soil stiffness", paths: ["interface[0].law.K_n"], meaning: "factor", unit: "1", distribution: "lognormal", parameters: [1, 0.4], values: w.map((u) => Math.exp(0.4 * u)) },
       { name: "friction", paths: ["interface[0].law.friction"], meaning: "value", unit: "1", distribution: "uniform", parameters: [0.45, 0.75], values: w.map((_, i) => 0.45 + 0.06 * i) },
     ],
     limits: [
       limit_of({
-        ...counts, capacities, fit, unknown_survived: fitted(THETA, BETA), unknown_exceeded: fitted(THETA, BETA),
+        ...counts, capacities, fit, ...site(fit), fractiles: { demands, p16, p50, p84 }, unknown_survived: fitted(THETA, BETA), unknown_exceeded: fitted(THETA, BETA),
         dispersion: { known: true, reason: "", median: THETA, beta_r: BETA_R, beta_u: BETA_U, hclpf: THETA * Math.exp(-1.65 * (BETA_R + BETA_U)) },
         tornado: [{ variable: "soil stiffness", low: 0.8 * THETA, high: 1.25 * THETA }, { variable: "friction", low: 1.02 * THETA, high: THETA / 1.02 }],
       }),
@@ -139,7 +153,7 @@ export function cloud_study() {
   const curves = motions.map(({ name }, i) => ({ motion: name, sample: 0, complete: i < 6, runs: i < 6 ? [run(0.1 * (i + 1), Math.exp(-4 + 1.2 * Math.log(0.1 * (i + 1))))] : [] }));
   return study_of({
     method: { type: "cloud", levels: [1], largest: 0, tolerance: 0 }, motions, curves,
-    limits: [limit_of({ survived: 6, fit: refused("no run exceeded the limit"), unknown_survived: refused("no run exceeded the limit"), unknown_exceeded: refused("no run exceeded the limit"), regression: { a: -4, b: 1.2, sigma: 0.1 } })],
+    limits: [limit_of({ survived: 6, fit: refused("no run exceeded the limit"), unknown_survived: refused("no run exceeded the limit"), unknown_exceeded: refused("no run exceeded the limit"), regression: { a: -4, b: 1.2, sigma: 0.1, without_demand: 2 } })],
   });
 }
 

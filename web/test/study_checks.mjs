@@ -56,6 +56,8 @@ async function check_ida(browser, check, shot) {
     const ida = chart_of(report, "ida_1");
     const median = ida.series.find((each) => each.label === "median");
     check.ok(near(median.y[median.y.length - 1] / THETA, 1, 0.03) && near(median.x[median.x.length - 1], 0.03, 1e-12), "the median of the curves reaches the limit at the median capacity", `${median.y[median.y.length - 1]}`);
+    check.ok(near(median.y[20] / median.y[40], 0.5 ** (2 / 3), 1e-12), "and follows its values in between");
+    check.equal(chart_of(report, "ida_2").series.filter((each) => each.group === "percentiles").map((each) => each.x.length).join(), "3,2,1", "a fractile ends where so many curves never reach the demand");
     const records = ida.series.find((each) => each.style === "thin");
     check.equal(records.x.filter((each) => each === null).length, 60, "every motion and sample is drawn");
     check.ok(Math.max(...records.x) <= 0.075 + 1e-12, "up to 2.5 times the limit");
@@ -63,6 +65,12 @@ async function check_ida(browser, check, shot) {
     check.equal(motions.length, 12, "every motion has a row");
     check.equal(`${motions[0].resurrections} ${motions[1].resurrections}`, "2 0", "resurrections are counted");
     check.equal(motions[0].limit_1, "> 6.00", "a capacity beyond the range is said to be so");
+    // of the lognormal curve: P(0.2 g) = 1.98 %, P(0.3 g) = 17.5 % with the table of the normal distribution at -2.0577 and -0.9332
+    check.ok(/AT THE DESIGN MOTION, 0\.200 G 2 % 18 % at 1\.5 times it; aims of ASCE\/SEI 43: 1 % and 10 %, not met/i.test(text), "the design motion has its probabilities", text);
+    // 1e-4 (0.42/0.2)^-2.5 exp(2.5^2 0.13/2) = 2.35e-5 a year
+    check.ok(/ANNUAL RATE 2\.35e-5 exceedances a year/i.test(text), "and the hazard curve its rate", text);
+    const [first] = rows_of(report, "limits");
+    check.ok(near(first.at_design, 0.0198, 1e-4) && near(first.rate, 2.35e-5, 1e-7), "both are in the table", `${first.at_design} ${first.rate}`);
     const bars = await page.locator(".tornado").first().locator("rect").evaluateAll((list) => list.map((e) => Number(e.getAttribute("width"))));
     check.equal(bars.length, 4, "the tornado has two bars for each variable");
     check.ok(bars[0] > 5 * bars[2] && near(bars[0] / bars[1], (1 - 0.8) / (1.25 - 1), 1e-3), "as long as the variables move the capacity", bars.join());
@@ -98,6 +106,7 @@ async function check_cloud(browser, check) {
     const line = chart_of(report, "demand_1").series.find((each) => each.label === "regression");
     const points = chart_of(report, "demand_1").series[0];
     check.ok(points.x.every((x, i) => near(Math.log(points.y[i]), -4 + 1.2 * Math.log(x), 1e-12)) && near(Math.log(line.y[41] / line.y[0]) / Math.log(line.x[41] / line.x[0]), 1.2, 1e-9), "the regression goes through the demands");
+    check.ok(chart_of(report, "demand_1").caption.endsWith("2 runs whose demand is zero are left out."), "what has no logarithm is stated", chart_of(report, "demand_1").caption);
     check.equal(await page.locator(".tornado").count(), 0, "no tornado without variables");
   });
 }
