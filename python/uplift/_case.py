@@ -271,6 +271,8 @@ class Case(Tables):
         pairing: Optional[str] = None,
         seed: Optional[int] = None,
         floor_spectra: Optional[bool] = None,
+        design: Optional[Mapping[str, Any]] = None,
+        hazard: Optional[Mapping[str, Any]] = None,
         run: Optional[Mapping[str, Any]] = None,
     ) -> Study:
         """A study of the case: writes FOLDER/plan.toml, which the program computes (:meth:`Study.run`). Keys as in the plan (guide, "Studies").
@@ -289,6 +291,8 @@ class Case(Tables):
             pairing: "crossed" or "paired".
             seed: of the samples.
             floor_spectra: keep the floor spectra of every run.
+            design: design motion of the site, a table with `intensity` and `source`.
+            hazard: hazard curve of the site, a table with `intensities`, `rates` (a year) and `source`.
             run: limits of a run, a table with `workers`, `timeout`, `memory` and `attempts`.
 
         The plan names the file of a loaded case that was not changed; any other case is written into the folder. A plan that this package
@@ -297,7 +301,7 @@ class Case(Tables):
         if self._laws:
             raise ValueError("a law in Python cannot be used by a study, which the program computes")
         tables: Dict[str, Any] = {"seed": seed, "samples": samples, "pairing": pairing, "floor_spectra": floor_spectra, "limit": list(limits)}
-        tables.update({"variable": list(variables), "correlation": list(correlations), "run": run})
+        tables.update({"variable": list(variables), "correlation": list(correlations), "design": design, "hazard": hazard, "run": run})
         own = os.path.join(os.fspath(folder), "case.toml")
         used = self._text is not None and os.path.isfile(self._file) and pathlib.Path(self._file).read_bytes() == self._text.encode()
         file = os.path.relpath(self._file, os.fspath(folder)) if used else "case.toml"

@@ -71,7 +71,8 @@ class Studies(unittest.TestCase):
         return (case or block()).study(self.folder / name, **given)
 
     def test_the_command_line_gives_the_same_bytes(self):
-        study = self.study(method=IDA, variables=[STIFFNESS], samples=2)
+        site = {"design": {"intensity": 0.5}, "hazard": {"intensities": [0.5, 2], "rates": [1e-4, 1e-4 * 4**-2.5]}}
+        study = self.study(method=IDA, variables=[STIFFNESS], samples=2, **site)
         self.assertEqual(study.check().done, 0)
         status = study.run(progress=False)
         self.assertEqual((status.complete, status.curves, status.running, status.interrupted), (6, 6, False, False))
@@ -94,6 +95,11 @@ class Studies(unittest.TestCase):
         expected = [0.5 * math.erfc(-math.log(im / limit.theta) / limit.beta / math.sqrt(2)) for im in curve["intensity"]]
         np.testing.assert_allclose(curve["probability"], expected, rtol=1e-9)
         self.assertEqual(limit.unknown_survived.theta, limit.theta)
+        at_design = 0.5 * math.erfc(-math.log(0.5 / limit.theta) / limit.beta / math.sqrt(2))
+        self.assertAlmostEqual(limit.performance.at_design, at_design, delta=1e-9)
+        rate = 1e-4 * (0.5 / limit.theta) ** 2.5 * math.exp((2.5 * limit.beta) ** 2 / 2)  # of the power law
+        self.assertAlmostEqual(limit.risk.rate / rate, 1, delta=1e-9)
+        self.assertEqual(len(limit.fractiles.p50), 40)
         for (intensities, demands), capacity in zip(fit.ida("uplift"), limit.capacities):
             self.assertLess(demands[intensities < capacity.capacity.intensity].max(), 1e-3)
             self.assertGreater(demands[intensities > capacity.capacity.intensity].min(), 1e-3)
