@@ -177,6 +177,32 @@ class Study(CliTest):
         self.assertGreater(alone, 1e-6)
         self.assertAlmostEqual(float(run["uplift [m]"]) / alone, 1, delta=1e-9)
 
+    def test_a_comparison_of_a_large_model_marches_in_lockstep(self):
+        louder = 'process = [{ do = { type = "scale", factor = 6 } }]\n'  # it lifts off
+        own = LARGE.replace('file = "quake.csv"\n', f'file = "quake.csv"\n{louder}')
+        self.write(own + f'[[record]]\nname = "m3"\nfile = "m3.csv"\n{louder}[[compare.motion]]\nname = "m3"\nreplace = ["quake"]\nby = ["m3"]\n')
+        said = self.uplift("compare", "case.toml", "-o", "all")
+        self.assertIn("m3", said.stdout)
+        self.write(own.replace('file = "quake.csv"', 'file = "m3.csv"'), "alone.toml")
+        self.uplift("run", "alone.toml", "-o", "alone", "-q", "--no-step-check")
+        self.write(own, "own.toml")
+        self.uplift("run", "own.toml", "-o", "own", "-q", "--no-step-check")
+        for single, together in (("own", "run"), ("alone", "run-m3")):
+            header, rows = self.history(f"{single}/histories.csv")
+            names, beside = self.history(f"all/histories/{together}.csv")
+            self.assertEqual((names, len(beside)), (header, len(rows)))
+            for name in ("top.ux", "underside.max_opening", "underside.moment", "underside.max_pressure"):
+                (column,) = (k for k, each in enumerate(header) if each.startswith(name + " "))
+                peak = max(abs(row[column]) for row in rows)
+                self.assertGreater(peak, 0)
+                self.assertLess(max(abs(a[column] - b[column]) for a, b in zip(rows, beside)), 1e-9 * peak, name)
+        self.assertTrue((self.folder / "all/histories/bonded-m3.csv").is_file())
+
+    def history(self, file):
+        with open(self.folder / file, newline="") as opened:
+            header, *rows = csv.reader(opened)
+        return header, [[float(each) for each in row] for row in rows]
+
     def test_killed_processes_lose_nothing(self):
         plan = IDA.replace("1 mm", "2 mm") + '[[limit]]\nname = "drift"\nquantity = "max_drift"\nlimit = 0.005\n'
         self.write(CASE.replace("duration = 1\n", "duration = 10\n"))

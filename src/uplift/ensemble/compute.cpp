@@ -62,13 +62,11 @@ BuiltCase StudyComputer::build_run(const RunRequest& request) {
 
 /// Where a run has a limit of time or memory of its own, it is computed alone.
 bool StudyComputer::marches_in_lockstep(const BuiltCase& built) const {
-  constexpr int large = 5000;  // free unknowns: from here on the time goes into back-solves
-  return built.model.free() >= large && !study_.of.plan.timeout && !study_.of.plan.memory;
+  return built.model.free() >= large_model && !study_.of.plan.timeout && !study_.of.plan.memory;
 }
 
 std::size_t StudyComputer::best_together(const RunRequest& one) try {
-  constexpr std::size_t most = 16;  // docs/decisions/0008-runs-in-lockstep.md
-  return marches_in_lockstep(build_run(one)) ? most : 1;
+  return marches_in_lockstep(build_run(one)) ? most_in_lockstep : 1;
 } catch (const std::exception&) {
   return 1;  // the run itself will say why
 }

@@ -8,6 +8,11 @@
 
 namespace uplift {
 
+/// From so many free unknowns on the time of a run goes into back-solves, and runs are best marched in lockstep.
+inline constexpr int large_model = 5000;
+/// So many at once: docs/decisions/0008-runs-in-lockstep.md.
+inline constexpr std::size_t most_in_lockstep = 16;
+
 /// What run() is given, for one run among several. All of it stays alive until they are over.
 struct LockstepRun {
   const Model* model = nullptr;

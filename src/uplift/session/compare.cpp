@@ -3,7 +3,10 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <deque>
 
+#include "uplift/run/lockstep.h"
+#include "uplift/session/history_file.h"
 #include "uplift/session/steps.h"
 
 namespace uplift {
@@ -28,25 +31,102 @@ bool same_floors(const RunPlan& one, const RunPlan& other) {
   return std::ranges::equal(one.floors, other.floors, same);
 }
 
-/// Builds and runs one list of specs; stops after an interrupted run. `with_histories`: they are written.
-void run_all(const LoadedCase& loaded, const Control& control, const std::vector<RunSpec>& specs, std::size_t before, std::size_t total,
-             bool with_histories, bool with_fields, Results& results) {
-  for (const RunSpec& spec : specs) {
-    if (control.is_stopped()) return;
-    const std::shared_ptr<const LoadedCase> mine = case_of(loaded, spec);
-    results.others.push_back(mine);
-    results.specs.push_back(spec);
-    BuiltCase& built = results.built.emplace_back(build_run(*mine, in_its_case(loaded, *mine, spec)));
-    if (results.runs.empty()) results.warnings = warnings(loaded.read, spec, built);
-    if (results.runs.empty()) add_statement(loaded, results.warnings);
-    if (!spec.other_case.empty()) add_warnings_of_other(mine->read, spec, built, results.warnings);
-    const std::string label = fmt::format("[{}/{}] {}", before + results.runs.size() + 1, total, spec.name);
-    RunResult& run = results.runs.emplace_back(run_built(*mine, built, label, control, false, with_fields ? &results.field_lists : nullptr,
-                                                         with_histories ? "histories/" + spec.name + ".csv" : ""));
-    if (!same_floors(built.plan, results.built.front().plan)) run.floors.clear();
-    free_matrices(built);
-  }
+/// Whether runs of this model are best marched side by side: what a run does beside its march (fields, laws of the caller) is done alone.
+bool marches_in_lockstep(const LoadedCase& loaded, const RunSpec& spec, const BuiltCase& built, bool with_fields) {
+  return built.model.free() >= large_model && spec.other_case.empty() && loaded.from.reduced == nullptr && loaded.external_laws.empty() &&
+         !(with_fields && loaded.read.values.table("output").has("fields"));
 }
+
+/// Where its matrices are those of an earlier run of the group, the model takes them from there.
+LockstepRun in_lockstep(BuiltCase& built, const std::vector<LockstepRun>& before) {
+  LockstepRun made{&built.model, &built.plan, &built.behaviours};
+  const auto same = [&](const LockstepRun& each) { return each.matrices == nullptr && share_matrices(built.model, *each.model); };
+  if (const auto found = std::ranges::find_if(before, same); found != before.end()) made.matrices = found->model;
+  return made;
+}
+
+/// One list of specs that are built and run one after another, large ones side by side. `with_histories`: they are written.
+class ListOfRuns {
+ public:
+  ListOfRuns(const LoadedCase& loaded, const Control& control, const std::vector<RunSpec>& specs, std::size_t before, std::size_t total,
+             bool with_histories, bool with_fields, Results& results)
+      : loaded_(loaded),
+        control_(control),
+        specs_(specs),
+        before_(before),
+        total_(total),
+        with_histories_(with_histories),
+        with_fields_(with_fields),
+        results_(results) {}
+
+  /// Stops after an interrupted run.
+  void run() {
+    while (results_.built.size() < specs_.size() && !control_.is_stopped()) {
+      const std::size_t first = results_.built.size();
+      if (marches_in_lockstep(loaded_, specs_[first], next(), with_fields_))
+        march_from(first);
+      else
+        results_.runs.push_back(run_built(*results_.others.back(), results_.built.back(), label(first, first), control_, false,
+                                          with_fields_ ? &results_.field_lists : nullptr, histories(first)));
+      for (std::size_t i = first; i < results_.runs.size(); ++i) {
+        if (!same_floors(results_.built[i].plan, results_.built.front().plan)) results_.runs[i].floors.clear();
+        free_matrices(results_.built[i]);
+      }
+    }
+  }
+
+ private:
+  /// Builds the next run.
+  BuiltCase& next() {
+    const RunSpec& spec = specs_[results_.built.size()];
+    const std::shared_ptr<const LoadedCase> mine = case_of(loaded_, spec);
+    results_.others.push_back(mine);
+    results_.specs.push_back(spec);
+    BuiltCase& built = results_.built.emplace_back(build_run(*mine, in_its_case(loaded_, *mine, spec)));
+    if (results_.built.size() == 1) results_.warnings = warnings(loaded_.read, spec, built);
+    if (results_.built.size() == 1) add_statement(loaded_, results_.warnings);
+    if (!spec.other_case.empty()) add_warnings_of_other(mine->read, spec, built, results_.warnings);
+    return built;
+  }
+
+  /// The run that was built, and those after it.
+  void march_from(std::size_t first) {
+    std::vector<LockstepRun> group{in_lockstep(results_.built.back(), {})};
+    while (group.size() < most_in_lockstep && results_.built.size() < specs_.size() && specs_[results_.built.size()].other_case.empty())
+      group.push_back(in_lockstep(next(), group));
+    const std::size_t last = first + group.size() - 1;
+    Watch watch;
+    if (control_.watch) watch = control_.watch(label(first, last));
+    if (!watch && control_.stopped) watch = [this](const Progress&) { return !control_.stopped(); };
+    std::deque<HistoryFile> files;
+    std::deque<Keeping> keeping(group.size());
+    for (std::size_t k = 0; k < group.size(); ++k) {
+      group[k].watch = watch;
+      group[k].keeping = &keeping[k];
+      if (control_.folder == nullptr || !with_histories_) continue;
+      HistoryFile& file = files.emplace_back(*control_.folder, histories(first + k));
+      keeping[k].follow = [&file](const RunResult& so_far) { file.follow(so_far); };
+    }
+    for (RunResult& each : run_in_lockstep(group)) {
+      each.wall /= static_cast<double>(group.size());
+      results_.runs.push_back(std::move(each));
+    }
+  }
+
+  std::string label(std::size_t first, std::size_t last) const {
+    const std::size_t one = before_ + first + 1, other = before_ + last + 1;
+    if (first == last) return fmt::format("[{}/{}] {}", one, total_, specs_[first].name);
+    return fmt::format("[{} to {}/{}] {} to {}", one, other, total_, specs_[first].name, specs_[last].name);
+  }
+  std::string histories(std::size_t number) const { return with_histories_ ? "histories/" + specs_[number].name + ".csv" : ""; }
+
+  const LoadedCase& loaded_;
+  const Control& control_;
+  const std::vector<RunSpec>& specs_;
+  const std::size_t before_, total_;
+  const bool with_histories_, with_fields_;
+  Results& results_;
+};
 
 /// Those of the motions that the first run does not have.
 void add_motion_warnings(Results& results) {
@@ -118,8 +198,8 @@ Results compare_case(const LoadedCase& loaded, const Control& control) {
   Results results, sweep;
   const Values& output = loaded.read.values.table("output");
   const bool with_fields = output.has("fields") && output.table("fields").flag("variants");
-  run_all(loaded, control, plan.runs, 0, total, true, with_fields, results);
-  run_all(loaded, control, plan.sweep, plan.runs.size(), total, false, false, sweep);
+  ListOfRuns(loaded, control, plan.runs, 0, total, true, with_fields, results).run();
+  ListOfRuns(loaded, control, plan.sweep, plan.runs.size(), total, false, false, sweep).run();
 
   ComparisonSummary& compared = results.comparison.emplace();
   compared.motions = motion_tables(results.specs, results.built, results.runs);
