@@ -25,7 +25,8 @@ function limits_table(study: Study): Table[] {
     caption:
       `Median and dispersion of the fitted lognormal curve, with the interval of ${significant(100 * (study.limits[0]?.confidence ?? 0.9), 3)} % confidence. ` +
       (shared && apart ? "The interval of the median follows from the scatter between motions and between samples, which the curves share. " : "") +
-      (shared && !apart ? "The interval takes all curves as independent; where the motions scatter more than the samples (\u03b2_R), it is too narrow. " : "") +
+      (shared && !apart && searches(study) ? "The interval takes all curves as independent; where the motions scatter more than the samples (\u03b2_R), it is too narrow. " : "") +
+      (searches(study) ? "" : "The interval knows that runs share motions and samples. ") +
       (apart ? "\u03b2_R: scatter between motions; \u03b2_U: between samples; HCLPF: median \u00b7 exp(\u22121.65 (\u03b2_R + \u03b2_U)). " : "") +
       (site ? `Design: probability at the design motion of ${intensity_text(study, study.design?.intensity)} and at 1.5 times it; ASCE/SEI 43 aims at 1 % and 10 %. ` : "") +
       (hazard ? "Annual rate: with which the limit is exceeded, by the fitted curve and the hazard curve. " : "") +

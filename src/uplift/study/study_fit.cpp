@@ -81,8 +81,15 @@ std::optional<IdaFractiles> fractiles_of(const StudyLimit& limit, const std::vec
 
 // ---- stripes and clouds ----
 
+SharedRun shared_run(const StudyCurve& curve, SharedRun run) {
+  run.motion = static_cast<long>(curve.motion());
+  run.sample = static_cast<long>(curve.sample());
+  return run;
+}
+
 void fit_stripes_of(const StudyLimit& limit, const std::vector<StudyCurve>& curves, StudyLimitFit& fit) {
   std::map<double, Stripe> stripes;
+  std::vector<SharedRun> runs;
   for (const StudyCurve& curve : curves)
     for (const auto& [intensity, run] : curve.runs()) {
       Stripe& stripe = stripes[intensity];
@@ -91,23 +98,30 @@ void fit_stripes_of(const StudyLimit& limit, const std::vector<StudyCurve>& curv
       const RunOutcome outcome = outcome_of(limit, *run.result);
       stripe.exceeded += outcome == RunOutcome::exceeded;
       stripe.unknown += outcome == RunOutcome::unknown;
+      if (outcome != RunOutcome::unknown) runs.push_back(shared_run(curve, {intensity, outcome == RunOutcome::exceeded}));
     }
   for (const auto& [intensity, stripe] : stripes) fit.stripes.push_back(stripe);
-  if (!fit.stripes.empty()) fit.fit = fit_stripes_both_ways(fit.stripes, study_confidence);
+  if (fit.stripes.empty()) return;
+  fit.fit = fit_stripes_both_ways(fit.stripes, study_confidence);
+  if (const Fragility* curve = std::get_if<Fragility>(&fit.fit.middle)) fit.shared = shared_error_of_stripes(*curve, runs);
 }
 
 /// Demands of runs that ended early are lower bounds where they are demands at all; a lost structure has at least the limit.
 void fit_cloud_of(const StudyLimit& limit, const std::vector<StudyCurve>& curves, StudyLimitFit& fit) {
+  std::vector<SharedRun> runs;
   for (const StudyCurve& curve : curves)
     for (const auto& [intensity, run] : curve.runs()) {
       const std::optional<double> demand = demand_of(limit, *run.result);
       const StudyOutcome outcome = run.result->outcome;
       const double size = demand ? std::abs(*demand) : 0;
       if (outcome == StudyOutcome::completed && size == 0) ++fit.without_demand;
-      if (outcome == StudyOutcome::completed && size > 0) fit.cloud.push_back({intensity, size, false});
-      if (outcome == StudyOutcome::overturned || outcome == StudyOutcome::separated)
-        fit.cloud.push_back({intensity, std::max(size, limit.limit), true});
-      if (outcome_of(limit, *run.result) == RunOutcome::exceeded && !says_something(outcome)) fit.cloud.push_back({intensity, size, true});
+      const auto add = [&](double reached, bool at_least) {
+        fit.cloud.push_back({intensity, reached, at_least});
+        runs.push_back(shared_run(curve, {intensity, false, reached, at_least}));
+      };
+      if (outcome == StudyOutcome::completed && size > 0) add(size, false);
+      if (outcome == StudyOutcome::overturned || outcome == StudyOutcome::separated) add(std::max(size, limit.limit), true);
+      if (outcome_of(limit, *run.result) == RunOutcome::exceeded && !says_something(outcome)) add(size, true);
     }
   OrRefused<CloudFit> made = fit_cloud(fit.cloud, limit.limit);
   if (const Refused* refused = std::get_if<Refused>(&made)) {
@@ -117,6 +131,7 @@ void fit_cloud_of(const StudyLimit& limit, const std::vector<StudyCurve>& curves
   fit.regression = std::get<CloudFit>(std::move(made));
   // runs without a demand cannot be counted either way in a regression: they are stated beside it
   fit.fit = {fit.regression->fragility, fit.regression->fragility, fit.regression->fragility};
+  fit.shared = shared_error_of_cloud(*fit.regression, limit.limit, runs);
 }
 
 // ---- tornado ----
@@ -165,18 +180,25 @@ std::vector<StudyInfluence> tornado_of(const StudyCase& study, const std::vector
 }  // namespace
 
 ConfidenceInterval StudyLimitFit::theta_interval() const {
-  const TwoWayLayout* crossed = std::get_if<TwoWayLayout>(&layout);
-  return crossed ? crossed->median_interval(study_confidence) : std::get<Fragility>(fit.middle).theta_interval(study_confidence);
+  if (const TwoWayLayout* crossed = std::get_if<TwoWayLayout>(&layout)) return crossed->median_interval(study_confidence);
+  const Fragility& curve = std::get<Fragility>(fit.middle);
+  ConfidenceInterval made = curve.theta_interval(study_confidence);
+  const SharedError* error = std::get_if<SharedError>(&shared);
+  if (error == nullptr) return made;
+  const ConfidenceInterval wider = error->theta_interval(curve.theta(), study_confidence);
+  if (made.lower) made.lower = std::min(*made.lower, *wider.lower);
+  if (made.upper) made.upper = std::max(*made.upper, *wider.upper);
+  return made;
 }
 
 ConfidenceInterval StudyLimitFit::probability_interval(double im) const {
   const Fragility& curve = std::get<Fragility>(fit.middle);
   ConfidenceInterval made = curve.probability_interval(im, study_confidence);
-  if (!std::holds_alternative<TwoWayLayout>(layout)) return made;
+  if (!std::holds_alternative<TwoWayLayout>(layout) && !std::holds_alternative<SharedError>(shared)) return made;
   const ConfidenceInterval median = theta_interval();
   const auto moved = [&](double theta) { return normal_cdf(std::log(im / theta) / curve.beta()); };
-  if (made.lower) made.lower = std::min(*made.lower, moved(*median.upper));
-  if (made.upper) made.upper = std::max(*made.upper, moved(*median.lower));
+  if (made.lower && median.upper) made.lower = std::min(*made.lower, moved(*median.upper));
+  if (made.upper && median.lower) made.upper = std::max(*made.upper, moved(*median.lower));
   return made;
 }
 

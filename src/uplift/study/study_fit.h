@@ -3,6 +3,7 @@
 #include <string>
 #include <vector>
 
+#include "uplift/statistics/clustered.h"
 #include "uplift/statistics/fragility.h"
 #include "uplift/statistics/ida_fractiles.h"
 #include "uplift/statistics/nuclear.h"
@@ -38,8 +39,9 @@ struct StudyLimitFit {
   std::optional<CloudFit> regression;            // of a cloud
   BothWays fit{Refused{"there are no runs"}, Refused{"there are no runs"}, Refused{"there are no runs"}};
   OrRefused<TwoWayLayout> layout = Refused{"it takes two samples and two motions at least, crossed"};
-  /// Of the median of the fit in the middle, which exists. Crossed curves share their motions and their samples: where the layout is known,
-  /// its interval; else all curves count as independent.
+  OrRefused<SharedError> shared = Refused{"it is of stripes and clouds"};  // of the fit in the middle
+  /// Of the median of the fit in the middle, which exists. Curves share their motions and their samples: where the layout is known, its
+  /// interval; of stripes and clouds at least that of the shared error; else all curves count as independent.
   ConfidenceInterval theta_interval() const;
   /// Of P(exceed | im), im > 0: that of the likelihood, and at least what the interval of the median makes of the curve.
   ConfidenceInterval probability_interval(double im) const;

@@ -235,6 +235,32 @@ TEST(StudyFit, FractilesOfTheCurvesReachTheLimitAtTheirCapacities) {
   }
 }
 
+// Two motions of different capacities at the same intensities with two samples: 32 runs that are no 32 independent ones.
+TEST(StudyFit, TheIntervalOfStripesKnowsThatRunsShareMotions) {
+  std::string plan = searching;
+  plan.replace(plan.find("type = \"ida\"\nstart = 1\nlargest = 100"), 36, "type = \"stripes\"\nlevels = [0.5, 1, 1.5, 2, 2.5, 3, 3.5, 4]");
+  const StudyCase study = study_of("samples = 2\n" + plan + variable);
+  std::vector<StudyCurve> curves = study_curves(study);
+  std::map<std::string, StudyResult> results;
+  const FindResult find = [&](const std::string& id) { return results.contains(id) ? &results.at(id) : nullptr; };
+  for (StudyCurve& curve : curves) {
+    for (const StudyPoint& point : curve.wanted(find))
+      results.emplace(point.id, opened(0.01 * point.intensity / (curve.motion() == 0 ? 1.2 : 2.7)));
+    curve.wanted(find);
+  }
+  const StudyLimitFit fit = fit_limit(study, curves, 0);
+  const Fragility& middle = std::get<Fragility>(fit.fit.middle);
+  ASSERT_TRUE(std::holds_alternative<SharedError>(fit.shared));
+  const ConfidenceInterval wide = fit.theta_interval(), narrow = middle.theta_interval(study_confidence);
+  ASSERT_TRUE(narrow.lower && narrow.upper);
+  EXPECT_LT(*wide.lower, *narrow.lower);
+  EXPECT_GT(*wide.upper, *narrow.upper);
+  // two motions have one degree of freedom: Student's t is 6.313752 for 90 %
+  EXPECT_NEAR(std::log(*wide.upper / middle.theta()) / std::get<SharedError>(fit.shared).se_log_theta, 6.313752, 1e-5);
+  const ConfidenceInterval band = fit.probability_interval(middle.theta());
+  EXPECT_NEAR(*band.upper, 0.5 * std::erfc(-std::log(middle.theta() / *wide.lower) / middle.beta() / std::sqrt(2.0)), 1e-12);
+}
+
 TEST(StudyFit, TheSiteAsksForProbabilitiesAndARate) {
   std::string plan = searching;
   plan.insert(plan.find("[[limit]]"),

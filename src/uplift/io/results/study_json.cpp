@@ -181,8 +181,10 @@ void write_fit(ResultWriter& out, const OrRefused<Fragility>& result, const Stud
   out.when(there).number("correlation", shown.correlation(), "1", "correlation of both errors");
   if (!there) return;
   out.when(there);
-  write_interval(out, "theta_interval", fit ? with_curve->theta_interval() : ConfidenceInterval{}, intensity_unit,
-                 "interval of theta; where motions and samples are crossed and all capacities known, it follows from the two-way layout");
+  write_interval(
+      out, "theta_interval", fit ? with_curve->theta_interval() : ConfidenceInterval{}, intensity_unit,
+      "interval of theta; where motions and samples are crossed and all capacities known, it follows from the two-way layout; of "
+      "stripes and clouds it knows that runs share motions and samples");
   out.when(there);
   write_interval(out, "beta_interval", fit ? fit->beta_interval(study_confidence) : ConfidenceInterval{}, "1", "interval of beta");
   std::vector<double> intensities, probabilities;
