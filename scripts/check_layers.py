@@ -5,7 +5,7 @@ import pathlib
 import re
 import sys
 
-ORDER = "base math statistics mesh laws elements interface model linear contact dynamics reduction motion run case verdict study io session capi ensemble cli".split()
+ORDER = "base math statistics mesh laws elements interface model linear contact dynamics reduction motion run case verdict study io session capi ensemble cli distributed".split()
 ROOT = pathlib.Path(__file__).resolve().parent.parent / "src" / "uplift"
 
 theory = (ROOT.parent.parent / "docs" / "theory" / "README.md").read_text()

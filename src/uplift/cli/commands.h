@@ -4,12 +4,15 @@
 
 #include "uplift/motion/formats/read.h"
 
-// The commands of the program: one function and one file each. main.cpp declares their options and calls them.
+// The commands of the program: one function and one file each. program.cpp declares their options and calls them.
 namespace uplift::cli {
 
 /// Exit codes, as documented by `uplift --help`.
 /// A command that a signal ended returns 128 + the number of the signal instead.
 enum Exit { done = 0, internal_error = 1, bad_input = 2, numerical_failure = 3, output_error = 4 };
+
+/// The whole program on a command line; its exit code. Errors are reported on standard error. `name`: what it is called in reports.
+int program(int count, char** words, const std::string& name);
 
 struct Options {
   std::string file;            // case file, or stored problem

@@ -3,6 +3,7 @@
 
 #include <cmath>
 
+#include "unit/linear/local_solvers.h"
 #include "uplift/base/declare.h"
 #include "uplift/dynamics/bulk.h"
 
@@ -31,7 +32,7 @@ LinearCounts tried(const Sparse& matrix, const LinearSolver& solver, std::string
 }
 
 TEST(Residual, ContrastsThatCostDigitsAreNoted) {
-  for (const Entry<LinearSolver>* entry : solver_catalog()) {
+  for (const Entry<LinearSolver>* entry : local_solvers()) {
     const auto solver = entry->make(Values());
     for (const int n : {10, 90}) {  // the kept inverse, and back-solves
       std::string why;

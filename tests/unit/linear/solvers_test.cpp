@@ -2,6 +2,7 @@
 
 #include <thread>
 
+#include "unit/linear/local_solvers.h"
 #include "unit/model/model_support.h"
 #include "uplift/contact/compliance.h"
 #include "uplift/linear/solver.h"
@@ -54,12 +55,13 @@ Matrix random_spd(Index n, double condition) {
 }
 
 TEST(Solvers, AreInTheirCatalogAndAgree) {
-  EXPECT_EQ(solver_catalog().size(), 3u);
+  ASSERT_EQ(solver_catalog().size(), 4u);
+  EXPECT_EQ(solver_catalog()[3]->name, "petsc");
   EXPECT_EQ(solver_catalog()[0]->name, "cholmod");
-  EXPECT_EQ(linear_solvers().size(), 3u);
+  EXPECT_EQ(linear_solvers().size(), 4u);
   for (const Sparse& a :
        {laplacian(17), Sparse(random_spd(40, 1e6).sparseView()), diagonal(Vector::LinSpaced(5, 1, 9)), Sparse(1e7 * laplacian(3))})
-    for (const Entry<LinearSolver>* entry : solver_catalog()) {
+    for (const Entry<LinearSolver>* entry : local_solvers()) {
       const auto solver = entry->make(Values());
       const Factorisation result = solver->factorise(a);
       ASSERT_TRUE(result.factor) << entry->name << result.why;
@@ -80,6 +82,17 @@ TEST(Solvers, AreInTheirCatalogAndAgree) {
     }
 }
 
+TEST(Solvers, PetscNeedsItsProgram) {
+  try {
+    make_part(solver_catalog(), check_part(Raw{std::string("petsc"), {"case.toml", 7}, "solver"}, linear_solvers()));
+    FAIL();
+  } catch (const InputError& error) {
+    const std::string text = error.what();
+    EXPECT_NE(text.find("case.toml:7"), std::string::npos) << text;
+    EXPECT_NE(text.find("needs the program uplift-mpi"), std::string::npos) << text;
+  }
+}
+
 TEST(Solvers, NameTheUnknownThatIsLoose) {
   Sparse singular = chain(6, 3.0, true);  // unknown 6 has nothing
   singular.conservativeResize(7, 7);
@@ -87,7 +100,7 @@ TEST(Solvers, NameTheUnknownThatIsLoose) {
   Sparse indefinite = laplacian(4);
   indefinite.coeffRef(9, 9) = -2;
   const Sparse floating = chain(6, 3.0, false);
-  for (const Entry<LinearSolver>* entry : solver_catalog()) {
+  for (const Entry<LinearSolver>* entry : local_solvers()) {
     const auto solver = entry->make(Values());
     const Factorisation empty = solver->factorise(singular), negative = solver->factorise(indefinite), loose = solver->factorise(floating);
     EXPECT_FALSE(empty.factor) << entry->name;
@@ -103,7 +116,7 @@ TEST(Solvers, NameTheUnknownThatIsLoose) {
 
 TEST(Solvers, FactorsServeSeveralThreads) {
   const Sparse a = laplacian(30);
-  for (const Entry<LinearSolver>* entry : solver_catalog()) {
+  for (const Entry<LinearSolver>* entry : local_solvers()) {
     const Factorisation result = entry->make(Values())->factorise(a);
     std::vector<double> errors(4, 1);
     std::vector<std::jthread> threads;
@@ -245,7 +258,7 @@ TEST(Spread, IdentitiesWithRedundantRows) {
     b.leftCols(touched) = Matrix::Random(rows, rank) * Matrix::Random(rank, touched);
     if (rank == touched) b.leftCols(touched) = Matrix::Random(rows, touched);
     const Sparse sparse = b.sparseView();
-    for (const Entry<LinearSolver>* entry : solver_catalog()) {
+    for (const Entry<LinearSolver>* entry : local_solvers()) {
       const Factorisation result = entry->make(Values())->factorise(a.sparseView());
       const Spread spread = spread_through(*result.factor, sparse);
       ASSERT_EQ(spread.factor.cols(), rank) << n << " " << rows;

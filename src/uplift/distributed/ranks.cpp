@@ -1,0 +1,264 @@
+#include "uplift/distributed/ranks.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <chrono>
+#include <thread>
+#include <utility>
+
+namespace uplift {
+
+namespace {
+
+constexpr PetscInt most_columns = 32;  // that are sent and solved at once
+constexpr int tag = 1;
+
+/// Any number of values from rank 0 to another one: MPI counts a message with an int.
+template <class Value>
+void send(const Value* values, std::int64_t count, MPI_Datatype type, int to, MPI_Comm ranks) {
+  constexpr std::int64_t most = 1 << 27;
+  for (std::int64_t first = 0; first < count; first += most)
+    MPI_Send(values + first, static_cast<int>(std::min(most, count - first)), type, to, tag, ranks);
+}
+
+template <class Value>
+void receive(Value* values, std::int64_t count, MPI_Datatype type, MPI_Comm ranks) {
+  constexpr std::int64_t most = 1 << 27;
+  for (std::int64_t first = 0; first < count; first += most)
+    MPI_Recv(values + first, static_cast<int>(std::min(most, count - first)), type, 0, tag, ranks, MPI_STATUS_IGNORE);
+}
+
+/// Marks an order as begun, and as finished unless an exception comes between.
+class HalfWay {
+ public:
+  explicit HalfWay(bool& mark) : mark_(mark) { mark_ = true; }
+  HalfWay(const HalfWay&) = delete;
+  HalfWay& operator=(const HalfWay&) = delete;
+  void done() { mark_ = false; }
+
+ private:
+  bool& mark_;
+};
+
+/// A chain of springs to ground at both ends, the rank's rows of it.
+LocalRows chain_of_springs(PetscInt rows, const Shares& shares, int rank) {
+  LocalRows local;
+  local.start.push_back(0);
+  for (PetscInt i = shares.first(rank); i < shares.first(rank + 1); ++i) {
+    for (const PetscInt j : {i - 1, i, i + 1})
+      if (j >= 0 && j < rows) {
+        local.column.push_back(j);
+        local.value.push_back(i == j ? 1 : -0.49);
+      }
+    local.start.push_back(static_cast<PetscInt>(local.column.size()));
+  }
+  return local;
+}
+
+}  // namespace
+
+Ranks::Ranks() {
+  MPI_Comm_rank(ranks_, &rank_);
+  MPI_Comm_size(ranks_, &count_);
+}
+
+Ranks& Ranks::all() {
+  static Ranks ranks;
+  return ranks;
+}
+
+void Ranks::tell(const Order& order) {
+  std::int64_t numbers[5] = {static_cast<std::int64_t>(order.what), order.system, order.rows, order.columns, order.letters};
+  MPI_Request sent = MPI_REQUEST_NULL;
+  MPI_Ibcast(numbers, 5, MPI_INT64_T, 0, ranks_, &sent);
+  MPI_Wait(&sent, MPI_STATUS_IGNORE);
+}
+
+/// MPI waits by spinning. While rank 0 computes alone, the others leave the cores to it.
+Ranks::Order Ranks::hear() const {
+  std::int64_t numbers[5] = {};
+  MPI_Request wanted = MPI_REQUEST_NULL;
+  MPI_Ibcast(numbers, 5, MPI_INT64_T, 0, ranks_, &wanted);
+  using Clock = std::chrono::steady_clock;
+  const Clock::time_point start = Clock::now();
+  for (int here = 0;;) {
+    MPI_Test(&wanted, &here, MPI_STATUS_IGNORE);
+    if (here != 0) break;
+    if (Clock::now() - start > std::chrono::milliseconds(2)) std::this_thread::sleep_for(std::chrono::microseconds(100));
+  }
+  return {static_cast<What>(numbers[0]), numbers[1], numbers[2], numbers[3], numbers[4]};
+}
+
+void Ranks::serve() {
+  for (;;) {
+    const Order order = hear();
+    switch (order.what) {
+      case What::make:
+        make_together(order, nullptr, {});
+        break;
+      case What::solve:
+        solve_together(order, nullptr, nullptr);
+        break;
+      case What::refuse:
+        refuse_together(order, {});
+        break;
+      case What::release:
+        systems_.erase(order.system);
+        break;
+      case What::end:
+        systems_.clear();
+        return;
+    }
+  }
+}
+
+Ranks::Made Ranks::make(const Sparse& matrix, const std::string& options) {
+  const std::lock_guard lock(one_at_a_time_);
+  HalfWay half_way(half_way_);
+  const Order order{What::make, ++made_, matrix.rows(), 0, std::ssize(options)};
+  tell(order);
+  Made made = make_together(order, &matrix, options);
+  half_way.done();
+  return made;
+}
+
+Ranks::Made Ranks::make_together(const Order& order, const Sparse* matrix, std::string options) {
+  Made made{order.system, {}, 0};
+  const SolverOptions given(spread_text(order.letters, std::move(options)));
+  auto system = std::make_unique<System>(ranks_);
+  made.outcome = system->set(spread_rows(static_cast<PetscInt>(order.rows), matrix), static_cast<PetscInt>(order.rows));
+  if (made.outcome.ok()) made.outcome = system->prepare(given);
+  made.nonzeros = system->nonzeros();
+  if (made.outcome.ok()) systems_[order.system] = std::move(system);
+  return made;
+}
+
+SystemOutcome Ranks::solve(std::int64_t system, const Matrix& b, Matrix& x) {
+  const std::lock_guard lock(one_at_a_time_);
+  if (&x != &b) x.resize(b.rows(), b.cols());
+  SystemOutcome outcome;
+  HalfWay half_way(half_way_);
+  for (Index first = 0; first < b.cols() && outcome.ok(); first += most_columns) {
+    const Order order{What::solve, system, b.rows(), std::min<Index>(most_columns, b.cols() - first), 0};
+    tell(order);
+    outcome = solve_together(order, b.col(first).data(), x.col(first).data());
+  }
+  half_way.done();
+  if (!outcome.ok() && failure_.empty()) failure_ = outcome.why;
+  return outcome;
+}
+
+SystemOutcome Ranks::solve_together(const Order& order, const double* b, double* x) {
+  const auto rows = static_cast<PetscInt>(order.rows), columns = static_cast<PetscInt>(order.columns);
+  const Shares shares(rows, count_);
+  const PetscInt local = shares.count(rank_);
+  std::vector<int> counts, firsts;
+  for (int rank = 0; rank < count_; ++rank) counts.push_back(shares.count(rank)), firsts.push_back(shares.first(rank));
+  std::vector<double> given(static_cast<std::size_t>(local) * static_cast<std::size_t>(columns)), solved(given.size());
+  for (PetscInt c = 0; c < columns; ++c)
+    MPI_Scatterv(b == nullptr ? nullptr : b + order.rows * c, counts.data(), firsts.data(), MPI_DOUBLE,
+                 given.data() + static_cast<std::ptrdiff_t>(local) * c, local, MPI_DOUBLE, 0, ranks_);
+  SystemOutcome outcome = systems_.at(order.system)->solve(given.data(), solved.data(), columns);
+  for (PetscInt c = 0; c < columns; ++c)
+    MPI_Gatherv(solved.data() + static_cast<std::ptrdiff_t>(local) * c, local, MPI_DOUBLE, x == nullptr ? nullptr : x + order.rows * c,
+                counts.data(), firsts.data(), MPI_DOUBLE, 0, ranks_);
+  return outcome;
+}
+
+std::string Ranks::refuse(const std::string& options) {
+  const std::lock_guard lock(one_at_a_time_);
+  HalfWay half_way(half_way_);
+  constexpr PetscInt rows = 2000;  // enough for a multigrid method to have several levels
+  const Order order{What::refuse, 0, rows, 0, std::ssize(options)};
+  tell(order);
+  std::string why = refuse_together(order, options);
+  half_way.done();
+  return why;
+}
+
+std::string Ranks::refuse_together(const Order& order, std::string options) {
+  const SolverOptions given(spread_text(order.letters, std::move(options)));
+  const auto rows = static_cast<PetscInt>(order.rows);
+  const Shares shares(rows, count_);
+  const LocalRows local = chain_of_springs(rows, shares, rank_);
+  const std::vector<double> ones(static_cast<std::size_t>(shares.count(rank_)), 1.0);
+  std::vector<double> solved(ones.size());
+  System chain(ranks_);
+  SystemOutcome outcome = chain.set(local, rows);
+  if (outcome.ok()) outcome = chain.prepare(given);
+  if (outcome.ok()) outcome = chain.solve(ones.data(), solved.data(), 1);
+  if (!outcome.ok()) return outcome.why;
+  if (const std::vector<std::string> left = given.left(); !left.empty())
+    return fmt::format("no part of the solver that they choose reads {}", fmt::join(left, ", "));
+  // far from both ends: (1 - 2 * 0.49) x = 1
+  double worst = 0;
+  for (PetscInt i = shares.first(rank_); i < shares.first(rank_ + 1); ++i)
+    if (i > rows / 4 && i < 3 * rows / 4)
+      worst = std::max(worst, std::abs(solved[static_cast<std::size_t>(i - shares.first(rank_))] / 50 - 1));
+  MPI_Allreduce(MPI_IN_PLACE, &worst, 1, MPI_DOUBLE, MPI_MAX, ranks_);
+  return worst <= 1e-9 ? "" : fmt::format("a chain of springs under equal forces is solved with an error of {:.1e} by them", worst);
+}
+
+std::string Ranks::spread_text(std::int64_t letters, std::string text) const {
+  text.resize(static_cast<std::size_t>(letters));
+  MPI_Bcast(text.data(), static_cast<int>(letters), MPI_CHAR, 0, ranks_);
+  return text;
+}
+
+/// A column of a symmetric matrix is its row. `matrix`: on rank 0.
+LocalRows Ranks::spread_rows(PetscInt rows, const Sparse* matrix) const {
+  const Shares shares(rows, count_);
+  LocalRows local;
+  const auto place_for = [&local](std::size_t count, std::size_t entries) {
+    local.start.resize(count + 1);
+    local.column.resize(entries), local.value.resize(entries);
+  };
+  if (matrix == nullptr) {
+    std::int64_t entries = 0;
+    receive(&entries, 1, MPI_INT64_T, ranks_);
+    place_for(static_cast<std::size_t>(shares.count(rank_)), static_cast<std::size_t>(entries));
+    receive(local.start.data(), std::ssize(local.start), MPI_INT, ranks_);
+    receive(local.column.data(), entries, MPI_INT, ranks_);
+    receive(local.value.data(), entries, MPI_DOUBLE, ranks_);
+    return local;
+  }
+  std::vector<PetscInt> start;
+  for (int rank = count_ - 1; rank >= 0; --rank) {
+    const int* first = matrix->outerIndexPtr() + shares.first(rank);
+    const std::int64_t entries = first[shares.count(rank)] - *first;
+    start.assign(first, first + shares.count(rank) + 1);
+    for (PetscInt& place : start) place -= *first;
+    const int* columns = matrix->innerIndexPtr() + *first;
+    const double* values = matrix->valuePtr() + *first;
+    if (rank == 0) {
+      place_for(static_cast<std::size_t>(shares.count(0)), static_cast<std::size_t>(entries));
+      local.start = start;
+      std::copy_n(columns, entries, local.column.data());
+      std::copy_n(values, entries, local.value.data());
+      break;
+    }
+    send(&entries, 1, MPI_INT64_T, rank, ranks_);
+    send(start.data(), std::ssize(start), MPI_INT, rank, ranks_);
+    send(columns, entries, MPI_INT, rank, ranks_);
+    send(values, entries, MPI_DOUBLE, rank, ranks_);
+  }
+  return local;
+}
+
+void Ranks::release(std::int64_t system) {
+  const std::lock_guard lock(one_at_a_time_);
+  Order order;
+  order.what = What::release, order.system = system;
+  tell(order);
+  systems_.erase(system);
+}
+
+void Ranks::end() {
+  const std::lock_guard lock(one_at_a_time_);
+  if (half_way_) MPI_Abort(ranks_, 1);
+  tell({});
+  systems_.clear();
+}
+
+}  // namespace uplift

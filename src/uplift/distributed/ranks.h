@@ -1,0 +1,71 @@
+#pragma once
+#include <cstdint>
+#include <map>
+#include <memory>
+#include <mutex>
+#include <string>
+
+#include "uplift/distributed/system.h"
+#include "uplift/math/linalg.h"
+
+namespace uplift {
+
+/// The ranks of the job. Rank 0 runs the program and orders the others what to do together with it; they serve. Orders may come from
+/// several threads of rank 0; one at a time is carried out.
+class Ranks {
+ public:
+  /// Those of this process.
+  static Ranks& all();
+  Ranks(const Ranks&) = delete;
+  Ranks& operator=(const Ranks&) = delete;
+
+  // ---- rank 0 ----
+
+  struct Made {
+    std::int64_t system = 0;  // its number
+    SystemOutcome outcome;
+    double nonzeros = 0;
+  };
+  /// Shares a matrix, both triangles of it, and prepares its solver.
+  Made make(const Sparse& matrix, const std::string& options);
+  /// x = A^-1 b; x has the shape of b.
+  SystemOutcome solve(std::int64_t system, const Matrix& b, Matrix& x);
+  /// The options of which nothing is known to PETSc, or what is wrong with them, tried on a chain of springs; empty when all is well.
+  std::string refuse(const std::string& options);
+  /// All memory of a system.
+  void release(std::int64_t system);
+  /// Sends the others home. An order that was left half way, by an exception, ends the job instead.
+  void end();
+  /// Of the first solve that failed; empty: none did.
+  const std::string& failure() const { return failure_; }
+
+  // ---- the others ----
+
+  /// Does what rank 0 orders, until it ends.
+  void serve();
+
+ private:
+  enum class What : std::int64_t { make, solve, refuse, release, end };
+  struct Order {
+    What what = What::end;
+    std::int64_t system = 0, rows = 0, columns = 0, letters = 0;  // letters: of the options
+  };
+  Ranks();
+  void tell(const Order& order);
+  Order hear() const;
+  Made make_together(const Order& order, const Sparse* matrix, std::string options);
+  SystemOutcome solve_together(const Order& order, const double* b, double* x);
+  std::string refuse_together(const Order& order, std::string options);
+  LocalRows spread_rows(PetscInt rows, const Sparse* matrix) const;
+  std::string spread_text(std::int64_t letters, std::string text) const;
+
+  MPI_Comm ranks_ = PETSC_COMM_WORLD;
+  int rank_ = 0, count_ = 1;
+  std::mutex one_at_a_time_;
+  bool half_way_ = false;
+  std::int64_t made_ = 0;
+  std::map<std::int64_t, std::unique_ptr<System>> systems_;
+  std::string failure_;
+};
+
+}  // namespace uplift

@@ -1,0 +1,250 @@
+// MUMPS with symmetric storage (SYM = 2) and no pivoting beyond the order of elimination (CNTL(1) = 0), which a positive definite matrix
+// does not need: its INFOG(12) and INFOG(28) then count the negative and the vanishing pivots of A (Sylvester's law of inertia), with the
+// root of the elimination tree on one rank (ICNTL(13) = 1), without which pivots of the root are not counted.
+#include "uplift/distributed/system.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+#include <string_view>
+#include <utility>
+
+#include "uplift/distributed/petsc.h"
+#include "uplift/linear/solver.h"
+
+namespace uplift {
+
+SolverOptions::SolverOptions(const std::string& words) {
+  PetscOptionsCreate(&options_);
+  PetscOptionsInsertString(options_, words.c_str());
+}
+
+SolverOptions::~SolverOptions() {
+  PetscOptionsDestroy(&options_);
+}
+
+bool SolverOptions::has(const char* name) const {
+  PetscBool found = PETSC_FALSE;
+  PetscOptionsHasName(options_, nullptr, name, &found);
+  return found == PETSC_TRUE;
+}
+
+std::vector<std::string> SolverOptions::left() const {
+  PetscInt count = 0;
+  char **names = nullptr, **values = nullptr;
+  PetscOptionsLeftGet(options_, &count, &names, &values);
+  std::vector<std::string> list;
+  for (PetscInt i = 0; i < count; ++i) list.push_back("-" + std::string(names[i]));
+  PetscOptionsLeftRestore(options_, &count, &names, &values);
+  return list;
+}
+
+System::~System() {
+  KSPDestroy(&solver_);
+  VecDestroy(&given_);
+  VecDestroy(&solved_);
+  MatDestroy(&matrix_);
+}
+
+SystemOutcome System::agree(PetscErrorCode error, SystemOutcome mine) const {
+  const std::string said = take_petsc_error();
+  if (error != 0 && mine.ok()) mine.why = said.empty() ? fmt::format("PETSc failed (error {})", static_cast<int>(error)) : "PETSc: " + said;
+  int rank = 0, ranks = 1;
+  MPI_Comm_rank(ranks_, &rank);
+  MPI_Comm_size(ranks_, &ranks);
+  int teller = mine.ok() ? ranks : rank;
+  MPI_Allreduce(MPI_IN_PLACE, &teller, 1, MPI_INT, MPI_MIN, ranks_);
+  if (teller == ranks) return {};
+  int facts[2] = {static_cast<int>(mine.why.size()), mine.too_large ? 1 : 0};
+  MPI_Bcast(facts, 2, MPI_INT, teller, ranks_);
+  mine.why.resize(static_cast<std::size_t>(facts[0]));
+  MPI_Bcast(mine.why.data(), facts[0], MPI_CHAR, teller, ranks_);
+  mine.too_large = facts[1] != 0;
+  return mine;
+}
+
+SystemOutcome System::set(const LocalRows& local, PetscInt rows) {
+  return agree(assemble(local, rows), {});
+}
+
+PetscErrorCode System::assemble(const LocalRows& local, PetscInt rows) {
+  PetscFunctionBeginUser;
+  rows_ = rows, local_ = static_cast<PetscInt>(local.start.size()) - 1;
+  PetscCall(
+      MatCreateMPIAIJWithArrays(ranks_, local_, local_, rows, rows, local.start.data(), local.column.data(), local.value.data(), &matrix_));
+  PetscCall(MatSetOption(matrix_, MAT_SYMMETRIC, PETSC_TRUE));
+  PetscCall(MatSetOption(matrix_, MAT_SYMMETRY_ETERNAL, PETSC_TRUE));
+  for (Vec* vector : {&given_, &solved_}) PetscCall(VecCreateMPIWithArray(ranks_, 1, local_, rows, nullptr, vector));
+  MatInfo info;
+  PetscCall(MatGetInfo(matrix_, MAT_GLOBAL_SUM, &info));
+  nonzeros_ = info.nz_used;
+  PetscFunctionReturn(0);
+}
+
+/// While it lives PETSc reads these options, and no others.
+class OptionsInUse {
+ public:
+  explicit OptionsInUse(const SolverOptions& options) { PetscOptionsPush(options.get()); }
+  ~OptionsInUse() { PetscOptionsPop(); }
+  OptionsInUse(const OptionsInUse&) = delete;
+  OptionsInUse& operator=(const OptionsInUse&) = delete;
+};
+
+SystemOutcome System::prepare(const SolverOptions& options) {
+  const OptionsInUse in_use(options);
+  if (const SystemOutcome chosen = agree(choose(options), {}); !chosen.ok()) return chosen;
+  SystemOutcome outcome;
+  const PetscErrorCode error = set_up(outcome);
+  return agree(error, std::move(outcome));
+}
+
+PetscErrorCode System::choose(const SolverOptions& options) {
+  PetscFunctionBeginUser;
+  constexpr int most_iterations = 20000;
+  const bool method = options.has("-ksp_type"), conditioner = options.has("-pc_type");
+  PetscCall(KSPCreate(ranks_, &solver_));
+  PetscCall(KSPSetOperators(solver_, matrix_, matrix_));
+  PetscCall(KSPSetTolerances(solver_, 1e-12, PETSC_DEFAULT, PETSC_DEFAULT, most_iterations));
+  PC pc = nullptr;
+  PetscCall(KSPGetPC(solver_, &pc));
+  PetscCall(KSPSetType(solver_, method || conditioner ? KSPCG : KSPPREONLY));
+  PetscCall(PCSetType(pc, method || conditioner ? PCJACOBI : PCCHOLESKY));
+  PetscCall(PCFactorSetMatSolverType(pc, MATSOLVERMUMPS));
+  PetscCall(KSPSetFromOptions(solver_));
+  PetscBool factorises = PETSC_FALSE, is_cg = PETSC_FALSE, cholesky = PETSC_FALSE;
+  PetscCall(PetscObjectTypeCompareAny(reinterpret_cast<PetscObject>(pc), &factorises, PCCHOLESKY, PCLU, ""));
+  PetscCall(PetscObjectTypeCompare(reinterpret_cast<PetscObject>(pc), PCCHOLESKY, &cholesky));
+  if (factorises == PETSC_TRUE) {
+    if (!method) PetscCall(KSPSetType(solver_, KSPPREONLY));
+    if (!options.has("-pc_factor_mat_solver_type")) PetscCall(PCFactorSetMatSolverType(pc, MATSOLVERMUMPS));
+  } else {
+    PetscCall(MatSetOption(matrix_, MAT_SPD, PETSC_TRUE));
+  }
+  PetscCall(PetscObjectTypeCompare(reinterpret_cast<PetscObject>(solver_), KSPCG, &is_cg));
+  if (is_cg == PETSC_TRUE && !options.has("-ksp_norm_type")) PetscCall(KSPSetNormType(solver_, KSP_NORM_UNPRECONDITIONED));
+  PetscBool alone = PETSC_FALSE;
+  PetscCall(PetscObjectTypeCompare(reinterpret_cast<PetscObject>(solver_), KSPPREONLY, &alone));
+  block_ = factorises == PETSC_TRUE && alone == PETSC_TRUE;
+  if (cholesky == PETSC_TRUE) PetscCall(use_mumps());
+  PetscFunctionReturn(0);
+}
+
+/// The settings of MUMPS, where the options name no other package; the options may change them.
+PetscErrorCode System::use_mumps() {
+  PetscFunctionBeginUser;
+  PC pc = nullptr;
+  MatSolverType package = nullptr;
+  PetscCall(KSPGetPC(solver_, &pc));
+  PetscCall(PCFactorGetMatSolverType(pc, &package));
+  if (package == nullptr || std::string_view(package) != MATSOLVERMUMPS) PetscFunctionReturn(0);
+  PetscCall(PCFactorSetUpMatSolverType(pc));
+  PetscCall(PCFactorGetMatrix(pc, &factor_));
+  PetscCall(MatMumpsSetIcntl(factor_, 8, 0));                          // no scaling: the diagonal is one
+  PetscCall(MatMumpsSetIcntl(factor_, 13, 1));                         // the root on one rank
+  PetscCall(MatMumpsSetIcntl(factor_, 24, 1));                         // vanishing pivots are counted
+  PetscCall(MatMumpsSetCntl(factor_, 1, 0.0));                         // no pivoting
+  PetscCall(MatMumpsSetCntl(factor_, 3, -LinearSolver::least_pivot));  // negative: absolute
+  PetscFunctionReturn(0);
+}
+
+PetscErrorCode System::set_up(SystemOutcome& outcome) {
+  PetscFunctionBeginUser;
+  PC pc = nullptr;
+  PCFailedReason failed = PC_NOERROR;
+  PetscCall(KSPSetUp(solver_));
+  PetscCall(KSPGetPC(solver_, &pc));
+  PetscCall(PCGetFailedReason(pc, &failed));
+  if (failed == PC_FACTOR_OUTMEMORY) {
+    outcome = {"the factor does not fit into the memory of the ranks: use more of them, on more machines, or coarsen the mesh", true};
+    PetscFunctionReturn(0);
+  }
+  if (failed != PC_NOERROR) {
+    outcome.why = fmt::format("the matrix cannot be factorised ({})", PCFailedReasons[failed]);
+    PetscFunctionReturn(0);
+  }
+  if (factor_ != nullptr) PetscCall(check_pivots(outcome));
+  if (outcome.ok() && !block_) PetscCall(try_out(outcome));
+  PetscFunctionReturn(0);
+}
+
+PetscErrorCode System::check_pivots(SystemOutcome& outcome) {
+  PetscFunctionBeginUser;
+  PetscInt negative = 0, vanishing = 0, entries = 0;
+  PetscCall(MatMumpsGetInfog(factor_, 12, &negative));
+  PetscCall(MatMumpsGetInfog(factor_, 28, &vanishing));
+  PetscCall(MatMumpsGetInfog(factor_, 29, &entries));
+  nonzeros_ = entries < 0 ? -1e6 * static_cast<double>(entries) : static_cast<double>(entries);
+  if (negative + vanishing > 0)
+    outcome.why =
+        fmt::format("the matrix is not positive definite: of its pivots {} are negative and {} are round-off", negative, vanishing);
+  PetscFunctionReturn(0);
+}
+
+/// An iterative method on one load, of changing signs in every unknown: what does not converge now would not in a step either.
+PetscErrorCode System::try_out(SystemOutcome& outcome) {
+  PetscFunctionBeginUser;
+  PetscInt first = 0;
+  PetscCall(MatGetOwnershipRange(matrix_, &first, nullptr));
+  std::vector<double> load(static_cast<std::size_t>(local_)), solution(load.size());
+  for (std::size_t i = 0; i < load.size(); ++i) {
+    const double k = static_cast<double>(first) + static_cast<double>(i) + 1;
+    load[i] = std::sin(1.618 * k * k);
+  }
+  PetscCall(solve_columns(load.data(), solution.data(), 1, outcome));
+  PetscFunctionReturn(0);
+}
+
+SystemOutcome System::solve(const double* b, double* x, PetscInt columns) {
+  SystemOutcome outcome;
+  const PetscErrorCode error = solve_columns(b, x, columns, outcome);
+  return agree(error, std::move(outcome));
+}
+
+PetscErrorCode System::solve_columns(const double* b, double* x, PetscInt columns, SystemOutcome& outcome) {
+  PetscFunctionBeginUser;
+  iterations_ = 0;
+  if (block_ && columns > 1) {
+    PetscCall(solve_block(b, x, columns));
+    PetscCall(converged(outcome));
+    PetscFunctionReturn(0);
+  }
+  for (PetscInt c = 0; c < columns && outcome.ok(); ++c) {
+    PetscCall(VecPlaceArray(given_, b + c * local_));
+    PetscCall(VecPlaceArray(solved_, x + c * local_));
+    const PetscErrorCode error = KSPSolve(solver_, given_, solved_);
+    PetscCall(VecResetArray(given_));
+    PetscCall(VecResetArray(solved_));
+    PetscCall(error);
+    PetscCall(converged(outcome));
+  }
+  PetscFunctionReturn(0);
+}
+
+PetscErrorCode System::solve_block(const double* b, double* x, PetscInt columns) {
+  PetscFunctionBeginUser;
+  Mat right = nullptr, left = nullptr;
+  PetscCall(MatCreateDense(ranks_, local_, PETSC_DECIDE, rows_, columns, const_cast<double*>(b), &right));
+  PetscCall(MatCreateDense(ranks_, local_, PETSC_DECIDE, rows_, columns, x, &left));
+  PetscCall(KSPMatSolve(solver_, right, left));
+  PetscCall(MatDestroy(&right));
+  PetscCall(MatDestroy(&left));
+  PetscFunctionReturn(0);
+}
+
+PetscErrorCode System::converged(SystemOutcome& outcome) {
+  PetscFunctionBeginUser;
+  KSPConvergedReason reason = KSP_CONVERGED_ITERATING;
+  KSPType method = nullptr;
+  PetscInt iterations = 0;
+  PetscCall(KSPGetConvergedReason(solver_, &reason));
+  PetscCall(KSPGetIterationNumber(solver_, &iterations));
+  PetscCall(KSPGetType(solver_, &method));
+  iterations_ += iterations;
+  if (reason < 0)
+    outcome.why =
+        fmt::format("the solver \"{}\" of PETSc did not converge in {} iterations ({})", method, iterations, KSPConvergedReasons[reason]);
+  PetscFunctionReturn(0);
+}
+
+}  // namespace uplift

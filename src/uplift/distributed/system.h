@@ -1,0 +1,93 @@
+#pragma once
+#include <petscksp.h>
+
+#include <cstddef>
+#include <string>
+#include <vector>
+
+namespace uplift {
+
+/// The rows of a symmetric matrix that one rank holds, complete (both triangles).
+struct LocalRows {
+  std::vector<PetscInt> start, column;  // of each row in `column` and `value`, one more than rows; column: of the whole matrix
+  std::vector<double> value;
+};
+
+/// What all ranks came to: the same on each of them.
+struct SystemOutcome {
+  std::string why;         // empty: done
+  bool too_large = false;  // for the memory that is left
+  bool ok() const { return why.empty(); }
+};
+
+/// How the rows of a matrix are shared: rank r holds first(r) ... first(r + 1) - 1, the same number or one more than the next.
+class Shares {
+ public:
+  Shares(PetscInt rows, int ranks) : rows_(rows), ranks_(ranks) {}
+  PetscInt first(int rank) const { return rows_ / ranks_ * rank + std::min<PetscInt>(rank, rows_ % ranks_); }
+  PetscInt count(int rank) const { return first(rank + 1) - first(rank); }
+
+ private:
+  PetscInt rows_;
+  int ranks_;
+};
+
+/// PETSc's options of one solver. "" is a factorisation by MUMPS; without -ksp_type conjugate gradients (for a factorisation: its
+/// back-solve alone), without -pc_type Jacobi.
+class SolverOptions {
+ public:
+  explicit SolverOptions(const std::string& words);
+  ~SolverOptions();
+  SolverOptions(const SolverOptions&) = delete;
+  SolverOptions& operator=(const SolverOptions&) = delete;
+  bool has(const char* name) const;
+  /// Those that nobody has asked for.
+  std::vector<std::string> left() const;
+  PetscOptions get() const { return options_; }
+
+ private:
+  PetscOptions options_ = nullptr;
+};
+
+/// One matrix on the ranks of a communicator and what solves with it. All functions but the destructor and those that are const must be
+/// called by all ranks together.
+class System {
+ public:
+  explicit System(MPI_Comm ranks) : ranks_(ranks) {}
+  ~System();
+  System(const System&) = delete;
+  System& operator=(const System&) = delete;
+  /// The matrix; with a unit diagonal, so that a pivot or a residual has no unit. `rows`: of all ranks.
+  SystemOutcome set(const LocalRows& local, PetscInt rows);
+  /// Factorises it, or prepares the iterative method and tries it on one load. A matrix that is not positive definite is refused: by MUMPS
+  /// from the signs of the pivots, where those below LinearSolver::least_pivot count as zero.
+  SystemOutcome prepare(const SolverOptions& options);
+  /// x = A^-1 b: the rank's rows of all columns, one column after another.
+  SystemOutcome solve(const double* b, double* x, PetscInt columns);
+  Mat matrix() const { return matrix_; }
+  PetscInt iterations() const { return iterations_; }  // of the last solve
+  double nonzeros() const { return nonzeros_; }        // of the factor; of the matrix where there is none
+
+ private:
+  PetscErrorCode assemble(const LocalRows& local, PetscInt rows);
+  PetscErrorCode choose(const SolverOptions& options);
+  PetscErrorCode set_up(SystemOutcome& outcome);
+  PetscErrorCode use_mumps();
+  PetscErrorCode check_pivots(SystemOutcome& outcome);
+  PetscErrorCode try_out(SystemOutcome& outcome);
+  PetscErrorCode solve_columns(const double* b, double* x, PetscInt columns, SystemOutcome& outcome);
+  PetscErrorCode solve_block(const double* b, double* x, PetscInt columns);
+  PetscErrorCode converged(SystemOutcome& outcome);
+  /// The worst of all ranks.
+  SystemOutcome agree(PetscErrorCode error, SystemOutcome mine) const;
+
+  MPI_Comm ranks_;
+  PetscInt rows_ = 0, local_ = 0, iterations_ = 0;
+  Mat matrix_ = nullptr, factor_ = nullptr;  // factor_: of MUMPS, PETSc's own; null without
+  Vec given_ = nullptr, solved_ = nullptr;   // on the caller's numbers
+  KSP solver_ = nullptr;
+  bool block_ = false;  // several columns at once
+  double nonzeros_ = 0;
+};
+
+}  // namespace uplift
