@@ -4,6 +4,7 @@
 #include <utility>
 
 #include "uplift/cli/console.h"
+#include "uplift/linear/blas.h"
 
 namespace uplift {
 
@@ -28,6 +29,7 @@ PetscErrorCode keep_error(MPI_Comm, int, const char*, const char*, PetscErrorCod
 }  // namespace
 
 Petsc::Petsc() {
+  prepare_blas();
   // -skip_petscrc: results depend on the case file alone; signals are those of the program
   char name[] = "uplift-mpi", plain[] = "-skip_petscrc", own_signals[] = "-no_signal_handler";
   char* words[] = {name, plain, own_signals, nullptr};
