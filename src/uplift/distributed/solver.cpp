@@ -64,7 +64,7 @@ class PetscSolver final : public LinearSolver {
 std::unique_ptr<const LinearSolver> make_petsc(const Values& values) {
   const std::string& options = values.text("options");
   const auto refuse = [&](const std::string& found) {
-    fail(values, "options", "options that PETSc knows, as \"-ksp_type cg -pc_type jacobi\"", found);
+    fail(values, "options", "options with which PETSc solves a matrix, as \"-ksp_type cg -pc_type jacobi\"", found);
   };
   if (!options.empty() && options.front() != '-') refuse(in_quotes(options));
   if (const std::string why = Ranks::all().refuse(options); !why.empty()) refuse(fmt::format("{}: {}", in_quotes(options), why));

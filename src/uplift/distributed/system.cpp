@@ -93,13 +93,15 @@ class OptionsInUse {
 
 SystemOutcome System::prepare(const SolverOptions& options) {
   const OptionsInUse in_use(options);
-  if (const SystemOutcome chosen = agree(choose(options), {}); !chosen.ok()) return chosen;
   SystemOutcome outcome;
-  const PetscErrorCode error = set_up(outcome);
+  PetscErrorCode error = choose(options, outcome);
+  outcome = agree(error, std::move(outcome));
+  if (!outcome.ok()) return outcome;
+  error = set_up(outcome);
   return agree(error, std::move(outcome));
 }
 
-PetscErrorCode System::choose(const SolverOptions& options) {
+PetscErrorCode System::choose(const SolverOptions& options, SystemOutcome& outcome) {
   PetscFunctionBeginUser;
   constexpr int most_iterations = 20000;
   const bool method = options.has("-ksp_type"), conditioner = options.has("-pc_type");
@@ -112,30 +114,32 @@ PetscErrorCode System::choose(const SolverOptions& options) {
   PetscCall(PCSetType(pc, method || conditioner ? PCJACOBI : PCCHOLESKY));
   PetscCall(PCFactorSetMatSolverType(pc, MATSOLVERMUMPS));
   PetscCall(KSPSetFromOptions(solver_));
-  PetscBool factorises = PETSC_FALSE, is_cg = PETSC_FALSE, cholesky = PETSC_FALSE;
-  PetscCall(PetscObjectTypeCompareAny(reinterpret_cast<PetscObject>(pc), &factorises, PCCHOLESKY, PCLU, ""));
+  PetscBool cholesky = PETSC_FALSE, cg = PETSC_FALSE, alone = PETSC_FALSE;
   PetscCall(PetscObjectTypeCompare(reinterpret_cast<PetscObject>(pc), PCCHOLESKY, &cholesky));
-  if (factorises == PETSC_TRUE) {
-    if (!method) PetscCall(KSPSetType(solver_, KSPPREONLY));
-    if (!options.has("-pc_factor_mat_solver_type")) PetscCall(PCFactorSetMatSolverType(pc, MATSOLVERMUMPS));
-  } else {
-    PetscCall(MatSetOption(matrix_, MAT_SPD, PETSC_TRUE));
-  }
-  PetscCall(PetscObjectTypeCompare(reinterpret_cast<PetscObject>(solver_), KSPCG, &is_cg));
-  if (is_cg == PETSC_TRUE && !options.has("-ksp_norm_type")) PetscCall(KSPSetNormType(solver_, KSP_NORM_UNPRECONDITIONED));
-  PetscBool alone = PETSC_FALSE;
+  if (cholesky == PETSC_TRUE && !method) PetscCall(KSPSetType(solver_, KSPPREONLY));
+  PetscCall(PetscObjectTypeCompare(reinterpret_cast<PetscObject>(solver_), KSPCG, &cg));
   PetscCall(PetscObjectTypeCompare(reinterpret_cast<PetscObject>(solver_), KSPPREONLY, &alone));
-  block_ = factorises == PETSC_TRUE && alone == PETSC_TRUE;
-  if (cholesky == PETSC_TRUE) PetscCall(use_mumps());
+  if (cg == PETSC_TRUE && !options.has("-ksp_norm_type")) PetscCall(KSPSetNormType(solver_, KSP_NORM_UNPRECONDITIONED));
+  if (cholesky == PETSC_TRUE)
+    PetscCall(use_mumps(options));
+  else
+    PetscCall(MatSetOption(matrix_, MAT_SPD, PETSC_TRUE));
+  block_ = alone == PETSC_TRUE;
+  if (factor_ == nullptr && (cholesky == PETSC_TRUE || cg == PETSC_FALSE))
+    outcome.why =
+        "they would not notice a matrix that is not positive definite, as conjugate gradients (-ksp_type cg) and the factorisation by "
+        "MUMPS "
+        "(-pc_type cholesky) do";
   PetscFunctionReturn(0);
 }
 
 /// The settings of MUMPS, where the options name no other package; the options may change them.
-PetscErrorCode System::use_mumps() {
+PetscErrorCode System::use_mumps(const SolverOptions& options) {
   PetscFunctionBeginUser;
   PC pc = nullptr;
   MatSolverType package = nullptr;
   PetscCall(KSPGetPC(solver_, &pc));
+  if (!options.has("-pc_factor_mat_solver_type")) PetscCall(PCFactorSetMatSolverType(pc, MATSOLVERMUMPS));
   PetscCall(PCFactorGetMatSolverType(pc, &package));
   if (package == nullptr || std::string_view(package) != MATSOLVERMUMPS) PetscFunctionReturn(0);
   PetscCall(PCFactorSetUpMatSolverType(pc));

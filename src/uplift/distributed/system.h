@@ -32,7 +32,7 @@ class Shares {
   int ranks_;
 };
 
-/// PETSc's options of one solver. "" is a factorisation by MUMPS; without -ksp_type conjugate gradients (for a factorisation: its
+/// PETSc's options of one solver. "" is a factorisation by MUMPS; else without -ksp_type conjugate gradients (with -pc_type cholesky: its
 /// back-solve alone), without -pc_type Jacobi.
 class SolverOptions {
  public:
@@ -70,9 +70,9 @@ class System {
 
  private:
   PetscErrorCode assemble(const LocalRows& local, PetscInt rows);
-  PetscErrorCode choose(const SolverOptions& options);
+  PetscErrorCode choose(const SolverOptions& options, SystemOutcome& outcome);
   PetscErrorCode set_up(SystemOutcome& outcome);
-  PetscErrorCode use_mumps();
+  PetscErrorCode use_mumps(const SolverOptions& options);
   PetscErrorCode check_pivots(SystemOutcome& outcome);
   PetscErrorCode try_out(SystemOutcome& outcome);
   PetscErrorCode solve_columns(const double* b, double* x, PetscInt columns, SystemOutcome& outcome);
