@@ -1,6 +1,6 @@
 # The two commands of the README, and what developers need. `make help` lists them.
 .DEFAULT_GOAL := help
-.PHONY: help run test docs bench build build-tests portable wheel deb web format check-format layers tidy asan clean
+.PHONY: help run test mpi test-mpi docs bench build build-tests portable wheel deb web format check-format layers tidy asan clean
 
 help:              ## this list
 	@grep -E '^[a-z-]+: .*##|^[a-z-]+:  *##' Makefile | sed -E 's/^([a-z-]+):.*## */  make \1\t/' | expand -t 22
@@ -10,6 +10,17 @@ run: build         ## install what is missing, build, run the paper's oscillator
 
 test: build-tests  ## the same set-up, then build and run every test
 	ctest --test-dir build/release --output-on-failure -j 2
+
+mpi:               ## uplift-mpi for several processes, with PETSc, MUMPS and Open MPI: docs/guide/several_processes.md
+	@scripts/setup.sh mpi
+	cmake --preset release -DUPLIFT_MPI=ON
+	cmake --build build/release --target uplift uplift-mpi bench_weak
+
+test-mpi: mpi      ## tests of uplift-mpi on 1, 2 and 4 ranks
+	@scripts/setup.sh test-mpi
+	cmake --preset release -DUPLIFT_MPI=ON
+	cmake --build build/release --target test_mpi
+	python3 -B tests/mpi/test_mpi.py build/release/uplift
 
 docs: build        ## the documentation as a site that opens from disk: build/docs/site/index.html
 	@scripts/setup.sh docs

@@ -1,11 +1,12 @@
 #!/usr/bin/env bash
-# Installs the Debian packages that are missing and nothing else: no network when all are there. Usage: scripts/setup.sh [run|test|docs|packages|develop]
+# Installs the Debian packages that are missing and nothing else: no network when all are there. Usage: scripts/setup.sh [run|test|mpi|test-mpi|docs|packages|develop]
 set -euo pipefail
 
 run="g++ cmake ninja-build pkg-config libeigen3-dev libsuitesparse-dev libopenblas-dev libspectra-dev libtomlplusplus-dev
   nlohmann-json3-dev libudunits2-dev libhdf5-dev zlib1g-dev libsqlite3-dev libcli11-dev libfmt-dev"
 test="libgtest-dev librapidcheck-dev python3 python3-jsonschema python3-numpy python3-pandas python3-matplotlib python3-yaml mypy patchelf
   parallel slurmctld slurmd slurm-client munge"
+mpi="libpetsc-real-dev libopenmpi-dev openmpi-bin"
 docs="python3 mkdocs mkdocs-material libjs-katex fonts-katex"
 packages="python3 patchelf dpkg-dev debhelper dh-python help2man lintian"
 develop="libbenchmark-dev clang-14 libclang-rt-14-dev clang-format-14 clang-tidy-14 ccache nodejs npm chromium ca-certificates"
@@ -13,10 +14,12 @@ develop="libbenchmark-dev clang-14 libclang-rt-14-dev clang-format-14 clang-tidy
 case "${1:-run}" in
   run) wanted="$run" ;;
   test) wanted="$run $test" ;;
+  mpi) wanted="$run $mpi" ;;
+  test-mpi) wanted="$run $mpi libgtest-dev python3" ;;
   docs) wanted="$run $docs" ;;
   packages) wanted="$run $packages" ;;
   develop) wanted="$run $test $develop" ;;
-  *) echo "setup.sh: expected run, test, docs, packages or develop, found \"$1\"" >&2; exit 2 ;;
+  *) echo "setup.sh: expected run, test, mpi, test-mpi, docs, packages or develop, found \"$1\"" >&2; exit 2 ;;
 esac
 
 if ! command -v dpkg-query >/dev/null; then

@@ -159,7 +159,9 @@ SystemOutcome Ranks::solve_together(const Order& order, const double* b, double*
   for (PetscInt c = 0; c < columns; ++c)
     MPI_Scatterv(b == nullptr ? nullptr : b + order.rows * c, counts.data(), firsts.data(), MPI_DOUBLE,
                  given.data() + static_cast<std::ptrdiff_t>(local) * c, local, MPI_DOUBLE, 0, ranks_);
-  SystemOutcome outcome = systems_.at(order.system)->solve(given.data(), solved.data(), columns);
+  System& asked = *systems_.at(order.system);
+  SystemOutcome outcome = asked.solve(given.data(), solved.data(), columns);
+  iterations_ += asked.iterations();
   for (PetscInt c = 0; c < columns; ++c)
     MPI_Gatherv(solved.data() + static_cast<std::ptrdiff_t>(local) * c, local, MPI_DOUBLE, x == nullptr ? nullptr : x + order.rows * c,
                 counts.data(), firsts.data(), MPI_DOUBLE, 0, ranks_);

@@ -38,6 +38,8 @@ class Ranks {
   void end();
   /// Of the first solve that failed; empty: none did.
   const std::string& failure() const { return failure_; }
+  /// Of all solves so far, for each right-hand side; a back-solve counts as one.
+  long iterations() const { return iterations_; }
 
   // ---- the others ----
 
@@ -63,6 +65,7 @@ class Ranks {
   int rank_ = 0, count_ = 1;
   std::mutex one_at_a_time_;
   bool half_way_ = false;
+  long iterations_ = 0;
   std::int64_t made_ = 0;
   std::map<std::int64_t, std::unique_ptr<System>> systems_;
   std::string failure_;

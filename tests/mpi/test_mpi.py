@@ -1,0 +1,176 @@
+"""uplift-mpi on 1, 2 and 4 ranks beside the program `uplift`. Its programs lie beside that one."""
+
+import os
+import signal
+import sys
+import time
+
+sys.path.insert(0, str(__import__("pathlib").Path(__file__).resolve().parents[1] / "cli"))
+from support import *  # noqa: E402
+
+ROOT = pathlib.Path(__file__).resolve().parents[2]
+ENVIRONMENT = {**os.environ, "OMPI_ALLOW_RUN_AS_ROOT": "1", "OMPI_ALLOW_RUN_AS_ROOT_CONFIRM": "1"}
+ITERATIVE = "-ksp_type cg -pc_type jacobi"
+
+
+def with_solver(text, options=""):
+    """The case with PETSc; keys of no table come first."""
+    return f'solver = {{ type = "petsc", options = "{options}" }}\n' + text
+
+
+def soil(duration):
+    """Example 02, a building on a mesh of soil, for a shorter time."""
+    text = (ROOT / "examples/02_building_on_soil/case.toml").read_text()
+    assert text.count('duration = "3 s"') == 1
+    return text.replace('duration = "3 s"', f'duration = "{duration} s"')
+
+
+class MpiTest(CliTest):
+    def command(self, ranks, *words, name="uplift-mpi"):
+        return ["mpirun", "--oversubscribe", "--quiet", "-n", str(ranks), str(pathlib.Path(program()).parent / name), *map(str, words)]
+
+    def mpi(self, ranks, *words, expect=0, name="uplift-mpi"):
+        done = subprocess.run(self.command(ranks, *words, name=name), cwd=self.folder, capture_output=True, text=True, timeout=300, env=ENVIRONMENT)
+        self.assertEqual(done.returncode, expect, f"{words} on {ranks} ranks\n--- output\n{done.stdout}\n--- errors\n{done.stderr}")
+        return done
+
+    def start(self, ranks, *words, out):
+        """The job and the processes of its ranks, in their order, once the first file of the results is there."""
+        command = self.command(ranks, *words, "-o", out)
+        job = subprocess.Popen(command, cwd=self.folder, stdout=subprocess.PIPE, stderr=subprocess.PIPE, text=True, env=ENVIRONMENT)
+        self.addCleanup(job.kill)
+        self.wait_for(f"{out}.part-*/*")
+        children = [int(child) for child in pathlib.Path(f"/proc/{job.pid}/task/{job.pid}/children").read_text().split()]
+        self.assertEqual(len(children), ranks)
+        return job, sorted(children)
+
+    def wait_for(self, pattern):
+        deadline = time.monotonic() + 60
+        while not list(self.folder.rglob(pattern)):
+            self.assertLess(time.monotonic(), deadline, pattern)
+            time.sleep(0.05)
+
+    def ended(self, job):
+        """Exit code and standard error of a job."""
+        _, err = job.communicate(timeout=60)
+        return job.returncode, err
+
+    def assert_same(self, serial, parallel):
+        """Peaks, energies and numbers of the verdict within 1e-8; what is zero but for round-off is compared with the largest peak of its unit."""
+        for one, other in zip(serial["runs"], parallel["runs"], strict=True):
+            self.assertEqual((one["status"], one["steps"], one["retries"]), (other["status"], other["steps"], other["retries"]))
+            largest = {}
+            for peak in one["peaks"].values():
+                largest[peak["unit"]] = max(largest.get(peak["unit"], 0), abs(peak["value"]))
+            for name, peak in one["peaks"].items():
+                size, most = abs(peak["value"]), largest[peak["unit"]]
+                scale = size if size > 1e-6 * most else most
+                self.assertLessEqual(abs(other["peaks"][name]["value"] - peak["value"]), 1e-8 * scale, name)
+            for name, energy in one["final_energy"].items():
+                if isinstance(energy, float):
+                    self.assertLessEqual(abs(other["final_energy"][name] - energy), 1e-8 * one["energy_scale"], name)
+        for key in ("level", "headline", "consequence"):
+            self.assertEqual(serial["verdict"][key], parallel["verdict"][key])
+        for name, number in serial["verdict"]["numbers"].items():
+            if isinstance(number, dict) and abs(number.get("value") or 0) > 1e-9:
+                self.assertLessEqual(abs(parallel["verdict"]["numbers"][name]["value"] / number["value"] - 1), 1e-8, name)
+
+
+class Results(MpiTest):
+    def compare(self, text, *words, ranks=(1, 2, 4)):
+        self.write(text)
+        self.uplift("run", "case.toml", "-q", "-o", "serial", *words)
+        serial = self.summary("serial")
+        for options, counts in (("", ranks), (ITERATIVE, ranks[-2:-1])):
+            self.write(with_solver(text, options), "petsc.toml")
+            for count in counts:
+                folder = f"{count}{options[:9]}".replace(" ", "")
+                self.mpi(count, "run", "petsc.toml", "-q", "-o", folder, *words)
+                with self.subTest(ranks=count, options=options):
+                    self.assert_same(serial, self.summary(folder))
+        return serial
+
+    def test_mesh_of_soil(self):
+        self.assertEqual(self.compare(soil(0.6), "--no-step-check")["runs"][0]["status"], "completed")
+
+    def test_springs_on_few_unknowns(self):
+        self.compare(BASE, ranks=(2, 4))
+
+
+class Solver(MpiTest):
+    def test_unit_tests_and_iterations(self):
+        counts = []
+        for ranks in (1, 2, 4):
+            done = self.mpi(ranks, name="test_mpi")
+            counts.append(int(re.search(r"conjugate gradients: (\d+) iterations", done.stdout).group(1)))
+        self.assertLessEqual(max(counts), 1.1 * min(counts), counts)
+
+    def test_weak_scaling_table(self):
+        lines = self.mpi(2, 5000, name="bench_weak").stdout.splitlines()
+        self.assertEqual(len(lines), 3)
+        one, two = ([float(word.rstrip("%")) for word in line.split()] for line in lines[1:])
+        self.assertEqual((one[0], two[0]), (1, 2))
+        self.assertEqual(two[1], 2 * one[1])  # unknowns
+        self.assertLessEqual(abs(two[6] / one[6] - 1), 0.2)  # iterations: the wave crosses a few cubes in a step, not the block
+
+
+class Refused(MpiTest):
+    def test_by_the_program_for_one_process(self):
+        self.write(with_solver(BASE))
+        done = self.uplift("check", "case.toml", expect=2)
+        self.assertEqual(done.stderr.count("\n"), 1)
+        self.assertTrue(done.stderr.startswith('error: case.toml:1: solver: expected "cholmod", "eigen" or "dense"'))
+        self.assertIn("needs the program uplift-mpi", done.stderr)
+
+    def test_options(self):
+        for options, why in (("-ksp_typ cg", "no part of the solver that they choose reads -ksp_typ"), ("-ksp_type foo", "Unable to find requested KSP type foo"),
+                             ("ksp_type cg", 'found "ksp_type cg"'), ("-ksp_type gmres", "would not notice a matrix that is not positive definite"),
+                             ("-ksp_type cg -ksp_rtol abc", "Input string abc has no numeric value"), ("-ksp_type cg -ksp_max_it 2", "did not converge in 2 iterations")):
+            self.write(with_solver(BASE, options))
+            done = self.mpi(2, "run", "case.toml", expect=2)
+            errors = [line for line in done.stderr.splitlines() if line.startswith("error")]
+            self.assertEqual(len(errors), 1, done.stderr)
+            self.assertTrue(errors[0].startswith("error: case.toml:1: solver.options: expected options with which PETSc solves a matrix"), errors)
+            self.assertIn(why, errors[0])
+            self.assertNotIn("PETSC ERROR", done.stderr)
+            self.assertEqual([path.name for path in self.folder.rglob("*") if path.is_file()], ["case.toml"])
+
+    def test_bad_input_ends_all_ranks_with_the_code_of_the_program(self):
+        self.write("nonsense")
+        serial, parallel = self.uplift("run", "case.toml", expect=2), self.mpi(2, "run", "case.toml", expect=2)
+        self.assertIn(serial.stderr.strip(), parallel.stderr)
+        self.assertIn("studies", self.mpi(2, "study", "run", "x", expect=2).stderr)
+
+
+class Ended(MpiTest):
+    LONG = with_solver(BASE.replace("duration = 0.5", "duration = 20000") + '[output]\nevery = 1000\ncheckpoint = "1 s"\n')
+
+    def test_a_rank_that_dies_ends_the_job_and_its_checkpoint_is_whole(self):
+        self.write(self.LONG)
+        for rank in (0, 1):
+            job, ranks = self.start(2, "run", "case.toml", out=f"r{rank}")
+            self.wait_for(f"r{rank}.part-*/**/*.ckp")
+            begin = time.monotonic()
+            os.kill(ranks[rank], signal.SIGKILL)
+            self.assertNotEqual(self.ended(job)[0], 0)
+            self.assertLessEqual(time.monotonic() - begin, 10)
+            job, ranks = self.start(2, "resume", f"r{rank}", out=f"again{rank}")
+            os.kill(ranks[0], signal.SIGTERM)
+            code, err = self.ended(job)
+            self.assertEqual(code, 128 + signal.SIGTERM, err)
+            self.assertNotIn("is taken instead", err)  # which a damaged checkpoint leads to
+
+    def test_sigterm_of_rank_0_keeps_the_results(self):
+        self.write(self.LONG)
+        job, ranks = self.start(2, "run", "case.toml", out="r")
+        os.kill(ranks[1], signal.SIGTERM)  # the others leave it to rank 0
+        time.sleep(1)
+        self.assertIsNone(job.poll())
+        os.kill(ranks[0], signal.SIGTERM)
+        code, err = self.ended(job)
+        self.assertEqual(code, 128 + signal.SIGTERM, err)
+        self.assertEqual(self.summary("r")["runs"][0]["status"], "interrupted")
+
+
+if __name__ == "__main__":
+    main()
