@@ -145,6 +145,7 @@ PetscErrorCode System::use_mumps(const SolverOptions& options) {
   PetscCall(PCFactorSetUpMatSolverType(pc));
   PetscCall(PCFactorGetMatrix(pc, &factor_));
   PetscCall(MatMumpsSetIcntl(factor_, 8, 0));                          // no scaling: the diagonal is one
+  PetscCall(MatMumpsSetIcntl(factor_, 14, 100));                       // % of work space beyond its forecast, which is too low on 4 ranks
   PetscCall(MatMumpsSetIcntl(factor_, 13, 1));                         // the root on one rank
   PetscCall(MatMumpsSetIcntl(factor_, 24, 1));                         // vanishing pivots are counted
   PetscCall(MatMumpsSetCntl(factor_, 1, 0.0));                         // no pivoting
@@ -160,7 +161,11 @@ PetscErrorCode System::set_up(SystemOutcome& outcome) {
   PetscCall(KSPGetPC(solver_, &pc));
   PetscCall(PCGetFailedReason(pc, &failed));
   if (failed == PC_FACTOR_OUTMEMORY) {
-    outcome = {"the factor does not fit into the memory of the ranks: use more of them, on more machines, or coarsen the mesh", true};
+    outcome = {
+        "the factor does not fit into the memory of the ranks: use more of them, on more machines, or coarsen the mesh; or the work space "
+        "of "
+        "MUMPS is too small (-mat_mumps_icntl_14 200)",
+        true};
     PetscFunctionReturn(0);
   }
   if (failed != PC_NOERROR) {
