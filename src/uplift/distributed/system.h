@@ -1,6 +1,7 @@
 #pragma once
 #include <petscksp.h>
 
+#include <algorithm>
 #include <cstddef>
 #include <string>
 #include <vector>
