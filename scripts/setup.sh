@@ -15,7 +15,7 @@ case "${1:-run}" in
   run) wanted="$run" ;;
   test) wanted="$run $test" ;;
   mpi) wanted="$run $mpi" ;;
-  test-mpi) wanted="$run $mpi libgtest-dev python3" ;;
+  test-mpi) wanted="$run $mpi libgtest-dev python3 slurmctld slurmd slurm-client munge" ;;
   docs) wanted="$run $docs" ;;
   packages) wanted="$run $packages" ;;
   develop) wanted="$run $test $develop" ;;

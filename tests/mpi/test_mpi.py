@@ -1,12 +1,15 @@
 """uplift-mpi on 1, 2 and 4 ranks beside the program `uplift`. Its programs lie beside that one."""
 
 import os
+import shutil
 import signal
 import sys
+import tempfile
 import time
 
 sys.path.insert(0, str(__import__("pathlib").Path(__file__).resolve().parents[1] / "cli"))
 from support import *  # noqa: E402
+from test_study_queues import Slurm, wait_until  # noqa: E402
 
 ROOT = pathlib.Path(__file__).resolve().parents[2]
 ENVIRONMENT = {**os.environ, "OMPI_ALLOW_RUN_AS_ROOT": "1", "OMPI_ALLOW_RUN_AS_ROOT_CONFIRM": "1"}
@@ -112,6 +115,30 @@ class Solver(MpiTest):
         self.assertEqual((one[0], two[0]), (1, 2))
         self.assertEqual(two[1], 2 * one[1])  # unknowns
         self.assertLessEqual(abs(two[6] / one[6] - 1), 0.2)  # iterations: the wave crosses a few cubes in a step, not the block
+
+
+class Queue(MpiTest):
+    def test_batch_script_of_the_guide_on_one_node(self):
+        guide = (ROOT / "docs/guide/several_processes.md").read_text()
+        script = re.search(r"^```text\n(#!/bin/bash\n.*?)^```", guide, re.M | re.S).group(1)
+        for cluster, here in (("--nodes=2", "--nodes=1"), ("--ntasks-per-node=16", "--ntasks-per-node=2"), ("uplift-mpi run", "--oversubscribe uplift-mpi run")):
+            self.assertEqual(script.count(cluster), 1, cluster)
+            script = script.replace(cluster, here)
+        self.write(script + "mpirun --oversubscribe bench_weak 5000 > table\n", "job.sh")
+        self.write(with_solver(BASE), "tower/case.toml")
+        self.write(BASE, "serial/case.toml")
+        folder = pathlib.Path(tempfile.mkdtemp(prefix="slurm-"))  # its configuration takes no space in a path
+        self.addCleanup(shutil.rmtree, folder, ignore_errors=True)
+        slurm = Slurm(folder)
+        self.addCleanup(slurm.end)
+        slurm.environment.update(ENVIRONMENT | {"SLURM_CONF": slurm.environment["SLURM_CONF"], "PATH": f"{pathlib.Path(program()).parent}:{os.environ['PATH']}"})
+        job = slurm.said("sbatch", "--parsable", "job.sh", cwd=self.folder)
+        wait_until(lambda: slurm.said("squeue", "-h") == "", slurm.log)
+        said = (self.folder / f"slurm-{job}.out").read_text()
+        self.assertIn("JobState=COMPLETED", slurm.said("scontrol", "show", "job", job), said)
+        self.uplift("run", "serial", "-q", "-o", "out/serial")
+        self.assert_same(self.summary("out/serial"), self.summary("out/tower"))
+        self.assertEqual([line.split()[0] for line in (self.folder / "table").read_text().splitlines()], ["ranks", "1", "2"])
 
 
 class Refused(MpiTest):
