@@ -176,6 +176,37 @@ TEST(Petsc, FactorsLiveSideBySideAndServeSeveralThreads) {
   for (const double error : errors) EXPECT_LE(error, 1e-12);
 }
 
+TEST(Petsc, HalvesOfABackSolveAreThoseOfAFactorWithTheChosenUnknownsLast) {
+  const Sparse a = laplacian(3);
+  const std::vector<int> last{20, 3, 11, 4};
+  const Matrix inverse = PivotedLdlt(Matrix(a)).solve(Matrix::Identity(27, 27));
+  for (const char* options : {"", iterative}) {
+    const SplitFactorisation made = petsc(options)->factorise_split(a, last);
+    ASSERT_TRUE(made.factor) << made.why;
+    const Matrix l = made.factor->last();
+    EXPECT_EQ(l.triangularView<Eigen::StrictlyUpper>().toDenseMatrix().norm(), 0);
+    Matrix exact(4, 4);
+    for (int i = 0; i < 4; ++i)
+      for (int j = 0; j < 4; ++j) exact(i, j) = inverse(last[static_cast<std::size_t>(i)], last[static_cast<std::size_t>(j)]);
+    EXPECT_LE((l.transpose() * exact * l - Matrix::Identity(4, 4)).norm(), 1e-10);  // L^-T L^-1 = (A^-1)_tt
+    const Vector b = Vector::LinSpaced(27, -1, 3), force = Vector::LinSpaced(4, 1, 2);
+    Vector y, x, on_chosen = Vector::Zero(27);
+    made.factor->forward(b, y);
+    made.factor->backward(y, x);
+    EXPECT_LE((x - inverse * b).norm(), 1e-10 * x.norm());
+    // a force on the chosen unknowns, as a change of the tail, with a load and without one
+    for (int k = 0; k < 4; ++k) on_chosen[last[static_cast<std::size_t>(k)]] = force[k];
+    const Vector tail = l.triangularView<lower_triangle>().solve(force);
+    y.tail(4) += tail;
+    made.factor->backward(y, x);
+    EXPECT_LE((x - inverse * (b + on_chosen)).norm(), 1e-10 * x.norm());
+    y.setZero(27);
+    y.tail(4) = tail;
+    made.factor->backward(y, x);
+    EXPECT_LE((x - inverse * on_chosen).norm(), 1e-10 * x.norm());
+  }
+}
+
 TEST(Petsc, ComplianceOfRowsIsThatOfTheInverse) {
   const Sparse a = laplacian(3);
   Matrix rows = Matrix::Zero(5, 27);

@@ -2,12 +2,15 @@
 // those with Jacobi's preconditioner, whose residual is measured with the weights 1/sqrt(A_ii).
 #include <fmt/format.h>
 
+#include <algorithm>
+#include <cmath>
 #include <limits>
 #include <utility>
 
 #include "uplift/base/text.h"
 #include "uplift/distributed/ranks.h"
 #include "uplift/linear/petsc.h"
+#include "uplift/math/dense.h"
 
 namespace uplift {
 
@@ -37,6 +40,68 @@ class PetscFactor : public Factor {
   double nonzeros_;
 };
 
+/// Chosen unknowns t "last" by solves with the whole matrix: with G = (A^-1)_tt = U U^T, U upper triangular, L_tt = U^-T. What a forward
+/// half keeps is u = A^-1 b, and behind it the tail y_t = U^-1 u_t. A tail that was changed since then by d is a force U^-T d on the chosen
+/// unknowns:
+///   x = u + A^-1 (U^-T d)_t
+/// Nothing larger than G is kept: X = A^-1 B^T, unknowns x rows, would take more memory than the factor.
+class PetscSplit final : public SplitFactor {
+ public:
+  PetscSplit(std::unique_ptr<const Factor> factor, Index rows, std::vector<int> last, Matrix upper)
+      : factor_(std::move(factor)), last_(std::move(last)), upper_(std::move(upper)), rows_(rows) {}
+  void forward(const Vector& b, Vector& y) const override {
+    Matrix u;
+    factor_->solve(b, u);
+    y.resize(b.size() + std::ssize(last_));
+    y << u, tail_of(u.col(0));
+  }
+  /// `y` of a forward half, or as long as the matrix has rows with nothing but a tail.
+  void backward(const Vector& y, Vector& x) const override {
+    const Index chosen = std::ssize(last_);
+    const bool of_forward = y.size() == rows_of_half();
+    x = of_forward ? Vector(y.head(y.size() - chosen)) : Vector(Vector::Zero(y.size()));
+    const Vector change = of_forward ? Vector(y.tail(chosen) - tail_of(x)) : Vector(y.tail(chosen));
+    if (change.isZero(0)) return;
+    const Vector force = upper_.triangularView<upper_triangle>().transpose().solve(change);
+    Matrix load = Matrix::Zero(x.size(), 1);
+    for (Index k = 0; k < chosen; ++k) load(last_[static_cast<std::size_t>(k)], 0) = force[k];
+    factor_->solve(load, load);
+    x += load.col(0);
+  }
+  Matrix last() const override {
+    return upper_.triangularView<upper_triangle>().transpose().solve(Matrix::Identity(upper_.rows(), upper_.rows()));
+  }
+  double nonzeros() const override { return factor_->nonzeros(); }
+
+ private:
+  Index rows_of_half() const { return rows_ + std::ssize(last_); }
+  Vector tail_of(const Vector& u) const {
+    Vector tail(std::ssize(last_));
+    for (Index k = 0; k < tail.size(); ++k) tail[k] = u[last_[static_cast<std::size_t>(k)]];
+    upper_.triangularView<upper_triangle>().solveInPlace(tail);
+    return tail;
+  }
+  std::unique_ptr<const Factor> factor_;
+  std::vector<int> last_;
+  Matrix upper_;
+  Index rows_;  // of the matrix
+};
+
+/// (A^-1)_tt, some columns at a time.
+Matrix compliance_of(const Factor& factor, Index rows, const std::vector<int>& chosen) {
+  constexpr Index block = 64;
+  const Index count = std::ssize(chosen);
+  Matrix compliance(count, count), load, answer;
+  for (Index first = 0; first < count; first += block) {
+    const Index columns = std::min(block, count - first);
+    load.setZero(rows, columns);
+    for (Index k = 0; k < columns; ++k) load(chosen[static_cast<std::size_t>(first + k)], k) = 1;
+    factor.solve(load, answer);
+    for (Index i = 0; i < count; ++i) compliance.row(i).segment(first, columns) = answer.row(chosen[static_cast<std::size_t>(i)]);
+  }
+  return 0.5 * (compliance + compliance.transpose());
+}
+
 class PetscSolver final : public LinearSolver {
  public:
   explicit PetscSolver(std::string options) : options_(std::move(options)) {}
@@ -53,6 +118,18 @@ class PetscSolver final : public LinearSolver {
     if (!made.outcome.ok())
       return {.factor = nullptr, .failed_unknown = -1, .why = std::move(made.outcome.why), .too_large = made.outcome.too_large};
     return {.factor = std::make_unique<PetscFactor>(made.system, std::move(scale), made.nonzeros), .failed_unknown = -1, .why = {}};
+  }
+  SplitFactorisation factorise_split(const Sparse& a, const std::vector<int>& last) const override {
+    Factorisation whole = factorise(a);
+    if (whole.factor == nullptr)
+      return {.factor = nullptr, .failed_unknown = whole.failed_unknown, .why = std::move(whole.why), .too_large = whole.too_large};
+    const Matrix compliance = compliance_of(*whole.factor, a.rows(), last);
+    const Cholesky turned(Matrix(compliance.reverse()));  // from the last row to the first: G = U U^T
+    if (turned->info() != Success)
+      return {.factor = nullptr, .failed_unknown = -1, .why = "the flexibility of the interfaces is not positive definite"};
+    return {.factor = std::make_unique<PetscSplit>(std::move(whole.factor), a.rows(), last, Matrix(turned->matrixL()).reverse()),
+            .failed_unknown = -1,
+            .why = {}};
   }
 
  private:
