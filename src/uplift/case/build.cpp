@@ -158,7 +158,7 @@ Model make_model(const Case& read, const RunSpec& spec, const std::vector<double
   add_ties(root, builder, names);
   add_faces(root, builder, names);
   if (!dynamic)
-    add_free_field(root, built.plan.stages, spec.damping ? bulk_damping(*spec.damping) : BulkDamping{}, *bulk_solver(read), builder, names);
+    add_free_field(root, built.plan.stages, spec.damping ? bulk_damping(*spec.damping) : BulkDamping{}, bulk_solver(read), builder, names);
   add_interfaces(read, spec, dynamic, builder, names, built);
   add_loads(root, builder, names);
   if (spec.damping) builder.set_damping(bulk_damping(*spec.damping));

@@ -161,7 +161,7 @@ void declare(CLI::App& app, Choices& given) {
       ->check(CLI::Range(0.01, 1e4));
   command->add_option("--size", given.reduce.size, "number of coordinates; default: as many as the target asks for")
       ->check(CLI::Range(1, 400));
-  command->add_option("--target", given.reduce.target, "largest transfer error where --size is not given (default 0.001)")
+  command->add_option("--target", given.reduce.target, "largest transfer error where --size is not given (default 0.0002)")
       ->check(CLI::Range(1e-9, 0.5));
   command
       ->add_option("--controls", given.reduce.controls,

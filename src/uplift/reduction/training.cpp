@@ -2,12 +2,14 @@
 
 #include <algorithm>
 #include <cmath>
+#include <memory>
 #include <numbers>
 #include <random>
 #include <utility>
 
 #include "uplift/dynamics/bulk.h"
 #include "uplift/model/mechanism.h"
+#include "uplift/model/wave_functions.h"
 #include "uplift/reduction/linear_march.h"
 #include "uplift/reduction/pod.h"
 
@@ -24,16 +26,32 @@ constexpr double dropped = 1e-9;    // share of the largest singular value
 constexpr int snapshot_every = 2, steps_of_bell = 8;
 
 /// One bell of the duration 1/f.
-double bell(double time, double frequency) {
-  const double phase = std::numbers::pi * time * frequency;
-  return time * frequency < 1 ? std::sin(phase) * std::sin(phase) : 0;
-}
+class Bell final : public TimeFunction {
+ public:
+  explicit Bell(double frequency) : w_(2 * std::numbers::pi * frequency) {}
+  double value(double time) const override { return inside(time) ? (1 - std::cos(w_ * time)) / 2 : 0; }
+  double rate(double time) const override { return inside(time) ? w_ * std::sin(w_ * time) / 2 : 0; }
+  double acceleration(double time) const override { return inside(time) ? w_ * w_ * std::cos(w_ * time) / 2 : 0; }
 
-/// A sweep through all frequencies up to f in one second: what the basis was not made of.
-double sweep(double time, double frequency) {
-  if (time > 1) return 0;
-  return std::sin(std::numbers::pi * time) * std::sin(std::numbers::pi * frequency * time * time);
-}
+ private:
+  bool inside(double time) const { return time >= 0 && w_ * time < 2 * std::numbers::pi; }
+  double w_;
+};
+
+/// A sweep through all frequencies up to f in one second: what the basis was not made of. Derivatives are not needed.
+class Sweep final : public TimeFunction {
+ public:
+  explicit Sweep(double frequency) : frequency_(frequency) {}
+  double value(double time) const override {
+    if (time > 1) return 0;
+    return std::sin(std::numbers::pi * time) * std::sin(std::numbers::pi * frequency_ * time * time);
+  }
+  double rate(double) const override { return 0; }
+  double acceleration(double) const override { return 0; }
+
+ private:
+  double frequency_;
+};
 
 /// Numbers +1 and -1, always the same ones.
 Matrix signs(Index rows, Index columns) {
@@ -44,15 +62,39 @@ Matrix signs(Index rows, Index columns) {
   return drawn;
 }
 
-/// Patterns of the loads that change with time.
-Matrix load_patterns(const Model& model) {
-  std::vector<const Vector*> shapes;
-  for (const TimeLoad& load : model.time_loads)
-    if (!load.constant && !load.shape.isZero(0)) shapes.push_back(&load.shape);
-  Matrix patterns(model.free(), std::ssize(shapes));
-  for (std::size_t k = 0; k < shapes.size(); ++k) patterns.col(static_cast<Index>(k)) = *shapes[k];
-  return patterns;
-}
+/// The loads of a model that change with time, all of them under the same function. Those of a wave come with what its free field puts on
+/// the sides, as they do in every run: without it the structure would stand in ground that moves otherwise.
+class Loads {
+ public:
+  Loads(const Model& model, const std::shared_ptr<const TimeFunction>& function, double step, double duration) : function_(function) {
+    for (const TimeLoad& load : model.time_loads) {
+      if (load.constant || load.shape.isZero(0)) continue;
+      One one{&load.shape, {}};
+      for (const TimeLoadTable& table : model.time_load_tables)
+        if (const auto* wave = dynamic_cast<const WaveFunctions*>(table.functions.get()); wave != nullptr && wave->load() == load.name)
+          one.tables.emplace_back(&table.pattern, wave->under(function, step, duration));
+      loads_.push_back(std::move(one));
+    }
+  }
+  Index count() const { return std::ssize(loads_); }
+  Vector at(Index k, double time) const {
+    const One& one = loads_[static_cast<std::size_t>(k)];
+    Vector force = function_->value(time) * *one.shape, values;
+    for (const auto& [pattern, functions] : one.tables) {
+      functions->values(time, values);
+      force += *pattern * values;
+    }
+    return force;
+  }
+
+ private:
+  struct One {
+    const Vector* shape;
+    std::vector<std::pair<const Sparse*, std::shared_ptr<const TimeFunctions>>> tables;
+  };
+  std::shared_ptr<const TimeFunction> function_;
+  std::vector<One> loads_;
+};
 
 class Trainer {
  public:
@@ -62,9 +104,11 @@ class Trainer {
         options_(options),
         w_(2 * std::numbers::pi * options.frequency),
         product_(model.stiffness, model.mass, w_),
-        march_(model.stiffness, model.damping, model.mass, 1 / (steps_of_bell * options.frequency), solver),
+        step_(1 / (steps_of_bell * options.frequency)),
+        march_(model.stiffness, model.damping, model.mass, step_, solver),
         b_(stack_interfaces(model)),
-        loads_(load_patterns(model)),
+        bell_(std::make_shared<const Bell>(options.frequency)),
+        loads_(model, bell_, step_, longest),
         rigid_(model.free(), 0),
         pod_(product_, model.free(), dropped, options.most) {}
 
@@ -76,13 +120,12 @@ class Trainer {
     const Matrix loose = unresisted_motions(model_, std::vector<char>(static_cast<std::size_t>(b_.rows()), 0));
     for (Index k = 0; k < loose.cols(); ++k) append(product_, loose.col(k), 1e-8, rigid_);
     const Matrix rows = row_patterns();
-    const bool tables = !model_.time_load_tables.empty();
-    columns_ = rows.cols() + loads_.cols() + (tables ? 1 : 0);
-    for (Index first = 0; first < rows.cols(); first += columns_at_once)
-      add_bells(rows.middleCols(first, std::min(columns_at_once, rows.cols() - first)), 1);
-    for (Index k = 0; k < loads_.cols(); ++k) add_bells(loads_.col(k), load_weight);
-    if (tables)  // their functions belong together: those of the case's own motion
-      add([&](double time, Matrix& load) { load.setZero(), add_load(time, load); }, 1, options_.duration, load_weight);
+    columns_ = rows.cols() + loads_.count();
+    for (Index first = 0; first < rows.cols(); first += columns_at_once) {
+      const Matrix some = rows.middleCols(first, std::min(columns_at_once, rows.cols() - first));
+      add([&](double time, Matrix& load) { load = bell_->value(time) * some; }, some.cols(), 1);
+    }
+    for (Index k = 0; k < loads_.count(); ++k) add([&](double time, Matrix& load) { load = loads_.at(k, time); }, 1, load_weight);
     basis.columns = static_cast<int>(columns_);
     basis.rigid = static_cast<int>(rigid_.cols());
     if (stopped_) basis.why = "interrupted";
@@ -99,18 +142,6 @@ class Trainer {
     return b_.transpose() * signs(b_.rows(), most_rows);
   }
 
-  void add_load(double time, Matrix& load) const {
-    Vector force = Vector::Zero(model_.free());
-    model_.add_varying_force(time, force);
-    load.col(0) += force;
-  }
-
-  void add_bells(const Matrix& patterns, double weight) {
-    const double frequency = options_.frequency;
-    const auto load = [&](double time, Matrix& at) { at = bell(time, frequency) * patterns; };
-    add(load, patterns.cols(), longest, weight);
-  }
-
   /// What is no motion of the loose parts.
   Matrix without_rigid(const Matrix& x) const {
     if (rigid_.cols() == 0) return x;
@@ -118,7 +149,7 @@ class Trainer {
   }
 
   /// The answers to some loads, with the same energy on average as those of any others times the weight.
-  void add(const LinearMarch::Load& load, Index columns, double duration, double weight) {
+  void add(const LinearMarch::Load& load, Index columns, double weight) {
     if (stopped_) return;
     Pod own(product_, model_.free(), dropped, options_.most);
     Matrix kept(model_.free(), 0), taken(model_.free(), snapshots_at_once);
@@ -129,7 +160,7 @@ class Trainer {
     };
     march_.start(columns);
     double most = 0;
-    for (long step = 1; march_.time() < duration; ++step) {
+    for (long step = 1; march_.time() < longest; ++step) {
       march_.advance(load);
       if (step % snapshot_every != 0) continue;
       if (count + columns > snapshots_at_once) flush();
@@ -138,8 +169,7 @@ class Trainer {
       if (march_.time() * options_.frequency <= 1) continue;
       const double energy = energy_now();
       most = std::max(most, energy);
-      if (columns > 1 || duration <= longest)
-        if (energy <= decayed * most) break;
+      if (energy <= decayed * most) break;
     }
     flush();
     done_ += columns;
@@ -157,27 +187,35 @@ class Trainer {
   /// Marches the sweep with the whole model, then with leading vectors of the basis until the openings and velocities agree.
   void choose_size(Basis& basis) {
     const Index all = all_.cols(), least = std::min<Index>(all, rigid_.cols() + 10);
-    Matrix patterns(model_.free(), (b_.rows() > 0 ? 3 : 0) + loads_.cols());
-    if (b_.rows() > 0) patterns.leftCols(3) = b_.transpose() * signs(b_.rows(), 3);
-    patterns.rightCols(loads_.cols()) = loads_;
+    const auto sweep = std::make_shared<const Sweep>(options_.frequency);
+    const Loads loads(model_, sweep, step_, longest);
+    const Matrix rows = b_.rows() > 0 ? Matrix(b_.transpose() * signs(b_.rows(), 3)) : Matrix(model_.free(), 0);
+    const Index columns = rows.cols() + loads.count();
+    std::vector<Matrix> forces;  // at every time, on all vectors of the basis
+    const auto load = [&](double time, Matrix& at) {
+      at.resize(model_.free(), columns);
+      at.leftCols(rows.cols()) = sweep->value(time) * rows;
+      for (Index k = 0; k < loads.count(); ++k) at.col(rows.cols() + k) = loads.at(k, time);
+      forces.emplace_back(all_.transpose() * at);
+    };
     Sparse floors(std::ssize(options_.floors), model_.free());
     std::vector<Triplet> entries;
     for (std::size_t k = 0; k < options_.floors.size(); ++k)
       for (Sparse::InnerIterator entry(model_.expansion, options_.floors[k]); entry; ++entry)
         entries.emplace_back(static_cast<int>(k), static_cast<int>(entry.row()), entry.value());
     floors.setFromTriplets(entries.begin(), entries.end());
-    const std::vector<Matrix> full = answers(march_, patterns, b_, floors);
+    const std::vector<Matrix> full = answers(march_, columns, load, b_, floors);
     const Matrix k = all_.transpose() * (model_.stiffness * all_), c = all_.transpose() * (model_.damping * all_),
-                 m = all_.transpose() * (model_.mass * all_), f = all_.transpose() * patterns, of_rows = b_ * all_,
-                 of_floors = floors * all_;
+                 m = all_.transpose() * (model_.mass * all_), of_rows = b_ * all_, of_floors = floors * all_;
     const auto error = [&](Index size) {
       const auto block = [&](const Matrix& a) -> Sparse {
         const Matrix leading = a.topLeftCorner(size, size);
         return Matrix(0.5 * (leading + leading.transpose())).sparseView(1, 0);
       };
       const Sparse stiffness = block(k), damping = block(c), mass = block(m);
-      LinearMarch march(stiffness, damping, mass, 1 / (steps_of_bell * options_.frequency), solver_);
-      return march.why().empty() ? difference(full, answers(march, f.topRows(size), Sparse(of_rows.leftCols(size).sparseView(1, 0)),
+      LinearMarch march(stiffness, damping, mass, step_, solver_);
+      const auto leading = [&](double time, Matrix& at) { at = forces[static_cast<std::size_t>(std::lround(time / step_))].topRows(size); };
+      return march.why().empty() ? difference(full, answers(march, columns, leading, Sparse(of_rows.leftCols(size).sparseView(1, 0)),
                                                             Sparse(of_floors.leftCols(size).sparseView(1, 0))))
                                  : 1.0;
     };
@@ -191,9 +229,9 @@ class Trainer {
   }
 
   /// Openings and velocities of floors over time, one matrix for each kind and load: rows x times.
-  std::vector<Matrix> answers(LinearMarch& march, const Matrix& patterns, const Sparse& rows, const Sparse& floors) const {
-    const double frequency = options_.frequency;
-    const Index steps = std::lround(1.5 * steps_of_bell * frequency), columns = patterns.cols();
+  std::vector<Matrix> answers(LinearMarch& march, Index columns, const LinearMarch::Load& load, const Sparse& rows,
+                              const Sparse& floors) const {
+    const Index steps = std::lround(1.5 / step_);
     std::vector<Matrix> found(static_cast<std::size_t>(2 * columns));
     for (Index j = 0; j < columns; ++j) {
       found[static_cast<std::size_t>(j)].resize(rows.rows(), steps);
@@ -201,7 +239,7 @@ class Trainer {
     }
     march.start(columns);
     for (Index step = 0; step < steps; ++step) {
-      march.advance([&](double time, Matrix& load) { load = sweep(time, frequency) * patterns; });
+      march.advance(load);
       const Matrix opening = rows * march.displacement(), speed = floors * march.velocity();
       for (Index j = 0; j < columns; ++j) {
         found[static_cast<std::size_t>(j)].col(step) = opening.col(j);
@@ -223,9 +261,12 @@ class Trainer {
   const TrainingOptions& options_;
   double w_;
   EnergyProduct product_;
+  double step_;
   LinearMarch march_;
   Sparse b_;
-  Matrix loads_, rigid_, all_;
+  std::shared_ptr<const TimeFunction> bell_;
+  Loads loads_;
+  Matrix rigid_, all_;
   Pod pod_;
   Index columns_ = 0, done_ = 0;
   bool stopped_ = false;

@@ -12,9 +12,8 @@ namespace uplift {
 struct TrainingOptions {
   double frequency = 25;                         // Hz: the basis represents motions up to about this frequency; the bells last its period
   int size = 0;                                  // coordinates; 0: as many as the target asks for
-  double target = 1e-3;                          // of the transfer error, where `size` is 0
+  double target = 2e-4;                          // of the transfer error, where `size` is 0
   int most = 300;                                // coordinates at most
-  double duration = 0;                           // s: of the dynamic stages, for loads that follow many functions of time
   std::vector<int> floors = {};                  // full unknowns whose velocities the transfer error includes
   std::function<bool(double share)> go_on = {};  // told of the share that is done; false ends the training
 };

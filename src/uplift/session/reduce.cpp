@@ -93,8 +93,9 @@ ControlRun control_run(BuiltCase built, const ReducedModel* reduced, const Watch
   return made;
 }
 
+/// Sizes are compared: where both signs reach nearly the same value, either may be the larger one.
 void take(double& most, double full, double reduced) {
-  if (full != 0) most = std::max(most, std::abs(reduced - full) / std::abs(full));
+  if (full != 0) most = std::max(most, std::abs(std::abs(reduced) - std::abs(full)) / std::abs(full));
 }
 
 void take_history(const ControlRun& full, const ControlRun& reduced, ControlErrors& errors) {
@@ -166,13 +167,9 @@ std::optional<ReducedModel> reduce_case(const LoadedCase& loaded, const ReduceOp
     const BuiltCase built = build_run(loaded, spec);
     refuse(built, where);
     TrainingOptions training{.frequency = options.frequency, .size = options.size, .target = options.target};
-    for (const Stage& stage : built.plan.stages)
-      if (stage.type == Stage::Type::dynamics) training.duration += stage.duration;
     training.floors = floor_unknowns(built);
     if (const Watch watch = control.watch ? control.watch("basis") : Watch(); watch)
-      training.go_on = [watch, &training](double share) {
-        return watch({.fraction = share, .time = share * training.duration, .step = training.duration});
-      };
+      training.go_on = [watch](double share) { return watch({.fraction = share}); };
     Basis basis = train(built.model, *built.plan.solver, training);
     if (control.is_stopped()) return {};
     if (!basis.why.empty()) throw InputError(where, "", "a structure with a reduced model", basis.why);

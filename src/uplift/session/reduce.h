@@ -13,7 +13,7 @@ namespace uplift {
 struct ReduceOptions {
   double frequency = 25;                       // Hz, see TrainingOptions
   int size = 0;                                // coordinates; 0: by the target
-  double target = 1e-3;                        // of the transfer error
+  double target = 2e-4;                        // of the transfer error
   int controls = 0;                            // runs that state the error
   double least_scale = 0.5, most_scale = 1.5;  // of the motions of the control runs
   std::uint64_t seed = 1;

@@ -87,9 +87,23 @@ struct NoImpact final : ImpactRule {
 
 }  // namespace
 
-FreeField::FreeField(const std::vector<ColumnLayer>& layers, const ColumnWave& wave, const BulkDamping& damping,
-                     const std::vector<Stage>& stages, const LinearSolver& solver) {
-  const Model model = column_model(layers, wave, damping, heights_);
+FreeField::FreeField(std::vector<ColumnLayer> layers, ColumnWave wave, BulkDamping damping, const std::vector<Stage>& stages,
+                     std::shared_ptr<const LinearSolver> solver)
+    : layers_(std::move(layers)), wave_(std::move(wave)), damping_(std::move(damping)), solver_(std::move(solver)) {
+  march(stages);
+}
+
+std::shared_ptr<const TimeFunctions> FreeField::under(std::shared_ptr<const TimeFunction> velocity, double step, double duration) const {
+  ColumnWave wave = wave_;
+  wave.velocity = std::move(velocity);
+  Stage stage;
+  stage.step = step;
+  stage.duration = duration;
+  return std::make_shared<const FreeField>(layers_, wave, damping_, std::vector<Stage>{stage}, solver_);
+}
+
+void FreeField::march(const std::vector<Stage>& stages) {
+  const Model model = column_model(layers_, wave_, damping_, heights_);
   const Bulk bulk(model, nullptr);
   const Sparse b = stack_interfaces(model);
   const Vector gap;
@@ -107,7 +121,7 @@ FreeField::FreeField(const std::vector<ColumnLayer>& layers, const ColumnWave& w
     options.scheme = stage.scheme;
     options.step = stage.step;
     options.path_average = stage.scheme.filtered();
-    Stepper stepper(model, bulk, b, gap, laws, method, impact, solver, options, counts);
+    Stepper stepper(model, bulk, b, gap, laws, method, impact, *solver_, options, counts);
     if (ledger) ledger->acceleration = before->scheme == stage.scheme;
     stepper.start(std::move(state), ledger ? &*ledger : nullptr);
     keep(model, stepper.state());

@@ -193,8 +193,8 @@ class FacePattern {
 
 }  // namespace
 
-void add_free_field(const Values& root, const std::vector<Stage>& stages, const BulkDamping& damping, const LinearSolver& solver,
-                    ModelBuilder& builder, const CaseNames& names) {
+void add_free_field(const Values& root, const std::vector<Stage>& stages, const BulkDamping& damping,
+                    const std::shared_ptr<const LinearSolver>& solver, ModelBuilder& builder, const CaseNames& names) {
   for (const Values& absorbing : root.tables("absorbing")) {
     if (!absorbing.flag("free_field")) continue;
     if (absorbing.has("incident")) fail(absorbing, "free_field", "free_field on the sides, the incident wave below them", "both");
@@ -209,7 +209,8 @@ void add_free_field(const Values& root, const std::vector<Stage>& stages, const 
     const Vec3 level = motion - motion.dot(axes.up) * axes.up;
     if (level.norm() > 0) axes.along = level.normalized();
     const auto field = std::make_shared<const FreeField>(
-        rows, ColumnWave{level.norm(), motion.dot(axes.up), incident_velocity(incident, names)}, damping, stages, solver);
+        rows, ColumnWave{level.norm(), motion.dot(axes.up), incident_velocity(incident, names), incident.text("name")}, damping, stages,
+        solver);
     if (!field->why().empty()) fail(absorbing, "free_field", "a free field that can be marched", field->why());
     std::vector<Triplet> pattern;
     FacePattern faces(names, *field, axes, damping.beta, pattern);
