@@ -303,13 +303,54 @@ class Case(Tables):
         tables: Dict[str, Any] = {"seed": seed, "samples": samples, "pairing": pairing, "floor_spectra": floor_spectra, "limit": list(limits)}
         tables.update({"variable": list(variables), "correlation": list(correlations), "design": design, "hazard": hazard, "run": run})
         own = os.path.join(os.fspath(folder), "case.toml")
-        used = self._text is not None and os.path.isfile(self._file) and pathlib.Path(self._file).read_bytes() == self._text.encode()
+        used = self._is_its_file()
         file = os.path.relpath(self._file, os.fspath(folder)) if used else "case.toml"
         plan = plan_of(file, self._document, motions, replace, intensity, method, tables)
         prepared_folder(folder)
         if not used:
             self.save(own)
         return written_study(folder, plan)
+
+    def reduce(
+        self,
+        file: Union[str, "os.PathLike[str]"],
+        *,
+        frequency: Optional[float] = None,
+        size: Optional[int] = None,
+        target: Optional[float] = None,
+        controls: int = 0,
+        scale: Optional[Tuple[float, float]] = None,
+        seed: Optional[int] = None,
+    ) -> str:
+        """Makes a reduced model of the case, by the program (guide, "Reduced models"), and returns its size and its error in sentences.
+
+        Parameters:
+            file: file to be written ("tower.rom"), which a case then names as `reduced_model`; an earlier one is moved to FILE.1, FILE.2, ...
+            frequency: motions up to about this frequency [Hz] are represented; default 25.
+            size: number of coordinates; default: as many as the target asks for.
+            target: largest transfer error [1] where no size is given; default 2e-4.
+            controls: control runs, whole and reduced, that state the error (59: 95 % of all runs with 95 % confidence).
+            scale: the motions of the control runs are multiplied by factors between these two; default 0.5, 1.5.
+            seed: of the random numbers of the control runs.
+
+        Raises InputError for a case that a reduced model does not represent, OutputError where the file could not be written, and ValueError
+        for a law in Python.
+        """
+        if self._laws:
+            raise ValueError("a law in Python cannot be used for a reduced model, which the program makes")
+        given = {"--frequency": frequency, "--size": size, "--target": target, "--controls": controls, "--seed": seed}
+        words = [word for name, value in given.items() if value is not None for word in (name, str(value))]
+        words += ["--scale", f"{scale[0]},{scale[1]}"] if scale is not None else []
+        with tempfile.TemporaryDirectory() as folder:
+            case = self._file
+            if not self._is_its_file():
+                case = os.path.join(folder, "case.toml")
+                self.save(case)
+            return output_of("reduce", case, "--out", os.path.abspath(os.fspath(file)), *words)
+
+    def _is_its_file(self) -> bool:
+        """Whether the case was loaded from a file and not changed."""
+        return self._text is not None and os.path.isfile(self._file) and pathlib.Path(self._file).read_bytes() == self._text.encode()
 
 
 def load(path: Union[str, "os.PathLike[str]"]) -> Case:

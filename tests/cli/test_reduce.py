@@ -1,8 +1,45 @@
 """Reduced models: made, used, stated on every result, refused for another structure."""
 
+import math
+
 from support import *
 
 USES = BASE.replace("bonded = false\n", 'bonded = false\nreduced_model = "case.rom"\n')
+
+# The mass on the moving ground of a record.
+MOVES = BASE[: BASE.index("[[function]]")] + """\
+[[record]]
+name = "quake"
+file = "m0.csv"
+[[ground_acceleration]]
+direction = [1, 0]
+function = "quake"
+[[stage]]
+type = "static"
+[[stage]]
+type = "dynamic"
+duration = 1
+step = 1e-3
+"""
+
+PLAN = """\
+case = "../case.toml"
+[intensity]
+measure = "pga"
+unit = "g_n"
+[method]
+type = "stripes"
+levels = [0.4, 0.8]
+[[motions]]
+name = "m"
+replace = ["quake"]
+files = ["../m0.csv", "../m1.csv"]
+unit = "m/s2"
+[[limit]]
+name = "uplift"
+quantity = "max_opening"
+limit = "1 mm"
+"""
 
 
 class Reduce(CliTest):
@@ -43,6 +80,58 @@ class Reduce(CliTest):
         self.assertIn("the whole model", err)
         err = self.uplift("reduce", "case.toml", "--scale", "2,1", expect=2).stderr
         self.assertIn("the smaller factor", err)
+
+    def make_study(self, case, name, plan=""):
+        """A study of two motions of the case, each at two factors."""
+        self.write(case)
+        folder = self.folder / (name + ".study")
+        folder.mkdir()
+        (folder / "plan.toml").write_text(PLAN + plan)
+        return name + ".study"
+
+    def test_serves_a_study(self):
+        for k, frequency in enumerate((3, 5)):
+            rows = [f"{0.01 * i} {4 * math.sin(2 * math.pi * frequency * 0.01 * i) * math.exp(-0.02 * i)}" for i in range(100)]
+            (self.folder / f"m{k}.csv").write_text("time[s] a[m/s2]\n" + "\n".join(rows) + "\n")
+        whole = self.make_study(MOVES, "whole")
+        self.uplift("study", "run", whole)
+        self.uplift("reduce", "case.toml", "--size", "400", "--controls", "1", "-o", "case.rom")
+        reduced = self.make_study("reduced_model = \"case.rom\"\n" + MOVES, "reduced")
+        self.assertIn("In 1 control runs", self.uplift("study", "check", reduced).stderr)
+        self.assertIn("reduced model case.rom", self.uplift("study", "run", reduced).stdout)
+        of_whole, of_reduced = (json.loads((self.folder / name / "study.json").read_text()) for name in (whole, reduced))
+        self.assertEqual(of_whole["provenance"]["reduced_model"], "")
+        self.assertIn("In 1 control runs", of_reduced["provenance"]["reduced_model"])
+        runs, others = ([run for curve in each["curves"] for run in curve["runs"]] for each in (of_whole, of_reduced))
+        self.assertEqual(len(runs), 4)
+        for run, other in zip(runs, others):  # the basis holds every motion: only round-off may differ
+            self.assertNotEqual(run["id"], other["id"])
+            opening = run["demands"][0]
+            self.assertGreater(opening, 1e-5)
+            self.assertAlmostEqual(other["demands"][0] / opening, 1, delta=1e-8)
+        self.uplift("study", "export", reduced, "--run", others[0]["id"])
+        case = next((self.folder / reduced / "runs").glob("*/case.resolved.toml"))
+        self.uplift("run", str(case), "-o", "alone")
+        self.assertEqual(self.summary("alone")["runs"][0]["max_opening"]["value"], others[0]["demands"][0])
+
+    def test_is_refused_where_a_sample_changes_the_structure(self):
+        (self.folder / "m0.csv").write_text("time[s] a[m/s2]\n" + "".join(f"{0.01 * i} {math.sin(i)}\n" for i in range(99)))
+        (self.folder / "m1.csv").write_text("time[s] a[m/s2]\n" + "".join(f"{0.01 * i} {math.cos(i)}\n" for i in range(99)))
+        self.write(MOVES)
+        self.uplift("reduce", "case.toml", "--size", "3", "-o", "case.rom")
+        variable = 'samples = 2\n[[variable]]\nname = "v"\npaths = ["PATH"]\ndistribution = { type = "lognormal", median = 1, beta = 0.2 }\n'
+        case = "reduced_model = \"case.rom\"\n" + MOVES
+        of_law = self.make_study(case, "of_law")
+        plan = self.folder / of_law / "plan.toml"
+        plan.write_text(variable.replace("PATH", "interface[0].law.K_n").replace("samples = 2\n", "samples = 2\n" + PLAN, 1))
+        self.uplift("study", "run", of_law)
+        stiff = self.make_study(case, "stiff")
+        plan = self.folder / stiff / "plan.toml"
+        plan.write_text(variable.replace("PATH", "mass[0].mass").replace("samples = 2\n", "samples = 2\n" + PLAN, 1))
+        for command in (["check"], ["run"], ["work", "--shard", "1/2"]):
+            err = self.uplift("study", command[0], stiff, *command[1:], expect=2).stderr
+            self.assertIn("have changed since `uplift reduce`", err)
+        self.assertFalse(list((self.folder / stiff).glob("parts/*")))
 
 
 if __name__ == "__main__":

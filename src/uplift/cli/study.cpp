@@ -170,6 +170,7 @@ int run_or_work(const Options& options, const StudyOptions& given, const std::op
     line(status);
     if (live) (*live)(status);
   };
+  StudyComputer(study).check_reduced();
   StudyStatus status;
   writing([&] { status = run_study(study, store, control); });
   const int code = finish(status, store, options, study);

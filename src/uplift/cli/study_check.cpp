@@ -34,6 +34,7 @@ std::string intensities(const StudyPlan& plan) {
 std::vector<std::string> warnings_of(const Study& study, const BuiltCase& built, const RunSpec& spec, const Case& read,
                                      const StudyResult& trial) {
   std::vector<std::string> said = warnings(read, spec, built);
+  if (study.reduced) said.insert(said.begin(), study.reduced_statement());
   for (const StudyLimit& limit : study.of.plan.limits)
     if (limit.quantity && !demand_of(limit, trial))
       said.push_back(fmt::format("the limit {}: the first run has no {}{}", in_quotes(limit.name), limit.quantity->name,
@@ -106,6 +107,7 @@ int check_study(const Options& options) {
   const RunSpec spec = run_of_study(study.of, read, 0, 1);
   const BuiltCase built = build(read, spec);
   StudyComputer computer(study);
+  computer.check_reduced();
   const double start = study.of.plan.method.searches() ? study.of.plan.method.search.start : study.of.plan.method.levels.front();
   const bool cloud = study.of.plan.method.type == StudyMethod::Type::cloud;
   RunRequest request{"trial", 0, curves.front().sample(), curves.front().motion(), 1, start, 1};

@@ -29,6 +29,7 @@ bool write_page(const Study& study, const Options& options, const StudyDocument&
   Provenance from;
   from.title = document.case_title;
   from.subtitle = "study \"" + document.name + "\"";
+  if (study.reduced) from.subtitle += ". " + document.reduced_model;
   from.command = options.command;
   from.version = UPLIFT_VERSION;
   from.created = fmt::format("{:%Y-%m-%dT%H:%M:%SZ}", fmt::gmtime(std::time(nullptr)));
@@ -54,6 +55,7 @@ StudyDocument document_of(const Study& study, const std::vector<StudyCurve>& cur
   document.case_file = from_study(study.case_file);
   document.case_hash = study.case_hash;
   document.plan_hash = study.plan_hash;
+  document.reduced_model = study.reduced_statement();
   for (const auto& [file, hash] : study.inputs) document.inputs.emplace_back(from_study(file), hash);
   return document;
 }
@@ -67,6 +69,7 @@ void write_results(const Study& study, const std::vector<StudyCurve>& curves, co
   if (options.json) return print_text(text);
   if (options.quiet) return;
   for (std::size_t k = 0; k < document.limits.size(); ++k) say(study_sentence(document, k));
+  if (study.reduced) say(document.reduced_model);
   warn_incomplete(document);
   say(fmt::format("results: {0}/{1}, {0}/fits.csv", study.folder, page ? "report.html" : "study.json"));
 }

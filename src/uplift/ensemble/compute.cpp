@@ -10,6 +10,7 @@
 
 #include "uplift/base/file.h"
 #include "uplift/run/lockstep.h"
+#include "uplift/session/reduce.h"
 
 namespace uplift {
 namespace {
@@ -62,7 +63,14 @@ BuiltCase StudyComputer::build_run(const RunRequest& request) {
 
 /// Where a run has a limit of time or memory of its own, it is computed alone.
 bool StudyComputer::marches_in_lockstep(const BuiltCase& built) const {
-  return built.model.free() >= large_model && !study_.of.plan.timeout && !study_.of.plan.memory;
+  return built.model.free() >= large_model && !study_.reduced && !study_.of.plan.timeout && !study_.of.plan.memory;
+}
+
+void StudyComputer::check_reduced() {
+  if (!study_.reduced) return;
+  RunRequest request;
+  for (; request.sample < study_.of.samples.size(); ++request.sample)
+    refuse_reduced(*study_.reduced, study_.of.read.values.where("reduced_model"), build_run(request));
 }
 
 std::size_t StudyComputer::best_together(const RunRequest& one) try {
@@ -82,13 +90,24 @@ StudyResult StudyComputer::finish(const RunRequest& request, const BuiltCase& bu
   return made;
 }
 
-StudyResult StudyComputer::compute(const RunRequest& request, const BuiltCase& built) const {
+/// The static stages with the whole model, the rest with the reduced one.
+RunResult StudyComputer::run_reduced(BuiltCase& built, const Watch& watch) const {
+  const Values& root = study_.of.read.values;
+  RunResult resting;
+  const std::optional<RunState> begin = begin_reduced(*study_.reduced, root.where("reduced_model"), built, watch, resting);
+  if (!begin) return resting;
+  Keeping keeping;
+  keeping.from = &*begin;
+  return run(built.model, built.plan, built.behaviours, watch, {}, &keeping);
+}
+
+StudyResult StudyComputer::compute(const RunRequest& request, BuiltCase& built) const {
   const auto start = std::chrono::steady_clock::now();
   const std::optional<double> timeout = study_.of.plan.timeout;
   Watch watch;
   if (timeout)
     watch = [&](const Progress&) { return std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count() < *timeout; };
-  return finish(request, built, run(built.model, built.plan, built.behaviours, watch));
+  return finish(request, built, study_.reduced ? run_reduced(built, watch) : run(built.model, built.plan, built.behaviours, watch));
 }
 
 /// A run of a large model is always marched in this way, with others or not: its result does not depend on them, to the last bit.

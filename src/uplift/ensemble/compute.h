@@ -28,6 +28,8 @@ class StudyComputer {
   explicit StudyComputer(const Study& study) : study_(study) {}
   /// Makes what the runs of a sample share, so that processes forked from this one have it.
   void prepare(std::size_t sample) { case_of(sample); }
+  /// Throws InputError where the reduced model of the study is not that of every sample: said before any run.
+  void check_reduced();
   /// How many runs of one sample are best computed together: several where the model is so large that they march in lockstep.
   std::size_t best_together(const RunRequest& one);
   /// Runs of one sample, a group: they are told one by one as they end. Never throws for one of them: what went wrong is its outcome.
@@ -39,7 +41,8 @@ class StudyComputer {
   const Case& case_of(std::size_t sample);
   bool marches_in_lockstep(const BuiltCase& built) const;
   StudyResult finish(const RunRequest& request, const BuiltCase& built, const RunResult& run) const;
-  StudyResult compute(const RunRequest& request, const BuiltCase& built) const;
+  StudyResult compute(const RunRequest& request, BuiltCase& built) const;
+  RunResult run_reduced(BuiltCase& built, const Watch& watch) const;
   void compute_in_lockstep(std::span<const RunRequest> group, BuiltCase first, const std::function<void(const StudyResult&)>& done);
   BuiltCase build_run(const RunRequest& request);
 

@@ -7,6 +7,7 @@
 #include "uplift/io/files.h"
 #include "uplift/io/mesh/file.h"
 #include "uplift/io/text/toml.h"
+#include "uplift/session/reduce.h"
 
 namespace uplift {
 namespace {
@@ -54,7 +55,12 @@ Study open_study(const std::string& given) {
   for (const std::string& input : input_files(study.of.read))
     if (fs::path(input).parent_path() != fs::absolute(motions).lexically_normal())
       study.inputs.emplace_back(input, sha256(read_file(input)));
+  study.reduced = read_reduced_model_of(study.of.read.values);
   return study;
+}
+
+std::string Study::reduced_statement() const {
+  return reduced ? reduced->statement(of.read.values.text("reduced_model")) : "";
 }
 
 }  // namespace uplift

@@ -198,12 +198,16 @@ std::shared_ptr<const ReducedModel> read_reduced_model_of(const Values& root) {
   return std::make_shared<const ReducedModel>(std::move(*found));
 }
 
-std::optional<RunState> begin_reduced(const ReducedModel& reduced, const Where& where, BuiltCase& built, const Watch& watch,
-                                      RunResult& result) {
+void refuse_reduced(const ReducedModel& reduced, const Where& where, const BuiltCase& built) {
   refuse(built, where);
   if (matrices_hash(built.model) != reduced.matrices)
     throw InputError(where, key, "the reduced model of this structure",
                      "that of another one: its stiffness, mass, damping, absorbing faces or mesh have changed since `uplift reduce`");
+}
+
+std::optional<RunState> begin_reduced(const ReducedModel& reduced, const Where& where, BuiltCase& built, const Watch& watch,
+                                      RunResult& result) {
+  refuse_reduced(reduced, where, built);
   std::optional<RunState> begin;
   Keeping keeping;
   keeping.begin = [&](const RunState& state) { begin = state; };

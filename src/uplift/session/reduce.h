@@ -26,9 +26,12 @@ std::optional<ReducedModel> reduce_case(const LoadedCase& loaded, const ReduceOp
 /// Reads the reduced model that a case names. Throws InputError.
 std::shared_ptr<const ReducedModel> read_reduced_model_of(const Values& root);
 
+/// Throws InputError where the reduced model belongs to another structure, or does not represent what the case has.
+void refuse_reduced(const ReducedModel& reduced, const Where& where, const BuiltCase& built);
+
 /// Computes the static stages of a built case and puts its model into the coordinates of the reduced model, with the state at which its
 /// first dynamic stage begins as further coordinates. `result`: of the static stages where they fail or are stopped: nothing is returned
-/// then. Throws InputError where the reduced model belongs to another one, or does not represent what the case has.
+/// then. Throws as refuse_reduced().
 std::optional<RunState> begin_reduced(const ReducedModel& reduced, const Where& where, BuiltCase& built, const Watch& watch,
                                       RunResult& result);
 

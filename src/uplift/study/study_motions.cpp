@@ -125,6 +125,7 @@ std::vector<CaseEdit> absolute_files(const Values& root) {
     if (records[i].has("file")) edits.push_back({fmt::format("record[{}].file", i), absolute_beside(records[i], "file")});
   for (const Values& function : root.tables("function")) add(function.part("shape"), "file");
   if (root.has("mesh")) add(root.table("mesh"), "file");
+  if (root.has("reduced_model")) edits.push_back({"reduced_model", absolute_beside(root, "reduced_model")});
   return edits;
 }
 

@@ -34,6 +34,8 @@ void write_provenance(ResultWriter& out, const StudyDocument& study) {
   out.text("case_file", study.case_file, "case file, seen from the study's folder");
   out.text("case_sha256", study.case_hash, "SHA-256 of the case file");
   out.text("plan_sha256", study.plan_hash, "SHA-256 of the plan");
+  out.text("reduced_model", study.reduced_model,
+           "the reduced model that the case names, its size and the statement of its error; empty: the whole model was computed");
   out.list("inputs", "other files that the case reads", study.inputs, [&](const auto& input) {
     out.text("file", input.first, "path, seen from the study's folder");
     out.text("sha256", input.second, "SHA-256");

@@ -12,6 +12,7 @@ namespace uplift {
 struct StudyDocument {
   std::string name, case_title, case_file, plan_hash, case_hash;
   std::vector<std::pair<std::string, std::string>> inputs;  // files, SHA-256
+  std::string reduced_model;                                // its size and error in sentences; empty: the whole model was computed
   StudyPlan plan;
   std::vector<StudyMotion> motions;
   std::vector<StudySample> samples;
