@@ -7,12 +7,14 @@ import ctypes
 import json
 import os
 import pathlib
+import tempfile
 from typing import Any, Dict, List, Mapping, Optional, Sequence, Tuple, Union
 
 from . import _library, _toml
 from ._laws import ExternalLaw
 from ._motion import Motion
 from ._parts import Part, Quantity
+from ._program import output_of
 from ._results import Comparison, Run, Trust
 from ._study import Study, plan_of, prepared_folder, written_study
 from ._tables import Tables
@@ -21,7 +23,7 @@ from ._watch import StepCallback, Watcher
 
 
 class Case(Tables):
-    """A case: structure, interfaces, loads and analysis. Its methods add tables; `run`, `compare`, `trust` and `study` compute.
+    """A case: structure, interfaces, loads and analysis. Its methods add tables; `run`, `compare`, `trust`, `study` and `reduce` compute.
 
     Numbers are in SI units, texts may carry units ("30 GPa"). In the plane x points to the right and y up; in space z points up.
     """
@@ -145,8 +147,8 @@ class Case(Tables):
     def _has_relative_files(self) -> bool:
         def relative(value: Any) -> bool:
             if isinstance(value, Mapping):
-                file = value.get("file")
-                return (isinstance(file, str) and not os.path.isabs(file)) or any(relative(each) for each in value.values())
+                files = [value.get("file"), value.get("reduced_model")]
+                return any(isinstance(file, str) and not os.path.isabs(file) for file in files) or any(relative(each) for each in value.values())
             return isinstance(value, list) and any(relative(each) for each in value)
 
         return relative(self._document)

@@ -66,6 +66,26 @@ class Studies(unittest.TestCase):
             self.files.append(self.folder / f"quake{i}.csv")
             self.files[-1].write_text(burst(frequency, decay))
 
+    def test_reduced_model(self):
+        case, file = block(), self.folder / "block.rom"
+        said = case.reduce(file, size=400, controls=2, scale=(0.8, 1.2))
+        self.assertIn("In 2 control runs", said)
+        self.assertTrue(file.read_bytes().startswith(b"uplift reduced model"))
+        whole = case.run(step_check=False)
+        case.document["reduced_model"] = str(file)
+        other = case.run(step_check=False)
+        self.assertGreater(np.abs(whole["top.ux"]).max(), 1e-4)
+        np.testing.assert_allclose(other["top.ux"], whole["top.ux"], rtol=0, atol=1e-9 * np.abs(whole["top.ux"]).max())
+        study = case.study(self.folder / "reduced.study", intensity=PGA, method=STRIPES, motions=self.files, limits=[UPLIFT])
+        study.run()
+        self.assertIn("control runs", json.loads((study.folder / "study.json").read_text())["provenance"]["reduced_model"])
+        with self.assertRaisesRegex((up.InputError, up.UpliftError), "--target"):
+            block().reduce(file, target=2)
+        relative = block()
+        relative.document["reduced_model"] = "block.rom"
+        with self.assertRaisesRegex(ValueError, "relative"):
+            relative.reduce(self.folder / "again.rom")
+
     def study(self, name="a.study", case=None, **changes):
         given = {"intensity": PGA, "method": STRIPES, "motions": self.files, "limits": [UPLIFT], **changes}
         return (case or block()).study(self.folder / name, **given)
