@@ -7,8 +7,11 @@
 
 #include <algorithm>
 #include <cmath>
+#include <memory>
 #include <random>
+#include <utility>
 
+#include "uplift/model/wave_functions.h"
 #include "uplift/reduction/projection.h"
 #include "uplift/session/steps.h"
 
@@ -158,6 +161,72 @@ TEST(ReducedRun, IsRefusedForAnotherStructureAndForOneThatChanges) {
                                  {"width = 4", "width = 4.1"}})
     EXPECT_NE(refusal(with(from, to), reduced).find("have changed since `uplift reduce`"), std::string::npos) << to;
   EXPECT_NE(refusal(with("type = \"dynamic\"", "type = \"dynamic\"\np_delta = true"), reduced).find("p_delta"), std::string::npos);
+}
+
+/// A block on soil with absorbing faces, in a wave whose velocity is a Ricker wavelet of this frequency [Hz].
+std::string block_on_soil(double frequency) {
+  return fmt::format(
+      "title = \"block\"\nbonded = false\n[mesh.soil_box.soil]\nwidth = 24\nsize = 2\n"
+      "[[mesh.soil_box.soil.layers]]\nthickness = 6\nsize = 2\n[mesh.soil_box.block]\nwidth = 4\nheight = 8\nsize = 2\n"
+      "[[solid]]\ngroup = \"soil_1\"\nshear_wave_speed = 200\npoisson = 0.3\ndensity = 2000\n"
+      "[[solid]]\ngroup = \"block\"\nE = 2e9\npoisson = 0.2\ndensity = 400\n"
+      "[[support]]\ngroup = \"soil_bottom\"\nfixed = [\"ux\", \"uy\"]\nstages = \"static\"\n"
+      "[[absorbing]]\ngroup = \"soil_bottom\"\n"
+      "incident = {{ wave = \"SV\", kind = \"outcrop\", velocity = 0.5, function = \"pulse\", name = \"wave\" }}\n"
+      "[[absorbing]]\ngroup = \"soil_left\"\nfree_field = true\n[[absorbing]]\ngroup = \"soil_right\"\nfree_field = true\n"
+      "[[interface]]\nname = \"base\"\nsurface = {{ group = \"interface\", lower = [\"soil_1\"] }}\n"
+      "law = {{ type = \"springs\", K_n = 2e9, tangential = \"bonded\" }}\n"
+      "[gravity]\nacceleration = [0, -9.81]\n[[function]]\nname = \"pulse\"\nshape = {{ type = \"ricker\", frequency = {} }}\n"
+      "[damping]\nrayleigh = [{{ frequency = 1, ratio = 0.03 }}, {{ frequency = 8, ratio = 0.03 }}]\n"
+      "[[stage]]\ntype = \"static\"\n[[stage]]\ntype = \"dynamic\"\nduration = 2\nstep = 5e-3\n",
+      frequency);
+}
+
+/// The function of the wave, times a factor.
+struct Times final : TimeFunction {
+  Times(double by, std::shared_ptr<const TimeFunction> function) : factor(by), of(std::move(function)) {}
+  double value(double time) const override { return factor * of->value(time); }
+  double rate(double time) const override { return factor * of->rate(time); }
+  double acceleration(double time) const override { return factor * of->acceleration(time); }
+  double factor;
+  std::shared_ptr<const TimeFunction> of;
+};
+
+TEST(FreeFieldOfAWave, UnderItsOwnMotionIsItselfAndIsLinear) {
+  const BuiltCase built = built_of(loaded(block_on_soil(2)));
+  ASSERT_EQ(built.model.time_load_tables.size(), 2U);
+  const auto load = std::ranges::find(built.model.time_loads, "wave", &TimeLoad::name);
+  ASSERT_NE(load, built.model.time_loads.end());
+  for (const TimeLoadTable& table : built.model.time_load_tables) {
+    const auto* own = dynamic_cast<const WaveFunctions*>(table.functions.get());
+    ASSERT_NE(own, nullptr);
+    EXPECT_EQ(own->load(), "wave");
+    const auto same = own->under(load->function, 5e-3, 2), other = own->under(std::make_shared<Times>(-3, load->function), 5e-3, 2);
+    Vector expected, found;
+    own->values(0.7025, expected);
+    const double size = expected.norm();
+    EXPECT_GT(size, 1e-2);
+    for (const double time : {0.0, 0.4, 0.7025, 1.9}) {
+      own->values(time, expected);
+      same->values(time, found);
+      EXPECT_EQ((found - expected).cwiseAbs().maxCoeff(), 0) << time;
+      other->values(time, found);
+      EXPECT_LE((found + 3 * expected).norm(), 1e-12 * size) << time;
+    }
+  }
+}
+
+// A basis belongs to the structure, not to the motion with which it was made.
+TEST(ReducedCase, HoldsForAnotherWaveThanThatOfTheCase) {
+  const std::optional<ReducedModel> reduced = reduce_case(loaded(block_on_soil(0.3)), {.frequency = 50, .target = 1e-4}, {});
+  ASSERT_TRUE(reduced);
+  EXPECT_LT(2 * reduced->vectors.cols(), reduced->vectors.rows());
+  const LoadedCase other = loaded(block_on_soil(3));
+  const BuiltCase built = built_of(other);
+  const RunResult full = run(built.model, built.plan, built.behaviours), part = run_reduced(other, *reduced);
+  EXPECT_GT(full.max_opening.value, 1e-3);
+  EXPECT_NEAR(part.max_opening.value, full.max_opening.value, 1e-2 * full.max_opening.value);
+  EXPECT_NEAR(part.max_base_moment.value, full.max_base_moment.value, 1e-2 * std::abs(full.max_base_moment.value));
 }
 
 TEST(ReducedCase, IsChosenByItsTransferErrorAndCloseToTheWholeModel) {
