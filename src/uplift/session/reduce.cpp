@@ -6,6 +6,7 @@
 #include <cmath>
 #include <filesystem>
 #include <random>
+#include <set>
 #include <utility>
 
 #include "uplift/base/file.h"
@@ -49,13 +50,15 @@ Vector coordinates(const EnergyProduct& product, const Matrix& basis, const Vect
   return basis.transpose() * product.times(x);
 }
 
-/// Full unknowns whose accelerations are asked for.
+/// Translations, in all directions, of the nodes whose accelerations are asked for: a direction in which a load does not move a node, by
+/// symmetry, is compared with the others.
 std::vector<int> floor_unknowns(const BuiltCase& built) {
+  std::set<int> nodes;
+  for (const FloorRequest& floor : built.plan.floors) nodes.insert(floor.node);
+  if (nodes.empty() && built.top >= 0) nodes.insert(built.top);
   std::vector<int> unknowns;
-  for (const FloorRequest& floor : built.plan.floors)
-    for (int axis = 0; axis < built.model.space.dimension; ++axis)
-      if (floor.direction[axis] != 0) unknowns.push_back(built.model.space.unknowns() * floor.node + axis);
-  if (unknowns.empty() && built.top >= 0) unknowns.push_back(built.top_sway());
+  for (const int node : nodes)
+    for (int axis = 0; axis < built.model.space.dimension; ++axis) unknowns.push_back(built.model.space.unknowns() * node + axis);
   return unknowns;
 }
 
