@@ -299,7 +299,7 @@ class Study(CliTest):
         before = json.loads(self.uplift("study", "fit", name, "--json").stdout)
         self.assertFalse({"design", "hazard"} & set(before))
         # another title, a comment, a design motion and a hazard curve: nothing is run again
-        self.write("# as built\n" + CASE.replace('title = "test"', 'title = "Another title"'))
+        self.write("# as built\n" + CASE.replace('title = "test"', 'title = "Another title"\ndescription = "as built"'))
         hazard = [(0.5, 2e-3), (1.0, 5e-4), (3.0, 4e-5)]
         self.study(IDA + '[design]\nintensity = 0.9\nsource = "site report"\n[hazard]\nintensities = [0.5, 1, 3]\nrates = [2e-3, 5e-4, 4e-5]\n')
         self.assertIn("complete", self.uplift("study", "status", name).stdout)
@@ -331,11 +331,16 @@ class Study(CliTest):
         risk = sum(probability(math.sqrt(a * b)) * (rate(a) - rate(b)) for a, b in zip(grid, grid[1:]))
         self.assertAlmostEqual(limit["risk"]["rate"] / risk, 1, delta=1e-5)
         self.assertEqual(limit["risk"]["unknown_exceeded"], limit["risk"]["rate"])
-        self.assertAlmostEqual(float(re.search(r"annual rate (\S+)", said)[1]) / risk, 1, delta=5e-3)
+        self.assertAlmostEqual(float(re.search(r"annual rate ([\d.e-]+)", said)[1]) / risk, 1, delta=5e-3)
         self.assertIn("aims of ASCE/SEI 43", said)
         with open(self.folder / name / "fits.csv", newline="") as file:
             (row,) = csv.DictReader(file)
         self.assertEqual([float(row["probability at design [1]"]), float(row["annual rate [1/a]"])], [pair["at_design"], limit["risk"]["rate"]])
+        # a hazard curve that ends far below the capacities, and one whose slope goes on to an endless rate
+        for points, part in (("intensities = [0.001, 0.002]\nrates = [1e-3, 1e-4]", ", 100 % of it from beyond the points of the hazard curve"),
+                             ("intensities = [1.5, 1.5000001]\nrates = [1e-3, 1e-4]", "; no annual rate (")):
+            self.study(IDA + "[hazard]\n" + points + "\n")
+            self.assertIn(part, self.uplift("study", "fit", name).stdout)
         # fractiles of four curves at the limit: straight between the runs on both sides of it
         crossing = []
         for curve in study["curves"]:

@@ -63,7 +63,11 @@ function facts_of(study: Study, limit: Limit): Fact[] {
   const { performance, risk } = limit;
   if (performance && performance.at_design !== null && performance.at_one_and_a_half !== null)
     facts.push({ label: `At the design motion, ${intensity_text(study, study.design?.intensity)}`, value: probability_text(performance.at_design), detail: `${probability_text(performance.at_one_and_a_half)} at 1.5 times it; aims of ASCE/SEI 43: 1 % and 10 %, ${performance.met ? "met" : "not met"}` });
-  if (risk && risk.rate !== null) facts.push({ label: "Annual rate", value: risk.rate.toExponential(2), detail: "exceedances a year, by the hazard curve of the plan" });
+  if (risk && risk.rate !== null) {
+    const beyond = (risk.share_below ?? 0) + (risk.share_above ?? 0);
+    const caution = beyond > 0.1 ? `; ${percent(beyond)} of it from beyond the points of that curve` : "";
+    facts.push({ label: "Annual rate", value: risk.rate.toExponential(2), detail: `exceedances a year, by the hazard curve of the plan${caution}` });
+  }
   const without = study.failures.length;
   facts.push({
     label: "Runs", value: String(run_count(study)),

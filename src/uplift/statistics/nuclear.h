@@ -66,6 +66,7 @@ struct HazardPoint {
 struct AnnualRisk {
   double rate = 0;  // [1/a]
   double share_below = 0, share_above = 0;
+  double share_beyond() const { return share_below + share_above; }
 };
 /// Hazard k0 a^-k [1/a]: rate k0 theta^-k exp(k^2 beta^2/2). Cornell (1996).
 double risk_of_power_law(double k0, double k, double theta, double beta);

@@ -196,9 +196,9 @@ void check_limits(const StudyCase& study) {
   }
 }
 
-/// The case without its title and without the motions of the plan, and the files that it reads.
+/// The case without its title and description, and without the motions of the plan, and the files that it reads.
 std::string identity_of_case(const Raw& raw, const Case& read) {
-  Case own{check(edited(raw, {{"title", std::string()}}), case_section()), read.file, read.mesh, {}};
+  Case own{check(edited(raw, {{"title", std::string()}, {"description", std::string()}}), case_section()), read.file, read.mesh, {}};
   std::string text = to_toml(own.values, decided_texts(own)) + "\n";
   for (const std::string& file : input_files(own))
     text += std::filesystem::path(file).filename().string() + " " + sha256(read_file(file)) + "\n";

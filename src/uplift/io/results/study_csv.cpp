@@ -37,6 +37,17 @@ std::string text_of(const ConfidenceInterval& interval) {
   return fmt::format("{:.0f} %: {} to {}", 100 * study_confidence, end(interval.lower), end(interval.upper));
 }
 
+/// The annual rate, or why there is none; empty without a hazard curve or without a fit, which says why itself.
+std::string risk_text(const StudySite& site, const OrRefused<Fragility>& fit) {
+  if (site.hazard.empty() || std::holds_alternative<Refused>(fit)) return "";
+  const OrRefused<AnnualRisk> risk = risk_of(site, fit);
+  if (const Refused* refused = std::get_if<Refused>(&risk)) return "; no annual rate (" + refused->reason + ")";
+  const AnnualRisk& known = std::get<AnnualRisk>(risk);
+  const double beyond = known.share_beyond();
+  const std::string caution = beyond > 0.1 ? fmt::format(", {:.0f} % of it from beyond the points of the hazard curve", 100 * beyond) : "";
+  return fmt::format("; annual rate {:.3g}{}", known.rate, caution);
+}
+
 }  // namespace
 
 std::string fits_csv(const StudyDocument& study) {
@@ -44,7 +55,7 @@ std::string fits_csv(const StudyDocument& study) {
   std::string text = fmt::format(
       "limit,survived [1],exceeded [1],unknown [1],theta [{0}],beta [1],theta lower [{0}],theta upper [{0}],beta lower [1],beta upper [1],"
       "theta unknown survived [{0}],beta unknown survived [1],theta unknown exceeded [{0}],beta unknown exceeded [1],probability at design "
-      "[1],probability at 1.5 design [1],annual rate [1/a],refused\n",
+      "[1],probability at 1.5 design [1],annual rate [1/a],share of it from beyond the hazard curve [1],refused\n",
       unit);
   for (const StudyDocument::Limit& each : study.limits) {
     const Fragility* fit = std::get_if<Fragility>(&each.fit.fit.middle);
@@ -53,11 +64,14 @@ std::string fits_csv(const StudyDocument& study) {
     const std::optional<PerformancePair> pair = performance_of(study.plan.site, each.fit.fit.middle);
     const OrRefused<AnnualRisk> risk = risk_of(study.plan.site, each.fit.fit.middle);
     const AnnualRisk* known = std::get_if<AnnualRisk>(&risk);
-    text += fmt::format("{},{},{},{},{},{},{},{},{},{},{},{},{},{},{}\n", csv_cell(each.limit.name), each.fit.survived, each.fit.exceeded,
-                        each.fit.unknown, fit_cells(each.fit.fit.middle), exact(theta.lower), exact(theta.upper), exact(beta.lower),
-                        exact(beta.upper), fit_cells(each.fit.fit.survived), fit_cells(each.fit.fit.exceeded),
+    const std::string reason = !fit                                        ? std::get<Refused>(each.fit.fit.middle).reason
+                               : !known && !study.plan.site.hazard.empty() ? std::get<Refused>(risk).reason
+                                                                           : "";
+    text += fmt::format("{},{},{},{},{},{},{},{},{},{},{},{},{},{},{},{}\n", csv_cell(each.limit.name), each.fit.survived,
+                        each.fit.exceeded, each.fit.unknown, fit_cells(each.fit.fit.middle), exact(theta.lower), exact(theta.upper),
+                        exact(beta.lower), exact(beta.upper), fit_cells(each.fit.fit.survived), fit_cells(each.fit.fit.exceeded),
                         pair ? exact(pair->at_design) : "", pair ? exact(pair->at_one_and_a_half) : "", known ? exact(known->rate) : "",
-                        fit ? "" : csv_cell(std::get<Refused>(each.fit.fit.middle).reason));
+                        known ? exact(known->share_beyond()) : "", csv_cell(reason));
   }
   return text;
 }
@@ -113,8 +127,7 @@ std::string study_sentence(const StudyDocument& study, std::size_t number) {
   if (const std::optional<PerformancePair> pair = performance_of(site, each.fit.fit.middle))
     text += fmt::format("; at the design motion {:.2g} %, at 1.5 times it {:.2g} % (aims of ASCE/SEI 43: 1 % and 10 %, {})",
                         100 * pair->at_design, 100 * pair->at_one_and_a_half, pair->met() ? "met" : "not met");
-  if (const OrRefused<AnnualRisk> risk = risk_of(site, each.fit.fit.middle); std::holds_alternative<AnnualRisk>(risk))
-    text += fmt::format("; annual rate {:.3g}", std::get<AnnualRisk>(risk).rate);
+  text += risk_text(site, each.fit.fit.middle);
   if (each.fit.unknown > 0)
     text += fmt::format("; unknown as survived: {}, as exceeded: {}", short_text(each.fit.fit.survived), short_text(each.fit.fit.exceeded));
   return text;
