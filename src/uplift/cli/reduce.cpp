@@ -54,6 +54,11 @@ int reduce(const Options& options, const ReduceOptions& wanted) {
   if (options.quiet) return Exit::done;
   say(fmt::format("{} coordinates for {} unknowns, up to {:g} Hz, transfer error {:.1e}", reduced->vectors.cols(), reduced->vectors.rows(),
                   reduced->frequency, reduced->transfer_error));
+  if (wanted.size == 0 && reduced->transfer_error > wanted.target)
+    say(fmt::format(
+        "The target of {:g} is not reached with all the coordinates that a basis gets. Control runs (--controls) state what that "
+        "costs; a lower frequency (--frequency) or fewer points of the interface need fewer coordinates.",
+        wanted.target));
   if (const auto& errors = reduced->controls) {
     print_table({{"largest error of", "over the control runs"},
                  {"largest opening", fmt::format("{:.2g} %", 100 * errors->opening)},
