@@ -229,6 +229,22 @@ TEST(ReducedCase, HoldsForAnotherWaveThanThatOfTheCase) {
   EXPECT_NEAR(part.max_base_moment.value, full.max_base_moment.value, 1e-2 * std::abs(full.max_base_moment.value));
 }
 
+// Vertical shaking moves the axis of a symmetric block up and down alone: an error relative to its motion to the sides, which is round-off,
+// would be that of nothing.
+TEST(ReducedCase, AFloorThatSymmetryKeepsAtRestInOneDirectionHasATransferError) {
+  std::string text = block_on_soil(3);
+  const std::size_t first = text.find("stages = \"static\"");
+  text.erase(first, text.find("[[interface]]") - first);
+  text +=
+      "[[ground_acceleration]]\ndirection = [1, 0]\nfunction = \"pulse\"\n"
+      "[[ground_acceleration]]\ndirection = [0, 1]\nfunction = \"pulse\"\n"
+      "[[output.floor_spectrum]]\nname = \"top\"\nat = [0, 8]\ndirection = [1, 0]\n";
+  const std::optional<ReducedModel> reduced = reduce_case(loaded(text), {.size = 30}, {});
+  ASSERT_TRUE(reduced);
+  EXPECT_GT(reduced->transfer_error, 0);
+  EXPECT_LT(reduced->transfer_error, 1e-2);
+}
+
 TEST(ReducedCase, IsChosenByItsTransferErrorAndCloseToTheWholeModel) {
   const LoadedCase read = loaded(tower(12));
   ReduceOptions options{.target = 1e-4, .controls = 3, .least_scale = 0.8, .most_scale = 1.2};
