@@ -275,7 +275,7 @@ void check_command(const CLI::App& app, const std::string& word) {
 
 /// Parses the command line and runs the command; its exceptions are reported below. `name`: of the program, for the report.
 int parse_and_run(int count, char** words, const std::string& name) {
-  CLI::App app{"uplift: analysis of the uplift of foundations in earthquakes and of its consequences for the structure", "uplift"};
+  CLI::App app{"uplift: analysis of the uplift of foundations in earthquakes and of its consequences for the structure", name};
   app.require_subcommand(1);
   app.set_version_flag("--version", UPLIFT_VERSION);
   app.footer(
