@@ -253,7 +253,8 @@ void write_performance(ResultWriter& out, const StudySite& site, const StudyLimi
   write_interval(out, "at_design_interval", pair ? fit.probability_interval(design) : ConfidenceInterval{}, "1", "its interval");
   write_interval(out, "at_one_and_a_half_interval", pair ? fit.probability_interval(1.5 * design) : ConfidenceInterval{}, "1",
                  "its interval");
-  out.flag("met", pair && pair->met(), "whether they are at most 1 % and 10 %, the aims of ASCE/SEI 43");
+  out.when(pair.has_value())
+      .flag("met", pair && pair->met(), "whether they are at most 1 % and 10 %, the aims of ASCE/SEI 43; absent: no curve");
   out.object("unknown_survived", "with runs of unknown outcome counted as survived",
              [&] { write_pair(out, performance_of(site, fit.fit.survived)); });
   out.object("unknown_exceeded", "with runs of unknown outcome counted as exceeded",
