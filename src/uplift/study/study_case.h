@@ -24,7 +24,7 @@ struct StudyMotion {
 struct StudySample {
   std::vector<double> values;   // of the variables, as in the plan
   std::vector<CaseEdit> edits;  // of the case
-  std::string hash;             // SHA-256 of the resolved case with these edits, without its title and description, and of the files that it reads
+  std::string hash;  // SHA-256 of the resolved case with these edits, without its title and description, and of the files that it reads
 };
 
 /// The case of a study, with its motions and samples.
