@@ -73,6 +73,24 @@ step = 1e-3
 """
 
 
+def shaken(record):
+    """BASE on the ground that a record moves for a second, in place of the pulse."""
+    return BASE[: BASE.index("[[function]]")] + f"""\
+[[record]]
+name = "quake"
+file = "{record}"
+[[ground_acceleration]]
+direction = [1, 0]
+function = "quake"
+[[stage]]
+type = "static"
+[[stage]]
+type = "dynamic"
+duration = 1
+step = 1e-3
+"""
+
+
 def line_of(text, part):
     """Number of the line that holds `part`."""
     for number, line in enumerate(text.splitlines(), 1):
@@ -188,4 +206,4 @@ def main():
     unittest.main(module="__main__", verbosity=2)
 
 
-__all__ = ["BASE", "program", "CliTest", "json", "line_of", "main", "pathlib", "re", "report_of", "schema_of", "subprocess", "os", "violations"]
+__all__ = ["BASE", "program", "CliTest", "json", "line_of", "main", "pathlib", "re", "report_of", "schema_of", "subprocess", "os", "violations", "shaken"]

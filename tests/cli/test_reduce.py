@@ -6,21 +6,7 @@ from support import *
 
 USES = BASE.replace("bonded = false\n", 'bonded = false\nreduced_model = "case.rom"\n')
 
-# The mass on the moving ground of a record.
-MOVES = BASE[: BASE.index("[[function]]")] + """\
-[[record]]
-name = "quake"
-file = "m0.csv"
-[[ground_acceleration]]
-direction = [1, 0]
-function = "quake"
-[[stage]]
-type = "static"
-[[stage]]
-type = "dynamic"
-duration = 1
-step = 1e-3
-"""
+MOVES = shaken("m0.csv")
 
 PLAN = """\
 case = "../case.toml"

@@ -11,21 +11,7 @@ import time
 
 from support import *
 
-# The mass of BASE on the moving ground of a record.
-CASE = BASE[: BASE.index("[[function]]")] + """\
-[[record]]
-name = "quake"
-file = "quake.csv"
-[[ground_acceleration]]
-direction = [1, 0]
-function = "quake"
-[[stage]]
-type = "static"
-[[stage]]
-type = "dynamic"
-duration = 1
-step = 1e-3
-"""
+CASE = shaken("quake.csv")
 
 IDA = """\
 case = "../case.toml"

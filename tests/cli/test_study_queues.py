@@ -12,20 +12,7 @@ from support import *
 
 GUIDE = (pathlib.Path(__file__).resolve().parents[2] / "docs/guide/studies.md").read_text()
 
-CASE = BASE[: BASE.index("[[function]]")] + """\
-[[record]]
-name = "quake"
-file = "m1.csv"
-[[ground_acceleration]]
-direction = [1, 0]
-function = "quake"
-[[stage]]
-type = "static"
-[[stage]]
-type = "dynamic"
-duration = 1
-step = 1e-3
-"""
+CASE = shaken("m1.csv")
 
 PLAN = """\
 case = "../case.toml"
