@@ -231,7 +231,18 @@ class Case(Tables):
         Raises InputError.
         """
         watcher = Watcher(progress, step, step_check, None if fields is None else os.fspath(fields))
-        return Run(self._with_motions(motions)._analyse("uplift_run", watcher))
+        case = self._with_motions(motions)
+        return Run(case._analyse("uplift_run", watcher), case.copy()._floor_at)
+
+    def _floor_at(self, node: str) -> Optional[Run]:
+        """The run alone, with the floor at a node; None without such a node."""
+        case = self.copy()
+        place = case.document.get("nodes", {}).get(node)
+        if place is None:
+            return None
+        axes = len(place["value"] if isinstance(place, Mapping) else place)
+        case.floor_spectrum(node, node, direction=[1, 0, 0][:axes])
+        return Run(case._analyse("uplift_run", Watcher(None, None, False, None)))
 
     def compare(self, *names: str, progress: Optional[bool] = None, **variants: Union[Part, ExternalLaw, Mapping[str, Any]]) -> Comparison:
         """Runs variants of the case side by side: without arguments all that the case has.

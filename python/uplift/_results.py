@@ -6,7 +6,7 @@ import ctypes
 import html
 import json
 import os
-from typing import TYPE_CHECKING, Any, Dict, Iterator, List, Mapping, Optional, Sequence, Tuple, Union
+from typing import TYPE_CHECKING, Any, Callable, Dict, Iterator, List, Mapping, Optional, Sequence, Tuple, Union
 
 from . import _library
 
@@ -283,6 +283,11 @@ class Results:
 class Run(Results):
     """A run of a case: histories by name (`run["underside.moment"]`), verdict, energies, floors, report."""
 
+    def __init__(self, handle: _library.Handle, floor_at: Optional[Callable[[str], Optional["Run"]]] = None) -> None:
+        super().__init__(handle)
+        self._floor_at = floor_at
+        self._floors: Dict[str, Floor] = {}
+
     def __getitem__(self, name: str) -> "Array":
         return self.runs[0][name]
 
@@ -332,16 +337,29 @@ class Run(Results):
         return Record(table)
 
     def floor(self, name: str) -> Floor:
-        """A floor of the case (a floor_spectrum of the output) by its name. Raises KeyError."""
-        step, column, known = ctypes.c_double(), _library.Column(), []
-        index = 0
-        while _library.library().uplift_results_floor(self._handle.pointer, 0, index, ctypes.byref(step), ctypes.byref(column)):
-            known.append(column.name.decode())
-            if known[-1] == name:
-                pointer = ctypes.cast(column.values, ctypes.POINTER(ctypes.c_double))
-                return Floor(name, step.value, array_of(pointer, column.count, self._handle))
-            index += 1
-        raise KeyError(f"no floor {name!r}; the floors of the case are {', '.join(known) or 'none'} (case.floor_spectrum(...) asks for one before the run)")
+        """A floor of the case (a floor_spectrum of the output) by its name, or in direction x at a node by the name of the node.
+
+        A floor that the case has not asked for is computed by a second run of the same case, which gives the same numbers: of long runs ask
+        for it before. Raises KeyError.
+        """
+        asked = self._asked_floors()
+        if name in asked:
+            return asked[name]
+        if name not in self._floors:
+            again = self._floor_at(name) if self._floor_at is not None and self.status not in ("interrupted", "failed") else None
+            if again is None:
+                raise KeyError(f"no floor {name!r}; the floors of the case are {', '.join(asked) or 'none'} (case.floor_spectrum(...) asks for one before the run)")
+            self._floors[name] = again._asked_floors()[name]
+        return self._floors[name]
+
+    def _asked_floors(self) -> Dict[str, Floor]:
+        step, column = ctypes.c_double(), _library.Column()
+        floors: Dict[str, Floor] = {}
+        while _library.library().uplift_results_floor(self._handle.pointer, 0, len(floors), ctypes.byref(step), ctypes.byref(column)):
+            pointer = ctypes.cast(column.values, ctypes.POINTER(ctypes.c_double))
+            floor = Floor(column.name.decode(), step.value, array_of(pointer, column.count, self._handle))
+            floors[floor.name] = floor
+        return floors
 
     def to_frame(self) -> Any:
         """All histories as a pandas DataFrame."""

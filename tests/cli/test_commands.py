@@ -146,6 +146,12 @@ class Describe(CliTest):
         done = self.uplift("describe", "law", "sdn", expect=2)
         self.assertIn('(did you mean "sdm"?)', done.stderr)
 
+    def test_a_name_alone_is_enough(self):
+        for kind, name in (("law", "sdm"), ("element", "beam"), ("section", "verdict.criterion"), ("quantity", "max_slip")):
+            self.assertEqual(self.uplift("describe", name).stdout, self.uplift("describe", kind, name).stdout)
+        self.assertIn("section interface.footing.bed:", self.uplift("describe", "bed").stdout)
+        self.assertIn('(did you mean "springs"?)', self.uplift("describe", "sprngs", expect=2).stderr)
+
 
 class Schema(CliTest):
     def test_is_a_schema_of_the_case_file(self):

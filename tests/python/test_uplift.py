@@ -143,6 +143,18 @@ class Runs(unittest.TestCase):
         with self.assertRaisesRegex(KeyError, "no floor"):
             run.floor("roof")
 
+    def test_floor_at_a_node_that_was_not_asked_for(self):
+        case = pier(soil())
+        run = case.run(step_check=False)
+        case.ground_acceleration([0, 1], amplitude="4 m/s2", function="pulse")  # what is changed later does not belong to the run
+        floor = run.floor("deck")
+        asked = pier(soil())
+        asked.floor_spectrum("top", "deck", direction=[1, 0])
+        expected = asked.run(step_check=False).floor("top")
+        self.assertEqual(floor.step, 0.002)
+        self.assertTrue(np.array_equal(floor.acceleration, expected.acceleration))
+        self.assertIs(run.floor("deck"), floor)
+
     def test_a_coarse_step_is_not_converged(self):
         case = pier(soil(), duration="2 s")
         case.dynamic("1 s", step="50 ms")

@@ -213,6 +213,34 @@ int describe_section(const std::string& name) {
   throw InputError({"uplift describe section", 0}, "", "a table of the case file", "\"" + name + "\"", nearest_name(name, known));
 }
 
+/// Every part of this name, or else the table or the number of the verdict. False when there is none.
+bool describe_name(const std::string& name, const std::vector<Family>& all) {
+  int found = 0;
+  for (const Family& family : all) {
+    for (const PartInfo* part : family.parts) {
+      if (part->name != name) continue;
+      if (found++ > 0) say("");
+      print_part(family, *part);
+    }
+  }
+  if (found > 0) return true;  // the table [[beam]] has the keys of the element
+  for (const Place& place : places())
+    if (place.path == name || place.path.ends_with("." + name)) return describe_section(name), true;
+  for (const VerdictQuantity& quantity : verdict_quantities())
+    if (quantity.name == name) return describe_quantities(name), true;
+  return false;
+}
+
+/// All names that describe_name knows, for the nearest one.
+std::vector<std::string> all_names(const std::vector<Family>& all) {
+  std::vector<std::string> names;
+  for (const Family& family : all)
+    for (const PartInfo* part : family.parts) names.emplace_back(part->name);
+  for (const Place& place : places()) names.push_back(place.path.substr(place.path.rfind('.') + 1));
+  for (const VerdictQuantity& quantity : verdict_quantities()) names.emplace_back(quantity.name);
+  return names;
+}
+
 }  // namespace
 
 int describe(const std::string& family, const std::string& name) {
@@ -252,8 +280,12 @@ int describe(const std::string& family, const std::string& name) {
     throw InputError({"uplift describe " + family, 0}, "", "the name of a " + family + " (`uplift describe " + family + "` lists them)",
                      "\"" + name + "\"", nearest_name(name, parts));
   }
-  throw InputError({"uplift describe", 0}, "", fmt::format("one of {}", fmt::join(known, ", ")), "\"" + family + "\"",
-                   nearest_name(family, known));
+  if (name.empty() && describe_name(family, all)) return Exit::done;
+  const std::string wanted =
+      fmt::format("one of {}", fmt::join(known, ", ")) + (name.empty() ? ", or the name of a part, table or quantity" : "");
+  if (name.empty())
+    for (std::string& each : all_names(all)) known.push_back(std::move(each));
+  throw InputError({"uplift describe", 0}, "", wanted, "\"" + family + "\"", nearest_name(family, known));
 }
 
 }  // namespace uplift::cli

@@ -194,10 +194,12 @@ void declare(CLI::App& app, Choices& given) {
   take_json(command, options);
 
   command = add(app, "describe", "print equations, parameters, units and sources of every part, and the tables of a case file",
-                "  uplift describe\n  uplift describe law\n  uplift describe law sdm\n  uplift describe section interface.footing");
+                "  uplift describe\n  uplift describe law\n  uplift describe law sdm\n  uplift describe sdm\n  uplift describe section "
+                "interface.footing");
   command->add_option(
       "family", given.family,
-      "law, method, impact, scheme, function, record, process, target, study_method, distribution, solver, section or quantity");
+      "law, foundation, bulk_law, element, method, impact, scheme, function, record, process, target, study_method, distribution, solver, "
+      "section or quantity; or the name of a part, table or quantity alone");
   command->add_option("name", given.name, "name of the part or table");
 
   command = add(app, "schema", "print the JSON Schema of the case file or of a results document",
