@@ -31,6 +31,10 @@ void write_animations(JsonWriter& json, const ReportInput& input);
 void write_uplifted(JsonWriter& json, const Model& model, const std::vector<const Frame*>& frames);
 /// Uplifted share of the area of all interfaces.
 double uplifted_share(const Model& model, const Frame& frame);
+/// The table `footing` of an interface; null where a surface or a cut makes it.
+const Values* footing_of(const Case& read, const Interface& joint);
+/// The frames of a run in space: displacements of these nodes of the model, rotations of footings, openings and pressures of interfaces.
+void write_space_animation(JsonWriter& json, const Case& read, const ReportRun& run, const std::vector<int>& nodes);
 /// The same two for a model in space: the members "space" and "spaceAnimations".
 void write_space(JsonWriter& json, const ReportInput& input);
 
