@@ -2,12 +2,11 @@
 
 #include <algorithm>
 #include <cmath>
-#include <limits>
 #include <utility>
 
 #include "uplift/base/format.h"
 #include "uplift/laws/macro_element.h"
-#include "uplift/verdict/base_shape.h"
+#include "uplift/verdict/base_over_time.h"
 #include "uplift/verdict/beams.h"
 #include "uplift/verdict/criteria.h"
 #include "uplift/verdict/foundation.h"
@@ -16,81 +15,9 @@
 namespace uplift {
 namespace {
 
-constexpr double nothing = std::numeric_limits<double>::quiet_NaN();
-constexpr double least_share = 1e-3;  // of the static force: below it the place of the thrust has no meaning
-
-/// std::hypot without its care for squares that overflow, which costs ten times as much.
-double length(double x, double y) {
-  return std::sqrt(x * x + y * y);
-}
-
-/// One interface of a run with what it is at rest.
-class Base {
- public:
-  Base(const BuiltCase& built, const RunResult& result, std::size_t number)
-      : run(result),
-        index(number),
-        interface(built.model.interfaces[index]),
-        facts(built.facts[index]),
-        shape(built.model, interface, facts) {
-    if (!run.steps.rest.empty()) {
-      const Resultant& sum = run.steps.rest[index];
-      const bool plane = interface.space.dimension == 2;
-      rest = thrust_of(interface.space, sum.axial, plane ? sum.moment : sum.moment_1, sum.moment_2);
-    } else if (built.bases() == 1) {
-      rest.force = built.weight;
-    }
-    const auto square = [](double axial, double shear_1, double shear_2) { return axial * axial + shear_1 * shear_1 + shear_2 * shear_2; };
-    double largest = 0, largest_change = 0;  // squares
-    for (std::size_t i = 0; i < run.steps.size(); ++i) {
-      const StepRecord::Instant &now = at(i), &first = at(0);
-      largest = std::max(largest, square(now.axial, now.shear_1, now.shear_2));
-      largest_change = std::max(largest_change, square(now.axial - first.axial, now.shear_1 - first.shear_1, now.shear_2 - first.shear_2));
-    }
-    largest_force = std::sqrt(largest);
-    least_force = std::max(noise_share * std::sqrt(largest_change), round_off_share * largest_force);
-  }
-
-  const StepRecord::Instant& at(std::size_t step) const { return run.steps.at(step, index); }
-  const StepRecord::Extremes& extremes() const { return run.steps.extremes[index]; }
-  Thrust thrust(std::size_t step) const { return thrust_of(interface.space, at(step).axial, at(step).moment_1, at(step).moment_2); }
-  bool pressed() const { return rest.force > 0; }
-  bool carries(std::size_t step) const { return pressed() && -at(step).axial > least_share * rest.force; }
-  double shear(std::size_t step) const { return length(at(step).shear_1, at(step).shear_2); }
-
-  /// e/B along t1 or t2.
-  double eccentricity(std::size_t step, std::size_t axis) const {
-    const Thrust now = thrust(step);
-    return carries(step) && shape.width[axis] > 0 ? now.first[axis] / (now.force * shape.width[axis]) : nothing;
-  }
-  double overturning(std::size_t step) const { return pressed() ? shape.overturning_safety(rest, thrust(step)) : nothing; }
-  double sliding(std::size_t step) const {
-    if (facts.friction < 0 || interface.batch.components == 1 || !carries(step)) return nothing;
-    const double holds = -facts.friction * at(step).axial + facts.cohesion * facts.area * cohesive_share(step);
-    return shear(step) > least_force ? holds / shear(step) : nothing;
-  }
-
-  /// Of the area: where it is in contact; under a whole foundation the effective area (docs/theory/macro_element.md, eq M6).
-  double cohesive_share(std::size_t step) const {
-    if (!interface.footprint) return 1 - at(step).open_area;
-    const double one = 2 * std::abs(eccentricity(step, 0)), two = interface.space.dimension == 3 ? 2 * std::abs(eccentricity(step, 1)) : 0;
-    const bool disc = interface.footprint->shape == Footprint::Shape::disc;
-    return disc ? std::max(0.0, 1 - length(one, two)) : std::max(0.0, 1 - one) * std::max(0.0, 1 - two);
-  }
-
-  const RunResult& run;
-  std::size_t index;
-  const Interface& interface;
-  const InterfaceFacts& facts;
-  BaseShape shape;
-  Thrust rest;
-  double least_force = 0;    // N: less is noise
-  double largest_force = 0;  // N
-};
-
 /// The largest magnitude of a quantity over the steps, or the least value; nothing when it is nowhere finite.
 template <class Of>
-std::optional<VerdictNumber> extreme(const Base& base, std::string_view name, const Of& of, bool least = false) {
+std::optional<VerdictNumber> extreme(const BaseOverTime& base, std::string_view name, const Of& of, bool least = false) {
   VerdictNumber found{find_verdict_quantity(name)};
   for (std::size_t i = 0; i < base.run.steps.size(); ++i) {
     const double value = of(i), now = least ? value : std::abs(value);
@@ -119,7 +46,7 @@ double duration_of(const StepRecord& steps, const Holds& holds) {
   return sum;
 }
 
-void add_uplift(const Base& base, const VerdictRequest& request, InterfaceVerdict& said) {
+void add_uplift(const BaseOverTime& base, const VerdictRequest& request, InterfaceVerdict& said) {
   const StepRecord& steps = base.run.steps;
   add(said.numbers, extreme(base, "max_uplifted_ratio", [&](std::size_t i) { return base.at(i).open_area; }));
   add(said.numbers, "uplifted_time", duration_of(steps, [&](std::size_t i) { return base.at(i).open_area > 0; }));
@@ -134,7 +61,7 @@ void add_uplift(const Base& base, const VerdictRequest& request, InterfaceVerdic
     said.above.push_back({threshold, duration_of(steps, [&](std::size_t i) { return base.at(i).open_area > threshold; })});
 }
 
-void add_pressure(const Base& base, InterfaceVerdict& said) {
+void add_pressure(const BaseOverTime& base, InterfaceVerdict& said) {
   const StepRecord::Reached& pressure = base.extremes().max_pressure;
   const bool known = !base.interface.footprint;  // a whole foundation has forces, no pressures
   if (known) add(said.numbers, "max_toe_pressure", pressure);
@@ -156,14 +83,14 @@ void add_pressure(const Base& base, InterfaceVerdict& said) {
 }
 
 /// How much of its strength the ground under a whole foundation uses, at the end of a step.
-void add_strength(const Base& base, std::vector<VerdictNumber>& numbers) {
+void add_strength(const BaseOverTime& base, std::vector<VerdictNumber>& numbers) {
   const MacroElement* foundation = as_macro_element(base.interface.law.get());
   if (foundation == nullptr) return;
   if (foundation->surfaces().has_bearing()) add(numbers, "max_bearing_utilisation", base.extremes().bearing_utilisation);
   if (foundation->surfaces().has_sliding()) add(numbers, "max_sliding_utilisation", base.extremes().sliding_utilisation);
 }
 
-void add_full_loss(const Base& base, InterfaceVerdict& said) {
+void add_full_loss(const BaseOverTime& base, InterfaceVerdict& said) {
   said.full_loss = base.extremes().full_loss;
   double sum = 0;
   Interval longest;
@@ -175,9 +102,9 @@ void add_full_loss(const Base& base, InterfaceVerdict& said) {
   if (!said.full_loss.empty()) add(said.numbers, "longest_full_loss", longest.to - longest.from, longest.from);
 }
 
-void add_forces(const Base& base, std::vector<VerdictNumber>& numbers) {
+void add_forces(const BaseOverTime& base, std::vector<VerdictNumber>& numbers) {
   if (base.interface.batch.components > 1) add(numbers, extreme(base, "max_shear", [&](std::size_t i) { return base.shear(i); }));
-  add(numbers, extreme(base, "max_moment", [&](std::size_t i) { return length(base.at(i).moment_1, base.at(i).moment_2); }));
+  add(numbers, extreme(base, "max_moment", [&](std::size_t i) { return base.moment(i); }));
   const auto compression = [&](std::size_t i) { return -base.at(i).axial; };
   add(numbers, extreme(base, "max_compression", [&](std::size_t i) { return std::max(0.0, compression(i)); }));
   add(numbers, extreme(base, "min_compression", compression, true));
@@ -204,7 +131,7 @@ VerdictNumber residual(const std::vector<BasePose>& tail, std::string_view name,
   return {find_verdict_quantity(name), sum / static_cast<double>(tail.size()) - rest, {}, {}, (most - least) / 2};
 }
 
-void add_residuals(const Base& base, std::vector<VerdictNumber>& numbers) {
+void add_residuals(const BaseOverTime& base, std::vector<VerdictNumber>& numbers) {
   const StepRecord& steps = base.run.steps;
   const std::vector<BasePose>& tail = steps.tail[base.index];
   if (tail.empty() || (base.run.status != RunStatus::completed && base.run.status != RunStatus::interrupted)) return;
@@ -223,14 +150,14 @@ void add_residuals(const Base& base, std::vector<VerdictNumber>& numbers) {
 }
 
 /// Below this a number of a base is noise, in its own unit.
-double least_of(const VerdictQuantity& quantity, const Base& base) {
+double least_of(const VerdictQuantity& quantity, const BaseOverTime& base) {
   if (quantity.unit == "N") return base.least_force;
   if (quantity.unit == "N m") return base.least_force * std::max(base.shape.width[0], base.shape.width[1]);
   return quantity.name.starts_with("max_eccentricity") ? noise_share : 0;
 }
 
 /// What is left of forces that cancel is round-off: none.
-void clear_round_off(const Base& base, std::vector<VerdictNumber>& numbers) {
+void clear_round_off(const BaseOverTime& base, std::vector<VerdictNumber>& numbers) {
   const double force = round_off_share * base.largest_force, moment = force * std::max(base.shape.width[0], base.shape.width[1]);
   for (VerdictNumber& number : numbers) {
     const double least = number.quantity->unit == "N" ? force : number.quantity->unit == "N m" ? moment : 0;
@@ -239,7 +166,7 @@ void clear_round_off(const Base& base, std::vector<VerdictNumber>& numbers) {
 }
 
 /// What a base carries, of a bonded run too.
-InterfaceVerdict carried_by(const Base& base) {
+InterfaceVerdict carried_by(const BaseOverTime& base) {
   InterfaceVerdict said;
   add_pressure(base, said);
   add_forces(base, said.numbers);
@@ -250,7 +177,7 @@ InterfaceVerdict carried_by(const Base& base) {
 }
 
 /// The numbers of the bonded run for those of the same name, and what has changed.
-void add_bonded(const Base& base, const Base& bonded, std::vector<VerdictNumber>& numbers) {
+void add_bonded(const BaseOverTime& base, const BaseOverTime& bonded, std::vector<VerdictNumber>& numbers) {
   const InterfaceVerdict reference = carried_by(bonded);
   for (VerdictNumber& number : numbers)
     if (const VerdictNumber* other = find_number(reference.numbers, number.quantity->name)) {
@@ -322,7 +249,7 @@ InterfaceVerdict wall_of(const StepRecord::Extremes& most, const Interface& inte
 
 /// A base: uplift, forces, safeties, what is left.
 InterfaceVerdict base_of(const BuiltCase& built, const RunResult& run, const RunResult* bonded, std::size_t number) {
-  const Base base(built, run, number);
+  const BaseOverTime base(built, run, number);
   InterfaceVerdict said = carried_by(base);
   if (base.pressed()) said.weight = base.rest.force, said.mean_pressure = base.rest.force / base.facts.area;
   said.width = base.shape.width;
@@ -330,7 +257,7 @@ InterfaceVerdict base_of(const BuiltCase& built, const RunResult& run, const Run
   add_strength(base, said.numbers);
   add_full_loss(base, said);
   add_residuals(base, said.numbers);
-  if (bonded) add_bonded(base, Base(built, *bonded, number), said.numbers);
+  if (bonded) add_bonded(base, BaseOverTime(built, *bonded, number), said.numbers);
   return said;
 }
 
@@ -362,32 +289,6 @@ std::optional<double> uplift_of_tension(double t) {
   if (t <= 0) return 0;
   const double y = 1 / (1 - 2 * t), root = (2 + std::sqrt(1.5 * y * y - 0.5)) / 3;  // root: sqrt(theta/theta_u)
   return 1 - 1 / root;
-}
-
-std::vector<double> base_history(const BuiltCase& built, const RunResult& run, std::size_t interface, BaseHistory which) {
-  const Base base(built, run, interface);
-  std::vector<double> history(run.steps.size());
-  for (std::size_t i = 0; i < history.size(); ++i) {
-    switch (which) {
-      case BaseHistory::uplifted_ratio:
-        history[i] = base.at(i).open_area;
-        break;
-      case BaseHistory::eccentricity_1:
-        history[i] = base.eccentricity(i, 0);
-        break;
-      case BaseHistory::eccentricity_2:
-        history[i] = base.eccentricity(i, 1);
-        break;
-      case BaseHistory::overturning_safety:
-        history[i] = base.overturning(i);
-        break;
-      case BaseHistory::sliding_safety:
-        history[i] = base.sliding(i);
-        break;
-    }
-    if (!std::isfinite(history[i])) history[i] = nothing;
-  }
-  return history;
 }
 
 std::optional<double> change_of(double value, double reference, double least) {

@@ -83,11 +83,6 @@ std::string swing_text(const VerdictNumber&);
 /// The number of this name; null when there is none.
 const VerdictNumber* find_number(const std::vector<VerdictNumber>& numbers, std::string_view name);
 
-/// What the verdict follows over time, for every instant of run.steps. NaN where it has no meaning: eccentricity and safeties while the
-/// base carries less than a thousandth of its static force, safeties that are infinite.
-enum class BaseHistory { uplifted_ratio, eccentricity_1, eccentricity_2, overturning_safety, sliding_safety };
-std::vector<double> base_history(const BuiltCase& built, const RunResult& run, std::size_t interface, BaseHistory which);
-
 /// Share of a Winkler strip that really uplifts where a linear analysis has tension on the share t: M_lin/M_u = 1/(1 - 2t), and equal
 /// energies (docs/theory, eq 31). Nothing for t >= 1/2, where the linear moment has no bound.
 std::optional<double> uplift_of_tension(double t);

@@ -5,6 +5,7 @@
 
 #include "unit/verdict/verdict_support.h"
 #include "uplift/run/interface_viewer.h"
+#include "uplift/verdict/base_over_time.h"
 
 namespace uplift {
 namespace {

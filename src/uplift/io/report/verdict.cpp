@@ -3,6 +3,7 @@
 #include <utility>
 
 #include "uplift/io/report/parts.h"
+#include "uplift/verdict/base_over_time.h"
 
 // The first page: sentences of the verdict and the uplifted share over time; its numbers are those of summary.json. Figures of the residual
 // state and of the safeties.

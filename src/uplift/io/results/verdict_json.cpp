@@ -7,6 +7,7 @@
 #include "uplift/base/format.h"
 #include "uplift/io/results/thin_history.h"
 #include "uplift/io/results/words.h"
+#include "uplift/verdict/base_over_time.h"
 
 namespace uplift {
 namespace {
