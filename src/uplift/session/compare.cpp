@@ -45,29 +45,28 @@ LockstepRun in_lockstep(BuiltCase& built, const std::vector<LockstepRun>& before
   return made;
 }
 
-/// One list of specs that are built and run one after another, large ones side by side. `with_histories`: they are written.
+/// Runs that are made one after another.
+struct RunList {
+  const std::vector<RunSpec>& specs;
+  std::size_t before, total;  // runs of lists before this one, and of all lists: for the progress
+  bool with_histories, with_fields;
+};
+
+/// Builds and makes the runs of a list, large ones side by side.
 class ListOfRuns {
  public:
-  ListOfRuns(const LoadedCase& loaded, const Control& control, const std::vector<RunSpec>& specs, std::size_t before, std::size_t total,
-             bool with_histories, bool with_fields, Results& results)
-      : loaded_(loaded),
-        control_(control),
-        specs_(specs),
-        before_(before),
-        total_(total),
-        with_histories_(with_histories),
-        with_fields_(with_fields),
-        results_(results) {}
+  ListOfRuns(const LoadedCase& loaded, const Control& control, const RunList& list, Results& results)
+      : loaded_(loaded), control_(control), list_(list), specs_(list.specs), results_(results) {}
 
   /// Stops after an interrupted run.
   void run() {
     while (results_.built.size() < specs_.size() && !control_.is_stopped()) {
       const std::size_t first = results_.built.size();
-      if (marches_in_lockstep(loaded_, specs_[first], next(), with_fields_))
+      if (marches_in_lockstep(loaded_, specs_[first], next(), list_.with_fields))
         march_from(first);
       else
         results_.runs.push_back(run_built(*results_.others.back(), results_.built.back(), label(first, first), control_, false,
-                                          with_fields_ ? &results_.field_lists : nullptr, histories(first)));
+                                          list_.with_fields ? &results_.field_lists : nullptr, histories(first)));
       for (std::size_t i = first; i < results_.runs.size(); ++i) {
         if (!same_floors(results_.built[i].plan, results_.built.front().plan)) results_.runs[i].floors.clear();
         free_matrices(results_.built[i]);
@@ -103,7 +102,7 @@ class ListOfRuns {
     for (std::size_t k = 0; k < group.size(); ++k) {
       group[k].watch = watch;
       group[k].keeping = &keeping[k];
-      if (control_.folder == nullptr || !with_histories_) continue;
+      if (control_.folder == nullptr || !list_.with_histories) continue;
       HistoryFile& file = files.emplace_back(*control_.folder, histories(first + k));
       keeping[k].follow = [&file](const RunResult& so_far) { file.follow(so_far); };
     }
@@ -114,17 +113,16 @@ class ListOfRuns {
   }
 
   std::string label(std::size_t first, std::size_t last) const {
-    const std::size_t one = before_ + first + 1, other = before_ + last + 1;
-    if (first == last) return fmt::format("[{}/{}] {}", one, total_, specs_[first].name);
-    return fmt::format("[{} to {}/{}] {} to {}", one, other, total_, specs_[first].name, specs_[last].name);
+    const std::size_t one = list_.before + first + 1, other = list_.before + last + 1;
+    if (first == last) return fmt::format("[{}/{}] {}", one, list_.total, specs_[first].name);
+    return fmt::format("[{} to {}/{}] {} to {}", one, other, list_.total, specs_[first].name, specs_[last].name);
   }
-  std::string histories(std::size_t number) const { return with_histories_ ? "histories/" + specs_[number].name + ".csv" : ""; }
+  std::string histories(std::size_t number) const { return list_.with_histories ? "histories/" + specs_[number].name + ".csv" : ""; }
 
   const LoadedCase& loaded_;
   const Control& control_;
+  const RunList list_;
   const std::vector<RunSpec>& specs_;
-  const std::size_t before_, total_;
-  const bool with_histories_, with_fields_;
   Results& results_;
 };
 
@@ -198,8 +196,8 @@ Results compare_case(const LoadedCase& loaded, const Control& control) {
   Results results, sweep;
   const Values& output = loaded.read.values.table("output");
   const bool with_fields = output.has("fields") && output.table("fields").flag("variants");
-  ListOfRuns(loaded, control, plan.runs, 0, total, true, with_fields, results).run();
-  ListOfRuns(loaded, control, plan.sweep, plan.runs.size(), total, false, false, sweep).run();
+  ListOfRuns(loaded, control, {plan.runs, 0, total, true, with_fields}, results).run();
+  ListOfRuns(loaded, control, {plan.sweep, plan.runs.size(), total, false, false}, sweep).run();
 
   ComparisonSummary& compared = results.comparison.emplace();
   compared.motions = motion_tables(results.specs, results.built, results.runs);
