@@ -14,7 +14,7 @@ def pier(K_n):
     case.node("deck", 0, 17)
     case.node("cap", 0, 16)
     case.node("base", 0, 1)
-    case.beam("column", ["base", "cap"], E="30 GPa", poisson=0.2, A="3.8 m2", I="0.7 m4", density="2500 kg/m3", elements=4)
+    case.beam("column", ["base", "cap"], E="30 GPa", poisson=0.2, A="3.8 m2", I="0.7 m4", elements=4)
     case.beam("head", ["cap", "deck"], E="30 GPa", A="10 m2", I="8 m4")
     case.mass("deck", mass="600 t", inertia="6000 t m2")
     case.rigid("footing", "base", mass="245 t", inertia="1080 t m2")

@@ -29,7 +29,7 @@ def pier(law, duration="6 s"):
     case = up.Case("pier")
     case.node("deck", 0, 17)
     case.node("base", 0, 1)
-    case.beam("column", ["base", "deck"], E="30 GPa", A="3.8 m2", I="0.7 m4", density="2500 kg/m3")
+    case.beam("column", ["base", "deck"], E="30 GPa", A="3.8 m2", I="0.7 m4")
     case.mass("deck", mass="600 t", inertia="6000 t m2")
     case.rigid("footing", "base", mass="245 t", inertia="1080 t m2")
     case.footing("underside", body="base", width="7 m", thickness="7 m", points=41, offset=[0, -1], law=law)

@@ -105,7 +105,10 @@ void print(const LoadedCase& loaded, const CheckedCase& checked) {
   for (const std::string& run : runs) say("  " + run);
   for (const std::string& warning : found.warnings) say("warning: " + warning);
   if (!found.trial_failure.empty()) say("warning: the first steps fail: " + found.trial_failure);
-  say(found.warnings.empty() && found.trial_failure.empty() ? "the case is in order" : "the case can be run; mind the warnings");
+  if (!found.trial_failure.empty())
+    say("the case is read, but does not run as it is");
+  else
+    say(found.warnings.empty() ? "the case is in order" : "the case can be run; mind the warnings");
 }
 
 }  // namespace

@@ -160,6 +160,7 @@ void Stepper::start(State state, const Ledger* before) {
   if (path_) {
     now_.acceleration.setZero(n);
   } else if (before == nullptr || !before->acceleration) {
+    release_parting();
     forces_at(now_, work_);
     now_.acceleration.setZero(n);
     accelerator().solve(work_, now_.acceleration);
@@ -406,6 +407,7 @@ bool Stepper::try_step(Level& level) {
     if (impacts_) apply_impact(level);
     small::copy(contact_.size(), contact_.data(), next_.force.data());
     small::copy(contact_.size(), contact_.data(), next_.mean_force.data());
+    if (impacts_ && impact_.force_includes_impulse()) next_.mean_force += impulse_ / level.step;
   }
   return true;
 }

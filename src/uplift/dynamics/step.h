@@ -124,6 +124,10 @@ class Stepper {
   void separate_impulse(const Impact& data);
   void separate_impulse_of_friction(const Block& block, const Impact& data);
   void hold_initial_acceleration();
+  void release_parting();
+  bool select_closed(const std::vector<Block>& blocks);
+  bool project_initial(Impact& data, Vector& acceleration);
+  void slide_initially(const std::vector<Block>& blocks, Impact& data, const Vector& free);
   void book_energies(const Level& level);
   void forces_at(const State& state, Vector& result) const;
 

@@ -82,9 +82,11 @@ double Stepper::contact_work() const {
   return 0.5 * work;
 }
 
-/// Velocity, acceleration and contact force of a step are corrected by the rule of impact, for the points that are pressed at its end.
+/// Velocity, acceleration and contact force of a step are corrected by the rule of impact, for the points that are pressed at its end. The
+/// force stays the one that the acceleration at the end contains.
 void Stepper::apply_impact(Level& level) {
   impact_impulse_.setZero();
+  impulse_.setZero();
   impact_loss_ += contact_work();
   if (!select_pressed(last_->model->blocks, contact_)) return;
   const double weight = (1 - options_.scheme.alpha_f) / (1 - options_.scheme.alpha_m);
@@ -95,13 +97,10 @@ void Stepper::apply_impact(Level& level) {
   data.velocity_weight = options_.scheme.gamma * level.step * weight;
   data.acceleration_weight = weight;
   const double before = 0.5 * small::dot(next_.velocity.size(), next_.velocity.data(), momentum_next_.data());
-  impulse_.setZero();
   impact_.apply(data, next_.velocity, next_.acceleration, impulse_, impact_scratch_);
   std::swap(data.tangents, tangents_);
   bulk_.mass.multiply(next_.velocity, momentum_next_);
   impact_loss_ += before - 0.5 * small::dot(next_.velocity.size(), next_.velocity.data(), momentum_next_.data());
-  if (impact_.force_includes_impulse())
-    for (Eigen::Index i = 0; i < contact_.size(); ++i) contact_[i] += impulse_[i] / level.step;
   if (impact_.holds_acceleration()) separate_impulse(data);
 }
 
@@ -138,26 +137,6 @@ void Stepper::separate_impulse_of_friction(const Block& block, const Impact& dat
   const double share = pressure < 0 ? smooth / pressure : 1;
   for (int i = block.first; i < block.first + block.rows(); ++i) contact_[i] *= share;
   for (int i = normal; i < normal + n; ++i) impact_impulse_[i] = impact_scratch_.total[i] - data.velocity_weight * contact_[i];
-}
-
-/// The acceleration at the beginning with the contact forces of constraints that belong to it: those of the stage before hold another load.
-/// Closed points stay closed or open (inequality), sticking ones stick.
-void Stepper::hold_initial_acceleration() {
-  const std::vector<Block> blocks = blocks_of(model_, behaviours_).blocks;
-  if (std::ranges::none_of(blocks, [](const Block& block) { return block.cone != nullptr; })) return;
-  if (mass_spread_ == nullptr) prepare_impacts();
-  if (mass_spread_ == nullptr || !select_pressed(blocks, now_.force)) return;
-  Impact data = impact_data(now_.force);
-  std::swap(data.tangents, tangents_);
-  if (select_rows(data, Hold::inequality, impact_scratch_)) {
-    project_rate(data, now_.acceleration, 1, Select::all, impact_scratch_);
-    correct(data, 1, now_.acceleration, impact_scratch_);
-    const auto take = [this](Eigen::Index row) { now_.force[row] = now_.mean_force[row] = impact_scratch_.impulse[row]; };
-    for (Eigen::Index row = 0; row < pressed_.size(); ++row)
-      if (pressed_[row] > 0) take(row);
-    for (const int row : data.tangents) take(row);
-  }
-  std::swap(data.tangents, tangents_);
 }
 
 }  // namespace uplift

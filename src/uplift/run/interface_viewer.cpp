@@ -54,6 +54,12 @@ bool flat(const Interface& interface) {
 
 }  // namespace
 
+double tension_softness(const Interface& interface) {
+  if (interface.law == nullptr || interface.batch.rotations > 0) return 0;
+  const LawScales scales = interface.law->scales();
+  return !scales.opens || scales.strength > 0 ? 1 / normal_stiffness(interface) : 0;
+}
+
 InterfaceViewer::InterfaceViewer(const Model& model, double gap_tolerance, const std::vector<std::vector<int>>& bases,
                                  const std::vector<std::shared_ptr<const Facets>>& facets)
     : tolerance_(gap_tolerance) {
@@ -83,6 +89,8 @@ InterfaceViewer::InterfaceViewer(const Model& model, double gap_tolerance, const
     layout.slope_weight = slope_weights(interface);
     layout.stiffness = normal_stiffness(interface);
     layout.bonded = interface.law != nullptr && !interface.law->scales().opens;
+    layout.softness = tension_softness(interface);
+    if (layout.softness > 0) gap_.setZero(std::max<Index>(gap_.size(), layout.points));
     if (const std::size_t k = layouts_.size(); k < facets.size() && facets[k] != nullptr) {
       layout.share = PositiveShare(*facets[k]);
       layout.corners = facets[k]->corners;
@@ -188,17 +196,30 @@ Resultant InterfaceViewer::resultant_by_rows(const Layout& layout, const Vector&
   return resultant_of(layout.space, sums.data());
 }
 
-void InterfaceViewer::look(const Vector& opening, const Vector& force, const Vector& history, std::vector<InterfaceView>& views,
-                           const Vector* radiation) {
+/// Of every point, at the end of the step [m]; negative where it is closed. A joint that holds tension t is stretched by t/K_n without any
+/// gap (docs/theory, section 2); what round-off leaves of this stretch is none.
+const double* InterfaceViewer::gaps(const Layout& layout, const State& state) {
+  const int normal = layout.first + (layout.translations - 1) * layout.points;
+  const double *opening = state.opening.data() + normal, *force = state.force.data() + normal, *inverse = layout.inverse_area.data();
+  if (!(layout.softness > 0)) return opening;
+  for_lanes(layout.points, [&, gap = gap_.data(), softness = layout.softness](const auto& at) {
+    const Lanes zero = 0, stretch = softness * larger(at(force) * at(inverse), zero), left = at(opening) - stretch;
+    at.put(gap, choose(stretch > zero && left < 1e-9 * stretch, zero, left));
+  });
+  return gap_.data();
+}
+
+void InterfaceViewer::look(const State& state, std::vector<InterfaceView>& views, const Vector* radiation) {
+  const Vector &opening = state.opening, &force = state.mean_force;
   views.resize(layouts_.size());
   for (std::size_t k = 0; k < layouts_.size(); ++k) {
     const Layout& layout = layouts_[k];
     if (layout.footing != nullptr) {
-      look_at_footing(layout, opening, force, history, radiation, views[k]);
+      look_at_footing(layout, opening, force, state.history, radiation, views[k]);
       continue;
     }
     const int n = layout.points, normal = layout.first + (layout.translations - 1) * n;
-    const double *gap = opening.data() + normal, *p = force.data() + normal;
+    const double *gap = gaps(layout, state), *stretch = opening.data() + normal, *p = force.data() + normal;
     const double *area = layout.area.data(), *inverse = layout.inverse_area.data(), *along = layout.along.data();
     const double *slope = layout.slope_weight[0].data(), tolerance = tolerance_;
     const Lanes zero = 0;
@@ -207,7 +228,7 @@ void InterfaceViewer::look(const Vector& opening, const Vector& force, const Vec
       const Lanes pull = at(p), here = at(gap), weight = at(area);
       axials += pull;
       moments += at(along) * pull;
-      slopes += at(slope) * here;
+      slopes += at(slope) * at(stretch);
       open += choose(here > tolerance, weight, zero);
       pulled += choose(pull > zero, weight, zero);
       widest = larger(widest, here);
@@ -229,7 +250,7 @@ void InterfaceViewer::look(const Vector& opening, const Vector& force, const Vec
       if (view.max_opening > tolerance) view.max_opening = std::max(view.max_opening, edge_opening(layout, gap));
     }
     view.rotation = {sum(slopes), 0};
-    if (layout.slope_weight[1].size() > 0) view.rotation[1] = small::dot(n, layout.slope_weight[1].data(), gap);
+    if (layout.slope_weight[1].size() > 0) view.rotation[1] = small::dot(n, layout.slope_weight[1].data(), stretch);
     if (layout.resultant_rows.size() > 0) {
       view.resultant = resultant_by_rows(layout, force);
       continue;

@@ -10,16 +10,18 @@
 
 namespace uplift {
 
+/// How far a joint that holds tension is stretched by it before any gap opens, 1/K_n [m/Pa]; 0 for a joint that opens at once.
+double tension_softness(const Interface& interface);
+
 /// Looks at all interfaces of a model quickly: arms and areas are laid out once.
 class InterfaceViewer {
  public:
   /// `bases`: nodes of the upper side of every interface, `facets`: the surface of each; either may be empty.
   InterfaceViewer(const Model& model, double gap_tolerance, const std::vector<std::vector<int>>& bases = {},
                   const std::vector<std::shared_ptr<const Facets>>& facets = {});
-  /// `force` holds one force per row [N], tension > 0: the mean over the step.
-  /// `history` is the memory of all laws. `radiation`: forces of the dashpots beside foundations at the same rows; null: there are none.
-  void look(const Vector& opening, const Vector& force, const Vector& history, std::vector<InterfaceView>& views,
-            const Vector* radiation = nullptr);
+  /// Forces are the means over the step, gaps those at its end. `radiation`: forces of the dashpots beside foundations at the same rows;
+  /// null: there are none.
+  void look(const State& state, std::vector<InterfaceView>& views, const Vector* radiation = nullptr);
   /// How an interface stands; `view` is what look() saw of it.
   BasePose pose(const State& state, std::size_t interface, const InterfaceView& view) const;
 
@@ -34,6 +36,7 @@ class InterfaceViewer {
     PositiveShare share;                    // empty: points count as a whole
     double stiffness = 0;                   // Pa/m of the closed joint; infinite for constraints
     bool bonded = false;                    // it may pull: the tension share is asked for
+    double softness = 0;                    // see tension_softness
     std::vector<Facets::Corner> corners;    // of the surface that are no points: openings are extrapolated to them
     bool at_edge = false;                   // pressures too
     const InterfaceLaw* footing = nullptr;  // the law of a point with rotations, which stands for a whole footing; else null
@@ -48,10 +51,11 @@ class InterfaceViewer {
   double tension_share(const Layout& layout, const double* force);
   static double edge_pressure(const Layout& layout, const double* force);
   double edge_opening(const Layout& layout, const double* gap) const;
+  const double* gaps(const Layout& layout, const State& state);
   std::vector<Layout> layouts_;
   std::vector<BaseMotion> bases_;
   double tolerance_;
-  Vector value_;  // at the points of one interface
+  Vector value_, gap_;  // at the points of one interface
 };
 
 }  // namespace uplift

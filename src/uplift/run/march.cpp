@@ -221,7 +221,7 @@ bool Runner::dynamics(const Stage& stage, const Bulk& bulk) {
   constexpr long checks = 4;  // of the equilibrium in a stage
   const long picture_every = plan_.frames > 0 ? std::max(1L, steps / plan_.frames) : 0;
   const auto observe = [&](long step) {
-    viewer_.look(seen_->opening, seen_->mean_force, seen_->history, views_, radiation_.forces(stepper));
+    viewer_.look(*seen_, views_, radiation_.forces(stepper));
     note_views();
     note_impulses(stepper);
     recorder.record(step % plan_.every == 0 || step == steps);

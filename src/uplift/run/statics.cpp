@@ -29,7 +29,7 @@ bool Runner::statics(const Stage& stage) {
   Recorder recorder(resting, plan_, run_.state, energies, nullptr, views_, {resting}, stage.steps, 0, run_.load_steps);
   const auto record = [&](const StaticProgress& progress) {
     energies = static_energies(resting, before, progress);
-    viewer_.look(run_.state.opening, run_.state.mean_force, run_.state.history, views_);
+    viewer_.look(run_.state, views_);
     recorder.record(true, run_.static_stages + progress.share);
   };
   if (run_.state.load_factor == 0) {
@@ -91,7 +91,7 @@ Energies Runner::static_energies(const Model& resting, const Energies& before, c
 
 /// What the verdict holds the rest of the run against.
 void Runner::note_rest() {
-  viewer_.look(run_.state.opening, run_.state.mean_force, run_.state.history, views_);
+  viewer_.look(run_.state, views_);
   for (std::size_t k = 0; k < views_.size(); ++k) {
     run_.result.steps.rest.push_back(views_[k].resultant);
     run_.result.steps.rest_poses.push_back(viewer_.pose(run_.state, k, views_[k]));
@@ -111,7 +111,7 @@ void Runner::stand() {
   if (rest_ != nullptr) run_.state = carried();
   run_.result.final_energy = run_.static_energies;
   run_.result.steps.reserve(model_.interfaces.size(), 1, 1);
-  viewer_.look(run_.state.opening, run_.state.mean_force, run_.state.history, views_);
+  viewer_.look(run_.state, views_);
   note_views();
   sum_up(0);
   for (const InterfaceView& view : views_) run_.result.steps.rest.push_back(view.resultant);

@@ -10,7 +10,8 @@ namespace uplift {
 namespace {
 
 constexpr double nothing = std::numeric_limits<double>::quiet_NaN();
-constexpr double least_share = 1e-3;  // of the static force: below it the place of the thrust has no meaning
+constexpr double least_share = 1e-3;     // of the static force: below it the place of the thrust has no meaning
+constexpr double largest_safety = 1e6;  // beyond it round-off is what drives
 
 /// std::hypot without its care for squares that overflow, which costs ten times as much.
 double length(double x, double y) {
@@ -61,7 +62,8 @@ double BaseOverTime::eccentricity(std::size_t step, std::size_t axis) const {
 }
 
 double BaseOverTime::overturning(std::size_t step) const {
-  return pressed() ? shape.overturning_safety(rest, thrust(step)) : nothing;
+  const double safety = pressed() ? shape.overturning_safety(rest, thrust(step)) : nothing;
+  return safety < largest_safety ? safety : nothing;
 }
 
 double BaseOverTime::sliding(std::size_t step) const {

@@ -3,6 +3,7 @@
 #include <fmt/format.h>
 
 #include "uplift/base/format.h"
+#include "uplift/verdict/step_check.h"
 
 namespace uplift {
 namespace {

@@ -6,9 +6,6 @@
 
 namespace uplift {
 
-/// Share of the energy put in that the time scheme may lose before the verdict marks it and a warning tells it.
-inline constexpr double accepted_energy_loss = 0.05;
-
 /// What the user should know of a run that is over, beyond its verdict: its static equilibrium is one of several; the forces of the whole
 /// model are not in equilibrium; the scheme lost much energy; largest values are reached in the last tenth of the run, so that a longer one
 /// may exceed them.

@@ -100,7 +100,8 @@ std::string how_it_ended(const RunResult& run) {
 
 void judge(StepCheck& check) {
   const bool moves = check.largest > accepted_step_change, by_chance = check.part.change > accepted_step_change;
-  check.state = moves || by_chance ? StepCheck::State::not_converged : StepCheck::State::converged;
+  const bool loses = check.lost > accepted_energy_loss;
+  check.state = moves || by_chance || loses ? StepCheck::State::not_converged : StepCheck::State::converged;
   check.sufficient_step = moves ? rounded_down(check.step * accepted_step_change / check.largest) : 0;
 }
 
@@ -115,6 +116,7 @@ using Instant = StepRecord::Instant;
 using OfInstant = double (*)(const Instant&);
 constexpr std::pair<std::string_view, OfInstant> forces_of_a_base[] = {
     {"max_moment", [](const Instant& now) { return std::sqrt(now.moment_1 * now.moment_1 + now.moment_2 * now.moment_2); }},
+    {"max_shear", [](const Instant& now) { return std::sqrt(now.shear_1 * now.shear_1 + now.shear_2 * now.shear_2); }},
     {"max_compression", [](const Instant& now) { return -now.axial; }},
     {"max_toe_pressure", [](const Instant& now) { return now.pressure; }}};
 
@@ -212,6 +214,8 @@ StepCheck check_step(const BuiltCase& built, const RunResult& run, const FloorRu
     compare_steps(numbers, numbers_of(*companion.built, *companion.run, companion.bonded), check);
     compare_parts(run.steps, companion.run->steps, numbers, check);
     if (floors) compare_floors(floors->floors, floor_spectra(companion.built->plan, *companion.run), check);
+    check.lost = run.energy_scale > 0 ? run.energy_lost / run.energy_scale : 0;
+    judge(check);
   }
   return check;
 }
@@ -226,6 +230,10 @@ std::string StepCheck::sentence() const {
   if (state == State::converged)
     return fmt::format("Converged: with twice the step ({}) no number of the verdict changes by more than {}{}.", steps, percent(largest),
                        which.empty() ? "" : " (" + which + ")");
+  if (largest <= accepted_step_change && part.change <= accepted_step_change)
+    return fmt::format(
+        "Not converged: the time scheme lost {} of the energy that was put in, because a step of {} does not resolve the motion.",
+        percent(lost), format_quantity(step, "s"));
   if (largest <= accepted_step_change)
     return fmt::format("Not converged: with twice the step ({}) the {} of {} agrees by chance: from {} to {} its peaks differ by {}.",
                        steps, part.quantity->brief, part.of, format_quantity(part.from, "s"), format_quantity(part.to, "s"),

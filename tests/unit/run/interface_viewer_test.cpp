@@ -39,10 +39,11 @@ double largest_gap(const std::vector<JointPoint>& points, Space space, Facets fa
   model.space = space;
   model.interfaces.push_back(interface_of(points, space));
   InterfaceViewer viewer(model, 1e-9, {}, {std::make_shared<const Facets>(std::move(facets))});
-  Vector gap(model.interfaces.front().batch.points);
-  for (std::size_t i = 0; i < points.size(); ++i) gap[static_cast<Index>(i)] = opening(points[i].position);
+  State state;
+  state.opening = state.force = state.mean_force = Vector::Zero(model.interfaces.front().batch.points);
+  for (std::size_t i = 0; i < points.size(); ++i) state.opening[static_cast<Index>(i)] = opening(points[i].position);
   std::vector<InterfaceView> views;
-  viewer.look(gap, Vector::Zero(gap.size()), {}, views);
+  viewer.look(state, views);
   return views.front().max_opening;
 }
 

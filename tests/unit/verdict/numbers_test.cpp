@@ -74,8 +74,9 @@ InterfaceView turned(const BuiltCase& built, double ratio) {
     state.opening[normal + i] = gap;
     state.force[normal + i] = modulus * std::min(gap, 0.0) * interface.area[i];
   }
+  state.mean_force = state.force;
   std::vector<InterfaceView> views;
-  InterfaceViewer(built.model, 1e-9, {}).look(state.opening, state.force, state.history, views);
+  InterfaceViewer(built.model, 1e-9, {}).look(state, views);
   return views.front();
 }
 
@@ -226,8 +227,9 @@ TEST(VerdictNumbersTest, TwoEccentricitiesInSpace) {
     first_x += pressure * interface.area[i] * at.x();
     first_y += pressure * interface.area[i] * at.y();
   }
+  state.mean_force = state.force;
   std::vector<InterfaceView> views;
-  InterfaceViewer(built.model, 1e-9, {}).look(state.opening, state.force, state.history, views);
+  InterfaceViewer(built.model, 1e-9, {}).look(state, views);
   const RunResult run = run_of({views.front()}, 0.1);
   const double c = std::cos(0.3), s = std::sin(0.3);
   EXPECT_NEAR(base_history(built, run, 0, BaseHistory::eccentricity_1)[0], first_x / sum / (6 * c + 4 * s), 1e-12);

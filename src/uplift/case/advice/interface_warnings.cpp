@@ -81,6 +81,35 @@ void warn_foundations(const Case& read, const BuiltCase& built, std::vector<std:
   }
 }
 
+/// A joint that the dead load compresses by more than any ground settles.
+void warn_settlement(const BuiltCase& built, std::vector<std::string>& said) {
+  constexpr double most = 0.5;  // m
+  double stiffness = 0;         // N/m
+  for (std::size_t k = 0; k < built.bases(); ++k) {
+    const Interface& base = built.model.interfaces[k];
+    if (base.law == nullptr || base.batch.rotations > 0) return;
+    std::array<double, most_components> of_area{};
+    base.law->closed_stiffness(base.batch.components, of_area.data());
+    stiffness += of_area[static_cast<std::size_t>(base.batch.translations()) - 1] * built.facts[k].area;
+  }
+  if (stiffness > 0 && built.weight / stiffness > most)
+    said.push_back(fmt::format("the dead load of {} compresses the joint by {}: is the unit of its normal stiffness right?",
+                               format_quantity(built.weight, "N"), format_quantity(built.weight / stiffness, "m")));
+}
+
+/// A base that nothing but the shaking holds.
+void warn_unloaded(const Case& read, const BuiltCase& built, std::vector<std::string>& said) {
+  const Values& root = read.values;
+  const bool shaken = !root.tables("ground_acceleration").empty() || !root.tables("motion").empty();
+  if (!shaken || built.weight != 0 || built.bases() == 0 || !root.tables("load").empty()) return;
+  const auto opens = [](const Interface& each) {  // see warn_closure for laws with a closure stress
+    const LawScales scales = each.law != nullptr ? each.law->scales() : LawScales();
+    return scales.opens && scales.strength <= 0 && scales.closure <= 0;
+  };
+  if (std::ranges::any_of(built.model.interfaces, opens))
+    said.push_back("nothing presses the base down, and it opens under any motion: [gravity] is missing");
+}
+
 double size_of(const Mesh& mesh, CellId cell) {
   return std::pow(signed_size(mesh, cell), 1.0 / mesh.dimension);  // m
 }
@@ -178,6 +207,8 @@ void warn_interfaces(const Case& read, const BuiltCase& built, std::vector<std::
   warn_foundations(read, built, said);
   warn_cuts(read, built, said);
   warn_floating(read, built, said);
+  warn_settlement(built, said);
+  warn_unloaded(read, built, said);
 }
 
 }  // namespace uplift

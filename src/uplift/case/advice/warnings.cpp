@@ -53,6 +53,15 @@ void warn_magnitudes(const Case& read, std::vector<std::string>& said) {
     if (const Values* water = table_if(interface, "water")) warn_magnitude(*water, water_weight, said);
 }
 
+/// A density alone makes no mass.
+void warn_massless_beams(const Case& read, std::vector<std::string>& said) {
+  for (const Values& beam : read.values.tables("beam"))
+    if (beam.given("density") && !beam.given("mass"))
+      said.push_back(fmt::format("{}:{}: the beam \"{}\" has neither mass nor weight, in spite of its density: add mass = \"consistent\", or "
+                                 "mass = \"none\" where other parts stand for it",
+                                 beam.where("density").file, beam.where("density").line, beam.text("name")));
+}
+
 /// Static stages apply what is constant, and motions as they are at t = 0.
 void warn_idle_functions(const Case& read, const BuiltCase& built, std::vector<std::string>& said) {
   if (!statics_alone(built.plan)) return;
@@ -260,6 +269,7 @@ void warn_embedded_feet(const BuiltCase& built, std::vector<std::string>& said) 
 std::vector<std::string> warnings(const Case& read, const RunSpec& spec, const BuiltCase& built) {
   std::vector<std::string> said;
   warn_magnitudes(read, said);
+  warn_massless_beams(read, said);
   warn_interfaces(read, built, said);
   warn_idle_functions(read, built, said);
   warn_sudden_weight(built, said);

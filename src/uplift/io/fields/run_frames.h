@@ -36,11 +36,11 @@ class InterfaceFrames {
   struct Surface {
     int interface = 0, first_row = 0;
     double friction = -1, cohesion = 0;  // coefficient, negative: no friction law; Pa
-    bool opens = true;                   // false: a bonded joint, which stretches
+    double softness = 0;                 // m/Pa, see tension_softness
     std::vector<Terms> places;
   };
   void add_point(const Surface& surface, const State& state, int point, JointValues& values) const;
-  int status(const Surface& surface, double opening, double pressure, double shear) const;
+  int status(const Surface& surface, double gap, double pressure, double shear) const;
 
   const Model* model_;
   double gap_tolerance_;

@@ -5,6 +5,7 @@
 #include "uplift/interface/face_joint.h"
 #include "uplift/io/fields/run_frames.h"
 #include "uplift/math/dense.h"
+#include "uplift/run/interface_viewer.h"
 
 // Joint points stand at the nodes of faces or at Gauss points; what is written stands at the nodes of every face.
 namespace uplift {
@@ -70,7 +71,7 @@ InterfaceFrames::InterfaceFrames(const Case& read, const BuiltCase& built)
     const InterfaceFacts& facts = built.facts[k];
     if (!facts.faces.empty()) {
       const Values& behaviour = *built.behaviours[k];
-      Surface surface{static_cast<int>(k), row, -1, 0, interface.law == nullptr || interface.law->scales().opens, {}};
+      Surface surface{static_cast<int>(k), row, -1, 0, tension_softness(interface), {}};
       surface.friction = number_or(behaviour, "friction", -1);
       surface.cohesion = number_or(behaviour, "cohesion", 0);
       surface.places =
@@ -83,9 +84,9 @@ InterfaceFrames::InterfaceFrames(const Case& read, const BuiltCase& built)
   mesh_ = interface_mesh(read.mesh->mesh, "interfaces", faces);
 }
 
-int InterfaceFrames::status(const Surface& surface, double opening, double pressure, double shear) const {
+int InterfaceFrames::status(const Surface& surface, double gap, double pressure, double shear) const {
   constexpr double reached = 1 - 1e-6;
-  if (surface.opens && opening > gap_tolerance_) return 0;
+  if (gap > gap_tolerance_) return 0;
   return surface.friction >= 0 && shear >= reached * (surface.friction * std::max(pressure, 0.0) + surface.cohesion) ? 2 : 1;
 }
 
@@ -94,7 +95,7 @@ void InterfaceFrames::add_point(const Surface& surface, const State& state, int 
   const Interface& interface = model_->interfaces[static_cast<std::size_t>(surface.interface)];
   const int translations = interface.batch.translations();
   Vec3 slip = Vec3::Zero(), shear = Vec3::Zero(), traction = Vec3::Zero();
-  double opening = 0, pressure = 0;
+  double opening = 0, gap = 0, pressure = 0;
   for (int c = 0; c < translations; ++c) {
     const int row = surface.first_row + c * interface.batch.points + point;
     const Vec3 axis = direction(interface, point, c);
@@ -102,6 +103,7 @@ void InterfaceFrames::add_point(const Surface& surface, const State& state, int 
     traction += stress * axis;
     if (c == translations - 1) {
       opening = state.opening[row];
+      gap = opening - surface.softness * std::max(state.force[row] / interface.area[point], 0.0);
       pressure = 0.0 - stress;
     } else {
       slip += state.opening[row] * axis;
@@ -112,7 +114,7 @@ void InterfaceFrames::add_point(const Surface& surface, const State& state, int 
   values.pressure.push_back(pressure);
   values.slip.insert(values.slip.end(), slip.begin(), slip.end());
   values.traction.insert(values.traction.end(), traction.begin(), traction.end());
-  values.status.push_back(status(surface, opening, pressure, shear.norm()));
+  values.status.push_back(status(surface, gap, pressure, shear.norm()));
 }
 
 InterfaceFrames::JointValues InterfaceFrames::at(const State& state) const {

@@ -104,7 +104,8 @@ std::string trust_sentence(const TrustAnswer& answer) {
       break;  // of the first interface
     }
   if (text.empty()) return "";
-  return text + (answer.dominant.empty() ? "." : fmt::format(". What moves most numbers most is the {}.", answer.dominant));
+  text += answer.dominant.empty() ? "." : fmt::format(". What moves most numbers most is the {}.", answer.dominant);
+  return text + " Only the ends of each range were computed: where uplift responds unsteadily, values between them may lie outside.";
 }
 
 }  // namespace uplift
