@@ -10,7 +10,7 @@ namespace uplift {
 namespace {
 
 constexpr double nothing = std::numeric_limits<double>::quiet_NaN();
-constexpr double least_share = 1e-3;     // of the static force: below it the place of the thrust has no meaning
+constexpr double least_share = 1e-3;    // of the static force: below it the place of the thrust has no meaning
 constexpr double largest_safety = 1e6;  // beyond it round-off is what drives
 
 /// std::hypot without its care for squares that overflow, which costs ten times as much.

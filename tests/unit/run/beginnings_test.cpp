@@ -133,7 +133,7 @@ step = 1e-3
 /// Tension below the strength stretches a joint by t/K_n and opens nothing; springs under the same load lift off.
 TEST(Gap, AJointThatHoldsTensionDoesNotUplift) {
   const auto pulled = [](const std::string& law) {
-    return run_of(built_of(block("footing = { body = \"b\", width = 4, points = 21 }\nlaw = " + law + "\n",
+    return run_of(built_of(block("footing = { body = \"b\", width = 4, points = 41 }\nlaw = " + law + "\n",
                                  "[[load]]\nnode = \"b\"\nmoment = 8e3\n[[stage]]\ntype = \"static\"\n",
                                  "[[support]]\nnode = \"b\"\nfixed = [\"ux\"]\n")));
   };
