@@ -19,6 +19,7 @@ namespace {
 
 constexpr Index columns_at_once = 16, snapshots_at_once = 320;
 constexpr Index most_rows = 200;    // more interface rows than this are loaded in random combinations
+constexpr Index beside = 10;        // coordinates beside the exact ones at least
 constexpr double load_weight = 10;  // of the answers to loads against those of the interface rows
 constexpr double longest = 3;       // s: of a march
 constexpr double decayed = 1e-6;    // share of the largest energy at which a march ends
@@ -119,6 +120,9 @@ class Trainer {
     if (!basis.why.empty()) return basis;
     const Matrix loose = unresisted_motions(model_, std::vector<char>(static_cast<std::size_t>(b_.rows()), 0));
     for (Index k = 0; k < loose.cols(); ++k) append(product_, loose.col(k), 1e-8, rigid_);
+    exact_ = with_static_answers(basis.why);
+    if (!basis.why.empty()) return basis;
+    weighted_ = product_.times(exact_);
     const Matrix rows = row_patterns();
     columns_ = rows.cols() + loads_.count();
     for (Index first = 0; first < rows.cols(); first += columns_at_once) {
@@ -130,23 +134,35 @@ class Trainer {
     basis.rigid = static_cast<int>(rigid_.cols());
     if (stopped_) basis.why = "interrupted";
     if (!basis.why.empty()) return basis;
-    all_.resize(model_.free(), rigid_.cols() + pod_.basis().cols());
-    all_ << rigid_, pod_.basis();
+    all_.resize(model_.free(), exact_.cols() + pod_.basis().cols());
+    all_ << exact_, pod_.basis();
     choose_size(basis);
     return basis;
   }
 
  private:
+  /// The loose motions, and the static answers to a force at every row of the interfaces: with them every row has its own flexibility,
+  /// however few coordinates follow. A loose part rests on its inertia at a tenth of the frequency of the basis. Too many rows, or too few
+  /// coordinates for them: the loose motions alone.
+  Matrix with_static_answers(std::string& why) const {
+    Matrix exact = rigid_;
+    if (b_.rows() == 0 || b_.rows() > most_rows) return exact;
+    const Factorisation made = solver_.factorise(model_.stiffness + (0.01 * w_ * w_) * model_.mass);
+    why = made.why;
+    if (made.factor == nullptr) return exact;
+    Matrix answers;
+    made.factor->solve(b_.transpose(), answers);
+    for (Index k = 0; k < answers.cols(); ++k) append(product_, answers.col(k), 1e-8, exact);
+    return options_.size == 0 || options_.size >= exact.cols() + beside ? exact : rigid_;
+  }
+
   Matrix row_patterns() const {
     if (b_.rows() <= most_rows) return b_.transpose();
     return b_.transpose() * signs(b_.rows(), most_rows);
   }
 
-  /// What is no motion of the loose parts.
-  Matrix without_rigid(const Matrix& x) const {
-    if (rigid_.cols() == 0) return x;
-    return x - rigid_ * (rigid_.transpose() * product_.times(x));
-  }
+  /// What the first exact vectors leave of x.
+  Matrix without(Index count, const Matrix& x) const { return x - exact_.leftCols(count) * (weighted_.leftCols(count).transpose() * x); }
 
   /// The answers to some loads, with the same energy on average as those of any others times the weight.
   void add(const LinearMarch::Load& load, Index columns, double weight) {
@@ -159,12 +175,14 @@ class Trainer {
       count = 0;
     };
     march_.start(columns);
-    double most = 0;
+    double most = 0, all = 0;
     for (long step = 1; march_.time() < longest; ++step) {
       march_.advance(load);
       if (step % snapshot_every != 0) continue;
       if (count + columns > snapshots_at_once) flush();
-      taken.middleCols(count, columns) = without_rigid(march_.displacement());
+      const Matrix& answer = march_.displacement();
+      all += answer.cwiseProduct(product_.times(answer)).sum();
+      taken.middleCols(count, columns) = without(exact_.cols(), answer);
       count += columns;
       if (march_.time() * options_.frequency <= 1) continue;
       const double energy = energy_now();
@@ -174,19 +192,20 @@ class Trainer {
     flush();
     done_ += columns;
     if (options_.go_on && !options_.go_on(static_cast<double>(done_) / static_cast<double>(columns_))) stopped_ = true;
-    const double size = own.values().norm();
-    if (size > 0) pod_.add(own.basis() * (weight * std::sqrt(static_cast<double>(columns)) / size * own.values()).asDiagonal());
+    const double size = own.values().norm();  // round-off where the exact vectors are the whole answer
+    if (size > dropped * std::sqrt(all))
+      pod_.add(own.basis() * (weight * std::sqrt(static_cast<double>(columns)) / size * own.values()).asDiagonal());
   }
 
   double energy_now() const {
-    const Matrix moving = without_rigid(march_.velocity());
+    const Matrix moving = without(rigid_.cols(), march_.velocity());
     return march_.displacement().cwiseProduct(model_.stiffness * march_.displacement()).sum() +
            moving.cwiseProduct(model_.mass * moving).sum();
   }
 
   /// Marches the sweep with the whole model, then with leading vectors of the basis until the openings and velocities agree.
   void choose_size(Basis& basis) {
-    const Index all = all_.cols(), least = std::min<Index>(all, rigid_.cols() + 10);
+    const Index all = all_.cols(), least = std::min(all, exact_.cols() + beside);
     const auto sweep = std::make_shared<const Sweep>(options_.frequency);
     const Loads loads(model_, sweep, step_, longest);
     const Matrix rows = b_.rows() > 0 ? Matrix(b_.transpose() * signs(b_.rows(), 3)) : Matrix(model_.free(), 0);
@@ -266,7 +285,7 @@ class Trainer {
   Sparse b_;
   std::shared_ptr<const TimeFunction> bell_;
   Loads loads_;
-  Matrix rigid_, all_;
+  Matrix rigid_, exact_, weighted_, all_;  // exact: the loose motions first; weighted: times the matrix of the product
   Pod pod_;
   Index columns_ = 0, done_ = 0;
   bool stopped_ = false;

@@ -8,9 +8,12 @@
 #include <algorithm>
 #include <cmath>
 #include <memory>
+#include <numbers>
 #include <random>
 #include <utility>
 
+#include "uplift/dynamics/bulk.h"
+#include "uplift/math/dense.h"
 #include "uplift/model/wave_functions.h"
 #include "uplift/reduction/projection.h"
 #include "uplift/session/steps.h"
@@ -265,6 +268,41 @@ TEST(ReducedCase, IsChosenByItsTransferErrorAndCloseToTheWholeModel) {
   ASSERT_TRUE(small);
   EXPECT_EQ(small->vectors.cols(), 3);
   EXPECT_GT(small->transfer_error, reduced->transfer_error);
+}
+
+// The ground moves the footing of this tower, which flies where the interface is open, with all of the tower: such an answer is a motion
+// of the basis already, and what round-off leaves of it must take no coordinate from the answers that deform the tower.
+TEST(ReducedCase, TakesNoCoordinatesForTheRoundOffOfRigidAnswers) {
+  const std::optional<ReducedModel> reduced = reduce_case(loaded(tower(12)), {.size = 20, .controls = 2}, {});
+  ASSERT_TRUE(reduced);
+  EXPECT_EQ(reduced->rigid, 3);
+  ASSERT_TRUE(reduced->controls);
+  EXPECT_LT(reduced->controls->opening, 1e-4);
+  EXPECT_LT(reduced->controls->moment, 1e-4);
+  EXPECT_LT(reduced->controls->history, 1e-4);
+}
+
+// Every row of an interface keeps its own flexibility, however few coordinates follow; here that of the block on its inertia at a tenth
+// of the frequency and of the soil under it.
+TEST(ReducedCase, KeepsTheFlexibilityOfEveryRow) {
+  const BuiltCase built = built_of(loaded(block_on_soil(3)));
+  const Model& model = built.model;
+  const Sparse b = stack_interfaces(model);
+  const double frequency = 25, slow = 0.2 * std::numbers::pi * frequency;
+  const Sparse a = model.stiffness + slow * slow * model.mass;
+  const auto flexibility = [](const Matrix& stiffness, const Matrix& rows) -> Matrix {
+    return rows * Cholesky(stiffness).solve(Matrix(rows.transpose()));
+  };
+  const Matrix whole = flexibility(a, b);
+  for (const int beside : {10, 25}) {
+    const int size = 6 + static_cast<int>(b.rows()) + beside;  // block and soil are loose
+    const std::optional<ReducedModel> reduced = reduce_case(loaded(block_on_soil(3)), {.frequency = frequency, .size = size}, {});
+    ASSERT_TRUE(reduced);
+    const Matrix& v = reduced->vectors;
+    ASSERT_EQ(v.cols(), size);
+    const Matrix part = flexibility(v.transpose() * (a * v), b * v);
+    EXPECT_LT((part - whole).cwiseAbs().maxCoeff(), 1e-9 * whole.cwiseAbs().maxCoeff()) << size;
+  }
 }
 
 TEST(ReducedModelFile, IsReadAsWrittenAndRefusedWithAnyBitFlippedOrCutAnywhere) {
