@@ -72,5 +72,10 @@ class Examples(unittest.TestCase):
         drift = of_the_program("07_pier_fragility")["numbers"]["max_drift"]["value"]
         self.assertIn(f"1.0 times the motion: drift {1e3 * drift:.1f} mm", printed("07_pier_fragility"))
 
+    def test_08_floor_spectra(self):
+        floors = of_the_program("08_floor_spectra", "runs")[0]["floor_spectra"]
+        zero_period = next(each for each in floors if each["name"] == "top, x")["zero_period_acceleration"]["value"]
+        self.assertIn(f"floor acceleration {abs(zero_period):.2f} m/s2", printed("08_floor_spectra"))
+
 
 unittest.main()

@@ -64,6 +64,7 @@ int reduce(const Options& options, const ReduceOptions& wanted) {
                  {"largest opening", fmt::format("{:.2g} %", 100 * errors->opening)},
                  {"largest base moment", fmt::format("{:.2g} %", 100 * errors->moment)},
                  {"openings over time", fmt::format("{:.2g} %", 100 * errors->history)},
+                 {"slips over time", errors->slip > 0 ? fmt::format("{:.2g} %", 100 * errors->slip) : "nothing slips"},
                  {"floor spectra", errors->floor_spectrum > 0 ? fmt::format("{:.2g} %", 100 * errors->floor_spectrum) : "none asked for"}});
     say(errors->statement());
   } else {

@@ -3,7 +3,7 @@
 
 namespace uplift {
 
-/// Proper orthogonal decomposition of many displacements, batch by batch (docs/theory/reduced_models.md, R6): what is kept of them are
+/// Proper orthogonal decomposition of many displacements, batch by batch (docs/theory/reduced_models.md, R7): what is kept of them are
 /// the leading left singular vectors of all that was added, orthonormal in the energy product, with their singular values.
 class Pod {
  public:

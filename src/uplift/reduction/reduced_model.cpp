@@ -24,7 +24,7 @@ void list_parts(Archive& archive, T& matrix) {
 
 template <class Archive, SameAs<ControlErrors> T>
 void list_parts(Archive& archive, T& c) {
-  archive(c.runs, c.different, c.opening, c.moment, c.history, c.floor_spectrum, c.least_scale, c.most_scale, c.motions);
+  archive(c.runs, c.different, c.opening, c.moment, c.history, c.slip, c.floor_spectrum, c.least_scale, c.most_scale, c.motions);
 }
 
 template <class Archive, SameAs<ReducedModel> T>
@@ -34,7 +34,7 @@ void list_parts(Archive& archive, T& r) {
 
 namespace {
 
-constexpr std::string_view magic = "uplift reduced model 1\n";
+constexpr std::string_view magic = "uplift reduced model 2\n";
 
 void add(const Sparse& matrix, std::string& bytes) {
   const auto put = [&](const auto& value) { bytes.append(reinterpret_cast<const char*>(&value), sizeof value); };
@@ -61,6 +61,7 @@ std::string ControlErrors::statement() const {
       "In {} control runs ({}, times a factor between {:.3g} and {:.3g}) the reduced model was off by at most {:.2g} % in the largest "
       "opening, {:.2g} % in the largest base moment, {:.2g} % in the openings over time",
       runs, motions, least_scale, most_scale, 100 * opening, 100 * moment, 100 * history);
+  if (slip > 0) text += fmt::format(", {:.2g} % in the slips over time", 100 * slip);
   if (floor_spectrum > 0) text += fmt::format(" and {:.2g} % in the broadened floor spectra", 100 * floor_spectrum);
   text += fmt::format("; each of these bounds the error of 95 % of the runs with motions drawn in this way, with a confidence of {:.3g} %.",
                       100 * confidence());

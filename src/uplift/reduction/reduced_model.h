@@ -14,6 +14,7 @@ struct ControlErrors {
   double opening = 0;         // of the largest opening
   double moment = 0;          // of the largest base moment
   double history = 0;         // of the openings of all points over time: 2-norm of the difference over that of the openings' change
+  double slip = 0;            // of the slips of all points over time, in the same way; 0 where nothing slips
   double floor_spectrum = 0;  // of the broadened floor spectra, at the worst frequency up to that of the basis; 0 without floors
   double least_scale = 0, most_scale = 0;  // what the motions were multiplied by, drawn between these
   std::string motions;                     // what was drawn

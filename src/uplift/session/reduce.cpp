@@ -75,12 +75,15 @@ void scale_motions(Model& model, double factor) {
 struct ControlRun {
   RunResult result;
   std::vector<Vector> openings;  // of all rows, at the beginning and after every step
+  std::vector<char> normal;      // whether a row is an opening, not a slip
   std::vector<FloorSpectra> floors;
 };
 
 ControlRun control_run(BuiltCase built, const ReducedModel* reduced, const Watch& watch) {
   ControlRun made;
   built.plan.frames = 0;
+  for (const Interface& interface : built.model.interfaces)
+    for (int row = 0; row < interface.rows(); ++row) made.normal.push_back(row >= interface.batch.normal());
   const Observe observe = [&](const Snapshot& at) {
     if (at.stepper != nullptr) made.openings.push_back(at.state.opening);
   };
@@ -101,13 +104,17 @@ void take(double& most, double full, double reduced) {
   if (full != 0) most = std::max(most, std::abs(std::abs(reduced) - std::abs(full)) / std::abs(full));
 }
 
-void take_history(const ControlRun& full, const ControlRun& reduced, ControlErrors& errors) {
+/// Openings over time, or slips.
+void take_history(double& most, const ControlRun& full, const ControlRun& reduced, bool normal) {
   double difference = 0, size = 0;
-  for (std::size_t i = 0; i < std::min(full.openings.size(), reduced.openings.size()); ++i) {
-    difference += (full.openings[i] - reduced.openings[i]).squaredNorm();
-    size += (full.openings[i] - full.openings.front()).squaredNorm();
-  }
-  if (size > 0) errors.history = std::max(errors.history, std::sqrt(difference / size));
+  for (std::size_t i = 0; i < std::min(full.openings.size(), reduced.openings.size()); ++i)
+    for (Index row = 0; row < full.openings[i].size(); ++row) {
+      if ((full.normal[static_cast<std::size_t>(row)] != 0) != normal) continue;
+      const double whole = full.openings[i][row];
+      difference += std::pow(whole - reduced.openings[i][row], 2);
+      size += std::pow(whole - full.openings.front()[row], 2);
+    }
+  if (size > 0) most = std::max(most, std::sqrt(difference / size));
 }
 
 void take_floors(const ControlRun& full, const ControlRun& reduced, double highest, ControlErrors& errors) {
@@ -153,7 +160,8 @@ ControlErrors control_errors(const LoadedCase& loaded, const ReducedModel& reduc
     }
     take(errors.opening, full.result.max_opening.value, other.result.max_opening.value);
     take(errors.moment, full.result.max_base_moment.value, other.result.max_base_moment.value);
-    take_history(full, other, errors);
+    take_history(errors.history, full, other, true);
+    take_history(errors.slip, full, other, false);
     take_floors(full, other, reduced.frequency, errors);
   }
   return errors;

@@ -261,6 +261,8 @@ TEST(ReducedCase, IsChosenByItsTransferErrorAndCloseToTheWholeModel) {
   EXPECT_LT(reduced->controls->opening, 0.01);
   EXPECT_LT(reduced->controls->moment, 0.02);
   EXPECT_LT(reduced->controls->history, 0.02);
+  EXPECT_GT(reduced->controls->slip, 0);
+  EXPECT_LT(reduced->controls->slip, 0.02);
   EXPECT_NEAR(reduced->controls->confidence(), 1 - 0.95 * 0.95 * 0.95, 1e-15);
 
   options.controls = 0, options.size = 3;
@@ -310,7 +312,7 @@ TEST(ReducedModelFile, IsReadAsWrittenAndRefusedWithAnyBitFlippedOrCutAnywhere) 
   written.version = "1", written.matrices = "ab", written.frequency = 25, written.energy_frequency = w, written.transfer_error = 1e-3;
   written.vectors = Matrix::Random(5, 3);
   written.controls.emplace();
-  written.controls->runs = 59, written.controls->opening = 0.01;
+  written.controls->runs = 59, written.controls->opening = 0.01, written.controls->slip = 0.03;
   const std::string bytes = write_reduced_model(written);
   std::string why;
   const std::optional<ReducedModel> read = read_reduced_model(bytes, why);
@@ -319,6 +321,7 @@ TEST(ReducedModelFile, IsReadAsWrittenAndRefusedWithAnyBitFlippedOrCutAnywhere) 
   EXPECT_EQ(read->matrices, "ab");
   ASSERT_TRUE(read->controls);
   EXPECT_EQ(read->controls->opening, 0.01);
+  EXPECT_EQ(read->controls->slip, 0.03);
   EXPECT_NEAR(read->controls->confidence(), 0.9515, 5e-5);  // Wilks
   std::mt19937 random(1);
   std::uniform_int_distribution<std::size_t> any_byte(0, bytes.size() - 1);

@@ -171,6 +171,7 @@ void write_reduced(ResultWriter& out, const Provenance& from) {
       out.number("opening", errors.opening, "1", "error of the largest opening");
       out.number("moment", errors.moment, "1", "error of the largest base moment");
       out.number("history", errors.history, "1", "error of the openings over time, 2-norm");
+      out.number("slip", errors.slip, "1", "error of the slips over time, 2-norm; 0: nothing slips");
       out.number("floor_spectrum", errors.floor_spectrum, "1", "error of the broadened floor spectra; 0: none were asked for");
     });
   });
