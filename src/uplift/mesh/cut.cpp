@@ -30,8 +30,9 @@ class OneCut {
   void find_neighbours();
   void refuse_bond(CellId id, bool below) const;
   int sign(int node) const { return filling_.sign(node); }
-  int lower_node(int node) const { return sign(node) > 0 && double_[at(node)] >= 0 ? double_[at(node)] : node; }
-  int upper_node(int node) const { return sign(node) <= 0 && double_[at(node)] >= 0 ? double_[at(node)] : node; }
+  bool keeps(int node, bool upper) const { return double_[at(node)] < 0 || upper == (sign(node) > 0 && !beyond_[at(node)]); }
+  int lower_node(int node) const { return keeps(node, false) ? node : double_[at(node)]; }
+  int upper_node(int node) const { return keeps(node, true) ? node : double_[at(node)]; }
   MadeCells write_cell(CellId id, const Halves& halves);
   void rename(CellId id, bool upper);
   void add_own_doubles(const MadeCells& made);
@@ -47,19 +48,24 @@ class OneCut {
   const CutPlane& plane_;
   const Where& where_;
   const CutFilling filling_;
-  const Sides& sides_;                 // of the cells of the groups `through`
+  const Sides& sides_;                 // of the cells of the groups `through` in the extent
+  const Sides sides_beyond_;           // of those beyond it
   const std::vector<Halves>& halves_;  // of each of sides_.cells(), as made_
   std::vector<MadeCells> made_;
   std::vector<std::pair<CellId, bool>> neighbours_;  // other cells at doubled nodes, and whether they are of the upper side
   std::map<CellId, MadeCells> made_small_;           // of lower dimension
   std::vector<bool> below_, above_;                  // nodes of lower and of upper parts
+  std::vector<bool> beyond_;                         // nodes of cells beyond the extent: the lower side keeps them
   std::vector<int> double_;
 };
 
 void OneCut::find_doubles() {
   below_.assign(mesh_.nodes.size(), false);
   above_.assign(mesh_.nodes.size(), false);
+  beyond_.assign(mesh_.nodes.size(), false);
   double_.assign(mesh_.nodes.size(), -1);
+  for (const CellId id : filling_.beyond())
+    for (const int node : mesh_.cell(id)) beyond_[at(node)] = true;
   if (plane_.own_doubles) {
     for (const CellId id : sides_.cells())
       if (std::ranges::any_of(mesh_.cell(id), [&](int node) { return sign(node) == 0; }))
@@ -74,7 +80,7 @@ void OneCut::find_doubles() {
     }
   const std::size_t count = mesh_.nodes.size();
   for (std::size_t node = 0; node < count; ++node)
-    if (below_[node] && above_[node]) {
+    if ((below_[node] || beyond_[node]) && above_[node]) {
       double_[node] = static_cast<int>(mesh_.nodes.size());
       mesh_.nodes.push_back(Vec3(mesh_.nodes[node]));
     }
@@ -104,7 +110,7 @@ void OneCut::find_neighbours() {
   for (int b = 0; b < static_cast<int>(mesh_.blocks.size()); ++b) {
     if (info(mesh_.blocks[at(b)].cell).dimension != mesh_.dimension) continue;
     for (int i = 0; i < mesh_.blocks[at(b)].count(); ++i) {
-      if (filling_.number({b, i}) >= 0 || removed_[at(b)][at(i)]) continue;
+      if (filling_.number({b, i}) >= 0 || filling_.is_beyond({b, i}) || removed_[at(b)][at(i)]) continue;
       const CellId id{b, i};
       const auto any = [&](auto&& wanted) { return std::ranges::any_of(mesh_.cell(id), wanted); };
       const bool below = any([&](int node) { return sign(node) < 0; });
@@ -129,6 +135,7 @@ OneCut::OneCut(CutWork& work, const CutPlane& plane, const Where& where)
       where_(where),
       filling_(work, plane, where),
       sides_(filling_.sides()),
+      sides_beyond_(mesh_, filling_.beyond()),
       halves_(filling_.halves()) {
   find_doubles();
   find_neighbours();
@@ -196,9 +203,10 @@ void OneCut::write_small(CellId id) {
   const bool below = std::ranges::any_of(nodes, [&](int node) { return sign(node) < 0; });
   const bool above = std::ranges::any_of(nodes, [&](int node) { return sign(node) > 0; });
   const bool may_be_face = info(mesh_.type(id)).dimension == mesh_.dimension - 1 && mesh_.dimension > 1 && !work_.lines.contains(id);
+  if (may_be_face && sides_beyond_.find(mesh_.type(id), nodes) >= 0) return;
   const int side = may_be_face ? sides_.find(mesh_.type(id), nodes) : -1, twin = side < 0 ? -1 : sides_.twin(side);
   if (side < 0) {
-    if (!below) rename(id, true);
+    if (!below && std::ranges::any_of(nodes, [&](int node) { return !beyond_[at(node)]; })) rename(id, true);
     return;
   }
   const Halves &one = halves_[at(side / Sides::stride)], &other = twin < 0 ? one : halves_[at(twin / Sides::stride)];

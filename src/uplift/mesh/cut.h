@@ -22,7 +22,10 @@ struct CutPlane {
   std::vector<std::string> through;         // groups of cells that it cuts
   HalfSpace below;                          // the lower side; its normal points from the lower to the upper side
   std::vector<CutOutline> outlines = {{}};  // at least one; what lies above the plane and outside of all of them is not filled
-  bool own_doubles = false;                 // each cut cell has doubles that no other one knows, and groups have none: see jump_equations
+  // The plane cuts the cells within all of these alone; empty: all. Cells beyond are ground that stays as it is: above the plane it ends in
+  // walls, from which the structure parts.
+  std::vector<HalfSpace> extent = {};
+  bool own_doubles = false;  // each cut cell has doubles that no other one knows, and groups have none: see jump_equations
 };
 
 /// The part of a plane that one cell, or two cells with a face on the plane, have in common.
@@ -40,10 +43,11 @@ struct CutFace {
 ///   `split`.
 /// - Faces (edges in the plane) of groups are cut and removed with their cells; a group of nodes that has a node gets its double too.
 ///   Cells of lower dimension (beams, points) on the plane go with the upper side.
+/// - The limits of an extent run along faces of cells wherever these reach above the plane.
 /// Throws InputError: a group absent (with the nearest name) or of something else, cut cells of the second degree, a cell that two planes
-/// cut or two outlines share, a node on a plane whose cells have doubles of their own, a plane that cuts nothing, cells of other groups
-/// that meet those of `through` in the plane or stand on what is not filled. The mesh is unchanged then. `lines`: groups of cells of lower
-/// dimension that are no faces, as beams; absent ones count as empty.
+/// cut or two outlines share, or that a limit of an extent crosses, a node on a plane whose cells have doubles of their own, a plane that
+/// cuts nothing, cells of other groups that meet those of `through` in the plane or stand on what is not filled. The mesh is unchanged
+/// then. `lines`: groups of cells of lower dimension that are no faces, as beams; absent ones count as empty.
 std::vector<std::vector<CutFace>> cut(Mesh& mesh, const std::vector<CutPlane>& planes, const std::vector<Where>& where,
                                       const std::vector<std::string>& lines = {});
 

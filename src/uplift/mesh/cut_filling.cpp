@@ -41,7 +41,7 @@ CutFilling::CutFilling(const CutWork& work, const CutPlane& plane, const Where& 
 }
 
 std::vector<CellId> CutFilling::cells_of_groups() {
-  for (const CellBlock& block : mesh_.blocks) number_.emplace_back(at(block.count()), -1);
+  for (const CellBlock& block : mesh_.blocks) number_.emplace_back(at(block.count()), no_number);
   for (const std::string& name : plane_.through) {
     const auto group = mesh_.groups.find(name);
     if (group == mesh_.groups.end()) throw absent_group(mesh_, name, where_, "", "the cells that the plane cuts");
@@ -55,10 +55,30 @@ std::vector<CellId> CutFilling::cells_of_groups() {
     for (int i = 0; i < mesh_.blocks[at(b)].count(); ++i) {
       int& number = number_[at(b)][at(i)];
       if (number < 0 || work_.removed[at(b)][at(i)]) continue;
+      if (!is_in_extent({b, i})) {
+        number = beyond_extent;
+        beyond_.push_back({b, i});
+        continue;
+      }
       number = static_cast<int>(cells.size());
       cells.push_back({b, i});
     }
   return cells;
+}
+
+/// A cell belongs where its centre is. What is below the plane may reach across the limits: there the ground goes on.
+bool CutFilling::is_in_extent(CellId id) const {
+  std::vector<Vec3> corners;
+  Vec3 centre = Vec3::Zero();
+  for (const int node : mesh_.cell(id)) corners.push_back(mesh_.nodes[at(node)]), centre += corners.back();
+  centre /= static_cast<double>(corners.size());
+  const double tolerance = 1e-6 * (corners.front() - centre).norm();
+  for (const HalfSpace& space : plane_.extent)
+    if (side_of_cell(space, corners, tolerance) == PlaneSide::both && side_of_cell(plane_.below, corners, tolerance) != PlaneSide::inside)
+      throw InputError(
+          where_, "", "limits of the ground of this level along faces of cells",
+          fmt::format("one through the {} at ({:g}, {:g}, {:g})", info(mesh_.type(id)).name, centre.x(), centre.y(), centre.z()));
+  return std::ranges::all_of(plane_.extent, [&](const HalfSpace& space) { return space.distance(centre) <= 0; });
 }
 
 CellBefore CutFilling::before(CellId id) const {
@@ -178,9 +198,12 @@ void CutFilling::refuse_nothing() const {
       least = std::min(least, plane_.below.distance(mesh_.nodes[at(node)]));
       most = std::max(most, plane_.below.distance(mesh_.nodes[at(node)]));
     }
+  std::string outlined;
+  if (!plane_.outlines.front().within.empty())
+    outlined = ", and what lies above must lie within the outline; bases at several levels need `ground_x` or `ground_y` each";
   throw InputError(where_, "", "a plane with cells of the groups on both sides",
-                   fmt::format("none: they reach from {:g} m to {:g} m above it{}", least, most,
-                               !plane_.outlines.front().within.empty() ? ", and what lies above must lie within the outline" : ""));
+                   sides_.cells().empty() ? "no cells between the limits of its ground"
+                                          : fmt::format("none: they reach from {:g} m to {:g} m above it{}", least, most, outlined));
 }
 
 }  // namespace uplift

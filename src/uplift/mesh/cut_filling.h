@@ -42,8 +42,11 @@ class CutFilling {
   /// The cells of the groups that are cut, and what is filled of each.
   const Sides& sides() const { return sides_; }
   const std::vector<Halves>& halves() const { return halves_; }
-  /// Of a cell of the mesh: its number in sides().cells(), -1 for none.
+  /// Of a cell of the mesh: its number in sides().cells(), less than 0 for none.
   int number(CellId id) const { return number_[static_cast<std::size_t>(id.block)][static_cast<std::size_t>(id.index)]; }
+  /// Cells of the groups beyond the extent of the plane.
+  const std::vector<CellId>& beyond() const { return beyond_; }
+  bool is_beyond(CellId id) const { return number(id) == beyond_extent; }
   /// Of a node: below the plane -1, on it 0, above it 1.
   int sign(int node) const { return sign_[static_cast<std::size_t>(node)]; }
   /// Whether a node lies within an outline, on its border included.
@@ -65,7 +68,9 @@ class CutFilling {
   void keep_within(const CellBefore& cell, Halves& halves) const;
 
  private:
+  static constexpr int no_number = -1, beyond_extent = -2;
   std::vector<CellId> cells_of_groups();
+  bool is_in_extent(CellId id) const;
   void find_signs();
   Halves halves_of(CellId id) const;
   Halves halves_of_part(CellId id) const;
@@ -77,6 +82,7 @@ class CutFilling {
   const CutPlane& plane_;
   const Where& where_;
   std::vector<std::vector<int>> number_;
+  std::vector<CellId> beyond_;
   Sides sides_;
   std::vector<Halves> halves_;
   std::vector<signed char> sign_;

@@ -191,16 +191,23 @@ TEST(Cut, SliversAreRightOrSnapped) {
 }
 
 TEST(Cut, TwoPlanesAtDifferentPlaces) {
-  Mesh mesh = rectangle(lines(8), lines(8));
-  const auto faces =
-      cut(mesh, {{{"volume"}, {Vec3::UnitY(), 0.3}, {{{}, "middle"}}}, {{"middle"}, {Vec3::UnitY(), 0.7}, {{{}, "upper"}}}}, {{}, {}});
-  EXPECT_NEAR(content(mesh, "volume").volume, 0.3, 1e-14);
-  EXPECT_NEAR(content(mesh, "middle").volume, 0.4, 1e-14);
-  EXPECT_NEAR(content(mesh, "upper").volume, 0.3, 1e-14);
-  for (const std::vector<CutFace>& of_plane : faces)
-    for (const CutFace& face : of_plane) {
-      EXPECT_TRUE(mesh.part(face.lower));
-      EXPECT_TRUE(mesh.part(face.upper));
+  for (const Cell cell : {Cell::tri3, Cell::quad4, Cell::tet4, Cell::wedge6, Cell::hex8})
+    for (const double second : {0.7, 0.45}) {  // in rows of 1/8: apart from the first, and next to it
+      const int d = info(cell).dimension;
+      Mesh mesh = d == 2 ? unit_mesh(cell, 8) : box(lines(2), lines(2), lines(8), cell);
+      const Vec3 up = d == 2 ? Vec3::UnitY() : Vec3::UnitZ();
+      const auto faces = cut(mesh, {{{"volume"}, {up, 0.3}, {{{}, "middle"}}}, {{"middle"}, {up, second}, {{{}, "upper"}}}}, {{}, {}});
+      EXPECT_NEAR(content(mesh, "volume").volume, 0.3, 1e-13);
+      EXPECT_NEAR(content(mesh, "middle").volume, second - 0.3, 1e-13);
+      EXPECT_NEAR(content(mesh, "upper").volume, 1 - second, 1e-13);
+      EXPECT_EQ(connected_pieces(mesh).count(), 3) << info(cell).name << second;
+      for (const std::vector<CutFace>& of_plane : faces) {
+        EXPECT_NEAR(area_of(of_plane, d), 1, 1e-13);
+        for (const CutFace& face : of_plane) {
+          EXPECT_TRUE(mesh.part(face.lower));
+          EXPECT_TRUE(mesh.part(face.upper));
+        }
+      }
     }
 }
 
@@ -222,6 +229,60 @@ TEST(Cut, TwoOutlinesOnOnePlane) {
     EXPECT_NEAR(content(mesh, "first").volume, 0.22 * 0.7, 1e-13) << info(cell).name;
     EXPECT_NEAR(content(mesh, "second").volume, 0.35 * 0.5, 1e-13) << info(cell).name;
   }
+}
+
+/// Ground whose surface is at 0.3 up to x = 0.5 and at `high` beyond, each with a structure on it; that of the lower one reaches to `wall`.
+std::vector<CutPlane> terraces(const Vec3& up, double high, double wall) {
+  const HalfSpace left{Vec3::UnitX(), 0.5}, right{-Vec3::UnitX(), -0.5};
+  const auto between = [&](double from, double to) { return std::vector<HalfSpace>{{-Vec3::UnitX(), -from}, {Vec3::UnitX(), to}}; };
+  return {{.through = {"volume"}, .below = {up, 0.3}, .outlines = {{between(0.07, wall), "low"}}, .extent = {left}},
+          {.through = {"volume"}, .below = {up, high}, .outlines = {{between(0.61, 0.93), "high"}}, .extent = {right}}};
+}
+
+TEST(Cut, GroundWithTwoLevels) {
+  // 0.30, 0.31 lie in one row of cells of 1/8, 0.30 and 0.45 in neighbouring ones; 0.25 and 0.5 are levels of nodes
+  for (const Cell cell : {Cell::tri3, Cell::quad4, Cell::tet4, Cell::wedge6, Cell::hex8})
+    for (const double high : {0.31, 0.45, 0.5, 0.71})
+      for (const double wall : {0.32, 0.46, 0.5}) {  // a cell away, less than one, at the wall
+        const int d = info(cell).dimension;
+        Mesh mesh = d == 2 ? unit_mesh(cell, 8) : box(lines(8), lines(2), lines(8), cell);
+        const auto faces = cut(mesh, terraces(d == 2 ? Vec3::UnitY() : Vec3::UnitZ(), high, wall), {{}, {}});
+        check_mesh(mesh, {});
+        EXPECT_NEAR(content(mesh, "volume").volume, 0.15 + high / 2, 1e-12) << info(cell).name << high << wall;
+        EXPECT_NEAR(content(mesh, "low").volume, (wall - 0.07) * 0.7, 1e-12) << info(cell).name << high << wall;
+        EXPECT_NEAR(content(mesh, "high").volume, 0.32 * (1 - high), 1e-12) << info(cell).name << high << wall;
+        EXPECT_NEAR(area_of(faces[0], d), wall - 0.07, 1e-12);
+        EXPECT_NEAR(area_of(faces[1], d), 0.32, 1e-12);
+        EXPECT_EQ(connected_pieces(mesh).count(), 3) << info(cell).name << high << wall;  // the ground and both structures
+      }
+}
+
+TEST(Cut, FacesOfAWallStayWithTheGround) {
+  // 8 x 8 squares; a group of the faces at x = 0.5 from 0.25 up
+  Mesh mesh = rectangle(lines(8), lines(8));
+  Group& wall = mesh.groups["wall"];
+  wall.dimension = 1;
+  CellBlock& edges = mesh.block(Cell::line2);
+  for (int j = 2; j < 8; ++j) {
+    wall.cells.push_back({mesh.find_block(Cell::line2), edges.count()});
+    edges.nodes.insert(edges.nodes.end(), {j * 9 + 4, (j + 1) * 9 + 4});
+  }
+  cut(mesh, terraces(Vec3::UnitY(), 0.71, 0.5), {{}, {}});
+  double least = 1, most = 0;
+  for (const CellId id : mesh.groups.at("wall").cells) {
+    EXPECT_GE(Sides(mesh, mesh.groups.at("volume").cells).find(Cell::line2, mesh.cell(id)), 0);
+    const CellRule rule = mesh.part(id) ? mesh.part(id)->rule : cell_rule(Cell::line2, 5);
+    for (const Vec3& point : rule.point) {
+      const double y =
+          cell_position(cell_shape(Cell::line2, point), std::vector<Vec3>{mesh.nodes[static_cast<std::size_t>(mesh.cell(id)[0])],
+                                                                          mesh.nodes[static_cast<std::size_t>(mesh.cell(id)[1])]})
+              .y();
+      least = std::min(least, y), most = std::max(most, y);
+    }
+  }
+  EXPECT_GT(least, 0.25);
+  EXPECT_LT(most, 0.71);
+  EXPECT_GT(most, 0.625);
 }
 
 TEST(Cut, KeepsTheNamesOfGroupsOfWhichNothingIsLeft) {
@@ -257,6 +318,16 @@ TEST(Cut, RefusesWithASentence) {
   CutPlane near = level(0.3);
   near.outlines = {{{{Vec3::UnitX(), 0.3}}, "one"}, {{{-Vec3::UnitX(), -0.4}}, "two"}};
   EXPECT_NE(refused(mesh, {near}).find("at least a cell apart, found two of them"), std::string::npos) << refused(mesh, {near});
+  const std::vector<CutPlane> levels = terraces(Vec3::UnitY(), 0.71, 0.32);
+  CutPlane crossed = levels[0], empty = levels[0];
+  crossed.extent[0].level = 0.6;
+  EXPECT_NE(refused(mesh, {crossed, levels[1]}).find("along faces of cells"), std::string::npos) << refused(mesh, {crossed, levels[1]});
+  empty.extent[0].level = -1;
+  EXPECT_NE(refused(mesh, {empty}).find("no cells between the limits"), std::string::npos) << refused(mesh, {empty});
+  CutPlane within_low = level(0.31);
+  within_low.through = {"low"};
+  within_low.outlines[0].upper = "top";
+  EXPECT_NE(refused(mesh, {levels[0], within_low}).find("same cell"), std::string::npos) << refused(mesh, {levels[0], within_low});
   CutPlane second{{"above"}, {Vec3::UnitY(), 0.31}, {{{}, "upper"}}};
   EXPECT_NE(refused(mesh, {level(0.3), second}).find("same cell"), std::string::npos);
 }

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <numeric>
 #include <set>
 
 #include "uplift/base/text.h"
@@ -14,7 +15,7 @@ namespace uplift {
 namespace {
 
 /// Least and largest coordinate along an axis as half-spaces.
-void add_outline(const Values& cut, const char* key, const Vec3& axis, std::vector<HalfSpace>& within) {
+void add_limits(const Values& cut, const char* key, const Vec3& axis, std::vector<HalfSpace>& within) {
   if (!cut.has(key)) return;
   const std::vector<double>& ends = cut.numbers(key);
   if (ends.size() != 2 || !(ends[0] < ends[1]))
@@ -38,13 +39,16 @@ CutPlane plane_of(const Values& cut, int dimension) {
   if (cut.has("upper")) outline.upper = cut.text("upper");
   if (std::ranges::find(plane.through, outline.upper) != plane.through.end())
     fail(cut, "upper", "another group than those of `through`, or none", in_quotes(outline.upper));
-  add_outline(cut, "x", Vec3::UnitX(), outline.within);
+  add_limits(cut, "x", Vec3::UnitX(), outline.within);
   if (dimension == 2 && cut.has("y")) fail(cut, "y", "no y in a plane mesh: height limits the outline", "one");
-  add_outline(cut, "y", Vec3::UnitY(), outline.within);
+  add_limits(cut, "y", Vec3::UnitY(), outline.within);
+  add_limits(cut, "ground_x", Vec3::UnitX(), plane.extent);
+  if (dimension == 2 && cut.has("ground_y")) fail(cut, "ground_y", "ground_x alone in a plane mesh", "one");
+  add_limits(cut, "ground_y", Vec3::UnitY(), plane.extent);
   if (cut.has("height")) outline.within.push_back({normal, level + cut.number("height")});
   plane.own_doubles = cut.text("jump") != "linear";
   if (plane.own_doubles && dimension == 3) fail(cut, "jump", "linear in space", in_quotes(cut.text("jump")));
-  if (plane.own_doubles && !outline.within.empty())
+  if (plane.own_doubles && !(outline.within.empty() && plane.extent.empty()))
     fail(cut, "jump", "linear, since the ground has a free surface beside the outline", in_quotes(cut.text("jump")));
   return plane;
 }
@@ -64,9 +68,24 @@ void shift_mesh(const Values& cut, const CutPlane& plane, const std::vector<std:
 bool is_same_plane(const CutPlane& one, const CutPlane& other) {
   const auto groups = [](const CutPlane& plane) { return std::set<std::string>(plane.through.begin(), plane.through.end()); };
   const double level = one.below.level;
-  return groups(one) == groups(other) && (one.below.normal - other.below.normal).norm() < 1e-12 &&
+  const auto same_limits = [](const HalfSpace& a, const HalfSpace& b) { return a.normal == b.normal && a.level == b.level; };
+  return groups(one) == groups(other) && std::ranges::equal(one.extent, other.extent, same_limits) &&
+         (one.below.normal - other.below.normal).norm() < 1e-12 &&
          std::abs(level - other.below.level) <= 1e-9 * std::max(1.0, std::abs(level)) && !one.outlines.front().within.empty() &&
          !other.outlines.front().within.empty();
+}
+
+/// Parallel planes from the lowest one on: what a lower plane leaves unfilled is no part of a structure on a higher one.
+void sort_by_level(std::vector<CutPlane>& planes, std::vector<std::vector<std::size_t>>& of) {
+  const Vec3 normal = planes.front().below.normal;
+  if (std::ranges::any_of(planes, [&](const CutPlane& plane) { return (plane.below.normal - normal).norm() > 1e-12; })) return;
+  std::vector<std::size_t> order(planes.size());
+  std::iota(order.begin(), order.end(), std::size_t{0});
+  std::ranges::stable_sort(order, {}, [&](std::size_t i) { return planes[i].below.level; });
+  std::vector<CutPlane> sorted;
+  std::vector<std::vector<std::size_t>> of_sorted;
+  for (const std::size_t i : order) sorted.push_back(std::move(planes[i])), of_sorted.push_back(std::move(of[i]));
+  planes = std::move(sorted), of = std::move(of_sorted);
 }
 
 /// In a triangle one node is alone on its side: the other side can turn about it without any strain.
@@ -109,6 +128,7 @@ void cut_planes(const Values& root, CaseMesh& made) {
       }
     }
   if (planes.empty()) return;
+  sort_by_level(planes, of);
   std::vector<std::string> lines;
   for (const Values* beam : element_tables(root, ElementPlace::lines))
     if (beam->has("group")) lines.push_back(beam->text("group"));

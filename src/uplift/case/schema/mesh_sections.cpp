@@ -118,6 +118,11 @@ const Section& cut_section() {
              vector("x", "m", "outline above the plane: least and largest x; absent: no limit").optional(),
              vector("y", "m", "in space: least and largest y of the outline; absent: no limit").optional(),
              number("height", "m", "height of the outline above the plane; absent: no limit").positive().optional(),
+             vector("ground_x", "m",
+                    "ground with bases at several levels: least and largest x of the part that has this one, along faces of cells; absent: "
+                    "all of the groups")
+                 .optional(),
+             vector("ground_y", "m", "in space: least and largest y of that part").optional(),
              choice("jump", {"linear", "constant", "rigid"},
                     "how the opening varies within a cell: linear, as the displacements, each side with strains of its own; constant or "
                     "rigid: the element-condensed form of the literature, one strain for both sides (plane meshes, to compare with it)")
