@@ -9,6 +9,7 @@ namespace uplift {
 namespace {
 
 constexpr int most_halvings = 6;  // of an increment whose return fails
+constexpr int never = most_halvings + 1;
 
 /// What a point remembers besides the plastic displacements.
 enum { memory_settlement, memory_slip, memory_dissipated, num_scalars };
@@ -54,8 +55,14 @@ struct MacroElement::Rows {
 class MacroElement::Path {
  public:
   Path(const MacroElement& law, bool average, const MacroVector& from, const MacroVector& to, const MacroVector& old_plastic,
-       const double (&old)[num_scalars])
-      : plastic(old_plastic), memory{old[0], old[1], old[2]}, law_(law), average_(average), from_(from), step_(to - from) {}
+       const double (&old)[num_scalars], int guesses_from)
+      : plastic(old_plastic),
+        memory{old[0], old[1], old[2]},
+        law_(&law),
+        average_(average),
+        guesses_from_(guesses_from),
+        from_(from),
+        step_(to - from) {}
 
   /// False when the return fails.
   bool go() { return go(0, 1, 0); }
@@ -70,8 +77,9 @@ class MacroElement::Path {
   void add_average(double a, double b, const MacroVector& before, const MacroMatrix& before_slope, const MacroElastic& at_before,
                    const MacroReturned& now, const MacroMatrix& now_slope, const MacroVector& yielded);
 
-  const MacroElement& law_;
+  const MacroElement* law_;
   bool average_;
+  int guesses_from_;  // the return tries every first guess after so many halvings
   MacroVector from_, step_;
   MacroMatrix plastic_slope_ = MacroMatrix::Zero();
   MacroVector settlement_slope_ = MacroVector::Zero();
@@ -80,7 +88,7 @@ class MacroElement::Path {
 /// The part of the path between the shares a and b; halved where the return fails.
 bool MacroElement::Path::go(double a, double b, int depth) {
   const MacroVector before = from_ + a * step_ - plastic, trial = from_ + b * step_ - plastic;
-  const MacroReturned now = macro_return(law_.uplift_, law_.surfaces_, trial, memory[memory_settlement]);
+  const MacroReturned now = macro_return(law_->uplift_, law_->surfaces_, trial, memory[memory_settlement], depth >= guesses_from_);
   if (!now.converged) {
     const double middle = 0.5 * (a + b);
     return depth < most_halvings && go(a, middle, depth + 1) && go(middle, b, depth + 1);
@@ -89,7 +97,7 @@ bool MacroElement::Path::go(double a, double b, int depth) {
     go_elastically(before, now);
     return true;
   }
-  const MacroElastic at_before = law_.uplift_.respond(before, false);
+  const MacroElastic at_before = law_->uplift_.respond(before, false);
   const MacroMatrix one = MacroMatrix::Identity(), before_slope = a * one - plastic_slope_;
   const MacroMatrix now_slope = now.by_trial * (b * one - plastic_slope_) + now.by_settlement * settlement_slope_.transpose();
   const MacroVector yielded = trial - now.elastic;  // with the shear that a footing without contact forgets
@@ -114,7 +122,7 @@ void MacroElement::Path::go_elastically(const MacroVector& before, const MacroRe
   end = now.at.force;
   end_slope = now.at.stiffness;
   if (!average_) return;
-  const MacroUplift::Average average = law_.uplift_.average(before, law_.uplift_.respond(before, false), now.elastic, now.at, false);
+  const MacroUplift::Average average = law_->uplift_.average(before, law_->uplift_.respond(before, false), now.elastic, now.at, false);
   mean = average.force;
   mean_slope = average.by_to;
 }
@@ -124,11 +132,11 @@ void MacroElement::Path::go_elastically(const MacroVector& before, const MacroRe
 void MacroElement::Path::add_average(double a, double b, const MacroVector& before, const MacroMatrix& before_slope,
                                      const MacroElastic& at_before, const MacroReturned& now, const MacroMatrix& now_slope,
                                      const MacroVector& yielded) {
-  MacroUplift::Average average = law_.uplift_.average(before, at_before, now.elastic, now.at);
+  MacroUplift::Average average = law_->uplift_.average(before, at_before, now.elastic, now.at);
   MacroMatrix slope = average.by_from * before_slope + average.by_to * now_slope;
   const double share = b - a;
   const double dissipated = average.force.dot(yielded);
-  const MacroVector scaled = law_.uplift_.stiffness().cwiseProduct(share * step_);
+  const MacroVector scaled = law_->uplift_.stiffness().cwiseProduct(share * step_);
   const double square = scaled.dot(share * step_);
   if (dissipated < 0 && square > 0) {
     const MacroMatrix yielded_slope = (b * MacroMatrix::Identity() - now_slope) - plastic_slope_;
@@ -137,7 +145,7 @@ void MacroElement::Path::add_average(double a, double b, const MacroVector& befo
         -(slope.transpose() * yielded + yielded_slope.transpose() * average.force + 2 * raise * share * scaled) / square;
     average.force += raise * scaled;
     slope += scaled * by_to.transpose();
-    slope.diagonal() += raise * share * law_.uplift_.stiffness();
+    slope.diagonal() += raise * share * law_->uplift_.stiffness();
   } else {
     memory[memory_dissipated] += dissipated;
   }
@@ -159,10 +167,13 @@ void MacroElement::advance(bool average, const Batch& batch, const double* from,
     const Rows rows(n, i, batch.components);
     double scalars[num_scalars];
     for (int k = 0; k < num_scalars; ++k) scalars[k] = old[(rows.count + k) * n + i];
-    Path path(*this, average, rows.get(from), rows.get(to), rows.get(old), scalars);
-    if (!path.go()) {
-      path.plastic = rows.get(old);
-      for (int k = 0; k < num_scalars; ++k) path.memory[k] = scalars[k];
+    const auto start = [&](int guesses_from) {
+      return Path(*this, average, rows.get(from), rows.get(to), rows.get(old), scalars, guesses_from);
+    };
+    // guesses that help only sometimes come last: else round-off decides how often an increment is halved
+    Path path = start(never);
+    if (!path.go() && !(path = start(most_halvings)).go()) {
+      path = start(never);
       path.mean.setConstant(std::numeric_limits<double>::quiet_NaN());
       path.end = path.mean;
     }

@@ -17,6 +17,8 @@ struct MacroReturned {
 /// Solves, with the accumulated plastic settlement p [m] at the beginning,
 ///     e + lambda_2 n_2 + lambda_1 n_1 = e_trial,   f_i <= 0,  lambda_i >= 0,  lambda_i f_i = 0,   V = V(p + |e_trial,w - e_w|)
 /// A footing without contact forgets its shear: e_u = 0 then. Not converged: the increment is to be cut.
-MacroReturned macro_return(const MacroUplift& uplift, const MacroSurfaces& surfaces, const MacroVector& trial, double settlement);
+/// `every_guess`: also first guesses that help only sometimes, so that round-off decides whether the increment is cut.
+MacroReturned macro_return(const MacroUplift& uplift, const MacroSurfaces& surfaces, const MacroVector& trial, double settlement,
+                           bool every_guess);
 
 }  // namespace uplift
