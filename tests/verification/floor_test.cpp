@@ -207,7 +207,7 @@ TEST(FloorSpectrum, RelativeFrameIsAbsoluteFrame) {
     Column relative, absolute;
     absolute.absolute = true;
     const Answer a = run_floors(relative.text(), bonded, false), b = run_floors(absolute.text(), bonded, false);
-    VERIFY_GT("uplifted share (the case uplifts)", "1", a.result.max_uplifted_ratio.value, 0.2);
+    if (!bonded) VERIFY_GT("uplifted share (the case uplifts)", "1", a.result.max_uplifted_ratio.value, 0.2);
     for (const std::size_t floor : {0, 1}) {
       const std::vector<double>&one = a.result.floors[floor].acceleration, &other = b.result.floors[floor].acceleration;
       VERIFY_GT("largest acceleration", "m/s2", largest(one), 4);

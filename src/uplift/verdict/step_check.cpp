@@ -116,7 +116,6 @@ using Instant = StepRecord::Instant;
 using OfInstant = double (*)(const Instant&);
 constexpr std::pair<std::string_view, OfInstant> forces_of_a_base[] = {
     {"max_moment", [](const Instant& now) { return std::sqrt(now.moment_1 * now.moment_1 + now.moment_2 * now.moment_2); }},
-    {"max_shear", [](const Instant& now) { return std::sqrt(now.shear_1 * now.shear_1 + now.shear_2 * now.shear_2); }},
     {"max_compression", [](const Instant& now) { return -now.axial; }},
     {"max_toe_pressure", [](const Instant& now) { return now.pressure; }}};
 

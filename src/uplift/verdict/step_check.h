@@ -62,7 +62,7 @@ StepCheck check_step(const BuiltCase& built, const RunResult& run, const FloorRu
                      VerdictNumbers& numbers);
 /// The comparison alone: fills the rest of a check whose steps are known.
 void compare_steps(VerdictNumbers& numbers, const VerdictNumbers& coarse, StepCheck& check);
-/// The peaks of moment, shear, compression and pressure of every base in twentieths of the time. One that the other run reaches a tenth of
+/// The peaks of moment, compression and pressure of every base in twentieths of the time. One that the other run reaches a tenth of
 /// a part earlier or later, in the part beside it, counts as reached. `numbers`: of the run; its bases come first.
 void compare_parts(const StepRecord& steps, const StepRecord& coarse, const VerdictNumbers& numbers, StepCheck& check);
 /// The same for the spectra of floors, in the same order.

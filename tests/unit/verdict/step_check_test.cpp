@@ -140,18 +140,6 @@ StepCheck parts_compared(const StepRecord& fine, const StepRecord& coarse) {
   return check;
 }
 
-/// The same with the shear, of which the sliding safety is made.
-TEST(StepCheck, PeaksOfTheShearCountToo) {
-  StepRecord fine = two_peaks(1e-3, 3.2, 2e6, 7.2, 1.5e6), coarse = two_peaks(2e-3, 3.2, 1.9e6, 7.2, 2e6);
-  for (StepRecord* steps : {&fine, &coarse})
-    for (StepRecord::Instant& now : steps->instants) now.shear_1 = 0.6 * now.axial, now.shear_2 = 0.8 * now.axial, now.axial = 0;
-  VerdictNumbers numbers = numbers_with({number("max_shear", 2e6)});
-  StepCheck check = compared(numbers, numbers_with({number("max_shear", 2e6)}));
-  compare_parts(fine, coarse, numbers, check);
-  EXPECT_EQ(check.state, StepCheck::State::not_converged);
-  EXPECT_NEAR(check.part.change, 0.25, 1e-6);
-}
-
 /// A scheme that damps what it does not resolve gives two steps the same wrong peak.
 TEST(StepCheck, LostEnergyIsNotConverged) {
   StepCheck check;
