@@ -120,8 +120,7 @@ class Trainer {
     if (!basis.why.empty()) return basis;
     const Matrix loose = unresisted_motions(model_, std::vector<char>(static_cast<std::size_t>(b_.rows()), 0));
     for (Index k = 0; k < loose.cols(); ++k) append(product_, loose.col(k), 1e-8, rigid_);
-    exact_ = with_static_answers(basis.why);
-    if (!basis.why.empty()) return basis;
+    exact_ = with_static_answers();
     weighted_ = product_.times(exact_);
     const Matrix rows = row_patterns();
     columns_ = rows.cols() + loads_.count();
@@ -144,12 +143,11 @@ class Trainer {
   /// The loose motions, and the static answers to a force at every row of the interfaces: with them every row has its own flexibility,
   /// however few coordinates follow. A loose part rests on its inertia at a tenth of the frequency of the basis. Too many rows, or too few
   /// coordinates for them: the loose motions alone.
-  Matrix with_static_answers(std::string& why) const {
+  Matrix with_static_answers() const {
     Matrix exact = rigid_;
     if (b_.rows() == 0 || b_.rows() > most_rows) return exact;
     const Factorisation made = solver_.factorise(model_.stiffness + (0.01 * w_ * w_) * model_.mass);
-    why = made.why;
-    if (made.factor == nullptr) return exact;
+    if (made.factor == nullptr) return exact;  // an unknown that a dashpot alone holds
     Matrix answers;
     made.factor->solve(b_.transpose(), answers);
     for (Index k = 0; k < answers.cols(); ++k) append(product_, answers.col(k), 1e-8, exact);

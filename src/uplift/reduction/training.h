@@ -13,7 +13,7 @@ struct TrainingOptions {
   double frequency = 25;                         // Hz: the basis represents motions up to about this frequency; the bells last its period
   int size = 0;                                  // coordinates; 0: as many as the target asks for
   double target = 2e-4;                          // of the transfer error, where `size` is 0
-  int most = 300;                                // coordinates at most
+  int most = 300;                                // coordinates at most, beside the exact ones
   std::vector<int> floors = {};                  // full unknowns whose velocities the transfer error includes
   std::function<bool(double share)> go_on = {};  // told of the share that is done; false ends the training
 };
