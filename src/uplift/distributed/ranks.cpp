@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <chrono>
+#include <numeric>
 #include <thread>
 #include <utility>
 
@@ -113,17 +114,18 @@ void Ranks::serve() {
   }
 }
 
-Ranks::Made Ranks::make(const Sparse& matrix, const std::string& options) {
+Ranks::Made Ranks::make(const Sparse& matrix, const Vector& scale, const std::string& options) {
   const std::lock_guard lock(one_at_a_time_);
   HalfWay half_way(half_way_);
   const Order order{What::make, ++made_, matrix.rows(), 0, std::ssize(options)};
   tell(order);
-  Made made = make_together(order, &matrix, options);
+  const Scaled scaled{matrix, scale};
+  Made made = make_together(order, &scaled, options);
   half_way.done();
   return made;
 }
 
-Ranks::Made Ranks::make_together(const Order& order, const Sparse* matrix, std::string options) {
+Ranks::Made Ranks::make_together(const Order& order, const Scaled* matrix, std::string options) {
   Made made{order.system, {}, 0};
   const SolverOptions given(spread_text(order.letters, std::move(options)));
   auto system = std::make_unique<System>(ranks_);
@@ -208,44 +210,56 @@ std::string Ranks::spread_text(std::int64_t letters, std::string text) const {
   return text;
 }
 
-/// A column of a symmetric matrix is its row. `matrix`: on rank 0.
-LocalRows Ranks::spread_rows(PetscInt rows, const Sparse* matrix) const {
-  const Shares shares(rows, count_);
-  LocalRows local;
-  const auto place_for = [&local](std::size_t count, std::size_t entries) {
-    local.start.resize(count + 1);
-    local.column.resize(entries), local.value.resize(entries);
+/// Complete rows of the scaled matrix, from its upper triangle: an entry (i, j) is one of row j and, turned round, one of row i. Column
+/// after column, each row gets its entries from left to right.
+LocalRows Ranks::rows_of(const Scaled& matrix, Index first, Index count) {
+  const Sparse& upper = matrix.upper;
+  const auto each_entry = [&](const auto& take) {  // row from `first` on, column, value
+    for (Index j = first; j < upper.cols(); ++j)
+      for (Sparse::InnerIterator entry(upper, j); entry && entry.row() <= j; ++entry) {
+        const double value = matrix.scale[entry.row()] * entry.value() * matrix.scale[j];
+        if (j < first + count) take(j - first, entry.row(), value);
+        if (entry.row() < j && entry.row() >= first && entry.row() < first + count) take(entry.row() - first, j, value);
+      }
   };
+  LocalRows rows;
+  rows.start.assign(static_cast<std::size_t>(count) + 1, 0);
+  each_entry([&](Index row, Index, double) { ++rows.start[static_cast<std::size_t>(row) + 1]; });
+  std::partial_sum(rows.start.begin(), rows.start.end(), rows.start.begin());
+  rows.column.resize(static_cast<std::size_t>(rows.start.back()));
+  rows.value.resize(rows.column.size());
+  std::vector<PetscInt> next(rows.start.begin(), rows.start.end() - 1);
+  each_entry([&](Index row, Index column, double value) {
+    const auto place = static_cast<std::size_t>(next[static_cast<std::size_t>(row)]++);
+    rows.column[place] = static_cast<PetscInt>(column);
+    rows.value[place] = value;
+  });
+  return rows;
+}
+
+/// `matrix`: on rank 0, which makes the rows of one rank after another, its own ones last.
+LocalRows Ranks::spread_rows(PetscInt rows, const Scaled* matrix) const {
+  const Shares shares(rows, count_);
   if (matrix == nullptr) {
+    LocalRows local;
     std::int64_t entries = 0;
     receive(&entries, 1, MPI_INT64_T, ranks_);
-    place_for(static_cast<std::size_t>(shares.count(rank_)), static_cast<std::size_t>(entries));
+    local.start.resize(static_cast<std::size_t>(shares.count(rank_)) + 1);
+    local.column.resize(static_cast<std::size_t>(entries)), local.value.resize(static_cast<std::size_t>(entries));
     receive(local.start.data(), std::ssize(local.start), MPI_INT, ranks_);
     receive(local.column.data(), entries, MPI_INT, ranks_);
     receive(local.value.data(), entries, MPI_DOUBLE, ranks_);
     return local;
   }
-  std::vector<PetscInt> start;
-  for (int rank = count_ - 1; rank >= 0; --rank) {
-    const int* first = matrix->outerIndexPtr() + shares.first(rank);
-    const std::int64_t entries = first[shares.count(rank)] - *first;
-    start.assign(first, first + shares.count(rank) + 1);
-    for (PetscInt& place : start) place -= *first;
-    const int* columns = matrix->innerIndexPtr() + *first;
-    const double* values = matrix->valuePtr() + *first;
-    if (rank == 0) {
-      place_for(static_cast<std::size_t>(shares.count(0)), static_cast<std::size_t>(entries));
-      local.start = start;
-      std::copy_n(columns, entries, local.column.data());
-      std::copy_n(values, entries, local.value.data());
-      break;
-    }
+  for (int rank = count_ - 1; rank > 0; --rank) {
+    const LocalRows theirs = rows_of(*matrix, shares.first(rank), shares.count(rank));
+    const std::int64_t entries = std::ssize(theirs.column);
     send(&entries, 1, MPI_INT64_T, rank, ranks_);
-    send(start.data(), std::ssize(start), MPI_INT, rank, ranks_);
-    send(columns, entries, MPI_INT, rank, ranks_);
-    send(values, entries, MPI_DOUBLE, rank, ranks_);
+    send(theirs.start.data(), std::ssize(theirs.start), MPI_INT, rank, ranks_);
+    send(theirs.column.data(), entries, MPI_INT, rank, ranks_);
+    send(theirs.value.data(), entries, MPI_DOUBLE, rank, ranks_);
   }
-  return local;
+  return rows_of(*matrix, 0, shares.count(0));
 }
 
 void Ranks::release(std::int64_t system) {

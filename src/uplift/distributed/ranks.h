@@ -26,8 +26,8 @@ class Ranks {
     SystemOutcome outcome;
     double nonzeros = 0;
   };
-  /// Shares a matrix, both triangles of it, and prepares its solver.
-  Made make(const Sparse& matrix, const std::string& options);
+  /// Shares a symmetric matrix, of which the upper triangle is read, as S A S with the diagonal S, and prepares its solver.
+  Made make(const Sparse& matrix, const Vector& scale, const std::string& options);
   /// x = A^-1 b; x has the shape of b.
   SystemOutcome solve(std::int64_t system, const Matrix& b, Matrix& x);
   /// The options of which nothing is known to PETSc, or what is wrong with them, tried on a chain of springs; empty when all is well.
@@ -55,10 +55,15 @@ class Ranks {
   Ranks();
   void tell(const Order& order);
   Order hear() const;
-  Made make_together(const Order& order, const Sparse* matrix, std::string options);
+  struct Scaled {
+    const Sparse& upper;
+    const Vector& scale;
+  };
+  Made make_together(const Order& order, const Scaled* matrix, std::string options);
   SystemOutcome solve_together(const Order& order, const double* b, double* x);
   std::string refuse_together(const Order& order, std::string options);
-  LocalRows spread_rows(PetscInt rows, const Sparse* matrix) const;
+  LocalRows spread_rows(PetscInt rows, const Scaled* matrix) const;
+  static LocalRows rows_of(const Scaled& matrix, Index first, Index count);
   std::string spread_text(std::int64_t letters, std::string text) const;
 
   MPI_Comm ranks_ = PETSC_COMM_WORLD;

@@ -111,10 +111,7 @@ class PetscSolver final : public LinearSolver {
       if (!(scale[i] > 0)) return singular_at(static_cast<int>(i));
       scale[i] = 1 / std::sqrt(scale[i]);
     }
-    const Sparse upper = scale.asDiagonal() * Sparse(a.triangularView<upper_triangle>()) * scale.asDiagonal();
-    Sparse full = upper.selfadjointView<upper_triangle>();
-    full.makeCompressed();
-    Ranks::Made made = Ranks::all().make(full, options_);
+    Ranks::Made made = Ranks::all().make(a, scale, options_);
     if (!made.outcome.ok())
       return {.factor = nullptr, .failed_unknown = -1, .why = std::move(made.outcome.why), .too_large = made.outcome.too_large};
     return {.factor = std::make_unique<PetscFactor>(made.system, std::move(scale), made.nonzeros), .failed_unknown = -1, .why = {}};
@@ -131,6 +128,9 @@ class PetscSolver final : public LinearSolver {
             .failed_unknown = -1,
             .why = {}};
   }
+
+  /// None: it would be one more copy of both matrices on rank 0.
+  std::shared_ptr<const SymmetricPair> pair(const Sparse&, const Sparse&) const override { return nullptr; }
 
  private:
   std::string options_;

@@ -247,7 +247,7 @@ void Stepper::move_gap(double from, double to) {
 }
 
 void Stepper::products(const Vector& u, const Vector& v, Vector& ku, Vector& mv) const {
-  if (!bulk_.small) {
+  if (pair_ != nullptr) {
     pair_->multiply(u, v, ku, mv);
     return;
   }

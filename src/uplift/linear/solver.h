@@ -54,7 +54,8 @@ class LinearSolver {
   virtual SplitFactorisation factorise_split(const Sparse& a, const std::vector<int>& last) const;
   /// What either would take; `last` empty: in any order. A factor that does not fit into the memory that is left is refused by them, too.
   virtual FactorCost predict(const Sparse& a, const std::vector<int>& last) const;
-  /// Two symmetric matrices for common products. They must stay as they are as long as the pair exists.
+  /// Two symmetric matrices for common products; null: they are to be multiplied by themselves. They must stay as they are as long as the
+  /// pair exists.
   virtual std::shared_ptr<const SymmetricPair> pair(const Sparse& a, const Sparse& b) const;
   /// To be called before a matrix is assembled that will be factorised: the solver of one of several runs waits here (Lockstep).
   virtual void wait_for_room() const {}

@@ -7,6 +7,7 @@
 #include <vector>
 
 #include "uplift/interface/joint.h"
+#include "uplift/model/element_sum.h"
 #include "uplift/model/model.h"
 
 namespace uplift {
@@ -107,9 +108,6 @@ class ModelBuilder {
     std::string name;
     std::shared_ptr<const TimeFunction> function;
   };
-  struct Full {
-    Sparse stiffness, mass, damping;  // before elimination, without modal damping
-  };
   struct Load {
     std::string name;
     std::vector<std::pair<int, double>> pattern;  // full unknowns
@@ -120,14 +118,16 @@ class ModelBuilder {
 
   std::string name_of(int full_unknown) const;
   void eliminate(Model& model, Matrix& motion_shapes) const;
-  Full assemble() const;
-  std::vector<int> resisted(const Model& model, const Full& full) const;
+  ElementSum sum(Matrix* Local::*wanted) const { return {space_, elements_, wanted}; }
+  std::vector<int> resisted(const Model& model) const;
+  void assemble(Model& model) const;
   void drop_dead_tangents(const Model& model, const Matrix& motion_shapes);
   void place_interfaces(Model& model);
   Vector water_load(const Model& model, std::size_t interface) const;  // full unknowns
   void refuse_inside_out(const InterfaceSpec& spec, const Where& where) const;
   std::vector<Vec3> structure_of(const InterfaceSpec& spec, bool upper, std::vector<int>& nodes) const;
-  void make_drives(Model& model, const Full& full, const Matrix& motion_shapes) const;
+  void make_drives(Model& model, const Matrix& motion_shapes) const;
+  void make_motions(Model& model, const Matrix& shapes) const;
 
   Space space_;
   std::vector<Node> nodes_;

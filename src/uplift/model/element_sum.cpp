@@ -1,0 +1,189 @@
+#include "uplift/model/element_sum.h"
+
+#include <algorithm>
+#include <cmath>
+#include <numeric>
+#include <utility>
+
+namespace uplift {
+
+namespace {
+
+/// Some lists of numbers one after another.
+struct Lists {
+  std::vector<int> start{0}, member;
+  int count() const { return static_cast<int>(start.size()) - 1; }
+  std::span<const int> of(int list) const { return {member.data() + start[list], static_cast<std::size_t>(start[list + 1] - start[list])}; }
+};
+
+/// For each number below `bound` the lists that hold it.
+Lists lists_of_members(const Lists& lists, Index bound) {
+  Lists turned;
+  turned.start.assign(static_cast<std::size_t>(bound) + 1, 0);
+  for (const int member : lists.member) ++turned.start[member + 1];
+  std::partial_sum(turned.start.begin(), turned.start.end(), turned.start.begin());
+  turned.member.resize(lists.member.size());
+  std::vector<int> next(turned.start.begin(), turned.start.end() - 1);
+  for (int list = 0; list < lists.count(); ++list)
+    for (const int member : lists.of(list)) turned.member[next[member]++] = list;
+  return turned;
+}
+
+/// T^T A_e T of one element: its free unknowns, ascending, and the matrix on them.
+class ReducedElement {
+ public:
+  explicit ReducedElement(const Sparse& expansion) : expansion_(expansion) {}
+  void reduce(std::span<const int> full, const Matrix& local) {
+    unknowns.clear();
+    for (const int unknown : full)
+      for (Sparse::InnerIterator entry(expansion_, unknown); entry; ++entry) unknowns.push_back(static_cast<int>(entry.row()));
+    std::ranges::sort(unknowns);
+    unknowns.erase(std::ranges::unique(unknowns).begin(), unknowns.end());
+    parts_.resize(full.size());
+    for (std::size_t i = 0; i < full.size(); ++i) {
+      parts_[i].clear();
+      for (Sparse::InnerIterator entry(expansion_, full[i]); entry; ++entry)
+        parts_[i].emplace_back(std::ranges::lower_bound(unknowns, static_cast<int>(entry.row())) - unknowns.begin(), entry.value());
+    }
+    block.setZero(std::ssize(unknowns), std::ssize(unknowns));
+    for (Index j = 0; j < local.cols(); ++j)
+      for (Index i = 0; i < local.rows(); ++i)
+        for (const auto& [row, of_row] : parts_[i])
+          for (const auto& [column, of_column] : parts_[j]) block(row, column) += of_row * local(i, j) * of_column;
+  }
+  std::vector<int> unknowns;
+  Matrix block;
+
+ private:
+  const Sparse& expansion_;
+  std::vector<std::vector<std::pair<Index, double>>> parts_;  // of T, for each unknown of the element
+};
+
+/// Numbers the groups of unknowns that a matrix couples; -1: an empty row.
+int number_groups(const Matrix& block, std::vector<int>& group) {
+  const Index n = block.rows();
+  int count = 0;
+  group.assign(static_cast<std::size_t>(n), -1);
+  std::vector<Index> reached;
+  for (Index first = 0; first < n; ++first) {
+    if (group[first] >= 0 || (block.col(first).isZero(0) && block.row(first).isZero(0))) continue;
+    reached.assign(1, first);
+    group[first] = count;
+    while (!reached.empty()) {
+      const Index i = reached.back();
+      reached.pop_back();
+      for (Index j = 0; j < n; ++j)
+        if (group[j] < 0 && (block(i, j) != 0 || block(j, i) != 0)) group[j] = count, reached.push_back(j);
+    }
+    ++count;
+  }
+  return count;
+}
+
+}  // namespace
+
+void ElementSum::each_element(const TakeElement& take) const {
+  Matrix local, stiffness;
+  std::vector<int> unknowns;
+  for (const auto& element : elements_) {
+    const bool proportional = wanted_ == &Local::damping && element->beta != 0;
+    Local one;
+    one.*wanted_ = &local;
+    if (proportional) one.stiffness = &stiffness;
+    element->form(one);
+    if (proportional) local += element->beta * stiffness;
+    if (local.isZero(0)) continue;
+    const int each = element->unknowns_per_node();
+    unknowns.clear();
+    for (const int node : element->nodes())
+      for (int i = 0; i < each; ++i) unknowns.push_back(space_.unknowns() * node + i);
+    take(unknowns, local);
+  }
+}
+
+void ElementSum::each_group(const Sparse& expansion, const TakeGroup& take) const {
+  ReducedElement reduced(expansion);
+  std::vector<int> group, unknowns;
+  Matrix block;
+  each_element([&](std::span<const int> full, const Matrix& local) {
+    reduced.reduce(full, local);
+    const int count = number_groups(reduced.block, group);
+    for (int g = 0; g < count; ++g) {
+      unknowns.clear();
+      std::vector<Index> chosen;
+      for (std::size_t i = 0; i < group.size(); ++i)
+        if (group[i] == g) chosen.push_back(static_cast<Index>(i)), unknowns.push_back(reduced.unknowns[i]);
+      block = reduced.block(chosen, chosen);
+      take(unknowns, block);
+    }
+  });
+}
+
+Matrix ElementSum::times(const Matrix& x) const {
+  Matrix product = Matrix::Zero(x.rows(), x.cols());
+  if (x.cols() == 0) return product;
+  each_element(
+      [&](std::span<const int> unknowns, const Matrix& local) { product(unknowns, Eigen::all) += local * x(unknowns, Eigen::all); });
+  return product;
+}
+
+Vector ElementSum::diagonal(const Sparse& expansion) const {
+  Vector diagonal = Vector::Zero(expansion.rows());
+  ReducedElement reduced(expansion);
+  each_element([&](std::span<const int> full, const Matrix& local) {
+    reduced.reduce(full, local);
+    diagonal(reduced.unknowns) += reduced.block.diagonal();
+  });
+  return diagonal;
+}
+
+/// The places of the sum, with zeros.
+Sparse ElementSum::places(const Sparse& expansion) const {
+  Lists groups;
+  each_group(expansion, [&](std::span<const int> unknowns, const Matrix&) {
+    groups.member.insert(groups.member.end(), unknowns.begin(), unknowns.end());
+    groups.start.push_back(static_cast<int>(groups.member.size()));
+  });
+  const Index free = expansion.rows();
+  const Lists groups_of = lists_of_members(groups, free);
+  std::vector<int> seen(static_cast<std::size_t>(free), -1);  // the last column that has this row
+  const auto rows_of = [&](Index column, const auto& take) {
+    for (const int group : groups_of.of(static_cast<int>(column)))
+      for (const int row : groups.of(group))
+        if (std::exchange(seen[row], static_cast<int>(column)) != column) take(row);
+  };
+  Sparse sum(free, free);
+  int* start = sum.outerIndexPtr();
+  for (Index column = 0; column < free; ++column) {
+    start[column + 1] = start[column];
+    rows_of(column, [&](int) { ++start[column + 1]; });
+  }
+  sum.resizeNonZeros(start[free]);
+  std::ranges::fill(seen, -1);
+  for (Index column = 0; column < free; ++column) {
+    int* next = sum.innerIndexPtr() + start[column];
+    rows_of(column, [&](int row) { *next++ = row; });
+    std::sort(sum.innerIndexPtr() + start[column], next);
+  }
+  sum.coeffs().setZero();
+  return sum;
+}
+
+Sparse ElementSum::reduced(const Sparse& expansion) const {
+  Sparse sum = places(expansion);
+  each_group(expansion, [&](std::span<const int> unknowns, const Matrix& block) {
+    for (Index j = 0; j < block.cols(); ++j) {
+      const int *place = sum.innerIndexPtr() + sum.outerIndexPtr()[unknowns[j]],
+                *end = sum.innerIndexPtr() + sum.outerIndexPtr()[unknowns[j] + 1];
+      for (Index i = 0; i < block.rows(); ++i) {  // ascending: the next place is behind the last one
+        place = std::lower_bound(place, end, unknowns[i]);
+        sum.valuePtr()[place - sum.innerIndexPtr()] += block(i, j);
+      }
+    }
+  });
+  const Vector size = Vector(sum.diagonal()).cwiseAbs().cwiseSqrt();
+  sum.prune([&](Index i, Index j, double value) { return std::abs(value) > 1e-15 * size[i] * size[j]; });
+  return sum;
+}
+
+}  // namespace uplift

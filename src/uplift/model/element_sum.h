@@ -1,0 +1,39 @@
+#pragma once
+#include <functional>
+#include <memory>
+#include <span>
+#include <vector>
+
+#include "uplift/elements/element.h"
+
+namespace uplift {
+
+/// The sum of one matrix over all elements, A = sum A_e, as products with it and as T^T A T. A itself is never made, nor the list of all
+/// entries of all elements, which takes three times the memory of the sum: two passes over the elements find the places and fill them.
+class ElementSum {
+ public:
+  /// `wanted`: which matrix; damping: with what the elements' own factors beta make of their stiffness. The elements must stay alive.
+  ElementSum(Space space, const std::vector<std::unique_ptr<const Element>>& elements, Matrix* Local::*wanted)
+      : space_(space), elements_(elements), wanted_(wanted) {}
+  /// A X, full unknowns.
+  Matrix times(const Matrix& x) const;
+  /// Diagonal of T^T A T; `expansion`: T^T.
+  Vector diagonal(const Sparse& expansion) const;
+  /// T^T A T without entries that are only round-off.
+  Sparse reduced(const Sparse& expansion) const;
+
+ private:
+  /// Full unknowns of each element, and its matrix.
+  using TakeElement = std::function<void(std::span<const int> unknowns, const Matrix& local)>;
+  void each_element(const TakeElement& take) const;
+  /// The parts T^T A_e T of each element that its matrix couples, each with its free unknowns. Always in the same order.
+  using TakeGroup = std::function<void(std::span<const int> unknowns, const Matrix& block)>;
+  void each_group(const Sparse& expansion, const TakeGroup& take) const;
+  Sparse places(const Sparse& expansion) const;
+
+  Space space_;
+  const std::vector<std::unique_ptr<const Element>>& elements_;
+  Matrix* Local::*wanted_;
+};
+
+}  // namespace uplift
