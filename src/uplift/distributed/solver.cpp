@@ -131,6 +131,7 @@ class PetscSolver final : public LinearSolver {
 
   /// None: it would be one more copy of both matrices on rank 0.
   std::shared_ptr<const SymmetricPair> pair(const Sparse&, const Sparse&) const override { return nullptr; }
+  bool distributed() const override { return true; }
 
  private:
   std::string options_;

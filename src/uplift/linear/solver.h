@@ -57,6 +57,8 @@ class LinearSolver {
   /// Two symmetric matrices for common products; null: they are to be multiplied by themselves. They must stay as they are as long as the
   /// pair exists.
   virtual std::shared_ptr<const SymmetricPair> pair(const Sparse& a, const Sparse& b) const;
+  /// Whether its factors are spread over several processes: then none is made here for a mere warning.
+  virtual bool distributed() const { return false; }
   /// To be called before a matrix is assembled that will be factorised: the solver of one of several runs waits here (Lockstep).
   virtual void wait_for_room() const {}
   /// The model whose stiffness, mass and damping are those of this one: itself, or that of another run that has the same ones.

@@ -151,7 +151,7 @@ void warn_held_faces(const Case& read, const BuiltCase& built, std::vector<std::
 /// Twenty steps per period of the fastest of the first three modes below 50 Hz (earthquakes hold little above 33 Hz).
 void warn_step(const BuiltCase& built, std::vector<std::string>& said) {
   const Stage* stage = dynamic_stage(built.plan);
-  if (!stage) return;
+  if (!stage || built.plan.solver->distributed()) return;
   double fastest = 0;
   for (const Mode& mode : bonded_modes(built.at_rest(), 3))
     if (mode.frequency < 50) fastest = std::max(fastest, mode.frequency);
