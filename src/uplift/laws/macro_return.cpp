@@ -49,7 +49,7 @@ class Return {
   double capacity(const MacroVector& e) const { return surfaces_.capacity(settlement_ + std::abs(plastic_settlement(e))); }
 
   bool within_bearing(const MacroVector& force, double v, double tolerance) const {
-    return !surfaces_.has_bearing() || surfaces_.bearing(force, v).value <= tolerance * yield_tolerance * scale_;
+    return !surfaces_.has_bearing() || surfaces_.bearing_value(force, v) <= tolerance * yield_tolerance * scale_;
   }
   bool within_sliding(const MacroVector& force, double tolerance) const {
     return !surfaces_.has_sliding() || surfaces_.sliding(force).value <= tolerance * yield_tolerance * scale_;
@@ -351,7 +351,7 @@ MacroVector Return::pressed(const Edge& edge, double multiplier) const {
 bool Return::overloaded(const Edge& edge, double multiplier) const {
   if (beyond(edge, multiplier)) return true;
   const MacroVector e = pressed(edge, multiplier), force = uplift_.respond(e, false).force;
-  return force[macro_n] > 0 && (!surfaces_.bears(force) || surfaces_.bearing(force, capacity(e)).value > 0);
+  return force[macro_n] > 0 && (!surfaces_.bears(force) || surfaces_.bearing_value(force, capacity(e)) > 0);
 }
 
 /// A guess of small N: so far along the flow of the edge that the ground just bears the contact. Where it does not find the state without

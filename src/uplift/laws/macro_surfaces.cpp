@@ -141,6 +141,16 @@ MacroSurface MacroSurfaces::bearing(const MacroVector& force, double capacity) c
   return out;
 }
 
+double MacroSurfaces::bearing_value(const MacroVector& force, double capacity) const {
+  if (strength_.power_law) return force[macro_n] - capacity * left(force, capacity).share;
+  if (strength_.flow == MacroStrength::Flow::associated) return bearing(force, capacity).value;
+  const double n = force[macro_n], shear = 1 - std::hypot(force[macro_h1], force[macro_h2]) / n;
+  const double one = disc_ ? std::hypot(force[macro_m1], force[macro_m2]) : std::abs(force[macro_m1]);
+  const double left = shear * shear * shear * (1 - 2 * one / (n * length_[0]));
+  const bool second = !disc_ && force[macro_m2] != 0;
+  return n - capacity * (second ? left * (1 - 2 * std::abs(force[macro_m2]) / (n * length_[1])) : left);
+}
+
 MacroSurface MacroSurfaces::sliding(const MacroVector& force) const {
   const Reduced r = reduce(force, 0);
   MacroSurface out{r.v[0] - force[macro_n] * strength_.friction, r.by_force.row(0).transpose(), 0};

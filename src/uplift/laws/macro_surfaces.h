@@ -47,6 +47,8 @@ class MacroSurfaces {
   double hardening(double p) const;
 
   MacroSurface bearing(const MacroVector& force, double capacity) const;
+  /// Its value alone [N].
+  double bearing_value(const MacroVector& force, double capacity) const;
   MacroSurface sliding(const MacroVector& force) const;
   MacroFlow bearing_flow(const MacroVector& force, double capacity) const;
   MacroFlow sliding_flow(const MacroVector& force) const;

@@ -31,6 +31,9 @@ Curve curve(double x, double beta, double gamma) {
   if (gamma == 2) {  // the usual case, without logarithms
     c.y = std::sqrt(x);
     c.log_like = c.y - 1;
+  } else if (gamma == 1) {  // strips
+    c.y = x;
+    c.log_like = std::log(x);
   } else {
     const double log_y = std::log(x) / gamma, t = (gamma - 1) * log_y;
     c.y = std::exp(log_y);
