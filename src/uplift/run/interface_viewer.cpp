@@ -54,10 +54,10 @@ bool flat(const Interface& interface) {
 
 }  // namespace
 
-double tension_softness(const Interface& interface) {
-  if (interface.law == nullptr || interface.batch.rotations > 0) return 0;
+GapRule gap_rule(const Interface& interface) {
+  if (interface.law == nullptr || interface.batch.rotations > 0) return {};
   const LawScales scales = interface.law->scales();
-  return !scales.opens || scales.strength > 0 ? 1 / normal_stiffness(interface) : 0;
+  return {scales.opens, scales.strength > 0 ? 1 / normal_stiffness(interface) : 0};
 }
 
 InterfaceViewer::InterfaceViewer(const Model& model, double gap_tolerance, const std::vector<std::vector<int>>& bases,
@@ -89,8 +89,8 @@ InterfaceViewer::InterfaceViewer(const Model& model, double gap_tolerance, const
     layout.slope_weight = slope_weights(interface);
     layout.stiffness = normal_stiffness(interface);
     layout.bonded = interface.law != nullptr && !interface.law->scales().opens;
-    layout.softness = tension_softness(interface);
-    if (layout.softness > 0) gap_.setZero(std::max<Index>(gap_.size(), layout.points));
+    layout.rule = gap_rule(interface);
+    if (!layout.rule.opens || layout.rule.softness > 0) gap_.setZero(std::max<Index>(gap_.size(), layout.points));
     if (const std::size_t k = layouts_.size(); k < facets.size() && facets[k] != nullptr) {
       layout.share = PositiveShare(*facets[k]);
       layout.corners = facets[k]->corners;
@@ -196,15 +196,15 @@ Resultant InterfaceViewer::resultant_by_rows(const Layout& layout, const Vector&
   return resultant_of(layout.space, sums.data());
 }
 
-/// Of every point, at the end of the step [m]; negative where it is closed. A joint that holds tension t is stretched by t/K_n without any
-/// gap (docs/theory, section 2); what round-off leaves of this stretch is none.
+/// Of every point, at the end of the step [m]; negative where it is closed. What round-off leaves of a stretched joint is no gap.
 const double* InterfaceViewer::gaps(const Layout& layout, const State& state) {
   const int normal = layout.first + (layout.translations - 1) * layout.points;
   const double *opening = state.opening.data() + normal, *force = state.force.data() + normal, *inverse = layout.inverse_area.data();
-  if (!(layout.softness > 0)) return opening;
-  for_lanes(layout.points, [&, gap = gap_.data(), softness = layout.softness](const auto& at) {
+  const auto [opens, softness] = layout.rule;
+  if (opens && !(softness > 0)) return opening;
+  for_lanes(layout.points, [&, gap = gap_.data(), opens = opens, softness = softness](const auto& at) {
     const Lanes zero = 0, stretch = softness * larger(at(force) * at(inverse), zero), left = at(opening) - stretch;
-    at.put(gap, choose(stretch > zero && left < 1e-9 * stretch, zero, left));
+    at.put(gap, opens ? choose(stretch > zero && left < 1e-9 * stretch, zero, left) : smaller(at(opening), zero));
   });
   return gap_.data();
 }

@@ -1,4 +1,5 @@
 #pragma once
+#include <algorithm>
 #include <array>
 #include <memory>
 #include <vector>
@@ -10,8 +11,16 @@
 
 namespace uplift {
 
-/// How far a joint that holds tension is stretched by it before any gap opens, 1/K_n [m/Pa]; 0 for a joint that opens at once.
-double tension_softness(const Interface& interface);
+/// How a joint opens: a bonded one never does, and one that holds tension t is stretched by t/K_n before (docs/theory, section 2).
+struct GapRule {
+  bool opens = true;
+  double softness = 0;  // 1/K_n [m/Pa]; 0: no tension is held
+  /// m, from the opening [m] and the traction at the same instant [Pa, tension > 0]; negative where the joint is closed.
+  double gap(double opening, double traction) const {
+    return opens ? opening - softness * std::max(traction, 0.0) : std::min(opening, 0.0);
+  }
+};
+GapRule gap_rule(const Interface& interface);
 
 /// Looks at all interfaces of a model quickly: arms and areas are laid out once.
 class InterfaceViewer {
@@ -31,12 +40,12 @@ class InterfaceViewer {
     Vector area, inverse_area, along, across;  // along t and along n from the reference point [m]
     std::array<Vector, 2> slope_weight;
     Space space;
-    Matrix resultant_rows;                  // in space, and where the normals differ; else empty: the sums are then taken directly
-    double total = 0;                       // m2
-    PositiveShare share;                    // empty: points count as a whole
-    double stiffness = 0;                   // Pa/m of the closed joint; infinite for constraints
-    bool bonded = false;                    // it may pull: the tension share is asked for
-    double softness = 0;                    // see tension_softness
+    Matrix resultant_rows;  // in space, and where the normals differ; else empty: the sums are then taken directly
+    double total = 0;       // m2
+    PositiveShare share;    // empty: points count as a whole
+    double stiffness = 0;   // Pa/m of the closed joint; infinite for constraints
+    bool bonded = false;    // it may pull: the tension share is asked for
+    GapRule rule;
     std::vector<Facets::Corner> corners;    // of the surface that are no points: openings are extrapolated to them
     bool at_edge = false;                   // pressures too
     const InterfaceLaw* footing = nullptr;  // the law of a point with rotations, which stands for a whole footing; else null

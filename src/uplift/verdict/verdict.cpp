@@ -159,9 +159,12 @@ std::string compared(const VerdictNumber& number) {
 
 void say_forces(const BuiltCase& built, const RunResult& run, Verdict& verdict) {
   if (built.facts.empty()) return;
-  const VerdictNumber* moment =
-      verdict.numbers.bases() == 1 ? find_number(verdict.numbers.interfaces.front().numbers, "max_moment") : nullptr;
-  verdict.facts.push_back({"Base moment" + per_metre(built), format_quantity(std::abs(run.max_base_moment.value), "N m"),
+  const VerdictNumber* moment = nullptr;  // of the base with the largest one
+  std::string of_base;
+  for (const InterfaceVerdict& said : bases_of(verdict))
+    if (const VerdictNumber* each = find_number(said.numbers, "max_moment"); each && (!moment || each->value > moment->value))
+      moment = each, of_base = of_interface(verdict, said);
+  verdict.facts.push_back({"Base moment" + of_base + per_metre(built), format_quantity(std::abs(run.max_base_moment.value), "N m"),
                            fmt::format("{}, at {}{}", moment ? compared(*moment) : "largest",
                                        format_quantity(run.max_base_moment.time, "s"), carried_by_walls(verdict, per_metre(built))),
                            true, moment ? format_step_change(*moment) : ""});
@@ -194,7 +197,7 @@ void say_top(Verdict& verdict) {
     const VerdictNumber* number = find_number(verdict.numbers.whole, name);
     if (!number) return;
     const std::string change = number->change ? compared(*number) + ", " : "";
-    verdict.facts.push_back({label, format_quantity(number->value, "m"), change + detail + at(*number), tile, format_step_change(*number)});
+    verdict.facts.push_back({label, text_of(*number), change + detail + at(*number), tile, format_step_change(*number)});
   };
   fact("max_top_motion", "Top motion", "", true);
   fact("max_drift", "Drift of the top", "relative to the base, ", false);

@@ -9,6 +9,7 @@
 #include "uplift/case/mesh/mesh.h"
 #include "uplift/io/fields/fields.h"
 #include "uplift/run/force_rows.h"
+#include "uplift/run/interface_viewer.h"
 
 // What stands in the frames of a run; used by field_run*.cpp alone.
 namespace uplift {
@@ -36,7 +37,7 @@ class InterfaceFrames {
   struct Surface {
     int interface = 0, first_row = 0;
     double friction = -1, cohesion = 0;  // coefficient, negative: no friction law; Pa
-    double softness = 0;                 // m/Pa, see tension_softness
+    GapRule rule;
     std::vector<Terms> places;
   };
   void add_point(const Surface& surface, const State& state, int point, JointValues& values) const;

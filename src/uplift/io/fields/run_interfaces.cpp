@@ -5,7 +5,6 @@
 #include "uplift/interface/face_joint.h"
 #include "uplift/io/fields/run_frames.h"
 #include "uplift/math/dense.h"
-#include "uplift/run/interface_viewer.h"
 
 // Joint points stand at the nodes of faces or at Gauss points; what is written stands at the nodes of every face.
 namespace uplift {
@@ -71,7 +70,7 @@ InterfaceFrames::InterfaceFrames(const Case& read, const BuiltCase& built)
     const InterfaceFacts& facts = built.facts[k];
     if (!facts.faces.empty()) {
       const Values& behaviour = *built.behaviours[k];
-      Surface surface{static_cast<int>(k), row, -1, 0, tension_softness(interface), {}};
+      Surface surface{static_cast<int>(k), row, -1, 0, gap_rule(interface), {}};
       surface.friction = number_or(behaviour, "friction", -1);
       surface.cohesion = number_or(behaviour, "cohesion", 0);
       surface.places =
@@ -103,7 +102,7 @@ void InterfaceFrames::add_point(const Surface& surface, const State& state, int 
     traction += stress * axis;
     if (c == translations - 1) {
       opening = state.opening[row];
-      gap = opening - surface.softness * std::max(state.force[row] / interface.area[point], 0.0);
+      gap = surface.rule.gap(opening, state.force[row] / interface.area[point]);
       pressure = 0.0 - stress;
     } else {
       slip += state.opening[row] * axis;
