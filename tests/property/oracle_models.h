@@ -60,6 +60,12 @@ struct Whole {
   RunResult run() const { return uplift::run(model, plan, parameters()); }
 };
 
+/// False where the first interface is bonded: it has no gap, however far it is stretched.
+inline bool opens(const Whole& whole) {
+  const InterfaceLaw* law = whole.model.interfaces.front().law.get();
+  return law == nullptr || law->scales().opens;
+}
+
 /// Puts a law or a cone on an interface.
 inline void behave(const Part& part, InterfaceSpec& spec, Whole& whole) {
   auto values = std::make_unique<const Values>(checked(part, interface_behaviours()));

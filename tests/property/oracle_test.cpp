@@ -71,8 +71,7 @@ void check_steps(Whole& whole, const std::string& name, long retries = 0) {
   const RunResult result = whole.run();
   EXPECT_EQ(result.status, RunStatus::completed) << result.reason;
   EXPECT_LE(result.counts.retries, retries);
-  const InterfaceLaw* law = whole.model.interfaces.front().law.get();
-  if (law == nullptr || law->scales().opens)
+  if (opens(whole))
     EXPECT_GT(result.max_opening.value, 1e-6);
   else
     EXPECT_EQ(result.max_opening.value, 0);  // bonded, with a dashpot too
