@@ -48,7 +48,7 @@ def augmented_lagrangian(
     """Penalty with multiplier updates until the constraints hold to round-off.
 
     Parameters:
-        factor: penalty stiffness times compliance, e F_ii, at the softest point, > 0; default 1000.0.
+        factor: penalty stiffness times compliance, e F_ii, > 0; default 1000.0.
         tolerance: largest change of a contact force in the last update, relative to the largest force, > 0; default
             1e-11.
         most_updates: multiplier updates before the step is cut, from 1 to 10000; default 60.

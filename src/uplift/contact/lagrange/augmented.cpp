@@ -10,10 +10,9 @@
 #include "uplift/contact/point_rows.h"
 
 // Augmented Lagrangian (paper, eq 1 with alpha > 0): p = P(m + e g), solved by Newton; then m <- p, until the multipliers stand still. Each
-// update contracts the error by 1/(1 + e F): with e F_ii = factor at the softest point, a handful of updates reaches round-off. Where it
-// contracts slowly (neighbouring points of a rigid footing are nearly one row), e grows by 16 until round-off in the openings would show in
-// the forces. From m = 0 the pressures of redundant points come out as those of a bed of springs e, up to 1/factor: of a uniform bed
-// without friction, where e is proportional to the area of a point; with friction each point has its own e, and the edges take more.
+// update contracts the error by 1/(1 + e F): with e F_ii = factor a handful of updates reaches round-off. Where it contracts slowly
+// (neighbouring points of a rigid footing are nearly one row), e grows by 16 until round-off in the openings would show in the forces. From
+// m = 0 the pressures of redundant points come out as those of a bed of equal springs, the least-norm ones, up to 1/factor.
 namespace uplift {
 
 void augmentation(const ContactModel& model, double factor, Vector& stiffness) {
@@ -24,10 +23,6 @@ void augmentation(const ContactModel& model, double factor, Vector& stiffness) {
     const int n = block.batch.points;
     for (int i = block.first; block.batch.components == 3 && i < block.first + n; ++i)
       stiffness[i] = stiffness[i + n] = 0.5 * (stiffness[i] + stiffness[i + n]);
-    if (block.cone == nullptr || block.cone->friction() > 0) continue;
-    auto normal = stiffness.segment(block.first + block.batch.normal(), n);
-    const double softest = normal.cwiseProduct(block.area).maxCoeff();
-    normal = softest / block.area.array();  // as under a uniform bed
   }
   for (Index i = 0; i < stiffness.size(); ++i)
     stiffness[i] = factor / (stiffness[i] > 1e-12 * largest ? stiffness[i] : std::max(largest, 1e-300));
@@ -166,10 +161,9 @@ const Entry<ContactMethod>& entry_method_augmented_lagrangian() {
       {.name = "augmented_lagrangian",
        .summary = "penalty with multiplier updates until the constraints hold to round-off",
        .equations = "p = P(m + e g), m <- p, repeat while max|p - m| > tolerance max|p|\n"
-                    "e_i = factor / F_ii, without friction factor A_i / max(A_j F_jj) (A area of a point); the error contracts by 1/(1 + e "
-                    "F) per update",
+                    "e = factor / F_ii; the error contracts by 1/(1 + e F) per update",
        .source = "Cherubini, Richard & Frau, eq 1",
-       .params = {number("factor", "1", "penalty stiffness times compliance, e F_ii, at the softest point").positive().standard(1000.0),
+       .params = {number("factor", "1", "penalty stiffness times compliance, e F_ii").positive().standard(1000.0),
                   number("tolerance", "1", "largest change of a contact force in the last update, relative to the largest force")
                       .positive()
                       .standard(1e-11),

@@ -17,8 +17,7 @@ struct AugmentedForce {
   const Vector* stiffness = nullptr;   // rows [N/m]
 };
 
-/// Stiffness of every row for the augmentation [N/m]: factor / F_ii, of the whole interface where a row has no compliance; of normal rows
-/// without friction proportional to the area, factor at the softest point. The tangential
+/// Stiffness of every row for the augmentation [N/m]: factor / F_ii, of the whole interface where a row has no compliance. The tangential
 /// rows of a point share that of their mean compliance: the trial force must not turn.
 void augmentation(const ContactModel&, double factor, Vector& stiffness);
 
