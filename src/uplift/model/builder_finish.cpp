@@ -81,7 +81,7 @@ std::vector<int> ModelBuilder::resisted(const Model& model) const {
   std::vector<char> mask(static_cast<std::size_t>(model.free()), 0);
   const Sparse expansion = model.reduction.transpose();
   for (Matrix* Local::*wanted : {&Local::stiffness, &Local::mass, &Local::damping}) {
-    const Vector diagonal = sum(wanted).diagonal(expansion);
+    const Vector diagonal = sum(wanted).size_of_diagonal(expansion);
     for (Index i = 0; i < diagonal.size(); ++i)
       if (diagonal[i] != 0) mask[i] = 1;
   }

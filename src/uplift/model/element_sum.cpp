@@ -127,11 +127,12 @@ Matrix ElementSum::times(const Matrix& x) const {
   return product;
 }
 
-Vector ElementSum::diagonal(const Sparse& expansion) const {
+Vector ElementSum::size_of_diagonal(const Sparse& expansion) const {
   Vector diagonal = Vector::Zero(expansion.rows());
-  ReducedElement reduced(expansion);
+  const Sparse sizes = expansion.cwiseAbs();
+  ReducedElement reduced(sizes);
   each_element([&](std::span<const int> full, const Matrix& local) {
-    reduced.reduce(full, local);
+    reduced.reduce(full, local.cwiseAbs());
     diagonal(reduced.unknowns) += reduced.block.diagonal();
   });
   return diagonal;

@@ -17,8 +17,8 @@ class ElementSum {
       : space_(space), elements_(elements), wanted_(wanted) {}
   /// A X, full unknowns.
   Matrix times(const Matrix& x) const;
-  /// Diagonal of T^T A T; `expansion`: T^T.
-  Vector diagonal(const Sparse& expansion) const;
+  /// Diagonal of T^T A T with the sizes of all factors: zero where no element reaches, whatever cancels elsewhere. `expansion`: T^T.
+  Vector size_of_diagonal(const Sparse& expansion) const;
   /// T^T A T without entries that are only round-off.
   Sparse reduced(const Sparse& expansion) const;
 
