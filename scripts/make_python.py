@@ -136,34 +136,49 @@ def interface_method(kind, interface):
                       f"        self._interface({{{of_own}}}, \"{kind}\", {{{of_kind}}})", ""])
 
 
-def tables_module(schema):
+# Which tables stand in one module; every other one is about the computation and its results.
+TOPICS = {
+    "structure": ("ground, structure and foundations", ["mesh", "solid", "absorbing", "tie", "beam", "mass", "spring", "dashpot", "rigid", "support", "foundation"]),
+    "motion": ("functions of time, loads and motions", ["function", "record", "load", "motion", "ground_acceleration", "initial"]),
+}
+
+
+def output_method(name, table, positional):
+    properties = table["items"]["properties"]
+    entries, names = parameters(properties, table["items"].get("required", []), positional)
+    if name == "history":
+        entries = ["node: Optional[str] = None", "quantity: str = \"ux\""] + [e for e in entries if not e.startswith(("node", "quantity"))]
+    given = ", ".join(f'"{each}": {identifier(each)}' for each in names)
+    return "\n".join([signature(name, ["self"] + entries, "None", "    "), docstring(table["description"], names, properties, "        "),
+                      f'        self._add_output("{name}", {{{given}}})', ""])
+
+
+def tables_module(topic, contents, methods):
+    """A class with a method for every table of a topic."""
+    body = "\n".join(methods)
+    typing = ", ".join(each for each in ("Any", "Mapping", "Optional", "Sequence", "Union") if f"{each}[" in body or f"{each}]" in body)
+    imports = "from ._laws import ExternalLaw\n" if "ExternalLaw" in body else ""
+    parts = ", ".join(each for each in ("Part", "Quantity") if f"{each}]" in body or f": {each}" in body or f"[{each}" in body)
+    return (HEAD.format(title=f"Tables of a case: {contents}.") + f"from typing import {typing}\n\n{imports}from ._parts import {parts}\n"
+            + f"from ._table_store import TableStore\n\n\nclass {topic.capitalize()}Tables(TableStore):\n"
+            + f'    """Methods for the tables of {contents}."""\n\n' + body)
+
+
+def table_modules(schema):
+    """Texts of the modules of tables by their name."""
     properties = schema["properties"]
-    methods = [interface_method(kind, properties["interface"]["items"]) for kind in INTERFACE_KINDS]
+    methods = {"interface": [interface_method(kind, properties["interface"]["items"]) for kind in INTERFACE_KINDS], "structure": [], "motion": [], "result": []}
     for name, table in properties.items():
         single = table.get("type") == "object" and "properties" in table
         several = table.get("type") == "array"
         if name in ("interface", "stage", "damping", "gravity", "nodes") or not (single or several):
             continue
-        methods.append(table_method(name, table, table["description"]))
-    output = properties["output"]["properties"]
-    for name in ("history", "floor_spectrum", "beam_envelope"):
-        entries, names = parameters(output[name]["items"]["properties"], output[name]["items"].get("required", []),
-                                    {"history": ["node", "quantity"], "floor_spectrum": ["name", "node"], "beam_envelope": ["beam"]}[name])
-        if name == "history":
-            entries = ["node: Optional[str] = None", "quantity: str = \"ux\""] + [e for e in entries if not e.startswith(("node", "quantity"))]
-        given = ", ".join(f'"{each}": {identifier(each)}' for each in names)
-        methods.append("\n".join([signature(name, ["self"] + entries, "None", "    "),
-                                  docstring(output[name]["description"], names, output[name]["items"]["properties"], "        "),
-                                  f'        self._add_output("{name}", {{{given}}})', ""]))
-    body = "\n".join(methods)
-    return (HEAD.format(title="A method for every table of a case.")
-            + "from typing import Any, Mapping, Optional, Sequence, Union\n\nfrom ._laws import ExternalLaw\nfrom ._parts import Part, Quantity\n\n\nclass Tables:\n"
-            + '    """The tables of a case; every method adds one table, or sets the only one of its kind."""\n\n'
-            + "    def _add(self, name: str, table: Mapping[str, Any]) -> None:\n        raise NotImplementedError\n\n"
-            + "    def _set(self, name: str, table: Mapping[str, Any]) -> None:\n        raise NotImplementedError\n\n"
-            + "    def _add_output(self, name: str, table: Mapping[str, Any]) -> None:\n        raise NotImplementedError\n\n"
-            + "    def _interface(self, own: Mapping[str, Any], kind: str, table: Mapping[str, Any]) -> None:\n        raise NotImplementedError\n\n"
-            + body)
+        topic = next((topic for topic, (_, names) in TOPICS.items() if name in names), "result")
+        methods[topic].append(table_method(name, table, table["description"]))
+    for name, positional in {"history": ["node", "quantity"], "floor_spectrum": ["name", "node"], "beam_envelope": ["beam"]}.items():
+        methods["result"].append(output_method(name, properties["output"]["properties"][name], positional))
+    contents = {"interface": "interfaces", "result": "computation and results", **{topic: text for topic, (text, _) in TOPICS.items()}}
+    return {f"_{topic}_tables.py": tables_module(topic, contents[topic], each) for topic, each in methods.items()}
 
 
 def main():
@@ -183,7 +198,7 @@ def main():
         "targets": ("Target spectra of generated motions.", record["generate"]["properties"]["target"]),
     }
     texts = {f"{name}.py": parts_module(title, part) for name, (title, part) in modules.items()}
-    texts["_tables.py"] = tables_module(schema)
+    texts.update(table_modules(schema))
     stale = [name for name, text in texts.items() if not (ROOT / name).exists() or (ROOT / name).read_text() != text]
     if check and stale:
         sys.exit(f"python/uplift: {', '.join(stale)}: not up to date with the declarations; run scripts/make_python.py {program}")

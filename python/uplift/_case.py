@@ -11,18 +11,21 @@ import tempfile
 from typing import Any, Dict, List, Mapping, Optional, Sequence, Tuple, Union
 
 from . import _library, _toml
+from ._interface_tables import InterfaceTables
 from ._laws import ExternalLaw
 from ._motion import Motion
+from ._motion_tables import MotionTables
 from ._parts import Part, Quantity
 from ._program import output_of
+from ._result_tables import ResultTables
 from ._results import Comparison, Run, Trust
+from ._structure_tables import StructureTables
 from ._study import Study, plan_of, prepared_folder, written_study
-from ._tables import Tables
 from ._variants import variant
 from ._watch import StepCallback, Watcher
 
 
-class Case(Tables):
+class Case(InterfaceTables, StructureTables, MotionTables, ResultTables):
     """A case: structure, interfaces, loads and analysis. Its methods add tables; `run`, `compare`, `trust`, `study` and `reduce` compute.
 
     Numbers are in SI units, texts may carry units ("30 GPa"). In the plane x points to the right and y up; in space z points up.

@@ -9,7 +9,6 @@
 #include "uplift/contact/unheld.h"
 #include "uplift/dynamics/monolithic.h"
 #include "uplift/dynamics/step_level.h"
-#include "uplift/linear/memory.h"
 #include "uplift/math/small.h"
 
 namespace uplift {
@@ -136,103 +135,6 @@ StepBalance Stepper::balance(const Vector& start) const {
   if (!(last_step_ > 0)) return StepBalance::of_state(now_, start);
   if (path_) return StepBalance::mean(next_, now_, last_step_, options_.scheme.gain);
   return StepBalance::weighted(next_, now_, options_.scheme.alpha_f, options_.scheme.alpha_m);
-}
-
-/// Work space of the size of the bulk and of the interfaces.
-void Stepper::make_room() {
-  const Eigen::Index n = bulk_.unknowns;
-  for (Vector* v : {&force_now_, &force_next_, &stiff_now_, &stiff_next_, &momentum_now_, &momentum_next_, &right_, &increment_, &work_,
-                    &work2_, &damped_})
-    v->setZero(n);
-  contact_.setZero(b_.rows());
-  impulse_.setZero(b_.rows());
-}
-
-void Stepper::start(State state, const Ledger* before) {
-  now_ = std::move(state);
-  start_time_ = now_.time;
-  if (newton_ != nullptr) {
-    plastic_now_ = yielding_.state(std::move(now_.bulk_history));
-    now_.bulk_history = plastic_now_.history;
-  }
-  const Eigen::Index n = bulk_.unknowns;
-  make_room();
-  if (path_) {
-    now_.acceleration.setZero(n);
-  } else if (before == nullptr || !before->acceleration) {
-    release_parting();
-    forces_at(now_, work_);
-    now_.acceleration.setZero(n);
-    accelerator().solve(work_, now_.acceleration);
-    hold_initial_acceleration();
-    if (!impacts_) {  // the factor is large, and the scheme carries accelerations on
-      mass_spread_.reset();
-      accelerator_.reset();
-    }
-  }
-  level(0);
-  if (!bulk_.small) {
-    give_back_free_memory();  // of the factorisation
-    pair_ = solver_.pair(bulk_.stiffness_matrix, bulk_.mass_matrix);
-  }
-  if (!filtered_) now_.filter = {};
-  follow_state();
-  energies_ = before != nullptr ? before->energies : Energies{};
-  energies_.kinetic = 0.5 * now_.velocity.dot(momentum_now_);
-  energies_.strain = 0.5 * now_.displacement.dot(stiff_now_);
-  if (newton_ != nullptr) energies_.strain += yielding_.energy(now_.displacement, now_.time, plastic_now_);
-  energies_.stored = interface_energy_.stored;
-  energies_.interface_dissipated = interface_energy_.dissipated + energies_.friction;
-  impact_loss_ = energies_.impact;
-  if (!filtered_) energies_.algorithmic += std::exchange(energies_.filter, 0);  // another scheme forgets what the filters hold
-  origin_ = energies_.sum() - energies_.residual;
-  initial_energy_ =
-      before != nullptr ? before->initial_energy : energies_.kinetic + energies_.strain + energies_.stored + energies_.interface_dissipated;
-  largest_external_ = before != nullptr ? before->largest_external : 0;
-}
-
-/// What follows from the present state: filtered products, forces, products with the matrices, energy of the interfaces.
-void Stepper::follow_state() {
-  if (path_) velocity_before_ = now_.velocity;
-  if (filtered_) begin_filters();
-  next_ = now_;
-  force_at(now_.time, force_now_);
-  products(now_.displacement, now_.velocity, stiff_now_, momentum_now_);
-  interface_energy_.update(blocks_of(model_, behaviours_).blocks, now_.opening, now_.history);
-}
-
-MarchState Stepper::march_state() const {
-  MarchState march{now_, ledger(), counts_, start_time_, origin_, {}};
-  for (std::size_t halving = 0; halving < levels_.size(); ++halving)
-    if (levels_[halving] != nullptr) march.sizes.push_back(static_cast<int>(halving));
-  return march;
-}
-
-void Stepper::resume(MarchState from) {
-  now_ = std::move(from.state);
-  make_room();
-  for (const int halving : from.sizes) level(halving);
-  if (!bulk_.small) {
-    give_back_free_memory();
-    pair_ = solver_.pair(bulk_.stiffness_matrix, bulk_.mass_matrix);
-  }
-  energies_ = from.ledger.energies;
-  initial_energy_ = from.ledger.initial_energy;
-  largest_external_ = from.ledger.largest_external;
-  impact_loss_ = energies_.impact;
-  counts_ = from.counts;
-  start_time_ = from.start_time;
-  origin_ = from.origin;
-  reenter();
-}
-
-void Stepper::reenter() {
-  for (const std::unique_ptr<Level>& level : levels_)
-    if (level != nullptr && level->solver != nullptr) level->solver->forget();
-  impact_scratch_ = {};
-  interface_energy_ = {};
-  if (newton_ != nullptr) plastic_now_ = yielding_.state(now_.bulk_history);
-  follow_state();
 }
 
 /// Openings that prescribed motions make by themselves, at the end of a step.

@@ -11,21 +11,10 @@ using namespace support;
 
 constexpr double mass = 1000, g = 9.81;
 
-std::string block(const std::string& interface, const std::string& stages, const std::string& more = "") {
-  return R"(title = "block"
-bonded = false
-[nodes]
-b = [0, 0]
-[[rigid]]
-node = "b"
-mass = 1000
-inertia = 300
-[gravity]
-acceleration = [0, -9.81]
-[[interface]]
-name = "f"
-)" + interface +
-         more + stages;
+std::string block(const std::string& interface, const std::string& stages, const std::string& more = "",
+                  const std::string& place = "[0, 0]", const std::string& inertia = "300", const std::string& gravity = "9.81") {
+  return "title = \"block\"\nbonded = false\n[nodes]\nb = " + place + "\n[[rigid]]\nnode = \"b\"\nmass = 1000\ninertia = " + inertia +
+         "\n[gravity]\nacceleration = [0, -" + gravity + "]\n[[interface]]\nname = \"f\"\n" + interface + more + stages;
 }
 
 const std::vector<double>& column(const RunResult& run, const std::string& name) {
@@ -96,32 +85,11 @@ TEST(Beginning, AReflectedBlockKeepsItsEnergy) {
 
 /// A block that turns about one corner from the beginning: the static force of the other corner does no work.
 TEST(Beginning, ACornerThatPartsAtOncePressesNoLonger) {
-  const std::string text = R"(title = "rocking"
-bonded = false
-method = "lagrange"
-[nodes]
-b = [0, 3]
-[[rigid]]
-node = "b"
-mass = 1000
-inertia = 3333.3333333333335
-[gravity]
-acceleration = [0, -10]
-[[interface]]
-name = "f"
-footing = { body = "b", width = 2, points = 2, offset = [0, -3] }
-law = { type = "coulomb", friction = 5 }
-[[initial]]
-node = "b"
-velocity = [0.15, 0.05]
-angular_velocity = -0.05
-[[stage]]
-type = "static"
-[[stage]]
-type = "dynamic"
-duration = 0.05
-step = 1e-3
-)";
+  const std::string text =
+      "method = \"lagrange\"\n" +
+      block("footing = { body = \"b\", width = 2, points = 2, offset = [0, -3] }\nlaw = { type = \"coulomb\", friction = 5 }\n",
+            "[[stage]]\ntype = \"static\"\n[[stage]]\ntype = \"dynamic\"\nduration = 0.05\nstep = 1e-3\n",
+            "[[initial]]\nnode = \"b\"\nvelocity = [0.15, 0.05]\nangular_velocity = -0.05\n", "[0, 3]", "3333.3333333333335", "10");
   const RunResult run = run_of(built_of(text));
   ASSERT_EQ(run.status, RunStatus::completed) << run.reason;
   const double kinetic = 0.5 * (1000 * (0.15 * 0.15 + 0.05 * 0.05) + 3333.3333333333335 * 0.05 * 0.05);
