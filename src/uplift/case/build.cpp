@@ -110,7 +110,7 @@ void add_method(const Case& read, const RunSpec& spec, BuiltCase& built) {
     fail(*method, "", "a method for cones (penalty, augmented_lagrangian, lagrange), or a traction law", "\"newton\" with a cone");
   if (method && !cone && !spec.law && method->type() == "penalty")
     fail(*method, "", "a cone (law = \"unilateral\" or \"coulomb\"), or method = \"newton\"", "\"penalty\" with a traction law");
-  const Values automatic = check_part(Raw{std::string(cone ? "lagrange" : "newton"), root.where(), "method"}, contact_methods());
+  const Values automatic = check_part(Raw{std::string(standard_method(cone)), root.where(), "method"}, contact_methods());
   built.plan.method = make_part(method_catalog(), method ? *method : automatic);
   // a joint that gives way keeps its velocity: a correction is for constraints, and for a stiff law where the user asks for it
   const Values* impact = spec.bonded ? nullptr : spec.impact ? spec.impact : root.has("impact") ? &root.part("impact") : nullptr;

@@ -1,4 +1,5 @@
 #include <array>
+#include <ranges>
 
 #include "uplift/contact/impact/impact.h"
 #include "uplift/contact/method.h"
@@ -20,6 +21,18 @@ std::span<const Entry<ContactMethod>* const> method_catalog() {
 std::span<const PartInfo* const> contact_methods() {
   static const std::vector<const PartInfo*> infos(method_catalog().begin(), method_catalog().end());
   return infos;
+}
+
+std::string_view standard_method(bool constraints) {
+  return constraints ? "lagrange" : "newton";
+}
+
+std::string_view other_exact_method(std::string_view method) {
+  for (const Entry<ContactMethod>* entry : std::views::reverse(method_catalog())) {
+    const Values standard = check_part(Raw{std::string(entry->name), {}, "method"}, contact_methods());
+    if (entry->name != method && entry->make(standard)->constrains()) return entry->name;
+  }
+  return {};
 }
 
 std::span<const Entry<ImpactRule>* const> impact_catalog() {

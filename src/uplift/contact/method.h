@@ -47,5 +47,9 @@ double flexibility(const ContactModel&, const Block&);
 
 std::span<const Entry<ContactMethod>* const> method_catalog();  // "newton", "penalty", "augmented_lagrangian", "lagrange"
 std::span<const PartInfo* const> contact_methods();
+/// The method of a case that names none: multipliers where there are constraints, Newton's method for traction laws alone.
+std::string_view standard_method(bool constraints);
+/// Another method of the catalog that enforces constraints exactly.
+std::string_view other_exact_method(std::string_view method);
 
 }  // namespace uplift

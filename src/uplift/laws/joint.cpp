@@ -50,6 +50,7 @@ class JointLaw final : public InterfaceLaw {
   }
 
   LawScales scales() const override { return normal_->scales(); }
+  std::optional<EquivalentLaw> equivalent() const override { return normal_->equivalent(); }
 
  private:
   static Batch one_component(const Batch& batch) { return {batch.points, 1, batch.step}; }

@@ -1,6 +1,10 @@
 #pragma once
 #include <memory>
+#include <optional>
 #include <span>
+#include <string_view>
+#include <utility>
+#include <vector>
 
 #include "uplift/base/catalog.h"
 
@@ -48,6 +52,12 @@ struct LawScales {
   double least_stiffness = 0;  // Pa/m: the law exists above it alone
 };
 
+/// Another law of the catalog that has the same answer, by other means. The parameters that both laws have keep their values.
+struct EquivalentLaw {
+  std::string_view name;
+  std::vector<std::pair<std::string_view, double>> parameters;  // that this law does not have; SI
+};
+
 /// What the contact under a whole footing looks like, for which one point with rotations stands.
 struct FootingContact {
   double open_share = 0;              // of the area
@@ -76,6 +86,8 @@ class InterfaceLaw {
   /// Stiffness of a closed joint in compression [Pa/m], per component (normal last): for k*F_ii, the static base and suggestions.
   virtual void closed_stiffness(int components, double* stiffness) const = 0;
   virtual LawScales scales() const { return {}; }
+  /// For `uplift trust`, which computes the case with it; none where no law of the catalog is equivalent.
+  virtual std::optional<EquivalentLaw> equivalent() const { return {}; }
   /// Of a point with rotations: what its rows alone do not tell.
   virtual FootingContact contact(const Batch&, const double* /*opening*/, const double* /*history*/) const { return {}; }
 };

@@ -48,6 +48,7 @@ class NormalLaw {
   /// Stiffness in compression [Pa/m].
   virtual double stiffness() const = 0;
   virtual LawScales scales() const { return {}; }
+  virtual std::optional<EquivalentLaw> equivalent() const { return {}; }
   /// False where the traction is never positive.
   virtual bool carries_tension() const { return true; }
   /// The surface of one point along a step of duration `step` [s]; `from` = `to` asks for the state at that opening.

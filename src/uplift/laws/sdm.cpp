@@ -314,6 +314,10 @@ class SdmLaw final : public NormalLaw {
     return {.strength = law_.strength, .closure = law_.closure, .opening = law_.inverse_rate, .least_stiffness = law_.least_stiffness()};
   }
   bool carries_tension() const override { return law_.strength > 0; }
+  std::optional<EquivalentLaw> equivalent() const override {
+    if (law_.strength > 0) return {};
+    return EquivalentLaw{"springs", {}};
+  }
 
   void respond(const Batch& batch, const double* from, const double* to, const double* old, const LawResponse& response) const override {
     for (int first = 0; first < batch.points; first += block) {

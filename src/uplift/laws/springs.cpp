@@ -50,6 +50,11 @@ class Springs final : public NormalLaw {
   int num_history() const override { return damping_ > 0 ? 1 : 0; }
   double stiffness() const override { return stiffness_; }
   bool carries_tension() const override { return false; }
+  /// The SDM without strength, whose closure stress is far below what a base bears at rest; it has no dashpot.
+  std::optional<EquivalentLaw> equivalent() const override {
+    if (damping_ > 0) return {};
+    return EquivalentLaw{"sdm", {{"F_u", 0.0}, {"G_f", 0.1}, {"F_c", -1e-7 * stiffness_}}};
+  }
 
   void respond(const Batch& batch, const double* from, const double* to, const double* old, const LawResponse& response) const override {
     if (damping_ > 0) return viscous(batch, from, to, old, response, false);

@@ -5,6 +5,7 @@
 #include <algorithm>
 
 #include "uplift/case/build/bed.h"
+#include "uplift/contact/method.h"
 #include "uplift/laws/tangential.h"
 
 namespace uplift {
@@ -31,19 +32,44 @@ std::string law_path(std::size_t interface) {
 }
 
 bool is_cone(const Values& law) {
-  return law.type() == "unilateral" || law.type() == "coulomb";
+  return std::ranges::any_of(cone_catalog(), [&](const Entry<Cone>* entry) { return entry->name == law.type(); });
 }
 
-/// Name of the contact method that a run of the case takes.
-std::string method_of(const Values& root) {
-  if (root.has("method")) return root.part("method").type();
+/// The contact method that a run of the case takes.
+Values method_of(const Values& root) {
+  if (root.has("method")) return root.part("method");
   const bool cones = std::ranges::any_of(root.tables("interface"), [](const Values& each) { return is_cone(each.part("law")); });
-  return cones ? "lagrange" : "newton";
+  return check_part(Raw{std::string(standard_method(cones)), root.where(), "method"}, contact_methods());
+}
+
+/// Numbers of a law that are stiffnesses, by their unit.
+std::vector<std::string_view> stiffness_keys(const Values& law) {
+  std::vector<std::string_view> keys;
+  for (const Field& field : law.part_info()->params)
+    if (field.unit == "Pa/m" && has_number(law, field.name)) keys.push_back(field.name);
+  return keys;
+}
+
+bool is_parameter_of(std::string_view law, std::string_view key) {
+  const auto behaviours = interface_behaviours();
+  const auto entry = std::ranges::find(behaviours, law, &PartInfo::name);
+  return std::ranges::find((*entry)->params, key, &Field::name) != (*entry)->params.end();
+}
+
+/// The edits that put another law, which has the same answer, in the place of one.
+std::vector<CaseEdit> replaced(const std::string& path, const Values& law, const EquivalentLaw& other) {
+  std::vector<CaseEdit> edits{{path, std::string(other.name)}};
+  for (const auto& [key, value] : other.parameters) edits.push_back({fmt::format("{}.{}", path, key), value});
+  for (const Field& field : law.part_info()->params)
+    if (field.kind == Kind::number && has_number(law, field.name) && is_parameter_of(other.name, field.name))
+      edits.push_back({fmt::format("{}.{}", path, field.name), law.number(field.name)});
+  edits.push_back({path + ".tangential", tangential_kind(law)});
+  return edits;
 }
 
 class Planner {
  public:
-  explicit Planner(const Case& read) : root_(read.values), trust_(root_.table("trust")) {}
+  explicit Planner(const Case& read) : root_(read.values), trust_(root_.table("trust")), method_(method_of(root_)) {}
 
   TrustPlan plan() {
     halve_step();
@@ -93,7 +119,6 @@ class Planner {
   void change_stiffness() {
     if (trust_.has("stiffness_factor") && trust_.number("stiffness_factor") == 1)
       return leave_out("joint stiffness", "stiffness_factor = 1");
-    const bool penalty = method_of(root_) == "penalty";
     for (const bool stiffer : {true, false}) {
       std::vector<CaseEdit> edits;
       std::vector<double> factors;
@@ -101,9 +126,9 @@ class Planner {
       for (std::size_t k = 0; k < interfaces.size(); ++k) {
         const Values law = law_of(interfaces[k]);
         const double factor = factor_of(interfaces[k]), by = stiffer ? factor : 1 / factor;
-        if (has_number(law, "K_n")) factors.push_back(factor);
-        for (const char* key : {"K_n", "K_t"})
-          if (has_number(law, key)) edits.push_back({law_path(k) + "." + key, by * law.number(key)});
+        const std::vector<std::string_view> keys = stiffness_keys(law);
+        if (!keys.empty()) factors.push_back(factor);
+        for (const std::string_view key : keys) edits.push_back({fmt::format("{}.{}", law_path(k), key), by * law.number(key)});
         if (const auto made = make_part(law_catalog(), law); made != nullptr && !stiffer) {
           double stiffness[3] = {};
           made->closed_stiffness(3, stiffness);
@@ -112,12 +137,11 @@ class Planner {
                              fmt::format("the law of '{}' needs a stiffness above {:.3g} Pa/m", interfaces[k].text("name"), least));
         }
       }
-      if (penalty) {
-        const Values& method = root_.part("method");
-        const char* key = method.has("stiffness") ? "stiffness" : "factor";
+      if (regularises()) {
+        const char* key = has_number(method_, "stiffness") ? "stiffness" : "factor";
         const double factor = trust_.has("stiffness_factor") ? trust_.number("stiffness_factor") : of_joint;
         factors.push_back(factor);
-        edits.push_back({std::string("method.") + key, (stiffer ? factor : 1 / factor) * method.number(key)});
+        edits.push_back({std::string("method.") + key, (stiffer ? factor : 1 / factor) * method_.number(key)});
       }
       if (edits.empty()) return leave_out("joint stiffness", "constraints are rigid");
       const auto [least, most] = std::ranges::minmax(factors);
@@ -149,46 +173,32 @@ class Planner {
 
   void tighten() {
     std::vector<CaseEdit> edits;
-    const std::string method = method_of(root_);
-    const Values* given = root_.has("method") ? &root_.part("method") : nullptr;
-    const double standard = method == "augmented_lagrangian" ? 1e-11 : 1e-12;
-    const double tolerance = std::max(least_tolerance, 0.1 * (given ? given->number("tolerance") : standard));
-    if (!given) edits.push_back({"method", method});
+    const auto tighter = [&](const char* key) { return std::max(least_tolerance, 0.1 * method_.number(key)); };
+    const double tolerance = tighter("tolerance");
+    if (!root_.has("method")) edits.push_back({"method", method_.type()});
     edits.push_back({"method.tolerance", tolerance});
-    if (method == "lagrange") edits.push_back({"method.gap_tolerance", 0.1 * (given ? given->number("gap_tolerance") : 1e-12)});
+    if (has_number(method_, "gap_tolerance")) edits.push_back({"method.gap_tolerance", tighter("gap_tolerance")});
     edits.push_back({"limits.gap_tolerance", 0.1 * root_.table("limits").number("gap_tolerance")});
     add("tighter", "tolerance", fmt::format("tolerance {:g}", tolerance), std::move(edits));
   }
 
-  /// Another way to the same answer: constraints by another method; the SDM without strength and tensionless springs for each other; and
-  /// where the dashpots of springs have no other law, the dissipative scheme with the traction at the end of the step.
+  /// Another way to the same answer: constraints by another method; another law that is equivalent; and where one of the laws has none, the
+  /// dissipative scheme with the traction at the end of the step.
   void change_method() {
-    const std::string method = method_of(root_);
-    if (method != "newton") {
-      const std::string other = method == "lagrange" ? "augmented_lagrangian" : "lagrange";
-      return add("other_method", "method", other + " instead of " + method, {{"method", other}});
+    if (constrains() || regularises()) {
+      const std::string other(other_exact_method(method_.type()));
+      return add("other_method", "method", other + " instead of " + method_.type(), {{"method", other}});
     }
     std::vector<CaseEdit> edits;
     const std::vector<Values>& interfaces = root_.tables("interface");
     std::string label;
     for (std::size_t k = 0; k < interfaces.size(); ++k) {
       const Values law = law_of(interfaces[k]);
-      const std::string path = law_path(k), type = law.type();
-      const bool weak = type == "sdm" && law.number("F_u") == 0;
-      const bool undamped = type == "springs" && law.number("c") == 0;
-      if (!weak && !undamped) return change_scheme();
-      const std::string other = weak ? "springs" : "sdm";
-      edits.push_back({path, other});
-      if (undamped) {
-        // its closure stress is far below what the base bears at rest
-        edits.push_back({path + ".F_u", 0.0});
-        edits.push_back({path + ".G_f", 0.1});
-        edits.push_back({path + ".F_c", -1e-7 * law.number("K_n")});
-      }
-      for (const char* key : {"K_n", "K_t", "friction", "cohesion"})
-        if (has_number(law, key)) edits.push_back({path + "." + key, law.number(key)});
-      edits.push_back({path + ".tangential", tangential_kind(law)});
-      label = fmt::format("{} instead of {}", other, type);
+      const auto made = make_part(law_catalog(), law);
+      const auto other = made ? made->equivalent() : std::nullopt;
+      if (!other) return change_scheme();
+      std::ranges::move(replaced(law_path(k), law, *other), std::back_inserter(edits));
+      label = fmt::format("{} instead of {}", other->name, law.type());
     }
     add("other_law", "method", label, std::move(edits));
   }
@@ -241,7 +251,12 @@ class Planner {
     }
   }
 
+  bool constrains() const { return make_part(method_catalog(), method_)->constrains(); }
+  /// The method has a stiffness of its own in the place of constraints.
+  bool regularises() const { return method_.items().contains("stiffness"); }
+
   const Values &root_, &trust_;
+  const Values method_;
   TrustPlan plan_;
 };
 

@@ -39,6 +39,32 @@ TEST(Springs, SlopeOfTheAverageHasItsClosedForm) {
   }
 }
 
+TEST(Springs, SdmWithoutStrengthIsEquivalentUpToItsClosureStress) {
+  const double k = 2e8;
+  const auto springs = make_law("springs", {{"K_n", k}});
+  const auto other = springs->equivalent();
+  ASSERT_TRUE(other.has_value());
+  std::vector<Parameter> parameters{{"K_n", k}};
+  double closure = 0;
+  for (const auto& [key, value] : other->parameters) {
+    parameters.emplace_back(std::string(key), value);
+    if (key == "F_c") closure = -value;
+  }
+  const auto sdm = make_law(std::string(other->name), parameters);
+  Probe one(springs, 1), two(sdm, 1);
+  double from = 0;
+  for (const double to : {-1e-3, 2e-3, -5e-4, 1e-5, -1e-9, -1e-3, 4e-3, 3e-3, -2e-3}) {
+    EXPECT_NEAR(one.respond({from}, {to})[0], two.respond({from}, {to})[0], closure * (1 + 1e-9)) << from << " to " << to;
+    one.accept(), two.accept();
+    from = to;
+  }
+  EXPECT_LE(closure, 1e-3 * k * 1e-3) << "small beside the pressures of this path";
+  ASSERT_TRUE(sdm->equivalent().has_value());
+  EXPECT_EQ(sdm->equivalent()->name, "springs");
+  EXPECT_FALSE(make_law("springs", {{"K_n", k}, {"c", 1e5}})->equivalent()) << "no other law has its dashpot";
+  EXPECT_FALSE(make_law("sdm", {{"K_n", k}, {"F_u", 1e3}, {"G_f", 0.1}, {"F_c", -20.0}})->equivalent()) << "springs have no strength";
+}
+
 TEST(Springs, DashpotActsInContactAndNeverPulls) {
   const double k = 2e8, c = 1e6, step = 1e-3;
   Probe one(make_law("springs", {{"K_n", k}, {"c", c}}), 1, 1, step);

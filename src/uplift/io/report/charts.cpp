@@ -4,7 +4,6 @@
 #include <cmath>
 #include <optional>
 
-#include "uplift/case/build/model.h"
 #include "uplift/io/report/motions.h"
 #include "uplift/io/results/histories.h"
 
@@ -138,9 +137,9 @@ Chart load_chart(const Case& read, const ReportRun& run) {
     chart.curves.push_back(std::move(curve));
   };
   std::size_t next = 0;  // time loads stand in the order of the loads of the case; names may come twice
-  for (const Values& load : read.values.tables("load")) {
+  for (const DrawnParts::Load& load : drawn_parts(read, built).loads) {
     std::size_t at = next;
-    while (at < model.time_loads.size() && model.time_loads[at].name != name_of_load(load)) ++at;
+    while (at < model.time_loads.size() && model.time_loads[at].name != load.name) ++at;
     if (at == model.time_loads.size()) continue;
     next = at + 1;
     const Vector& pattern = model.assembly.loads[at];
@@ -148,7 +147,7 @@ Chart load_chart(const Case& read, const ReportRun& run) {
       double sum = 0;
       for (Index i = axis; i < pattern.size(); i += model.space.unknowns()) sum += pattern[i];
       if (std::abs(sum) > 1e-12 * pattern.lpNorm<1>())
-        sample(fmt::format("{}, {}", name_of_load(load), along(axis)), sum, *model.time_loads[at].function);
+        sample(fmt::format("{}, {}", load.name, along(axis)), sum, *model.time_loads[at].function);
     }
   }
   return chart;

@@ -1,12 +1,9 @@
-#include "uplift/case/build/model.h"
-
 #include <algorithm>
 #include <array>
 #include <set>
 #include <utility>
 
 #include "uplift/case/mesh/outline.h"
-#include "uplift/elements/element_entry.h"
 #include "uplift/io/report/parts.h"
 
 // The drawing of the model and the pictures of the animation.
@@ -16,10 +13,10 @@ namespace {
 constexpr int most_outline_nodes = 140, most_drawn_cells = 2000;
 constexpr std::size_t most_beam_nodes = 200;
 
-/// What is drawn of the model: the outline of the mesh, and which nodes of the model.
+/// What is drawn of the model: its parts, the outline of the mesh, and which nodes of the model.
 struct Drawn {
-  MeshOutline outline;  // nodes of the mesh
-  int first_of_mesh = 0;
+  DrawnParts parts;
+  MeshOutline outline;          // nodes of the mesh
   std::vector<BeamLine> beams;  // those of groups thinned
   std::vector<int> nodes;       // of the model, ascending
   std::set<int> hidden;         // nodes that the user has not named
@@ -54,16 +51,15 @@ std::vector<BeamLine> drawn_beams(const BuiltCase& built) {
 /// Nodes of the case, of its beams and of the outline of its mesh, and those that are a group; the nodes of an elastic bed are not drawn.
 Drawn drawn_of(const Case& read, const BuiltCase& built) {
   Drawn drawn;
-  drawn.first_of_mesh = static_cast<int>(read.values.tables("nodes").size());
-  int end_of_mesh = drawn.first_of_mesh;
+  drawn.parts = drawn_parts(read, built);
+  const int first_of_mesh = drawn.parts.first_of_mesh;
+  int end_of_mesh = first_of_mesh;
   if (read.mesh) {
-    std::vector<std::string> groups;
-    for (const Values* solid : element_tables(read.values, ElementPlace::cells)) groups.push_back(solid->text("group"));
-    drawn.outline = outline_of(read.mesh->drawn(), groups, most_outline_nodes, most_drawn_cells);
+    drawn.outline = outline_of(read.mesh->drawn(), drawn.parts.solids, most_outline_nodes, most_drawn_cells);
     end_of_mesh += static_cast<int>(read.mesh->mesh.nodes.size());
   }
   drawn.beams = drawn_beams(built);
-  std::set<int> kept = nodes_used(read, built), inner;
+  std::set<int> kept = drawn.parts.nodes(), inner;
   for (const BeamLine& beam : drawn.beams) kept.insert(beam.nodes.begin(), beam.nodes.end());
   for (const BeamLine& beam : built.beams)
     if (beam.of_group)
@@ -76,29 +72,29 @@ Drawn drawn_of(const Case& read, const BuiltCase& built) {
   for (int i = 0; i < static_cast<int>(built.model.nodes.size()); ++i) {
     const std::string& name = built.model.nodes[static_cast<std::size_t>(i)].name;
     const bool bed = std::any_of(beds.begin(), beds.end(), [&](const std::string& start) { return name.starts_with(start); });
-    const bool of_mesh = i >= drawn.first_of_mesh && i < end_of_mesh, of_group = inner.contains(i), named = !name.starts_with("mesh.");
+    const bool of_mesh = i >= first_of_mesh && i < end_of_mesh, of_group = inner.contains(i), named = !name.starts_with("mesh.");
     const bool shown =
-        of_mesh ? named || std::ranges::binary_search(on_outline, i - drawn.first_of_mesh) : i < drawn.first_of_mesh || !(bed || of_group);
+        of_mesh ? named || std::ranges::binary_search(on_outline, i - first_of_mesh) : i < first_of_mesh || !(bed || of_group);
     if (shown || kept.contains(i)) drawn.nodes.push_back(i);
     if (of_group || !named) drawn.hidden.insert(i);
   }
   return drawn;
 }
 
-/// The name by which a node is drawn; it may be named by its number.
-const std::string& shown_name(const BuiltCase& built, const std::string& node) {
-  return built.model.nodes[static_cast<std::size_t>(built.model.find_node(node))].name;
+/// The name by which a node is drawn; a case may call it by its number.
+const std::string& shown_name(const BuiltCase& built, int node) {
+  return built.model.nodes[static_cast<std::size_t>(node)].name;
 }
 
 const std::string& name_of_mesh_node(const Drawn& drawn, const BuiltCase& built, int of_mesh) {
-  return built.model.nodes[static_cast<std::size_t>(drawn.first_of_mesh + of_mesh)].name;
+  return shown_name(built, drawn.parts.first_of_mesh + of_mesh);
 }
 
 /// At most about `most` nodes of a group of the mesh that are drawn.
 std::vector<int> drawn_of_group(const Drawn& drawn, const Case& read, const std::string& group, std::size_t most) {
   std::vector<int> found;
   for (const int node : nodes_of(read.mesh->mesh, read.mesh->mesh.groups.at(group)))
-    if (std::ranges::binary_search(drawn.nodes, drawn.first_of_mesh + node)) found.push_back(node);
+    if (std::ranges::binary_search(drawn.nodes, drawn.parts.first_of_mesh + node)) found.push_back(node);
   const std::size_t every = found.size() / most + 1;
   std::vector<int> thinned;
   for (std::size_t i = 0; i < found.size(); i += every) thinned.push_back(found[i]);
@@ -128,58 +124,51 @@ void write_beams(JsonWriter& json, const Drawn& drawn, const BuiltCase& built) {
   json.begin_array();
   for (const BeamLine& beam : drawn.beams) {
     std::vector<std::string> nodes;
-    for (const int node : beam.nodes) nodes.push_back(built.model.nodes[static_cast<std::size_t>(node)].name);
+    for (const int node : beam.nodes) nodes.push_back(shown_name(built, node));
     json.begin_object().member("name", beam.name).key("nodes").texts(nodes).end_object();
   }
   json.end_array();
 }
 
 /// A footing is drawn as a flat block on its underside.
-void write_body(JsonWriter& json, const BuiltCase& built, const std::string& body, const Interface& joint, double width) {
-  const Vec3 n = joint.normal.front(), half = width / 2 * local_axis(joint.space, n, 0), middle = joint.reference;
-  const auto node = static_cast<std::size_t>(built.model.find_node(body));
-  const Vec3 up = std::max(0.08 * width, (built.model.nodes[node].position - middle).dot(n)) * n;
-  json.begin_object().member("name", body).member("node", shown_name(built, body)).key("outline").begin_array();
-  for (const Vec3& corner : {Vec3(middle - half), Vec3(middle + half), Vec3(middle + half + up), Vec3(middle - half + up)})
-    json.numbers(std::array<double, 2>{corner.x(), corner.y()});
-  json.end_array().end_object();
-}
-
-void write_bodies(JsonWriter& json, const Case& read, const BuiltCase& built) {
+void write_bodies(JsonWriter& json, const Drawn& drawn, const BuiltCase& built) {
   json.begin_array();
-  for (const Interface& joint : built.model.interfaces) {
-    for (const Values& interface : read.values.tables("interface"))
-      if (const Values* footing = table_if(interface, "footing"); footing && interface.text("name") == joint.name)
-        write_body(json, built, footing->text("body"), joint, footing->number("width"));
-    for (const Values& foundation : read.values.tables("foundation"))
-      if (foundation.text("name") == joint.name) write_body(json, built, foundation.text("body"), joint, foundation.number("width"));
+  for (const DrawnParts::Body& body : drawn.parts.bodies) {
+    const std::vector<Place>& edges = built.facts[body.interface].corners;
+    const Vec3 n = built.model.interfaces[body.interface].normal.front(), from = edges.front(), to = edges.back();
+    const double height = (built.model.nodes[static_cast<std::size_t>(body.node)].position - from).dot(n);
+    const Vec3 up = std::max(0.08 * (to - from).norm(), height) * n;
+    const std::string& name = shown_name(built, body.node);
+    json.begin_object().member("name", name).member("node", name).key("outline").begin_array();
+    for (const Vec3& corner : {from, to, Vec3(to + up), Vec3(from + up)}) json.numbers(std::array<double, 2>{corner.x(), corner.y()});
+    json.end_array().end_object();
   }
   json.end_array();
 }
 
 void write_supports(JsonWriter& json, const Drawn& drawn, const Case& read, const BuiltCase& built) {
-  const auto write = [&](const std::string& node, const Values& support) {
-    json.begin_object().member("node", node).key("dofs").texts(support.texts("fixed"));
-    if (support.text("stages") == "static") json.member("staticsOnly", true);
+  const auto write = [&](const std::string& node, const DrawnParts::Support& support) {
+    json.begin_object().member("node", node).key("dofs").texts(support.fixed);
+    if (support.statics_only) json.member("staticsOnly", true);
     json.end_object();
   };
   json.key("supports").begin_array();
-  for (const Values& support : read.values.tables("support")) {
-    if (support.has("node")) write(shown_name(built, support.text("node")), support);
-    if (support.has("group"))
-      for (const int node : drawn_of_group(drawn, read, support.text("group"), 8)) write(name_of_mesh_node(drawn, built, node), support);
+  for (const DrawnParts::Support& support : drawn.parts.supports) {
+    if (support.node >= 0) write(shown_name(built, support.node), support);
+    if (!support.group.empty())
+      for (const int node : drawn_of_group(drawn, read, support.group, 8)) write(name_of_mesh_node(drawn, built, node), support);
   }
   json.end_array();
 }
 
 /// Absorbing faces as segments between the ends of their edges.
-void write_absorbing(JsonWriter& json, const Case& read) {
+void write_absorbing(JsonWriter& json, const Drawn& drawn, const Case& read) {
   json.key("absorbing").begin_array();
-  for (const Values& face : read.values.tables("absorbing")) {
+  for (const DrawnParts::AbsorbingFace& face : drawn.parts.absorbing) {
     const Mesh& mesh = read.mesh->mesh;
-    json.begin_object().member("group", face.text("group")).member("freeField", face.flag("free_field"));
-    json.member("incident", face.has("incident")).key("edges").begin_array();
-    for (const CellId cell : mesh.groups.at(face.text("group")).cells) {
+    json.begin_object().member("group", face.group).member("freeField", face.free_field);
+    json.member("incident", face.incident).key("edges").begin_array();
+    for (const CellId cell : mesh.groups.at(face.group).cells) {
       const auto ends = mesh.cell(cell);
       const Vec3 &from = mesh.nodes[static_cast<std::size_t>(ends[0])], &to = mesh.nodes[static_cast<std::size_t>(ends[1])];
       json.numbers(std::array<double, 4>{from.x(), from.y(), to.x(), to.y()});
@@ -191,38 +180,31 @@ void write_absorbing(JsonWriter& json, const Case& read) {
 
 void write_loads(JsonWriter& json, const Drawn& drawn, const Case& read, const BuiltCase& built) {
   json.key("loads").begin_array();
-  for (const Values& load : read.values.tables("load")) {
-    const std::vector<double> force = drawn_force(load, built.model);
-    if (force.empty()) continue;
-    std::string node = load.has("node") ? shown_name(built, load.text("node")) : "";
-    if (load.has("group"))
-      if (const std::vector<int> nodes = drawn_of_group(drawn, read, load.text("group"), 1000); !nodes.empty())
+  for (const DrawnParts::Load& load : drawn.parts.loads) {
+    if (load.force.empty()) continue;
+    std::string node = load.node >= 0 ? shown_name(built, load.node) : "";
+    if (!load.group.empty())
+      if (const std::vector<int> nodes = drawn_of_group(drawn, read, load.group, 1000); !nodes.empty())
         node = name_of_mesh_node(drawn, built, nodes[nodes.size() / 2]);
-    json.begin_object().member("node", node).member("fx", force[0]).member("fy", force[1]);
-    json.member("label", name_of_load(load)).end_object();
+    json.begin_object().member("node", node).member("fx", load.force[0]).member("fy", load.force[1]);
+    json.member("label", load.name).end_object();
   }
   json.end_array();
 }
 
-void write_small_parts(JsonWriter& json, const Case& read, const BuiltCase& built) {
+void write_small_parts(JsonWriter& json, const DrawnParts& parts, const BuiltCase& built) {
   json.key("masses").begin_array();
-  for (const Values& mass : read.values.tables("mass"))
-    json.begin_object()
-        .member("node", shown_name(built, mass.text("node")))
-        .member("mass", mass.has("mass") ? mass.number("mass") : built.tuned_mass)
-        .end_object();
+  for (const DrawnParts::Mass& mass : parts.masses)
+    json.begin_object().member("node", shown_name(built, mass.node)).member("mass", mass.mass).end_object();
   json.end_array();
   json.key("springs").begin_array();
-  for (const ElementEntry* element : elements_at(ElementPlace::nodes)) {
-    for (const Values& spring : read.values.tables(element->name)) {
-      const std::vector<std::string>& nodes = spring.texts("nodes");
-      json.begin_object().key("nodes").begin_array().value(shown_name(built, nodes.front()));
-      if (nodes.size() > 1)
-        json.value(shown_name(built, nodes.back()));
-      else
-        json.null();
-      json.end_array().member("kind", element->symbol).end_object();
-    }
+  for (const DrawnParts::Link& link : parts.links) {
+    json.begin_object().key("nodes").begin_array().value(shown_name(built, link.node));
+    if (link.other >= 0)
+      json.value(shown_name(built, link.other));
+    else
+      json.null();
+    json.end_array().member("kind", link.symbol).end_object();
   }
   json.end_array();
 }
@@ -243,7 +225,7 @@ void write_interfaces(JsonWriter& json, const Drawn& drawn, const BuiltCase& bui
     const bool surface = !built.facts[k].faces.empty();
     json.begin_object().member("name", interface.name);
     if (surface) json.member("opened", true);
-    if (!built.facts[k].body.empty()) json.member("body", shown_name(built, built.facts[k].body));
+    if (!built.facts[k].body.empty()) json.member("body", built.facts[k].body);
     json.key("points").begin_array();
     for (int i = 0; i < interface.batch.points; ++i) {
       const Vec3 &at = interface.position[static_cast<std::size_t>(i)], &n = interface.normal[static_cast<std::size_t>(i)];
@@ -292,29 +274,6 @@ double uplifted_share(const Model& model, const Frame& frame) {
   return all > 0 ? open / all : 0;
 }
 
-std::vector<double> drawn_force(const Values& load, const Model& model) {
-  for (const char* key : {"force", "traction"})
-    if (load.has(key)) return load.numbers(key);
-  if (!load.has("pressure")) return {};
-  const Vec3 sum = resultant_of_load(load, model);
-  return {sum.data(), sum.data() + model.space.dimension};
-}
-
-std::set<int> nodes_used(const Case& read, const BuiltCase& built) {
-  std::set<int> nodes;
-  for (const char* kind : {"mass", "support", "load"})
-    for (const Values& table : read.values.tables(kind))
-      if (table.has("node")) nodes.insert(built.model.find_node(table.text("node")));
-  for (const ElementEntry* element : elements_at(ElementPlace::nodes)) {
-    for (const Values& table : read.values.tables(element->name))
-      for (const std::string& node : table.texts("nodes")) nodes.insert(built.model.find_node(node));
-  }
-  for (const Values& interface : read.values.tables("interface"))
-    if (const Values* footing = table_if(interface, "footing")) nodes.insert(built.model.find_node(footing->text("body")));
-  for (const Values& foundation : read.values.tables("foundation")) nodes.insert(built.model.find_node(foundation.text("body")));
-  return nodes;
-}
-
 void write_model(JsonWriter& json, const Case& read, const BuiltCase& built) {
   const Drawn drawn = drawn_of(read, built);
   json.begin_object().key("nodes").begin_array();
@@ -327,10 +286,10 @@ void write_model(JsonWriter& json, const Case& read, const BuiltCase& built) {
   json.end_array().key("beams");
   write_beams(json, drawn, built);
   json.key("bodies");
-  write_bodies(json, read, built);
-  write_small_parts(json, read, built);
+  write_bodies(json, drawn, built);
+  write_small_parts(json, drawn.parts, built);
   write_supports(json, drawn, read, built);
-  write_absorbing(json, read);
+  write_absorbing(json, drawn, read);
   if (read.mesh) write_outline(json, drawn, read, built);
   json.key("interfaces");
   write_interfaces(json, drawn, built);

@@ -1,9 +1,9 @@
 #pragma once
-#include <set>
 #include <string>
 #include <string_view>
 #include <vector>
 
+#include "uplift/case/drawn_parts.h"
 #include "uplift/io/report/report.h"
 #include "uplift/io/results/thin_history.h"
 #include "uplift/io/text/json_writer.h"
@@ -21,20 +21,14 @@ void write_sentences(JsonWriter& json, const ReportInput& input);
 void write_uplifted_shares(JsonWriter& json, const ReportInput& input);
 void write_tables(JsonWriter& json, const ReportInput& input);
 void write_charts(JsonWriter& json, const ReportInput& input);
-/// Nodes of the model that masses, supports, loads, springs, dashpots and footings stand on: they are drawn.
-std::set<int> nodes_used(const Case& read, const BuiltCase& built);
-/// The force of a load as it is drawn: as the case states it, of a pressure its resultant; empty for a moment.
-std::vector<double> drawn_force(const Values& load, const Model& model);
 void write_model(JsonWriter& json, const Case& read, const BuiltCase& built);
 void write_animations(JsonWriter& json, const ReportInput& input);
 /// The member "uplifted": share of the area in every frame, by interface.
 void write_uplifted(JsonWriter& json, const Model& model, const std::vector<const Frame*>& frames);
 /// Uplifted share of the area of all interfaces.
 double uplifted_share(const Model& model, const Frame& frame);
-/// The table `footing` of an interface; null where a surface or a cut makes it.
-const Values* footing_of(const Case& read, const Interface& joint);
 /// The frames of a run in space: displacements of these nodes of the model, rotations of footings, openings and pressures of interfaces.
-void write_space_animation(JsonWriter& json, const Case& read, const ReportRun& run, const std::vector<int>& nodes);
+void write_space_animation(JsonWriter& json, const DrawnParts& parts, const ReportRun& run, const std::vector<int>& nodes);
 /// The same two for a model in space: the members "space" and "spaceAnimations".
 void write_space(JsonWriter& json, const ReportInput& input);
 

@@ -8,7 +8,6 @@
 #include <span>
 #include <utility>
 
-#include "uplift/case/build/model.h"
 #include "uplift/io/report/parts.h"
 #include "uplift/mesh/sides.h"
 
@@ -47,22 +46,21 @@ Surface surface_of(const Mesh& mesh, const std::string& group) {
 
 /// What is drawn: surfaces of solids, nodes of the case, of beams and of rigid bodies.
 struct DrawnInSpace {
+  DrawnParts parts;
   std::vector<Surface> surfaces;
   std::vector<int> nodes;  // of the model, ascending
-  int first_of_mesh = 0;
   int number(int node) const { return static_cast<int>(std::ranges::lower_bound(nodes, node) - nodes.begin()); }
 };
 
 DrawnInSpace drawn_in_space(const Case& read, const BuiltCase& built) {
   DrawnInSpace drawn;
-  drawn.first_of_mesh = static_cast<int>(read.values.tables("nodes").size());
-  std::set<int> nodes = nodes_used(read, built);
-  for (int i = 0; i < drawn.first_of_mesh; ++i) nodes.insert(i);
-  if (read.mesh)
-    for (const Values* solid : element_tables(read.values, ElementPlace::cells)) {
-      drawn.surfaces.push_back(surface_of(read.mesh->drawn(), solid->text("group")));
-      for (const int node : drawn.surfaces.back().triangles) nodes.insert(drawn.first_of_mesh + node);
-    }
+  drawn.parts = drawn_parts(read, built);
+  std::set<int> nodes = drawn.parts.nodes();
+  for (int i = 0; i < drawn.parts.first_of_mesh; ++i) nodes.insert(i);
+  for (const std::string& group : drawn.parts.solids) {
+    drawn.surfaces.push_back(surface_of(read.mesh->drawn(), group));
+    for (const int node : drawn.surfaces.back().triangles) nodes.insert(drawn.parts.first_of_mesh + node);
+  }
   for (const BeamLine& beam : built.beams) nodes.insert(beam.nodes.begin(), beam.nodes.end());
   for (const int node : {built.top, built.base})
     if (node >= 0) nodes.insert(node);
@@ -87,7 +85,7 @@ void write_surfaces(JsonWriter& json, const DrawnInSpace& drawn) {
     json.begin_object().member("name", surface.name);
     for (const auto& [key, of_mesh] : {std::pair("triangles", &surface.triangles), std::pair("edges", &surface.edges)}) {
       std::vector<int> numbers;
-      for (const int node : *of_mesh) numbers.push_back(drawn.number(drawn.first_of_mesh + node));
+      for (const int node : *of_mesh) numbers.push_back(drawn.number(drawn.parts.first_of_mesh + node));
       write_whole(json, key, numbers);
     }
     json.end_object();
@@ -95,65 +93,49 @@ void write_surfaces(JsonWriter& json, const DrawnInSpace& drawn) {
   json.end_array();
 }
 
-/// Rectangle of a footing's points, in their order round it.
-std::array<Vec3, 4> corners_of(const Interface& joint, const Values& footing) {
-  const Vec3 n = joint.normal.front(), t = local_axis(joint.space, n, 0);
-  const double azimuth = footing.number("azimuth");
-  const Vec3 along = std::cos(azimuth) * t + std::sin(azimuth) * cross(n, t), across = cross(n, along);
-  const Vec3 a = footing.number("width") / 2 * along, b = footing.number("length") / 2 * across, middle = joint.reference;
-  return {middle - a - b, middle + a - b, middle + a + b, middle - a + b};
-}
-
-void write_bodies(JsonWriter& json, const Case& read, const BuiltCase& built, const DrawnInSpace& drawn) {
+/// Footings first, as their interfaces count them, then rectangular foundations.
+void write_bodies(JsonWriter& json, const BuiltCase& built, const DrawnInSpace& drawn) {
   json.key("bodies").begin_array();
-  for (const Interface& joint : built.model.interfaces)
-    if (const Values* footing = footing_of(read, joint)) {
-      const auto corners = corners_of(joint, *footing);
-      json.begin_object().member("name", footing->text("body")).member("node", drawn.number(built.model.find_node(footing->text("body"))));
-      write_places(json, "corners", {corners.begin(), corners.end()});
+  for (const bool foundations : {false, true})
+    for (const DrawnParts::Body& body : drawn.parts.bodies) {
+      const std::vector<Place>& corners = built.facts[body.interface].corners;
+      if (body.foundation != foundations || corners.size() != 4) continue;
+      json.begin_object().member("name", built.facts[body.interface].body).member("node", drawn.number(body.node));
+      // round the rectangle; those of a footing stand in two rows
+      write_places(json, "corners", foundations ? corners : std::vector<Place>{corners[0], corners[2], corners[3], corners[1]});
       json.end_object();
     }
-  for (const InterfaceFacts& facts : built.facts)
-    for (const Values& foundation : read.values.tables("foundation"))
-      if (foundation.text("name") == facts.name && facts.corners.size() == 4) {
-        json.begin_object().member("name", facts.body).member("node", drawn.number(built.model.find_node(facts.body)));
-        write_places(json, "corners", {facts.corners.begin(), facts.corners.end()});
-        json.end_object();
-      }
   json.end_array();
 }
 
-void write_small_parts(JsonWriter& json, const Case& read, const BuiltCase& built, const DrawnInSpace& drawn) {
+void write_small_parts(JsonWriter& json, const Case& read, const DrawnInSpace& drawn) {
+  const DrawnParts& parts = drawn.parts;
   json.key("masses").begin_array();
-  for (const Values& mass : read.values.tables("mass"))
-    json.begin_object()
-        .member("node", drawn.number(built.model.find_node(mass.text("node"))))
-        .member("mass", mass.has("mass") ? mass.number("mass") : built.tuned_mass)
-        .end_object();
+  for (const DrawnParts::Mass& mass : parts.masses)
+    json.begin_object().member("node", drawn.number(mass.node)).member("mass", mass.mass).end_object();
   json.end_array().key("supports").begin_array();
-  const auto write_support = [&](int node, const Values& support) {
+  const auto write_support = [&](int node, const DrawnParts::Support& support) {
     if (!std::ranges::binary_search(drawn.nodes, node)) return;
-    json.begin_object().member("node", drawn.number(node)).key("dofs").texts(support.texts("fixed")).end_object();
+    json.begin_object().member("node", drawn.number(node)).key("dofs").texts(support.fixed).end_object();
   };
-  for (const Values& support : read.values.tables("support")) {
-    if (support.has("node")) write_support(built.model.find_node(support.text("node")), support);
-    if (!support.has("group")) continue;
-    const Group& group = read.mesh->mesh.groups.at(support.text("group"));
+  for (const DrawnParts::Support& support : parts.supports) {
+    if (support.node >= 0) write_support(support.node, support);
+    if (support.group.empty()) continue;
+    const Group& group = read.mesh->mesh.groups.at(support.group);
     if (group.dimension >= 2) continue;  // faces, see write_borders
-    for (const int node : nodes_of(read.mesh->mesh, group)) write_support(drawn.first_of_mesh + node, support);
+    for (const int node : nodes_of(read.mesh->mesh, group)) write_support(parts.first_of_mesh + node, support);
   }
   json.end_array().key("loads").begin_array();
-  for (const Values& load : read.values.tables("load")) {
-    const std::vector<double> force = drawn_force(load, built.model);
-    if (force.empty()) continue;
-    int node = load.has("node") ? built.model.find_node(load.text("node")) : -1;
-    if (load.has("group") && read.mesh) {
-      const std::vector<int> nodes = nodes_of(read.mesh->mesh, read.mesh->mesh.groups.at(load.text("group")));
-      node = drawn.first_of_mesh + nodes[nodes.size() / 2];
+  for (const DrawnParts::Load& load : parts.loads) {
+    if (load.force.empty()) continue;
+    int node = load.node;
+    if (!load.group.empty() && read.mesh) {
+      const std::vector<int> nodes = nodes_of(read.mesh->mesh, read.mesh->mesh.groups.at(load.group));
+      node = parts.first_of_mesh + nodes[nodes.size() / 2];
     }
     if (!std::ranges::binary_search(drawn.nodes, node)) continue;
-    json.begin_object().member("node", drawn.number(node)).key("force").numbers(force);
-    json.member("label", name_of_load(load)).end_object();
+    json.begin_object().member("node", drawn.number(node)).key("force").numbers(load.force);
+    json.member("label", load.name).end_object();
   }
   json.end_array();
 }
@@ -165,7 +147,7 @@ std::vector<int> faces_of(const Mesh& mesh, const Sides& sides, const std::strin
     const int side = info(mesh.type(cell)).dimension == 2 ? sides.find(mesh.type(cell), mesh.cell(cell)) : -1;
     if (side < 0 || sides.twin(side) >= 0) continue;
     sides.nodes_of(mesh, side, nodes);
-    const auto number = [&](int k) { return drawn.number(drawn.first_of_mesh + nodes[at(k)]); };
+    const auto number = [&](int k) { return drawn.number(drawn.parts.first_of_mesh + nodes[at(k)]); };
     for (int k = 2; k < info(mesh.type(cell)).corners; ++k) triangles.insert(triangles.end(), {number(0), number(k - 1), number(k)});
   }
   return triangles;
@@ -181,16 +163,16 @@ void write_borders(JsonWriter& json, const Case& read, const DrawnInSpace& drawn
   const Mesh& mesh = read.mesh->mesh;
   const Sides sides(mesh, full_cells(mesh));
   std::set<std::string> written;
-  const auto write = [&](const Values& table, const char* kind) {
-    if (!table.has("group") || !written.insert(table.text("group")).second) return;
-    const std::vector<int> triangles = faces_of(mesh, sides, table.text("group"), drawn);
+  const auto write = [&](const std::string& group, const char* kind) {
+    if (group.empty() || !written.insert(group).second) return;
+    const std::vector<int> triangles = faces_of(mesh, sides, group, drawn);
     if (triangles.empty()) return;
-    json.begin_object().member("name", table.text("group")).member("kind", kind);
+    json.begin_object().member("name", group).member("kind", kind);
     write_whole(json, "triangles", triangles);
     json.end_object();
   };
-  for (const Values& face : read.values.tables("absorbing")) write(face, "absorbing");
-  for (const Values& support : read.values.tables("support")) write(support, "held");
+  for (const DrawnParts::AbsorbingFace& face : drawn.parts.absorbing) write(face.group, "absorbing");
+  for (const DrawnParts::Support& support : drawn.parts.supports) write(support.group, "held");
   json.end_array();
 }
 
@@ -212,9 +194,9 @@ class PointAt {
   std::map<std::array<long, 3>, int> number_;
 };
 
-/// Triangles between the points of an interface: over the faces of an opened surface, over the grid of a footing. Empty where the points do
-/// not stand at corners.
-std::vector<int> triangles_of(const Case& read, const Interface& joint, const InterfaceFacts& facts) {
+/// Triangles between the points of an interface: over the faces of an opened surface, over the grid of a footing (`body`, or null). Empty
+/// where the points do not stand at corners.
+std::vector<int> triangles_of(const Case& read, const Interface& joint, const InterfaceFacts& facts, const DrawnParts::Body* body) {
   std::vector<int> triangles;
   const auto add_polygon = [&](const std::vector<int>& corners) {
     for (std::size_t k = 2; k < corners.size(); ++k) triangles.insert(triangles.end(), {corners[0], corners[k - 1], corners[k]});
@@ -229,14 +211,12 @@ std::vector<int> triangles_of(const Case& read, const Interface& joint, const In
       add_polygon(corners);
     }
   }
-  if (const Values* footing = footing_of(read, joint); footing && footing->text("rule") == "nodal") {
-    const int along = footing->integer("points"), across = footing->integer("points_across");
-    for (int j = 0; j + 1 < across; ++j)
-      for (int i = 0; i + 1 < along; ++i) {
-        const int a = j * along + i;
-        add_polygon({a, a + 1, a + along + 1, a + along});
+  if (body != nullptr)
+    for (int j = 0; j + 1 < body->across; ++j)
+      for (int i = 0; i + 1 < body->along; ++i) {
+        const int a = j * body->along + i;
+        add_polygon({a, a + 1, a + body->along + 1, a + body->along});
       }
-  }
   return triangles;
 }
 
@@ -280,8 +260,9 @@ void write_interfaces(JsonWriter& json, const Case& read, const BuiltCase& built
       json.key("area").numbers(std::array<double, 1>{built.facts[k].area}).member("foundation", true);
     else
       json.key("area").numbers(std::span<const double>(joint.area.data(), at(joint.batch.points)));
-    write_whole(json, "triangles", triangles_of(read, joint, built.facts[k]));
-    if (footing_of(read, joint)) {
+    const DrawnParts::Body* body = drawn.parts.body_above(k);
+    write_whole(json, "triangles", triangles_of(read, joint, built.facts[k], body));
+    if (body != nullptr && !body->foundation) {
       json.member("body", bodies++);
     } else if (const std::vector<int> nodes = carriers(joint, built.facts[k], built, drawn); !nodes.empty()) {
       write_whole(json, "node", nodes);
@@ -306,8 +287,8 @@ void write_model(JsonWriter& json, const Case& read, const BuiltCase& built, con
     json.end_object();
   }
   json.end_array();
-  write_bodies(json, read, built, drawn);
-  write_small_parts(json, read, built, drawn);
+  write_bodies(json, built, drawn);
+  write_small_parts(json, read, drawn);
   write_borders(json, read, drawn);
   write_interfaces(json, read, built, drawn);
   json.end_object();
@@ -315,19 +296,13 @@ void write_model(JsonWriter& json, const Case& read, const BuiltCase& built, con
 
 }  // namespace
 
-const Values* footing_of(const Case& read, const Interface& joint) {
-  for (const Values& interface : read.values.tables("interface"))
-    if (interface.text("name") == joint.name) return table_if(interface, "footing");
-  return nullptr;
-}
-
 void write_space(JsonWriter& json, const ReportInput& input) {
   const DrawnInSpace drawn = drawn_in_space(*input.read, *input.runs.front().built);
   json.key("space");
   write_model(json, *input.read, *input.runs.front().built, drawn);
   json.key("spaceAnimations").begin_array();
   for (const ReportRun& run : input.runs)
-    if (run.result->frames.size() >= 2) write_space_animation(json, *input.read, run, drawn.nodes);
+    if (run.result->frames.size() >= 2) write_space_animation(json, drawn.parts, run, drawn.nodes);
   json.end_array();
 }
 

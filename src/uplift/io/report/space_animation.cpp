@@ -4,7 +4,6 @@
 #include <span>
 #include <utility>
 
-#include "uplift/case/build/model.h"
 #include "uplift/io/report/parts.h"
 
 namespace uplift {
@@ -102,7 +101,7 @@ void write_displacements(JsonWriter& json, const Space& space, const std::vector
 
 }  // namespace
 
-void write_space_animation(JsonWriter& json, const Case& read, const ReportRun& run, const std::vector<int>& nodes) {
+void write_space_animation(JsonWriter& json, const DrawnParts& parts, const ReportRun& run, const std::vector<int>& nodes) {
   const BuiltCase& built = *run.built;
   const Space space = built.model.space;
   const std::vector<const Frame*> frames = chosen_frames(built.model, *run.result, nodes.size());
@@ -112,13 +111,12 @@ void write_space_animation(JsonWriter& json, const Case& read, const ReportRun& 
   write_uplifted(json, built.model, frames);
   write_displacements(json, space, frames, nodes);
   json.key("rotation").begin_object();
-  for (const Interface& joint : built.model.interfaces)
-    if (const Values* footing = footing_of(read, joint)) {
-      const int body = built.model.find_node(footing->text("body"));
-      json.key(footing->text("body")).begin_array();
-      for (const Frame* frame : frames) json.numbers(motion_of(space, *frame, {&body, 1}, true));
-      json.end_array();
-    }
+  for (const DrawnParts::Body& body : parts.bodies) {
+    if (body.foundation) continue;
+    json.key(built.facts[body.interface].body).begin_array();
+    for (const Frame* frame : frames) json.numbers(motion_of(space, *frame, {&body.node, 1}, true));
+    json.end_array();
+  }
   json.end_object();
   write_points(json, "openings", built, frames, &Frame::opening);
   write_points(json, "pressures", built, frames, &Frame::pressure);

@@ -1,6 +1,5 @@
 #include <fmt/format.h>
 
-#include "uplift/case/build/model.h"
 #include "uplift/elements/element_entry.h"
 #include "uplift/io/report/motions.h"
 

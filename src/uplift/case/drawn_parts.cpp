@@ -1,0 +1,88 @@
+#include "uplift/case/drawn_parts.h"
+
+#include <algorithm>
+
+#include "uplift/case/build/model.h"
+#include "uplift/elements/element_entry.h"
+
+namespace uplift {
+namespace {
+
+int node_if_named(const Values& table, const Model& model) {
+  return table.has("node") ? model.find_node(table.text("node")) : -1;
+}
+
+std::string group_if_named(const Values& table) {
+  return table.has("group") ? table.text("group") : std::string();
+}
+
+std::vector<double> force_of(const Values& load, const Model& model) {
+  for (const char* key : {"force", "traction"})
+    if (load.has(key)) return load.numbers(key);
+  if (!load.has("pressure")) return {};
+  const Vec3 sum = resultant_of_load(load, model);
+  return {sum.data(), sum.data() + model.space.dimension};
+}
+
+void add_links(const Values& root, const Model& model, std::vector<DrawnParts::Link>& links) {
+  for (const ElementEntry* element : elements_at(ElementPlace::nodes))
+    for (const Values& link : root.tables(element->name)) {
+      const std::vector<std::string>& nodes = link.texts("nodes");
+      links.push_back({model.find_node(nodes.front()), nodes.size() > 1 ? model.find_node(nodes.back()) : -1, element->symbol});
+    }
+}
+
+void add_bodies(const Values& root, const Model& model, std::vector<DrawnParts::Body>& bodies) {
+  for (std::size_t k = 0; k < model.interfaces.size(); ++k) {
+    const std::string& name = model.interfaces[k].name;
+    for (const Values& interface : root.tables("interface")) {
+      const Values* footing = interface.text("name") == name ? table_if(interface, "footing") : nullptr;
+      if (footing == nullptr) continue;
+      const bool grid = footing->text("rule") == "nodal" && model.space.dimension == 3;
+      bodies.push_back({k, model.find_node(footing->text("body")), false, grid ? footing->integer("points") : 0,
+                        grid ? footing->integer("points_across") : 0});
+    }
+    for (const Values& foundation : root.tables("foundation"))
+      if (foundation.text("name") == name) bodies.push_back({k, model.find_node(foundation.text("body")), true, 0, 0});
+  }
+}
+
+}  // namespace
+
+std::set<int> DrawnParts::nodes() const {
+  std::set<int> all;
+  for (const Mass& each : masses) all.insert(each.node);
+  for (const Support& each : supports) all.insert(each.node);
+  for (const Load& each : loads) all.insert(each.node);
+  for (const Link& each : links) all.insert({each.node, each.other});
+  for (const Body& each : bodies) all.insert(each.node);
+  all.erase(-1);
+  return all;
+}
+
+const DrawnParts::Body* DrawnParts::body_above(std::size_t interface) const {
+  const auto found = std::ranges::find(bodies, interface, &Body::interface);
+  return found == bodies.end() ? nullptr : &*found;
+}
+
+DrawnParts drawn_parts(const Case& read, const BuiltCase& built) {
+  const Values& root = read.values;
+  const Model& model = built.model;
+  DrawnParts parts;
+  parts.first_of_mesh = static_cast<int>(root.tables("nodes").size());
+  for (const Values* solid : element_tables(root, ElementPlace::cells)) parts.solids.push_back(solid->text("group"));
+  for (const Values& mass : root.tables("mass"))
+    parts.masses.push_back({model.find_node(mass.text("node")), mass.has("mass") ? mass.number("mass") : built.tuned_mass});
+  for (const Values& support : root.tables("support"))
+    parts.supports.push_back(
+        {node_if_named(support, model), group_if_named(support), support.texts("fixed"), support.text("stages") == "static"});
+  for (const Values& load : root.tables("load"))
+    parts.loads.push_back({name_of_load(load), node_if_named(load, model), group_if_named(load), force_of(load, model)});
+  add_links(root, model, parts.links);
+  for (const Values& face : root.tables("absorbing"))
+    parts.absorbing.push_back({face.text("group"), face.flag("free_field"), face.has("incident")});
+  add_bodies(root, model, parts.bodies);
+  return parts;
+}
+
+}  // namespace uplift
