@@ -137,7 +137,8 @@ Chart load_chart(const Case& read, const ReportRun& run) {
     chart.curves.push_back(std::move(curve));
   };
   std::size_t next = 0;  // time loads stand in the order of the loads of the case; names may come twice
-  for (const DrawnParts::Load& load : drawn_parts(read, built).loads) {
+  const DrawnParts parts = drawn_parts(read, *run.built);
+  for (const DrawnParts::Load& load : parts.loads) {
     std::size_t at = next;
     while (at < model.time_loads.size() && model.time_loads[at].name != load.name) ++at;
     if (at == model.time_loads.size()) continue;

@@ -3,6 +3,7 @@
 #include <set>
 #include <utility>
 
+#include "uplift/case/mesh/mesh.h"
 #include "uplift/case/mesh/outline.h"
 #include "uplift/io/report/parts.h"
 

@@ -1,4 +1,3 @@
-
 #include <algorithm>
 #include <array>
 #include <cmath>
@@ -8,6 +7,7 @@
 #include <span>
 #include <utility>
 
+#include "uplift/case/mesh/mesh.h"
 #include "uplift/io/report/parts.h"
 #include "uplift/mesh/sides.h"
 
@@ -98,11 +98,11 @@ void write_bodies(JsonWriter& json, const BuiltCase& built, const DrawnInSpace& 
   json.key("bodies").begin_array();
   for (const bool foundations : {false, true})
     for (const DrawnParts::Body& body : drawn.parts.bodies) {
-      const std::vector<Place>& corners = built.facts[body.interface].corners;
+      std::vector<Vec3> corners(built.facts[body.interface].corners.begin(), built.facts[body.interface].corners.end());
       if (body.foundation != foundations || corners.size() != 4) continue;
       json.begin_object().member("name", built.facts[body.interface].body).member("node", drawn.number(body.node));
-      // round the rectangle; those of a footing stand in two rows
-      write_places(json, "corners", foundations ? corners : std::vector<Place>{corners[0], corners[2], corners[3], corners[1]});
+      if (!body.foundation) corners = {corners[0], corners[2], corners[3], corners[1]};  // two rows: round the rectangle
+      write_places(json, "corners", corners);
       json.end_object();
     }
   json.end_array();
