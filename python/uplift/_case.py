@@ -73,8 +73,11 @@ class Case(InterfaceTables, StructureTables, MotionTables, ResultTables):
             table["law"] = given.table()
 
     def node(self, name: str, *position: Quantity) -> None:
-        """A node at [x, y], or at [x, y, z] in space [m]."""
-        self.document.setdefault("nodes", {})[name] = list(position)
+        """A node at [x, y], or at [x, y, z] in space [m]. Its name must be new."""
+        nodes = self.document.setdefault("nodes", {})
+        if name in nodes:
+            raise ValueError(f"the case has a node {name!r} already, at {nodes[name]}; move it with case.document[\"nodes\"][{name!r}] = [...]")
+        nodes[name] = list(position)
 
     def gravity(self, *acceleration: Quantity) -> None:
         """Weight of all masses. The default is 9.81 m/s2 downwards."""
@@ -190,6 +193,9 @@ class Case(InterfaceTables, StructureTables, MotionTables, ResultTables):
     def _with_motions(self, motions: Sequence[Motion]) -> "Case":
         if not motions:
             return self
+        for given in motions:
+            if not isinstance(given, Motion):
+                raise TypeError(f"a motion is made by uplift.motion(...), found {type(given).__name__}")
         case = self.copy()
         document = case.document
         document["ground_acceleration"] = []

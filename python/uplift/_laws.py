@@ -41,6 +41,7 @@ class ExternalLaw:
             # copies: the function may keep or change what it is given
             given = [_view(start, components, points).copy(), _view(end, components, points).copy(), _view(old, self.memory, points).copy()]
             result = self.function(*given, step)
+            _check_result(result, self.name)
             _fill(_view(traction, components, points), result[0], f"the law {self.name!r} returned a traction")
             _fill_slope(_view(slope, components, components, points), result[1], f"the law {self.name!r} returned a slope")
             if self.memory:
@@ -53,6 +54,14 @@ class ExternalLaw:
             if self.raised is None:
                 self.raised = error
             return 1
+
+
+def _check_result(result: Any, name: str) -> None:
+    wanted = "expected (traction, slope, memory, stored) or (traction, slope, memory, stored, dissipated)"
+    if not isinstance(result, (tuple, list)):
+        raise TypeError(f"the law {name!r} returned {type(result).__name__}, {wanted}")
+    if len(result) not in (4, 5):
+        raise ValueError(f"the law {name!r} returned {len(result)} values, {wanted}")
 
 
 def _view(pointer: Any, *shape: int) -> "Array":

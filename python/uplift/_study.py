@@ -292,6 +292,8 @@ def _motions(motions: Sequence[Union[PathLike, Motion, Table]], replace: Sequenc
             table = {"name": f"m{number}", "replace": list(replace), **_toml.plain(given)}
             many.append({**table, "files": _absolute(table["files"])} if "files" in table else table)
             continue
+        if not isinstance(given, (str, bytes, os.PathLike, Motion)):
+            raise TypeError(f"a motion of a study is a file, uplift.motion(...) or a table, found {type(given).__name__}")
         record = dict(given["record"]) if isinstance(given, Motion) else {"file": os.path.abspath(os.fspath(given))}
         if isinstance(given, Motion) and (given["direction"] is not None or given["amplitude"] is not None):
             raise ValueError("the motions of a study take the direction and the amplitude of the ground acceleration that they replace")

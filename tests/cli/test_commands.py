@@ -244,7 +244,8 @@ class Soil(CliTest):
                              (("width=10", "G=1", "poisson=0.2"), ("the length of a rectangle",)), (("a=b",), ("uplift soil: a: expected a key",)),
                              (("width=10", "length=9", "layers=[{G=8e7, poisson=0.3, density=1900, thick=3}]"), ("layers[0].thick", 'thickness')),
                              (("wi\ndth=3",), ("on one line",)), (("nowhere.toml",), ("nowhere.toml", "no file")), (("x.toml", "y.toml"), ("y.toml",)),
-                             (("shape=strip", "width=2", "G=1e6", "poisson=0.2"), ("rock_depth",)), (("width=-1", "length=1"), ("a length > 0 m",))):
+                             (("shape=strip", "width=2", "G=1e6", "poisson=0.2"), ("rock_depth",)), (("width=-1", "length=1"), ("a length > 0 m",)),
+                             (("shape=disc", "radius=5", "G=80 MPa", "poisson=0.3"), ("radius", "diameter of a disc", 'did you mean "width"'))):
             self.refused_words(words, parts)
 
     def refused_words(self, words, parts):

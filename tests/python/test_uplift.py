@@ -418,6 +418,23 @@ class Laws(unittest.TestCase):
         with self.assertRaisesRegex(ValueError, r"a traction of the shape \(41,\), expected \(2, 41\)"):
             pier(up.law(bad, K_n=K, K_t=SHEAR)).run(step_check=False)
 
+    def test_a_law_that_returns_too_few_values_is_told(self):
+        with self.assertRaisesRegex(ValueError, r"returned 2 values, expected \(traction, slope, memory, stored\)"):
+            pier(up.law(lambda start, end, memory, step: (end, end), K_n=K, K_t=SHEAR)).run(step_check=False)
+        with self.assertRaisesRegex(TypeError, "returned NoneType, expected"):
+            pier(up.law(lambda start, end, memory, step: None, K_n=K, K_t=SHEAR)).run(step_check=False)
+
+    def test_a_second_node_of_one_name_is_refused(self):
+        case = up.Case("nodes")
+        case.node("top", 0, 5)
+        with self.assertRaisesRegex(ValueError, r"a node 'top' already, at \[0, 5\]"):
+            case.node("top", 0, 6)
+        self.assertEqual(case.document["nodes"], {"top": [0, 5]})
+
+    def test_a_motion_of_another_type_is_refused(self):
+        with self.assertRaisesRegex(TypeError, r"a motion is made by uplift.motion\(...\), found str"):
+            pier(soil()).run("record.txt")
+
     def test_a_law_may_keep_and_change_what_it_is_given(self):
         kept = []
 

@@ -1,3 +1,6 @@
+#include <fmt/format.h>
+
+#include <algorithm>
 #include <filesystem>
 
 #include "uplift/base/file.h"
@@ -6,9 +9,38 @@
 #include "uplift/case/schema/sections.h"
 
 namespace uplift {
+namespace {
+
+const std::string* text_in(const RawTable& table, std::string_view key) {
+  const Raw* found = table.find(key);
+  return found ? std::get_if<std::string>(&found->data) : nullptr;
+}
+
+/// A record is an acceleration; an acceleration as its factor, "9.81 m/s2", multiplies the earthquake by 9.81. The checked numbers have
+/// lost their units, so that this looks at the file's.
+void check_factors_of_records(const Raw& raw, const Values& values) {
+  const auto* root = std::get_if<std::shared_ptr<RawTable>>(&raw.data);
+  const Raw* grounds = root != nullptr ? (*root)->find("ground_acceleration") : nullptr;
+  const auto* tables = grounds != nullptr ? std::get_if<RawList>(&grounds->data) : nullptr;
+  for (std::size_t i = 0; tables != nullptr && i < tables->size(); ++i) {
+    const auto* table = std::get_if<std::shared_ptr<RawTable>>(&(*tables)[i].data);
+    const std::string* amplitude = table != nullptr ? text_in(**table, "amplitude") : nullptr;
+    const std::string* function = table != nullptr ? text_in(**table, "function") : nullptr;
+    if (amplitude == nullptr || function == nullptr) continue;
+    const bool of_record = std::ranges::any_of(values.tables("record"), [&](const Values& each) { return each.text("name") == *function; });
+    const bool has_unit = leading_number(trim(*amplitude)).length < trim(*amplitude).size();
+    const Values& ground = values.tables("ground_acceleration")[i];
+    if (of_record && has_unit && ground.number("amplitude") != 1)
+      fail(ground, "amplitude", "a factor without unit: the record " + in_quotes(*function) + " is an acceleration itself",
+           fmt::format("{}, a factor of {:g}", in_quotes(*amplitude), ground.number("amplitude")));
+  }
+}
+
+}  // namespace
 
 Case check_case(const Raw& raw, const std::string& file, const MeshReader& read_mesh) {
   Case read{check(raw, case_section()), file, nullptr, {}};
+  check_factors_of_records(raw, read.values);
   read.mesh = mesh_of_case(read.values, file, read_mesh);
   read.records = read_records(read.values);
   return read;
@@ -16,6 +48,7 @@ Case check_case(const Raw& raw, const std::string& file, const MeshReader& read_
 
 Case check_case_like(const Case& like, bool same_mesh, const Raw& raw, const MeshReader& read_mesh) {
   Case read{check(raw, case_section()), like.file, like.mesh, like.records};
+  check_factors_of_records(raw, read.values);
   if (!same_mesh) read.mesh = mesh_of_case(read.values, like.file, read_mesh);
   return read;
 }

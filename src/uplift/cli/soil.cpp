@@ -34,6 +34,9 @@ FootingOnSoil footing_of_words(const std::vector<std::string>& given) {
   Words words;
   for (const std::string& word : given) words.push_back(word_of(word, soil_words));
   refuse_twice(words, soil_words);
+  for (const auto& [key, value] : words)
+    if (key == "radius" || key == "diameter")
+      throw InputError({soil_words, 0}, key, "width, which is the diameter of a disc", in_quotes(key), "width");
   const Values values = check(table_of(std::move(words), soil_words), words_section());
   Footprint footprint;
   footprint.shape = *footprint_shape(values.text("shape"));

@@ -9,28 +9,38 @@
 #include "uplift/base/file.h"
 #include "uplift/base/text.h"
 #include "uplift/base/units.h"
-#include "uplift/model/function.h"
+#include "uplift/model/function_jumps.h"
 
 namespace uplift {
 
 namespace {
 
-/// Piecewise linear; the rate is that of the present piece (right-continuous), the acceleration is zero.
+/// Piecewise linear; the rate is that of the present piece (right-continuous), the acceleration is zero. A time that is outside by no more
+/// than round-off (a sum of many steps) belongs to the first or the last point.
 class Table : public TimeFunction {
  public:
   Table(std::vector<double> times, std::vector<double> values, bool hold)
       : times_(std::move(times)), values_(std::move(values)), hold_(hold) {}
 
   double value(double t) const override {
-    if (t < times_.front()) return hold_ ? values_.front() : 0;
-    if (t > times_.back()) return hold_ ? values_.back() : 0;
+    if (t <= times_.front()) return hold_ || t > times_.front() - round_off() ? values_.front() : 0;
+    if (t >= times_.back()) return hold_ || t < times_.back() + round_off() ? values_.back() : 0;
     const std::size_t i = piece(t);
     return values_[i] + slope(i) * (t - times_[i]);
   }
   double rate(double t) const override { return t < times_.front() || t >= times_.back() ? 0 : slope(piece(t)); }
   double acceleration(double) const override { return 0; }
 
+  std::vector<FunctionJump> jumps() const {
+    if (hold_) return {};
+    std::vector<FunctionJump> found;
+    if (values_.front() != 0) found.push_back({times_.front(), 0, values_.front()});
+    if (values_.back() != 0) found.push_back({times_.back(), values_.back(), 0});
+    return found;
+  }
+
  private:
+  double round_off() const { return 1e-9 * std::max(std::abs(times_.back()), times_.back() - times_.front()); }  // s
   /// Left end of the piece that holds t.
   std::size_t piece(double t) const {
     const auto next = std::upper_bound(times_.begin(), times_.end(), t);
@@ -148,6 +158,11 @@ std::unique_ptr<const TimeFunction> make_csv(const Values& v) {
 }
 
 }  // namespace
+
+std::vector<FunctionJump> jumps_of(const TimeFunction& function) {
+  const auto* table = dynamic_cast<const Table*>(&function);
+  return table != nullptr ? table->jumps() : std::vector<FunctionJump>();
+}
 
 const Entry<TimeFunction>& entry_function_table() {
   static const Entry<TimeFunction> entry{

@@ -2,7 +2,9 @@
 
 #include "uplift/linear/memory.h"
 #include "uplift/session/steps.h"
+#include "uplift/verdict/edge_warnings.h"
 #include "uplift/verdict/result_warnings.h"
+#include "uplift/verdict/second_order.h"
 
 namespace uplift {
 namespace {
@@ -73,6 +75,9 @@ Results run_case(const LoadedCase& loaded, const Control& control) {
   results.verdict =
       judge(results.built.front(), main, results.runs.size() > 1 ? &results.runs[1] : nullptr, &results.floors.runs.front(), companion);
   for (std::string& warning : result_warnings(main, results.verdict.numbers)) results.warnings.push_back(std::move(warning));
+  for (std::string& warning : edge_warnings(results.built.front(), results.verdict.numbers)) results.warnings.push_back(std::move(warning));
+  if (const auto effects = second_order_of(results.built.front(), main, results.verdict.numbers); effects && effects->counts())
+    results.warnings.push_back(effects->warning());
   return results;
 }
 

@@ -69,6 +69,7 @@ OrRefused<Fragility> fit_stripes(std::span<const Stripe> stripes, Unknown unknow
 }
 
 OrRefused<Fragility> fit_capacities(std::span<const RecordCapacity> capacities) {
+  if (capacities.size() == 1) return Refused{"not identifiable: one capacity has no scatter, it takes two at least"};
   FragilityLikelihood likelihood;
   for (std::size_t i = 0; i < capacities.size(); ++i) {
     const RecordCapacity& c = capacities[i];

@@ -231,6 +231,12 @@ OrRefused<AnnualRisk> risk_of(const StudySite& site, const OrRefused<Fragility>&
   return risk_of_curve(site.hazard, fit.theta(), fit.beta());
 }
 
+OrRefused<AnnualRisk> composite_risk_of(const StudySite& site, const OrRefused<TwoWayLayout>& layout) {
+  if (const Refused* refused = std::get_if<Refused>(&layout)) return *refused;
+  const SeismicCapacity capacity = std::get<TwoWayLayout>(layout).capacity();
+  return risk_of_curve(site.hazard, capacity.median, capacity.beta_c());
+}
+
 std::vector<StudyFloor> floor_percentiles(const StudyCase& study, const std::vector<StudyCurve>& curves) {
   if (study.plan.method.searches()) return {};  // every motion has intensities of its own
   struct Runs {

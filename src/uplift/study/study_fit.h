@@ -63,5 +63,8 @@ std::vector<StudyFloor> floor_percentiles(const StudyCase& study, const std::vec
 std::optional<PerformancePair> performance_of(const StudySite& site, const OrRefused<Fragility>& curve);
 /// Annual rate with which the limit is exceeded, by the hazard curve of the site; refused without one, and without a curve.
 OrRefused<AnnualRisk> risk_of(const StudySite& site, const OrRefused<Fragility>& curve);
+/// The same with the median and the composite beta of the two-way layout: the scatter of capacities as components of variance, which for
+/// few motions and samples differs from that of the fit. Refused where motions and samples cannot be told apart.
+OrRefused<AnnualRisk> composite_risk_of(const StudySite& site, const OrRefused<TwoWayLayout>& layout);
 
 }  // namespace uplift

@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <span>
 #include <tuple>
 #include <utility>
 
@@ -26,7 +27,10 @@ std::vector<std::pair<Quantity, double>> peaks_of(const RunSpec& spec, const Bui
     add("ratio", run.max_uplifted_ratio.value);
     add("opening", run.max_opening.value);
   }
-  add("shear", std::abs(run.max_base_shear.value));
+  // a base without tangential components carries no shear: a support does
+  const auto carries_shear = [](const Interface& interface) { return interface.batch.components > 1; };
+  if (std::ranges::any_of(std::span(built.model.interfaces).first(built.bases()), carries_shear))
+    add("shear", std::abs(run.max_base_shear.value));
   add("moment", std::abs(run.max_base_moment.value));
   const auto has_pressure = [](const Interface& interface) { return !interface.footprint; };
   if (std::ranges::any_of(built.model.interfaces, has_pressure)) add("pressure", run.max_pressure.value);

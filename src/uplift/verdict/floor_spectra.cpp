@@ -6,6 +6,7 @@
 #include <cassert>
 #include <cmath>
 
+#include "uplift/base/format.h"
 #include "uplift/verdict/compare.h"
 #include "uplift/verdict/numbers.h"
 
@@ -38,6 +39,8 @@ FloorChange compare(const Spectrum& raw, const Spectrum& bonded, const std::vect
     const std::optional<double> moved = change_of(largest, bonded_largest, least);
     if (!moved) continue;
     made.change = *moved;
+    made.largest = largest;
+    made.arises = bonded_largest <= least;
     change.bands.push_back(made);
   }
   return change;
@@ -137,7 +140,33 @@ double least_excitation(const std::vector<FloorSpectra>& floors, const std::vect
   double largest = 0;
   for (const std::vector<FloorSpectra>* some : {&floors, &bonded})
     for (const FloorSpectra& floor : *some) largest = std::max(largest, std::abs(floor.zero_period.value));
-  return noise_share * largest;
+  constexpr double round_off = 1e-8;  // m/s2: what 1e-9 of the weight leaves
+  return std::max(noise_share * largest, round_off);
+}
+
+std::string range_of_bands(const FloorRun& floors) {
+  double least = INFINITY, most = -INFINITY;
+  for (const std::vector<FloorChange>& floor : floors.beside)
+    for (const FloorChange& change : floor)
+      for (const FloorChange::Band& band : change.bands)
+        if (!band.arises) least = std::min(least, band.change), most = std::max(most, band.change);
+  if (!(least <= most)) return "";
+  const std::string from = format_change(least), to = format_change(most);
+  if (from == to) return to;
+  const bool both = from.ends_with(" %") && to.ends_with(" %");
+  return fmt::format("{} to {}", both ? from.substr(0, from.size() - 2) : from, to);
+}
+
+std::string arising_floors(const FloorRun& floors) {
+  std::vector<std::string> parts;
+  for (std::size_t k = 0; k < floors.beside.size(); ++k) {
+    double largest = 0;
+    for (const FloorChange& change : floors.beside[k])
+      for (const FloorChange::Band& band : change.bands)
+        if (band.arises) largest = std::max(largest, band.largest);
+    if (largest > 0) parts.push_back(fmt::format("of {} up to {}", floors.floors[k].name, format_quantity(largest, "m/s2")));
+  }
+  return parts.empty() ? "" : fmt::format("accelerations {} where the bonded model has none", fmt::join(parts, ", "));
 }
 
 FloorSpectra floor_envelope(const std::vector<const FloorSpectra*>& floors, double broadening) {

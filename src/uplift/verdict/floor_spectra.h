@@ -37,6 +37,8 @@ struct FloorChange {
     FrequencyBand band;
     double change = 0;           // of the largest value in the band, as a share: 0.1 is 10 % more than bonded
     double least = 1, most = 1;  // ratio at the band's frequencies
+    double largest = 0;          // m/s2, in the band
+    bool arises = false;         // the bonded floor is not excited there: a change would be that of noise
   };
   std::vector<Band> bands;  // those that hold frequencies
 };
@@ -67,8 +69,14 @@ std::vector<FloorSpectra> floor_spectra(const RunPlan& plan, const RunResult& re
 /// compared where one of the two exceeds `least` [m/s2]; a smaller bonded value then counts as `least`.
 std::vector<FloorChange> floor_change(const FloorSpectra& floor, const FloorSpectra& bonded, const std::vector<double>& bands,
                                       double least);
-/// That threshold for two runs: noise_share of the largest acceleration of all their floors, in all directions [m/s2].
+/// That threshold for two runs: noise_share of the largest acceleration of all their floors, in all directions, and more than
+/// round-off beside gravity [m/s2].
 double least_excitation(const std::vector<FloorSpectra>& floors, const std::vector<FloorSpectra>& bonded);
+/// "-1.5 to +2.1 %": how far the bands of all floors and dampings change compared with the bonded run, where that is excited; empty:
+/// nowhere.
+std::string range_of_bands(const FloorRun& floors);
+/// "accelerations of roof up to 12.7 m/s2 where the bonded model has none": the bands that it does not excite; empty: there are none.
+std::string arising_floors(const FloorRun& floors);
 /// The same floor of several runs, one at least; broadened by this share where it is > 0.
 FloorSpectra floor_envelope(const std::vector<const FloorSpectra*>& floors, double broadening);
 /// All of this for the runs of a command. The plan is that of any of them: they ask for the same floors, or have recorded none.

@@ -208,7 +208,8 @@ void add_whole(std::vector<VerdictNumber>& numbers, std::string_view name, const
 }
 
 void add_motions(const BuiltCase& built, const RunResult& run, const RunResult* bonded, std::vector<VerdictNumber>& numbers) {
-  const double least = noise_share * std::max(range_of_top(built, run), bonded ? range_of_top(built, *bonded) : 0);
+  const double range = std::max(range_of_top(built, run), bonded ? range_of_top(built, *bonded) : 0);
+  const double least = std::max(noise_share * range, nothing_beside("m"));
   const auto add_motion = [&](std::string_view name, const auto& of) {
     add_whole(numbers, name, of(run), bonded ? of(*bonded) : std::nullopt, least);
   };

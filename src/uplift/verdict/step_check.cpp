@@ -67,6 +67,24 @@ double change_of_step(const VerdictNumber& number, double other, const Scale& sc
   return number.value == other ? 0 : std::abs(number.value - other) / reference(number, other, scale);  // of two zeros too
 }
 
+/// Noise in both runs.
+bool is_noise(const VerdictNumber& number) {
+  return number.coarse && number.least > 0 && std::max(std::abs(number.value), std::abs(*number.coarse)) <= number.least;
+}
+
+/// The largest acceleration of the ground, over the three axes [m/s2].
+double ground_peak(const Model& model, const StepRecord& steps) {
+  double largest = 0;
+  for (const GroundAcceleration& ground : model.grounds)
+    for (const double time : steps.time) largest = std::max(largest, ground.direction.norm() * std::abs(ground.function->value(time)));
+  return largest;
+}
+
+/// Accelerations below this are noise: beside those of the ground, and beside the weight what is left of forces that cancel [m/s2].
+double least_acceleration(const BuiltCase& built, const RunResult& run) {
+  return std::max(noise_share * ground_peak(built.model, run.steps), round_off_share * built.model.assembly.gravity.norm());
+}
+
 /// Compares the numbers of one table; keeps the one that changes most.
 void compare(std::vector<VerdictNumber>& numbers, const std::vector<VerdictNumber>& coarse, const std::string& of, const Scale& scale,
              StepCheck& check) {
@@ -74,7 +92,7 @@ void compare(std::vector<VerdictNumber>& numbers, const std::vector<VerdictNumbe
     const VerdictNumber* other = find_number(coarse, number.quantity->name);
     if (!other || !std::isfinite(number.value) || !std::isfinite(other->value)) continue;
     number.coarse = other->value;
-    if (!decides(*number.quantity)) continue;
+    if (!decides(*number.quantity) || is_noise(number)) continue;
     number.step_change = change_of_step(number, other->value, scale);
     if (*number.step_change > check.largest) check.largest = *number.step_change, check.quantity = number.quantity, check.of = of;
   }
@@ -162,13 +180,14 @@ void compare_steps(VerdictNumbers& numbers, const VerdictNumbers& coarse, StepCh
   judge(check);
 }
 
-void compare_floors(const std::vector<FloorSpectra>& floors, const std::vector<FloorSpectra>& coarse, StepCheck& check) {
+void compare_floors(const std::vector<FloorSpectra>& floors, const std::vector<FloorSpectra>& coarse, StepCheck& check, double least) {
   const double to = 1 / (steps_per_period * check.coarse_step);
+  least = std::max(least, least_excitation(floors, coarse));
   for (std::size_t k = 0; k < std::min(floors.size(), coarse.size()); ++k)
     for (std::size_t d = 0; d < std::min(floors[k].raw.size(), coarse[k].raw.size()); ++d) {
       const Spectrum &fine = floors[k].raw[d], &other = coarse[k].raw[d];
       const double peak = fine.values.empty() ? 0 : *std::ranges::max_element(fine.values);
-      for (std::size_t f = 0; f < std::min(fine.values.size(), other.values.size()) && fine.frequencies[f] <= to && peak > 0; ++f) {
+      for (std::size_t f = 0; f < std::min(fine.values.size(), other.values.size()) && fine.frequencies[f] <= to && peak > least; ++f) {
         check.floors_to = std::max(check.floors_to, fine.frequencies[f]);
         const double size = std::max({fine.values[f], other.values[f], least_spectrum * peak});
         const double change = std::abs(fine.values[f] - other.values[f]) / size;
@@ -212,7 +231,7 @@ StepCheck check_step(const BuiltCase& built, const RunResult& run, const FloorRu
   } else {
     compare_steps(numbers, numbers_of(*companion.built, *companion.run, companion.bonded), check);
     compare_parts(run.steps, companion.run->steps, numbers, check);
-    if (floors) compare_floors(floors->floors, floor_spectra(companion.built->plan, *companion.run), check);
+    if (floors) compare_floors(floors->floors, floor_spectra(companion.built->plan, *companion.run), check, least_acceleration(built, run));
     check.lost = run.energy_scale > 0 ? run.energy_lost / run.energy_scale : 0;
     judge(check);
   }
@@ -222,27 +241,31 @@ StepCheck check_step(const BuiltCase& built, const RunResult& run, const FloorRu
 std::string StepCheck::sentence() const {
   if (state == State::not_made) return "Error of the time step: not examined" + (reason.empty() ? "" : " (" + reason + ")") + ".";
   const std::string steps = fmt::format("{} instead of {}", format_quantity(coarse_step, "s"), format_quantity(step, "s"));
-  if (!reason.empty()) return fmt::format("Not converged: {} ({}).", reason, steps);
-  const std::string which = !quantity    ? (of.empty() ? "" : "floor spectrum of " + of)
-                            : of.empty() ? std::string(quantity->brief)
-                                         : fmt::format("{} of {}", quantity->brief, of);
-  if (state == State::converged)
-    return fmt::format("Converged: with twice the step ({}) no number of the verdict changes by more than {}{}.", steps, percent(largest),
-                       which.empty() ? "" : " (" + which + ")");
+  if (state == State::not_converged)
+    return "Not converged: " + why_not(steps) + " The changes beside the numbers are no bounds of their errors.";
+  return fmt::format("Converged: with twice the step ({}) no number of the verdict changes by more than {}{}.", steps, percent(largest),
+                     what_changes().empty() ? "" : " (" + what_changes() + ")");
+}
+
+std::string StepCheck::what_changes() const {
+  if (!quantity) return of.empty() ? "" : "floor spectrum of " + of;
+  return of.empty() ? std::string(quantity->brief) : fmt::format("{} of {}", quantity->brief, of);
+}
+
+std::string StepCheck::why_not(const std::string& steps) const {
+  if (!reason.empty()) return fmt::format("{} ({}).", reason, steps);
   if (largest <= accepted_step_change && part.change <= accepted_step_change)
-    return fmt::format(
-        "Not converged: the time scheme lost {} of the energy that was put in, because a step of {} does not resolve the motion.",
-        percent(lost), format_quantity(step, "s"));
+    return fmt::format("the time scheme lost {} of the energy that was put in, because a step of {} does not resolve the motion.",
+                       percent(lost), format_quantity(step, "s"));
   if (largest <= accepted_step_change)
-    return fmt::format("Not converged: with twice the step ({}) the {} of {} agrees by chance: from {} to {} its peaks differ by {}.",
-                       steps, part.quantity->brief, part.of, format_quantity(part.from, "s"), format_quantity(part.to, "s"),
-                       percent(part.change));
-  return fmt::format("Not converged: with twice the step ({}) {} changes by {}; a step of {} is expected to be sufficient.", steps, which,
+    return fmt::format("with twice the step ({}) the {} of {} agrees by chance: from {} to {} its peaks differ by {}.", steps,
+                       part.quantity->brief, part.of, format_quantity(part.from, "s"), format_quantity(part.to, "s"), percent(part.change));
+  return fmt::format("with twice the step ({}) {} changes by {}; a step of {} is expected to be sufficient.", steps, what_changes(),
                      percent(largest), format_quantity(sufficient_step, "s"));
 }
 
 std::string format_step_change(const VerdictNumber& number) {
-  if (!number.coarse) return "";
+  if (!number.coarse || is_noise(number)) return "";
   const VerdictQuantity& quantity = *number.quantity;
   const double difference = std::abs(*number.coarse - number.value);
   if (is_share(quantity)) return difference < 0.0005 ? "< 0.1 points" : fmt::format("\u00b1{:.2g} points", 100 * difference);

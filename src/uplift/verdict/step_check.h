@@ -41,6 +41,10 @@ struct StepCheck {
   std::string reason;  // why it was not made, or how the companion ended
   /// One sentence for the terminal and the first page.
   std::string sentence() const;
+
+ private:
+  std::string what_changes() const;
+  std::string why_not(const std::string& steps) const;
 };
 std::string_view to_string(StepCheck::State);
 
@@ -55,7 +59,8 @@ inline constexpr int parts_of_time = 20;
 /// relative to the larger of the two values; of shares of an area to at least 0.1 (to the whole area for the residual one), of
 /// eccentricities to at least 0.01, of residual values to at least a twentieth of the largest motion and to their remaining variation, of
 /// the least compression to the largest; safeties are compared by their inverse, with at least 0.1, and changes beside the bonded run by 1
-/// + change. Durations, instants and the compression of the joint are stated but decide nothing.
+/// + change. Durations, instants and the compression of the joint are stated but decide nothing; numbers that are noise in both runs
+/// have no change.
 /// `floors`: the spectra of the run, or null; they are compared up to the frequency with twenty steps of the companion a period, relative
 /// to the larger value, which counts as at least a tenth of the peak of the spectrum.
 StepCheck check_step(const BuiltCase& built, const RunResult& run, const FloorRun* floors, const Companion& companion,
@@ -65,8 +70,9 @@ void compare_steps(VerdictNumbers& numbers, const VerdictNumbers& coarse, StepCh
 /// The peaks of moment, compression and pressure of every base in twentieths of the time. One that the other run reaches a tenth of
 /// a part earlier or later, in the part beside it, counts as reached. `numbers`: of the run; its bases come first.
 void compare_parts(const StepRecord& steps, const StepRecord& coarse, const VerdictNumbers& numbers, StepCheck& check);
-/// The same for the spectra of floors, in the same order.
-void compare_floors(const std::vector<FloorSpectra>& floors, const std::vector<FloorSpectra>& coarse, StepCheck& check);
+/// The same for the spectra of floors, in the same order. Floors whose spectrum nowhere exceeds `least` [m/s2], or noise_share of the
+/// largest acceleration of all floors, are not excited: they decide nothing.
+void compare_floors(const std::vector<FloorSpectra>& floors, const std::vector<FloorSpectra>& coarse, StepCheck& check, double least = 0);
 
 /// "±0.3 %", of instants "±0.02 s"; empty without a companion.
 std::string format_step_change(const VerdictNumber&);

@@ -9,6 +9,7 @@
 
 #include "uplift/base/format.h"
 #include "uplift/verdict/result_warnings.h"
+#include "uplift/verdict/second_order.h"
 #include "uplift/verdict/standing.h"
 
 namespace uplift {
@@ -66,10 +67,19 @@ std::string headline_of(const BuiltCase& built, const RunResult& run, const Verd
   const char* what = has_base(built) ? "base" : "interface";
   if (!(run.max_uplifted_ratio.value > 0)) return fmt::format("The {} does not {}", what, has_base(built) ? "uplift" : "open");
   if (const double lost = full_loss_of(verdict); lost > 0)
-    return fmt::format("Full loss of contact: the {} has no contact for {} in total, the gap reaches {}", what, format_quantity(lost, "s"),
+    return fmt::format("Full loss of contact: {} no contact for {} in total, the gap reaches {}",
+                       verdict.numbers.bases() > 1 ? "all bases at once have" : fmt::format("the {} has", what), format_quantity(lost, "s"),
                        format_quantity(run.max_opening.value, "m"));
   return fmt::format("The {} {}: up to {} of its area, by up to {}", what, has_base(built) ? "uplifts" : "opens",
                      percent(run.max_uplifted_ratio.value), format_quantity(run.max_opening.value, "m"));
+}
+
+/// The foundation whose ground uses all of its bearing capacity; empty: none.
+std::string failed_ground(const Verdict& verdict) {
+  constexpr double all = 0.999;
+  for (const InterfaceVerdict& said : bases_of(verdict))
+    if (const VerdictNumber* used = find_number(said.numbers, "max_bearing_utilisation"); used && used->value >= all) return said.name;
+  return "";
 }
 
 /// Level, headline and what an extraordinary end means.
@@ -84,11 +94,15 @@ void say_outcome(const BuiltCase& built, const RunResult& run, Verdict& verdict)
                                             : fmt::format("The values up to {} are shown and marked; they are not a result.", end));
   } else if (run.status == RunStatus::overturned) {
     verdict.level = Level::overturned;
-    verdict.headline = fmt::format("Overturning: the rotation exceeds {} {}", format_quantity(built.plan.rotation_limit, "rad"), when);
-    verdict.paragraphs.push_back(
-        fmt::format("The run ended because {}. Beyond this rotation (limits.rotation) the small-displacement model is not valid: the "
-                    "structure overturns or comes close to it. All values are those reached until then.",
-                    run.reason));
+    const std::string failed = failed_ground(verdict);
+    verdict.headline = fmt::format("{}: the rotation exceeds {} {}", failed.empty() ? "Overturning" : "Bearing failure under " + failed,
+                                   format_quantity(built.plan.rotation_limit, "rad"), when);
+    verdict.paragraphs.push_back(fmt::format(
+        "The run ended because {}. Beyond this rotation (limits.rotation) the small-displacement model is not valid: the {}. All values "
+        "are "
+        "those reached until then.",
+        run.reason,
+        failed.empty() ? "structure overturns or comes close to it" : "ground uses its whole bearing capacity, and the foundation tilts"));
   } else if (run.status == RunStatus::separated) {
     verdict.level = Level::separated;
     verdict.headline = fmt::format("Full loss of contact: {} the base is open everywhere by more than {}", when,
@@ -103,10 +117,29 @@ void say_outcome(const BuiltCase& built, const RunResult& run, Verdict& verdict)
   if (run.status == RunStatus::interrupted) verdict.headline += fmt::format(" (interrupted at {})", end);
 }
 
+/// What the weight does to the structure that has moved, where that is more than may be neglected.
+void say_second_order(const BuiltCase& built, const RunResult& run, Verdict& verdict) {
+  const std::optional<SecondOrder> effects = second_order_of(built, run, verdict.numbers);
+  if (!effects || !effects->counts()) return;
+  if (const std::string clause = effects->clause(); !clause.empty() && run.status == RunStatus::completed)
+    verdict.headline += "; " + clause;
+  verdict.facts.push_back({"Weight times drift", format_quantity(effects->moment(), "N m"),
+                           fmt::format("second-order moment, left out: {} of the base moment{}", percent(effects->ratio()),
+                                       std::isfinite(effects->least_left)
+                                           ? fmt::format("; until it overturns {} are left", format_quantity(effects->least_left, "N m"))
+                                           : ""),
+                           effects->exceeds_what_is_left()});
+}
+
 void say_full_loss(Verdict& verdict) {
   const std::vector<Interval>& intervals = verdict.numbers.full_loss;
+  const bool several = verdict.numbers.bases() > 1;
+  for (const InterfaceVerdict& said : bases_of(verdict))
+    if (const VerdictNumber* lost = find_number(said.numbers, "full_loss_time"); several && lost && lost->value > 0)
+      verdict.facts.push_back({"No contact of " + said.name, format_quantity(lost->value, "s"), times_of(said.full_loss), false});
   if (intervals.empty()) return;
-  verdict.facts.push_back({"Full loss of contact", format_quantity(full_loss_of(verdict), "s"), times_of(intervals), true});
+  verdict.facts.push_back({several ? "No contact of all bases at once" : "Full loss of contact",
+                           format_quantity(full_loss_of(verdict), "s"), times_of(intervals), true});
   verdict.paragraphs.push_back(fmt::format(
       "During a full loss of contact no force acts between base and ground: the structure moves freely, and the next contact is "
       "an impact. This happens {} for {} in total ({}).",
@@ -192,10 +225,15 @@ void say_radiation(const BuiltCase& built, Verdict& verdict) {
                       interface.name));
 }
 
+/// What is noise beside the excitation, or nothing beside the precision of a run.
+bool is_noise(const VerdictNumber& number) {
+  return std::abs(number.value) <= std::max(number.least, nothing_beside(number.quantity->unit));
+}
+
 void say_top(Verdict& verdict) {
   const auto fact = [&](const char* name, const char* label, const std::string& detail, bool tile) {
     const VerdictNumber* number = find_number(verdict.numbers.whole, name);
-    if (!number) return;
+    if (!number || is_noise(*number)) return;
     const std::string change = number->change ? compared(*number) + ", " : "";
     verdict.facts.push_back({label, text_of(*number), change + detail + at(*number), tile, format_step_change(*number)});
   };
@@ -213,9 +251,9 @@ void say_compared(const BuiltCase& built, const RunResult& bonded, Verdict& verd
   std::vector<std::string> parts;
   const auto add = [&parts](const std::string& what, const VerdictNumber* number, std::string_view unit) {
     if (!number || !number->bonded) return;
-    const std::string change = number->change ? format_change(*number->change) : "no excitation in this direction";
-    parts.push_back(fmt::format("{}: {} ({} instead of {})", what, change, format_quantity(number->value, unit),
-                                format_quantity(*number->bonded, unit)));
+    parts.push_back(number->change ? fmt::format("{}: {} ({} instead of {})", what, format_change(*number->change),
+                                                 format_quantity(number->value, unit), format_quantity(*number->bonded, unit))
+                                   : what + ": no excitation in this direction");
   };
   for (const InterfaceVerdict& said : bases_of(verdict))
     add("largest base moment" + of_interface(verdict, said) + per_metre(built), find_number(said.numbers, "max_moment"), "N m");
@@ -271,19 +309,6 @@ void say_residual(Verdict& verdict) {
     }
 }
 
-/// "-1.5 to +2.1 %": how far the bands of all floors and dampings change compared with the bonded run.
-std::string range_of_bands(const FloorRun& floors) {
-  double least = INFINITY, most = -INFINITY;
-  for (const std::vector<FloorChange>& floor : floors.beside)
-    for (const FloorChange& change : floor)
-      for (const FloorChange::Band& band : change.bands) least = std::min(least, band.change), most = std::max(most, band.change);
-  if (!(least <= most)) return "";
-  const std::string from = format_change(least), to = format_change(most);
-  if (from == to) return to;
-  const bool both = from.ends_with(" %") && to.ends_with(" %");
-  return fmt::format("{} to {}", both ? from.substr(0, from.size() - 2) : from, to);
-}
-
 /// Why the case was not run with twice the step, where that is not the user's choice.
 std::string reason_of_no_companion(const RunPlan& plan) {
   for (const Stage& stage : plan.stages)
@@ -312,6 +337,7 @@ void say_consequence(const FloorRun* floors, Verdict& verdict) {
     verdict.facts.push_back({"Floor spectra", range, "peaks of the bands, compared with the bonded model" + with, true,
                              check.floors_to > 0 ? "\u00b1" + percent(check.floors) : ""});
   }
+  if (const std::string arising = floors ? arising_floors(*floors) : ""; !arising.empty()) parts.push_back(arising);
   if (!parts.empty()) verdict.consequence = fmt::format("Compared with the bonded model: {}.", fmt::join(parts, ", "));
   const auto& criteria = verdict.numbers.criteria;
   if (criteria.empty()) return;
@@ -378,6 +404,7 @@ Verdict judge(const BuiltCase& built, const RunResult& run, const RunResult* bon
   if (!companion) verdict.step_check.reason = reason_of_no_companion(built.plan);
   say_outcome(built, run, verdict);
   if (nothing) return verdict;
+  say_second_order(built, run, verdict);
   if (verdict.step_check.state == StepCheck::State::not_converged) verdict.headline += " (not converged)";
   say_uplift(built, run, verdict);
   say_forces(built, run, verdict);

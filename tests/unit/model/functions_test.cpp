@@ -5,6 +5,7 @@
 #include <fstream>
 
 #include "unit/model/model_support.h"
+#include "uplift/model/function_jumps.h"
 
 namespace uplift {
 namespace {
@@ -40,6 +41,28 @@ TEST(TimeFunctions, TheCatalogHoldsThemAll) {
   for (const PartInfo* info : time_functions()) names.push_back(info->name);
   const std::vector<std::string_view> expected{"constant", "half_sine", "ramp", "ricker", "harmonic", "table", "csv"};
   EXPECT_EQ(names, expected);
+}
+
+/// A run of 0.1 s steps does not end at 1 s but 1.1e-16 s beside it; a step further the table is zero.
+TEST(TimeFunctions, ATableKeepsItsEndsAtRoundOff) {
+  double end = 0;
+  for (int i = 0; i < 3; ++i) end += 0.1;
+  ASSERT_GT(end, 0.3);
+  const auto table = make({{"type", raw(std::string("table"))},
+                           {"times", number_list({0.1, 0.2, 0.3})},
+                           {"values", number_list({4, 5, 7})},
+                           {"outside", raw(std::string("zero"))}});
+  EXPECT_EQ(table->value(end), 7);
+  EXPECT_EQ(table->value(0.1 - 1e-16), 4);
+  EXPECT_EQ(table->value(0.3001), 0);
+  EXPECT_EQ(table->value(0.0999), 0);
+  const std::vector<FunctionJump> jumps = jumps_of(*table);
+  ASSERT_EQ(jumps.size(), 2u);
+  EXPECT_EQ(jumps[0].time, 0.1);
+  EXPECT_EQ(jumps[0].after, 4);
+  EXPECT_EQ(jumps[1].time, 0.3);
+  EXPECT_EQ(jumps[1].before, 7);
+  EXPECT_TRUE(jumps_of(*make({{"type", raw(std::string("constant"))}})).empty());
 }
 
 TEST(TimeFunctions, ClosedForms) {

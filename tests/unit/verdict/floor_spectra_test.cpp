@@ -50,6 +50,8 @@ TEST(FloorSpectra, NoiseIsNotCompared) {
   const FloorChange arises = floor_change(excited, noise, {2, 5}, least).front();
   ASSERT_EQ(arises.bands.size(), 3U);
   EXPECT_DOUBLE_EQ(arises.bands[2].change, 5 / 2e-3 - 1);
+  EXPECT_TRUE(arises.bands[2].arises);
+  EXPECT_EQ(arises.bands[2].largest, 5);
   const FloorChange vanishes = floor_change(noise, excited, {2, 5}, least).front();
   ASSERT_EQ(vanishes.bands.size(), 3U);
   EXPECT_NEAR(vanishes.bands[0].change, -1, 1e-12);

@@ -105,7 +105,7 @@ TEST(StepCheck, NamesTheNumberThatChangesMostAndTheStep) {
   EXPECT_DOUBLE_EQ(check.sufficient_step, 2e-4) << "0.25 ms would halve the change twice, rounded down";
   EXPECT_EQ(check.sentence(),
             "Not converged: with twice the step (2.00 ms instead of 1.00 ms) largest compression of soil changes by 20 %; "
-            "a step of 0.200 ms is expected to be sufficient.");
+            "a step of 0.200 ms is expected to be sufficient. The changes beside the numbers are no bounds of their errors.");
   EXPECT_FALSE(numbers.whole.back().coarse) << "the companion has no drift";
   EXPECT_EQ(format_step_change(numbers.whole.back()), "");
   EXPECT_EQ(format_step_change(numbers.whole.front()), "\u00b10.2 %");
@@ -147,9 +147,9 @@ TEST(StepCheck, LostEnergyIsNotConverged) {
   VerdictNumbers numbers = numbers_with({number("max_moment", 1e6)});
   compare_steps(numbers, numbers_with({number("max_moment", 1e6)}), check);
   EXPECT_EQ(check.state, StepCheck::State::not_converged);
-  EXPECT_EQ(
-      check.sentence(),
-      "Not converged: the time scheme lost 8.0 % of the energy that was put in, because a step of 1.00 ms does not resolve the motion.");
+  EXPECT_EQ(check.sentence(),
+            "Not converged: the time scheme lost 8.0 % of the energy that was put in, because a step of 1.00 ms does not resolve the "
+            "motion. The changes beside the numbers are no bounds of their errors.");
   check.lost = 0.04;
   compare_steps(numbers, numbers_with({number("max_moment", 1e6)}), check);
   EXPECT_EQ(check.state, StepCheck::State::converged);
@@ -192,7 +192,30 @@ TEST(StepCheck, FloorSpectra) {
   EXPECT_EQ(check.state, StepCheck::State::not_converged);
   EXPECT_EQ(check.sentence(),
             "Not converged: with twice the step (2.00 ms instead of 1.00 ms) floor spectrum of roof changes by 20 %; a step "
-            "of 0.200 ms is expected to be sufficient.");
+            "of 0.200 ms is expected to be sufficient. The changes beside the numbers are no bounds of their errors.");
+}
+
+/// A floor without excitation, 1e-14 m/s2 beside one of 5 m/s2, and one alone beside ground of 4 m/s2: round-off changes by anything.
+TEST(StepCheck, NoiseDecidesNothing) {
+  const auto floor = [](double value) {
+    FloorSpectra made;
+    made.name = "floor";
+    made.zero_period.value = value;
+    made.raw = {{Spectrum::Kind::psa, 0.05, {5, 10}, {value, 2 * value}}};
+    return made;
+  };
+  StepCheck check;
+  check.step = 1e-3, check.coarse_step = 2e-3;
+  compare_floors({floor(5), floor(1e-14)}, {floor(5), floor(2e-14)}, check);
+  compare_floors({floor(1e-3)}, {floor(2e-3)}, check, 4e-3);
+  EXPECT_EQ(check.floors, 0);
+  EXPECT_EQ(check.state, StepCheck::State::converged);
+  VerdictNumbers numbers = numbers_with({number("max_shear", 3), number("max_moment", 1e6)});
+  numbers.interfaces.front().numbers.front().least = 10;
+  compare_steps(numbers, numbers_with({number("max_shear", 1), number("max_moment", 1.01e6)}), check);
+  EXPECT_NEAR(check.largest, 0.01 / 1.01, 1e-12) << "both shears are noise";
+  EXPECT_FALSE(numbers.interfaces.front().numbers.front().step_change);
+  EXPECT_EQ(format_step_change(numbers.interfaces.front().numbers.front()), "");
 }
 
 TEST(StepCheck, NobodyLooked) {
@@ -209,7 +232,9 @@ TEST(StepCheck, ACompanionThatEndsDifferentlyShowsThatTheStepDecides) {
   VerdictNumbers numbers = numbers_with({number("max_moment", 1e6)});
   const StepCheck check = check_step(built, run, nullptr, {&coarse_built, &coarse}, numbers);
   EXPECT_EQ(check.state, StepCheck::State::not_converged);
-  EXPECT_EQ(check.sentence(), "Not converged: with twice the step the run ends early (overturned) (2.00 ms instead of 1.00 ms).");
+  EXPECT_EQ(check.sentence(),
+            "Not converged: with twice the step the run ends early (overturned) (2.00 ms instead of 1.00 ms). The changes beside the "
+            "numbers are no bounds of their errors.");
   coarse.status = RunStatus::interrupted;
   EXPECT_EQ(check_step(built, run, nullptr, {&coarse_built, &coarse}, numbers).state, StepCheck::State::not_made);
 }

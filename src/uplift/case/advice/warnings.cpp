@@ -6,6 +6,7 @@
 
 #include "uplift/base/format.h"
 #include "uplift/case/advice/content.h"
+#include "uplift/case/advice/input_warnings.h"
 #include "uplift/case/advice/interface_warnings.h"
 #include "uplift/case/advice/step_suggestion.h"
 #include "uplift/case/ground/ground.h"
@@ -270,6 +271,7 @@ void warn_embedded_feet(const BuiltCase& built, std::vector<std::string>& said) 
 std::vector<std::string> warnings(const Case& read, const RunSpec& spec, const BuiltCase& built) {
   std::vector<std::string> said;
   warn_magnitudes(read, said);
+  warn_input(read, spec, built, said);
   warn_massless_beams(read, said);
   warn_interfaces(read, built, said);
   warn_idle_functions(read, built, said);

@@ -1,6 +1,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <cmath>
 #include <optional>
 
 #include "uplift/case/build/model.h"
@@ -110,6 +111,16 @@ Vec3 gravity_of(const Values& root, Space space) {
   return -9.81 * space.axis(space.up());
 }
 
+/// A direction alone: its length would be a factor on the earthquake that nobody has asked for.
+Vec3 direction_of_ground(const Values& ground, Space space) {
+  constexpr double rounded = 0.01;  // [0.71, 0.71]
+  if (!ground.has("direction")) return space.axis(0);
+  const Vec3 direction = vector_of(ground, "direction", space);
+  if (const double length = direction.norm(); std::abs(length - 1) > rounded)
+    fail(ground, "direction", "a direction of length 1 (the amplitude is the factor)", fmt::format("one of length {:.4g}", length));
+  return direction;
+}
+
 void add_loads(const Values& root, ModelBuilder& builder, const CaseNames& names) {
   for (const Values& load : root.tables("load")) {
     std::vector<std::pair<int, double>> pattern =
@@ -119,8 +130,8 @@ void add_loads(const Values& root, ModelBuilder& builder, const CaseNames& names
   if (const Values* gravity = table_if(root, "gravity")) builder.set_gravity(gravity_of(root, names.space), gravity->where());
   for (const Values& ground : root.tables("ground_acceleration")) {
     const std::string name = ground.has("name") ? ground.text("name") : "ground acceleration";
-    const Vec3 direction = ground.has("direction") ? vector_of(ground, "direction", names.space) : names.space.axis(0);
-    builder.add_ground_acceleration(direction, scaled(ground.number("amplitude"), names.function(ground, MotionKind::acceleration)), name,
+    builder.add_ground_acceleration(direction_of_ground(ground, names.space),
+                                    scaled(ground.number("amplitude"), names.function(ground, MotionKind::acceleration)), name,
                                     ground.where());
   }
 }

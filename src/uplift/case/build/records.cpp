@@ -238,6 +238,12 @@ void warn_motions(const std::vector<MotionUse>& used, const std::vector<Stage>& 
                         "base line",
                         in_quotes(motion.name), format_quantity(left, "m/s")));
     }
+    if (use.kind == MotionKind::acceleration && motion.kind == MotionKind::velocity)
+      said.push_back(
+          fmt::format("the record {} is a velocity: its acceleration is the slope of a spline, which is {} too low at {:.3g} Hz and {} at "
+                      "{:.3g} Hz (docs/theory, eq 32a); take the acceleration itself where it holds such frequencies",
+                      in_quotes(motion.name), percent(1 - spline_slope_share(0.25)), 0.25 / motion.step,
+                      percent(1 - spline_slope_share(0.4)), 0.4 / motion.step));
     if (std::ranges::find(seen, use.history.get()) != seen.end()) continue;
     seen.push_back(use.history.get());
     if (motion.file.empty())

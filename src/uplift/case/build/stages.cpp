@@ -35,6 +35,10 @@ Stage stage_of(const Values& table, const RunSpec& spec) {
   stage.step = spec.step_factor * spec.step.value_or(table.number("step"));
   if (stage.step > stage.duration)
     fail(table, "step", fmt::format("a step shorter than the duration of {:g} s", stage.duration), fmt::format("{:g} s", stage.step));
+  constexpr double most_steps = 1e12;
+  if (stage.duration / stage.step > most_steps)
+    fail(table, "step", fmt::format("a step of at least {:.4g} s: a stage has at most {:g} steps", stage.duration / most_steps, most_steps),
+         fmt::format("{:g} s", stage.step));
   const Values& scheme = spec.scheme ? *spec.scheme : table.part("scheme");
   stage.scheme = *make_part(scheme_catalog(), scheme);
   // The path average closes the energy balance with the trapezoidal rule only: other schemes take the end of the step unless told

@@ -98,11 +98,11 @@ const Section& motion_section() {
 const Section& ground_section() {
   static const Section s{
       "ground_acceleration", "acceleration of the whole ground: inertia forces -M r a(t) in the frame that moves with it",
-      Fields{
-          text("name", "name").optional(), vector("direction", "1", "direction; absent: the x axis").optional(),
-          number("amplitude", "m/s2", "acceleration that the function multiplies; of a record, which is an acceleration itself, a factor")
-              .standard(1.0),
-          text("function", "name of the function of time")}};
+      Fields{text("name", "name").optional(), vector("direction", "1", "direction, of length 1; absent: the x axis").optional(),
+             number("amplitude", "m/s2",
+                    "acceleration that the function multiplies; of a record, which is an acceleration itself, a factor without unit")
+                 .standard(1.0),
+             text("function", "name of the function of time")}};
   return s;
 }
 

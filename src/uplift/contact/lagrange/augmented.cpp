@@ -5,14 +5,16 @@
 #include <limits>
 
 #include "uplift/contact/lagrange/lagrange.h"
+#include "uplift/contact/lagrange/status.h"
 #include "uplift/contact/method.h"
 #include "uplift/contact/newton/newton.h"
 #include "uplift/contact/point_rows.h"
 
 // Augmented Lagrangian (paper, eq 1 with alpha > 0): p = P(m + e g), solved by Newton; then m <- p, until the multipliers stand still. Each
 // update contracts the error by 1/(1 + e F): with e F_ii = factor a handful of updates reaches round-off. Where it contracts slowly
-// (neighbouring points of a rigid footing are nearly one row), e grows by 16 until round-off in the openings would show in the forces. From
-// m = 0 the pressures of redundant points come out as those of a bed of equal springs, the least-norm ones, up to 1/factor.
+// (neighbouring points of a rigid footing are nearly one row), e grows by 16 until round-off in the openings would show in the forces. The
+// updates leave open how redundant points (a rigid footing on many of them) share their force: the linear problem of the status that they
+// have found gives the pressures of least sum p^2/area, as the multipliers alone do (lagrange), where that moves nothing.
 namespace uplift {
 
 void augmentation(const ContactModel& model, double factor, Vector& stiffness) {
@@ -37,7 +39,39 @@ struct AugmentedWork final : MethodWork {
   NewtonWork newton;
   std::unique_ptr<MethodWork> frictional;
   ResidualScratch residual;
+  StatusStep shares;
+  InterfaceSolution shared;
 };
+
+/// Only rows that depend on each other can share a force in several ways.
+bool may_be_redundant(const ContactModel& model) {
+  Index held = 0;
+  for (const Block& block : model.blocks)
+    if (block.cone != nullptr) held += block.rows();
+  return held > 1 && !PointRows::suits(model);
+}
+
+/// Shares the force of redundant points: openings and resultants stay (points without an opening may turn out to carry nothing), or
+/// nothing is done.
+void share_redundant(const InterfaceProblem& problem, double tolerance, AugmentedWork& work, InterfaceSolution& solution) {
+  if (!may_be_redundant(*problem.model)) return;
+  constexpr double gap = 1e-12;  // m
+  work.shared = solution;
+  work.shares.begin(problem, gap, work.shared);
+  work.shares.guess_from_solution();
+  constexpr int most = 20;
+  bool settled = false;
+  for (int i = 0; i < most && !settled; ++i) {
+    if (!work.shares.solve() || !work.shares.finite()) return;
+    settled = !work.shares.update_status(false);
+  }
+  if (!settled) return;
+  if (!(work.shares.residual() <= 10 * tolerance)) return;
+  work.shares.write_status();
+  const double moved = (work.shared.opening - solution.opening).cwiseAbs().maxCoeff();
+  const double size = (solution.opening - problem.free_opening).cwiseAbs().maxCoeff();
+  if (moved <= 1e-6 * size) std::swap(solution, work.shared);
+}
 
 class AugmentedLagrangian final : public ContactMethod {
  public:
@@ -59,6 +93,7 @@ class AugmentedLagrangian final : public ContactMethod {
       if (again.converged) total = again;
       total.iterations = iterations;
     }
+    if (total.converged) share_redundant(problem, tolerance_, work, solution);
     return total;
   }
 

@@ -45,6 +45,7 @@ void write_spectrum(ResultWriter& out, const Spectrum& spectrum, const FloorChan
               out.number("from", band.band.from, "Hz", "lower limit of the band");
               out.number_or_null("to", band.band.to, "Hz", "upper limit of the band; null: none");
               out.number("change", band.change, "1", "change of the largest value in the band: 0.1 is 10 % more than bonded");
+              out.flag("arises", band.arises, "the bonded floor is not excited in the band: change and ratios are those of a threshold");
               out.number("least_ratio", band.least, "1", "smallest ratio to the bonded spectrum in the band");
               out.number("largest_ratio", band.most, "1", "largest ratio to the bonded spectrum in the band");
             });

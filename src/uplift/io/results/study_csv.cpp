@@ -37,15 +37,26 @@ std::string text_of(const ConfidenceInterval& interval) {
   return fmt::format("{:.0f} %: {} to {}", 100 * study_confidence, end(interval.lower), end(interval.upper));
 }
 
-/// The annual rate, or why there is none; empty without a hazard curve or without a fit, which says why itself.
-std::string risk_text(const StudySite& site, const OrRefused<Fragility>& fit) {
+/// A probability in per cent; tiny ones are those of the tail of a distribution that nobody has seen.
+std::string probability_text(double probability) {
+  constexpr double least = 1e-5;
+  return probability < least ? "below 0.001 %" : fmt::format("{:.2g} %", 100 * probability);
+}
+
+/// The annual rate, or why there is none; empty without a hazard curve or without a fit, which says why itself. Beside it that of the
+/// composite beta, where motions and samples are told apart.
+std::string risk_text(const StudySite& site, const StudyLimitFit& of) {
+  const OrRefused<Fragility>& fit = of.fit.middle;
   if (site.hazard.empty() || std::holds_alternative<Refused>(fit)) return "";
   const OrRefused<AnnualRisk> risk = risk_of(site, fit);
   if (const Refused* refused = std::get_if<Refused>(&risk)) return "; no annual rate (" + refused->reason + ")";
   const AnnualRisk& known = std::get<AnnualRisk>(risk);
   const double beyond = known.share_beyond();
   const std::string caution = beyond > 0.1 ? fmt::format(", {:.0f} % of it from beyond the points of the hazard curve", 100 * beyond) : "";
-  return fmt::format("; annual rate {:.3g}{}", known.rate, caution);
+  const OrRefused<AnnualRisk> composite = composite_risk_of(site, of.layout);
+  const AnnualRisk* beside = std::get_if<AnnualRisk>(&composite);
+  return fmt::format("; annual rate {:.3g}{}{}", known.rate, caution,
+                     beside ? fmt::format(" (with the composite beta of motions and samples {:.3g})", beside->rate) : "");
 }
 
 }  // namespace
@@ -125,9 +136,9 @@ std::string study_sentence(const StudyDocument& study, std::size_t number) {
     text += fmt::format("{}; {}", short_text(each.fit.fit.middle), counts);
   const StudySite& site = study.plan.site;
   if (const std::optional<PerformancePair> pair = performance_of(site, each.fit.fit.middle))
-    text += fmt::format("; at the design motion {:.2g} %, at 1.5 times it {:.2g} % (aims of ASCE/SEI 43: 1 % and 10 %, {})",
-                        100 * pair->at_design, 100 * pair->at_one_and_a_half, pair->met() ? "met" : "not met");
-  text += risk_text(site, each.fit.fit.middle);
+    text += fmt::format("; at the design motion {}, at 1.5 times it {} (aims of ASCE/SEI 43: 1 % and 10 %, {})",
+                        probability_text(pair->at_design), probability_text(pair->at_one_and_a_half), pair->met() ? "met" : "not met");
+  text += risk_text(site, each.fit);
   if (each.fit.unknown > 0)
     text += fmt::format("; unknown as survived: {}, as exceeded: {}", short_text(each.fit.fit.survived), short_text(each.fit.fit.exceeded));
   return text;

@@ -63,6 +63,10 @@ void write_risk(ResultWriter& out, const StudySite& site, const StudyLimitFit& f
   out.number_or_null("share_below", part(&AnnualRisk::share_below), "1",
                      "share that rests on rates below the first point of the hazard curve");
   out.number_or_null("share_above", part(&AnnualRisk::share_above), "1", "share that rests on rates above its last point");
+  const OrRefused<AnnualRisk> composite = composite_risk_of(site, fit.layout);
+  const AnnualRisk* of_both = std::get_if<AnnualRisk>(&composite);
+  out.number_or_null("composite", of_both ? std::optional(of_both->rate) : std::nullopt, "1/a",
+                     "the rate by the median and the composite beta of the dispersion; null: motions and samples cannot be told apart");
   out.number_or_null("unknown_survived", end(fit.fit.survived), "1/a", "the rate with runs of unknown outcome counted as survived");
   out.number_or_null("unknown_exceeded", end(fit.fit.exceeded), "1/a", "the rate with runs of unknown outcome counted as exceeded");
 }

@@ -161,7 +161,10 @@ void write_floor_changes(ResultWriter& out, const FloorAnswers* floors) {
     out.list("bands", "frequency bands", floor.change.bands, [&](const FloorChange::Band& band) {
       out.text("band", to_string(band.band), "frequency band");
       out.number("change_percent", 100 * band.change, "%", "change of the largest value in the band");
-      out.text("change", format_change(band.change), "the same as text");
+      out.text(
+          "change",
+          band.arises ? "up to " + format_quantity(band.largest, "m/s2") + " where the bonded model has none" : format_change(band.change),
+          "the same as text");
     });
     out.when(floor.change.bands.empty()).constant("note", not_excited, "why there are no bands");
   });

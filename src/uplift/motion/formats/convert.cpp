@@ -3,6 +3,8 @@
 #include <fmt/format.h>
 
 #include <cassert>
+#include <cmath>
+#include <numbers>
 
 namespace uplift {
 
@@ -62,6 +64,11 @@ Integrals integrals_of(std::span<const double> a, double h) {
     u[i] = u[i - 1] + h * v[i - 1] + h * h * (2 * a[i - 1] + a[i]) / 6;
   }
   return sums;
+}
+
+double spline_slope_share(double cycles) {
+  const double x = 2 * std::numbers::pi * cycles;
+  return x == 0 ? 1 : 3 * std::sin(x) / (x * (2 + std::cos(x)));
 }
 
 Motion converted(Motion motion, MotionKind kind) {

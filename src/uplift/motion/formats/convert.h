@@ -19,4 +19,8 @@ Integrals integrals_of(std::span<const double> acceleration, double step);
 /// displacement gives the displacement back, but for its first value.
 Motion converted(Motion motion, MotionKind kind);
 
+/// The slope of that spline through a sine of `cycles` per step, over the slope of the sine, at the points (docs/theory, eq 32a): 1 for
+/// slow sines, 0 for half a cycle per step.
+double spline_slope_share(double cycles);
+
 }  // namespace uplift

@@ -1,0 +1,112 @@
+#include "uplift/case/advice/input_warnings.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+#include <set>
+
+#include "uplift/base/format.h"
+#include "uplift/base/text.h"
+#include "uplift/case/build/model.h"
+#include "uplift/model/function_jumps.h"
+
+namespace uplift {
+namespace {
+
+std::string place_of(const Values& table, std::string_view key) {
+  return fmt::format("{}:{}: ", table.where(key).file, table.where(key).line);
+}
+
+/// Rough rock has at most about 1.
+void warn_friction(const BuiltCase& built, std::vector<std::string>& said) {
+  constexpr double most = 2;
+  for (const Values* law : built.behaviours)
+    if (law->items().contains("friction") && law->given("friction") && law->number("friction") > most)
+      said.push_back(place_of(*law, "friction") +
+                     fmt::format("friction = {:g} is a coefficient, not an angle: an angle of 35 degrees has tan(35 deg) = 0.70",
+                                 law->number("friction")));
+}
+
+void warn_gravity(const Values& root, Space space, std::vector<std::string>& said) {
+  const Values* gravity = table_if(root, "gravity");
+  const double size = gravity != nullptr ? gravity_of(root, space).norm() : 0;
+  if (size > 0 && (size < 9 || size > 10.5))
+    said.push_back(place_of(*gravity, "acceleration") +
+                   fmt::format("the weight acts with {:g} m/s2, on Earth it is 9.81 m/s2; is the unit right (981 cm/s2)?", size));
+}
+
+void warn_damping(const Values& root, std::vector<std::string>& said) {
+  constexpr double most = 0.5;
+  const Values* damping = table_if(root, "damping");
+  if (damping == nullptr) return;
+  const auto say = [&](const Values& table, const char* key, double ratio) {
+    said.push_back(place_of(table, key) +
+                   fmt::format("a damping ratio of {:g} is {:g} % of the critical damping; 5 % are 0.05", ratio, 100 * ratio));
+  };
+  for (const double ratio : damping->numbers("modal"))
+    if (ratio >= most) say(*damping, "modal", ratio);
+  for (const Values& pair : damping->tables("rayleigh"))
+    if (pair.number("ratio") >= most) say(pair, "ratio", pair.number("ratio"));
+}
+
+/// Lengths in other units, and masses in tonnes.
+void warn_size(const BuiltCase& built, std::vector<std::string>& said) {
+  constexpr double smallest = 0.1, largest = 3000;  // m
+  constexpr double least_pressure = 1e3;            // Pa: half a decimetre of concrete
+  const std::vector<Node>& nodes = built.model.nodes;
+  if (nodes.size() < 2) return;
+  Vec3 least = nodes.front().position, most = least;
+  for (const Node& node : nodes) least = least.cwiseMin(node.position), most = most.cwiseMax(node.position);
+  const double size = (most - least).maxCoeff();
+  if (size > 0 && (size < smallest || size > largest))
+    said.push_back(fmt::format("the model extends over {:g} m: nodes are given in metres; is the unit right?", size));
+  double area = 0;
+  for (std::size_t k = 0; k < built.bases(); ++k) area += built.facts[k].area;
+  if (area > 0 && built.weight > 0 && built.weight / area < least_pressure)
+    said.push_back(
+        fmt::format("the dead load of {} presses the base with {} alone, less than a floor slab: masses are given in kg (1 t is "
+                    "1000 kg); are the units right?",
+                    format_quantity(built.weight, "N"), format_quantity(built.weight / area, "Pa")));
+}
+
+/// Names of functions that drive the run.
+std::set<std::string> functions_used(const Values& root, const RunSpec& spec) {
+  std::set<std::string> names;
+  for (const DrivenBy& place : motions_wanted(root)) names.insert(name_taken(spec.motion, place.table->text("function")));
+  for (const Values& load : root.tables("load"))
+    if (load.has("function")) names.insert(load.text("function"));
+  return names;
+}
+
+/// A table that ends with a value is let go there: a motion comes back in one step.
+void warn_jumps(const Case& read, const RunSpec& spec, const BuiltCase& built, std::vector<std::string>& said) {
+  double end = 0;
+  for (const Stage& stage : built.plan.stages)
+    if (stage.type == Stage::Type::dynamics) end += stage.duration;
+  const std::set<std::string> used = functions_used(read.values, spec);
+  for (const Values& function : read.values.tables("function")) {
+    if (end == 0 || !used.contains(function.text("name"))) continue;
+    const std::unique_ptr<const TimeFunction> made = make_part(function_catalog(), function.part("shape"));
+    for (const FunctionJump& jump : jumps_of(*made))
+      if (jump.time > 1e-9 * end && jump.time < end * (1 - 1e-9))
+        said.push_back(
+            place_of(function, "name") +
+            fmt::format("the function {} jumps from {:.4g} to {:.4g} at {}, and the run goes on to {}: let it {} with 0, or take "
+                        "outside = \"hold\"",
+                        in_quotes(function.text("name")), jump.before, jump.after, format_quantity(jump.time, "s"),
+                        format_quantity(end, "s"), jump.after == 0 ? "end" : "begin"));
+  }
+}
+
+}  // namespace
+
+void warn_input(const Case& read, const RunSpec& spec, const BuiltCase& built, std::vector<std::string>& said) {
+  warn_friction(built, said);
+  warn_gravity(read.values, built.model.space, said);
+  warn_damping(read.values, said);
+  warn_size(built, said);
+  warn_jumps(read, spec, built, said);
+}
+
+}  // namespace uplift

@@ -1,0 +1,54 @@
+#include "uplift/verdict/edge_warnings.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+
+#include "uplift/base/format.h"
+
+namespace uplift {
+namespace {
+
+/// Whether nodes move as one body.
+bool is_rigid(const Model& model, const std::vector<int>& nodes) {
+  const auto tied = [&](int node) {
+    return std::ranges::any_of(model.assembly.ties, [node](const Assembly::Tie& tie) { return tie.slave == node; });
+  };
+  return nodes.size() == 1 || (!nodes.empty() && std::ranges::all_of(nodes, tied));
+}
+
+/// The points of a rigid base that stand on its edge are the last one alone: its area is that of the division, not of the ground.
+std::string unbounded_pressure(const BuiltCase& built, std::size_t k, double uplifted, const InterfaceVerdict& said) {
+  const VerdictNumber* pressure = find_number(said.numbers, "max_toe_pressure");
+  if (!built.model.interfaces[k].cone || !pressure || !(uplifted > 0) || !is_rigid(built.model, built.facts[k].upper)) return "";
+  return fmt::format(
+      "the largest pressure of {} ({}) is no pressure of the ground: a rigid base that opens on constraints stands on its edge, where the "
+      "pressure has no bound and grows with the number of points; forces and moments hold; take a joint of finite stiffness for pressures",
+      said.name, format_quantity(pressure->value, "Pa"));
+}
+
+std::string few_points(const Interface& interface, double uplifted, const InterfaceVerdict& said) {
+  constexpr double enough = 4;
+  const double closed = (1 - uplifted) * interface.batch.points;
+  if (interface.cone || interface.footprint || !(uplifted > 0) || uplifted >= 1 || closed >= enough) return "";
+  return fmt::format(
+      "at the largest uplift of {} ({} of the area) about {:.2g} of its {} points are in contact: pressures and the last of the moment are "
+      "rough; take more points",
+      said.name, percent(uplifted), closed, interface.batch.points);
+}
+
+}  // namespace
+
+std::vector<std::string> edge_warnings(const BuiltCase& built, const VerdictNumbers& numbers) {
+  std::vector<std::string> found;
+  for (std::size_t k = 0; k < std::min(numbers.bases(), built.model.interfaces.size()); ++k) {
+    const InterfaceVerdict& said = numbers.interfaces[k];
+    const VerdictNumber* ratio = find_number(said.numbers, "max_uplifted_ratio");
+    const double uplifted = ratio ? ratio->value : 0;
+    for (std::string text : {unbounded_pressure(built, k, uplifted, said), few_points(built.model.interfaces[k], uplifted, said)})
+      if (!text.empty()) found.push_back(std::move(text));
+  }
+  return found;
+}
+
+}  // namespace uplift

@@ -1,0 +1,90 @@
+#include "uplift/verdict/second_order.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+
+#include "uplift/base/format.h"
+#include "uplift/case/mesh/mesh.h"
+#include "uplift/verdict/base_over_time.h"
+
+namespace uplift {
+namespace {
+
+constexpr double negligible = 0.1;  // of the base moment
+
+double height_of(const Model& model, int node) {
+  return model.nodes[static_cast<std::size_t>(node)].position[model.space.up()];
+}
+
+bool leaves_out(const RunPlan& plan) {
+  return std::ranges::none_of(plan.stages, &Stage::p_delta);
+}
+
+/// Nothing moves the ground.
+bool is_forced(const Model& model) {
+  return model.grounds.empty() && model.motions.empty() && model.time_load_tables.empty();
+}
+
+}  // namespace
+
+double swaying_weight(const BuiltCase& built) {
+  const Model& model = built.model;
+  if (built.top < 0 || built.base < 0 || built.facts.empty()) return 0;
+  const double foot = height_of(model, built.base), height = height_of(model, built.top) - foot;
+  if (!(height > 0)) return 0;
+  const std::vector<char> carried = part_of(model, built.facts.front().upper);
+  double sum = 0;
+  for (std::size_t i = 0; i < model.time_loads.size(); ++i) {
+    if (!model.time_loads[i].dead) continue;
+    for (int node = 0; node < static_cast<int>(carried.size()); ++node)
+      if (const double above = height_of(model, node) - foot; carried[static_cast<std::size_t>(node)] && above > 0)
+        sum -= model.assembly.loads[i][model.space.unknowns() * node + model.space.up()] * above / height;
+  }
+  return sum;
+}
+
+std::optional<SecondOrder> second_order_of(const BuiltCase& built, const RunResult& run, const VerdictNumbers& numbers) {
+  const VerdictNumber* drift = find_number(numbers.whole, "max_drift");
+  if (numbers.bases() != 1 || !drift || !leaves_out(built.plan) || run.status == RunStatus::failed) return std::nullopt;
+  const VerdictNumber* moment = find_number(numbers.interfaces.front().numbers, "max_moment");
+  SecondOrder found{swaying_weight(built), std::abs(drift->value), moment ? moment->value : 0, std::numeric_limits<double>::infinity()};
+  if (!(found.weight > 0) || !moment || !(moment->value > moment->least)) return std::nullopt;
+  const BaseOverTime base(built, run, 0);
+  for (std::size_t i = 0; i < run.steps.size(); ++i) {
+    const double safety = base.overturning(i), driving = base.moment(i);
+    if (!(safety >= 1) || driving * (safety - 1) >= found.least_left) continue;
+    found.least_left = driving * (safety - 1);
+    found.stabilising = driving * safety;
+  }
+  found.forced = is_forced(built.model);
+  return found;
+}
+
+bool SecondOrder::counts() const {
+  return moment() > negligible * base_moment;
+}
+
+bool SecondOrder::overturns() const {
+  return exceeds_what_is_left() && (forced || moment() > stabilising / 2);
+}
+
+std::string SecondOrder::warning() const {
+  if (!counts()) return "";
+  const std::string left = exceeds_what_is_left()
+                               ? fmt::format(" and more than the {} that are left until it overturns", format_quantity(least_left, "N m"))
+                               : "";
+  return fmt::format(
+      "second-order effects are left out, and they count: the weight times the drift of the top is {} ({} x {}), {} of the base moment{}; "
+      "EN 1998-1 neglects at most a tenth; take p_delta = true in the stages after the first static one",
+      format_quantity(moment(), "N m"), format_quantity(weight, "N"), format_quantity(drift, "m"), percent(ratio()), left);
+}
+
+std::string SecondOrder::clause() const {
+  if (overturns()) return "second-order effects, which are left out, would overturn it";
+  return exceeds_what_is_left() ? "second-order effects, which are left out, exceed what is left until it overturns" : "";
+}
+
+}  // namespace uplift

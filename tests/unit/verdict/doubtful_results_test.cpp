@@ -1,0 +1,178 @@
+// What a run that came to its end may hide: second-order effects, pressures without a bound, noise, floors that the bonded run lacks.
+#include <algorithm>
+#include <cmath>
+#include <deque>
+
+#include "tower_case.h"
+#include "unit/verdict/verdict_support.h"
+#include "uplift/verdict/compare_motions.h"
+#include "uplift/verdict/edge_warnings.h"
+#include "uplift/verdict/second_order.h"
+#include "uplift/verdict/verdict.h"
+
+namespace uplift {
+namespace {
+
+using namespace support;
+
+constexpr double gravity = 9.81, top_mass = 24000, footing_mass = 1e4, total = (top_mass + footing_mass) * gravity;  // m/s2, kg, N
+
+const std::string law = "law = { type = \"springs\", K_n = 1e9, K_t = 1e8 }\n";
+
+/// A mass of 24 t on a column of 5 m over a footing of 3 m and 10 t.
+std::string tower(const std::string& driven, const std::string& p_delta = "", const std::string& soil = law, const Tower& changed = {}) {
+  return "title = \"tower\"\n" + changed.text() + weight +
+         "[[interface]]\nname = \"soil\"\nfooting = { body = \"base\", width = 3, points = 11 }\n" + soil +
+         "[[function]]\nname = \"f\"\nshape = { type = \"half_sine\", duration = 1 }\n" + driven +
+         "[[stage]]\ntype = \"static\"\n[[stage]]\ntype = \"dynamic\"\nduration = 1\nstep = 0.01\n" + p_delta;
+}
+const std::string shaken = "[[ground_acceleration]]\nfunction = \"f\"\n";
+const std::string pushed = "[[load]]\nnode = \"top\"\nforce = [1e4, 0]\nfunction = \"f\"\n";
+
+/// A run that reaches a base moment and a drift of the top at its second instant.
+RunResult reaching(const BuiltCase& built, double moment, double drift, double open = 0) {
+  const auto now = [](double m, double share) { return view_of({.axial = -total, .moment = m}, share); };
+  RunResult run = run_of({now(0, 0), now(moment, open), now(0, 0)}, 0.5);
+  Request top;
+  top.kind = Request::Kind::displacement;
+  top.name = "top.ux", top.unit = "m", top.unknown = built.top_sway();
+  run.columns = {top};
+  run.table = {{0, 0.5, 1}, {0, drift, 0}};
+  run.peaks = {{"top.ux", "m", drift, 0.5}};
+  run.max_base_moment = {"", "N m", moment, 0.5};
+  run.max_uplifted_ratio = {"", "1", open, 0.5};
+  run.end_time = 1;
+  run.energy_scale = 1;
+  return run;
+}
+
+SecondOrder effects_of(const BuiltCase& built, const RunResult& run) {
+  const std::optional<SecondOrder> found = second_order_of(built, run, numbers_of(built, run, nullptr));
+  EXPECT_TRUE(found);
+  return found.value_or(SecondOrder());
+}
+
+/// By hand: the top mass alone, and half of a mass at half of the height; the footing does not sway.
+TEST(SecondOrderEffects, SwayingWeight) {
+  EXPECT_NEAR(swaying_weight(built_of(tower(shaken))), top_mass * gravity, 1e-6);
+  Tower changed;
+  changed.nodes = "middle = [0, 2.5]";
+  const std::string another =
+      "[[beam]]\nname = \"arm\"\nnodes = [\"base\", \"middle\"]\nE = 1e10\nI = 0.1\n[[mass]]\nnode = \"middle\"\nmass = 1e4\n";
+  EXPECT_NEAR(swaying_weight(built_of(tower(another + shaken, "", law, changed))), (top_mass + 0.5 * 1e4) * gravity, 1e-6);
+}
+
+/// S = 333.54 kN x 1.5 m = 500.31 kN m. Under M = 400 kN m 100.31 kN m are left. W d with W = 235.44 kN: 35.3 kN m at 0.15 m is 8.8 % of
+/// M; 94.2 kN m at 0.4 m, 23.5 %; 117.7 kN m at 0.5 m is more than what is left; 259.0 kN m at 1.1 m more than half of S.
+TEST(SecondOrderEffects, ByHand) {
+  const BuiltCase built = built_of(tower(shaken));
+  const SecondOrder little = effects_of(built, reaching(built, 4e5, 0.15));
+  EXPECT_NEAR(little.moment(), 0.15 * top_mass * gravity, 1e-6);
+  EXPECT_NEAR(little.ratio(), 0.08829, 1e-5);
+  EXPECT_NEAR(little.least_left, 1.5 * total - 4e5, 1e-3);
+  EXPECT_NEAR(little.stabilising, 1.5 * total, 1e-3);
+  EXPECT_FALSE(little.counts());
+  EXPECT_EQ(little.warning() + little.clause(), "");
+  const SecondOrder more = effects_of(built, reaching(built, 4e5, 0.4));
+  EXPECT_TRUE(more.counts() && !more.exceeds_what_is_left());
+  EXPECT_NE(more.warning().find("94.2 kN m (235 kN x 400 mm), 24 % of the base moment;"), std::string::npos) << more.warning();
+  EXPECT_EQ(more.clause(), "");
+  const SecondOrder beyond = effects_of(built, reaching(built, 4e5, 0.5));
+  EXPECT_TRUE(beyond.exceeds_what_is_left() && !beyond.overturns()) << "the ground moves, and the base gives way";
+  EXPECT_NE(beyond.warning().find("more than the 100 kN m that are left"), std::string::npos) << beyond.warning();
+  EXPECT_TRUE(effects_of(built, reaching(built, 4e5, 1.1)).overturns());
+}
+
+/// A force does not give way: what is left decides.
+TEST(SecondOrderEffects, AForceOverturns) {
+  const BuiltCase built = built_of(tower(pushed));
+  EXPECT_FALSE(effects_of(built, reaching(built, 4e5, 0.4)).overturns());
+  const RunResult run = reaching(built, 4e5, 0.5);
+  EXPECT_TRUE(effects_of(built, run).overturns());
+  const Verdict verdict = judge(built, run, nullptr);
+  EXPECT_TRUE(verdict.headline.ends_with("; second-order effects, which are left out, would overturn it")) << verdict.headline;
+}
+
+TEST(SecondOrderEffects, NothingIsLeftOutWithPDelta) {
+  const BuiltCase built = built_of(tower(shaken, "p_delta = true\n"));
+  const RunResult run = reaching(built, 4e5, 1.1);
+  EXPECT_FALSE(second_order_of(built, run, numbers_of(built, run, nullptr)));
+}
+
+/// A column on a base that is nearly rigid, pushed slowly by H at its top: the drift is H h^3/(3 E I) = 1e4 x 125/(3 x 4e9) = 0.104 mm and
+/// the base moment H h.
+TEST(SecondOrderEffects, OfARunWithASlowForce) {
+  const std::string slow =
+      "[[function]]\nname = \"slow\"\nshape = { type = \"ramp\", duration = 9 }\n[[load]]\nnode = \"top\"\nforce = [1e4, 0]\nfunction = "
+      "\"slow\"\n";
+  std::string text = tower(slow);
+  text.replace(text.find("duration = 1\nstep = 0.01"), 24, "duration = 10\nstep = 0.01");
+  const BuiltCase built = built_of(text);
+  const RunResult run = run_of(built);
+  ASSERT_EQ(to_string(run.status), "completed") << run.reason;
+  const SecondOrder effects = effects_of(built, run);
+  const double turn = 1e4 * 5 / (1e9 * 2.25);  // rad: K_n times the second moment of area, 3^3/12
+  EXPECT_NEAR(effects.base_moment, 5e4, 0.02 * 5e4);
+  EXPECT_NEAR(effects.drift, 1e4 * 125 / (3 * 4e9) + 5 * turn, 0.04 * effects.drift) << "eleven points: 1 % less inertia";
+  EXPECT_FALSE(effects.counts());
+}
+
+/// Eleven points, 70 % uplifted: 3.3 in contact. On constraints the edge of a rigid base has one point.
+TEST(EdgeWarnings, FewPointsAndNoBound) {
+  const BuiltCase soft = built_of(tower(shaken));
+  const auto of = [](const BuiltCase& built, double open) {
+    const RunResult run = reaching(built, 4e5, 0.01, open);
+    return edge_warnings(built, numbers_of(built, run, nullptr));
+  };
+  EXPECT_TRUE(of(soft, 0.6).empty());
+  ASSERT_EQ(of(soft, 0.7).size(), 1u);
+  EXPECT_NE(of(soft, 0.7).front().find("3.3 of its 11 points"), std::string::npos) << of(soft, 0.7).front();
+  EXPECT_TRUE(of(soft, 1).empty()) << "no contact at all";
+  const BuiltCase rigid = built_of(tower(shaken, "", "law = \"unilateral\"\n"));
+  EXPECT_TRUE(of(rigid, 0).empty());
+  ASSERT_EQ(of(rigid, 0.3).size(), 1u);
+  EXPECT_NE(of(rigid, 0.3).front().find("has no bound"), std::string::npos);
+}
+
+/// A floor that only the uplifting run excites has no change, but an acceleration: 12.7 m/s2 where the bonded one has none.
+TEST(ArisingFloors, AreSaidWithTheirAcceleration) {
+  FloorRun floors;
+  floors.floors.resize(2);
+  floors.floors[0].name = "f1x", floors.floors[1].name = "f3y";
+  FloorChange moved, arisen;
+  moved.bands = {{{0, 5}, -0.1, 0.8, 1, 4, false}};
+  arisen.bands = {{{0, 5}, 6283, 1, 6284, 12.7, true}};
+  floors.beside = {{moved}, {arisen}};
+  EXPECT_EQ(range_of_bands(floors), "-10 %");
+  EXPECT_EQ(arising_floors(floors), "accelerations of f3y up to 12.7 m/s\u00b2 where the bonded model has none");
+  floors.beside = {{moved}, {moved}};
+  EXPECT_EQ(arising_floors(floors), "");
+}
+
+/// A table over the motions has a base shear where the base carries one, and none where a support does.
+TEST(TableOfMotions, NoBaseShearWhereASupportCarriesIt) {
+  const auto has_shear = [](const std::string& soil, bool held) {
+    Tower changed;
+    changed.held = held;
+    std::deque<BuiltCase> built;
+    built.push_back(built_of(tower(shaken, "", soil, changed)));
+    RunSpec spec;
+    spec.motion_label = "one";
+    const std::vector<MotionTable> tables = motion_tables({spec}, built, {RunResult()});
+    return std::ranges::find(tables.at(0).quantities, "shear", &MotionTable::Quantity::key) != tables.at(0).quantities.end();
+  };
+  EXPECT_FALSE(has_shear("law = { type = \"springs\", K_n = 1e9, tangential = \"none\" }\n", true));
+  EXPECT_TRUE(has_shear(law, false));
+}
+
+/// Vertical shaking leaves a top motion of round-off, 1.7e-15 m: no fact, no motion beside the bonded run.
+TEST(Noise, IsNotPrinted) {
+  const BuiltCase built = built_of(tower(shaken));
+  const RunResult run = reaching(built, 4e5, 1.7e-15), bonded = reaching(built, 4e5, 0);
+  const Verdict verdict = judge(built, run, &bonded);
+  for (const Verdict::Fact& fact : verdict.facts) EXPECT_NE(fact.label, "Top motion") << fact.value;
+  for (const std::string& text : verdict.paragraphs) EXPECT_EQ(text.find("1.7"), std::string::npos) << text;
+}
+
+}  // namespace
+}  // namespace uplift
