@@ -46,11 +46,12 @@ double swaying_weight(const BuiltCase& built) {
   return sum;
 }
 
-std::optional<SecondOrder> second_order_of(const BuiltCase& built, const RunResult& run, const VerdictNumbers& numbers) {
+std::optional<SecondOrderMoment> second_order_of(const BuiltCase& built, const RunResult& run, const VerdictNumbers& numbers) {
   const VerdictNumber* drift = find_number(numbers.whole, "max_drift");
   if (numbers.bases() != 1 || !drift || !leaves_out(built.plan) || run.status == RunStatus::failed) return std::nullopt;
   const VerdictNumber* moment = find_number(numbers.interfaces.front().numbers, "max_moment");
-  SecondOrder found{swaying_weight(built), std::abs(drift->value), moment ? moment->value : 0, std::numeric_limits<double>::infinity()};
+  SecondOrderMoment found{swaying_weight(built), std::abs(drift->value), moment ? moment->value : 0,
+                          std::numeric_limits<double>::infinity()};
   if (!(found.weight > 0) || !moment || !(moment->value > moment->least)) return std::nullopt;
   const BaseOverTime base(built, run, 0);
   for (std::size_t i = 0; i < run.steps.size(); ++i) {
@@ -63,15 +64,15 @@ std::optional<SecondOrder> second_order_of(const BuiltCase& built, const RunResu
   return found;
 }
 
-bool SecondOrder::counts() const {
+bool SecondOrderMoment::counts() const {
   return moment() > negligible * base_moment;
 }
 
-bool SecondOrder::overturns() const {
+bool SecondOrderMoment::overturns() const {
   return exceeds_what_is_left() && (forced || moment() > stabilising / 2);
 }
 
-std::string SecondOrder::warning() const {
+std::string SecondOrderMoment::warning() const {
   if (!counts()) return "";
   const std::string left = exceeds_what_is_left()
                                ? fmt::format(" and more than the {} that are left until it overturns", format_quantity(least_left, "N m"))
@@ -82,7 +83,7 @@ std::string SecondOrder::warning() const {
       format_quantity(moment(), "N m"), format_quantity(weight, "N"), format_quantity(drift, "m"), percent(ratio()), left);
 }
 
-std::string SecondOrder::clause() const {
+std::string SecondOrderMoment::clause() const {
   if (overturns()) return "second-order effects, which are left out, would overturn it";
   return exceeds_what_is_left() ? "second-order effects, which are left out, exceed what is left until it overturns" : "";
 }

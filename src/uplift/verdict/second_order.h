@@ -8,7 +8,7 @@ namespace uplift {
 
 /// What the weight adds to the base moment because the structure has moved: second-order effects, which a run without p_delta leaves out
 /// (docs/theory, eq 31b).
-struct SecondOrder {
+struct SecondOrderMoment {
   double weight = 0;                                       // N, see swaying_weight()
   double drift = 0;                                        // m, of the top relative to the base, its largest
   double base_moment = 0;                                  // N m, the largest without second-order effects
@@ -33,6 +33,6 @@ struct SecondOrder {
 double swaying_weight(const BuiltCase& built);
 
 /// Of a run on one base. Nothing on several bases, with p_delta, without a drift or a base moment that is more than noise.
-std::optional<SecondOrder> second_order_of(const BuiltCase& built, const RunResult& run, const VerdictNumbers& numbers);
+std::optional<SecondOrderMoment> second_order_of(const BuiltCase& built, const RunResult& run, const VerdictNumbers& numbers);
 
 }  // namespace uplift

@@ -119,7 +119,7 @@ void say_outcome(const BuiltCase& built, const RunResult& run, Verdict& verdict)
 
 /// What the weight does to the structure that has moved, where that is more than may be neglected.
 void say_second_order(const BuiltCase& built, const RunResult& run, Verdict& verdict) {
-  const std::optional<SecondOrder> effects = second_order_of(built, run, verdict.numbers);
+  const std::optional<SecondOrderMoment> effects = second_order_of(built, run, verdict.numbers);
   if (!effects || !effects->counts()) return;
   if (const std::string clause = effects->clause(); !clause.empty() && run.status == RunStatus::completed)
     verdict.headline += "; " + clause;

@@ -46,10 +46,10 @@ RunResult reaching(const BuiltCase& built, double moment, double drift, double o
   return run;
 }
 
-SecondOrder effects_of(const BuiltCase& built, const RunResult& run) {
-  const std::optional<SecondOrder> found = second_order_of(built, run, numbers_of(built, run, nullptr));
+SecondOrderMoment effects_of(const BuiltCase& built, const RunResult& run) {
+  const std::optional<SecondOrderMoment> found = second_order_of(built, run, numbers_of(built, run, nullptr));
   EXPECT_TRUE(found);
-  return found.value_or(SecondOrder());
+  return found.value_or(SecondOrderMoment());
 }
 
 /// By hand: the top mass alone, and half of a mass at half of the height; the footing does not sway.
@@ -66,18 +66,18 @@ TEST(SecondOrderEffects, SwayingWeight) {
 /// M; 94.2 kN m at 0.4 m, 23.5 %; 117.7 kN m at 0.5 m is more than what is left; 259.0 kN m at 1.1 m more than half of S.
 TEST(SecondOrderEffects, ByHand) {
   const BuiltCase built = built_of(tower(shaken));
-  const SecondOrder little = effects_of(built, reaching(built, 4e5, 0.15));
+  const SecondOrderMoment little = effects_of(built, reaching(built, 4e5, 0.15));
   EXPECT_NEAR(little.moment(), 0.15 * top_mass * gravity, 1e-6);
   EXPECT_NEAR(little.ratio(), 0.08829, 1e-5);
   EXPECT_NEAR(little.least_left, 1.5 * total - 4e5, 1e-3);
   EXPECT_NEAR(little.stabilising, 1.5 * total, 1e-3);
   EXPECT_FALSE(little.counts());
   EXPECT_EQ(little.warning() + little.clause(), "");
-  const SecondOrder more = effects_of(built, reaching(built, 4e5, 0.4));
+  const SecondOrderMoment more = effects_of(built, reaching(built, 4e5, 0.4));
   EXPECT_TRUE(more.counts() && !more.exceeds_what_is_left());
   EXPECT_NE(more.warning().find("94.2 kN m (235 kN x 400 mm), 24 % of the base moment;"), std::string::npos) << more.warning();
   EXPECT_EQ(more.clause(), "");
-  const SecondOrder beyond = effects_of(built, reaching(built, 4e5, 0.5));
+  const SecondOrderMoment beyond = effects_of(built, reaching(built, 4e5, 0.5));
   EXPECT_TRUE(beyond.exceeds_what_is_left() && !beyond.overturns()) << "the ground moves, and the base gives way";
   EXPECT_NE(beyond.warning().find("more than the 100 kN m that are left"), std::string::npos) << beyond.warning();
   EXPECT_TRUE(effects_of(built, reaching(built, 4e5, 1.1)).overturns());
@@ -110,7 +110,7 @@ TEST(SecondOrderEffects, OfARunWithASlowForce) {
   const BuiltCase built = built_of(text);
   const RunResult run = run_of(built);
   ASSERT_EQ(to_string(run.status), "completed") << run.reason;
-  const SecondOrder effects = effects_of(built, run);
+  const SecondOrderMoment effects = effects_of(built, run);
   const double turn = 1e4 * 5 / (1e9 * 2.25);  // rad: K_n times the second moment of area, 3^3/12
   EXPECT_NEAR(effects.base_moment, 5e4, 0.02 * 5e4);
   EXPECT_NEAR(effects.drift, 1e4 * 125 / (3 * 4e9) + 5 * turn, 0.04 * effects.drift) << "eleven points: 1 % less inertia";
