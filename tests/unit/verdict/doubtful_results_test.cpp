@@ -75,7 +75,7 @@ TEST(SecondOrderEffects, ByHand) {
   EXPECT_EQ(little.warning() + little.clause(), "");
   const SecondOrderMoment more = effects_of(built, reaching(built, 4e5, 0.4));
   EXPECT_TRUE(more.counts() && !more.exceeds_what_is_left());
-  EXPECT_NE(more.warning().find("94.2 kN m (235 kN x 400 mm), 24 % of the base moment;"), std::string::npos) << more.warning();
+  EXPECT_NE(more.warning().find("94.2 kN m (235 kN x 0.400 m), 24 % of the base moment;"), std::string::npos) << more.warning();
   EXPECT_EQ(more.clause(), "");
   const SecondOrderMoment beyond = effects_of(built, reaching(built, 4e5, 0.5));
   EXPECT_TRUE(beyond.exceeds_what_is_left() && !beyond.overturns()) << "the ground moves, and the base gives way";

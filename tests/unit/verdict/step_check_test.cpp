@@ -166,7 +166,7 @@ TEST(StepCheck, PeaksThatAgreeByChanceAreNotConverged) {
   EXPECT_EQ(check.sufficient_step, 0) << "the change is not proportional to the step";
   EXPECT_EQ(check.sentence(),
             "Not converged: with twice the step (2.00 ms instead of 1.00 ms) the largest compression of soil agrees by chance: from 7.00 s "
-            "to 7.50 s its peaks differ by 25 %.");
+            "to 7.50 s its peaks differ by 25 %. The changes beside the numbers are no bounds of their errors.");
 }
 
 /// A peak just before the end of a part in one run, just after it in the other: 0.04 s apart, less than a tenth of a part.

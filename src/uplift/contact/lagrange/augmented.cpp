@@ -51,12 +51,39 @@ bool may_be_redundant(const ContactModel& model) {
   return held > 1 && !PointRows::suits(model);
 }
 
+/// The status that forces and motions show: open without pressure, slip where the point moves along the surface. A point on its friction
+/// bound that does not move may as well stick, and others carry its share.
+void read_status(const InterfaceProblem& problem, InterfaceSolution& solution) {
+  constexpr double near = 1e-9;
+  const double small = 1e-12 * solution.force.cwiseAbs().maxCoeff();
+  const double still = near * (solution.opening - problem.free_opening).cwiseAbs().maxCoeff();
+  std::size_t index = 0;
+  for (const Block& block : problem.model->blocks) {
+    const int n = block.batch.points, tangents = block.batch.components - 1;
+    for (int i = 0; i < n; ++i, ++index) {
+      if (block.cone == nullptr) continue;
+      double slip = 0;
+      for (int c = 0; c < tangents; ++c) {
+        const int row = block.first + c * n + i;
+        slip = std::hypot(slip, solution.opening[row] - problem.from[row]);
+      }
+      const bool presses = -solution.force[block.first + tangents * n + i] > small;
+      const bool slips = tangents == 0 || block.cone->friction() <= 0 || slip > still;
+      solution.status[index] = !presses ? Status::open : slips ? Status::slip : Status::stick;
+    }
+  }
+}
+
 /// Shares the force of redundant points: openings and resultants stay (points without an opening may turn out to carry nothing), or
 /// nothing is done.
 void share_redundant(const InterfaceProblem& problem, double tolerance, AugmentedWork& work, InterfaceSolution& solution) {
   if (!may_be_redundant(*problem.model)) return;
   constexpr double gap = 1e-12;  // m
   work.shared = solution;
+  size_solution(problem, work.shared);
+  if (work.shared.force.size() != solution.force.size() || solution.force.size() == 0) return;
+  work.shared.force = solution.force, work.shared.opening = solution.opening, work.shared.now = solution.now;
+  read_status(problem, work.shared);
   work.shares.begin(problem, gap, work.shared);
   work.shares.guess_from_solution();
   constexpr int most = 20;
