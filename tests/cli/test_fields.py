@@ -441,7 +441,6 @@ class Errors(CliTest):
         self.refuse('quantities = ["stres"]\n', "quantities =", 'output.fields.quantities: expected "displacement", "velocity", "acceleration", "stress" or "section_forces", found "stres" (did you mean "stress"?)')
         self.refuse('groups = ["blok"]\n', "groups =", 'output.fields.groups: expected "soil_1" or "block", found "blok" (did you mean "block"?)')
         self.refuse("", "[output.fields]", "output.fields: expected a [mesh], on which fields are written, found none", text=BASE)
-        self.refuse("every = 10\n", "checkpoint =", "output.checkpoint: expected no [output.fields] beside it: fields cannot be resumed, found both", text=ROCKING + '[output]\ncheckpoint = "60 s"\n')
 
 
 if __name__ == "__main__":

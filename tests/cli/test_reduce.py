@@ -96,6 +96,16 @@ class Reduce(CliTest):
             opening = run["demands"][0]
             self.assertGreater(opening, 1e-5)
             self.assertAlmostEqual(other["demands"][0] / opening, 1, delta=1e-8)
+        self.write(MOVES)  # the plan may name the reduced model, too
+        planned = self.make_study(MOVES, "planned")
+        plan = self.folder / planned / "plan.toml"
+        plan.write_text('reduced_model = "../case.rom"\n' + plan.read_text())
+        self.assertIn("In 1 control runs", self.uplift("study", "run", planned).stdout)
+        of_planned = json.loads((self.folder / planned / "study.json").read_text())
+        self.assertIn("In 1 control runs", of_planned["provenance"]["reduced_model"])
+        self.assertIn("In 1 control runs", json.dumps(report_of(self.folder / planned)))
+        self.assertEqual([run["demands"] for curve in of_planned["curves"] for run in curve["runs"]], [run["demands"] for run in others])
+        self.write("reduced_model = \"case.rom\"\n" + MOVES)
         self.uplift("study", "export", reduced, "--run", others[0]["id"])
         case = next((self.folder / reduced / "runs").glob("*/case.resolved.toml"))
         self.uplift("run", str(case), "-o", "alone")

@@ -5,6 +5,7 @@ import signal
 import time
 
 from support import *
+from test_fields import ROCKING
 
 KEPT = BASE.replace("bonded = false\n", "").replace("duration = 0.5", "duration = 100") + '[output]\nevery = 100\ncheckpoint = "0.02 s"\n'
 TIMES = re.compile(r'("(?:wall_seconds|step_seconds|created|command)": )("[^"]*"|[-+.e0-9]+)')
@@ -13,13 +14,12 @@ TIMES = re.compile(r'("(?:wall_seconds|step_seconds|created|command)": )("[^"]*"
 class Resume(CliTest):
     def files(self, folder):
         """Names and contents of all results; times that computations took and the command are left out."""
-        return {path.name: TIMES.sub(r"\1", path.read_text()) for path in (self.folder / folder).iterdir() if path.name != "report.html"}
+        return {path.name: TIMES.sub(r"\1", path.read_text()) for path in (self.folder / folder).iterdir() if path.is_file() and path.name != "report.html"}
 
-    def ended(self, number, after, *words):
+    def ended(self, number, after, *words, verb="run", checkpoint="*.ckp"):
         """What a run says that gets a signal some time after its first checkpoint."""
-        process = subprocess.Popen([program(), "run", *words], cwd=self.folder, stdout=subprocess.PIPE, stderr=subprocess.PIPE, text=True)
-        deadline = time.monotonic() + 60
-        while not list(self.folder.glob("r.part-*/checkpoint/*.ckp")) and process.poll() is None and time.monotonic() < deadline:
+        process = subprocess.Popen([program(), verb, *words], cwd=self.folder, stdout=subprocess.PIPE, stderr=subprocess.PIPE, text=True)
+        while not list(self.folder.glob("r.part-*/checkpoint/" + checkpoint)) and process.poll() is None:
             time.sleep(0.002)
         time.sleep(after)
         process.send_signal(number)
@@ -43,6 +43,84 @@ class Resume(CliTest):
                 self.assertEqual([name for name in made if made[name] != expected[name]], [])
                 for path in self.folder.glob("r*"):
                     shutil.rmtree(path)
+
+    def fields(self, folder):
+        """Names and bytes of the field files."""
+        return {path.relative_to(self.folder / folder).as_posix(): path.read_bytes() for path in (self.folder / folder / "fields").rglob("*") if path.is_file()}
+
+    def assert_resumed(self, folder, expected, number):
+        """The field files of an interrupted run are other ones; those of the resumed run are the expected ones, to the last byte."""
+        if number != signal.SIGKILL:
+            self.assertNotEqual(self.fields(folder), expected)
+        self.uplift("resume", folder, "-q")
+        made = self.fields(folder)
+        self.assertEqual(sorted(made), sorted(expected))
+        self.assertEqual([name for name in made if made[name] != expected[name]], [])
+        self.assertFalse((self.folder / folder / "checkpoint").exists())
+        for path in self.folder.glob("r*"):
+            shutil.rmtree(path)
+
+    def test_fields_are_those_of_a_run_without_interruption(self):
+        for format in ("vtu", "xdmf"):
+            self.write(ROCKING.replace("duration = 0.5", "duration = 10") + f"""\
+[output]
+checkpoint = "0.02 s"
+[output.fields]
+format = "{format}"
+events = true
+every = 150
+""")
+            self.uplift("run", "case.toml", "-o", "straight", "-q")
+            expected = self.fields("straight")
+            self.assertGreater(len(b"".join(expected.values())), 10000)
+            for number, after in ((signal.SIGKILL, 0), (signal.SIGTERM, 0)):
+                with self.subTest(format=format, number=number):
+                    self.ended(number, after, "case.toml", "-o", "r", checkpoint="as_in_the_case.ckp")
+                    self.assert_resumed("r", expected, number)
+
+    def test_a_comparison_goes_on(self):
+        self.write(ROCKING.replace("duration = 0.5", "duration = 10") + """\
+[[variant]]
+name = "softer"
+law = { type = "springs", K_n = 1e9, K_t = 1e9, tangential = "bonded" }
+[[variant]]
+name = "stiffer"
+law = { type = "springs", K_n = 1e10, K_t = 1e10, tangential = "bonded" }
+[output]
+checkpoint = "0.02 s"
+[output.fields]
+format = "xdmf"
+every = 150
+variants = true
+""")
+        self.uplift("compare", "case.toml", "-o", "straight", "-q")
+        expected, files = self.fields("straight"), self.files("straight")
+        for number in (signal.SIGKILL, signal.SIGTERM):
+            with self.subTest(number=number):  # in the second run: the first one is complete
+                self.ended(number, 0, "case.toml", "-o", "r", verb="compare", checkpoint="*stiffer.ckp")
+                self.uplift("resume", "r", "-o", "resumed", "-q")
+                made = self.files("resumed")
+                self.assertEqual(sorted(made), sorted(files))
+                self.assertEqual([name for name in made if made[name] != files[name]], [])
+                self.assertEqual(self.histories("resumed"), self.histories("straight"))
+                shutil.rmtree(self.folder / "resumed")
+                self.assert_resumed("r", expected, number)
+
+    def histories(self, folder):
+        return {path.name: path.read_bytes() for path in (self.folder / folder / "histories").iterdir()}
+
+    def test_damaged_frames_are_not_used(self):
+        self.write(ROCKING.replace("duration = 0.5", "duration = 10") + '[output]\ncheckpoint = "0.02 s"\n[output.fields]\nformat = "vtu"\nevery = 150\n')
+        self.uplift("run", "case.toml", "-o", "straight", "-q")
+        expected = self.fields("straight")
+        self.ended(signal.SIGKILL, 0, "case.toml", "-o", "r", checkpoint="as_in_the_case.ckp")
+        (path,) = self.folder.glob("r.part-*/checkpoint/as_in_the_case.frames")
+        content = bytearray(path.read_bytes())
+        content[len(content) // 3] ^= 1
+        path.write_bytes(content)
+        done = self.uplift("resume", "r")
+        self.assertIn("an earlier checkpoint or the beginning is taken instead", done.stderr)
+        self.assertEqual(self.fields("r"), expected)
 
     def test_a_damaged_checkpoint_is_not_used(self):
         self.write(KEPT)

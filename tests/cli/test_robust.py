@@ -102,7 +102,7 @@ class Signals(RobustTest):
         process = subprocess.Popen([program(), "trust", "case.toml", "-o", "r"], cwd=self.folder, stdout=subprocess.PIPE, stderr=theirs, text=True,
                                    env={**os.environ, "TERM": "xterm"})
         os.close(theirs)
-        while b"trust [" not in os.read(ours, 1000):  # the run of the case is over
+        while b"trust:" not in os.read(ours, 1000):  # the run of the case is over
             pass
         process.send_signal(signal.SIGINT)
         out, _ = process.communicate(timeout=120)

@@ -274,7 +274,7 @@ int uplift_compare(const uplift_case* each, const uplift_options* options, uplif
   return analyse(compare_case, each, options, made, error);
 }
 int uplift_trust(const uplift_case* each, const uplift_options* options, uplift_results** made, uplift_error* error) {
-  return analyse(trust_case, each, options, made, error);
+  return analyse([](const LoadedCase& loaded, const Control& control) { return trust_case(loaded, control); }, each, options, made, error);
 }
 
 void uplift_results_free(uplift_results* results) {

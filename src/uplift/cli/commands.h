@@ -29,6 +29,8 @@ int run(const Options& options);
 /// Goes on with a run that was interrupted; options.file is the folder of its results.
 int resume(const Options& options);
 int compare(const Options& options);
+/// The same from earlier checkpoints; `from`: their folder, empty: from the beginning.
+int compare_from(const Options& options, const std::string& from);
 /// Repeats the run with every choice of the computation changed.
 int trust(const Options& options);
 int modes(const Options& options, int count);

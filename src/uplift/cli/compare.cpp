@@ -78,10 +78,18 @@ void print_over_motions(const ComparisonSummary& compared) {
 }  // namespace
 
 int compare(const Options& options) {
+  return compare_from(options, "");
+}
+
+int compare_from(const Options& options, const std::string& from) {
   const LoadedCase loaded = load(options);
   comparison_of_case(loaded.read);  // a case with nothing to compare is refused before there is a folder
   OutputFolder folder(options, result_path(options, loaded.read));
-  const Results results = compare_case(loaded, control_of(options, &folder));
+  Control control = control_of(options, &folder);
+  std::optional<Checkpoints> checkpoints;
+  keep_checkpoints(loaded, "compare", folder, from, checkpoints, control);
+  Results results = compare_case(loaded, control);
+  finish_checkpoints(checkpoints, results.warnings);
   const ComparisonSummary& compared = *results.comparison;
   finish_results(options, loaded, results, folder);
 
@@ -102,6 +110,7 @@ int compare(const Options& options) {
     if (!options.quiet)
       complain(
           fmt::format("{}: the files hold the {} runs that were begun", interrupt_text(), results.runs.size() + 2 * compared.sweep.size()));
+    if (checkpoints && !options.quiet) complain(fmt::format("uplift resume {} goes on from there", folder.path()));
     return interrupt_exit_code();
   }
   bool failed = false;

@@ -116,6 +116,22 @@ void print_table(const std::vector<std::vector<std::string>>& rows) {
   }
 }
 
+StatusLine::StatusLine(bool quiet) : quiet_(quiet), terminal_(on_terminal()) {}
+
+StatusLine::~StatusLine() {
+  if (drawn_) put(stderr, "\r\033[K");
+}
+
+void StatusLine::operator()(const std::string& text) {
+  const Clock::time_point now = Clock::now();
+  if (quiet_ || now - last_ < (terminal_ ? std::chrono::milliseconds(100) : std::chrono::milliseconds(10000))) return;
+  last_ = now;
+  if (!terminal_) return complain(text);
+  put(stderr, "\r\033[K" + text);
+  std::fflush(stderr);
+  drawn_ = true;
+}
+
 ProgressLine::ProgressLine(std::string label, bool quiet) : label_(std::move(label)), quiet_(quiet), terminal_(on_terminal()) {}
 
 ProgressLine::~ProgressLine() {

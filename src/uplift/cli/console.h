@@ -31,6 +31,22 @@ std::string interrupt_text();
 /// Aligned columns; the first row is the head. Numbers (cells that start with a digit or a sign) stand to the right.
 void print_table(const std::vector<std::vector<std::string>>& rows);
 
+/// One line that tells how far something is: redrawn ten times a second on a terminal; in a pipe a plain line every ten seconds.
+class StatusLine {
+ public:
+  explicit StatusLine(bool quiet);
+  StatusLine(const StatusLine&) = delete;
+  StatusLine& operator=(const StatusLine&) = delete;
+  /// Clears the line.
+  ~StatusLine();
+  void operator()(const std::string& text);
+
+ private:
+  using Clock = std::chrono::steady_clock;
+  bool quiet_, terminal_, drawn_ = false;
+  Clock::time_point last_ = Clock::now();
+};
+
 /// The state of a run on one line of the terminal, redrawn ten times a second; in a pipe a plain line every ten seconds.
 /// Watches for Ctrl-C in any case.
 class ProgressLine {

@@ -53,6 +53,20 @@ Control control_of(const Options& options, ResultFolder* folder) {
   return control;
 }
 
+void keep_checkpoints(const LoadedCase& loaded, const std::string& verb, const ResultFolder& folder, const std::string& from,
+                      std::optional<Checkpoints>& checkpoints, Control& control) {
+  const Values& output = loaded.read.values.table("output");
+  if (!output.has("checkpoint")) return;
+  checkpoints.emplace(origin_of(loaded, verb, control.step_check), output.number("checkpoint"), folder, from);
+  control.checkpoints = &*checkpoints;
+}
+
+void finish_checkpoints(std::optional<Checkpoints>& checkpoints, std::vector<std::string>& warnings) {
+  if (!checkpoints) return;
+  if (!interrupt_asked()) checkpoints->remove();
+  for (std::string& note : checkpoints->notes()) warnings.push_back(std::move(note));
+}
+
 void finish_results(const Options& options, const LoadedCase& loaded, const Results& results, ResultFolder& folder) {
   if (!write_results(loaded, results, folder) && !options.quiet)
     complain("note: this program was built without the report's page (web/dist/report.html): no report.html is written");

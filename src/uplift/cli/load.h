@@ -1,5 +1,8 @@
 #pragma once
+#include <optional>
+
 #include "uplift/cli/commands.h"
+#include "uplift/session/checkpoint.h"
 #include "uplift/session/session.h"
 
 namespace uplift::cli {
@@ -22,6 +25,12 @@ class OutputFolder : public ResultFolder {
 
 /// An analysis with a progress line, which signals end in order.
 Control control_of(const Options& options, ResultFolder* folder);
+/// Keeps checkpoints of the runs where the case asks for them. `verb`: of the command; `from`: folder of earlier ones, or empty. Throws
+/// InputError as Checkpoints().
+void keep_checkpoints(const LoadedCase& loaded, const std::string& verb, const ResultFolder& folder, const std::string& from,
+                      std::optional<Checkpoints>& checkpoints, Control& control);
+/// When the runs are over: checkpoints of complete results are removed, and what the user should know is added.
+void finish_checkpoints(std::optional<Checkpoints>& checkpoints, std::vector<std::string>& warnings);
 /// Writes the results, puts the folder into place and says where earlier results went.
 void finish_results(const Options& options, const LoadedCase& loaded, const Results& results, ResultFolder& folder);
 

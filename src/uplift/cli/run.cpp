@@ -42,15 +42,9 @@ int run_from(const Options& options, const std::string& from) {
   OutputFolder folder(options, result_path(options, loaded.read));
   Control control = control_of(options, &folder);
   std::optional<Checkpoints> checkpoints;
-  if (const Values& output = loaded.read.values.table("output"); output.has("checkpoint")) {
-    checkpoints.emplace(origin_of(loaded, control.step_check), output.number("checkpoint"), folder, from);
-    control.checkpoints = &*checkpoints;
-  }
+  keep_checkpoints(loaded, "run", folder, from, checkpoints, control);
   Results results = run_case(loaded, control);
-  if (checkpoints) {
-    if (!interrupt_asked()) checkpoints->remove();
-    for (std::string& note : checkpoints->notes()) results.warnings.push_back(std::move(note));
-  }
+  finish_checkpoints(checkpoints, results.warnings);
   const RunResult& main = results.runs.front();
   finish_results(options, loaded, results, folder);
 
@@ -107,7 +101,7 @@ int resume(const Options& given) {
   options.file = case_file_of(origin);
   options.no_step_check = !origin.step_check;
   if (options.out.empty()) options.out = given.file;
-  return run_from(options, from);
+  return origin.verb == "compare" ? compare_from(options, from) : run_from(options, from);
 }
 
 }  // namespace uplift::cli

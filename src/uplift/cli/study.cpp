@@ -4,7 +4,6 @@
 #include <sched.h>
 
 #include <algorithm>
-#include <cstdio>
 #include <filesystem>
 
 #include "uplift/base/error.h"
@@ -20,12 +19,6 @@
 
 namespace uplift::cli {
 namespace {
-
-int cores() {
-  cpu_set_t set;
-  CPU_ZERO(&set);
-  return ::sched_getaffinity(0, sizeof set, &set) == 0 ? std::max(1, CPU_COUNT(&set)) : 1;
-}
 
 std::string time_text(double seconds) {
   if (seconds < 90) return fmt::format("{:.0f} s", seconds);
@@ -60,30 +53,6 @@ std::string status_json(const StudyStatus& status, const StudyStore& store, bool
   for (std::size_t k = 0; k < status.outcomes.size(); ++k) json.member(study_outcomes[k], static_cast<long>(status.outcomes[k]));
   return json.end_object().end_object().take() + "\n";
 }
-
-class StudyLine {
- public:
-  explicit StudyLine(bool quiet) : quiet_(quiet), terminal_(on_terminal()) {}
-  StudyLine(const StudyLine&) = delete;
-  StudyLine& operator=(const StudyLine&) = delete;
-  ~StudyLine() {
-    if (drawn_) std::fputs("\r\033[K", stderr);
-  }
-  void operator()(const StudyStatus& status) {
-    const Clock::time_point now = Clock::now();
-    if (quiet_ || now - last_ < (terminal_ ? std::chrono::milliseconds(100) : std::chrono::milliseconds(10000))) return;
-    last_ = now;
-    if (!terminal_) return complain(status_text(status));
-    std::fputs(("\r\033[K" + status_text(status)).c_str(), stderr);
-    std::fflush(stderr);
-    drawn_ = true;
-  }
-
- private:
-  using Clock = std::chrono::steady_clock;
-  bool quiet_, terminal_, drawn_ = false;
-  Clock::time_point last_ = Clock::now();
-};
 
 /// What a command tells of itself to `status` in another terminal, every two seconds; removed when it ends.
 class LiveStatus {
@@ -163,11 +132,11 @@ int run_or_work(const Options& options, const StudyOptions& given, const std::op
   control.workers = wanted > 0 ? wanted : shard ? 1 : cores();
   if (shard) control.shard = *shard;
   control.stopped = interrupt_asked;
-  StudyLine line(options.quiet || options.json);
+  StatusLine line(options.quiet || options.json);
   std::optional<LiveStatus> live;
   if (!shard) live.emplace(study);
   control.follow = [&](const StudyStatus& status) {
-    line(status);
+    line(status_text(status));
     if (live) (*live)(status);
   };
   StudyComputer(study).check_reduced();
@@ -216,7 +185,7 @@ int export_tables(const Options& options, const std::string& id) {
       for (const auto& [intensity, run] : curve.runs())
         if (run.point.id.starts_with(id)) {
           writing([&] { write_run_case(study, run.point.id, curve.sample(), curve.motion(), run.point.factor); });
-          say(run_folder(study, run.point.id) + "/case.resolved.toml");
+          say(run_folder(study.folder, run.point.id) + "/case.resolved.toml");
           return Exit::done;
         }
     throw InputError({study.folder, 0}, "--run", "the identity of a run, or its beginning (runs.csv lists them)", in_quotes(id));
@@ -257,6 +226,12 @@ int index(const Options& options) {
 }
 
 }  // namespace
+
+int cores() {
+  cpu_set_t set;
+  CPU_ZERO(&set);
+  return ::sched_getaffinity(0, sizeof set, &set) == 0 ? std::max(1, CPU_COUNT(&set)) : 1;
+}
 
 void tell_damage(const StudyStore& store) {
   if (store.damaged() > 0)

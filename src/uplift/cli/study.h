@@ -12,6 +12,9 @@
 
 namespace uplift::cli {
 
+/// Cores that this process may use.
+int cores();
+
 /// Writes NAME.study/plan.toml.
 int new_study(const std::string& name);
 /// What a study would compute, from its plan and one run.

@@ -62,6 +62,7 @@ std::vector<std::string> warnings_of(const Study& study, const BuiltCase& built,
 struct Forecast {
   StudyStatus status;
   double seconds = 0, memory = 0, line = 0;  // s of a run; bytes of a worker; bytes of a run's results
+  std::size_t together = 1;                  // runs of a worker that march in lockstep
   double left() const { return seconds * static_cast<double>(status.expected - status.runs); }
   double disk() const { return line * static_cast<double>(status.expected); }
 };
@@ -71,7 +72,8 @@ std::string json_of(const Forecast& forecast, const std::vector<std::string>& wa
   json.begin_object().member("runs", static_cast<long>(forecast.status.expected)).member("done", static_cast<long>(forecast.status.runs));
   json.member("seconds_of_a_run", forecast.seconds)
       .member("seconds_on_one_core", forecast.left())
-      .member("bytes_of_memory", forecast.memory);
+      .member("bytes_of_memory", forecast.memory)
+      .member("runs_in_lockstep", static_cast<long>(forecast.together));
   return json.member("bytes_on_disk", forecast.disk()).key("warnings").texts(warnings).end_object().take() + "\n";
 }
 
@@ -91,8 +93,34 @@ void print(const Study& study, const Forecast& forecast) {
        fmt::format("{}{}, of which {} are done", plan.method.searches() ? "about " : "", forecast.status.expected, forecast.status.runs));
   line("time", fmt::format("{} a run; {} on one core for all that are missing", format_quantity(forecast.seconds, "s"),
                            format_quantity(forecast.left(), "s")));
-  line("memory", fmt::format("{} a worker", format_bytes(forecast.memory)));
+  line("memory", fmt::format("{} a worker{}", format_bytes(forecast.memory),
+                             forecast.together > 1 ? fmt::format(", with {} runs in lockstep", forecast.together) : ""));
   line("disk", format_bytes(forecast.disk()));
+}
+
+/// Most memory that this process has held so far [bytes].
+double largest_memory() {
+  rusage usage{};
+  ::getrusage(RUSAGE_SELF, &usage);
+  return 1024.0 * static_cast<double>(usage.ru_maxrss);
+}
+
+/// A worker's memory with a group of runs in lockstep, of which one took `alone`: what two take more than one is taken for every one.
+double memory_of_group(const Study& study, StudyComputer& computer, const RunRequest& trial, std::size_t together, double alone) {
+  if (together == 1) return alone;
+  std::vector<RunRequest> two(2, trial);
+  two[1].id = "second";
+  two[1].motion = study.of.motions.size() - 1;
+  computer.compute(two, [](const StudyResult&) {});
+  return alone + static_cast<double>(together - 1) * (largest_memory() - alone);
+}
+
+/// Runs of a worker's group: as many as it would be given.
+std::size_t group_size(const Study& study, StudyComputer& computer, const RunRequest& trial, const StudyStatus& status) {
+  const auto workers = static_cast<std::size_t>(study.of.plan.workers > 0 ? study.of.plan.workers : cores());
+  const std::size_t runs = std::max(study.of.plan.method.searches() ? status.curves : status.expected, std::size_t{1});
+  const std::size_t of_sample = (runs + study.of.samples.size() - 1) / study.of.samples.size();
+  return std::min({computer.best_together(trial), (runs + workers - 1) / workers, of_sample});
 }
 
 }  // namespace
@@ -115,9 +143,10 @@ int check_study(const Options& options) {
   const auto before = std::chrono::steady_clock::now();
   const StudyResult trial = computer.compute(request);
   const double seconds = std::chrono::duration<double>(std::chrono::steady_clock::now() - before).count();
-  rusage usage{};
-  ::getrusage(RUSAGE_SELF, &usage);
-  const Forecast forecast{status, seconds, 1024.0 * static_cast<double>(usage.ru_maxrss), static_cast<double>(line_of(trial).size())};
+  const double alone = largest_memory();
+  const std::size_t together = group_size(study, computer, request, status);
+  const double memory = memory_of_group(study, computer, request, together, alone);
+  const Forecast forecast{status, seconds, memory, static_cast<double>(line_of(trial).size()), together};
   const std::vector<std::string> said = warnings_of(study, built, spec, read, trial);
   if (options.json) {
     print_text(json_of(forecast, said));

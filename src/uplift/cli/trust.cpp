@@ -3,11 +3,16 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <filesystem>
+#include <thread>
 
 #include "uplift/base/file.h"
 #include "uplift/base/format.h"
 #include "uplift/cli/console.h"
 #include "uplift/cli/load.h"
+#include "uplift/cli/study.h"
+#include "uplift/ensemble/trust_study.h"
+#include "uplift/linear/memory.h"
 
 namespace uplift::cli {
 namespace {
@@ -62,12 +67,32 @@ void print_answer(const TrustAnswer& answer) {
   for (const TrustPlan::LeftOut& each : answer.left_out) say(fmt::format("not changed: {}: {}", each.choice, each.reason));
 }
 
+/// The repetitions, in a study beside the results. What an earlier command computed is taken from there.
+TrustResults compute_beside(const std::string& results, const TrustSamples& samples, bool silent) {
+  const std::string folder = results + ".trust";
+  writing([&] { std::filesystem::create_directories(folder); });
+  const FolderLock lock(folder);
+  if (lock.is_taken()) throw InputError({folder, 0}, "", "repetitions that no other process computes", "one that does");
+  StudyStore store(folder);
+  tell_damage(store);
+  StatusLine line(silent);
+  TrustStudyControl control;
+  control.workers = runs_side_by_side(static_cast<int>(std::thread::hardware_concurrency()));
+  control.stopped = interrupt_asked;
+  control.follow = [&](std::size_t done, std::size_t all) { line(fmt::format("trust: {}/{} repetitions", done, all)); };
+  TrustResults made;
+  writing([&] { made = compute_trust_study(samples, folder, store, control); });
+  return made;
+}
+
 }  // namespace
 
 int trust(const Options& options) {
   const LoadedCase loaded = load(options);
   OutputFolder folder(options, result_path(options, loaded.read));
-  const Results results = trust_case(loaded, control_of(options, &folder));
+  const Results results = trust_case(loaded, control_of(options, &folder), [&](const TrustSamples& samples) {
+    return compute_beside(folder.path(), samples, options.quiet || options.json);
+  });
   const TrustAnswer& answer = *results.trust;
   finish_results(options, loaded, results, folder);
 
@@ -81,7 +106,7 @@ int trust(const Options& options) {
     say(fmt::format("results: {}/report.html", folder.path()));
   }
   if (!answer.complete) {
-    if (!options.quiet) complain(interrupt_text() + ": runs that were not finished are left out");
+    if (!options.quiet) complain(interrupt_text() + ": runs that were not finished are left out; the same command computes them");
     return interrupt_exit_code();
   }
   if (!answer.base.counts()) {

@@ -36,13 +36,13 @@ StudyResult result_without_run(const Study& study, const RunRequest& request, St
   return made;
 }
 
-std::string run_folder(const Study& study, const std::string& id) {
-  return study.folder + "/runs/" + id.substr(0, 16);
+std::string run_folder(const std::string& folder, const std::string& id) {
+  return folder + "/runs/" + id.substr(0, 16);
 }
 
 void write_run_case(const Study& study, const std::string& id, std::size_t sample, std::size_t motion, double factor) {
-  std::filesystem::create_directories(run_folder(study, id));
-  write_file_atomically(run_folder(study, id) + "/case.resolved.toml", resolved_run(study.of, sample, motion, factor));
+  std::filesystem::create_directories(run_folder(study.folder, id));
+  write_file_atomically(run_folder(study.folder, id) + "/case.resolved.toml", resolved_run(study.of, sample, motion, factor));
 }
 
 const Case& StudyComputer::case_of(std::size_t sample) {
@@ -84,8 +84,8 @@ StudyResult StudyComputer::finish(const RunRequest& request, const BuiltCase& bu
   identify(study_, request, made);
   if (made.outcome == StudyOutcome::timeout) made.reason = fmt::format("it took longer than {:g} s", study_.of.plan.timeout.value_or(0));
   if (made.replay) {
-    std::filesystem::create_directories(run_folder(study_, request.id));
-    write_file_atomically(run_folder(study_, request.id) + "/problem.json", run.problem);
+    std::filesystem::create_directories(run_folder(study_.folder, request.id));
+    write_file_atomically(run_folder(study_.folder, request.id) + "/problem.json", run.problem);
   }
   return made;
 }

@@ -53,8 +53,8 @@ class StudyComputer {
 /// The result of a run that gave none.
 StudyResult result_without_run(const Study& study, const RunRequest& request, StudyOutcome outcome, const std::string& reason);
 
-/// Folder of a run whose files were written: of one that failed, or was chosen.
-std::string run_folder(const Study& study, const std::string& id);
+/// Folder of a run whose files were written: of one that failed, or was chosen. `folder`: of the study.
+std::string run_folder(const std::string& folder, const std::string& id);
 /// Writes the case of a run there, as `uplift run` takes it.
 void write_run_case(const Study& study, const std::string& id, std::size_t sample, std::size_t motion, double factor);
 

@@ -43,6 +43,12 @@ void write_numbers(JsonWriter& json, const StudyResult& result) {
 
 using Json = nlohmann::json;
 
+StudyOutcome outcome_of(const Json& json) {
+  const auto* word = std::ranges::find(study_outcomes, json.get<std::string>());
+  if (word == std::end(study_outcomes)) throw std::out_of_range("outcome");
+  return static_cast<StudyOutcome>(word - std::begin(study_outcomes));
+}
+
 StudyResult result_of(const Json& json) {
   StudyResult result;
   result.id = json.at("id").get<std::string>();
@@ -50,9 +56,8 @@ StudyResult result_of(const Json& json) {
   result.sample = json.at("sample").get<long>();
   result.factor = json.at("factor").get<double>();
   result.intensity = json.at("intensity").get<double>();
-  const auto* word = std::ranges::find(study_outcomes, json.at("outcome").get<std::string>());
-  if (word == std::end(study_outcomes)) throw std::out_of_range("outcome");
-  result.outcome = static_cast<StudyOutcome>(word - std::begin(study_outcomes));
+  result.outcome = outcome_of(json.at("outcome"));
+  if (json.contains("bonded")) result.bonded = outcome_of(json.at("bonded"));
   result.reason = json.at("reason").get<std::string>();
   result.attempt = json.at("attempt").get<long>();
   for (const Json& number : json.at("numbers"))
@@ -79,6 +84,7 @@ std::string line_of(const StudyResult& result) {
       .member("sample", result.sample)
       .member("factor", result.factor);
   json.member("intensity", result.intensity).member("outcome", to_string(result.outcome)).member("reason", result.reason);
+  if (result.bonded) json.member("bonded", to_string(*result.bonded));
   json.member("attempt", result.attempt)
       .member("end_time", result.end_time)
       .member("created", result.created)

@@ -15,12 +15,18 @@ namespace fs = std::filesystem;
 
 template <class Archive, SameAs<CheckpointOrigin> T>
 void list_parts(Archive& archive, T& origin) {
-  archive(origin.case_file, origin.from_folder, origin.resolved, origin.inputs, origin.program, origin.processor, origin.step_check);
+  archive(origin.verb, origin.case_file, origin.from_folder, origin.resolved, origin.inputs, origin.program, origin.processor,
+          origin.step_check);
+}
+
+template <class Archive, SameAs<FieldRun::Memory> T>
+void list_parts(Archive& archive, T& memory) {
+  archive(memory.frames, memory.rest);
 }
 
 template <class Archive, SameAs<Checkpoint> T>
 void list_parts(Archive& archive, T& checkpoint) {
-  archive(checkpoint.origin, checkpoint.label, checkpoint.state);
+  archive(checkpoint.origin, checkpoint.label, checkpoint.state, checkpoint.fields);
 }
 
 template <class Archive, SameAs<std::pair<std::string, std::string>> T>
@@ -30,8 +36,8 @@ void list_parts(Archive& archive, T& pair) {
 
 namespace {
 
-constexpr std::string_view magic = "uplift checkpoint 1\n";
-constexpr const char *ending = ".ckp", *before_ending = ".before.ckp";
+constexpr std::string_view magic = "uplift checkpoint 2\n";
+constexpr const char *ending = ".ckp", *before_ending = ".before.ckp", *journal_ending = ".frames";
 
 /// Name and flags of the processor, which decide what the libraries compute with.
 std::string processor() {
@@ -72,8 +78,9 @@ std::string difference(const std::string& now, const std::string& then) {
 
 }  // namespace
 
-CheckpointOrigin origin_of(const LoadedCase& loaded, bool step_check) {
-  return {.case_file = loaded.read.file,
+CheckpointOrigin origin_of(const LoadedCase& loaded, const std::string& verb, bool step_check) {
+  return {.verb = verb,
+          .case_file = loaded.read.file,
           .from_folder = fs::current_path().string(),
           .resolved = loaded.from.resolved,
           .inputs = loaded.from.inputs,
@@ -158,7 +165,7 @@ Checkpoints::Checkpoints(CheckpointOrigin origin, double seconds, const ResultFo
   if (then.processor != origin_.processor) note("the run goes on on another processor: not bit for bit");
 }
 
-std::optional<RunState> Checkpoints::begin(const std::string& label) {
+std::optional<Checkpoints::Begin> Checkpoints::begin(const std::string& label) {
   if (from_.empty()) return {};
   for (const char* each : {ending, before_ending}) {
     const fs::path path = fs::path(from_) / (stem_of(label) + each);
@@ -168,7 +175,11 @@ std::optional<RunState> Checkpoints::begin(const std::string& label) {
     std::optional<Checkpoint> checkpoint = read_checkpoint_file(path, why);
     std::optional<RunState> state;
     if (checkpoint) state = read_run_state(checkpoint->state, why);
-    if (state && checkpoint->label == label) return state;
+    const std::string frames = (fs::path(from_) / (stem_of(label) + journal_ending)).string();
+    if (state && checkpoint->label == label &&
+        read_journal(
+            frames, checkpoint->fields.frames, [](const FieldFrame&) {}, why))
+      return Begin{std::move(*state), std::move(checkpoint->fields), frames};
     note(fmt::format("{}: {}, an earlier checkpoint or the beginning is taken instead", path.string(), why));
   }
   return {};
@@ -176,14 +187,21 @@ std::optional<RunState> Checkpoints::begin(const std::string& label) {
 
 Checkpoints::~Checkpoints() {
   std::error_code error;
-  if (fs::is_empty(folder_, error)) fs::remove(folder_, error);
+  const auto is_checkpoint = [](const fs::directory_entry& entry) { return entry.path().extension() == ending; };
+  if (!fs::is_directory(folder_, error)) return;
+  if (std::ranges::none_of(fs::directory_iterator(folder_, error), fs::directory_iterator(), is_checkpoint)) fs::remove_all(folder_, error);
 }
 
-void Checkpoints::write(const std::string& label, const RunState& state) {
+std::string Checkpoints::journal(const std::string& label) const {
+  return (fs::path(folder_) / (stem_of(label) + journal_ending)).string();
+}
+
+void Checkpoints::write(const std::string& label, const RunState& state, FieldRun* fields) {
   const fs::path stem = fs::path(folder_) / stem_of(label);
   const std::string newest = stem.string() + ending, next = newest + ".next";
   try {
-    write_file_durably(next, write_checkpoint({origin_, label, write_run_state(state)}));
+    const FieldRun::Memory memory = fields != nullptr ? fields->memory() : FieldRun::Memory();
+    write_file_durably(next, write_checkpoint({origin_, label, write_run_state(state), memory}));
     if (fs::exists(newest)) fs::rename(newest, stem.string() + before_ending);
     fs::rename(next, newest);
   } catch (const fs::filesystem_error& problem) {
@@ -220,14 +238,16 @@ KeptRun::KeptRun(Checkpoints* checkpoints, std::string label, Index unknowns)
   if (checkpoints_ != nullptr) from_ = checkpoints_->begin(label_);
 }
 
-void KeptRun::attach(Keeping& keeping, Watch& watch) {
+void KeptRun::attach(Keeping& keeping, Watch& watch, FieldRun* fields) {
   if (checkpoints_ == nullptr) return;
   keeping.every = every_;
-  if (from_) keeping.from = &*from_;
-  keeping.keep = [this](const RunState& state) {
+  if (from_) keeping.from = &from_->state;
+  if (fields != nullptr) fields->keep_frames(checkpoints_->journal(label_));
+  if (fields != nullptr && from_) fields->resume(from_->fields, from_->journal);
+  keeping.keep = [this, fields](const RunState& state) {
     const auto now = Clock::now();
     if (!stop_asked_ && std::chrono::duration<double>(now - last_).count() < checkpoints_->seconds()) return;
-    checkpoints_->write(label_, state);
+    checkpoints_->write(label_, state, fields);
     last_ = Clock::now();
     stop_ = stop_asked_;
   };

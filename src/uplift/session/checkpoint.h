@@ -6,6 +6,7 @@
 #include <vector>
 
 #include "uplift/base/file.h"
+#include "uplift/io/fields/run.h"
 #include "uplift/io/files.h"
 #include "uplift/run/run_state.h"
 #include "uplift/session/load.h"
@@ -16,6 +17,7 @@ namespace uplift {
 
 /// What a checkpoint belongs to.
 struct CheckpointOrigin {
+  std::string verb;                                         // of the command: run, compare
   std::string case_file;                                    // as the command named it
   std::string from_folder;                                  // where the command was given
   std::string resolved;                                     // the case with all its values
@@ -26,13 +28,14 @@ struct CheckpointOrigin {
 };
 
 /// Of a case that this program runs now.
-CheckpointOrigin origin_of(const LoadedCase& loaded, bool step_check);
+CheckpointOrigin origin_of(const LoadedCase& loaded, const std::string& verb, bool step_check);
 
 /// One state of one run as it is on disk.
 struct Checkpoint {
   CheckpointOrigin origin;
-  std::string label;  // of the run
-  std::string state;  // write_run_state
+  std::string label;        // of the run
+  std::string state;        // write_run_state
+  FieldRun::Memory fields;  // of its fields, whose frames are in a journal beside the checkpoint
 };
 /// The file's bytes, with a checksum over all of them.
 std::string write_checkpoint(const Checkpoint& checkpoint);
@@ -56,10 +59,18 @@ class Checkpoints {
   Checkpoints(const Checkpoints&) = delete;
   Checkpoints& operator=(const Checkpoints&) = delete;
   ~Checkpoints();
-  /// The state with which a run goes on; empty: it begins at the beginning.
-  std::optional<RunState> begin(const std::string& label);
-  /// Writes the state of a run. Where that is not possible, notes() says so.
-  void write(const std::string& label, const RunState& state);
+  /// With what a run goes on.
+  struct Begin {
+    RunState state;
+    FieldRun::Memory fields;
+    std::string journal;  // the file of their frames, which is whole
+  };
+  /// Empty: the run begins at the beginning.
+  std::optional<Begin> begin(const std::string& label);
+  /// Where the frames of its fields are kept.
+  std::string journal(const std::string& label) const;
+  /// Writes the state of a run and of its fields, which may be null. Where that is not possible, notes() says so.
+  void write(const std::string& label, const RunState& state, FieldRun* fields);
   double seconds() const { return seconds_; }
   /// Removes what was written: the results are complete.
   void remove();
@@ -82,15 +93,16 @@ class KeptRun {
  public:
   /// `checkpoints` may be null: nothing is kept. `unknowns`: of the model.
   KeptRun(Checkpoints* checkpoints, std::string label, Index unknowns);
-  /// Adds what is kept to what the run does, and lets `watch` end the run at a step that is kept.
-  void attach(Keeping& keeping, Watch& watch);
+  /// Adds what is kept to what the run does, and lets `watch` end the run at a step that is kept. `fields`: of the run, or null; they go on
+  /// from the checkpoint too.
+  void attach(Keeping& keeping, Watch& watch, FieldRun* fields);
 
  private:
   using Clock = std::chrono::steady_clock;
   Checkpoints* checkpoints_;
   const std::string label_;
   const long every_;
-  std::optional<RunState> from_;
+  std::optional<Checkpoints::Begin> from_;
   Clock::time_point last_ = Clock::now();
   bool stop_asked_ = false, stop_ = false;
 };

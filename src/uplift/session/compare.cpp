@@ -31,9 +31,11 @@ bool same_floors(const RunPlan& one, const RunPlan& other) {
   return std::ranges::equal(one.floors, other.floors, same);
 }
 
-/// Whether runs of this model are best marched side by side: what a run does beside its march (fields, laws of the caller) is done alone.
+/// Whether runs of this model are best marched side by side: what a run does beside its march (fields, checkpoints, laws of the caller) is
+/// done alone.
 bool marches_in_lockstep(const LoadedCase& loaded, const RunSpec& spec, const BuiltCase& built, bool with_fields) {
-  return built.model.free() >= large_model && spec.other_case.empty() && loaded.from.reduced == nullptr && loaded.external_laws.empty() &&
+  return !loaded.read.values.table("output").has("checkpoint") && built.model.free() >= large_model && spec.other_case.empty() &&
+         loaded.from.reduced == nullptr && loaded.external_laws.empty() &&
          !(with_fields && loaded.read.values.table("output").has("fields"));
 }
 

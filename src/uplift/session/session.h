@@ -22,7 +22,7 @@ struct Control {
   std::function<bool()> stopped;                         // asked between runs, and during runs that are not watched
   Observe observe;                                       // sees the steps of the case's own run
   ResultFolder* folder = nullptr;                        // where fields are written; null: none are written
-  Checkpoints* checkpoints = nullptr;                    // run_case: states of the runs are kept there; null: none are
+  Checkpoints* checkpoints = nullptr;                    // run_case, compare_case: states of the runs are kept there; null: none are
   bool step_check = true;                                // run_case: the companion run with twice the step
   bool is_stopped() const { return stopped && stopped(); }
 };
@@ -46,7 +46,10 @@ struct Results {
 Results run_case(const LoadedCase& loaded, const Control& control);
 /// All variants, dampings, motions and the stiffness sweep of a case.
 Results compare_case(const LoadedCase& loaded, const Control& control);
-/// The case with every choice of the computation changed, one at a time.
+/// The case with every choice of the computation changed, one at a time. `compute`: how the changed cases are computed; without it in this
+/// process, in threads.
+using ComputeSamples = std::function<TrustResults(const TrustSamples& samples)>;
+Results trust_case(const LoadedCase& loaded, const Control& control, const ComputeSamples& compute);
 Results trust_case(const LoadedCase& loaded, const Control& control);
 
 /// Report, histories, summary, resolved case and problem files as files of the folder, which still has to be finished. False when the

@@ -67,17 +67,18 @@ RunResult run_built(const LoadedCase& loaded, BuiltCase& built, const std::strin
     if (!begin) return resting;
     keeping.from = &*begin;
   }
-  kept.attach(keeping, watch);
-  if (field_lists == nullptr || control.folder == nullptr || !loaded.read.values.table("output").has("fields"))
-    return run(built.model, built.plan, built.behaviours, watch, observe, &keeping);
-  FieldRun fields(loaded.read, built, *control.folder);
+  std::optional<FieldRun> fields;
+  if (field_lists != nullptr && control.folder != nullptr && loaded.read.values.table("output").has("fields"))
+    fields.emplace(loaded.read, built, *control.folder);
+  kept.attach(keeping, watch, fields ? &*fields : nullptr);
+  if (!fields) return run(built.model, built.plan, built.behaviours, watch, observe, &keeping);
   const Observe both = [&](const Snapshot& snapshot) {
-    fields.see(snapshot);
+    fields->see(snapshot);
     if (observe) observe(snapshot);
   };
   RunResult result = run(built.model, built.plan, built.behaviours, watch, both, &keeping);
-  fields.finish(result);
-  field_lists->push_back(fields.list());
+  fields->finish(result);
+  field_lists->push_back(fields->list());
   return result;
 }
 

@@ -19,6 +19,13 @@ void refuse_external(const BuiltCase& built) {
 }  // namespace
 
 Results trust_case(const LoadedCase& loaded, const Control& control) {
+  return trust_case(loaded, control, [&control](const TrustSamples& samples) {
+    const int threads = runs_side_by_side(static_cast<int>(std::thread::hardware_concurrency()));
+    return compute_samples(samples, threads, control.watch ? control.watch("trust") : Watch());
+  });
+}
+
+Results trust_case(const LoadedCase& loaded, const Control& control, const ComputeSamples& compute) {
   if (loaded.from.reduced != nullptr)
     throw InputError(loaded.read.values.where("reduced_model"), "reduced_model", "the whole model for a statement of reliability",
                      "a reduced model, which belongs to one mesh and one damping");
@@ -33,9 +40,8 @@ Results trust_case(const LoadedCase& loaded, const Control& control) {
   }
   const BuiltCase& built = results.built.front();
   const RunResult* bonded = results.runs.size() > 1 ? &results.runs[1] : nullptr;
-  const int threads = runs_side_by_side(static_cast<int>(std::thread::hardware_concurrency()));
-  results.trust = trust(loaded.raw, loaded.read, loaded.read_mesh, {built, results.runs.front(), bonded}, threads,
-                        control.watch ? control.watch("trust") : Watch());
+  const TrustSamples samples = trust_samples(loaded.raw, loaded.read, loaded.read_mesh);
+  results.trust = trust_answer(loaded.read, samples, compute(samples), {built, results.runs.front(), bonded});
   results.floors = floor_answers(built.plan, results.runs, results.specs);
   results.verdict = judge(built, results.runs.front(), bonded, &results.floors.runs.front());
   results.verdict.step_check.reason = "the bands include a run with half the step";

@@ -196,18 +196,30 @@ void check_limits(const StudyCase& study) {
   }
 }
 
-/// The case without its title and description, and without the motions of the plan, and the files that it reads.
+/// The case with the reduced model of the plan, where the plan names one.
+Raw with_reduced_model(const Raw& raw, const Raw& plan) {
+  const Raw* own = std::get<std::shared_ptr<RawTable>>(plan.data)->find("reduced_model");
+  if (own == nullptr) return raw;
+  Raw made = edited(raw, {{"reduced_model", std::string()}});
+  auto& entries = std::get<std::shared_ptr<RawTable>>(made.data)->entries;
+  std::ranges::find(entries, "reduced_model", [](const auto& entry) -> std::string_view { return entry.first; })->second = *own;
+  return made;
+}
+
+}  // namespace
+
 std::string identity_of_case(const Raw& raw, const Case& read) {
-  Case own{check(edited(raw, {{"title", std::string()}, {"description", std::string()}}), case_section()), read.file, read.mesh, {}};
+  Raw what = edited(raw, {{"title", std::string()}, {"description", std::string()}});
+  std::erase_if(std::get<std::shared_ptr<RawTable>>(what.data)->entries, [](const auto& entry) { return entry.first == "trust"; });
+  const Case own{check(what, case_section()), read.file, read.mesh, {}};
   std::string text = to_toml(own.values, decided_texts(own)) + "\n";
   for (const std::string& file : input_files(own))
     text += std::filesystem::path(file).filename().string() + " " + sha256(read_file(file)) + "\n";
   return text;
 }
 
-}  // namespace
-
-StudyCase study_case(const StudyPlan& plan, const Raw& raw, const MeshReader& read_mesh, const std::string& motions) {
+StudyCase study_case(const StudyPlan& plan, const Raw& case_raw, const MeshReader& read_mesh, const std::string& motions) {
+  const Raw raw = with_reduced_model(case_raw, plan.raw);
   StudyCase study;
   study.plan = plan;
   study.raw = with_motions(raw, plan.values, plan.raw);

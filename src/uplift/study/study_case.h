@@ -51,6 +51,10 @@ RunSpec run_of_study(const StudyCase& study, const Case& sample, std::size_t mot
 /// The case of a sample with one motion and factor, as a text that `uplift run` takes; paths of files in it are absolute.
 std::string resolved_run(const StudyCase& study, std::size_t sample, std::size_t motion, double factor);
 
+/// What a run of this case computes, as a text: its values without title, description and [trust], and the SHA-256 of the files that it
+/// reads. `raw`: the file of the case.
+std::string identity_of_case(const Raw& raw, const Case& read);
+
 /// SHA-256 that names a run: of sample, motion, every bit of the factor, and the version of the program.
 std::string run_identity(const StudyCase& study, std::size_t sample, std::size_t motion, double factor);
 

@@ -35,11 +35,12 @@ double beyond(const StudyLimit& limit, double value) {
 
 }  // namespace
 
-StudyResult result_of(const BuiltCase& built, const RunResult& run, bool spectra) {
+StudyResult result_of(const BuiltCase& built, const RunResult& run, bool spectra, const RunResult* bonded) {
   StudyResult made;
   made.outcome = outcome_of(built, run);
   made.reason = run.reason;
-  const VerdictNumbers numbers = numbers_of(built, run, nullptr);
+  if (bonded != nullptr) made.bonded = outcome_of(built, *bonded);
+  const VerdictNumbers numbers = numbers_of(built, run, bonded);
   add(numbers.whole, "", made.numbers);
   for (const InterfaceVerdict& each : numbers.interfaces) add(each.numbers, each.name, made.numbers);
   for (const BeamVerdict& each : numbers.beams) add(each.numbers, each.name, made.numbers);
@@ -51,7 +52,7 @@ StudyResult result_of(const BuiltCase& built, const RunResult& run, bool spectra
   made.steps = run.counts.steps;
   made.retries = run.counts.retries;
   made.replay = !run.problem.empty();
-  made.wall = run.wall;
+  made.wall = run.wall + (bonded != nullptr ? bonded->wall : 0);
   return made;
 }
 

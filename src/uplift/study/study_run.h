@@ -1,4 +1,5 @@
 #pragma once
+#include <optional>
 #include <string>
 #include <string_view>
 #include <utility>
@@ -43,6 +44,7 @@ struct StudyResult {
   double factor = 1, intensity = 1;
   StudyOutcome outcome = StudyOutcome::completed;
   std::string reason;
+  std::optional<StudyOutcome> bonded;  // of the bonded run beside it, where there is one
   long attempt = 1;
   std::vector<StudyNumber> numbers;  // of a run that did not complete: up to its end
   std::vector<StudySpectrum> spectra;
@@ -63,12 +65,13 @@ void list_parts(Archive& archive, T& spectrum) {
 }
 template <class Archive, SameAs<StudyResult> T>
 void list_parts(Archive& archive, T& run) {
-  archive(run.id, run.motion, run.sample, run.factor, run.intensity, run.outcome, run.reason, run.attempt, run.numbers, run.spectra,
-          run.end_time, run.created, run.steps, run.retries, run.replay, run.wall);
+  archive(run.id, run.motion, run.sample, run.factor, run.intensity, run.outcome, run.reason, run.bonded, run.attempt, run.numbers,
+          run.spectra, run.end_time, run.created, run.steps, run.retries, run.replay, run.wall);
 }
 
-/// From a run that is over; identity, attempt and intensity are left to the caller. `spectra`: floor spectra are kept.
-StudyResult result_of(const BuiltCase& built, const RunResult& run, bool spectra);
+/// From a run that is over; identity, attempt and intensity are left to the caller. `spectra`: floor spectra are kept. `bonded`: the bonded
+/// run that numbers are compared with, or null.
+StudyResult result_of(const BuiltCase& built, const RunResult& run, bool spectra, const RunResult* bonded = nullptr);
 
 /// The number of a run that a limit is for: the one that is farthest beyond it; nothing where the run has none.
 std::optional<double> demand_of(const StudyLimit& limit, const StudyResult& run);

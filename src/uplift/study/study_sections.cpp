@@ -220,6 +220,11 @@ const Section& study_section() {
       "study",
       "plan.toml of a study: one case under many motions, at many intensities, with sampled variables",
       {text("case", "case file, or folder with case.toml; relative to the plan"),
+       text(
+           "reduced_model",
+           "file of a reduced model of the case (`uplift reduce`), relative to the plan, with which the runs are computed; absent: that of "
+           "the case, else the whole model")
+           .optional(),
        integer("seed", "of the samples").nonnegative().standard(1), table("intensity", intensity_section(), "measure of the motions"),
        part("method", study_methods, "which intensities are run"), tables("motion", motion_section(), "motions"),
        tables("motions", motions_section(), "motions from files, or generated"),

@@ -8,20 +8,15 @@
 #include <numeric>
 #include <thread>
 
+#include "uplift/base/file.h"
 #include "uplift/base/format.h"
 #include "uplift/case/advice/content.h"
+#include "uplift/study/study_case.h"
 
 namespace uplift {
 namespace {
 
 constexpr double steps_per_period = 10;
-
-/// What is kept of a repetition: numbers and spectra, not its model.
-struct Repetition {
-  TrustRun run;
-  VerdictNumbers numbers;
-  std::vector<FloorSpectra> floors;
-};
 
 /// Share of the work that is done, over all runs.
 class Watcher {
@@ -46,88 +41,53 @@ class Watcher {
   bool going_ = true;
 };
 
-Repetition repetition_of(const TrustChange& change, const BuiltCase& built, const RunResult& result, const RunResult* bonded) {
-  Repetition made;
-  made.run = {change.name,
-              change.choice,
-              change.label,
-              result.status,
-              bonded ? bonded->status : RunStatus::completed,
-              result.reason,
-              result.wall + (bonded ? bonded->wall : 0)};
-  if (!made.run.counts()) return made;
-  made.numbers = numbers_of(built, result, bonded);
-  made.floors = floor_spectra(built.plan, result);
-  return made;
+RunStatus status_of(StudyOutcome outcome) {
+  switch (outcome) {
+    case StudyOutcome::completed:
+      return RunStatus::completed;
+    case StudyOutcome::overturned:
+      return RunStatus::overturned;
+    case StudyOutcome::separated:
+      return RunStatus::separated;
+    default:
+      return RunStatus::failed;
+  }
 }
 
-/// Runs a case, and its bonded run where it has one.
-Repetition compute(const Case& read, const TrustChange& change, std::size_t place, Watcher& watcher) {
-  std::vector<RunSpec> specs = runs_of_case(read);
-  for (RunSpec& spec : specs) spec.pictures = false;
-  if (watcher.stopped()) {
-    Repetition left_out;
-    left_out.run.name = change.name;
-    left_out.run.choice = change.choice;
-    left_out.run.label = change.label;
-    left_out.run.status = left_out.run.bonded_status = RunStatus::interrupted;
-    left_out.run.reason = "interrupted before it began";
-    return left_out;
-  }
-  const double each = 1.0 / static_cast<double>(specs.size());
-  const auto one = [&](std::size_t k, const BuiltCase& built) {
-    return run(built.model, built.plan, built.behaviours,
-               [&](const Progress& now) { return watcher.tell(place, each * (static_cast<double>(k) + now.fraction), now); });
-  };
-  const BuiltCase built = build(read, specs.front());
-  const RunResult result = one(0, built);
-  std::optional<RunResult> bonded;
-  if (specs.size() > 1) bonded = one(1, build(read, specs[1]));
-  return repetition_of(change, built, result, bonded ? &*bonded : nullptr);
+/// Of a sample; without a result it was interrupted.
+TrustRun run_of(const TrustChange& change, const std::optional<StudyResult>& result) {
+  if (!result) return {change.name, change.choice, change.label, RunStatus::interrupted, RunStatus::interrupted, "interrupted", 0};
+  return {
+      change.name,    change.choice, change.label, status_of(result->outcome), status_of(result->bonded.value_or(StudyOutcome::completed)),
+      result->reason, result->wall};
 }
 
-/// All repetitions, `threads` at a time. What one of them throws is thrown here, the first of the list first.
-std::vector<Repetition> compute_all(const std::vector<Case>& cases, const std::vector<TrustChange>& changes, int threads,
-                                    Watcher& watcher) {
-  std::vector<Repetition> made(cases.size());
-  std::vector<std::exception_ptr> errors(cases.size());
-  std::atomic<std::size_t> next{0};
-  const auto work = [&] {
-    for (std::size_t i = next++; i < cases.size(); i = next++) try {
-        made[i] = compute(cases[i], changes[i], i, watcher);
-      } catch (...) {
-        errors[i] = std::current_exception();
-      }
+/// The case as it stands, with what is kept of its repetitions: those that count.
+struct Repeated {
+  VerdictNumbers numbers;
+  std::vector<FloorSpectra> floors;
+  struct Repetition {
+    const TrustChange* change = nullptr;
+    const StudyResult* result = nullptr;  // null: it does not count
   };
-  {
-    std::vector<std::jthread> helpers;
-    for (int k = 1; k < threads && static_cast<std::size_t>(k) < cases.size(); ++k) helpers.emplace_back(work);
-    work();
-  }
-  for (const std::exception_ptr& error : errors)
-    if (error) std::rethrow_exception(error);
-  return made;
-}
+  std::vector<Repetition> repetitions;
+};
 
 // ---- numbers ----
 
-/// The number of this quantity of a run, of one interface or of the run.
-std::optional<double> number_in(const Repetition& outcome, const VerdictQuantity& quantity, const std::string& interface) {
-  const std::vector<VerdictNumber>* numbers = interface.empty() ? &outcome.numbers.whole : nullptr;
-  for (const InterfaceVerdict& each : outcome.numbers.interfaces)
-    if (!interface.empty() && !quantity.of_beam && each.name == interface) numbers = &each.numbers;
-  for (const BeamVerdict& each : outcome.numbers.beams)
-    if (quantity.of_beam && each.name == interface) numbers = &each.numbers;
-  const VerdictNumber* found = numbers && outcome.run.counts() ? find_number(*numbers, quantity.name) : nullptr;
-  if (!found || !std::isfinite(found->value)) return std::nullopt;
-  return found->value;
+/// The number of this quantity of a repetition, of one interface or of the run.
+std::optional<double> number_in(const StudyResult* result, const VerdictQuantity& quantity, const std::string& interface) {
+  if (result == nullptr) return std::nullopt;
+  for (const StudyNumber& number : result->numbers)
+    if (number.quantity == quantity.name && number.of == interface) return number.value;
+  return std::nullopt;
 }
 
-TrustBand band_of(const VerdictNumber& number, const std::string& interface, const std::vector<Repetition>& repetitions) {
+TrustBand band_of(const VerdictNumber& number, const std::string& interface, const Repeated& all) {
   TrustBand band{number.quantity, interface, number.value, number.value, number.value, number.swing.value_or(0), {}, {}};
   double largest = 0;
-  for (std::size_t i = 1; i < repetitions.size(); ++i) {
-    const std::optional<double> value = number_in(repetitions[i], *number.quantity, interface);
+  for (const auto& [change, result] : all.repetitions) {
+    const std::optional<double> value = number_in(result, *number.quantity, interface);
     band.values.push_back(value);
     if (!value) continue;
     band.least = std::min(band.least, *value);
@@ -135,22 +95,22 @@ TrustBand band_of(const VerdictNumber& number, const std::string& interface, con
     const double moved = std::abs(*value - number.value);
     if (moved > largest) {
       largest = moved;
-      band.dominant = repetitions[i].run.choice;
+      band.dominant = change->choice;
     }
   }
   if (std::max(std::abs(band.least), std::abs(band.most)) < nothing_beside(number.quantity->unit)) band.dominant.clear();
   return band;
 }
 
-std::vector<TrustBand> bands_of(const std::vector<Repetition>& repetitions) {
+std::vector<TrustBand> bands_of(const Repeated& all) {
   std::vector<TrustBand> bands;
   const auto take = [&](const std::vector<VerdictNumber>& numbers, const std::string& interface) {
     for (const VerdictNumber& number : numbers)
-      if (std::isfinite(number.value)) bands.push_back(band_of(number, interface, repetitions));
+      if (std::isfinite(number.value)) bands.push_back(band_of(number, interface, all));
   };
-  take(repetitions.front().numbers.whole, "");
-  for (const InterfaceVerdict& each : repetitions.front().numbers.interfaces) take(each.numbers, each.name);
-  for (const BeamVerdict& each : repetitions.front().numbers.beams) take(each.numbers, each.name);
+  take(all.numbers.whole, "");
+  for (const InterfaceVerdict& each : all.numbers.interfaces) take(each.numbers, each.name);
+  for (const BeamVerdict& each : all.numbers.beams) take(each.numbers, each.name);
   return bands;
 }
 
@@ -180,16 +140,22 @@ double reach_of(const Spectrum& raw, const Spectrum& other, double accepted) {
   return to;
 }
 
+/// A raw spectrum of a repetition: results keep those of all floors, and of each floor for all dampings.
+Spectrum spectrum_in(const StudyResult& result, const std::string& floor, double damping) {
+  const auto found =
+      std::ranges::find_if(result.spectra, [&](const StudySpectrum& each) { return each.floor == floor && each.damping == damping; });
+  if (found == result.spectra.end()) return {};
+  return {Spectrum::Kind::psa, damping, found->frequencies, found->values};
+}
+
 /// (T2) for every choice, and the resolutions below the last frequency.
-void add_reaches(std::size_t floor, std::size_t damping, const std::vector<Repetition>& repetitions, double accepted,
+void add_reaches(const Spectrum& raw, const std::vector<std::pair<std::string, Spectrum>>& others, double accepted,
                  const std::vector<Reach>& bounds, TrustSpectrum& made) {
-  const Spectrum& raw = repetitions.front().floors[floor].raw[damping];
-  for (std::size_t i = 1; i < repetitions.size(); ++i) {
-    if (!repetitions[i].run.counts()) continue;
-    const double to = reach_of(raw, repetitions[i].floors[floor].raw[damping], accepted);
-    const auto same = std::ranges::find(made.reaches, repetitions[i].run.choice, &Reach::choice);
+  for (const auto& [choice, other] : others) {
+    const double to = reach_of(raw, other, accepted);
+    const auto same = std::ranges::find(made.reaches, choice, &Reach::choice);
     if (same == made.reaches.end())
-      made.reaches.push_back({repetitions[i].run.choice, to});
+      made.reaches.push_back({choice, to});
     else
       same->to = std::min(same->to, to);
   }
@@ -199,20 +165,20 @@ void add_reaches(std::size_t floor, std::size_t damping, const std::vector<Repet
   if (made.speaks_to < raw.frequencies.back()) made.limited_by = made.reaches.front().choice;
 }
 
-TrustSpectrum spectrum_of(std::size_t floor, std::size_t damping, const std::vector<Repetition>& repetitions, double accepted,
+TrustSpectrum spectrum_of(const FloorSpectra& base, std::size_t damping, const Repeated& all, double accepted,
                           const std::vector<Reach>& bounds) {
-  const FloorSpectra& base = repetitions.front().floors[floor];
   const Spectrum& raw = base.raw[damping];
+  std::vector<std::pair<std::string, Spectrum>> others;  // with their choices
+  for (const auto& [change, result] : all.repetitions)
+    if (result != nullptr) others.emplace_back(change->choice, spectrum_in(*result, base.name, raw.damping));
   TrustSpectrum made{base.name, raw.damping, raw.frequencies, raw.values, raw.values, raw.values, 0, {}, {}, {}, 0};
-  for (std::size_t i = 1; i < repetitions.size(); ++i) {
-    if (!repetitions[i].run.counts()) continue;
+  for (const auto& [choice, other] : others)
     for (std::size_t f = 0; f < raw.frequencies.size(); ++f) {
-      const double value = value_at(repetitions[i].floors[floor].raw[damping], raw.frequencies[f]);
+      const double value = value_at(other, raw.frequencies[f]);
       made.least[f] = std::min(made.least[f], value);
       made.most[f] = std::max(made.most[f], value);
     }
-  }
-  add_reaches(floor, damping, repetitions, accepted, bounds, made);
+  add_reaches(raw, others, accepted, bounds, made);
   if (base.broadened.empty()) return made;
   made.above_broadened = 0;
   for (std::size_t f = 0; f < raw.frequencies.size(); ++f) {
@@ -253,35 +219,98 @@ std::size_t TrustAnswer::counted() const {
   return static_cast<std::size_t>(std::ranges::count_if(runs, &TrustRun::counts));
 }
 
-TrustAnswer trust(const Raw& raw, const Case& read, const MeshReader& read_mesh, const TrustBase& base, int threads, const Watch& watch) {
+TrustSamples trust_samples(const Raw& raw, const Case& read, const MeshReader& read_mesh) {
   TrustPlan plan = trust_plan(read);
-  std::vector<Case> cases;
-  std::vector<TrustChange> changes;
+  TrustSamples made;
   for (TrustChange& change : plan.changes) {
     const bool same_mesh = std::ranges::none_of(change.edits, [](const CaseEdit& edit) { return changes_mesh(edit.path); });
     try {
-      cases.push_back(check_case_like(read, same_mesh, edited(raw, change.edits), read_mesh));
-      changes.push_back(std::move(change));
+      const Raw changed = edited(raw, change.edits);
+      Case own = check_case_like(read, same_mesh, changed, read_mesh);
+      const std::string id = sha256("trust " UPLIFT_VERSION "\n" + identity_of_case(changed, own));
+      made.samples.push_back({std::move(change), std::move(own), id});
     } catch (const InputError& error) {  // of the changed case: the case itself was read
       plan.left_out.push_back({change.choice + ", " + change.label, error.what()});
     }
   }
-  Watcher watcher(cases.size(), watch);
-  std::vector<Repetition> repetitions = compute_all(cases, changes, threads, watcher);
-  repetitions.insert(repetitions.begin(), repetition_of({"base", "", "as in the case", {}}, base.built, base.run, base.bonded));
+  made.left_out = std::move(plan.left_out);
+  return made;
+}
 
+StudyResult compute_sample(const TrustSample& sample, const Watch& watch, std::string& problem) {
+  std::vector<RunSpec> specs = runs_of_case(sample.read);
+  for (RunSpec& spec : specs) spec.pictures = false;
+  const double each = 1.0 / static_cast<double>(specs.size());
+  const auto one = [&](std::size_t k, const BuiltCase& built) {
+    return run(built.model, built.plan, built.behaviours, [&](Progress now) {
+      now.fraction = each * (static_cast<double>(k) + now.fraction);
+      return !watch || watch(now);
+    });
+  };
+  const BuiltCase built = build(sample.read, specs.front());
+  const RunResult result = one(0, built);
+  std::optional<RunResult> bonded;
+  if (specs.size() > 1) bonded = one(1, build(sample.read, specs[1]));
+  problem = result.problem;
+  StudyResult made = result_of(built, result, true, bonded ? &*bonded : nullptr);
+  made.id = sample.id;
+  return made;
+}
+
+TrustResults compute_samples(const TrustSamples& samples, int threads, const Watch& watch) {
+  const std::size_t count = samples.samples.size();
+  Watcher watcher(count, watch);
+  TrustResults made(count);
+  std::vector<std::exception_ptr> errors(count);
+  std::atomic<std::size_t> next{0};
+  const auto work = [&] {
+    for (std::size_t i = next++; i < count && !watcher.stopped(); i = next++) try {
+        std::string problem;
+        StudyResult result = compute_sample(
+            samples.samples[i], [&](const Progress& now) { return watcher.tell(i, now.fraction, now); }, problem);
+        const auto interrupted = [](std::optional<StudyOutcome> outcome) { return outcome == StudyOutcome::timeout; };
+        if (!interrupted(result.outcome) && !interrupted(result.bonded)) made[i] = std::move(result);
+      } catch (...) {
+        errors[i] = std::current_exception();
+      }
+  };
+  {
+    std::vector<std::jthread> helpers;
+    for (int k = 1; k < threads && static_cast<std::size_t>(k) < count; ++k) helpers.emplace_back(work);
+    work();
+  }
+  for (const std::exception_ptr& error : errors)
+    if (error) std::rethrow_exception(error);
+  return made;
+}
+
+TrustAnswer trust_answer(const Case& read, const TrustSamples& samples, const TrustResults& results, const TrustBase& base) {
   TrustAnswer made;
-  made.base = repetitions.front().run;
-  for (std::size_t i = 1; i < repetitions.size(); ++i) made.runs.push_back(repetitions[i].run);
-  made.left_out = plan.left_out;
+  made.base = {"base",
+               "",
+               "as in the case",
+               base.run.status,
+               base.bonded ? base.bonded->status : RunStatus::completed,
+               base.run.reason,
+               base.run.wall + (base.bonded ? base.bonded->wall : 0)};
+  Repeated all;
+  for (std::size_t i = 0; i < results.size(); ++i) {
+    const TrustChange& change = samples.samples[i].change;
+    made.runs.push_back(run_of(change, results[i]));
+    all.repetitions.push_back({&change, made.runs.back().counts() ? &*results[i] : nullptr});
+    if (change.choice == joint_stiffness) made.interior = read.values.table("trust").integer("interior");
+  }
+  made.left_out = samples.left_out;
   made.accepted = read.values.table("trust").number("spectrum_band");
-  made.complete = !watcher.stopped();
+  made.complete = std::ranges::all_of(results, [](const auto& each) { return each.has_value(); });
   if (!made.base.counts() || made.counted() == 0) return made;
-  made.bands = bands_of(repetitions);
+  all.numbers = numbers_of(base.built, base.run, base.bonded);
+  all.floors = floor_spectra(base.built.plan, base.run);
+  made.bands = bands_of(all);
   const std::vector<Reach> bounds = resolutions(read, base.built.plan);
-  for (std::size_t floor = 0; floor < repetitions.front().floors.size(); ++floor)
-    for (std::size_t damping = 0; damping < repetitions.front().floors[floor].raw.size(); ++damping)
-      made.spectra.push_back(spectrum_of(floor, damping, repetitions, made.accepted, bounds));
+  for (const FloorSpectra& floor : all.floors)
+    for (std::size_t damping = 0; damping < floor.raw.size(); ++damping)
+      made.spectra.push_back(spectrum_of(floor, damping, all, made.accepted, bounds));
   made.dominant = most_frequent(made.bands);
   return made;
 }

@@ -4,6 +4,7 @@
 #include <string>
 #include <vector>
 
+#include "uplift/study/study_run.h"
 #include "uplift/study/trust_plan.h"
 #include "uplift/verdict/floor_spectra.h"
 #include "uplift/verdict/numbers.h"
@@ -60,6 +61,7 @@ struct TrustAnswer {
   std::vector<TrustBand> bands;
   std::vector<TrustSpectrum> spectra;
   double accepted = 0;          // the share that a spectrum may differ by
+  int interior = 0;             // stiffnesses that were computed between the case and each end
   std::size_t counted() const;  // repetitions that count; without any there are no bands
   std::string dominant;         // the choice that is dominant most often; empty when there is none
   bool complete = false;        // not interrupted
@@ -72,9 +74,27 @@ struct TrustBase {
   const RunResult* bonded = nullptr;  // where the case has a bonded run
 };
 
-/// Repeats the case with its choices changed. `raw`: the file of the case as read. `threads`: runs at the same time; the answer does not
-/// depend on them. `watch` is called from these threads, one at a time. Throws InputError when a changed case does not pass the checks.
-TrustAnswer trust(const Raw& raw, const Case& read, const MeshReader& read_mesh, const TrustBase& base, int threads,
-                  const Watch& watch = {});
+/// A repetition that is to be computed: the case with one changed choice.
+struct TrustSample {
+  TrustChange change;
+  Case read;
+  std::string id;  // SHA-256 of what it computes and of the version of the program
+};
+struct TrustSamples {
+  std::vector<TrustSample> samples;
+  std::vector<TrustPlan::LeftOut> left_out;
+};
+/// The repetitions of a case. `raw`: its file as read. A changed case that does not pass the checks is left out, with the reason.
+TrustSamples trust_samples(const Raw& raw, const Case& read, const MeshReader& read_mesh);
+
+/// A sample and its bonded run. `problem`: where a step failed, the interface problem of that step. May throw InputError.
+StudyResult compute_sample(const TrustSample& sample, const Watch& watch, std::string& problem);
+/// All samples in this process, `threads` at a time; the results do not depend on them. Nothing for a sample that was not finished.
+/// `watch` is called from these threads, one at a time. What a sample throws is thrown here, the first of the list first.
+using TrustResults = std::vector<std::optional<StudyResult>>;
+TrustResults compute_samples(const TrustSamples& samples, int threads, const Watch& watch = {});
+
+/// What the results say of the case; one for each sample.
+TrustAnswer trust_answer(const Case& read, const TrustSamples& samples, const TrustResults& results, const TrustBase& base);
 
 }  // namespace uplift

@@ -3,6 +3,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <cmath>
 
 #include "uplift/case/build/bed.h"
 #include "uplift/contact/method.h"
@@ -116,39 +117,56 @@ class Planner {
     return interface.has("footing") && !interface.table("footing").has("bed") ? of_soil : of_joint;
   }
 
+  /// The ends of the sweep, then what lies between an end and the case.
   void change_stiffness() {
     if (trust_.has("stiffness_factor") && trust_.number("stiffness_factor") == 1)
-      return leave_out("joint stiffness", "stiffness_factor = 1");
-    for (const bool stiffer : {true, false}) {
-      std::vector<CaseEdit> edits;
-      std::vector<double> factors;
-      const std::vector<Values>& interfaces = root_.tables("interface");
-      for (std::size_t k = 0; k < interfaces.size(); ++k) {
-        const Values law = law_of(interfaces[k]);
-        const double factor = factor_of(interfaces[k]), by = stiffer ? factor : 1 / factor;
-        const std::vector<std::string_view> keys = stiffness_keys(law);
-        if (!keys.empty()) factors.push_back(factor);
-        for (const std::string_view key : keys) edits.push_back({fmt::format("{}.{}", law_path(k), key), by * law.number(key)});
-        if (const auto made = make_part(law_catalog(), law); made != nullptr && !stiffer) {
-          double stiffness[3] = {};
-          made->closed_stiffness(3, stiffness);
-          if (const double least = made->scales().least_stiffness; by * stiffness[2] <= least)
-            return leave_out("joint stiffness, softer",
-                             fmt::format("the law of '{}' needs a stiffness above {:.3g} Pa/m", interfaces[k].text("name"), least));
-        }
+      return leave_out(std::string(joint_stiffness), "stiffness_factor = 1");
+    const long parts = trust_.integer("interior") + 1;
+    for (long part = parts; part > 0; --part)
+      for (const bool stiffer : {true, false}) {
+        const std::string suffix = part == parts ? "" : fmt::format("_{}", part);
+        const double power = static_cast<double>(part) / static_cast<double>(parts);
+        if (!change_stiffness((stiffer ? "stiffer" : "softer") + suffix, stiffer, power)) return;
       }
-      if (regularises()) {
-        const char* key = has_number(method_, "stiffness") ? "stiffness" : "factor";
-        const double factor = trust_.has("stiffness_factor") ? trust_.number("stiffness_factor") : of_joint;
-        factors.push_back(factor);
-        edits.push_back({std::string("method.") + key, (stiffer ? factor : 1 / factor) * method_.number(key)});
+  }
+
+  /// `power` of the factors: 1 at the ends. False where nothing has a stiffness.
+  bool change_stiffness(std::string name, bool stiffer, double power) {
+    std::vector<CaseEdit> edits;
+    std::vector<double> factors;
+    std::string refusal;
+    const auto add_factor = [&](double factor) { return factors.emplace_back(std::pow(factor, power)); };
+    const std::vector<Values>& interfaces = root_.tables("interface");
+    for (std::size_t k = 0; k < interfaces.size(); ++k) {
+      const Values law = law_of(interfaces[k]);
+      const std::vector<std::string_view> keys = stiffness_keys(law);
+      if (keys.empty()) continue;
+      const double factor = add_factor(factor_of(interfaces[k])), by = stiffer ? factor : 1 / factor;
+      for (const std::string_view key : keys) edits.push_back({fmt::format("{}.{}", law_path(k), key), by * law.number(key)});
+      if (const auto made = make_part(law_catalog(), law); made != nullptr && !stiffer) {
+        double stiffness[3] = {};
+        made->closed_stiffness(3, stiffness);
+        if (const double least = made->scales().least_stiffness; by * stiffness[2] <= least)
+          refusal = fmt::format("the law of '{}' needs a stiffness above {:.3g} Pa/m", interfaces[k].text("name"), least);
       }
-      if (edits.empty()) return leave_out("joint stiffness", "constraints are rigid");
-      const auto [least, most] = std::ranges::minmax(factors);
-      const std::string times = least == most ? fmt::format("{:g}", most) : fmt::format("{:g} or {:g}", least, most);
-      add(stiffer ? "stiffer" : "softer", "joint stiffness", fmt::format("joint {} times as {}", times, stiffer ? "stiff" : "soft"),
-          std::move(edits));
     }
+    if (regularises()) {
+      const char* key = has_number(method_, "stiffness") ? "stiffness" : "factor";
+      const double factor = add_factor(trust_.has("stiffness_factor") ? trust_.number("stiffness_factor") : of_joint);
+      edits.push_back({std::string("method.") + key, (stiffer ? factor : 1 / factor) * method_.number(key)});
+    }
+    if (edits.empty()) {
+      leave_out(std::string(joint_stiffness), "constraints are rigid");
+      return false;
+    }
+    const auto [least, most] = std::ranges::minmax(factors);
+    const std::string times = least == most ? fmt::format("{:.4g}", most) : fmt::format("{:.4g} or {:.4g}", least, most);
+    if (!refusal.empty())
+      leave_out(fmt::format("{}, {}", joint_stiffness, power == 1 ? "softer" : times + " times as soft"), refusal);
+    else
+      add(std::move(name), std::string(joint_stiffness), fmt::format("joint {} times as {}", times, stiffer ? "stiff" : "soft"),
+          std::move(edits));
+    return true;
   }
 
   /// Every strip between the points of a footing is halved.

@@ -9,6 +9,8 @@
 // How far results can be trusted: the same case with every choice of the computation changed, one at a time (docs/theory/trust.md).
 namespace uplift {
 
+inline constexpr std::string_view joint_stiffness = "joint stiffness";  // the choice that has an interior
+
 /// One changed choice.
 struct TrustChange {
   std::string name;    // "step_half": part of names of runs
@@ -26,7 +28,8 @@ struct TrustPlan {
   std::vector<LeftOut> left_out;
 };
 
-/// Half the time step; the stiffness of every traction law (or penalty) times and over the case's factor; a tolerance ten times smaller;
+/// Half the time step; the stiffness of every traction law (or penalty) times and over the case's factor, and as many values between as
+/// the case asks for, in equal ratios; a tolerance ten times smaller;
 /// another sound method for the same interface; a finer mesh, where the mesh is made by the case; the mesh moved
 /// against the planes of interface.cut.
 TrustPlan trust_plan(const Case&);

@@ -17,7 +17,8 @@ namespace {
 namespace fs = std::filesystem;
 
 CheckpointOrigin some_origin() {
-  return {.case_file = "tower/case.toml",
+  return {.verb = "run",
+          .case_file = "tower/case.toml",
           .from_folder = "/home",
           .resolved = "title = \"tower\"\nstep = 0.002\n",
           .inputs = {{"soil.msh", "ab12"}},
@@ -45,7 +46,7 @@ class CheckpointFiles : public testing::Test {
 };
 
 TEST(Checkpoint, IsReadAsWritten) {
-  const Checkpoint written{some_origin(), "as in the case", write_run_state(some_state(512))};
+  const Checkpoint written{some_origin(), "as in the case", write_run_state(some_state(512)), {}};
   std::string why;
   const std::optional<Checkpoint> read = read_checkpoint(write_checkpoint(written), why);
   ASSERT_TRUE(read) << why;
@@ -57,7 +58,7 @@ TEST(Checkpoint, IsReadAsWritten) {
 }
 
 TEST(Checkpoint, IsRefusedWithAnyBitFlippedOrCutAnywhere) {
-  const std::string bytes = write_checkpoint({some_origin(), "as in the case", write_run_state(some_state(512))});
+  const std::string bytes = write_checkpoint({some_origin(), "as in the case", write_run_state(some_state(512)), {}});
   std::mt19937 random(20261124);
   std::uniform_int_distribution<std::size_t> any_byte(0, bytes.size() - 1);
   std::string why;
@@ -73,14 +74,14 @@ TEST(Checkpoint, IsRefusedWithAnyBitFlippedOrCutAnywhere) {
 TEST_F(CheckpointFiles, TheOneBeforeIsTakenWhereTheLastOneIsDamaged) {
   const ResultFolder folder(results("tower"));
   Checkpoints written(some_origin(), 60, folder, "");
-  for (const long step : {256, 512, 768}) written.write("as in the case", some_state(step));
+  for (const long step : {256, 512, 768}) written.write("as in the case", some_state(step), nullptr);
   const std::string from = folder.working_path() + "/" + Checkpoints::subfolder;
   const ResultFolder next(results("next"));
   const auto step_of = [&] {
     Checkpoints read(some_origin(), 60, next, from);
-    const std::optional<RunState> state = read.begin("as in the case");
-    EXPECT_EQ(read.notes().empty(), state && state->step == 768);
-    return state ? state->step : 0;
+    const std::optional<Checkpoints::Begin> begin = read.begin("as in the case");
+    EXPECT_EQ(read.notes().empty(), begin && begin->state.step == 768);
+    return begin ? begin->state.step : 0;
   };
   EXPECT_EQ(step_of(), 768);
   fs::resize_file(from + "/as_in_the_case.ckp", 1000);
@@ -95,7 +96,7 @@ TEST_F(CheckpointFiles, TheOneBeforeIsTakenWhereTheLastOneIsDamaged) {
 
 TEST_F(CheckpointFiles, OfAnotherCaseFileOrProgramAreRefused) {
   const ResultFolder folder(results("tower"));
-  Checkpoints(some_origin(), 60, folder, "").write("as in the case", some_state(256));
+  Checkpoints(some_origin(), 60, folder, "").write("as in the case", some_state(256), nullptr);
   const std::string from = folder.working_path() + "/" + Checkpoints::subfolder;
   const ResultFolder next(results("next"));
   const auto message = [&](const CheckpointOrigin& origin) -> std::string {
@@ -125,7 +126,7 @@ TEST_F(CheckpointFiles, ThatCannotBeWrittenAreSaidToBeSo) {
   const ResultFolder folder(results("tower"));
   std::ofstream(folder.working_path() + "/" + Checkpoints::subfolder) << "a file in the place of the folder";
   Checkpoints written(some_origin(), 60, folder, "");
-  written.write("as in the case", some_state(256));
+  written.write("as in the case", some_state(256), nullptr);
   ASSERT_EQ(written.notes().size(), 1u);
   EXPECT_NE(written.notes().front().find("could not be written"), std::string::npos);
 }

@@ -1,9 +1,12 @@
 #include "uplift/study/trust.h"
 
+#include <fmt/format.h>
 #include <gtest/gtest.h>
 
 #include <algorithm>
 #include <cmath>
+#include <map>
+#include <set>
 
 #include "tower_case.h"
 #include "uplift/io/text/toml.h"
@@ -55,7 +58,8 @@ Answered answered(const std::string& text, int threads) {
   const std::vector<RunSpec> specs = runs_of_case(made.read);
   const BuiltCase built = build(made.read, specs[0]), bonded = build(made.read, specs[1]);
   const RunResult one = run(built.model, built.plan, built.behaviours), other = run(bonded.model, bonded.plan, bonded.behaviours);
-  made.answer = trust(made.raw, made.read, {}, {built, one, &other}, threads);
+  const TrustSamples samples = trust_samples(made.raw, made.read, {});
+  made.answer = trust_answer(made.read, samples, compute_samples(samples, threads), {built, one, &other});
   return made;
 }
 
@@ -147,13 +151,57 @@ TEST(Trust, DoesNotDependOnThreads) {
   EXPECT_EQ(one.spectra.front().least, three.spectra.front().least);
 }
 
+/// Between the case (200 MPa/m) and its ends, half and twice as much, the ratios are equal; every value is that of the case with this
+/// stiffness.
+TEST(Trust, ComputesTheInterior) {
+  const TrustAnswer answer = answered(rocking + "[trust]\ninterior = 2\n", 2).answer;
+  EXPECT_EQ(answer.interior, 2);
+  EXPECT_EQ(std::ranges::count(answer.runs, joint_stiffness, &TrustRun::choice), 6);
+  const TrustBand& moment = band(answer, "max_moment");
+  for (const auto& [name, stiffness] : {std::pair{"stiffer", 400.0},
+                                        {"stiffer_2", 200 * std::cbrt(4)},
+                                        {"stiffer_1", 200 * std::cbrt(2)},
+                                        {"softer_1", 200 / std::cbrt(2)},
+                                        {"softer_2", 200 / std::cbrt(4)},
+                                        {"softer", 100.0}}) {
+    std::string own = rocking;
+    own.replace(own.find("200 MPa/m"), 9, fmt::format("{:.17g} MPa/m", stiffness));
+    const Case read = check_case(read_toml_text(own, "case.toml"), "case.toml");
+    const BuiltCase built = build(read, runs_of_case(read).front());
+    const RunResult result = run(built.model, built.plan, built.behaviours);
+    const std::vector<InterfaceVerdict> verdicts = numbers_of(built, result, nullptr).interfaces;
+    const double expected = find_number(verdicts.front().numbers, "max_moment")->value;
+    EXPECT_NEAR(moment.values[place(answer, name)].value_or(0) / expected, 1, 1e-9) << name;
+  }
+}
+
+/// What is computed decides the identity, not what the results are called or how far the other choices go.
+TEST(Trust, ASampleIsKnownByWhatItComputes) {
+  const auto ids = [](const std::string& text) {
+    const Raw raw = read_toml_text(text, "case.toml");
+    std::map<std::string, std::string> made;
+    for (const TrustSample& sample : trust_samples(raw, check_case(raw, "case.toml"), {}).samples) made[sample.change.name] = sample.id;
+    return made;
+  };
+  const auto one = ids(rocking), more = ids(rocking + "[trust]\ninterior = 1\nspectrum_band = 0.2\n");
+  EXPECT_EQ(more.size(), one.size() + 2);
+  for (const auto& [name, id] : one) EXPECT_EQ(more.at(name), id) << name;
+  std::set<std::string> distinct;
+  for (const auto& [name, id] : more) distinct.insert(id);
+  EXPECT_EQ(distinct.size(), more.size());
+  std::string heavier = rocking;
+  heavier.replace(heavier.find("1e5"), 3, "2e5");
+  for (const auto& [name, id] : ids(heavier)) EXPECT_NE(one.at(name), id) << name;
+}
+
 TEST(Trust, StopsWhenAsked) {
   const Raw raw = read_toml_text(rocking, "case.toml");
   const Case read = check_case(raw, "case.toml");
   const BuiltCase built = build(read, runs_of_case(read).front());
   const RunResult result = run(built.model, built.plan, built.behaviours);
-  const TrustAnswer answer =
-      trust(raw, read, {}, {built, result, nullptr}, 2, [](const Progress& progress) { return progress.fraction < 0.1; });
+  const TrustSamples samples = trust_samples(raw, read, {});
+  const TrustResults results = compute_samples(samples, 2, [](const Progress& progress) { return progress.fraction < 0.1; });
+  const TrustAnswer answer = trust_answer(read, samples, results, {built, result, nullptr});
   EXPECT_FALSE(answer.complete);
   EXPECT_TRUE(std::ranges::any_of(answer.runs, [](const TrustRun& run) { return run.status == RunStatus::interrupted; }));
 }

@@ -255,8 +255,6 @@ void check_columns(const Values& table, std::string_view key, const std::vector<
 
 void add_requests(const Case& read, const CaseNames& names, BuiltCase& built) {
   const Values& output = read.values.table("output");
-  if (output.has("checkpoint") && output.has("fields"))
-    fail(output, "checkpoint", "no [output.fields] beside it: fields cannot be resumed", "both");
   std::vector<Request>& requests = built.plan.requests;
   const Model& model = built.model;
   if (output.flag("automatic")) {

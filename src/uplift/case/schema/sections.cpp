@@ -196,9 +196,9 @@ const Section& output_section() {
           numbers("floor_bands", "Hz",
                   "frequencies that part the bands in which floor spectra are compared with those of the bonded run; absent: 2, 5, 10, 20")
               .optional(),
-          number(
-              "checkpoint", "s",
-              "`uplift run` keeps the state of a run after this much time on the clock, from which `uplift resume` goes on; absent: never")
+          number("checkpoint", "s",
+                 "`uplift run` and `uplift compare` keep the state of a run after this much time on the clock, from which `uplift resume` "
+                 "goes on; absent: never")
               .positive()
               .optional(),
           table("fields", fields_section(), "fields on the mesh; absent: none").optional()}};
@@ -258,6 +258,11 @@ const Section& trust_section() {
                     "fixed ground, whose joint is the soil itself: the factor is then what the stiffness of the soil is uncertain by")
                  .between(1, 1e6)
                  .optional(),
+             integer("interior",
+                     "stiffnesses between the case and each end that are computed too, in equal ratios; 0: only the ends are, and the "
+                     "results say so")
+                 .between(0, 1000)
+                 .standard(0),
              number("mesh_factor", "1", "sizes of a made mesh are multiplied by this; 1: not changed").between(0.1, 1).standard(0.7),
              number("mesh_shift", "1", "the mesh around interface.cut is moved by this share of a cell, to both sides; 0: not moved")
                  .between(0, 0.45)

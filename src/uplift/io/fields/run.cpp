@@ -6,6 +6,7 @@
 #include <cmath>
 #include <filesystem>
 
+#include "uplift/base/archive.h"
 #include "uplift/base/text.h"
 #include "uplift/io/fields/run_frames.h"
 
@@ -70,11 +71,11 @@ FieldForecast forecast(const Values& fields, const RunFrames& frames, const RunP
 }
 
 /// The disk must have room before the run starts, not only hours later.
-void check_room(const Values& fields, const FieldForecast& wanted, const std::string& folder) {
+void check_room(const Values& fields, std::int64_t bytes, const std::string& folder) {
   std::error_code error;
   const std::filesystem::space_info disk = std::filesystem::space(folder, error);
-  if (!error && disk.available < static_cast<std::uintmax_t>(wanted.bytes()))
-    throw InputError(fields.where(), fields.path(), "room for " + format_bytes(static_cast<double>(wanted.bytes())) + " of fields",
+  if (!error && disk.available < static_cast<std::uintmax_t>(bytes))
+    throw InputError(fields.where(), fields.path(), "room for " + format_bytes(static_cast<double>(bytes)) + " of fields",
                      format_bytes(static_cast<double>(disk.available)) + " on the disk");
 }
 
@@ -93,7 +94,9 @@ FieldRun::FieldRun(const Case& read, const BuiltCase& built, ResultFolder& folde
   events_ = fields.flag("events");
   const FieldForecast wanted = forecast(fields, *frames_, plan_);
   const std::string stem = "fields/" + plan_.name, data = folder.place(stem + ".h5");
-  check_room(fields, wanted, std::filesystem::path(data).parent_path().string());
+  // the journal of a run with checkpoints holds every frame once more, in float64
+  const int times = !read.values.table("output").has("checkpoint") ? 1 : precision_of(fields) == FieldPrecision::float32 ? 3 : 2;
+  check_room(fields, times * wanted.bytes(), std::filesystem::path(data).parent_path().string());
   if (wanted.format == FieldFormat::vtu)
     vtu_.emplace(stem, frames_->blocks(), precision_of(fields), into(folder));
   else
@@ -144,6 +147,11 @@ void FieldRun::keep(Kept& kept, double value, const Snapshot& snapshot) {
   kept.state = snapshot.state;
   snapshot.stepper->acceleration(kept.acceleration);
   kept.section_forces = section_forces(snapshot, &kept.acceleration);
+  kept.frame.reset();
+}
+
+FieldFrame FieldRun::frame_of(const Kept& kept) const {
+  return kept.frame ? *kept.frame : frames_->of(kept.state, &kept.acceleration, kept.section_forces, kept.state.time);
 }
 
 std::vector<double> FieldRun::section_forces(const Snapshot& snapshot, const Vector* acceleration) {
@@ -160,8 +168,11 @@ std::vector<double> FieldRun::section_forces(const Snapshot& snapshot, const Vec
 }
 
 void FieldRun::write(const State& state, const Vector* acceleration, const std::vector<double>& section_forces, double time) {
-  if (disk_refused_ || times_.contains(time)) return;
-  const FieldFrame frame = frames_->of(state, acceleration, section_forces, time);
+  if (!disk_refused_ && !times_.contains(time)) write(frames_->of(state, acceleration, section_forces, time));
+}
+
+void FieldRun::write(const FieldFrame& frame) {
+  if (disk_refused_ || times_.contains(frame.time)) return;
   std::optional<FieldTrouble> trouble;
   try {
     trouble = vtu_ ? vtu_->write(frame) : xdmf_->write(frame);
@@ -169,20 +180,44 @@ void FieldRun::write(const State& state, const Vector* acceleration, const std::
     return stop_writing();
   }
   if (!trouble) {
-    times_.insert(time);
+    times_.insert(frame.time);
+    if (journal_) journal_->append(frame);
     return;
   }
-  if (left_out_++ == 0) trouble_ = fmt::format("{} at t = {:.6g} s", trouble->reason, time);
+  if (left_out_++ == 0) trouble_ = fmt::format("{} at t = {:.6g} s", trouble->reason, frame.time);
 }
 
 void FieldRun::stop_writing() {
   disk_refused_ = true;
+  if (journal_) journal_->fail();
   folder_.note_failure(list_, "the system refused a part of its data (a full disk, or a file that is too large)");
+}
+
+FieldRun::Memory FieldRun::memory() {
+  ArchiveWriter rest;
+  rest(uplifted_, left_out_, trouble_);
+  for (const Kept* kept : {&gap_, &pressure_}) {
+    rest(kept->largest);
+    if (kept->largest > 0) rest(frame_of(*kept));
+  }
+  return {journal_->sync(), rest.bytes()};
+}
+
+void FieldRun::resume(const Memory& memory, const std::string& journal) {
+  std::string why;
+  read_journal(
+      journal, memory.frames, [this](const FieldFrame& frame) { write(frame); }, why);
+  ArchiveReader rest(memory.rest);
+  rest(uplifted_, left_out_, trouble_);
+  for (Kept* kept : {&gap_, &pressure_}) {
+    rest(kept->largest);
+    if (kept->largest > 0) rest(kept->frame.emplace());
+  }
 }
 
 void FieldRun::finish(RunResult& result) {
   for (const Kept* kept : {&gap_, &pressure_})
-    if (kept->largest > 0) write(kept->state, &kept->acceleration, kept->section_forces, kept->state.time);
+    if (kept->largest > 0) write(frame_of(*kept));
   try {
     if (vtu_) vtu_->finish();
     if (xdmf_ && !disk_refused_) xdmf_->finish(into(folder_));

@@ -7,6 +7,7 @@
 #include "uplift/case/case.h"
 #include "uplift/dynamics/step.h"
 #include "uplift/io/fields/fields.h"
+#include "uplift/io/fields/journal.h"
 
 // Field output of a run, as [output.fields] of a case asks for it.
 namespace uplift {
@@ -42,6 +43,19 @@ class FieldRun {
   void see(const Snapshot& snapshot);
   /// Writes the events and the list. A frame that was left out because a number was not finite is noted in the result.
   void finish(RunResult& result);
+
+  /// What the fields remember at a moment of the run.
+  struct Memory {
+    std::uint64_t frames = 0;  // bytes of the journal
+    std::string rest;          // as bytes
+  };
+  /// From now on frames go to this file too (FrameJournal).
+  void keep_frames(const std::string& journal) { journal_.emplace(journal); }
+  /// The present one, whose journal is on the disk. Throws filesystem_error.
+  Memory memory();
+  /// Goes on from there: writes the frames of that journal, which has been found whole, again.
+  void resume(const Memory& memory, const std::string& journal);
+
   const std::string& list() const { return list_; }  // "fields/run.pvd", in the folder of the results
   int frames() const { return static_cast<int>(times_.size()); }
 
@@ -51,6 +65,7 @@ class FieldRun {
     State state;
     Vector acceleration;
     std::vector<double> section_forces;
+    std::optional<FieldFrame> frame;  // instead of them, of a run that goes on
   };
   void see_static(const Snapshot& snapshot);
   void see_events(const Snapshot& snapshot);
@@ -59,6 +74,8 @@ class FieldRun {
   std::vector<double> section_forces(const Snapshot& snapshot, const Vector* acceleration);
   void stop_writing();
   void write(const State& state, const Vector* acceleration, const std::vector<double>& section_forces, double time);
+  void write(const FieldFrame& frame);
+  FieldFrame frame_of(const Kept& kept) const;
 
   const RunPlan& plan_;
   ResultFolder& folder_;
@@ -68,6 +85,7 @@ class FieldRun {
   std::unique_ptr<const RunFrames> frames_;
   std::optional<VtuWriter> vtu_;
   std::optional<XdmfWriter> xdmf_;
+  std::optional<FrameJournal> journal_;
   std::set<double> times_;                   // s, of the frames that are written
   std::unique_ptr<const ForceMeter> meter_;  // of the section forces, for one stage
   std::size_t metered_ = 0;                  // that stage

@@ -48,7 +48,9 @@ void Hdf5Writer::write(const std::string& path, std::int64_t file_type, std::int
   const Hdf5Call call;
   assert(H5Lexists(file_.get(), path.c_str(), H5P_DEFAULT) <= 0 && "a data set is written once");
   const Hdf5Id space(H5Screate_simple(static_cast<int>(lengths.size()), lengths.data(), nullptr), H5Sclose);
-  const Hdf5Id data(H5Dcreate2(file_.get(), path.c_str(), file_type, space.get(), H5P_DEFAULT, H5P_DEFAULT, H5P_DEFAULT), H5Dclose);
+  const Hdf5Id properties(H5Pcreate(H5P_DATASET_CREATE), H5Pclose);
+  H5Pset_obj_track_times(properties.get(), false);  // the bytes of the file depend on its content alone
+  const Hdf5Id data(H5Dcreate2(file_.get(), path.c_str(), file_type, space.get(), H5P_DEFAULT, properties.get(), H5P_DEFAULT), H5Dclose);
   if (!data.ok() || (count > 0 && H5Dwrite(data.get(), memory_type, H5S_ALL, H5S_ALL, H5P_DEFAULT, values) < 0)) fail(path);
 }
 

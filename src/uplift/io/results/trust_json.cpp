@@ -59,6 +59,7 @@ void write_trust(ResultWriter& out, const TrustAnswer& answer) {
   out.constant("format", "uplift-trust-1", "format of this document");
   out.flag("complete", answer.complete, "whether no repetition was interrupted");
   out.text("dominant", answer.dominant, "choice that is most often the one with the largest deviation");
+  out.count("interior", answer.interior, "stiffnesses computed between the case and each end; 0: only the ends");
   out.number("spectrum_band", answer.accepted, "1", "accepted deviation of a floor spectrum (`trust.spectrum_band`)");
   out.object("base", "the case as it stands", [&] { write_run(out, answer.base); });
   out.list("runs", "repetitions, each with one changed choice", answer.runs, [&](const TrustRun& run) { write_run(out, run); });
@@ -105,7 +106,10 @@ std::string trust_sentence(const TrustAnswer& answer) {
     }
   if (text.empty()) return "";
   text += answer.dominant.empty() ? "." : fmt::format(". What moves most numbers most is the {}.", answer.dominant);
-  return text + " Only the ends of each range were computed: where uplift responds unsteadily, values between them may lie outside.";
+  if (answer.interior == 0)
+    return text + " Only the ends of each range were computed: where uplift responds unsteadily, values between them may lie outside.";
+  return text + fmt::format(" Between the case and each end of the stiffness {} computed too.",
+                            answer.interior == 1 ? "one value was" : fmt::format("{} values were", answer.interior));
 }
 
 }  // namespace uplift
