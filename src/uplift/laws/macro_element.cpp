@@ -8,7 +8,7 @@
 namespace uplift {
 namespace {
 
-constexpr int most_halvings = 6;  // of an increment whose return fails
+constexpr int most_halvings = 12;  // of an increment whose return fails
 constexpr int never = most_halvings + 1;
 
 /// What a point remembers besides the plastic displacements.

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "uplift/laws/macro_landing.h"
 #include "uplift/math/small.h"
 
 namespace uplift {
@@ -64,24 +65,8 @@ class Return {
   bool accept(const State& state) const;
   bool attempt(Active active, State& state);
   void linearise(const State& state, MacroReturned& out) const;
-  /// Where a footing touches the ground with an edge or a corner, without load: `flow` is the direction of the flow, that of |H| = N
-  /// included, `most` the multiplier that takes the toe out of the ground, `toe` d toe/d displacement there, which is M/N; zero for an axis
-  /// that has come to lie flat.
-  struct Edge {
-    MacroVector toe, flow;
-    double most = 0;
-    double shear = 0;  // the largest H/N
-  };
-  Edge edge() const;
-  MacroVector sunk(const Edge& edge, double multiplier) const;
-  double flat_moment(const Edge& edge, double multiplier, int axis) const;
-  double shear_share(const Edge& edge, double multiplier) const;
-  bool beyond(const Edge& edge, double multiplier) const;
-  bool settles() const;
-  MacroVector pressed(const Edge& edge, double multiplier) const;
-  bool overloaded(const Edge& edge, double multiplier) const;
+  bool settles() const { return surfaces_.has_bearing() && surfaces_.strength().flow == MacroStrength::Flow::settling; }
   bool start_on_edge(State& state) const;
-  bool land(MacroReturned& out) const;
 
   const MacroUplift& uplift_;
   const MacroSurfaces& surfaces_;
@@ -261,139 +246,16 @@ void Return::linearise(const State& state, MacroReturned& out) const {
   }
 }
 
-bool Return::settles() const {
-  return surfaces_.has_bearing() && surfaces_.strength().flow == MacroStrength::Flow::settling;
-}
-
-/// The multiplier is the root of a function of straight pieces: each axis that comes to lie flat begins a new one.
-Return::Edge Return::edge() const {
-  const MacroElasticity& ground = uplift_.elasticity();
-  Edge made;
-  made.toe.setZero();
-  made.toe[macro_n] = 1;
-  const double turned = std::hypot(trial_[macro_m1], trial_[macro_m2]);
-  for (int i = 0; i < 2; ++i) {
-    const double theta = trial_[macro_m1 + i];
-    if (theta != 0) made.toe[macro_m1 + i] = 0.5 * ground.length[i] * (ground.disc ? theta / turned : theta < 0 ? -1 : 1);
-  }
-  MacroVector force = made.toe;
-  const double moved = std::hypot(trial_[macro_h1], trial_[macro_h2]);
-  const MacroStrength& strength = surfaces_.strength();
-  constexpr double unlimited = 1e6;
-  made.shear = strength.power_law ? unlimited : 1;
-  if (surfaces_.has_sliding() && !(strength.cohesion > 0)) made.shear = std::min(strength.friction, made.shear);
-  if (moved > 0) force.segment<2>(macro_h1) = trial_.segment<2>(macro_h1) / moved;
-  made.flow = surfaces_.bearing_flow(force, strength.service).direction;
-  for (int pass = 0; pass < 3; ++pass) {
-    made.most = made.toe.dot(trial_) / made.toe.dot(made.flow);
-    int flat = -1;
-    for (int i = macro_m1; i <= macro_m2; ++i)
-      if (made.toe[i] != 0 && trial_[i] / made.flow[i] < made.most &&
-          (flat < 0 || trial_[i] / made.flow[i] < trial_[flat] / made.flow[flat]))
-        flat = i;
-    if (flat < 0) break;
-    made.toe[flat] = 0;
-    if (ground.disc) made.toe.tail<2>().setZero();
-  }
-  return made;
-}
-
-/// So far along the flow: a rotation ends where the axis lies flat. Next to no N leaves next to no shear.
-MacroVector Return::sunk(const Edge& edge, double multiplier) const {
-  MacroVector e = trial_ - multiplier * edge.flow;
-  e.segment<2>(macro_h1).setZero();
-  for (int i = macro_m1; i <= macro_m2; ++i)
-    if (e[i] * trial_[i] < 0) e[i] = 0;
-  return e;
-}
-
-/// H/N: the flow of the shear has taken all of its displacement, or the shear is the largest and the footing slides.
-double Return::shear_share(const Edge& edge, double multiplier) const {
-  const double flow = std::hypot(edge.flow[macro_h1], edge.flow[macro_h2]), u = std::hypot(trial_[macro_h1], trial_[macro_h2]);
-  return u < edge.shear * multiplier * flow ? u / (multiplier * flow) : u > 0 ? edge.shear : 0;
-}
-
-/// 2 M/(N D) of an axis that lies flat: the flow of its moment has taken all of its rotation. 0 for other axes.
-double Return::flat_moment(const Edge& edge, double multiplier, int axis) const {
-  const double flow = edge.flow[macro_m1 + axis], theta = trial_[macro_m1 + axis];
-  return multiplier * std::abs(flow) > std::abs(theta) ? theta / (multiplier * std::abs(flow)) : 0;
-}
-
-/// Surfaces in powers bear every contact as N vanishes (eq M20).
-bool Return::beyond(const Edge& edge, double multiplier) const {
-  if (surfaces_.strength().power_law) return false;
-  const MacroVector e = sunk(edge, multiplier);
-  double left = capacity(e) * std::pow(1 - shear_share(edge, multiplier), 3);
-  if (!(left > 0)) return true;
-  for (int i = 0; i < 2; ++i) left *= 1 - std::abs(flat_moment(edge, multiplier, i));
-  return uplift_.beyond_capacity(e, left);
-}
-
-/// So far along the flow, with the moment of a flat axis and the shear that the flow has.
-MacroVector Return::pressed(const Edge& edge, double multiplier) const {
-  MacroVector e = sunk(edge, multiplier), force = uplift_.respond(e, false).force;
-  if (!(force[macro_n] > 0)) return e;
-  bool flat = false;
-  for (int i = 0; i < 2; ++i)
-    if (const double moment = flat_moment(edge, multiplier, i); moment != 0) {
-      force[macro_m1 + i] = 0.5 * force[macro_n] * uplift_.elasticity().length[i] * moment;
-      flat = true;
-    }
-  if (flat) e = uplift_.displacement(force);
-  const double moved = std::hypot(trial_[macro_h1], trial_[macro_h2]);
-  if (moved > 0)
-    for (int i = macro_h1; i <= macro_h2; ++i)
-      e[i] = shear_share(edge, multiplier) * force[macro_n] * trial_[i] / (moved * uplift_.stiffness()[i]);
-  return e;
-}
-
-/// Whether the ground must give way more.
-bool Return::overloaded(const Edge& edge, double multiplier) const {
-  if (beyond(edge, multiplier)) return true;
-  const MacroVector e = pressed(edge, multiplier), force = uplift_.respond(e, false).force;
-  return force[macro_n] > 0 && (!surfaces_.bears(force) || surfaces_.bearing_value(force, capacity(e)) > 0);
-}
-
-/// A guess of small N: so far along the flow of the edge that the ground just bears the contact. Where it does not find the state without
-/// fail, the increment is rather halved.
+/// A guess of small N. Where it does not find the state without fail, the increment is rather halved.
 bool Return::start_on_edge(State& state) const {
   if (!settles() || !bearing()) return false;
   const bool needed = !surfaces_.strength().power_law && uplift_.beyond_capacity(trial_, capacity(trial_));
   if (!needed && !every_guess_) return false;
-  const Edge edge = this->edge();
-  if (!overloaded(edge, 0) || overloaded(edge, edge.most)) return false;
-  double low = 0, high = edge.most;
-  for (int i = 0; i < 60; ++i) {
-    const double middle = 0.5 * (low + high);
-    (overloaded(edge, middle) ? low : high) = middle;
-  }
+  const auto borne = MacroLanding(uplift_, surfaces_, trial_, settlement_).borne();
+  if (!borne) return false;
   state = {};
-  state.e = pressed(edge, high);
+  state.e = *borne;
   return guess(state);
-}
-
-/// A footing that comes down on an edge where the contact, however small, is pressed beyond its bearing capacity: it sinks in without load,
-/// along the limit of the flow for N -> 0 (eqs M23, M24), as far as it touches the ground.
-bool Return::land(MacroReturned& out) const {
-  if (!settles()) return false;
-  const Edge edge = this->edge();
-  if (!beyond(edge, edge.most)) return false;
-  out.elastic = sunk(edge, edge.most);
-  out.at = {};
-  out.at.contact = false;
-  out.at.contact_share = 0;
-  MacroVector flow = edge.flow;
-  for (int i = macro_m1; i <= macro_m2; ++i)
-    if (edge.toe[i] == 0) flow[i] = 0, out.by_trial(i, i) = 0;  // flat
-  out.by_trial -= flow * edge.toe.transpose() / edge.toe.dot(flow);
-  out.by_trial.middleRows<2>(macro_h1).setZero();
-  const double turned = trial_.tail<2>().norm();
-  if (uplift_.elasticity().disc && turned > 0) {  // its rotation keeps its direction and gets shorter
-    const Fixed<2, 1> along = trial_.tail<2>() / turned;
-    out.by_trial.bottomRightCorner<2, 2>() -=
-        edge.most * flow.tail<2>().norm() / turned * (Fixed<2, 2>::Identity() - along * along.transpose());
-  }
-  return true;
 }
 
 void Return::solve(MacroReturned& out) {
@@ -407,7 +269,7 @@ void Return::solve(MacroReturned& out) {
   if (!out.converged && bears != grips) out.converged = attempt(last, state);
   out.yielded = true;
   if (!out.converged) {
-    out.converged = land(out);
+    out.converged = settles() && MacroLanding(uplift_, surfaces_, trial_, settlement_).land(out);
     return;
   }
   out.elastic = state.e;

@@ -217,7 +217,7 @@ double MacroSurfaces::bearing_utilisation(const MacroVector& force, double capac
 
 double MacroSurfaces::sliding_utilisation(const MacroVector& force) const {
   const double shear = std::hypot(force[macro_h1], force[macro_h2]);
-  if (!(force[macro_n] > 0) || !(shear > 0)) return 0;
+  if (!(force[macro_n] > (has_bearing() ? least_share * strength_.service : 0)) || !(shear > 0)) return 0;
   const double cohesion = strength_.cohesion > 0 ? strength_.cohesion * moment_share(force) : 0;
   return shear / (force[macro_n] * strength_.friction + cohesion);
 }

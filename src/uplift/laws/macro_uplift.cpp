@@ -7,6 +7,9 @@
 namespace uplift {
 namespace {
 
+constexpr int most_iterations = 100;
+constexpr double quadratic = 1e-8;  // relative: after a step of Newton's method so small the error is round-off
+
 /// The uplift curve of one axis at x = theta/theta_0 (eq M2).
 struct Curve {
   double y = 1;         // x^(1/gamma), 1 before uplift: contact share 1/y
@@ -34,6 +37,9 @@ Curve curve(double x, double beta, double gamma) {
   } else if (gamma == 1) {  // strips
     c.y = x;
     c.log_like = std::log(x);
+  } else if (gamma == 3) {
+    c.y = std::cbrt(x);
+    c.log_like = 0.5 * (c.y * c.y - 1);
   } else {
     const double log_y = std::log(x) / gamma, t = (gamma - 1) * log_y;
     c.y = std::exp(log_y);
@@ -88,53 +94,76 @@ MacroUplift::MacroUplift(const MacroElasticity& elasticity)
   stiffness_ << elastic_.vertical, elastic_.horizontal[0], elastic_.horizontal[1], elastic_.rocking[0], elastic_.rocking[1];
 }
 
-/// (M4) for alpha = 6 is quadratic in the square root of N: with x = offset/N for every axis that lifts,
-///   N/K_z - sum D |theta|/2 (1 - sqrt(N/offset))^2 = w.
-/// `count`: the axes that lift, from the largest offset on.
-double MacroUplift::quadratic_force(double w, const Axes& axes, const int* lifting, int count) const {
-  double toe = w, square = 1 / elastic_.vertical, linear = 0;
-  for (int k = 0; k < count; ++k) {
-    const int i = lifting[k];
-    const double half = 0.5 * elastic_.length[i] * axes.rotation[i];
-    toe += half, square -= half / axes.offset[i], linear += 2 * half / std::sqrt(axes.offset[i]);
+/// z - ln z = s, z >= 1: the vertical force of strips. Newton's method from either side (eq M28).
+double MacroUplift::strip_root(double s) {
+  const double sigma = std::max(s - 1, 0.0), t = 0.3361 * std::sqrt(0.5 * sigma);
+  double z = 1 + sigma + 2 / 0.3361 * t / (1 + t);  // within 0.6 % of the root: after Barry, Culligan-Hensley & Barry 1995
+  for (int iteration = 0; iteration < most_iterations && z > 1; ++iteration) {
+    const double next = z * (sigma + std::log(z)) / (z - 1), moved = std::abs(next - z);
+    z = next;
+    if (moved <= quadratic * (z - 1)) break;
   }
-  const double root = 2 * toe / (linear + std::sqrt(std::max(0.0, linear * linear + 4 * square * toe)));
-  return toe > 0 ? root * root : 0;
+  return z;
 }
 
-/// N at the settlement w: the root of N/K_z + sum factor N (h + beta x) = w + sum D |theta|/2, whose left side grows with N and is concave.
-/// Newton's method on the logarithms, kept in a bracket. Zero without contact.
+/// (M27): P N + Q N^(1/gamma) = T, for strips N (P + Q ln(N_1/N)) = T, over the axes that lift. The second one does where the left side at
+/// its offset exceeds the right side.
+double MacroUplift::lifted_force(double w, const Axes& axes) const {
+  const int first = axes.count == 2 && axes.offset[1] > axes.offset[0] ? 1 : 0;
+  const double largest = axes.offset[first];
+  double p = 1 / elastic_.vertical, q = 0, toe = w;
+  for (int k = 0; k < axes.count; ++k) {
+    const int i = k == 0 ? first : 1 - first;
+    const double offset = axes.offset[i], factor = axes.factor[i];
+    if (!(offset > 0)) break;
+    if (gamma_ == 1) {
+      const double log = k == 0 ? 0 : std::log(largest / offset);
+      if (k > 0 && (p + q * log) * offset <= toe) break;
+      p += 2 * factor * (1 - log), q += 2 * factor;
+    } else {
+      const double root = gamma_ == 2 ? std::sqrt(offset) : std::cbrt(offset);
+      if (k > 0 && p * offset + q * root <= toe) break;
+      p -= factor * beta_ / (gamma_ - 1), q += factor * gamma_ * beta_ / (gamma_ - 1) * offset / root;
+    }
+    toe += 0.5 * elastic_.length[i] * axes.rotation[i];
+  }
+  if (gamma_ == 1) return toe / (q * strip_root(p / q - std::log(toe / (q * largest))));
+  if (gamma_ == 2) {
+    const double root = 2 * toe / (q + std::sqrt(std::max(0.0, q * q + 4 * p * toe)));
+    return root * root;
+  }
+  double root = toe / q;  // beyond it for p > 0, before it for p < 0: from there Newton's method keeps its side
+  for (int iteration = 0; iteration < most_iterations; ++iteration) {
+    const double square = root * root, next = (2 * p * square * root + toe) / (3 * p * square + q), moved = std::abs(next - root);
+    root = next;
+    if (moved <= quadratic * root) break;
+  }
+  return root * root * root;
+}
+
+/// N at the settlement w; zero without contact. Shape numbers without a form of their own: Newton's method on (M26), from a force that is
+/// too small on, or from where the tangent leads to one.
 double MacroUplift::vertical_force(double w, const Axes& axes) const {
-  double toe = w, largest = 0;
+  double toe = w, largest = 0, sum = 0, all = 0;
   for (int i = 0; i < axes.count; ++i) {
     toe += 0.5 * elastic_.length[i] * axes.rotation[i];
     largest = std::max(largest, axes.offset[i]);
+    sum += axes.factor[i] * axes.offset[i], all += axes.factor[i];
   }
   if (w > 0 && largest <= elastic_.vertical * w) return elastic_.vertical * w;
   if (!(toe > 0)) return 0;
-  if (gamma_ == 2) {
-    const bool second_first = axes.count == 2 && axes.offset[1] > axes.offset[0];
-    const int order[2] = {second_first ? 1 : 0, second_first ? 0 : 1};
-    if (axes.count == 2 && axes.offset[order[1]] > 0) {
-      const double both = quadratic_force(w, axes, order, 2);
-      if (both < axes.offset[order[1]]) return both;
-    }
-    return quadratic_force(w, axes, order, 1);
-  }
-  double low = 0, high = elastic_.vertical * toe, n = w > 0 ? std::min(high, std::max(elastic_.vertical * w, 1e-3 * high)) : 0.1 * high;
-  for (int iteration = 0; iteration < 200; ++iteration) {
-    double value = n / elastic_.vertical, rate = 1 / elastic_.vertical;
+  if (gamma_ == 1 || gamma_ == 2 || gamma_ == 3) return lifted_force(w, axes);
+  double n = std::min(elastic_.vertical * toe, sum / all / std::pow(std::max(1.0, 2 * beta_ * sum / toe), gamma_));
+  for (int iteration = 0; iteration < most_iterations; ++iteration) {
+    double slope = toe, intercept = 1 / elastic_.vertical;  // of the tangent, the slope with its sign changed
     for (int i = 0; i < axes.count; ++i) {
       const Curve c = curve(axes.offset[i] / n, beta_, gamma_);
-      value += axes.factor[i] * n * c.from_edge;
-      rate += axes.factor[i] * (gamma_ + 1) * c.log_like;
+      slope -= axes.factor[i] * beta_ * axes.offset[i] / c.y;
+      intercept += axes.factor[i] * (c.from_edge - beta_ * axes.offset[i] / (n * c.y));
     }
-    (value > toe ? high : low) = n;
-    double next = n * std::exp(-std::log(value / toe) * value / (n * rate));
-    if (!(next > low && next < high)) next = low > 0 ? std::sqrt(low * high) : 1e-3 * high;
-    const double moved = std::abs(next - n);
+    const double next = slope > 0 ? slope / intercept : 0.1 * n, moved = std::abs(next - n);
     n = next;
-    if (moved <= 2 * std::numeric_limits<double>::epsilon() * n || high - low <= std::numeric_limits<double>::epsilon() * high) break;
+    if (moved <= quadratic * n) break;
   }
   return n;
 }

@@ -58,7 +58,8 @@ class MacroUplift {
  private:
   struct Axes;
   double vertical_force(double w, const Axes& axes) const;
-  double quadratic_force(double w, const Axes& axes, const int* lifting, int count) const;
+  double lifted_force(double w, const Axes& axes) const;
+  static double strip_root(double s);
 
   MacroElasticity elastic_;
   MacroVector stiffness_;
