@@ -172,7 +172,7 @@ void MacroElement::advance(bool average, const Batch& batch, const double* from,
     };
     // guesses that help only sometimes come last: else round-off decides how often an increment is halved
     Path path = start(never);
-    if (!path.go() && !(path = start(most_halvings)).go()) {
+    if (!path.go() && !(path = start(most_halvings)).go() && !(path = start(0)).go()) {
       path = start(never);
       path.mean.setConstant(std::numeric_limits<double>::quiet_NaN());
       path.end = path.mean;
