@@ -120,11 +120,11 @@ class MotionTables(TableStore):
         """Ground acceleration.
 
         Parameters:
-            direction: direction; absent: the x axis.
+            direction: direction, of length 1; absent: the x axis.
             function: name of the function of time.
             name: name.
             amplitude: acceleration that the function multiplies; of a record, which is an acceleration itself, a factor
-                [m/s2]; default 1.0.
+                without unit [m/s2]; default 1.0.
         """
         self._add("ground_acceleration", {"direction": direction, "function": function, "name": name, "amplitude": amplitude})
 
