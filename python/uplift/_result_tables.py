@@ -69,8 +69,8 @@ class ResultTables(TableStore):
             beam_envelope: envelopes of section forces.
             floor_bands: frequencies that part the bands in which floor spectra are compared with those of the bonded
                 run; absent: 2, 5, 10, 20 [Hz].
-            checkpoint: `uplift run` keeps the state of a run after this much time on the clock, from which `uplift
-                resume` goes on; absent: never [s], > 0 s.
+            checkpoint: `uplift run` and `uplift compare` keep the state of a run after this much time on the clock,
+                from which `uplift resume` goes on; absent: never [s], > 0 s.
             fields: fields on the mesh; absent: none.
         """
         self._set("output", {"every": every, "automatic": automatic, "energies": energies, "frames": frames, "history": history, "floor_spectrum": floor_spectrum, "beam_envelope": beam_envelope, "floor_bands": floor_bands, "checkpoint": checkpoint, "fields": fields})
@@ -155,6 +155,7 @@ class ResultTables(TableStore):
         self,
         *,
         stiffness_factor: Optional[Quantity] = None,
+        interior: Optional[int] = None,
         mesh_factor: Optional[Quantity] = None,
         mesh_shift: Optional[Quantity] = None,
         spectrum_band: Optional[Quantity] = None,
@@ -165,13 +166,15 @@ class ResultTables(TableStore):
             stiffness_factor: joints are computed this many times as stiff and as soft too; 1: not changed; absent: 10,
                 and 2 for a footing on fixed ground, whose joint is the soil itself: the factor is then what the
                 stiffness of the soil is uncertain by, from 1 to 1000000.
+            interior: stiffnesses between the case and each end that are computed too, in equal ratios; 0: only the ends
+                are, and the results say so, from 0 to 1000; default 0.
             mesh_factor: sizes of a made mesh are multiplied by this; 1: not changed, from 0.1 to 1; default 0.7.
             mesh_shift: the mesh around interface.cut is moved by this share of a cell, to both sides; 0: not moved,
                 from 0 to 0.45; default 0.3.
             spectrum_band: a floor spectrum speaks up to the frequency where its runs differ by more than this share, >
                 0; default 0.1.
         """
-        self._set("trust", {"stiffness_factor": stiffness_factor, "mesh_factor": mesh_factor, "mesh_shift": mesh_shift, "spectrum_band": spectrum_band})
+        self._set("trust", {"stiffness_factor": stiffness_factor, "interior": interior, "mesh_factor": mesh_factor, "mesh_shift": mesh_shift, "spectrum_band": spectrum_band})
 
     def origin(self, label: str, keys: Sequence[str], *, note: Optional[str] = None) -> None:
         """Origin of values.
