@@ -24,6 +24,8 @@ class OneCut {
  public:
   OneCut(CutWork& work, const CutPlane& plane, const Where& where);
   std::vector<CutFace> faces();
+  /// After `faces`.
+  std::vector<FreeFace> free_faces() { return std::move(free_); }
 
  private:
   void find_doubles();
@@ -41,6 +43,7 @@ class OneCut {
   void write_small(CellId id);
   void write_groups();
   void add_face(std::vector<CutFace>& faces, CutFace face, const CellBefore& of) const;
+  void add_beside(CellId cell, std::vector<Vec3> corners, const CutOutline* outline, double tolerance);
 
   CutWork& work_;
   Mesh& mesh_;
@@ -57,6 +60,7 @@ class OneCut {
   std::vector<bool> below_, above_;                  // nodes of lower and of upper parts
   std::vector<bool> beyond_;                         // nodes of cells beyond the extent: the lower side keeps them
   std::vector<int> double_;
+  std::vector<FreeFace> free_;
 };
 
 void OneCut::find_doubles() {
@@ -266,13 +270,27 @@ void OneCut::add_face(std::vector<CutFace>& faces, CutFace face, const CellBefor
   faces.push_back(std::move(face));
 }
 
+/// Adds what lies outside of the outline, in convex pieces: beyond its first limit, within that and beyond its second one, and so on.
+void OneCut::add_beside(CellId cell, std::vector<Vec3> corners, const CutOutline* outline, double tolerance) {
+  const auto add = [&](std::vector<Vec3> piece) {
+    if (static_cast<int>(piece.size()) >= mesh_.dimension) free_.push_back({cell, std::move(piece), plane_.below.normal});
+  };
+  if (outline == nullptr) return add(std::move(corners));
+  for (const HalfSpace& space : outline->within) {
+    add(clip_section(corners, {space.other_side()}, tolerance));
+    corners = clip_section(std::move(corners), {space}, tolerance);
+  }
+}
+
 std::vector<CutFace> OneCut::faces() {
   const std::size_t blocks = mesh_.blocks.size();
   std::vector<int> counts;
   for (const CellBlock& block : mesh_.blocks) counts.push_back(block.count());
   std::map<int, CellBefore> cells;
   for (int k = 0; k < static_cast<int>(halves_.size()); ++k)
-    if (halves_[at(k)].lower && halves_[at(k)].upper) cells.emplace(k, filling_.before(sides_.cells()[at(k)]));
+    if (halves_[at(k)].lower && (halves_[at(k)].upper || !halves_[at(k)].lower_whole))
+      cells.emplace(k, filling_.before(sides_.cells()[at(k)]));
+  const std::vector<CutFilling::BareFace> bare = filling_.bare_faces();
   for (const CutFilling::LevelFace& face : filling_.level_faces())
     cells.emplace(face.upper, filling_.before(sides_.cells()[at(face.upper)]));
   for (std::size_t b = 0; b < blocks; ++b) {
@@ -286,21 +304,21 @@ std::vector<CutFace> OneCut::faces() {
   for (const auto& [id, upper] : neighbours_) rename(id, upper);
   write_groups();
   std::vector<CutFace> found;
-  for (const auto& [k, cell] : cells)
-    if (const Halves& halves = halves_[at(k)]; halves.lower && halves.upper)
-      add_face(found,
-               {.lower = made_[at(k)].lower,
-                .upper = made_[at(k)].upper,
-                .corners = section(cell.cell, cell.corners, plane_.below, cell.tolerance),
-                .outline = halves.outline},
-               cell);
-  for (const CutFilling::LevelFace& face : filling_.level_faces())
-    add_face(found,
-             {.lower = made_[at(face.lower)].lower,
-              .upper = made_[at(face.upper)].upper,
-              .corners = face.corners,
-              .outline = halves_[at(face.upper)].outline},
-             cells.at(face.upper));
+  const auto add = [&](int lower, int upper, const std::vector<Vec3>& corners, const CellBefore& of) {
+    const int outline = halves_[at(upper)].outline;
+    add_face(found, {.lower = made_[at(lower)].lower, .upper = made_[at(upper)].upper, .corners = corners, .outline = outline}, of);
+    add_beside(made_[at(lower)].lower, corners, &plane_.outlines[at(outline)], of.tolerance);
+  };
+  for (const auto& [k, cell] : cells) {
+    if (!halves_[at(k)].lower || halves_[at(k)].lower_whole) continue;  // a cell above the plane
+    const std::vector<Vec3> corners = section(cell.cell, cell.corners, plane_.below, cell.tolerance);
+    if (halves_[at(k)].upper)
+      add(k, k, corners, cell);
+    else
+      add_beside(made_[at(k)].lower, corners, nullptr, cell.tolerance);
+  }
+  for (const CutFilling::LevelFace& face : filling_.level_faces()) add(face.lower, face.upper, face.corners, cells.at(face.upper));
+  for (const CutFilling::BareFace& face : bare) add_beside(made_[at(face.lower)].lower, face.corners, nullptr, 0);
   if (found.empty()) throw InputError(where_, "", "an interface on the plane", "none: nothing above the plane lies within the outline");
   return found;
 }
@@ -308,7 +326,7 @@ std::vector<CutFace> OneCut::faces() {
 }  // namespace
 
 std::vector<std::vector<CutFace>> cut(Mesh& mesh, const std::vector<CutPlane>& planes, const std::vector<Where>& where,
-                                      const std::vector<std::string>& lines) {
+                                      const std::vector<std::string>& lines, std::vector<std::vector<FreeFace>>* free) {
   assert(planes.size() == where.size());
   CutWork work{mesh};
   for (const std::string& name : lines)
@@ -316,8 +334,14 @@ std::vector<std::vector<CutFace>> cut(Mesh& mesh, const std::vector<CutPlane>& p
       work.lines.insert(group->second.cells.begin(), group->second.cells.end());
   for (const CellBlock& block : mesh.blocks) work.removed.emplace_back(at(block.count()), false);
   std::vector<std::vector<CutFace>> faces;
-  for (std::size_t k = 0; k < planes.size(); ++k) faces.push_back(OneCut(work, planes[k], where[k]).faces());
-  compact(work, faces);
+  std::vector<std::vector<FreeFace>> beside;
+  for (std::size_t k = 0; k < planes.size(); ++k) {
+    OneCut one(work, planes[k], where[k]);
+    faces.push_back(one.faces());
+    beside.push_back(one.free_faces());
+  }
+  compact(work, faces, beside);
+  if (free != nullptr) *free = std::move(beside);
   add_pieces(work.pieces, work.mesh);
   mesh = std::move(work.mesh);
   return faces;

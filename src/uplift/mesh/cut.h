@@ -37,6 +37,13 @@ struct CutFace {
   int outline = 0;       // of the plane's, in their order
 };
 
+/// A part of the surface that the ground has in the plane beside the outlines, where nothing stands on it: of one cell.
+struct FreeFace {
+  CellId cell;                // below; the surface follows its nodes by its shape functions
+  std::vector<Vec3> corners;  // m; convex: in the plane two, in space three or more in the order of the outline
+  Vec3 normal;                // of the plane, out of the ground
+};
+
 /// Cuts the mesh and removes what is not filled: cells, and nodes that no cell uses. For each plane its faces.
 /// - Cells of the groups `through` alone are cut; all others must lie on one side of the plane, or outside of the outlines.
 /// - Nodes within 1e-8 of the shortest edge from a plane count as on it; where all nodes of a face are, the mesh is opened there as by
@@ -47,8 +54,9 @@ struct CutFace {
 /// Throws InputError: a group absent (with the nearest name) or of something else, cut cells of the second degree, a cell that two planes
 /// cut or two outlines share, or that a limit of an extent crosses, a node on a plane whose cells have doubles of their own, a plane that
 /// cuts nothing, cells of other groups that meet those of `through` in the plane or stand on what is not filled. The mesh is unchanged
-/// then. `lines`: groups of cells of lower dimension that are no faces, as beams; absent ones count as empty.
+/// then. `lines`: groups of cells of lower dimension that are no faces, as beams; absent ones count as empty. `free`: gets the free faces
+/// of each plane.
 std::vector<std::vector<CutFace>> cut(Mesh& mesh, const std::vector<CutPlane>& planes, const std::vector<Where>& where,
-                                      const std::vector<std::string>& lines = {});
+                                      const std::vector<std::string>& lines = {}, std::vector<std::vector<FreeFace>>* free = nullptr);
 
 }  // namespace uplift

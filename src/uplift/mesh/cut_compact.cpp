@@ -11,7 +11,7 @@ std::size_t at(int i) {
 
 }  // namespace
 
-void compact(CutWork& work, std::vector<std::vector<CutFace>>& faces) {
+void compact(CutWork& work, std::vector<std::vector<CutFace>>& faces, std::vector<std::vector<FreeFace>>& free) {
   Mesh& mesh = work.mesh;
   std::vector<std::vector<int>> index;
   for (std::size_t b = 0; b < mesh.blocks.size(); ++b) {
@@ -40,6 +40,10 @@ void compact(CutWork& work, std::vector<std::vector<CutFace>>& faces) {
   move_keys(work.pieces);
   for (std::vector<CutFace>& of_plane : faces)
     for (CutFace& face : of_plane) face.lower = moved(face.lower), face.upper = moved(face.upper);
+  for (std::vector<FreeFace>& of_plane : free) {
+    for (FreeFace& face : of_plane) face.cell = moved(face.cell);
+    std::erase_if(of_plane, [](const FreeFace& face) { return face.cell.index < 0; });  // a lower plane has removed it
+  }
 
   std::vector<int> number(mesh.nodes.size(), -1);
   for (const CellBlock& block : mesh.blocks)

@@ -179,15 +179,36 @@ void CutFilling::find_level_faces() {
   for (int k = 0; k < static_cast<int>(halves_.size()); ++k) {
     if (!halves_[at(k)].lower || halves_[at(k)].upper) continue;
     for (int s = 0; s < sides_.count(k); ++s) {
-      const int side = Sides::stride * k + s, twin = sides_.twin(side);
+      const int twin = sides_.twin(Sides::stride * k + s);
       if (twin < 0 || !halves_[at(twin / Sides::stride)].upper) continue;
-      sides_.nodes_of(mesh_, side, nodes);
-      if (std::ranges::any_of(nodes, [&](int node) { return sign(node) != 0; })) continue;
-      LevelFace& face = level_.emplace_back(LevelFace{k, twin / Sides::stride, {}});
-      const int corners = info(info(mesh_.type(sides_.cells()[at(k)])).sides[at(s)]).corners;
-      for (int c = 0; c < corners; ++c) face.corners.push_back(mesh_.nodes[at(nodes[at(c)])]);
+      if (std::vector<Vec3> corners = corners_on_plane(k, s, nodes); !corners.empty())
+        level_.push_back({k, twin / Sides::stride, std::move(corners)});
     }
   }
+}
+
+/// Corners of a side of a cell all of whose nodes are on the plane; else none.
+std::vector<Vec3> CutFilling::corners_on_plane(int cell, int s, std::vector<int>& nodes) const {
+  sides_.nodes_of(mesh_, Sides::stride * cell + s, nodes);
+  std::vector<Vec3> corners;
+  if (std::ranges::any_of(nodes, [&](int node) { return sign(node) != 0; })) return corners;
+  const int count = info(info(mesh_.type(sides_.cells()[at(cell)])).sides[at(s)]).corners;
+  for (int c = 0; c < count; ++c) corners.push_back(mesh_.nodes[at(nodes[at(c)])]);
+  return corners;
+}
+
+std::vector<CutFilling::BareFace> CutFilling::bare_faces() const {
+  std::vector<BareFace> found;
+  std::vector<int> nodes;
+  for (int k = 0; k < static_cast<int>(halves_.size()); ++k) {
+    if (!halves_[at(k)].lower || !halves_[at(k)].lower_whole || mesh_.part(sides_.cells()[at(k)])) continue;
+    for (int s = 0; s < sides_.count(k); ++s) {
+      const int twin = sides_.twin(Sides::stride * k + s);
+      if (twin >= 0 && (halves_[at(twin / Sides::stride)].upper || halves_[at(twin / Sides::stride)].lower)) continue;
+      if (std::vector<Vec3> corners = corners_on_plane(k, s, nodes); !corners.empty()) found.push_back({k, std::move(corners)});
+    }
+  }
+  return found;
 }
 
 void CutFilling::refuse_nothing() const {

@@ -18,7 +18,7 @@ struct CutWork {
 };
 
 /// Removes marked cells and nodes that nothing uses.
-void compact(CutWork& work, std::vector<std::vector<CutFace>>& faces);
+void compact(CutWork& work, std::vector<std::vector<CutFace>>& faces, std::vector<std::vector<FreeFace>>& free);
 
 /// Which parts of a cell are filled after a cut.
 struct Halves {
@@ -60,6 +60,12 @@ class CutFilling {
     std::vector<Vec3> corners;
   };
   const std::vector<LevelFace>& level_faces() const { return level_; }
+  /// Faces on the plane of cells below it on which nothing stands.
+  struct BareFace {
+    int lower;  // number of the cell
+    std::vector<Vec3> corners;
+  };
+  std::vector<BareFace> bare_faces() const;
 
   CellBefore before(CellId id) const;
   /// Limits of what lies above the plane within an outline.
@@ -75,6 +81,7 @@ class CutFilling {
   Halves halves_of(CellId id) const;
   Halves halves_of_part(CellId id) const;
   void find_level_faces();
+  std::vector<Vec3> corners_on_plane(int cell, int side, std::vector<int>& nodes) const;
   void refuse_nothing() const;
 
   const CutWork& work_;

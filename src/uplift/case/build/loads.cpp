@@ -50,37 +50,52 @@ void check_outer(const Values& load, const CaseSolids& solids, const std::vector
            describe_cell(solids.mesh(), face) + " between two cells");
 }
 
+std::vector<Vec3> places_of(const Mesh& mesh, const std::vector<CellId>& faces, const std::vector<FreeFace>* free) {
+  std::vector<Vec3> places;
+  for (const CellId face : faces)
+    for (const int node : mesh.cell(face)) places.push_back(mesh.nodes[static_cast<std::size_t>(node)]);
+  if (free)
+    for (const FreeFace& face : *free) places.insert(places.end(), face.corners.begin(), face.corners.end());
+  return places;
+}
+
 /// Consistent forces of a pressure, a traction or an evenly spread force on edges or faces of the mesh.
 Pattern surface_load(const Values& load, const CaseNames& names) {
   for (const char* key : {"moment", "moments"})
     if (load.has(key)) fail(load, key, "pressure, traction or force on a group", "a moment");
   const std::string key = one_of(load, {"pressure", "traction", "force"});
   const CaseSolids& solids = names.mesh_for(load);
-  const std::vector<CellId>& faces = solids.edges(load, "group");
+  const std::vector<FreeFace>* free = solids.free_surface(load.text("group"));
+  const std::vector<CellId> faces = free ? std::vector<CellId>{} : solids.edges(load, "group");
   const Values* table = table_if(load, "profile");
   if (table && key == "force") fail(*table, "", "profile with pressure or traction", "profile with force");
   std::optional<Profile> profile;
   if (table) {
     profile.emplace(*table, "factors", names.space);
-    std::vector<Vec3> places;
-    for (const CellId face : faces)
-      for (const int node : solids.mesh().cell(face)) places.push_back(solids.mesh().nodes[static_cast<std::size_t>(node)]);
-    profile->require_overlap(*table, places);
+    profile->require_overlap(*table, places_of(solids.mesh(), faces, free));
   }
+  const auto shares = [&] {
+    const Profile* factor = profile ? &*profile : nullptr;
+    return free ? surface_shares(solids, *free, factor) : surface_shares(solids, faces, factor);
+  };
   Pattern pattern;
   if (key == "pressure") {
     check_outer(load, solids, faces);
-    for (const SurfaceShare& share : surface_shares(solids, faces, profile ? &*profile : nullptr))
+    for (const SurfaceShare& share : shares())
       add_force(names.first_of_mesh + share.node, -load.number("pressure") * share.outward, false, names.space, pattern);
     return pattern;
   }
   Vec3 per_area = vector_of(load, key, names.space);
   if (profile) {
-    for (const SurfaceShare& share : surface_shares(solids, faces, &*profile))
+    for (const SurfaceShare& share : shares())
       add_force(names.first_of_mesh + share.node, share.area * per_area, false, names.space, pattern);
     return pattern;
   }
-  const std::vector<std::pair<int, double>> areas = tributary_areas(solids, faces);
+  std::vector<std::pair<int, double>> areas;
+  if (free)
+    for (const SurfaceShare& share : shares()) areas.emplace_back(share.node, share.area);
+  else
+    areas = tributary_areas(solids, faces);
   double area = 0;
   for (const auto& [node, share] : areas) area += share;
   if (key == "force") per_area /= area;

@@ -61,4 +61,40 @@ std::vector<SurfaceShare> surface_shares(const CaseSolids& solids, const std::ve
   return shares;
 }
 
+/// The faces are convex: lines, or fans of triangles.
+std::vector<SurfaceShare> surface_shares(const CaseSolids& solids, const std::vector<FreeFace>& faces, const Profile* profile) {
+  constexpr int degree = 7;  // hex8: shape function 3 on an inclined face, profile 1; more in cells without parallel sides
+  const Mesh& mesh = solids.mesh();
+  const Cell piece = mesh.dimension == 2 ? Cell::line2 : Cell::tri3;
+  std::vector<SurfaceShare> shares;
+  for (const FreeFace& face : faces) {
+    const std::span<const int> nodes = mesh.cell(face.cell);
+    std::vector<Vec3> corners;
+    for (const int node : nodes) corners.push_back(mesh.nodes[static_cast<std::size_t>(node)]);
+    const Cell cell = mesh.type(face.cell);
+    const LocalCoordinates local(info(cell).linear, std::span<const Vec3>(corners).first(static_cast<std::size_t>(info(cell).corners)));
+    const double thickness = mesh.dimension == 2 ? solids.of(face.cell).section.thickness : 1;
+    const std::size_t first = shares.size();
+    for (const int node : nodes) shares.push_back({.node = node});
+    for (std::size_t k = mesh.dimension == 2 ? 1 : 2; k < face.corners.size(); ++k) {
+      std::vector<Vec3> positions{face.corners[0], face.corners[k]};
+      if (mesh.dimension == 3) positions.insert(positions.begin() + 1, face.corners[k - 1]);
+      CellRule rule = cell_rule(piece, degree);
+      if (profile != nullptr && profile->bends_within(positions)) rule = divided_rule(piece, rule, mesh.dimension == 2 ? 64 : 32);
+      for (std::size_t i = 0; i < rule.point.size(); ++i) {
+        const CellShape on_face = cell_shape(piece, rule.point[i]);
+        const Vec3 place = cell_position(on_face, positions);
+        const double factor = profile != nullptr ? profile->at(place) : 1;
+        const double area = thickness * factor * rule.weight[i] * cell_area_vector(on_face, positions, piece).norm();
+        const CellShape shape = cell_shape(cell, local(place));
+        for (std::size_t a = 0; a < nodes.size(); ++a) {
+          shares[first + a].area += shape.value[a] * area;
+          shares[first + a].outward += shape.value[a] * area * face.normal;
+        }
+      }
+    }
+  }
+  return shares;
+}
+
 }  // namespace uplift

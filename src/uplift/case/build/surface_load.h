@@ -20,4 +20,7 @@ struct SurfaceShare {
 /// the force on that face.
 std::vector<SurfaceShare> surface_shares(const CaseSolids& solids, const std::vector<CellId>& faces, const Profile* profile);
 
+/// The same for the surface beside a cut (eq X5), whose faces follow the cells below it by their shape functions.
+std::vector<SurfaceShare> surface_shares(const CaseSolids& solids, const std::vector<FreeFace>& faces, const Profile* profile);
+
 }  // namespace uplift

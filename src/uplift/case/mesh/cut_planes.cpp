@@ -97,6 +97,24 @@ void refuse_undetermined_jumps(const Values& cut, const std::vector<CutFace>& fa
            in_quotes("rigid"));
 }
 
+/// Gives the surface beside the outlines of a plane the name that its interfaces have for it.
+void name_free_surface(const std::vector<Values>& interfaces, const std::vector<std::size_t>& of, const std::vector<FreeFace>& faces,
+                       CaseMesh& made) {
+  const std::string* name = nullptr;
+  for (const std::size_t k : of) {
+    const Values& cut = interfaces[k].table("cut");
+    if (!cut.has("free")) continue;
+    const std::string& own = cut.text("free");
+    if (name != nullptr && own != *name) fail(cut, "free", in_quotes(*name) + ", as of the other outline on this plane", in_quotes(own));
+    if (name != nullptr) continue;
+    name = &own;
+    if (made.mesh.groups.contains(own)) fail(cut, "free", "a new name", in_quotes(own) + ", which is a group of the mesh");
+    if (faces.empty()) fail(cut, "free", "a surface of the ground beside the outline", "none: the structure covers all of the plane");
+    std::vector<FreeFace>& all = made.free[own];
+    all.insert(all.end(), faces.begin(), faces.end());
+  }
+}
+
 }  // namespace
 
 Vec3 normal_of_cut(const Values& cut, int dimension) {
@@ -142,12 +160,14 @@ void cut_planes(const Values& root, CaseMesh& made) {
              fmt::format("{:g}", cut.number("mesh_shift")));
     shift_mesh(first, planes[i], lines, made.mesh);
   }
-  const std::vector<std::vector<CutFace>> faces = cut(made.mesh, planes, where, lines);
+  std::vector<std::vector<FreeFace>> free;
+  const std::vector<std::vector<CutFace>> faces = cut(made.mesh, planes, where, lines, &free);
   for (std::size_t i = 0; i < of.size(); ++i) {
     for (const CutFace& face : faces[i]) made.cut[of[i][static_cast<std::size_t>(face.outline)]].push_back(face);
     for (const std::size_t k : of[i])
       if (made.cut[k].empty())
         fail(interfaces[k].table("cut"), "", "an interface on the plane", "none: nothing above the plane lies within the outline");
+    name_free_surface(interfaces, of[i], free[i], made);
     refuse_undetermined_jumps(interfaces[of[i].front()].table("cut"), faces[i], made.mesh);
   }
 }

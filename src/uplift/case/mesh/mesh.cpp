@@ -184,7 +184,8 @@ std::shared_ptr<const CaseMesh> mesh_of_case(const Values& root, const std::stri
   return made;
 }
 
-CaseSolids::CaseSolids(const Values& root, const CaseMesh& from) : mesh_(&from.mesh), sides_(from.mesh, full_cells(from.mesh)) {
+CaseSolids::CaseSolids(const Values& root, const CaseMesh& from)
+    : mesh_(&from.mesh), free_(&from.free), sides_(from.mesh, full_cells(from.mesh)) {
   const std::vector<CellId>& cells = sides_.cells();
   solid_of_.assign(cells.size(), -1);
   for (const ElementEntry* entry : elements_at(ElementPlace::cells))
@@ -260,6 +261,11 @@ const std::vector<CellId>& CaseSolids::edges(const Values& table, std::string_vi
     if (!beside(edge))
       fail(table, key, mesh_->dimension == 2 ? "edges of cells" : "faces of cells", describe_cell(*mesh_, edge) + " beside no cell");
   return group.cells;
+}
+
+const std::vector<FreeFace>* CaseSolids::free_surface(const std::string& name) const {
+  const auto found = free_->find(name);
+  return found != free_->end() ? &found->second : nullptr;
 }
 
 std::vector<std::pair<int, double>> tributary_areas(const CaseSolids& solids, const std::vector<CellId>& edges) {

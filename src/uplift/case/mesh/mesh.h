@@ -1,4 +1,5 @@
 #pragma once
+#include <map>
 #include <memory>
 #include <optional>
 #include <string>
@@ -19,9 +20,10 @@ struct CaseMesh {
   Mesh mesh;
   std::optional<Mesh> pieces = {};  // the mesh as it is drawn, with the pieces of cut cells; absent: as it is
   const Mesh& drawn() const { return pieces ? *pieces : mesh; }
-  std::string from;                         // the file, or "soil_box"
-  std::vector<std::vector<FacePair>> open;  // per interface of the case; empty for one without a surface
-  std::vector<std::vector<CutFace>> cut;    // per interface of the case; empty for one without a cut
+  std::string from;                                        // the file, or "soil_box"
+  std::vector<std::vector<FacePair>> open;                 // per interface of the case; empty for one without a surface
+  std::vector<std::vector<CutFace>> cut;                   // per interface of the case; empty for one without a cut
+  std::map<std::string, std::vector<FreeFace>> free = {};  // named surfaces of the ground beside the outlines of cuts
 };
 
 /// Reads or makes the mesh, checks it, opens it. Surfaces with the same lower side are opened together, others one after another. Null when
@@ -56,12 +58,15 @@ class CaseSolids {
   const std::vector<CellId>& lines(const Values& table) const;
   /// Edges of the group named under `key`; InputError for a group of something else.
   const std::vector<CellId>& edges(const Values& table, std::string_view key) const;
+  /// The surface beside cuts that has this name; null: none.
+  const std::vector<FreeFace>* free_surface(const std::string& name) const;
 
  private:
   /// The cells of one table.
   void add(const ElementEntry& entry, const Values& solid);
 
   const Mesh* mesh_;
+  const std::map<std::string, std::vector<FreeFace>>* free_;
   std::vector<Solid> solids_;
   Sides sides_;
   std::vector<int> solid_of_;  // of the cells of sides_

@@ -109,32 +109,37 @@ const Section& cut_section() {
       "cut",
       "a plane through cells of the mesh that ignore it: level, or point and normal. Below it the groups stay as they are. Above it they "
       "are filled within the outline alone (x, y, height), or everywhere without one",
-      Fields{texts("through", "groups of cells that the plane cuts"),
-             number("level", "m", "height of a horizontal plane (y in the plane, z in space); or give point and normal").optional(),
-             vector("point", "m", "a point of the plane").optional(),
-             vector("normal", "1", "its normal, from the ground to the structure").optional(),
-             text("upper", "group of the cells above the plane, a new name or a group of the mesh; absent: they stay in their groups")
-                 .optional(),
-             vector("x", "m", "outline above the plane: least and largest x; absent: no limit").optional(),
-             vector("y", "m", "in space: least and largest y of the outline; absent: no limit").optional(),
-             number("height", "m", "height of the outline above the plane; absent: no limit").positive().optional(),
-             vector("ground_x", "m",
-                    "ground with bases at several levels: least and largest x of the part that has this one, along faces of cells; absent: "
-                    "all of the groups")
-                 .optional(),
-             vector("ground_y", "m", "in space: least and largest y of that part").optional(),
-             choice("jump", {"linear", "constant", "rigid"},
-                    "how the opening varies within a cell: linear, as the displacements, each side with strains of its own; constant or "
-                    "rigid: the element-condensed form of the literature, one strain for both sides (plane meshes, to compare with it)")
-                 .standard("linear"),
-             number("mesh_shift", "1",
-                    "the nodes near the plane are moved along its normal by this share of the height of the cells there, to see whether it "
-                    "matters how the plane lies in the mesh (trust)")
-                 .between(-0.45, 0.45)
-                 .standard(0.0),
-             number("thickness", "m", "length out of the plane (plane meshes); absent: that of the solids (the smaller one)")
-                 .positive()
-                 .optional()}};
+      Fields{
+          texts("through", "groups of cells that the plane cuts"),
+          number("level", "m", "height of a horizontal plane (y in the plane, z in space); or give point and normal").optional(),
+          vector("point", "m", "a point of the plane").optional(),
+          vector("normal", "1", "its normal, from the ground to the structure").optional(),
+          text("upper", "group of the cells above the plane, a new name or a group of the mesh; absent: they stay in their groups")
+              .optional(),
+          vector("x", "m", "outline above the plane: least and largest x; absent: no limit").optional(),
+          vector("y", "m", "in space: least and largest y of the outline; absent: no limit").optional(),
+          number("height", "m", "height of the outline above the plane; absent: no limit").positive().optional(),
+          text("free",
+               "name for the surface that the ground has in the plane beside the outlines, where nothing stands on it: the group of loads "
+               "on it, of no other table. Absent: it carries none")
+              .optional(),
+          vector("ground_x", "m",
+                 "ground with bases at several levels: least and largest x of the part that has this one, along faces of cells; absent: "
+                 "all of the groups")
+              .optional(),
+          vector("ground_y", "m", "in space: least and largest y of that part").optional(),
+          choice("jump", {"linear", "constant", "rigid"},
+                 "how the opening varies within a cell: linear, as the displacements, each side with strains of its own; constant or "
+                 "rigid: the element-condensed form of the literature, one strain for both sides (plane meshes, to compare with it)")
+              .standard("linear"),
+          number("mesh_shift", "1",
+                 "the nodes near the plane are moved along its normal by this share of the height of the cells there, to see whether it "
+                 "matters how the plane lies in the mesh (trust)")
+              .between(-0.45, 0.45)
+              .standard(0.0),
+          number("thickness", "m", "length out of the plane (plane meshes); absent: that of the solids (the smaller one)")
+              .positive()
+              .optional()}};
   return s;
 }
 
