@@ -114,12 +114,12 @@ void Ranks::serve() {
   }
 }
 
-Ranks::Made Ranks::make(const Sparse& matrix, const Vector& scale, const std::string& options) {
+Ranks::Made Ranks::make(const Sparse& matrix, const Vector& scale, const std::string& options, const Matrix& motions) {
   const std::lock_guard lock(one_at_a_time_);
   HalfWay half_way(half_way_);
-  const Order order{What::make, ++made_, matrix.rows(), 0, std::ssize(options)};
+  const Order order{What::make, ++made_, matrix.rows(), motions.cols(), std::ssize(options)};
   tell(order);
-  const Scaled scaled{matrix, scale};
+  const Scaled scaled{matrix, scale, motions};
   Made made = make_together(order, &scaled, options);
   half_way.done();
   return made;
@@ -130,6 +130,8 @@ Ranks::Made Ranks::make_together(const Order& order, const Scaled* matrix, std::
   const SolverOptions given(spread_text(order.letters, std::move(options)));
   auto system = std::make_unique<System>(ranks_);
   made.outcome = system->set(spread_rows(static_cast<PetscInt>(order.rows), matrix), static_cast<PetscInt>(order.rows));
+  if (made.outcome.ok() && order.columns > 0)
+    made.outcome = system->set_motions(spread_motions(order, matrix), static_cast<PetscInt>(order.columns));
   if (made.outcome.ok()) made.outcome = system->prepare(given);
   made.nonzeros = system->nonzeros();
   if (made.outcome.ok()) systems_[order.system] = std::move(system);
@@ -168,6 +170,21 @@ SystemOutcome Ranks::solve_together(const Order& order, const double* b, double*
     MPI_Gatherv(solved.data() + static_cast<std::ptrdiff_t>(local) * c, local, MPI_DOUBLE, x == nullptr ? nullptr : x + order.rows * c,
                 counts.data(), firsts.data(), MPI_DOUBLE, 0, ranks_);
   return outcome;
+}
+
+/// The rank's rows of the motions of S A S, which are S^-1 times those of A, one column after another.
+std::vector<double> Ranks::spread_motions(const Order& order, const Scaled* matrix) const {
+  const Shares shares(static_cast<PetscInt>(order.rows), count_);
+  const PetscInt local = shares.count(rank_);
+  std::vector<int> counts, firsts;
+  for (int rank = 0; rank < count_; ++rank) counts.push_back(shares.count(rank)), firsts.push_back(shares.first(rank));
+  std::vector<double> rows(static_cast<std::size_t>(local) * static_cast<std::size_t>(order.columns));
+  Vector motion;
+  for (std::int64_t c = 0; c < order.columns; ++c) {
+    if (matrix != nullptr) motion = matrix->motions.col(c).cwiseQuotient(matrix->scale);
+    MPI_Scatterv(motion.data(), counts.data(), firsts.data(), MPI_DOUBLE, rows.data() + local * c, local, MPI_DOUBLE, 0, ranks_);
+  }
+  return rows;
 }
 
 std::string Ranks::refuse(const std::string& options) {

@@ -26,8 +26,9 @@ class Ranks {
     SystemOutcome outcome;
     double nonzeros = 0;
   };
-  /// Shares a symmetric matrix, of which the upper triangle is read, as S A S with the diagonal S, and prepares its solver.
-  Made make(const Sparse& matrix, const Vector& scale, const std::string& options);
+  /// Shares a symmetric matrix, of which the upper triangle is read, as S A S with the diagonal S, and prepares its solver. `motions`: what
+  /// deforms A least, columns; may have none.
+  Made make(const Sparse& matrix, const Vector& scale, const std::string& options, const Matrix& motions = {});
   /// x = A^-1 b; x has the shape of b.
   SystemOutcome solve(std::int64_t system, const Matrix& b, Matrix& x);
   /// The options of which nothing is known to PETSc, or what is wrong with them, tried on a chain of springs; empty when all is well.
@@ -50,7 +51,7 @@ class Ranks {
   enum class What : std::int64_t { make, solve, refuse, release, end };
   struct Order {
     What what = What::end;
-    std::int64_t system = 0, rows = 0, columns = 0, letters = 0;  // letters: of the options
+    std::int64_t system = 0, rows = 0, columns = 0, letters = 0;  // columns: of the loads, or the motions; letters: of the options
   };
   Ranks();
   void tell(const Order& order);
@@ -58,10 +59,12 @@ class Ranks {
   struct Scaled {
     const Sparse& upper;
     const Vector& scale;
+    const Matrix& motions;
   };
   Made make_together(const Order& order, const Scaled* matrix, std::string options);
   SystemOutcome solve_together(const Order& order, const double* b, double* x);
   std::string refuse_together(const Order& order, std::string options);
+  std::vector<double> spread_motions(const Order& order, const Scaled* matrix) const;
   LocalRows spread_rows(PetscInt rows, const Scaled* matrix) const;
   static LocalRows rows_of(const Scaled& matrix, Index first, Index count);
   std::string spread_text(std::int64_t letters, std::string text) const;

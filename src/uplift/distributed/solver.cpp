@@ -9,6 +9,7 @@
 
 #include "uplift/base/text.h"
 #include "uplift/distributed/ranks.h"
+#include "uplift/linear/large.h"
 #include "uplift/linear/petsc.h"
 #include "uplift/math/dense.h"
 
@@ -16,9 +17,10 @@ namespace uplift {
 
 namespace {
 
-class PetscFactor : public Factor {
+class PetscFactor : public FactorWithReach {
  public:
-  PetscFactor(std::int64_t system, Vector scale, double nonzeros) : system_(system), scale_(std::move(scale)), nonzeros_(nonzeros) {}
+  PetscFactor(std::int64_t system, Vector scale, double nonzeros, double reach)
+      : system_(system), scale_(std::move(scale)), nonzeros_(nonzeros), reach_(reach) {}
   ~PetscFactor() override { Ranks::all().release(system_); }
   PetscFactor(const PetscFactor&) = delete;
   PetscFactor& operator=(const PetscFactor&) = delete;
@@ -33,11 +35,12 @@ class PetscFactor : public Factor {
       x = Matrix::Constant(b.rows(), b.cols(), std::numeric_limits<double>::quiet_NaN());
   }
   double nonzeros() const override { return nonzeros_; }
+  double reach() const override { return reach_; }
 
  private:
   std::int64_t system_;
   Vector scale_;
-  double nonzeros_;
+  double nonzeros_, reach_;
 };
 
 /// Chosen unknowns t "last" by solves with the whole matrix: with G = (A^-1)_tt = U U^T, U upper triangular, L_tt = U^-T. What a forward
@@ -89,8 +92,8 @@ class PetscSplit final : public SplitFactor {
 
 /// (A^-1)_tt, some columns at a time.
 Matrix compliance_of(const Factor& factor, Index rows, const std::vector<int>& chosen) {
-  constexpr Index block = 64;
-  const Index count = std::ssize(chosen);
+  constexpr Index most_numbers = 1 << 22;
+  const Index count = std::ssize(chosen), block = std::clamp<Index>(most_numbers / rows, 1, 64);
   Matrix compliance(count, count), load, answer;
   for (Index first = 0; first < count; first += block) {
     const Index columns = std::min(block, count - first);
@@ -102,21 +105,28 @@ Matrix compliance_of(const Factor& factor, Index rows, const std::vector<int>& c
   return 0.5 * (compliance + compliance.transpose());
 }
 
-class PetscSolver final : public LinearSolver {
+class PetscSolver final : public SolverOfStatics {
  public:
-  explicit PetscSolver(std::string options) : options_(std::move(options)) {}
+  struct Settings {
+    std::string options, of_statics;  // of PETSc
+    double reach = 0;                 // m
+  };
+  explicit PetscSolver(Settings settings, Matrix motions = {}) : settings_(std::move(settings)), motions_(std::move(motions)) {}
   Factorisation factorise(const Sparse& a) const override {
     Vector scale = a.diagonal();
     for (Index i = 0; i < scale.size(); ++i) {
       if (!(scale[i] > 0)) return singular_at(static_cast<int>(i));
       scale[i] = 1 / std::sqrt(scale[i]);
     }
-    Ranks::Made made = Ranks::all().make(a, scale, options_);
+    Ranks::Made made = Ranks::all().make(a, scale, settings_.options, motions_);
     if (!made.outcome.ok())
       return {.factor = nullptr, .failed_unknown = -1, .why = std::move(made.outcome.why), .too_large = made.outcome.too_large};
-    return {.factor = std::make_unique<PetscFactor>(made.system, std::move(scale), made.nonzeros), .failed_unknown = -1, .why = {}};
+    return {.factor = std::make_unique<PetscFactor>(made.system, std::move(scale), made.nonzeros, settings_.reach),
+            .failed_unknown = -1,
+            .why = {}};
   }
   SplitFactorisation factorise_split(const Sparse& a, const std::vector<int>& last) const override {
+    if (settings_.reach > 0) return {};
     Factorisation whole = factorise(a);
     if (whole.factor == nullptr)
       return {.factor = nullptr, .failed_unknown = whole.failed_unknown, .why = std::move(whole.why), .too_large = whole.too_large};
@@ -129,24 +139,36 @@ class PetscSolver final : public LinearSolver {
             .why = {}};
   }
 
+  /// Multigrid alone makes use of the motions.
+  std::unique_ptr<const LinearSolver> for_statics(const Matrix& motions) const override {
+    const std::string& options = settings_.of_statics;
+    return std::make_unique<PetscSolver>(Settings{options, options, settings_.reach},
+                                         options.find("gamg") != std::string::npos ? motions : Matrix());
+  }
   /// None: it would be one more copy of both matrices on rank 0.
   std::shared_ptr<const SymmetricPair> pair(const Sparse&, const Sparse&) const override { return nullptr; }
   bool distributed() const override { return true; }
 
  private:
-  std::string options_;
+  Settings settings_;
+  Matrix motions_;
 };
 
 }  // namespace
 
 std::unique_ptr<const LinearSolver> make_petsc(const Values& values) {
-  const std::string& options = values.text("options");
-  const auto refuse = [&](const std::string& found) {
-    fail(values, "options", "options with which PETSc solves a matrix, as \"-ksp_type cg -pc_type jacobi\"", found);
+  const auto options = [&](const char* key) -> const std::string& {
+    const std::string& given = values.text(key);
+    const auto refuse = [&](const std::string& found) {
+      fail(values, key, "options with which PETSc solves a matrix, as \"-ksp_type cg -pc_type jacobi\"", found);
+    };
+    if (!given.empty() && given.front() != '-') refuse(in_quotes(given));
+    if (const std::string why = Ranks::all().refuse(given); !why.empty()) refuse(fmt::format("{}: {}", in_quotes(given), why));
+    return given;
   };
-  if (!options.empty() && options.front() != '-') refuse(in_quotes(options));
-  if (const std::string why = Ranks::all().refuse(options); !why.empty()) refuse(fmt::format("{}: {}", in_quotes(options), why));
-  return std::make_unique<PetscSolver>(options);
+  const std::string& of_steps = options("options");
+  return std::make_unique<PetscSolver>(
+      PetscSolver::Settings{of_steps, values.has("static_options") ? options("static_options") : of_steps, values.number("reach")});
 }
 
 }  // namespace uplift

@@ -82,6 +82,43 @@ PetscErrorCode System::assemble(const LocalRows& local, PetscInt rows) {
   PetscFunctionReturn(0);
 }
 
+SystemOutcome System::set_motions(const std::vector<double>& motions, PetscInt columns) {
+  return agree(keep_motions(motions, columns), {});
+}
+
+/// Orthonormal, as MatNullSpaceCreate wants them; what depends on those before is left out.
+PetscErrorCode System::keep_motions(const std::vector<double>& motions, PetscInt columns) {
+  PetscFunctionBeginUser;
+  std::vector<Vec> kept;
+  for (PetscInt c = 0; c < columns; ++c) {
+    Vec motion = nullptr;
+    PetscCall(MatCreateVecs(matrix_, &motion, nullptr));
+    double* values = nullptr;
+    PetscCall(VecGetArray(motion, &values));
+    std::copy_n(motions.data() + static_cast<std::ptrdiff_t>(c) * local_, local_, values);
+    PetscCall(VecRestoreArray(motion, &values));
+    PetscReal size = 0, left = 0;
+    PetscCall(VecNormalize(motion, &size));
+    for (int twice = 0; twice < 2; ++twice)
+      for (const Vec before : kept) {
+        PetscScalar share = 0;
+        PetscCall(VecDot(motion, before, &share));
+        PetscCall(VecAXPY(motion, -share, before));
+      }
+    PetscCall(VecNormalize(motion, &left));
+    if (size > 0 && left > 1e-8)
+      kept.push_back(motion);
+    else
+      PetscCall(VecDestroy(&motion));
+  }
+  MatNullSpace space = nullptr;
+  PetscCall(MatNullSpaceCreate(ranks_, PETSC_FALSE, static_cast<PetscInt>(kept.size()), kept.data(), &space));
+  PetscCall(MatSetNearNullSpace(matrix_, space));
+  PetscCall(MatNullSpaceDestroy(&space));
+  for (Vec& vector : kept) PetscCall(VecDestroy(&vector));
+  PetscFunctionReturn(0);
+}
+
 /// While it lives PETSc reads these options, and no others.
 class OptionsInUse {
  public:

@@ -60,6 +60,8 @@ class System {
   System& operator=(const System&) = delete;
   /// The matrix; with a unit diagonal, so that a pivot or a residual has no unit. `rows`: of all ranks.
   SystemOutcome set(const LocalRows& local, PetscInt rows);
+  /// The motions that deform it least, from which multigrid makes its coarse levels: the rank's rows, one column after another.
+  SystemOutcome set_motions(const std::vector<double>& motions, PetscInt columns);
   /// Factorises it, or prepares the iterative method and tries it on one load. A matrix that is not positive definite is refused: by MUMPS
   /// from the signs of the pivots, where those below LinearSolver::least_pivot count as zero.
   SystemOutcome prepare(const SolverOptions& options);
@@ -71,6 +73,7 @@ class System {
 
  private:
   PetscErrorCode assemble(const LocalRows& local, PetscInt rows);
+  PetscErrorCode keep_motions(const std::vector<double>& motions, PetscInt columns);
   PetscErrorCode choose(const SolverOptions& options, SystemOutcome& outcome);
   PetscErrorCode set_up(SystemOutcome& outcome);
   PetscErrorCode use_mumps(const SolverOptions& options);

@@ -6,7 +6,9 @@
 #include <limits>
 
 #include "uplift/dynamics/split_response.h"
+#include "uplift/linear/large.h"
 #include "uplift/math/small.h"
+#include "uplift/math/upper_sum.h"
 #include "uplift/model/reduced.h"
 
 namespace uplift {
@@ -178,6 +180,15 @@ void BulkFactor::solve(const Vector& b, Vector& x, BulkWork& work) const {
   x = work.solved.col(0);
 }
 
+void BulkFactor::solve(const Matrix& b, Matrix& x, LinearCounts& counts) const {
+  counts.back_solves += b.cols();
+  factor_->solve(b, x);
+}
+
+double BulkFactor::reach() const {
+  return small_ || factor_ == nullptr ? 0 : reach_of(*factor_);
+}
+
 Spread BulkFactor::spread(const Sparse& b, LinearCounts& counts) const {
   if (small_) return spread_through(InverseFactor(inverse_), b);
   if (split_ != nullptr) return split_spread(*this, b, counts);
@@ -217,7 +228,8 @@ Accelerator::Accelerator(const Model& model, const Bulk& bulk, const Sparse* b, 
     }
   Sparse unit(bulk.unknowns, bulk.unknowns);
   unit.setFromTriplets(diagonal.begin(), diagonal.end());
-  mass_ = std::make_unique<BulkFactor>(bulk.mass_matrix + unit, b, bulk.small, solver, model, counts);
+  const Term with_unit[] = {{1, bulk.mass_matrix}, {1, unit}};
+  mass_ = std::make_unique<BulkFactor>(upper_sum(with_unit), b, bulk.small, solver, model, counts);
   if (massless_.empty()) return;
   const Eigen::Index count = static_cast<Eigen::Index>(massless_.size());
   std::vector<int> place(static_cast<std::size_t>(bulk.unknowns), -1);

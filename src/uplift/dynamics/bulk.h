@@ -87,6 +87,10 @@ class BulkFactor {
   bool too_large() const { return too_large_; }
   /// x = A^-1 b
   void solve(const Vector& b, Vector& x, BulkWork& work) const;
+  /// The same for many columns; only where the factor has a reach.
+  void solve(const Matrix& b, Matrix& x, LinearCounts& counts) const;
+  /// Of the factor (FactorWithReach) [m]; 0 where the inverse is kept.
+  double reach() const;
   /// How forces on the rows of B spread; through a split factor (of the same B) as its backward half, see split_spread. This factor must
   /// stay alive, and where it is. `counts`, of the back-solves that the spread takes, must stay alive too.
   Spread spread(const Sparse& b, LinearCounts& counts) const;

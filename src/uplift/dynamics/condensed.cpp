@@ -51,13 +51,16 @@ Condensed::Condensed(const Model& model, const Sparse& b, const Vector& gap, boo
   if (factor_->split() != nullptr) {
     split_ = std::make_unique<SplitResponse>(*factor_, b, counts);
     frame.factor = split_->factor();
+  } else if (factor_->reach() > 0 && b.rows() > 0) {
+    solved_ = std::make_unique<SolvedResponse>(*factor_, model, b, counts);
+    frame.factor = solved_->take_factor();
   } else {
     Spread spread = factor_->spread(b, counts);
     frame.factor = std::move(spread.factor);
     spread_ = std::move(spread.spread);
   }
   problem_ = problem_of(std::make_shared<const ContactModel>(std::move(frame)));
-  if (split_ == nullptr) list_touched(model, gap_moves);
+  if (split_ == nullptr && solved_ == nullptr) list_touched(model, gap_moves);
 }
 
 void Condensed::list_touched(const Model& model, bool gap_moves) {
@@ -105,6 +108,11 @@ void Condensed::free_opening(const Vector& right, const Vector& displacement) {
   small::affine(touched_b_, gap_.data(), touched_value_.data(), problem_.free_opening.data());
 }
 
+void Condensed::forget() {
+  solution_ = {}, method_work_ = method_.make_work();
+  if (solved_ != nullptr) solved_->forget();
+}
+
 /// Nothing touches.
 Outcome Condensed::free_step(const Vector& right, Vector& increment) {
   factor_->solve(right, increment, work_);
@@ -140,15 +148,25 @@ Vector guess_of_foundations(const InterfaceProblem& problem) {
 }  // namespace
 
 Outcome Condensed::contact_step(const Vector& right, const StepStart& start, Vector& increment) {
-  free_opening(right, start.displacement);
   small::copy(start.opening.size(), start.opening.data(), problem_.from.data());
   small::copy(start.history.size(), start.history.data(), problem_.old.data());
   if (start.filter != nullptr) problem_.filter = *start.filter;
   if (solution_.z.size() == 0) solution_.z = guess_of_foundations(problem_);
-  Outcome outcome = method_.solve(problem_, *method_work_, solution_);
+  Outcome outcome = solve_interfaces(right, start.displacement, increment);
   const InterfaceSystems solved = std::exchange(solution_.systems, {});
   work_.counts->systems.factored += solved.factored;
   work_.counts->systems.iterated += solved.iterated;
+  return outcome;
+}
+
+/// The interface problem, and the displacement that follows from it.
+Outcome Condensed::solve_interfaces(const Vector& right, const Vector& displacement, Vector& increment) {
+  if (solved_ != nullptr) {
+    const Vector opening = gap_ + b_ * displacement;
+    return solved_->solve(right, opening, method_, *method_work_, problem_, solution_, increment);
+  }
+  free_opening(right, displacement);
+  Outcome outcome = method_.solve(problem_, *method_work_, solution_);
   if (!outcome.converged) return outcome;
   if (split_ != nullptr)
     split_->backward(solution_.z, increment);

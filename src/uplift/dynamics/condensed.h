@@ -4,6 +4,7 @@
 
 #include "uplift/contact/method.h"
 #include "uplift/dynamics/bulk.h"
+#include "uplift/dynamics/solved_response.h"
 #include "uplift/dynamics/split_response.h"
 
 // One step of the discrete system in the displacement increment:
@@ -51,7 +52,8 @@ class StepSolver {
 };
 
 /// The condensed step: the free response, the small interface problem, and what its forces add. Through a split factor (SplitResponse) that
-/// is one back-solve; through any other one back-solve and the kept spread of the interface forces; with a kept inverse no back-solve.
+/// is one back-solve; through any other one back-solve and the kept spread of the interface forces; with a kept inverse no back-solve;
+/// through a factor with a reach some solves (SolvedResponse).
 class Condensed final : public StepSolver {
  public:
   /// `factor` is that of K_eff (with B^T D B in statics); `frame` lacks nothing but the factor C. `gap_moves`: the gap
@@ -62,11 +64,12 @@ class Condensed final : public StepSolver {
   const InterfaceProblem& problem() const override { return problem_; }
   const InterfaceSolution& solution() const override { return solution_; }
   const BulkFactor* factor() const override { return factor_.get(); }
-  void forget() override { solution_ = {}, method_work_ = method_.make_work(); }
+  void forget() override;
 
  private:
   void list_touched(const Model& model, bool gap_moves);
   void free_opening(const Vector& right, const Vector& displacement);
+  Outcome solve_interfaces(const Vector& right, const Vector& displacement, Vector& increment);
   Outcome free_step(const Vector& right, Vector& increment);
   Outcome contact_step(const Vector& right, const StepStart& start, Vector& increment);
 
@@ -75,6 +78,7 @@ class Condensed final : public StepSolver {
   std::shared_ptr<const BulkFactor> factor_;
   BulkWork work_;
   std::unique_ptr<SplitResponse> split_;
+  std::unique_ptr<SolvedResponse> solved_;
   Matrix touched_b_;  // columns of B that are not empty
   std::vector<int> touched_;
   Matrix spread_;             // X: du = du_free + X z

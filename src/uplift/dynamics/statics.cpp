@@ -11,6 +11,8 @@
 #include "uplift/contact/unheld.h"
 #include "uplift/dynamics/energy.h"
 #include "uplift/dynamics/lifted.h"
+#include "uplift/dynamics/rigid_motions.h"
+#include "uplift/linear/large.h"
 
 namespace uplift {
 
@@ -72,7 +74,8 @@ class LoadSteps {
 
  private:
   std::shared_ptr<const BulkFactor> factor(const Sparse& matrix, const BulkFactor* like) const {
-    return std::make_shared<const BulkFactor>(matrix, &b_, bulk_.small, solver_, model_, counts_, like);
+    const LinearSolver& solver = of_statics_ != nullptr ? *of_statics_ : solver_;
+    return std::make_shared<const BulkFactor>(matrix, &b_, bulk_.small, solver, model_, counts_, like);
   }
   std::unique_ptr<StepSolver> condensed(std::shared_ptr<const BulkFactor> made) const {
     return std::make_unique<Condensed>(model_, b_, gap_, !motion_.isZero(0), std::move(made), blocks_, method_, counts_);
@@ -97,6 +100,7 @@ class LoadSteps {
   const Vector& still_gap_;
   const ContactMethod& method_;
   const LinearSolver& solver_;
+  const std::unique_ptr<const LinearSolver> of_statics_;  // null: the same
   const StaticOptions& options_;
   State& state_;
   LinearCounts& counts_;
@@ -130,6 +134,7 @@ LoadSteps::LoadSteps(const Model& model, const Bulk& bulk, const Sparse& b, cons
       still_gap_(gap),
       method_(method),
       solver_(solver),
+      of_statics_(bulk.small ? nullptr : solver_for_statics(solver, rigid_motions(model))),
       options_(options),
       state_(state),
       counts_(counts),

@@ -5,6 +5,7 @@
 
 #include "uplift/dynamics/monolithic.h"
 #include "uplift/dynamics/statics.h"
+#include "uplift/math/upper_sum.h"
 #include "uplift/model/mechanism.h"
 
 namespace uplift {
@@ -29,8 +30,7 @@ Stepper::Level& Stepper::make_level(int halving) {
     made.solver = make_monolithic(matrix_of(made), b_, gap_, std::move(frame));
     ++linear_.factorisations;
   } else {
-    const Sparse upper = matrix_of(made).triangularView<upper_triangle>();  // half of it, while the factor is made
-    auto factor = std::make_shared<const BulkFactor>(upper, &b_, bulk_.small, solver_, model_, linear_);
+    auto factor = std::make_shared<const BulkFactor>(upper_of(made), &b_, bulk_.small, solver_, model_, linear_);
     if (!factor->ok()) {
       made.why = factor->why();
       made.hopeless = factor->too_large();
@@ -43,8 +43,8 @@ Stepper::Level& Stepper::make_level(int halving) {
       made.solver = make_compared(matrix_of(made), std::move(made.solver), std::move(oracle), options_.oracle_tolerance);
   }
   if (impacts_ && impact_.needs_dynamic()) {
-    const Sparse dynamic = bulk_.stiffness_matrix + (4 / (dt * dt)) * bulk_.mass_matrix;
-    made.dynamic_factor = std::make_unique<BulkFactor>(dynamic, &b_, bulk_.small, solver_, model_, linear_);
+    const Term dynamic[] = {{1, bulk_.stiffness_matrix}, {4 / (dt * dt), bulk_.mass_matrix}};
+    made.dynamic_factor = std::make_unique<BulkFactor>(upper_sum(dynamic), &b_, bulk_.small, solver_, model_, linear_);
     made.why = made.dynamic_factor->why();
     made.hopeless = made.dynamic_factor->too_large();
     if (made.why.empty()) made.dynamic = std::make_unique<Spread>(made.dynamic_factor->spread(b_, linear_));
@@ -68,6 +68,13 @@ Sparse Stepper::matrix_of(const Level& level) const {
   if (shift_.size() > 0) linear += b_.transpose() * shift_.asDiagonal() * b_;
   if (!filtered_ || bulk_.geometric == nullptr) return linear;
   return linear - (1 - 1 / options_.scheme.stretch()) * *bulk_.geometric;  // the geometric stiffness is not filtered
+}
+
+/// The upper triangle of the same: what a factor is made of.
+Sparse Stepper::upper_of(const Level& level) const {
+  if (shift_.size() > 0 || (filtered_ && bulk_.geometric != nullptr)) return matrix_of(level).triangularView<upper_triangle>();
+  const Term terms[] = {{1, bulk_.stiffness_matrix}, {level.damping, bulk_.damping_matrix}, {level.mass, bulk_.mass_matrix}};
+  return upper_sum(terms);
 }
 
 ContactModel Stepper::frame_of(const Level& level) const {

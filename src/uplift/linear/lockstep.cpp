@@ -7,6 +7,7 @@
 #include <utility>
 
 #include "uplift/base/file.h"
+#include "uplift/linear/large.h"
 #include "uplift/linear/supernodal.h"
 
 namespace uplift {
@@ -32,9 +33,10 @@ std::string key_of(const LinearSolver& solver, const Sparse& given, const std::v
 }  // namespace
 
 /// A factor of several runs as one of them sees it.
-class Lockstep::SeatFactor final : public Factor {
+class Lockstep::SeatFactor final : public FactorWithReach {
  public:
   SeatFactor(Lockstep& all, std::size_t run, std::shared_ptr<const Factor> shared) : all_(all), run_(run), shared_(std::move(shared)) {}
+  double reach() const override { return reach_of(*shared_); }
   ~SeatFactor() override { all_.let_go(run_); }
   SeatFactor(const SeatFactor&) = delete;
   SeatFactor& operator=(const SeatFactor&) = delete;
@@ -81,7 +83,7 @@ class Lockstep::SeatSplitFactor final : public SplitFactor {
   mutable bool forward_tried_ = false, backward_tried_ = false;
 };
 
-class Lockstep::SeatSolver final : public LinearSolver {
+class Lockstep::SeatSolver final : public SolverOfStatics {
  public:
   SeatSolver(Lockstep& all, std::size_t run, std::shared_ptr<const LinearSolver> own, const Model* model, const Model* matrices)
       : all_(all), run_(run), own_(std::move(own)), model_(model), matrices_(matrices) {}
@@ -97,6 +99,8 @@ class Lockstep::SeatSolver final : public LinearSolver {
     if (made.split != nullptr) mine = std::make_unique<SeatSplitFactor>(all_, run_, std::move(made.split));
     return {.factor = std::move(mine), .failed_unknown = made.failed_unknown, .why = std::move(made.why), .too_large = made.too_large};
   }
+  /// Not shared with other runs.
+  std::unique_ptr<const LinearSolver> for_statics(const Matrix& motions) const override { return solver_for_statics(*own_, motions); }
   FactorCost predict(const Sparse& a, const std::vector<int>& last) const override { return own_->predict(a, last); }
   std::shared_ptr<const SymmetricPair> pair(const Sparse& a, const Sparse& b) const override { return all_.pair(a, b); }
   void wait_for_room() const override { all_.wait_for_room(run_); }

@@ -10,7 +10,13 @@ const Entry<LinearSolver>& entry_solver_petsc() {
                     "else a Krylov method: conjugate gradients until |r| <= 1e-12 |b|, weights 1/sqrt(A_ii), where they name none",
        .source = "PETSc 3.18 (Balay et al., Users Manual ANL-21/39, 2022); MUMPS 5.5 (Amestoy, Duff, L'Excellent & Koster, SIAM J. Matrix "
                  "Anal. Appl. 23, 2001)",
-       .params = {text("options", "options of PETSc, as \"-ksp_type cg -pc_type jacobi\"; empty: a factorisation by MUMPS").standard("")}},
+       .params = {text("options", "options of PETSc, as \"-ksp_type cg -pc_type jacobi\"; empty: a factorisation by MUMPS").standard(""),
+                  text("static_options", "the same for static stages; without it as `options`").optional(),
+                  number("reach", "m",
+                         "entries of the flexibility between interface rows farther apart are left out when it is made and "
+                         "restored in every step by solves; 0: all are made, with one solve a row")
+                      .nonnegative()
+                      .standard(0.0)}},
       make_petsc};
   return entry;
 }

@@ -3,9 +3,11 @@
 #include <algorithm>
 #include <utility>
 
+#include "uplift/dynamics/solved_response.h"
 #include "uplift/dynamics/split_response.h"
 #include "uplift/dynamics/statics.h"
 #include "uplift/dynamics/step.h"
+#include "uplift/math/upper_sum.h"
 
 namespace uplift {
 
@@ -16,7 +18,13 @@ ContactModel with_compliance(ContactModel contact, const Sparse& matrix, const S
                              const LinearSolver& solver, LinearCounts& counts, std::string& why) {
   BulkFactor factor(matrix, &b, bulk.small, solver, model, counts);
   why = factor.why();
-  if (factor.ok()) contact.factor = factor.split() != nullptr ? SplitResponse(factor, b, counts).factor() : factor.spread(b, counts).factor;
+  if (!factor.ok()) return contact;
+  if (factor.split() != nullptr)
+    contact.factor = SplitResponse(factor, b, counts).take_factor();
+  else if (factor.reach() > 0)
+    contact.factor = SolvedResponse(factor, model, b, counts).take_factor();
+  else
+    contact.factor = factor.spread(b, counts).factor;
   return contact;
 }
 
@@ -26,11 +34,12 @@ ContactModel probe(const Model& model, const Bulk& bulk, const Sparse& b, const 
                    LinearCounts& counts, std::string& why) {
   const Scheme& s = stage.scheme;
   const double w = 1 - s.alpha_f, dt = stage.step * s.stretch();
-  const Sparse matrix =
-      bulk.stiffness_matrix + s.gamma / (s.beta * dt) * bulk.damping_matrix + (1 - s.alpha_m) / (w * s.beta * dt * dt) * bulk.mass_matrix;
+  const Term terms[] = {{1, bulk.stiffness_matrix},
+                        {s.gamma / (s.beta * dt), bulk.damping_matrix},
+                        {(1 - s.alpha_m) / (w * s.beta * dt * dt), bulk.mass_matrix}};
   ContactModel contact = blocks_of(model, Behaviours(model, NoContact(), nullptr));
   contact.step = stage.step;
-  return with_compliance(std::move(contact), matrix, b, model, bulk, solver, counts, why);
+  return with_compliance(std::move(contact), upper_sum(terms), b, model, bulk, solver, counts, why);
 }
 
 ContactModel static_probe(const Model& model, const LinearSolver& solver, LinearCounts& counts, std::string& why) {

@@ -1,0 +1,34 @@
+#pragma once
+#include "uplift/linear/solver.h"
+
+// What a solver for models whose factor is too large may offer beside what every solver does.
+namespace uplift {
+
+/// A factor whose solves are dear. The flexibility of interfaces is made of its entries between rows up to the reach apart and corrected in
+/// every step (SolvedResponse); with a reach of 0 it is made of all entries, as with any other factor.
+class FactorWithReach : public Factor {
+ public:
+  virtual double reach() const = 0;  // m
+};
+
+/// 0 for a factor without.
+inline double reach_of(const Factor& factor) {
+  const auto* with = dynamic_cast<const FactorWithReach*>(&factor);
+  return with != nullptr ? with->reach() : 0;
+}
+
+/// A solver that treats matrices without mass by another method than those of a time step.
+class SolverOfStatics : public LinearSolver {
+ public:
+  /// That for the matrices of static stages; null: this one. `motions`: columns, the motions of a rigid body on the unknowns of the matrix.
+  /// They deform nothing, and iterations without mass are slowest to find them.
+  virtual std::unique_ptr<const LinearSolver> for_statics(const Matrix& motions) const = 0;
+};
+
+/// Null: the same solver.
+inline std::unique_ptr<const LinearSolver> solver_for_statics(const LinearSolver& solver, const Matrix& motions) {
+  const auto* other = dynamic_cast<const SolverOfStatics*>(&solver);
+  return other != nullptr ? other->for_statics(motions) : nullptr;
+}
+
+}  // namespace uplift

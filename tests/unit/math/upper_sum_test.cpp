@@ -1,0 +1,55 @@
+#include "uplift/math/upper_sum.h"
+
+#include <gtest/gtest.h>
+
+#include <random>
+
+namespace uplift {
+namespace {
+
+TEST(UpperSum, IsTheUpperTriangleOfTheSumWithThePlacesOfAllTerms) {
+  constexpr int n = 30;
+  std::mt19937 random(4);
+  std::uniform_int_distribution<int> place(0, n - 1);
+  std::uniform_real_distribution<double> value(-1, 1);
+  std::vector<Sparse> matrices(3, Sparse(n, n));
+  for (Sparse& matrix : matrices) {
+    std::vector<Triplet> entries;
+    for (int k = 0; k < 80; ++k) {
+      const int i = place(random), j = place(random);
+      const double a = value(random);
+      entries.emplace_back(i, j, a), entries.emplace_back(j, i, a);
+    }
+    matrix.setFromTriplets(entries.begin(), entries.end());
+  }
+  Sparse of_one_triangle = matrices[2].triangularView<upper_triangle>();
+  const Term terms[] = {{1, matrices[0]}, {-0.5, matrices[1]}, {3e4, of_one_triangle}};
+  const Sparse sum = upper_sum(terms);
+  const Matrix exact = Matrix(matrices[0]) - 0.5 * Matrix(matrices[1]) + 3e4 * Matrix(matrices[2]);
+  EXPECT_LE((Matrix(sum) - Matrix(exact.triangularView<upper_triangle>())).cwiseAbs().maxCoeff(), 1e-15 * exact.cwiseAbs().maxCoeff());
+  for (int j = 0; j < n; ++j) {
+    int before = -1;
+    for (Sparse::InnerIterator entry(sum, j); entry; ++entry) {
+      EXPECT_GT(entry.row(), before);
+      EXPECT_LE(entry.row(), j);
+      before = static_cast<int>(entry.row());
+    }
+  }
+  for (const Sparse& matrix : matrices)  // also where the sum is zero
+    for (int j = 0; j < n; ++j)
+      for (Sparse::InnerIterator entry(matrix, j); entry; ++entry)
+        if (entry.row() <= j) {
+          bool there = false;
+          for (Sparse::InnerIterator own(sum, j); own; ++own) there = there || own.row() == entry.row();
+          EXPECT_TRUE(there);
+        }
+}
+
+TEST(UpperSum, KeepsEmptyColumns) {
+  const Sparse empty(4, 4);
+  const Term terms[] = {{2, empty}, {1, empty}};
+  EXPECT_EQ(upper_sum(terms).nonZeros(), 0);
+}
+
+}  // namespace
+}  // namespace uplift
