@@ -10,6 +10,7 @@ import time
 sys.path.insert(0, str(__import__("pathlib").Path(__file__).resolve().parents[1] / "cli"))
 from support import *  # noqa: E402
 from test_study_queues import Slurm, wait_until  # noqa: E402
+import random_cases  # noqa: E402
 
 ROOT = pathlib.Path(__file__).resolve().parents[2]
 ENVIRONMENT = {**os.environ, "OMPI_ALLOW_RUN_AS_ROOT": "1", "OMPI_ALLOW_RUN_AS_ROOT_CONFIRM": "1"}
@@ -28,9 +29,92 @@ def soil(duration):
     return text.replace('duration = "3 s"', f'duration = "{duration} s"')
 
 
+RAFT = """\
+title = "raft on soil"
+bonded = false
+[mesh.soil_box.soil]
+width = 16
+length = 14
+size = 2
+[[mesh.soil_box.soil.layers]]
+thickness = 2
+size = 1
+[[mesh.soil_box.soil.layers]]
+thickness = 4
+size = 2
+[mesh.soil_box.raft]
+width = 8
+length = 6
+height = 1
+size = 1
+[mesh.soil_box.block]
+width = 4
+length = 4
+height = 8
+size = 2
+[[solid]]
+group = "soil_1"
+shear_wave_speed = 250
+poisson = 0.3
+density = 1900
+[[solid]]
+group = "soil_2"
+shear_wave_speed = 400
+poisson = 0.3
+density = 2000
+[[solid]]
+group = "raft"
+E = "30 GPa"
+poisson = 0.2
+density = 2500
+[[solid]]
+group = "block"
+E = "5 GPa"
+poisson = 0.2
+density = 1000
+[[support]]
+group = "soil_bottom"
+fixed = ["ux", "uy", "uz"]
+[[support]]
+group = "soil_left"
+fixed = ["ux"]
+[[support]]
+group = "soil_right"
+fixed = ["ux"]
+[[support]]
+group = "soil_front"
+fixed = ["uy"]
+[[support]]
+group = "soil_back"
+fixed = ["uy"]
+[[interface]]
+name = "underside"
+surface = { group = "interface", lower = ["soil_1"] }
+law = { type = "springs", K_n = 2e10, K_t = 1e10, tangential = "coulomb", friction = 0.7 }
+[gravity]
+acceleration = [0, 0, -9.81]
+[[function]]
+name = "pulse"
+shape = { type = "half_sine", duration = 0.2 }
+[[ground_acceleration]]
+name = "earthquake"
+direction = [0.7, 0.3, -0.28]
+amplitude = 32
+function = "pulse"
+[damping]
+rayleigh = [{ frequency = 1, ratio = 0.04 }, { frequency = 8, ratio = 0.04 }]
+[[stage]]
+type = "static"
+[[stage]]
+type = "dynamic"
+duration = 0.3
+step = "4 ms"
+"""
+
+
 class MpiTest(CliTest):
     def command(self, ranks, *words, name="uplift-mpi"):
-        return ["mpirun", "--oversubscribe", "--quiet", "-n", str(ranks), str(pathlib.Path(program()).parent / name), *map(str, words)]
+        return ["mpirun", "--oversubscribe", "--quiet", "--mca", "mpi_yield_when_idle", "1", "-n", str(ranks), str(pathlib.Path(program()).parent / name), *map(str, words)]
 
     def mpi(self, ranks, *words, expect=0, name="uplift-mpi"):
         done = subprocess.run(self.command(ranks, *words, name=name), cwd=self.folder, capture_output=True, text=True, timeout=300, env=ENVIRONMENT)
@@ -98,6 +182,53 @@ class Results(MpiTest):
 
     def test_springs_on_few_unknowns(self):
         self.compare(BASE, ranks=(2, 4))
+
+
+class RandomCases(MpiTest):
+    seeds = (0, 1, 2, 3, 5)
+
+    def test_like_the_program_for_one_process(self):
+        for seed in self.seeds:
+            text, solver = random_cases.case(seed)
+            self.write(text)
+            self.uplift("run", "case.toml", "-q", "-o", "serial", "--no-step-check", expect=None)
+            serial = self.summary("serial")
+            self.write(solver + text, "petsc.toml")
+            for ranks in (1, 2, 4):
+                self.mpi(ranks, "run", "petsc.toml", "-q", "-o", f"{ranks}", "--no-step-check", expect=None)
+                with self.subTest(seed=seed, ranks=ranks, solver=solver):
+                    self.assert_same(serial, self.summary(f"{ranks}"))
+                    if ranks == 4:
+                        print(f"random case {seed}: {text.splitlines()[0]}, {solver.strip()}, {serial['runs'][0]['status']}", flush=True)
+                shutil.rmtree(self.folder / f"{ranks}")
+            shutil.rmtree(self.folder / "serial")
+
+
+class Reach(MpiTest):
+    """A stiff raft on soil in space that lifts off almost everywhere."""
+
+    def test_any_reach_gives_the_step_of_the_whole_flexibility(self):
+        self.write(RAFT)
+        self.uplift("run", "case.toml", "-q", "-o", "serial")
+        serial = self.summary("serial")
+        run = serial["runs"][0]
+        self.assertGreater(run["max_uplifted_ratio"]["value"], 0.8)
+        solves = {}
+        shorter = RAFT.replace("duration = 0.3", "duration = 0.1")
+        for reach in (0, 2, 4):
+            self.write(f'solver = {{ type = "petsc", reach = {reach} }}\n' + RAFT, "petsc.toml")
+            self.mpi(2, "run", "petsc.toml", "-q", "-o", f"reach {reach}")
+            with self.subTest(reach=reach):
+                parallel = self.summary(f"reach {reach}")
+                self.assert_same(serial, parallel)
+                solves[reach] = parallel["runs"][0]["back_solves"]
+        print(f"reach: {solves} solves in {run['steps']} steps")
+        self.assertLess(solves[2], solves[0])
+        # those that the flexibility takes are the same for any duration
+        self.write('solver = { type = "petsc", reach = 2 }\n' + shorter, "shorter.toml")
+        self.mpi(2, "run", "shorter.toml", "-q", "-o", "shorter")
+        before = self.summary("shorter")["runs"][0]
+        self.assertLessEqual(solves[2] - before["back_solves"], 8 * (run["steps"] - before["steps"]))
 
 
 class Solver(MpiTest):
