@@ -191,6 +191,21 @@ class Trust(Disturbed):
         (fresh,) = (path for path in part.parent.glob("*.jsonl") if path != part)
         self.assertEqual(len(fresh.read_text().splitlines()), 2)
 
+    def test_a_repetition_that_failed_keeps_its_case_and_its_problem(self):
+        """Two iterations reach no tolerance of 1e-9 where points open, and the step is not halved."""
+        self.write(BASE.replace('[[stage]]\ntype = "dynamic"', '[method]\ntype = "newton"\nmost_iterations = 2\ntolerance = 1e-9\n[[stage]]\ntype = "dynamic"\nhalvings = 0'))
+        self.uplift("trust", "case.toml", "-o", "r", expect=3)
+        failed = [run for run in json.loads((self.folder / "r/trust.json").read_text())["runs"] if run["status"] == "failed"]
+        kept = sorted((self.folder / "r.trust/runs").iterdir())
+        self.assertGreater(len(failed), 0)
+        self.assertEqual(len(kept), len(failed))
+        reasons = []
+        for folder in kept:
+            self.assertIn("did not converge in 2 iterations", self.uplift("replay", folder / "problem.json", expect=None).stdout)
+            reasons.append(self.uplift("run", folder / "case.resolved.toml", "-o", "again", "--no-step-check", expect=3).stderr)
+        for run in failed:
+            self.assertTrue(any(run["reason"] in said for said in reasons), run["reason"])
+
     def test_a_complete_one_is_not_computed_again(self):
         expected = self.straight()
         parts = {path: path.read_bytes() for path in (self.folder / "straight.trust/parts").iterdir()}
