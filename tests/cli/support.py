@@ -198,11 +198,16 @@ def report_of(folder):
     return json.loads(zlib.decompress(base64.b64decode(packed)))
 
 
-def main():
+def take_program():
+    """Takes the path of the program from the command line."""
     global _program
     if len(sys.argv) < 2 or not os.access(sys.argv[1], os.X_OK):
-        sys.exit("usage: TEST PROGRAM [unittest arguments]")
+        sys.exit("usage: TEST PROGRAM [arguments]")
     _program = os.path.abspath(sys.argv.pop(1))
+
+
+def main():
+    take_program()
     unittest.main(module="__main__", verbosity=2)
 
 

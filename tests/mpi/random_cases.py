@@ -3,13 +3,15 @@
     python3 tests/mpi/random_cases.py build/release/uplift [first seed [number of cases]]
 """
 
+import math
 import random
 
 
 def pulse(pick, size):
     """A direction of the ground acceleration and a function of time; `size`: of the space."""
     shape = pick.choice(['{ type = "ricker", frequency = %.2f }' % pick.uniform(2, 6), '{ type = "half_sine", duration = %.3f }' % pick.uniform(0.05, 0.15)])
-    direction = [round(pick.uniform(0.4, 1), 3), round(pick.uniform(-0.5, 0.5), 3)] if size == 2 else [round(pick.uniform(0.4, 1), 3), round(pick.uniform(-0.6, 0.6), 3), round(pick.uniform(-0.5, 0.5), 3)]
+    along = [pick.uniform(0.4, 1), pick.uniform(-0.6, 0.6), pick.uniform(-0.5, 0.5)][:size]
+    direction = [round(each / math.hypot(*along), 4) for each in along]
     return f'''
 [[function]]
 name = "pulse"
@@ -142,17 +144,13 @@ def case(seed):
 
 
 if __name__ == "__main__":
-    import sys
+    from test_mpi import RandomCases, sys, take_program, unittest
 
-    first, count = (int(word) for word in (sys.argv[2:4] + ["0", "50"][len(sys.argv) - 2:]))
-    sys.argv = sys.argv[:2]
-    from test_mpi import RandomCases
+    take_program()
+    first, count = (int(word) for word in sys.argv[1:] + ["0", "50"][len(sys.argv) - 1:])
 
     class All(RandomCases):
         seeds = range(first, first + count)
 
-    import unittest
-
-    sys.argv.pop()
     result = unittest.TextTestRunner(verbosity=1).run(All("test_like_the_program_for_one_process"))
     sys.exit(not result.wasSuccessful())

@@ -98,8 +98,8 @@ name = "pulse"
 shape = { type = "half_sine", duration = 0.2 }
 [[ground_acceleration]]
 name = "earthquake"
-direction = [0.7, 0.3, -0.28]
-amplitude = 32
+direction = [0.86, 0.37, -0.35]
+amplitude = 26
 function = "pulse"
 [damping]
 rayleigh = [{ frequency = 1, ratio = 0.04 }, { frequency = 8, ratio = 0.04 }]

@@ -55,6 +55,13 @@ std::string components(int dimension, double x, double up) {
   return dimension == 2 ? fmt::format("[{:.6g}, {:.6g}]", x, up) : fmt::format("[{:.6g}, {:.6g}, {:.6g}]", 0.9 * x, 0.4 * x, up);
 }
 
+/// Inclined: components 1 and 0.3 times the amplitude.
+std::string ground_acceleration(int dimension, double amplitude) {
+  const double length = dimension == 2 ? std::hypot(1, 0.3) : std::hypot(0.9, 0.4, 0.3);
+  return fmt::format("[[ground_acceleration]]\ndirection = {}\namplitude = {:.6g}\nfunction = \"shape\"\n",
+                     components(dimension, 1 / length, 0.3 / length), amplitude * length);
+}
+
 SoilBox draw_box(Dice& dice, int dimension) {
   SoilBox box;
   box.dimension = dimension;
@@ -243,9 +250,7 @@ std::string draw_loads(Dice& dice, const Site& site, std::string& words) {
   if (kind == 1 || kind == 2)
     text += fmt::format("[[load]]\nname = \"push\"\ngroup = \"{}\"\nforce = {}\nfunction = \"shape\"\n", top,
                         components(d, push, kind == 2 ? site.weight * dice.uniform(-2, 2) : 0));
-  if (kind == 3 && !site.released)
-    text += fmt::format("[[ground_acceleration]]\ndirection = {}\namplitude = {:.6g}\nfunction = \"shape\"\n", components(d, 1, 0.3),
-                        dice.decades(0.01, 100));
+  if (kind == 3 && !site.released) text += ground_acceleration(d, dice.decades(0.01, 100));
   words += site.incident ? ", wave" : "";
   words += kind == 1 || kind == 2 ? ", push" : kind == 3 && !site.released ? ", shaken" : "";
   return text;

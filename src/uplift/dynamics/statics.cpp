@@ -9,40 +9,13 @@
 #include <utility>
 
 #include "uplift/contact/unheld.h"
+#include "uplift/dynamics/closed_joint.h"
 #include "uplift/dynamics/energy.h"
 #include "uplift/dynamics/lifted.h"
 #include "uplift/dynamics/rigid_motions.h"
 #include "uplift/linear/large.h"
 
 namespace uplift {
-
-Vector closed_joint(const Model& model, const Sparse& stiffness_matrix, const Behaviours& behaviours) {
-  int rows = 0;
-  for (const Interface& interface : model.interfaces) rows += interface.rows();
-  Vector result = Vector::Zero(rows);
-  double largest = 0;
-  for (int i = 0; i < model.free(); ++i) largest = std::max(largest, stiffness_matrix.coeff(i, i));
-  if (largest <= 0) largest = 1e9;
-  // A joint far stiffer than the structure would leave nothing of the structure's stiffness in the factored sum once it is taken back.
-  constexpr double stiffest = 1e6;
-  int first = 0;
-  for (std::size_t i = 0; i < model.interfaces.size(); ++i) {
-    const Interface& interface = model.interfaces[i];
-    const int n = interface.batch.points, components = interface.batch.components;
-    double stiffness[most_components] = {};
-    if (behaviours.interfaces[i].law != nullptr) behaviours.interfaces[i].law->closed_stiffness(components, stiffness);
-    for (int c = 0; c < components; ++c)
-      for (int p = 0; p < n; ++p) {
-        double& value = result[first + c * n + p];
-        if (behaviours.interfaces[i].law != nullptr)
-          value = std::min(stiffness[c] * interface.weight[p], stiffest * largest);
-        else if (c == components - 1 || behaviours.interfaces[i].cone->friction() > 0)
-          value = largest / n;
-      }
-    first += interface.rows();
-  }
-  return result;
-}
 
 namespace {
 
@@ -143,7 +116,7 @@ LoadSteps::LoadSteps(const Model& model, const Bulk& bulk, const Sparse& b, cons
       gap_(gap),
       motion_(Vector::Zero(gap.size())),
       blocks_(blocks_of(model, behaviours)) {
-  blocks_.shift = closed_joint(model, solver.matrices_of(model).stiffness, behaviours);
+  blocks_.shift = closed_joint(model, solver.matrices_of(model).stiffness, b, behaviours);
   assemble();
   if (yielding_.any()) {
     newton_ = std::make_unique<PlasticNewton>(yielding_, matrix_, options.plastic);
@@ -163,13 +136,7 @@ void LoadSteps::assemble() {
 /// Where the matrix or a load step fails: a joint that is no stiffer than the parts that it joins. It is as exact (any stiffness is), but
 /// soft parts on both sides are not lost in its round-off.
 void LoadSteps::soften_joint() {
-  const Vector diagonal = bulk_.stiffness_matrix.diagonal();
-  Vector compliance = Vector::Zero(b_.rows());
-  for (int column = 0; column < b_.outerSize(); ++column)
-    for (Sparse::InnerIterator entry(b_, column); entry; ++entry)
-      if (diagonal[column] > 0) compliance[entry.row()] += entry.value() * entry.value() / diagonal[column];
-  for (Index i = 0; i < compliance.size(); ++i)
-    if (compliance[i] > 0) blocks_.shift[i] = std::min(blocks_.shift[i], 1 / compliance[i]);
+  blocks_.shift = blocks_.shift.cwiseMin(stiffness_of_parts(bulk_.stiffness_matrix, b_));
   assemble();
 }
 

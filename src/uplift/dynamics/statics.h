@@ -51,8 +51,4 @@ StaticOutcome solve_statics(const Model& model, const Bulk& bulk, const Sparse& 
                             const ContactMethod& method, const LinearSolver& solver, const StaticOptions& options, State& state,
                             LinearCounts& counts);
 
-/// Stiffness D of the closed joints [N/m per row]: area * closed stiffness of a law, at most a million times the largest diagonal of K; for
-/// a cone the largest diagonal of K. Any positive value is exact.
-Vector closed_joint(const Model& model, const Sparse& stiffness, const Behaviours& behaviours);
-
 }  // namespace uplift

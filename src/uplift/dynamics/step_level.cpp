@@ -3,6 +3,7 @@
 #include <cmath>
 #include <utility>
 
+#include "uplift/dynamics/closed_joint.h"
 #include "uplift/dynamics/monolithic.h"
 #include "uplift/dynamics/statics.h"
 #include "uplift/math/upper_sum.h"
@@ -60,7 +61,7 @@ Vector Stepper::stiffness_for_massless() const {
     if (bulk_.massless[static_cast<std::size_t>(column)] != 0)
       for (Sparse::InnerIterator entry(b_, column); entry; ++entry) touching[entry.row()] = 1;
   if (touching.isZero(0) || unresisted_motion(model_, Resistance::dynamic_open).size() == 0) return {};
-  return touching.cwiseProduct(closed_joint(model_, solver_.matrices_of(model_).stiffness, behaviours_));
+  return touching.cwiseProduct(closed_joint(model_, solver_.matrices_of(model_).stiffness, b_, behaviours_));
 }
 
 Sparse Stepper::matrix_of(const Level& level) const {

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <utility>
 
+#include "uplift/dynamics/closed_joint.h"
 #include "uplift/dynamics/solved_response.h"
 #include "uplift/dynamics/split_response.h"
 #include "uplift/dynamics/statics.h"
@@ -48,7 +49,7 @@ ContactModel static_probe(const Model& model, const LinearSolver& solver, Linear
   const Behaviours behaviours(model, NoContact(), nullptr);
   Sparse matrix = bulk.stiffness_matrix.triangularView<upper_triangle>();
   matrix += Sparse(
-      Sparse(b.transpose() * closed_joint(model, bulk.stiffness_matrix, behaviours).asDiagonal() * b).triangularView<upper_triangle>());
+      Sparse(b.transpose() * closed_joint(model, bulk.stiffness_matrix, b, behaviours).asDiagonal() * b).triangularView<upper_triangle>());
   return with_compliance(blocks_of(model, behaviours), matrix, b, model, bulk, solver, counts, why);
 }
 

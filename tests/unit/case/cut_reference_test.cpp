@@ -38,7 +38,7 @@ std::string cracking_bar(const std::vector<double>& places) {
          "[[output.history]]\nname = \"first\"\ninterface = \"crack\"\npoint = 1\nquantity = \"opening\"\n"
          "[[output.history]]\nname = \"second\"\ninterface = \"crack\"\npoint = 2\nquantity = \"opening\"\n" +
          fmt::format(
-             "[method]\ntype = \"newton\"\ntolerance = 1e-8\n[[stage]]\ntype = \"dynamic\"\nduration = {}\nstep = {}\n"
+             "[method]\ntype = \"newton\"\ntolerance = 2e-9\n[[stage]]\ntype = \"dynamic\"\nduration = {}\nstep = {}\n"
              "scheme = {{ type = \"generalised_alpha\", rho = 0.1 }}\ntraction = \"end\"\n",
              100 * places.size(), 100 / steps);
 }

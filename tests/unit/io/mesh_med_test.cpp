@@ -446,18 +446,20 @@ TEST(Hdf5Child, BringsTheAnswer) {
 }
 
 TEST(Hdf5Child, WhateverHappensHappensToTheChildAlone) {
-  const auto failure = [](const std::function<std::string()>& work) {
-    const ChildAnswer answer = answer_of_child(work, {300'000'000, 1});
+  const auto failure = [](const std::function<std::string()>& work, int seconds = 60) {
+    const ChildAnswer answer = answer_of_child(work, {300'000'000, seconds});
     EXPECT_TRUE(answer.bytes.empty());
     return answer.failure;
   };
   int touched = 0;
   EXPECT_EQ(failure([&]() -> std::string { return ++touched, std::raise(SIGSEGV), "never"; }), "a crash (Segmentation fault)");
   EXPECT_EQ(failure([&]() -> std::string { return ++touched, std::abort(), "never"; }), "a crash (Aborted)");
-  EXPECT_EQ(failure([&]() -> std::string {
-              while (::getppid() != 0) touched = 1;
-              return "never";
-            }),
+  EXPECT_EQ(failure(
+                [&]() -> std::string {
+                  while (::getppid() != 0) touched = 1;
+                  return "never";
+                },
+                1),
             "no end after 1 s of computing");
   EXPECT_EQ(failure([]() -> std::string { throw std::runtime_error("lost"); }), "a crash");
   EXPECT_EQ(failure([]() -> std::string { return std::string(301'000'000 / 2, 'x') + std::string(301'000'000 / 2, 'y'); }).substr(0, 2),

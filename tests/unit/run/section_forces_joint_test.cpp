@@ -43,8 +43,9 @@ energies = false
 [[stage]]
 type = "static"
 )" + std::string(shaking);
-  for (const char* direction : {"[3, 0, 0]", "[0, -2, 0]", "[0, 0, 1]"})
-    text += fmt::format("[[ground_acceleration]]\nname = \"quake {0}\"\ndirection = {0}\nfunction = \"shake\"\n", direction);
+  for (const auto& [direction, amplitude] : {std::pair("[1, 0, 0]", 3), std::pair("[0, -1, 0]", 2), std::pair("[0, 0, 1]", 1)})
+    text += fmt::format("[[ground_acceleration]]\nname = \"quake {0}\"\ndirection = {0}\namplitude = {1}\nfunction = \"shake\"\n",
+                        direction, amplitude);
   for (const double x : {0.0, 7.0})
     for (const char* word : {"axial", "shear_y", "shear_z", "torsion", "moment_y", "moment_z", "moment"})
       text += history(fmt::format("beam = \"mast\"\nposition = {}\nquantity = \"{}\"", x, word));

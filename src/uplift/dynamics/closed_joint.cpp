@@ -1,0 +1,47 @@
+#include "uplift/dynamics/closed_joint.h"
+
+#include <algorithm>
+#include <limits>
+
+namespace uplift {
+
+Vector stiffness_of_parts(const Sparse& stiffness_matrix, const Sparse& b) {
+  const Vector diagonal = stiffness_matrix.diagonal();
+  Vector compliance = Vector::Zero(b.rows());
+  for (int column = 0; column < b.outerSize(); ++column)
+    for (Sparse::InnerIterator entry(b, column); entry; ++entry)
+      if (diagonal[column] > 0) compliance[entry.row()] += entry.value() * entry.value() / diagonal[column];
+  return compliance.unaryExpr([](double each) { return each > 0 ? 1 / each : std::numeric_limits<double>::infinity(); });
+}
+
+Vector closed_joint(const Model& model, const Sparse& stiffness_matrix, const Sparse& b, const Behaviours& behaviours) {
+  int rows = 0;
+  for (const Interface& interface : model.interfaces) rows += interface.rows();
+  Vector result = Vector::Zero(rows);
+  double largest = 0;
+  for (int i = 0; i < model.free(); ++i) largest = std::max(largest, stiffness_matrix.coeff(i, i));
+  if (largest <= 0) largest = 1e9;
+  // A joint far stiffer than the structure would leave nothing of the structure's stiffness in the factored sum once it is taken back.
+  constexpr double stiffest = 1e6, beside_parts = 1e3;
+  const Vector parts = stiffness_of_parts(stiffness_matrix, b);
+  int first = 0;
+  for (std::size_t i = 0; i < model.interfaces.size(); ++i) {
+    const Interface& interface = model.interfaces[i];
+    const int n = interface.batch.points, components = interface.batch.components;
+    double stiffness[most_components] = {};
+    if (behaviours.interfaces[i].law != nullptr) behaviours.interfaces[i].law->closed_stiffness(components, stiffness);
+    for (int c = 0; c < components; ++c)
+      for (int p = 0; p < n; ++p) {
+        const int row = first + c * n + p;
+        double& value = result[row];
+        if (behaviours.interfaces[i].law != nullptr)
+          value = std::min(stiffness[c] * interface.weight[p], stiffest * largest);
+        else if (c == components - 1 || behaviours.interfaces[i].cone->friction() > 0)
+          value = std::min(largest / n, beside_parts * parts[row]);
+      }
+    first += interface.rows();
+  }
+  return result;
+}
+
+}  // namespace uplift

@@ -1,0 +1,16 @@
+#pragma once
+#include "uplift/dynamics/condensed.h"
+
+// A structure that rests on contact alone has a singular stiffness: the closed joint is factored with it and taken back in the interface
+// problem (docs/theory, section 4).
+namespace uplift {
+
+/// Stiffness D of the closed joints [N/m per row]: area * closed stiffness of a law, at most a million times the largest diagonal of K; for
+/// a cone the largest diagonal of K, at most a thousand times the parts that it joins, which would be lost in the round-off of the sum. Any
+/// positive value is exact.
+Vector closed_joint(const Model& model, const Sparse& stiffness, const Sparse& b, const Behaviours& behaviours);
+
+/// What both sides of each row resist by the diagonal of K, 1/sum(b^2/K_ii) [N/m]; infinite where that is zero.
+Vector stiffness_of_parts(const Sparse& stiffness, const Sparse& b);
+
+}  // namespace uplift
