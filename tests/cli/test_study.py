@@ -5,6 +5,7 @@ import hashlib
 import math
 import shutil
 import sqlite3
+import time
 
 from study_cases import *
 

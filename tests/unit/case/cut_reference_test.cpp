@@ -25,8 +25,12 @@ constexpr std::size_t steps = 10;  // between two places
 std::string cracking_bar(const std::vector<double>& places) {
   const double angle = 25 * std::numbers::pi / 180;
   std::string times = "0", values = "0";
-  for (std::size_t i = 0; i < places.size(); ++i)
-    times += fmt::format(", {}, {}", 100 * i + 30, 100 * i + 100), values += fmt::format(", {0}, {0}", places[i]);
+  double last = 0;
+  for (std::size_t i = 0; i < places.size(); ++i) {  // the end of a way is slow: a joint that softens remembers the least overshoot
+    times += fmt::format(", {}, {}, {}", 100 * i + 30, 100 * i + 50, 100 * i + 100);
+    values += fmt::format(", {0}, {1}, {1}", last + 0.999 * (places[i] - last), places[i]);
+    last = places[i];
+  }
   return "title = \"bar\"\n[mesh]\nfile = \"bar.msh\"\n" + solid("volume", 2e10, 0.2, 2000) +
          "[[support]]\ngroup = \"left\"\nfixed = [\"ux\"]\n[[support]]\nnode = \"mesh.1\"\nfixed = [\"uy\"]\n" +
          fmt::format("[[function]]\nname = \"places\"\nshape = {{ type = \"table\", times = [{}], values = [{}] }}\n", times, values) +
@@ -38,7 +42,7 @@ std::string cracking_bar(const std::vector<double>& places) {
          "[[output.history]]\nname = \"first\"\ninterface = \"crack\"\npoint = 1\nquantity = \"opening\"\n"
          "[[output.history]]\nname = \"second\"\ninterface = \"crack\"\npoint = 2\nquantity = \"opening\"\n" +
          fmt::format(
-             "[method]\ntype = \"newton\"\ntolerance = 2e-9\n[[stage]]\ntype = \"dynamic\"\nduration = {}\nstep = {}\n"
+             "[method]\ntype = \"newton\"\ntolerance = 1e-8\n[[stage]]\ntype = \"dynamic\"\nduration = {}\nstep = {}\n"
              "scheme = {{ type = \"generalised_alpha\", rho = 0.1 }}\ntraction = \"end\"\n",
              100 * places.size(), 100 / steps);
 }
@@ -70,7 +74,7 @@ TEST(CutReference, BarWithACrackThatSoftensClosesAndOpensAgain) {
       const RunResult result = run_on(cracking_bar(places), mesh);
       const auto force = history(result, "force"), first = history(result, "first"), second = history(result, "second");
       for (const Row& row : rows) {
-        EXPECT_NEAR(force[steps * row.place], row.stress, 1e-6 * 9.6e5) << info(cell).name << " at " << places[row.place - 1];
+        EXPECT_NEAR(force[steps * row.place], row.stress, 1e-7 * 9.6e5) << info(cell).name << " at " << places[row.place - 1];
         EXPECT_NEAR(first[steps * row.place], row.opening, 1e-6 * 1.3e-3) << info(cell).name << " at " << places[row.place - 1];
         EXPECT_NEAR(second[steps * row.place], row.opening, 1e-6 * 1.3e-3) << info(cell).name << " at " << places[row.place - 1];
       }
