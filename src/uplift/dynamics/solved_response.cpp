@@ -172,7 +172,7 @@ void SolvedResponse::press(const Vector& force, Vector& increment) {
 
 /// Columns of length one: the changes become smaller from try to try.
 void SolvedResponse::improve(Vector& free_opening, const Vector& rest) {
-  constexpr std::size_t most = 8;  // tries that are remembered
+  constexpr std::size_t most = 24;  // tries that are remembered
   if (last_rest_.size() > 0) {
     openings_.push_back(free_opening - last_opening_), remains_.push_back(rest - last_rest_);
     if (openings_.size() > most) openings_.erase(openings_.begin()), remains_.erase(remains_.begin());
