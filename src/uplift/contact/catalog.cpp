@@ -1,5 +1,4 @@
 #include <array>
-#include <ranges>
 
 #include "uplift/contact/impact/impact.h"
 #include "uplift/contact/method.h"
@@ -28,9 +27,11 @@ std::string_view standard_method(bool constraints) {
 }
 
 std::string_view other_exact_method(std::string_view method) {
-  for (const Entry<ContactMethod>* entry : std::views::reverse(method_catalog())) {
-    const Values standard = check_part(Raw{std::string(entry->name), {}, "method"}, contact_methods());
-    if (entry->name != method && entry->make(standard)->constrains()) return entry->name;
+  const auto catalog = method_catalog();
+  for (auto entry = catalog.rbegin(); entry != catalog.rend(); ++entry) {
+    const std::string_view name = (*entry)->name;
+    const Values standard = check_part(Raw{std::string(name), {}, "method"}, contact_methods());
+    if (name != method && (*entry)->make(standard)->constrains()) return name;
   }
   return {};
 }
