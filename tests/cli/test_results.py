@@ -359,7 +359,9 @@ class Interrupt(CliTest):
     def test_ctrl_c_leaves_complete_files(self):
         self.write(BASE.replace("duration = 0.5", "duration = 20000") + "[output]\nevery = 1000\n")
         process = subprocess.Popen([program(), "run", "case.toml", "-o", "r"], cwd=self.folder, stdout=subprocess.PIPE, stderr=subprocess.PIPE, text=True)
-        time.sleep(1.0)
+        deadline = time.monotonic() + 60
+        while time.monotonic() < deadline and not any(len(path.read_text().splitlines()) > 3 for path in self.folder.glob("r.part-*/histories.csv")):
+            time.sleep(0.1)
         process.send_signal(signal.SIGINT)
         out, err = process.communicate(timeout=120)
         self.assertEqual(process.returncode, 130, out + err)
