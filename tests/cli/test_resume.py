@@ -62,7 +62,7 @@ class Resume(CliTest):
 
     def test_fields_are_those_of_a_run_without_interruption(self):
         for format in ("vtu", "xdmf"):
-            self.write(ROCKING.replace("duration = 0.5", "duration = 10") + f"""\
+            self.write(ROCKING.replace("duration = 0.5", "duration = 4") + f"""\
 [output]
 checkpoint = "0.02 s"
 [output.fields]
