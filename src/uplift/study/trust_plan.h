@@ -29,9 +29,8 @@ struct TrustPlan {
 };
 
 /// Half the time step; the stiffness of every traction law (or penalty) times and over the case's factor, and as many values between as
-/// the case asks for, in equal ratios; a tolerance ten times smaller;
-/// another sound method for the same interface; a finer mesh, where the mesh is made by the case; the mesh moved
-/// against the planes of interface.cut.
+/// the case asks for, in equal ratios; a tolerance ten times smaller; another sound method for the same interface; a finer mesh, where the
+/// mesh is made by the case; the mesh moved against the planes of interface.cut.
 TrustPlan trust_plan(const Case&);
 
 }  // namespace uplift
