@@ -1,5 +1,6 @@
 #include "uplift/ensemble/trust_study.h"
 
+#include <algorithm>
 #include <filesystem>
 
 #include "uplift/base/file.h"
