@@ -1,43 +1,24 @@
 """A study on many machines: the tasks of one study by GNU parallel, and as an array of a Slurm that runs on this machine alone."""
 
 import getpass
-import math
 import pathlib
 import shutil
 import socket
 import tempfile
 import time
 
-from support import *
+from study_cases import *
 
 GUIDE = (pathlib.Path(__file__).resolve().parents[2] / "docs/guide/studies.md").read_text()
 
 CASE = shaken("m1.csv")
 
-PLAN = """\
-case = "../case.toml"
-samples = 2
-[intensity]
-measure = "pga"
-unit = "g_n"
-[method]
-type = "ida"
-start = 0.1
-largest = 20
-[[motions]]
-name = "m"
-replace = ["quake"]
-files = ["../m1.csv", "../m2.csv", "../m3.csv"]
-unit = "m/s2"
-[[limit]]
-name = "uplift"
-quantity = "max_opening"
-limit = "1 mm"
+PLAN = (IDA.replace('case = "../case.toml"\n', 'case = "../case.toml"\nsamples = 2\n').replace(', "../m4.csv"', "") + """\
 [[variable]]
 name = "K"
 paths = ["interface[0].law.K_n"]
 distribution = { type = "lognormal", median = 1, beta = 0.4 }
-"""
+""")
 
 # In the place of the program: the first task of the shard 2/3 is lost after its first result, killed or as it hangs.
 UNLUCKY = """\
@@ -164,8 +145,7 @@ class StudyQueues(CliTest):
         super().setUp()
         self.write(CASE)
         for i, (frequency, decay) in enumerate([(1.5, 2), (3, 3), (6, 3)], 1):
-            rows = ((k * 0.005, math.exp(-decay * k * 0.005) * math.sin(2 * math.pi * frequency * k * 0.005)) for k in range(161))
-            self.write("t [s],a [m/s2]\n" + "".join(f"{t:.3f},{a:.9f}\n" for t, a in rows), f"m{i}.csv")
+            self.write(motion(frequency, decay), f"m{i}.csv")
         for name in ("whole.study", "pier.study"):
             self.write(PLAN, f"{name}/plan.toml")
         self.uplift("study", "run", "whole.study", "-q")
