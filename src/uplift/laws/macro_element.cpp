@@ -4,6 +4,7 @@
 #include <cassert>
 #include <cmath>
 #include <limits>
+#include <utility>
 
 namespace uplift {
 namespace {
@@ -167,6 +168,8 @@ void MacroElement::advance(bool average, const Batch& batch, const double* from,
     const Rows rows(n, i, batch.components);
     double scalars[num_scalars];
     for (int k = 0; k < num_scalars; ++k) scalars[k] = old[(rows.count + k) * n + i];
+    // summed up within the step first: thousands of sub-steps would each be rounded to the digits of the whole
+    const double dissipated_before = std::exchange(scalars[memory_dissipated], 0);
     const auto start = [&](int guesses_from) {
       return Path(*this, average, rows.get(from), rows.get(to), rows.get(old), scalars, guesses_from);
     };
@@ -177,6 +180,7 @@ void MacroElement::advance(bool average, const Batch& batch, const double* from,
       path.mean.setConstant(std::numeric_limits<double>::quiet_NaN());
       path.end = path.mean;
     }
+    path.memory[memory_dissipated] += dissipated_before;
     rows.put(average ? path.mean : path.end, response.traction);
     if (response.slope != nullptr) rows.put(average ? path.mean_slope : path.end_slope, 1, response.slope);
     if (response.end != nullptr) rows.put(path.end, response.end);
