@@ -18,6 +18,7 @@ std::size_t at(int i) {
 }
 
 constexpr double on_plane = 1e-8;  // of the shortest edge: nodes so near count as on the plane
+constexpr double thinnest = 1e-6;  // of the shortest edge: a body less thick than this
 
 /// Whether an outline holds all of the corners, none of what is between them or a part.
 PlaneSide side_of_outline(const CutOutline& outline, std::span<const Vec3> corners, double tolerance) {
@@ -159,12 +160,20 @@ void CutFilling::keep_within(const CellBefore& cell, Halves& halves) const {
     halves.upper_whole = false;
 }
 
+/// A corner so near the plane that the part below has no volume: nothing would hold doubles that belong to it alone.
+bool CutFilling::is_empty_below(CellId id) const {
+  if (info(mesh_.type(id)).nodes != info(mesh_.type(id)).corners) return false;  // is refused
+  const CellBefore cell = before(id);
+  return clip_cell(cell.cell, cell.corners, {plane_.below}, cell.tolerance).pieces.empty();
+}
+
 Halves CutFilling::halves_of(CellId id) const {
   if (mesh_.part(id)) return halves_of_part(id);
   const auto nodes = mesh_.cell(id);
   const bool below = std::ranges::any_of(nodes, [&](int node) { return sign(node) < 0; });
   const bool above = std::ranges::any_of(nodes, [&](int node) { return sign(node) > 0; });
   Halves halves{below, above, !above, !below};
+  if (below && above && is_empty_below(id)) halves.lower = false, halves.upper_whole = true;
   if (above) keep_within(before(id), halves);
   const bool whole = (!below || halves.lower_whole) && (!halves.upper || halves.upper_whole);
   if (!whole && info(mesh_.type(id)).nodes != info(mesh_.type(id)).corners)
@@ -212,13 +221,20 @@ std::vector<CutFilling::BareFace> CutFilling::bare_faces() const {
 }
 
 void CutFilling::refuse_nothing() const {
-  if (!level_.empty() || std::ranges::any_of(halves_, [](const Halves& halves) { return halves.lower && halves.upper; })) return;
-  double least = std::numeric_limits<double>::infinity(), most = -least;
+  double least = std::numeric_limits<double>::infinity(), most = -least, edge = least;
   for (const CellId id : sides_.cells())
     for (const int node : mesh_.cell(id)) {
       least = std::min(least, plane_.below.distance(mesh_.nodes[at(node)]));
       most = std::max(most, plane_.below.distance(mesh_.nodes[at(node)]));
+      edge = std::min(edge, edge_[at(node)]);
     }
+  if (!level_.empty() || std::ranges::any_of(halves_, [](const Halves& halves) { return halves.lower && halves.upper; })) {
+    if (std::min(most, -least) < thinnest * edge && std::min(most, -least) > 0)
+      throw InputError(where_, "", "a plane with cells of the groups on both sides",
+                       fmt::format("a layer of {:.2g} m {} it, whose cells have edges of {:.2g} m", std::min(most, -least),
+                                   most < -least ? "above" : "below", edge));
+    return;
+  }
   std::string outlined;
   if (!plane_.outlines.front().within.empty())
     outlined = ", and what lies above must lie within the outline; bases at several levels need `ground_x` or `ground_y` each";

@@ -57,6 +57,37 @@ TEST(CutCase, BarWithAnInclinedCrackHasUniformStress) {
   }
 }
 
+// ---- corners of cells just below the plane ----
+
+TEST(CutCase, CornersNextToThePlaneCarryTheWeight) {
+  // The plane passes a node on a side of the block, 1e-5 to 3e-8 of a cell beside it, and rises towards the side or away from it. Some
+  // doubles then belong to the tip of one cell, of 1e-10 to 1e-24 of its volume.
+  constexpr double density = 2000, gravity = 9.81, slope = 0.14;
+  const Vec3 normal = Vec3(-slope, 0, 1).normalized();
+  for (const Cell cell : {Cell::tri3, Cell::quad4, Cell::tet4, Cell::wedge6, Cell::hex8})
+    for (const double share : {1e-5, 3e-7, 3e-8, -3e-8})
+      for (const double side : {0.0, 1.0}) {
+        const bool plane = info(cell).dimension == 2;
+        const auto lines = uniform_lines(0, 1, 4);
+        const double height = 0.5 + 0.25 * share;  // of the plane at the side
+        const auto vector = [&](double x, double up) {
+          return plane ? fmt::format("[{}, {}]", x, up) : fmt::format("[{}, 0, {}]", x, up);
+        };
+        const std::string text =
+            "title = \"block\"\n[mesh]\nfile = \"block.msh\"\n" + solid("volume", young, poisson, density) +
+            solid("block", young, poisson, density) +
+            fmt::format("[[support]]\ngroup = \"bottom\"\nfixed = [\"ux\", \"uy\"{}]\n", plane ? "" : ", \"uz\"") +
+            fmt::format("[gravity]\nacceleration = {}\n[[interface]]\nname = \"base\"\n", vector(0, -gravity)) +
+            fmt::format("cut = {{ through = [\"volume\"], point = {}, normal = {}, upper = \"block\" }}\n", vector(side, height),
+                        vector(normal.x(), normal.z())) +
+            fmt::format("law = {{ type = \"elastic\", K_n = {0}, K_t = {0} }}\n", 0.01 * joint_stiffness) + at_rest_stages;
+        const RunResult result = run_on(text, plane ? rectangle(lines, lines, cell) : box(lines, lines, lines, cell));
+        const double above = 1 - height - slope * (0.5 - side), weight = above * density * gravity;
+        EXPECT_NEAR(at_rest(result, "base.axial"), -weight * normal.z(), 1e-8 * weight) << info(cell).name << " " << share;
+        EXPECT_NEAR(std::abs(at_rest(result, "base.shear")), weight * slope * normal.z(), 1e-8 * weight) << info(cell).name << " " << share;
+      }
+}
+
 // ---- a column of soil and block that is one group in the mesh ----
 
 constexpr double depth = 5.63, height = 4.37, soil_young = 5e7, block_young = 2e9, soil_density = 1900, block_density = 700, gravity = 10;

@@ -307,6 +307,8 @@ TEST(Cut, RefusesWithASentence) {
   const Mesh mesh = rectangle(lines(4), lines(4)), curved = rectangle(lines(4), lines(4), Cell::quad8);
   const auto level = [](double y) { return CutPlane{{"volume"}, {Vec3::UnitY(), y}, {{{}, "above"}}}; };
   EXPECT_NE(refused(mesh, {level(1.5)}).find("from -1.5 m to -0.5 m above it"), std::string::npos) << refused(mesh, {level(1.5)});
+  EXPECT_NE(refused(mesh, {level(1 - 1e-8)}).find("a layer of 1e-08 m above it"), std::string::npos) << refused(mesh, {level(1 - 1e-8)});
+  EXPECT_NE(refused(mesh, {level(1e-8)}).find("a layer of 1e-08 m below it"), std::string::npos) << refused(mesh, {level(1e-8)});
   EXPECT_NE(refused(curved, {level(0.3)}).find("first degree"), std::string::npos);
   EXPECT_EQ(refused(curved, {level(0.5)}), "");  // along faces
   CutPlane wrong = level(0.3);
