@@ -1,7 +1,9 @@
+#include <fmt/format.h>
 #include <gtest/gtest.h>
 
 #include <cmath>
 
+#include "uplift/io/results/study_json.h"
 #include "uplift/study/study_fit.h"
 
 // The annual rate by the components of variance beside that of the fit.
@@ -20,6 +22,31 @@ TEST(CompositeRisk, ByHand) {
   ASSERT_TRUE(std::holds_alternative<AnnualRisk>(risk));
   EXPECT_NEAR(std::get<AnnualRisk>(risk).rate, 8.2695e-6, 1e-10);
   EXPECT_TRUE(std::holds_alternative<Refused>(composite_risk_of(site, Refused{"one sample"})));
+}
+
+/// The sentence of a limit tells both rates. Capacities 2 and 8 have the logarithmic mean of 4 and the deviation ln(2) sqrt(2) = 0.98, with
+/// divisor 1; the rate of the fit by Cornell's formula too. Without a layout the composite rate is left out, without a hazard curve both.
+TEST(CompositeRisk, InTheSentenceOfALimit) {
+  StudyDocument study;
+  study.plan.intensity.unit = "g_n";
+  for (const double im : {1e-3, 1e-1, 1e1, 1e3}) study.plan.site.hazard.push_back({im, 1e-4 * std::pow(im, -2)});
+  StudyDocument::Limit limit;
+  limit.limit.name = "gap";
+  limit.fit.survived = 3, limit.fit.exceeded = 2;
+  limit.fit.fit.middle = fit_capacities(std::vector<RecordCapacity>{{.im = 2}, {.im = 8}});
+  const Fragility& fit = std::get<Fragility>(limit.fit.fit.middle);
+  TwoWayLayout layout;
+  layout.median = 4;
+  layout.beta_r = 0.3, layout.beta_interaction = 0.1, layout.beta_u = 0.2;
+  limit.fit.layout = layout;
+  study.limits.push_back(limit);
+  const auto said = [&] { return study_sentence(study, 0); };
+  const std::string of_fit = fmt::format("; annual rate {:.3g}", 1e-4 * std::pow(fit.theta(), -2) * std::exp(2 * fit.beta() * fit.beta()));
+  EXPECT_NE(said().find(of_fit + " (with the composite beta of motions and samples 8.27e-06)"), std::string::npos) << said();
+  study.limits[0].fit.layout = Refused{"one sample"};
+  EXPECT_TRUE(said().ends_with(of_fit)) << said();
+  study.plan.site.hazard.clear();
+  EXPECT_EQ(said().find("annual rate"), std::string::npos) << said();
 }
 
 TEST(Fragility, OneCapacityHasNoScatter) {

@@ -13,6 +13,7 @@
 #include "uplift/io/text/toml.h"
 #include "uplift/verdict/motion.h"
 #include "uplift/verdict/numbers.h"
+#include "uplift/verdict/verdict.h"
 
 namespace uplift {
 namespace {
@@ -173,6 +174,36 @@ step = )") + step);
       EXPECT_GT(ran.result.final_energy.interface_dissipated, 0.01 * ran.result.energy_scale) << surface << step;
       EXPECT_NEAR(ran.verdict("max_bearing_utilisation"), 1, 1e-9) << surface << step;
     }
+}
+
+// N (1 - 2 M/(N B)) = V_s: the ground under N = 1 MN carries M = (N B/2)(1 - N/V_s) = 2.25 MN m and no more. A moment that grows to 2.5 MN
+// m in 1 s turns the footing until the small displacements end; one of 2 MN m does not.
+TEST(FoundationStrength, ABearingFailureStandsInTheHeadline) {
+  std::string text = replaced(plane, "friction_angle = \"30 deg\"", "friction_angle = \"40 deg\"");
+  text = replaced(replaced(text, "force = [1e5, -1e6]", "force = [0, -1e6]"), "moment = -1.2e6\n", "");
+  text = replaced(text, "# more", R"([[function]]
+name = "ramp"
+shape = { type = "ramp", duration = 1 }
+[[load]]
+node = "base"
+moment = -2.5e6
+function = "ramp"
+[[stage]]
+type = "dynamic"
+duration = 10
+step = 1e-3
+)");
+  const support::Ran fails = support::run_text(text);
+  ASSERT_EQ(fails.result.status, RunStatus::overturned) << fails.result.reason;
+  const Verdict verdict = judge(fails.built, fails.result, nullptr);
+  EXPECT_EQ(verdict.level, Verdict::Level::overturned);
+  EXPECT_TRUE(verdict.headline.starts_with("Bearing failure under soil: the rotation exceeds 0.150 rad at ")) << verdict.headline;
+  EXPECT_NE(verdict.paragraphs.front().find("the ground uses its whole bearing capacity, and the foundation tilts"), std::string::npos)
+      << verdict.paragraphs.front();
+  EXPECT_GT(fails.result.end_time, 0.9);  // the capacity is reached at 0.9 s
+
+  const Ran stands = run_text(replaced(text, "moment = -2.5e6", "moment = -2e6"));
+  EXPECT_TRUE(judge(stands.built, stands.result, nullptr).headline.starts_with("The base uplifts"));
 }
 
 // V = V_s + (V_u - V_s) p/(p + w_ref) grows until it carries the load, N = V: p = w_ref (N - V_s)/(V_u - N).
