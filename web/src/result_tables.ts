@@ -60,13 +60,16 @@ function runs_table(summary: Summary): Table {
   };
 }
 
+// Instead of a change: the bonded floor is not excited in the band.
+const ARISES = "arises";
+
 function floor_row(run: string, group: string, floor: FloorSummary, d: number): Row {
   const spectrum = floor.spectra[d];
   const row: Row = {
     floor: floor.name, run, group,
     damping: spectrum?.damping, rigid: magnitude(floor.zero_period_acceleration.value), peak: spectrum?.peak.value, at: spectrum?.peak.frequency,
   };
-  for (const band of spectrum?.beside_bonded ?? []) row[`from_${band.from}`] = band.change;
+  for (const band of spectrum?.beside_bonded ?? []) row[`from_${band.from}`] = band.arises ? ARISES : band.change;
   return row;
 }
 
@@ -82,12 +85,14 @@ function floors_table(summary: Summary): Table[] {
       ...runs.map((run) => floor_row(run.label, run.group, run.floor_spectra?.[k] as FloorSummary, d)),
       ...envelopes.map((each) => floor_row(`envelope of ${each.runs} runs`, each.damping_case, each.floors[k] as FloorSummary, d)),
     ]));
+  const arises = rows.some((row) => Object.values(row).includes(ARISES));
   return [{
     id: "floors",
     title: "Floor spectra",
     caption:
       "Zero period: largest absolute acceleration of the floor, which is the demand on rigid equipment. Peak: largest pseudo-acceleration and its frequency. " +
-      "Frequency bands: change of the largest value in the band compared with the bonded model.",
+      "Frequency bands: change of the largest value in the band compared with the bonded model." +
+      (arises ? ` "${ARISES}": the bonded model does not excite the floor in the band, so there is nothing to compare with; the first page gives the acceleration.` : ""),
     columns: [
       column("run", "Run", "text"),
       ...(summary.runs[0]?.group ? [column("group", "Case", "text")] : []),

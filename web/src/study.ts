@@ -71,7 +71,7 @@ export interface Limit {
   unknown_exceeded: Fit;
   dispersion: { known: boolean; reason: string; median?: number; beta_r?: number; beta_u?: number; hclpf?: number };
   performance?: Pair & { at_design_interval: Interval; at_one_and_a_half_interval: Interval; met?: boolean; unknown_survived: Pair; unknown_exceeded: Pair };
-  risk?: { rate: Maybe; reason: string; share_below: Maybe; share_above: Maybe; unknown_survived: Maybe; unknown_exceeded: Maybe };
+  risk?: { rate: Maybe; reason: string; share_below: Maybe; share_above: Maybe; composite: Maybe; unknown_survived: Maybe; unknown_exceeded: Maybe };
   fractiles?: { demands: number[]; p16: Maybe[]; p50: Maybe[]; p84: Maybe[] };
   tornado: { variable: string; low: number; high: number }[];
 }

@@ -18,6 +18,7 @@ function limits_table(study: Study): Table[] {
   const apart = study.limits.some(({ dispersion }) => dispersion.known);
   const site = study.limits.some(({ performance }) => performance !== undefined);
   const hazard = study.limits.some(({ risk }) => risk !== undefined);
+  const composite = study.limits.some(({ risk }) => typeof risk?.composite === "number");
   const shared = study.samples > 1 && study.pairing === "crossed";
   return [{
     id: "limits",
@@ -30,12 +31,14 @@ function limits_table(study: Study): Table[] {
       (apart ? "\u03b2_R: scatter between motions; \u03b2_U: between samples; HCLPF: median \u00b7 exp(\u22121.65 (\u03b2_R + \u03b2_U)). " : "") +
       (site ? `Design: probability at the design motion of ${intensity_text(study, study.design?.intensity)} and at 1.5 times it; ASCE/SEI 43 aims at 1 % and 10 %. ` : "") +
       (hazard ? "Annual rate: with which the limit is exceeded, by the fitted curve and the hazard curve. " : "") +
+      (composite ? "Composite rate: by the median and the composite \u03b2 of motions and samples instead of the fitted curve. " : "") +
       (unknown ? "Runs of unknown outcome are left out of the fit; the last two columns count them as survived and as exceeded." : ""),
     columns: [
       column("name", "Limit", "text"), column("theta", "Median", "number", intensity_unit(study)), column("interval", "Interval", "text"), column("beta", "\u03b2", "number"), column("beta_interval", "Interval of \u03b2", "text"),
       ...(apart ? [column("beta_r", "\u03b2_R", "number"), column("beta_u", "\u03b2_U", "number"), column("hclpf", "HCLPF", "number", intensity_unit(study))] : []),
       ...(site ? [column("at_design", "Design", "percent"), column("at_one_and_a_half", "1.5 \u00d7 design", "percent")] : []),
       ...(hazard ? [column("rate", "Annual rate", "number")] : []),
+      ...(composite ? [column("composite", "Composite rate", "number")] : []),
       column("survived", "Survived", "number", "", 6), column("exceeded", "Exceeded", "number", "", 6), column("unknown", "Unknown", "number", "", 6),
       ...(unknown ? [column("as_survived", "Unknown as survived", "text"), column("as_exceeded", "Unknown as exceeded", "text")] : []),
     ],
@@ -46,7 +49,7 @@ function limits_table(study: Study): Table[] {
         name: limit.name, theta: fit.theta, beta: fit.beta, interval: fit.fitted ? interval_text(study, fit.theta_interval) : `no fit: ${fit.reason}`,
         beta_interval: !fit.fitted ? "" : `${lower === null ? "0" : rounded(lower)} to ${upper === null ? "unbounded" : rounded(upper)}`,
         beta_r: dispersion.beta_r, beta_u: dispersion.beta_u, hclpf: dispersion.hclpf,
-        at_design: limit.performance?.at_design, at_one_and_a_half: limit.performance?.at_one_and_a_half, rate: limit.risk?.rate,
+        at_design: limit.performance?.at_design, at_one_and_a_half: limit.performance?.at_one_and_a_half, rate: limit.risk?.rate, composite: limit.risk?.composite,
         survived: limit.survived, exceeded: limit.exceeded, unknown: limit.unknown,
         as_survived: fit_text(study, limit.unknown_survived), as_exceeded: fit_text(study, limit.unknown_exceeded),
       };

@@ -66,7 +66,8 @@ function facts_of(study: Study, limit: Limit): Fact[] {
   if (risk && risk.rate !== null) {
     const beyond = (risk.share_below ?? 0) + (risk.share_above ?? 0);
     const caution = beyond > 0.1 ? `; ${percent(beyond)} of it from beyond the points of that curve` : "";
-    facts.push({ label: "Annual rate", value: risk.rate.toExponential(2), detail: `exceedances a year, by the hazard curve of the plan${caution}` });
+    const composite = typeof risk.composite === "number" ? `; ${risk.composite.toExponential(2)} with the composite \u03b2 of motions and samples` : "";
+    facts.push({ label: "Annual rate", value: risk.rate.toExponential(2), detail: `exceedances a year, by the hazard curve of the plan${caution}${composite}` });
   }
   const without = study.failures.length;
   facts.push({

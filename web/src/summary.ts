@@ -36,6 +36,7 @@ interface Band {
   band: string;
   from: number;
   change: Maybe;
+  arises?: boolean; // the bonded floor is not excited in the band
 }
 export interface FloorSummary {
   name: string;
@@ -110,7 +111,7 @@ export interface VerdictSummary {
   interfaces: InterfaceSummary[];
   beams?: { name: string; numbers: ResultNumbers }[];
   criteria: CriterionSummary[];
-  floors: { floor: string; damping: number; bands: { band: string; change_percent: number; change: string }[]; note?: string }[];
+  floors: { floor: string; damping: number; bands: { band: string; change_percent: number; change: string; arises?: boolean }[]; note?: string }[];
 }
 
 /** Ground under a footing, from published formulas. */

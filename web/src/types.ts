@@ -87,7 +87,7 @@ export interface Criterion {
 export interface FloorChange {
   floor: string;
   damping: number;
-  bands: { band: string; change_percent: number; change: string }[];
+  bands: { band: string; change_percent: number; change: string; arises?: boolean }[];
   /** Why there are no bands. */
   note?: string;
 }

@@ -94,9 +94,9 @@ function criteria_list(criteria: Criterion[]): HTMLElement {
     h("ul", {}, ...criteria.map(criterion_row)));
 }
 
-/** The floor and damping whose spectrum changes most in a band. */
+/** The floor and damping whose spectrum changes most in a band. Where the bonded floor is not excited there is no change to compare. */
 function most_changed(floors: FloorChange[]): FloorChange | undefined {
-  const size = (floor: FloorChange): number => Math.max(0, ...floor.bands.map((each) => Math.abs(each.change_percent)));
+  const size = (floor: FloorChange): number => Math.max(0, ...floor.bands.map((each) => (each.arises ? 0 : Math.abs(each.change_percent))));
   return floors.reduce<FloorChange | undefined>((best, each) => (best && size(best) >= size(each) ? best : each), undefined);
 }
 

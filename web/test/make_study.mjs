@@ -87,9 +87,10 @@ export function ida_study(count = 12, samples = 5) {
   const [p16, p50, p84] = [0.16, 0.5, 0.84].map((part) => demands.map((demand) => share(part) * (demand / LIMIT) ** (2 / 3)));
   const pair = (fit) => ({ at_design: normal(Math.log(DESIGN / fit.theta) / fit.beta), at_one_and_a_half: normal(Math.log((1.5 * DESIGN) / fit.theta) / fit.beta) });
   const rate = (fit) => 1e-4 * (DESIGN / fit.theta) ** 2.5 * Math.exp(0.5 * (2.5 * fit.beta) ** 2); // of the hazard 1e-4 (a/DESIGN)^-2.5
+  const composite = Math.hypot(BETA_R, 0.15, BETA_U); // of motions, samples and both together
   const site = (fit) => ({
     performance: { ...pair(fit), at_design_interval: { lower: 0, upper: 1 }, at_one_and_a_half_interval: { lower: 0, upper: 1 }, met: false, unknown_survived: pair(fit), unknown_exceeded: pair(fit) },
-    risk: { rate: rate(fit), reason: "", share_below: 0.1, share_above: 0.01, unknown_survived: rate(fit), unknown_exceeded: rate(fit) },
+    risk: { rate: rate(fit), composite: rate({ theta: fit.theta, beta: composite }), reason: "", share_below: 0.1, share_above: 0.01, unknown_survived: rate(fit), unknown_exceeded: rate(fit) },
   });
   const rotation = limit_of({
     name: "rotation of 2 mrad", quantity: "residual_rotation", label: "residual rotation of the base", unit: "rad", limit: 2e-3, ...counts,

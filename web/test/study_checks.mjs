@@ -69,7 +69,10 @@ async function check_ida(browser, check, shot) {
     check.ok(/AT THE DESIGN MOTION, 0\.200 G 2 % 18 % at 1\.5 times it; aims of ASCE\/SEI 43: 1 % and 10 %, not met/i.test(text), "the design motion has its probabilities", text);
     // 1e-4 (0.42/0.2)^-2.5 exp(2.5^2 0.13/2) = 2.35e-5 a year
     check.ok(/ANNUAL RATE 2\.35e-5 exceedances a year/i.test(text), "and the hazard curve its rate", text);
+    // and with the composite dispersion, of 0.3^2 + 0.15^2 + 0.2^2 = 0.1525: 1e-4 (0.42/0.2)^-2.5 exp(2.5^2 0.1525/2) = 2.52e-5 a year
+    check.ok(/2\.52e-5 with the composite \u03b2 of motions and samples/.test(text), "and that of the composite dispersion", text);
     const [first] = rows_of(report, "limits");
+    check.ok(near(first.composite, 2.52e-5, 1e-7), "which is in the table", `${first.composite}`);
     check.ok(near(first.at_design, 0.0198, 1e-4) && near(first.rate, 2.35e-5, 1e-7), "both are in the table", `${first.at_design} ${first.rate}`);
     const bars = await page.locator(".tornado").first().locator("rect").evaluateAll((list) => list.map((e) => Number(e.getAttribute("width"))));
     check.equal(bars.length, 4, "the tornado has two bars for each variable");

@@ -165,6 +165,7 @@ void write_floor_changes(ResultWriter& out, const FloorAnswers* floors) {
           "change",
           band.arises ? "up to " + format_quantity(band.largest, "m/s2") + " where the bonded model has none" : format_change(band.change),
           "the same as text");
+      out.flag("arises", band.arises, "the bonded floor is not excited in the band: the change is that of a threshold");
     });
     out.when(floor.change.bands.empty()).constant("note", not_excited, "why there are no bands");
   });
