@@ -12,6 +12,7 @@
 #include "uplift/case/mesh/mesh.h"
 #include "uplift/elements/element_entry.h"
 #include "uplift/linear/memory.h"
+#include "uplift/model/builder.h"
 #include "uplift/run/floor_record.h"
 #include "uplift/session/steps.h"
 
@@ -38,11 +39,32 @@ void look_at_mesh(const Case& read, CaseFindings& found) {
   found.pieces = connected_pieces(read.mesh->mesh).count();
 }
 
-/// Frequencies with the nodes of every interface held: what a fixed-base model has.
 std::vector<double> frequencies(const std::vector<Mode>& found) {
   std::vector<double> values;
   for (const Mode& mode : found) values.push_back(mode.frequency);
   return values;
+}
+
+/// What the step has to resolve. In a small model all bonded modes are looked at: that in which a footing bounces on a stiff joint is far
+/// from the lowest. Modes of next to no mass, as of ground under single points, do not matter.
+ResolvedFrequencies resolved_frequencies(const Model& model, const CaseFindings& found) {
+  constexpr int small = 300, lowest_elastic = 5, most_rigid = 6;  // unknowns, modes
+  constexpr double least_share = 0.05;
+  ResolvedFrequencies made{found.bonded, found.base_free, {}};
+  if (model.free() > small) return made;
+  const Sparse mass = assembled(model, &Local::mass);
+  for (const Mode& mode : bonded_modes(model, model.free())) {
+    const Vector shape = model.reduction * mode.shape;
+    double share = 0;
+    for (const Dof direction : {ux, uy, uz})
+      if (direction != uz || model.space.dimension == 3) share = std::max(share, mass_share(model, mass, shape, direction));
+    if (share >= least_share) made.moving.push_back(mode.frequency);
+  }
+  made.base_free = frequencies(uplift::modes(model.stiffness, model.mass, lowest_elastic + most_rigid));
+  const auto elastic = std::ranges::find_if(made.base_free, [](double frequency) { return frequency > 0; });
+  made.base_free.erase(made.base_free.begin(), elastic);
+  made.base_free.resize(std::min<std::size_t>(made.base_free.size(), lowest_elastic));
+  return made;
 }
 
 /// The first steps of the run: do the static stages converge, and what does a step cost?
@@ -110,7 +132,7 @@ CaseFindings find(const Case& read, const RunSpec& spec, const BuiltCase& built)
     found.base_free = frequencies(uplift::modes(built.at_rest().stiffness, built.at_rest().mass, 5));
   }
   if (const Stage* stage = dynamic_stage(built.plan)) found.ratios = stiffness_ratios(built.model, *stage, *built.plan.solver);
-  if (dynamic_stage(built.plan)) found.bounds = step_bounds(read, built, found.bonded);
+  if (dynamic_stage(built.plan)) found.bounds = step_bounds(read, built, resolved_frequencies(built.at_rest(), found));
   if (!found.bounds.empty()) found.suggested_step = rounded_down(found.bounds.front().step);
   try_steps(found, built);
   found.warnings = warnings(read, spec, built);

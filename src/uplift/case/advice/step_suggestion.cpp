@@ -11,27 +11,39 @@
 namespace uplift {
 namespace {
 
-constexpr double steps_a_period = 20, highest_of_structure = 50;  // Hz
-constexpr double steps_a_period_of_joint = 8,
-                 highest_of_joint = 300;  // Hz: above, the joint acts as a constraint, which needs no resolution
+constexpr double steps_a_period = 20, highest_of_structure = 50;                // Hz
+constexpr double steps_a_period_of_vibration = 16, highest_of_vibration = 300;  // Hz
+constexpr double steps_a_period_of_bounces = 8, highest_of_bounces = 1000;      // Hz: a faster bounce is shorter than a tenth of the window
 constexpr double steps_a_period_of_floors = 40, highest_of_floors = 33;  // Hz: above, the spectrum of an earthquake is that of the peak
 constexpr double accepted_difference = 0.01, least_step = 1e-5, most_step = 0.1;
 
-/// Modes of the structure, and those in which it bounces on the closed joint.
-void bound_by_modes(const std::vector<double>& bonded, std::vector<StepBound>& bounds) {
-  double structure = 0, joint = 0;
-  for (const double frequency : bonded) {
+/// Vibrations of the structure, `which`: "with the base bonded".
+void bound_by_modes(const std::vector<double>& frequencies, std::string_view which, std::vector<StepBound>& bounds) {
+  double slow = 0, fast = 0;
+  for (const double frequency : frequencies) {
     if (frequency < highest_of_structure)
-      structure = std::max(structure, frequency);
-    else if (frequency < highest_of_joint)
-      joint = std::max(joint, frequency);
+      slow = std::max(slow, frequency);
+    else if (frequency < highest_of_vibration)
+      fast = std::max(fast, frequency);
   }
-  if (structure > 0)
-    bounds.push_back({1 / (steps_a_period * structure),
-                      fmt::format("twenty steps a period of the bonded mode of {}", format_quantity(structure, "Hz"))});
-  if (joint > 0)
-    bounds.push_back({1 / (steps_a_period_of_joint * joint),
-                      fmt::format("eight steps a period of the bonded mode of {}", format_quantity(joint, "Hz"))});
+  if (slow > 0)
+    bounds.push_back(
+        {1 / (steps_a_period * slow), fmt::format("twenty steps a period of the mode of {} {}", format_quantity(slow, "Hz"), which)});
+  if (fast > 0)
+    bounds.push_back({1 / (steps_a_period_of_vibration * fast),
+                      fmt::format("sixteen steps a period of the mode of {} {}", format_quantity(fast, "Hz"), which)});
+}
+
+/// An impact on a stiff joint is half a period of the bounce on it. Whether the structure comes off again, and with it the momentum that
+/// the window of the verdict sees, is decided within that time.
+void bound_by_bounces(const std::vector<double>& moving, std::vector<StepBound>& bounds) {
+  double highest = 0;
+  for (const double frequency : moving) highest = std::max(highest, frequency);
+  if (highest < highest_of_vibration) return;
+  const double resolved = std::min(highest, highest_of_bounces);
+  bounds.push_back(
+      {1 / (steps_a_period_of_bounces * resolved), fmt::format("eight steps a period of {}, of the bounce on the closed joint with {}",
+                                                               format_quantity(resolved, "Hz"), format_quantity(highest, "Hz"))});
 }
 
 /// A wave shall not cross more than one face of the interface in a step, on the softer side: what a contact that opens or closes sends out
@@ -117,9 +129,14 @@ double step_that_resolves(const TimeFunction& function, int derivative, double d
   return std::max(step, least_step);
 }
 
-std::vector<StepBound> step_bounds(const Case& read, const BuiltCase& built, const std::vector<double>& bonded) {
+std::vector<StepBound> step_bounds(const Case& read, const BuiltCase& built, const ResolvedFrequencies& frequencies) {
   std::vector<StepBound> bounds;
-  bound_by_modes(bonded, bounds);
+  bound_by_modes(frequencies.bonded, "with the base bonded", bounds);
+  bound_by_modes(frequencies.moving, "with the base bonded", bounds);
+  if (!built.model.interfaces.empty()) {
+    bound_by_modes(frequencies.base_free, "with the base free", bounds);
+    bound_by_bounces(frequencies.moving, bounds);
+  }
   bound_by_contact_mesh(read, built, bounds);
   bound_by_floors(built.plan, bounds);
   bound_by_loads(built, bounds);

@@ -12,10 +12,16 @@ struct StepBound {
   std::string reason;
 };
 
-/// What limits the time step of a case with a dynamic stage, the smallest first; empty when nothing does. `bonded`: its lowest natural
-/// frequencies with the interfaces closed [Hz]. The numbers of steps are those at which the forces of the verdict of random structures
-/// were found to be within 3 % of those with an eighth of the step, in nine of ten cases (docs/guide).
-std::vector<StepBound> step_bounds(const Case& read, const BuiltCase& built, const std::vector<double>& bonded);
+/// Natural frequencies [Hz] of a case that its time step has to resolve.
+struct ResolvedFrequencies {
+  std::vector<double> bonded;     // with the interfaces closed, the lowest
+  std::vector<double> base_free;  // with the interfaces open, the lowest: how the structure vibrates while it rocks or flies
+  std::vector<double> moving;     // with the interfaces closed, those of small models that move part of the mass
+};
+
+/// What limits the time step of a case with a dynamic stage, the smallest first; empty when nothing does. The numbers of steps follow from
+/// random structures (docs/guide/choosing_the_joint_and_the_step.md).
+std::vector<StepBound> step_bounds(const Case& read, const BuiltCase& built, const ResolvedFrequencies& frequencies);
 
 /// Loads and motions that are functions of time.
 std::vector<const TimeLoad*> varying_loads(const Model& model);
