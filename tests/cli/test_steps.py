@@ -1,5 +1,6 @@
 """What the verdict says must not depend on the step: example 02 with other steps and schemes, and the script that makes such tables."""
 
+import math
 import sys
 
 from support import *
@@ -87,11 +88,76 @@ class StepCheck(CliTest):
         bounds = found["step_bounds"]
         self.assertEqual([bound["step"] for bound in bounds], sorted(bound["step"] for bound in bounds))
         self.assertLessEqual(found["suggested_step"], bounds[0]["step"])
-        slow, fast = found["frequencies_bonded"][0], [f for f in found["frequencies_bonded"] if 50 < f < 300]
-        expected = [1 / (20 * max(f for f in found["frequencies_bonded"] if f < 50))] + [1 / (8 * f) for f in fast[-1:]]
-        for step in expected:
-            self.assertTrue(any(abs(bound["step"] / step - 1) < 1e-9 for bound in bounds), (step, bounds, slow))
+        for key in ("frequencies_bonded", "frequencies_base_free"):
+            slow, fast = [f for f in found[key] if 0 < f < 50], [f for f in found[key] if 50 < f < 300]
+            for step in [1 / (20 * f) for f in slow[-1:]] + [1 / (16 * f) for f in fast[-1:]]:
+                self.assertTrue(any(abs(bound["step"] / step - 1) < 1e-9 for bound in bounds), (step, bounds))
         self.assertIn(bounds[0]["reason"], self.uplift("check", "case.toml").stdout)
+
+    def stick(self, law, head, footing, method="newton"):
+        """A massless column of 5 m, held sideways, on a footing of 3 m."""
+        self.write(f"""title = "stick"
+method = "{method}"
+[nodes]
+top = [0, 5]
+base = [0, 0]
+[[beam]]
+name = "column"
+nodes = ["base", "top"]
+E = 2e10
+A = 1e-2
+I = 0.2
+[[mass]]
+node = "top"
+mass = {head}
+[[rigid]]
+name = "footing"
+node = "base"
+mass = {footing}
+inertia = 1e4
+[[support]]
+node = "base"
+fixed = ["ux", "rz"]
+[[support]]
+node = "top"
+fixed = ["ux", "rz"]
+[[interface]]
+name = "soil"
+footing = {{ body = "base", width = 3, points = 5 }}
+law = {law}
+[gravity]
+acceleration = [0, -9.81]
+[[stage]]
+type = "static"
+[[stage]]
+type = "dynamic"
+duration = 1
+step = 1e-3
+""")
+        return json.loads(self.uplift("check", "case.toml", "--json").stdout)["step_bounds"]
+
+    def step_of(self, bounds, part):
+        return next((bound["step"] for bound in bounds if part in bound["reason"]), None)
+
+    def test_an_open_base_vibrates_faster_than_a_bonded_one(self):
+        # k = E A/h = 4e7 N/m. Bonded on rigid ground the head alone moves, w^2 = k/m; in the air both masses do, w^2 = k (1/m + 1/m_f)
+        bounds = self.stick('"unilateral"', 2e4, 5e3, "lagrange")
+        bonded, free = (math.sqrt(4e7 * c) / (2 * math.pi) for c in (1 / 2e4, 1 / 2e4 + 1 / 5e3))
+        self.assertAlmostEqual(self.step_of(bounds, "with the base bonded") * 20 * bonded, 1, delta=1e-6)
+        self.assertAlmostEqual(self.step_of(bounds, "with the base free") * 20 * free, 1, delta=1e-6)
+        self.assertIn("with the base free", bounds[0]["reason"])
+
+    def test_the_bounce_on_a_stiff_joint_is_resolved(self):
+        # a footing that is light beside its joint: w^2 = (K_n A + k)/m_f with the head at rest, to (k/K)^2; 300 Hz to 1 kHz are resolved
+        # as they are, a faster bounce like one of 1 kHz
+        for stiffness, footing in ((2e10, 1e4), (2e11, 1e4)):
+            bounds = self.stick(f'{{ type = "springs", K_n = {stiffness}, tangential = "none" }}', 2e4, footing)
+            bounce = math.sqrt((3 * stiffness + 4e7) / footing) / (2 * math.pi)
+            self.assertAlmostEqual(self.step_of(bounds, "bounce on the closed joint") * 8 * min(bounce, 1000), 1, delta=1e-4)
+        # next to no mass bounces: 20 kg of 20 t
+        bounds = self.stick('{ type = "springs", K_n = 2e8, tangential = "none" }', 2e4, 20)
+        self.assertGreater(math.sqrt(3 * 2e8 / 20) / (2 * math.pi), 300)
+        self.assertIsNone(self.step_of(bounds, "bounce on the closed joint"))
 
 
 if __name__ == "__main__":
