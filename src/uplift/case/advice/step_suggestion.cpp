@@ -13,8 +13,8 @@ namespace {
 
 constexpr double steps_a_period = 20, highest_of_structure = 50;                // Hz
 constexpr double steps_a_period_of_vibration = 16, highest_of_vibration = 300;  // Hz
-constexpr double steps_a_period_of_bounces = 8, highest_of_bounces = 1000;      // Hz: a faster bounce is shorter than a tenth of the window
-constexpr double steps_a_period_of_floors = 40, highest_of_floors = 33;  // Hz: above, the spectrum of an earthquake is that of the peak
+constexpr double steps_a_period_of_bounces = 8, highest_of_bounces = 1000;  // Hz: faster impacts take less than a twentieth of the window
+constexpr double steps_a_period_of_floors = 40, highest_of_floors = 33;     // Hz: above, the spectrum of an earthquake is that of the peak
 constexpr double accepted_difference = 0.01, least_step = 1e-5, most_step = 0.1;
 
 /// Vibrations of the structure, `which`: "with the base bonded".
@@ -41,9 +41,11 @@ void bound_by_bounces(const std::vector<double>& moving, std::vector<StepBound>&
   for (const double frequency : moving) highest = std::max(highest, frequency);
   if (highest < highest_of_vibration) return;
   const double resolved = std::min(highest, highest_of_bounces);
-  bounds.push_back(
-      {1 / (steps_a_period_of_bounces * resolved), fmt::format("eight steps a period of {}, of the bounce on the closed joint with {}",
-                                                               format_quantity(resolved, "Hz"), format_quantity(highest, "Hz"))});
+  const std::string reason =
+      highest > resolved ? fmt::format("eight steps a period of {}: the bounce on the closed joint has {}", format_quantity(resolved, "Hz"),
+                                       format_quantity(highest, "Hz"))
+                         : fmt::format("eight steps a period of the bounce on the closed joint, {}", format_quantity(highest, "Hz"));
+  bounds.push_back({1 / (steps_a_period_of_bounces * resolved), reason});
 }
 
 /// A wave shall not cross more than one face of the interface in a step, on the softer side: what a contact that opens or closes sends out
