@@ -2,6 +2,7 @@
 
 import shutil
 import signal
+import struct
 import time
 
 from support import *
@@ -16,9 +17,9 @@ class Resume(CliTest):
         """Names and contents of all results; times that computations took and the command are left out."""
         return {path.name: TIMES.sub(r"\1", path.read_text()) for path in (self.folder / folder).iterdir() if path.is_file() and path.name != "report.html"}
 
-    def ended(self, number, after, *words, verb="run", checkpoint="*.ckp"):
+    def ended(self, number, after, *words, verb="run", checkpoint="*.ckp", by=None):
         """What a run says that gets a signal some time after its first checkpoint."""
-        process = subprocess.Popen([program(), verb, *words], cwd=self.folder, stdout=subprocess.PIPE, stderr=subprocess.PIPE, text=True)
+        process = subprocess.Popen([by or program(), verb, *words], cwd=self.folder, stdout=subprocess.PIPE, stderr=subprocess.PIPE, text=True)
         while not list(self.folder.glob("r.part-*/checkpoint/" + checkpoint)) and process.poll() is None:
             time.sleep(0.002)
         time.sleep(after)
@@ -138,6 +139,46 @@ variants = true
         for path in folder.glob("*.ckp"):
             path.write_bytes(path.read_bytes()[:100])
         self.assertIn("expected a checkpoint that is whole", self.uplift("resume", "r", expect=2).stderr)
+
+    def changed(self, name, old, new):
+        """A copy of the program with other bytes in one place."""
+        content = pathlib.Path(program()).read_bytes()
+        place = content.index(old)
+        path = self.folder / name
+        path.write_bytes(content[:place] + new + content[place + len(new):])
+        path.chmod(0o755)
+        return path
+
+    def resumed_by(self, other, expect):
+        done = subprocess.run([other, "resume", "r", "-o", "resumed", "-q"], cwd=self.folder, capture_output=True, text=True, timeout=300)
+        self.assertEqual(done.returncode, expect, done.stderr)
+        if expect:
+            self.assertIn("expected the program that wrote the checkpoint, found another one", done.stderr)
+        else:
+            self.assertEqual(self.files("resumed"), self.files("straight"))
+
+    def test_a_copy_of_the_program_goes_on_and_another_program_does_not(self):
+        self.write(KEPT)
+        self.uplift("run", "case.toml", "-o", "straight")
+        name = b"GNU\0"
+        note = struct.pack("<III", len(name), 20, 3) + name  # NT_GNU_BUILD_ID with a SHA-1, elf.h
+        of_other_type = struct.pack("<III", len(name), 20, 99) + name
+        self.ended(signal.SIGKILL, 0, "case.toml", "-o", "r")
+        self.resumed_by(shutil.copy(program(), self.folder / "copy"), 0)
+        self.resumed_by(self.changed("relinked", note, note + b"id"), 2)
+        without = self.changed("without", note, of_other_type)
+        self.resumed_by(without, 2)
+        for path in self.folder.glob("r.*"):
+            shutil.rmtree(path)
+        # without a build id the whole file counts
+        self.ended(signal.SIGKILL, 0, "case.toml", "-o", "r", by=without)
+        self.resumed_by(shutil.copy(without, self.folder / "copy"), 0)
+        content = bytearray(without.read_bytes())
+        content[-1] ^= 1
+        without.unlink()
+        without.write_bytes(content)
+        without.chmod(0o755)
+        self.resumed_by(without, 2)
 
     def test_a_changed_case_is_refused(self):
         self.write(KEPT)

@@ -8,6 +8,7 @@
 
 #include "uplift/base/archive.h"
 #include "uplift/base/file.h"
+#include "uplift/base/image.h"
 #include "uplift/base/text.h"
 
 namespace uplift {
@@ -39,13 +40,13 @@ namespace {
 constexpr std::string_view magic = "uplift checkpoint 2\n";
 constexpr const char *ending = ".ckp", *before_ending = ".before.ckp", *journal_ending = ".frames";
 
-/// Name and flags of the processor, which decide what the libraries compute with.
+/// Name and flags of the processor, and the shared libraries: what decides the last bits beside the program.
 std::string processor() {
   std::ifstream info("/proc/cpuinfo");
   std::string found;
   for (std::string line; std::getline(info, line) && !line.empty();)
     if (line.starts_with("model name") || line.starts_with("flags")) found += line + '\n';
-  return found;
+  return found + identity_of_libraries();
 }
 
 /// A file's name for a run's label.
@@ -84,7 +85,7 @@ CheckpointOrigin origin_of(const LoadedCase& loaded, const std::string& verb, bo
           .from_folder = fs::current_path().string(),
           .resolved = loaded.from.resolved,
           .inputs = loaded.from.inputs,
-          .program = sha256(read_file("/proc/self/exe")),
+          .program = identity_of_program(),
           .processor = processor(),
           .step_check = step_check};
 }
@@ -162,7 +163,7 @@ Checkpoints::Checkpoints(CheckpointOrigin origin, double seconds, const ResultFo
     if (i >= then.inputs.size() || i >= origin_.inputs.size() || then.inputs[i].second != origin_.inputs[i].second)
       throw InputError(where, "", "the files of the case as they were",
                        "another content of " + in_quotes((i < origin_.inputs.size() ? origin_ : then).inputs[i].first));
-  if (then.processor != origin_.processor) note("the run goes on on another processor: not bit for bit");
+  if (then.processor != origin_.processor) note("the run goes on on another processor or with other shared libraries: not bit for bit");
 }
 
 std::optional<Checkpoints::Begin> Checkpoints::begin(const std::string& label) {

@@ -22,8 +22,8 @@ struct CheckpointOrigin {
   std::string from_folder;                                  // where the command was given
   std::string resolved;                                     // the case with all its values
   std::vector<std::pair<std::string, std::string>> inputs;  // files that the case names, with their SHA-256
-  std::string program;                                      // SHA-256 of the executable file
-  std::string processor;                                    // results are the same to the last bit on one kind of processor alone
+  std::string program;                                      // its identity_of_program
+  std::string processor;                                    // and libraries: results are the same to the last bit with these alone
   bool step_check = true;                                   // Control::step_check
 };
 
