@@ -5,6 +5,7 @@ import hashlib
 import math
 import shutil
 import sqlite3
+import sys
 import time
 
 from study_cases import *
@@ -64,6 +65,26 @@ class Study(StudyTest):
         alone = summary["verdict"]["interfaces"][0]["numbers"]["max_opening"]["value"]
         self.assertGreater(alone, 1e-6)
         self.assertAlmostEqual(float(run["uplift [m]"]) / alone, 1, delta=1e-9)
+
+    def most_memory(self, *words):
+        """Of the program and its workers, whichever held most [bytes]."""
+        measure = "import resource, subprocess, sys; subprocess.run(sys.argv[1:], check=True); print(resource.getrusage(resource.RUSAGE_CHILDREN).ru_maxrss)"
+        done = subprocess.run([sys.executable, "-c", measure, program(), *words], cwd=self.folder, capture_output=True, text=True, timeout=600)
+        self.assertEqual(done.returncode, 0, done.stderr)
+        return 1024 * int(done.stdout)
+
+    def test_check_foretells_the_memory_of_a_worker(self):
+        if self.cannot_be_limited():
+            self.skipTest("the address sanitizer keeps what is freed")
+        self.write(LARGE)
+        plan = STRIPES.replace("[0.2, 0.5, 1.0]", "[0.3, 0.5]") + "[run]\nworkers = 1\n"
+        for together, limits in ((1, 'timeout = "1 h"\n'), (8, "")):
+            with self.subTest(together=together):
+                name = self.study(plan + limits, f"s{together}.study")
+                forecast = json.loads(self.uplift("study", "check", name, "--json").stdout)
+                self.assertEqual((forecast["runs"], forecast["runs_in_lockstep"]), (8, together))
+                ratio = self.most_memory("study", "run", name, "-q") / forecast["bytes_of_memory"]
+                self.assertAlmostEqual(ratio, 1, delta=0.2)
 
     def test_a_comparison_of_a_large_model_marches_in_lockstep(self):
         louder = 'process = [{ do = { type = "scale", factor = 6 } }]\n'  # it lifts off

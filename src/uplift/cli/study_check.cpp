@@ -11,6 +11,7 @@
 #include "uplift/ensemble/compute.h"
 #include "uplift/ensemble/coordinator.h"
 #include "uplift/ensemble/part_file.h"
+#include "uplift/ensemble/workers.h"
 #include "uplift/io/text/json_writer.h"
 
 namespace uplift::cli {
@@ -98,21 +99,48 @@ void print(const Study& study, const Forecast& forecast) {
   line("disk", format_bytes(forecast.disk()));
 }
 
-/// Most memory that this process has held so far [bytes].
+/// Runs as a worker of the study computes them, in a process of its own; the results of those before it ended.
+std::vector<StudyResult> compute_in_worker(const Study& study, StudyComputer& computer, const std::vector<RunRequest>& runs) {
+  WorkerPool pool(1, {std::nullopt, study.of.plan.memory},
+                  [&](const std::vector<RunRequest>& batch, const auto& done) { computer.compute(batch, done); });
+  pool.send(0, runs);
+  std::vector<StudyResult> results;
+  while (results.size() < runs.size()) {
+    const WorkerPool::Events events = pool.wait(std::chrono::milliseconds(200));
+    results.insert(results.end(), events.results.begin(), events.results.end());
+    for (const WorkerPool::Death& death : events.deaths) {
+      results.push_back(result_without_run(study, death.lost.front(), StudyOutcome::crashed, "its process ended with " + death.how));
+      return results;
+    }
+  }
+  return results;
+}
+
+/// Most memory that a worker has held so far [bytes].
 double largest_memory() {
   rusage usage{};
-  ::getrusage(RUSAGE_SELF, &usage);
+  ::getrusage(RUSAGE_CHILDREN, &usage);
   return 1024.0 * static_cast<double>(usage.ru_maxrss);
 }
 
-/// A worker's memory with a group of runs in lockstep, of which one took `alone`: what two take more than one is taken for every one.
-double memory_of_group(const Study& study, StudyComputer& computer, const RunRequest& trial, std::size_t together, double alone) {
-  if (together == 1) return alone;
-  std::vector<RunRequest> two(2, trial);
-  two[1].id = "second";
-  two[1].motion = study.of.motions.size() - 1;
-  computer.compute(two, [](const StudyResult&) {});
-  return alone + static_cast<double>(together - 1) * (largest_memory() - alone);
+/// Most memory of a worker that has computed such a group [bytes].
+double memory_of(const Study& study, StudyComputer& computer, const RunRequest& trial, std::size_t runs) {
+  std::vector<RunRequest> group(runs, trial);
+  for (std::size_t i = 0; i < runs; ++i) {
+    group[i].id = fmt::format("trial {}", i);
+    group[i].motion = i % study.of.motions.size();
+  }
+  compute_in_worker(study, computer, group);
+  return largest_memory();
+}
+
+/// A worker's memory with a group of runs in lockstep. The second run costs more than those behind it: until it shares the matrices of the
+/// first one, it has its own, and what it gives back serves the next ones. So a run more is what four take more than two.
+double memory_of_group(const Study& study, StudyComputer& computer, const RunRequest& trial, std::size_t together) {
+  constexpr std::size_t few = 2, more = 4;
+  if (together <= more) return memory_of(study, computer, trial, together);
+  const double with_few = memory_of(study, computer, trial, few), with_more = memory_of(study, computer, trial, more);
+  return with_more + static_cast<double>(together - more) * (with_more - with_few) / (more - few);
 }
 
 /// Runs of a worker's group: as many as it would be given.
@@ -131,21 +159,21 @@ int check_study(const Options& options) {
   std::vector<StudyCurve> curves = curves_with_results(study, store);
   const StudyStatus status = status_of(curves, {});
   for (std::size_t i = 0; i < study.of.samples.size(); ++i) case_of_sample(study.of, i);  // every one is checked
-  const Case read = case_of_sample(study.of, 0);
-  const RunSpec spec = run_of_study(study.of, read, 0, 1);
-  const BuiltCase built = build(read, spec);
   StudyComputer computer(study);
   computer.check_reduced();
+  if (study.of.samples.size() == 1) computer.prepare(0);  // as the study does, for all workers
   const double start = study.of.plan.method.searches() ? study.of.plan.method.search.start : study.of.plan.method.levels.front();
   const bool cloud = study.of.plan.method.type == StudyMethod::Type::cloud;
   RunRequest request{"trial", 0, curves.front().sample(), curves.front().motion(), 1, start, 1};
   request.factor = cloud ? start : start / study.of.motions[request.motion].intensity;
-  const auto before = std::chrono::steady_clock::now();
-  const StudyResult trial = computer.compute(request);
-  const double seconds = std::chrono::duration<double>(std::chrono::steady_clock::now() - before).count();
-  const double alone = largest_memory();
   const std::size_t together = group_size(study, computer, request, status);
-  const double memory = memory_of_group(study, computer, request, together, alone);
+  const auto before = std::chrono::steady_clock::now();
+  const StudyResult trial = compute_in_worker(study, computer, {request}).front();
+  const double seconds = std::chrono::duration<double>(std::chrono::steady_clock::now() - before).count();
+  const double memory = together == 1 ? largest_memory() : memory_of_group(study, computer, request, together);
+  const Case read = case_of_sample(study.of, 0);
+  const RunSpec spec = run_of_study(study.of, read, 0, 1);
+  const BuiltCase built = build(read, spec);
   const Forecast forecast{status, seconds, memory, static_cast<double>(line_of(trial).size()), together};
   const std::vector<std::string> said = warnings_of(study, built, spec, read, trial);
   if (options.json) {
