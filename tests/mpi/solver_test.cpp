@@ -207,6 +207,27 @@ TEST(Petsc, HalvesOfABackSolveAreThoseOfAFactorWithTheChosenUnknownsLast) {
   }
 }
 
+TEST(Petsc, FlexibilityOfMoreUnknownsThanOneBlockHasIsThatOfTheInverse) {
+  constexpr int n = 5, count = 70, size = n * n * n;
+  Vector sizes(size);
+  for (int i = 0; i < size; ++i) sizes[i] = std::pow(10.0, i % 7 - 3);
+  const Sparse a = sizes.asDiagonal() * laplacian(n) * sizes.asDiagonal();
+  std::vector<int> chosen;
+  for (int k = 0; k < count; ++k) chosen.push_back(k * 73 % size);  // all different, on every rank, in no order
+  const Matrix inverse = PivotedLdlt(Matrix(laplacian(n))).solve(Matrix::Identity(size, size));
+  for (const char* options : {"", iterative}) {
+    const SplitFactorisation made = petsc(options)->factorise_split(a, chosen);
+    ASSERT_TRUE(made.factor) << made.why;
+    const Matrix half = made.factor->last().triangularView<lower_triangle>().solve(Matrix::Identity(count, count));
+    const Matrix found = half.transpose() * half;  // L^-T L^-1
+    for (int i = 0; i < count; ++i)
+      for (int j = 0; j < count; ++j) {
+        const int row = chosen[static_cast<std::size_t>(i)], column = chosen[static_cast<std::size_t>(j)];
+        EXPECT_NEAR(found(i, j) * sizes[row] * sizes[column], inverse(row, column), 1e-9) << options << i << j;
+      }
+  }
+}
+
 TEST(Petsc, ComplianceOfRowsIsThatOfTheInverse) {
   const Sparse a = laplacian(3);
   Matrix rows = Matrix::Zero(5, 27);

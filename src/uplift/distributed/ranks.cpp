@@ -101,6 +101,9 @@ void Ranks::serve() {
       case What::solve:
         solve_together(order, nullptr, nullptr);
         break;
+      case What::flexibility:
+        flexibility_together(order, {}, nullptr);
+        break;
       case What::refuse:
         refuse_together(order, {});
         break;
@@ -170,6 +173,50 @@ SystemOutcome Ranks::solve_together(const Order& order, const double* b, double*
     MPI_Gatherv(solved.data() + static_cast<std::ptrdiff_t>(local) * c, local, MPI_DOUBLE, x == nullptr ? nullptr : x + order.rows * c,
                 counts.data(), firsts.data(), MPI_DOUBLE, 0, ranks_);
   return outcome;
+}
+
+SystemOutcome Ranks::flexibility(std::int64_t system, std::int64_t rows, const std::vector<int>& chosen, Matrix& entries) {
+  const std::lock_guard lock(one_at_a_time_);
+  HalfWay half_way(half_way_);
+  const Order order{What::flexibility, system, rows, std::ssize(chosen), 0};
+  tell(order);
+  entries.resize(std::ssize(chosen), std::ssize(chosen));
+  const SystemOutcome outcome = flexibility_together(order, chosen, &entries);
+  half_way.done();
+  if (!outcome.ok() && failure_.empty()) failure_ = outcome.why;
+  return outcome;
+}
+
+/// `entries`: on rank 0. A row is chosen on one rank; the others add a zero to it.
+SystemOutcome Ranks::flexibility_together(const Order& order, std::vector<int> chosen, Matrix* entries) {
+  constexpr std::int64_t most_numbers = 1 << 22;  // of the loads, on each rank
+  chosen.resize(static_cast<std::size_t>(order.columns));
+  MPI_Bcast(chosen.data(), static_cast<int>(order.columns), MPI_INT, 0, ranks_);
+  const Shares shares(static_cast<PetscInt>(order.rows), count_);
+  const std::int64_t first_row = shares.first(rank_), local = shares.count(rank_), count = order.columns;
+  const auto each_of_mine = [&](std::int64_t begin, std::int64_t end, const auto& take) {  // number of the chosen one, row of this rank
+    for (std::int64_t k = begin; k < end; ++k)
+      if (const std::int64_t row = chosen[static_cast<std::size_t>(k)] - first_row; row >= 0 && row < local) take(k, row);
+  };
+  const std::int64_t block = std::clamp<std::int64_t>(most_numbers / (shares.count(0) + 1), 1, most_columns);
+  System& asked = *systems_.at(order.system);
+  for (std::int64_t first = 0; first < count; first += block) {
+    const std::int64_t columns = std::min(block, count - first);
+    std::vector<double> given(static_cast<std::size_t>(local * columns)), solved(given.size());
+    each_of_mine(first, first + columns,
+                 [&](std::int64_t k, std::int64_t row) { given[static_cast<std::size_t>(row + local * (k - first))] = 1; });
+    SystemOutcome outcome = asked.solve(given.data(), solved.data(), static_cast<PetscInt>(columns));
+    iterations_ += asked.iterations();
+    if (!outcome.ok()) return outcome;
+    Matrix answer = Matrix::Zero(count, columns);
+    each_of_mine(0, count, [&](std::int64_t k, std::int64_t row) {
+      for (std::int64_t c = 0; c < columns; ++c) answer(k, c) = solved[static_cast<std::size_t>(row + local * c)];
+    });
+    MPI_Reduce(entries == nullptr ? answer.data() : MPI_IN_PLACE, answer.data(), static_cast<int>(answer.size()), MPI_DOUBLE, MPI_SUM, 0,
+               ranks_);
+    if (entries != nullptr) entries->middleCols(first, columns) = answer;
+  }
+  return {};
 }
 
 /// The rank's rows of the motions of S A S, which are S^-1 times those of A, one column after another.

@@ -4,6 +4,7 @@
 #include <memory>
 #include <mutex>
 #include <string>
+#include <vector>
 
 #include "uplift/distributed/system.h"
 #include "uplift/math/linalg.h"
@@ -31,6 +32,9 @@ class Ranks {
   Made make(const Sparse& matrix, const Vector& scale, const std::string& options, const Matrix& motions = {});
   /// x = A^-1 b; x has the shape of b.
   SystemOutcome solve(std::int64_t system, const Matrix& b, Matrix& x);
+  /// The entries of A^-1 between chosen unknowns. Every rank makes its rows of the loads and hands out those of the answers that are
+  /// chosen: nothing as long as A is ever on rank 0.
+  SystemOutcome flexibility(std::int64_t system, std::int64_t rows, const std::vector<int>& chosen, Matrix& entries);
   /// The options of which nothing is known to PETSc, or what is wrong with them, tried on a chain of springs; empty when all is well.
   std::string refuse(const std::string& options);
   /// All memory of a system.
@@ -48,10 +52,11 @@ class Ranks {
   void serve();
 
  private:
-  enum class What : std::int64_t { make, solve, refuse, release, end };
+  enum class What : std::int64_t { make, solve, flexibility, refuse, release, end };
   struct Order {
     What what = What::end;
-    std::int64_t system = 0, rows = 0, columns = 0, letters = 0;  // columns: of the loads, or the motions; letters: of the options
+    std::int64_t system = 0, rows = 0, columns = 0,
+                 letters = 0;  // columns: of the loads, the motions or the flexibility; letters: of the options
   };
   Ranks();
   void tell(const Order& order);
@@ -63,6 +68,7 @@ class Ranks {
   };
   Made make_together(const Order& order, const Scaled* matrix, std::string options);
   SystemOutcome solve_together(const Order& order, const double* b, double* x);
+  SystemOutcome flexibility_together(const Order& order, std::vector<int> chosen, Matrix* entries);
   std::string refuse_together(const Order& order, std::string options);
   std::vector<double> spread_motions(const Order& order, const Scaled* matrix) const;
   LocalRows spread_rows(PetscInt rows, const Scaled* matrix) const;

@@ -34,6 +34,13 @@ class PetscFactor : public FactorWithReach {
     else
       x = Matrix::Constant(b.rows(), b.cols(), std::numeric_limits<double>::quiet_NaN());
   }
+  /// (A^-1)_tt of chosen unknowns t.
+  SystemOutcome flexibility(const std::vector<int>& chosen, Matrix& entries) const {
+    SystemOutcome outcome = Ranks::all().flexibility(system_, scale_.size(), chosen, entries);
+    const Vector scale = scale_(chosen);
+    entries = (scale.asDiagonal() * (0.5 * (entries + entries.transpose())) * scale.asDiagonal()).eval();
+    return outcome;
+  }
   double nonzeros() const override { return nonzeros_; }
   double reach() const override { return reach_; }
 
@@ -90,21 +97,6 @@ class PetscSplit final : public SplitFactor {
   Index rows_;  // of the matrix
 };
 
-/// (A^-1)_tt, some columns at a time.
-Matrix compliance_of(const Factor& factor, Index rows, const std::vector<int>& chosen) {
-  constexpr Index most_numbers = 1 << 22;
-  const Index count = std::ssize(chosen), block = std::clamp<Index>(most_numbers / rows, 1, 64);
-  Matrix compliance(count, count), load, answer;
-  for (Index first = 0; first < count; first += block) {
-    const Index columns = std::min(block, count - first);
-    load.setZero(rows, columns);
-    for (Index k = 0; k < columns; ++k) load(chosen[static_cast<std::size_t>(first + k)], k) = 1;
-    factor.solve(load, answer);
-    for (Index i = 0; i < count; ++i) compliance.row(i).segment(first, columns) = answer.row(chosen[static_cast<std::size_t>(i)]);
-  }
-  return 0.5 * (compliance + compliance.transpose());
-}
-
 class PetscSolver final : public SolverOfStatics {
  public:
   struct Settings {
@@ -130,7 +122,9 @@ class PetscSolver final : public SolverOfStatics {
     Factorisation whole = factorise(a);
     if (whole.factor == nullptr)
       return {.factor = nullptr, .failed_unknown = whole.failed_unknown, .why = std::move(whole.why), .too_large = whole.too_large};
-    const Matrix compliance = compliance_of(*whole.factor, a.rows(), last);
+    Matrix compliance;
+    if (SystemOutcome outcome = static_cast<const PetscFactor&>(*whole.factor).flexibility(last, compliance); !outcome.ok())
+      return {.factor = nullptr, .failed_unknown = -1, .why = std::move(outcome.why)};
     const Cholesky turned(Matrix(compliance.reverse()));  // from the last row to the first: G = U U^T
     if (turned->info() != Success)
       return {.factor = nullptr, .failed_unknown = -1, .why = "the flexibility of the interfaces is not positive definite"};
