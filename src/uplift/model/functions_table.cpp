@@ -71,9 +71,10 @@ std::unique_ptr<const TimeFunction> make_table(const Values& v) {
 
 // ---- CSV ----
 
+/// Between semicolons commas are decimal commas.
 std::vector<std::string_view> cells_of(std::string_view line) {
-  const bool separated = line.find_first_of(",;") != std::string_view::npos;
-  const std::string_view separators = separated ? ",;" : " \t";
+  const bool semicolons = line.find(';') != std::string_view::npos, separated = semicolons || line.find(',') != std::string_view::npos;
+  const std::string_view separators = semicolons ? ";" : separated ? "," : " \t";
   std::vector<std::string_view> cells;
   while (true) {
     const std::size_t end = line.find_first_of(separators);
@@ -85,7 +86,9 @@ std::vector<std::string_view> cells_of(std::string_view line) {
 }
 
 std::optional<double> number_of(std::string_view cell) {
-  const LeadingNumber number = leading_number(cell);
+  std::string pointed(cell);
+  std::ranges::replace(pointed, ',', '.');
+  const LeadingNumber number = leading_number(pointed);
   if (number.length == 0 || number.length != cell.size() || number.out_of_range) return std::nullopt;
   return number.value;
 }
@@ -126,7 +129,7 @@ std::unique_ptr<const TimeFunction> make_csv(const Values& v) {
   std::size_t time_column = 0, value_column = 0;
   bool first = true;
   const std::string content = read_file(path);
-  for (std::size_t begin = 0; begin < content.size();) {
+  for (std::size_t begin = content.starts_with("\xEF\xBB\xBF") ? 3 : 0; begin < content.size();) {
     const std::size_t end = std::min(content.find('\n', begin), content.size());
     const std::string_view text = trim(std::string_view(content).substr(begin, end - begin));
     begin = end + 1;
@@ -179,7 +182,8 @@ const Entry<TimeFunction>& entry_function_csv() {
   static const Entry<TimeFunction> entry{
       {.name = "csv",
        .summary = "two columns of a text file (comma, semicolon or blanks between them), straight lines between the points",
-       .equations = "f(t) = scale * value; lines that begin with # are comments, the first line may name the columns",
+       .equations = "f(t) = scale * value; lines that begin with # are comments, the first line may name the columns; between semicolons, "
+                    "commas are decimal commas",
        .source = "",
        .params = {text("file", "path, relative to the case file"), text("time_column", "name, or number from 1").standard("1"),
                   text("value_column", "name, or number from 1").standard("2"), number("scale", "1", "factor on the values").standard(1.0),

@@ -157,6 +157,21 @@ TEST_F(Csv, ReadsColumnsByNameOrNumber) {
   EXPECT_NEAR(blanks->value(0.25), 1.5 * 9.80665, 1e-12);
 }
 
+TEST_F(Csv, ReadsDecimalCommasBetweenSemicolons) {
+  const auto f = read(write("comma.csv", "t;a\n0;0,5\n1;-1,25\n2,5;0\n"));
+  EXPECT_EQ(f->value(0), 0.5);
+  EXPECT_EQ(f->value(1), -1.25);
+  EXPECT_NEAR(f->value(1.6), -0.75, 1e-15);
+}
+
+TEST_F(Csv, TakesNoMarkOfTheByteOrderForAHead) {
+  const auto f = read(write("mark.csv",
+                            "\xEF\xBB\xBF"
+                            "0,2\n1,4\n"));
+  EXPECT_EQ(f->value(0), 2);
+  EXPECT_EQ(f->value(0.5), 3);
+}
+
 TEST_F(Csv, ErrorsPointToTheLine) {
   const auto message = [&](const std::string& path, std::vector<std::pair<std::string, Raw>> more = {}) {
     return support::refusal([&] { read(path, more); });

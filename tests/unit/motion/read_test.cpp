@@ -100,6 +100,16 @@ TEST(RecordFormats, PeerInAllSpellings) {
   }
 }
 
+// Files of the PEER Strong Motion Database of 2000 state the filter behind the unit.
+TEST(RecordFormats, PeerWithFilterPointsBehindTheUnit) {
+  const std::vector<double> values = tone(23, 0.4);
+  Written written = peer(values, "NPTS=  23, DT= .00500 SEC");
+  const std::size_t unit = written.text.find("UNITS OF G");
+  ASSERT_NE(unit, written.text.npos);
+  written.text.insert(unit + 10, ". FILTER POINTS: HP=0.2 Hz LP=35.0 Hz");
+  expect_values(one(written.text), written.numbers, g);
+}
+
 TEST(RecordFormats, PeerVelocityAndDisplacement) {
   const Written velocity = peer(tone(40, 30), "NPTS= 40, DT= .01 SEC", "VELOCITY", "CM/S"),
                 displacement = peer(tone(40, 8), "NPTS= 40, DT= .01 SEC", "DISPLACEMENT", "CM");
@@ -253,6 +263,34 @@ TEST(RecordFormats, TablesWithAndWithoutHeads) {
   same("# step = 0.02 s; unit = g\n0 0.5 -1.25\n0.75\n", {}, g);
   same("#4 points at equal spacing of 0.02 sec\n#The units are (g)\n0 0.5 -1.25\n0.75 0.0 0\n", {}, g);
   same("x [m/s2],t [s]\n0,0\n0.5,0.02\n-1.25,0.04\n0.75,0.06\n", {}, 1);
+}
+
+TEST(RecordFormats, TablesOfSpreadsheets) {
+  const std::vector<double> numbers{0, 0.5, -1.25, 0.75};
+  const auto same = [&](const std::string& text, const RecordOptions& options, double factor, bool told) {
+    const Motion motion = one(text, options);
+    EXPECT_DOUBLE_EQ(motion.step, 0.02) << text;
+    expect_values(motion, numbers, factor);
+    EXPECT_EQ(motion.repairs, told ? Texts{"its commas were read as decimal commas"} : Texts{}) << text;
+  };
+  // decimal commas that begin below a row of whole numbers, between tabs and between blanks
+  same("t;a [m/s2]\n0;0\n0,02;0,5\n0,04;-1,25\n0,06;0,75\n", {}, 1, false);
+  same("0\t0\n0,02\t0,5\n0,04\t-1,25\n0,06\t0,75\n", {.unit = "g"}, g, true);
+  same("0,00  0,0\n0,02  0,5\n0,04 -1,25\n0,06  0,75\n", {.unit = "m/s2"}, 1, true);
+  same("# step = 0.02 s; unit = g\n0,00 0,50 -1,25\n0,75\n", {}, g, true);
+  // one column: a whole number is not written "00" or "-0", and none begins with a zero
+  same("0,00\n0,50\n-1,25\n0,75\n", {.unit = "m/s2", .step = 0.02}, 1, true);
+  same("0\n0,5\n-1,25\n0,75\n", {.unit = "m/s2", .step = 0.02}, 1, true);
+  // quotes, separators at the ends, units in a line of their own
+  same("\"time [s]\",\"a, NS [g]\"\n\"0\",\"0\"\n\"0.02\",\"0.5\"\n\"0.04\",\"-1.25\"\n\"0.06\",\"0.75\"\n", {}, g, false);
+  same("t [s];a [cm/s2];\n0;0;\n0,02;0,5;\n0,04;-1,25;\n0,06;0,75;\n", {}, 0.01, false);
+  for (const char* units : {"s,cm/s2", "[s],[cm/s2]", "(s),(gal)"})
+    same(std::string("time,acc\n") + units + "\n0,0\n0.02,0.5\n0.04,-1.25\n0.06,0.75\n", {}, 0.01, false);
+  same("t a\n(ms) (m/s2)\n0 0\n20 0.5\n40 -1.25\n60 0.75\n", {}, 1, false);
+  // whole numbers at whole times remain two columns
+  EXPECT_EQ(one("0,3\n1,5\n2,-4\n3,1\n", {.unit = "m/s2"}).values, (std::vector<double>{3, 5, -4, 1}));
+  // "1,5" then "-2,7": no one can tell
+  EXPECT_THROW(one("1,5\n-2,7\n0,3\n", {.unit = "m/s2", .step = 0.02}), InputError);
 }
 
 TEST(RecordFormats, ColumnsOfATable) {

@@ -45,7 +45,9 @@ void read_head(const RecordText& text, int counts, RecordDraft& draft) {
     const std::string line = upper(text.line(i));
     const std::size_t units = line.find("UNITS OF");
     if (units == line.npos) continue;
-    draft.unit = trim(std::string_view(line).substr(units + 8));
+    // "G", and "G. FILTER POINTS: HP=0.2 Hz LP=35.0 Hz" in the database of 2000
+    const std::string_view unit = std::string_view(line).substr(units + 8);
+    draft.unit = trim(unit.substr(0, unit.find(". ")));
     draft.unit_line = i;
     if (line.find("ACCEL") != line.npos) draft.kind = MotionKind::acceleration;
     if (line.find("VELOC") != line.npos) draft.kind = MotionKind::velocity;

@@ -55,12 +55,16 @@ char separator_of(std::string_view line) {
   return ' ';
 }
 
+/// Cells between separators; a cell in quotes may hold the separator, and loses its quotes.
 std::vector<std::string_view> split(std::string_view line, char separator) {
   std::vector<std::string_view> cells;
   const std::string_view ends = separator == ' ' ? std::string_view(" \t\v\f") : std::string_view(&separator, 1);
   while (true) {
-    const std::size_t end = line.find_first_of(ends);
-    const std::string_view cell = trim(line.substr(0, end));
+    const std::size_t begin = line.find_first_not_of(" \t\v\f"), quote = begin == line.npos || line[begin] != '"' ? line.npos : begin;
+    const std::size_t closing = quote == line.npos ? line.npos : line.find('"', quote + 1);
+    const std::size_t end = line.find_first_of(ends, closing == line.npos ? 0 : closing);
+    std::string_view cell = trim(line.substr(0, end));
+    if (closing != line.npos && cell.size() >= 2 && cell.back() == '"') cell = trim(cell.substr(1, cell.size() - 2));
     if (separator != ' ' || !cell.empty()) cells.push_back(cell);
     if (end == line.npos) return cells;
     line.remove_prefix(end + 1);
@@ -81,15 +85,86 @@ bool is_missing(std::string_view cell) {
   return word == "NAN" || word == "INF" || word == "INFINITY" || word == "NULL" || word == "NA" || word == "N/A";
 }
 
-/// Whether a line is a row of numbers, and then how its cells are separated.
-bool is_row(std::string_view line, Columns& columns) {
-  columns.separator = separator_of(line);
-  columns.decimal_comma = columns.separator == ';' && line.find(',') != line.npos;
+bool reads_as_row(std::string_view line, Columns& columns) {
   const std::vector<std::string_view> cells = cells_of(columns, line);
   columns.width = cells.size();
   const auto number = [&](std::string_view cell) { return number_in(columns, cell).has_value(); };
   return std::ranges::any_of(cells, number) &&
          std::ranges::all_of(cells, [&](std::string_view cell) { return number(cell) || is_missing(cell); });
+}
+
+/// Whether a line is a row of numbers, and then how its cells are separated: decimal commas where commas cannot separate.
+bool is_row(std::string_view line, Columns& columns) {
+  columns.separator = separator_of(line);
+  columns.decimal_comma = false;
+  columns.width = 0;
+  if (reads_as_row(line, columns)) return true;
+  if (line.find(',') == line.npos) return false;
+  if (columns.separator == ',') columns.separator = ' ';
+  columns.decimal_comma = true;
+  columns.width = 0;
+  return reads_as_row(line, columns);
+}
+
+/// "1,5" or "-0,25E-2": two numbers, or one with a decimal comma.
+bool may_be_decimal(std::string_view line) {
+  const std::size_t comma = line.find(',');
+  if (comma == line.npos || comma + 1 == line.size() || line.find_first_not_of("+-0123456789,eEdD") != line.npos) return false;
+  const std::string_view whole = line.substr(0, comma);
+  return whole.find_first_not_of("+-0123456789") == whole.npos && line[comma + 1] >= '0' && line[comma + 1] <= '9' &&
+         line.find(',', comma + 1) == line.npos;
+}
+
+/// A whole number is not written "-0", and none begins with a zero: "-0,25", "1,05".
+bool is_decimal(std::string_view line) {
+  const std::size_t comma = line.find(',');
+  const std::string_view whole = line.substr(0, comma), rest = line.substr(comma + 1);
+  return whole == "-0" || whole == "+0" || (rest.size() > 1 && rest[0] == '0' && rest[1] >= '0' && rest[1] <= '9');
+}
+
+bool are_numbers_in_steps(const std::vector<double>& numbers) {
+  for (std::size_t i = 1; i < numbers.size(); ++i)
+    if (!(numbers[i] > numbers[i - 1])) return false;
+  return numbers.size() > 1;
+}
+
+/// A column of numbers with decimal commas looks like two columns of whole numbers: told apart by zeros, or refused.
+void tell_one_column_from_two(const RecordText& text, Columns& columns) {
+  bool decimal = false;
+  std::vector<double> first;
+  for (int i = columns.first_row; i <= text.count(); ++i) {
+    const std::string_view line = trim(text.line(i));
+    if (line.empty() || is_comment(line)) continue;
+    if (!may_be_decimal(line) && line.find(',') != line.npos) return;  // has decimal points, or other cells
+    if (line.find(',') == line.npos && !whole_number(line)) return;
+    decimal = decimal || (line.find(',') != line.npos && is_decimal(line));
+    first.push_back(whole_number(line.substr(0, line.find(','))).value_or(0));
+  }
+  if (!decimal && are_numbers_in_steps(first)) return;
+  if (!decimal)
+    throw InputError(text.where(columns.first_row), "",
+                     "decimal points, or columns that semicolons, tabs or blanks separate (two columns of whole numbers, or one column of "
+                     "decimal commas?)",
+                     in_quotes(trim(text.line(columns.first_row))));
+  columns.separator = ' ';
+  columns.decimal_comma = true;
+  columns.width = 1;
+}
+
+/// The first row may hold no fraction: "0;0", then "0,01;0,12".
+void find_decimal_commas(const RecordText& text, Columns& columns) {
+  for (int i = columns.first_row; i <= text.count() && !columns.decimal_comma; ++i) {
+    const std::string_view line = trim(text.line(i));
+    if (line.find(',') == line.npos || is_comment(line)) continue;
+    Columns with_commas = columns;
+    with_commas.decimal_comma = true;
+    const std::vector<std::string_view> cells = cells_of(with_commas, line);
+    const bool numbers = std::ranges::all_of(cells, [&](std::string_view cell) {
+      return is_missing(cell) || (number_in(with_commas, cell) && (cell.find(',') == cell.npos || cell.find('.') == cell.npos));
+    });
+    if (!numbers || (columns.width <= 2 && cells.size() != columns.width)) return;
+    columns.decimal_comma = true;
+  }
 }
 
 /// "acc NS [cm/s2]" or "acc NS (cm/s2)".
@@ -101,20 +176,44 @@ Columns::Head head_of(std::string_view cell) {
   return {std::string(trim(cell.substr(0, open))), std::string(trim(cell.substr(open + 1, cell.size() - open - 2)))};
 }
 
-/// Names of the columns from the line before the rows, when it has as many.
-void read_heads(const RecordText& text, int line, Columns& columns) {
+std::vector<std::string> head_cells(std::string_view line, std::size_t width) {
   std::vector<std::string> cells;
-  for (const std::string_view cell : split(trim(text.line(line)), separator_of(text.line(line)))) {
-    const bool unit = separator_of(text.line(line)) == ' ' && !cells.empty() && (cell.front() == '[' || cell.front() == '(');
-    if (unit)
+  const char separator = separator_of(line);
+  const auto in_brackets = [](std::string_view cell) { return cell.front() == '[' || cell.front() == '('; };
+  const std::vector<std::string_view> parts = split(trim(line), separator);
+  const bool units_alone = separator == ' ' && std::ranges::all_of(parts, in_brackets);
+  for (const std::string_view cell : parts) {
+    if (separator == ' ' && !units_alone && !cells.empty() && in_brackets(cell))
       cells.back() += " " + std::string(cell);
     else
       cells.emplace_back(cell);
   }
-  if (columns.width == 1 && cells.size() > 1) cells = {std::string(trim(text.line(line)))};
+  while (cells.size() > width && cells.back().empty()) cells.pop_back();
+  if (width == 1 && cells.size() > 1) cells = {std::string(trim(line))};
+  return cells;
+}
+
+std::string without_brackets(std::string_view cell) {
+  const bool open = !cell.empty() && (cell.front() == '[' || cell.front() == '('),
+             closed = open && (cell.back() == ']' || cell.back() == ')');
+  return std::string(closed ? trim(cell.substr(1, cell.size() - 2)) : cell);
+}
+
+bool is_unit(const std::string& cell) {
+  const std::string word = upper(without_brackets(cell));
+  return word == "S" || word == "SEC" || word == "SECONDS" || word == "MS" || motion_unit(word).has_value();
+}
+
+/// Names of the columns from the line before the rows, when it has as many; a line of units alone stands below that of the names.
+void read_heads(const RecordText& text, int line, int before, Columns& columns) {
+  const std::vector<std::string> cells = head_cells(text.line(line), columns.width);
   if (cells.size() != columns.width) return;
   columns.head_line = line;
   for (const std::string& cell : cells) columns.heads.push_back(head_of(cell));
+  if (before == 0 || !std::ranges::all_of(cells, is_unit)) return;
+  const std::vector<std::string> names = head_cells(text.line(before), columns.width);
+  if (names.size() != columns.width) return;
+  for (std::size_t i = 0; i < names.size(); ++i) columns.heads[i] = {head_of(names[i]).name, without_brackets(cells[i])};
 }
 
 /// 0.005 where the division gave 0.0049999999999999996.
@@ -138,7 +237,7 @@ std::vector<std::string_view> cells_of(const Columns& columns, std::string_view 
 
 Columns columns_of(const RecordText& text) {
   Columns columns;
-  int before = 0, heads = 0;
+  int before = 0, before_that = 0, heads = 0;
   for (int i = 1; i <= text.count() && heads <= most_head_lines; ++i) {
     const std::string_view line = trim(text.line(i));
     if (line.empty()) continue;
@@ -149,12 +248,17 @@ Columns columns_of(const RecordText& text) {
     columns.width = 0;
     if (is_row(line, columns)) {
       columns.first_row = i;
-      if (before > 0) read_heads(text, before, columns);
+      if (before > 0) read_heads(text, before, before_that, columns);
+      if (columns.separator != ',')
+        find_decimal_commas(text, columns);
+      else if (columns.width == 2 && columns.heads.empty())
+        tell_one_column_from_two(text, columns);
       return columns;
     }
     // digits and signs that are no numbers are a row gone wrong, not a title
     if (line.find_first_not_of("0123456789+-.eEdD \t,;") == line.npos)
       throw InputError(text.where(i), "", "a row of numbers", in_quotes(line));
+    before_that = before;
     before = i;
     ++heads;
   }

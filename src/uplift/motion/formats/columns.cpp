@@ -144,8 +144,21 @@ Samples placed(const Samples& column, const Rows& rows, const TimeSteps* steps) 
   return out;
 }
 
+/// The numbers of a row at equal steps, however many.
+void add_row(const RecordText& text, const Columns& columns, int line, Samples& samples) {
+  if (!columns.decimal_comma) return add_numbers(text, line, samples);
+  for (const std::string_view word : cells_of(columns, text.line(line))) {
+    const Cell cell = number_of(text, columns, line, word);
+    if (!cell.missing)
+      samples.add(cell.number, line);
+    else if (!word.empty())
+      samples.add_missing(std::string(word), line);
+  }
+}
+
 RecordDraft draft_of(const Columns& columns, std::size_t column) {
   RecordDraft draft;
+  if (columns.decimal_comma && columns.separator != ';') draft.notes.emplace_back("its commas were read as decimal commas");
   draft.step = columns.step;
   draft.unit = columns.unit;
   draft.unit_line = columns.unit_line > 0 ? columns.unit_line : columns.head_line;
@@ -165,11 +178,11 @@ std::vector<Motion> read(const RecordText& text, const RecordOptions& options) {
     RecordDraft draft = draft_of(columns, none);
     draft.count = columns.count;
     draft.per_row = columns.width;
-    if (columns.separator == ';' || columns.decimal_comma)
+    if (columns.separator == ';' && columns.width > 1)
       throw InputError(text.where(columns.first_row), "", "a column of times at equal steps",
                        in_quotes(trim(text.line(columns.first_row))));
     for (int i = columns.first_row; i <= text.count(); ++i)
-      if (!is_comment(text.line(i))) add_numbers(text, i, draft.samples);
+      if (!is_comment(text.line(i))) add_row(text, columns, i, draft.samples);
     return {finished(text, options, std::move(draft))};
   }
   const Rows rows = rows_of(text, columns, layout);
@@ -198,9 +211,11 @@ const RecordFormat& entry_record_columns() {
   static const RecordFormat entry{
       {.name = "columns",
        .summary = "text or CSV: times and values in columns, one column, or values in rows; with or without heads",
-       .equations = "commas, semicolons (then also decimal commas), tabs or blanks between the numbers; # % ! // begin comments\n"
-                    "a head such as \"time [s], acc [cm/s2]\" gives units, and so does a comment \"# step = 0.01 s; unit = g\"\n"
-                    "all columns with a unit of motion are read; without units the first one after the times",
+       .equations =
+           "commas, semicolons, tabs or blanks between the numbers (without commas: also decimal commas); # % ! // begin comments\n"
+           "a head such as \"time [s], acc [cm/s2]\" gives units, so does a line of units below the names, and so does a comment \"# step "
+           "= 0.01 s; unit = g\"\n"
+           "all columns with a unit of motion are read; without units the first one after the times",
        .source = "",
        .params = {}},
       recognises,
