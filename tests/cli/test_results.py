@@ -43,6 +43,28 @@ class Results(CliTest):
             largest = max(abs(row[column]) for row in values)
             self.assertLessEqual(abs(abs(peak["value"]) - largest), 1e-9 * largest + 1e-300, name)
 
+    def test_section_forces_are_said_to_be_means_of_the_step(self):
+        """The shear of a column without mass is the mass on it times its mean acceleration over the step."""
+        self.write(BASE + """
+[[output.history]]
+beam = "column"
+position = 0
+quantity = "shear"
+[[output.history]]
+node = "top"
+quantity = "abs_ax"
+""")
+        self.uplift("run", "case.toml", "-o", "r")
+        with open(self.folder / "r" / "histories.csv", newline="") as file:
+            head, *rows = list(csv.reader(file))
+        shear, acceleration = head.index("column.0.shear [N; mean of the step]"), head.index("top.abs_ax [m/s2; mean of the step]")
+        rows = [row for row in rows if float(row[0]) > 0.101]  # after the pulse
+        inertia = [24317 * float(row[acceleration]) for row in rows]
+        largest = max(map(abs, inertia))
+        self.assertGreater(largest, 1e3)
+        for force, row in zip(inertia, rows):
+            self.assertLess(abs(abs(float(row[shear])) - abs(force)), 1e-6 * largest)
+
     def test_verdict_with_criteria(self):
         self.write(BASE + """
 [verdict]

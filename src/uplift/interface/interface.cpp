@@ -15,7 +15,8 @@ Vec3 local_axis(Space space, const Vec3& normal, int axis) {
 Vec3 mean_normal(const Interface& interface) {
   Vec3 sum = Vec3::Zero();
   for (int i = 0; i < interface.batch.points; ++i) sum += interface.area[i] * interface.normal[static_cast<std::size_t>(i)];
-  return sum.norm() > 1e-9 * interface.area.sum() ? Vec3(sum.normalized()) : Vec3(interface.normal.front());
+  constexpr double a_direction = 0.5;  // of the area; half a cylinder has 2/pi, two opposite walls have nothing
+  return sum.norm() > a_direction * interface.area.sum() ? Vec3(sum.normalized()) : interface.space.axis(interface.space.up());
 }
 
 Matrix resultant_rows(const Interface& interface) {

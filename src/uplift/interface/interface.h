@@ -44,7 +44,7 @@ inline ComponentAxis component_axis(Space space, const Vec3& normal, const Batch
   if (space.dimension == 2) return {Vec3::UnitZ(), true};
   return {local_axis(space, normal, component - translations), true};
 }
-/// Area-weighted mean of the normals; that of the first point for a closed ring, which has none.
+/// Direction of the area-weighted mean of the normals; the vertical axis where this mean is shorter than 1/2, as of the walls of a pit.
 Vec3 mean_normal(const Interface&);
 
 /// What the upper side exerts on the lower one, in the axes of the mean normal: axial force N [N] (tension > 0), shear V [N] along +t,

@@ -69,6 +69,7 @@ bool is_step_mean(Request::Kind kind) {
     case law_moment_2:
     case law_torsion:
     case max_pressure:
+    case force:
       return true;
     default:
       return false;

@@ -53,6 +53,15 @@ TEST(IdleInput, LoadsWithAFunctionInStaticStagesAlone) {
   EXPECT_FALSE(warns(footing + weight + "[[load]]\nnode = \"base\"\nforce = [1e4, 0]\n" + statics, "has no effect"));
 }
 
+TEST(IdleInput, SecondOrderWhereNothingMakesIt) {
+  const std::string second_order = "p_delta = true\n";
+  EXPECT_TRUE(
+      warns(footing + weight + statics + second_order, "case.toml:17: p_delta has no effect here: static stages are of first order"))
+      << warnings_of(footing + weight + statics + second_order);
+  EXPECT_TRUE(warns(footing + weight + dynamics + second_order, "p_delta has no effect here: no static stage comes before"));
+  EXPECT_FALSE(warns(footing + weight + statics + dynamics + second_order, "p_delta has no effect"));
+}
+
 TEST(IdleInput, AMotionThatIsZeroInStaticStages) {
   const auto moved = [](const std::string& shape) {
     return "[[function]]\nname = \"f\"\nshape = { type = \"harmonic\", frequency = 2" + shape +

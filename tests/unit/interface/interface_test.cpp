@@ -173,6 +173,29 @@ TEST(Interface, ResultantOfAnInclinedInterface) {
   EXPECT_NEAR(r.moment, -64, 1e-13);
 }
 
+// Two walls of a pit: their normals have no mean, so N is the vertical force and V the one to the right, whatever point is the first.
+TEST(Interface, ResultantOfTheWallsOfAPit) {
+  for (const bool left_first : {true, false}) {
+    Interface walls;
+    walls.batch.points = 3;
+    walls.position = {{-2, -1}, {-2, 0}, {2, -1}};
+    walls.normal = {{1, 0}, {1, 0}, {-1, 0}};
+    walls.area = Vec3(0.5, 0.5, 1);
+    Vector p(6);
+    p << 1, 2, 4, -10, -20, -5;  // tangential (down on the left, up on the right), then normal
+    if (!left_first) {
+      std::swap(walls.position[0], walls.position[2]);
+      std::swap(walls.normal[0], walls.normal[2]);
+      walls.area = Vec3(1, 0.5, 0.5);
+      p << 4, 2, 1, -5, -20, -10;
+    }
+    const Resultant r = resultant(walls, p.data());
+    EXPECT_DOUBLE_EQ(r.axial, 4 - 3);
+    EXPECT_DOUBLE_EQ(r.shear, 5 - 30);
+    EXPECT_DOUBLE_EQ(r.moment, 2 * 1 + 2 * 2 + 2 * 4 - 10 + 5);  // sum x fy - y fx
+  }
+}
+
 TEST(Interface, UpliftedRatioCountsByGap) {
   const Interface face = plane_interface();
   Vector opening(6);

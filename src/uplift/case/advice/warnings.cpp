@@ -82,6 +82,20 @@ void warn_idle_functions(const Case& read, const BuiltCase& built, std::vector<s
                       motion.name));
 }
 
+/// The geometric stiffness acts in dynamic stages, with the forces of the static stages before them.
+void warn_p_delta(const Case& read, std::vector<std::string>& said) {
+  bool stood = false;
+  for (const Values& stage : read.values.tables("stage")) {
+    const bool rests = stage.text("type") == "static";
+    if (stage.flag("p_delta") && (rests || !stood))
+      said.push_back(fmt::format("{}:{}: p_delta has no effect here: {}", stage.where("p_delta").file, stage.where("p_delta").line,
+                                 rests ? "static stages are of first order; state it in the dynamic stages, which begin with the "
+                                         "equilibrium of second order"
+                                       : "no static stage comes before, whose forces make the geometric stiffness"));
+    stood = stood || rests;
+  }
+}
+
 /// Without a static stage the weight acts suddenly: twice the settlement, and uplift on the rebound.
 void warn_sudden_weight(const BuiltCase& built, std::vector<std::string>& said) {
   const std::vector<Stage>& stages = built.plan.stages;
@@ -275,6 +289,7 @@ std::vector<std::string> warnings(const Case& read, const RunSpec& spec, const B
   warn_massless_beams(read, said);
   warn_interfaces(read, built, said);
   warn_idle_functions(read, built, said);
+  warn_p_delta(read, said);
   warn_sudden_weight(built, said);
   warn_duration(built, said);
   warn_sides(read, said);

@@ -27,8 +27,8 @@ Stage stage_of(const Values& table, const RunSpec& spec) {
   stage.type = table.text("type") == "static" ? Stage::Type::statics : Stage::Type::dynamics;
   stage.steps = table.integer("steps");
   stage.halvings = table.integer("halvings");
-  stage.p_delta = table.flag("p_delta");
   if (stage.type == Stage::Type::statics) return stage;
+  stage.p_delta = table.flag("p_delta");
   for (const char* key : {"duration", "step"})
     if (!table.has(key)) fail(table, "", fmt::format("{} of a dynamic stage", key), "none");
   stage.duration = spec.duration.value_or(table.number("duration"));

@@ -244,12 +244,19 @@ std::vector<int> carriers(const Interface& joint, const InterfaceFacts& facts, c
   return nodes;
 }
 
+/// Upright walls around a pit face no direction together: their map is the plane of the first one.
+Vec3 normal_of_map(const Interface& joint) {
+  const Vec3 normal = mean_normal(joint);
+  const bool faced = std::ranges::any_of(joint.normal, [&](const Vec3& n) { return std::abs(n.dot(normal)) > 1e-9; });
+  return faced ? normal : Vec3(joint.normal.front());
+}
+
 void write_interfaces(JsonWriter& json, const Case& read, const BuiltCase& built, const DrawnInSpace& drawn) {
   json.key("interfaces").begin_array();
   int bodies = 0;
   for (std::size_t k = 0; k < built.model.interfaces.size(); ++k) {
     const Interface& joint = built.model.interfaces[k];
-    const Vec3 normal = mean_normal(joint), s = local_axis(joint.space, normal, 0), t = local_axis(joint.space, normal, 1);
+    const Vec3 normal = normal_of_map(joint), s = local_axis(joint.space, normal, 0), t = local_axis(joint.space, normal, 1);
     std::vector<double> plan;
     for (const Place& place : joint.position) plan.insert(plan.end(), {(place - joint.reference).dot(s), (place - joint.reference).dot(t)});
     json.begin_object().member("name", joint.name);
