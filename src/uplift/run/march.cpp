@@ -81,9 +81,9 @@ void Runner::sum_up(double step) {
 }
 
 /// Energy created and lost by the computation so far (lost: by the filters of the scheme, and what the balance lacks); the scale is the
-/// largest external work, or the energy at the beginning where no load works. Work of the dead loads over 1e-10 m, and 1e-8 of the energy
-/// that the static state stores (of which the gate takes a hundredth), are round-off: a structure that only stands there has created
-/// nothing.
+/// largest external work, or the energy at the beginning where no load works. Work of the dead loads over 1e-10 m (of which the gate takes
+/// a hundredth), and 1e-8 of the energy that the static state stores, are round-off: a structure that only stands there has created
+/// nothing, though friction under constraints knows its forces to 1e-9 alone.
 void Runner::finish_energy(const Stepper& stepper) {
   const Energies& energies = stepper.energies();
   const double created = energies.residual + std::max(0.0, -energies.impact);
@@ -200,7 +200,7 @@ void Runner::begin_scales(const Stepper& stepper, const Bulk& bulk) {
   if (!run_.ledger) {
     const Energies& energies = stepper.energies();
     run_.initial_scale = energies.kinetic;
-    run_.round_off_energy = 1e-8 * (energies.strain + energies.stored);
+    run_.round_off_energy = 1e-8 * (energies.strain + energies.stored) / (plan_.created_limit > 0 ? std::min(plan_.created_limit, 1.0) : 1);
     run_.round_off_energy += 100 * sum_round_off(bulk.stiffness_matrix, stepper.state().displacement);
   }
   for (const TimeLoad& time_load : model_.time_loads)

@@ -1,4 +1,5 @@
 // Cases that failed for a reason that was not the true one, or did not fail at all.
+#include <fmt/format.h>
 #include <gtest/gtest.h>
 
 #include <algorithm>
@@ -81,6 +82,30 @@ TEST(StiffJoints, TheStoredProblemOfAStepThatRanAwayShowsIt) {
     if (make_part(method_catalog(), values)->solve(stored.problem, solution).converged)
       EXPECT_NE(unheld_motion(stored.problem, solution, runaway_ratio).find("overturns"), std::string::npos) << method;
   }
+}
+
+// ---- energy that was created ----
+
+/// A footing on soft springs that swings sideways with this share of the energy that its weight stores: Newmark's scheme with beta = 1/2
+/// takes and gives back (w dt)^2/4 = 0.19 of it.
+std::string swinging_footing(double share) {
+  const double stored = 0.5 * std::pow(1e4 * 9.81, 2) / 6e6, energy = share * stored;
+  const double displacement = std::sqrt(2 * 0.9 * energy / 3e6), velocity = std::sqrt(2 * 0.1 * energy / 1e4);
+  return fmt::format(
+      "title = \"t\"\n[nodes]\nfoot = [0, 0]\n[[rigid]]\nname = \"f\"\nnode = \"foot\"\nmass = 1e4\ninertia = 7500\n"
+      "[[interface]]\nname = \"s\"\nfooting = {{ body = \"foot\", width = 3, points = 21 }}\n"
+      "law = {{ type = \"springs\", K_n = 2e6, K_t = 1e6, tangential = \"bonded\" }}\n[gravity]\nacceleration = [0, -9.81]\n"
+      "[[initial]]\nnode = \"foot\"\ndisplacement = [{:.17g}, 0]\nvelocity = [{:.17g}, 0]\n{}"
+      "[[stage]]\ntype = \"dynamic\"\nduration = 1\nstep = 0.05\nscheme = {{ type = \"newmark\", beta = 0.5 }}\n",
+      displacement, velocity, static_stage);
+}
+
+TEST(EnergyGate, LessThan1e8thOfWhatTheWeightStoresIsRoundOff) {
+  const RunResult moves = run_text(swinging_footing(1e-5)), stands = run_text(swinging_footing(1e-8));
+  EXPECT_EQ(moves.status, RunStatus::failed);
+  EXPECT_NE(moves.reason.find("energy was created"), std::string::npos) << moves.reason;
+  EXPECT_EQ(stands.status, RunStatus::completed) << stands.reason;
+  EXPECT_GT(stands.energy_created, 0);
 }
 
 // ---- buckling ----
