@@ -70,7 +70,7 @@ const Section& stage_section() {
                                        "schemes take \"end\"), or "
                                        "that at the end of the step")
                                     .standard("path"),
-                                flag("p_delta", "dynamic: add the constant geometric stiffness of the preceding static state").standard(false),
+                                flag("p_delta", "dynamic: add geometric stiffness of the preceding static state").standard(false),
                                 integer("halvings", "a step that fails is halved at most so often").between(0, 30).standard(8.0)}};
   return s;
 }
