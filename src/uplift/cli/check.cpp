@@ -88,8 +88,11 @@ void print(const LoadedCase& loaded, const CheckedCase& checked) {
          fmt::format("{}; in the first steps {} systems with a new factor, {} by conjugate residuals (one factor kept, or none)",
                      loaded.read.values.text("interface_solver"), found.systems.factored, found.systems.iterated));
   if (found.bulk)
-    line("memory", fmt::format("about {}, {} of it the factor of a step; {} are free", format_bytes(found.bulk->bytes),
-                               format_bytes(found.bulk->step.bytes), format_bytes(found.bulk->available)));
+    line("memory", fmt::format("about {}, {} of it the factor of a step; {} are free{}", format_bytes(found.bulk->bytes),
+                               format_bytes(found.bulk->step.bytes), format_bytes(found.bulk->available),
+                               found.bulk->elsewhere_bytes > 0 ? fmt::format("; on each other rank up to {}, and the program",
+                                                                             format_bytes(found.bulk->elsewhere_bytes))
+                                                               : std::string()));
   line("histories", fmt::format("{:.0f} rows x {:.0f} columns a run: {} in memory, about {} on disk", found.histories.rows,
                                 found.histories.columns, format_bytes(found.histories.memory), format_bytes(found.histories.disk)));
   if (found.record_bytes > 0)

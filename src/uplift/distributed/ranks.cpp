@@ -98,6 +98,9 @@ void Ranks::serve() {
       case What::make:
         make_together(order, nullptr, {});
         break;
+      case What::foretell:
+        foretell_together(order, nullptr, {});
+        break;
       case What::solve:
         solve_together(order, nullptr, nullptr);
         break;
@@ -139,6 +142,33 @@ Ranks::Made Ranks::make_together(const Order& order, const Scaled* matrix, std::
   made.nonzeros = system->nonzeros();
   if (made.outcome.ok()) systems_[order.system] = std::move(system);
   return made;
+}
+
+Ranks::Forecast Ranks::foretell(const Sparse& matrix, const Vector& scale, const std::string& options) {
+  const std::lock_guard lock(one_at_a_time_);
+  HalfWay half_way(half_way_);
+  const Order order{What::foretell, 0, matrix.rows(), 0, std::ssize(options)};
+  tell(order);
+  const Matrix none;
+  const Scaled scaled{matrix, scale, none};
+  Forecast forecast = foretell_together(order, &scaled, options);
+  half_way.done();
+  return forecast;
+}
+
+Ranks::Forecast Ranks::foretell_together(const Order& order, const Scaled* matrix, std::string options) {
+  Forecast forecast;
+  const SolverOptions given(spread_text(order.letters, std::move(options)));
+  System system(ranks_);
+  forecast.outcome = system.set(spread_rows(static_cast<PetscInt>(order.rows), matrix), static_cast<PetscInt>(order.rows));
+  if (forecast.outcome.ok()) forecast.outcome = system.foretell(given, forecast.mine);
+  MPI_Comm machine = MPI_COMM_NULL;
+  MPI_Comm_split_type(ranks_, MPI_COMM_TYPE_SHARED, rank_, MPI_INFO_NULL, &machine);
+  const double elsewhere = rank_ == 0 ? 0 : forecast.mine.bytes;
+  MPI_Allreduce(&elsewhere, &forecast.most_elsewhere, 1, MPI_DOUBLE, MPI_MAX, ranks_);
+  MPI_Allreduce(&elsewhere, &forecast.beside, 1, MPI_DOUBLE, MPI_SUM, machine);
+  MPI_Comm_free(&machine);
+  return forecast;
 }
 
 SystemOutcome Ranks::solve(std::int64_t system, const Matrix& b, Matrix& x) {

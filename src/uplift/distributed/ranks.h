@@ -30,6 +30,14 @@ class Ranks {
   /// Shares a symmetric matrix, of which the upper triangle is read, as S A S with the diagonal S, and prepares its solver. `motions`: what
   /// deforms A least, columns; may have none.
   Made make(const Sparse& matrix, const Vector& scale, const std::string& options, const Matrix& motions = {});
+  struct Forecast {
+    SystemOutcome outcome;
+    SystemCost mine;            // of rank 0
+    double most_elsewhere = 0;  // bytes of the other rank that takes most
+    double beside = 0;          // bytes of all other ranks on the machine of rank 0
+  };
+  /// What `make` would take.
+  Forecast foretell(const Sparse& matrix, const Vector& scale, const std::string& options);
   /// x = A^-1 b; x has the shape of b.
   SystemOutcome solve(std::int64_t system, const Matrix& b, Matrix& x);
   /// The entries of A^-1 between chosen unknowns. Every rank makes its rows of the loads and hands out those of the answers that are
@@ -52,7 +60,7 @@ class Ranks {
   void serve();
 
  private:
-  enum class What : std::int64_t { make, solve, flexibility, refuse, release, end };
+  enum class What : std::int64_t { make, foretell, solve, flexibility, refuse, release, end };
   struct Order {
     What what = What::end;
     std::int64_t system = 0, rows = 0, columns = 0,
@@ -67,6 +75,7 @@ class Ranks {
     const Matrix& motions;
   };
   Made make_together(const Order& order, const Scaled* matrix, std::string options);
+  Forecast foretell_together(const Order& order, const Scaled* matrix, std::string options);
   SystemOutcome solve_together(const Order& order, const double* b, double* x);
   SystemOutcome flexibility_together(const Order& order, std::vector<int> chosen, Matrix* entries);
   std::string refuse_together(const Order& order, std::string options);

@@ -97,6 +97,16 @@ class PetscSplit final : public SplitFactor {
   Index rows_;  // of the matrix
 };
 
+/// 1 / sqrt(A_ii), and the first unknown without it; -1: all have one.
+int find_scale(const Sparse& a, Vector& scale) {
+  scale = a.diagonal();
+  for (Index i = 0; i < scale.size(); ++i) {
+    if (!(scale[i] > 0)) return static_cast<int>(i);
+    scale[i] = 1 / std::sqrt(scale[i]);
+  }
+  return -1;
+}
+
 class PetscSolver final : public SolverOfStatics {
  public:
   struct Settings {
@@ -105,11 +115,8 @@ class PetscSolver final : public SolverOfStatics {
   };
   explicit PetscSolver(Settings settings, Matrix motions = {}) : settings_(std::move(settings)), motions_(std::move(motions)) {}
   Factorisation factorise(const Sparse& a) const override {
-    Vector scale = a.diagonal();
-    for (Index i = 0; i < scale.size(); ++i) {
-      if (!(scale[i] > 0)) return singular_at(static_cast<int>(i));
-      scale[i] = 1 / std::sqrt(scale[i]);
-    }
+    Vector scale;
+    if (const int loose = find_scale(a, scale); loose >= 0) return singular_at(loose);
     Ranks::Made made = Ranks::all().make(a, scale, settings_.options, motions_);
     if (!made.outcome.ok())
       return {.factor = nullptr, .failed_unknown = -1, .why = std::move(made.outcome.why), .too_large = made.outcome.too_large};
@@ -117,6 +124,19 @@ class PetscSolver final : public SolverOfStatics {
             .failed_unknown = -1,
             .why = {}};
   }
+  JobCost predict_job(const Sparse& a, const std::vector<int>&) const override {
+    JobCost cost;
+    cost.mine.unknowns = static_cast<double>(a.rows());
+    Vector scale;
+    if (find_scale(a, scale) >= 0) return cost;  // the factorisation will refuse it
+    const Ranks::Forecast forecast = Ranks::all().foretell(a, scale, settings_.options);
+    cost.mine.entries = forecast.mine.entries, cost.mine.operations = forecast.mine.operations;
+    cost.mine.bytes = forecast.mine.bytes;
+    cost.mine.why = forecast.outcome.why;
+    cost.most_elsewhere = forecast.most_elsewhere, cost.beside = forecast.beside;
+    return cost;
+  }
+  FactorCost predict(const Sparse& a, const std::vector<int>& last) const override { return predict_job(a, last).mine; }
   SplitFactorisation factorise_split(const Sparse& a, const std::vector<int>& last) const override {
     if (settings_.reach > 0) return {};
     Factorisation whole = factorise(a);

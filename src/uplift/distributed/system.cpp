@@ -138,6 +138,37 @@ SystemOutcome System::prepare(const SolverOptions& options) {
   return agree(error, std::move(outcome));
 }
 
+SystemOutcome System::foretell(const SolverOptions& options, SystemCost& cost) {
+  const OptionsInUse in_use(options);
+  SystemOutcome outcome;
+  PetscErrorCode error = choose(options, outcome);
+  outcome = agree(error, std::move(outcome));
+  if (!outcome.ok()) return outcome;
+  error = analyse(cost);
+  return agree(error, std::move(outcome));
+}
+
+PetscErrorCode System::analyse(SystemCost& cost) {
+  PetscFunctionBeginUser;
+  constexpr int vectors = 8;  // of conjugate gradients: load, solution, residual, direction, their products and the scale
+  MatInfo own;
+  PetscCall(MatGetInfo(matrix_, MAT_LOCAL, &own));
+  cost.bytes = own.nz_used * (sizeof(PetscScalar) + sizeof(PetscInt)) + vectors * sizeof(PetscScalar) * static_cast<double>(local_);
+  if (factor_ == nullptr) PetscFunctionReturn(0);
+  cost.bytes += (own.nz_used + local_) / 2 * (sizeof(PetscScalar) + 2 * sizeof(PetscInt));  // what MUMPS is given
+  MatFactorInfo info;
+  PetscInt megabytes = 0, entries = 0;
+  PetscCall(MatFactorInfoInitialize(&info));
+  PetscCall(MatMumpsSetIcntl(factor_, 14, 20));  // MUMPS' own reserve; what is beyond it is not touched, as a rule
+  PetscCall(MatCholeskyFactorSymbolic(factor_, matrix_, nullptr, &info));
+  PetscCall(MatMumpsGetInfo(factor_, 15, &megabytes));
+  PetscCall(MatMumpsGetInfog(factor_, 20, &entries));
+  PetscCall(MatMumpsGetRinfog(factor_, 1, &cost.operations));
+  cost.entries = entries < 0 ? -1e6 * static_cast<double>(entries) : static_cast<double>(entries);
+  cost.bytes += 1e6 * static_cast<double>(megabytes);
+  PetscFunctionReturn(0);
+}
+
 PetscErrorCode System::choose(const SolverOptions& options, SystemOutcome& outcome) {
   PetscFunctionBeginUser;
   constexpr int most_iterations = 20000;

@@ -21,6 +21,12 @@ struct SystemOutcome {
   bool ok() const { return why.empty(); }
 };
 
+/// What a solver takes, known before it is prepared.
+struct SystemCost {
+  double entries = 0, operations = 0;  // of the factor and of making it, all ranks together; 0 where there is none
+  double bytes = 0;                    // of this rank: its rows and its part of the factor with the work space to make it
+};
+
 /// How the rows of a matrix are shared: rank r holds first(r) ... first(r + 1) - 1, the same number or one more than the next.
 class Shares {
  public:
@@ -65,6 +71,10 @@ class System {
   /// Factorises it, or prepares the iterative method and tries it on one load. A matrix that is not positive definite is refused: by MUMPS
   /// from the signs of the pivots, where those below LinearSolver::least_pivot count as zero.
   SystemOutcome prepare(const SolverOptions& options);
+  /// What `prepare` would take: from the symbolic analysis of MUMPS, with the reserve of work space that it has by default (a larger one is
+  /// not touched as a rule); of an iterative method the rows and some vectors, not what its preconditioner makes of them. Nothing else
+  /// follows.
+  SystemOutcome foretell(const SolverOptions& options, SystemCost& cost);
   /// x = A^-1 b: the rank's rows of all columns, one column after another.
   SystemOutcome solve(const double* b, double* x, PetscInt columns);
   Mat matrix() const { return matrix_; }
@@ -75,6 +85,7 @@ class System {
   PetscErrorCode assemble(const LocalRows& local, PetscInt rows);
   PetscErrorCode keep_motions(const std::vector<double>& motions, PetscInt columns);
   PetscErrorCode choose(const SolverOptions& options, SystemOutcome& outcome);
+  PetscErrorCode analyse(SystemCost& cost);
   PetscErrorCode set_up(SystemOutcome& outcome);
   PetscErrorCode use_mumps(const SolverOptions& options);
   PetscErrorCode check_pivots(SystemOutcome& outcome);

@@ -1,8 +1,10 @@
 #include "uplift/dynamics/cost.h"
 
 #include <algorithm>
+#include <utility>
 
 #include "uplift/dynamics/bulk.h"
+#include "uplift/linear/large.h"
 #include "uplift/linear/memory.h"
 
 namespace uplift {
@@ -28,12 +30,21 @@ BulkCost predict_bulk(const Model& model, const LinearSolver& solver, const Bulk
   cost.touched = static_cast<int>(touched.size());
   Sparse unit(model.free(), model.free());
   unit.setIdentity();
+  FactorCost statics;
+  double beside = 0;
+  const auto take = [&](FactorCost& mine, JobCost job) {
+    mine = std::move(job.mine);
+    cost.elsewhere_bytes = std::max(cost.elsewhere_bytes, job.most_elsewhere);
+    beside = std::max(beside, job.beside);
+  };
   {
     const Sparse step = model.stiffness + model.damping + model.mass;
-    cost.step = solver.predict(step, touched);
+    take(cost.step, job_cost(solver, step, touched));
     cost.step.working_bytes += bytes_of(step) / 2;
+    if (const auto other = use.statics ? solver_for_statics(solver, {}) : nullptr) take(statics, job_cost(*other, step, touched));
+    statics.working_bytes += bytes_of(step) / 2;
   }
-  cost.mass = solver.predict(model.mass + unit, use.impacts ? touched : std::vector<int>());
+  take(cost.mass, job_cost(solver, model.mass + unit, use.impacts ? touched : std::vector<int>()));
   cost.mass.working_bytes += bytes_of(model.mass);
   const auto rows = static_cast<double>(b.rows()), n = static_cast<double>(model.free());
   cost.matrix_bytes = bytes_of(model.stiffness) + bytes_of(model.mass) + bytes_of(model.damping);
@@ -45,6 +56,7 @@ BulkCost predict_bulk(const Model& model, const LinearSolver& solver, const Bulk
   double more = std::max(kept, (steps > 1 ? kept : cost.step.bytes) + cost.step.working_bytes);
   // a factor of M that is kept is made after that of the first step size, one for the acceleration of the beginning alone before it
   more = std::max(more, (use.keeps_mass ? cost.step.bytes : 0) + cost.mass.bytes + cost.mass.working_bytes);
+  more = std::max(more, statics.bytes + statics.working_bytes + blocks);
   more += cost.record_bytes = use.record_bytes;
   give_back_free_memory();
   cost.bytes = std::max(cost.matrix_bytes, resident_memory()) + more;
@@ -53,7 +65,9 @@ BulkCost predict_bulk(const Model& model, const LinearSolver& solver, const Bulk
   const Rates rates = measure_rates(cost.step.bytes);
   cost.factor_seconds = steps * factor_seconds(cost.step, rates) + factor_seconds(cost.mass, rates);
   cost.solve_seconds = solve_seconds(cost.step, rates);
-  cost.refusal = !cost.step.why.empty() ? cost.step.why : !cost.mass.why.empty() ? cost.mass.why : memory_refusal(more, cost.available);
+  cost.refusal = !cost.step.why.empty()   ? cost.step.why
+                 : !cost.mass.why.empty() ? cost.mass.why
+                                          : memory_refusal(more + beside, cost.available);
   return cost;
 }
 

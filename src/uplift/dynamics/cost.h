@@ -13,12 +13,14 @@ struct BulkUse {
   int step_sizes = 1;       // factors of the step kept: one more for every halving that happens
   bool impacts = false;     // a second set of interface blocks, of M
   double record_bytes = 0;  // what the run keeps of its steps
+  bool statics = false;     // a static stage, which some solvers treat by another method than the steps
 };
 
 /// What the linear bulk of a run takes, known from symbolic analyses before anything large is made (about half of the time of the
 /// factorisation). The factor of a static stage is as large as the step's, and gone before that is made.
 struct BulkCost {
   FactorCost step, mass;
+  double elsewhere_bytes = 0;  // the most that another process of a job holds of a factor; 0 without
   int touched = 0;             // unknowns that the interfaces touch
   double matrix_bytes = 0;     // K, M and C of the model, and the pair of K and M that the steps stream
   double interface_bytes = 0;  // dense blocks of the interface problem

@@ -119,6 +119,7 @@ CaseFindings find(const Case& read, const RunSpec& spec, const BuiltCase& built)
     const Stage* stage = dynamic_stage(built.plan);
     const bool balanced = stage != nullptr && stage->path_average && !use.impacts;
     use.keeps_mass = use.impacts || (balanced && (records_accelerations(built.plan) || found.fields));
+    use.statics = std::ranges::any_of(built.plan.stages, [](const Stage& each) { return each.type == Stage::Type::statics; });
     use.record_bytes = found.record_bytes + pictures_bytes(read, built);
     found.bulk = predict_bulk(built.model, *built.plan.solver, use);
     if (!found.bulk->refusal.empty()) {
