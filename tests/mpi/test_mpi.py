@@ -145,8 +145,8 @@ class MpiTest(CliTest):
 
     def assert_same(self, serial, parallel):
         """Peaks, energies and numbers of the verdict within 1e-8; peaks below a hundredth of the largest one of their unit within 1e-8 of that
-        hundredth: solutions by iterations, and openings with a reach, are as exact as 1e-12 and 1e-10 of their largest. Energies
-        are compared with the largest one: the residual is round-off."""
+        hundredth: solutions by iterations, and openings with a reach, are as exact as 1e-12 of their largest and 1e-10 of the
+        change in a step. Energies are compared with the largest one: the residual is round-off."""
         for one, other in zip(serial["runs"], parallel["runs"], strict=True):
             self.assertEqual((one["status"], one["steps"], one["retries"]), (other["status"], other["steps"], other["retries"]))
             largest = {}
@@ -232,6 +232,17 @@ class Reach(MpiTest):
         in_steps, steps = solves[2] - before["back_solves"], run["steps"] - before["steps"]
         print(f"reach 2 m: {in_steps} solves in {steps} steps, {solves[2] - in_steps} in those before and for the flexibility")
         self.assertLessEqual(in_steps - steps, 8 * steps, "beside the one of a step without interfaces")
+
+
+    def test_motions_that_are_light_beside_what_the_weight_closes(self):
+        for seed in (3, 4):
+            text, _ = random_cases.case(seed)
+            self.write(text)
+            self.uplift("run", "case.toml", "-q", "-o", f"serial {seed}", "--no-step-check")
+            self.write('solver = { type = "petsc", reach = 2 }\n' + text, "petsc.toml")
+            self.mpi(2, "run", "petsc.toml", "-q", "-o", f"reach {seed}", "--no-step-check")
+            with self.subTest(seed=seed):
+                self.assert_same(self.summary(f"serial {seed}"), self.summary(f"reach {seed}"))
 
 
 class Solver(MpiTest):

@@ -192,7 +192,7 @@ void SolvedResponse::improve(Vector& free_opening, const Vector& rest) {
 
 Outcome SolvedResponse::solve(const Vector& right, const Vector& opening, const ContactMethod& method, MethodWork& work,
                               InterfaceProblem& problem, InterfaceSolution& solution, Vector& increment) {
-  constexpr double tolerance = 1e-10, round_off = 1e-14;
+  constexpr double tolerance = 1e-10, least = 1e-12, round_off = 1e-14;
   constexpr int most_tries = 60;
   const ContactModel& model = *problem.model;
   load_ = right;
@@ -213,8 +213,9 @@ Outcome SolvedResponse::solve(const Vector& right, const Vector& opening, const 
     force_ = std::move(force);
     const Vector rest = opening + b_ * increment - solution.opening;
     if (!rest.allFinite()) break;
-    const double pressed = largest(problem.free_opening - solution.opening);  // what the forces close
-    if (largest(rest) <= tolerance * pressed + round_off * largest(solution.opening)) return all;
+    const double pressed = largest(problem.free_opening - solution.opening);      // what the forces close
+    const double moved = std::min(pressed, largest(solution.opening - opening));  // in this step; small in a light motion
+    if (largest(rest) <= std::max(tolerance * moved, least * pressed) + round_off * largest(solution.opening)) return all;
     improve(problem.free_opening, rest);
   }
   forget();
