@@ -48,7 +48,8 @@ BulkCost predict_bulk(const Model& model, const LinearSolver& solver, const Bulk
   cost.mass.working_bytes += bytes_of(model.mass);
   const auto rows = static_cast<double>(b.rows()), n = static_cast<double>(model.free());
   cost.matrix_bytes = bytes_of(model.stiffness) + bytes_of(model.mass) + bytes_of(model.damping);
-  const double pair = 10 * static_cast<double>(model.stiffness.nonZeros()) + 24 * n;  // SymmetricPair: half the entries, 20 bytes each
+  // SymmetricPair: half the entries, 20 bytes each
+  const double pair = solver.distributed() ? 0 : 10 * static_cast<double>(model.stiffness.nonZeros()) + 24 * n;
   const double steps = use.step_sizes + (use.propagates ? 1 : 0);
   const double blocks = interface_blocks(rows, static_cast<double>(cost.touched));
   cost.interface_bytes = (steps + (use.impacts ? 1 : 0)) * blocks;
