@@ -48,6 +48,14 @@ class Study(StudyTest):
         numbers = self.summary("alone")["verdict"]["interfaces"][0]["numbers"]
         self.assertEqual(numbers["max_opening"]["value"], float(run["uplift [m]"]))
         self.assertEqual(run["factor [1]"] != "1", True)
+        # so are all the other numbers, whose columns alone a study records
+        (part,) = (self.folder / name / "parts").glob("*.jsonl")
+        kept = next(line for line in map(json.loads, part.read_text().splitlines()) if line["id"] == run["id"])["numbers"]
+        said = self.summary("alone")["verdict"]
+        of_interface = {quantity: value for quantity, of, value in kept if of}
+        self.assertEqual(of_interface, {quantity: number["value"] for quantity, number in numbers.items() if quantity in of_interface})
+        self.assertEqual({quantity: value for quantity, of, value in kept if not of}, {quantity: number["value"] for quantity, number in said["numbers"].items()})
+        self.assertGreater(len(kept), 15)
 
     def test_runs_of_a_large_model_march_in_lockstep(self):
         self.write(LARGE)

@@ -11,6 +11,7 @@
 #include "uplift/base/file.h"
 #include "uplift/run/lockstep.h"
 #include "uplift/session/reduce.h"
+#include "uplift/verdict/numbers.h"
 
 namespace uplift {
 namespace {
@@ -58,7 +59,9 @@ const Case& StudyComputer::case_of(std::size_t sample) {
 
 BuiltCase StudyComputer::build_run(const RunRequest& request) {
   const Case& read = case_of(request.sample);
-  return build(read, run_of_study(study_.of, read, request.motion, request.factor));
+  BuiltCase built = build(read, run_of_study(study_.of, read, request.motion, request.factor));
+  std::erase_if(built.plan.requests, [](const Request& column) { return !numbers_need(column); });  // histories are not kept
+  return built;
 }
 
 /// Where a run has a limit of time or memory of its own, it is computed alone.

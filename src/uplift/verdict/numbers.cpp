@@ -326,4 +326,9 @@ VerdictNumbers numbers_of(const BuiltCase& built, const RunResult& run, const Ru
   return numbers;
 }
 
+bool numbers_need(const Request& column) {
+  using enum Request::Kind;  // of the top, the base, drifts; of the base of a block; storey shears
+  return column.kind == displacement || column.kind == tilt_1 || column.kind == tilt_2 || column.kind == force;
+}
+
 }  // namespace uplift

@@ -64,6 +64,8 @@ struct VerdictNumbers {
 
 /// From what the run kept of every step. `bonded`: the same model with interfaces that never open, or null.
 VerdictNumbers numbers_of(const BuiltCase& built, const RunResult& run, const RunResult* bonded);
+/// Whether any of them is found from this column, if it is there. What interfaces carry at every step stands in RunResult::steps.
+bool numbers_need(const Request& column);
 
 /// Numbers are compared with those of the bonded reference run only where one of the two exceeds this share of the excitation: of the
 /// largest change of the force on the base since rest (times its width for moments), of the largest motion of the top in any direction, of
