@@ -18,7 +18,7 @@ std::size_t at(int i) {
 }
 
 constexpr double on_plane = 1e-8;  // of the shortest edge: nodes so near count as on the plane
-constexpr double thinnest = 1e-6;  // of the shortest edge: a body less thick than this
+constexpr double thinnest = 1e-4;  // of the shortest edge: a body less thick than this
 
 /// Whether an outline holds all of the corners, none of what is between them or a part.
 PlaneSide side_of_outline(const CutOutline& outline, std::span<const Vec3> corners, double tolerance) {
