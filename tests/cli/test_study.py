@@ -92,7 +92,7 @@ class Study(StudyTest):
                 forecast = json.loads(self.uplift("study", "check", name, "--json").stdout)
                 self.assertEqual((forecast["runs"], forecast["runs_in_lockstep"]), (8, together))
                 ratio = self.most_memory("study", "run", name, "-q") / forecast["bytes_of_memory"]
-                self.assertAlmostEqual(ratio, 1, delta=0.2)
+                self.assertAlmostEqual(ratio, 1, delta=0.3)  # how the heaps of threads grow varies on a busy machine
 
     def test_a_comparison_of_a_large_model_marches_in_lockstep(self):
         louder = 'process = [{ do = { type = "scale", factor = 6 } }]\n'  # it lifts off
