@@ -92,7 +92,9 @@ class Study(StudyTest):
                 forecast = json.loads(self.uplift("study", "check", name, "--json").stdout)
                 self.assertEqual((forecast["runs"], forecast["runs_in_lockstep"]), (8, together))
                 ratio = self.most_memory("study", "run", name, "-q") / forecast["bytes_of_memory"]
-                self.assertAlmostEqual(ratio, 1, delta=0.3)  # how the heaps of threads grow varies on a busy machine
+                # 0.99 to 1.13 were measured; on a busy machine the runs may not all be in memory at the same time
+                self.assertGreater(ratio, 0.5)
+                self.assertLess(ratio, 1.4)
 
     def test_a_comparison_of_a_large_model_marches_in_lockstep(self):
         louder = 'process = [{ do = { type = "scale", factor = 6 } }]\n'  # it lifts off
