@@ -88,7 +88,8 @@ bool goes(unsigned seed, Surface surface, int plan, bool space, double shape) {
     const double before = footing.stored(footing.opening, footing.memory), after = footing.stored(to, footing.now),
                  lost = footing.dissipated(footing.now) - footing.dissipated(footing.memory);
     EXPECT_GE(lost, 0) << seed;
-    EXPECT_NEAR(work, after - before + lost, 1e-10 * (size + before + after + lost) + 1e-16 * (random.energy(p) + 2 * footing.dissipated(footing.now)))
+    EXPECT_NEAR(work, after - before + lost,
+                1e-10 * (size + before + after + lost) + 1e-16 * (random.energy(p) + 2 * footing.dissipated(footing.now)))
         << seed;  // the last: one rounding of the sum over all steps
     footing.accept(to);
     const MacroState state = footing.state();

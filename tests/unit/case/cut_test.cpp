@@ -70,17 +70,15 @@ TEST(CutCase, CornersNextToThePlaneCarryTheWeight) {
         const bool plane = info(cell).dimension == 2;
         const auto lines = uniform_lines(0, 1, 4);
         const double height = 0.5 + 0.25 * share;  // of the plane at the side
-        const auto vector = [&](double x, double up) {
-          return plane ? fmt::format("[{}, {}]", x, up) : fmt::format("[{}, 0, {}]", x, up);
-        };
-        const std::string text =
-            "title = \"block\"\n[mesh]\nfile = \"block.msh\"\n" + solid("volume", young, poisson, density) +
-            solid("block", young, poisson, density) +
-            fmt::format("[[support]]\ngroup = \"bottom\"\nfixed = [\"ux\", \"uy\"{}]\n", plane ? "" : ", \"uz\"") +
-            fmt::format("[gravity]\nacceleration = {}\n[[interface]]\nname = \"base\"\n", vector(0, -gravity)) +
-            fmt::format("cut = {{ through = [\"volume\"], point = {}, normal = {}, upper = \"block\" }}\n", vector(side, height),
-                        vector(normal.x(), normal.z())) +
-            fmt::format("law = {{ type = \"elastic\", K_n = {0}, K_t = {0} }}\n", 0.01 * joint_stiffness) + at_rest_stages;
+        const auto vector = [&](double x, double up) { return plane ? fmt::format("[{}, {}]", x, up) : fmt::format("[{}, 0, {}]", x, up); };
+        const std::string text = "title = \"block\"\n[mesh]\nfile = \"block.msh\"\n" + solid("volume", young, poisson, density) +
+                                 solid("block", young, poisson, density) +
+                                 fmt::format("[[support]]\ngroup = \"bottom\"\nfixed = [\"ux\", \"uy\"{}]\n", plane ? "" : ", \"uz\"") +
+                                 fmt::format("[gravity]\nacceleration = {}\n[[interface]]\nname = \"base\"\n", vector(0, -gravity)) +
+                                 fmt::format("cut = {{ through = [\"volume\"], point = {}, normal = {}, upper = \"block\" }}\n",
+                                             vector(side, height), vector(normal.x(), normal.z())) +
+                                 fmt::format("law = {{ type = \"elastic\", K_n = {0}, K_t = {0} }}\n", 0.01 * joint_stiffness) +
+                                 at_rest_stages;
         const RunResult result = run_on(text, plane ? rectangle(lines, lines, cell) : box(lines, lines, lines, cell));
         const double above = 1 - height - slope * (0.5 - side), weight = above * density * gravity;
         EXPECT_NEAR(at_rest(result, "base.axial"), -weight * normal.z(), 1e-8 * weight) << info(cell).name << " " << share;
