@@ -18,6 +18,7 @@
 
 #include "uplift/base/archive.h"
 #include "uplift/io/files.h"
+#include "uplift/linear/blas.h"
 
 namespace uplift {
 namespace {
@@ -116,6 +117,7 @@ void WorkerPool::start(Worker& worker) {
     for (const int number : {SIGINT, SIGQUIT, SIGHUP}) std::signal(number, SIG_IGN);  // of the terminal: the coordinator answers
     std::signal(SIGTERM, SIG_DFL);
     keep_only(ends[1]);
+    use_one_thread_after_fork();
     work(ends[1]);
   }
   ::close(ends[1]);

@@ -1,5 +1,6 @@
 #include "uplift/linear/blas.h"
 
+#include <dlfcn.h>
 #include <sys/mman.h>
 
 #include <algorithm>
@@ -69,6 +70,11 @@ void prepare_blas() {
   openblas_set_num_threads(1);
   add_work_space(known);
   ready = true;
+}
+
+void use_one_thread_after_fork() {
+  using SetLevels = void (*)(int);
+  if (const auto set_levels = reinterpret_cast<SetLevels>(::dlsym(RTLD_DEFAULT, "omp_set_max_active_levels"))) set_levels(0);
 }
 
 }  // namespace uplift

@@ -17,4 +17,8 @@ class SingleThreadBlas {
   ~SingleThreadBlas();
 };
 
+/// To be called first in a process that fork() has made: CHOLMOD's parallel loops would wait for ever for the threads that OpenMP keeps in
+/// the parent. From here on they have one thread.
+void use_one_thread_after_fork();
+
 }  // namespace uplift

@@ -4,7 +4,10 @@
 #include <signal.h>
 #include <unistd.h>
 
+#include <chrono>
 #include <set>
+
+#include "uplift/linear/solver.h"
 
 // Workers: every run has one result or is lost with its worker, and a worker that has ended is replaced.
 namespace uplift {
@@ -62,6 +65,45 @@ TEST(WorkerPool, EveryRunHasAResult) {
   EXPECT_EQ(ids.size(), 60U);
   EXPECT_EQ(processes.size(), 3U);
   EXPECT_FALSE(processes.contains(std::to_string(::getpid())));
+}
+
+/// Springs between the neighbours of a square grid and to ground: its factor has columns enough for parallel loops.
+Sparse large_matrix() {
+  constexpr int side = 70;
+  std::vector<Triplet> entries;
+  for (int i = 0; i < side; ++i)
+    for (int j = 0; j < side; ++j) {
+      const int here = side * i + j;
+      entries.emplace_back(here, here, 4.1);
+      for (const int there : {i > 0 ? here - side : here, j > 0 ? here - 1 : here})
+        if (there != here) entries.emplace_back(here, there, -1.0), entries.emplace_back(there, here, -1.0);
+    }
+  Sparse matrix(side * side, side * side);
+  matrix.setFromTriplets(entries.begin(), entries.end());
+  return matrix;
+}
+
+TEST(WorkerPool, AWorkerFactorisesAfterItsParentHas) {
+  const Sparse matrix = large_matrix();
+  const auto solver = solver_catalog().front()->make(Values());
+  const double nonzeros = solver->factorise(matrix).factor->nonzeros();  // its threads are not in the workers
+  WorkerPool pool(2, {}, [&](const std::vector<RunRequest>& batch, const Done& done) {
+    for (const RunRequest& each : batch) {
+      StudyResult result;
+      result.id = each.id;
+      result.numbers = {{"nonzeros", "", solver->factorise(matrix).factor->nonzeros()}};
+      done(result);
+    }
+  });
+  for (const std::size_t worker : {0U, 1U}) pool.send(worker, {request(std::to_string(worker))});
+  std::vector<StudyResult> results;
+  const auto begin = std::chrono::steady_clock::now();
+  while (results.size() < 2 && std::chrono::steady_clock::now() - begin < std::chrono::minutes(2)) {
+    const WorkerPool::Events events = pool.wait(std::chrono::milliseconds(50));
+    results.insert(results.end(), events.results.begin(), events.results.end());
+  }
+  ASSERT_EQ(results.size(), 2U) << "the workers wait for threads";
+  for (const StudyResult& result : results) EXPECT_EQ(result.numbers.at(0).value, nonzeros);
 }
 
 TEST(WorkerPool, ADeadWorkerLosesItsBatchAndIsReplaced) {
