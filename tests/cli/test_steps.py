@@ -87,9 +87,11 @@ class StepCheck(CliTest):
         found = json.loads(self.uplift("check", "case.toml", "--json").stdout)
         bounds = found["step_bounds"]
         self.assertEqual([bound["step"] for bound in bounds], sorted(bound["step"] for bound in bounds))
+        self.assertEqual(len({bound["reason"] for bound in bounds}), len(bounds))
         self.assertLessEqual(found["suggested_step"], bounds[0]["step"])
         for key in ("frequencies_bonded", "frequencies_base_free"):
             slow, fast = [f for f in found[key] if 0 < f < 50], [f for f in found[key] if 50 < f < 300]
+            self.assertTrue(slow or fast, key)
             for step in [1 / (20 * f) for f in slow[-1:]] + [1 / (16 * f) for f in fast[-1:]]:
                 self.assertTrue(any(abs(bound["step"] / step - 1) < 1e-9 for bound in bounds), (step, bounds))
         self.assertIn(bounds[0]["reason"], self.uplift("check", "case.toml").stdout)

@@ -92,9 +92,9 @@ class Study(StudyTest):
                 forecast = json.loads(self.uplift("study", "check", name, "--json").stdout)
                 self.assertEqual((forecast["runs"], forecast["runs_in_lockstep"]), (8, together))
                 ratio = self.most_memory("study", "run", name, "-q") / forecast["bytes_of_memory"]
-                # 0.99 to 1.13 were measured; on a busy machine the runs may not all be in memory at the same time
-                self.assertGreater(ratio, 0.5)
-                self.assertLess(ratio, 1.4)
+                # a forecast that takes every run for the second one, which has matrices of its own for a while, is at 0.67
+                self.assertGreater(ratio, 0.75)
+                self.assertLess(ratio, 1.35)
 
     def test_a_comparison_of_a_large_model_marches_in_lockstep(self):
         louder = 'process = [{ do = { type = "scale", factor = 6 } }]\n'  # it lifts off

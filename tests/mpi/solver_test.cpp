@@ -142,18 +142,18 @@ TEST(Petsc, IterationsThatDoNotConvergeAreAReason) {
 TEST(Petsc, MemoryOfMumpsIsForetold) {
   const Sparse a = laplacian(32);
   const auto solver = petsc();
-  const JobCost cost = job_cost(*solver, a, {});
-  EXPECT_EQ(cost.mine.why, "");
+  const FactorCost cost = solver->predict(a, {});
+  EXPECT_EQ(cost.why, "");
   give_back_free_memory();
   const double before = resident_memory();
   const Factorisation made = solver->factorise(a);
   ASSERT_TRUE(made.factor) << made.why;
   const double taken = resident_memory() - before;
-  std::printf("memory of rank 0: %.1f MB foretold, %.1f MB taken; elsewhere %.1f and %.1f MB\n", 1e-6 * cost.mine.bytes, 1e-6 * taken,
+  std::printf("memory of rank 0: %.1f MB foretold, %.1f MB taken; elsewhere %.1f and %.1f MB\n", 1e-6 * cost.bytes, 1e-6 * taken,
               1e-6 * cost.most_elsewhere, 1e-6 * cost.beside);
-  EXPECT_NEAR(cost.mine.entries / made.factor->nonzeros(), 1, 0.02);
-  EXPECT_GE(cost.mine.bytes, 0.8 * taken);
-  EXPECT_LE(cost.mine.bytes, 1.6 * taken);
+  EXPECT_NEAR(cost.entries / made.factor->nonzeros(), 1, 0.02);
+  EXPECT_GE(cost.bytes, 0.8 * taken);
+  EXPECT_LE(cost.bytes, 1.6 * taken);
   int ranks = 1;
   MPI_Comm_size(PETSC_COMM_WORLD, &ranks);
   EXPECT_EQ(cost.most_elsewhere > 0, ranks > 1);
@@ -163,12 +163,12 @@ TEST(Petsc, MemoryOfMumpsIsForetold) {
 TEST(Petsc, MemoryOfConjugateGradientsIsThatOfTheRowsAndSomeVectors) {
   constexpr int n = 20;
   const Sparse a = laplacian(n);
-  const JobCost cost = job_cost(*petsc(iterative), a, {});
+  const FactorCost cost = petsc(iterative)->predict(a, {});
   int ranks = 1;
   MPI_Comm_size(PETSC_COMM_WORLD, &ranks);
-  EXPECT_EQ(cost.mine.entries, 0);
+  EXPECT_EQ(cost.entries, 0);
   const double entries = 7.0 * n * n * n - 6.0 * n * n;  // both triangles: six neighbours but for the faces
-  EXPECT_NEAR(ranks * cost.mine.bytes, 12 * entries + 64.0 * n * n * n, 0.1 * 12 * entries);
+  EXPECT_NEAR(ranks * cost.bytes, 12 * entries + 64.0 * n * n * n, 0.1 * 12 * entries);
 }
 
 /// Their number is printed: tests/mpi/test_mpi.py compares it between numbers of ranks.

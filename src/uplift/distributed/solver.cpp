@@ -124,19 +124,18 @@ class PetscSolver final : public SolverOfStatics {
             .failed_unknown = -1,
             .why = {}};
   }
-  JobCost predict_job(const Sparse& a, const std::vector<int>&) const override {
-    JobCost cost;
-    cost.mine.unknowns = static_cast<double>(a.rows());
+  FactorCost predict(const Sparse& a, const std::vector<int>&) const override {
+    FactorCost cost;
+    cost.unknowns = static_cast<double>(a.rows());
     Vector scale;
     if (find_scale(a, scale) >= 0) return cost;  // the factorisation will refuse it
     const Ranks::Forecast forecast = Ranks::all().foretell(a, scale, settings_.options);
-    cost.mine.entries = forecast.mine.entries, cost.mine.operations = forecast.mine.operations;
-    cost.mine.bytes = forecast.mine.bytes;
-    cost.mine.why = forecast.outcome.why;
+    cost.entries = forecast.mine.entries, cost.operations = forecast.mine.operations;
+    cost.bytes = forecast.mine.bytes;
+    cost.why = forecast.outcome.why;
     cost.most_elsewhere = forecast.most_elsewhere, cost.beside = forecast.beside;
     return cost;
   }
-  FactorCost predict(const Sparse& a, const std::vector<int>& last) const override { return predict_job(a, last).mine; }
   SplitFactorisation factorise_split(const Sparse& a, const std::vector<int>& last) const override {
     if (settings_.reach > 0) return {};
     Factorisation whole = factorise(a);

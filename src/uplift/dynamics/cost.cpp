@@ -1,7 +1,6 @@
 #include "uplift/dynamics/cost.h"
 
 #include <algorithm>
-#include <utility>
 
 #include "uplift/dynamics/bulk.h"
 #include "uplift/linear/large.h"
@@ -31,21 +30,17 @@ BulkCost predict_bulk(const Model& model, const LinearSolver& solver, const Bulk
   Sparse unit(model.free(), model.free());
   unit.setIdentity();
   FactorCost statics;
-  double beside = 0;
-  const auto take = [&](FactorCost& mine, JobCost job) {
-    mine = std::move(job.mine);
-    cost.elsewhere_bytes = std::max(cost.elsewhere_bytes, job.most_elsewhere);
-    beside = std::max(beside, job.beside);
-  };
   {
     const Sparse step = model.stiffness + model.damping + model.mass;
-    take(cost.step, job_cost(solver, step, touched));
+    cost.step = solver.predict(step, touched);
     cost.step.working_bytes += bytes_of(step) / 2;
-    if (const auto other = use.statics ? solver_for_statics(solver, {}) : nullptr) take(statics, job_cost(*other, step, touched));
+    if (const auto other = use.statics ? solver_for_statics(solver, {}) : nullptr) statics = other->predict(step, touched);
     statics.working_bytes += bytes_of(step) / 2;
   }
-  take(cost.mass, job_cost(solver, model.mass + unit, use.impacts ? touched : std::vector<int>()));
+  cost.mass = solver.predict(model.mass + unit, use.impacts ? touched : std::vector<int>());
   cost.mass.working_bytes += bytes_of(model.mass);
+  cost.elsewhere_bytes = std::max({cost.step.most_elsewhere, statics.most_elsewhere, cost.mass.most_elsewhere});
+  const double beside = std::max({cost.step.beside, statics.beside, cost.mass.beside});
   const auto rows = static_cast<double>(b.rows()), n = static_cast<double>(model.free());
   cost.matrix_bytes = bytes_of(model.stiffness) + bytes_of(model.mass) + bytes_of(model.damping);
   // SymmetricPair: half the entries, 20 bytes each

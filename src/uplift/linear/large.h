@@ -17,18 +17,9 @@ inline double reach_of(const Factor& factor) {
   return with != nullptr ? with->reach() : 0;
 }
 
-/// What a factorisation takes from a job of several processes: from this one, and from the others.
-struct JobCost {
-  FactorCost mine;
-  double most_elsewhere = 0;  // bytes of the other process that takes most
-  double beside = 0;          // bytes of all other processes on this machine together
-};
-
 /// A solver that treats matrices without mass by another method than those of a time step.
 class SolverOfStatics : public LinearSolver {
  public:
-  /// predict() of a job.
-  virtual JobCost predict_job(const Sparse& a, const std::vector<int>& last) const { return {predict(a, last), 0, 0}; }
   /// That for the matrices of static stages; null: this one. `motions`: columns, the motions of a rigid body on the unknowns of the matrix.
   /// They deform nothing, and iterations without mass are slowest to find them.
   virtual std::unique_ptr<const LinearSolver> for_statics(const Matrix& motions) const = 0;
@@ -38,12 +29,6 @@ class SolverOfStatics : public LinearSolver {
 inline std::unique_ptr<const LinearSolver> solver_for_statics(const LinearSolver& solver, const Matrix& motions) {
   const auto* other = dynamic_cast<const SolverOfStatics*>(&solver);
   return other != nullptr ? other->for_statics(motions) : nullptr;
-}
-
-/// What any solver takes.
-inline JobCost job_cost(const LinearSolver& solver, const Sparse& a, const std::vector<int>& last) {
-  const auto* of_job = dynamic_cast<const SolverOfStatics*>(&solver);
-  return of_job != nullptr ? of_job->predict_job(a, last) : JobCost{solver.predict(a, last), 0, 0};
 }
 
 }  // namespace uplift

@@ -33,7 +33,10 @@ struct FactorCost {
   double operations = 0;     // additions and multiplications of the factorisation
   double bytes = 0;          // of the factor
   double working_bytes = 0;  // beside it while it is made
-  std::string why;           // why it cannot be made at all
+  // of a job of several processes, of which this one takes the bytes above
+  double most_elsewhere = 0;  // bytes of the other process that takes most
+  double beside = 0;          // bytes of all other processes on this machine together
+  std::string why;            // why it cannot be made at all
 };
 
 /// Result of a factorisation: a factor, or the reason and the unknown at which it broke down.

@@ -161,9 +161,12 @@ void CutFilling::keep_within(const CellBefore& cell, Halves& halves) const {
 }
 
 /// A corner so near the plane that the part below has no volume: nothing would hold doubles that belong to it alone.
-bool CutFilling::is_empty_below(CellId id) const {
-  if (info(mesh_.type(id)).nodes != info(mesh_.type(id)).corners) return false;  // is refused
-  const CellBefore cell = before(id);
+bool CutFilling::is_empty_below(const CellBefore& cell) const {
+  constexpr double no_tip = 0.1;                                         // of the shortest edge: a part as deep as this has volume
+  const bool curved = info(cell.cell).nodes != info(cell.cell).corners;  // is refused
+  double deepest = 0;
+  for (const Vec3& corner : cell.corners) deepest = std::min(deepest, plane_.below.distance(corner));
+  if (curved || -deepest > no_tip / on_plane * cell.tolerance) return false;
   return clip_cell(cell.cell, cell.corners, {plane_.below}, cell.tolerance).pieces.empty();
 }
 
@@ -173,8 +176,11 @@ Halves CutFilling::halves_of(CellId id) const {
   const bool below = std::ranges::any_of(nodes, [&](int node) { return sign(node) < 0; });
   const bool above = std::ranges::any_of(nodes, [&](int node) { return sign(node) > 0; });
   Halves halves{below, above, !above, !below};
-  if (below && above && is_empty_below(id)) halves.lower = false, halves.upper_whole = true;
-  if (above) keep_within(before(id), halves);
+  if (above) {
+    const CellBefore cell = before(id);
+    if (below && is_empty_below(cell)) halves.lower = false, halves.upper_whole = true;
+    keep_within(cell, halves);
+  }
   const bool whole = (!below || halves.lower_whole) && (!halves.upper || halves.upper_whole);
   if (!whole && info(mesh_.type(id)).nodes != info(mesh_.type(id)).corners)
     throw InputError(where_, "", "cells of the first degree (tri3, quad4, tet4, wedge6, hex8) where a plane cuts",

@@ -80,7 +80,7 @@ class CutFilling {
   void find_signs();
   Halves halves_of(CellId id) const;
   Halves halves_of_part(CellId id) const;
-  bool is_empty_below(CellId id) const;
+  bool is_empty_below(const CellBefore& cell) const;
   void find_level_faces();
   std::vector<Vec3> corners_on_plane(int cell, int side, std::vector<int>& nodes) const;
   void refuse_nothing() const;

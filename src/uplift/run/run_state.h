@@ -28,7 +28,7 @@ struct RunState {
   int static_stages = 0;                    // that are over
   double unloaded_energy = 0;               // J: Energies::sum of the unloaded structure
   double initial_scale = 0;                 // J
-  double round_off_energy = 0;              // J: less than this is nothing
+  double round_off_energy = 0;              // J: the least scale of what the gate compares
 
   // what was recorded
   RunResult result;

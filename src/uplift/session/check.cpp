@@ -49,7 +49,7 @@ std::vector<double> frequencies(const std::vector<Mode>& found) {
 /// from the lowest. Modes of next to no mass, as of ground under single points, do not matter.
 ResolvedFrequencies resolved_frequencies(const Model& model, const CaseFindings& found) {
   constexpr int small = 300, lowest_elastic = 5, most_rigid = 6;  // unknowns, modes
-  constexpr double least_share = 0.05;
+  constexpr double least_share = 0.05;                            // of the mass, in any direction
   ResolvedFrequencies made{found.bonded, found.base_free, {}};
   if (model.free() > small) return made;
   const Sparse mass = assembled(model, &Local::mass);
@@ -60,6 +60,7 @@ ResolvedFrequencies resolved_frequencies(const Model& model, const CaseFindings&
       if (direction != uz || model.space.dimension == 3) share = std::max(share, mass_share(model, mass, shape, direction));
     if (share >= least_share) made.moving.push_back(mode.frequency);
   }
+  made.bonded.insert(made.bonded.end(), made.moving.begin(), made.moving.end());
   made.base_free = frequencies(uplift::modes(model.stiffness, model.mass, lowest_elastic + most_rigid));
   const auto elastic = std::ranges::find_if(made.base_free, [](double frequency) { return frequency > 0; });
   made.base_free.erase(made.base_free.begin(), elastic);

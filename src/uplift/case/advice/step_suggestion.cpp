@@ -134,7 +134,6 @@ double step_that_resolves(const TimeFunction& function, int derivative, double d
 std::vector<StepBound> step_bounds(const Case& read, const BuiltCase& built, const ResolvedFrequencies& frequencies) {
   std::vector<StepBound> bounds;
   bound_by_modes(frequencies.bonded, "with the base bonded", bounds);
-  bound_by_modes(frequencies.moving, "with the base bonded", bounds);
   if (!built.model.interfaces.empty()) {
     bound_by_modes(frequencies.base_free, "with the base free", bounds);
     bound_by_bounces(frequencies.moving, bounds);

@@ -14,9 +14,9 @@ struct StepBound {
 
 /// Natural frequencies [Hz] of a case that its time step has to resolve.
 struct ResolvedFrequencies {
-  std::vector<double> bonded;     // with the interfaces closed, the lowest
+  std::vector<double> bonded;     // with the interfaces closed, the lowest, and those of `moving`
   std::vector<double> base_free;  // with the interfaces open, the lowest: how the structure vibrates while it rocks or flies
-  std::vector<double> moving;     // with the interfaces closed, those of small models that move part of the mass
+  std::vector<double> moving;     // those of small models, however high, that move part of the mass
 };
 
 /// What limits the time step of a case with a dynamic stage, the smallest first; empty when nothing does. The numbers of steps follow from
