@@ -286,6 +286,14 @@ class Queue(MpiTest):
         self.assertEqual([line.split()[0] for line in (self.folder / "table").read_text().splitlines()], ["ranks", "1", "2"])
 
 
+class Check(MpiTest):
+    def test_tells_what_the_other_ranks_take(self):
+        self.write(with_solver(RAFT))
+        memory = json.loads(self.mpi(2, "check", "case.toml", "--json").stdout)["memory"]
+        self.assertGreater(memory["other_ranks_bytes"], 0)
+        self.assertLess(memory["other_ranks_bytes"], memory["bytes"])  # rank 0 holds the model besides its rows
+
+
 class Refused(MpiTest):
     def test_by_the_program_for_one_process(self):
         self.write(with_solver(BASE))

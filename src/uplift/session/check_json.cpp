@@ -69,6 +69,7 @@ std::string check_json(const LoadedCase& loaded, const CheckedCase& checked) {
         .member("bytes", found.bulk->bytes)
         .member("factor_bytes", found.bulk->step.bytes)
         .member("available_bytes", found.bulk->available)
+        .member("other_ranks_bytes", found.bulk->elsewhere_bytes)  // the largest of them; zero where there is one process
         .end_object();
   json.key("histories")
       .begin_object()
