@@ -3,10 +3,29 @@
 #include <algorithm>
 #include <limits>
 
-namespace uplift {
+#include "uplift/model/element_sum.h"
 
-Vector stiffness_of_parts(const Sparse& stiffness_matrix, const Sparse& b) {
-  const Vector diagonal = stiffness_matrix.diagonal();
+namespace uplift {
+namespace {
+
+/// Diagonal of K at the unknowns that interfaces touch, zero where it is but the round-off of terms that cancel: solids inside a rigid body
+/// resist none of its motions. The sizes of the terms take a pass over all elements, which is made only where a diagonal is small.
+Vector resisting_diagonal(const Model& model, const Sparse& stiffness_matrix, const Sparse& b) {
+  constexpr double small = 1e-9, round_off = 1e-13;
+  Vector diagonal = stiffness_matrix.diagonal();
+  const double suspicious = diagonal.size() > 0 ? small * diagonal.maxCoeff() : 0;
+  const std::vector<int> touched = touched_unknowns(b);
+  if (std::ranges::none_of(touched, [&](int i) { return diagonal[i] > 0 && diagonal[i] < suspicious; })) return diagonal;
+  const Vector size = ElementSum(model.space, model.elements, &Local::stiffness).size_of_diagonal(model.expansion);
+  for (const int i : touched)
+    if (diagonal[i] < round_off * size[i]) diagonal[i] = 0;
+  return diagonal;
+}
+
+}  // namespace
+
+Vector stiffness_of_parts(const Model& model, const Sparse& stiffness_matrix, const Sparse& b) {
+  const Vector diagonal = resisting_diagonal(model, stiffness_matrix, b);
   Vector compliance = Vector::Zero(b.rows());
   for (int column = 0; column < b.outerSize(); ++column)
     for (Sparse::InnerIterator entry(b, column); entry; ++entry)
@@ -23,7 +42,7 @@ Vector closed_joint(const Model& model, const Sparse& stiffness_matrix, const Sp
   if (largest <= 0) largest = 1e9;
   // A joint far stiffer than the structure would leave nothing of the structure's stiffness in the factored sum once it is taken back.
   constexpr double stiffest = 1e6, beside_parts = 1e3;
-  const Vector parts = stiffness_of_parts(stiffness_matrix, b);
+  const Vector parts = stiffness_of_parts(model, stiffness_matrix, b);
   int first = 0;
   for (std::size_t i = 0; i < model.interfaces.size(); ++i) {
     const Interface& interface = model.interfaces[i];

@@ -136,7 +136,7 @@ void LoadSteps::assemble() {
 /// Where the matrix or a load step fails: a joint that is no stiffer than the parts that it joins. It is as exact (any stiffness is), but
 /// soft parts on both sides are not lost in its round-off.
 void LoadSteps::soften_joint() {
-  blocks_.shift = blocks_.shift.cwiseMin(stiffness_of_parts(bulk_.stiffness_matrix, b_));
+  blocks_.shift = blocks_.shift.cwiseMin(stiffness_of_parts(model_, bulk_.stiffness_matrix, b_));
   assemble();
 }
 
