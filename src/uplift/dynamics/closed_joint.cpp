@@ -4,18 +4,21 @@
 #include <limits>
 
 #include "uplift/model/element_sum.h"
+#include "uplift/model/reduced.h"
 
 namespace uplift {
 namespace {
 
 /// Diagonal of K at the unknowns that interfaces touch, zero where it is but the round-off of terms that cancel: solids inside a rigid body
-/// resist none of its motions. The sizes of the terms take a pass over all elements, which is made only where a diagonal is small.
+/// resist none of its motions. The sizes of the terms take a pass over all elements, which is made only where a diagonal is small. Unknowns
+/// of a reduced model reach all elements, and are left as they are.
 Vector resisting_diagonal(const Model& model, const Sparse& stiffness_matrix, const Sparse& b) {
   constexpr double small = 1e-9, round_off = 1e-13;
   Vector diagonal = stiffness_matrix.diagonal();
   const double suspicious = diagonal.size() > 0 ? small * diagonal.maxCoeff() : 0;
   const std::vector<int> touched = touched_unknowns(b);
-  if (std::ranges::none_of(touched, [&](int i) { return diagonal[i] > 0 && diagonal[i] < suspicious; })) return diagonal;
+  if (is_reduced(model) || std::ranges::none_of(touched, [&](int i) { return diagonal[i] > 0 && diagonal[i] < suspicious; }))
+    return diagonal;
   const Vector size = ElementSum(model.space, model.elements, &Local::stiffness).size_of_diagonal(model.expansion);
   for (const int i : touched)
     if (diagonal[i] < round_off * size[i]) diagonal[i] = 0;

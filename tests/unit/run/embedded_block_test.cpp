@@ -1,6 +1,6 @@
-// Rigid blocks of solids that bear on soil by friction constraints, on their base and on their walls. The stiffness of the solids cancels in
-// the motions of the body but for round-off, which the closed joint of a static stage was scaled by: closed points were left with openings
-// of 1e-11 m, which contradict each other where base and wall meet, and in space the block was said to fall.
+// Rigid blocks of solids that bear on soil by friction constraints, on their base and on their walls. The stiffness of the solids cancels
+// in the motions of the body but for round-off, which the closed joint of a static stage was scaled by: closed points were left with
+// openings of 1e-11 m, which contradict each other where base and wall meet, and in space the block was said to fall.
 #include <fmt/format.h>
 #include <gtest/gtest.h>
 
@@ -15,7 +15,7 @@ namespace {
 
 struct Block {
   double width = 6, embedment = 2, friction = 0.5;
-  double push = 2e5;  // N
+  double push = 2e5;      // N
   std::string more = {};  // initial velocities, further loads
 };
 
@@ -38,7 +38,8 @@ std::string plane_block(const Block& block, const std::string& method, const std
          "[[interface]]\nname = \"skin\"\nsurface = { group = \"interface\", lower = [\"soil_1\"] }\n" +
          behaviour(method, block.friction) + "[gravity]\nacceleration = [0, -9.81]\n" +
          fmt::format("[[load]]\nname = \"push\"\ngroup = \"raft_top\"\nforce = [{}, 0]\n", block.push) + block.more +
-         "[[output.history]]\nat = [0, 1]\nquantity = \"ux\"\nname = \"ux\"\n[[output.history]]\nat = [0, 1]\nquantity = \"uy\"\nname = \"uy\"\n" +
+         "[[output.history]]\nat = [0, 1]\nquantity = \"ux\"\nname = \"ux\"\n[[output.history]]\nat = [0, 1]\nquantity = \"uy\"\nname = "
+         "\"uy\"\n" +
          stages;
 }
 
