@@ -170,7 +170,8 @@ UPLIFT_API int uplift_problem_solve(const char* problem, const char* method, cha
 
 /* ---- motions ---- */
 
-/* Pseudo-acceleration response spectrum [m/s2] of an acceleration history [m/s2] with equal steps [s], at `count` frequencies [Hz]. */
+/* Pseudo-acceleration response spectrum [m/s2] of an acceleration history [m/s2] with equal steps [s], at `count` frequencies [Hz]. Peaks
+ * between the points are found too (within 1e-4), as in floor_spectra.csv. */
 UPLIFT_API int uplift_spectrum(const double* acceleration, size_t length, double step, double damping, const double* frequencies,
                                size_t count, double* psa, uplift_error* error);
 

@@ -182,6 +182,15 @@ class Study(StudyTest):
         self.assertAlmostEqual(limit["regression"]["b"], slope, delta=1e-9)
         self.assertAlmostEqual(limit["fit"]["theta"], math.exp((math.log(1e-3) - y + slope * x) / slope), delta=1e-9)
 
+    def test_a_limit_of_a_number_that_no_run_has(self):
+        # without friction there is no safety against sliding: that no run falls below the limit says nothing
+        plan = IDA.replace('type = "ida"\nstart = 0.1\nlargest = 20', 'type = "stripes"\nlevels = [0.1, 2]')
+        name = self.study(plan.replace('"max_opening"\nlimit = "1 mm"', '"min_sliding_safety"\nlimit = 1.1'))
+        self.assertIn("the first run has no min_sliding_safety", self.uplift("study", "check", name).stderr)
+        self.uplift("study", "run", name, "-q")
+        (limit,) = json.loads(self.uplift("study", "fit", name, "--json").stdout)["limits"]
+        self.assertIn("no run has the number min_sliding_safety", json.dumps(limit["fit"]))
+
     def test_what_the_site_asks_for(self):
         name = self.study()
         self.uplift("study", "run", name, "-q")

@@ -256,6 +256,10 @@ class Runs(unittest.TestCase):
         self.assertAlmostEqual(value[0], exact, delta=2e-5 * exact)
         with self.assertRaises(up.InputError):
             up.psa([np.nan, 1], step)
+        # a suddenly constant acceleration: x = a (1 - cos wt)/w^2, largest between the points, where no step of the record falls
+        step, fast = 0.01, np.linspace(3.1, 47.3, 23)
+        _, value = up.psa(np.ones(100), step, damping=0.0, frequencies=fast)
+        np.testing.assert_allclose(value, 2, rtol=1e-4)
 
     def test_a_step_function_ends_the_run(self):
         run = pier(soil()).run(step=lambda step: step.opening.max() < 1e-6, step_check=False)  # a NumPy truth value

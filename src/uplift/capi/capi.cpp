@@ -379,7 +379,7 @@ int uplift_spectrum(const double* acceleration, size_t length, double step, doub
       if (!std::isfinite(each)) throw BadArgument("\"acceleration\" has a value that is not finite");
     for (const double each : at)
       if (!(each > 0 && std::isfinite(each))) throw BadArgument(fmt::format("\"frequencies\" has {} Hz, expected positive numbers", each));
-    const std::vector<Spectrum> made = response_spectra(values, step, at, {damping}, Spectrum::Kind::psa, 1);
+    const std::vector<Spectrum> made = response_spectra(values, step, at, {damping}, Spectrum::Kind::psa, 1, Peaks::between);
     std::ranges::copy(made.front().values, needed(psa, "psa"));
   });
 }

@@ -46,7 +46,7 @@ std::vector<std::string> warnings_of(const Study& study, const BuiltCase& built,
                                  place.table->path("amplitude"), place.table->number("amplitude")));
   if (!says_something(trial.outcome))
     said.push_back(fmt::format("the first run ends as \"{}\": {}", to_string(trial.outcome), trial.reason));
-  if (study.of.plan.floor_spectra && trial.spectra.empty()) said.emplace_back("floor_spectra: the case has no [[output.floor]]");
+  if (study.of.plan.floor_spectra && trial.spectra.empty()) said.emplace_back("floor_spectra: the case has no [[output.floor_spectrum]]");
   if (study.of.motions.size() < 3) said.push_back(fmt::format("{} motions: their scatter is hardly known", study.of.motions.size()));
   for (const StudyMotion& motion : study.of.motions)
     if (!motion.record.empty() && !study.of.plan.method.searches())

@@ -16,6 +16,19 @@ void count_runs(const StudyLimit& limit, const std::vector<StudyCurve>& curves, 
     }
 }
 
+/// Whether runs were completed and none has the number of the limit, as a sliding safety without friction: it says nothing of the
+/// structure.
+bool lacks_number(const StudyLimit& limit, const std::vector<StudyCurve>& curves) {
+  bool completed = false;
+  if (limit.quantity == nullptr) return false;
+  for (const StudyCurve& curve : curves)
+    for (const auto& [intensity, run] : curve.runs()) {
+      if (demand_of(limit, *run.result)) return false;
+      completed = completed || run.result->outcome == StudyOutcome::completed;
+    }
+  return completed;
+}
+
 // ---- capacities ----
 
 std::optional<RecordCapacity> capacity_of(const CapacitySearch& search, Unknown unknown) {
@@ -206,6 +219,11 @@ StudyLimitFit fit_limit(const StudyCase& study, const std::vector<StudyCurve>& c
   StudyLimitFit fit;
   const StudyLimit& limit = study.plan.limits[number];
   count_runs(limit, curves, fit);
+  if (lacks_number(limit, curves)) {
+    const Refused refused{"no run has the number " + std::string(limit.quantity->name) + ", so that none can exceed its limit"};
+    fit.fit = {refused, refused, refused};
+    return fit;
+  }
   if (study.plan.method.searches()) {
     fit_searches(curves, number, fit);
     fit.layout = layout_of(study, curves, fit.capacities);

@@ -45,6 +45,12 @@ TEST(CompositeRisk, InTheSentenceOfALimit) {
   EXPECT_NE(said().find(of_fit + " (with the composite beta of motions and samples 8.27e-06)"), std::string::npos) << said();
   study.limits[0].fit.layout = Refused{"one sample"};
   EXPECT_TRUE(said().ends_with(of_fit)) << said();
+  // The median is exceeded in half of the cases; at ten times the median Phi(2.35) = 0.991.
+  study.plan.site.design = 4.0;
+  EXPECT_NE(said().find("at the design motion 50 %"), std::string::npos) << said();
+  study.plan.site.design = 40.0;
+  EXPECT_NE(said().find("at the design motion above 99 %, at 1.5 times it above 99 %"), std::string::npos) << said();
+  study.plan.site.design.reset();
   study.plan.site.hazard.clear();
   EXPECT_EQ(said().find("annual rate"), std::string::npos) << said();
 }

@@ -39,8 +39,9 @@ std::string text_of(const ConfidenceInterval& interval) {
 
 /// A probability in per cent; tiny ones are those of the tail of a distribution that nobody has seen.
 std::string probability_text(double probability) {
-  constexpr double least = 1e-5;
-  return probability < least ? "below 0.001 %" : fmt::format("{:.2g} %", 100 * probability);
+  constexpr double least = 1e-5, most = 0.99;
+  if (probability < least) return "below 0.001 %";
+  return probability > most ? "above 99 %" : fmt::format("{:.2g} %", 100 * probability);
 }
 
 /// The annual rate, or why there is none; empty without a hazard curve or without a fit, which says why itself. Beside it that of the
