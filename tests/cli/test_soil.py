@@ -5,11 +5,14 @@ from support import *
 EXAMPLE = pathlib.Path(__file__).resolve().parents[2] / "examples" / "02_building_on_soil" / "case.toml"
 
 
-def gmsh(columns, rows, base):
-    """A mesh of Gmsh 2.2: unit squares, the upper ones from row `base` on, with the groups of a soil and a block of the same width."""
+def gmsh(columns, rows, base, torn=None):
+    """A mesh of Gmsh 2.2: unit squares, the upper ones from row `base` on, with the groups of a soil and a block of the same width. Soil on
+    the right of column `torn` has nodes of its own there, but for the surface."""
     node = lambda i, j: 1 + i + j * (columns + 1)
     nodes = [f"{node(i, j)} {i} {j - base} 0" for j in range(rows + 1) for i in range(columns + 1)]
     elements = []
+    double = lambda j: (columns + 1) * (rows + 1) + 1 + j
+    own = lambda i, j, cell: double(j) if cell == torn and j < base else node(i, j)
     add = lambda kind, group, *ends: elements.append(f"{len(elements) + 1} {kind} 2 {group} {group} " + " ".join(map(str, ends)))
     for i in range(columns):
         add(1, 3, node(i, 0), node(i + 1, 0))
@@ -17,7 +20,8 @@ def gmsh(columns, rows, base):
         add(1, 5, node(i, rows), node(i + 1, rows))
     for j in range(rows):
         for i in range(columns):
-            add(3, 1 if j < base else 2, node(i, j), node(i + 1, j), node(i + 1, j + 1), node(i, j + 1))
+            add(3, 1 if j < base else 2, own(i, j, i), node(i + 1, j), node(i + 1, j + 1), own(i, j + 1, i))
+    nodes += [f"{double(j)} {torn} {j - base} 0" for j in range(base) if torn is not None]
     names = ['2 1 "soil"', '2 2 "block"', '1 3 "bottom"', '1 4 "contact"', '1 5 "roof"']
     parts = [["$MeshFormat", "2.2 0 8", "$EndMeshFormat"], ["$PhysicalNames", str(len(names)), *names, "$EndPhysicalNames"],
              ["$Nodes", str(len(nodes)), *nodes, "$EndNodes"], ["$Elements", str(len(elements)), *elements, "$EndElements"]]
@@ -145,6 +149,12 @@ class MeshFile(CliTest):
         first = next(line for line in history[head + 1:] if line[0].isdigit()).split(",")
         self.assertAlmostEqual(float(first[columns.index("joint.axial")]) / (-16 * 500 * 10), 1, places=7)
         self.assertEqual(run["max_uplifted_ratio"]["value"], 0)
+
+    def test_a_mesh_that_is_torn(self):
+        # nodes doubled below the surface, in three rows of cells and in the one that keeps the node of the surface
+        self.assertNotIn("torn", self.uplift("check", self.run_block().name).stdout)
+        self.write(gmsh(4, 8, 4, torn=2), "soil.msh")
+        self.assertIn("the mesh is torn: cells lie side by side and do not share the nodes between them, at 4 sides", self.uplift("check", "case.toml").stdout)
 
     def test_missing_file(self):
         self.refused(BLOCK, '{file}:3: expected a mesh file (Gmsh .msh or MED), found no file "soil.msh"')

@@ -11,6 +11,7 @@
 #include "uplift/case/advice/step_suggestion.h"
 #include "uplift/case/ground/ground.h"
 #include "uplift/case/mesh/mesh.h"
+#include "uplift/mesh/torn.h"
 #include "uplift/model/damping.h"
 #include "uplift/model/hinges.h"
 #include "uplift/model/tuned_mass.h"
@@ -229,6 +230,14 @@ void warn_floors(const RunSpec& spec, const BuiltCase& built, std::vector<std::s
   if (const double resolved = 1 / (10 * stage->step); resolved < highest)
     said.push_back(fmt::format("floor spectra up to {:.3g} Hz with a step of {}: ten steps a period reach up to {:.3g} Hz", highest,
                                format_quantity(stage->step, "s"), resolved));
+  double lowest = highest, duration = 0;
+  for (const FloorRequest& floor : built.plan.floors) lowest = std::min(lowest, floor.frequencies.front());
+  for (const Stage& each : built.plan.stages) duration += each.type == Stage::Type::dynamics ? each.duration : 0;
+  if (lowest * duration < 1)
+    said.push_back(
+        fmt::format("floor spectra down to {:.3g} Hz of a run of {}: an oscillator below {:.3g} Hz has not swung once at its end, "
+                    "and its largest response may follow later",
+                    lowest, format_quantity(duration, "s"), 1 / duration));
 }
 
 void warn_method(const Case& read, const RunSpec& spec, const BuiltCase& built, std::vector<std::string>& said) {
@@ -255,6 +264,19 @@ void warn_method(const Case& read, const RunSpec& spec, const BuiltCase& built, 
           stage->scheme.average_acceleration() ? "traction = \"path\""
                                                : "scheme = \"average_acceleration\", which has the path average of the traction"));
   }
+}
+
+/// Cells side by side that do not share the nodes between them: the mesh is open there, unseen. Cells that planes cut have copies at their
+/// place.
+void warn_torn(const Case& read, std::vector<std::string>& said) {
+  if (!read.mesh || std::ranges::any_of(read.mesh->cut, [](const auto& faces) { return !faces.empty(); })) return;
+  const std::vector<Vec3> torn = torn_sides(read.mesh->mesh, read.mesh->open);
+  if (torn.empty()) return;
+  const Vec3& first = torn.front();
+  said.push_back(
+      fmt::format("the mesh is torn: cells lie side by side and do not share the nodes between them, at {} {}, as at ({:.6g}, {:.6g}, "
+                  "{:.6g}) m; merge the nodes (and give cells side by side the same degree), or make an [[interface]] of it",
+                  torn.size(), torn.size() == 1 ? "side" : "sides", first.x(), first.y(), first.z()));
 }
 
 /// Solids hold no rotation: a column that ends at one of their nodes is hinged, which few mean.
@@ -294,6 +316,7 @@ std::vector<std::string> warnings(const Case& read, const RunSpec& spec, const B
   warn_duration(built, said);
   warn_sides(read, said);
   warn_held_faces(read, built, said);
+  warn_torn(read, said);
   warn_hinges(built, said);
   warn_embedded_feet(built, said);
   warn_step(built, said);

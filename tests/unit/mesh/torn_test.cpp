@@ -1,0 +1,58 @@
+#include "uplift/mesh/torn.h"
+
+#include <gtest/gtest.h>
+
+#include "unit/mesh/mesh_support.h"
+#include "uplift/mesh/convert.h"
+
+// Cells side by side that share no nodes.
+namespace uplift {
+namespace {
+
+using namespace support;
+
+/// Two copies of one mesh side by side along x, with nodes of their own.
+Mesh side_by_side(Mesh mesh, double shift) {
+  const int nodes = static_cast<int>(mesh.nodes.size());
+  for (int i = 0; i < nodes; ++i) mesh.nodes.push_back(mesh.nodes[static_cast<std::size_t>(i)] + Vec3(shift, 0, 0));
+  for (CellBlock& block : mesh.blocks) {
+    const std::vector<int> first = block.nodes;
+    for (const int node : first) block.nodes.push_back(node + nodes);
+  }
+  return mesh;
+}
+
+TEST(Torn, SidesOfAllCells) {
+  const std::vector<double> two{0, 0.5, 1}, three{0, 1, 2, 3};
+  for (const Cell cell : plane_cells) {
+    EXPECT_TRUE(torn_sides(rectangle(two, three, cell), {}).empty()) << info(cell).name;
+    EXPECT_EQ(torn_sides(side_by_side(rectangle(two, three, cell), 1), {}).size(), 3u) << info(cell).name;
+    EXPECT_TRUE(torn_sides(side_by_side(rectangle(two, three, cell), 1.001), {}).empty()) << info(cell).name;
+  }
+  for (const Cell cell : {Cell::hex8, Cell::hex20, Cell::hex27}) {
+    EXPECT_TRUE(torn_sides(box(two, two, three, cell), {}).empty()) << info(cell).name;
+    const std::vector<Vec3> torn = torn_sides(side_by_side(box(two, two, three, cell), 1), {});
+    EXPECT_EQ(torn.size(), 6u) << info(cell).name;
+    for (const Vec3& middle : torn) EXPECT_NEAR(middle.x(), 1, 1e-14);
+  }
+}
+
+/// What an interface opens is meant to be open.
+TEST(Torn, OpenedSurfaces) {
+  Mesh mesh = side_by_side(rectangle({0, 1}, {0, 1, 2}), 1);
+  std::vector<FacePair> faces;
+  CellBlock& lines = mesh.block(Cell::line2);
+  const int before = lines.count();
+  std::vector<int> left, right;
+  for (int i = 0; i < static_cast<int>(mesh.nodes.size()); ++i)
+    if (std::abs(mesh.nodes[static_cast<std::size_t>(i)].x() - 1) < 1e-12) (left.size() < 3 ? left : right).push_back(i);
+  ASSERT_EQ(right.size(), 3u);
+  lines.nodes.insert(lines.nodes.end(), {left[0], left[1], right[0], right[1]});
+  const int block = mesh.find_block(Cell::line2);
+  faces.push_back({{block, before}, {block, before + 1}});
+  EXPECT_EQ(torn_sides(mesh, {}).size(), 2u);
+  EXPECT_EQ(torn_sides(mesh, {faces}).size(), 1u);
+}
+
+}  // namespace
+}  // namespace uplift
