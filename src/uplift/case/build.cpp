@@ -16,6 +16,7 @@
 #include "uplift/case/schema/sections.h"
 #include "uplift/case/shown.h"
 #include "uplift/model/check.h"
+#include "uplift/model/model_matrices.h"
 #include "uplift/model/tuned_mass.h"
 
 namespace uplift {
@@ -171,7 +172,8 @@ std::shared_ptr<const Model> resting_model(const Case& read, const RunSpec& spec
                                            const BuiltCase& built) {
   BuiltCase scratch;
   CaseNames names;
-  auto rest = std::make_shared<Model>(make_model(read, spec, tuned, &built.model, names, scratch));
+  auto rest = std::make_shared<Model>();
+  move_model(make_model(read, spec, tuned, &built.model, names, scratch), *rest);
   for (std::size_t k = 0; k < rest->interfaces.size(); ++k) {
     Interface& interface = rest->interfaces[k];
     interface.law = make_law(*built.behaviours[k], interface.footprint);
@@ -285,7 +287,7 @@ BuiltCase build(const Case& read, const RunSpec& spec) {
   }
   built.plan.stages = stages_of(read, spec);
   check_second_order_water(root);
-  built.model = make_model(read, spec, tuned, nullptr, names, built);
+  move_model(make_model(read, spec, tuned, nullptr, names, built), built.model);
   const bool released = any_released(root);
   const bool rests = std::ranges::any_of(built.plan.stages, [](const Stage& stage) { return stage.type == Stage::Type::statics; });
   if (!released && rests) check_static(built.model, root.where());

@@ -279,11 +279,11 @@ std::string Ranks::refuse_together(const Order& order, std::string options) {
   const SolverOptions given(spread_text(order.letters, std::move(options)));
   const auto rows = static_cast<PetscInt>(order.rows);
   const Shares shares(rows, count_);
-  const LocalRows local = chain_of_springs(rows, shares, rank_);
+  LocalRows local = chain_of_springs(rows, shares, rank_);
   const std::vector<double> ones(static_cast<std::size_t>(shares.count(rank_)), 1.0);
   std::vector<double> solved(ones.size());
   System chain(ranks_);
-  SystemOutcome outcome = chain.set(local, rows);
+  SystemOutcome outcome = chain.set(std::move(local), rows);
   if (outcome.ok()) outcome = chain.prepare(given);
   if (outcome.ok()) outcome = chain.solve(ones.data(), solved.data(), 1);
   if (!outcome.ok()) return outcome.why;

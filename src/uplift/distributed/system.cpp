@@ -64,15 +64,47 @@ SystemOutcome System::agree(PetscErrorCode error, SystemOutcome mine) const {
   return mine;
 }
 
-SystemOutcome System::set(const LocalRows& local, PetscInt rows) {
-  return agree(assemble(local, rows), {});
+SystemOutcome System::set(LocalRows local, PetscInt rows) {
+  return agree(assemble(std::move(local), rows), {});
 }
 
-PetscErrorCode System::assemble(const LocalRows& local, PetscInt rows) {
+namespace {
+
+/// Leaves of complete rows the entries between them, whose columns are counted from `first` on, and returns all others.
+LocalRows take_others(LocalRows& rows, PetscInt first) {
+  LocalRows others;
+  const auto count = static_cast<PetscInt>(rows.start.size()) - 1;
+  PetscInt kept = 0, next = 0;
+  others.start.push_back(0);
+  for (PetscInt row = 0; row < count; ++row) {
+    for (const PetscInt end = rows.start[row + 1]; next < end; ++next) {
+      const PetscInt column = rows.column[next] - first;
+      if (column >= 0 && column < count) {
+        rows.column[kept] = column, rows.value[kept++] = rows.value[next];
+      } else {
+        others.column.push_back(rows.column[next]);
+        others.value.push_back(rows.value[next]);
+      }
+    }
+    rows.start[row + 1] = kept;
+    others.start.push_back(static_cast<PetscInt>(others.column.size()));
+  }
+  rows.column.resize(kept), rows.value.resize(kept);
+  return others;
+}
+
+}  // namespace
+
+PetscErrorCode System::assemble(LocalRows local, PetscInt rows) {
   PetscFunctionBeginUser;
   rows_ = rows, local_ = static_cast<PetscInt>(local.start.size()) - 1;
-  PetscCall(
-      MatCreateMPIAIJWithArrays(ranks_, local_, local_, rows, rows, local.start.data(), local.column.data(), local.value.data(), &matrix_));
+  PetscInt end = 0;
+  PetscCallMPI(MPI_Scan(&local_, &end, 1, MPIU_INT, MPI_SUM, ranks_));
+  among_ = std::move(local);
+  beyond_ = take_others(among_, end - local_);
+  PetscCall(MatCreateMPIAIJWithSplitArrays(ranks_, local_, local_, rows, rows, among_.start.data(), among_.column.data(),
+                                           among_.value.data(), beyond_.start.data(), beyond_.column.data(), beyond_.value.data(),
+                                           &matrix_));
   PetscCall(MatSetOption(matrix_, MAT_SYMMETRIC, PETSC_TRUE));
   PetscCall(MatSetOption(matrix_, MAT_SYMMETRY_ETERNAL, PETSC_TRUE));
   for (Vec* vector : {&given_, &solved_}) PetscCall(VecCreateMPIWithArray(ranks_, 1, local_, rows, nullptr, vector));

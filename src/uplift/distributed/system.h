@@ -64,8 +64,8 @@ class System {
   ~System();
   System(const System&) = delete;
   System& operator=(const System&) = delete;
-  /// The matrix; with a unit diagonal, so that a pivot or a residual has no unit. `rows`: of all ranks.
-  SystemOutcome set(const LocalRows& local, PetscInt rows);
+  /// The matrix; with a unit diagonal, so that a pivot or a residual has no unit. `rows`: of all ranks. Its numbers are not copied.
+  SystemOutcome set(LocalRows local, PetscInt rows);
   /// The motions that deform it least, from which multigrid makes its coarse levels: the rank's rows, one column after another.
   SystemOutcome set_motions(const std::vector<double>& motions, PetscInt columns);
   /// Factorises it, or prepares the iterative method and tries it on one load. A matrix that is not positive definite is refused: by MUMPS
@@ -82,7 +82,7 @@ class System {
   double nonzeros() const { return nonzeros_; }        // of the factor; of the matrix where there is none
 
  private:
-  PetscErrorCode assemble(const LocalRows& local, PetscInt rows);
+  PetscErrorCode assemble(LocalRows local, PetscInt rows);
   PetscErrorCode keep_motions(const std::vector<double>& motions, PetscInt columns);
   PetscErrorCode choose(const SolverOptions& options, SystemOutcome& outcome);
   PetscErrorCode analyse(SystemCost& cost);
@@ -98,6 +98,7 @@ class System {
 
   MPI_Comm ranks_;
   PetscInt rows_ = 0, local_ = 0, iterations_ = 0;
+  LocalRows among_, beyond_;  // entries between rows of this rank, columns from its first row on; all others. PETSc uses them
   Mat matrix_ = nullptr, factor_ = nullptr;  // factor_: of MUMPS, PETSc's own; null without
   Vec given_ = nullptr, solved_ = nullptr;   // on the caller's numbers
   KSP solver_ = nullptr;

@@ -5,6 +5,7 @@
 #include "uplift/dynamics/bulk.h"
 #include "uplift/linear/large.h"
 #include "uplift/linear/memory.h"
+#include "uplift/math/upper_sum.h"
 
 namespace uplift {
 
@@ -31,14 +32,19 @@ BulkCost predict_bulk(const Model& model, const LinearSolver& solver, const Bulk
   unit.setIdentity();
   FactorCost statics;
   {
-    const Sparse step = model.stiffness + model.damping + model.mass;
+    const Term terms[] = {{1, model.stiffness}, {1, model.damping}, {1, model.mass}};
+    const Sparse step = upper_sum(terms);
     cost.step = solver.predict(step, touched);
-    cost.step.working_bytes += bytes_of(step) / 2;
+    cost.step.working_bytes += bytes_of(step);
     if (const auto other = use.statics ? solver_for_statics(solver, {}) : nullptr) statics = other->predict(step, touched);
-    statics.working_bytes += bytes_of(step) / 2;
+    statics.working_bytes += bytes_of(step);
   }
-  cost.mass = solver.predict(model.mass + unit, use.impacts ? touched : std::vector<int>());
-  cost.mass.working_bytes += bytes_of(model.mass);
+  {
+    const Term terms[] = {{1, model.mass}, {1, unit}};
+    const Sparse mass = upper_sum(terms);
+    cost.mass = solver.predict(mass, use.impacts ? touched : std::vector<int>());
+    cost.mass.working_bytes += bytes_of(mass);
+  }
   cost.elsewhere_bytes = std::max({cost.step.most_elsewhere, statics.most_elsewhere, cost.mass.most_elsewhere});
   const double beside = std::max({cost.step.beside, statics.beside, cost.mass.beside});
   const auto rows = static_cast<double>(b.rows()), n = static_cast<double>(model.free());

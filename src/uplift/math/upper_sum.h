@@ -15,4 +15,7 @@ struct Term {
 /// partial sums are never made: nothing is kept beside the result.
 Sparse upper_sum(std::span<const Term> terms);
 
+/// The same of any matrices, whole.
+Sparse whole_sum(std::span<const Term> terms);
+
 }  // namespace uplift

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <utility>
 
+#include "uplift/math/upper_sum.h"
 #include "uplift/model/builder.h"
 #include "uplift/model/damping.h"
 
@@ -19,11 +20,17 @@ Vector translation(Space space, const Vec3& direction, Index unknowns) {
 }  // namespace
 
 void ModelBuilder::assemble(Model& model) const {
-  model.stiffness = sum(&Local::stiffness).reduced(model.expansion);
-  model.mass = sum(&Local::mass).reduced(model.expansion);
-  model.damping = sum(&Local::damping).reduced(model.expansion);
-  if (damping_.alpha != 0) model.damping += damping_.alpha * model.mass;
-  if (damping_.beta != 0) model.damping += damping_.beta * model.stiffness;
+  // exchanged: an assignment of a sparse matrix is a copy
+  sum(&Local::stiffness).reduced(model.expansion).swap(model.stiffness);
+  sum(&Local::mass).reduced(model.expansion).swap(model.mass);
+  Sparse own = sum(&Local::damping).reduced(model.expansion);
+  std::vector<Term> terms{{1, own}};
+  if (damping_.alpha != 0) terms.push_back({damping_.alpha, model.mass});
+  if (damping_.beta != 0) terms.push_back({damping_.beta, model.stiffness});
+  if (terms.size() == 1)
+    own.swap(model.damping);
+  else
+    whole_sum(terms).swap(model.damping);
 }
 
 void ModelBuilder::make_drives(Model& model, const Matrix& motion_shapes) const {

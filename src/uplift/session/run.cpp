@@ -37,7 +37,7 @@ class CompanionRuns {
     Control control = control_;
     if (silent) control.watch = {};
     for (const RunSpec& spec : specs_) {
-      built_.push_back(build_run(loaded_, spec));
+      append_run(loaded_, spec, built_);
       runs_.push_back(run_built(loaded_, built_.back(), spec.label, control, false, nullptr));
       free_matrices(built_.back());
     }
@@ -61,7 +61,7 @@ Results run_case(const LoadedCase& loaded, const Control& control) {
     if (control.is_stopped() && !results.runs.empty()) break;
     const bool first = results.runs.empty();
     results.specs.push_back(spec);
-    results.built.push_back(build_run(loaded, spec));
+    append_run(loaded, spec, results.built);
     if (first) companions.begin(results.built.front());
     if (first) results.warnings = warnings(loaded.read, spec, results.built.front());
     if (first) add_statement(loaded, results.warnings);

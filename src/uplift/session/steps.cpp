@@ -2,6 +2,8 @@
 
 #include "uplift/base/text.h"
 #include "uplift/io/fields/run.h"
+#include "uplift/linear/memory.h"
+#include "uplift/model/model_matrices.h"
 #include "uplift/run/run_state.h"
 #include "uplift/session/checkpoint.h"
 #include "uplift/session/history_file.h"
@@ -46,6 +48,15 @@ BuiltCase build_run(const LoadedCase& loaded, const RunSpec& spec) {
   return built;
 }
 
+void append_run(const LoadedCase& loaded, const RunSpec& spec, std::deque<BuiltCase>& to) {
+  BuiltCase built = build_run(loaded, spec);
+  ModelMatrices matrices;
+  matrices.swap(built.model);
+  to.push_back(std::move(built));
+  matrices.swap(to.back().model);
+  give_back_free_memory();  // what assembling a large model leaves is a part of its matrices, and their solver comes on top
+}
+
 RunResult run_built(const LoadedCase& loaded, BuiltCase& built, const std::string& label, const Control& control, bool first,
                     std::vector<std::string>* field_lists, const std::string& histories) {
   Watch watch;
@@ -87,8 +98,7 @@ void add_statement(const LoadedCase& loaded, std::vector<std::string>& warnings)
 }
 
 void free_matrices(BuiltCase& built) {
-  Model& model = built.model;
-  for (Sparse* matrix : {&model.stiffness, &model.mass, &model.damping}) Sparse().swap(*matrix);  // an assignment would keep the memory
+  ModelMatrices().swap(built.model);  // an assignment would keep the memory
   built.plan.rest.reset();
 }
 

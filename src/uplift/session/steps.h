@@ -1,4 +1,5 @@
 #pragma once
+#include <deque>
 #include <memory>
 
 #include "uplift/session/session.h"
@@ -12,6 +13,8 @@ std::shared_ptr<const LoadedCase> case_of(const LoadedCase& loaded, const RunSpe
 /// Builds one run of its own case (case_of) and connects the caller's laws. Throws InputError, also for a law that the caller does not
 /// have.
 BuiltCase build_run(const LoadedCase& loaded, const RunSpec& spec);
+/// The same behind others.
+void append_run(const LoadedCase& loaded, const RunSpec& spec, std::deque<BuiltCase>& to);
 /// Runs it, observed by the caller where it is the first one, and writes its fields where the case asks for them and there is a folder.
 /// With a reduced model the model of `built` is put into its coordinates. `histories`: file of the folder to which its rows are written
 /// while it runs; empty: none.

@@ -33,7 +33,7 @@ Results trust_case(const LoadedCase& loaded, const Control& control, const Compu
   for (const RunSpec& spec : runs_of_case(loaded.read)) {
     const bool first = results.runs.empty();
     results.specs.push_back(spec);
-    results.built.push_back(build_run(loaded, spec));
+    append_run(loaded, spec, results.built);
     if (first) refuse_external(results.built.front());
     if (first) results.warnings = warnings(loaded.read, spec, results.built.front());
     results.runs.push_back(run_built(loaded, results.built.back(), spec.label, control, first, nullptr));

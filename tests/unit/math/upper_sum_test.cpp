@@ -2,7 +2,11 @@
 
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <random>
+#include <set>
+#include <utility>
+#include <vector>
 
 namespace uplift {
 namespace {
@@ -49,6 +53,29 @@ TEST(UpperSum, KeepsEmptyColumns) {
   const Sparse empty(4, 4);
   const Term terms[] = {{2, empty}, {1, empty}};
   EXPECT_EQ(upper_sum(terms).nonZeros(), 0);
+}
+
+TEST(WholeSum, HasAllPlacesOfMatricesThatAreNotSymmetric) {
+  constexpr int n = 25;
+  std::mt19937 random(7);
+  std::uniform_int_distribution<int> place(0, n - 1);
+  std::uniform_real_distribution<double> value(-1, 1);
+  std::vector<Sparse> matrices(2, Sparse(n, n));
+  std::set<std::pair<Index, Index>> places;  // column, row
+  for (Sparse& matrix : matrices) {
+    std::vector<Triplet> entries;
+    for (int k = 0; k < 90; ++k) entries.emplace_back(place(random), place(random), value(random));
+    matrix.setFromTriplets(entries.begin(), entries.end());
+    for (const Triplet& entry : entries) places.emplace(entry.col(), entry.row());
+  }
+  const Term terms[] = {{0.3, matrices[0]}, {2e-3, matrices[1]}};
+  const Sparse sum = whole_sum(terms);
+  const Matrix exact = 0.3 * Matrix(matrices[0]) + 2e-3 * Matrix(matrices[1]);
+  EXPECT_LE((Matrix(sum) - exact).cwiseAbs().maxCoeff(), 1e-15);
+  std::vector<std::pair<Index, Index>> in_order;
+  for (int j = 0; j < n; ++j)
+    for (Sparse::InnerIterator entry(sum, j); entry; ++entry) in_order.emplace_back(j, entry.row());
+  EXPECT_TRUE(std::ranges::equal(in_order, places));
 }
 
 }  // namespace
