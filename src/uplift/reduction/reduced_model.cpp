@@ -29,12 +29,12 @@ void list_parts(Archive& archive, T& c) {
 
 template <class Archive, SameAs<ReducedModel> T>
 void list_parts(Archive& archive, T& r) {
-  archive(r.version, r.matrices, r.frequency, r.energy_frequency, r.transfer_error, r.rigid, r.vectors, r.controls);
+  archive(r.version, r.matrices, r.frequency, r.energy_frequency, r.transfer_error, r.rigid, r.vectors, r.loads, r.controls);
 }
 
 namespace {
 
-constexpr std::string_view magic = "uplift reduced model 2\n";
+constexpr std::string_view magic = "uplift reduced model 3\n";
 
 void add(const Sparse& matrix, std::string& bytes) {
   const auto put = [&](const auto& value) { bytes.append(reinterpret_cast<const char*>(&value), sizeof value); };
@@ -49,6 +49,18 @@ std::string hash(const Sparse& matrix) {
   add(matrix, bytes);
   return sha256(bytes);
 }
+
+/// What of a shape lies outside an orthonormal basis; the second pass takes the round-off of the first.
+Vector outside(const Matrix& basis, Vector shape) {
+  for (int pass = 0; pass < 2 && basis.cols() > 0; ++pass) shape -= basis * (basis.transpose() * shape);
+  return shape;
+}
+
+bool changes(const TimeLoad& load) {
+  return !load.constant && !load.shape.isZero(0);
+}
+
+constexpr double least_outside = 1e-9;  // of a shape: less is round-off
 
 }  // namespace
 
@@ -81,6 +93,24 @@ std::string matrices_hash(const Model& model) {
   std::string all = hash(model.stiffness) + hash(model.mass) + hash(model.damping) + hash(model.reduction);
   for (const Interface& interface : model.interfaces) all += hash(interface.b);
   return sha256(all);
+}
+
+Matrix orthonormal_loads(const Model& model) {
+  Matrix loads(model.stiffness.rows(), 0);
+  for (const TimeLoad& load : model.time_loads) {
+    if (!changes(load)) continue;
+    const Vector rest = outside(loads, load.shape);
+    if (rest.norm() <= least_outside * load.shape.norm()) continue;
+    loads.conservativeResize(Eigen::NoChange, loads.cols() + 1);
+    loads.rightCols(1) = rest.normalized();
+  }
+  return loads;
+}
+
+std::string load_outside(const Model& model, const Matrix& loads) {
+  for (const TimeLoad& load : model.time_loads)
+    if (changes(load) && outside(loads, load.shape).norm() > least_outside * load.shape.norm()) return load.name;
+  return {};
 }
 
 std::string write_reduced_model(const ReducedModel& reduced) {

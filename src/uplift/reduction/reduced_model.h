@@ -33,13 +33,19 @@ struct ReducedModel {
   double transfer_error = 0;
   int rigid = 0;
   Matrix vectors;  // free unknowns x coordinates
+  Matrix loads;    // orthonormal_loads of the model that it was made of
   std::optional<ControlErrors> controls;
   /// Size, transfer error and errors of the control runs in sentences; `file` names it.
   std::string statement(const std::string& file) const;
 };
 
-/// SHA-256 of what a basis belongs to: stiffness, mass, damping, rows of the interfaces, constraints, patterns of the loads.
+/// SHA-256 of what a basis belongs to: stiffness, mass, damping, rows of the interfaces, constraints.
 std::string matrices_hash(const Model& model);
+
+/// What the shapes of the loads that change with time span, free unknowns x directions: a basis was made for these and represents others badly.
+Matrix orthonormal_loads(const Model& model);
+/// Name of the first load that changes with time and whose shape lies outside that of `loads`; empty where there is none.
+std::string load_outside(const Model& model, const Matrix& loads);
 
 std::string write_reduced_model(const ReducedModel& reduced);
 /// Bytes that are cut off or changed are refused: then `why` says so.

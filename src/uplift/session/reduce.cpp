@@ -186,6 +186,7 @@ std::optional<ReducedModel> reduce_case(const LoadedCase& loaded, const ReduceOp
     if (!basis.why.empty()) throw InputError(where, "", "a structure with a reduced model", basis.why);
     reduced->version = UPLIFT_VERSION;
     reduced->matrices = matrices_hash(built.model);
+    reduced->loads = orthonormal_loads(built.model);
     reduced->frequency = options.frequency;
     reduced->energy_frequency = basis.energy_frequency;
     reduced->transfer_error = basis.transfer_error;
@@ -214,6 +215,9 @@ void refuse_reduced(const ReducedModel& reduced, const Where& where, const Built
   if (matrices_hash(built.model) != reduced.matrices)
     throw InputError(where, key, "the reduced model of this structure",
                      "that of another one: its stiffness, mass, damping, absorbing faces or mesh have changed since `uplift reduce`");
+  if (const std::string load = load_outside(built.model, reduced.loads); !load.empty())
+    throw InputError(where, key, "a reduced model that was made with all loads of the case; only their size and course in time may change",
+                     "one that does not represent the answer to the load " + in_quotes(load) + ": make it anew with `uplift reduce`");
 }
 
 std::optional<RunState> begin_reduced(const ReducedModel& reduced, const Where& where, BuiltCase& built, const Watch& watch,

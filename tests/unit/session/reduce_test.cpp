@@ -59,6 +59,7 @@ ReducedModel random_basis(const Model& model, Index size, unsigned seed) {
   std::normal_distribution<double> normal;
   ReducedModel reduced;
   reduced.matrices = matrices_hash(model);
+  reduced.loads = orthonormal_loads(model);
   reduced.energy_frequency = w;
   reduced.vectors.resize(model.free(), 0);
   while (reduced.vectors.cols() < size) {
@@ -163,6 +164,17 @@ TEST(ReducedRun, IsRefusedForAnotherStructureAndForOneThatChanges) {
                                  {"ratio = 0.02", "ratio = 0.021"},
                                  {"width = 4", "width = 4.1"}})
     EXPECT_NE(refusal(with(from, to), reduced).find("have changed since `uplift reduce`"), std::string::npos) << to;
+  // Other functions and sizes of the loads, even in another direction that they span, but no load that the basis was not made for.
+  const std::string push = "[[load]]\nname = \"push\"\nnode = \"n2\"\n", shaken = push + "function = \"shake\"\nforce = ";
+  EXPECT_EQ(refusal(with("amplitude = 6", "amplitude = -60"), reduced), "");
+  EXPECT_EQ(refusal(with("[damping]", push + "force = [0, 1e3]\n[damping]"), reduced), "");  // constant: part of the static state
+  EXPECT_NE(refusal(with("[damping]", shaken + "[1e3, 0]\n[damping]"), reduced)
+                .find("found one that does not represent the answer to the load \"push\""),
+            std::string::npos);
+  const ReducedModel both = random_basis(built_of(loaded(with("[damping]", shaken + "[1e3, 0]\n[damping]"))).model, 4, 1);
+  EXPECT_EQ(refusal(with("[damping]", shaken + "[-7, 0]\n[damping]"), both), "");
+  EXPECT_EQ(refusal(given, both), "");
+  EXPECT_NE(refusal(with("[damping]", shaken + "[0, 1e3]\n[damping]"), both), "");
   EXPECT_NE(refusal(with("type = \"dynamic\"", "type = \"dynamic\"\np_delta = true"), reduced).find("p_delta"), std::string::npos);
 }
 
@@ -311,6 +323,7 @@ TEST(ReducedModelFile, IsReadAsWrittenAndRefusedWithAnyBitFlippedOrCutAnywhere) 
   ReducedModel written;
   written.version = "1", written.matrices = "ab", written.frequency = 25, written.energy_frequency = w, written.transfer_error = 1e-3;
   written.vectors = Matrix::Random(5, 3);
+  written.loads = Matrix::Random(5, 2);
   written.controls.emplace();
   written.controls->runs = 59, written.controls->opening = 0.01, written.controls->slip = 0.03;
   const std::string bytes = write_reduced_model(written);
@@ -318,6 +331,7 @@ TEST(ReducedModelFile, IsReadAsWrittenAndRefusedWithAnyBitFlippedOrCutAnywhere) 
   const std::optional<ReducedModel> read = read_reduced_model(bytes, why);
   ASSERT_TRUE(read) << why;
   EXPECT_TRUE(read->vectors == written.vectors);
+  EXPECT_TRUE(read->loads == written.loads);
   EXPECT_EQ(read->matrices, "ab");
   ASSERT_TRUE(read->controls);
   EXPECT_EQ(read->controls->opening, 0.01);
