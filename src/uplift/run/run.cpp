@@ -320,7 +320,7 @@ void Runner::add_initial_state() {
 }
 
 ForceStage Runner::force_stage(const Stage& stage) const {
-  return {model_, stage.p_delta && run_.second_order ? &*run_.second_order : nullptr, run_.held.size() > 0 ? &run_.held : nullptr};
+  return {model_, second_order_of(stage), run_.held.size() > 0 ? &run_.held : nullptr};
 }
 
 /// Tells the observer, if there is one, of the present state. Its time is not that of the run.

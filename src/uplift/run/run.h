@@ -31,7 +31,7 @@ struct Stage {
   double step = 0;      // s
   Scheme scheme;
   bool path_average = true;  // traction laws; average acceleration only, filtered or not
-  bool p_delta = false;      // constant geometric stiffness of the preceding static state
+  bool p_delta = false;      // constant geometric stiffness of the preceding static state; of a static stage, at the end of its load steps
   int halvings = 8;          // a step that fails is halved at most so often
 };
 

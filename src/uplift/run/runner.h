@@ -36,7 +36,12 @@ class Runner {
   bool solve(const Stage& stage, const Sparse* geometric, const std::vector<TimeLoad>* second_order,
              const std::function<bool(const StaticProgress&)>& after_step);
   Energies static_energies(const Model& resting, const Energies& before, const StaticProgress& progress) const;
-  bool second_order();
+  bool second_order(const std::function<bool(const StaticProgress&)>& after_step = {});
+  bool solve_second_order(const Stage& stage, const std::function<bool(const StaticProgress&)>& after_step);
+  bool stand_in_second_order(const Stage& stage, const Energies& before, Energies& energies);
+  const SecondOrder* second_order_of(const Stage& stage) const {
+    return stage.p_delta && run_.second_order ? &*run_.second_order : nullptr;
+  }
   void use_second_order();
   std::vector<TimeLoad> second_order_loads(const Model& model) const;
   State carried() const;

@@ -2,6 +2,8 @@
 
 #include <fmt/format.h>
 
+#include <utility>
+
 #include "uplift/dynamics/plastic_bulk.h"
 #include "uplift/model/geometric.h"
 #include "uplift/model/reduced.h"
@@ -26,7 +28,8 @@ bool Runner::statics(const Stage& stage) {
   const std::vector<int> rotations = rotations_on_interfaces(resting, rest_ != nullptr ? stack_interfaces(*rest_) : b_);
   const Energies before = run_.ledger ? run_.ledger->energies : run_.static_energies;
   Energies energies = before;
-  Recorder recorder(resting, plan_, run_.state, energies, nullptr, views_, {resting}, stage.steps, 0, run_.load_steps);
+  Recorder recorder(resting, plan_, run_.state, energies, nullptr, views_, {resting, second_order_of(stage)}, stage.steps, 0,
+                    run_.load_steps);
   const auto record = [&](const StaticProgress& progress) {
     energies = static_energies(resting, before, progress);
     viewer_.look(run_.state, views_);
@@ -36,14 +39,17 @@ bool Runner::statics(const Stage& stage) {
     run_.unloaded_energy = static_energies(resting, before, {}).sum();
     record({});
   }
-  const bool solved = solve(stage, nullptr, nullptr, [&](const StaticProgress& progress) {
+  const auto after_step = [&](const StaticProgress& progress) {
     record(progress);
     static_share_ = progress.share;
     find_farthest();
     return moves_little(resting, rotations);
-  });
-  static_share_.reset();
+  };
+  const bool begins_second_order = stage.p_delta && geometric_ == nullptr;
+  bool solved = stage.p_delta && geometric_ != nullptr ? solve_second_order(stage, after_step) : solve(stage, nullptr, nullptr, after_step);
   recorder.finish();
+  if (solved && begins_second_order) solved = stand_in_second_order(stage, before, energies) && moves_little(resting, rotations);
+  static_share_.reset();
   ++run_.static_stages;
   run_.static_energies = energies;
   if (run_.ledger) run_.result.final_energy = run_.ledger->energies = energies;
@@ -102,7 +108,7 @@ void Runner::note_rest() {
 /// What the verdict calls left is then measured from the unloaded structure.
 void Runner::stand() {
   {
-    const ForceStage resting{rest_ != nullptr ? *rest_ : model_};
+    const ForceStage resting{rest_ != nullptr ? *rest_ : model_, second_order_of(plan_.stages.back())};
     const Vector still = Vector::Zero(resting.model.free());
     EquilibriumCheck equilibrium(resting);
     equilibrium.note(StepBalance::at_rest(run_.state, still));
@@ -115,7 +121,8 @@ void Runner::stand() {
   note_views();
   sum_up(0);
   for (const InterfaceView& view : views_) run_.result.steps.rest.push_back(view.resultant);
-  Recorder recorder(model_, plan_, run_.state, run_.result.final_energy, nullptr, views_, {model_}, 0, 0, run_.result);
+  Recorder recorder(model_, plan_, run_.state, run_.result.final_energy, nullptr, views_, {model_, second_order_of(plan_.stages.back())}, 0,
+                    0, run_.result);
   recorder.record(true);
   recorder.finish();
   run_.result.table = std::move(run_.load_steps.table);
@@ -123,7 +130,7 @@ void Runner::stand() {
 }
 
 /// The geometric stiffness of the present static state, and equilibrium with it.
-bool Runner::second_order() {
+bool Runner::second_order(const std::function<bool(const StaticProgress&)>& after_step) {
   const Model& resting = rest_ != nullptr ? *rest_ : model_;
   run_.second_order = uplift::second_order(resting, run_.state);
   use_second_order();
@@ -138,10 +145,36 @@ bool Runner::second_order() {
   Stage again;
   again.type = Stage::Type::statics;
   again.steps = 1;
-  if (rest_ == nullptr) return solve(again, geometric_.get(), &second_order_loads_, {});
-  const Sparse geometric = resting.reduction.transpose() * run_.second_order->stiffness * resting.reduction;
-  const std::vector<TimeLoad> time_loads = second_order_loads(resting);
-  return solve(again, &geometric, &time_loads, {});
+  return solve_second_order(again, after_step);
+}
+
+/// Solves a static stage with the geometric stiffness.
+bool Runner::solve_second_order(const Stage& stage, const std::function<bool(const StaticProgress&)>& after_step) {
+  if (rest_ == nullptr) return solve(stage, geometric_.get(), &second_order_loads_, after_step);
+  const Sparse geometric = rest_->reduction.transpose() * run_.second_order->stiffness * rest_->reduction;
+  const std::vector<TimeLoad> time_loads = second_order_loads(*rest_);
+  return solve(stage, &geometric, &time_loads, after_step);
+}
+
+/// After the load steps of first order: the equilibrium of second order under their loads, with the axial forces that they have led to. One
+/// more row of the table of load steps. The external work is then what has been done to the structure on a slow way between both, that of
+/// the loads with the motions of second order among it.
+bool Runner::stand_in_second_order(const Stage& stage, const Energies& before, Energies& energies) {
+  const Model& resting = rest_ != nullptr ? *rest_ : model_;
+  StaticProgress all{1, energies.external - before.external, energies.plastic - before.plastic, energies.friction - before.friction};
+  const auto add = [&](const StaticProgress& again) {
+    all.work += again.work, all.dissipated += again.dissipated, all.friction += again.friction;
+    return true;
+  };
+  if (!second_order(add)) return false;
+  energies = static_energies(resting, before, all);
+  energies.external += std::exchange(energies.residual, 0);
+  viewer_.look(run_.state, views_);
+  Recorder recorder(resting, plan_, run_.state, energies, nullptr, views_, {resting, second_order_of(stage)}, 1, 0, run_.load_steps);
+  recorder.record(true, run_.static_stages + 1);
+  recorder.finish();
+  find_farthest();
+  return true;
 }
 
 /// What follows from the second order for the free unknowns of the dynamic stages.

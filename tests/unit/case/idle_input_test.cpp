@@ -55,9 +55,7 @@ TEST(IdleInput, LoadsWithAFunctionInStaticStagesAlone) {
 
 TEST(IdleInput, SecondOrderWhereNothingMakesIt) {
   const std::string second_order = "p_delta = true\n";
-  EXPECT_TRUE(
-      warns(footing + weight + statics + second_order, "case.toml:17: p_delta has no effect here: static stages are of first order"))
-      << warnings_of(footing + weight + statics + second_order);
+  EXPECT_FALSE(warns(footing + weight + statics + second_order, "p_delta has no effect"));
   EXPECT_TRUE(warns(footing + weight + dynamics + second_order, "p_delta has no effect here: no static stage comes before"));
   EXPECT_FALSE(warns(footing + weight + statics + dynamics + second_order, "p_delta has no effect"));
 }

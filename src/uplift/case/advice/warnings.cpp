@@ -83,16 +83,15 @@ void warn_idle_functions(const Case& read, const BuiltCase& built, std::vector<s
                       motion.name));
 }
 
-/// The geometric stiffness acts in dynamic stages, with the forces of the static stages before them.
+/// The geometric stiffness takes the forces of a static stage.
 void warn_p_delta(const Case& read, std::vector<std::string>& said) {
   bool stood = false;
   for (const Values& stage : read.values.tables("stage")) {
     const bool rests = stage.text("type") == "static";
-    if (stage.flag("p_delta") && (rests || !stood))
-      said.push_back(fmt::format("{}:{}: p_delta has no effect here: {}", stage.where("p_delta").file, stage.where("p_delta").line,
-                                 rests ? "static stages are of first order; state it in the dynamic stages, which begin with the "
-                                         "equilibrium of second order"
-                                       : "no static stage comes before, whose forces make the geometric stiffness"));
+    if (stage.flag("p_delta") && !rests && !stood)
+      said.push_back(
+          fmt::format("{}:{}: p_delta has no effect here: no static stage comes before, whose forces make the geometric stiffness",
+                      stage.where("p_delta").file, stage.where("p_delta").line));
     stood = stood || rests;
   }
 }

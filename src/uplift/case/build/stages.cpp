@@ -27,8 +27,8 @@ Stage stage_of(const Values& table, const RunSpec& spec) {
   stage.type = table.text("type") == "static" ? Stage::Type::statics : Stage::Type::dynamics;
   stage.steps = table.integer("steps");
   stage.halvings = table.integer("halvings");
-  if (stage.type == Stage::Type::statics) return stage;
   stage.p_delta = table.flag("p_delta");
+  if (stage.type == Stage::Type::statics) return stage;
   for (const char* key : {"duration", "step"})
     if (!table.has(key)) fail(table, "", fmt::format("{} of a dynamic stage", key), "none");
   stage.duration = spec.duration.value_or(table.number("duration"));
@@ -50,12 +50,23 @@ Stage stage_of(const Values& table, const RunSpec& spec) {
   return stage;
 }
 
+/// A static stage of second order leaves an equilibrium of second order.
+void check_second_order(const std::vector<Values>& tables, const std::vector<Stage>& stages) {
+  bool stands = false;
+  for (std::size_t k = 0; k < stages.size(); ++k) {
+    if (stands && !stages[k].p_delta)
+      fail(tables[k], "p_delta", "p_delta = true, as in the static stage before it, whose equilibrium is of second order", "false");
+    stands = stands || (stages[k].p_delta && stages[k].type == Stage::Type::statics);
+  }
+}
+
 }  // namespace
 
 std::vector<Stage> stages_of(const Case& read, const RunSpec& spec) {
   std::vector<Stage> stages;
   for (const Values& table : read.values.tables("stage")) stages.push_back(stage_of(table, spec));
   if (stages.empty()) fail(read.values, "", "at least one [[stage]]", "none");
+  check_second_order(read.values.tables("stage"), stages);
   return stages;
 }
 

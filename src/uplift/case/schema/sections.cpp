@@ -54,24 +54,28 @@ const Section& damping_case_section() {
 }
 
 const Section& stage_section() {
-  static const Section s{"stage", "a stage of the analysis; displacements and interface states are handed over to the next one",
-                         Fields{choice("type", {"static", "dynamic"},
-                                       "static: weight, constant loads and prescribed motions, in load steps; dynamic: everything"),
-                                integer("steps",
-                                        "static: number of equal load steps, each of which is recorded (histories.csv where all stages are "
-                                        "static, else load_steps.csv)")
-                                    .between(1, 1000000)
-                                    .standard(10.0),
-                                number("duration", "s", "dynamic: duration").positive().optional(),
-                                number("step", "s", "dynamic: time step").positive().optional(),
-                                part("scheme", schemes, "dynamic: time integration").standard("average_acceleration"),
-                                choice("traction", {"path", "end"},
-                                       "traction laws: path-averaged traction (closes the energy balance; average_acceleration only, other "
-                                       "schemes take \"end\"), or "
-                                       "that at the end of the step")
-                                    .standard("path"),
-                                flag("p_delta", "dynamic: add geometric stiffness of the preceding static state").standard(false),
-                                integer("halvings", "a step that fails is halved at most so often").between(0, 30).standard(8.0)}};
+  static const Section s{
+      "stage", "a stage of the analysis; displacements and interface states are handed over to the next one",
+      Fields{choice("type", {"static", "dynamic"},
+                    "static: weight, constant loads and prescribed motions, in load steps; dynamic: everything"),
+             integer("steps",
+                     "static: number of equal load steps, each of which is recorded (histories.csv where all stages are "
+                     "static, else load_steps.csv)")
+                 .between(1, 1000000)
+                 .standard(10.0),
+             number("duration", "s", "dynamic: duration").positive().optional(),
+             number("step", "s", "dynamic: time step").positive().optional(),
+             part("scheme", schemes, "dynamic: time integration").standard("average_acceleration"),
+             choice("traction", {"path", "end"},
+                    "traction laws: path-averaged traction (closes the energy balance; average_acceleration only, other "
+                    "schemes take \"end\"), or "
+                    "that at the end of the step")
+                 .standard("path"),
+             flag("p_delta",
+                  "second order: geometric stiffness of the preceding static state, a static stage's own at the end of its "
+                  "load steps; it then ends in the equilibrium of second order, one more row of the load steps")
+                 .standard(false),
+             integer("halvings", "a step that fails is halved at most so often").between(0, 30).standard(8.0)}};
   return s;
 }
 
