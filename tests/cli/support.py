@@ -211,4 +211,4 @@ def main():
     unittest.main(module="__main__", verbosity=2)
 
 
-__all__ = ["BASE", "program", "CliTest", "json", "line_of", "main", "pathlib", "re", "report_of", "schema_of", "subprocess", "os", "violations", "shaken"]
+__all__ = ["BASE", "program", "CliTest", "json", "line_of", "main", "pathlib", "re", "report_of", "schema_of", "subprocess", "os", "violations", "shaken", "take_program"]
