@@ -42,7 +42,8 @@ struct ReducedModel {
 /// SHA-256 of what a basis belongs to: stiffness, mass, damping, rows of the interfaces, constraints.
 std::string matrices_hash(const Model& model);
 
-/// What the shapes of the loads that change with time span, free unknowns x directions: a basis was made for these and represents others badly.
+/// What the shapes of the loads that change with time span, free unknowns x directions: a basis was made for these and represents others
+/// badly.
 Matrix orthonormal_loads(const Model& model);
 /// Name of the first load that changes with time and whose shape lies outside that of `loads`; empty where there is none.
 std::string load_outside(const Model& model, const Matrix& loads);
