@@ -234,7 +234,7 @@ void warn_floors(const RunSpec& spec, const BuiltCase& built, std::vector<std::s
   for (const Stage& each : built.plan.stages) duration += each.type == Stage::Type::dynamics ? each.duration : 0;
   if (lowest * duration < 1)
     said.push_back(
-        fmt::format("floor spectra down to {:.3g} Hz of a run of {}: an oscillator below {:.3g} Hz has not swung once at its end, "
+        fmt::format("floor spectra down to {:.3g} Hz of a run of {}: an oscillator below {:.3g} Hz has not completed a cycle at its end, "
                     "and its largest response may follow later",
                     lowest, format_quantity(duration, "s"), 1 / duration));
 }
