@@ -192,7 +192,7 @@ void SolvedResponse::improve(Vector& free_opening, const Vector& rest) {
 
 Outcome SolvedResponse::solve(const Vector& right, const Vector& opening, const ContactMethod& method, MethodWork& work,
                               InterfaceProblem& problem, InterfaceSolution& solution, Vector& increment) {
-  constexpr double tolerance = 1e-10, least = 1e-12, round_off = 1e-14;
+  constexpr double tolerance = 1e-10, least = 1e-12, round_off = 1e-14, of_motion = 1e-15;
   constexpr int most_tries = 60;
   const ContactModel& model = *problem.model;
   load_ = right;
@@ -215,7 +215,8 @@ Outcome SolvedResponse::solve(const Vector& right, const Vector& opening, const 
     if (!rest.allFinite()) break;
     const double pressed = largest(problem.free_opening - solution.opening);      // what the forces close
     const double moved = std::min(pressed, largest(solution.opening - opening));  // in this step; small in a light motion
-    if (largest(rest) <= std::max(tolerance * moved, least * pressed) + round_off * largest(solution.opening)) return all;
+    const double lost = round_off * largest(solution.opening) + of_motion * largest(b_.cwiseAbs() * increment.cwiseAbs());
+    if (largest(rest) <= std::max(tolerance * moved, least * pressed) + lost) return all;
     improve(problem.free_opening, rest);
   }
   forget();

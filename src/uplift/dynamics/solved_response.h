@@ -15,7 +15,7 @@ namespace uplift {
 /// *Correction.* A method solves the interface problem with F~ = C~ C~^T for a free opening c, which gives p and the opening o. The whole
 /// bulk under p opens by g; while g is not o, the next free opening is c + (g - o), improved by Anderson's rule from the last ones. It ends
 /// with g = o within 1e-10 of what o changes by in the step (of what p closes, where that is less; but not within less than 1e-12 of it),
-/// whatever F~ is.
+/// whatever F~ is. Openings are differences of motions that may be far larger: what their round-off takes is not asked for.
 class SolvedResponse {
  public:
   /// The factor, B and the counts must stay alive.
