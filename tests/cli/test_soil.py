@@ -155,6 +155,14 @@ class MeshFile(CliTest):
         self.assertNotIn("torn", self.uplift("check", self.run_block().name).stdout)
         self.write(gmsh(4, 8, 4, torn=2), "soil.msh")
         self.assertIn("the mesh is torn: cells lie side by side and do not share the nodes between them, at 4 sides", self.uplift("check", "case.toml").stdout)
+        # an interface of the doubled nodes, up to the node that both sides share, is meant; of the two lowest pairs alone it joins one side
+        pairs = '[[interface]]\nname = "crack"\n[interface.line]\nlower = [{lower}]\nupper = [{upper}]\n[interface.law]\ntype = "springs"\nK_n = 1e9\nK_t = 1e9\n'
+        named = lambda *numbers: ", ".join(f'"mesh.{number}"' for number in numbers)
+        for count, said in ((4, None), (2, "at 3 sides")):
+            text = pairs.format(lower=named(*range(46 + count - 1, 45, -1)), upper=named(*range(3 + 5 * (count - 1), 2, -5)))
+            out = self.uplift("check", self.write(BLOCK + text).name).stdout
+            self.assertEqual("torn" in out, said is not None, out)
+            self.assertIn(said or "crack", out)
 
     def test_missing_file(self):
         self.refused(BLOCK, '{file}:3: expected a mesh file (Gmsh .msh or MED), found no file "soil.msh"')

@@ -16,8 +16,9 @@ struct Outer {
   std::vector<int> corners;
 };
 
-std::vector<char> nodes_of_faces(const Mesh& mesh, const std::vector<std::vector<FacePair>>& opened) {
+std::vector<char> nodes_of_interfaces(const Mesh& mesh, const std::vector<std::vector<FacePair>>& opened, std::span<const int> joined) {
   std::vector<char> marked(mesh.nodes.size(), 0);
+  for (const int node : joined) marked[static_cast<std::size_t>(node)] = 1;
   for (const std::vector<FacePair>& faces : opened)
     for (const FacePair& face : faces)
       for (const CellId cell : {face.lower, face.upper})
@@ -59,16 +60,20 @@ bool coincide(const Mesh& mesh, const Outer& a, const Outer& b) {
 
 }  // namespace
 
-std::vector<Vec3> torn_sides(const Mesh& mesh, const std::vector<std::vector<FacePair>>& opened) {
-  const std::vector<char> meant = nodes_of_faces(mesh, opened);
-  const auto is_meant = [&](int node) { return meant[static_cast<std::size_t>(node)] != 0; };
+std::vector<Vec3> torn_sides(const Mesh& mesh, const std::vector<std::vector<FacePair>>& opened, std::span<const int> joined) {
+  const std::vector<char> meant = nodes_of_interfaces(mesh, opened, joined);
+  const auto has = [](const Outer& side, int node) { return std::ranges::find(side.corners, node) != side.corners.end(); };
+  const auto is_joined = [&](const Outer& a, const Outer& b) {  // an interface that ends within the mesh leaves the node at its end single
+    return std::ranges::all_of(a.corners, [&](int node) { return meant[static_cast<std::size_t>(node)] != 0 || has(b, node); });
+  };
+  const auto are_meant = [&](const Outer& a, const Outer& b) {
+    return is_joined(a, b) && is_joined(b, a) && !std::ranges::all_of(a.corners, [&](int node) { return has(b, node); });
+  };
   const std::vector<Outer> outer = outer_sides(mesh);
   std::vector<Vec3> torn;
   for (std::size_t i = 0; i < outer.size(); ++i)
     for (std::size_t k = i + 1; k < outer.size() && outer[k].place - outer[i].place <= tolerance * outer[i].size; ++k)
-      if (coincide(mesh, outer[i], outer[k]) &&
-          !(std::ranges::all_of(outer[i].corners, is_meant) && std::ranges::all_of(outer[k].corners, is_meant)))
-        torn.push_back(outer[i].middle);
+      if (coincide(mesh, outer[i], outer[k]) && !are_meant(outer[i], outer[k])) torn.push_back(outer[i].middle);
   return torn;
 }
 

@@ -52,6 +52,11 @@ TEST(Torn, OpenedSurfaces) {
   faces.push_back({{block, before}, {block, before + 1}});
   EXPECT_EQ(torn_sides(mesh, {}).size(), 2u);
   EXPECT_EQ(torn_sides(mesh, {faces}).size(), 1u);
+  // named pairs of nodes join the other side too: of one pair alone they join none
+  const std::vector<int> two_pairs{left[1], left[2], right[1], right[2]}, one_pair{left[2], right[2]};
+  EXPECT_EQ(torn_sides(mesh, {}, two_pairs).size(), 1u);
+  EXPECT_EQ(torn_sides(mesh, {}, one_pair).size(), 2u);
+  EXPECT_TRUE(torn_sides(mesh, {faces}, two_pairs).empty());
 }
 
 }  // namespace

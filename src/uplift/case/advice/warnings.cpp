@@ -267,15 +267,22 @@ void warn_method(const Case& read, const RunSpec& spec, const BuiltCase& built, 
 
 /// Cells side by side that do not share the nodes between them: the mesh is open there, unseen. Cells that planes cut have copies at their
 /// place.
-void warn_torn(const Case& read, std::vector<std::string>& said) {
+void warn_torn(const Case& read, const BuiltCase& built, std::vector<std::string>& said) {
   if (!read.mesh || std::ranges::any_of(read.mesh->cut, [](const auto& faces) { return !faces.empty(); })) return;
-  const std::vector<Vec3> torn = torn_sides(read.mesh->mesh, read.mesh->open);
+  const Mesh& mesh = read.mesh->mesh;
+  const int first = static_cast<int>(read.values.tables("nodes").size());  // those of the mesh follow the nodes of the case
+  std::vector<int> joined;
+  for (const InterfaceFacts& facts : built.facts)
+    for (const std::vector<int>* side : {&facts.upper, &facts.lower})
+      for (const int node : *side)
+        if (node >= first && node - first < static_cast<int>(mesh.nodes.size())) joined.push_back(node - first);
+  const std::vector<Vec3> torn = torn_sides(mesh, read.mesh->open, joined);
   if (torn.empty()) return;
-  const Vec3& first = torn.front();
+  const Vec3& place = torn.front();
   said.push_back(
       fmt::format("the mesh is torn: cells lie side by side and do not share the nodes between them, at {} {}, as at ({:.6g}, {:.6g}, "
                   "{:.6g}) m; merge the nodes (and give cells side by side the same degree), or make an [[interface]] of it",
-                  torn.size(), torn.size() == 1 ? "side" : "sides", first.x(), first.y(), first.z()));
+                  torn.size(), torn.size() == 1 ? "side" : "sides", place.x(), place.y(), place.z()));
 }
 
 /// Solids hold no rotation: a column that ends at one of their nodes is hinged, which few mean.
@@ -315,7 +322,7 @@ std::vector<std::string> warnings(const Case& read, const RunSpec& spec, const B
   warn_duration(built, said);
   warn_sides(read, said);
   warn_held_faces(read, built, said);
-  warn_torn(read, said);
+  warn_torn(read, built, said);
   warn_hinges(built, said);
   warn_embedded_feet(built, said);
   warn_step(built, said);
