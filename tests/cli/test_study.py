@@ -329,6 +329,11 @@ class Study(StudyTest):
         self.assertFalse(report_of(self.folder / name)["study"]["complete"])
         self.assertEqual(json.loads(self.uplift("study", "report", name, "--json").stdout)["outcomes"]["completed"], 12)
 
+    def test_a_verb_that_is_none(self):
+        for words in (("repotr",), ("repotr", "pier.study")):
+            self.assertIn('found "repotr" (did you mean "report"?)', self.uplift("study", *words, expect=2).stderr)
+        self.assertIn("study is required", self.uplift("study", "report", expect=2).stderr)
+
     def test_plans_are_checked(self):
         for old, new, message in [
             ('type = "ida"', 'type = "idas"', 'did you mean "ida"'),

@@ -62,6 +62,8 @@ struct StudyOptions {
 };
 /// options.file: the folder of the study.
 int study(const Options& options, const StudyOptions& given);
+/// InputError with the nearest verb for one that is none.
+void check_study_verb(const std::string& verb);
 
 /// A command as it was declared, for completion.
 struct Declared {

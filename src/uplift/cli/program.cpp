@@ -103,7 +103,11 @@ void declare_study(CLI::App& app, Choices& given) {
                    "status: how far it is; fit: write study.json and fits.csv; report: write report.html as well; export: write runs.csv "
                    "and curves.csv; tasks: a command line for "
                    "every shard; work: compute one shard; index: make study.db again from the parts")
-      ->required();
+      ->required()
+      ->check([](const std::string& verb) {  // before CLI11 would report that the folder is missing
+        uplift::cli::check_study_verb(verb);
+        return std::string();
+      });
   command->add_option("study", given.options.file, "folder of the study, with plan.toml; of `new` its name")->required();
   command->add_option("-j,--workers", study.workers, "processes at the same time; default: as in the plan, else one for every core")
       ->check(CLI::Range(1, 4096));

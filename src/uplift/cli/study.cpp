@@ -253,9 +253,13 @@ int study(const Options& options, const StudyOptions& given) {
   if (verb == "report") return evaluate(options, true);
   if (verb == "export") return export_tables(options, given.run);
   if (verb == "tasks") return tasks(options, given.count);
-  if (verb == "index") return index(options);
+  return index(options);
+}
+
+void check_study_verb(const std::string& verb) {
   const std::vector<std::string> verbs{"new", "check", "run", "status", "fit", "report", "export", "tasks", "work", "index"};
-  throw InputError({"uplift study", 0}, "", listed(verbs), in_quotes(verb), nearest_name(verb, verbs));
+  if (std::ranges::find(verbs, verb) == verbs.end())
+    throw InputError({"uplift study", 0}, "", listed(verbs), in_quotes(verb), nearest_name(verb, verbs));
 }
 
 }  // namespace uplift::cli
