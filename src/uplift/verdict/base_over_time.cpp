@@ -57,8 +57,7 @@ bool BaseOverTime::carries(std::size_t step) const {
 }
 
 double BaseOverTime::eccentricity(std::size_t step, std::size_t axis) const {
-  const Thrust now = thrust(step);
-  return carries(step) && shape.width[axis] > 0 ? now.first[axis] / (now.force * shape.width[axis]) : nothing;
+  return carries(step) && shape.width[axis] > 0 ? shape.eccentricity(thrust(step), axis) : nothing;
 }
 
 double BaseOverTime::overturning(std::size_t step) const {

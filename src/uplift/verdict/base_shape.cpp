@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
+#include <ranges>
 
 namespace uplift {
 namespace {
@@ -29,6 +30,23 @@ std::vector<Point> convex_hull(std::vector<Point> points, double flat) {
   chain(points.begin(), points.end());
   chain(points.rbegin(), points.rend());
   return hull;
+}
+
+/// Direction of the side of a rectangle that is within 45 degrees of the first axis, of a square turned by 45 degrees the one
+/// counter-clockwise from it; the first axis for other outlines.
+Point side_of_rectangle(const std::vector<Point>& hull) {
+  constexpr double right_angle = 1e-6;  // its cosine at most
+  const auto side = [&hull](std::size_t i) -> Point {
+    const Point &from = hull[i % 4], &to = hull[(i + 1) % 4];
+    const double length = std::hypot(to[0] - from[0], to[1] - from[1]);
+    return {(to[0] - from[0]) / length, (to[1] - from[1]) / length};
+  };
+  if (hull.size() != 4) return {1, 0};
+  for (std::size_t i = 0; i < 4; ++i)
+    if (const Point a = side(i), b = side(i + 1); std::abs(a[0] * b[0] + a[1] * b[1]) > right_angle) return {1, 0};
+  for (std::size_t i = 0; i < 4; ++i)  // one direction of four is within -45 to 45 degrees, the upper end included
+    if (const Point a = side(i); a[0] > 0 && a[1] <= a[0] * (1 + right_angle) && a[1] > -a[0] * (1 - right_angle)) return a;
+  return {1, 0};
 }
 
 }  // namespace
@@ -66,6 +84,19 @@ BaseShape::BaseShape(const Model& model, const Interface& interface, const Inter
     const Point out{(to[1] - from[1]) / length, (from[0] - to[0]) / length};
     edges_.push_back({out, out[0] * from[0] + out[1] * from[1]});
   }
+  first_ = side_of_rectangle(hull);
+  for (std::size_t k = 0; k < 2; ++k) {
+    const auto [least, most] = std::ranges::minmax(points | std::views::transform([&](const Point& point) { return along(point, k); }));
+    width[k] = most - least;
+  }
+}
+
+double BaseShape::along(const std::array<double, 2>& vector, std::size_t axis) const {
+  return axis == 0 ? first_[0] * vector[0] + first_[1] * vector[1] : first_[0] * vector[1] - first_[1] * vector[0];
+}
+
+double BaseShape::eccentricity(const Thrust& thrust, std::size_t axis) const {
+  return along(thrust.first, axis) / (thrust.force * width[axis]);
 }
 
 double BaseShape::overturning_safety(const Thrust& rest, const Thrust& now) const {

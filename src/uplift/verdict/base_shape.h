@@ -18,8 +18,11 @@ Thrust thrust_of(Space space, double axial, double moment_1, double moment_2);
 class BaseShape {
  public:
   BaseShape(const Model& model, const Interface& interface, const InterfaceFacts& facts);
-  /// Extent along t1 and t2 [m]; the second is 0 in the plane.
+  /// Extent along t1 and t2 [m]; the second is 0 in the plane. Of a rectangle that is turned in space along its sides, the first the one
+  /// within 45 degrees of t1.
   std::array<double, 2> width{};
+  /// Place of the thrust over the width, e/B, along the directions of `width`.
+  double eccentricity(const Thrust& thrust, std::size_t axis) const;
   /// Stabilising over driving moment about the toe, the least of all edges (docs/theory, eq 29); infinite when nothing drives.
   double overturning_safety(const Thrust& rest, const Thrust& now) const;
 
@@ -29,6 +32,8 @@ class BaseShape {
     double distance = 0;          // m
   };
   std::vector<Edge> edges_;
+  double along(const std::array<double, 2>& vector, std::size_t axis) const;  // component in the direction of width[axis]
+  std::array<double, 2> first_{1, 0};  // direction of width[0]; the other one is at right angles, counter-clockwise
 };
 
 }  // namespace uplift

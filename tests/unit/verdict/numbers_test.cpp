@@ -1,6 +1,8 @@
 // The verdict's numbers against closed forms: a rigid strip on Winkler springs, rafts in space, sliding, flights.
 #include "uplift/verdict/numbers.h"
 
+#include <fmt/format.h>
+
 #include <cmath>
 
 #include "unit/verdict/verdict_support.h"
@@ -170,7 +172,7 @@ TEST(VerdictNumbersTest, AnEccentricWeightStandsNearerToOneToe) {
   EXPECT_NEAR(number(numbers_of(built, run_of({right(0.5), right(0.25)}, 0.1), nullptr), "min_overturning_safety"), 8, 1e-12);
 }
 
-BuiltCase raft() {
+BuiltCase raft(double azimuth = 0.3) {
   return built_of(R"(title = "raft"
 [nodes]
 base = [0, 0, 0]
@@ -181,7 +183,8 @@ mass = 2e4
 inertias = [5e4, 8e4, 1.2e5]
 [[interface]]
 name = "soil"
-footing = { body = "base", width = 6, length = 4, points = 7, points_across = 5, azimuth = 0.3 }
+footing = { body = "base", width = 6, length = 4, points = 7, points_across = 5, azimuth = )" +
+                  fmt::format("{}", azimuth) + R"( }
 law = { type = "springs", K_n = 5e7, K_t = 2e7, tangential = "coulomb", friction = 0.7 }
 [gravity]
 acceleration = [0, 0, -9.81]
@@ -231,9 +234,26 @@ TEST(VerdictNumbersTest, TwoEccentricitiesInSpace) {
   std::vector<InterfaceView> views;
   InterfaceViewer(built.model, 1e-9, {}).look(state, views);
   const RunResult run = run_of({views.front()}, 0.1);
+  // along the sides of the raft, which is turned by 0.3: at the edge of the middle third e/B is 1/6 in its own axes alone
   const double c = std::cos(0.3), s = std::sin(0.3);
-  EXPECT_NEAR(base_history(built, run, 0, BaseHistory::eccentricity_1)[0], first_x / sum / (6 * c + 4 * s), 1e-12);
-  EXPECT_NEAR(base_history(built, run, 0, BaseHistory::eccentricity_2)[0], first_y / sum / (6 * s + 4 * c), 1e-12);
+  EXPECT_NEAR(base_history(built, run, 0, BaseHistory::eccentricity_1)[0], (c * first_x + s * first_y) / sum / 6, 1e-12);
+  EXPECT_NEAR(base_history(built, run, 0, BaseHistory::eccentricity_2)[0], (c * first_y - s * first_x) / sum / 4, 1e-12);
+}
+
+/// The first side is the one within 45 degrees of the x axis, whichever the file calls the width.
+TEST(VerdictNumbersTest, SidesOfTurnedRafts) {
+  for (const double azimuth : {-0.6, 0.0, 0.3, M_PI / 4, 1.2, M_PI / 2, 3.0}) {
+    const BuiltCase built = raft(azimuth);
+    const double first = std::remainder(azimuth - 1e-9, M_PI / 2) + 1e-9;  // -45 to 45 degrees, the end included
+    const bool is_width = std::abs(std::sin(first - azimuth)) < 0.5;
+    const double one = is_width ? 6 : 4, two = is_width ? 4 : 6, e = 0.4;
+    const auto at = [&](double angle) {  // a unit thrust at the distance e from the middle, in this direction
+      return run_of({view_of({.axial = -1, .moment = e, .moment_1 = -e * std::sin(angle), .moment_2 = e * std::cos(angle)})}, 0.1);
+    };
+    EXPECT_NEAR(base_history(built, at(first), 0, BaseHistory::eccentricity_1)[0], e / one, 1e-12) << azimuth;
+    EXPECT_NEAR(base_history(built, at(first), 0, BaseHistory::eccentricity_2)[0], 0, 1e-12) << azimuth;
+    EXPECT_NEAR(base_history(built, at(first + M_PI / 2), 0, BaseHistory::eccentricity_2)[0], e / two, 1e-12) << azimuth;
+  }
 }
 
 // ---- whole runs ----

@@ -52,11 +52,13 @@ void write_over_time(ResultWriter& out, const BuiltCase* built, const RunResult*
   using enum BaseHistory;
   const bool any = built != nullptr && run != nullptr && run->steps.size() > 0;
   out.when(any).object("over_time", "histories in at most 200 points that keep their peaks", [&] {
-    for (const auto& [name, which, meaning] : {std::tuple{"uplifted_ratio", uplifted_ratio, "share of the area with a gap"},
-                                               {"eccentricity_1", eccentricity_1, "eccentricity over the width along t or t1"},
-                                               {"eccentricity_2", eccentricity_2, "in space: eccentricity over the width along t2"},
-                                               {"overturning_safety", overturning_safety, "safety against overturning, at most 100"},
-                                               {"sliding_safety", sliding_safety, "safety against sliding, at most 100"}}) {
+    for (const auto& [name, which, meaning] :
+         {std::tuple{"uplifted_ratio", uplifted_ratio, "share of the area with a gap"},
+          {"eccentricity_1", eccentricity_1,
+           "eccentricity over the width along t, in space along x (along the side nearest to x of a turned rectangle)"},
+          {"eccentricity_2", eccentricity_2, "in space: the same along y"},
+          {"overturning_safety", overturning_safety, "safety against overturning, at most 100"},
+          {"sliding_safety", sliding_safety, "safety against sliding, at most 100"}}) {
       const std::vector<double> all = any ? base_history(*built, *run, interface, which) : std::vector<double>();
       std::vector<double> time, values;
       for (std::size_t i = 0; i < all.size(); ++i)
