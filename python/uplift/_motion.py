@@ -37,6 +37,11 @@ def motion(
     """
     if (file is None) == (generate is None):
         raise TypeError("motion() takes a file or `generate`, and not both")
+    if file is not None and not isinstance(file, (str, os.PathLike)):
+        raise TypeError(
+            "motion() takes the name of a file; for an array: case.function(name, up.functions.table(times=t, values=a)), "
+            "then case.ground_acceleration([1, 0], function=name)"
+        )
     steps = [{"do": step} for step in process]
     if pga is not None or factor is not None:
         steps.append({"do": {"type": "scale", "pga": pga, "factor": factor}})

@@ -438,6 +438,8 @@ class Laws(unittest.TestCase):
     def test_a_motion_of_another_type_is_refused(self):
         with self.assertRaisesRegex(TypeError, r"a motion is made by uplift.motion\(...\), found str"):
             pier(soil()).run("record.txt")
+        with self.assertRaisesRegex(TypeError, r"for an array: case.function\(name, up.functions.table"):
+            up.motion(np.zeros(10), step=0.01)
 
     def test_a_law_may_keep_and_change_what_it_is_given(self):
         kept = []
