@@ -19,6 +19,12 @@ class New(CliTest):
         results = {run["name"]: run["agreement"]["result"] for run in self.summary("c")["runs"] if run["name"] != "bonded"}
         self.assertEqual(results, {"sdm": "agrees", "springs": "agrees"})
 
+    def test_names_that_lead_nowhere(self):
+        self.assertIn("expected the name of a folder, found an empty one", self.uplift("new", "", expect=2).stderr)
+        self.assertEqual(list(self.folder.iterdir()), [])
+        (self.folder / "empty").mkdir()
+        self.assertIn("error: empty/case.toml: expected a file, found no file of this name", self.uplift("check", "empty", expect=2).stderr)
+
     def test_an_existing_case_is_not_overwritten(self):
         self.write("# mine\n", "tower/case.toml")
         done = self.uplift("new", "tower", expect=2)

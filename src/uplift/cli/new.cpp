@@ -128,6 +128,7 @@ band = 0.02                           # runs agree when their peaks lie within 2
 
 int new_case(const std::string& name) {
   namespace fs = std::filesystem;
+  if (name.empty()) throw InputError({"uplift new", 0}, "", "the name of a folder", "an empty one");
   const fs::path folder(name), file = folder / "case.toml";
   std::error_code error;
   if (fs::exists(file, error)) throw InputError({file.string(), 0}, "", "the name of a new case", "a case that exists already");

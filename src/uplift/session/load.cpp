@@ -50,7 +50,7 @@ LoadedCase checked(Raw raw, const std::string& text, const std::string& file, co
 LoadedCase load_case(const std::string& given, const std::string& command, MeshFiles files) {
   std::string file = given;
   std::error_code error;
-  if (fs::is_directory(file, error) && fs::exists(fs::path(file) / "case.toml", error)) file = (fs::path(file) / "case.toml").string();
+  if (fs::is_directory(file, error)) file = (fs::path(file) / "case.toml").string();
   Raw raw = read_toml_file(file);
   return checked(std::move(raw), read_file(file), file, command, files);
 }
