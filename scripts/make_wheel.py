@@ -98,7 +98,8 @@ def main():
             for path in [*files, info / "RECORD"]:
                 entry = zipfile.ZipInfo(path.relative_to(folder).as_posix(), (1980, 1, 1, 0, 0, 0))
                 entry.compress_type = zipfile.ZIP_DEFLATED
-                entry.external_attr = path.stat().st_mode << 16  # pip keeps what is executable
+                # pip keeps what is executable; the rest of the mode is the umask of whoever builds
+                entry.external_attr = (0o100755 if path.stat().st_mode & 0o100 else 0o100644) << 16
                 archive.writestr(entry, path.read_bytes())
         working.replace(wheel)
     print(wheel)

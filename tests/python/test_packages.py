@@ -77,14 +77,14 @@ class Launcher(Folder):
 
 
 class Wheel(Folder):
-    def make(self, name):
-        made = output(sys.executable, ROOT / "scripts" / "make_wheel.py", self.portable(name), self.folder / f"dist {name}")
+    def make(self, name, umask=0o022):
+        made = output(sys.executable, ROOT / "scripts" / "make_wheel.py", self.portable(name), self.folder / f"dist {name}", umask=umask)
         return pathlib.Path(made.strip())
 
     def test_contents_repetition_and_use(self):
         wheel = self.make("first")
         self.assertRegex(wheel.name, r"^uplift-[0-9.]+-py3-none-manylinux_2_\d+_x86_64\.whl$")
-        self.assertEqual(wheel.read_bytes(), self.make("second").read_bytes())
+        self.assertEqual(wheel.read_bytes(), self.make("second", umask=0o077).read_bytes())
         with zipfile.ZipFile(wheel) as archive:
             self.check_record(archive)
             archive.extractall(self.folder / "site")
