@@ -262,6 +262,29 @@ bool Stepper::kinematics(const Level& level) {
   return std::isfinite(size);
 }
 
+/// The displacement at the end of the step. Forces at its beginning that would create energy are left out, as far as there is a solution
+/// without them.
+bool Stepper::balance_step(Level& level) {
+  for (bool dropped = false;; dropped = true) {
+    right_hand_side(level);
+    if (shift_.size() > 0) right_ -= b_.transpose() * shift_.cwiseProduct(gap_ + b_ * now_.displacement).eval();
+    const Outcome outcome = solve(level);
+    counts_.iterations += outcome.iterations;
+    counts_.cycles += outcome.cycles;
+    if (!outcome.converged && (!dropped || level.step > 0.3 * options_.step)) {  // two halvings first
+      why_ = outcome.why;
+      return false;
+    }
+    if (!outcome.converged) {
+      restore_dropped();
+      increment_ = level.increment, plastic_next_ = level.plastic, solution_ = &level.solution;
+      return true;
+    }
+    if (coulomb_ == nullptr || !drop_creating()) return true;
+    if (!dropped) level.increment = increment_, level.plastic = plastic_next_, level.solution = *solution_;
+  }
+}
+
 bool Stepper::try_step(Level& level) {
   if (!mass_failure_.empty() || !level.why.empty()) {
     why_ = mass_failure_.empty() ? level.why : "the mass matrix: " + mass_failure_;
@@ -270,15 +293,7 @@ bool Stepper::try_step(Level& level) {
   next_.time = now_.time + level.step;
   force_at(next_.time, force_next_);
   if (gap_moves_) move_gap(now_.time, next_.time);
-  right_hand_side(level);
-  if (shift_.size() > 0) right_ -= b_.transpose() * shift_.cwiseProduct(gap_ + b_ * now_.displacement).eval();
-  const Outcome outcome = solve(level);
-  counts_.iterations += outcome.iterations;
-  counts_.cycles += outcome.cycles;
-  if (!outcome.converged) {
-    why_ = outcome.why;
-    return false;
-  }
+  if (!balance_step(level)) return false;
   const InterfaceSolution& solution = *solution_;
   if (shift_.size() > 0) {
     why_ = unheld_motion(*last_, solution, runaway_ratio);
@@ -306,6 +321,8 @@ bool Stepper::try_step(Level& level) {
       }
   } else {
     small::copy(contact_.size(), solution.force.data(), contact_.data());
+    small::copy(contact_.size(), contact_.data(), next_.force.data());
+    friction_step_ = friction_work(last_->model->blocks, now_, next_);
     if (impacts_) apply_impact(level);
     small::copy(contact_.size(), contact_.data(), next_.force.data());
     small::copy(contact_.size(), contact_.data(), next_.mean_force.data());
@@ -330,9 +347,11 @@ bool Stepper::substep(int halving) {
     if (newton_ != nullptr) std::swap(plastic_now_, plastic_next_);
     counts_.deepest = std::max(counts_.deepest, halving);
     last_step_ = now.step;
+    force_before_.resize(0);
     return true;
   }
   impact_loss_ = impact_before;
+  restore_dropped();
   failed_step_ = now.step;
   if (now.hopeless || !mass_failure_.empty() || halving >= options_.halvings) return false;
   if (const long spent = counts_.iterations - iterations_before_; spent > most_iterations_of_a_step) {

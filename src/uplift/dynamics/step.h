@@ -4,6 +4,7 @@
 #include <string>
 #include <vector>
 
+#include "uplift/contact/impact/coulomb.h"
 #include "uplift/contact/impact/impact.h"
 #include "uplift/dynamics/condensed.h"
 #include "uplift/dynamics/energy.h"
@@ -98,6 +99,7 @@ class Stepper {
   Level& level(int halving);
   Level& make_level(int halving);
   bool try_step(Level& level);
+  bool balance_step(Level& level);
   bool substep(int halving);
   /// Its factor of M is large: made when it is first asked for.
   const Accelerator& accelerator() const;
@@ -122,6 +124,11 @@ class Stepper {
   Impact impact_data(const Vector& force) const;
   double contact_work() const;
   void apply_impact(Level& level);
+  bool apply_rule(const Impact& data);
+  bool drop_creating();
+  void restore_dropped();
+  bool closes(const std::vector<Block>& blocks) const;
+  bool impact_of_friction(const Impact& data);
   void separate_impulse(const Impact& data);
   void separate_impulse_of_friction(const Block& block, const Impact& data);
   void hold_initial_acceleration();
@@ -173,6 +180,11 @@ class Stepper {
   std::vector<int> tangents_;
   Energies energies_;
   InterfaceEnergy interface_energy_;
+  // of impacts with friction (step_friction.cpp)
+  std::unique_ptr<CoulombRates> coulomb_;      // null without friction, and with other rules than project_hold
+  Vector rates_, takes_part_;                  // rows
+  Vector force_before_, acceleration_before_;  // of now_, where a step has dropped forces; else empty
+  double friction_step_ = 0;                   // J: work of the friction of constraints in the step
   double impact_loss_ = 0, initial_energy_ = 0, largest_external_ = 0;
   double start_time_ = 0;  // s
   double last_step_ = 0;   // s: of the last part that succeeded; next_ is the state before it

@@ -45,7 +45,7 @@ void Stepper::book_energies(const Level& level) {
   else
     interface_energy_.update(last_->model->blocks, next_.opening, next_.history);
   energies_.stored = interface_energy_.stored;
-  if (!path_) energies_.friction += friction_work(last_->model->blocks, now_, next_);  // of constraints
+  if (!path_) energies_.friction += friction_step_;  // of constraints
   energies_.interface_dissipated = interface_energy_.dissipated + energies_.friction;
   energies_.impact = impact_loss_;
   if (filtered_) advance_filters(level);

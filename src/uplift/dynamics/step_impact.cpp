@@ -19,6 +19,10 @@ void Stepper::prepare_impacts() {
   for (const Interface& interface : model_.interfaces)
     for (int i = 0; i < interface.rows(); ++i) row_area_[row++] = interface.area[i % interface.batch.points];
   if (bulk_.small) dense_b_ = Matrix(b_);
+  const std::vector<Block> blocks = blocks_of(model_, behaviours_).blocks;
+  if (impacts_ && impact_.holds_acceleration() && options_.scheme.average_acceleration() &&
+      std::ranges::any_of(blocks, [](const Block& block) { return block.cone != nullptr && block.cone->friction() > 0; }))
+    coulomb_ = std::make_unique<CoulombRates>(blocks, mass_spread_->factor);
 }
 
 /// The rows that take part in an impact: normal rows of constraints that are pressed (or, where there is no constraint, those of stiff
@@ -97,11 +101,11 @@ void Stepper::apply_impact(Level& level) {
   data.velocity_weight = options_.scheme.gamma * level.step * weight;
   data.acceleration_weight = weight;
   const double before = 0.5 * small::dot(next_.velocity.size(), next_.velocity.data(), momentum_next_.data());
-  impact_.apply(data, next_.velocity, next_.acceleration, impulse_, impact_scratch_);
+  const bool rubbed = apply_rule(data);
   std::swap(data.tangents, tangents_);
   bulk_.mass.multiply(next_.velocity, momentum_next_);
   impact_loss_ += before - 0.5 * small::dot(next_.velocity.size(), next_.velocity.data(), momentum_next_.data());
-  if (impact_.holds_acceleration()) separate_impulse(data);
+  if (impact_.holds_acceleration() && !rubbed) separate_impulse(data);
 }
 
 /// In a step in which a gap closes, the contact force contains the momentum that the impact transfers, over the step: it grows as 1/dt. The

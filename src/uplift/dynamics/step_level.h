@@ -19,6 +19,10 @@ struct Stepper::Level {
   std::shared_ptr<const BulkFactor> tangent;   // the last one of yielding solids, whose analysis serves the next one
   std::unique_ptr<BulkFactor> dynamic_factor;  // of K + 4M/dt^2, for `propagate`
   std::unique_ptr<Spread> dynamic;
+  // with all forces of the beginning, while a solution without some of them is sought (step_friction.cpp)
+  Vector increment;
+  PlasticState plastic;
+  InterfaceSolution solution;
   std::string why;        // when the matrix could not be factorised
   bool hopeless = false;  // nor would that of a smaller step be
 };

@@ -1,0 +1,37 @@
+#include "uplift/contact/impact/coulomb.h"
+
+#include <algorithm>
+#include <iterator>
+#include <utility>
+
+#include "uplift/contact/lagrange/lagrange.h"
+
+namespace uplift {
+
+CoulombRates::CoulombRates(const std::vector<Block>& blocks, const Matrix& factor) {
+  auto model = std::make_shared<ContactModel>();
+  std::ranges::copy_if(blocks, std::back_inserter(model->blocks), [](const Block& block) { return block.cone != nullptr; });
+  model->factor = factor;
+  problem_ = problem_of(std::move(model));
+}
+
+CoulombRates::~CoulombRates() = default;
+
+bool CoulombRates::solve(const Vector& free, const Vector& takes_part) {
+  constexpr double far = 1e3;  // times the largest rate: closes by no impulse of this size
+  problem_.free_opening = free;
+  const double open = far * free.cwiseAbs().maxCoeff();
+  for (const Block& block : problem_.model->blocks) {
+    const int normal = block.first + block.batch.normal();
+    for (int row = normal; row < normal + block.batch.points; ++row)
+      if (!(takes_part[row] > 0)) problem_.free_opening[row] += open;
+  }
+  problem_.from.setZero(free.size());
+  solution_ = {};  // no memory of the step before
+  size_solution(problem_, solution_);
+  solution_.opening = free;
+  if (!(open > 0)) return true;
+  return solve_frictional(problem_, {}, work_, solution_).converged;
+}
+
+}  // namespace uplift
