@@ -125,6 +125,7 @@ class Stepper {
   double contact_work() const;
   void apply_impact(Level& level);
   bool apply_rule(const Impact& data);
+  void damp_impact(const Vector& velocity, Vector& acceleration);
   bool drop_creating();
   void restore_dropped();
   bool closes(const std::vector<Block>& blocks) const;
@@ -182,6 +183,7 @@ class Stepper {
   InterfaceEnergy interface_energy_;
   // of impacts with friction (step_friction.cpp)
   std::unique_ptr<CoulombRates> coulomb_;      // null without friction, and with other rules than project_hold
+  Vector velocity_free_;                       // before an impact
   Vector rates_, takes_part_;                  // rows
   Vector force_before_, acceleration_before_;  // of now_, where a step has dropped forces; else empty
   double friction_step_ = 0;                   // J: work of the friction of constraints in the step

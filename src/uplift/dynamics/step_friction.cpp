@@ -69,7 +69,11 @@ void Stepper::restore_dropped() {
 bool Stepper::apply_rule(const Impact& data) {
   const bool open = coulomb_ != nullptr && (force_before_.size() > 0 || lifted(last_->model->blocks, now_, contact_, next_.opening));
   if (open && impact_of_friction(data)) return true;
-  impact_.apply(data, next_.velocity, next_.acceleration, impulse_, impact_scratch_);
+  velocity_free_ = next_.velocity;
+  impact_.apply(data, next_.velocity, impulse_, impact_scratch_);
+  if (!impact_.holds_acceleration()) return false;
+  damp_impact(next_.velocity, next_.acceleration);
+  impact_.hold(data, next_.acceleration, impact_scratch_);
   return false;
 }
 
@@ -97,14 +101,22 @@ bool Stepper::impact_of_friction(const Impact& data) {
   mass_spread_->add(data.velocity_weight, push, velocity);
   rates_.resize(contact_.size());
   row_rates(data, velocity, 0, contact_.size(), rates_);
-  if (!coulomb_->solve(rates_, pressed_)) return false;
+  takes_part_ = pressed_;  // and those that are closed without a pressure: under a rigid base which ones is not unique
+  for (const Block& block : blocks) {
+    if (block.cone == nullptr) continue;
+    const int normal = block.first + block.batch.normal();
+    for (int row = normal; row < normal + block.batch.points; ++row)
+      if (next_.opening[row] <= closed_gap_) takes_part_[row] = row_area_[row];
+  }
+  if (!coulomb_->solve(rates_, takes_part_)) return false;
   mass_spread_->add(1, coulomb_->z(), velocity);
   const Vector impulse = coulomb_->impulse(), rate = coulomb_->rate();
 
   // the force after the impact: what Coulomb's law asks for in half a step from now on
   Vector acceleration = next_.acceleration;
   mass_spread_->add(data.acceleration_weight, push, acceleration);
-  takes_part_ = pressed_;
+  velocity_free_ = next_.velocity;
+  damp_impact(velocity, acceleration);
   const double still = 1e-9 * rates_.cwiseAbs().maxCoeff();
   for (Eigen::Index row = 0; row < takes_part_.size(); ++row)
     if (rate[row] > still) takes_part_[row] = 0;

@@ -108,6 +108,18 @@ void Stepper::apply_impact(Level& level) {
   if (impact_.holds_acceleration() && !rubbed) separate_impulse(data);
 }
 
+/// What damping does to the acceleration when an impact has changed the velocity: M da = -C dv.
+void Stepper::damp_impact(const Vector& velocity, Vector& acceleration) {
+  if (bulk_.damping.zero()) return;
+  constexpr double round_off = 1e-12;
+  product_ = velocity - velocity_free_;
+  if (product_.squaredNorm() <= round_off * round_off * velocity.squaredNorm()) return;
+  balance_.resize(product_.size()), work2_.resize(product_.size());
+  bulk_.damping.multiply(product_, balance_);
+  accelerator().solve(balance_, work2_);
+  acceleration -= work2_;
+}
+
 /// In a step in which a gap closes, the contact force contains the momentum that the impact transfers, over the step: it grows as 1/dt. The
 /// force that balances the accelerations after the impact is reported instead, and the rest as an impulse [N s].
 void Stepper::separate_impulse(const Impact& data) {

@@ -67,7 +67,8 @@ class Bar {
         impact.force = &solution.force;
         impact.velocity_weight = dt_ / 2;
         impulse.setZero();
-        impact_rule->apply(impact, v, a, impulse, scratch);
+        impact_rule->apply(impact, v, impulse, scratch);
+        impact_rule->hold(impact, a, scratch);
       }
       time.push_back(step * dt_);
       force.push_back(-solution.force[0]);
@@ -157,7 +158,8 @@ struct RockingBlock {
     v -= impact.velocity_weight * inverse(m) * b.transpose() * force;
     Vector a = Vector::Zero(3), sum = Vector::Zero(4);
     ImpactScratch scratch;
-    rule(name)->apply(impact, v, a, sum, scratch);
+    rule(name)->apply(impact, v, sum, scratch);
+    rule(name)->hold(impact, a, scratch);
     if (impulse != nullptr) *impulse = sum + impact.velocity_weight * force;
     return v;
   }
@@ -231,9 +233,9 @@ TEST(Impact, redundant_points_under_a_rigid_footing) {
     impact.pressed = &area;
     ImpactScratch scratch;
     for (const double spin : {0.0, 0.2, 0.9, 3.0, -3.0}) {
-      Vector v = (Vector(2) << -0.5, spin).finished(), a = Vector::Zero(2), impulse = Vector::Zero(points);
+      Vector v = (Vector(2) << -0.5, spin).finished(), impulse = Vector::Zero(points);
       const Vector before = v;
-      rule("project")->apply(impact, v, a, impulse, scratch);
+      rule("project")->apply(impact, v, impulse, scratch);
       EXPECT_GT((base.b * v).minCoeff(), -1e-12);
       EXPECT_LE(impulse.maxCoeff(), 0.0);
       EXPECT_LT((m * (v - before) + base.b.transpose() * impulse).norm(), 1e-8);
@@ -266,19 +268,22 @@ TEST(Impact, acceleration_is_held_on_closed_rows) {
   Vector v = Vector::Zero(3), impulse = Vector::Zero(4);
   // contained force = half the weight too little: the acceleration is downwards and must be brought to zero
   Vector a = (Vector(3) << 0.0, -3.0, 0.0).finished();
-  rule("project_hold")->apply(impact, v, a, impulse, scratch);
+  rule("project_hold")->apply(impact, v, impulse, scratch);
+  rule("project_hold")->hold(impact, a, scratch);
   EXPECT_LT(a.norm(), 1e-12);
   EXPECT_LT(v.norm(), 1e-12);
   // a body that leaves: v = 0, but without the contact force the acceleration would still be upwards
   force.setZero();
   a << 0, 2, 0;
-  rule("project_hold")->apply(impact, v, a, impulse, scratch);
+  rule("project_hold")->apply(impact, v, impulse, scratch);
+  rule("project_hold")->hold(impact, a, scratch);
   EXPECT_NEAR(a[1], 2, 1e-12);
   // corner A leaves in the impact, so that its acceleration is free
   const double omega = -0.3;
   v << 0, block.half_width * omega, omega;
   a << 0, -1, 0;
-  rule("project_hold")->apply(impact, v, a, impulse, scratch);
+  rule("project_hold")->apply(impact, v, impulse, scratch);
+  rule("project_hold")->hold(impact, a, scratch);
   EXPECT_NEAR((block.b.row(3) * a)(0), 0, 1e-12);
   EXPECT_LT((block.b.row(2) * a)(0), -0.1);
 }
@@ -298,7 +303,8 @@ TEST(Impact, massless_rows_are_left_alone) {
   impact.velocity_weight = 1;
   ImpactScratch scratch;
   Vector v = (Vector(2) << -1.0, -1.0).finished(), a = Vector::Zero(2), impulse = Vector::Zero(2);
-  rule("project_hold")->apply(impact, v, a, impulse, scratch);
+  rule("project_hold")->apply(impact, v, impulse, scratch);
+  rule("project_hold")->hold(impact, a, scratch);
   EXPECT_NEAR(v[0], 0, 1e-14);
   EXPECT_EQ(v[1], -1);
   EXPECT_NEAR(impulse[0], -100, 1e-10);
@@ -321,7 +327,8 @@ TEST(Impact, catalog_and_idle) {
     impact.force = impact.pressed = &force;  // nobody is pressed
     Vector v = (Vector(3) << 1.0, -2.0, 3.0).finished(), a = v, impulse = Vector::Zero(4);
     ImpactScratch scratch;
-    rule(name)->apply(impact, v, a, impulse, scratch);
+    rule(name)->apply(impact, v, impulse, scratch);
+    rule(name)->hold(impact, a, scratch);
     EXPECT_EQ(v, (Vector(3) << 1.0, -2.0, 3.0).finished()) << name;
     EXPECT_EQ(impulse.norm(), 0);
   }

@@ -39,7 +39,8 @@ Corrected apply(const char* rule, const Spread& mass, const Spread& dynamic, con
     }
   Corrected result{velocity, acceleration, Vector::Zero(rows)};
   ImpactScratch scratch;
-  impact_rule->apply(impact, result.velocity, result.acceleration, result.impulse, scratch);
+  impact_rule->apply(impact, result.velocity, result.impulse, scratch);
+  impact_rule->hold(impact, result.acceleration, scratch);
   return result;
 }
 

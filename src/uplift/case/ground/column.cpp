@@ -82,7 +82,7 @@ Model column_model(const std::vector<ColumnLayer>& layers, const ColumnWave& wav
 /// Nothing opens in the column.
 struct NoImpact final : ImpactRule {
   bool acts() const override { return false; }
-  void apply(const Impact&, Vector&, Vector&, Vector&, ImpactScratch&) const override {}
+  void apply(const Impact&, Vector&, Vector&, ImpactScratch&) const override {}
 };
 
 }  // namespace

@@ -46,11 +46,13 @@ class ImpactRule {
   /// True when the force of the displacement solve alone is not the contact force: the correction's impulse / dt is added to it (reflect,
   /// propagate).
   virtual bool force_includes_impulse() const { return false; }
-  /// True when the acceleration is projected too: the scratch then holds the force that belongs to it, and the impulse of the velocity.
+  /// True when `hold` corrects the acceleration.
   virtual bool holds_acceleration() const { return false; }
-  /// Corrects velocity and acceleration of the free unknowns in place. `impulse` (rows, N s, compression negative) receives what the
-  /// correction put in.
-  virtual void apply(const Impact&, Vector& velocity, Vector& acceleration, Vector& impulse, ImpactScratch&) const = 0;
+  /// Corrects the velocity of the free unknowns in place. `impulse` (rows, N s, compression negative) receives what the correction put in.
+  virtual void apply(const Impact&, Vector& velocity, Vector& impulse, ImpactScratch&) const = 0;
+  /// After `apply`: corrects the acceleration, which must balance the forces at the corrected velocity. The scratch then holds the force
+  /// that belongs to it, and the impulse of the velocity.
+  virtual void hold(const Impact&, Vector& /*acceleration*/, ImpactScratch&) const {}
 };
 
 std::span<const Entry<ImpactRule>* const> impact_catalog();  // none, project, project_hold, reflect, propagate

@@ -6,7 +6,7 @@ namespace {
 class None final : public ImpactRule {
  public:
   bool acts() const override { return false; }
-  void apply(const Impact&, Vector&, Vector&, Vector&, ImpactScratch&) const override {}
+  void apply(const Impact&, Vector&, Vector&, ImpactScratch&) const override {}
 };
 
 }  // namespace

@@ -6,12 +6,15 @@ namespace {
 class ProjectHold final : public ImpactRule {
  public:
   bool holds_acceleration() const override { return true; }
-  void apply(const Impact& impact, Vector& velocity, Vector& acceleration, Vector& impulse, ImpactScratch& scratch) const override {
+  void apply(const Impact& impact, Vector& velocity, Vector& impulse, ImpactScratch& scratch) const override {
     if (!select_rows(impact, Hold::inequality, scratch)) return;
     project_rate(impact, velocity, impact.velocity_weight, Select::all, scratch);
     correct(impact, 1, velocity, scratch);
     add_impulse(impact, 1, impulse, scratch);
     scratch.total = scratch.impulse;
+  }
+  void hold(const Impact& impact, Vector& acceleration, ImpactScratch& scratch) const override {
+    if (scratch.count == 0) return;
     project_rate(impact, acceleration, impact.acceleration_weight, Select::held, scratch);
     correct(impact, 1, acceleration, scratch);
   }
@@ -24,7 +27,7 @@ const Entry<ImpactRule>& entry_impact_project_hold() {
       {.name = "project_hold",
        .summary = "velocity projected as in `project`, and the acceleration of the rows that stay closed too",
        .equations = "v' as in `project`\n"
-                    "a' = argmin |a' - (a + M^-1 B_A^T p)|_M^2 / 2,  B a' >= 0 on the rows with B v' = 0",
+                    "a' = argmin |a' - (a - M^-1 D (v' - v) + M^-1 B_A^T p)|_M^2 / 2,  B a' >= 0 on the rows with B v' = 0,  D the damping",
        .source = "Cherubini, Richard & Frau, eq 4, completed for the acceleration (docs/theory, eq (18))",
        .params = {}},
       [](const Values&) { return std::make_unique<const ProjectHold>(); }};

@@ -59,6 +59,7 @@ bool select_rows(const Impact& impact, Hold hold, ImpactScratch& scratch) {
     at.put(taken, take ? choose(active, at(force), zero) : zero);
     if (any(active)) least = std::min(least, at.first), most = at.first;
   });
+  scratch.count = 0;
   if (most < 0) return false;
   for (const int row : impact.tangents) {
     least = std::min<Index>(least, row - row % lanes), most = std::max<Index>(most, row - row % lanes);

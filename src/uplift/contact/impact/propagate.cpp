@@ -13,7 +13,7 @@ class Propagate final : public ImpactRule {
   bool needs_dynamic() const override { return true; }
   bool force_includes_impulse() const override { return true; }
 
-  void apply(const Impact& impact, Vector& velocity, Vector&, Vector& impulse, ImpactScratch& scratch) const override {
+  void apply(const Impact& impact, Vector& velocity, Vector& impulse, ImpactScratch& scratch) const override {
     if (!select_rows(impact, Hold::equality, scratch)) return;
     project_rate(impact, velocity, 0, Select::all, scratch);  // leaves B v in the target
     const Matrix& c = impact.dynamic->factor;

@@ -6,7 +6,7 @@ namespace {
 class Reflect final : public ImpactRule {
  public:
   bool force_includes_impulse() const override { return true; }
-  void apply(const Impact& impact, Vector& velocity, Vector&, Vector& impulse, ImpactScratch& scratch) const override {
+  void apply(const Impact& impact, Vector& velocity, Vector& impulse, ImpactScratch& scratch) const override {
     if (!select_rows(impact, Hold::equality, scratch)) return;
     project_rate(impact, velocity, impact.velocity_weight, Select::all, scratch);
     correct(impact, 2, velocity, scratch);

@@ -1,0 +1,75 @@
+// A mass m on a spring k and a dashpot c falls with its foot at the speed v, without gravity, and the foot lands
+// on a rigid plane at t = 0. Without restitution the foot stops, and the mass goes on,
+//   m y'' + c y' + k y = 0,   y(0) = 0, y'(0) = -v:    y = -v/w_d exp(-zeta w t) sin(w_d t),
+// while k y + c y' < 0 presses the foot on the plane. Right after the impact the foot carries c v, at once.
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <cmath>
+#include <numbers>
+#include <string>
+#include <vector>
+
+#include "manual.h"
+#include "support.h"
+
+namespace uplift::verification {
+namespace {
+
+constexpr double m = 1000, foot = 300, frequency = 10, ratio = 0.2, v = 0.5, landing = 0.01;
+
+double y(double t) {
+  const double w = 2 * std::numbers::pi * frequency, damped = w * std::sqrt(1 - ratio * ratio);
+  return -v / damped * std::exp(-ratio * w * t) * std::sin(damped * t);
+}
+
+std::string number(double value) {
+  char text[40];
+  std::snprintf(text, sizeof text, "%.17g", value);
+  return text;
+}
+
+/// The gap closes at the end of a step, but for a millionth of it, which leaves a residual of that order times the share of a step.
+std::string dropped(double step, const std::string& method) {
+  const double stiffness = m * std::pow(2 * std::numbers::pi * frequency, 2), gap = v * (landing - 1e-6 * step);
+  return "title = \"Damped impact\"\nmethod = \"" + method +
+         "\"\n[nodes]\nhead = [0, 1]\nbase = [0, 0]\n[[beam]]\nname = \"spring\"\nnodes = [\"base\", \"head\"]\nE = " + number(stiffness) +
+         "\nA = 1\nI = 1\n[[mass]]\nname = \"head\"\nnode = \"head\"\nmass = " + number(m) +
+         "\n[[rigid]]\nname = \"foot\"\nnode = \"base\"\nmass = " + number(foot) + "\ninertia = " + number(foot) +
+         "\n[[interface]]\nname = \"ground\"\nfooting = { body = \"base\", width = 2, points = 5 }\nlaw = \"unilateral\"\n"
+         "[[support]]\nnode = \"base\"\nfixed = [\"ux\"]\n"
+         "[[initial]]\nnode = \"base\"\ndisplacement = [0, " +
+         number(gap) + "]\nvelocity = [0, " + number(-v) + "]\n[[initial]]\nnode = \"head\"\ndisplacement = [0, " + number(gap) +
+         "]\nvelocity = [0, " + number(-v) +
+         "]\n[[dashpot]]\nname = \"dashpot\"\nnodes = [\"base\", \"head\"]\ndirection = [0, 1]\ndamping = " +
+         number(2 * ratio * m * 2 * std::numbers::pi * frequency) +
+         "\n[[stage]]\ntype = \"dynamic\"\nduration = " + number(landing + 0.03) + "\nstep = " + number(step) +
+         "\n[energy]\ncreated_limit = 1e9\n[output]\nframes = 0\n"
+         "history = [{ name = \"y\", node = \"head\", quantity = \"uy\" }, { name = \"force\", interface = \"ground\", quantity = "
+         "\"axial\" }]\n";
+}
+
+}  // namespace
+
+// Claim: the motion after the impact is of second order in the step, and no energy is created: the acceleration with which the next step
+// begins balances the forces at the velocity after the impact, damping included.
+TEST(DampedImpact, MassOnASpringThatLands) {
+  VERIFIES({"Impact", "Impact of a damped oscillator", "closed form of the damped oscillator, no restitution"});
+  for (const std::string method : {"lagrange", "augmented_lagrangian"}) {
+    std::vector<double> error;
+    for (const double step : {1e-3, 5e-4, 2.5e-4}) {
+      const History run = run_text(dropped(step, method));
+      ASSERT_EQ(run.status, "completed") << run.reason;
+      double worst = 0;
+      for (std::size_t i = 0; i < run.rows(); ++i)
+        if (const double t = run.time()[i] - landing; t > -1e-9) worst = std::max(worst, std::abs(run["y"][i] - y(t)));
+      error.push_back(worst / (v / (2 * std::numbers::pi * frequency)));
+      const double energy = 0.5 * (m + foot) * v * v;
+      VERIFY_LE("energy created over that before the impact", "1", run.peak("energy.residual") / energy, 1e-7);
+    }
+    VERIFY_NEAR("order of the motion after the impact", "1", std::log2(error[1] / error[2]), 2, 0.1);
+    VERIFY_LE("largest error at a quarter of a millisecond over v/omega", "1", error[2], 1e-4);
+  }
+}
+
+}  // namespace uplift::verification
