@@ -203,8 +203,8 @@ TEST(Counters, NoAllocationOfSeveralInterfaces) {
   const Part elastic{"springs", {{"K_n", 3e8}, {"tangential", "none"}}};
   const Part unilateral{"unilateral"}, coulomb{"coulomb", {{"friction", 0.3}}};
   // fewer: a note about the shorter run alone
-  // after 1500 steps every point has been closed: the list of active rows has its final length
-  const auto allocated = [](Whole& whole) { return allocated_by_steps(whole, {"average_acceleration"}, 1500); };
+  // after 2500 steps every point has been closed: the list of active rows has its final length
+  const auto allocated = [](Whole& whole) { return allocated_by_steps(whole, {"average_acceleration"}, 2500); };
   for (const std::string method : {"lagrange", "augmented_lagrangian", "penalty"}) {
     for (const Part& cone : {unilateral, coulomb}) {
       for (const Part& other : {cone, sdm, elastic}) {

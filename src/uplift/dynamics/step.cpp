@@ -347,7 +347,7 @@ bool Stepper::substep(int halving) {
     if (newton_ != nullptr) std::swap(plastic_now_, plastic_next_);
     counts_.deepest = std::max(counts_.deepest, halving);
     last_step_ = now.step;
-    force_before_.resize(0);
+    friction_.reduced = false;
     return true;
   }
   impact_loss_ = impact_before;

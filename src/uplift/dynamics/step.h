@@ -51,6 +51,15 @@ struct MarchState {
   std::vector<int> sizes;  // halvings whose matrices have been factorised
 };
 
+/// Of impacts with friction (step_friction.cpp): what a step has changed of its beginning, and work space.
+struct FrictionOfImpacts {
+  bool reduced = false;                        // forces of the beginning have been reduced; they were:
+  Vector force, acceleration;                  // rows, unknowns
+  Vector dropped, rates, takes_part, impulse;  // rows; dropped: forces that are taken out
+  Vector velocity, after, soon;                // unknowns: velocity and acceleration after the impact, velocity half a step later
+  Vector push;                                 // C^T p of the mass
+};
+
 /// Marches a state in time. Everything that depends on the step is made once per halving level and kept.
 class Stepper {
  public:
@@ -126,6 +135,7 @@ class Stepper {
   void apply_impact(Level& level);
   bool apply_rule(const Impact& data);
   void damp_impact(const Vector& velocity, Vector& acceleration);
+  void prepare_friction(const std::vector<Block>& blocks);
   bool drop_creating();
   void restore_dropped();
   bool closes(const std::vector<Block>& blocks) const;
@@ -181,12 +191,10 @@ class Stepper {
   std::vector<int> tangents_;
   Energies energies_;
   InterfaceEnergy interface_energy_;
-  // of impacts with friction (step_friction.cpp)
-  std::unique_ptr<CoulombRates> coulomb_;      // null without friction, and with other rules than project_hold
-  Vector velocity_free_;                       // before an impact
-  Vector rates_, takes_part_;                  // rows
-  Vector force_before_, acceleration_before_;  // of now_, where a step has dropped forces; else empty
-  double friction_step_ = 0;                   // J: work of the friction of constraints in the step
+  Vector velocity_free_;                   // before an impact
+  std::unique_ptr<CoulombRates> coulomb_;  // null without friction, and with other rules than project_hold
+  FrictionOfImpacts friction_;
+  double friction_step_ = 0;  // J: work of the friction of constraints in the step
   double impact_loss_ = 0, initial_energy_ = 0, largest_external_ = 0;
   double start_time_ = 0;  // s
   double last_step_ = 0;   // s: of the last part that succeeded; next_ is the state before it

@@ -24,14 +24,24 @@ bool lifted(const std::vector<Block>& blocks, const State& before, const Vector&
 
 }  // namespace
 
+void Stepper::prepare_friction(const std::vector<Block>& blocks) {
+  coulomb_ = std::make_unique<CoulombRates>(blocks, mass_spread_->factor);
+  for (Vector* rows : {&friction_.force, &friction_.dropped, &friction_.rates, &friction_.takes_part, &friction_.impulse})
+    rows->setZero(b_.rows());
+  for (Vector* unknowns : {&friction_.acceleration, &friction_.velocity, &friction_.after, &friction_.soon})
+    unknowns->setZero(bulk_.unknowns);
+  friction_.push.setZero(mass_spread_->factor.cols());
+}
+
 /// The trapezoidal rule gives a point the work (p_0 + p_1) dg/2. With p_0 = 0 it takes energy only; where it is negative p_0 works on a
 /// motion that it does not resist. Where some point is open, such forces are taken out of the beginning of the step, which is solved again:
 /// all of it at a point that has opened, as much of its friction as is too much at one that has turned round. True when there are any.
 bool Stepper::drop_creating() {
   const InterfaceSolution& end = *solution_;
-  if (force_before_.size() == 0 && !lifted(last_->model->blocks, now_, end.force, end.opening)) return false;
+  if (!friction_.reduced && !lifted(last_->model->blocks, now_, end.force, end.opening)) return false;
   const double nothing = 1e-15 * largest_external_;
-  Vector dropped;
+  Vector& dropped = friction_.dropped;
+  bool any = false;
   for (const Block& block : last_->model->blocks) {
     if (block.cone == nullptr || !(block.cone->friction() > 0)) continue;
     const int n = block.batch.points, normal = block.batch.normal();
@@ -44,30 +54,33 @@ bool Stepper::drop_creating() {
         begun += 0.5 * now_.force[row] * moved, ended += 0.5 * end.force[row] * moved;
       }
       if (begun + ended >= -nothing || !(begun < 0)) continue;
-      if (dropped.size() == 0) dropped.setZero(now_.force.size());
-      const bool again = force_before_.size() > 0 && now_.force[i] != force_before_[i];
+      if (!any) dropped.setZero(now_.force.size());
+      any = true;
+      const bool again = friction_.reduced && now_.force[i] != friction_.force[i];
       const double kept = held ? std::max(0.0, -ended / begun) * (again ? 0.5 : 1) : 0;
       for (int c = 0, row = i; c < rows; ++c, row += n) dropped[row] = (1 - kept) * now_.force[row];
     }
   }
-  if (dropped.size() == 0) return false;
-  if (force_before_.size() == 0) force_before_ = now_.force, acceleration_before_ = now_.acceleration;
+  if (!any) return false;
+  if (!friction_.reduced) friction_.force = now_.force, friction_.acceleration = now_.acceleration;
+  friction_.reduced = true;
   now_.force -= dropped;
-  mass_spread_->add(1, mass_spread_->factor.transpose() * dropped, now_.acceleration);
+  friction_.push.noalias() = mass_spread_->factor.transpose() * dropped;
+  mass_spread_->add(1, friction_.push, now_.acceleration);
   return true;
 }
 
 /// A step that has failed leaves its beginning as it was.
 void Stepper::restore_dropped() {
-  if (force_before_.size() == 0) return;
-  now_.force = force_before_, now_.acceleration = acceleration_before_;
-  force_before_.resize(0);
+  if (!friction_.reduced) return;
+  now_.force = friction_.force, now_.acceleration = friction_.acceleration;
+  friction_.reduced = false;
 }
 
 /// Velocity and acceleration by the rule of the case. Where a point with friction is open, friction belongs to the impulse (true);
 /// elsewhere sliding points slide on, and the rule alone is exact.
 bool Stepper::apply_rule(const Impact& data) {
-  const bool open = coulomb_ != nullptr && (force_before_.size() > 0 || lifted(last_->model->blocks, now_, contact_, next_.opening));
+  const bool open = coulomb_ != nullptr && (friction_.reduced || lifted(last_->model->blocks, now_, contact_, next_.opening));
   if (open && impact_of_friction(data)) return true;
   velocity_free_ = next_.velocity;
   impact_.apply(data, next_.velocity, impulse_, impact_scratch_);
@@ -93,44 +106,44 @@ bool Stepper::closes(const std::vector<Block>& blocks) const {
 bool Stepper::impact_of_friction(const Impact& data) {
   const std::vector<Block>& blocks = last_->model->blocks;
   const bool closing = closes(blocks);
-  Vector taken = Vector::Zero(contact_.size());
+  FrictionOfImpacts& now = friction_;
+  now.dropped.setZero(contact_.size());
   for (const Block& block : blocks)
-    if (block.cone != nullptr) taken.segment(block.first, block.rows()) = contact_.segment(block.first, block.rows());
-  const Vector push = mass_spread_->factor.transpose() * taken;
-  Vector velocity = next_.velocity;
-  mass_spread_->add(data.velocity_weight, push, velocity);
-  rates_.resize(contact_.size());
-  row_rates(data, velocity, 0, contact_.size(), rates_);
-  takes_part_ = pressed_;  // and those that are closed without a pressure: under a rigid base which ones is not unique
+    if (block.cone != nullptr) now.dropped.segment(block.first, block.rows()) = contact_.segment(block.first, block.rows());
+  now.push.noalias() = mass_spread_->factor.transpose() * now.dropped;
+  now.velocity = next_.velocity;
+  mass_spread_->add(data.velocity_weight, now.push, now.velocity);
+  row_rates(data, now.velocity, 0, contact_.size(), now.rates);
+  now.takes_part = pressed_;  // and those that are closed without a pressure: under a rigid base which ones is not unique
   for (const Block& block : blocks) {
     if (block.cone == nullptr) continue;
     const int normal = block.first + block.batch.normal();
     for (int row = normal; row < normal + block.batch.points; ++row)
-      if (next_.opening[row] <= closed_gap_) takes_part_[row] = row_area_[row];
+      if (next_.opening[row] <= closed_gap_) now.takes_part[row] = row_area_[row];
   }
-  if (!coulomb_->solve(rates_, takes_part_)) return false;
-  mass_spread_->add(1, coulomb_->z(), velocity);
-  const Vector impulse = coulomb_->impulse(), rate = coulomb_->rate();
+  if (!coulomb_->solve(now.rates, now.takes_part)) return false;
+  mass_spread_->add(1, coulomb_->z(), now.velocity);
+  now.impulse = coulomb_->impulse();
 
   // the force after the impact: what Coulomb's law asks for in half a step from now on
-  Vector acceleration = next_.acceleration;
-  mass_spread_->add(data.acceleration_weight, push, acceleration);
+  const double time = data.velocity_weight, still = 1e-9 * now.rates.cwiseAbs().maxCoeff();
+  for (Index row = 0; row < now.takes_part.size(); ++row)
+    if (coulomb_->rate()[row] > still) now.takes_part[row] = 0;
+  now.after = next_.acceleration;
+  mass_spread_->add(data.acceleration_weight, now.push, now.after);
   velocity_free_ = next_.velocity;
-  damp_impact(velocity, acceleration);
-  const double still = 1e-9 * rates_.cwiseAbs().maxCoeff();
-  for (Eigen::Index row = 0; row < takes_part_.size(); ++row)
-    if (rate[row] > still) takes_part_[row] = 0;
-  const double time = data.velocity_weight;
-  row_rates(data, velocity + time * acceleration, 0, contact_.size(), rates_);
-  if (!coulomb_->solve(rates_, takes_part_)) return false;
-  mass_spread_->add(1 / time, coulomb_->z(), acceleration);
-  next_.velocity = velocity, next_.acceleration = acceleration;
+  damp_impact(now.velocity, now.after);
+  now.soon = now.velocity + time * now.after;
+  row_rates(data, now.soon, 0, contact_.size(), now.rates);
+  if (!coulomb_->solve(now.rates, now.takes_part)) return false;
+  mass_spread_->add(1 / time, coulomb_->z(), now.after);
+  next_.velocity = now.velocity, next_.acceleration = now.after;
   for (const Block& block : blocks) {
     if (block.cone == nullptr) continue;
     contact_.segment(block.first, block.rows()) = coulomb_->impulse().segment(block.first, block.rows()) / time;
     if (!closing) continue;
     const int normal = block.first + block.batch.normal(), n = block.batch.points;
-    impact_impulse_.segment(normal, n) = impulse.segment(normal, n) - time * contact_.segment(normal, n);
+    impact_impulse_.segment(normal, n) = now.impulse.segment(normal, n) - time * contact_.segment(normal, n);
   }
   return true;
 }

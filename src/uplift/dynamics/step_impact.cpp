@@ -22,7 +22,7 @@ void Stepper::prepare_impacts() {
   const std::vector<Block> blocks = blocks_of(model_, behaviours_).blocks;
   if (impacts_ && impact_.holds_acceleration() && options_.scheme.average_acceleration() &&
       std::ranges::any_of(blocks, [](const Block& block) { return block.cone != nullptr && block.cone->friction() > 0; }))
-    coulomb_ = std::make_unique<CoulombRates>(blocks, mass_spread_->factor);
+    prepare_friction(blocks);
 }
 
 /// The rows that take part in an impact: normal rows of constraints that are pressed (or, where there is no constraint, those of stiff

@@ -27,8 +27,8 @@ bool CoulombRates::solve(const Vector& free, const Vector& takes_part) {
       if (!(takes_part[row] > 0)) problem_.free_opening[row] += open;
   }
   problem_.from.setZero(free.size());
-  solution_ = {};  // no memory of the step before
-  size_solution(problem_, solution_);
+  if (fresh_.opening.size() != free.size()) size_solution(problem_, fresh_);
+  solution_ = fresh_;
   solution_.opening = free;
   if (!(open > 0)) return true;
   return solve_frictional(problem_, {}, work_, solution_).converged;

@@ -24,7 +24,7 @@ class CoulombRates {
 
  private:
   InterfaceProblem problem_;
-  InterfaceSolution solution_;
+  InterfaceSolution fresh_, solution_;  // fresh_: without memory of the step before
   std::unique_ptr<MethodWork> work_;
 };
 
