@@ -133,13 +133,13 @@ class Stepper {
   Impact impact_data(const Vector& force) const;
   double contact_work() const;
   void apply_impact(Level& level);
-  bool apply_rule(const Impact& data);
-  void damp_impact(const Vector& velocity, Vector& acceleration);
+  bool apply_rule(const Level& level, const Impact& data);
+  void damp_impact(const Level& level, const Vector& velocity, Vector& acceleration);
   void prepare_friction(const std::vector<Block>& blocks);
   bool drop_creating();
   void restore_dropped();
   bool closes(const std::vector<Block>& blocks) const;
-  bool impact_of_friction(const Impact& data);
+  bool impact_of_friction(const Level& level, const Impact& data);
   void separate_impulse(const Impact& data);
   void separate_impulse_of_friction(const Block& block, const Impact& data);
   void hold_initial_acceleration();
@@ -191,6 +191,7 @@ class Stepper {
   std::vector<int> tangents_;
   Energies energies_;
   InterfaceEnergy interface_energy_;
+  BulkWork impact_work_{linear_};
   Vector velocity_free_;                   // before an impact
   std::unique_ptr<CoulombRates> coulomb_;  // null without friction, and with other rules than project_hold
   FrictionOfImpacts friction_;

@@ -79,13 +79,13 @@ void Stepper::restore_dropped() {
 
 /// Velocity and acceleration by the rule of the case. Where a point with friction is open, friction belongs to the impulse (true);
 /// elsewhere sliding points slide on, and the rule alone is exact.
-bool Stepper::apply_rule(const Impact& data) {
+bool Stepper::apply_rule(const Level& level, const Impact& data) {
   const bool open = coulomb_ != nullptr && (friction_.reduced || lifted(last_->model->blocks, now_, contact_, next_.opening));
-  if (open && impact_of_friction(data)) return true;
+  if (open && impact_of_friction(level, data)) return true;
   velocity_free_ = next_.velocity;
   impact_.apply(data, next_.velocity, impulse_, impact_scratch_);
   if (!impact_.holds_acceleration()) return false;
-  damp_impact(next_.velocity, next_.acceleration);
+  damp_impact(level, next_.velocity, next_.acceleration);
   impact_.hold(data, next_.acceleration, impact_scratch_);
   return false;
 }
@@ -103,7 +103,7 @@ bool Stepper::closes(const std::vector<Block>& blocks) const {
 
 /// The whole contact force is taken out of the velocity, and Coulomb's law at the level of velocities gives the impulse instead. False
 /// where no impulse was found: the rule without friction then acts.
-bool Stepper::impact_of_friction(const Impact& data) {
+bool Stepper::impact_of_friction(const Level& level, const Impact& data) {
   const std::vector<Block>& blocks = last_->model->blocks;
   const bool closing = closes(blocks);
   FrictionOfImpacts& now = friction_;
@@ -132,7 +132,7 @@ bool Stepper::impact_of_friction(const Impact& data) {
   now.after = next_.acceleration;
   mass_spread_->add(data.acceleration_weight, now.push, now.after);
   velocity_free_ = next_.velocity;
-  damp_impact(now.velocity, now.after);
+  damp_impact(level, now.velocity, now.after);
   now.soon = now.velocity + time * now.after;
   row_rates(data, now.soon, 0, contact_.size(), now.rates);
   if (!coulomb_->solve(now.rates, now.takes_part)) return false;

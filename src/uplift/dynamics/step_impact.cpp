@@ -101,23 +101,29 @@ void Stepper::apply_impact(Level& level) {
   data.velocity_weight = options_.scheme.gamma * level.step * weight;
   data.acceleration_weight = weight;
   const double before = 0.5 * small::dot(next_.velocity.size(), next_.velocity.data(), momentum_next_.data());
-  const bool rubbed = apply_rule(data);
+  const bool rubbed = apply_rule(level, data);
   std::swap(data.tangents, tangents_);
   bulk_.mass.multiply(next_.velocity, momentum_next_);
   impact_loss_ += before - 0.5 * small::dot(next_.velocity.size(), next_.velocity.data(), momentum_next_.data());
   if (impact_.holds_acceleration() && !rubbed) separate_impulse(data);
 }
 
-/// What damping does to the acceleration when an impact has changed the velocity: M da = -C dv.
-void Stepper::damp_impact(const Vector& velocity, Vector& acceleration) {
+/// What damping does to the acceleration when an impact has changed the velocity: (M + c/m C) da = -C dv with K_eff = K + c C + m M, which
+/// lets modes go whose damping the step does not resolve (they would chatter with M alone). K_eff solves it: with the right-hand side
+/// -C dv first, and with K/m da, what that leaves, once more.
+void Stepper::damp_impact(const Level& level, const Vector& velocity, Vector& acceleration) {
   if (bulk_.damping.zero()) return;
+  const BulkFactor* factor = level.solver->factor() != nullptr ? level.solver->factor() : level.dynamic_factor.get();
   constexpr double round_off = 1e-12;
   product_ = velocity - velocity_free_;
   if (product_.squaredNorm() <= round_off * round_off * velocity.squaredNorm()) return;
   balance_.resize(product_.size()), work2_.resize(product_.size());
   bulk_.damping.multiply(product_, balance_);
-  accelerator().solve(balance_, work2_);
-  acceleration -= work2_;
+  factor->solve(balance_, work2_, impact_work_);
+  acceleration -= level.mass * work2_;
+  bulk_.stiffness.multiply(work2_, balance_);
+  factor->solve(balance_, work2_, impact_work_);
+  acceleration -= level.mass * work2_;
 }
 
 /// In a step in which a gap closes, the contact force contains the momentum that the impact transfers, over the step: it grows as 1/dt. The

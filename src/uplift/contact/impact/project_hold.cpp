@@ -27,7 +27,8 @@ const Entry<ImpactRule>& entry_impact_project_hold() {
       {.name = "project_hold",
        .summary = "velocity projected as in `project`, and the acceleration of the rows that stay closed too",
        .equations = "v' as in `project`\n"
-                    "a' = argmin |a' - (a - M^-1 D (v' - v) + M^-1 B_A^T p)|_M^2 / 2,  B a' >= 0 on the rows with B v' = 0,  D the damping",
+                    "a' = argmin |a' - (a + a_D + M^-1 B_A^T p)|_M^2 / 2,  B a' >= 0 on the rows with B v' = 0\n"
+                    "(M + gamma dt D) a_D = -D (v' - v),  D the damping",
        .source = "Cherubini, Richard & Frau, eq 4, completed for the acceleration (docs/theory, eq (18))",
        .params = {}},
       [](const Values&) { return std::make_unique<const ProjectHold>(); }};
