@@ -56,19 +56,25 @@ std::string dropped(double step, const std::string& method) {
 TEST(DampedImpact, MassOnASpringThatLands) {
   VERIFIES({"Impact", "Impact of a damped oscillator", "closed form of the damped oscillator, no restitution"});
   for (const std::string method : {"lagrange", "augmented_lagrangian"}) {
-    std::vector<double> error, created;
+    std::vector<double> error, created, carried;
     for (const double step : {1e-3, 5e-4, 2.5e-4}) {
       const History run = run_text(dropped(step, method));
       ASSERT_EQ(run.status, "completed") << run.reason;
-      double worst = 0;
+      double worst = 0, landed = 0;
       for (std::size_t i = 0; i < run.rows(); ++i)
-        if (const double t = run.time()[i] - landing; t > -1e-9) worst = std::max(worst, std::abs(run["y"][i] - y(t)));
+        if (const double t = run.time()[i] - landing; t > -1e-9) {
+          worst = std::max(worst, std::abs(run["y"][i] - y(t)));
+          if (t < 1e-9) landed = run["force"][i];
+        }
       error.push_back(worst / (v / (2 * std::numbers::pi * frequency)));
+      carried.push_back(-landed / (2 * ratio * m * 2 * std::numbers::pi * frequency * v));
       created.push_back(run.peak("energy.residual") / (0.5 * (m + foot) * v * v));
     }
     VERIFY_NEAR("order of the motion after the impact", "1", std::log2(error[1] / error[2]), 2, 0.1);
     VERIFY_NEAR("order of the energy created", "1", std::log2(created[1] / created[2]), 2, 0.1);
     VERIFY_LE("energy created at a quarter of a millisecond over that before the impact", "1", created[2], 1e-4);
+    VERIFY_NEAR("force on the foot right after the impact over c v, at a quarter of a millisecond", "1", carried[2], 1, 0.02);
+    VERIFY_NEAR("order of that force", "1", std::log2((1 - carried[1]) / (1 - carried[2])), 1, 0.1);
     VERIFY_LE("largest error at a quarter of a millisecond over v/omega", "1", error[2], 1e-4);
   }
 }

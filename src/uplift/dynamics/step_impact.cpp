@@ -101,16 +101,15 @@ void Stepper::apply_impact(Level& level) {
   data.velocity_weight = options_.scheme.gamma * level.step * weight;
   data.acceleration_weight = weight;
   const double before = 0.5 * small::dot(next_.velocity.size(), next_.velocity.data(), momentum_next_.data());
-  const bool rubbed = apply_rule(level, data);
+  const bool with_friction = apply_rule(level, data);
   std::swap(data.tangents, tangents_);
   bulk_.mass.multiply(next_.velocity, momentum_next_);
   impact_loss_ += before - 0.5 * small::dot(next_.velocity.size(), next_.velocity.data(), momentum_next_.data());
-  if (impact_.holds_acceleration() && !rubbed) separate_impulse(data);
+  if (impact_.holds_acceleration() && !with_friction) separate_impulse(data);
 }
 
-/// What damping does to the acceleration when an impact has changed the velocity: (M + c/m C) da = -C dv with K_eff = K + c C + m M, which
-/// lets modes go whose damping the step does not resolve (they would chatter with M alone). K_eff solves it: with the right-hand side
-/// -C dv first, and with K/m da, what that leaves, once more.
+/// What damping D does to the acceleration when an impact has changed the velocity (docs/theory, section 5, a_D): (M + d/m D) a_D = -D dv
+/// with K_eff = K + d D + m M. Solved by K_eff, with the right-hand side -D dv first and then with K/m a_D, what the first one leaves.
 void Stepper::damp_impact(const Level& level, const Vector& velocity, Vector& acceleration) {
   if (bulk_.damping.zero()) return;
   const BulkFactor* factor = level.solver->factor() != nullptr ? level.solver->factor() : level.dynamic_factor.get();

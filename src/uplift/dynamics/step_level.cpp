@@ -43,8 +43,10 @@ Stepper::Level& Stepper::make_level(int halving) {
     if (oracle != nullptr)
       made.solver = make_compared(matrix_of(made), std::move(made.solver), std::move(oracle), options_.oracle_tolerance);
   }
-  if (impacts_ && impact_.holds_acceleration() && !bulk_.damping.zero() && made.solver->factor() == nullptr)
+  if (impacts_ && impact_.holds_acceleration() && !bulk_.damping.zero() && made.solver->factor() == nullptr) {
     made.dynamic_factor = std::make_unique<BulkFactor>(upper_of(made), &b_, bulk_.small, solver_, model_, linear_);
+    made.why = made.dynamic_factor->why();
+  }
   if (impacts_ && impact_.needs_dynamic()) {
     const Term dynamic[] = {{1, bulk_.stiffness_matrix}, {4 / (dt * dt), bulk_.mass_matrix}};
     made.dynamic_factor = std::make_unique<BulkFactor>(upper_sum(dynamic), &b_, bulk_.small, solver_, model_, linear_);
