@@ -24,7 +24,8 @@ def project() -> Part:
 
 
 def project_hold() -> Part:
-    """Velocity projected as in `project`, and the acceleration of the rows that stay closed too.
+    """Velocity projected as in `project`, and the acceleration of the rows that stay closed too; with friction, where
+    points open or close, the impulses of Coulomb's law.
     """
     return part("project_hold")
 
