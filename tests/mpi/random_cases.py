@@ -5,6 +5,8 @@
 
 import math
 import random
+import sys
+import unittest
 
 
 def pulse(pick, size):
@@ -142,7 +144,7 @@ def case(seed):
 
 
 if __name__ == "__main__":
-    from test_mpi import RandomCases, sys, take_program, unittest
+    from test_mpi import RandomCases, take_program
 
     take_program()
     first, count = (int(word) for word in sys.argv[1:] + ["0", "50"][len(sys.argv) - 1:])

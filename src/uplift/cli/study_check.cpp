@@ -2,7 +2,6 @@
 #include <sys/resource.h>
 
 #include <algorithm>
-#include <chrono>
 
 #include "uplift/base/format.h"
 #include "uplift/base/text.h"
@@ -123,14 +122,26 @@ double largest_memory() {
   return 1024.0 * static_cast<double>(usage.ru_maxrss);
 }
 
-/// Most memory of a worker that has computed such a group [bytes].
-double memory_of(const Study& study, StudyComputer& computer, const RunRequest& trial, std::size_t runs) {
+/// Processor time [s] of the workers that have ended: unlike the elapsed time it does not depend on what else the machine does.
+double worker_time() {
+  rusage usage{};
+  ::getrusage(RUSAGE_CHILDREN, &usage);
+  const auto seconds = [](const timeval& time) { return static_cast<double>(time.tv_sec) + 1e-6 * static_cast<double>(time.tv_usec); };
+  return seconds(usage.ru_utime) + seconds(usage.ru_stime);
+}
+
+std::vector<RunRequest> group_of(const Study& study, const RunRequest& trial, std::size_t runs) {
   std::vector<RunRequest> group(runs, trial);
   for (std::size_t i = 0; i < runs; ++i) {
     group[i].id = fmt::format("trial {}", i);
     group[i].motion = i % study.of.motions.size();
   }
-  compute_in_worker(study, computer, group);
+  return group;
+}
+
+/// Most memory of a worker that has computed such a group [bytes].
+double memory_of(const Study& study, StudyComputer& computer, const RunRequest& trial, std::size_t runs) {
+  compute_in_worker(study, computer, group_of(study, trial, runs));
   return largest_memory();
 }
 
@@ -141,6 +152,18 @@ double memory_of_group(const Study& study, StudyComputer& computer, const RunReq
   if (together <= more) return memory_of(study, computer, trial, together);
   const double with_few = memory_of(study, computer, trial, few), with_more = memory_of(study, computer, trial, more);
   return with_more + static_cast<double>(together - more) * (with_more - with_few) / (more - few);
+}
+
+/// Time of a run on one core [s], from the time `alone` of the first one of a worker. Where that is short, most of it is the worker's start and code
+/// and memory that are touched for the first time: then it is what further runs take.
+double seconds_of(const Study& study, StudyComputer& computer, const RunRequest& trial, double alone) {
+  constexpr double short_run = 0.1;  // s
+  constexpr std::size_t further = 10;
+  if (alone > short_run) return alone;
+  const double before = worker_time();
+  compute_in_worker(study, computer, group_of(study, trial, further + 1));
+  const double all = worker_time() - before;
+  return std::max(all - alone, 0.1 * all) / further;
 }
 
 /// Runs of a worker's group: as many as it would be given.
@@ -167,9 +190,9 @@ int check_study(const Options& options) {
   RunRequest request{"trial", 0, curves.front().sample(), curves.front().motion(), 1, start, 1};
   request.factor = cloud ? start : start / study.of.motions[request.motion].intensity;
   const std::size_t together = group_size(study, computer, request, status);
-  const auto before = std::chrono::steady_clock::now();
+  const double before = worker_time();
   const StudyResult trial = compute_in_worker(study, computer, {request}).front();
-  const double seconds = std::chrono::duration<double>(std::chrono::steady_clock::now() - before).count();
+  const double seconds = seconds_of(study, computer, request, worker_time() - before);
   const double memory = together == 1 ? largest_memory() : memory_of_group(study, computer, request, together);
   const Case read = case_of_sample(study.of, 0);
   const RunSpec spec = run_of_study(study.of, read, 0, 1);
