@@ -68,8 +68,7 @@ layers:            ## the order of the layers
 	python3 scripts/check_layers.py
 
 tidy:              ## clang-tidy on what the project exists for: laws, interfaces, contact, the condensed step
-	cmake --preset dev
-	git ls-files 'src/uplift/laws/*.cpp' 'src/uplift/interface/*.cpp' 'src/uplift/contact/*.cpp' 'src/uplift/dynamics/*.cpp' | tr '\n' '\0' | xargs -0 -n 4 -P 2 clang-tidy-14 -p build/dev --quiet --extra-arg=-Wno-unknown-warning-option
+	scripts/tidy.sh
 
 asan:              ## the tests but the long ones and those of verification under AddressSanitizer and UndefinedBehaviorSanitizer
 	cmake --preset asan

@@ -28,13 +28,17 @@ sources() {
 
 out=build/fuzz
 mkdir -p "$out/objects"
+object() { echo "$out/objects/$(tr / _ <<<"${1%.cpp}").o"; }
+of_target() { sources "$1"; echo "fuzz/$1_fuzz.cpp"; }
+
+# each source once, whatever the number of targets that contain it, as many at a time as there are cores
+for target in "${targets[@]}"; do of_target "$target"; done | sort -u | while read -r source; do
+  printf '%s\0%s\0' "$source" "$(object "$source")"
+done | xargs -0 -n 2 -P "$(nproc)" bash -c '"${@:1:$#-2}" -c "${@: -2:1}" -o "${@: -1}"' _ \
+  $clang "${flags[@]}" "${hdf5[@]}" -Wno-unused-command-line-argument -fsanitize=fuzzer-no-link
 for target in "${targets[@]}"; do
   objects=()
-  while read -r source; do
-    object="$out/objects/$(tr / _ <<<"${source%.cpp}").o"
-    $clang "${flags[@]}" "${hdf5[@]}" -Wno-unused-command-line-argument -fsanitize=fuzzer-no-link -c "$source" -o "$object"
-    objects+=("$object")
-  done < <(sources "$target"; echo "fuzz/${target}_fuzz.cpp")
+  while read -r source; do objects+=("$(object "$source")"); done < <(of_target "$target")
   $clang "${flags[@]}" -fsanitize=fuzzer "${objects[@]}" -o "$out/${target}_fuzz" -lfmt -ludunits2 "${hdf5[@]}"
 done
 

@@ -31,7 +31,7 @@ extern "C" void* malloc(std::size_t size) {
 }
 #endif
 
-namespace uplift::whole {
+namespace uplift::whole::counters_test {
 namespace {
 
 struct Work {
@@ -304,4 +304,4 @@ TEST(Counters, OneFactorisationPerStepSize) {
 }
 
 }  // namespace
-}  // namespace uplift::whole
+}  // namespace uplift::whole::counters_test

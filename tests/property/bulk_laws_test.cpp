@@ -12,7 +12,7 @@
 
 // Properties of every bulk law in the catalog. Parameters are drawn from the law's own declaration, so that a new law is tested before its
 // author writes a test.
-namespace uplift {
+namespace uplift::bulk_laws_test {
 using namespace random_parts;
 namespace {
 
@@ -318,4 +318,4 @@ RC_GTEST_PROP(BulkLawProperties, OutputsHaveNamesUnitsAndFiniteValues, ()) {
 }
 
 }  // namespace
-}  // namespace uplift
+}  // namespace uplift::bulk_laws_test

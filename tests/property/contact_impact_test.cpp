@@ -6,7 +6,7 @@
 #include "unit/contact/contact_support.h"
 
 // The impact projection on random bodies: the optimality conditions written out, and no energy from nothing.
-namespace uplift::contact_test {
+namespace uplift::contact_test::contact_impact_test {
 namespace {
 
 struct RandomImpact {
@@ -92,4 +92,4 @@ RC_GTEST_PROP(Impact, held_rows_have_no_acceleration_into_the_ground, ()) {
 }
 
 }  // namespace
-}  // namespace uplift::contact_test
+}  // namespace uplift::contact_test::contact_impact_test

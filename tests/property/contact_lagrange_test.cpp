@@ -8,7 +8,7 @@
 #include "unit/contact/contact_support.h"
 
 // The Lagrange method on random interface problems against brute force over all contact statuses.
-namespace uplift::contact_test {
+namespace uplift::contact_test::contact_lagrange_test {
 namespace {
 
 class Dice {
@@ -225,4 +225,4 @@ RC_GTEST_PROP(Lagrange, friction_against_brute_force, ()) {
 }
 
 }  // namespace
-}  // namespace uplift::contact_test
+}  // namespace uplift::contact_test::contact_lagrange_test

@@ -8,7 +8,7 @@
 #include "unit/contact/contact_support.h"
 
 // Random interfaces of surfaces, small and large, for every method: an answer that the common residual confirms, or a reason.
-namespace uplift::contact_test {
+namespace uplift::contact_test::contact_many_test {
 namespace {
 
 std::unique_ptr<const InterfaceLaw> rubbing(const std::string& type, double stiffness, double friction) {
@@ -244,4 +244,4 @@ TEST(ManyPoints, exact_methods_agree_along_a_path) {
 }
 
 }  // namespace
-}  // namespace uplift::contact_test
+}  // namespace uplift::contact_test::contact_many_test

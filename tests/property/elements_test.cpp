@@ -12,7 +12,7 @@
 
 // Properties of every element in the catalog, in the plane and in space, on every number of nodes that it takes. Parameters are drawn from
 // its own declaration, so that a new element is tested before its author writes a test.
-namespace uplift {
+namespace uplift::elements_test {
 using namespace random_parts;
 namespace {
 
@@ -161,4 +161,4 @@ RC_GTEST_PROP(ElementProperties, WithoutDisplacementNothingIsRemembered, ()) {
 }
 
 }  // namespace
-}  // namespace uplift
+}  // namespace uplift::elements_test

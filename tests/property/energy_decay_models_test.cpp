@@ -11,7 +11,7 @@
 #include "uplift/case/case.h"
 #include "uplift/io/text/toml.h"
 
-namespace uplift {
+namespace uplift::energy_decay_models_test {
 namespace {
 
 class Draw {
@@ -262,4 +262,4 @@ TEST(EnergyDecayModels, ModesThatTheStepResolvesAreHardlyDamped) {
 }
 
 }  // namespace
-}  // namespace uplift
+}  // namespace uplift::energy_decay_models_test

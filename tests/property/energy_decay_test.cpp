@@ -7,7 +7,7 @@
 
 // The scheme of filtered energy decay (docs/theory, section 3): the ledger closes with storage and dissipation of the filters as terms of
 // their own, dissipation never falls, and the linear part has the eigenvalues that the spectral radius at infinite frequency asks for.
-namespace uplift::whole {
+namespace uplift::whole::energy_decay_test {
 namespace {
 
 Scheme decay(double rho) {
@@ -157,4 +157,4 @@ TEST(EnergyDecay, FirstSwingOfTheReferenceOscillator) {
 }
 
 }  // namespace
-}  // namespace uplift::whole
+}  // namespace uplift::whole::energy_decay_test

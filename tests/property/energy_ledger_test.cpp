@@ -6,7 +6,7 @@
 
 // The energy ledger: with the average acceleration rule and path-averaged tractions it closes to round-off at every stiffness and step;
 // with end-of-step tractions it does not (docs/theory, section 3).
-namespace uplift::whole {
+namespace uplift::whole::energy_ledger_test {
 namespace {
 
 struct Closing {
@@ -182,4 +182,4 @@ TEST(EnergyLedger, FreeMotionKeepsItsEnergy) {
 }
 
 }  // namespace
-}  // namespace uplift::whole
+}  // namespace uplift::whole::energy_ledger_test

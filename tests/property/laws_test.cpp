@@ -11,7 +11,7 @@
 
 // Properties of every law in the catalog. Parameters are drawn from the law's own declaration, so that a new law is tested before its
 // author writes a test.
-namespace uplift {
+namespace uplift::laws_test {
 using namespace law_test;
 using namespace random_parts;
 namespace {
@@ -389,4 +389,4 @@ RC_GTEST_PROP(LawProperties, AnOpeningThatIsNoNumberGivesNoNumber, ()) {
 }
 
 }  // namespace
-}  // namespace uplift
+}  // namespace uplift::laws_test

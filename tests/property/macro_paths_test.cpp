@@ -5,7 +5,7 @@
 
 // Random paths of a single macro-element: every plan, flow and surface, N from none to twice the capacity, both axes, in the air and down
 // again. The parameters are spread over decades; most steps are far longer than those of a computation.
-namespace uplift::macro_test {
+namespace uplift::macro_test::macro_paths_test {
 namespace {
 
 enum class Surface { effective_width, associated, power_law, en_1998_5 };
@@ -118,4 +118,4 @@ TEST(MacroPaths, EveryPathHasStatesOrSaysThatItHasNone) {
 }
 
 }  // namespace
-}  // namespace uplift::macro_test
+}  // namespace uplift::macro_test::macro_paths_test

@@ -10,7 +10,7 @@
 #include "uplift/interface/face_joint.h"
 #include "uplift/mesh/soil_box.h"
 
-namespace uplift::whole {
+namespace uplift::whole::oracle_soil_test {
 namespace {
 
 /// Soil 24 x 8 m with a block 4 x 10 m, elements of 2 m, a push on the block's top that lifts its heel.
@@ -95,4 +95,4 @@ TEST(Oracle, BlockOnSoilKeepsItsEnergy) {
 }
 
 }  // namespace
-}  // namespace uplift::whole
+}  // namespace uplift::whole::oracle_soil_test

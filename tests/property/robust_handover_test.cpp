@@ -5,7 +5,7 @@
 #include "oracle_models.h"
 
 // From stage to stage: a settled structure does not move, the first acceleration follows from the balance, and a march may be cut in two.
-namespace uplift::whole {
+namespace uplift::whole::robust_handover_test {
 namespace {
 
 using Kind = Request::Kind;
@@ -186,4 +186,4 @@ TEST(HandOver, StaticStagesMayBeSplit) {
 }
 
 }  // namespace
-}  // namespace uplift::whole
+}  // namespace uplift::whole::robust_handover_test

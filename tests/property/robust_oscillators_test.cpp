@@ -10,7 +10,7 @@
 
 // The long part: random oscillators on random joints. Each ends completed, overturned or separated, or failed with a reason; nothing
 // crashes, hangs, holds a NaN, or passes with wrong energy.
-namespace uplift::whole {
+namespace uplift::whole::robust_oscillators_test {
 namespace {
 
 class Dice {
@@ -173,4 +173,4 @@ TEST(Robust, RandomOscillatorsEndWell) {
 }
 
 }  // namespace
-}  // namespace uplift::whole
+}  // namespace uplift::whole::robust_oscillators_test

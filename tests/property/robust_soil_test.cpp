@@ -13,7 +13,7 @@
 
 // The long part: random small blocks and rafts on soil, in the plane and in space, as case files. Each ends completed, overturned or failed
 // with a reason; nothing crashes, hangs, holds a NaN, is refused, or passes with wrong energy.
-namespace uplift {
+namespace uplift::robust_soil_test {
 namespace {
 
 class Dice {
@@ -402,4 +402,4 @@ TEST(Robust, RandomBuildingsOnSoilEndWell) {
 }
 
 }  // namespace
-}  // namespace uplift
+}  // namespace uplift::robust_soil_test

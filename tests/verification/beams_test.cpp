@@ -9,7 +9,7 @@
 #include "uplift/model/geometric.h"
 #include "verification/manual.h"
 
-namespace uplift {
+namespace uplift::beams_test {
 namespace {
 
 using std::numbers::pi;
@@ -214,4 +214,4 @@ TEST(PDelta, EulerLoadOfACantilever) {
 }
 
 }  // namespace
-}  // namespace uplift
+}  // namespace uplift::beams_test

@@ -13,7 +13,7 @@
 #include "manual.h"
 #include "support.h"
 
-namespace uplift::verification {
+namespace uplift::verification::damped_impact_test {
 namespace {
 
 constexpr double m = 1000, foot = 300, frequency = 10, ratio = 0.2, v = 0.5, landing = 0.01;
@@ -79,4 +79,4 @@ TEST(DampedImpact, MassOnASpringThatLands) {
   }
 }
 
-}  // namespace uplift::verification
+}  // namespace uplift::verification::damped_impact_test

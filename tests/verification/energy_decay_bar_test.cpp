@@ -10,7 +10,7 @@
 #include "manual.h"
 #include "support.h"
 
-namespace uplift::verification {
+namespace uplift::verification::energy_decay_bar_test {
 namespace {
 
 using Column = std::vector<double>;
@@ -170,4 +170,4 @@ TEST(EnergyDecayBar, TrapezoidalRuleRings) {
 }
 
 }  // namespace
-}  // namespace uplift::verification
+}  // namespace uplift::verification::energy_decay_bar_test

@@ -17,7 +17,7 @@
 #include "uplift/io/text/toml.h"
 #include "uplift/verdict/floor_spectra.h"
 
-namespace uplift::verification {
+namespace uplift::verification::floor_test {
 namespace {
 
 using std::numbers::pi;
@@ -257,4 +257,4 @@ TEST(FloorSpectrum, EveryStepOfTheRun) {
 }
 
 }  // namespace
-}  // namespace uplift::verification
+}  // namespace uplift::verification::floor_test

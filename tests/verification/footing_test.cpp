@@ -11,7 +11,7 @@
 #include "support.h"
 #include "tower_case.h"
 
-namespace uplift::verification {
+namespace uplift::verification::footing_test {
 namespace {
 
 using std::numbers::pi;
@@ -244,4 +244,4 @@ TEST(Footing, BondedFrequency) {
 }
 
 }  // namespace
-}  // namespace uplift::verification
+}  // namespace uplift::verification::footing_test

@@ -13,7 +13,7 @@
 #include "manual.h"
 #include "support.h"
 
-namespace uplift::verification {
+namespace uplift::verification::friction_impact_test {
 namespace {
 
 constexpr double b = 0.5, h = 2, m = 1000;
@@ -149,4 +149,4 @@ TEST(FrictionImpact, BlocksInAPitCreateNoEnergy) {
 }
 
 }  // namespace
-}  // namespace uplift::verification
+}  // namespace uplift::verification::friction_impact_test

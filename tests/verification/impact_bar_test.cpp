@@ -8,7 +8,7 @@
 #include "manual.h"
 #include "support.h"
 
-namespace uplift::verification {
+namespace uplift::verification::impact_bar_test {
 namespace {
 
 struct Figures {
@@ -195,4 +195,4 @@ TEST(BarOnAWall, EndOfStepTractionCreatesEnergy) {
 }
 
 }  // namespace
-}  // namespace uplift::verification
+}  // namespace uplift::verification::impact_bar_test

@@ -8,7 +8,7 @@
 #include "manual.h"
 #include "support.h"
 
-namespace uplift::verification {
+namespace uplift::verification::impact_gravity_test {
 namespace {
 
 constexpr double height = 5, gravity = 10, length = 10, mass = 10, start_energy = mass * gravity * height;
@@ -209,4 +209,4 @@ TEST(RestingBar, GravityAppliedSuddenly) {
 }
 
 }  // namespace
-}  // namespace uplift::verification
+}  // namespace uplift::verification::impact_gravity_test

@@ -11,7 +11,7 @@
 #include "manual.h"
 #include "support.h"
 
-namespace uplift::verification {
+namespace uplift::verification::integrators_test {
 namespace {
 
 using std::numbers::pi;
@@ -190,4 +190,4 @@ TEST(Integrators, Orders) {
 }
 
 }  // namespace
-}  // namespace uplift::verification
+}  // namespace uplift::verification::integrators_test

@@ -8,7 +8,7 @@
 #include "uplift/model/tuned_mass.h"
 #include "verification/manual.h"
 
-namespace uplift {
+namespace uplift::joints_test {
 namespace {
 
 using std::numbers::pi;
@@ -262,4 +262,4 @@ TEST(ReferenceOscillator, FixedBaseAndBondedFrequencies) {
 }
 
 }  // namespace
-}  // namespace uplift
+}  // namespace uplift::joints_test

@@ -11,7 +11,7 @@
 
 // The SDM interface law, docs/theory, eqs (2) to (8). Reference values are computed here by bisection and quadrature in
 // extended precision, beside published figures.
-namespace uplift {
+namespace uplift::law_sdm_test {
 using namespace law_test;
 namespace {
 
@@ -295,4 +295,4 @@ TEST(SdmVerification, WorkToFullSeparationIsTheCrackingEnergy) {
 }
 
 }  // namespace
-}  // namespace uplift
+}  // namespace uplift::law_sdm_test

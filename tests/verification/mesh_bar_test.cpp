@@ -6,7 +6,7 @@
 #include "manual.h"
 #include "mesh_support.h"
 
-namespace uplift::verification {
+namespace uplift::verification::mesh_bar_test {
 namespace {
 
 struct Figures {
@@ -90,4 +90,4 @@ TEST_P(MeshBar, EnergyOfTheOtherRules) {
 }
 
 }  // namespace
-}  // namespace uplift::verification
+}  // namespace uplift::verification::mesh_bar_test

@@ -6,7 +6,7 @@
 #include "manual.h"
 #include "mesh_support.h"
 
-namespace uplift::verification {
+namespace uplift::verification::mesh_column_test {
 namespace {
 
 using Complex = std::complex<double>;
@@ -269,4 +269,4 @@ TEST(MeshColumn, AzimuthTurnsTheMotion) {
 }
 
 }  // namespace
-}  // namespace uplift::verification
+}  // namespace uplift::verification::mesh_column_test

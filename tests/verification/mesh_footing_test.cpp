@@ -5,7 +5,7 @@
 #include "manual.h"
 #include "mesh_support.h"
 
-namespace uplift::verification {
+namespace uplift::verification::mesh_footing_test {
 namespace {
 
 constexpr double bed = 2e8, weight = 1e6;  // Pa/m, N
@@ -207,4 +207,4 @@ TEST(MeshFooting, RectangleTurnedAboutBothAxes) {
 }
 
 }  // namespace
-}  // namespace uplift::verification
+}  // namespace uplift::verification::mesh_footing_test

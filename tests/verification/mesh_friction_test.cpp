@@ -5,7 +5,7 @@
 #include "manual.h"
 #include "punch_support.h"
 
-namespace uplift::verification {
+namespace uplift::verification::mesh_friction_test {
 namespace {
 
 constexpr double radius = 0.1, young = 210e9, load = 3.5e7, friction = 0.3;  // m, Pa, N/m, 1
@@ -163,4 +163,4 @@ TEST(MeshFriction, ASlidingBodyLeavesItsEnergyInTheLedger) {
 }
 
 }  // namespace
-}  // namespace uplift::verification
+}  // namespace uplift::verification::mesh_friction_test

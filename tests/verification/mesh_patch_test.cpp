@@ -6,7 +6,7 @@
 #include "mesh_support.h"
 #include "uplift/mesh/cell_shapes.h"
 
-namespace uplift::verification {
+namespace uplift::verification::mesh_patch_test {
 namespace {
 
 constexpr double young = 5e7, poisson = 0.3, normal_stiffness = 2e9, shear_stiffness = 7e8, pressure = 1e5, side = 2, height = 2;
@@ -144,4 +144,4 @@ TEST_P(MeshPatch, InclinedJointSharesTheTraction) {
 }
 
 }  // namespace
-}  // namespace uplift::verification
+}  // namespace uplift::verification::mesh_patch_test

@@ -8,7 +8,7 @@
 #include "manual.h"
 #include "punch_support.h"
 
-namespace uplift::verification {
+namespace uplift::verification::mesh_punch_test {
 namespace {
 
 // ---- strip ----
@@ -305,4 +305,4 @@ TEST(MeshPunch, DiscOnTheHalfSpace) {
 }
 
 }  // namespace
-}  // namespace uplift::verification
+}  // namespace uplift::verification::mesh_punch_test

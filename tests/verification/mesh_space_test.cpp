@@ -6,7 +6,7 @@
 #include "mesh_support.h"
 #include "uplift/mesh/soil_box.h"
 
-namespace uplift::verification {
+namespace uplift::verification::mesh_space_test {
 namespace {
 
 constexpr double turned_by = 37 * pi / 180;
@@ -298,4 +298,4 @@ TEST(MeshSpace, ConstraintsWithFrictionAreTheLimitOfStiffSprings) {
 }
 
 }  // namespace
-}  // namespace uplift::verification
+}  // namespace uplift::verification::mesh_space_test

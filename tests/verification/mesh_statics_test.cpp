@@ -5,7 +5,7 @@
 #include "mesh_support.h"
 #include "uplift/mesh/soil_box.h"
 
-namespace uplift::verification {
+namespace uplift::verification::mesh_statics_test {
 namespace {
 
 struct Plan {
@@ -51,4 +51,4 @@ TEST_P(MeshStatics, ABlockOnSoilStandsByContactAndFriction) {
 }
 
 }  // namespace
-}  // namespace uplift::verification
+}  // namespace uplift::verification::mesh_statics_test

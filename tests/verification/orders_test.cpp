@@ -8,7 +8,7 @@
 #include "manual.h"
 #include "support.h"
 
-namespace uplift::verification {
+namespace uplift::verification::orders_test {
 namespace {
 
 /// A spring k_s = 4e6 pressed by P = 2e5 against a wall 0.01 away: displacement towards the wall and contact force after a static stage.
@@ -103,4 +103,4 @@ TEST(Orders, DynamicsWithImpacts) {
 }
 
 }  // namespace
-}  // namespace uplift::verification
+}  // namespace uplift::verification::orders_test

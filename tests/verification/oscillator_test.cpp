@@ -14,7 +14,7 @@
 #include "support.h"
 #include "tower_case.h"
 
-namespace uplift::verification {
+namespace uplift::verification::oscillator_test {
 namespace {
 
 using std::numbers::pi;
@@ -271,4 +271,4 @@ TEST(ReferenceOscillator, ClosureStress) {
 }
 
 }  // namespace
-}  // namespace uplift::verification
+}  // namespace uplift::verification::oscillator_test

@@ -9,7 +9,7 @@
 #include "manual.h"
 #include "support.h"
 
-namespace uplift::verification {
+namespace uplift::verification::rocking_block_test {
 namespace {
 
 constexpr double b = 0.5, h = 2, g = 9.81, block_mass = 1000;
@@ -155,4 +155,4 @@ TEST(RockingBlock, DecayOverManyImpacts) {
 }
 
 }  // namespace
-}  // namespace uplift::verification
+}  // namespace uplift::verification::rocking_block_test

@@ -5,7 +5,7 @@
 
 // Claim: with incompatible modes one quad4 or hex8 over the thickness of a wall bends right; without them it locks.
 // Source: beam theory. Tolerance: pure bending of rectangular elements 1e-9 (exact), cantilever 1 %.
-namespace uplift::verification {
+namespace uplift::verification::solids_bending_test {
 namespace {
 
 constexpr double young = 30e9, poisson = 0.2, length = 20, width = 0.8, thickness = 1;
@@ -127,4 +127,4 @@ TEST(SolidsBending, PureBendingIsExact) {
 }
 
 }  // namespace
-}  // namespace uplift::verification
+}  // namespace uplift::verification::solids_bending_test

@@ -6,7 +6,7 @@
 
 // Claim: displacements converge with h^(p+1) (L2 norm), strains with h^p (energy norm), p = 1 for linear, 2 for second-order cells.
 // Source: manufactured solution u = sum of a sin(q . x + phase), for which div stress is closed form. Tolerance 0.1 in the order.
-namespace uplift::verification {
+namespace uplift::verification::solids_orders_test {
 namespace {
 
 constexpr double young = 1, poisson = 0.3;
@@ -152,4 +152,4 @@ TEST(SolidsOrders, ManufacturedSolutions) {
 }
 
 }  // namespace
-}  // namespace uplift::verification
+}  // namespace uplift::verification::solids_orders_test

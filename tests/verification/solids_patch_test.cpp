@@ -8,7 +8,7 @@
 
 // Claim: any mesh of solids meets constant strain exactly (patch test; Taylor, Simo, Zienkiewicz & Chan, IJNME 22 (1986) 39-62).
 // Source: the linear field itself and Hooke's law. Tolerance 1e-10.
-namespace uplift::verification {
+namespace uplift::verification::solids_patch_test {
 namespace {
 
 constexpr double young = 2e9, poisson = 0.27;
@@ -126,4 +126,4 @@ TEST(SolidsPatch, PullOnAHalfFreeBlock) {
 }
 
 }  // namespace
-}  // namespace uplift::verification
+}  // namespace uplift::verification::solids_patch_test

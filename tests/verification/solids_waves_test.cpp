@@ -11,7 +11,7 @@
 // Claims: a vertically incident wave through an absorbing face moves the free surface by twice the incoming motion and leaves without a
 // trace (1e-3, order 2 in h and the time step); plane waves at other angles are reflected as the algebra of Lysmer & Kuhlemeyer says
 // (reference/lysmer_reflection.csv, 1e-10).
-namespace uplift::verification {
+namespace uplift::verification::solids_waves_test {
 namespace {
 
 const ElasticMaterial soil = material_of_wave_speed(200, 0.3, 1900);
@@ -205,4 +205,4 @@ TEST(SolidsWaves, ReflectionAtOtherAnglesIsThatOfThePlaneWaveAlgebra) {
 }
 
 }  // namespace
-}  // namespace uplift::verification
+}  // namespace uplift::verification::solids_waves_test

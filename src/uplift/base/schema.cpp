@@ -21,7 +21,7 @@ void add_bounds(Json& schema, const Field& field) {
 }
 
 /// A bare number in SI, a text with a unit, or one of the words.
-Json number_of(const Field& field) {
+Json number_schema(const Field& field) {
   std::string pattern = number_pattern;
   for (const std::string_view word : field.words) pattern += "|" + std::string(word);
   Json schema{{"type", {"number", "string"}}, {"pattern", "^(" + pattern + ")$"}};
@@ -32,7 +32,7 @@ Json number_of(const Field& field) {
 Json entries_of(const Field& field) {
   Field one = field;
   one.kind = Kind::number;
-  Json schema{{"type", "array"}, {"items", number_of(one)}};
+  Json schema{{"type", "array"}, {"items", number_schema(one)}};
   if (field.size > 0) {
     schema["minItems"] = field.size;
     schema["maxItems"] = field.most_size;
@@ -66,7 +66,7 @@ Json named_of(const Section& section) {
 Json shape_of(const Field& field) {
   switch (field.kind) {
     case Kind::number:
-      return number_of(field);
+      return number_schema(field);
     case Kind::integer: {
       Json schema{{"type", "integer"}};
       add_bounds(schema, field);

@@ -19,7 +19,7 @@ namespace {
 
 constexpr double pi = std::numbers::pi;
 
-constexpr CommonUnit table[] = {
+constexpr CommonUnit unit_table[] = {
     {"m", "m", 1},
     {"cm", "m", 1e-2},
     {"mm", "m", 1e-3},
@@ -258,7 +258,7 @@ std::string dimension_of(const UnitSystem& system, const Unit& unit) {
 
 // ---- the unit as it is written ----
 
-bool is_digit(char c) {
+bool is_unit_digit(char c) {
   return c >= '0' && c <= '9';
 }
 bool is_letter(char c) {
@@ -272,12 +272,12 @@ std::string fault_of(std::string_view unit) {
   if (unit.find('@') != unit.npos) return "a unit with an origin";
   if (unit[0] == ',') return "use a decimal point, not a comma";
   for (const char c : unit)  // UDUNITS prints some of the others
-    if (!is_letter(c) && !is_digit(c) && std::string_view(" .*/^-+()%_'").find(c) == std::string_view::npos)
+    if (!is_letter(c) && !is_unit_digit(c) && std::string_view(" .*/^-+()%_'").find(c) == std::string_view::npos)
       return "no unit has the character " + in_quotes({&c, 1});
   for (std::size_t i = 0; i < unit.size(); ++i) {
-    if (!is_digit(unit[i])) continue;
+    if (!is_unit_digit(unit[i])) continue;
     std::size_t end = i;
-    while (end < unit.size() && is_digit(unit[end])) ++end;
+    while (end < unit.size() && is_unit_digit(unit[end])) ++end;
     std::size_t begin = i;
     if (begin > 0 && (unit[begin - 1] == '-' || unit[begin - 1] == '+')) --begin;
     while (begin > 0 && (unit[begin - 1] == '^' || unit[begin - 1] == '*')) --begin;
@@ -299,7 +299,7 @@ Quantity refused(std::string_view text, std::string_view why, std::string neares
 
 std::string nearest_unit(std::string_view unit) {
   std::vector<std::string> words;
-  for (const CommonUnit& row : table) words.emplace_back(row.word);
+  for (const CommonUnit& row : unit_table) words.emplace_back(row.word);
   return nearest_name(unit, words);
 }
 
@@ -346,7 +346,7 @@ std::string quantity_name(std::string_view unit) {
 }
 
 std::span<const CommonUnit> common_units() {
-  return table;
+  return unit_table;
 }
 
 double udunits_factor(std::string_view from, std::string_view to) {
@@ -366,7 +366,7 @@ Quantity parse_quantity(std::string_view text, std::string_view wanted_unit) {
   const std::string_view unit = trim(whole.substr(number.length));
   if (unit.empty()) return {number.value, true, {}, {}};
   if (wanted_unit.empty()) wanted_unit = "1";
-  for (const CommonUnit& row : table)
+  for (const CommonUnit& row : unit_table)
     if (row.word == unit && row.si == wanted_unit) {
       const double value = scaled(number.value, row.factor);
       if (!std::isfinite(value) || (value == 0 && number.value != 0)) return refused(text, "beyond the range of numbers");

@@ -16,7 +16,7 @@ double weighted(const PointRelation::Local& a, const PointRelation::Local& b, in
   return sum;
 }
 
-double largest(const Vector& v, Index n) {
+double largest_of(const Vector& v, Index n) {
   return n > 0 ? v.head(n).cwiseAbs().maxCoeff() : 0;
 }
 
@@ -177,7 +177,7 @@ double PointRows::start(Vector& forces, Vector& opening) {
       residual_[places_[p].unknown + f] -= relations_[p].right[static_cast<std::size_t>(f)];
       size = std::max(size, std::abs(relations_[p].right[static_cast<std::size_t>(f)]));
     }
-  rest_ = largest(residual_, unknowns_);
+  rest_ = largest_of(residual_, unknowns_);
   return std::max({size, rest_, forces.cwiseAbs().maxCoeff()});
 }
 
@@ -212,7 +212,7 @@ bool PointRows::iterate(int most, double size, Vector& forces, Vector& opening) 
     const double step = -image.dot(rest);
     rest += step * image;
     unknown_.head(n) += step * direction;
-    rest_ = largest(residual_, n);
+    rest_ = largest_of(residual_, n);
     if (rest_ <= 1e-14 * size || (valid_ && rest_ > 0.9 * before)) break;
     before = rest_;
   }

@@ -70,11 +70,7 @@ class Points {
   std::map<std::vector<int>, std::vector<int>> at_nodes_;
 };
 
-double triangle_area(const Vec3& a, const Vec3& b, const Vec3& c) {
-  return cross(b - a, c - a).norm() / 2;
-}
-
-void add_line(const CutFace& face, double thickness, Points& points) {
+void add_cut_line(const CutFace& face, double thickness, Points& points) {
   const Vec3 &a = face.corners[0], &b = face.corners[1];
   const double area = thickness * (b - a).norm();
   points.add(face, a, area / (face.level ? 2 : 6));
@@ -188,7 +184,7 @@ CutJoints cut_joints(const Mesh& mesh, const std::vector<CutFace>& faces, const 
   for (const CutFace& face : faces) {
     made.inclined = made.inclined || !face.level;
     if (mesh.dimension == 2)
-      add_line(face, thickness, points);
+      add_cut_line(face, thickness, points);
     else if (face.level && face.corners.size() == 4 && info(mesh.type(face.upper)).corners > 4)
       add_level_quadrilateral(face, points, made.facets);
     else

@@ -75,10 +75,6 @@ Line extended(const std::vector<double>& points, double half) {
   return line;
 }
 
-double triangle_area(const Vec3& a, const Vec3& b, const Vec3& c) {
-  return cross(b - a, c - a).norm() / 2;
-}
-
 /// Triangles and quadrilaterals between the nodes of a face (after them its centre), by corners.
 void add_face(Cell cell, const std::vector<int>& corner, const std::vector<Vec3>& x, Facets& facets) {
   const auto triangle = [&](std::size_t a, std::size_t b, std::size_t c) {

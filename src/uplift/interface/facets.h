@@ -21,6 +21,10 @@ struct Facets {
 /// Points in order along lines in the plane, `thickness` [m] out of it. What the areas reach beyond the first and the last point is added
 /// there. A distance that is clearly longer than the areas of two neighbours separates two lines.
 Facets line_facets(const std::vector<JointPoint>& points, double thickness);
+inline double triangle_area(const Vec3& a, const Vec3& b, const Vec3& c) {
+  return cross(b - a, c - a).norm() / 2;
+}
+
 /// The rectangle of a footing in space.
 Facets rectangle_facets(const Footing& footing, const std::vector<JointPoint>& points);
 /// Faces in space.

@@ -14,7 +14,7 @@ namespace uplift {
 namespace {
 
 /// Path average, its derivative with respect to the end of the path, and the traction and its slope there.
-struct Average {
+struct LanesAverage {
   Lanes value, slope, end, end_slope;
 };
 
@@ -28,13 +28,13 @@ struct FusedSprings {
   [[gnu::always_inline]] static Lanes twice_stored(Lanes to, Lanes, Lanes end) { return end * to; }
 
   /// The traction of the middle of the path.
-  [[gnu::always_inline]] Average straight(Lanes from, Lanes to, Lanes) const {
+  [[gnu::always_inline]] LanesAverage straight(Lanes from, Lanes to, Lanes) const {
     const Lanes slope = choose(to < 0.0, Lanes(stiffness), Lanes(0));
     return {slope * (0.5 * (from + to)), 0.5 * slope, slope * to, slope};
   }
 
-  [[gnu::always_inline]] Average average(Lanes from, Lanes to, Lanes old) const {
-    const Average point = straight(to, to, old);
+  [[gnu::always_inline]] LanesAverage average(Lanes from, Lanes to, Lanes old) const {
+    const LanesAverage point = straight(to, to, old);
     const Lanes zero = 0, increment = to - from, length = absolute(increment), inverse = 1 / length;
     const Lanes a = smaller(smaller(increment, zero), -from), b = smaller(larger(increment, zero), -from);
     const Lanes weight = 0.5 * stiffness * (b - a) * inverse;

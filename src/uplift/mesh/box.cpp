@@ -6,13 +6,10 @@
 #include <cmath>
 
 #include "uplift/mesh/convert.h"
+#include "uplift/mesh/index.h"
 
 namespace uplift {
 namespace {
-
-std::size_t at(int i) {
-  return static_cast<std::size_t>(i);
-}
 
 /// One piece of an axis on which the wanted length of a cell is linear in the place: h = h0 + rate * s.
 struct Ramp {

@@ -9,7 +9,7 @@ namespace uplift {
 namespace {
 
 constexpr Cell line_sides[] = {Cell::point, Cell::point};
-constexpr int line_nodes[] = {0, 1};
+constexpr int line_corners[] = {0, 1};
 constexpr int line_edges[] = {0, 1};
 
 constexpr Cell tri3_sides[] = {Cell::line2, Cell::line2, Cell::line2};
@@ -60,8 +60,8 @@ constexpr int hex_edges[] = {0, 1, 1, 2, 2, 3, 3, 0, 4, 5, 5, 6, 6, 7, 7, 4, 0, 
 
 constexpr std::array<CellInfo, num_cell_types> table{{
     {Cell::point, "point", 0, 1, 1, 1, Cell::point, {}, {}, {}},
-    {Cell::line2, "line2", 1, 2, 2, 3, Cell::line2, line_sides, line_nodes, line_edges},
-    {Cell::line3, "line3", 1, 3, 2, 21, Cell::line2, line_sides, line_nodes, line_edges},
+    {Cell::line2, "line2", 1, 2, 2, 3, Cell::line2, line_sides, line_corners, line_edges},
+    {Cell::line3, "line3", 1, 3, 2, 21, Cell::line2, line_sides, line_corners, line_edges},
     {Cell::tri3, "tri3", 2, 3, 3, 5, Cell::tri3, tri3_sides, tri3_nodes, tri_edges},
     {Cell::tri6, "tri6", 2, 6, 3, 22, Cell::tri3, tri6_sides, tri6_nodes, tri_edges},
     {Cell::quad4, "quad4", 2, 4, 4, 9, Cell::quad4, quad4_sides, quad4_nodes, quad_edges},

@@ -7,13 +7,10 @@
 #include <optional>
 
 #include "uplift/mesh/cell_shapes.h"
+#include "uplift/mesh/index.h"
 
 namespace uplift {
 namespace {
-
-std::size_t at(int i) {
-  return static_cast<std::size_t>(i);
-}
 
 using Simplex = std::array<Vec3, 4>;  // as many as the dimension, and one more
 

@@ -5,14 +5,11 @@
 #include <cassert>
 #include <functional>
 
+#include "uplift/mesh/index.h"
 #include "uplift/mesh/sides.h"
 
 namespace uplift {
 namespace {
-
-std::size_t at(int i) {
-  return static_cast<std::size_t>(i);
-}
 
 /// Puts cells into a mesh and remembers which new cells came from an old one.
 class Replacement {

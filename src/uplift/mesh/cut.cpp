@@ -5,14 +5,11 @@
 
 #include "uplift/base/text.h"
 #include "uplift/mesh/cut_filling.h"
+#include "uplift/mesh/index.h"
 #include "uplift/mesh/parts.h"
 
 namespace uplift {
 namespace {
-
-std::size_t at(int i) {
-  return static_cast<std::size_t>(i);
-}
 
 constexpr CellId no_cell{-1, -1};
 struct MadeCells {

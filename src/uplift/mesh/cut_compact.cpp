@@ -1,16 +1,9 @@
 #include <algorithm>
 
 #include "uplift/mesh/cut_filling.h"
+#include "uplift/mesh/index.h"
 
 namespace uplift {
-namespace {
-
-std::size_t at(int i) {
-  return static_cast<std::size_t>(i);
-}
-
-}  // namespace
-
 void compact(CutWork& work, std::vector<std::vector<CutFace>>& faces, std::vector<std::vector<FreeFace>>& free) {
   Mesh& mesh = work.mesh;
   std::vector<std::vector<int>> index;

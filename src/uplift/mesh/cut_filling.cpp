@@ -8,14 +8,11 @@
 
 #include "uplift/base/text.h"
 #include "uplift/mesh/absent_group.h"
+#include "uplift/mesh/index.h"
 #include "uplift/mesh/parts.h"
 
 namespace uplift {
 namespace {
-
-std::size_t at(int i) {
-  return static_cast<std::size_t>(i);
-}
 
 constexpr double on_plane = 1e-8;  // of the shortest edge: nodes so near count as on the plane
 constexpr double thinnest = 1e-4;  // of the shortest edge: a body less thick than this

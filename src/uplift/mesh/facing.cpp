@@ -9,14 +9,11 @@
 #include "uplift/base/text.h"
 #include "uplift/mesh/absent_group.h"
 #include "uplift/mesh/cell_shapes.h"
+#include "uplift/mesh/index.h"
 #include "uplift/mesh/sides.h"
 
 namespace uplift {
 namespace {
-
-std::size_t at(int i) {
-  return static_cast<std::size_t>(i);
-}
 
 /// A face of a group with its nodes numbered with the normal out of its cell.
 struct OuterFace {

@@ -4,13 +4,10 @@
 #include <cmath>
 
 #include "uplift/mesh/cell_shapes.h"
+#include "uplift/mesh/index.h"
 
 namespace uplift {
 namespace {
-
-std::size_t at(int i) {
-  return static_cast<std::size_t>(i);
-}
 
 /// The nodes of the pieces: a node of the cell where one of its shape functions is 1, else a follower.
 class Followers {

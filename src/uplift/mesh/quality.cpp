@@ -7,13 +7,10 @@
 #include <numeric>
 
 #include "uplift/math/linalg.h"
+#include "uplift/mesh/index.h"
 
 namespace uplift {
 namespace {
-
-std::size_t at(int i) {
-  return static_cast<std::size_t>(i);
-}
 
 /// For each corner the corners at the other ends of its edges, turning so that an upright cell has a positive determinant.
 constexpr int tri_ends[] = {1, 2, 2, 0, 0, 1};

@@ -5,16 +5,13 @@
 #include <limits>
 #include <set>
 
+#include "uplift/mesh/index.h"
 #include "uplift/mesh/sides.h"
 
 namespace uplift {
 namespace {
 
 constexpr double reach = 3;  // heights of the cells that the plane crosses
-
-std::size_t at(int i) {
-  return static_cast<std::size_t>(i);
-}
 
 std::set<CellId> cells_of(const Mesh& mesh, const std::vector<std::string>& groups, bool full) {
   std::set<CellId> cells;

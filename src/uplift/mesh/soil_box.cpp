@@ -8,15 +8,12 @@
 
 #include "uplift/base/text.h"
 #include "uplift/mesh/box.h"
+#include "uplift/mesh/index.h"
 
 namespace uplift {
 namespace {
 
 constexpr double round_off = 1e-9;  // of the soil's width or depth: lines nearer to each other are one
-
-std::size_t at(int i) {
-  return static_cast<std::size_t>(i);
-}
 
 class Check {
  public:

@@ -6,14 +6,11 @@
 
 #include "uplift/base/text.h"
 #include "uplift/mesh/absent_group.h"
+#include "uplift/mesh/index.h"
 #include "uplift/mesh/sides.h"
 
 namespace uplift {
 namespace {
-
-std::size_t at(int i) {
-  return static_cast<std::size_t>(i);
-}
 
 /// A set of cells.
 class CellMarks {
@@ -37,7 +34,7 @@ const Group& group_named(const Mesh& mesh, const std::string& name, const std::s
 }
 
 /// One face of a surface: the surface's cell, and the sides of the cells below and above it.
-struct CutFace {
+struct SplitFace {
   CellId cell;
   int lower, upper;
 };
@@ -46,8 +43,8 @@ struct CutFace {
 class Cut {
  public:
   Cut(const Mesh& mesh, const std::vector<std::string>& surfaces, const std::vector<std::string>& lower, const Where& where);
-  std::vector<std::vector<CutFace>> faces;  // of each surface
-  std::vector<int> doubled;                 // nodes that get a double, ascending
+  std::vector<std::vector<SplitFace>> faces;  // of each surface
+  std::vector<int> doubled;                   // nodes that get a double, ascending
   CellMarks on_surface, lower_side;
 
   /// The node of a touching cell (number in `sides().cells()`) after the split.
@@ -59,7 +56,7 @@ class Cut {
  private:
   std::vector<CellId> touching_cells(const Mesh& mesh);
   void find_faces(const Mesh& mesh, const std::vector<std::string>& surfaces, const Where& where);
-  CutFace cut_face(const Mesh& mesh, CellId id, std::string& reason) const;
+  SplitFace cut_face(const Mesh& mesh, CellId id, std::string& reason) const;
   void connect_nodes(const Mesh& mesh);
   void join_around(const Mesh& mesh, int node, std::span<const int> cells, std::vector<int>& sector);
   bool decide(const Mesh& mesh, int local, std::vector<int>& sector);
@@ -128,7 +125,7 @@ Cut::Cut(const Mesh& mesh, const std::vector<std::string>& surfaces, const std::
   }
 }
 
-CutFace Cut::cut_face(const Mesh& mesh, CellId id, std::string& reason) const {
+SplitFace Cut::cut_face(const Mesh& mesh, CellId id, std::string& reason) const {
   const int side = sides_.find(mesh.type(id), mesh.cell(id)), twin = side < 0 ? -1 : sides_.twin(side);
   if (side < 0)
     reason = "belongs to no cell of dimension " + std::to_string(mesh.dimension);
@@ -140,7 +137,7 @@ CutFace Cut::cut_face(const Mesh& mesh, CellId id, std::string& reason) const {
     reason = "has the upper side on both sides";
   else if (cut_[at(side)])
     reason = "lies on another one of them";
-  return reason.empty() && is_lower(side) ? CutFace{id, side, twin} : CutFace{id, twin, side};
+  return reason.empty() && is_lower(side) ? SplitFace{id, side, twin} : SplitFace{id, twin, side};
 }
 
 void Cut::find_faces(const Mesh& mesh, const std::vector<std::string>& surfaces, const Where& where) {
@@ -154,7 +151,7 @@ void Cut::find_faces(const Mesh& mesh, const std::vector<std::string>& surfaces,
     faces.emplace_back();
     for (const CellId id : mesh.groups.at(name).cells) {
       std::string reason;
-      const CutFace face = cut_face(mesh, id, reason);
+      const SplitFace face = cut_face(mesh, id, reason);
       if (!reason.empty()) {
         if (wrong++ == 0) first = id, first_reason = reason;
         continue;
@@ -259,7 +256,7 @@ void renumber_small(const Cut& cut, Cell cell, std::span<int> nodes, bool lower)
   }
 }
 
-void renumber(Mesh& mesh, const Cut& cut) {
+void renumber_cut(Mesh& mesh, const Cut& cut) {
   for (int b = 0; b < static_cast<int>(mesh.blocks.size()); ++b) {
     CellBlock& block = mesh.blocks[at(b)];
     if (info(block.cell).dimension == mesh.dimension) continue;
@@ -283,12 +280,12 @@ void write_face(Mesh& mesh, const Cut& cut, const std::vector<int>& nodes, int s
   for (std::size_t i = 0; i < n; ++i) block.nodes[at(opened.index) * n + i] = cut.node_for(nodes[i], side / Sides::stride);
 }
 
-OpenedSurface open_surface(Mesh& mesh, const Cut& cut, const std::string& name, const std::vector<CutFace>& faces,
+OpenedSurface open_surface(Mesh& mesh, const Cut& cut, const std::string& name, const std::vector<SplitFace>& faces,
                            const std::vector<std::vector<int>>& lists) {
   OpenedSurface surface{name, {}, {}};
   Group upper{mesh.dimension - 1, {}, {}};
   for (std::size_t f = 0; f < faces.size(); ++f) {
-    const CutFace& face = faces[f];
+    const SplitFace& face = faces[f];
     CellBlock& block = mesh.blocks[at(face.cell.block)];
     const CellId opened{face.cell.block, block.count()};
     block.nodes.resize(block.nodes.size() + lists[f].size());
@@ -348,9 +345,9 @@ std::vector<OpenedSurface> split(Mesh& mesh, const std::vector<std::string>& sur
                      "one whose nodes all lie on its rim inside the mesh");
   std::vector<std::vector<std::vector<int>>> lists(surfaces.size());  // nodes of each face before, seen from the lower cell
   for (std::size_t s = 0; s < surfaces.size(); ++s)
-    for (const CutFace& face : cut.faces[s]) cut.sides().nodes_of(mesh, face.lower, lists[s].emplace_back());
+    for (const SplitFace& face : cut.faces[s]) cut.sides().nodes_of(mesh, face.lower, lists[s].emplace_back());
 
-  renumber(mesh, cut);
+  renumber_cut(mesh, cut);
   for (const int node : cut.doubled) mesh.nodes.push_back(Vec3(mesh.nodes[at(node)]));
   for (auto& [name, group] : mesh.groups) {
     const std::size_t before = group.nodes.size();

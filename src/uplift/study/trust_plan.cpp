@@ -37,7 +37,7 @@ bool is_cone(const Values& law) {
 }
 
 /// The contact method that a run of the case takes.
-Values method_of(const Values& root) {
+Values method_values(const Values& root) {
   if (root.has("method")) return root.part("method");
   const bool cones = std::ranges::any_of(root.tables("interface"), [](const Values& each) { return is_cone(each.part("law")); });
   return check_part(Raw{std::string(standard_method(cones)), root.where(), "method"}, contact_methods());
@@ -70,7 +70,7 @@ std::vector<CaseEdit> replaced(const std::string& path, const Values& law, const
 
 class Planner {
  public:
-  explicit Planner(const Case& read) : root_(read.values), trust_(root_.table("trust")), method_(method_of(root_)) {}
+  explicit Planner(const Case& read) : root_(read.values), trust_(root_.table("trust")), method_(method_values(root_)) {}
 
   TrustPlan plan() {
     halve_step();

@@ -32,7 +32,8 @@ std::vector<Compared> peaks_of(const RunResult& result, const std::vector<std::s
 }
 
 /// What a number of the verdict is a part of.
-double least_of(const VerdictNumber& number, const std::vector<VerdictNumber>& same, const InterfaceVerdict* of, const RunResult& run) {
+double least_of_number(const VerdictNumber& number, const std::vector<VerdictNumber>& same, const InterfaceVerdict* of,
+                       const RunResult& run) {
   const VerdictQuantity& quantity = *number.quantity;
   const auto value_of = [&](const char* name) {
     const VerdictNumber* found = find_number(same, name);
@@ -54,7 +55,7 @@ std::vector<Compared> numbers_of_verdict(const BuiltCase& built, const RunResult
     const std::string behind = of && numbers.interfaces.size() > 1 ? " of " + of->name : "";
     for (const VerdictNumber& number : some)
       if (number.quantity->name != "max_penetration" && std::isfinite(number.value))
-        made.push_back({std::string(number.quantity->name) + behind, number.value, least_of(number, some, of, run)});
+        made.push_back({std::string(number.quantity->name) + behind, number.value, least_of_number(number, some, of, run)});
   };
   take(numbers.whole, nullptr);
   for (const InterfaceVerdict& each : numbers.interfaces) take(each.numbers, &each);

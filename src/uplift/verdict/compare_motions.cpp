@@ -16,7 +16,7 @@ namespace {
 using Quantity = MotionTable::Quantity;
 
 /// What is compared of a run, with its value.
-std::vector<std::pair<Quantity, double>> peaks_of(const RunSpec& spec, const BuiltCase& built, const RunResult& run) {
+std::vector<std::pair<Quantity, double>> quantity_peaks(const RunSpec& spec, const BuiltCase& built, const RunResult& run) {
   std::vector<std::pair<Quantity, double>> peaks;
   const std::vector<Quantity> all = motion_quantities();
   const auto add = [&](const char* key, double value) { peaks.emplace_back(*std::ranges::find(all, key, &Quantity::key), value); };
@@ -122,7 +122,7 @@ std::vector<MotionTable> motion_tables(const std::vector<RunSpec>& specs, const 
     if (spec.motion_label.empty()) continue;
     const std::pair key(spec.label, spec.damping);
     const auto place = std::ranges::find(keys, key) - keys.begin();
-    const auto peaks = peaks_of(spec, built[i], results[i]);
+    const auto peaks = quantity_peaks(spec, built[i], results[i]);
     if (place == std::ssize(keys)) {
       keys.push_back(key);
       MotionTable& made = tables.emplace_back();

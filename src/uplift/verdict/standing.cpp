@@ -42,7 +42,7 @@ bool counts(const InterfaceVerdict& said, const VerdictNumber& number) {
   return true;
 }
 
-void say(const InterfaceVerdict& said, const std::string& of, Verdict& verdict) {
+void say_standing(const InterfaceVerdict& said, const std::string& of, Verdict& verdict) {
   for (const Said& each : numbers) {
     const VerdictNumber* number = find_number(said.numbers, each.name);
     if (!number || !counts(said, *number)) continue;
@@ -69,7 +69,7 @@ Verdict judge_standing(const BuiltCase& built, const RunResult& run) {
                                          : "Under its constant loads the base is in full contact";
   const bool several = verdict.numbers.bases() > 1;
   for (const InterfaceVerdict& said : verdict.numbers.interfaces)
-    say(said, several || said.role == Role::wall ? " of " + said.name : "", verdict);
+    say_standing(said, several || said.role == Role::wall ? " of " + said.name : "", verdict);
   verdict.paragraphs.push_back("The case has static stages alone: all numbers are those of the state at their end, not of an earthquake.");
   for (const std::string& note : run.notes) verdict.paragraphs.push_back(note);
   return verdict;

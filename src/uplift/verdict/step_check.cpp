@@ -10,7 +10,7 @@
 namespace uplift {
 namespace {
 
-constexpr double least_share = 0.1;                            // of an area, and of an inverse safety: below it a change is no matter
+constexpr double least_share_of_change = 0.1;                  // of an area, and of an inverse safety: below it a change is no matter
 constexpr double least_motion = 0.05;                          // of the largest motion
 constexpr double steps_per_period = 20, least_spectrum = 0.1;  // of floor spectra; least value beside their peak
 constexpr double least_eccentricity = 0.01;                    // of the width
@@ -48,9 +48,9 @@ bool decides(const VerdictQuantity& quantity) {
 double reference(const VerdictNumber& number, double other, const Scale& scale) {
   const VerdictQuantity& quantity = *number.quantity;
   const double size = std::max({std::abs(number.value), std::abs(other), number.least, nothing_beside(quantity.unit)});
-  if (quantity.name.starts_with("change_of")) return std::max(1 + std::max(number.value, other), least_share);
+  if (quantity.name.starts_with("change_of")) return std::max(1 + std::max(number.value, other), least_share_of_change);
   if (quantity.name == "residual_uplifted_ratio") return 1;  // gaps of micrometres count: beside the whole area
-  if (is_share(quantity)) return std::max(size, least_share);
+  if (is_share(quantity)) return std::max(size, least_share_of_change);
   if (quantity.name == "min_compression") return std::max(size, scale.compression);
   if (quantity.name.starts_with("max_eccentricity")) return std::max(size, least_eccentricity);
   if (quantity.name.starts_with("residual"))
@@ -62,13 +62,13 @@ double change_of_step(const VerdictNumber& number, double other, const Scale& sc
   if (is_safety(*number.quantity)) {
     const double here = 1 / number.value, there = 1 / other;
     if (number.value == other) return 0;
-    return std::abs(here - there) / std::max({std::abs(here), std::abs(there), least_share});
+    return std::abs(here - there) / std::max({std::abs(here), std::abs(there), least_share_of_change});
   }
   return number.value == other ? 0 : std::abs(number.value - other) / reference(number, other, scale);  // of two zeros too
 }
 
 /// Noise in both runs.
-bool is_noise(const VerdictNumber& number) {
+bool is_noise_in_both(const VerdictNumber& number) {
   return number.coarse && number.least > 0 && std::max(std::abs(number.value), std::abs(*number.coarse)) <= number.least;
 }
 
@@ -86,13 +86,13 @@ double least_acceleration(const BuiltCase& built, const RunResult& run) {
 }
 
 /// Compares the numbers of one table; keeps the one that changes most.
-void compare(std::vector<VerdictNumber>& numbers, const std::vector<VerdictNumber>& coarse, const std::string& of, const Scale& scale,
-             StepCheck& check) {
+void compare_numbers(std::vector<VerdictNumber>& numbers, const std::vector<VerdictNumber>& coarse, const std::string& of,
+                     const Scale& scale, StepCheck& check) {
   for (VerdictNumber& number : numbers) {
     const VerdictNumber* other = find_number(coarse, number.quantity->name);
     if (!other || !std::isfinite(number.value) || !std::isfinite(other->value)) continue;
     number.coarse = other->value;
-    if (!decides(*number.quantity) || is_noise(number)) continue;
+    if (!decides(*number.quantity) || is_noise_in_both(number)) continue;
     number.step_change = change_of_step(number, other->value, scale);
     if (*number.step_change > check.largest) check.largest = *number.step_change, check.quantity = number.quantity, check.of = of;
   }
@@ -138,7 +138,7 @@ constexpr std::pair<std::string_view, OfInstant> forces_of_a_base[] = {
     {"max_toe_pressure", [](const Instant& now) { return now.pressure; }}};
 
 /// A force on a base over time.
-struct History {
+struct StepHistory {
   const StepRecord& steps;
   std::size_t interface;
   OfInstant of;
@@ -168,15 +168,15 @@ std::string_view to_string(StepCheck::State state) {
 
 void compare_steps(VerdictNumbers& numbers, const VerdictNumbers& coarse, StepCheck& check) {
   const Scale scale = scale_of(numbers);
-  compare(numbers.whole, coarse.whole, "", scale, check);
+  compare_numbers(numbers.whole, coarse.whole, "", scale, check);
   for (InterfaceVerdict& said : numbers.interfaces) {
     Scale here = scale;
     const double width = std::max(said.width[0], said.width[1]);
     here.rotation = width > 0 ? value_or(said.numbers, "max_opening", 0) / width : 0;
     here.compression = value_or(said.numbers, "max_compression", 0);
-    compare(said.numbers, numbers_named(coarse.interfaces, said.name), said.name, here, check);
+    compare_numbers(said.numbers, numbers_named(coarse.interfaces, said.name), said.name, here, check);
   }
-  for (BeamVerdict& beam : numbers.beams) compare(beam.numbers, numbers_named(coarse.beams, beam.name), beam.name, scale, check);
+  for (BeamVerdict& beam : numbers.beams) compare_numbers(beam.numbers, numbers_named(coarse.beams, beam.name), beam.name, scale, check);
   judge(check);
 }
 
@@ -204,7 +204,7 @@ void compare_parts(const StepRecord& steps, const StepRecord& coarse, const Verd
     for (const auto& [name, of] : forces_of_a_base) {
       const VerdictNumber* number = find_number(numbers.interfaces[k].numbers, name);
       if (!number || !number->coarse || !(number->value > number->least)) continue;
-      const History fine{steps, k, of}, other{coarse, k, of};
+      const StepHistory fine{steps, k, of}, other{coarse, k, of};
       const double peak = std::max(number->value, *number->coarse), length = (steps.time.back() - steps.time.front()) / parts_of_time;
       for (int i = 0; i < parts_of_time; ++i) {
         const double from = steps.time.front() + i * length, to = from + length, beside = length / 10;
@@ -265,7 +265,7 @@ std::string StepCheck::why_not(const std::string& steps) const {
 }
 
 std::string format_step_change(const VerdictNumber& number) {
-  if (!number.coarse || is_noise(number)) return "";
+  if (!number.coarse || is_noise_in_both(number)) return "";
   const VerdictQuantity& quantity = *number.quantity;
   const double difference = std::abs(*number.coarse - number.value);
   if (is_share(quantity)) return difference < 0.0005 ? "< 0.1 points" : fmt::format("\u00b1{:.2g} points", 100 * difference);

@@ -225,14 +225,14 @@ void say_radiation(const BuiltCase& built, Verdict& verdict) {
 }
 
 /// What is noise beside the excitation, or nothing beside the precision of a run.
-bool is_noise(const VerdictNumber& number) {
+bool is_negligible(const VerdictNumber& number) {
   return std::abs(number.value) <= std::max(number.least, nothing_beside(number.quantity->unit));
 }
 
 void say_top(Verdict& verdict) {
   const auto fact = [&](const char* name, const char* label, const std::string& detail, bool tile) {
     const VerdictNumber* number = find_number(verdict.numbers.whole, name);
-    if (!number || is_noise(*number)) return;
+    if (!number || is_negligible(*number)) return;
     const std::string change = number->change ? compared(*number) + ", " : "";
     verdict.facts.push_back({label, text_of(*number), change + detail + at(*number), tile, format_step_change(*number)});
   };

@@ -7,7 +7,7 @@
 #include "uplift/base/declare.h"
 #include "uplift/io/text/toml.h"
 
-namespace uplift {
+namespace uplift::check_test {
 namespace {
 
 Values read(std::string_view text) {
@@ -283,4 +283,4 @@ TEST(Declare, ModifiersReplaceEachOther) {
 }
 
 }  // namespace
-}  // namespace uplift
+}  // namespace uplift::check_test

@@ -8,7 +8,7 @@
 #include "uplift/case/schema/sections.h"
 
 // The declarations themselves, that of the whole case file with all its parts among them: what the type system does not check.
-namespace uplift {
+namespace uplift::declarations_test {
 namespace {
 
 class Inspector {
@@ -104,4 +104,4 @@ TEST(Declarations, TheInspectorFindsFaults) {
 }
 
 }  // namespace
-}  // namespace uplift
+}  // namespace uplift::declarations_test

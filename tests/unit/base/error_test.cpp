@@ -4,7 +4,7 @@
 
 #include "uplift/base/text.h"
 
-namespace uplift {
+namespace uplift::error_test {
 namespace {
 
 std::string text_of(const InputError& error) {
@@ -93,4 +93,4 @@ TEST(Text, Lists) {
 }
 
 }  // namespace
-}  // namespace uplift
+}  // namespace uplift::error_test

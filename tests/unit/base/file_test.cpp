@@ -12,7 +12,7 @@
 
 #include "uplift/base/error.h"
 
-namespace uplift {
+namespace uplift::file_test {
 namespace {
 
 namespace fs = std::filesystem;
@@ -123,4 +123,4 @@ TEST(Sha256, LengthsAroundABlock) {
 }
 
 }  // namespace
-}  // namespace uplift
+}  // namespace uplift::file_test

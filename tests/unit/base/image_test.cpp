@@ -10,7 +10,7 @@
 
 #include "uplift/base/file.h"
 
-namespace uplift {
+namespace uplift::image_test {
 namespace {
 
 /// An image as it stands in memory: a segment with two notes, the second of which is the build id, and one with data.
@@ -83,4 +83,4 @@ TEST(Image, LibrariesAreNamedWithTheirIds) {
 }
 
 }  // namespace
-}  // namespace uplift
+}  // namespace uplift::image_test

@@ -8,7 +8,7 @@
 #include "unit/base/declaration_sample.h"
 #include "uplift/base/file.h"
 
-namespace uplift {
+namespace uplift::schema_test {
 namespace {
 
 using Json = nlohmann::json;
@@ -96,4 +96,4 @@ TEST(Schema, AnIndependentValidatorAgrees) {
 }
 
 }  // namespace
-}  // namespace uplift
+}  // namespace uplift::schema_test

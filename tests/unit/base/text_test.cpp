@@ -2,7 +2,7 @@
 
 #include <gtest/gtest.h>
 
-namespace uplift {
+namespace uplift::text_test {
 namespace {
 
 TEST(Text, BytesAreSpoken) {
@@ -14,4 +14,4 @@ TEST(Text, BytesAreSpoken) {
 }
 
 }  // namespace
-}  // namespace uplift
+}  // namespace uplift::text_test

@@ -7,7 +7,7 @@
 #include "unit/base/declaration_sample.h"
 #include "uplift/io/text/toml.h"
 
-namespace uplift {
+namespace uplift::to_toml_test {
 namespace {
 
 Values read(const std::string& text) {
@@ -134,4 +134,4 @@ TEST(ToToml, APartAlone) {
 }
 
 }  // namespace
-}  // namespace uplift
+}  // namespace uplift::to_toml_test

@@ -8,7 +8,7 @@
 #include <thread>
 #include <vector>
 
-namespace uplift {
+namespace uplift::units_test {
 namespace {
 
 double si(std::string_view text, std::string_view unit) {
@@ -197,4 +197,4 @@ TEST(Units, ManyThreadsMayAsk) {
 }
 
 }  // namespace
-}  // namespace uplift
+}  // namespace uplift::units_test

@@ -9,7 +9,7 @@
 #include "uplift/mesh/box.h"
 #include "uplift/model/hinges.h"
 
-namespace uplift {
+namespace uplift::beam_group_test {
 namespace {
 
 /// Adds a group of lines of one type between nodes.
@@ -444,4 +444,4 @@ TEST(CaseBeamGroup, DrawnLinesHoldTheirInnerNodes) {
 }
 
 }  // namespace
-}  // namespace uplift
+}  // namespace uplift::beam_group_test

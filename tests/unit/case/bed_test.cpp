@@ -10,7 +10,7 @@
 #include "uplift/laws/soil_bed.h"
 #include "uplift/model/damping.h"
 
-namespace uplift {
+namespace uplift::bed_test {
 namespace {
 
 using support::replaced;
@@ -233,4 +233,4 @@ TEST(Bed, RefusesWhatItCannotBe) {
 }
 
 }  // namespace
-}  // namespace uplift
+}  // namespace uplift::bed_test

@@ -16,7 +16,7 @@
 #include "uplift/model/builder.h"
 #include "uplift/verdict/verdict.h"
 
-namespace uplift {
+namespace uplift::case_test {
 namespace {
 
 const std::string base_text =
@@ -264,4 +264,4 @@ TEST(Case, EveryKeyOfTheDeclarationHasAMeaning) {
 }
 
 }  // namespace
-}  // namespace uplift
+}  // namespace uplift::case_test

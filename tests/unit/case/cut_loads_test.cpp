@@ -5,7 +5,7 @@
 #include "unit/case/cut_support.h"
 
 // Loads on the surface that the ground has in the plane of a cut, beside what stands on it.
-namespace uplift {
+namespace uplift::cut_loads_test {
 namespace {
 
 using namespace support;
@@ -143,4 +143,4 @@ TEST(CutLoads, NamesAreSaidToBeWrongAtTheirLine) {
 }
 
 }  // namespace
-}  // namespace uplift
+}  // namespace uplift::cut_loads_test

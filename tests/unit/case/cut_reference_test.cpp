@@ -11,7 +11,7 @@
 
 // Cut interfaces against reference values that were computed outside of this program: a bar with a cracking joint (closed form), a rigid
 // block on tensionless springs, a raft on a block of soil.
-namespace uplift {
+namespace uplift::cut_reference_test {
 namespace {
 
 using namespace support;
@@ -196,4 +196,4 @@ TEST(CutReference, RaftOnABlockOfSoil) {
 }
 
 }  // namespace
-}  // namespace uplift
+}  // namespace uplift::cut_reference_test

@@ -12,7 +12,7 @@
 #include "uplift/mesh/box.h"
 
 // Interfaces on planes that the mesh ignores: against closed forms, and against the aligned joint.
-namespace uplift {
+namespace uplift::cut_test {
 namespace {
 
 using namespace support;
@@ -414,4 +414,4 @@ TEST(CutCase, RefusesWithFileAndKey) {
 }
 
 }  // namespace
-}  // namespace uplift
+}  // namespace uplift::cut_test

@@ -4,7 +4,7 @@
 #include "tower_case.h"
 #include "unit/case/record_support.h"
 
-namespace uplift {
+namespace uplift::doubtful_input_test {
 namespace {
 
 using support::Tower;
@@ -102,4 +102,4 @@ TEST(DoubtfulInput, AStageHasAtMostATrillionSteps) {
 }
 
 }  // namespace
-}  // namespace uplift
+}  // namespace uplift::doubtful_input_test

@@ -12,7 +12,7 @@
 
 // Constant and rigid jumps in cut cells: against the element-condensed discontinuity of the literature, written down here from its own
 // equations, and its locking (docs/theory/element_jumps.md).
-namespace uplift {
+namespace uplift::element_jump_test {
 namespace {
 
 using namespace support;
@@ -265,4 +265,4 @@ TEST(ElementJump, IsRefusedWhereItMeansNothing) {
 }
 
 }  // namespace
-}  // namespace uplift
+}  // namespace uplift::element_jump_test

@@ -15,7 +15,7 @@
 #include "uplift/mesh/box.h"
 #include "uplift/model/hinges.h"
 
-namespace uplift {
+namespace uplift::failures_test {
 namespace {
 
 Case read_text(const std::string& text, const Mesh& mesh = {}) {
@@ -255,4 +255,4 @@ TEST(EmbeddedBeams, ARigidPlateClampsThemAndPilesNeedNone) {
 }
 
 }  // namespace
-}  // namespace uplift
+}  // namespace uplift::failures_test

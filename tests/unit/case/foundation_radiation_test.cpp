@@ -15,7 +15,7 @@
 #include "uplift/verdict/motion.h"
 #include "uplift/verdict/verdict.h"
 
-namespace uplift {
+namespace uplift::foundation_radiation_test {
 namespace {
 
 using Column = Request::Kind;
@@ -348,4 +348,4 @@ TEST(FoundationRadiation, PeaksConvergeWithTheStep) {
 }
 
 }  // namespace
-}  // namespace uplift
+}  // namespace uplift::foundation_radiation_test

@@ -12,7 +12,7 @@
 #include "uplift/laws/foundation.h"
 #include "uplift/verdict/verdict.h"
 
-namespace uplift {
+namespace uplift::foundation_soil_test {
 namespace {
 
 using support::refusal_of;
@@ -290,4 +290,4 @@ TEST(FoundationSoil, WhatTheFormulasDoNotKnowIsRefused) {
 }
 
 }  // namespace
-}  // namespace uplift
+}  // namespace uplift::foundation_soil_test

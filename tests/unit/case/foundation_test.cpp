@@ -11,7 +11,7 @@
 #include "uplift/run/run_state.h"
 #include "uplift/verdict/verdict.h"
 
-namespace uplift {
+namespace uplift::foundation_test {
 namespace {
 
 using support::Ran;
@@ -431,4 +431,4 @@ TEST(Foundation, MistakesAreRefused) {
 }
 
 }  // namespace
-}  // namespace uplift
+}  // namespace uplift::foundation_test

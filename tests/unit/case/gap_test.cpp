@@ -9,7 +9,7 @@
 #include "uplift/mesh/box.h"
 
 // Initial gaps from the geometry and from tables.
-namespace uplift {
+namespace uplift::gap_test {
 namespace {
 
 BuiltCase built_of(const std::string& text, const Mesh& mesh = {}) {
@@ -168,4 +168,4 @@ TEST(InitialGap, ThatMakesNoSenseIsRefused) {
 }
 
 }  // namespace
-}  // namespace uplift
+}  // namespace uplift::gap_test

@@ -12,7 +12,7 @@
 
 // The ground beside the model: supports that hold at rest alone, tied sides, free field. Against closed forms of plane waves and by what
 // must be the same.
-namespace uplift {
+namespace uplift::ground_test {
 namespace {
 
 constexpr double width = 12, depth = 8;  // m
@@ -396,4 +396,4 @@ TEST(CaseGround, TiesNeedAnOppositeSide) {
 }
 
 }  // namespace
-}  // namespace uplift
+}  // namespace uplift::ground_test

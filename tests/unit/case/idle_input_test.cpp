@@ -5,7 +5,7 @@
 #include "unit/verdict/verdict_support.h"
 #include "uplift/verdict/verdict.h"
 
-namespace uplift {
+namespace uplift::idle_input_test {
 namespace {
 
 const std::string footing =
@@ -111,4 +111,4 @@ TEST(IdleInput, AStepCheckThatIsNotMadeSaysWhy) {
 }
 
 }  // namespace
-}  // namespace uplift
+}  // namespace uplift::idle_input_test

@@ -9,7 +9,7 @@
 #include "uplift/mesh/box.h"
 
 // Initial velocities and displacements of groups of the mesh.
-namespace uplift {
+namespace uplift::initial_test {
 namespace {
 
 constexpr double width = 2, height = 3, density = 2000, mass = density * width * height;  // m, kg/m3, kg per metre
@@ -135,4 +135,4 @@ TEST(InitialVelocity, OfManyNodesOfARigidBodyAndTheSoilTakesNoTime) {
 }
 
 }  // namespace
-}  // namespace uplift
+}  // namespace uplift::initial_test

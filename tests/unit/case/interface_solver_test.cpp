@@ -7,7 +7,7 @@
 #include "uplift/io/text/toml.h"
 
 // `interface_solver` of a case: by which way the linear problems of an interface are solved must not show in the results.
-namespace uplift {
+namespace uplift::interface_solver_test {
 namespace {
 
 /// A raft on soil, in the plane or in space, that a pulse rocks, lifts and shoves.
@@ -108,4 +108,4 @@ TEST(InterfaceSolver, DoesNotShowInTheResults) {
 }
 
 }  // namespace
-}  // namespace uplift
+}  // namespace uplift::interface_solver_test

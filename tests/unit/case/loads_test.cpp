@@ -10,7 +10,7 @@
 #include "uplift/mesh/box.h"
 
 // Pressures and tractions on surfaces of the mesh against integrals and closed forms.
-namespace uplift {
+namespace uplift::loads_test {
 namespace {
 
 const std::string solid =
@@ -214,4 +214,4 @@ TEST(CaseLoads, PressureThatMakesNoSenseIsRefused) {
 }
 
 }  // namespace
-}  // namespace uplift
+}  // namespace uplift::loads_test

@@ -15,7 +15,7 @@
 #include "uplift/model/builder.h"
 
 // Cases with a mesh: against closed forms, and against the same mesh without an interface.
-namespace uplift {
+namespace uplift::mesh_test {
 namespace {
 
 constexpr double depth = 6, height = 4;  // m
@@ -366,4 +366,4 @@ TEST(CaseMesh, ExchangedSidesAreWarnedOf) {
 }
 
 }  // namespace
-}  // namespace uplift
+}  // namespace uplift::mesh_test

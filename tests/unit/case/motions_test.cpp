@@ -7,7 +7,7 @@
 #include "uplift/verdict/compare_motions.h"
 
 // `uplift compare` over motions, and what the results say of them.
-namespace uplift {
+namespace uplift::motions_test {
 namespace {
 
 const std::string third = R"([[record]]
@@ -214,4 +214,4 @@ TEST_F(MotionCase, SaysWhereTheMotionsComeFrom) {
 }
 
 }  // namespace
-}  // namespace uplift
+}  // namespace uplift::motions_test

@@ -5,7 +5,7 @@
 
 // Records that time_load a case: what they give to each use, against sums over their points; the moving frame against the absolute one;
 // errors.
-namespace uplift {
+namespace uplift::record_test {
 namespace {
 
 std::string absolute_frame() {
@@ -320,4 +320,4 @@ TEST_F(RecordCase, RefusesRecordsFromNowhereAndFromTwoPlaces) {
 }
 
 }  // namespace
-}  // namespace uplift
+}  // namespace uplift::record_test

@@ -11,7 +11,7 @@
 #include "uplift/io/text/toml.h"
 #include "uplift/mesh/box.h"
 
-namespace uplift {
+namespace uplift::space_test {
 namespace {
 
 constexpr const char* tower = R"(title = "tower"
@@ -189,4 +189,4 @@ TEST(SpaceCase, AResolvedCaseIsTheSameCase) {
 }
 
 }  // namespace
-}  // namespace uplift
+}  // namespace uplift::space_test

@@ -8,7 +8,7 @@
 #include "uplift/io/text/toml.h"
 #include "uplift/verdict/result_warnings.h"
 
-namespace uplift {
+namespace uplift::warnings_test {
 namespace {
 
 /// Sum of sines of 2 Hz and 8 Hz with these amplitudes, over whole periods.
@@ -134,4 +134,4 @@ TEST(ResultWarnings, LatePeaks) {
 }
 
 }  // namespace
-}  // namespace uplift
+}  // namespace uplift::warnings_test

@@ -9,7 +9,7 @@
 #include "uplift/mesh/box.h"
 
 // Water pressure in the joint under a base.
-namespace uplift {
+namespace uplift::water_test {
 namespace {
 
 constexpr double width = 10, weight = 3e6, unit_weight = 9810;  // m, N, N/m3
@@ -183,4 +183,4 @@ TEST(WaterUnderABase, ThatLiftsTheStructureIsReported) {
 }
 
 }  // namespace
-}  // namespace uplift
+}  // namespace uplift::water_test

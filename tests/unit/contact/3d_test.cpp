@@ -6,7 +6,7 @@
 #include "uplift/contact/newton/newton.h"
 
 // Contact of surfaces: three components a point, (t1, t2, n).
-namespace uplift::contact_test {
+namespace uplift::contact_test::three_dimensions_test {
 namespace {
 
 const std::vector<std::string> all_methods = {"newton", "penalty", "augmented_lagrangian", "lagrange"};
@@ -247,4 +247,4 @@ TEST(Surface, what_is_kept_does_not_show) {
 }
 
 }  // namespace
-}  // namespace uplift::contact_test
+}  // namespace uplift::contact_test::three_dimensions_test

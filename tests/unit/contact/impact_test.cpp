@@ -3,7 +3,7 @@
 #include "unit/contact/contact_support.h"
 
 // Impact rules on systems small enough to be written down here: a bar on a wall and a rocking block.
-namespace uplift::contact_test {
+namespace uplift::contact_test::impact_test {
 namespace {
 
 // ---- the bar on a rigid wall: E = 900, rho = 1, A = 1, L = 10, v0 = -10, gap 1, lumped mass, trapezoidal rule, dt = h/c ----
@@ -335,4 +335,4 @@ TEST(Impact, catalog_and_idle) {
 }
 
 }  // namespace
-}  // namespace uplift::contact_test
+}  // namespace uplift::contact_test::impact_test

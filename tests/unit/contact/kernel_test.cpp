@@ -5,7 +5,7 @@
 #include "unit/contact/contact_support.h"
 
 // The small quadratic problem of contact and impact: rank, sets, fallback.
-namespace uplift::contact_test {
+namespace uplift::contact_test::kernel_test {
 namespace {
 
 struct Solved {
@@ -157,4 +157,4 @@ TEST(Kernel, visited_sets) {
 }
 
 }  // namespace
-}  // namespace uplift::contact_test
+}  // namespace uplift::contact_test::kernel_test

@@ -3,7 +3,7 @@
 #include "unit/contact/contact_support.h"
 
 // The Lagrange method on problems whose answer can be written down.
-namespace uplift::contact_test {
+namespace uplift::contact_test::lagrange_test {
 namespace {
 
 // A spring against a wall: k = 4e6, P = 2e5 towards a wall at 0.01: u = 0.01, lambda = 1.6e5.
@@ -402,4 +402,4 @@ TEST(Lagrange, solution_is_reusable) {
 }
 
 }  // namespace
-}  // namespace uplift::contact_test
+}  // namespace uplift::contact_test::lagrange_test

@@ -6,7 +6,7 @@
 #include "unit/contact/contact_support.h"
 
 // A method that knows no other one: what a run needs of a path-averaging method are its results alone, and its work space stays its own.
-namespace uplift::contact_test {
+namespace uplift::contact_test::own_method_test {
 namespace {
 
 /// Repeats z = -C^T p(opening), which contracts where the joint is soft compared with the compliance of the step.
@@ -120,4 +120,4 @@ TEST(ContactModel, HasAVersionOfItsOwn) {
 }
 
 }  // namespace
-}  // namespace uplift::contact_test
+}  // namespace uplift::contact_test::own_method_test

@@ -11,7 +11,7 @@
 #include "unit/contact/contact_support.h"
 
 // The interface problem as a plain object: the contact_residual, the file, and every method on every stored problem.
-namespace uplift::contact_test {
+namespace uplift::contact_test::problem_test {
 namespace {
 
 // ---- the contact_residual ----
@@ -295,4 +295,4 @@ TEST(StoredProblems, repeating_status_is_reported) {
 }
 
 }  // namespace
-}  // namespace uplift::contact_test
+}  // namespace uplift::contact_test::problem_test

@@ -1,7 +1,7 @@
 #include "unit/contact/contact_support.h"
 
 // How the augmented Lagrangian shares a force among redundant points: as the multipliers do, with the least sum p^2/area.
-namespace uplift::contact_test {
+namespace uplift::contact_test::redundant_pressures_test {
 namespace {
 
 /// A rigid footing (u_y, theta, with two components u_x) that stays flat under a load W at x = e.
@@ -50,4 +50,4 @@ TEST(AugmentedLagrangian, PressuresUnderARigidBaseAreNaviers) {
 }
 
 }  // namespace
-}  // namespace uplift::contact_test
+}  // namespace uplift::contact_test::redundant_pressures_test

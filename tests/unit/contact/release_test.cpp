@@ -9,7 +9,7 @@
 // release creates energy, a closing destroys it,
 //     residual = sum over releases of lambda g_1 / 2 - sum over closings of lambda_1 g_0 / 2
 // The first sum is small as long as the step resolves the light mass, dt sqrt(k/m) < 1.
-namespace uplift::contact_test {
+namespace uplift::contact_test::release_test {
 namespace {
 
 constexpr double body = 1e4, pressed = 1e5, lift = 3.2e5, pulse = 0.05, duration = 0.3;
@@ -127,4 +127,4 @@ TEST(ReleaseOfALightMass, creates_energy_only_where_the_step_does_not_resolve_it
 }
 
 }  // namespace
-}  // namespace uplift::contact_test
+}  // namespace uplift::contact_test::release_test

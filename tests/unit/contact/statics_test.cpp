@@ -7,7 +7,7 @@
 
 // The static stage of a rigid block without structure: nothing but the contact holds it. Below the load that slides it or turns it over it
 // rests, by every method; beyond there is no equilibrium, and the stage says so.
-namespace uplift::contact_test {
+namespace uplift::contact_test::statics_test {
 namespace {
 
 constexpr double width = 2, weight = 1e5, friction = 0.4;
@@ -113,4 +113,4 @@ TEST(BlockAtRest, beyond_the_limit_there_is_no_equilibrium) {
 }
 
 }  // namespace
-}  // namespace uplift::contact_test
+}  // namespace uplift::contact_test::statics_test

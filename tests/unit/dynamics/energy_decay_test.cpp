@@ -8,7 +8,7 @@
 
 // The filtered scheme on a linear oscillator, written out for one unknown: M = 1, K = omega^2. Reference values: the closed forms for small
 // omega h and the double root -rho at infinite frequency.
-namespace uplift {
+namespace uplift::energy_decay_test {
 namespace {
 
 struct Motion {
@@ -74,4 +74,4 @@ TEST(SchemeEnergyDecay, IsTheTrapezoidalRuleForOne) {
 }
 
 }  // namespace
-}  // namespace uplift
+}  // namespace uplift::energy_decay_test

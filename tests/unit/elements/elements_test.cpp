@@ -2,7 +2,7 @@
 
 #include "unit/model/model_support.h"
 
-namespace uplift {
+namespace uplift::elements_test {
 namespace {
 
 struct Case {
@@ -182,4 +182,4 @@ TEST(Elements, SpringToGround) {
 }
 
 }  // namespace
-}  // namespace uplift
+}  // namespace uplift::elements_test

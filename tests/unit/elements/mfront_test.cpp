@@ -10,7 +10,7 @@
 #include "uplift/elements/bulk_laws/drucker_prager.h"
 #include "uplift/io/text/toml.h"
 
-namespace uplift {
+namespace uplift::mfront_test {
 namespace {
 
 const ElasticMaterial material{5e7, 0.3, 1900};
@@ -245,4 +245,4 @@ TEST(Mfront, RefusesParametersThatDoNotFit) {
 }
 
 }  // namespace
-}  // namespace uplift
+}  // namespace uplift::mfront_test

@@ -6,7 +6,7 @@
 #include "uplift/elements/absorbing.h"
 #include "uplift/math/dense.h"
 
-namespace uplift {
+namespace uplift::solid_absorbing_test {
 namespace {
 
 constexpr std::array<Cell, 7> faces{Cell::line2, Cell::line3, Cell::tri3, Cell::tri6, Cell::quad4, Cell::quad8, Cell::quad9};
@@ -144,4 +144,4 @@ TEST(SolidAbsorbing, WaveMotions) {
 }
 
 }  // namespace
-}  // namespace uplift
+}  // namespace uplift::solid_absorbing_test

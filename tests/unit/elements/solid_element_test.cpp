@@ -5,7 +5,7 @@
 #include "unit/elements/solid_support.h"
 #include "uplift/math/dense.h"
 
-namespace uplift {
+namespace uplift::solid_element_test {
 namespace {
 
 /// Symmetric strain of a displacement gradient, engineering shears.
@@ -269,4 +269,4 @@ TEST(SolidMaterial, RefusesWhatCannotBe) {
 }
 
 }  // namespace
-}  // namespace uplift
+}  // namespace uplift::solid_element_test

@@ -9,7 +9,7 @@
 #include "uplift/elements/bulk_laws/drucker_prager.h"
 #include "uplift/math/dense.h"
 
-namespace uplift {
+namespace uplift::solid_nonlinear_test {
 namespace {
 
 DruckerPragerParameters clay(double cohesion, double dilation) {
@@ -345,4 +345,4 @@ TEST(SolidNonlinear, APointWithoutStiffnessAtTheApexIsNoObstacle) {
 }
 
 }  // namespace
-}  // namespace uplift
+}  // namespace uplift::solid_nonlinear_test

@@ -10,7 +10,7 @@
 #include "uplift/elements/bulk_laws/drucker_prager.h"
 #include "uplift/math/dense.h"
 
-namespace uplift {
+namespace uplift::solid_plastic_test {
 namespace {
 
 using Fit = DruckerPragerParameters::Fit;
@@ -295,4 +295,4 @@ TEST(SolidPlastic, RefusesWhatCannotBe) {
 }
 
 }  // namespace
-}  // namespace uplift
+}  // namespace uplift::solid_plastic_test

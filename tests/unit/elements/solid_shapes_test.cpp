@@ -7,7 +7,7 @@
 #include "uplift/mesh/cell_quadrature.h"
 #include "uplift/mesh/cell_shapes.h"
 
-namespace uplift {
+namespace uplift::solid_shapes_test {
 namespace {
 
 Vec3 node_of(Cell cell, int a) {
@@ -217,4 +217,4 @@ TEST(SolidQuadrature, NodalRulesHaveTheirDegree) {
 }
 
 }  // namespace
-}  // namespace uplift
+}  // namespace uplift::solid_shapes_test

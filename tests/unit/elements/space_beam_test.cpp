@@ -12,7 +12,7 @@
 
 #include "uplift/math/dense.h"
 
-namespace uplift {
+namespace uplift::space_beam_test {
 namespace {
 
 using std::numbers::pi;
@@ -363,4 +363,4 @@ TEST_P(SpaceBeams, EulerLoadOfACantilever) {
 }
 
 }  // namespace
-}  // namespace uplift
+}  // namespace uplift::space_beam_test

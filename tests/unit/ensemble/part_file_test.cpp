@@ -9,7 +9,7 @@
 #include "uplift/ensemble/store.h"
 
 // Parts of a study: what a line keeps, and which of several lines counts.
-namespace uplift {
+namespace uplift::part_file_test {
 namespace {
 
 StudyResult result(const std::string& id, StudyOutcome outcome = StudyOutcome::completed, long attempt = 1) {
@@ -112,4 +112,4 @@ TEST_F(Store, ForgottenRunsKeepTheirAttempts) {
 }
 
 }  // namespace
-}  // namespace uplift
+}  // namespace uplift::part_file_test

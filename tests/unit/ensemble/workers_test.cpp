@@ -10,7 +10,7 @@
 #include "uplift/linear/solver.h"
 
 // Workers: every run has one result or is lost with its worker, and a worker that has ended is replaced.
-namespace uplift {
+namespace uplift::workers_test {
 namespace {
 
 using Done = std::function<void(const StudyResult&)>;
@@ -134,4 +134,4 @@ TEST(WorkerPool, AWorkerThatDoesNotComeBackIsEnded) {
 }
 
 }  // namespace
-}  // namespace uplift
+}  // namespace uplift::workers_test

@@ -13,7 +13,7 @@
 #include "uplift/mesh/soil_box.h"
 
 // Joint points on opened surfaces of plane and space meshes of every cell type.
-namespace uplift {
+namespace uplift::face_joint_space_test {
 namespace {
 
 using support::mesh_file;
@@ -352,4 +352,4 @@ TEST(FaceJointSpace, SurfacesThatEndInsideHaveNoPointsAtTheirRim) {
 }
 
 }  // namespace
-}  // namespace uplift
+}  // namespace uplift::face_joint_space_test

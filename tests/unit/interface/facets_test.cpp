@@ -8,7 +8,7 @@
 #include "unit/mesh/split_support.h"
 
 // Shares of the area of an interface on which a quantity is positive. References: lengths and polygons cut by hand.
-namespace uplift {
+namespace uplift::facets_test {
 namespace {
 
 using support::mesh_file;
@@ -180,4 +180,4 @@ TEST(FaceNumbers, AlongAnOpenedRaft) {
 }
 
 }  // namespace
-}  // namespace uplift
+}  // namespace uplift::facets_test

@@ -5,7 +5,7 @@
 #include "uplift/math/quadrature.h"
 #include "uplift/math/shapes.h"
 
-namespace uplift {
+namespace uplift::interface_test {
 namespace {
 
 using support::here;
@@ -205,4 +205,4 @@ TEST(Interface, UpliftedRatioCountsByGap) {
 }
 
 }  // namespace
-}  // namespace uplift
+}  // namespace uplift::interface_test

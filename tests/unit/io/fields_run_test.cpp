@@ -10,7 +10,7 @@
 #include "uplift/io/text/toml.h"
 
 // Fields of runs, read back from HDF5 and judged by the states that an observer of the test's own has seen.
-namespace uplift {
+namespace uplift::fields_run_test {
 namespace {
 
 namespace fs = std::filesystem;
@@ -419,4 +419,4 @@ TEST(FieldRun, ANumberThatIsNotFiniteIsNotedAndNotWritten) {
 }
 
 }  // namespace
-}  // namespace uplift
+}  // namespace uplift::fields_run_test

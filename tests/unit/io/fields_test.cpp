@@ -8,7 +8,7 @@
 #include "uplift/math/linalg.h"
 
 // Blocks of fields and VTU files: judged by what a reader finds in them, exact numbers and geometry in VTK's own convention.
-namespace uplift {
+namespace uplift::fields_test {
 namespace {
 
 using namespace fields_support;
@@ -250,4 +250,4 @@ TEST(Vtu, TypesOfSurfacesAndLines) {
 }
 
 }  // namespace
-}  // namespace uplift
+}  // namespace uplift::fields_test

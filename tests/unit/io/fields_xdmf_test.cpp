@@ -8,7 +8,7 @@
 #include "uplift/io/fields/fields.h"
 
 // XDMF files, and what both formats share: numbers that are refused, sizes, folders.
-namespace uplift {
+namespace uplift::fields_xdmf_test {
 namespace {
 
 using namespace fields_support;
@@ -199,4 +199,4 @@ TEST(Fields, DataFileOnTheDiskIsThatInMemory) {
 }
 
 }  // namespace
-}  // namespace uplift
+}  // namespace uplift::fields_xdmf_test

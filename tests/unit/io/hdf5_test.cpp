@@ -7,7 +7,7 @@
 #include <numeric>
 #include <vector>
 
-namespace uplift {
+namespace uplift::hdf5_test {
 namespace {
 
 /// Writes a file in memory and reads it back: whether all numbers are the same.
@@ -35,4 +35,4 @@ TEST(Hdf5, SeveralThreadsUseSeveralFiles) {
 }
 
 }  // namespace
-}  // namespace uplift
+}  // namespace uplift::hdf5_test

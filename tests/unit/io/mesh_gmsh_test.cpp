@@ -14,7 +14,7 @@
 #include "uplift/base/file.h"
 #include "uplift/io/mesh/gmsh.h"
 
-namespace uplift {
+namespace uplift::mesh_gmsh_test {
 namespace {
 
 using namespace sample;
@@ -419,4 +419,4 @@ RC_GTEST_PROP(Gmsh, DamagedFilesAreReadOrRefused, ()) {
 }
 
 }  // namespace
-}  // namespace uplift
+}  // namespace uplift::mesh_gmsh_test

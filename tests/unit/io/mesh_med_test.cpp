@@ -25,7 +25,7 @@ extern "C" const char* __lsan_default_suppressions() {
 }
 #endif
 
-namespace uplift {
+namespace uplift::mesh_med_test {
 namespace {
 
 using namespace sample;
@@ -541,4 +541,4 @@ TEST_F(MeshFileTest, WhatHdf5WriterWritesIsReadBack) {
 }
 
 }  // namespace
-}  // namespace uplift
+}  // namespace uplift::mesh_med_test

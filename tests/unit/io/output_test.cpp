@@ -19,7 +19,7 @@
 #include "uplift/io/text/json_writer.h"
 #include "uplift/io/text/numbers.h"
 
-namespace uplift {
+namespace uplift::output_test {
 namespace {
 
 std::string number(double value, int digits = 10) {
@@ -262,4 +262,4 @@ TEST(ReportPage, HoldsCompressedDataInPlaceOfThePlaceholder) {
 }
 
 }  // namespace
-}  // namespace uplift
+}  // namespace uplift::output_test

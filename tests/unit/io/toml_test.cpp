@@ -11,7 +11,7 @@
 #include "unit/base/declaration_sample.h"
 #include "uplift/base/file.h"
 
-namespace uplift {
+namespace uplift::toml_test {
 namespace {
 
 const RawTable& table_of(const Raw& raw) {
@@ -194,4 +194,4 @@ TEST(Toml, ReadsAFile) {
 }
 
 }  // namespace
-}  // namespace uplift
+}  // namespace uplift::toml_test

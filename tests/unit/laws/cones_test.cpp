@@ -6,7 +6,7 @@
 #include "unit/laws/laws_support.h"
 
 // The projections behind penalty and augmented Lagrangian, tension-positive.
-namespace uplift {
+namespace uplift::cones_test {
 using namespace law_test;
 namespace {
 
@@ -82,4 +82,4 @@ TEST(Cones, EveryProjectionIsIdempotentAndItsSlopeADerivative) {
 }
 
 }  // namespace
-}  // namespace uplift
+}  // namespace uplift::cones_test

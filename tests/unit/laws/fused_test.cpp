@@ -10,7 +10,7 @@
 
 // The pass that makes an iteration of Newton's method, against the separate passes over the same points; and steps solved with it and
 // without it.
-namespace uplift::law_test {
+namespace uplift::law_test::fused_test {
 namespace {
 
 struct Named {
@@ -168,4 +168,4 @@ TEST(FusedEvaluation, StepsAreThoseOfTheGeneralMethod) {
 }
 
 }  // namespace
-}  // namespace uplift::law_test
+}  // namespace uplift::law_test::fused_test

@@ -1,7 +1,7 @@
 // A footing that lands on an edge where any contact, however small, is pressed beyond its bearing capacity (eqs M23, M24).
 #include "macro_element_support.h"
 
-namespace uplift::macro_test {
+namespace uplift::macro_test::macro_element_landing_test {
 namespace {
 
 constexpr double width = 6, vertical = 6e8, rocking = 1.8e9, capacity = 8e6;
@@ -134,4 +134,4 @@ TEST(MacroLanding, EveryLandingHasAState) {
 }
 
 }  // namespace
-}  // namespace uplift::macro_test
+}  // namespace uplift::macro_test::macro_element_landing_test

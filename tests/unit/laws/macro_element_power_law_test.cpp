@@ -5,7 +5,7 @@
 
 // Bearing surfaces in powers of the vertical force (docs/theory/macro_element.md, eqs M17 to M22): against (F.1) of EN 1998-5 as it is
 // printed, closed forms of rocking under a constant vertical force and invariants of any path.
-namespace uplift {
+namespace uplift::macro_element_power_law_test {
 namespace {
 
 using namespace macro_test;
@@ -430,4 +430,4 @@ TEST(MacroPowerLaw, DiscHasNoDirection) {
 }
 
 }  // namespace
-}  // namespace uplift
+}  // namespace uplift::macro_element_power_law_test

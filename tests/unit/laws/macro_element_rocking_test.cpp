@@ -3,7 +3,7 @@
 
 // A rigid block on the macro-element, path-averaged: M (v_1 - v_0)/dt = f - mean, q_1 - q_0 = dt (v_0 + v_1)/2. The energy is then kept to
 // round-off at any step, whatever the foundation does.
-namespace uplift {
+namespace uplift::macro_element_rocking_test {
 namespace {
 
 using namespace macro_test;
@@ -138,4 +138,4 @@ TEST(MacroRocking, TheSameOnPowerLawGround) {
 }
 
 }  // namespace
-}  // namespace uplift
+}  // namespace uplift::macro_element_rocking_test

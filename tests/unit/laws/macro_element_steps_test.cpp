@@ -3,7 +3,7 @@
 #include "tests/unit/laws/macro_element_support.h"
 
 // Steps of the macro-element: energy balance, dissipation, slopes, units, symmetry, and inputs at the ends of its range.
-namespace uplift {
+namespace uplift::macro_element_steps_test {
 namespace {
 
 using namespace macro_test;
@@ -208,4 +208,4 @@ TEST(MacroSteps, EndsOfTheRange) {
 }
 
 }  // namespace
-}  // namespace uplift
+}  // namespace uplift::macro_element_steps_test

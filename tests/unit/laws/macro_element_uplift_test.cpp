@@ -3,7 +3,7 @@
 #include "tests/unit/laws/macro_element_support.h"
 
 // Uplift of the macro-element: closed forms, the tensionless Winkler strip, closed loops (docs/theory/macro_element.md).
-namespace uplift {
+namespace uplift::macro_element_uplift_test {
 namespace {
 
 using namespace macro_test;
@@ -147,4 +147,4 @@ TEST(MacroUplift, HomogeneousAndAPotential) {
 }
 
 }  // namespace
-}  // namespace uplift
+}  // namespace uplift::macro_element_uplift_test

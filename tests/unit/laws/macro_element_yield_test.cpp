@@ -2,7 +2,7 @@
 
 // Bearing capacity and sliding of the macro-element: code_aster's test SSNL201 (law FONDATION, associated flow), closed forms and an
 // independent explicit integration of set P1 (tests/data/reference/macro_cyclic.csv).
-namespace uplift {
+namespace uplift::macro_element_yield_test {
 namespace {
 
 using namespace macro_test;
@@ -174,4 +174,4 @@ TEST(MacroYield, SlidingAtConstantForceIsCoulomb) {
 }
 
 }  // namespace
-}  // namespace uplift
+}  // namespace uplift::macro_element_yield_test

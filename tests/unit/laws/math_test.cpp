@@ -6,7 +6,7 @@
 #include "uplift/math/lambert.h"
 
 // The functions of the softening laws, against extended precision.
-namespace uplift {
+namespace uplift::math_test {
 namespace {
 
 constexpr double ulp = 2.220446049250313e-16;
@@ -57,4 +57,4 @@ TEST(LambertRoot, IsTheRootBelowOne) {
 }
 
 }  // namespace
-}  // namespace uplift
+}  // namespace uplift::math_test

@@ -5,7 +5,7 @@
 #include "unit/laws/laws_support.h"
 
 // Springs, elastic and cohesive laws against closed forms.
-namespace uplift {
+namespace uplift::normal_test {
 using namespace law_test;
 namespace {
 
@@ -214,4 +214,4 @@ TEST(Cohesive, TinySofteningStepsLoseNoDigits) {
 }
 
 }  // namespace
-}  // namespace uplift
+}  // namespace uplift::normal_test

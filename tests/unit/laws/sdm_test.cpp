@@ -5,7 +5,7 @@
 #include "unit/laws/laws_support.h"
 
 // The SDM law where law_sdm_test.cpp of the verification has no case: no strength, no jump-back, initial openings, messages.
-namespace uplift {
+namespace uplift::sdm_test {
 using namespace law_test;
 namespace {
 
@@ -91,4 +91,4 @@ TEST(Catalog, HoldsEveryPartOnceAndWithoutTwins) {
 }
 
 }  // namespace
-}  // namespace uplift
+}  // namespace uplift::sdm_test

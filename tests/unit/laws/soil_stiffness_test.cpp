@@ -7,7 +7,7 @@
 #include <numbers>
 #include <random>
 
-namespace uplift {
+namespace uplift::soil_stiffness_test {
 namespace {
 
 using enum SoilMotion;
@@ -224,4 +224,4 @@ TEST(SoilStiffness, ScalesWithLengthAndModulus) {
 }
 
 }  // namespace
-}  // namespace uplift
+}  // namespace uplift::soil_stiffness_test

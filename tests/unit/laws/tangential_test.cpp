@@ -6,7 +6,7 @@
 #include "unit/laws/laws_support.h"
 
 // Tangential parts beside the normal laws.
-namespace uplift {
+namespace uplift::tangential_test {
 using namespace law_test;
 namespace {
 
@@ -222,4 +222,4 @@ TEST(CoulombShear, CohesionIsLostWithDamage) {
 }
 
 }  // namespace
-}  // namespace uplift
+}  // namespace uplift::tangential_test

@@ -9,7 +9,7 @@
 #include "uplift/dynamics/bulk.h"
 #include "uplift/math/dense.h"
 
-namespace uplift {
+namespace uplift::impulse_test {
 namespace {
 
 struct Corrected {
@@ -105,4 +105,4 @@ TEST(Impulse, SplitMassMatrixSpreadsAsTheDenseInverse) {
 }
 
 }  // namespace
-}  // namespace uplift
+}  // namespace uplift::impulse_test

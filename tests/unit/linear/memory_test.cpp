@@ -13,7 +13,7 @@
 #include "uplift/dynamics/bulk.h"
 #include "uplift/linear/rates.h"
 
-namespace uplift {
+namespace uplift::memory_test {
 namespace {
 
 /// Files of a system that is not this one.
@@ -149,4 +149,4 @@ TEST(MemoryDeathTest, FactorThatDoesNotFitIsRefused) {
 }
 
 }  // namespace
-}  // namespace uplift
+}  // namespace uplift::memory_test

@@ -9,7 +9,7 @@
 #include "uplift/linear/solver.h"
 #include "uplift/math/vibration.h"
 
-namespace uplift {
+namespace uplift::modes_test {
 namespace {
 
 using std::numbers::pi;
@@ -154,4 +154,4 @@ TEST(ModesOfMany, FewMassesOnAManyTimesLongerChain) {
 }
 
 }  // namespace
-}  // namespace uplift
+}  // namespace uplift::modes_test

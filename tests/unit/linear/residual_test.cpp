@@ -7,7 +7,7 @@
 #include "uplift/base/declare.h"
 #include "uplift/dynamics/bulk.h"
 
-namespace uplift {
+namespace uplift::residual_test {
 namespace {
 
 /// A chain to ground: every other spring is `contrast` times as stiff as its neighbours.
@@ -90,4 +90,4 @@ TEST(Residual, WrongFactorIsRefused) {
 }
 
 }  // namespace
-}  // namespace uplift
+}  // namespace uplift::residual_test

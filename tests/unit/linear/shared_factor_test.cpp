@@ -7,7 +7,7 @@
 
 #include "uplift/dynamics/bulk.h"
 
-namespace uplift {
+namespace uplift::shared_factor_test {
 namespace {
 
 /// Springs along a line of unknowns, with one to ground at every unknown, and a row of B at every tenth.
@@ -105,4 +105,4 @@ TEST(SharedFactor, AnalysesSideBySideGiveTheSameBits) {
 }
 
 }  // namespace
-}  // namespace uplift
+}  // namespace uplift::shared_factor_test

@@ -9,7 +9,7 @@
 #include "uplift/math/dense.h"
 #include "uplift/math/vibration.h"
 
-namespace uplift {
+namespace uplift::solvers_test {
 namespace {
 
 using std::numbers::pi;
@@ -297,4 +297,4 @@ TEST(Spread, RigidFootingNeedsThreeColumnsAndThreeSolves) {
 }
 
 }  // namespace
-}  // namespace uplift
+}  // namespace uplift::solvers_test

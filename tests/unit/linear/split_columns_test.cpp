@@ -7,7 +7,7 @@
 #include "samples/two_boxes.h"
 #include "uplift/dynamics/bulk.h"
 
-namespace uplift {
+namespace uplift::split_columns_test {
 namespace {
 
 /// The matrix of a step of 5 ms of a block on soil, and its factor with the unknowns under the block last.
@@ -91,4 +91,4 @@ TEST(SplitColumns, ZeroAndNone) {
 }
 
 }  // namespace
-}  // namespace uplift
+}  // namespace uplift::split_columns_test

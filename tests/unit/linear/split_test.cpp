@@ -8,7 +8,7 @@
 #include "uplift/linear/solver.h"
 #include "uplift/math/dense.h"
 
-namespace uplift {
+namespace uplift::split_test {
 namespace {
 
 /// Springs along random pairs, a weak one to ground on every unknown: positive definite. `pieces` groups are not connected to each other.
@@ -160,4 +160,4 @@ TEST(Refactorised, RefusesWhatDoesNotFit) {
 }
 
 }  // namespace
-}  // namespace uplift
+}  // namespace uplift::split_test

@@ -7,7 +7,7 @@
 
 // Loops over registers of points must be right for every number of points and every width of the registers. The width is that of the
 // processor for which the tests are compiled; for others: g++ -std=c++20 -Isrc -march=haswell (or x86-64) tests/unit/math_lanes_test.cpp
-namespace uplift {
+namespace uplift::lanes_test {
 namespace {
 
 std::vector<double> counted(std::ptrdiff_t n, double first) {
@@ -62,4 +62,4 @@ TEST(Lanes, AnyFindsEachOfThem) {
 }
 
 }  // namespace
-}  // namespace uplift
+}  // namespace uplift::lanes_test

@@ -4,7 +4,7 @@
 
 #include <random>
 
-namespace uplift {
+namespace uplift::symmetric_pair_test {
 namespace {
 
 Sparse symmetric(int size, int entries, std::mt19937& random) {
@@ -38,4 +38,4 @@ TEST(SymmetricPair, ProductsAreThoseOfTheFullMatrices) {
 }
 
 }  // namespace
-}  // namespace uplift
+}  // namespace uplift::symmetric_pair_test

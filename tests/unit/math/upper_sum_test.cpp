@@ -8,7 +8,7 @@
 #include <utility>
 #include <vector>
 
-namespace uplift {
+namespace uplift::upper_sum_test {
 namespace {
 
 TEST(UpperSum, IsTheUpperTriangleOfTheSumWithThePlacesOfAllTerms) {
@@ -79,4 +79,4 @@ TEST(WholeSum, HasAllPlacesOfMatricesThatAreNotSymmetric) {
 }
 
 }  // namespace
-}  // namespace uplift
+}  // namespace uplift::upper_sum_test

@@ -5,7 +5,7 @@
 
 #include "unit/mesh/mesh_support.h"
 
-namespace uplift {
+namespace uplift::cells_test {
 namespace {
 
 using support::area_of;
@@ -187,4 +187,4 @@ TEST(Cells, VolumeOfAWarpedBrick) {
 }
 
 }  // namespace
-}  // namespace uplift
+}  // namespace uplift::cells_test

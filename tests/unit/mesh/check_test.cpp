@@ -5,7 +5,7 @@
 #include "unit/mesh/mesh_support.h"
 #include "uplift/mesh/soil_box.h"
 
-namespace uplift {
+namespace uplift::check_test {
 namespace {
 
 using support::mesh_file;
@@ -95,4 +95,4 @@ TEST(Groups, NodesOfCellsAndOwn) {
 }
 
 }  // namespace
-}  // namespace uplift
+}  // namespace uplift::check_test

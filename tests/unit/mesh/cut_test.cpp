@@ -14,7 +14,7 @@
 #include "uplift/mesh/quality.h"
 
 // Cut cells against the geometry: volumes and first moments of both sides, nodes and groups.
-namespace uplift {
+namespace uplift::cut_test {
 namespace {
 
 std::vector<double> lines(int cells) {
@@ -335,4 +335,4 @@ TEST(Cut, RefusesWithASentence) {
 }
 
 }  // namespace
-}  // namespace uplift
+}  // namespace uplift::cut_test

@@ -8,7 +8,7 @@
 #include "unit/mesh/mesh_support.h"
 #include "uplift/io/mesh/gmsh.h"
 
-namespace uplift {
+namespace uplift::jacobian_test {
 namespace {
 
 using support::mesh_file;
@@ -119,4 +119,4 @@ TEST(Jacobian, TheCellIsNamedByItsNumberInTheFile) {
 }
 
 }  // namespace
-}  // namespace uplift
+}  // namespace uplift::jacobian_test

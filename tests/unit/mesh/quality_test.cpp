@@ -7,7 +7,7 @@
 #include "unit/mesh/mesh_support.h"
 #include "uplift/mesh/convert.h"
 
-namespace uplift {
+namespace uplift::quality_test {
 namespace {
 
 using namespace support;
@@ -130,4 +130,4 @@ TEST(Pieces, LooseParts) {
 }
 
 }  // namespace
-}  // namespace uplift
+}  // namespace uplift::quality_test

@@ -7,7 +7,7 @@
 #include "uplift/mesh/box.h"
 
 // Moving a mesh against a plane: what the mesh describes stays, and no cell turns inside out.
-namespace uplift {
+namespace uplift::shift_test {
 namespace {
 
 double volume(const Mesh& mesh) {
@@ -84,4 +84,4 @@ TEST(ShiftNodes, ThinCellsBesideFixedOnesKeepTheirShape) {
 }
 
 }  // namespace
-}  // namespace uplift
+}  // namespace uplift::shift_test

@@ -7,7 +7,7 @@
 
 #include "unit/mesh/mesh_support.h"
 
-namespace uplift {
+namespace uplift::soil_box_test {
 namespace {
 
 using namespace support;
@@ -212,4 +212,4 @@ TEST(SoilBoxModel, BadValuesAreNamed) {
 }
 
 }  // namespace
-}  // namespace uplift
+}  // namespace uplift::soil_box_test

@@ -3,7 +3,7 @@
 #include "unit/mesh/split_support.h"
 
 // What goes with which side, surfaces that touch themselves, requests that cannot be met.
-namespace uplift {
+namespace uplift::split_groups_test {
 namespace {
 
 using namespace support;
@@ -124,4 +124,4 @@ TEST(Split, WrongRequests) {
 }
 
 }  // namespace
-}  // namespace uplift
+}  // namespace uplift::split_groups_test

@@ -6,7 +6,7 @@
 #include "uplift/mesh/split.h"
 
 // Random surfaces in grids, judged by rules that need no mesh connectivity: which grid cells touch a place.
-namespace uplift {
+namespace uplift::split_random_test {
 namespace {
 
 using namespace support;
@@ -163,4 +163,4 @@ RC_GTEST_PROP(SplitRandom, PartsOfAPlane, ()) {
 }
 
 }  // namespace
-}  // namespace uplift
+}  // namespace uplift::split_random_test

@@ -5,7 +5,7 @@
 #include "unit/mesh/split_support.h"
 #include "uplift/mesh/soil_box.h"
 
-namespace uplift {
+namespace uplift::split_test {
 namespace {
 
 using namespace support;
@@ -229,4 +229,4 @@ TEST(Split, StripThenTheRest) {
 }
 
 }  // namespace
-}  // namespace uplift
+}  // namespace uplift::split_test

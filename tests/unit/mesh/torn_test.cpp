@@ -6,7 +6,7 @@
 #include "uplift/mesh/convert.h"
 
 // Cells side by side that share no nodes.
-namespace uplift {
+namespace uplift::torn_test {
 namespace {
 
 using namespace support;
@@ -60,4 +60,4 @@ TEST(Torn, OpenedSurfaces) {
 }
 
 }  // namespace
-}  // namespace uplift
+}  // namespace uplift::torn_test

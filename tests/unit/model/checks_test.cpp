@@ -4,7 +4,7 @@
 #include "uplift/math/dense.h"
 #include "uplift/model/check.h"
 
-namespace uplift {
+namespace uplift::checks_test {
 namespace {
 
 using support::here;
@@ -174,4 +174,4 @@ TEST(Checks, MassWhereItIsNeeded) {
 }
 
 }  // namespace
-}  // namespace uplift
+}  // namespace uplift::checks_test

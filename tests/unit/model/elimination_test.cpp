@@ -3,7 +3,7 @@
 #include "unit/model/model_support.h"
 #include "uplift/math/dense.h"
 
-namespace uplift {
+namespace uplift::elimination_test {
 namespace {
 
 using std::numbers::pi;
@@ -280,4 +280,4 @@ TEST(InitialValues, AreMetOrRefused) {
 }
 
 }  // namespace
-}  // namespace uplift
+}  // namespace uplift::elimination_test

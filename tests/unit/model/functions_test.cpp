@@ -7,7 +7,7 @@
 #include "unit/model/model_support.h"
 #include "uplift/model/function_jumps.h"
 
-namespace uplift {
+namespace uplift::functions_test {
 namespace {
 
 using std::numbers::pi;
@@ -192,4 +192,4 @@ TEST_F(Csv, ErrorsPointToTheLine) {
 }
 
 }  // namespace
-}  // namespace uplift
+}  // namespace uplift::functions_test

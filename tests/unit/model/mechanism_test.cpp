@@ -11,7 +11,7 @@
 #include "uplift/mesh/box.h"
 #include "uplift/model/check.h"
 
-namespace uplift {
+namespace uplift::mechanism_test {
 namespace {
 
 using support::here;
@@ -281,4 +281,4 @@ TEST(Supports, APlaneOfSymmetryMayHoldARigidBody) {
 }
 
 }  // namespace
-}  // namespace uplift
+}  // namespace uplift::mechanism_test

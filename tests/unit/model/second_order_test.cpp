@@ -6,7 +6,7 @@
 #include "uplift/model/geometric.h"
 #include "uplift/model/tuned_mass.h"
 
-namespace uplift {
+namespace uplift::second_order_test {
 namespace {
 
 using std::numbers::pi;
@@ -179,4 +179,4 @@ TEST(TunedMass, WithOtherMassesAndRefusals) {
 }
 
 }  // namespace
-}  // namespace uplift
+}  // namespace uplift::second_order_test

@@ -8,7 +8,7 @@
 #include "unit/motion/target_support.h"
 #include "uplift/motion/spectrum.h"
 
-namespace uplift {
+namespace uplift::generate_test {
 namespace {
 
 using std::numbers::pi;
@@ -250,4 +250,4 @@ TEST(GenerateOptions, ContradictionsAreRefused) {
 }
 
 }  // namespace
-}  // namespace uplift
+}  // namespace uplift::generate_test

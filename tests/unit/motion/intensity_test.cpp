@@ -6,7 +6,7 @@
 #include "uplift/motion/formats/convert.h"
 #include "uplift/motion/oscillator.h"
 
-namespace uplift {
+namespace uplift::intensity_test {
 namespace {
 
 using std::numbers::pi;
@@ -152,4 +152,4 @@ TEST(Intensity, OfZeros) {
 }
 
 }  // namespace
-}  // namespace uplift
+}  // namespace uplift::intensity_test

@@ -11,7 +11,7 @@
 #include "uplift/motion/intensity.h"
 #include "uplift/motion/spectrum.h"
 
-namespace uplift {
+namespace uplift::processing_test {
 namespace {
 
 using std::numbers::pi;
@@ -332,4 +332,4 @@ TEST(Fourier, QuickLengths) {
 }
 
 }  // namespace
-}  // namespace uplift
+}  // namespace uplift::processing_test

@@ -13,7 +13,7 @@
 #include "uplift/motion/formats/record_format.h"
 #include "uplift/motion/formats/write.h"
 
-namespace uplift {
+namespace uplift::read_test {
 namespace {
 
 using namespace sample;
@@ -403,4 +403,4 @@ RC_GTEST_PROP(RecordCsv, ReadsBackBitForBit, ()) {
 }
 
 }  // namespace
-}  // namespace uplift
+}  // namespace uplift::read_test

@@ -7,7 +7,7 @@
 #include "uplift/base/error.h"
 #include "uplift/motion/formats/read.h"
 
-namespace uplift {
+namespace uplift::repairs_test {
 namespace {
 
 using namespace sample;
@@ -251,4 +251,4 @@ RC_GTEST_PROP(RecordDamage, IsReadOrRefused, ()) {
 }
 
 }  // namespace
-}  // namespace uplift
+}  // namespace uplift::repairs_test

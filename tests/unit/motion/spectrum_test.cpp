@@ -8,7 +8,7 @@
 #include "uplift/motion/formats/convert.h"
 #include "uplift/motion/oscillator.h"
 
-namespace uplift {
+namespace uplift::spectrum_test {
 namespace {
 
 using std::numbers::pi;
@@ -363,4 +363,4 @@ TEST(FloorSpectrum, ElCentroOnAnOscillatorOf5Hz) {
 }
 
 }  // namespace
-}  // namespace uplift
+}  // namespace uplift::spectrum_test

@@ -5,7 +5,7 @@
 
 #include "unit/motion/target_support.h"
 
-namespace uplift {
+namespace uplift::target_test {
 namespace {
 
 using std::numbers::pi;
@@ -145,4 +145,4 @@ TEST(TargetTable, RefusesWhatIsNoSpectrum) {
 }
 
 }  // namespace
-}  // namespace uplift
+}  // namespace uplift::target_test

@@ -6,7 +6,7 @@
 #include "uplift/motion/formats/convert.h"
 
 // What a velocity record loses where its slope is taken (docs/theory, eq 32a).
-namespace uplift {
+namespace uplift::velocity_test {
 namespace {
 
 /// Largest slope at the points in the middle of a sine of the amplitude 1 over its largest true slope.
@@ -34,4 +34,4 @@ TEST(VelocityRecords, SlopeOfTheSplineThroughASine) {
 }
 
 }  // namespace
-}  // namespace uplift
+}  // namespace uplift::velocity_test

@@ -9,7 +9,7 @@
 #include "uplift/reduction/linear_march.h"
 #include "uplift/reduction/pod.h"
 
-namespace uplift {
+namespace uplift::projection_test {
 namespace {
 
 Matrix random_matrix(Index rows, Index columns, unsigned seed) {
@@ -96,4 +96,4 @@ TEST(LinearMarch, SwingsWithTheFrequencyOfTheTrapezoidalRule) {
 }
 
 }  // namespace
-}  // namespace uplift
+}  // namespace uplift::projection_test

@@ -9,7 +9,7 @@
 #include "uplift/verdict/verdict.h"
 
 // Several bases: the time in which the whole structure is in the air, and that of each base.
-namespace uplift {
+namespace uplift::bases_test {
 namespace {
 
 using support::Ran;
@@ -75,4 +75,4 @@ TEST(SeveralBases, TheTimeInTheAirIsThatOfAllAtOnce) {
 }
 
 }  // namespace
-}  // namespace uplift
+}  // namespace uplift::bases_test

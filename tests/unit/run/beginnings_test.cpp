@@ -4,7 +4,7 @@
 
 #include "unit/verdict/verdict_support.h"
 
-namespace uplift {
+namespace uplift::beginnings_test {
 namespace {
 
 using namespace support;
@@ -122,4 +122,4 @@ TEST(Gap, AJointThatHoldsTensionDoesNotUplift) {
 }
 
 }  // namespace
-}  // namespace uplift
+}  // namespace uplift::beginnings_test

@@ -10,7 +10,7 @@
 
 #include "ran_support.h"
 
-namespace uplift {
+namespace uplift::embedded_block_test {
 namespace {
 
 struct Block {
@@ -126,4 +126,4 @@ TEST(EmbeddedBlock, ABlockInSpaceRestsOnTheSoilWithItsWeight) {
 }
 
 }  // namespace
-}  // namespace uplift
+}  // namespace uplift::embedded_block_test

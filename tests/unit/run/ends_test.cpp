@@ -10,7 +10,7 @@
 #include "uplift/verdict/verdict.h"
 
 // How runs end that do not simply march to their last step: a body that leaves the ground, static stages alone.
-namespace uplift {
+namespace uplift::ends_test {
 namespace {
 
 using support::Ran;
@@ -162,4 +162,4 @@ TEST(RunEnds, StaticUpliftAndItsBondedBase) {
 }
 
 }  // namespace
-}  // namespace uplift
+}  // namespace uplift::ends_test

@@ -9,7 +9,7 @@
 #include "unit/mesh/split_support.h"
 #include "unit/verdict/verdict_support.h"
 
-namespace uplift {
+namespace uplift::interface_viewer_test {
 namespace {
 
 using support::mesh_file;
@@ -123,4 +123,4 @@ TEST(InterfaceViewer, GapAtTheHeelInTheVerdict) {
 }
 
 }  // namespace
-}  // namespace uplift
+}  // namespace uplift::interface_viewer_test

@@ -9,7 +9,7 @@
 
 #include "plastic_support.h"
 
-namespace uplift {
+namespace uplift::lockstep_test {
 namespace {
 
 using plastic_test::block_on_soil;
@@ -255,4 +255,4 @@ TEST(Lockstep, NoRuns) {
 }
 
 }  // namespace
-}  // namespace uplift
+}  // namespace uplift::lockstep_test

@@ -9,7 +9,7 @@
 #include "uplift/case/case.h"
 #include "uplift/io/text/toml.h"
 
-namespace uplift {
+namespace uplift::massless_base_test {
 namespace {
 
 constexpr double width = 4, depth = 2, stiffness = 5e7, weight = 8e5, frequency = 2;
@@ -91,4 +91,4 @@ TEST(MasslessBase, UnderConstraintsItIsRefused) {
 }
 
 }  // namespace
-}  // namespace uplift
+}  // namespace uplift::massless_base_test

@@ -7,7 +7,7 @@
 #include "unit/run/plastic_support.h"
 #include "uplift/mesh/box.h"
 
-namespace uplift {
+namespace uplift::mfront_test {
 using namespace plastic_test;
 namespace {
 
@@ -141,4 +141,4 @@ TEST(MfrontRun, CasesRefuseAndRememberTheLibrary) {
 }
 
 }  // namespace
-}  // namespace uplift
+}  // namespace uplift::mfront_test

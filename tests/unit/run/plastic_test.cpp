@@ -15,7 +15,7 @@
 #include "uplift/io/text/toml.h"
 #include "uplift/mesh/box.h"
 
-namespace uplift {
+namespace uplift::plastic_test {
 using namespace plastic_test;
 namespace {
 
@@ -306,4 +306,4 @@ TEST(PlasticSolid, YieldedForceAndEnergyAreWhatTheLinearSolidLacks) {
 }
 
 }  // namespace
-}  // namespace uplift
+}  // namespace uplift::plastic_test

@@ -12,7 +12,7 @@
 #include "uplift/case/case.h"
 #include "uplift/io/text/toml.h"
 
-namespace uplift {
+namespace uplift::run_state_test {
 namespace {
 
 using support::replaced;
@@ -293,4 +293,4 @@ TEST(RunState, OfAnotherModelIsRefused) {
 }
 
 }  // namespace
-}  // namespace uplift
+}  // namespace uplift::run_state_test

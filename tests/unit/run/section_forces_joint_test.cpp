@@ -4,7 +4,7 @@
 #include "unit/run/section_forces_support.h"
 #include "uplift/elements/space_beam.h"
 
-namespace uplift {
+namespace uplift::section_forces_joint_test {
 namespace {
 
 using namespace support;
@@ -191,4 +191,4 @@ TEST(SectionForces, EquilibriumHoldsForOtherSchemesAndForConstraints) {
 }
 
 }  // namespace
-}  // namespace uplift
+}  // namespace uplift::section_forces_joint_test

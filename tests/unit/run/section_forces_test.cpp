@@ -2,7 +2,7 @@
 // velocities.
 #include "unit/run/section_forces_support.h"
 
-namespace uplift {
+namespace uplift::section_forces_test {
 namespace {
 
 using namespace support;
@@ -362,4 +362,4 @@ TEST(SectionForces, RefusesWhatTheModelDoesNotHave) {
 }
 
 }  // namespace
-}  // namespace uplift
+}  // namespace uplift::section_forces_test

@@ -9,7 +9,7 @@
 #include "uplift/verdict/result_warnings.h"
 #include "uplift/verdict/verdict.h"
 
-namespace uplift {
+namespace uplift::static_balance_test {
 namespace {
 
 constexpr double modulus = 2e8, width = 3, depth = 2;  // Pa/m, m
@@ -205,4 +205,4 @@ TEST(StaticBalance, TheVerdictTellsWhatAStopTakes) {
 }
 
 }  // namespace
-}  // namespace uplift
+}  // namespace uplift::static_balance_test

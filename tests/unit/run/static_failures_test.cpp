@@ -8,7 +8,7 @@
 #include "tower_case.h"
 #include "unit/verdict/verdict_support.h"
 
-namespace uplift {
+namespace uplift::static_failures_test {
 namespace {
 
 constexpr double weight = 9.81 * 34000;  // N, of the tower
@@ -113,4 +113,4 @@ TEST(StaticFailures, AStructureAboveItsGapWithoutLoadsStaysThere) {
 }
 
 }  // namespace
-}  // namespace uplift
+}  // namespace uplift::static_failures_test

@@ -9,7 +9,7 @@
 #include "ran_support.h"
 #include "text_support.h"
 
-namespace uplift {
+namespace uplift::static_second_order_test {
 namespace {
 
 constexpr double height = 5, young = 3e10, inertia = 0.02;  // m, Pa, m4
@@ -111,4 +111,4 @@ TEST(StaticSecondOrder, ALaterStageOfFirstOrderIsRefused) {
 }
 
 }  // namespace
-}  // namespace uplift
+}  // namespace uplift::static_second_order_test

@@ -14,7 +14,7 @@
 #include "uplift/io/text/toml.h"
 #include "uplift/verdict/verdict.h"
 
-namespace uplift {
+namespace uplift::static_stages_test {
 namespace {
 
 struct Ran : support::Ran {
@@ -295,4 +295,4 @@ TEST(StaticStages, AfterAFreeVibrationNothingIsLeft) {
 }
 
 }  // namespace
-}  // namespace uplift
+}  // namespace uplift::static_stages_test

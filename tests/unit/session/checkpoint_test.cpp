@@ -11,7 +11,7 @@
 #include "uplift/base/file.h"
 
 // Checkpoints on disk: whole, or not used.
-namespace uplift {
+namespace uplift::checkpoint_test {
 namespace {
 
 namespace fs = std::filesystem;
@@ -175,4 +175,4 @@ TEST_F(CheckpointFiles, OnesThatWereNotWrittenLeaveNoFolder) {
 }
 
 }  // namespace
-}  // namespace uplift
+}  // namespace uplift::checkpoint_test

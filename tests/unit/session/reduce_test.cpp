@@ -18,7 +18,7 @@
 #include "uplift/reduction/projection.h"
 #include "uplift/session/steps.h"
 
-namespace uplift {
+namespace uplift::reduce_test {
 namespace {
 
 /// A tower of `beams` beams with masses, 4 m wide at its base on springs with friction that may lift off, pushed by an earthquake of one
@@ -349,4 +349,4 @@ TEST(ReducedModelFile, IsReadAsWrittenAndRefusedWithAnyBitFlippedOrCutAnywhere) 
 }
 
 }  // namespace
-}  // namespace uplift
+}  // namespace uplift::reduce_test

@@ -9,7 +9,7 @@
 
 #include "uplift/statistics/random.h"
 
-namespace uplift {
+namespace uplift::capacity_search_test {
 namespace {
 
 using Structure = std::function<RunOutcome(double im)>;
@@ -179,4 +179,4 @@ TEST(CapacitySearch, StartsFromRecordsBefore) {
 }
 
 }  // namespace
-}  // namespace uplift
+}  // namespace uplift::capacity_search_test

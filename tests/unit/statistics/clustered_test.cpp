@@ -8,7 +8,7 @@
 
 #include "uplift/statistics/random.h"
 
-namespace uplift {
+namespace uplift::clustered_test {
 namespace {
 
 OrRefused<Fragility> fit_of(const std::vector<SharedRun>& runs) {
@@ -119,4 +119,4 @@ TEST(Clustered, TailsStayFinite) {
 }
 
 }  // namespace
-}  // namespace uplift
+}  // namespace uplift::clustered_test

@@ -6,7 +6,7 @@
 #include <cmath>
 #include <numbers>
 
-namespace uplift {
+namespace uplift::distributions_test {
 namespace {
 
 /// P(X > x) with 60 digits (continued fraction of Mills' ratio).
@@ -89,4 +89,4 @@ TEST(Distributions, QuantilesAndProbabilitiesAreInverse) {
 }
 
 }  // namespace
-}  // namespace uplift
+}  // namespace uplift::distributions_test

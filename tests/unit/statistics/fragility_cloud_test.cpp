@@ -6,7 +6,7 @@
 #include "fragility_data.h"
 #include "uplift/math/dense.h"
 
-namespace uplift {
+namespace uplift::fragility_cloud_test {
 namespace {
 
 TEST(FragilityCloud, FitOfKnownData) {
@@ -107,4 +107,4 @@ TEST(FragilityCloud, RefusesWhatIsNotIdentifiable) {
 }
 
 }  // namespace
-}  // namespace uplift
+}  // namespace uplift::fragility_cloud_test

@@ -6,7 +6,7 @@
 #include "fragility_data.h"
 #include "uplift/statistics/random.h"
 
-namespace uplift {
+namespace uplift::fragility_random_test {
 namespace {
 
 /// Draws one after the other, from the seed and the number of the test case.
@@ -191,4 +191,4 @@ TEST(FragilityRandom, UnitsDoNotMatter) {
 }
 
 }  // namespace
-}  // namespace uplift
+}  // namespace uplift::fragility_random_test

@@ -7,7 +7,7 @@
 
 #include "fragility_data.h"
 
-namespace uplift {
+namespace uplift::fragility_test {
 namespace {
 
 constexpr double chi_square_90 = 2.705543454095404;  // 90 % of one degree of freedom
@@ -260,4 +260,4 @@ TEST(FragilityCapacities, RefusesWhatIsNotIdentifiable) {
 }
 
 }  // namespace
-}  // namespace uplift
+}  // namespace uplift::fragility_test

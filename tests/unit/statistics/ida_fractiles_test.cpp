@@ -5,7 +5,7 @@
 #include <cmath>
 
 // Curves in closed form, whose fractiles are those of their capacities.
-namespace uplift {
+namespace uplift::ida_fractiles_test {
 namespace {
 
 TEST(IdaFractiles, PercentilesLieBetweenTheValues) {
@@ -67,4 +67,4 @@ TEST(IdaFractiles, CurvesThatNeverReachCountAsBeyond) {
 }
 
 }  // namespace
-}  // namespace uplift
+}  // namespace uplift::ida_fractiles_test

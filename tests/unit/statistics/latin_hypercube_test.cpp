@@ -5,7 +5,7 @@
 #include <cmath>
 #include <vector>
 
-namespace uplift {
+namespace uplift::latin_hypercube_test {
 namespace {
 
 void expect_every_stratum_once(const Matrix& probability) {
@@ -100,4 +100,4 @@ TEST(LatinHypercube, RankCorrelationOfKnownRanks) {
 }
 
 }  // namespace
-}  // namespace uplift
+}  // namespace uplift::latin_hypercube_test

@@ -8,7 +8,7 @@
 #include "uplift/statistics/distributions.h"
 #include "uplift/statistics/random.h"
 
-namespace uplift {
+namespace uplift::nuclear_test {
 namespace {
 
 std::string reason_of(const auto& result) {
@@ -188,4 +188,4 @@ TEST(Nuclear, PerformancePair) {
 }
 
 }  // namespace
-}  // namespace uplift
+}  // namespace uplift::nuclear_test

@@ -5,7 +5,7 @@
 #include <cmath>
 #include <set>
 
-namespace uplift {
+namespace uplift::random_test {
 namespace {
 
 using Words = std::array<std::uint32_t, 4>;
@@ -49,4 +49,4 @@ TEST(Random, MomentsAreThoseOfTheDistribution) {
 }
 
 }  // namespace
-}  // namespace uplift
+}  // namespace uplift::random_test

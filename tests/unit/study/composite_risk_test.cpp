@@ -7,7 +7,7 @@
 #include "uplift/study/study_fit.h"
 
 // The annual rate by the components of variance beside that of the fit.
-namespace uplift {
+namespace uplift::composite_risk_test {
 namespace {
 
 /// A hazard k0 a^-k that is a straight line in logarithms: rate k0 theta^-k exp(k^2 beta^2/2), Cornell (1996), with the composite beta
@@ -62,4 +62,4 @@ TEST(Fragility, OneCapacityHasNoScatter) {
 }
 
 }  // namespace
-}  // namespace uplift
+}  // namespace uplift::composite_risk_test

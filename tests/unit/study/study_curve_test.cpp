@@ -13,7 +13,7 @@
 #include "uplift/study/study_fit.h"
 
 // Which runs a study wants, by what a run is known, and what its outcome counts as.
-namespace uplift {
+namespace uplift::study_curve_test {
 namespace {
 
 std::string tower() {
@@ -298,4 +298,4 @@ TEST(CaseEdit, NumbersAreFoundByTheirPath) {
 }
 
 }  // namespace
-}  // namespace uplift
+}  // namespace uplift::study_curve_test

@@ -8,7 +8,7 @@
 #include "uplift/io/text/toml.h"
 
 // What `uplift trust` changes: every changed case passes the checks, differs in what it says it does, and in nothing else.
-namespace uplift {
+namespace uplift::trust_plan_test {
 namespace {
 
 std::string tower(const std::string& law, const std::string& more = "") {
@@ -218,4 +218,4 @@ step = 1e-2
 }
 
 }  // namespace
-}  // namespace uplift
+}  // namespace uplift::trust_plan_test

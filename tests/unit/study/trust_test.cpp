@@ -11,7 +11,7 @@
 #include "tower_case.h"
 #include "uplift/io/text/toml.h"
 
-namespace uplift {
+namespace uplift::trust_test {
 namespace {
 
 /// A mass on a column that a push makes rock on tensionless springs.
@@ -207,4 +207,4 @@ TEST(Trust, StopsWhenAsked) {
 }
 
 }  // namespace
-}  // namespace uplift
+}  // namespace uplift::trust_test

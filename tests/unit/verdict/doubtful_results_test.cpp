@@ -10,7 +10,7 @@
 #include "uplift/verdict/second_order.h"
 #include "uplift/verdict/verdict.h"
 
-namespace uplift {
+namespace uplift::doubtful_results_test {
 namespace {
 
 using namespace support;
@@ -175,4 +175,4 @@ TEST(Noise, IsNotPrinted) {
 }
 
 }  // namespace
-}  // namespace uplift
+}  // namespace uplift::doubtful_results_test

@@ -8,7 +8,7 @@
 #include "uplift/io/results/floors.h"
 #include "uplift/io/text/toml.h"
 
-namespace uplift {
+namespace uplift::floor_spectra_test {
 namespace {
 
 FloorSpectra floor_of(const std::vector<double>& values, double zero_period = 1) {
@@ -180,4 +180,4 @@ TEST(FloorSpectra, SoundRunsOfAGroup) {
 }
 
 }  // namespace
-}  // namespace uplift
+}  // namespace uplift::floor_spectra_test

@@ -15,7 +15,7 @@
 #include "uplift/verdict/numbers.h"
 #include "uplift/verdict/verdict.h"
 
-namespace uplift {
+namespace uplift::foundation_strength_test {
 namespace {
 
 using support::refusal_of;
@@ -299,4 +299,4 @@ TEST(FoundationStrength, AFoundationHasForcesAndNoPressure) {
 }
 
 }  // namespace
-}  // namespace uplift
+}  // namespace uplift::foundation_strength_test

@@ -9,7 +9,7 @@
 #include "uplift/run/interface_viewer.h"
 #include "uplift/verdict/base_over_time.h"
 
-namespace uplift {
+namespace uplift::numbers_test {
 namespace {
 
 using namespace support;
@@ -418,4 +418,4 @@ TEST(VerdictCriteria, EveryQuantityIsFoundByItsName) {
 }
 
 }  // namespace
-}  // namespace uplift
+}  // namespace uplift::numbers_test

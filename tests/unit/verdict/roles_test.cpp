@@ -6,7 +6,7 @@
 #include "uplift/verdict/foundation.h"
 #include "uplift/verdict/verdict.h"
 
-namespace uplift {
+namespace uplift::roles_test {
 namespace {
 
 using namespace support;
@@ -426,4 +426,4 @@ TEST(VerdictFullLoss, OfTwoBasesIsWhatTheyLoseTogether) {
 }
 
 }  // namespace
-}  // namespace uplift
+}  // namespace uplift::roles_test

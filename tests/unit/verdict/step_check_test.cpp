@@ -6,7 +6,7 @@
 
 #include "uplift/base/format.h"
 
-namespace uplift {
+namespace uplift::step_check_test {
 namespace {
 
 VerdictNumber number(std::string_view name, double value) {
@@ -248,4 +248,4 @@ TEST(Wording, RoundsDownToOneTwoOrFive) {
 }
 
 }  // namespace
-}  // namespace uplift
+}  // namespace uplift::step_check_test

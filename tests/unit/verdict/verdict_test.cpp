@@ -9,7 +9,7 @@
 #include "uplift/model/builder.h"
 #include "uplift/verdict/compare.h"
 
-namespace uplift {
+namespace uplift::verdict_test {
 namespace {
 
 TEST(Wording, SaysNumbersAsEngineersDo) {
@@ -312,4 +312,4 @@ TEST(AgreementTest, ComparesEveryNumberOfTheVerdict) {
 }
 
 }  // namespace
-}  // namespace uplift
+}  // namespace uplift::verdict_test

@@ -16,16 +16,13 @@
 #include "uplift/mesh/cell_quadrature.h"
 #include "uplift/mesh/cell_shapes.h"
 #include "uplift/mesh/facing.h"
+#include "uplift/mesh/index.h"
 #include "uplift/mesh/parts.h"
 #include "uplift/mesh/shift.h"
 #include "uplift/mesh/soil_box.h"
 
 namespace uplift {
 namespace {
-
-std::size_t at(int i) {
-  return static_cast<std::size_t>(i);
-}
 
 Cell cell_named(const std::string& name) {
   for (const CellInfo& each : all_cells())

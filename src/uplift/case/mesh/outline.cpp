@@ -5,12 +5,10 @@
 #include <set>
 #include <utility>
 
+#include "uplift/mesh/index.h"
+
 namespace uplift {
 namespace {
-
-std::size_t at(int i) {
-  return static_cast<std::size_t>(i);
-}
 
 using Edge = std::array<int, 2>;
 

@@ -30,7 +30,7 @@ namespace {
 
 constexpr double rank_threshold = 1e-13;    // pivot relative to the largest: round-off of a sum of squares is 1e-16 of it
 constexpr double column_threshold = 1e-24;  // square of a column that is nothing but round-off of the others
-constexpr int most_iterations = 60;
+constexpr int most_small_iterations = 60;
 
 template <int R>
 inline constexpr int packed = R*(R + 1) / 2;
@@ -150,7 +150,7 @@ KernelReply active_set(const Rows& rows, double* held, double* z, double* openin
   Sums<R> sums;
   double inverse[packed<R>], y[R], step[R];
   scratch.visited.count = 0;
-  for (reply.iterations = 1; reply.iterations <= most_iterations; ++reply.iterations) {
+  for (reply.iterations = 1; reply.iterations <= most_small_iterations; ++reply.iterations) {
     gather<R>(n, rows.factor, rows.stride, held, rows.target, sums);
     if (!std::isfinite(sums.target)) {
       reply.end = KernelEnd::not_finite;

@@ -11,11 +11,11 @@
 namespace uplift {
 namespace {
 
-constexpr int head_lines = 12;  // nobody has more before the line of NPTS
+constexpr int at2_head_lines = 12;  // nobody has more before the line of NPTS
 
 /// The line with both words and a number below it, 0 when there is none.
 int counts_line(const RecordText& text) {
-  for (int i = 1; i <= std::min(head_lines, text.count()); ++i) {
+  for (int i = 1; i <= std::min(at2_head_lines, text.count()); ++i) {
     const std::string line = upper(text.line(i));
     if (find_word(line, "NPTS") != line.npos && find_word(line, "DT") != line.npos) return number_after(text.line(i + 1), 0) ? i : 0;
   }
@@ -68,13 +68,13 @@ void read_head(const RecordText& text, int counts, RecordDraft& draft) {
   draft.event = trim(line.substr(0, before == line.npos ? last : before));
 }
 
-bool recognises(const RecordText& text) {
+bool is_at2(const RecordText& text) {
   return counts_line(text) > 0;
 }
 
-std::vector<Motion> read(const RecordText& text, const RecordOptions& options) {
+std::vector<Motion> read_at2(const RecordText& text, const RecordOptions& options) {
   const int counts = counts_line(text);
-  if (counts == 0) throw InputError(text.where(), "", "a line with NPTS and DT", fmt::format("none in the first {} lines", head_lines));
+  if (counts == 0) throw InputError(text.where(), "", "a line with NPTS and DT", fmt::format("none in the first {} lines", at2_head_lines));
   RecordDraft draft;
   draft.per_row = 5;
   read_counts(text, counts, draft);
@@ -92,8 +92,8 @@ const RecordFormat& entry_record_at2() {
        .equations = "a line with NPTS and DT in the head; the line before it names the unit, the one before that event, station, component",
        .source = "PEER Strong Motion Database; PEER NGA-West2 Ground Motion Database",
        .params = {}},
-      recognises,
-      read};
+      is_at2,
+      read_at2};
   return entry;
 }
 

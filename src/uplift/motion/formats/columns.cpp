@@ -171,7 +171,7 @@ RecordDraft draft_of(const Columns& columns, std::size_t column) {
   return draft;
 }
 
-std::vector<Motion> read(const RecordText& text, const RecordOptions& options) {
+std::vector<Motion> read_columns(const RecordText& text, const RecordOptions& options) {
   const Columns columns = columns_of(text);
   const Layout layout = layout_of(text, columns, options);
   if (layout.values.empty()) {
@@ -201,7 +201,7 @@ std::vector<Motion> read(const RecordText& text, const RecordOptions& options) {
   return motions;
 }
 
-bool recognises(const RecordText&) {
+bool is_columns(const RecordText&) {
   return true;
 }
 
@@ -218,8 +218,8 @@ const RecordFormat& entry_record_columns() {
            "all columns with a unit of motion are read; without units the first one after the times",
        .source = "",
        .params = {}},
-      recognises,
-      read};
+      is_columns,
+      read_columns};
   return entry;
 }
 

@@ -26,7 +26,7 @@ int find_line(const RecordText& text, int from, std::string_view words, const st
 }
 
 /// "100 Real-header values follow on  20 lines, Format= (5F15.6)" and those lines; `at` is moved behind them.
-std::vector<double> header(const RecordText& text, int& at, std::string_view words, const std::string& wanted) {
+std::vector<double> cosmos_header(const RecordText& text, int& at, std::string_view words, const std::string& wanted) {
   const int line = find_line(text, at, words, "a line \"" + wanted + " follow on ... lines\"");
   const std::optional<double> count = number_after(text.line(line), 0);
   if (!count || *count < 1 || *count > 10000)
@@ -42,7 +42,7 @@ double value(const std::vector<double>& header, std::size_t number) {
   return number <= header.size() ? header[number - 1] : unknown;
 }
 
-void read_texts(const RecordText& text, int first, int last, RecordDraft& draft) {
+void read_cosmos_texts(const RecordText& text, int first, int last, RecordDraft& draft) {
   draft.event = trim(text.line(first + 1));
   if (const std::string_view event = text_after(draft.event, "Record of"); !event.empty()) draft.event = std::string(event);
   for (int i = first; i < last; ++i) {
@@ -61,10 +61,10 @@ void read_texts(const RecordText& text, int first, int last, RecordDraft& draft)
 RecordDraft read_channel(const RecordText& text, int& at) {
   RecordDraft draft;
   const int first = at;
-  const std::vector<double> integers = header(text, at, "INTEGER-HEADER", "integer-header values");
-  read_texts(text, first, at, draft);
+  const std::vector<double> integers = cosmos_header(text, at, "INTEGER-HEADER", "integer-header values");
+  read_cosmos_texts(text, first, at, draft);
   const int reals_line = at;
-  const std::vector<double> reals = header(text, at, "REAL-HEADER", "real-header values");
+  const std::vector<double> reals = cosmos_header(text, at, "REAL-HEADER", "real-header values");
   const int line = find_line(text, at, "UNITS=", "a line \"... acceleration pts, ... units=...\"");
   const std::string head = upper(text.line(line));
   const RowForm form = row_form(head.substr(std::min(head.find("FORMAT"), head.size())));
@@ -87,11 +87,11 @@ RecordDraft read_channel(const RecordText& text, int& at) {
   return draft;
 }
 
-bool recognises(const RecordText& text) {
+bool is_cosmos(const RecordText& text) {
   return begins_channel(text.line(1));
 }
 
-std::vector<Motion> read(const RecordText& text, const RecordOptions& options) {
+std::vector<Motion> read_cosmos(const RecordText& text, const RecordOptions& options) {
   std::vector<Motion> motions;
   for (int i = 1; i <= text.count();) {
     if (!begins_channel(text.line(i))) {
@@ -116,8 +116,8 @@ const RecordFormat& entry_record_cosmos() {
            "step: real-header value 62 [ms]; azimuth: integer-header value 54; unit and number of points: the line before the values",
        .source = "COSMOS Strong Motion Data Format, version 1.20 (2001)",
        .params = {}},
-      recognises,
-      read};
+      is_cosmos,
+      read_cosmos};
   return entry;
 }
 

@@ -46,7 +46,7 @@ std::string unit_of_head(std::string_view line) {
 }
 
 /// Event, station, component and peak in the lines from `first` to the block.
-void read_texts(const RecordText& text, int first, int block, RecordDraft& draft) {
+void read_csmip_texts(const RecordText& text, int first, int block, RecordDraft& draft) {
   for (int i = first; i < block; ++i) {
     const std::string_view line = trim(text.line(i));
     const std::string capital = upper(line);
@@ -63,12 +63,12 @@ void read_texts(const RecordText& text, int first, int block, RecordDraft& draft
   draft.azimuth = azimuth_of(draft.component);
 }
 
-bool recognises(const RecordText& text) {
+bool is_csmip(const RecordText& text) {
   const std::string first = upper(trim(text.line(1)));
   return first.starts_with("CORRECTED ACCELEROGRAM") || first.starts_with("UNCORRECTED ACCELEROGRAM");
 }
 
-std::vector<Motion> read(const RecordText& text, const RecordOptions& options) {
+std::vector<Motion> read_csmip(const RecordText& text, const RecordOptions& options) {
   std::vector<Motion> motions;
   int first = 1;
   for (int i = 1; i <= text.count();) {
@@ -89,7 +89,7 @@ std::vector<Motion> read(const RecordText& text, const RecordOptions& options) {
     draft.unit = unit_of_head(text.line(i));
     draft.unit_line = i;
     draft.per_row = std::max<std::size_t>(form.numbers, 1);
-    read_texts(text, first, i, draft);
+    read_csmip_texts(text, first, i, draft);
     i = first = add_block(text, i + 1, draft.count->value, form.width, draft.samples);
     motions.push_back(finished(text, options, std::move(draft)));
   }
@@ -108,8 +108,8 @@ const RecordFormat& entry_record_csmip() {
        .equations = "the line before the values gives their number, step, unit and form; velocity and displacement of V2 are left out",
        .source = "Shakal and Huang 1985, Standard tape format for CSMIP strong-motion data tapes",
        .params = {}},
-      recognises,
-      read};
+      is_csmip,
+      read_csmip};
   return entry;
 }
 

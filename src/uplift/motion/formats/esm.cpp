@@ -9,16 +9,16 @@
 namespace uplift {
 namespace {
 
-constexpr int most_head_lines = 120;
+constexpr int most_esm_head_lines = 120;
 
-struct Entry {
+struct EsmEntry {
   std::string value;
   int line = 0;
 };
 
 /// The value of the key with this name, or the last line of the head when there is none.
-Entry find(const RecordText& text, std::string_view key) {
-  for (int i = 1; i <= std::min(most_head_lines, text.count()); ++i) {
+EsmEntry find_esm(const RecordText& text, std::string_view key) {
+  for (int i = 1; i <= std::min(most_esm_head_lines, text.count()); ++i) {
     const std::string_view line = trim(text.line(i));
     const std::size_t colon = line.find(':');
     if (colon != line.npos && upper(trim(line.substr(0, colon))) == key) return {std::string(trim(line.substr(colon + 1))), i};
@@ -26,8 +26,8 @@ Entry find(const RecordText& text, std::string_view key) {
   return {};
 }
 
-Stated number(const RecordText& text, std::string_view key, const std::string& wanted) {
-  const Entry entry = find(text, key);
+Stated esm_number(const RecordText& text, std::string_view key, const std::string& wanted) {
+  const EsmEntry entry = find_esm(text, key);
   const std::optional<double> value = whole_number(entry.value);
   if (!value) throw InputError(text.where(entry.line), std::string(key), wanted, entry.value.empty() ? "nothing" : in_quotes(entry.value));
   return {*value, entry.line};
@@ -45,15 +45,15 @@ std::optional<double> stream_azimuth(const std::string& stream) {
   return azimuth_of(stream.substr(stream.size() - 1));
 }
 
-bool recognises(const RecordText& text) {
-  return find(text, "SAMPLING_INTERVAL_S").line > 0 && find(text, "NDATA").line > 0;
+bool is_esm(const RecordText& text) {
+  return find_esm(text, "SAMPLING_INTERVAL_S").line > 0 && find_esm(text, "NDATA").line > 0;
 }
 
-std::vector<Motion> read(const RecordText& text, const RecordOptions& options) {
+std::vector<Motion> read_esm(const RecordText& text, const RecordOptions& options) {
   RecordDraft draft;
-  draft.step = number(text, "SAMPLING_INTERVAL_S", "a time step [s]");
-  draft.count = number(text, "NDATA", "the number of points");
-  const Entry units = find(text, "UNITS"), type = find(text, "DATA_TYPE");
+  draft.step = esm_number(text, "SAMPLING_INTERVAL_S", "a time step [s]");
+  draft.count = esm_number(text, "NDATA", "the number of points");
+  const EsmEntry units = find_esm(text, "UNITS"), type = find_esm(text, "DATA_TYPE");
   draft.unit = units.value;
   draft.unit_line = units.line;
   const std::string kind = upper(type.value);
@@ -63,17 +63,17 @@ std::vector<Motion> read(const RecordText& text, const RecordOptions& options) {
   if (kind == "DISPLACEMENT") draft.kind = MotionKind::displacement, peak = "PGD_CM";
   if (!draft.kind && type.line > 0)
     throw InputError(text.where(type.line), "DATA_TYPE", "ACCELERATION, VELOCITY or DISPLACEMENT", in_quotes(type.value));
-  const Entry largest = find(text, peak);
+  const EsmEntry largest = find_esm(text, peak);
   const std::optional<MotionUnit> unit = motion_unit(units.value);
   if (const std::optional<double> value = whole_number(largest.value); value && unit)
     draft.peak = {*value * 0.01 / unit->factor, largest.line};
 
-  const std::string name = find(text, "STATION_NAME").value, network = find(text, "NETWORK").value;
-  draft.event = find(text, "EVENT_NAME").value;
-  if (const std::string date = find(text, "EVENT_DATE_YYYYMMDD").value; !date.empty())
+  const std::string name = find_esm(text, "STATION_NAME").value, network = find_esm(text, "NETWORK").value;
+  draft.event = find_esm(text, "EVENT_NAME").value;
+  if (const std::string date = find_esm(text, "EVENT_DATE_YYYYMMDD").value; !date.empty())
     draft.event += (draft.event.empty() ? "" : ", ") + date;
-  draft.station = (network.empty() ? "" : network + ".") + find(text, "STATION_CODE").value + (name.empty() ? "" : ", " + name);
-  draft.component = find(text, "STREAM").value;
+  draft.station = (network.empty() ? "" : network + ".") + find_esm(text, "STATION_CODE").value + (name.empty() ? "" : ", " + name);
+  draft.component = find_esm(text, "STREAM").value;
   draft.azimuth = stream_azimuth(draft.component);
   for (int i = first_row(text); i <= text.count(); ++i) add_numbers(text, i, draft.samples);
   return {finished(text, options, std::move(draft))};
@@ -87,8 +87,8 @@ const RecordFormat& entry_record_esm() {
                                    .equations = "SAMPLING_INTERVAL_S and NDATA are needed; UNITS, DATA_TYPE and PGA_CM/S^2 are checked",
                                    .source = "Luzi et al. 2016, Seismological Research Letters 87(4)",
                                    .params = {}},
-                                  recognises,
-                                  read};
+                                  is_esm,
+                                  read_esm};
   return entry;
 }
 

@@ -16,7 +16,7 @@ namespace {
 constexpr int text_lines = 11, integer_lines = 6, real_lines = 10;
 constexpr double unknown_integer = -32768, unknown_real = 1e38;
 
-bool recognises(const RecordText& text) {
+bool is_smc(const RecordText& text) {
   const std::string first = upper(trim(text.line(1)));
   if (first.size() < 3 || first[0] < '0' || first[0] > '6' || first[1] != ' ') return false;
   const std::string_view type = trim(std::string_view(first).substr(2));
@@ -26,7 +26,7 @@ bool recognises(const RecordText& text) {
   return known && number_after(text.line(text_lines + 1), 0).has_value();
 }
 
-std::vector<double> header(const RecordText& text, int first, int lines, std::size_t numbers, std::size_t width) {
+std::vector<double> smc_header(const RecordText& text, int first, int lines, std::size_t numbers, std::size_t width) {
   Samples samples;
   for (int i = first; i < first + lines; ++i) {
     const std::size_t before = samples.values.size();
@@ -47,7 +47,7 @@ void read_kind(const RecordText& text, RecordDraft& draft) {
   if (type.find("SPECTRA") != type.npos) throw InputError(text.where(1), "", "a time history", in_quotes(trim(text.line(1))));
 }
 
-void read_texts(const RecordText& text, RecordDraft& draft) {
+void read_smc_texts(const RecordText& text, RecordDraft& draft) {
   const std::string_view event = trim(text.line(4));
   // behind year, month, day and time of the day
   const std::size_t name = event.find_first_of("ABCDEFGHIJKLMNOPQRSTUVWXYZabcdefghijklmnopqrstuvwxyz");
@@ -61,13 +61,13 @@ void read_texts(const RecordText& text, RecordDraft& draft) {
   }
 }
 
-std::vector<Motion> read(const RecordText& text, const RecordOptions& options) {
+std::vector<Motion> read_smc(const RecordText& text, const RecordOptions& options) {
   RecordDraft draft;
   read_kind(text, draft);
-  read_texts(text, draft);
-  const std::vector<double> integers = header(text, text_lines + 1, integer_lines, 8, 10);
+  read_smc_texts(text, draft);
+  const std::vector<double> integers = smc_header(text, text_lines + 1, integer_lines, 8, 10);
   const int reals_line = text_lines + integer_lines + 1;
-  const std::vector<double> reals = header(text, reals_line, real_lines, 5, 15);
+  const std::vector<double> reals = smc_header(text, reals_line, real_lines, 5, 15);
   if (integers[13] >= 0 && integers[13] <= 360) draft.azimuth = azimuth_of(shortest(integers[13]));
   if (std::abs(reals[1]) >= unknown_real && !options.step)
     throw InputError(text.where(reals_line), "", "samples per second in the second real of the head",
@@ -92,8 +92,8 @@ const RecordFormat& entry_record_smc() {
        .equations = "step = 1 / (samples per second, second real of the head); values in cm and s",
        .source = "Seekins et al. 1992, USGS Open-File Report: Digitized strong-motion accelerograms (CD-ROM)",
        .params = {}},
-      recognises,
-      read};
+      is_smc,
+      read_smc};
   return entry;
 }
 
