@@ -150,41 +150,6 @@ class CellJump {
   std::vector<bool> above_;
 };
 
-/// Whether openings depend on each other. The jumps J of the nodes give the point the opening sum N J. Points that share nodes are a part;
-/// of its openings as many are independent as it has nodes, less one if nodes stand off the plane: J equal to their heights opens no point.
-bool depend(const Mesh& mesh, const std::vector<JointPoint>& points, const Vec3& normal) {
-  std::map<int, int> parent;
-  const auto first_of = [&](int node) {
-    parent.try_emplace(node, node);
-    while (parent[node] != node) node = parent[node] = parent[parent[node]];
-    return node;
-  };
-  for (const JointPoint& point : points)
-    for (const auto& [node, weight] : point.lower) {
-      const int from = first_of(node), to = first_of(point.lower.front().first);
-      parent[from] = to;
-    }
-  struct Part {
-    int nodes = 0, points = 0;
-    double reach = 0, height = 0;  // m: distances of nodes from points, and from the plane
-  };
-  std::map<int, Part> parts;
-  for (const auto& [node, next] : parent) ++parts[first_of(node)].nodes;
-  for (const JointPoint& point : points) {
-    Part& part = parts[first_of(point.lower.front().first)];
-    ++part.points;
-    for (const auto& [node, weight] : point.lower) {
-      const Vec3 arm = mesh.nodes[at(node)] - point.position;
-      part.reach = std::max(part.reach, arm.norm());
-      part.height = std::max(part.height, std::abs(normal.dot(arm)));
-    }
-  }
-  return std::ranges::any_of(parts, [](const auto& entry) {
-    const Part& part = entry.second;
-    return part.points > part.nodes - (part.nodes > 1 && part.height > 2e-8 * part.reach ? 1 : 0);
-  });
-}
-
 }  // namespace
 
 std::vector<JumpEquation> jump_equations(const Mesh& mesh, const CutFace& face, const Vec3& normal, JumpShape shape) {
@@ -229,7 +194,6 @@ CutJoints cut_joints(const Mesh& mesh, const std::vector<CutFace>& faces, const 
     else
       add_triangles(face, points, made.facets);
   }
-  made.dependent = depend(mesh, points.points, normal);
   const std::vector<int> order = order_of(points.points, normal, mesh.dimension);
   std::vector<int> number(order.size());
   for (std::size_t i = 0; i < order.size(); ++i) {

@@ -13,8 +13,6 @@ struct CutJoints {
   std::vector<JointPoint> points;  // in the plane along the line; in space by rows of growing t2, then t1 (local_axis)
   Facets facets;
   bool inclined = false;  // some face is not level
-  bool dependent =
-      false;  // the openings at some points follow from those at others, as in tetrahedra that the plane cuts into four corners
 };
 CutJoints cut_joints(const Mesh& mesh, const std::vector<CutFace>& faces, const Vec3& normal, double thickness, double gap);
 

@@ -413,20 +413,5 @@ TEST(CutCase, RefusesWithFileAndKey) {
             std::string::npos);
 }
 
-TEST(CutCase, ConstraintsInTetrahedraStandAtNodesAlone) {
-  const auto lines = uniform_lines(0, 1, 2);
-  const auto refusal = [&](double level, Cell cell) {
-    const std::string text =
-        "title = \"cube\"\n[mesh]\nfile = \"cube.msh\"\n" + solid("volume", 1e9, 0.2, 2000) + solid("block", 1e9, 0.2, 2000) +
-        "[[support]]\ngroup = \"bottom\"\nfixed = [\"ux\", \"uy\", \"uz\"]\n[gravity]\n" +
-        fmt::format("[[interface]]\nname = \"base\"\ncut = {{ through = [\"volume\"], level = {}, upper = \"block\" }}\n", level) +
-        "law = { type = \"coulomb\", friction = 0.3 }\n" + at_rest_stages;
-    return support::refusal_of([&] { build(read_on(text, box(lines, lines, lines, cell)), RunSpec{}); });
-  };
-  EXPECT_NE(refusal(0.4, Cell::tet4).find("a plane that crosses tetrahedra between their nodes"), std::string::npos);
-  EXPECT_EQ(refusal(0.5, Cell::tet4), "accepted");
-  EXPECT_EQ(refusal(0.4, Cell::hex8), "accepted");
-}
-
 }  // namespace
 }  // namespace uplift

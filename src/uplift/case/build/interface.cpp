@@ -132,7 +132,7 @@ void limit_jumps(const Values& cut, const std::vector<CutFace>& faces, const Vec
     }
 }
 
-/// Cones hold their points by constraints, which are too many on inclined faces and in tetrahedra: their tractions would not be determined.
+/// Cones hold their points by constraints, which are too many on inclined faces: their tractions would not be determined.
 void add_cut(const Values& interface, const Values& cut, const std::vector<CutFace>& faces, const CaseNames& names, ModelBuilder& builder,
              Joint& joint) {
   const Mesh& mesh = names.solids->mesh();
@@ -141,7 +141,6 @@ void add_cut(const Values& interface, const Values& cut, const std::vector<CutFa
   CutJoints made = cut_joints(mesh, faces, normal, thickness, uniform_gap(interface));
   if (cut.text("jump") != "linear") limit_jumps(cut, faces, normal, names, builder);
   joint.facts.facets = std::make_shared<Facets>(std::move(made.facets));
-  if (made.dependent) joint.facts.why_no_cones = "a plane that crosses tetrahedra between their nodes";
   if (made.inclined) joint.facts.why_no_cones = "a plane that cuts its cells at an angle";
   if (cut.text("jump") != "linear") joint.facts.why_no_cones = "a plane with constant or rigid jumps";
   for (const CutFace& face : faces) joint.facts.corners.insert(joint.facts.corners.end(), face.corners.begin(), face.corners.end());
