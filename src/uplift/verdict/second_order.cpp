@@ -14,6 +14,7 @@ namespace uplift {
 namespace {
 
 constexpr double negligible = 0.1;  // of the base moment
+constexpr double noise = 1e-4;      // of the stabilising moment: a base that next to nothing tilts
 
 double height_of(const Model& model, int node) {
   return model.nodes[static_cast<std::size_t>(node)].position[model.space.up()];
@@ -65,7 +66,7 @@ std::optional<SecondOrderMoment> second_order_of(const BuiltCase& built, const R
 }
 
 bool SecondOrderMoment::counts() const {
-  return moment() > negligible * base_moment;
+  return moment() > std::max(negligible * base_moment, noise * stabilising);
 }
 
 bool SecondOrderMoment::overturns() const {

@@ -17,7 +17,8 @@ struct SecondOrderMoment {
   bool forced = false;                                     // forces on the structure act, and nothing moves the ground
   double moment() const { return weight * drift; }         // N m
   double ratio() const { return moment() / base_moment; }  // 1
-  /// A warning is due: more than a tenth of the base moment, the limit of EN 1998-1, 4.4.2.2.
+  /// A warning is due: more than a tenth of the base moment, the limit of EN 1998-1, 4.4.2.2, and more than 1e-4 of the stabilising
+  /// moment. Where less tilts the base, the base moment is what the ground's unevenness or round-off makes of the weight.
   bool counts() const;
   bool exceeds_what_is_left() const { return counts() && moment() > least_left; }
   /// Where forces act, which do not give way: more than is left of the capacity. Where the ground moves: more than half of the stabilising

@@ -83,6 +83,16 @@ TEST(SecondOrderEffects, ByHand) {
   EXPECT_TRUE(effects_of(built, reaching(built, 4e5, 1.1)).overturns());
 }
 
+/// A tower that stands nearly upright: 5 N m, which an eccentricity of 15 micrometres makes of the weight, beside S = 500 kN m. W d of a
+/// sway of 0.1 mm is 23.5 N m, five times as much, and 5e-5 of S.
+TEST(SecondOrderEffects, ABaseThatNothingTiltsHasNone) {
+  const BuiltCase built = built_of(tower(shaken));
+  const SecondOrderMoment upright = effects_of(built, reaching(built, 5, 1e-4));
+  EXPECT_NEAR(upright.ratio(), 1e-4 * top_mass * gravity / 5, 1e-6);
+  EXPECT_FALSE(upright.counts()) << upright.warning();
+  EXPECT_TRUE(effects_of(built, reaching(built, 5, 1e-3)).counts()) << "235 N m are more than 1e-4 of S";
+}
+
 /// A force does not give way: what is left decides.
 TEST(SecondOrderEffects, AForceOverturns) {
   const BuiltCase built = built_of(tower(pushed));

@@ -37,7 +37,9 @@ class Partners {
     const Vec3 apart = (to.low + to.high - from.low - from.high) / 2;
     apart.cwiseAbs().maxCoeff(&across_);
     tolerance_ = 1e-6 * (from.high.cwiseMax(to.high) - from.low.cwiseMin(to.low)).norm();
-    if (across_ == up_ || !(apart.norm() > tolerance_)) fail(tie, "to", "the opposite side of the ground", in_quotes(tie.text("to")));
+    if (across_ == up_ || !(apart.norm() > tolerance_))
+      fail(tie, "to", "the opposite side of the ground, at a distance sideways (a tie makes the ground go on; it does not join two meshes)",
+           fmt::format("{}, at the same place or above or below", in_quotes(tie.text("to"))));
     find_cells(names.solids->mesh());
   }
 
