@@ -13,22 +13,22 @@ namespace {
 struct Said {
   const char *name, *label;
 };
-constexpr Said numbers[] = {{"max_uplifted_ratio", "Uplifted area"},
-                            {"max_opening", "Largest gap"},
-                            {"max_slip", "Largest slip"},
-                            {"max_toe_pressure", "Largest pressure"},
-                            {"residual_settlement", "Settlement"},
-                            {"residual_rotation", "Rotation"},
-                            {"residual_slip", "Slip"},
-                            {"max_compression", "Compression"},
-                            {"max_shear", "Base shear"},
-                            {"max_moment", "Base moment"},
-                            {"max_eccentricity", "Eccentricity e/B"},
-                            {"min_sliding_safety", "Safety against sliding"},
-                            {"max_bearing_utilisation", "Utilisation of bearing capacity"},
-                            {"max_sliding_utilisation", "Utilisation of sliding resistance"},
-                            {"share_of_horizontal_force", "Share of the horizontal force"},
-                            {"share_of_base_moment", "Share of the base moment"}};
+constexpr Said standing_numbers[] = {{"max_uplifted_ratio", "Uplifted area"},
+                                     {"max_opening", "Largest gap"},
+                                     {"max_slip", "Largest slip"},
+                                     {"max_toe_pressure", "Largest pressure"},
+                                     {"residual_settlement", "Settlement"},
+                                     {"residual_rotation", "Rotation"},
+                                     {"residual_slip", "Slip"},
+                                     {"max_compression", "Compression"},
+                                     {"max_shear", "Base shear"},
+                                     {"max_moment", "Base moment"},
+                                     {"max_eccentricity", "Eccentricity e/B"},
+                                     {"min_sliding_safety", "Safety against sliding"},
+                                     {"max_bearing_utilisation", "Utilisation of bearing capacity"},
+                                     {"max_sliding_utilisation", "Utilisation of sliding resistance"},
+                                     {"share_of_horizontal_force", "Share of the horizontal force"},
+                                     {"share_of_base_moment", "Share of the base moment"}};
 
 /// What is nothing but round-off beside what the base carries is not worth a line.
 bool counts(const InterfaceVerdict& said, const VerdictNumber& number) {
@@ -43,7 +43,7 @@ bool counts(const InterfaceVerdict& said, const VerdictNumber& number) {
 }
 
 void say_standing(const InterfaceVerdict& said, const std::string& of, Verdict& verdict) {
-  for (const Said& each : numbers) {
+  for (const Said& each : standing_numbers) {
     const VerdictNumber* number = find_number(said.numbers, each.name);
     if (!number || !counts(said, *number)) continue;
     std::string detail;
