@@ -9,15 +9,16 @@
 namespace uplift {
 namespace {
 
-/// Whether a point with friction is open before or after a step that moves the points.
-bool lifted(const std::vector<Block>& blocks, const State& before, const Vector& force, const Vector& opening) {
+/// Whether a point with friction is open before or after a step that moves the points: without a pressure and with a gap. A point that
+/// stays closed without one is not open: where there are more points than openings, others bear its share.
+bool lifted(const std::vector<Block>& blocks, const State& before, const Vector& force, const Vector& opening, double closed_gap) {
   constexpr double still = 1e-12;  // m, as far as contact is solved
   if (!((opening - before.opening).cwiseAbs().maxCoeff() > still)) return false;
   return std::ranges::any_of(blocks, [&](const Block& block) {
     if (block.cone == nullptr || !(block.cone->friction() > 0)) return false;
     const int normal = block.first + block.batch.normal();
     for (int row = normal; row < normal + block.batch.points; ++row)
-      if (!(before.force[row] < 0) || !(force[row] < 0)) return true;
+      if ((!(before.force[row] < 0) && before.opening[row] > closed_gap) || (!(force[row] < 0) && opening[row] > closed_gap)) return true;
     return false;
   });
 }
@@ -38,7 +39,7 @@ void Stepper::prepare_friction(const std::vector<Block>& blocks) {
 /// all of it at a point that has opened, as much of its friction as is too much at one that has turned round. True when there are any.
 bool Stepper::drop_creating() {
   const InterfaceSolution& end = *solution_;
-  if (!friction_.reduced && !lifted(last_->model->blocks, now_, end.force, end.opening)) return false;
+  if (!friction_.reduced && !lifted(last_->model->blocks, now_, end.force, end.opening, closed_gap_)) return false;
   const double nothing = 1e-15 * largest_external_;
   Vector& dropped = friction_.dropped;
   bool any = false;
@@ -80,7 +81,7 @@ void Stepper::restore_dropped() {
 /// Velocity and acceleration by the rule of the case. Where a point with friction is open, friction belongs to the impulse (true);
 /// elsewhere sliding points slide on, and the rule alone is exact.
 bool Stepper::apply_rule(const Level& level, const Impact& data) {
-  const bool open = coulomb_ != nullptr && (friction_.reduced || lifted(last_->model->blocks, now_, contact_, next_.opening));
+  const bool open = coulomb_ != nullptr && (friction_.reduced || lifted(last_->model->blocks, now_, contact_, next_.opening, closed_gap_));
   if (open && impact_of_friction(level, data)) return true;
   velocity_free_ = next_.velocity;
   impact_.apply(data, next_.velocity, impulse_, impact_scratch_);
