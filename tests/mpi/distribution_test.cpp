@@ -201,7 +201,7 @@ TEST(Distribution, RowsOfACutInterfaceInSpace) {
   compare(cut(), box(uniform_lines(-4, 4, 8), uniform_lines(-2, 2, 4), uniform_lines(0, 6, 6)));
 }
 
-TEST(Distribution, RunOfAModelKeepsNothingWhole) {
+TEST(Distribution, RunIsThatOfTheWholeMatrices) {
   const std::string title = "title = \"rows\"\nbonded = false\n";
   const Case serial_case = read_on(title + tied, {}), petsc_case = read_on(petsc + title + tied, {});
   BuiltCase serial = build(serial_case, runs_of_case(serial_case).front()), spread = build(petsc_case, runs_of_case(petsc_case).front());
