@@ -15,6 +15,7 @@
 #include "uplift/case/ground/ground.h"
 #include "uplift/case/schema/sections.h"
 #include "uplift/case/shown.h"
+#include "uplift/linear/large.h"
 #include "uplift/model/check.h"
 #include "uplift/model/model_matrices.h"
 #include "uplift/model/tuned_mass.h"
@@ -164,6 +165,7 @@ Model make_model(const Case& read, const RunSpec& spec, const std::vector<double
   add_loads(root, builder, names);
   if (spec.damping) builder.set_damping(bulk_damping(*spec.damping));
   built.beams = names.beams;
+  builder.set_home(home_of(*bulk_solver(read)));
   return builder.finish();
 }
 

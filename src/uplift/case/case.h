@@ -172,6 +172,8 @@ std::vector<Mode> bonded_modes(const Model&, int count);
 /// Natural modes with every opening and sliding of the interfaces held to zero against rigid ground: the fixed-base frequencies.
 /// What is connected to lower sides alone (an elastic bed, the soil) is held too.
 std::vector<Mode> fixed_base_modes(const Model&, int count);
+/// Of the model with open interfaces.
+std::vector<Mode> base_free_modes(const Model&, int count);
 
 /// What is to be known of floor spectra of a constraint method; a clause without a head.
 inline constexpr std::string_view floors_of_constraints =

@@ -36,8 +36,7 @@ int modes(const Options& options, int count) {
     return Exit::done;
   }
   const BuiltCase built = build(loaded.read, runs_of_case(loaded.read).front());
-  const std::vector<Mode> bonded = bonded_modes(built.at_rest(), count),
-                          base_free = uplift::modes(built.at_rest().stiffness, built.at_rest().mass, count);
+  const std::vector<Mode> bonded = bonded_modes(built.at_rest(), count), base_free = base_free_modes(built.at_rest(), count);
   print_modes(built.at_rest(), bonded, "interfaces closed and bonded");
   print_modes(built.at_rest(), base_free, "\nbase free (interfaces open)");
   say("\nmode shapes: uplift modes --json");

@@ -8,40 +8,13 @@
 #include <thread>
 #include <utility>
 
+#include "uplift/distributed/messages.h"
+
 namespace uplift {
 
 namespace {
 
 constexpr PetscInt most_columns = 32;  // that are sent and solved at once
-constexpr int tag = 1;
-
-/// Any number of values from rank 0 to another one: MPI counts a message with an int.
-template <class Value>
-void send(const Value* values, std::int64_t count, MPI_Datatype type, int to, MPI_Comm ranks) {
-  constexpr std::int64_t most = 1 << 27;
-  for (std::int64_t first = 0; first < count; first += most)
-    MPI_Send(values + first, static_cast<int>(std::min(most, count - first)), type, to, tag, ranks);
-}
-
-template <class Value>
-void receive(Value* values, std::int64_t count, MPI_Datatype type, MPI_Comm ranks) {
-  constexpr std::int64_t most = 1 << 27;
-  for (std::int64_t first = 0; first < count; first += most)
-    MPI_Recv(values + first, static_cast<int>(std::min(most, count - first)), type, 0, tag, ranks, MPI_STATUS_IGNORE);
-}
-
-/// Marks an order as begun, and as finished unless an exception comes between.
-class HalfWay {
- public:
-  explicit HalfWay(bool& mark) : mark_(mark) { mark_ = true; }
-  HalfWay(const HalfWay&) = delete;
-  HalfWay& operator=(const HalfWay&) = delete;
-  void done() { mark_ = false; }
-
- private:
-  bool& mark_;
-};
-
 /// A chain of springs to ground at both ends, the rank's rows of it.
 LocalRows chain_of_springs(PetscInt rows, const Shares& shares, int rank) {
   LocalRows local;
@@ -70,17 +43,17 @@ Ranks& Ranks::all() {
 }
 
 void Ranks::tell(const Order& order) {
-  std::int64_t numbers[5] = {static_cast<std::int64_t>(order.what), order.system, order.rows, order.columns, order.letters};
+  std::int64_t numbers[] = {static_cast<std::int64_t>(order.what), order.system, order.rows, order.columns, order.letters, order.terms};
   MPI_Request sent = MPI_REQUEST_NULL;
-  MPI_Ibcast(numbers, 5, MPI_INT64_T, 0, ranks_, &sent);
+  MPI_Ibcast(numbers, 6, MPI_INT64_T, 0, ranks_, &sent);
   MPI_Wait(&sent, MPI_STATUS_IGNORE);
 }
 
 /// MPI waits by spinning. While rank 0 computes alone, the others leave the cores to it.
 Ranks::Order Ranks::hear() const {
-  std::int64_t numbers[5] = {};
+  std::int64_t numbers[6] = {};
   MPI_Request wanted = MPI_REQUEST_NULL;
-  MPI_Ibcast(numbers, 5, MPI_INT64_T, 0, ranks_, &wanted);
+  MPI_Ibcast(numbers, 6, MPI_INT64_T, 0, ranks_, &wanted);
   using Clock = std::chrono::steady_clock;
   const Clock::time_point start = Clock::now();
   for (int here = 0;;) {
@@ -88,7 +61,7 @@ Ranks::Order Ranks::hear() const {
     if (here != 0) break;
     if (Clock::now() - start > std::chrono::milliseconds(2)) std::this_thread::sleep_for(std::chrono::microseconds(100));
   }
-  return {static_cast<What>(numbers[0]), numbers[1], numbers[2], numbers[3], numbers[4]};
+  return {static_cast<What>(numbers[0]), numbers[1], numbers[2], numbers[3], numbers[4], numbers[5]};
 }
 
 void Ranks::serve() {
@@ -110,20 +83,30 @@ void Ranks::serve() {
       case What::refuse:
         refuse_together(order, {});
         break;
+      case What::keep:
+        keep_together(order, nullptr);
+        break;
+      case What::drop:
+        kept_.erase(order.system);
+        break;
+      case What::multiply:
+        multiply_together(order, {}, nullptr, nullptr);
+        break;
       case What::release:
         systems_.erase(order.system);
         break;
       case What::end:
         systems_.clear();
+        kept_.clear();
         return;
     }
   }
 }
 
-Ranks::Made Ranks::make(const Sparse& matrix, const Vector& scale, const std::string& options, const Matrix& motions) {
+Ranks::Made Ranks::make(const SymmetricSum& matrix, const Vector& scale, const std::string& options, const Matrix& motions) {
   const std::lock_guard lock(one_at_a_time_);
   HalfWay half_way(half_way_);
-  const Order order{What::make, ++made_, matrix.rows(), motions.cols(), std::ssize(options)};
+  const Order order{What::make, ++made_, matrix.rows(), motions.cols(), std::ssize(options), std::ssize(matrix.there)};
   tell(order);
   const Scaled scaled{matrix, scale, motions};
   Made made = make_together(order, &scaled, options);
@@ -135,7 +118,7 @@ Ranks::Made Ranks::make_together(const Order& order, const Scaled* matrix, std::
   Made made{order.system, {}, 0};
   const SolverOptions given(spread_text(order.letters, std::move(options)));
   auto system = std::make_unique<System>(ranks_);
-  made.outcome = system->set(spread_rows(static_cast<PetscInt>(order.rows), matrix), static_cast<PetscInt>(order.rows));
+  made.outcome = system->set(spread_sum(order, matrix), static_cast<PetscInt>(order.rows));
   if (made.outcome.ok() && order.columns > 0)
     made.outcome = system->set_motions(spread_motions(order, matrix), static_cast<PetscInt>(order.columns));
   if (made.outcome.ok()) made.outcome = system->prepare(given);
@@ -144,10 +127,10 @@ Ranks::Made Ranks::make_together(const Order& order, const Scaled* matrix, std::
   return made;
 }
 
-Ranks::Forecast Ranks::foretell(const Sparse& matrix, const Vector& scale, const std::string& options) {
+Ranks::Forecast Ranks::foretell(const SymmetricSum& matrix, const Vector& scale, const std::string& options) {
   const std::lock_guard lock(one_at_a_time_);
   HalfWay half_way(half_way_);
-  const Order order{What::foretell, 0, matrix.rows(), 0, std::ssize(options)};
+  const Order order{What::foretell, 0, matrix.rows(), 0, std::ssize(options), std::ssize(matrix.there)};
   tell(order);
   const Matrix none;
   const Scaled scaled{matrix, scale, none};
@@ -160,11 +143,13 @@ Ranks::Forecast Ranks::foretell_together(const Order& order, const Scaled* matri
   Forecast forecast;
   const SolverOptions given(spread_text(order.letters, std::move(options)));
   System system(ranks_);
-  forecast.outcome = system.set(spread_rows(static_cast<PetscInt>(order.rows), matrix), static_cast<PetscInt>(order.rows));
+  forecast.outcome = system.set(spread_sum(order, matrix), static_cast<PetscInt>(order.rows));
   if (forecast.outcome.ok()) forecast.outcome = system.foretell(given, forecast.mine);
   MPI_Comm machine = MPI_COMM_NULL;
   MPI_Comm_split_type(ranks_, MPI_COMM_TYPE_SHARED, rank_, MPI_INFO_NULL, &machine);
-  const double elsewhere = rank_ == 0 ? 0 : forecast.mine.bytes;
+  double elsewhere = rank_ == 0 ? 0 : forecast.mine.bytes;
+  if (rank_ > 0)  // rank 0 has its own ones already
+    for (const auto& [number, columns] : kept_) elsewhere += static_cast<double>(columns.nonZeros()) * (sizeof(double) + sizeof(int));
   MPI_Allreduce(&elsewhere, &forecast.most_elsewhere, 1, MPI_DOUBLE, MPI_MAX, ranks_);
   MPI_Allreduce(&elsewhere, &forecast.beside, 1, MPI_DOUBLE, MPI_SUM, machine);
   MPI_Comm_free(&machine);
@@ -177,7 +162,7 @@ SystemOutcome Ranks::solve(std::int64_t system, const Matrix& b, Matrix& x) {
   SystemOutcome outcome;
   HalfWay half_way(half_way_);
   for (Index first = 0; first < b.cols() && outcome.ok(); first += most_columns) {
-    const Order order{What::solve, system, b.rows(), std::min<Index>(most_columns, b.cols() - first), 0};
+    const Order order{What::solve, system, b.rows(), std::min<Index>(most_columns, b.cols() - first), 0, 0};
     tell(order);
     outcome = solve_together(order, b.col(first).data(), x.col(first).data());
   }
@@ -208,7 +193,7 @@ SystemOutcome Ranks::solve_together(const Order& order, const double* b, double*
 SystemOutcome Ranks::flexibility(std::int64_t system, std::int64_t rows, const std::vector<int>& chosen, Matrix& entries) {
   const std::lock_guard lock(one_at_a_time_);
   HalfWay half_way(half_way_);
-  const Order order{What::flexibility, system, rows, std::ssize(chosen), 0};
+  const Order order{What::flexibility, system, rows, std::ssize(chosen), 0, 0};
   tell(order);
   entries.resize(std::ssize(chosen), std::ssize(chosen));
   const SystemOutcome outcome = flexibility_together(order, chosen, &entries);
@@ -268,7 +253,7 @@ std::string Ranks::refuse(const std::string& options) {
   const std::lock_guard lock(one_at_a_time_);
   HalfWay half_way(half_way_);
   constexpr PetscInt rows = 2000;  // enough for a multigrid method to have several levels
-  const Order order{What::refuse, 0, rows, 0, std::ssize(options)};
+  const Order order{What::refuse, 0, rows, 0, std::ssize(options), 0};
   tell(order);
   std::string why = refuse_together(order, options);
   half_way.done();
@@ -307,7 +292,7 @@ std::string Ranks::spread_text(std::int64_t letters, std::string text) const {
 /// Complete rows of the scaled matrix, from its upper triangle: an entry (i, j) is one of row j and, turned round, one of row i. Column
 /// after column, each row gets its entries from left to right.
 LocalRows Ranks::rows_of(const Scaled& matrix, Index first, Index count) {
-  const Sparse& upper = matrix.upper;
+  const Sparse& upper = matrix.matrix.here;
   const auto each_entry = [&](const auto& take) {  // row from `first` on, column, value
     for (Index j = first; j < upper.cols(); ++j)
       for (Sparse::InnerIterator entry(upper, j); entry && entry.row() <= j; ++entry) {
@@ -354,6 +339,15 @@ LocalRows Ranks::spread_rows(PetscInt rows, const Scaled* matrix) const {
     send(theirs.value.data(), entries, MPI_DOUBLE, rank, ranks_);
   }
   return rows_of(*matrix, 0, shares.count(0));
+}
+
+/// The rank's rows of a sum, of which `matrix` is on rank 0.
+LocalRows Ranks::spread_sum(const Order& order, const Scaled* matrix) const {
+  const auto rows = static_cast<PetscInt>(order.rows);
+  if (order.terms == 0) return spread_rows(rows, matrix);
+  const std::vector<KeptTerm> terms = spread_terms(order, matrix != nullptr ? matrix->matrix.there : std::span<const DistributedTerm>());
+  const Vector scale = spread_vector(order.rows, matrix != nullptr ? &matrix->scale : nullptr);
+  return rows_of_sum(terms, scale, spread_rows(rows, matrix));
 }
 
 void Ranks::release(std::int64_t system) {

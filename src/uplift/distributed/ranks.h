@@ -3,11 +3,12 @@
 #include <map>
 #include <memory>
 #include <mutex>
+#include <span>
 #include <string>
 #include <vector>
 
 #include "uplift/distributed/system.h"
-#include "uplift/math/linalg.h"
+#include "uplift/math/symmetric_sum.h"
 
 namespace uplift {
 
@@ -27,9 +28,9 @@ class Ranks {
     SystemOutcome outcome;
     double nonzeros = 0;
   };
-  /// Shares a symmetric matrix, of which the upper triangle is read, as S A S with the diagonal S, and prepares its solver. `motions`: what
-  /// deforms A least, columns; may have none.
-  Made make(const Sparse& matrix, const Vector& scale, const std::string& options, const Matrix& motions = {});
+  /// Shares a symmetric matrix as S A S with the diagonal S, and prepares its solver. Of what stands on rank 0 rows are sent; the terms are
+  /// kept matrices, whose rows the ranks have. `motions`: what deforms A least, columns; may have none.
+  Made make(const SymmetricSum& matrix, const Vector& scale, const std::string& options, const Matrix& motions = {});
   struct Forecast {
     SystemOutcome outcome;
     SystemCost mine;            // of rank 0
@@ -37,7 +38,16 @@ class Ranks {
     double beside = 0;          // bytes of all other ranks on the machine of rank 0
   };
   /// What `make` would take.
-  Forecast foretell(const Sparse& matrix, const Vector& scale, const std::string& options);
+  Forecast foretell(const SymmetricSum& matrix, const Vector& scale, const std::string& options);
+  struct Kept {
+    std::int64_t matrix = 0;      // its number
+    std::vector<double> entries;  // of each rank
+  };
+  /// Every rank keeps its rows of a symmetric matrix; see MatrixHome::keep.
+  Kept keep(std::int64_t rows, const MatrixHome::MakeColumns& make);
+  void drop(std::int64_t matrix);
+  /// y = sum of factor * A x of kept matrices.
+  void multiply(std::span<const DistributedTerm> sum, const Vector& x, Vector& y);
   /// x = A^-1 b; x has the shape of b.
   SystemOutcome solve(std::int64_t system, const Matrix& b, Matrix& x);
   /// The entries of A^-1 between chosen unknowns. Every rank makes its rows of the loads and hands out those of the answers that are
@@ -60,27 +70,37 @@ class Ranks {
   void serve();
 
  private:
-  enum class What : std::int64_t { make, foretell, solve, flexibility, refuse, release, end };
+  enum class What : std::int64_t { make, foretell, keep, drop, multiply, solve, flexibility, refuse, release, end };
   struct Order {
     What what = What::end;
-    std::int64_t system = 0, rows = 0, columns = 0,
-                 letters = 0;  // columns: of the loads, the motions or the flexibility; letters: of the options
+    // system: or a kept matrix; columns: of the loads, the motions or the flexibility; letters: of the options; terms: kept matrices
+    std::int64_t system = 0, rows = 0, columns = 0, letters = 0, terms = 0;
   };
   Ranks();
   void tell(const Order& order);
   Order hear() const;
   struct Scaled {
-    const Sparse& upper;
+    const SymmetricSum& matrix;
     const Vector& scale;
     const Matrix& motions;
   };
+  struct KeptTerm {
+    double factor;
+    const Sparse& columns;
+  };
   Made make_together(const Order& order, const Scaled* matrix, std::string options);
   Forecast foretell_together(const Order& order, const Scaled* matrix, std::string options);
+  Kept keep_together(const Order& order, const MatrixHome::MakeColumns* make);
+  void multiply_together(const Order& order, std::span<const DistributedTerm> sum, const Vector* x, Vector* y) const;
   SystemOutcome solve_together(const Order& order, const double* b, double* x);
   SystemOutcome flexibility_together(const Order& order, std::vector<int> chosen, Matrix* entries);
   std::string refuse_together(const Order& order, std::string options);
   std::vector<double> spread_motions(const Order& order, const Scaled* matrix) const;
+  LocalRows spread_sum(const Order& order, const Scaled* matrix) const;
   LocalRows spread_rows(PetscInt rows, const Scaled* matrix) const;
+  std::vector<KeptTerm> spread_terms(const Order& order, std::span<const DistributedTerm> sum) const;
+  Vector spread_vector(std::int64_t size, const Vector* vector) const;
+  LocalRows rows_of_sum(const std::vector<KeptTerm>& terms, const Vector& scale, const LocalRows& also) const;
   static LocalRows rows_of(const Scaled& matrix, Index first, Index count);
   std::string spread_text(std::int64_t letters, std::string text) const;
 
@@ -91,6 +111,7 @@ class Ranks {
   long iterations_ = 0;
   std::int64_t made_ = 0;
   std::map<std::int64_t, std::unique_ptr<System>> systems_;
+  std::map<std::int64_t, Sparse> kept_;  // rows x local: the rank's rows, as columns
   std::string failure_;
 };
 

@@ -8,6 +8,7 @@
 #include <utility>
 
 #include "uplift/base/text.h"
+#include "uplift/distributed/kept.h"
 #include "uplift/distributed/ranks.h"
 #include "uplift/linear/large.h"
 #include "uplift/linear/petsc.h"
@@ -98,7 +99,7 @@ class PetscSplit final : public SplitFactor {
 };
 
 /// 1 / sqrt(A_ii), and the first unknown without it; -1: all have one.
-int find_scale(const Sparse& a, Vector& scale) {
+int find_scale(const SymmetricSum& a, Vector& scale) {
   scale = a.diagonal();
   for (Index i = 0; i < scale.size(); ++i) {
     if (!(scale[i] > 0)) return static_cast<int>(i);
@@ -107,14 +108,18 @@ int find_scale(const Sparse& a, Vector& scale) {
   return -1;
 }
 
-class PetscSolver final : public SolverOfStatics {
+class PetscSolver final : public DistributedSolver {
  public:
   struct Settings {
     std::string options, of_statics;  // of PETSc
     double reach = 0;                 // m
   };
   explicit PetscSolver(Settings settings, Matrix motions = {}) : settings_(std::move(settings)), motions_(std::move(motions)) {}
-  Factorisation factorise(const Sparse& a) const override {
+  Factorisation factorise(const Sparse& a) const override { return factorise_sum(a); }
+  FactorCost predict(const Sparse& a, const std::vector<int>&) const override { return predict_sum(a); }
+  SplitFactorisation factorise_split(const Sparse& a, const std::vector<int>& last) const override { return factorise_split_sum(a, last); }
+  std::shared_ptr<const MatrixHome> home() const override { return std::make_shared<const HomeOnRanks>(); }
+  Factorisation factorise_sum(const SymmetricSum& a) const override {
     Vector scale;
     if (const int loose = find_scale(a, scale); loose >= 0) return singular_at(loose);
     Ranks::Made made = Ranks::all().make(a, scale, settings_.options, motions_);
@@ -124,7 +129,7 @@ class PetscSolver final : public SolverOfStatics {
             .failed_unknown = -1,
             .why = {}};
   }
-  FactorCost predict(const Sparse& a, const std::vector<int>&) const override {
+  FactorCost predict_sum(const SymmetricSum& a) const override {
     FactorCost cost;
     cost.unknowns = static_cast<double>(a.rows());
     Vector scale;
@@ -136,9 +141,9 @@ class PetscSolver final : public SolverOfStatics {
     cost.most_elsewhere = forecast.most_elsewhere, cost.beside = forecast.beside;
     return cost;
   }
-  SplitFactorisation factorise_split(const Sparse& a, const std::vector<int>& last) const override {
+  SplitFactorisation factorise_split_sum(const SymmetricSum& a, const std::vector<int>& last) const override {
     if (settings_.reach > 0) return {};
-    Factorisation whole = factorise(a);
+    Factorisation whole = factorise_sum(a);
     if (whole.factor == nullptr)
       return {.factor = nullptr, .failed_unknown = whole.failed_unknown, .why = std::move(whole.why), .too_large = whole.too_large};
     Matrix compliance;

@@ -9,6 +9,7 @@
 #include "uplift/linear/large.h"
 #include "uplift/math/small.h"
 #include "uplift/math/upper_sum.h"
+#include "uplift/model/matrix_sum.h"
 #include "uplift/model/reduced.h"
 
 namespace uplift {
@@ -17,8 +18,14 @@ BulkMatrix::BulkMatrix(const Sparse& matrix, bool dense) : zero_(matrix.nonZeros
   if (dense) full_ = Matrix(matrix);
 }
 
+BulkMatrix::BulkMatrix(std::vector<DistributedTerm> terms, const Sparse* here)
+    : zero_(terms.empty() && here == nullptr), sparse_(here), terms_(std::move(terms)) {}
+
 void BulkMatrix::multiply(const Vector& x, Vector& y) const {
-  if (zero_)
+  if (!terms_.empty()) {
+    terms_.front().matrix->multiply(terms_, x, y);
+    if (sparse_ != nullptr) y.noalias() += sparse_->transpose() * x;
+  } else if (zero_)
     y.setZero();
   else if (sparse_ == nullptr)
     small::multiply(full_, x.data(), y.data());
@@ -27,6 +34,8 @@ void BulkMatrix::multiply(const Vector& x, Vector& y) const {
 }
 
 namespace {
+
+static_assert(small_bulk <= most_undistributed);
 
 /// Stiffness with the geometric one; empty without.
 Sparse second_order(const Model& model, const Sparse* geometric) {
@@ -45,13 +54,53 @@ Bulk::Bulk(const Model& model, const Sparse* axial)
       mass_matrix(model.mass),
       damping_matrix(model.damping),
       geometric(axial),
-      stiffness(stiffness_matrix, small),
-      mass(mass_matrix, small),
-      damping(damping_matrix, small) {
+      stiffness(model.distributed ? BulkMatrix(distributed_terms(model, 1, 0, 0), axial) : BulkMatrix(stiffness_matrix, small)),
+      mass(model.distributed ? BulkMatrix(distributed_terms(model, 0, 0, 1), nullptr) : BulkMatrix(mass_matrix, small)),
+      damping(model.distributed ? BulkMatrix(distributed_terms(model, 0, 1, 0), nullptr) : BulkMatrix(damping_matrix, small)),
+      model_(model) {
   massless.assign(static_cast<std::size_t>(unknowns), 1);
   for (int column = 0; column < mass_matrix.outerSize(); ++column)
     for (Sparse::InnerIterator entry(mass_matrix, column); entry; ++entry)
       if (entry.value() != 0) massless[static_cast<std::size_t>(column)] = 0;
+}
+
+OwnedSum Bulk::upper(double k, double c, double m) const {
+  OwnedSum sum;
+  if (distributed()) {
+    sum = matrix_sum(model_, k, c, m);
+    if (geometric != nullptr) sum.here = k * geometric->triangularView<upper_triangle>();
+    return sum;
+  }
+  std::vector<Term> terms;
+  if (k != 0) terms.push_back({k, stiffness_matrix});
+  if (c != 0) terms.push_back({c, damping_matrix});
+  if (m != 0) terms.push_back({m, mass_matrix});
+  upper_sum(terms).swap(sum.here);
+  return sum;
+}
+
+/// K between chosen unknowns.
+Sparse Bulk::stiffness_among(const std::vector<int>& chosen) const {
+  if (distributed()) {
+    std::vector<Triplet> one_each;
+    for (const int unknown : chosen) one_each.emplace_back(unknown, static_cast<int>(one_each.size()), 1.0);
+    Sparse choice(unknowns, std::ssize(chosen));
+    choice.setFromTriplets(one_each.begin(), one_each.end());
+    Sparse block = chosen_block(model_, &Model::stiffness, choice);
+    if (geometric != nullptr) block += Sparse(choice.transpose() * *geometric * choice);
+    return block;
+  }
+  std::vector<int> place(static_cast<std::size_t>(unknowns), -1);
+  for (std::size_t i = 0; i < chosen.size(); ++i) place[static_cast<std::size_t>(chosen[i])] = static_cast<int>(i);
+  std::vector<Triplet> block;
+  for (int column = 0; column < stiffness_matrix.outerSize(); ++column)
+    for (Sparse::InnerIterator entry(stiffness_matrix, column); entry; ++entry) {
+      const int row = place[static_cast<std::size_t>(entry.row())], col = place[static_cast<std::size_t>(entry.col())];
+      if (row >= 0 && col >= 0) block.emplace_back(row, col, entry.value());
+    }
+  Sparse among(std::ssize(chosen), std::ssize(chosen));
+  among.setFromTriplets(block.begin(), block.end());
+  return among;
 }
 
 namespace {
@@ -81,7 +130,7 @@ class InverseFactor final : public Factor {
 
 }  // namespace
 
-BulkFactor::BulkFactor(const Sparse& matrix, const Sparse* b, bool small, const LinearSolver& solver, const Model& model,
+BulkFactor::BulkFactor(const SymmetricSum& matrix, const Sparse* b, bool small, const LinearSolver& solver, const Model& model,
                        LinearCounts& counts, const BulkFactor* like)
     : small_(small) {
   ++counts.factorisations;
@@ -89,8 +138,8 @@ BulkFactor::BulkFactor(const Sparse& matrix, const Sparse* b, bool small, const 
   if (ok()) try_out(matrix, model, counts);
 }
 
-void BulkFactor::factorise(const Sparse& matrix, const Sparse* b, const LinearSolver& solver, const Model& model, LinearCounts& counts,
-                           const BulkFactor* like) {
+void BulkFactor::factorise(const SymmetricSum& matrix, const Sparse* b, const LinearSolver& solver, const Model& model,
+                           LinearCounts& counts, const BulkFactor* like) {
   if (matrix.rows() == 0) {  // every unknown is prescribed
     small_ = true;
     inverse_.resize(0, 0);
@@ -100,9 +149,9 @@ void BulkFactor::factorise(const Sparse& matrix, const Sparse* b, const LinearSo
   if (!last_.empty()) factorise_split(matrix, solver, model, counts, like);
   if (split_ != nullptr || !ok()) return;
   Factorisation result;
-  if (like != nullptr && like->factor_ != nullptr && !small_) result = like->factor_->refactorise(matrix);
+  if (like != nullptr && like->factor_ != nullptr && !small_ && matrix.there.empty()) result = like->factor_->refactorise(matrix.here);
   if (result.factor == nullptr && result.why.empty()) {
-    result = solver.factorise(matrix);
+    result = uplift::factorise(solver, matrix);
     if (!small_) ++counts.analyses;
   }
   if (result.factor == nullptr) {
@@ -112,18 +161,19 @@ void BulkFactor::factorise(const Sparse& matrix, const Sparse* b, const LinearSo
   }
   factor_ = std::move(result.factor);
   if (small_) {
-    factor_->solve(Matrix::Identity(matrix.rows(), matrix.cols()), inverse_);
+    factor_->solve(Matrix::Identity(matrix.rows(), matrix.rows()), inverse_);
     inverse_ = (0.5 * (inverse_ + inverse_.transpose())).eval();
   }
 }
 
 /// Leaves no factor and no reason where the solver cannot.
-void BulkFactor::factorise_split(const Sparse& matrix, const LinearSolver& solver, const Model& model, LinearCounts& counts,
+void BulkFactor::factorise_split(const SymmetricSum& matrix, const LinearSolver& solver, const Model& model, LinearCounts& counts,
                                  const BulkFactor* like) {
   SplitFactorisation result;
-  if (like != nullptr && like->split_ != nullptr && like->last_ == last_) result = like->split_->refactorise(matrix);
+  if (like != nullptr && like->split_ != nullptr && like->last_ == last_ && matrix.there.empty())
+    result = like->split_->refactorise(matrix.here);
   if (result.factor == nullptr && result.why.empty()) {
-    result = solver.factorise_split(matrix, last_);
+    result = uplift::factorise_split(solver, matrix, last_);
     if (result.factor != nullptr || !result.why.empty()) ++counts.analyses;
   }
   too_large_ = result.too_large;
@@ -131,7 +181,7 @@ void BulkFactor::factorise_split(const Sparse& matrix, const LinearSolver& solve
   split_ = std::move(result.factor);
 }
 
-void BulkFactor::try_out(const Sparse& matrix, const Model& model, LinearCounts& counts) {
+void BulkFactor::try_out(const SymmetricSum& matrix, const Model& model, LinearCounts& counts) {
   const Index n = matrix.rows();
   if (n == 0) return;
   const Vector diagonal = matrix.diagonal(), weight = diagonal.cwiseSqrt();
@@ -142,7 +192,7 @@ void BulkFactor::try_out(const Sparse& matrix, const Model& model, LinearCounts&
   solve(load, x, work);
   const double size = load.cwiseQuotient(weight).norm(),
                round_off = 64 * std::numeric_limits<double>::epsilon() * weight.cwiseProduct(x).norm();
-  const double rest = (load - matrix.selfadjointView<upper_triangle>() * x).cwiseQuotient(weight).norm(), residual = rest / size;
+  const double rest = (load - matrix.times(x)).cwiseQuotient(weight).norm(), residual = rest / size;
   if (!(rest <= 1e-6 * size + round_off)) {
     why_ = fmt::format("back-solves meet their equations to {:.1e} of the load only", residual);
     return;
@@ -155,7 +205,7 @@ void BulkFactor::try_out(const Sparse& matrix, const Model& model, LinearCounts&
 }
 
 /// A mechanism is refused before a run begins. What is left is a structure whose soft motions are lost in the round-off of its stiff parts.
-void BulkFactor::fail(const Model& model, const Sparse& matrix, int unknown, const std::string& why) {
+void BulkFactor::fail(const Model& model, const SymmetricSum& matrix, int unknown, const std::string& why) {
   const bool named = unknown >= 0 && unknown < static_cast<int>(model.unknown_names.size());
   why_ = why;
   if (!named) return;
@@ -228,20 +278,18 @@ Accelerator::Accelerator(const Model& model, const Bulk& bulk, const Sparse* b, 
     }
   Sparse unit(bulk.unknowns, bulk.unknowns);
   unit.setFromTriplets(diagonal.begin(), diagonal.end());
-  const Term with_unit[] = {{1, bulk.mass_matrix}, {1, unit}};
-  mass_ = std::make_unique<BulkFactor>(upper_sum(with_unit), b, bulk.small, solver, model, counts);
+  OwnedSum with_unit;
+  if (bulk.distributed()) {
+    with_unit = bulk.upper(0, 0, 1);
+    with_unit.here.swap(unit);
+  } else {
+    const Term terms[] = {{1, bulk.mass_matrix}, {1, unit}};
+    upper_sum(terms).swap(with_unit.here);
+  }
+  mass_ = std::make_unique<BulkFactor>(with_unit, b, bulk.small, solver, model, counts);
   if (massless_.empty()) return;
   const Eigen::Index count = static_cast<Eigen::Index>(massless_.size());
-  std::vector<int> place(static_cast<std::size_t>(bulk.unknowns), -1);
-  for (Eigen::Index i = 0; i < count; ++i) place[static_cast<std::size_t>(massless_[static_cast<std::size_t>(i)])] = static_cast<int>(i);
-  std::vector<Triplet> block;
-  for (int column = 0; column < bulk.stiffness_matrix.outerSize(); ++column)
-    for (Sparse::InnerIterator entry(bulk.stiffness_matrix, column); entry; ++entry) {
-      const int row = place[static_cast<std::size_t>(entry.row())], col = place[static_cast<std::size_t>(entry.col())];
-      if (row >= 0 && col >= 0) block.emplace_back(row, col, entry.value());
-    }
-  Sparse stiffness(count, count);
-  stiffness.setFromTriplets(block.begin(), block.end());
+  const Sparse stiffness = bulk.stiffness_among(massless_);
   condensed_ = std::make_unique<BulkFactor>(stiffness, nullptr, count <= small_bulk, solver, model, counts);
   if (!condensed_->ok()) condensed_.reset();
 }

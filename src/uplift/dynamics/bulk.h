@@ -6,6 +6,7 @@
 #include "uplift/contact/compliance.h"
 #include "uplift/contact/problem.h"
 #include "uplift/dynamics/scheme.h"
+#include "uplift/math/symmetric_sum.h"
 #include "uplift/model/model.h"
 
 // The linear bulk (soil and structure without the interfaces) during one stage: products with K, C and M, and the matrix of a step.
@@ -22,10 +23,12 @@ struct LinearCounts {
 /// Below this number of free unknowns matrices are dense and the inverse is kept: a step then needs no back-solve at all.
 inline constexpr int small_bulk = 48;
 
-/// A symmetric matrix of the bulk: a dense copy when it is small, else a view.
+/// A symmetric matrix of the bulk: a dense copy when it is small, else a view; or the sum of distributed terms, and of a part that stands
+/// here.
 class BulkMatrix {
  public:
   BulkMatrix(const Sparse& matrix, bool dense);
+  BulkMatrix(std::vector<DistributedTerm> terms, const Sparse* here);
   /// y = A x; y must have the right size.
   void multiply(const Vector& x, Vector& y) const;
   bool zero() const { return zero_; }
@@ -34,6 +37,7 @@ class BulkMatrix {
   bool zero_ = true;
   Matrix full_;
   const Sparse* sparse_ = nullptr;  // null: dense
+  std::vector<DistributedTerm> terms_;
 };
 
 /// Refers to the model's matrices, which are large: the model must stay alive.
@@ -46,10 +50,17 @@ class Bulk {
   Bulk& operator=(const Bulk&) = delete;
   int unknowns = 0;
   bool small = false;
-  const Sparse &stiffness_matrix, &mass_matrix, &damping_matrix;
+  const Sparse &stiffness_matrix, &mass_matrix, &damping_matrix;  // of distributed matrices what Model has of them: the diagonals
   const Sparse* geometric;  // part of stiffness_matrix that the axial forces make; null: none. It must stay alive
   BulkMatrix stiffness, mass, damping;
   std::vector<char> massless;  // per free unknown
+  /// The upper triangle of k K + c C + m M; a factor of 0 leaves a matrix out.
+  OwnedSum upper(double k, double c, double m) const;
+  Sparse stiffness_among(const std::vector<int>& unknowns) const;
+  bool distributed() const { return model_.distributed != nullptr; }
+
+ private:
+  const Model& model_;
 };
 
 /// Counts and buffers of one run beside the factors that it uses.
@@ -76,10 +87,10 @@ inline constexpr std::string_view too_much_contrast =
 /// It does not change after it was made: runs and threads may share it, each with work of its own.
 class BulkFactor {
  public:
-  /// Of the matrix the upper triangle is read. `b`: interface rows x free unknowns, whose touched unknowns shall be last; null: in any
-  /// order. `why` is set (and ok() false) when the matrix is not positive definite. `like`: a factor of the same B whose symbolic analysis
-  /// is used again where it has a place for every entry of the matrix; null: none.
-  BulkFactor(const Sparse& matrix, const Sparse* b, bool small, const LinearSolver& solver, const Model& model, LinearCounts& counts,
+  /// Of a matrix that stands here the upper triangle is read. `b`: interface rows x free unknowns, whose touched unknowns shall be last;
+  /// null: in any order. `why` is set (and ok() false) when the matrix is not positive definite. `like`: a factor of the same B whose
+  /// symbolic analysis is used again where it has a place for every entry of the matrix; null: none.
+  BulkFactor(const SymmetricSum& matrix, const Sparse* b, bool small, const LinearSolver& solver, const Model& model, LinearCounts& counts,
              const BulkFactor* like = nullptr);
   bool ok() const { return why_.empty(); }
   const std::string& why() const { return why_; }
@@ -99,11 +110,12 @@ class BulkFactor {
   const std::vector<int>& last() const { return last_; }
 
  private:
-  void factorise(const Sparse& matrix, const Sparse* b, const LinearSolver& solver, const Model& model, LinearCounts& counts,
+  void factorise(const SymmetricSum& matrix, const Sparse* b, const LinearSolver& solver, const Model& model, LinearCounts& counts,
                  const BulkFactor* like);
-  void factorise_split(const Sparse& matrix, const LinearSolver& solver, const Model& model, LinearCounts& counts, const BulkFactor* like);
-  void try_out(const Sparse& matrix, const Model& model, LinearCounts& counts);
-  void fail(const Model& model, const Sparse& matrix, int unknown, const std::string& why);
+  void factorise_split(const SymmetricSum& matrix, const LinearSolver& solver, const Model& model, LinearCounts& counts,
+                       const BulkFactor* like);
+  void try_out(const SymmetricSum& matrix, const Model& model, LinearCounts& counts);
+  void fail(const Model& model, const SymmetricSum& matrix, int unknown, const std::string& why);
 
   bool small_ = false, too_large_ = false;
   std::string why_;

@@ -5,7 +5,7 @@
 #include "uplift/dynamics/bulk.h"
 #include "uplift/linear/large.h"
 #include "uplift/linear/memory.h"
-#include "uplift/math/upper_sum.h"
+#include "uplift/model/matrix_sum.h"
 
 namespace uplift {
 
@@ -13,6 +13,15 @@ namespace {
 
 double bytes_of(const Sparse& matrix) {
   return 12 * static_cast<double>(matrix.nonZeros()) + 4 * static_cast<double>(matrix.cols());
+}
+
+/// Of the rows that this process keeps, the first one of the job.
+double distributed_bytes(const Model& model) {
+  double entries = 0;
+  if (model.distributed == nullptr) return 0;
+  for (const auto& matrix : {model.distributed->stiffness, model.distributed->mass, model.distributed->damping})
+    if (matrix != nullptr) entries += matrix->entries().front();
+  return 12 * entries;
 }
 
 /// C, Q and the last block of a split factor, and what the interface problem makes of C.
@@ -32,23 +41,22 @@ BulkCost predict_bulk(const Model& model, const LinearSolver& solver, const Bulk
   unit.setIdentity();
   FactorCost statics;
   {
-    const Term terms[] = {{1, model.stiffness}, {1, model.damping}, {1, model.mass}};
-    const Sparse step = upper_sum(terms);
-    cost.step = solver.predict(step, touched);
-    cost.step.working_bytes += bytes_of(step);
-    if (const auto other = use.statics ? solver_for_statics(solver, {}) : nullptr) statics = other->predict(step, touched);
-    statics.working_bytes += bytes_of(step);
+    const OwnedSum step = matrix_sum(model, 1, 1, 1);
+    cost.step = predict(solver, step, touched);
+    cost.step.working_bytes += bytes_of(step.here);
+    if (const auto other = use.statics ? solver_for_statics(solver, {}) : nullptr) statics = predict(*other, step, touched);
+    statics.working_bytes += bytes_of(step.here);
   }
   {
-    const Term terms[] = {{1, model.mass}, {1, unit}};
-    const Sparse mass = upper_sum(terms);
-    cost.mass = solver.predict(mass, use.impacts ? touched : std::vector<int>());
-    cost.mass.working_bytes += bytes_of(mass);
+    OwnedSum mass = matrix_sum(model, 0, 0, 1);
+    mass.here += unit;
+    cost.mass = predict(solver, mass, use.impacts ? touched : std::vector<int>());
+    cost.mass.working_bytes += bytes_of(mass.here);
   }
   cost.elsewhere_bytes = std::max({cost.step.most_elsewhere, statics.most_elsewhere, cost.mass.most_elsewhere});
   const double beside = std::max({cost.step.beside, statics.beside, cost.mass.beside});
   const auto rows = static_cast<double>(b.rows()), n = static_cast<double>(model.free());
-  cost.matrix_bytes = bytes_of(model.stiffness) + bytes_of(model.mass) + bytes_of(model.damping);
+  cost.matrix_bytes = bytes_of(model.stiffness) + bytes_of(model.mass) + bytes_of(model.damping) + distributed_bytes(model);
   // SymmetricPair: half the entries, 20 bytes each
   const double pair = solver.distributed() ? 0 : 10 * static_cast<double>(model.stiffness.nonZeros()) + 24 * n;
   const double steps = use.step_sizes + (use.propagates ? 1 : 0);

@@ -57,8 +57,8 @@ class PlasticNewton::Mixing {
   CompleteQr least_squares_;
 };
 
-PlasticNewton::PlasticNewton(const PlasticBulk& bulk, const Sparse& stiffness, const PlasticOptions& options)
-    : bulk_(bulk), options_(options), weight_(stiffness.diagonal()), mixing_(std::make_unique<Mixing>()) {
+PlasticNewton::PlasticNewton(const PlasticBulk& bulk, Vector diagonal, const PlasticOptions& options)
+    : bulk_(bulk), options_(options), weight_(std::move(diagonal)), mixing_(std::make_unique<Mixing>()) {
   for (double& w : weight_) w = w > 0 ? 1 / std::sqrt(w) : 0;
 }
 

@@ -31,7 +31,7 @@ class PlasticNewton {
   /// Makes a solver of K_eff + D, or tells why not.
   using Make = std::function<std::unique_ptr<StepSolver>(const Sparse& d, std::string& why)>;
   /// `stiffness`: its diagonal weighs the unknowns in norms, so that units play no part.
-  PlasticNewton(const PlasticBulk& bulk, const Sparse& stiffness, const PlasticOptions& options);
+  PlasticNewton(const PlasticBulk& bulk, Vector diagonal, const PlasticOptions& options);
   ~PlasticNewton();
   /// The end of a step: what the bulk remembers at its beginning, and the instant of its end.
   struct Step {

@@ -46,7 +46,7 @@ class LoadSteps {
   StaticOutcome run();
 
  private:
-  std::shared_ptr<const BulkFactor> factor(const Sparse& matrix, const BulkFactor* like) const {
+  std::shared_ptr<const BulkFactor> factor(const SymmetricSum& matrix, const BulkFactor* like) const {
     const LinearSolver& solver = of_statics_ != nullptr ? *of_statics_ : solver_;
     return std::make_shared<const BulkFactor>(matrix, &b_, bulk_.small, solver, model_, counts_, like);
   }
@@ -54,6 +54,7 @@ class LoadSteps {
     return std::make_unique<Condensed>(model_, b_, gap_, !motion_.isZero(0), std::move(made), blocks_, method_, counts_);
   }
   void assemble();
+  OwnedSum softened(const Sparse& d) const;
   void soften_joint();
   void find_loads();
   double load_factor(double share) const { return share < 1 ? first_factor_ + share * (1 - first_factor_) : 1; }
@@ -83,7 +84,7 @@ class LoadSteps {
   Vector first_load_, change_;  // N: internal force at the beginning, and what the stage adds to it
   Vector dead_load_;            // N: the static loads at the load factor 1
   ContactModel blocks_;
-  Sparse matrix_;  // upper triangle of K + B^T D B: all that a factor is made of
+  OwnedSum matrix_;  // upper triangle of K + B^T D B: all that a factor is made of
   std::unique_ptr<StepSolver> linear_;
   std::shared_ptr<const BulkFactor> tangent_;  // the last one, whose analysis serves the next one
   std::unique_ptr<PlasticNewton> newton_;
@@ -119,7 +120,7 @@ LoadSteps::LoadSteps(const Model& model, const Bulk& bulk, const Sparse& b, cons
   blocks_.shift = closed_joint(model, solver.matrices_of(model).stiffness, b, behaviours);
   assemble();
   if (yielding_.any()) {
-    newton_ = std::make_unique<PlasticNewton>(yielding_, matrix_, options.plastic);
+    newton_ = std::make_unique<PlasticNewton>(yielding_, SymmetricSum(matrix_).diagonal(), options.plastic);
     plastic_now_ = yielding_.state(state.bulk_history);
   }
   product_ = reaction_ = increment_ = Vector::Zero(bulk.unknowns);
@@ -129,8 +130,15 @@ LoadSteps::LoadSteps(const Model& model, const Bulk& bulk, const Sparse& b, cons
 /// K + B^T D B with the closed joint D.
 void LoadSteps::assemble() {
   solver_.wait_for_room();
-  matrix_ = bulk_.stiffness_matrix.triangularView<upper_triangle>();
-  if (b_.rows() > 0) matrix_ += Sparse(Sparse(b_.transpose() * blocks_.shift.asDiagonal() * b_).triangularView<upper_triangle>());
+  OwnedSum stiffness = bulk_.upper(1, 0, 0);
+  matrix_.here.swap(stiffness.here);
+  matrix_.there.swap(stiffness.there);
+  if (b_.rows() > 0) matrix_.here += Sparse(Sparse(b_.transpose() * blocks_.shift.asDiagonal() * b_).triangularView<upper_triangle>());
+}
+
+/// The same with the tangent of solids that yield.
+OwnedSum LoadSteps::softened(const Sparse& d) const {
+  return {matrix_.here + d, matrix_.there};
 }
 
 /// Where the matrix or a load step fails: a joint that is no stiffer than the parts that it joins. It is as exact (any stiffness is), but
@@ -211,7 +219,7 @@ std::string LoadSteps::solve(double to, int depth) {
   if (nothing_acts()) return {};
   if (yielding_.any()) {
     const PlasticNewton::Make soften = [this](const Sparse& d, std::string& why) -> std::unique_ptr<StepSolver> {
-      std::shared_ptr<const BulkFactor> softer = factor(matrix_ + d, tangent_ != nullptr ? tangent_.get() : linear_->factor());
+      std::shared_ptr<const BulkFactor> softer = factor(softened(d), tangent_ != nullptr ? tangent_.get() : linear_->factor());
       why = softer->why();
       if (!softer->ok()) return nullptr;
       tangent_ = softer;
@@ -347,7 +355,7 @@ StaticOutcome LoadSteps::run() {
     return std::move(outcome_);
   }
   linear_ = condensed(std::move(made));
-  if (!yielding_.any()) Sparse().swap(matrix_);  // tangents alone are made of it
+  if (!yielding_.any()) Sparse().swap(matrix_.here);  // tangents alone are made of it
   bool all = go_on();
   if (!all && outcome_.failed && b_.rows() > 0 && !softens_ && !yielding_.any()) all = retry_with_softer_joint();
   state_.velocity.setZero();

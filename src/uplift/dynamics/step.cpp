@@ -52,7 +52,7 @@ Stepper::Stepper(const Model& model, const Bulk& bulk, const Sparse& b, const Ve
     prepare_impacts();
     impact_impulse_.setZero(b.rows());
   }
-  if (yielding_.any()) newton_ = std::make_unique<PlasticNewton>(yielding_, bulk.stiffness_matrix, options.plastic);
+  if (yielding_.any()) newton_ = std::make_unique<PlasticNewton>(yielding_, bulk.stiffness_matrix.diagonal(), options.plastic);
 }
 
 Stepper::~Stepper() = default;
@@ -77,8 +77,14 @@ Outcome Stepper::solve(Level& level) {
     return last->solve(right_, start, increment_);
   }
   const PlasticNewton::Make soften = [&](const Sparse& d, std::string& why) -> std::unique_ptr<StepSolver> {
-    const Sparse matrix = matrix_of(level) + d;
-    if (options_.monolithic) return make_monolithic(matrix, b_, gap_, frame_of(level));
+    OwnedSum matrix;
+    if (bulk_.distributed()) {
+      matrix = upper_of(level);
+      matrix.here += Sparse(d.triangularView<upper_triangle>());
+    } else {
+      matrix.here = matrix_of(level) + d;
+    }
+    if (options_.monolithic) return make_monolithic(matrix.here, b_, gap_, frame_of(level));
     auto factor = std::make_shared<const BulkFactor>(matrix, &b_, bulk_.small, solver_, model_, linear_,
                                                      level.tangent != nullptr ? level.tangent.get() : level.solver->factor());
     why = factor->why();

@@ -125,7 +125,7 @@ class Stepper {
   void advance_filters(const Level& level);
   bool kinematics(const Level& level);
   Sparse matrix_of(const Level& level) const;
-  Sparse upper_of(const Level& level) const;
+  OwnedSum upper_of(const Level& level) const;
   ContactModel frame_of(const Level& level) const;
   Outcome solve(Level& level);
   void prepare_impacts();

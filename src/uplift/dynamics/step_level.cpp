@@ -1,12 +1,12 @@
 #include "uplift/dynamics/step_level.h"
 
+#include <cassert>
 #include <cmath>
 #include <utility>
 
 #include "uplift/dynamics/closed_joint.h"
 #include "uplift/dynamics/monolithic.h"
 #include "uplift/dynamics/statics.h"
-#include "uplift/math/upper_sum.h"
 #include "uplift/model/mechanism.h"
 
 namespace uplift {
@@ -48,8 +48,7 @@ Stepper::Level& Stepper::make_level(int halving) {
     made.why = made.dynamic_factor->why();
   }
   if (impacts_ && impact_.needs_dynamic()) {
-    const Term dynamic[] = {{1, bulk_.stiffness_matrix}, {4 / (dt * dt), bulk_.mass_matrix}};
-    made.dynamic_factor = std::make_unique<BulkFactor>(upper_sum(dynamic), &b_, bulk_.small, solver_, model_, linear_);
+    made.dynamic_factor = std::make_unique<BulkFactor>(bulk_.upper(1, 0, 4 / (dt * dt)), &b_, bulk_.small, solver_, model_, linear_);
     made.why = made.dynamic_factor->why();
     made.hopeless = made.dynamic_factor->too_large();
     if (made.why.empty()) made.dynamic = std::make_unique<Spread>(made.dynamic_factor->spread(b_, linear_));
@@ -69,6 +68,7 @@ Vector Stepper::stiffness_for_massless() const {
 }
 
 Sparse Stepper::matrix_of(const Level& level) const {
+  assert(!bulk_.distributed());
   Sparse linear = bulk_.stiffness_matrix + level.damping * bulk_.damping_matrix + level.mass * bulk_.mass_matrix;
   if (shift_.size() > 0) linear += b_.transpose() * shift_.asDiagonal() * b_;
   if (!filtered_ || bulk_.geometric == nullptr) return linear;
@@ -76,10 +76,14 @@ Sparse Stepper::matrix_of(const Level& level) const {
 }
 
 /// The upper triangle of the same: what a factor is made of.
-Sparse Stepper::upper_of(const Level& level) const {
-  if (shift_.size() > 0 || (filtered_ && bulk_.geometric != nullptr)) return matrix_of(level).triangularView<upper_triangle>();
-  const Term terms[] = {{1, bulk_.stiffness_matrix}, {level.damping, bulk_.damping_matrix}, {level.mass, bulk_.mass_matrix}};
-  return upper_sum(terms);
+OwnedSum Stepper::upper_of(const Level& level) const {
+  const bool unfiltered = filtered_ && bulk_.geometric != nullptr;
+  if (!bulk_.distributed() && (shift_.size() > 0 || unfiltered)) return {matrix_of(level).triangularView<upper_triangle>(), {}};
+  OwnedSum sum = bulk_.upper(1, level.damping, level.mass);
+  if (!bulk_.distributed()) return sum;
+  if (shift_.size() > 0) sum.here += Sparse(Sparse(b_.transpose() * shift_.asDiagonal() * b_).triangularView<upper_triangle>());
+  if (unfiltered) sum.here -= Sparse((1 - 1 / options_.scheme.stretch()) * bulk_.geometric->triangularView<upper_triangle>());
+  return sum;
 }
 
 ContactModel Stepper::frame_of(const Level& level) const {

@@ -1,5 +1,6 @@
 #pragma once
 #include "uplift/linear/solver.h"
+#include "uplift/math/symmetric_sum.h"
 
 // What a solver for models whose factor is too large may offer beside what every solver does.
 namespace uplift {
@@ -24,6 +25,35 @@ class SolverOfStatics : public LinearSolver {
   /// They deform nothing, and iterations without mass are slowest to find them.
   virtual std::unique_ptr<const LinearSolver> for_statics(const Matrix& motions) const = 0;
 };
+
+/// A solver of matrices whose rows are distributed over the processes of a job.
+class DistributedSolver : public SolverOfStatics {
+ public:
+  /// Where a model leaves its matrices for this solver.
+  virtual std::shared_ptr<const MatrixHome> home() const = 0;
+  /// As those of LinearSolver.
+  virtual Factorisation factorise_sum(const SymmetricSum& a) const = 0;
+  virtual SplitFactorisation factorise_split_sum(const SymmetricSum& a, const std::vector<int>& last) const = 0;
+  virtual FactorCost predict_sum(const SymmetricSum& a) const = 0;
+};
+
+/// Null: the solver takes whole matrices.
+inline std::shared_ptr<const MatrixHome> home_of(const LinearSolver& solver) {
+  const auto* distributed = dynamic_cast<const DistributedSolver*>(&solver);
+  return distributed != nullptr ? distributed->home() : nullptr;
+}
+
+/// Of a sum that has distributed terms the solver is a DistributedSolver.
+inline Factorisation factorise(const LinearSolver& solver, const SymmetricSum& a) {
+  return a.there.empty() ? solver.factorise(a.here) : dynamic_cast<const DistributedSolver&>(solver).factorise_sum(a);
+}
+inline SplitFactorisation factorise_split(const LinearSolver& solver, const SymmetricSum& a, const std::vector<int>& last) {
+  return a.there.empty() ? solver.factorise_split(a.here, last)
+                         : dynamic_cast<const DistributedSolver&>(solver).factorise_split_sum(a, last);
+}
+inline FactorCost predict(const LinearSolver& solver, const SymmetricSum& a, const std::vector<int>& last) {
+  return a.there.empty() ? solver.predict(a.here, last) : dynamic_cast<const DistributedSolver&>(solver).predict_sum(a);
+}
 
 /// Null: the same solver.
 inline std::unique_ptr<const LinearSolver> solver_for_statics(const LinearSolver& solver, const Matrix& motions) {

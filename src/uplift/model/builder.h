@@ -74,6 +74,8 @@ class ModelBuilder {
   /// Ground acceleration in the frame that moves with the ground: inertia forces -M r a(t), r the unit translation along `direction`.
   void add_ground_acceleration(Place direction, std::shared_ptr<const TimeFunction> acceleration, std::string name, Where where);
   void set_damping(BulkDamping damping);
+  /// Where the rows of the matrices are distributed if the model is not small and has no modal damping; null: they are whole.
+  void set_home(std::shared_ptr<const MatrixHome> home) { home_ = std::move(home); }
   /// The finished model; the builder is empty afterwards.
   Model finish();
 
@@ -121,6 +123,7 @@ class ModelBuilder {
   ElementSum sum(Matrix* Local::*wanted) const { return {space_, elements_, wanted}; }
   std::vector<int> resisted(const Model& model) const;
   void assemble(Model& model) const;
+  void distribute(Model& model) const;
   void drop_dead_tangents(const Model& model, const Matrix& motion_shapes);
   void place_interfaces(Model& model);
   Vector water_load(const Model& model, std::size_t interface) const;  // full unknowns
@@ -146,6 +149,7 @@ class ModelBuilder {
   bool keeps_tangents_ = false;
   Vec3 gravity_ = Vec3::Zero();
   BulkDamping damping_;
+  std::shared_ptr<const MatrixHome> home_;
 };
 
 }  // namespace uplift

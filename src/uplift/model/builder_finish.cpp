@@ -3,9 +3,9 @@
 #include <algorithm>
 #include <utility>
 
-#include "uplift/math/upper_sum.h"
 #include "uplift/model/builder.h"
 #include "uplift/model/damping.h"
+#include "uplift/model/matrix_sum.h"
 
 namespace uplift {
 
@@ -20,17 +20,39 @@ Vector translation(Space space, const Vec3& direction, Index unknowns) {
 }  // namespace
 
 void ModelBuilder::assemble(Model& model) const {
+  model.assembly.mass_damping = damping_.alpha;
+  model.assembly.stiffness_damping = damping_.beta;
+  if (home_ != nullptr && model.free() > most_undistributed && damping_.modal.empty()) return distribute(model);
   // exchanged: an assignment of a sparse matrix is a copy
   sum(&Local::stiffness).reduced(model.expansion).swap(model.stiffness);
   sum(&Local::mass).reduced(model.expansion).swap(model.mass);
-  Sparse own = sum(&Local::damping).reduced(model.expansion);
-  std::vector<Term> terms{{1, own}};
-  if (damping_.alpha != 0) terms.push_back({damping_.alpha, model.mass});
-  if (damping_.beta != 0) terms.push_back({damping_.beta, model.stiffness});
-  if (terms.size() == 1)
-    own.swap(model.damping);
-  else
-    whole_sum(terms).swap(model.damping);
+  add_rayleigh(model, sum(&Local::damping).reduced(model.expansion), model.damping);
+}
+
+/// The columns that one process keeps are made after those of another one: never more of a matrix is here.
+void ModelBuilder::distribute(Model& model) const {
+  const auto keep = [&](Matrix* Local::*wanted) {
+    const ElementSum elements = sum(wanted);
+    const Vector diagonal = elements.diagonal(model.expansion);
+    return home_->keep(diagonal, [&](Index first, Index count) { return elements.columns(model.expansion, diagonal, first, count); });
+  };
+  const auto as_sparse = [](const Vector& diagonal) {
+    Sparse matrix(diagonal.size(), diagonal.size());
+    matrix.reserve(diagonal.size());
+    for (Index i = 0; i < diagonal.size(); ++i)
+      if (diagonal[i] != 0) matrix.insert(i, i) = diagonal[i];
+    matrix.makeCompressed();
+    return matrix;
+  };
+  auto made = std::make_shared<DistributedMatrices>();
+  made->stiffness = keep(&Local::stiffness);
+  made->mass = keep(&Local::mass);
+  made->damping = keep(&Local::damping);
+  if (std::ranges::all_of(made->damping->entries(), [](double entries) { return entries == 0; })) made->damping.reset();
+  as_sparse(made->stiffness->diagonal()).swap(model.stiffness);
+  as_sparse(made->mass->diagonal()).swap(model.mass);
+  model.damping.resize(model.free(), model.free());
+  model.distributed = std::move(made);
 }
 
 void ModelBuilder::make_drives(Model& model, const Matrix& motion_shapes) const {
@@ -139,8 +161,6 @@ Model ModelBuilder::finish() {
     first += face.rows();
   }
   make_drives(model, motion_shapes);
-  model.assembly.mass_damping = damping_.alpha;
-  model.assembly.stiffness_damping = damping_.beta;
   if (!damping_.modal.empty()) {
     model.assembly.modal_damping = modal_damping(model, damping_.modal, damping_.modal_count, {});
     model.damping += model.assembly.modal_damping;

@@ -8,6 +8,7 @@
 #include "uplift/math/dense.h"
 #include "uplift/math/sparse_solvers.h"
 #include "uplift/model/hinges.h"
+#include "uplift/model/matrix_sum.h"
 #include "uplift/model/rigid_parts.h"
 
 namespace uplift {
@@ -184,7 +185,7 @@ void check_masses(const Model& model, const Where& file) {
   if (others.empty()) return;
   Sparse select(model.free(), static_cast<Index>(others.size()));
   select.setFromTriplets(chosen.begin(), chosen.end());
-  const Sparse scaled = unit_diagonal(select.transpose() * model.mass * select, scale, massless);
+  const Sparse scaled = unit_diagonal(chosen_block(model, &Model::mass, select), scale, massless);
   const SparseLdlt ldlt(scaled);
   for (Index k = 0; k < scaled.rows(); ++k) {
     if (ldlt.vectorD()[k] > 1e-12) continue;

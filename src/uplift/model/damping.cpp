@@ -4,13 +4,25 @@
 
 #include <numbers>
 
+#include "uplift/math/upper_sum.h"
 #include "uplift/math/vibration.h"
 #include "uplift/model/eliminate.h"
+#include "uplift/model/matrix_sum.h"
 
 namespace uplift {
 
+void add_rayleigh(const Model& model, Sparse own, Sparse& damping) {
+  std::vector<Term> terms{{1, own}};
+  if (model.assembly.mass_damping != 0) terms.push_back({model.assembly.mass_damping, model.mass});
+  if (model.assembly.stiffness_damping != 0) terms.push_back({model.assembly.stiffness_damping, model.stiffness});
+  if (terms.size() == 1)
+    own.swap(damping);
+  else
+    whole_sum(terms).swap(damping);
+}
+
 Sparse bonded_stiffness(const Model& model) {
-  return bonded_stiffness(model, model.stiffness);
+  return bonded_stiffness(model, WholeMatrices(model).stiffness());
 }
 
 Sparse bonded_stiffness(const Model& model, const Sparse& without) {

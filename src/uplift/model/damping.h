@@ -12,6 +12,9 @@ namespace uplift {
 /// unknowns.
 Sparse modal_damping(const Model& model, const std::vector<double>& ratios, int count, const Where& where);
 
+/// C = own + alpha M + beta K with stiffness, mass and Rayleigh damping of a model. `own` is used up.
+void add_rayleigh(const Model& model, Sparse own, Sparse& damping);
+
 /// The bonded stiffness of the traction laws, K + sum B^T diag(weight k_closed) B; cones add nothing.
 Sparse bonded_stiffness(const Model& model);
 /// The same with a stiffness without interfaces that stands elsewhere.

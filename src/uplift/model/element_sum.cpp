@@ -82,30 +82,36 @@ int number_groups(const Matrix& block, std::vector<int>& group) {
 
 }  // namespace
 
-void ElementSum::each_element(const TakeElement& take) const {
+void ElementSum::each_element(const TakeElement& take, const Wanted& is_wanted) const {
   Matrix local, stiffness;
   std::vector<int> unknowns;
   for (const auto& element : elements_) {
+    const int each = element->unknowns_per_node();
+    unknowns.clear();
+    for (const int node : element->nodes())
+      for (int i = 0; i < each; ++i) unknowns.push_back(space_.unknowns() * node + i);
+    if (is_wanted && !is_wanted(unknowns)) continue;
     const bool proportional = wanted_ == &Local::damping && element->beta != 0;
     Local one;
     one.*wanted_ = &local;
     if (proportional) one.stiffness = &stiffness;
     element->form(one);
     if (proportional) local += element->beta * stiffness;
-    if (local.isZero(0)) continue;
-    const int each = element->unknowns_per_node();
-    unknowns.clear();
-    for (const int node : element->nodes())
-      for (int i = 0; i < each; ++i) unknowns.push_back(space_.unknowns() * node + i);
-    take(unknowns, local);
+    if (!local.isZero(0)) take(unknowns, local);
   }
 }
 
-void ElementSum::each_group(const Sparse& expansion, const TakeGroup& take) const {
+void ElementSum::each_group(const Sparse& expansion, Columns columns, const TakeGroup& take) const {
   ReducedElement reduced(expansion);
   std::vector<int> group, unknowns;
   Matrix block;
-  each_element([&](std::span<const int> full, const Matrix& local) {
+  const auto reaches = [&](std::span<const int> full) {
+    for (const int unknown : full)
+      for (Sparse::InnerIterator entry(expansion, unknown); entry; ++entry)
+        if (columns.has(entry.row())) return true;
+    return false;
+  };
+  const auto take_element = [&](std::span<const int> full, const Matrix& local) {
     reduced.reduce(full, local);
     const int count = number_groups(reduced.block, group);
     for (int g = 0; g < count; ++g) {
@@ -113,10 +119,12 @@ void ElementSum::each_group(const Sparse& expansion, const TakeGroup& take) cons
       std::vector<Index> chosen;
       for (std::size_t i = 0; i < group.size(); ++i)
         if (group[i] == g) chosen.push_back(static_cast<Index>(i)), unknowns.push_back(reduced.unknowns[i]);
+      if (std::ranges::none_of(unknowns, [&](int unknown) { return columns.has(unknown); })) continue;
       block = reduced.block(chosen, chosen);
       take(unknowns, block);
     }
-  });
+  };
+  each_element(take_element, reaches);
 }
 
 Matrix ElementSum::times(const Matrix& x) const {
@@ -138,10 +146,17 @@ Vector ElementSum::size_of_diagonal(const Sparse& expansion) const {
   return diagonal;
 }
 
+Vector ElementSum::diagonal(const Sparse& expansion) const {
+  Vector diagonal = Vector::Zero(expansion.rows());
+  each_group(expansion, {0, expansion.rows()},
+             [&](std::span<const int> unknowns, const Matrix& block) { diagonal(unknowns) += block.diagonal(); });
+  return diagonal;
+}
+
 /// The places of the sum, with zeros.
-Sparse ElementSum::places(const Sparse& expansion) const {
+Sparse ElementSum::places(const Sparse& expansion, Columns columns) const {
   Lists groups;
-  each_group(expansion, [&](std::span<const int> unknowns, const Matrix&) {
+  each_group(expansion, columns, [&](std::span<const int> unknowns, const Matrix&) {
     groups.member.insert(groups.member.end(), unknowns.begin(), unknowns.end());
     groups.start.push_back(static_cast<int>(groups.member.size()));
   });
@@ -149,19 +164,19 @@ Sparse ElementSum::places(const Sparse& expansion) const {
   const Lists groups_of = lists_of_members(groups, free);
   std::vector<int> seen(static_cast<std::size_t>(free), -1);  // the last column that has this row
   const auto rows_of = [&](Index column, const auto& take) {
-    for (const int group : groups_of.of(static_cast<int>(column)))
+    for (const int group : groups_of.of(static_cast<int>(columns.first + column)))
       for (const int row : groups.of(group))
         if (std::exchange(seen[row], static_cast<int>(column)) != column) take(row);
   };
-  Sparse sum(free, free);
+  Sparse sum(free, columns.count);
   int* start = sum.outerIndexPtr();
-  for (Index column = 0; column < free; ++column) {
+  for (Index column = 0; column < columns.count; ++column) {
     start[column + 1] = start[column];
     rows_of(column, [&](int) { ++start[column + 1]; });
   }
-  sum.resizeNonZeros(start[free]);
+  sum.resizeNonZeros(start[columns.count]);
   std::ranges::fill(seen, -1);
-  for (Index column = 0; column < free; ++column) {
+  for (Index column = 0; column < columns.count; ++column) {
     int* next = sum.innerIndexPtr() + start[column];
     rows_of(column, [&](int row) { *next++ = row; });
     std::sort(sum.innerIndexPtr() + start[column], next);
@@ -170,20 +185,41 @@ Sparse ElementSum::places(const Sparse& expansion) const {
   return sum;
 }
 
-Sparse ElementSum::reduced(const Sparse& expansion) const {
-  Sparse sum = places(expansion);
-  each_group(expansion, [&](std::span<const int> unknowns, const Matrix& block) {
+/// The sum with the entries that are only round-off.
+Sparse ElementSum::filled(const Sparse& expansion, Columns columns) const {
+  Sparse sum = places(expansion, columns);
+  each_group(expansion, columns, [&](std::span<const int> unknowns, const Matrix& block) {
     for (Index j = 0; j < block.cols(); ++j) {
-      const int *place = sum.innerIndexPtr() + sum.outerIndexPtr()[unknowns[j]],
-                *end = sum.innerIndexPtr() + sum.outerIndexPtr()[unknowns[j] + 1];
+      if (!columns.has(unknowns[j])) continue;
+      const int* start = sum.outerIndexPtr() + (unknowns[j] - columns.first);
+      const int *place = sum.innerIndexPtr() + start[0], *end = sum.innerIndexPtr() + start[1];
       for (Index i = 0; i < block.rows(); ++i) {  // ascending: the next place is behind the last one
         place = std::lower_bound(place, end, unknowns[i]);
         sum.valuePtr()[place - sum.innerIndexPtr()] += block(i, j);
       }
     }
   });
-  const Vector size = Vector(sum.diagonal()).cwiseAbs().cwiseSqrt();
-  sum.prune([&](Index i, Index j, double value) { return std::abs(value) > 1e-15 * size[i] * size[j]; });
+  return sum;
+}
+
+namespace {
+
+void drop_round_off(const Vector& diagonal, Index first, Sparse& columns) {
+  const Vector size = diagonal.cwiseAbs().cwiseSqrt();
+  columns.prune([&](Index i, Index j, double value) { return std::abs(value) > 1e-15 * size[i] * size[first + j]; });
+}
+
+}  // namespace
+
+Sparse ElementSum::reduced(const Sparse& expansion) const {
+  Sparse sum = filled(expansion, {0, expansion.rows()});
+  drop_round_off(sum.diagonal(), 0, sum);
+  return sum;
+}
+
+Sparse ElementSum::columns(const Sparse& expansion, const Vector& diagonal, Index first, Index count) const {
+  Sparse sum = filled(expansion, {first, count});
+  drop_round_off(diagonal, first, sum);
   return sum;
 }
 

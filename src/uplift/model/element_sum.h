@@ -21,15 +21,27 @@ class ElementSum {
   Vector size_of_diagonal(const Sparse& expansion) const;
   /// T^T A T without entries that are only round-off.
   Sparse reduced(const Sparse& expansion) const;
+  /// Diagonal of T^T A T.
+  Vector diagonal(const Sparse& expansion) const;
+  /// Columns first ... first + count - 1 of T^T A T, free x count: those of `reduced`, to the last bit. Elements that do not reach them are
+  /// not looked at. `diagonal`: of T^T A T.
+  Sparse columns(const Sparse& expansion, const Vector& diagonal, Index first, Index count) const;
 
  private:
+  struct Columns {
+    Index first, count;
+    bool has(Index column) const { return column >= first && column < first + count; }
+  };
   /// Full unknowns of each element, and its matrix.
   using TakeElement = std::function<void(std::span<const int> unknowns, const Matrix& local)>;
-  void each_element(const TakeElement& take) const;
-  /// The parts T^T A_e T of each element that its matrix couples, each with its free unknowns. Always in the same order.
+  using Wanted = std::function<bool(std::span<const int> unknowns)>;
+  void each_element(const TakeElement& take, const Wanted& is_wanted = {}) const;
+  /// The parts T^T A_e T of each element that its matrix couples, each with its free unknowns, if one of them is among the columns. Always
+  /// in the same order.
   using TakeGroup = std::function<void(std::span<const int> unknowns, const Matrix& block)>;
-  void each_group(const Sparse& expansion, const TakeGroup& take) const;
-  Sparse places(const Sparse& expansion) const;
+  void each_group(const Sparse& expansion, Columns columns, const TakeGroup& take) const;
+  Sparse places(const Sparse& expansion, Columns columns) const;
+  Sparse filled(const Sparse& expansion, Columns columns) const;
 
   Space space_;
   const std::vector<std::unique_ptr<const Element>>& elements_;

@@ -7,6 +7,7 @@
 
 #include "uplift/elements/element.h"
 #include "uplift/interface/interface.h"
+#include "uplift/math/symmetric_sum.h"
 #include "uplift/model/function.h"
 
 namespace uplift {
@@ -100,6 +101,11 @@ struct Assembly {
   Sparse modal_damping;                            // free x free, part of Model::damping; empty without
 };
 
+/// The matrices of a model whose rows are distributed. Rayleigh damping is no matrix of its own: C = damping + alpha M + beta K.
+struct DistributedMatrices {
+  std::shared_ptr<const DistributedMatrix> stiffness, mass, damping;  // damping: of dashpots and elements' own factors; null without any
+};
+
 /// What is built once, checked once and never changes; shared by every thread.
 /// Full unknowns: those of all nodes (elements/space.h). Free unknowns q: what is left after supports, rigid bodies and inextensible beams
 /// are eliminated exactly: full = T q + sum of prescribed motions.
@@ -113,9 +119,11 @@ struct Model {
   std::vector<PrescribedMotion> motions;
   std::vector<GroundAcceleration> grounds;
 
-  Sparse reduction;                        // T: full x free
-  Sparse expansion;                        // T^T: column i is the row of T for full unknown i
-  Sparse stiffness, mass, damping;         // free x free; damping: Rayleigh, dashpots, modal
+  Sparse reduction;                 // T: full x free
+  Sparse expansion;                 // T^T: column i is the row of T for full unknown i
+  Sparse stiffness, mass, damping;  // free x free; damping: Rayleigh, dashpots, modal
+  // null: the matrices above are whole. Else stiffness and mass above hold their diagonals alone and damping nothing (model/matrix_sum.h)
+  std::shared_ptr<const DistributedMatrices> distributed;
   std::vector<int> kept;                   // full unknown that each free unknown is
   std::vector<std::string> unknown_names;  // of the free unknowns, "top.ux"
   Assembly assembly;

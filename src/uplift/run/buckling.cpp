@@ -1,13 +1,14 @@
 #include "uplift/run/buckling.h"
 
 #include "uplift/model/damping.h"
+#include "uplift/model/matrix_sum.h"
 
 namespace uplift {
 
 std::optional<double> buckling_share(const Model& model, const Sparse& geometric, const LinearSolver& solver) {
   if (model.free() == 0 || geometric.nonZeros() == 0) return std::nullopt;
   const Sparse held = cones_held(model), to_held = held.transpose();
-  const Sparse stiffness = to_held * bonded_stiffness(model, solver.matrices_of(model).stiffness) * held,
+  const Sparse stiffness = to_held * bonded_stiffness(model, WholeMatrices(solver.matrices_of(model)).stiffness()) * held,
                softening = to_held * geometric * held;
   if (stiffness.rows() == 0) return std::nullopt;
   const auto stands = [&](double share) { return solver.factorise(stiffness + share * softening).factor != nullptr; };

@@ -8,14 +8,13 @@
 #include "uplift/dynamics/split_response.h"
 #include "uplift/dynamics/statics.h"
 #include "uplift/dynamics/step.h"
-#include "uplift/math/upper_sum.h"
 
 namespace uplift {
 
 namespace {
 
 /// `contact` with the compliance of this matrix; without one, and with the reason, where it cannot be factorised.
-ContactModel with_compliance(ContactModel contact, const Sparse& matrix, const Sparse& b, const Model& model, const Bulk& bulk,
+ContactModel with_compliance(ContactModel contact, const SymmetricSum& matrix, const Sparse& b, const Model& model, const Bulk& bulk,
                              const LinearSolver& solver, LinearCounts& counts, std::string& why) {
   BulkFactor factor(matrix, &b, bulk.small, solver, model, counts);
   why = factor.why();
@@ -35,20 +34,18 @@ ContactModel probe(const Model& model, const Bulk& bulk, const Sparse& b, const 
                    LinearCounts& counts, std::string& why) {
   const Scheme& s = stage.scheme;
   const double w = 1 - s.alpha_f, dt = stage.step * s.stretch();
-  const Term terms[] = {{1, bulk.stiffness_matrix},
-                        {s.gamma / (s.beta * dt), bulk.damping_matrix},
-                        {(1 - s.alpha_m) / (w * s.beta * dt * dt), bulk.mass_matrix}};
+  const OwnedSum matrix = bulk.upper(1, s.gamma / (s.beta * dt), (1 - s.alpha_m) / (w * s.beta * dt * dt));
   ContactModel contact = blocks_of(model, Behaviours(model, NoContact(), nullptr));
   contact.step = stage.step;
-  return with_compliance(std::move(contact), upper_sum(terms), b, model, bulk, solver, counts, why);
+  return with_compliance(std::move(contact), matrix, b, model, bulk, solver, counts, why);
 }
 
 ContactModel static_probe(const Model& model, const LinearSolver& solver, LinearCounts& counts, std::string& why) {
   const Bulk bulk(solver.matrices_of(model), nullptr);
   const Sparse b = stack_interfaces(model);
   const Behaviours behaviours(model, NoContact(), nullptr);
-  Sparse matrix = bulk.stiffness_matrix.triangularView<upper_triangle>();
-  matrix += Sparse(
+  OwnedSum matrix = bulk.upper(1, 0, 0);
+  matrix.here += Sparse(
       Sparse(b.transpose() * closed_joint(model, bulk.stiffness_matrix, b, behaviours).asDiagonal() * b).triangularView<upper_triangle>());
   return with_compliance(blocks_of(model, behaviours), matrix, b, model, bulk, solver, counts, why);
 }

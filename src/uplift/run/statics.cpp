@@ -6,6 +6,7 @@
 
 #include "uplift/dynamics/plastic_bulk.h"
 #include "uplift/model/geometric.h"
+#include "uplift/model/matrix_sum.h"
 #include "uplift/model/reduced.h"
 #include "uplift/run/buckling.h"
 #include "uplift/run/runner.h"
@@ -82,7 +83,7 @@ Energies Runner::static_energies(const Model& resting, const Energies& before, c
   energies.external += progress.work;
   energies.plastic += progress.dissipated;
   energies.friction += progress.friction;
-  energies.strain = 0.5 * run_.state.displacement.dot(plan_.solver->matrices_of(resting).stiffness * run_.state.displacement);
+  energies.strain = 0.5 * run_.state.displacement.dot(stiffness_times(plan_.solver->matrices_of(resting), run_.state.displacement));
   if (const PlasticBulk yielding(resting); yielding.any())
     energies.strain += yielding.energy(run_.state.displacement, run_.state.instant(), yielding.state(run_.state.bulk_history));
   InterfaceEnergy interfaces;
@@ -207,7 +208,7 @@ State Runner::carried() const {
 /// on it is a constant load, so that nothing moves when nothing shakes (docs/theory, eq 22).
 void Runner::release() {
   run_.state = carried();
-  run_.held = plan_.solver->matrices_of(model_).stiffness * run_.state.displacement;
+  run_.held = stiffness_times(plan_.solver->matrices_of(model_), run_.state.displacement);
   if (geometric_ != nullptr) run_.held += *geometric_ * run_.state.displacement;
   if (const PlasticBulk yielding(model_); yielding.any()) run_.held += yielding.state(run_.state.bulk_history).force;
   if (b_.rows() > 0) run_.held += b_.transpose() * run_.state.force;

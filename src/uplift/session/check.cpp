@@ -61,7 +61,7 @@ ResolvedFrequencies resolved_frequencies(const Model& model, const CaseFindings&
     if (share >= least_share) made.moving.push_back(mode.frequency);
   }
   made.bonded.insert(made.bonded.end(), made.moving.begin(), made.moving.end());
-  made.base_free = frequencies(uplift::modes(model.stiffness, model.mass, lowest_elastic + most_rigid));
+  made.base_free = frequencies(base_free_modes(model, lowest_elastic + most_rigid));
   const auto elastic = std::ranges::find_if(made.base_free, [](double frequency) { return frequency > 0; });
   made.base_free.erase(made.base_free.begin(), elastic);
   made.base_free.resize(std::min<std::size_t>(made.base_free.size(), lowest_elastic));
@@ -131,7 +131,7 @@ CaseFindings find(const Case& read, const RunSpec& spec, const BuiltCase& built)
   found.bonded = frequencies(bonded_modes(built.at_rest(), 5));
   if (unknowns <= quick_modes) {
     found.fixed = frequencies(fixed_base_modes(built.at_rest(), 3));
-    found.base_free = frequencies(uplift::modes(built.at_rest().stiffness, built.at_rest().mass, 5));
+    found.base_free = frequencies(base_free_modes(built.at_rest(), 5));
   }
   if (const Stage* stage = dynamic_stage(built.plan)) found.ratios = stiffness_ratios(built.model, *stage, *built.plan.solver);
   if (dynamic_stage(built.plan)) found.bounds = step_bounds(read, built, resolved_frequencies(built.at_rest(), found));

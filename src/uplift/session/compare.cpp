@@ -35,7 +35,7 @@ bool same_floors(const RunPlan& one, const RunPlan& other) {
 /// done alone.
 bool marches_in_lockstep(const LoadedCase& loaded, const RunSpec& spec, const BuiltCase& built, bool with_fields) {
   return !loaded.read.values.table("output").has("checkpoint") && built.model.free() >= large_model && spec.other_case.empty() &&
-         loaded.from.reduced == nullptr && loaded.external_laws.empty() &&
+         loaded.from.reduced == nullptr && loaded.external_laws.empty() && built.model.distributed == nullptr &&
          !(with_fields && loaded.read.values.table("output").has("fields"));
 }
 

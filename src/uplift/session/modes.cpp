@@ -44,7 +44,7 @@ std::string modes_json(const LoadedCase& loaded, int count) {
   json.begin_object().member("case", loaded.from.case_file).key("bonded");
   write_modes(json, built.at_rest(), bonded_modes(built.at_rest(), count));
   json.key("base_free");
-  write_modes(json, built.at_rest(), modes(built.at_rest().stiffness, built.at_rest().mass, count));
+  write_modes(json, built.at_rest(), base_free_modes(built.at_rest(), count));
   return json.end_object().take();
 }
 

@@ -12,6 +12,7 @@
 #include "uplift/base/file.h"
 #include "uplift/base/text.h"
 #include "uplift/dynamics/plastic_bulk.h"
+#include "uplift/model/matrix_sum.h"
 #include "uplift/reduction/projection.h"
 #include "uplift/reduction/training.h"
 #include "uplift/session/steps.h"
@@ -175,7 +176,8 @@ std::optional<ReducedModel> reduce_case(const LoadedCase& loaded, const ReduceOp
   spec.pictures = false;
   std::optional<ReducedModel> reduced(std::in_place);
   {
-    const BuiltCase built = build_run(loaded, spec);
+    BuiltCase built = build_run(loaded, spec);
+    make_whole(built.model);
     refuse(built, where);
     TrainingOptions training{.frequency = options.frequency, .size = options.size, .target = options.target};
     training.floors = floor_unknowns(built);
@@ -222,6 +224,7 @@ void refuse_reduced(const ReducedModel& reduced, const Where& where, const Built
 
 std::optional<RunState> begin_reduced(const ReducedModel& reduced, const Where& where, BuiltCase& built, const Watch& watch,
                                       RunResult& result) {
+  make_whole(built.model);
   refuse_reduced(reduced, where, built);
   std::optional<RunState> begin;
   Keeping keeping;

@@ -98,6 +98,7 @@ void add_statement(const LoadedCase& loaded, std::vector<std::string>& warnings)
 }
 
 void free_matrices(BuiltCase& built) {
+  built.model.distributed.reset();
   ModelMatrices().swap(built.model);  // an assignment would keep the memory
   built.plan.rest.reset();
 }

@@ -3,6 +3,7 @@
 #include "uplift/case/case.h"
 #include "uplift/case/mesh/mesh.h"
 #include "uplift/model/damping.h"
+#include "uplift/model/matrix_sum.h"
 #include "uplift/model/tuned_mass.h"
 
 namespace uplift {
@@ -57,11 +58,18 @@ Sparse without_ground(const Sparse& held, const Model& model) {
 }  // namespace
 
 std::vector<Mode> bonded_modes(const Model& model, int count) {
-  return modes_within(cones_held(model), bonded_stiffness(model), model.mass, count);
+  const WholeMatrices whole(model);
+  return modes_within(cones_held(model), bonded_stiffness(model, whole.stiffness()), whole.mass(), count);
 }
 
 std::vector<Mode> fixed_base_modes(const Model& model, int count) {
-  return modes_within(without_ground(base_held(model), model), model.stiffness, model.mass, count);
+  const WholeMatrices whole(model);
+  return modes_within(without_ground(base_held(model), model), whole.stiffness(), whole.mass(), count);
+}
+
+std::vector<Mode> base_free_modes(const Model& model, int count) {
+  const WholeMatrices whole(model);
+  return modes(whole.stiffness(), whole.mass(), count);
 }
 
 }  // namespace uplift

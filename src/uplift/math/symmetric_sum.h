@@ -1,0 +1,60 @@
+#pragma once
+#include <functional>
+#include <memory>
+#include <span>
+#include <utility>
+#include <vector>
+
+#include "uplift/math/linalg.h"
+
+// Symmetric matrices that are too large for one process: their rows are distributed over the processes of a job.
+namespace uplift {
+
+class DistributedMatrix;
+
+/// A matrix whose rows are distributed, and what it is multiplied by.
+struct DistributedTerm {
+  double factor;
+  std::shared_ptr<const DistributedMatrix> matrix;
+};
+
+/// A symmetric matrix of which every process of a job keeps some rows, as long as this object lives.
+class DistributedMatrix {
+ public:
+  virtual ~DistributedMatrix() = default;
+  /// y = sum of factor * A x. All terms are matrices of one job, of the same size, and this is one of them.
+  virtual void multiply(std::span<const DistributedTerm> sum, const Vector& x, Vector& y) const = 0;
+  virtual const Vector& diagonal() const = 0;
+  /// Entries that each process keeps.
+  virtual const std::vector<double>& entries() const = 0;
+};
+
+/// The processes of a job as a place for matrices.
+class MatrixHome {
+ public:
+  virtual ~MatrixHome() = default;
+  /// The matrix whose columns `make(first, count)` returns, complete and rows x count. It is called once for each process, and what it has
+  /// returned goes there before it is called again. `diagonal`: of the whole matrix.
+  using MakeColumns = std::function<Sparse(Index first, Index count)>;
+  virtual std::shared_ptr<const DistributedMatrix> keep(Vector diagonal, const MakeColumns& make) const = 0;
+};
+
+/// A symmetric matrix to be looked at: the upper triangle of what stands here, and terms whose rows are distributed; none as a rule.
+struct SymmetricSum {
+  SymmetricSum(const Sparse& upper, std::span<const DistributedTerm> terms = {})  // NOLINT(google-explicit-constructor)
+      : here(upper), there(terms) {}
+  const Sparse& here;
+  std::span<const DistributedTerm> there;
+  Index rows() const { return here.rows(); }
+  Vector diagonal() const;
+  Vector times(const Vector& x) const;
+};
+
+/// The same, kept.
+struct OwnedSum {
+  Sparse here;
+  std::vector<DistributedTerm> there;
+  operator SymmetricSum() const { return {here, there}; }  // NOLINT(google-explicit-constructor)
+};
+
+}  // namespace uplift

@@ -1,0 +1,70 @@
+#include "uplift/model/matrix_sum.h"
+
+#include "uplift/math/upper_sum.h"
+#include "uplift/model/damping.h"
+#include "uplift/model/element_sum.h"
+
+namespace uplift {
+
+namespace {
+
+ElementSum sum_of_elements(const Model& model, Matrix* Local::*wanted) {
+  return {model.space, model.elements, wanted};
+}
+
+}  // namespace
+
+std::vector<DistributedTerm> distributed_terms(const Model& model, double k, double c, double m) {
+  std::vector<DistributedTerm> terms;
+  if (model.distributed == nullptr) return terms;
+  const DistributedMatrices& there = *model.distributed;
+  const double of_stiffness = k + c * model.assembly.stiffness_damping, of_mass = m + c * model.assembly.mass_damping;
+  if (of_stiffness != 0) terms.push_back({of_stiffness, there.stiffness});
+  if (c != 0 && there.damping != nullptr) terms.push_back({c, there.damping});
+  if (of_mass != 0) terms.push_back({of_mass, there.mass});
+  return terms;
+}
+
+OwnedSum matrix_sum(const Model& model, double k, double c, double m) {
+  OwnedSum sum;
+  if (model.distributed != nullptr) {
+    sum.here.resize(model.free(), model.free());
+    sum.there = distributed_terms(model, k, c, m);
+    return sum;
+  }
+  std::vector<Term> terms;
+  if (k != 0) terms.push_back({k, model.stiffness});
+  if (c != 0) terms.push_back({c, model.damping});
+  if (m != 0) terms.push_back({m, model.mass});
+  upper_sum(terms).swap(sum.here);
+  return sum;
+}
+
+Vector stiffness_times(const Model& model, const Vector& u) {
+  if (model.distributed == nullptr) return model.stiffness * u;
+  Vector force(u.size());
+  const DistributedTerm term[] = {{1, model.distributed->stiffness}};
+  term[0].matrix->multiply(term, u, force);
+  return force;
+}
+
+Sparse chosen_block(const Model& model, Sparse Model::*matrix, const Sparse& choice) {
+  if (model.distributed == nullptr) return choice.transpose() * (model.*matrix) * choice;
+  return sum_of_elements(model, matrix == &Model::mass ? &Local::mass : &Local::stiffness).reduced(choice.transpose() * model.expansion);
+}
+
+WholeMatrices::WholeMatrices(const Model& model) : model_(model), distributed_(model.distributed != nullptr) {
+  if (!distributed_) return;
+  sum_of_elements(model, &Local::stiffness).reduced(model.expansion).swap(stiffness_);
+  sum_of_elements(model, &Local::mass).reduced(model.expansion).swap(mass_);
+}
+
+void make_whole(Model& model) {
+  if (model.distributed == nullptr) return;
+  sum_of_elements(model, &Local::stiffness).reduced(model.expansion).swap(model.stiffness);
+  sum_of_elements(model, &Local::mass).reduced(model.expansion).swap(model.mass);
+  add_rayleigh(model, sum_of_elements(model, &Local::damping).reduced(model.expansion), model.damping);
+  model.distributed.reset();
+}
+
+}  // namespace uplift

@@ -1,0 +1,216 @@
+// Stiffness, damping and mass whose rows the ranks keep, beside those of the same model on one process.
+#include <fmt/format.h>
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <numeric>
+
+#include "unit/case/cut_support.h"
+#include "uplift/linear/large.h"
+#include "uplift/model/matrix_sum.h"
+
+namespace uplift {
+namespace {
+
+using namespace support;
+
+constexpr const char* petsc = "solver = { type = \"petsc\" }\n";
+
+/// Rayleigh damping, solids with a damping of their own, an absorbing bottom, sides that are tied to each other, a raft that is rigid, a
+/// mast of beams with a mass and a dashpot, on a footing beside the soil.
+const std::string tied = R"([mesh.soil_box.soil]
+width = 24
+size = 1
+[[mesh.soil_box.soil.layers]]
+thickness = 8
+size = 1
+[mesh.soil_box.raft]
+width = 6
+height = 1
+size = 1
+[mesh.soil_box.block]
+width = 4
+height = 6
+size = 1
+[[solid]]
+group = "soil_1"
+shear_wave_speed = 250
+poisson = 0.3
+density = 1900
+[[solid]]
+group = "raft"
+E = 3e10
+poisson = 0.2
+density = 2500
+[[solid]]
+group = "block"
+E = 5e9
+poisson = 0.2
+density = 1000
+[[rigid]]
+name = "plate"
+group = "raft"
+[nodes]
+foot = [20, 9]
+tip = [20, 15]
+[[rigid]]
+name = "footing"
+node = "foot"
+mass = 1e4
+inertia = 7500
+[[beam]]
+name = "mast"
+nodes = ["foot", "tip"]
+E = 2e10
+I = 0.02
+A = 0.3
+density = 2500
+elements = 7
+[[mass]]
+node = "tip"
+mass = 2000
+[[dashpot]]
+nodes = ["tip"]
+direction = [1, 0]
+damping = 3e4
+[[support]]
+group = "soil_bottom"
+fixed = ["ux", "uy"]
+stages = "static"
+[[absorbing]]
+group = "soil_bottom"
+[[tie]]
+group = "soil_left"
+to = "soil_right"
+unknowns = ["ux", "uy"]
+[[interface]]
+name = "underside"
+surface = { group = "interface", lower = ["soil_1"] }
+law = { type = "springs", K_n = 2e10, K_t = 1e10, tangential = "coulomb", friction = 0.7 }
+[[interface]]
+name = "sole"
+footing = { body = "foot", width = 3, points = 5 }
+law = { type = "springs", K_n = 1e8, K_t = 1e8, tangential = "bonded" }
+[gravity]
+acceleration = [0, -9.81]
+[damping]
+rayleigh = [{ frequency = 1, ratio = 0.04 }, { frequency = 8, ratio = 0.04 }]
+[[stage]]
+type = "static"
+[[stage]]
+type = "dynamic"
+duration = 0.01
+step = 1e-3
+)";
+
+/// A base that the mesh ignores, absorbing sides, no damping but theirs.
+std::string cut() {
+  return "[mesh]\nfile = \"cut.msh\"\n" + solid("volume", 2e8, 0.3, 1900) + solid("raft", 3e10, 0.2, 2500) +
+         "[[support]]\ngroup = \"bottom\"\nfixed = [\"ux\", \"uy\", \"uz\"]\nstages = \"static\"\n" +
+         "[[absorbing]]\ngroup = \"bottom\"\n[[absorbing]]\ngroup = \"left\"\n[[absorbing]]\ngroup = \"right\"\n"
+         "[[interface]]\nname = \"base\"\ncut = { through = [\"volume\"], level = 3.37, upper = \"raft\", x = [-2, 2], y = [-1, 1], height "
+         "= "
+         "1.5 }\n"
+         "law = { type = \"springs\", K_n = 1e9, K_t = 1e9, tangential = \"bonded\" }\n" +
+         at_rest_stages;
+}
+
+/// The matrix of the terms, whole. Its rows are kept as the columns of the serial program, which round-off lets differ from the rows.
+Sparse gathered(const std::vector<DistributedTerm>& terms, Index rows) {
+  std::vector<Triplet> entries;
+  Vector unit = Vector::Zero(rows), column(rows);
+  for (Index j = 0; j < rows; ++j) {
+    unit[j] = 1;
+    terms.front().matrix->multiply(terms, unit, column);
+    unit[j] = 0;
+    for (Index i = 0; i < rows; ++i)
+      if (column[i] != 0) entries.emplace_back(static_cast<int>(j), static_cast<int>(i), column[i]);
+  }
+  Sparse whole(rows, rows);
+  whole.setFromTriplets(entries.begin(), entries.end());
+  return whole;
+}
+
+/// Largest difference of two matrices, each entry with the weights 1/sqrt(A_ii) of both its unknowns.
+double difference(const Sparse& one, const Sparse& other) {
+  const Vector diagonal = other.diagonal();
+  const Sparse rest = one - other;
+  double most = 0;
+  for (int j = 0; j < rest.outerSize(); ++j)
+    for (Sparse::InnerIterator entry(rest, j); entry; ++entry)
+      if (entry.value() != 0) most = std::max(most, std::abs(entry.value()) / std::sqrt(diagonal[entry.row()] * diagonal[j]));
+  return most;
+}
+
+void compare(const std::string& text, const Mesh& mesh) {
+  const std::string title = "title = \"rows\"\nbonded = false\n";
+  const Case serial_case = read_on(title + text, mesh), petsc_case = read_on(petsc + title + text, mesh);
+  const BuiltCase serial = build(serial_case, runs_of_case(serial_case).front());
+  {
+    BuiltCase spread = build(petsc_case, runs_of_case(petsc_case).front());
+    const Model &one = serial.model, &other = spread.model;
+    const Index n = one.free();
+    ASSERT_EQ(other.free(), n);
+    ASSERT_GT(n, most_undistributed);
+    ASSERT_NE(other.distributed, nullptr);
+    // bit for bit, and nothing of them is whole
+    for (const auto& [matrix, terms] :
+         {std::pair(&Model::stiffness, distributed_terms(other, 1, 0, 0)), std::pair(&Model::mass, distributed_terms(other, 0, 0, 1))}) {
+      EXPECT_TRUE(Matrix(gathered(terms, n)) == Matrix(one.*matrix)) << difference(gathered(terms, n), one.*matrix);
+      EXPECT_TRUE(Vector((other.*matrix).diagonal()) == Vector((one.*matrix).diagonal()));
+      EXPECT_LE((other.*matrix).nonZeros(), n);
+      const std::vector<double>& entries = terms.front().matrix->entries();
+      EXPECT_EQ(std::accumulate(entries.begin(), entries.end(), 0.0), static_cast<double>((one.*matrix).nonZeros()));
+      const double share = static_cast<double>((one.*matrix).nonZeros()) / static_cast<double>(entries.size());
+      EXPECT_LE(*std::max_element(entries.begin(), entries.end()), 1.3 * share);
+    }
+    // Rayleigh damping is added in another order
+    EXPECT_EQ(other.damping.nonZeros(), 0);
+    EXPECT_GT(one.damping.nonZeros(), 0);
+    EXPECT_LE(difference(gathered(distributed_terms(other, 0, 1, 0), n), one.damping), 1e-15);
+    // a sum with a part that stands on rank 0, as it is multiplied and as it is solved with
+    Sparse extra(n, n);
+    extra.insert(3, 3) = 2 * one.stiffness.coeff(3, 3);
+    extra.insert(3, n - 1) = 0.1 * one.stiffness.coeff(3, 3);
+    extra.insert(n - 1, n - 1) = 3 * one.stiffness.coeff(3, 3);
+    OwnedSum sum = matrix_sum(other, 1, 50, 4e6);
+    sum.here += extra;
+    const OwnedSum same = matrix_sum(one, 1, 50, 4e6);
+    const Sparse whole = same.here + extra;
+    const Vector x = Vector::LinSpaced(n, -1, 2), product = whole.selfadjointView<upper_triangle>() * x;
+    EXPECT_LE((SymmetricSum(sum).times(x) - product).norm(), 1e-14 * product.norm());
+    EXPECT_LE((SymmetricSum(sum).diagonal() - whole.diagonal()).norm(), 1e-14 * whole.diagonal().norm());
+    const Factorisation made = factorise(*spread.plan.solver, sum);
+    ASSERT_NE(made.factor, nullptr) << made.why;
+    Matrix found;
+    made.factor->solve(product, found);
+    EXPECT_LE((found.col(0) - x).norm(), 1e-9 * x.norm());
+    // and back
+    make_whole(spread.model);
+    EXPECT_EQ(spread.model.distributed, nullptr);
+    for (const auto matrix : {&Model::stiffness, &Model::mass, &Model::damping})
+      EXPECT_TRUE(Matrix(spread.model.*matrix) == Matrix(one.*matrix));
+  }
+}
+
+TEST(Distribution, RowsOfTiesRigidBodiesBeamsDashpotsAndAbsorbingFaces) {
+  compare(tied, {});
+}
+
+TEST(Distribution, RowsOfACutInterfaceInSpace) {
+  compare(cut(), box(uniform_lines(-4, 4, 8), uniform_lines(-2, 2, 4), uniform_lines(0, 6, 6)));
+}
+
+TEST(Distribution, RunIsThatOfTheWholeMatrices) {
+  const std::string title = "title = \"rows\"\nbonded = false\n";
+  const Case serial_case = read_on(title + tied, {}), petsc_case = read_on(petsc + title + tied, {});
+  BuiltCase serial = build(serial_case, runs_of_case(serial_case).front()), spread = build(petsc_case, runs_of_case(petsc_case).front());
+  const RunResult one = run(serial.model, serial.plan, serial.behaviours), other = run(spread.model, spread.plan, spread.behaviours);
+  ASSERT_EQ(to_string(one.status), "completed") << one.reason;
+  ASSERT_EQ(to_string(other.status), "completed") << other.reason;
+  EXPECT_NEAR(other.final_energy.strain, one.final_energy.strain, 1e-9 * one.final_energy.strain);
+  EXPECT_NEAR(other.max_opening.value, one.max_opening.value, 1e-9 * std::abs(one.max_opening.value) + 1e-15);
+}
+
+}  // namespace
+}  // namespace uplift
