@@ -1,5 +1,6 @@
 #include <algorithm>
 #include <cmath>
+#include <limits>
 #include <utility>
 
 #include "uplift/contact/impact/projection.h"
@@ -20,7 +21,7 @@ void Stepper::prepare_impacts() {
     for (int i = 0; i < interface.rows(); ++i) row_area_[row++] = interface.area[i % interface.batch.points];
   if (bulk_.small) dense_b_ = Matrix(b_);
   const std::vector<Block> blocks = blocks_of(model_, behaviours_).blocks;
-  if (impacts_ && impact_.holds_acceleration() && options_.scheme.average_acceleration() &&
+  if (impacts_ && impact_.holds_acceleration() &&
       std::ranges::any_of(blocks, [](const Block& block) { return block.cone != nullptr && block.cone->friction() > 0; }))
     prepare_friction(blocks);
 }
@@ -71,17 +72,21 @@ Impact Stepper::impact_data(const Vector& force) const {
 }
 
 /// Work that the pressures of constraints take from the motion in the step, 1/2 (p_0 + p_1) dg. It is zero where a point stays closed;
-/// where a gap closes it is the part of the impact's loss that the projection of the velocity does not see, where one opens a little is
-/// given back. The sum with the projection does not depend on the step (docs/theory, section 5).
+/// where a gap closes it is the part of the impact's loss that the projection of the velocity does not see, and the sum with the projection
+/// does not depend on the step (docs/theory, section 5). Where one opens it is negative: with project_hold no part of an impact, but energy
+/// that the scheme creates, which stays in the residual (with friction, (18a) has left none at the point, friction included); other rules
+/// take it back from impact to impact.
 double Stepper::contact_work() const {
   double work = 0;
   for (const Block& block : last_->model->blocks) {
     if (block.cone == nullptr) continue;
+    const bool created = impact_.holds_acceleration() && !(block.cone->friction() > 0);
+    const double least = created ? 0 : -std::numeric_limits<double>::infinity();
     const int normal = block.first + block.batch.normal();
     const double *force = now_.force.data() + normal, *next_force = contact_.data() + normal, *opening = now_.opening.data() + normal,
                  *next_opening = next_.opening.data() + normal;
 #pragma omp simd reduction(+ : work)
-    for (int i = 0; i < block.batch.points; ++i) work += (force[i] + next_force[i]) * (next_opening[i] - opening[i]);
+    for (int i = 0; i < block.batch.points; ++i) work += std::max(least, (force[i] + next_force[i]) * (next_opening[i] - opening[i]));
   }
   return 0.5 * work;
 }
@@ -125,26 +130,28 @@ void Stepper::damp_impact(const Level& level, const Vector& velocity, Vector& ac
   acceleration -= level.mass * work2_;
 }
 
-/// In a step in which a gap closes, the contact force contains the momentum that the impact transfers, over the step: it grows as 1/dt. The
-/// force that balances the accelerations after the impact is reported instead, and the rest as an impulse [N s].
+/// The force that balances the accelerations after the impact is that of the contact: it is reported, and the next step begins with it. In
+/// a step in which a gap closes, the force of the displacement solve contains the momentum that the impact transfers, over the step: it
+/// grows as 1/dt, and the rest is reported as an impulse [N s].
 void Stepper::separate_impulse(const Impact& data) {
   const double *pressed = pressed_.data(), *opening = now_.opening.data(), gap = closed_gap_;
   int closing = 0;
 #pragma omp simd reduction(+ : closing)
   for (Eigen::Index i = 0; i < pressed_.size(); ++i) closing += static_cast<int>(pressed[i] > 0) & static_cast<int>(opening[i] > gap);
-  if (closing == 0) return;
+  constexpr double round_off = 1e-9;
   const ImpactScratch& scratch = impact_scratch_;
+  if (closing == 0 && !(scratch.push.squaredNorm() > round_off * round_off * scratch.y.squaredNorm())) return;
   for (const Block& block : last_->model->blocks) {
     if (block.cone == nullptr) continue;  // the force of a law follows from its opening
     const int n = block.batch.points, normal = block.first + block.batch.normal();
     if (block.cone->friction() > 0) {
-      separate_impulse_of_friction(block, data);
+      if (closing > 0) separate_impulse_of_friction(block, data);
       continue;
     }
     for (int i = 0; i < n; ++i) {
       if (!(pressed_[normal + i] > 0)) continue;
       const double smooth = scratch.impulse[normal + i] / data.acceleration_weight;
-      impact_impulse_[normal + i] = scratch.total[normal + i] - data.velocity_weight * smooth;
+      if (closing > 0) impact_impulse_[normal + i] = scratch.total[normal + i] - data.velocity_weight * smooth;
       contact_[normal + i] = smooth;
     }
   }
