@@ -1,6 +1,5 @@
 #include <algorithm>
 #include <cmath>
-#include <limits>
 #include <utility>
 
 #include "uplift/contact/impact/projection.h"
@@ -72,21 +71,17 @@ Impact Stepper::impact_data(const Vector& force) const {
 }
 
 /// Work that the pressures of constraints take from the motion in the step, 1/2 (p_0 + p_1) dg. It is zero where a point stays closed;
-/// where a gap closes it is the part of the impact's loss that the projection of the velocity does not see, and the sum with the projection
-/// does not depend on the step (docs/theory, section 5). Where one opens it is negative: with project_hold no part of an impact, but energy
-/// that the scheme creates, which stays in the residual (with friction, (18a) has left none at the point, friction included); other rules
-/// take it back from impact to impact.
+/// where a gap closes it is the part of the impact's loss that the projection of the velocity does not see, where one opens a little is
+/// given back. The sum with the projection does not depend on the step (docs/theory, section 5).
 double Stepper::contact_work() const {
   double work = 0;
   for (const Block& block : last_->model->blocks) {
     if (block.cone == nullptr) continue;
-    const bool created = impact_.holds_acceleration() && !(block.cone->friction() > 0);
-    const double least = created ? 0 : -std::numeric_limits<double>::infinity();
     const int normal = block.first + block.batch.normal();
     const double *force = now_.force.data() + normal, *next_force = contact_.data() + normal, *opening = now_.opening.data() + normal,
                  *next_opening = next_.opening.data() + normal;
 #pragma omp simd reduction(+ : work)
-    for (int i = 0; i < block.batch.points; ++i) work += std::max(least, (force[i] + next_force[i]) * (next_opening[i] - opening[i]));
+    for (int i = 0; i < block.batch.points; ++i) work += (force[i] + next_force[i]) * (next_opening[i] - opening[i]);
   }
   return 0.5 * work;
 }
