@@ -53,7 +53,7 @@ std::string number(double value) {
 }
 
 /// The node is the middle of the base; the other corner hangs 0.01 m higher. The impact is in the second step or a later one.
-std::string thrown(const Velocity& v, double friction, double step, const std::string& method) {
+std::string thrown(const Velocity& v, double friction, double step, const std::string& method, const std::string& scheme) {
   const double turned = -0.01, gap = 1.5e-4;
   return "title = \"Oblique impact\"\nmethod = \"" + method +
          "\"\n[nodes]\nbase = [0, 0]\n[[rigid]]\nname = \"block\"\nnode = \"base\"\ncentre = [0, " + number(h) + "]\nmass = " + number(m) +
@@ -61,35 +61,40 @@ std::string thrown(const Velocity& v, double friction, double step, const std::s
          ", points = 2 }\nlaw = { type = \"coulomb\", friction = " + number(friction) +
          " }\n[[initial]]\nnode = \"base\"\ndisplacement = [0, " + number(gap - b * turned) + "]\nrotation = " + number(turned) +
          "\nvelocity = [" + number(v.x + h * v.turn) + ", " + number(v.y) + "]\nangular_velocity = " + number(v.turn) +
-         "\n[[stage]]\ntype = \"dynamic\"\nduration = 2e-3\nstep = " + number(step) +
+         "\n[[stage]]\ntype = \"dynamic\"\nduration = 2e-3\nstep = " + number(step) + "\nscheme = " + scheme +
          "\n[limits]\nrotation = 0.5\n[energy]\ncreated_limit = 1e9\n[output]\nframes = 0\nautomatic = false\n"
          "history = [{ name = \"x\", node = \"base\", quantity = \"vx\" }, { name = \"y\", node = \"base\", quantity = \"vy\" }, "
          "{ name = \"turn\", node = \"base\", quantity = \"vrz\" }]\n";
 }
 
 // Claim: the velocity after the impact is that of Newton's and Coulomb's laws (1e-9), sticking or sliding to either side, whatever the
-// step; none of these impacts ends with more energy than it began with.
+// step and the scheme; none of these impacts ends with more energy than it began with.
 TEST(FrictionImpact, ObliqueImpactOfARigidBlock) {
   VERIFIES({"Impact", "Oblique impact with friction", "Moreau (1988), Brach (1991): impulses of Coulomb's law, no restitution"});
   struct Throw {
     Velocity before;
     double friction;
   };
+  struct Way {
+    std::string method, scheme;
+  };
   int sticking = 0, sliding = 0;
-  for (const std::string method : {"lagrange", "augmented_lagrangian"})
+  for (const Way& way :
+       {Way{"lagrange", "\"average_acceleration\""}, Way{"augmented_lagrangian", "\"average_acceleration\""},
+        Way{"lagrange", "{ type = \"hht\", alpha = -0.1 }"}, Way{"lagrange", "{ type = \"generalised_alpha\", rho = 0.5 }"}})
     for (const Throw& t :
          {Throw{{0, -1, 0}, 0.3}, Throw{{3, -1, 0}, 0.3}, Throw{{3, -1, 0}, 0.8}, Throw{{-3, -1, 0}, 0.3}, Throw{{-3, -1, 0}, 0.8},
           Throw{{0.2, -1, 0}, 0.5}, Throw{{-1, -1, 0.3}, 0.1}, Throw{{5, -1, -0.2}, 0.05}, Throw{{0.7, -1, -0.1}, 2}})
       for (const double step : {1e-4, 3.1e-5}) {
         const Answer exact = closed_form(t.before, t.friction);
         ++(exact.sticks ? sticking : sliding);
-        const History run = run_text(thrown(t.before, t.friction, step, method));
+        const History run = run_text(thrown(t.before, t.friction, step, way.method, way.scheme));
         ASSERT_EQ(run.status, "completed") << run.reason;
         const double turn = run["turn"].back(), x = run["x"].back() - h * turn, y = run["y"].back();
         const double size = std::sqrt(2 * t.before.energy() / m);
-        VERIFY_NEAR("velocity of the centre along the plane over the speed", "1", x / size, exact.after.x / size, 1e-9);
-        VERIFY_NEAR("velocity of the centre across it over the speed", "1", y / size, exact.after.y / size, 1e-9);
-        VERIFY_NEAR("angular velocity times h over the speed", "1", h * turn / size, h * exact.after.turn / size, 1e-9);
+        VERIFY_NEAR("velocity of the centre along the plane over the speed", "1", x / size, exact.after.x / size, 1e-9) << way.scheme;
+        VERIFY_NEAR("velocity of the centre across it over the speed", "1", y / size, exact.after.y / size, 1e-9) << way.scheme;
+        VERIFY_NEAR("angular velocity times h over the speed", "1", h * turn / size, h * exact.after.turn / size, 1e-9) << way.scheme;
         VERIFY_LE("energy after over before", "1", (Velocity{x, y, turn}.energy() / t.before.energy()), 1);
       }
   EXPECT_GE(sticking, 8);
@@ -128,7 +133,7 @@ std::string embedded(unsigned seed) {
 TEST(FrictionImpact, BlocksInAPitCreateNoEnergy) {
   VERIFIES({"Impact", "Energy of blocks that slip, lift off and land", "balance of energy, to round-off"});
   int lifting = 0;
-  for (unsigned seed = 1; seed <= 12; ++seed) {
+  for (unsigned seed = 1; seed <= 60; ++seed) {
     const History run = run_text(embedded(seed));
     ASSERT_EQ(run.status, "completed") << seed << ": " << run.reason;
     const std::vector<double>&residual = run["energy.residual"], &friction = run["energy.interface_dissipated"],
@@ -145,7 +150,7 @@ TEST(FrictionImpact, BlocksInAPitCreateNoEnergy) {
     VERIFY_LE("energy created while a point is open over the largest external work", "1", created / scale, 1e-10) << seed;
     VERIFY_LE("energy that friction and impact give back over the same", "1", given / scale, 1e-10) << seed;
   }
-  EXPECT_GE(lifting, 6);
+  EXPECT_GE(lifting, 40);
 }
 
 }  // namespace

@@ -17,6 +17,15 @@ namespace {
 /// A step that has taken so many is given up, whatever halvings are left: it would take minutes, and seldom arrives.
 constexpr long most_iterations_of_a_step = 8000;
 
+/// Two halvings first, before a step keeps forces of its beginning that create energy.
+constexpr double smallest_share = 0.3;
+
+/// Energy that friction and impact may give back in a step, of what has been put in, before it is worth to halve the step.
+constexpr double little = 1e-7;
+
+/// Of the forces at the beginning of a step: each at least halves what a point keeps, or leaves nothing of it.
+constexpr int most_reductions = 60;
+
 }  // namespace
 
 Stepper::Stepper(const Model& model, const Bulk& bulk, const Sparse& b, const Vector& gap, const Behaviours& behaviours,
@@ -271,23 +280,23 @@ bool Stepper::kinematics(const Level& level) {
 /// The displacement at the end of the step. Forces at its beginning that would create energy are left out, as far as there is a solution
 /// without them.
 bool Stepper::balance_step(Level& level) {
-  for (bool dropped = false;; dropped = true) {
+  for (int reductions = 0;; ++reductions) {
     right_hand_side(level);
     if (shift_.size() > 0) right_ -= b_.transpose() * shift_.cwiseProduct(gap_ + b_ * now_.displacement).eval();
     const Outcome outcome = solve(level);
     counts_.iterations += outcome.iterations;
     counts_.cycles += outcome.cycles;
-    if (!outcome.converged && (!dropped || level.step > 0.3 * options_.step)) {  // two halvings first
-      why_ = outcome.why;
-      return false;
+    if (outcome.converged) {
+      if (coulomb_ == nullptr || !drop_creating()) return true;
+      if (reductions == 0) level.increment = increment_, level.plastic = plastic_next_, level.solution = *solution_;
+      if (reductions < most_reductions) continue;
     }
-    if (!outcome.converged) {
-      restore_dropped();
-      increment_ = level.increment, plastic_next_ = level.plastic, solution_ = &level.solution;
-      return true;
-    }
-    if (coulomb_ == nullptr || !drop_creating()) return true;
-    if (!dropped) level.increment = increment_, level.plastic = plastic_next_, level.solution = *solution_;
+    why_ = outcome.converged ? fmt::format("forces at the beginning of the step give energy back after {} reductions", most_reductions)
+                             : outcome.why;
+    if (reductions == 0 || level.step > smallest_share * options_.step) return false;
+    restore_dropped();
+    increment_ = level.increment, plastic_next_ = level.plastic, solution_ = &level.solution;
+    return true;
   }
 }
 
@@ -329,7 +338,16 @@ bool Stepper::try_step(Level& level) {
     small::copy(contact_.size(), solution.force.data(), contact_.data());
     small::copy(contact_.size(), contact_.data(), next_.force.data());
     friction_step_ = friction_work(last_->model->blocks, now_, next_);
+    const double lost_before = impact_loss_;
     if (impacts_) apply_impact(level);
+    // without friction: what forces give back that work on while points open, and no closing takes, is no impact but stays in the residual
+    if (impact_.holds_acceleration() && coulomb_ == nullptr) impact_loss_ = std::max(impact_loss_, lost_before);
+    const double lost = impact_loss_ - lost_before + friction_step_, scale = largest_external_ + energies_.kinetic + energies_.strain;
+    const bool exact = coulomb_ != nullptr && options_.scheme.average_acceleration();
+    if (exact && level.step > smallest_share * options_.step && lost < -little * scale) {
+      why_ = "friction and impact give energy back";
+      return false;
+    }
     small::copy(contact_.size(), contact_.data(), next_.force.data());
     small::copy(contact_.size(), contact_.data(), next_.mean_force.data());
     if (impacts_ && impact_.force_includes_impulse()) next_.mean_force += impulse_ / level.step;

@@ -133,6 +133,7 @@ class Stepper {
   Impact impact_data(const Vector& force) const;
   double contact_work() const;
   void apply_impact(Level& level);
+  bool strikes(const Impact& data);
   bool apply_rule(const Level& level, const Impact& data);
   void damp_impact(const Level& level, const Vector& velocity, Vector& acceleration);
   void prepare_friction(const std::vector<Block>& blocks);

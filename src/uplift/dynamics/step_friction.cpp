@@ -9,18 +9,26 @@
 namespace uplift {
 namespace {
 
-/// Whether a point with friction is open before or after a step that moves the points: without a pressure and with a gap. A point that
-/// stays closed without one is not open: where there are more points than openings, others bear its share.
-bool lifted(const std::vector<Block>& blocks, const State& before, const Vector& force, const Vector& opening, double closed_gap) {
-  constexpr double still = 1e-12;  // m, as far as contact is solved
-  if (!((opening - before.opening).cwiseAbs().maxCoeff() > still)) return false;
+constexpr double still = 1e-12;  // m, as far as contact is solved
+
+/// Whether a point with friction that bears no pressure before or after a step is `wanted`(row of its opening, at the end).
+template <class Wanted>
+bool any_without_pressure(const std::vector<Block>& blocks, const Vector& before, const Vector& after, const Wanted& wanted) {
   return std::ranges::any_of(blocks, [&](const Block& block) {
     if (block.cone == nullptr || !(block.cone->friction() > 0)) return false;
     const int normal = block.first + block.batch.normal();
     for (int row = normal; row < normal + block.batch.points; ++row)
-      if ((!(before.force[row] < 0) && before.opening[row] > closed_gap) || (!(force[row] < 0) && opening[row] > closed_gap)) return true;
+      if ((!(before[row] < 0) && wanted(row, false)) || (!(after[row] < 0) && wanted(row, true))) return true;
     return false;
   });
+}
+
+/// Whether a point with friction is open before or after a step that moves the points: without a pressure and with a gap. A point that
+/// stays closed without one is not open: where there are more points than openings, others bear its share.
+bool lifted(const std::vector<Block>& blocks, const State& before, const Vector& force, const Vector& opening, double closed_gap) {
+  if (!((opening - before.opening).cwiseAbs().maxCoeff() > still)) return false;
+  return any_without_pressure(blocks, before.force, force,
+                              [&](int row, bool at_end) { return (at_end ? opening : before.opening)[row] > closed_gap; });
 }
 
 }  // namespace
@@ -38,6 +46,7 @@ void Stepper::prepare_friction(const std::vector<Block>& blocks) {
 /// motion that it does not resist. Where some point is open, such forces are taken out of the beginning of the step, which is solved again:
 /// all of it at a point that has opened, as much of its friction as is too much at one that has turned round. True when there are any.
 bool Stepper::drop_creating() {
+  if (!options_.scheme.average_acceleration()) return false;
   const InterfaceSolution& end = *solution_;
   if (!friction_.reduced && !lifted(last_->model->blocks, now_, end.force, end.opening, closed_gap_)) return false;
   const double nothing = 1e-15 * largest_external_;
@@ -78,11 +87,25 @@ void Stepper::restore_dropped() {
   friction_.reduced = false;
 }
 
+/// Whether a point with friction is open before or after the step, or is struck where it is: one that was let go in the step before, with a
+/// velocity or an acceleration of its own.
+bool Stepper::strikes(const Impact& data) {
+  if (coulomb_ == nullptr) return false;
+  const std::vector<Block>& blocks = last_->model->blocks;
+  if (friction_.reduced || lifted(blocks, now_, contact_, next_.opening, closed_gap_)) return true;
+  if (!any_without_pressure(blocks, now_.force, contact_, [](int, bool) { return true; })) return false;
+  const auto leaves = [&](const Vector& motion, double weight) {
+    row_rates(data, motion, 0, contact_.size(), friction_.rates);
+    return any_without_pressure(blocks, now_.force, contact_,
+                                [&](int row, bool) { return weight * std::abs(friction_.rates[row]) > still; });
+  };
+  return leaves(next_.velocity, data.step) || leaves(next_.acceleration, data.step * data.step);
+}
+
 /// Velocity and acceleration by the rule of the case. Where a point with friction is open, friction belongs to the impulse (true);
 /// elsewhere sliding points slide on, and the rule alone is exact.
 bool Stepper::apply_rule(const Level& level, const Impact& data) {
-  const bool open = coulomb_ != nullptr && (friction_.reduced || lifted(last_->model->blocks, now_, contact_, next_.opening, closed_gap_));
-  if (open && impact_of_friction(level, data)) return true;
+  if (strikes(data) && impact_of_friction(level, data)) return true;
   velocity_free_ = next_.velocity;
   impact_.apply(data, next_.velocity, impulse_, impact_scratch_);
   if (!impact_.holds_acceleration()) return false;
@@ -127,9 +150,9 @@ bool Stepper::impact_of_friction(const Level& level, const Impact& data) {
   now.impulse = coulomb_->impulse();
 
   // the force after the impact: what Coulomb's law asks for in half a step from now on
-  const double time = data.velocity_weight, still = 1e-9 * now.rates.cwiseAbs().maxCoeff();
+  const double time = data.velocity_weight / data.acceleration_weight, at_rest = 1e-9 * now.rates.cwiseAbs().maxCoeff();
   for (Index row = 0; row < now.takes_part.size(); ++row)
-    if (coulomb_->rate()[row] > still) now.takes_part[row] = 0;
+    if (coulomb_->rate()[row] > at_rest) now.takes_part[row] = 0;
   now.after = next_.acceleration;
   mass_spread_->add(data.acceleration_weight, now.push, now.after);
   velocity_free_ = next_.velocity;
@@ -141,10 +164,10 @@ bool Stepper::impact_of_friction(const Level& level, const Impact& data) {
   next_.velocity = now.velocity, next_.acceleration = now.after;
   for (const Block& block : blocks) {
     if (block.cone == nullptr) continue;
-    contact_.segment(block.first, block.rows()) = coulomb_->impulse().segment(block.first, block.rows()) / time;
+    contact_.segment(block.first, block.rows()) = coulomb_->impulse().segment(block.first, block.rows()) / data.velocity_weight;
     if (!closing) continue;
     const int normal = block.first + block.batch.normal(), n = block.batch.points;
-    impact_impulse_.segment(normal, n) = now.impulse.segment(normal, n) - time * contact_.segment(normal, n);
+    impact_impulse_.segment(normal, n) = now.impulse.segment(normal, n) - data.velocity_weight * contact_.segment(normal, n);
   }
   return true;
 }

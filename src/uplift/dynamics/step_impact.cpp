@@ -20,7 +20,7 @@ void Stepper::prepare_impacts() {
     for (int i = 0; i < interface.rows(); ++i) row_area_[row++] = interface.area[i % interface.batch.points];
   if (bulk_.small) dense_b_ = Matrix(b_);
   const std::vector<Block> blocks = blocks_of(model_, behaviours_).blocks;
-  if (impacts_ && impact_.holds_acceleration() && options_.scheme.average_acceleration() &&
+  if (impacts_ && impact_.holds_acceleration() &&
       std::ranges::any_of(blocks, [](const Block& block) { return block.cone != nullptr && block.cone->friction() > 0; }))
     prepare_friction(blocks);
 }
@@ -125,26 +125,28 @@ void Stepper::damp_impact(const Level& level, const Vector& velocity, Vector& ac
   acceleration -= level.mass * work2_;
 }
 
-/// In a step in which a gap closes, the contact force contains the momentum that the impact transfers, over the step: it grows as 1/dt. The
-/// force that balances the accelerations after the impact is reported instead, and the rest as an impulse [N s].
+/// The force that balances the accelerations after the impact is that of the contact: it is reported, and the next step begins with it. In
+/// a step in which a gap closes, the force of the displacement solve contains the momentum that the impact transfers, over the step: it
+/// grows as 1/dt, and the rest is reported as an impulse [N s].
 void Stepper::separate_impulse(const Impact& data) {
   const double *pressed = pressed_.data(), *opening = now_.opening.data(), gap = closed_gap_;
   int closing = 0;
 #pragma omp simd reduction(+ : closing)
   for (Eigen::Index i = 0; i < pressed_.size(); ++i) closing += static_cast<int>(pressed[i] > 0) & static_cast<int>(opening[i] > gap);
-  if (closing == 0) return;
+  constexpr double round_off = 1e-9;
   const ImpactScratch& scratch = impact_scratch_;
+  if (closing == 0 && !(scratch.push.squaredNorm() > round_off * round_off * scratch.y.squaredNorm())) return;
   for (const Block& block : last_->model->blocks) {
     if (block.cone == nullptr) continue;  // the force of a law follows from its opening
     const int n = block.batch.points, normal = block.first + block.batch.normal();
     if (block.cone->friction() > 0) {
-      separate_impulse_of_friction(block, data);
+      if (closing > 0) separate_impulse_of_friction(block, data);
       continue;
     }
     for (int i = 0; i < n; ++i) {
       if (!(pressed_[normal + i] > 0)) continue;
       const double smooth = scratch.impulse[normal + i] / data.acceleration_weight;
-      impact_impulse_[normal + i] = scratch.total[normal + i] - data.velocity_weight * smooth;
+      if (closing > 0) impact_impulse_[normal + i] = scratch.total[normal + i] - data.velocity_weight * smooth;
       contact_[normal + i] = smooth;
     }
   }
