@@ -20,9 +20,6 @@ constexpr long most_iterations_of_a_step = 8000;
 /// Two halvings first, before a step keeps forces of its beginning that create energy.
 constexpr double smallest_share = 0.3;
 
-/// Energy that friction and impact may give back in a step, of what has been put in, before it is worth to halve the step.
-constexpr double little = 1e-7;
-
 /// Of the forces at the beginning of a step: each at least halves what a point keeps, or leaves nothing of it.
 constexpr int most_reductions = 60;
 
@@ -342,12 +339,6 @@ bool Stepper::try_step(Level& level) {
     if (impacts_) apply_impact(level);
     // without friction: what forces give back that work on while points open, and no closing takes, is no impact but stays in the residual
     if (impact_.holds_acceleration() && coulomb_ == nullptr) impact_loss_ = std::max(impact_loss_, lost_before);
-    const double lost = impact_loss_ - lost_before + friction_step_, scale = largest_external_ + energies_.kinetic + energies_.strain;
-    const bool exact = coulomb_ != nullptr && options_.scheme.average_acceleration();
-    if (exact && level.step > smallest_share * options_.step && lost < -little * scale) {
-      why_ = "friction and impact give energy back";
-      return false;
-    }
     small::copy(contact_.size(), contact_.data(), next_.force.data());
     small::copy(contact_.size(), contact_.data(), next_.mean_force.data());
     if (impacts_ && impact_.force_includes_impulse()) next_.mean_force += impulse_ / level.step;
