@@ -9,6 +9,7 @@
 #include "uplift/math/dense.h"
 #include "uplift/math/sparse_solvers.h"
 #include "uplift/model/eliminate.h"
+#include "uplift/model/matrix_sum.h"
 
 namespace uplift {
 
@@ -36,7 +37,8 @@ Sparse base_held(const Model& model) {
 double tuned_mass(const Model& model, int node, double frequency, const Where& where) {
   const Sparse held = base_held(model);
   const double omega_squared = std::pow(2 * std::numbers::pi * frequency, 2);
-  Sparse dynamic = held.transpose() * (model.stiffness - omega_squared * model.mass) * held;
+  const WholeMatrices whole(model);
+  Sparse dynamic = held.transpose() * (whole.stiffness() - omega_squared * whole.mass()) * held;
   const Matrix at_node = Matrix(model.expansion.middleCols(model.space.unknowns() * node, model.space.dimension));
   const Matrix direction = held.transpose() * at_node;
   const auto refuse = [&](const std::string& found) {
