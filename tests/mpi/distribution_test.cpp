@@ -201,6 +201,16 @@ TEST(Distribution, RowsOfACutInterfaceInSpace) {
   compare(cut(), box(uniform_lines(-4, 4, 8), uniform_lines(-2, 2, 4), uniform_lines(0, 6, 6)));
 }
 
+TEST(Distribution, TunedMassIsThatOfTheWholeMatrices) {
+  std::string text = "title = \"mast\"\nbonded = false\n" + tied;
+  const std::string mass = "mass = 2000\n";
+  text.replace(text.find(mass), mass.size(), "tuned_frequency = 2\n");
+  const Case serial_case = read_on(text, {}), petsc_case = read_on(petsc + text, {});
+  const double one = build(serial_case, runs_of_case(serial_case).front()).tuned_mass;
+  EXPECT_GT(one, 0);
+  EXPECT_NEAR(build(petsc_case, runs_of_case(petsc_case).front()).tuned_mass, one, 1e-12 * one);
+}
+
 TEST(Distribution, RunIsThatOfTheWholeMatrices) {
   const std::string title = "title = \"rows\"\nbonded = false\n";
   const Case serial_case = read_on(title + tied, {}), petsc_case = read_on(petsc + title + tied, {});

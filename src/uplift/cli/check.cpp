@@ -71,7 +71,9 @@ void print(const LoadedCase& loaded, const CheckedCase& checked) {
   }
   if (!built.facts.empty()) line("dead load on the base", format_quantity(built.weight, "N"));
   if (!found.fixed.empty()) line("frequencies, fixed base", list_hz(found.fixed));
-  line("frequencies, bonded base", list_hz(found.bonded));
+  line("frequencies, bonded base", found.bonded.empty() && built.model.distributed != nullptr
+                                       ? std::string("not computed: they need a factor on one process")
+                                       : list_hz(found.bonded));
   if (!found.base_free.empty()) line("frequencies, base free", list_hz(found.base_free));
   for (const std::string& note : built.notes) line("chosen", note);
   const Stage* stage = dynamic_stage(built.plan);

@@ -128,7 +128,8 @@ CaseFindings find(const Case& read, const RunSpec& spec, const BuiltCase& built)
       return found;
     }
   }
-  found.bonded = frequencies(bonded_modes(built.at_rest(), 5));
+  // modes need whole matrices and a factor on one process: of a large model whose matrices are distributed they are left out
+  if (built.model.distributed == nullptr || unknowns <= quick_modes) found.bonded = frequencies(bonded_modes(built.at_rest(), 5));
   if (unknowns <= quick_modes) {
     found.fixed = frequencies(fixed_base_modes(built.at_rest(), 3));
     found.base_free = frequencies(base_free_modes(built.at_rest(), 5));
