@@ -335,10 +335,7 @@ bool Stepper::try_step(Level& level) {
     small::copy(contact_.size(), solution.force.data(), contact_.data());
     small::copy(contact_.size(), contact_.data(), next_.force.data());
     friction_step_ = friction_work(last_->model->blocks, now_, next_);
-    const double lost_before = impact_loss_;
     if (impacts_) apply_impact(level);
-    // without friction: what forces give back that work on while points open, and no closing takes, is no impact but stays in the residual
-    if (impact_.holds_acceleration() && coulomb_ == nullptr) impact_loss_ = std::max(impact_loss_, lost_before);
     small::copy(contact_.size(), contact_.data(), next_.force.data());
     small::copy(contact_.size(), contact_.data(), next_.mean_force.data());
     if (impacts_ && impact_.force_includes_impulse()) next_.mean_force += impulse_ / level.step;

@@ -93,9 +93,9 @@ RunResult by_program(double k, double m, double step, const std::string& name) {
   return whole.run();
 }
 
-// Claim: the work above is all that stands beside the projections of an impact, in every step size. That of closings is booked with them;
-// that of releases is created by the scheme, and the residual is nothing else.
-TEST(ReleaseOfALightMass, impact_holds_the_work_of_pressures_that_begin_and_the_residual_that_of_those_that_end) {
+// Claim: the work above is all that stands beside the projections of an impact: booked with them, nothing is left in the residual but
+// round-off, in every step size.
+TEST(ReleaseOfALightMass, impact_holds_the_work_of_pressures_that_begin_or_end) {
   struct Case {
     double k, m, step;
   };
@@ -108,8 +108,8 @@ TEST(ReleaseOfALightMass, impact_holds_the_work_of_pressures_that_begin_and_the_
       const RunResult run = by_program(data.k, data.m, data.step, name);
       SCOPED_TRACE(name + ", k " + std::to_string(data.k) + ", dt " + std::to_string(data.step));
       ASSERT_EQ(run.status, RunStatus::completed) << run.reason;
-      EXPECT_NEAR(run.table[1].back(), hand.release, 1e-6 * hand.scale);
-      EXPECT_NEAR(run.table[2].back(), hand.impact - hand.closing, 1e-6 * hand.scale);
+      EXPECT_NEAR(run.table[1].back(), 0, 1e-6 * hand.scale);
+      EXPECT_NEAR(run.table[2].back(), hand.impact - hand.residual, 1e-6 * hand.scale);
       EXPECT_NEAR(run.table[3].back(), hand.external, 1e-6 * hand.scale);
     }
   }
