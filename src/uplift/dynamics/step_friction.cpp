@@ -23,12 +23,15 @@ bool any_without_pressure(const std::vector<Block>& blocks, const Vector& before
   });
 }
 
-/// Whether a point with friction is open before or after a step that moves the points: without a pressure and with a gap. A point that
-/// stays closed without one is not open: where there are more points than openings, others bear its share.
+/// Whether a point with friction is open before or after a step: without a pressure and with a gap. A point that stays closed without one
+/// is not open: where there are more points than openings, others bear its share.
 bool lifted(const std::vector<Block>& blocks, const State& before, const Vector& force, const Vector& opening, double closed_gap) {
-  if (!((opening - before.opening).cwiseAbs().maxCoeff() > still)) return false;
   return any_without_pressure(blocks, before.force, force,
                               [&](int row, bool at_end) { return (at_end ? opening : before.opening)[row] > closed_gap; });
+}
+
+bool moves(const Vector& one, const Vector& other) {
+  return (one - other).cwiseAbs().maxCoeff() > still;
 }
 
 }  // namespace
@@ -48,7 +51,8 @@ void Stepper::prepare_friction(const std::vector<Block>& blocks) {
 bool Stepper::drop_creating() {
   if (!options_.scheme.average_acceleration()) return false;
   const InterfaceSolution& end = *solution_;
-  if (!friction_.reduced && !lifted(last_->model->blocks, now_, end.force, end.opening, closed_gap_)) return false;
+  if (!friction_.reduced && !(moves(now_.opening, end.opening) && lifted(last_->model->blocks, now_, end.force, end.opening, closed_gap_)))
+    return false;
   const double nothing = 1e-15 * largest_external_;
   Vector& dropped = friction_.dropped;
   bool any = false;
@@ -87,19 +91,22 @@ void Stepper::restore_dropped() {
   friction_.reduced = false;
 }
 
-/// Whether a point with friction is open before or after the step, or is struck where it is: one that was let go in the step before, with a
-/// velocity or an acceleration of its own.
+/// Whether the impulse of friction is wanted: a point with friction is open before or after the step, and something moves in it or at its
+/// end; or one without a gap that was let go in the step before, with a velocity or an acceleration of its own, is struck where it is.
 bool Stepper::strikes(const Impact& data) {
   if (coulomb_ == nullptr) return false;
   const std::vector<Block>& blocks = last_->model->blocks;
-  if (friction_.reduced || lifted(blocks, now_, contact_, next_.opening, closed_gap_)) return true;
+  if (friction_.reduced) return true;
   if (!any_without_pressure(blocks, now_.force, contact_, [](int, bool) { return true; })) return false;
-  const auto leaves = [&](const Vector& motion, double weight) {
+  const bool open = lifted(blocks, now_, contact_, next_.opening, closed_gap_);
+  if (open && moves(now_.opening, next_.opening)) return true;
+  const auto goes_on = [&](const Vector& motion, double weight) {
     row_rates(data, motion, 0, contact_.size(), friction_.rates);
+    if (open) return weight * friction_.rates.cwiseAbs().maxCoeff() > still;
     return any_without_pressure(blocks, now_.force, contact_,
                                 [&](int row, bool) { return weight * std::abs(friction_.rates[row]) > still; });
   };
-  return leaves(next_.velocity, data.step) || leaves(next_.acceleration, data.step * data.step);
+  return goes_on(next_.velocity, data.step) || goes_on(next_.acceleration, data.step * data.step);
 }
 
 /// Velocity and acceleration by the rule of the case. Where a point with friction is open, friction belongs to the impulse (true);
