@@ -8,7 +8,7 @@
 
 #include "unit/case/cut_support.h"
 
-namespace uplift {
+namespace uplift::redundant_friction_test {
 namespace {
 
 using namespace support;
@@ -40,4 +40,4 @@ TEST(RedundantFriction, ABlockThatIsPushedOnASlopeSticks) {
 }
 
 }  // namespace
-}  // namespace uplift
+}  // namespace uplift::redundant_friction_test

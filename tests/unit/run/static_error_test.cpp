@@ -6,7 +6,7 @@
 
 #include "ran_support.h"
 
-namespace uplift {
+namespace uplift::static_error_test {
 namespace {
 
 /// A footing on a joint that softens, pushed in one load step; then it is shaken.
@@ -37,4 +37,4 @@ TEST(StaticError, IsNotCreatedByTheSchemeOfTheDynamicStages) {
 }
 
 }  // namespace
-}  // namespace uplift
+}  // namespace uplift::static_error_test
