@@ -154,8 +154,8 @@ double memory_of_group(const Study& study, StudyComputer& computer, const RunReq
   return with_more + static_cast<double>(together - more) * (with_more - with_few) / (more - few);
 }
 
-/// Time of a run on one core [s], from the time `alone` of the first one of a worker. Where that is short, most of it is the worker's start and code
-/// and memory that are touched for the first time: then it is what further runs take.
+/// Time of a run on one core [s], from the time `alone` of the first one of a worker. Where that is short, most of it is the worker's start
+/// and code and memory that are touched for the first time: then it is what further runs take.
 double seconds_of(const Study& study, StudyComputer& computer, const RunRequest& trial, double alone) {
   constexpr double short_run = 0.1;  // s
   constexpr std::size_t further = 10;
