@@ -15,6 +15,7 @@ namespace uplift {
 namespace {
 
 constexpr PetscInt most_columns = 32;  // that are sent and solved at once
+
 /// A chain of springs to ground at both ends, the rank's rows of it.
 LocalRows chain_of_springs(PetscInt rows, const Shares& shares, int rank) {
   LocalRows local;

@@ -65,42 +65,21 @@ Bulk::Bulk(const Model& model, const Sparse* axial)
 }
 
 OwnedSum Bulk::upper(double k, double c, double m) const {
-  OwnedSum sum;
-  if (distributed()) {
-    sum = matrix_sum(model_, k, c, m);
-    if (geometric != nullptr) sum.here = k * geometric->triangularView<upper_triangle>();
-    return sum;
-  }
-  std::vector<Term> terms;
-  if (k != 0) terms.push_back({k, stiffness_matrix});
-  if (c != 0) terms.push_back({c, damping_matrix});
-  if (m != 0) terms.push_back({m, mass_matrix});
-  upper_sum(terms).swap(sum.here);
+  if (!distributed()) return {upper_sum_of(stiffness_matrix, damping_matrix, mass_matrix, k, c, m), {}};
+  OwnedSum sum = matrix_sum(model_, k, c, m);
+  if (geometric != nullptr) sum.here = k * geometric->triangularView<upper_triangle>();
   return sum;
 }
 
 /// K between chosen unknowns.
 Sparse Bulk::stiffness_among(const std::vector<int>& chosen) const {
-  if (distributed()) {
-    std::vector<Triplet> one_each;
-    for (const int unknown : chosen) one_each.emplace_back(unknown, static_cast<int>(one_each.size()), 1.0);
-    Sparse choice(unknowns, std::ssize(chosen));
-    choice.setFromTriplets(one_each.begin(), one_each.end());
-    Sparse block = chosen_block(model_, &Model::stiffness, choice);
-    if (geometric != nullptr) block += Sparse(choice.transpose() * *geometric * choice);
-    return block;
-  }
-  std::vector<int> place(static_cast<std::size_t>(unknowns), -1);
-  for (std::size_t i = 0; i < chosen.size(); ++i) place[static_cast<std::size_t>(chosen[i])] = static_cast<int>(i);
-  std::vector<Triplet> block;
-  for (int column = 0; column < stiffness_matrix.outerSize(); ++column)
-    for (Sparse::InnerIterator entry(stiffness_matrix, column); entry; ++entry) {
-      const int row = place[static_cast<std::size_t>(entry.row())], col = place[static_cast<std::size_t>(entry.col())];
-      if (row >= 0 && col >= 0) block.emplace_back(row, col, entry.value());
-    }
-  Sparse among(std::ssize(chosen), std::ssize(chosen));
-  among.setFromTriplets(block.begin(), block.end());
-  return among;
+  std::vector<Triplet> one_each;
+  for (const int unknown : chosen) one_each.emplace_back(unknown, static_cast<int>(one_each.size()), 1.0);
+  Sparse choice(unknowns, std::ssize(chosen));
+  choice.setFromTriplets(one_each.begin(), one_each.end());
+  Sparse block = chosen_block(model_, &Model::stiffness, choice);
+  if (geometric != nullptr) block += Sparse(choice.transpose() * *geometric * choice);
+  return block;
 }
 
 namespace {

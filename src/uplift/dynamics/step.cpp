@@ -83,14 +83,9 @@ Outcome Stepper::solve(Level& level) {
     return last->solve(right_, start, increment_);
   }
   const PlasticNewton::Make soften = [&](const Sparse& d, std::string& why) -> std::unique_ptr<StepSolver> {
-    OwnedSum matrix;
-    if (bulk_.distributed()) {
-      matrix = upper_of(level);
-      matrix.here += Sparse(d.triangularView<upper_triangle>());
-    } else {
-      matrix.here = matrix_of(level) + d;
-    }
-    if (options_.monolithic) return make_monolithic(matrix.here, b_, gap_, frame_of(level));
+    if (options_.monolithic) return make_monolithic(matrix_of(level) + d, b_, gap_, frame_of(level));
+    OwnedSum matrix = upper_of(level);
+    matrix.here += Sparse(d.triangularView<upper_triangle>());
     auto factor = std::make_shared<const BulkFactor>(matrix, &b_, bulk_.small, solver_, model_, linear_,
                                                      level.tangent != nullptr ? level.tangent.get() : level.solver->factor());
     why = factor->why();

@@ -28,9 +28,10 @@ void Stepper::book_energies(const Level& level) {
       energies_.external += (path_ ? next_.mean_force[i] : 0.5 * (now_.force[i] + next_.force[i])) * gap_step_[i];
   if (!bulk_.damping.zero()) {
     // work of the damping force, mean of both ends; average acceleration: C du/dt . du, with the velocity before an impact at the end
-    for (Eigen::Index i = 0; i < n; ++i) work_[i] = 0.5 * (now_.velocity[i] + next_.velocity[i]);
     if (path_ || (impacts_ && options_.scheme.average_acceleration()))
       for (Eigen::Index i = 0; i < n; ++i) work_[i] = du[i] / level.step;
+    else
+      for (Eigen::Index i = 0; i < n; ++i) work_[i] = 0.5 * (now_.velocity[i] + next_.velocity[i]);
     bulk_.damping.multiply(work_, damped_);
     energies_.damping += small::dot(n, damped_.data(), du);
   }

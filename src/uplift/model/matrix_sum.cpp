@@ -25,19 +25,17 @@ std::vector<DistributedTerm> distributed_terms(const Model& model, double k, dou
   return terms;
 }
 
-OwnedSum matrix_sum(const Model& model, double k, double c, double m) {
-  OwnedSum sum;
-  if (model.distributed != nullptr) {
-    sum.here.resize(model.free(), model.free());
-    sum.there = distributed_terms(model, k, c, m);
-    return sum;
-  }
+Sparse upper_sum_of(const Sparse& stiffness, const Sparse& damping, const Sparse& mass, double k, double c, double m) {
   std::vector<Term> terms;
-  if (k != 0) terms.push_back({k, model.stiffness});
-  if (c != 0) terms.push_back({c, model.damping});
-  if (m != 0) terms.push_back({m, model.mass});
-  upper_sum(terms).swap(sum.here);
-  return sum;
+  if (k != 0) terms.push_back({k, stiffness});
+  if (c != 0) terms.push_back({c, damping});
+  if (m != 0) terms.push_back({m, mass});
+  return upper_sum(terms);
+}
+
+OwnedSum matrix_sum(const Model& model, double k, double c, double m) {
+  if (model.distributed == nullptr) return {upper_sum_of(model.stiffness, model.damping, model.mass, k, c, m), {}};
+  return {Sparse(model.free(), model.free()), distributed_terms(model, k, c, m)};
 }
 
 Vector stiffness_times(const Model& model, const Vector& u) {

@@ -9,7 +9,9 @@ namespace uplift {
 /// Up to this number of free unknowns the matrices of a model are never distributed: messages would take longer than products.
 inline constexpr int most_undistributed = 300;
 
-/// The upper triangle of k K + c C + m M of a model; a factor of 0 leaves a matrix out.
+/// The upper triangle of k K + c C + m M; a factor of 0 leaves a matrix out.
+Sparse upper_sum_of(const Sparse& stiffness, const Sparse& damping, const Sparse& mass, double k, double c, double m);
+/// The same of a model, whose matrices may be distributed.
 OwnedSum matrix_sum(const Model& model, double k, double c, double m);
 /// The same terms where the matrices are distributed; else none.
 std::vector<DistributedTerm> distributed_terms(const Model& model, double k, double c, double m);
