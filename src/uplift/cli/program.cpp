@@ -279,6 +279,19 @@ void check_command(const CLI::App& app, const std::string& word) {
                            uplift::nearest_name(word, names));
 }
 
+/// Reports an unknown option with the nearest one; CLI11 would name neither the place nor what was perhaps meant.
+void check_options(const CLI::App& command, const std::vector<std::string>& words) {
+  for (const std::string& word : words) {
+    const std::string option = word.substr(0, word.find('='));
+    if (option.size() < 2 || option.front() != '-' || command.get_option_no_throw(option) != nullptr) continue;
+    std::vector<std::string> names;
+    for (const CLI::Option* each : command.get_options())
+      for (const std::string& name : each->get_lnames()) names.push_back("--" + name);
+    throw uplift::InputError({"uplift " + command.get_name(), 0}, "", "one of its options (--help lists them)", uplift::in_quotes(option),
+                             uplift::nearest_name(option, names));
+  }
+}
+
 /// Parses the command line and runs the command; its exceptions are reported below. `name`: of the program, for the report.
 int parse_and_run(int count, char** words, const std::string& name) {
   CLI::App app{"uplift: analysis of the uplift of foundations in earthquakes and of its consequences for the structure", name};
@@ -296,6 +309,7 @@ int parse_and_run(int count, char** words, const std::string& name) {
   try {
     app.parse(count, words);
   } catch (const CLI::ParseError& error) {
+    if (error.get_name() == "ExtrasError" && count > 2) check_options(*app.get_subcommand(words[1]), {words + 2, words + count});
     std::ostringstream text, complaint;
     const int code = app.exit(error, text, complaint);
     uplift::cli::print_text(text.str());
