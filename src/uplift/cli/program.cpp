@@ -309,7 +309,8 @@ int parse_and_run(int count, char** words, const std::string& name) {
   try {
     app.parse(count, words);
   } catch (const CLI::ParseError& error) {
-    if (error.get_name() == "ExtrasError" && count > 2) check_options(*app.get_subcommand(words[1]), {words + 2, words + count});
+    if (error.get_exit_code() == static_cast<int>(CLI::ExitCodes::ExtrasError) && count > 2)
+      check_options(*app.get_subcommand(words[1]), {words + 2, words + count});
     std::ostringstream text, complaint;
     const int code = app.exit(error, text, complaint);
     uplift::cli::print_text(text.str());
