@@ -154,7 +154,7 @@ class MeshFile(CliTest):
         # nodes doubled below the surface, in three rows of cells and in the one that keeps the node of the surface
         self.assertNotIn("torn", self.uplift("check", self.run_block().name).stdout)
         self.write(gmsh(4, 8, 4, torn=2), "soil.msh")
-        self.assertIn("the mesh is torn: cells lie side by side and do not share the nodes between them, at 4 sides", self.uplift("check", "case.toml").stdout)
+        self.assertIn("the mesh is torn: cells lie side by side and do not share the sides between them, at 4 sides", self.uplift("check", "case.toml").stdout)
         # an interface of the doubled nodes, up to the node that both sides share, is meant; of the two lowest pairs alone it joins one side
         pairs = '[[interface]]\nname = "crack"\n[interface.line]\nlower = [{lower}]\nupper = [{upper}]\n[interface.law]\ntype = "springs"\nK_n = 1e9\nK_t = 1e9\n'
         named = lambda *numbers: ", ".join(f'"mesh.{number}"' for number in numbers)

@@ -22,6 +22,19 @@ Mesh side_by_side(Mesh mesh, double shift) {
   return mesh;
 }
 
+/// Two meshes as one, in which they share the nodes at the same place.
+Mesh joined(Mesh mesh, const Mesh& other) {
+  std::vector<int> number;
+  for (const Vec3& x : other.nodes) {
+    const auto same = std::ranges::find_if(mesh.nodes, [&](const Vec3& y) { return (x - y).norm() < 1e-12; });
+    number.push_back(static_cast<int>(same - mesh.nodes.begin()));
+    if (same == mesh.nodes.end()) mesh.nodes.push_back(x);
+  }
+  for (const CellBlock& block : other.blocks)
+    for (const int node : block.nodes) mesh.block(block.cell).nodes.push_back(number[static_cast<std::size_t>(node)]);
+  return mesh;
+}
+
 TEST(Torn, SidesOfAllCells) {
   const std::vector<double> two{0, 0.5, 1}, three{0, 1, 2, 3};
   for (const Cell cell : plane_cells) {
@@ -35,6 +48,25 @@ TEST(Torn, SidesOfAllCells) {
     EXPECT_EQ(torn.size(), 6u) << info(cell).name;
     for (const Vec3& middle : torn) EXPECT_NEAR(middle.x(), 1, 1e-14);
   }
+}
+
+/// The nodes are shared, the cells do not match.
+TEST(Torn, CellsThatDoNotMatch) {
+  const std::vector<double> left{0, 1}, right{1, 2}, one{0, 2}, two{0, 1, 2}, apart{0.5, 1.5};
+  EXPECT_TRUE(torn_sides(joined(rectangle(left, two), rectangle(right, two, Cell::tri3)), {}).empty());
+  // the middle of the large side is where the small ones end
+  EXPECT_EQ(torn_sides(joined(rectangle(left, one), rectangle(right, two)), {}).size(), 3u);
+  EXPECT_EQ(torn_sides(joined(rectangle(left, one, Cell::quad8), rectangle(right, two)), {}).size(), 3u);
+  EXPECT_EQ(torn_sides(joined(rectangle(left, two), rectangle(right, apart)), {}).size(), 3u);
+  EXPECT_EQ(torn_sides(joined(rectangle(left, one), rectangle(right, {0, 0.3, 2})), {}).size(), 3u);
+  EXPECT_EQ(torn_sides(joined(rectangle(left, one, Cell::tri6), rectangle(right, one, Cell::tri3)), {}).size(), 1u);
+  EXPECT_EQ(torn_sides(joined(box(left, one, one), box(right, two, two)), {}).size(), 5u);
+  EXPECT_EQ(torn_sides(joined(box(left, one, one), box(right, two, one)), {}).size(), 3u);
+  // the middle of the quadrilateral is on the diagonal
+  EXPECT_EQ(torn_sides(joined(box(left, one, one), box(right, one, one, Cell::tet4)), {}).size(), 3u);
+  // edges alone are shared, in a plane and across
+  EXPECT_TRUE(torn_sides(joined(box(left, one, two), box(right, {2, 3}, two)), {}).empty());
+  EXPECT_TRUE(torn_sides(joined(box(left, one, one), box(left, one, {2, 3})), {}).empty());
 }
 
 /// What an interface opens is meant to be open.

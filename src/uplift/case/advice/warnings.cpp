@@ -265,7 +265,7 @@ void warn_method(const Case& read, const RunSpec& spec, const BuiltCase& built, 
   }
 }
 
-/// Cells side by side that do not share the nodes between them: the mesh is open there, unseen. Cells that planes cut have copies at their
+/// Cells side by side that do not share the side between them: the mesh is open there, unseen. Cells that planes cut have copies at their
 /// place.
 void warn_torn(const Case& read, const BuiltCase& built, std::vector<std::string>& said) {
   if (!read.mesh || std::ranges::any_of(read.mesh->cut, [](const auto& faces) { return !faces.empty(); })) return;
@@ -279,10 +279,11 @@ void warn_torn(const Case& read, const BuiltCase& built, std::vector<std::string
   const std::vector<Vec3> torn = torn_sides(mesh, read.mesh->open, joined);
   if (torn.empty()) return;
   const Vec3& place = torn.front();
-  said.push_back(
-      fmt::format("the mesh is torn: cells lie side by side and do not share the nodes between them, at {} {}, as at ({:.6g}, {:.6g}, "
-                  "{:.6g}) m; merge the nodes (and give cells side by side the same degree), or make an [[interface]] of it",
-                  torn.size(), torn.size() == 1 ? "side" : "sides", place.x(), place.y(), place.z()));
+  said.push_back(fmt::format(
+      "the mesh is torn: cells lie side by side and do not share the sides between them, at {} {}, as at ({:.6g}, {:.6g}, "
+      "{:.6g}) m; merge nodes that are there twice, let cells side by side match (in degree and size, and no face of four corners "
+      "beside triangles), or make an [[interface]] of it",
+      torn.size(), torn.size() == 1 ? "side" : "sides", place.x(), place.y(), place.z()));
 }
 
 /// Solids hold no rotation: a column that ends at one of their nodes is hinged, which few mean.
