@@ -1,6 +1,5 @@
 #include "uplift/mesh/torn.h"
 
-#include <Eigen/Geometry>
 #include <algorithm>
 #include <cmath>
 
@@ -72,17 +71,17 @@ bool in_segment(const Vec3& p, const Vec3& a, const Vec3& b) {
 }
 
 bool in_triangle(const Vec3& p, const Vec3& a, const Vec3& b, const Vec3& c) {
-  const Vec3 normal = (b - a).cross(c - a);
+  const Vec3 normal = cross(b - a, c - a);
   const double square = normal.squaredNorm();  // four times that of the area
   if (std::abs((p - a).dot(normal)) > tolerance * std::pow(square, 0.75)) return false;
-  const auto part = [&](const Vec3& from, const Vec3& to) { return (to - from).cross(p - from).dot(normal) / square; };
+  const auto part = [&](const Vec3& from, const Vec3& to) { return cross(to - from, p - from).dot(normal) / square; };
   return part(a, b) >= -tolerance && part(b, c) >= -tolerance && part(c, a) >= -tolerance;
 }
 
 /// The line of an edge or the normal of a face.
 Vec3 direction(const Mesh& mesh, const Outer& side) {
   const Vec3 along = corner(mesh, side, 1) - corner(mesh, side, 0);
-  return (side.corners.size() == 2 ? along : along.cross(corner(mesh, side, 2) - corner(mesh, side, 0))).normalized();
+  return (side.corners.size() == 2 ? along : cross(along, corner(mesh, side, 2) - corner(mesh, side, 0))).normalized();
 }
 
 /// Whether the middle of one side lies in another that has its plane (its line).
