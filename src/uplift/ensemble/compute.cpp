@@ -7,10 +7,10 @@
 #include <filesystem>
 #include <new>
 #include <set>
+#include <utility>
 
 #include "uplift/base/file.h"
 #include "uplift/run/lockstep.h"
-#include "uplift/session/reduce.h"
 #include "uplift/verdict/numbers.h"
 
 namespace uplift {
@@ -93,24 +93,31 @@ StudyResult StudyComputer::finish(const RunRequest& request, const BuiltCase& bu
   return made;
 }
 
-/// The static stages with the whole model, the rest with the reduced one.
-RunResult StudyComputer::run_reduced(BuiltCase& built, const Watch& watch) const {
+/// The static stages with the whole model, once for all motions of a sample, the rest with the reduced one.
+RunResult StudyComputer::run_reduced(BuiltCase& built, const Watch& watch, std::optional<ReducedStart>& shared) const {
   const Values& root = study_.of.read.values;
   RunResult resting;
-  const std::optional<RunState> begin = begin_reduced(*study_.reduced, root.where("reduced_model"), built, watch, resting);
+  const std::optional<RunState> begin = begin_reduced(*study_.reduced, root.where("reduced_model"), built, watch, resting, &shared);
   if (!begin) return resting;
   Keeping keeping;
   keeping.from = &*begin;
   return run(built.model, built.plan, built.behaviours, watch, {}, &keeping);
 }
 
-StudyResult StudyComputer::compute(const RunRequest& request, BuiltCase& built) const {
+StudyResult StudyComputer::compute(const RunRequest& request, BuiltCase& built) {
   const auto start = std::chrono::steady_clock::now();
   const std::optional<double> timeout = study_.of.plan.timeout;
   Watch watch;
   if (timeout)
     watch = [&](const Progress&) { return std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count() < *timeout; };
-  return finish(request, built, study_.reduced ? run_reduced(built, watch) : run(built.model, built.plan, built.behaviours, watch));
+  if (!study_.reduced) return finish(request, built, run(built.model, built.plan, built.behaviours, watch));
+  // what the runs share is kept again by a run that goes through
+  std::optional<ReducedStart> shared = start_sample_ == request.sample ? std::exchange(start_, {}) : std::nullopt;
+  const RunResult result = run_reduced(built, watch, shared);
+  StudyResult made = finish(request, built, result);
+  if (shared) shared->swap_matrices(built.model);
+  start_ = std::move(shared), start_sample_ = request.sample;
+  return made;
 }
 
 /// A run of a large model is always marched in this way, with others or not: its result does not depend on them, to the last bit.

@@ -2,9 +2,11 @@
 #include <functional>
 #include <list>
 #include <memory>
+#include <optional>
 #include <span>
 
 #include "uplift/ensemble/study.h"
+#include "uplift/session/reduce.h"
 #include "uplift/study/study_run.h"
 
 namespace uplift {
@@ -41,13 +43,15 @@ class StudyComputer {
   const Case& case_of(std::size_t sample);
   bool marches_in_lockstep(const BuiltCase& built) const;
   StudyResult finish(const RunRequest& request, const BuiltCase& built, const RunResult& run) const;
-  StudyResult compute(const RunRequest& request, BuiltCase& built) const;
-  RunResult run_reduced(BuiltCase& built, const Watch& watch) const;
+  StudyResult compute(const RunRequest& request, BuiltCase& built);
+  RunResult run_reduced(BuiltCase& built, const Watch& watch, std::optional<ReducedStart>& shared) const;
   void compute_in_lockstep(std::span<const RunRequest> group, BuiltCase first, const std::function<void(const StudyResult&)>& done);
   BuiltCase build_run(const RunRequest& request);
 
   const Study& study_;
   std::list<std::pair<std::size_t, std::unique_ptr<const Case>>> cases_;  // the last used one first
+  std::optional<ReducedStart> start_;                                     // of the last run with a reduced model
+  std::size_t start_sample_ = 0;                                          // that it belongs to
 };
 
 /// The result of a run that gave none.

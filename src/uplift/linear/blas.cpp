@@ -4,11 +4,14 @@
 #include <sys/mman.h>
 
 #include <algorithm>
+#include <cassert>
 #include <cstddef>
 #include <mutex>
 #include <new>
 #include <vector>
 
+extern "C" void dgemm_(const char* transpose_a, const char* transpose_b, const int* m, const int* n, const int* k, const double* alpha,
+                       const double* a, const int* lda, const double* b, const int* ldb, const double* beta, double* c, const int* ldc);
 extern "C" void openblas_set_num_threads(int count);
 extern "C" int openblas_get_num_threads();
 extern "C" void* blas_memory_alloc(int purpose);
@@ -37,6 +40,18 @@ void add_work_space(std::vector<void*>& known) {
 
 namespace {
 
+/// c = alpha op(A) B + beta c.
+void multiply(const char* transpose, double alpha, const Eigen::Ref<const Matrix>& a, const Eigen::Ref<const Matrix>& b, double beta,
+              Matrix& c) {
+  [[maybe_unused]] const bool transposed = *transpose == 'T';
+  assert((transposed ? a.cols() : a.rows()) == c.rows() && (transposed ? a.rows() : a.cols()) == b.rows() && b.cols() == c.cols());
+  if (c.size() == 0 || b.rows() == 0) return;
+  prepare_blas();
+  const int m = static_cast<int>(c.rows()), n = static_cast<int>(c.cols()), k = static_cast<int>(b.rows()),
+            stride_a = static_cast<int>(a.outerStride()), stride_b = static_cast<int>(b.outerStride());
+  dgemm_(transpose, "N", &m, &n, &k, &alpha, a.data(), &stride_a, b.data(), &stride_b, &beta, c.data(), &m);
+}
+
 struct BlasUsers {
   std::mutex mutex;
   int count = 0, threads = 1;
@@ -47,6 +62,16 @@ BlasUsers& blas_users() {
 }
 
 }  // namespace
+
+void add_product(double factor, const Eigen::Ref<const Matrix>& a, const Eigen::Ref<const Matrix>& b, Matrix& y) {
+  multiply("N", factor, a, b, 1, y);
+}
+
+Matrix transposed_product(const Eigen::Ref<const Matrix>& a, const Eigen::Ref<const Matrix>& b) {
+  Matrix product = Matrix::Zero(a.cols(), b.cols());
+  multiply("T", 1, a, b, 0, product);
+  return product;
+}
 
 SingleThreadBlas::SingleThreadBlas() {
   BlasUsers& users = blas_users();

@@ -1,6 +1,12 @@
 #pragma once
+#include "uplift/math/linalg.h"
 
 namespace uplift {
+
+/// y += factor A B by BLAS, for tall matrices: Eigen packs B anew for every few rows of A where it takes the third-level cache for large.
+void add_product(double factor, const Eigen::Ref<const Matrix>& a, const Eigen::Ref<const Matrix>& b, Matrix& y);
+/// A^T B by BLAS.
+Matrix transposed_product(const Eigen::Ref<const Matrix>& a, const Eigen::Ref<const Matrix>& b);
 
 /// To be called by every thread before it calls BLAS: OpenBLAS maps 134 MB of address space as the work space of every call that runs
 /// beside others, keeps it, and tries for ever where the system refuses it. Here it takes one for the thread, or std::bad_alloc is thrown.

@@ -1,5 +1,7 @@
 #include "uplift/reduction/linear_march.h"
 
+#include "uplift/math/symmetric_product.h"
+
 namespace uplift {
 
 LinearMarch::LinearMarch(const Sparse& stiffness, const Sparse& damping, const Sparse& mass, double step, const LinearSolver& solver)
@@ -18,8 +20,10 @@ void LinearMarch::advance(const Load& load) {
   if (steps_ == 0) load(0, before_);
   ++steps_;
   load(time(), after_);
-  const Matrix right = before_ + after_ - 2 * (stiffness_ * displacement_) + (4 / step_) * (mass_ * velocity_);
-  factor_->solve(right, increment_);
+  right_ = before_ + after_;
+  add_symmetric_product(-2, stiffness_, displacement_, right_);
+  add_symmetric_product(4 / step_, mass_, velocity_, right_);
+  factor_->solve(right_, increment_);
   displacement_ += increment_;
   velocity_ = (2 / step_) * increment_ - velocity_;
   before_.swap(after_);

@@ -28,7 +28,7 @@ class LinearMarch {
   long steps_ = 0;
   std::string why_;
   std::unique_ptr<const Factor> factor_;
-  Matrix displacement_, velocity_, before_, after_, increment_;
+  Matrix displacement_, velocity_, before_, after_, right_, increment_;
 };
 
 }  // namespace uplift

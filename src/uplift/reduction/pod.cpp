@@ -4,6 +4,7 @@
 #include <cmath>
 #include <utility>
 
+#include "uplift/linear/blas.h"
 #include "uplift/math/dense.h"
 #include "uplift/math/singular_values.h"
 
@@ -11,54 +12,91 @@ namespace uplift {
 
 namespace {
 
-/// Columns of x (a part of them) as combinations that are orthonormal in the product; those smaller than `share` of the largest are left
-/// out.
-Matrix combined(const EnergyProduct& product, const Matrix& x, double share, double& largest) {
-  const Matrix squares = x.transpose() * product.times(x);
-  const SymmetricEigen eigen(0.5 * (squares + squares.transpose()));
-  const Vector& values = eigen.eigenvalues();
-  largest = values.size() > 0 ? std::sqrt(std::max(0.0, values.maxCoeff())) : 0;
-  const double threshold = share * share * largest * largest;
-  const Index count = std::ranges::count_if(values, [&](double value) { return value > threshold; });
-  return x * (eigen.eigenvectors().rightCols(count) * values.tail(count).cwiseSqrt().cwiseInverse().asDiagonal());
+double energy_of(const Matrix& x, const Matrix& product) {
+  return std::max(0.0, x.cwiseProduct(product).sum());
 }
 
-/// The orthonormal basis q and what the columns of x have beside it, down to a size `least`: some decades at a time, because squares have
-/// half the digits.
-Matrix extended(const EnergyProduct& product, Matrix q, Matrix x, double least) {
-  constexpr double at_once = 1e-5;
-  constexpr int rounds = 3;
-  double now = 0, one = 0;
-  for (int round = 0; round < rounds && x.cols() > 0; ++round) {
-    for (int pass = 0; pass < 2; ++pass) x -= q * (q.transpose() * product.times(x));
-    Matrix part = combined(product, x, at_once, now);
-    if (part.cols() == 0 || !(now > least)) break;
-    part -= q * (q.transpose() * product.times(part));
-    part = combined(product, part, 0.1, one);
-    q.conservativeResize(q.rows(), q.cols() + part.cols());
-    q.rightCols(part.cols()) = part;
-  }
-  return q;
+/// Combinations of the columns of x that are orthonormal in the product, which is given; those smaller than `share` of the largest, or
+/// smaller than `least`, are left out.
+Matrix combinations(const Matrix& x, const Matrix& product, double share, double least) {
+  const Matrix squares = transposed_product(x, product);
+  const SymmetricEigen eigen(0.5 * (squares + squares.transpose()));
+  const Vector& values = eigen.eigenvalues();
+  const double largest = values.size() > 0 ? std::sqrt(std::max(0.0, values.maxCoeff())) : 0;
+  const double threshold = std::pow(std::max(share * largest, least), 2);
+  const Index count = std::ranges::count_if(values, [&](double value) { return value > threshold; });
+  return eigen.eigenvectors().rightCols(count) * values.tail(count).cwiseSqrt().cwiseInverse().asDiagonal();
+}
+
+void append_columns(const Matrix& more, Matrix& to) {
+  to.conservativeResize(more.rows(), to.cols() + more.cols());
+  to.rightCols(more.cols()) = more;
 }
 
 }  // namespace
 
-void Pod::add(const Matrix& displacements) {
-  const Index before = basis_.cols();
-  if (displacements.size() == 0 || displacements.isZero(0)) return;
-  const double size =
-      std::hypot(before > 0 ? values_[0] : 0, std::sqrt(std::max(0.0, displacements.cwiseProduct(product_.times(displacements)).sum())));
-  const Matrix both = extended(product_, basis_, displacements, least_ * size);
-  const Index added = both.cols() - before;
-  Matrix core = Matrix::Zero(before + added, before + displacements.cols());
+void Pod::remove(const Matrix& added, const Matrix& product, Matrix& x) const {
+  for (const Matrix* vectors : {&beside_, &basis_, &added})
+    if (vectors->cols() > 0) add_product(-1, *vectors, transposed_product(*vectors, product), x);
+}
+
+Pod::Added Pod::beside_basis(Matrix& x, double least) const {
+  constexpr double at_once = 1e-5;  // some decades at a time, because squares have half the digits
+  constexpr int rounds = 3;
+  Added added{Matrix(x.rows(), 0), Matrix(0, x.cols())};
+  for (int round = 0; round < rounds; ++round) {
+    const Matrix product = product_.times(x);
+    const Matrix of_part = combinations(x, product, at_once, least);
+    if (of_part.cols() == 0) break;
+    Matrix part = Matrix::Zero(x.rows(), of_part.cols());
+    add_product(1, x, of_part, part);
+    remove(added.vectors, product_.times(part), part);
+    const Matrix anew = combinations(part, product_.times(part), 0.1, 0);
+    Matrix orthonormal = Matrix::Zero(x.rows(), anew.cols());
+    add_product(1, part, anew, orthonormal);
+    const Matrix coefficients = transposed_product(orthonormal, product);
+    add_product(-1, orthonormal, coefficients, x);
+    append_columns(orthonormal, added.vectors);
+    added.coefficients.conservativeResize(added.vectors.cols(), x.cols());
+    added.coefficients.bottomRows(coefficients.rows()) = coefficients;
+  }
+  return added;
+}
+
+void Pod::add(Matrix x) {
+  const Index before = basis_.cols(), columns = x.cols();
+  if (x.size() == 0 || x.isZero(0)) return;
+  Matrix of_basis;
+  {
+    const Matrix product = product_.times(x);
+    energy_ += energy_of(x, product);
+    of_basis = transposed_product(basis_, product);
+    remove(Matrix(x.rows(), 0), product, x);
+  }
+  const double size = std::hypot(before > 0 ? values_[0] : 0, of_basis.norm(), std::sqrt(energy_of(x, product_.times(x))));
+  // a full basis: what is small beside the last of its directions replaces none of them
+  const double least = std::max(least_ * size, before == most_ ? 0.01 * values_[most_ - 1] : 0);
+  const Added added = beside_basis(x, least);
+  const Index count_added = added.vectors.cols();
+  Matrix core = Matrix::Zero(before + count_added, before + columns);
   core.topLeftCorner(before, before) = values_.asDiagonal();
-  core.rightCols(displacements.cols()) = both.transpose() * product_.times(displacements);
+  core.topRightCorner(before, columns) = of_basis;
+  core.bottomRightCorner(count_added, columns) = added.coefficients;
   const SingularValues singular(core);
   const double threshold = singular.values().size() > 0 ? least_ * singular.values()[0] : 0;
   const Index count =
       std::min<Index>(most_, std::ranges::count_if(singular.values(), [&](double value) { return value > threshold && value > 0; }));
-  basis_ = both * singular.left().leftCols(count);
+  const Matrix leading = singular.left().leftCols(count);
+  Matrix turned = Matrix::Zero(x.rows(), count);
+  add_product(1, basis_, leading.topRows(before), turned);
+  add_product(1, added.vectors, leading.bottomRows(count_added), turned);
+  basis_ = std::move(turned);
   values_ = singular.values().head(count);
+}
+
+Matrix Pod::release() {
+  values_.resize(0);
+  return std::exchange(basis_, Matrix(beside_.rows(), 0));
 }
 
 }  // namespace uplift

@@ -7,21 +7,36 @@ namespace uplift {
 /// the leading left singular vectors of all that was added, orthonormal in the energy product, with their singular values.
 class Pod {
  public:
-  /// `unknowns`: rows of what is added. `least`: directions with a smaller share of the largest singular value are dropped.
-  Pod(const EnergyProduct& product, Index unknowns, double least, Index most)
-      : product_(product), least_(least), most_(most), basis_(unknowns, 0), values_(0) {}
+  /// `beside`: orthonormal vectors that are taken out of what is added first; it must stay alive. `least`: directions with a smaller share
+  /// of the largest singular value are dropped. `most`: directions that are kept.
+  Pod(const EnergyProduct& product, const Matrix& beside, double least, Index most)
+      : product_(product), beside_(beside), least_(least), most_(most), basis_(beside.rows(), 0), values_(0) {}
   /// Adds displacements, one a column.
-  void add(const Matrix& displacements);
+  void add(Matrix displacements);
   const Matrix& basis() const { return basis_; }
   /// Singular values, descending: square roots of sums of energies.
   const Vector& values() const { return values_; }
+  /// Of all that was added, with what `beside` takes.
+  double energy() const { return energy_; }
+  /// The basis leaves; nothing is kept.
+  Matrix release();
 
  private:
+  /// What x has beside the given vectors and the basis, down to a size `least`: orthonormal vectors and the coefficients of x in them.
+  struct Added {
+    Matrix vectors, coefficients;
+  };
+  Added beside_basis(Matrix& x, double least) const;
+  /// Takes given vectors, basis and `added` out of x, of which the product is known.
+  void remove(const Matrix& added, const Matrix& product, Matrix& x) const;
+
   const EnergyProduct& product_;
+  const Matrix& beside_;
   double least_;
   Index most_;
   Matrix basis_;
   Vector values_;
+  double energy_ = 0;
 };
 
 }  // namespace uplift

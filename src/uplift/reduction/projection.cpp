@@ -1,5 +1,7 @@
 #include "uplift/reduction/projection.h"
 
+#include "uplift/linear/blas.h"
+
 namespace uplift {
 
 namespace {
@@ -8,20 +10,35 @@ Sparse as_sparse(const Matrix& dense) {
   return dense.sparseView(1, 0);  // all but zeros
 }
 
-/// V^T A V, symmetric to the last bit.
+/// V^T A V.
 Sparse projected(const Sparse& a, const Matrix& basis) {
   if (a.nonZeros() == 0) return {basis.cols(), basis.cols()};
-  const Matrix product = basis.transpose() * (a * basis);
-  return as_sparse(0.5 * (product + product.transpose()));
+  return as_sparse(symmetric_projection(a, basis));
 }
 
 }  // namespace
+
+Matrix symmetric_projection(const Sparse& a, const Matrix& v) {
+  constexpr Index at_once = 64;  // columns of A V that exist at the same time
+  Matrix projected(v.cols(), v.cols());
+  for (Index first = 0; first < v.cols(); first += at_once) {
+    const Matrix some = v.middleCols(first, std::min(at_once, v.cols() - first));
+    Matrix product = Matrix::Zero(some.rows(), some.cols());
+    add_symmetric_product(1, a, some, product);
+    projected.middleCols(first, some.cols()) = transposed_product(v, product);
+  }
+  return 0.5 * (projected + projected.transpose());
+}
 
 void project(Model& model, const Matrix& basis) {
   for (Sparse* matrix : {&model.stiffness, &model.mass, &model.damping}) *matrix = projected(*matrix, basis);
   model.reduction = as_sparse(model.reduction * basis);
   model.expansion = model.reduction.transpose();
   for (Interface& interface : model.interfaces) interface.b = as_sparse(interface.b * basis);
+  project_loads(model, basis);
+}
+
+void project_loads(Model& model, const Matrix& basis) {
   for (TimeLoad& load : model.time_loads) load.shape = (basis.transpose() * load.shape).eval();
   for (TimeLoadTable& table : model.time_load_tables) table.pattern = as_sparse(basis.transpose() * table.pattern);
   model.assembly.modal_damping.resize(0, 0);
@@ -39,6 +56,26 @@ void append(const EnergyProduct& product, const Vector& x, double least, Matrix&
   rest -= basis * (basis.transpose() * product.times(rest));
   basis.conservativeResize(basis.rows(), basis.cols() + 1);
   basis.col(basis.cols() - 1) = rest / product.norm(rest);
+}
+
+Index orthonormalise(const EnergyProduct& product, const Eigen::Ref<const Matrix>& basis, double least, Matrix& vectors) {
+  Matrix products = product.times(vectors);
+  const Vector sizes = vectors.cwiseProduct(products).colwise().sum().cwiseMax(0).cwiseSqrt();
+  for (int pass = 0; pass < 2; ++pass) {
+    add_product(-1, basis, transposed_product(basis, products), vectors);
+    products = product.times(vectors);
+  }
+  Matrix kept(vectors.rows(), 0);
+  for (Index k = 0; k < vectors.cols(); ++k) {
+    const Index before = kept.cols();
+    append(product, vectors.col(k), sizes[k] > 0 ? least * sizes[k] / product.norm(vectors.col(k)) : 1, kept);
+    if (kept.cols() == before) continue;
+    Vector added = kept.col(before);
+    added -= basis * (basis.transpose() * product.times(added));
+    kept.col(before) = added / product.norm(added);
+  }
+  vectors = std::move(kept);
+  return vectors.cols();
 }
 
 }  // namespace uplift

@@ -2,6 +2,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "uplift/math/symmetric_product.h"
 #include "uplift/model/model.h"
 
 namespace uplift {
@@ -11,11 +12,21 @@ namespace uplift {
 /// nodes. Laws, gaps and prescribed motions stay as they are.
 void project(Model& model, const Matrix& basis);
 
+/// The part of project() that belongs to the loads: matrices, constraints and rows of the interfaces are projected already.
+void project_loads(Model& model, const Matrix& basis);
+
+/// V^T A V of a symmetric matrix, symmetric to the last bit.
+Matrix symmetric_projection(const Sparse& a, const Matrix& v);
+
 /// The inner product x^T (K + w^2 M) y of displacements, an energy.
 class EnergyProduct {
  public:
   EnergyProduct(const Sparse& stiffness, const Sparse& mass, double w) : matrix_(stiffness + (w * w) * mass) {}
-  Matrix times(const Matrix& x) const { return matrix_ * x; }
+  Matrix times(const Matrix& x) const {
+    Matrix product = Matrix::Zero(x.rows(), x.cols());
+    add_symmetric_product(1, matrix_, x, product);
+    return product;
+  }
   double norm(const Vector& x) const { return std::sqrt(std::max(0.0, x.dot(matrix_ * x))); }
 
  private:
@@ -24,5 +35,9 @@ class EnergyProduct {
 
 /// Adds to an orthonormal basis what is left of a vector beside it, where that is more than `least` of its norm.
 void append(const EnergyProduct& product, const Vector& x, double least, Matrix& basis);
+
+/// Makes vectors orthonormal, beside an orthonormal basis too; those of which no more than `least` of their norm is left are dropped.
+/// Returns the number of those that stay.
+Index orthonormalise(const EnergyProduct& product, const Eigen::Ref<const Matrix>& basis, double least, Matrix& vectors);
 
 }  // namespace uplift

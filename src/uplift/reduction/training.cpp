@@ -8,6 +8,7 @@
 #include <utility>
 
 #include "uplift/dynamics/bulk.h"
+#include "uplift/linear/blas.h"
 #include "uplift/model/mechanism.h"
 #include "uplift/model/wave_functions.h"
 #include "uplift/reduction/linear_march.h"
@@ -17,14 +18,22 @@ namespace uplift {
 
 namespace {
 
-constexpr Index columns_at_once = 16, snapshots_at_once = 320;
-constexpr Index most_rows = 200;    // more interface rows than this are loaded in random combinations
-constexpr Index beside = 10;        // coordinates beside the exact ones at least
-constexpr double load_weight = 10;  // of the answers to loads against those of the interface rows
-constexpr double longest = 3;       // s: of a march
-constexpr double decayed = 1e-6;    // share of the largest energy at which a march ends
-constexpr double dropped = 1e-9;    // share of the largest singular value
-constexpr int snapshot_every = 2, steps_of_bell = 8;
+constexpr Index columns_at_once = 16;
+constexpr Index most_alone = 64;      // more interface rows than this are loaded all together, at random
+constexpr Index random_columns = 32;  // of the marches in which they are
+constexpr Index most_static = 400;    // more interface rows than this have no static answers of their own
+constexpr Index beside = 10;          // coordinates beside the exact ones at least
+constexpr double load_weight = 10;    // of the answers to loads against those of the interface rows
+constexpr double longest = 3;         // s: of a march
+constexpr double decayed = 1e-6;      // share of the largest energy at which a march ends
+constexpr double dropped = 1e-9;      // share of the largest singular value
+constexpr int steps_of_bell = 8;
+constexpr int snapshot_every = 2, snapshot_of_random_every = 5;  // steps; odd: not always at the same time of the bells
+
+/// Snapshots that wait for their decomposition: 150 MB at most, but for very large models.
+Index snapshots_at_once(Index unknowns) {
+  return std::clamp<Index>(20'000'000 / std::max<Index>(unknowns, 1), 64, 320);
+}
 
 /// One bell of the duration 1/f.
 class Bell final : public TimeFunction {
@@ -62,6 +71,39 @@ Matrix signs(Index rows, Index columns) {
     for (Index i = 0; i < rows; ++i) drawn(i, j) = (random() & 1U) != 0 ? 1 : -1;
   return drawn;
 }
+
+/// Random bells on every row, and others in every column: one begins every half a duration with the sign +1 or -1. The answers have on
+/// average the products that those to single bells on every row have, summed over rows and times (R9).
+class RandomBells {
+ public:
+  RandomBells(double frequency, const Sparse& rows, double duration)
+      : bell_(frequency),
+        distance_(0.5 / frequency),
+        signs_(signs(rows.rows(), random_columns * (1 + static_cast<Index>(duration / distance_)))) {
+    for (int k = 0; k < rows.cols(); ++k)
+      if (Sparse::InnerIterator(rows, k)) loaded_.push_back(k);
+    on_loaded_ = Matrix::Zero(std::ssize(loaded_), rows.rows());
+    for (Index k = 0; k < on_loaded_.rows(); ++k)
+      for (Sparse::InnerIterator entry(rows, loaded_[static_cast<std::size_t>(k)]); entry; ++entry)
+        on_loaded_(k, entry.row()) = entry.value();
+  }
+  /// Fills the rows of the loaded unknowns; the others are zero from the start of the march.
+  void at(double time, Matrix& load) const {
+    const auto last = static_cast<Index>(std::floor(time / distance_ + 1e-9));
+    Matrix force = Matrix::Zero(on_loaded_.cols(), random_columns);
+    for (Index k = std::max<Index>(0, last - 1); k <= last && (k + 1) * random_columns <= signs_.cols(); ++k)
+      force += bell_.value(time - static_cast<double>(k) * distance_) * signs_.middleCols(k * random_columns, random_columns);
+    const Matrix forces = on_loaded_ * force;
+    for (Index k = 0; k < forces.rows(); ++k) load.row(loaded_[static_cast<std::size_t>(k)]) = forces.row(k);
+  }
+
+ private:
+  Bell bell_;
+  double distance_;
+  std::vector<int> loaded_;  // unknowns
+  Matrix on_loaded_;         // loaded unknowns x rows
+  Matrix signs_;
+};
 
 /// The loads of a model that change with time, all of them under the same function. Those of a wave come with what its free field puts on
 /// the sides, as they do in every run: without it the structure would stand in ground that moves otherwise.
@@ -111,7 +153,7 @@ class Trainer {
         bell_(std::make_shared<const Bell>(options.frequency)),
         loads_(model, bell_, step_, longest),
         rigid_(model.free(), 0),
-        pod_(product_, model.free(), dropped, options.most) {}
+        pod_(product_, exact_, dropped, options.most) {}
 
   Basis make() {
     Basis basis;
@@ -121,20 +163,23 @@ class Trainer {
     const Matrix loose = unresisted_motions(model_, std::vector<char>(static_cast<std::size_t>(b_.rows()), 0));
     for (Index k = 0; k < loose.cols(); ++k) append(product_, loose.col(k), 1e-8, rigid_);
     exact_ = with_static_answers();
-    weighted_ = product_.times(exact_);
-    const Matrix rows = row_patterns();
-    columns_ = rows.cols() + loads_.count();
-    for (Index first = 0; first < rows.cols(); first += columns_at_once) {
-      const Matrix some = rows.middleCols(first, std::min(columns_at_once, rows.cols() - first));
-      add([&](double time, Matrix& load) { load = bell_->value(time) * some; }, some.cols(), 1);
-    }
-    for (Index k = 0; k < loads_.count(); ++k) add([&](double time, Matrix& load) { load = loads_.at(k, time); }, 1, load_weight);
+    columns_ = b_.rows() <= most_alone ? b_.rows() + loads_.count() : random_columns + loads_.count();
+    answer_rows();
+    add(
+        [&](double time, Matrix& load) {
+          load.resize(model_.free(), loads_.count());
+          for (Index k = 0; k < loads_.count(); ++k) load.col(k) = loads_.at(k, time);
+        },
+        {.columns = loads_.count(), .groups = loads_.count(), .weight = load_weight});
     basis.columns = static_cast<int>(columns_);
     basis.rigid = static_cast<int>(rigid_.cols());
     if (stopped_) basis.why = "interrupted";
     if (!basis.why.empty()) return basis;
-    all_.resize(model_.free(), exact_.cols() + pod_.basis().cols());
-    all_ << exact_, pod_.basis();
+    num_exact_ = exact_.cols();
+    all_ = std::exchange(exact_, Matrix());
+    const Matrix further = pod_.release();
+    all_.conservativeResize(model_.free(), num_exact_ + further.cols());
+    all_.rightCols(further.cols()) = further;
     choose_size(basis);
     return basis;
   }
@@ -144,66 +189,114 @@ class Trainer {
   /// however few coordinates follow. A loose part rests on its inertia at a tenth of the frequency of the basis. Too many rows, or too few
   /// coordinates for them: the loose motions alone.
   Matrix with_static_answers() const {
-    Matrix exact = rigid_;
-    if (b_.rows() == 0 || b_.rows() > most_rows) return exact;
+    const Index expected = rigid_.cols() + b_.rows();
+    if (b_.rows() == 0 || b_.rows() > most_static || (options_.size > 0 && options_.size < expected + beside)) return rigid_;
     const Factorisation made = solver_.factorise(model_.stiffness + (0.01 * w_ * w_) * model_.mass);
-    if (made.factor == nullptr) return exact;  // an unknown that a dashpot alone holds
-    Matrix answers;
-    made.factor->solve(b_.transpose(), answers);
-    for (Index k = 0; k < answers.cols(); ++k) append(product_, answers.col(k), 1e-8, exact);
-    return options_.size == 0 || options_.size >= exact.cols() + beside ? exact : rigid_;
+    if (made.factor == nullptr) return rigid_;  // an unknown that a dashpot alone holds
+    const Sparse patterns = b_.transpose();
+    Matrix exact(model_.free(), expected), answers;
+    exact.leftCols(rigid_.cols()) = rigid_;
+    Index count = rigid_.cols();
+    for (Index first = 0; first < patterns.cols(); first += columns_at_once) {
+      made.factor->solve(Matrix(patterns.middleCols(first, std::min(columns_at_once, patterns.cols() - first))), answers);
+      count += orthonormalise(product_, exact.leftCols(count), 1e-8, answers);
+      exact.middleCols(count - answers.cols(), answers.cols()) = answers;
+    }
+    exact.conservativeResize(Eigen::NoChange, count);
+    return exact;
   }
 
-  Matrix row_patterns() const {
-    if (b_.rows() <= most_rows) return b_.transpose();
-    return b_.transpose() * signs(b_.rows(), most_rows);
+  /// The answers to one bell on every row; where there are many, to random bells on all of them.
+  void answer_rows() {
+    if (b_.rows() > most_alone) {
+      const RandomBells bells(options_.frequency, b_, longest);
+      add([&](double time, Matrix& load) { bells.at(time, load); },
+          {.columns = random_columns, .weight = std::sqrt(static_cast<double>(b_.rows())), .every = snapshot_of_random_every});
+      return;
+    }
+    const Matrix rows = b_.transpose();
+    for (Index first = 0; first < rows.cols(); first += columns_at_once) {
+      const Matrix some = rows.middleCols(first, std::min(columns_at_once, rows.cols() - first));
+      add([&](double time, Matrix& load) { load = bell_->value(time) * some; },
+          {.columns = some.cols(), .weight = std::sqrt(static_cast<double>(some.cols()))});
+    }
   }
 
-  /// What the first exact vectors leave of x.
-  Matrix without(Index count, const Matrix& x) const { return x - exact_.leftCols(count) * (weighted_.leftCols(count).transpose() * x); }
-
-  /// The answers to some loads, with the same energy on average as those of any others times the weight.
-  void add(const LinearMarch::Load& load, Index columns, double weight) {
-    if (stopped_) return;
-    Pod own(product_, model_.free(), dropped, options_.most);
-    Matrix kept(model_.free(), 0), taken(model_.free(), snapshots_at_once);
-    Index count = 0;
-    const auto flush = [&] {
+  /// Of a march: columns that are marched together, in groups of equal size. The answers of each group get the energy weight^2.
+  struct March {
+    Index columns = 0, groups = 1;
+    double weight = 1;
+    int every = snapshot_every;  // steps
+  };
+  /// The answers of one group.
+  struct Group {
+    Pod own;
+    Matrix taken;
+    Index count = 0;    // of the columns that are taken
+    double most = 0;    // energy
+    bool over = false;  // it has decayed
+    void flush() {
       if (count > 0) own.add(taken.leftCols(count));
       count = 0;
-    };
-    march_.start(columns);
-    double most = 0, all = 0;
-    for (long step = 1; march_.time() < longest; ++step) {
-      march_.advance(load);
-      if (step % snapshot_every != 0) continue;
-      if (count + columns > snapshots_at_once) flush();
-      const Matrix& answer = march_.displacement();
-      all += answer.cwiseProduct(product_.times(answer)).sum();
-      taken.middleCols(count, columns) = without(exact_.cols(), answer);
-      count += columns;
-      if (march_.time() * options_.frequency <= 1) continue;
-      const double energy = energy_now();
-      most = std::max(most, energy);
-      if (energy <= decayed * most) break;
     }
-    flush();
-    done_ += columns;
-    if (options_.go_on && !options_.go_on(static_cast<double>(done_) / static_cast<double>(columns_))) stopped_ = true;
-    const double size = own.values().norm();  // round-off where the exact vectors are the whole answer
-    if (size > dropped * std::sqrt(all))
-      pod_.add(own.basis() * (weight * std::sqrt(static_cast<double>(columns)) / size * own.values()).asDiagonal());
+  };
+
+  void add(const LinearMarch::Load& load, const March& how) {
+    if (stopped_ || how.columns == 0) return;
+    const Index width = how.columns / how.groups;
+    std::vector<Group> groups;
+    for (Index k = 0; k < how.groups; ++k)
+      groups.push_back({Pod(product_, exact_, dropped, options_.most),
+                        Matrix(model_.free(), std::max(width, snapshots_at_once(model_.free()) / how.groups))});
+    march_.start(how.columns);
+    for (long step = 1; march_.time() < longest && !std::ranges::all_of(groups, &Group::over); ++step) {
+      march_.advance(load);
+      if (!goes_on(static_cast<double>(how.columns) * march_.time() / longest)) return;
+      if (step % how.every != 0) continue;
+      Vector energies;  // random bells never end
+      if (march_.time() * options_.frequency > 1 && how.every == snapshot_every) energies = energies_now();
+      for (Index k = 0; k < how.groups; ++k) {
+        Group& group = groups[static_cast<std::size_t>(k)];
+        if (group.over) continue;
+        if (group.count + width > group.taken.cols()) group.flush();
+        group.taken.middleCols(group.count, width) = march_.displacement().middleCols(k * width, width);
+        group.count += width;
+        if (energies.size() == 0) continue;
+        const double energy = energies.segment(k * width, width).sum();
+        group.most = std::max(group.most, energy);
+        group.over = energy <= decayed * group.most;
+      }
+    }
+    done_ += how.columns;
+    if (!goes_on(0)) return;
+    for (Group& group : groups) {
+      group.flush();
+      group.taken.resize(0, 0);
+      const Vector weights = group.own.values() * (how.weight / group.own.values().norm());
+      // round-off where the exact vectors are the whole answer
+      if (group.own.values().norm() > dropped * std::sqrt(group.own.energy())) pod_.add(group.own.release() * weights.asDiagonal());
+    }
   }
 
-  double energy_now() const {
-    const Matrix moving = without(rigid_.cols(), march_.velocity());
-    return march_.displacement().cwiseProduct(model_.stiffness * march_.displacement()).sum() +
-           moving.cwiseProduct(model_.mass * moving).sum();
+  /// Tells how far the marches are, in columns beyond those that are done; false: the training ends.
+  bool goes_on(double columns) {
+    if (options_.go_on && !options_.go_on((static_cast<double>(done_) + columns) / static_cast<double>(columns_))) stopped_ = true;
+    return !stopped_;
+  }
+
+  /// Of every column of the march; the loose motions go on for ever and do not count.
+  Vector energies_now() const {
+    const Matrix &displacement = march_.displacement(), &velocity = march_.velocity();
+    const Matrix moving = velocity - rigid_ * (rigid_.transpose() * product_.times(velocity));
+    Matrix forces = Matrix::Zero(displacement.rows(), displacement.cols()), momenta = forces;
+    add_symmetric_product(1, model_.stiffness, displacement, forces);
+    add_symmetric_product(1, model_.mass, moving, momenta);
+    return (displacement.cwiseProduct(forces) + moving.cwiseProduct(momenta)).colwise().sum();
   }
 
   /// Marches the sweep with the whole model, then with leading vectors of the basis until the openings and velocities agree.
   void choose_size(Basis& basis) {
-    const Index all = all_.cols(), least = std::min(all, exact_.cols() + beside);
+    const Index all = all_.cols(), least = std::min(all, num_exact_ + beside);
     const auto sweep = std::make_shared<const Sweep>(options_.frequency);
     const Loads loads(model_, sweep, step_, longest);
     const Matrix rows = b_.rows() > 0 ? Matrix(b_.transpose() * signs(b_.rows(), 3)) : Matrix(model_.free(), 0);
@@ -213,7 +306,7 @@ class Trainer {
       at.resize(model_.free(), columns);
       at.leftCols(rows.cols()) = sweep->value(time) * rows;
       for (Index k = 0; k < loads.count(); ++k) at.col(rows.cols() + k) = loads.at(k, time);
-      forces.emplace_back(all_.transpose() * at);
+      forces.push_back(transposed_product(all_, at));
     };
     Sparse floors(std::ssize(options_.floors), model_.free());
     std::vector<Triplet> entries;
@@ -222,13 +315,10 @@ class Trainer {
         entries.emplace_back(static_cast<int>(k), static_cast<int>(entry.row()), entry.value());
     floors.setFromTriplets(entries.begin(), entries.end());
     const std::vector<Matrix> full = answers(march_, columns, load, b_, floors);
-    const Matrix k = all_.transpose() * (model_.stiffness * all_), c = all_.transpose() * (model_.damping * all_),
-                 m = all_.transpose() * (model_.mass * all_), of_rows = b_ * all_, of_floors = floors * all_;
+    const Matrix k = symmetric_projection(model_.stiffness, all_), c = symmetric_projection(model_.damping, all_),
+                 m = symmetric_projection(model_.mass, all_), of_rows = b_ * all_, of_floors = floors * all_;
     const auto error = [&](Index size) {
-      const auto block = [&](const Matrix& a) -> Sparse {
-        const Matrix leading = a.topLeftCorner(size, size);
-        return Matrix(0.5 * (leading + leading.transpose())).sparseView(1, 0);
-      };
+      const auto block = [&](const Matrix& a) -> Sparse { return Matrix(a.topLeftCorner(size, size)).sparseView(1, 0); };
       const Sparse stiffness = block(k), damping = block(c), mass = block(m);
       LinearMarch march(stiffness, damping, mass, step_, solver_);
       const auto leading = [&](double time, Matrix& at) { at = forces[static_cast<std::size_t>(std::lround(time / step_))].topRows(size); };
@@ -242,7 +332,8 @@ class Trainer {
       size = std::min<Index>(size + 10, all);
       basis.transfer_error = error(size);
     }
-    basis.vectors = all_.leftCols(size);
+    all_.conservativeResize(Eigen::NoChange, size);
+    basis.vectors = std::move(all_);
   }
 
   /// Openings and velocities of floors over time, one matrix for each kind and load: rows x times.
@@ -283,9 +374,9 @@ class Trainer {
   Sparse b_;
   std::shared_ptr<const TimeFunction> bell_;
   Loads loads_;
-  Matrix rigid_, exact_, weighted_, all_;  // exact: the loose motions first; weighted: times the matrix of the product
+  Matrix rigid_, exact_, all_;  // exact: the loose motions first
   Pod pod_;
-  Index columns_ = 0, done_ = 0;
+  Index num_exact_ = 0, columns_ = 0, done_ = 0;
   bool stopped_ = false;
 };
 

@@ -51,6 +51,24 @@ Vector coordinates(const EnergyProduct& product, const Matrix& basis, const Vect
   return basis.transpose() * product.times(x);
 }
 
+/// What static stages apply.
+Vector dead_force(const Model& model) {
+  Vector force = Vector::Zero(model.free());
+  for (const TimeLoad& load : model.time_loads)
+    if (load.dead) force += load.factor(0) * load.shape;
+  return force;
+}
+
+bool is_same(const Vector& a, const Vector& b) {
+  return a.size() == b.size() && a == b;
+}
+
+/// Whether the static stages and the initial state of a plan under dead loads are those that were computed.
+bool is_same(const ReducedStart& start, const Vector& dead, const RunPlan& plan) {
+  return is_same(start.dead_force, dead) && is_same(start.velocity, plan.initial_velocity) &&
+         is_same(start.displacement, plan.initial_displacement);
+}
+
 /// Translations, in all directions, of the nodes whose accelerations are asked for: a direction in which a load does not move a node, by
 /// symmetry, is compared with the others.
 std::vector<int> floor_unknowns(const BuiltCase& built) {
@@ -222,10 +240,26 @@ void refuse_reduced(const ReducedModel& reduced, const Where& where, const Built
                      "one that does not represent the answer to the load " + in_quotes(load) + ": make it anew with `uplift reduce`");
 }
 
+void ReducedStart::swap_matrices(Model& model) {
+  reduction.swap(model.reduction), expansion.swap(model.expansion);
+  stiffness.swap(model.stiffness), mass.swap(model.mass), damping.swap(model.damping);
+  rows.resize(model.interfaces.size());
+  for (std::size_t k = 0; k < rows.size(); ++k) rows[k].swap(model.interfaces[k].b);
+}
+
 std::optional<RunState> begin_reduced(const ReducedModel& reduced, const Where& where, BuiltCase& built, const Watch& watch,
-                                      RunResult& result) {
+                                      RunResult& result, std::optional<ReducedStart>* shared) {
   make_whole(built.model);
   refuse_reduced(reduced, where, built);
+  const bool shares = shared != nullptr && built.model.motions.empty();  // prescribed motions open gaps at rest
+  const Vector dead = shares ? dead_force(built.at_rest()) : Vector();
+  if (shares && *shared && is_same(**shared, dead, built.plan)) {
+    (*shared)->swap_matrices(built.model);
+    project_loads(built.model, (*shared)->basis);
+    built.plan.rest.reset();
+    return (*shared)->state;
+  }
+  if (shared != nullptr) shared->reset();
   std::optional<RunState> begin;
   Keeping keeping;
   keeping.begin = [&](const RunState& state) { begin = state; };
@@ -242,6 +276,11 @@ std::optional<RunState> begin_reduced(const ReducedModel& reduced, const Where& 
   if (begin->held.size() > 0) begin->held = (basis.transpose() * begin->held).eval();
   project(built.model, basis);
   built.plan.rest.reset();
+  if (shares) {
+    ReducedStart& made = shared->emplace();
+    made.state = *begin, made.basis = std::move(basis), made.dead_force = dead;
+    made.velocity = built.plan.initial_velocity, made.displacement = built.plan.initial_displacement;
+  }
   return begin;
 }
 

@@ -29,10 +29,24 @@ std::shared_ptr<const ReducedModel> read_reduced_model_of(const Values& root);
 /// Throws InputError where the reduced model belongs to another structure, or does not represent what the case has.
 void refuse_reduced(const ReducedModel& reduced, const Where& where, const BuiltCase& built);
 
+/// What runs of a case with a reduced model share that differ by their motions alone: the state in which the static stages end, and the
+/// projected matrices.
+struct ReducedStart {
+  RunState state;                                         // in the coordinates of the basis
+  Matrix basis;                                           // free unknowns x coordinates, those of the state among them
+  Vector dead_force;                                      // of the static stages, free unknowns of the whole model [N, N m]
+  Vector velocity, displacement;                          // initial ones of the plan
+  Sparse reduction, expansion, stiffness, mass, damping;  // of the model; given to the run that goes on from here
+  std::vector<Sparse> rows;                               // of its interfaces
+  /// Exchanges the matrices with those of a model: given to a run, and back from it.
+  void swap_matrices(Model& model);
+};
+
 /// Computes the static stages of a built case and puts its model into the coordinates of the reduced model, with the state at which its
 /// first dynamic stage begins as further coordinates. `result`: of the static stages where they fail or are stopped: nothing is returned
-/// then. Throws as refuse_reduced().
+/// then. Throws as refuse_reduced(). `shared`: what an earlier run of the same case under other motions has left there is taken instead,
+/// where its static stages are the same; else it is made. The matrices are then the model's until swap_matrices() takes them back.
 std::optional<RunState> begin_reduced(const ReducedModel& reduced, const Where& where, BuiltCase& built, const Watch& watch,
-                                      RunResult& result);
+                                      RunResult& result, std::optional<ReducedStart>* shared = nullptr);
 
 }  // namespace uplift

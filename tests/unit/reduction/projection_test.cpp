@@ -38,7 +38,8 @@ TEST(Pod, FindsSingularValuesOverTwelveDecadesBatchByBatch) {
   for (Index i = 0; i < rows; ++i) weights[i] = 1 + static_cast<double>(i);
   const Matrix x = with_singular_values(singular, weights, columns);
   const EnergyProduct product(diagonal(weights), Sparse(rows, rows), 0);
-  Pod pod(product, rows, 1e-10, 100);
+  const Matrix nothing(rows, 0);
+  Pod pod(product, nothing, 1e-10, 100);
   for (const auto& [first, width] : {std::pair<Index, Index>{0, 10}, {10, 1}, {11, 30}, {41, 4}}) pod.add(x.middleCols(first, width));
   ASSERT_GE(pod.values().size(), 9);
   for (Index k = 0; k < 9; ++k) EXPECT_NEAR(pod.values()[k], singular[k], 1e-5 * singular[k]) << k;
@@ -50,13 +51,62 @@ TEST(Pod, FindsSingularValuesOverTwelveDecadesBatchByBatch) {
 
 TEST(Pod, KeepsNothingOfNothingAndNoMoreThanItMay) {
   const EnergyProduct product(diagonal(Vector::Ones(8)), Sparse(8, 8), 0);
-  Pod pod(product, 8, 1e-9, 3);
+  const Matrix nothing(8, 0);
+  Pod pod(product, nothing, 1e-9, 3);
   pod.add(Matrix::Zero(8, 4));
   EXPECT_EQ(pod.basis().cols(), 0);
   pod.add(random_matrix(8, 20, 3));
   EXPECT_EQ(pod.basis().cols(), 3);
   pod.add(Matrix(8, 0));
   EXPECT_EQ(pod.basis().cols(), 3);
+}
+
+// What is given beside the basis takes its part: the rest is decomposed, and both together are orthonormal.
+TEST(Pod, LeavesOutWhatOtherVectorsRepresent) {
+  const Index rows = 40;
+  const Vector weights = Vector::LinSpaced(rows, 1, 9), singular{{1.0, 1e-2, 1e-4}};
+  const EnergyProduct product(diagonal(weights), Sparse(rows, rows), 0);
+  Matrix beside = random_matrix(rows, 5, 5), of_rest = with_singular_values(singular, weights, 12);
+  EXPECT_EQ(orthonormalise(product, Matrix(rows, 0), 1e-10, beside), 5);
+  of_rest -= beside * (beside.transpose() * product.times(of_rest));
+  const Matrix nothing(rows, 0);
+  Pod alone(product, nothing, 1e-9, 20), pod(product, beside, 1e-9, 20);
+  alone.add(of_rest);
+  const Matrix all = of_rest + 100 * beside * random_matrix(5, 12, 6);
+  pod.add(all);
+  ASSERT_EQ(pod.values().size(), 3);
+  for (Index k = 0; k < 3; ++k) EXPECT_NEAR(pod.values()[k], alone.values()[k], 1e-8 * alone.values()[k]) << k;
+  EXPECT_NEAR(pod.energy(), all.cwiseProduct(product.times(all)).sum(), 1e-12 * pod.energy());
+  EXPECT_LT((beside.transpose() * product.times(pod.basis())).cwiseAbs().maxCoeff(), 1e-12);
+}
+
+TEST(Orthonormalise, KeepsWhatIsNewBesideABasis) {
+  const EnergyProduct product(diagonal(Vector::LinSpaced(12, 1, 5)), Sparse(12, 12), 0);
+  Matrix basis = random_matrix(12, 4, 7);
+  ASSERT_EQ(orthonormalise(product, Matrix(12, 0), 1e-10, basis), 4);
+  const Matrix fresh = random_matrix(12, 3, 8);
+  Matrix vectors(12, 5);
+  vectors << fresh.leftCols(2), basis * Vector::LinSpaced(4, 1, 2), fresh.leftCols(2) * Vector::Ones(2), fresh.col(2);
+  ASSERT_EQ(orthonormalise(product, basis, 1e-10, vectors), 3);
+  Matrix both(12, 7);
+  both << basis, vectors;
+  EXPECT_LT((both.transpose() * product.times(both) - Matrix::Identity(7, 7)).cwiseAbs().maxCoeff(), 1e-13);
+  EXPECT_LT((fresh - both * (both.transpose() * product.times(fresh))).norm(), 1e-12 * fresh.norm());
+}
+
+TEST(SymmetricProduct, OfAnyNumberOfColumnsIsThatOfTheFullMatrix) {
+  const Index n = 33;
+  Matrix full = random_matrix(n, n, 9);
+  for (double& value : full.reshaped())
+    if (std::abs(value) < 1) value = 0;
+  full = (full + full.transpose()).eval();
+  const Sparse sparse = full.sparseView();
+  for (const Index columns : {0, 1, 3, 4, 5, 16, 17, 20, 21, 37}) {
+    const Matrix x = random_matrix(n, columns, 10), begun = random_matrix(n, columns, 11);
+    Matrix y = begun;
+    add_symmetric_product(-2.5, sparse, x, y);
+    EXPECT_LE((y - (begun - 2.5 * full * x)).norm(), 1e-13 * full.norm() * (1 + x.norm())) << columns;
+  }
 }
 
 TEST(Append, TakesWhatIsNewAndLeavesTheRest) {

@@ -284,6 +284,25 @@ TEST(ReducedCase, IsChosenByItsTransferErrorAndCloseToTheWholeModel) {
   EXPECT_GT(small->transfer_error, reduced->transfer_error);
 }
 
+// 80 rows are loaded all together, by random bells.
+TEST(ReducedCase, OfManyRowsIsCloseToTheWholeModel) {
+  std::string text = tower(12);
+  const std::string few = "points = 8", many = "points = 40";
+  text.replace(text.find(few), few.size(), many);
+  const LoadedCase read = loaded(text);
+  ASSERT_EQ(built_of(read).model.rows(), 80);
+  const std::optional<ReducedModel> reduced = reduce_case(read, {.target = 1e-4, .controls = 2, .least_scale = 0.8, .most_scale = 1.2}, {});
+  ASSERT_TRUE(reduced);
+  EXPECT_LE(reduced->transfer_error, 1e-4);
+  EXPECT_LT(reduced->vectors.cols(), reduced->vectors.rows());
+  ASSERT_TRUE(reduced->controls);
+  EXPECT_EQ(reduced->controls->different, 0);
+  EXPECT_LT(reduced->controls->opening, 0.01);
+  EXPECT_LT(reduced->controls->moment, 0.02);
+  EXPECT_LT(reduced->controls->history, 0.02);
+  EXPECT_LT(reduced->controls->slip, 0.02);
+}
+
 // The ground moves the footing of this tower, which flies where the interface is open, with all of the tower: such an answer is a motion
 // of the basis already, and what round-off leaves of it must take no coordinate from the answers that deform the tower.
 TEST(ReducedCase, TakesNoCoordinatesForTheRoundOffOfRigidAnswers) {
