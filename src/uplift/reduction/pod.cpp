@@ -43,20 +43,23 @@ void Pod::remove(const Matrix& added, const Matrix& product, Matrix& x) const {
 Pod::Added Pod::beside_basis(Matrix& x, double least) const {
   constexpr double at_once = 1e-5;  // some decades at a time, because squares have half the digits
   constexpr int rounds = 3;
+  auto& [product, part, part_product, turned] = *work_;
   Added added{Matrix(x.rows(), 0), Matrix(0, x.cols())};
   for (int round = 0; round < rounds; ++round) {
-    const Matrix product = product_.times(x);
+    if (round > 0) product_.times(x, product);
     const Matrix of_part = combinations(x, product, at_once, least);
     if (of_part.cols() == 0) break;
-    Matrix part = Matrix::Zero(x.rows(), of_part.cols());
+    part.setZero(x.rows(), of_part.cols());
     add_product(1, x, of_part, part);
-    remove(added.vectors, product_.times(part), part);
-    const Matrix anew = combinations(part, product_.times(part), 0.1, 0);
-    Matrix orthonormal = Matrix::Zero(x.rows(), anew.cols());
-    add_product(1, part, anew, orthonormal);
-    const Matrix coefficients = transposed_product(orthonormal, product);
-    add_product(-1, orthonormal, coefficients, x);
-    append_columns(orthonormal, added.vectors);
+    product_.times(part, part_product);
+    remove(added.vectors, part_product, part);
+    product_.times(part, part_product);
+    const Matrix anew = combinations(part, part_product, 0.1, 0);
+    turned.setZero(x.rows(), anew.cols());
+    add_product(1, part, anew, turned);
+    const Matrix coefficients = transposed_product(turned, product);
+    add_product(-1, turned, coefficients, x);
+    append_columns(turned, added.vectors);
     added.coefficients.conservativeResize(added.vectors.cols(), x.cols());
     added.coefficients.bottomRows(coefficients.rows()) = coefficients;
   }
@@ -66,14 +69,13 @@ Pod::Added Pod::beside_basis(Matrix& x, double least) const {
 void Pod::add(Matrix x) {
   const Index before = basis_.cols(), columns = x.cols();
   if (x.size() == 0 || x.isZero(0)) return;
-  Matrix of_basis;
-  {
-    const Matrix product = product_.times(x);
-    energy_ += energy_of(x, product);
-    of_basis = transposed_product(basis_, product);
-    remove(Matrix(x.rows(), 0), product, x);
-  }
-  const double size = std::hypot(before > 0 ? values_[0] : 0, of_basis.norm(), std::sqrt(energy_of(x, product_.times(x))));
+  Matrix &product = work_->product, &turned = work_->turned;
+  product_.times(x, product);
+  energy_ += energy_of(x, product);
+  const Matrix of_basis = transposed_product(basis_, product);
+  remove(Matrix(x.rows(), 0), product, x);
+  product_.times(x, product);
+  const double size = std::hypot(before > 0 ? values_[0] : 0, of_basis.norm(), std::sqrt(energy_of(x, product)));
   // a full basis: what is small beside the last of its directions replaces none of them
   const double least = std::max(least_ * size, before == most_ ? 0.01 * values_[most_ - 1] : 0);
   const Added added = beside_basis(x, least);
@@ -87,10 +89,10 @@ void Pod::add(Matrix x) {
   const Index count =
       std::min<Index>(most_, std::ranges::count_if(singular.values(), [&](double value) { return value > threshold && value > 0; }));
   const Matrix leading = singular.left().leftCols(count);
-  Matrix turned = Matrix::Zero(x.rows(), count);
+  turned.setZero(x.rows(), count);
   add_product(1, basis_, leading.topRows(before), turned);
   add_product(1, added.vectors, leading.bottomRows(count_added), turned);
-  basis_ = std::move(turned);
+  basis_.swap(turned);
   values_ = singular.values().head(count);
 }
 

@@ -1,7 +1,15 @@
 #pragma once
+#include <memory>
+#include <utility>
+
 #include "uplift/reduction/projection.h"
 
 namespace uplift {
+
+/// Work space of decompositions, which those that take turns share: new pages for every batch would cost as much as the arithmetic.
+struct PodWork {
+  Matrix product, part, part_product, turned;
+};
 
 /// Proper orthogonal decomposition of many displacements, batch by batch (docs/theory/reduced_models.md, R7): what is kept of them are
 /// the leading left singular vectors of all that was added, orthonormal in the energy product, with their singular values.
@@ -9,8 +17,9 @@ class Pod {
  public:
   /// `beside`: orthonormal vectors that are taken out of what is added first; it must stay alive. `least`: directions with a smaller share
   /// of the largest singular value are dropped. `most`: directions that are kept.
-  Pod(const EnergyProduct& product, const Matrix& beside, double least, Index most)
-      : product_(product), beside_(beside), least_(least), most_(most), basis_(beside.rows(), 0), values_(0) {}
+  Pod(const EnergyProduct& product, const Matrix& beside, double least, Index most,
+      std::shared_ptr<PodWork> work = std::make_shared<PodWork>())
+      : product_(product), beside_(beside), least_(least), most_(most), work_(std::move(work)), basis_(beside.rows(), 0), values_(0) {}
   /// Adds displacements, one a column.
   void add(Matrix displacements);
   const Matrix& basis() const { return basis_; }
@@ -26,6 +35,7 @@ class Pod {
   struct Added {
     Matrix vectors, coefficients;
   };
+  /// The product of x is in the work space.
   Added beside_basis(Matrix& x, double least) const;
   /// Takes given vectors, basis and `added` out of x, of which the product is known.
   void remove(const Matrix& added, const Matrix& product, Matrix& x) const;
@@ -34,6 +44,7 @@ class Pod {
   const Matrix& beside_;
   double least_;
   Index most_;
+  std::shared_ptr<PodWork> work_;
   Matrix basis_;
   Vector values_;
   double energy_ = 0;

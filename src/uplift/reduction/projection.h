@@ -23,9 +23,13 @@ class EnergyProduct {
  public:
   EnergyProduct(const Sparse& stiffness, const Sparse& mass, double w) : matrix_(stiffness + (w * w) * mass) {}
   Matrix times(const Matrix& x) const {
-    Matrix product = Matrix::Zero(x.rows(), x.cols());
-    add_symmetric_product(1, matrix_, x, product);
+    Matrix product;
+    times(x, product);
     return product;
+  }
+  void times(const Matrix& x, Matrix& product) const {
+    product.setZero(x.rows(), x.cols());
+    add_symmetric_product(1, matrix_, x, product);
   }
   double norm(const Vector& x) const { return std::sqrt(std::max(0.0, x.dot(matrix_ * x))); }
 

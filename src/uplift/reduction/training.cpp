@@ -27,6 +27,7 @@ constexpr double load_weight = 10;    // of the answers to loads against those o
 constexpr double longest = 3;         // s: of a march
 constexpr double decayed = 1e-6;      // share of the largest energy at which a march ends
 constexpr double dropped = 1e-9;      // share of the largest singular value
+constexpr Index most_of_load = 100;   // directions at least that the answer to each of several loads may have
 constexpr int steps_of_bell = 8;
 constexpr int snapshot_every = 2, snapshot_of_random_every = 5;  // steps; odd: not always at the same time of the bells
 
@@ -153,7 +154,8 @@ class Trainer {
         bell_(std::make_shared<const Bell>(options.frequency)),
         loads_(model, bell_, step_, longest),
         rigid_(model.free(), 0),
-        pod_(product_, exact_, dropped, options.most) {}
+        work_(std::make_shared<PodWork>()),
+        pod_(product_, exact_, dropped, options.most, work_) {}
 
   Basis make() {
     Basis basis;
@@ -244,9 +246,10 @@ class Trainer {
   void add(const LinearMarch::Load& load, const March& how) {
     if (stopped_ || how.columns == 0) return;
     const Index width = how.columns / how.groups;
+    const Index most = how.groups == 1 ? options_.most : std::max<Index>(most_of_load, options_.most / how.groups);
     std::vector<Group> groups;
     for (Index k = 0; k < how.groups; ++k)
-      groups.push_back({Pod(product_, exact_, dropped, options_.most),
+      groups.push_back({Pod(product_, exact_, dropped, most, work_),
                         Matrix(model_.free(), std::max(width, snapshots_at_once(model_.free()) / how.groups))});
     march_.start(how.columns);
     for (long step = 1; march_.time() < longest && !std::ranges::all_of(groups, &Group::over); ++step) {
@@ -274,7 +277,13 @@ class Trainer {
       group.taken.resize(0, 0);
       const Vector weights = group.own.values() * (how.weight / group.own.values().norm());
       // round-off where the exact vectors are the whole answer
-      if (group.own.values().norm() > dropped * std::sqrt(group.own.energy())) pod_.add(group.own.release() * weights.asDiagonal());
+      if (!(group.own.values().norm() > dropped * std::sqrt(group.own.energy()))) continue;
+      const Matrix answers = group.own.release();
+      const Index at_once = snapshots_at_once(model_.free());
+      for (Index first = 0; first < answers.cols(); first += at_once) {
+        const Index count = std::min(at_once, answers.cols() - first);
+        pod_.add(answers.middleCols(first, count) * weights.segment(first, count).asDiagonal());
+      }
     }
   }
 
@@ -375,6 +384,7 @@ class Trainer {
   std::shared_ptr<const TimeFunction> bell_;
   Loads loads_;
   Matrix rigid_, exact_, all_;  // exact: the loose motions first
+  std::shared_ptr<PodWork> work_;
   Pod pod_;
   Index num_exact_ = 0, columns_ = 0, done_ = 0;
   bool stopped_ = false;
