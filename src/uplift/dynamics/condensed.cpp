@@ -150,7 +150,7 @@ Vector guess_of_foundations(const InterfaceProblem& problem) {
 Outcome Condensed::contact_step(const Vector& right, const StepStart& start, Vector& increment) {
   small::copy(start.opening.size(), start.opening.data(), problem_.from.data());
   small::copy(start.history.size(), start.history.data(), problem_.old.data());
-  if (start.filter != nullptr) problem_.filter = *start.filter;
+  if (start.filter != nullptr && start.filter != &problem_.filter) problem_.filter = *start.filter;
   if (solution_.z.size() == 0) solution_.z = guess_of_foundations(problem_);
   Outcome outcome = solve_interfaces(right, start.displacement, increment);
   const InterfaceSystems solved = std::exchange(solution_.systems, {});

@@ -34,7 +34,7 @@ ContactModel blocks_of(const Model& model, const Behaviours& behaviours);
 /// The beginning of a step.
 struct StepStart {
   const Vector &displacement, &opening, &history;
-  const JointFilterInput* filter = nullptr;  // null: none
+  const JointFilterInput* filter = nullptr;  // null: none; may be that of the solver's own problem
 };
 
 /// Solves one step for the displacement increment. Owned by a run; its problem and solution hold the last step.
@@ -45,6 +45,8 @@ class StepSolver {
   virtual Outcome solve(const Vector& right, const StepStart& start, Vector& increment) = 0;
   virtual const InterfaceProblem& problem() const = 0;
   virtual const InterfaceSolution& solution() const = 0;
+  /// The joint filter of its problem, for those who fill it in place.
+  virtual JointFilterInput& filter() = 0;
   /// The factor of the bulk; null where there is none.
   virtual const BulkFactor* factor() const { return nullptr; }
   /// The next solve does not begin at the last solution, which led nowhere.
@@ -63,6 +65,7 @@ class Condensed final : public StepSolver {
   Outcome solve(const Vector& right, const StepStart& start, Vector& increment) override;
   const InterfaceProblem& problem() const override { return problem_; }
   const InterfaceSolution& solution() const override { return solution_; }
+  JointFilterInput& filter() override { return problem_.filter; }
   const BulkFactor* factor() const override { return factor_.get(); }
   void forget() override;
 

@@ -1,29 +1,47 @@
 #include "uplift/dynamics/joint_filter.h"
 
+#include <type_traits>
+
 #include "uplift/math/lanes.h"
 
 namespace uplift {
+namespace {
+
+/// What a row begins a step with.
+struct Beginning {
+  double gain, closed, stuck;  // b; half of the closed joint's stiffness: normal, of the row [Pa/m]
+  bool normal;
+
+  /// `contact`, `slope`: of the law in the normal and in the row; `before`, `remembered`: coefficient and filtered increment.
+  template <class At>
+  [[gnu::always_inline]] void put(const At& at, Lanes contact, Lanes slope, Lanes before, Lanes remembered, double* coefficient,
+                                  double* lag) const {
+    const Lanes zero = 0;
+    const LaneMask touches = contact >= closed;
+    const Lanes here = normal ? choose(touches, gain * slope, Lanes(-1))
+                              : choose(touches || (slope >= stuck && slope > zero), Lanes(2 * gain * stuck), zero);
+    const LaneMask acts = here > zero, grows = acts && before < here;
+    if (any(grows)) remembered *= std::experimental::sqrt(choose(grows, before / choose(grows, here, Lanes(1)), Lanes(1)));
+    at.put(coefficient, here);
+    at.put(lag, choose(acts, remembered, zero));
+  }
+};
+
+}  // namespace
 
 JointFilter::JointFilter(const Model& model, const Behaviours& behaviours, const Scheme& scheme)
     : blocks_(blocks_of(model, behaviours).blocks), pole_(scheme.pole), gain_(scheme.gain) {
-  Eigen::Index rows = 0;
   int slopes = 0;
   for (const Block& block : blocks_) {
     Part part{.first = block.first,
               .first_slope = slopes,
               .points = block.batch.points,
               .components = block.batch.components,
-              .area = block.area,
-              .inverse_area = {}};
-    part.inverse_area = part.area.cwiseInverse();
+              .area = block.area};
     if (block.law != nullptr) block.law->closed_stiffness(part.components, part.stiffness);
-    rows += block.rows();
     slopes += block.slopes();
     parts_.push_back(std::move(part));
   }
-  input_.gain = gain_;
-  input_.coefficient.setZero(rows);
-  input_.lag.setZero(rows);
 }
 
 void JointFilter::look(const State& now, Vector& tangent) const {
@@ -41,68 +59,82 @@ void JointFilter::look(const State& now, Vector& tangent) const {
   }
 }
 
-const JointFilterInput& JointFilter::begin(const State& now, double shrink) {
-  const FilterMemory& memory = now.filter;
-  for (const Part& part : parts_) {
-    const int normal = part.first + (part.components - 1) * part.points;
-    const double* contact = memory.tangent.data() + normal;
-    for (int c = part.components - 1; c >= 0; --c) {
-      const int first = part.first + c * part.points;
-      const bool is_normal = first == normal;
-      const double *tangent = memory.tangent.data() + first, *filtered = memory.opening.data() + first,
-                   *before = memory.coefficient.data() + first;
-      double *coefficient = input_.coefficient.data() + first, *lag = input_.lag.data() + first;
-      const double gain = gain_, closed = 0.5 * part.stiffness[part.components - 1], stuck = 0.5 * part.stiffness[c];
-      for_lanes(part.points, [&](const auto& at) {
-        const Lanes zero = 0, slope = at(tangent);
-        const LaneMask touches = at(contact) >= closed;
-        const Lanes here = is_normal ? choose(touches, gain * slope, Lanes(-1))
-                                     : choose(touches || (slope >= stuck && slope > zero), Lanes(2 * gain * stuck), zero);
-        const LaneMask acts = here > zero, grows = acts && at(before) < here;
-        Lanes remembered = shrink * at(filtered);
-        if (any_of(grows)) remembered *= std::experimental::sqrt(choose(grows, at(before) / choose(grows, here, Lanes(1)), Lanes(1)));
-        at.put(coefficient, here);
-        at.put(lag, choose(acts, remembered, zero));
-      });
+void JointFilter::take_over(const State& now) {
+  ready_ = nullptr;
+  storage_ = 0;
+  for (const Part& part : parts_)
+    for (int row = 0; row < part.components * part.points; ++row) {
+      const Index at = part.first + row;
+      storage_ += part.area[row % part.points] * now.filter.coefficient[at] * now.filter.opening[at] * now.filter.opening[at];
     }
-  }
-  return input_;
+  storage_ *= 0.5 / (1 - pole_);
 }
 
-void JointFilter::end(const InterfaceProblem& problem, const InterfaceSolution& solution, const State& now, State& next) {
-  const double loss = 0.5 * (1 + pole_), store = 0.5 / (1 - pole_), pole = pole_, keep = 1 - pole_;
-  Lanes dissipated = 0, storage = 0;
+void JointFilter::begin(const State& now, double shrink, JointFilterInput& input) {
+  if (ready_ == &input && shrink == 1) return;
+  ready_ = nullptr;
+  const FilterMemory& memory = now.filter;
+  input.gain = gain_;
+  input.coefficient.resize(memory.opening.size());
+  input.lag.resize(memory.opening.size());
   for (const Part& part : parts_) {
-    const double *area = part.area.data(), *inverse_area = part.inverse_area.data();
+    const int normal = part.components - 1;
+    const double* contact = memory.tangent.data() + part.first + normal * part.points;
     for (int c = 0; c < part.components; ++c) {
-      const int n = part.points, first = part.first + c * n;
-      const double *coefficient = input_.coefficient.data() + first, *lag = input_.lag.data() + first,
-                   *plain = solution.plain.data() + first, *force = solution.force.data() + first, *to = solution.opening.data() + first,
-                   *from = now.opening.data() + first, *before = now.filter.coefficient.data() + first,
-                   *filtered = now.filter.opening.data() + first,
-                   *slope = solution.next_slope.data() + part.first_slope + (c * part.components + c) * n;
-      double *coefficient_next = next.filter.coefficient.data() + first, *filtered_next = next.filter.opening.data() + first,
-             *tangent = next.filter.tangent.data() + first;
-      const double scale = 1 / problem.model->scale;
-      for_lanes(n, [&](const auto& at) {
-        const Lanes zero = 0, one = 1, increment = at(to) - at(from), ahead = increment - at(lag), weight = at(area, 1.0),
-                    here = at(coefficient);
-        const Lanes added = scale * at(force) * at(inverse_area) - at(plain), wanted = here * ahead;
-        const LaneMask acts = here > zero, less = acts && added * wanted < (1 - 1e-6) * wanted * wanted;
-        Lanes kept = choose(acts, here, zero);  // theta c
-        if (any_of(less)) kept *= choose(less, larger(added / choose(less, wanted, one), zero), one);
-        const Lanes stored_before = at(before) * at(filtered) * at(filtered), stored_used = kept * at(lag) * at(lag);
-        dissipated +=
-            weight * (loss * kept * ahead * ahead + store * (stored_before - stored_used) + choose(acts, zero, added * increment));
-        const Lanes filtered_now = choose(acts, pole * at(lag) + keep * increment, zero);
-        storage += weight * store * kept * filtered_now * filtered_now;
-        at.put(coefficient_next, kept);
-        at.put(filtered_next, filtered_now);
-        at.put(tangent, 2 * at(slope));
-      });
+      const int first = part.first + c * part.points;
+      const Beginning beginning{gain_, 0.5 * part.stiffness[normal], 0.5 * part.stiffness[c], c == normal};
+      const double *tangent = memory.tangent.data() + first, *filtered = memory.opening.data() + first,
+                   *before = memory.coefficient.data() + first;
+      double *coefficient = input.coefficient.data() + first, *lag = input.lag.data() + first;
+      for_lanes(part.points,
+                [&](const auto& at) { beginning.put(at, at(contact), at(tangent), at(before), shrink * at(filtered), coefficient, lag); });
     }
   }
-  dissipated_ = sum(dissipated), storage_ = sum(storage);
+}
+
+/// With theta c the part of the coefficient that took effect, d_f the lag and d_f,1 the filtered increment after the step: storage
+/// A theta c d_f,1^2/(2 (1 - a)), dissipation A theta c ((1 + a)/2 (d - d_f)^2 - d_f^2/(2 (1 - a))) and the storage before, which is larger
+/// than what the last term takes where theta c has fallen.
+void JointFilter::end(const InterfaceProblem& problem, const InterfaceSolution& solution, const State& now, State& next,
+                      JointFilterInput& input) {
+  const double to_mean = 1 / problem.model->scale, loss = 0.5 * (1 + pole_), store = 0.5 / (1 - pole_);
+  Lanes dissipated = 0, storage = 0;
+  for (const Part& part : parts_) {
+    const int n = part.points, normal = part.components - 1;
+    const double* slopes = solution.next_slope.data() + part.first_slope;
+    const double *area = part.area.data(), *contact = slopes + (normal * part.components + normal) * n;
+    const auto end_rows = [&](int c, auto is_normal) {
+      const int first = part.first + c * n;
+      const Beginning beginning{gain_, 0.5 * part.stiffness[normal], 0.5 * part.stiffness[c], is_normal};
+      const double *plain = solution.plain.data() + first, *force = solution.force.data() + first, *to = solution.opening.data() + first,
+                   *from = now.opening.data() + first, *slope = slopes + (c * part.components + c) * n;
+      double *coefficient = input.coefficient.data() + first, *lag = input.lag.data() + first,
+             *coefficient_next = next.filter.coefficient.data() + first, *filtered_next = next.filter.opening.data() + first,
+             *tangent_next = next.filter.tangent.data() + first;
+      for_lanes(n, [=, this, &dissipated, &storage](const auto& at) {
+        const Lanes zero = 0, increment = at(to) - at(from), before = at(lag), ahead = increment - before, here = at(coefficient),
+                    size = at(area);
+        const Lanes added = to_mean * at(force) - size * at(plain);  // N
+        const Lanes wanted = size * here * ahead;
+        const LaneMask acts = here > zero, less = acts && added * wanted < (1 - 1e-6) * wanted * wanted;
+        Lanes kept = choose(acts, here, zero);  // theta c
+        if (any(less)) kept *= choose(less, larger(added / choose(less, wanted, Lanes(1)), zero), Lanes(1));
+        const Lanes filtered = choose(acts, pole_ * before + (1 - pole_) * increment, zero), weight = size * kept;
+        dissipated += weight * (loss * ahead * ahead - store * before * before) + choose(acts, zero, added * increment);
+        storage += weight * filtered * filtered;
+        const Lanes tangent = 2 * at(slope);
+        at.put(coefficient_next, kept);
+        at.put(filtered_next, filtered);
+        at.put(tangent_next, tangent);
+        beginning.put(at, is_normal ? tangent : 2 * at(contact), tangent, kept, filtered, coefficient, lag);
+      });
+    };
+    for (int c = 0; c < normal; ++c) end_rows(c, std::false_type());
+    end_rows(normal, std::true_type());
+  }
+  dissipated_ = sum(dissipated) + storage_;
+  storage_ = store * sum(storage);
+  ready_ = &input;
 }
 
 }  // namespace uplift

@@ -13,24 +13,25 @@ class JointFilter {
   JointFilter(const Model& model, const Behaviours& behaviours, const Scheme& scheme);
   /// Slopes of the laws at the present opening, where the step before does not tell them.
   void look(const State& now, Vector& tangent) const;
-  /// Coefficients and lags of the step of this length [s] that begins at `now`. `shrink` <= 1 scales what is remembered, after a change of
-  /// the step.
-  const JointFilterInput& begin(const State& now, double shrink);
-  /// Takes over the step that was just solved: memory and slopes at its end.
-  void end(const InterfaceProblem& problem, const InterfaceSolution& solution, const State& now, State& next);
+  /// Goes on from what this state remembers.
+  void take_over(const State& now);
+  /// Coefficients and lags of the step that begins at `now`. `shrink` <= 1 scales what is remembered, after a change of the step.
+  void begin(const State& now, double shrink, JointFilterInput& input);
+  /// Takes over the step that was just solved: memory and slopes at its end. `input` goes on to the next step of the same length.
+  void end(const InterfaceProblem& problem, const InterfaceSolution& solution, const State& now, State& next, JointFilterInput& input);
   double storage() const { return storage_; }        // J, at the end of the step
   double dissipated() const { return dissipated_; }  // J, in the step
 
  private:
   struct Part {  // of one interface
     int first = 0, first_slope = 0, points = 0, components = 0;
-    double stiffness[3] = {};   // of a point without rotations: closed joint [Pa/m]
-    Vector area, inverse_area;  // m2, 1/m2
+    double stiffness[3] = {};  // of a point without rotations: closed joint [Pa/m]
+    Vector area;               // m2
   };
   std::vector<Block> blocks_;
   std::vector<Part> parts_;
   double pole_, gain_;
-  JointFilterInput input_;
+  const JointFilterInput* ready_ = nullptr;  // `end` has made it for the next step already
   double storage_ = 0, dissipated_ = 0;
 };
 

@@ -39,7 +39,7 @@ class Monolithic final : public StepSolver {
   Outcome solve(const Vector& right, const StepStart& start, Vector& increment) override {
     problem_.from = start.opening;
     problem_.old = start.history;
-    if (start.filter != nullptr) problem_.filter = *start.filter;
+    if (start.filter != nullptr && start.filter != &problem_.filter) problem_.filter = *start.filter;
     solution_.now = start.history;
     origin_ = gap_ + b_ * start.displacement;
     Outcome outcome;
@@ -53,6 +53,7 @@ class Monolithic final : public StepSolver {
 
   const InterfaceProblem& problem() const override { return problem_; }
   const InterfaceSolution& solution() const override { return solution_; }
+  JointFilterInput& filter() override { return problem_.filter; }
 
  private:
   /// Equilibrium and contact state in turns until state and directions of slip stand still; when a state comes back, one point changes at
@@ -366,6 +367,7 @@ class Compared final : public StepSolver {
 
   const InterfaceProblem& problem() const override { return solver_->problem(); }
   const InterfaceSolution& solution() const override { return solver_->solution(); }
+  JointFilterInput& filter() override { return solver_->filter(); }
   const BulkFactor* factor() const override { return solver_->factor(); }
   void forget() override { solver_->forget(), oracle_->forget(); }
 

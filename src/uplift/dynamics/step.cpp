@@ -76,7 +76,10 @@ const Accelerator& Stepper::accelerator() const {
 Outcome Stepper::solve(Level& level) {
   StepSolver* last = level.solver.get();
   StepStart start{now_.displacement, now_.opening, now_.history};
-  if (joint_filter_ != nullptr) start.filter = &joint_filter_->begin(now_, filter_shrink(level));
+  if (joint_filter_ != nullptr) {
+    joint_filter_->begin(now_, filter_shrink(level), last->filter());
+    start.filter = &last->filter();
+  }
   if (newton_ == nullptr) {
     last_ = &last->problem();
     solution_ = &last->solution();

@@ -13,10 +13,11 @@
 namespace uplift {
 
 /// Changes a normal traction and its slope with respect to the end of the path, as numbers or as lanes, from the path average of the law to
-/// that with the filter. `end`, `end_slope`: at the end of the step; `increment`: opening increment; `tension`: the law carries tension.
+/// that with the filter. `end`, `end_slope`: at the end of the step; `increment`: opening increment; `tension`: the law carries tension;
+/// `rises`: its traction never falls with the opening, so that the traction at the end always dissipates.
 template <class Number>
 [[gnu::always_inline]] inline void filter_normal(Number& value, Number& slope, Number end, Number end_slope, Number increment,
-                                                 Number coefficient, Number lag, bool tension) {
+                                                 Number coefficient, Number lag, bool tension, bool rises) {
   const Number zero = 0;
   const auto open = coefficient < zero;
   Number closed = value + coefficient * (increment - lag), closed_slope = slope + coefficient;
@@ -24,9 +25,11 @@ template <class Number>
     const auto cut = closed > zero;
     closed = choose(cut, zero, closed), closed_slope = choose(cut, zero, closed_slope);
   }
-  const auto jumps = (end - value) * increment >= zero;
-  value = choose(open, choose(jumps, end, value), closed);
-  slope = choose(open, choose(jumps, end_slope, slope), closed_slope);
+  if (!rises) {
+    const auto jumps = (end - value) * increment >= zero;
+    end = choose(jumps, end, value), end_slope = choose(jumps, end_slope, slope);
+  }
+  value = choose(open, end, closed), slope = choose(open, end_slope, closed_slope);
 }
 
 }  // namespace uplift

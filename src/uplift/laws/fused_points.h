@@ -10,9 +10,9 @@ namespace uplift {
 /// `average(from, to, old)` those of any path; both with the members value, slope (path average and its derivative with respect to `to`),
 /// end and end_slope (traction and slope at `to`). `twice_stored(to, old, end)`: twice the energy at the end [J/m2]. `remembers`: there is
 /// one memory value, and `changes(from, to, old)` is true where it may not stay. False where that is so: what was made is of no use then.
-/// `filters`: with the joint filter; `tension`: the law carries tension.
-template <int R, bool filters, class Law>
-[[gnu::always_inline]] inline bool evaluate_points(const Law law, const FusedEvaluation evaluation, bool tension) {
+/// `rises`: the traction never falls with the opening. `filters`: with the joint filter; `tension`: the law carries tension.
+template <int R, bool filters, bool tension, class Law>
+[[gnu::always_inline]] inline bool evaluate_points(const Law law, const FusedEvaluation evaluation) {
   Lanes pull[R] = {}, end_pull[R] = {}, gram[R][R] = {}, stored = 0;
   LaneMask changed(false);
   for_lanes(
@@ -34,7 +34,7 @@ template <int R, bool filters, class Law>
         if constexpr (filters) {
           at.put(evaluation.plain, path.value);
           filter_normal(path.value, path.slope, path.end, path.end_slope, Lanes(to - from), Lanes(at(evaluation.coefficient)),
-                        Lanes(at(evaluation.lag)), tension);
+                        Lanes(at(evaluation.lag)), tension, Law::rises);
         }
         const Lanes area = at(evaluation.area), weight = evaluation.scale * area;
         const Lanes force = weight * path.value, slope = weight * path.slope, end = weight * path.end;
@@ -60,15 +60,15 @@ template <int R, bool filters, class Law>
   return !any(changed);
 }
 
-template <bool filters, class Law>
-bool evaluate_columns(const Law& law, const FusedEvaluation& evaluation, bool tension) {
+template <bool filters, bool tension, class Law>
+bool evaluate_columns(const Law& law, const FusedEvaluation& evaluation) {
   switch (evaluation.columns) {
     case 1:
-      return evaluate_points<1, filters>(law, evaluation, tension);
+      return evaluate_points<1, filters, tension>(law, evaluation);
     case 2:
-      return evaluate_points<2, filters>(law, evaluation, tension);
+      return evaluate_points<2, filters, tension>(law, evaluation);
     case 3:
-      return evaluate_points<3, filters>(law, evaluation, tension);
+      return evaluate_points<3, filters, tension>(law, evaluation);
     default:
       return false;
   }
@@ -76,8 +76,8 @@ bool evaluate_columns(const Law& law, const FusedEvaluation& evaluation, bool te
 
 template <class Law>
 bool evaluate_points(const Law& law, const FusedEvaluation& evaluation, bool tension) {
-  return evaluation.coefficient != nullptr ? evaluate_columns<true>(law, evaluation, tension)
-                                           : evaluate_columns<false>(law, evaluation, tension);
+  if (evaluation.coefficient == nullptr) return evaluate_columns<false, false>(law, evaluation);
+  return tension ? evaluate_columns<true, true>(law, evaluation) : evaluate_columns<true, false>(law, evaluation);
 }
 
 }  // namespace uplift

@@ -62,7 +62,7 @@ class JointLaw final : public InterfaceLaw {
     for (int i = 0; i < batch.points; ++i) {
       double value = part.traction[i], slope = part.slope != nullptr ? part.slope[i] : 0;
       part.plain[i] = value;
-      filter_normal(value, slope, part.end[i], 2 * part.next[i], to[i] - from[i], coefficient[i], lag[i], tension);
+      filter_normal(value, slope, part.end[i], 2 * part.next[i], to[i] - from[i], coefficient[i], lag[i], tension, false);
       part.traction[i] = value;
       if (part.slope != nullptr) part.slope[i] = slope;
     }

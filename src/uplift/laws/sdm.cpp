@@ -139,7 +139,7 @@ struct Sdm {
 
 /// The law as evaluate_points wants it.
 struct FusedSdm : Sdm {
-  static constexpr bool remembers = true;
+  static constexpr bool remembers = true, rises = false;
   /// Twice `stored` from the traction t = end, without a division: t (d - j) in closure and above; below the knot t d - K d_c j, because
   /// k_c (d_c - j) = K d_c there.
   [[gnu::always_inline]] Lanes twice_stored(Lanes d, Lanes j, Lanes end) const {

@@ -20,7 +20,7 @@ struct LanesAverage {
 
 /// Without the dashpot, as evaluate_points wants it.
 struct FusedSprings {
-  static constexpr bool remembers = false;
+  static constexpr bool remembers = false, rises = true;
   double stiffness;
 
   [[gnu::always_inline]] static LaneMask bends(Lanes from, Lanes to, Lanes) { return (from < 0.0) != (to < 0.0); }

@@ -65,15 +65,20 @@ void pull_at_end(const FusedEvaluation& evaluation) {
   for (int j = 0; j < R; ++j) evaluation.end_pull[j] = sum(pull[j]);
 }
 
-/// What the joint filter's memory adds to it, C^T (-scale area c d_f).
+/// a of the joint filter from its b: one spectral radius at infinite frequency makes both (docs/theory, section 3).
+double pole_of(double gain) {
+  const double loss = std::sqrt(8 * gain / (1 + 2 * gain));  // 1 - radius
+  return (3 * loss - 2) / (2 + loss);
+}
+
+/// What the joint filter's memory pulls, one step later.
 template <int R>
-void add_lag(const FusedEvaluation& evaluation) {
-  Lanes pull[R] = {};
-  for_lanes(evaluation.points, [&](const auto& at) {
-    const Lanes force = evaluation.scale * at(evaluation.area) * larger(at(evaluation.coefficient), Lanes(0)) * at(evaluation.lag);
-    for (int j = 0; j < R; ++j) pull[j] += at(evaluation.factor + j * evaluation.stride) * force;
-  });
-  for (int j = 0; j < R; ++j) evaluation.end_pull[j] -= sum(pull[j]);
+void advance_lag(FilterSums& sums) {
+  for (int j = 0; j < R; ++j) {
+    double pull = 0;
+    for (int i = 0; i < R; ++i) pull += sums.stiffness[j * R + i] * sums.moved[i];
+    sums.lag[j] = sums.pole * sums.lag[j] + (1 - sums.pole) * pull;
+  }
 }
 
 /// The laws go on linearly from their force at the end of the last step with their slope there:
@@ -88,19 +93,51 @@ template <int R>
   if (descend<R>(evaluation.stiffness, x)) std::copy_n(x, R, z);
 }
 
-/// After a step that the law bent in: H of the step to come, in which it goes on straight.
-template <int R>
-void go_on(const FusedEvaluation& evaluation) {
-  Lanes gram[R][R] = {};
+/// After a step that the law bent in: H of the step to come, in which it goes on straight, and with a joint filter its sums.
+template <int R, bool filters>
+void go_on(const FusedEvaluation& evaluation, FilterSums& sums) {
+  Lanes gram[R][R] = {}, filter_gram[R][R] = {}, lag[R] = {};
   for_lanes(evaluation.points, [&](const auto& at) {
-    const Lanes slope = 2 * at(evaluation.area) * at(evaluation.next);  // see Newton::go_on
+    const Lanes next = at(evaluation.next);
+    Lanes slope = 2 * at(evaluation.area) * next, filter = 0;  // see Newton::go_on
+    if constexpr (filters) {
+      const Lanes weight = evaluation.scale * at(evaluation.area), coefficient = at(evaluation.coefficient);
+      // open at the start: the traction at the end where it dissipates
+      slope = choose(coefficient < Lanes(0), weight * (next + larger(next, Lanes(0))), slope);
+      filter = weight * larger(coefficient, Lanes(0));
+    }
     for (int j = 0; j < R; ++j) {
-      const Lanes weighted = slope * at(evaluation.factor + j * evaluation.stride);
+      const Lanes column = at(evaluation.factor + j * evaluation.stride), weighted = slope * column;
       for (int i = j; i < R; ++i) gram[j][i] += weighted * at(evaluation.factor + i * evaluation.stride);
+      if constexpr (filters) {
+        const Lanes filtered = filter * column;
+        lag[j] += filtered * at(evaluation.lag);
+        for (int i = j; i < R; ++i) filter_gram[j][i] += filtered * at(evaluation.factor + i * evaluation.stride);
+      }
     }
   });
-  for (int j = 0; j < R; ++j)
+  for (int j = 0; j < R; ++j) {
     for (int i = j; i < R; ++i) evaluation.stiffness[j * R + i] = evaluation.stiffness[i * R + j] = sum(gram[j][i]) + (i == j ? 1 : 0);
+    if constexpr (!filters) continue;
+    sums.lag[j] = sum(lag[j]);
+    for (int i = j; i < R; ++i) sums.stiffness[j * R + i] = sums.stiffness[i * R + j] = sum(filter_gram[j][i]);
+  }
+}
+
+/// The first guess of a step that follows the last one.
+template <int R, bool filters>
+[[gnu::always_inline]] inline void predict(const InterfaceProblem& problem, bool fused, NewtonWork& work, double* z) {
+  const FusedEvaluation& evaluation = work.evaluation;
+  if (!fused) pull_at_end<R>(evaluation);
+  if (work.bent || (filters && !fused)) {
+    go_on<R, filters>(evaluation, work.filter);
+    work.filter.pole = pole_of(problem.filter.gain);
+  } else if (filters) {
+    advance_lag<R>(work.filter);
+  }
+  if constexpr (filters)
+    for (int j = 0; j < R; ++j) evaluation.end_pull[j] -= work.filter.lag[j];
+  guess<R>(evaluation, problem.free_opening_increment.data(), z);
 }
 
 template <int R>
@@ -109,11 +146,9 @@ bool iterate(const InterfaceProblem& problem, const NewtonOptions& options, Newt
   const InterfaceLaw& law = *problem.model->blocks.front().law;
   const FusedEvaluation& evaluation = work.evaluation;
   double* z = solution.z.data();
-  if (work.follows) {
-    if (!solution.fused) pull_at_end<R>(evaluation);
-    if (evaluation.coefficient != nullptr) add_lag<R>(evaluation);
-    guess<R>(evaluation, problem.free_opening_increment.data(), z);
-  }
+  const bool filters = evaluation.coefficient != nullptr;
+  const double* free_increment = problem.free_opening_increment.data();
+  if (work.follows) filters ? predict<R, true>(problem, solution.fused, work, z) : predict<R, false>(problem, solution.fused, work, z);
   work.follows = false;
   double before = std::numeric_limits<double>::infinity();
   const int most = std::min(patience_of_newton, options.most_iterations);
@@ -132,7 +167,9 @@ bool iterate(const InterfaceProblem& problem, const NewtonOptions& options, Newt
     if (size <= options.tolerance * reference || size == 0) {
       outcome.converged = true;
       outcome.residual = size / larger(reference, 1e-300);
-      if (outcome.iterations > 0) go_on<R>(evaluation);
+      work.bent = outcome.iterations > 0;
+      if (filters)
+        for (int j = 0; j < R; ++j) work.filter.moved[j] = free_increment[j] + z[j];
       work.follows = true;
       return true;
     }

@@ -377,6 +377,7 @@ Outcome Newton<R>::solve(int done) {
         (outcome.iterations >= enough && (!large || outcome.residual <= 1e-9) && size_ <= noise * round_off())) {
       outcome.converged = true;
       work_.follows = predictable;
+      work_.bent = false;
       if (predictable && outcome.iterations > 0) go_on();
       return outcome;
     }

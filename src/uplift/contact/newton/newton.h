@@ -26,6 +26,15 @@ struct NewtonOptions {
   int most_iterations = 60;
 };
 
+/// What the joint filter adds to the first guess of a step from the one before, up to three coordinates: the coefficient c and the lag d_f
+/// (laws/filter.h) summed over the points. While no point changes its branch, c stays and d_f <- a d_f + (1 - a) C moved.
+struct FilterSums {
+  double pole = 0;           // a
+  double lag[3] = {};        // C^T (scale area c d_f) [sqrt(J)]
+  double stiffness[9] = {};  // C^T (scale area c) C
+  double moved[3] = {};      // coordinates of the opening increment of the last step [sqrt(J)]
+};
+
 /// Work space of Newton's method, sized for one model.
 struct NewtonWork final : MethodWork {
   SeenModel model;
@@ -36,7 +45,9 @@ struct NewtonWork final : MethodWork {
   Vector pull;  // rows: k times one column of C, of one block; in the units of slope times those of the factor
   Matrix hessian;
   Vector end_pull;       // C^T (scale area end_traction) [sqrt(J)], of a fused solution
+  FilterSums filter;     // with a joint filter, of a fused solution
   bool follows = false;  // the next step may be guessed from this one: slope, hessian and the solution's end_traction are converged
+  bool bent = false;     // then: some law bent in this one, so that slope and hessian are not those of the next
   std::unique_ptr<MethodWork> direction_of_many;  // more than twelve coordinates
 };
 
