@@ -5,6 +5,7 @@
 #include <cmath>
 #include <limits>
 
+#include "uplift/run/largest.h"
 #include "uplift/run/runner.h"
 
 namespace uplift {
@@ -87,9 +88,9 @@ void Runner::sum_up(double step) {
 void Runner::finish_energy(const Stepper& stepper) {
   const Energies& energies = stepper.energies();
   const double created = energies.residual + std::max(0.0, -energies.impact);
-  if (created > run_.result.energy_created) run_.result.energy_created = created, run_.result.energy_created_time = seen_->time;
+  note_largest(created, seen_->time, run_.result.energy_created, run_.result.energy_created_time);
   const double lost = energies.algorithmic - std::min(0.0, energies.residual);
-  if (lost > run_.result.energy_lost) run_.result.energy_lost = lost, run_.result.energy_lost_time = seen_->time;
+  note_largest(lost, seen_->time, run_.result.energy_lost, run_.result.energy_lost_time);
   run_.result.energy_scale = std::max(stepper.largest_external(), run_.initial_scale);
   if (run_.result.energy_scale <= 0) run_.result.energy_scale = stepper.initial_energy();
   run_.result.energy_scale = std::max(run_.result.energy_scale, run_.round_off_energy);
