@@ -3,6 +3,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <bit>
 #include <chrono>
 #include <numeric>
 #include <thread>
@@ -44,17 +45,18 @@ Ranks& Ranks::all() {
 }
 
 void Ranks::tell(const Order& order) {
-  std::int64_t numbers[] = {static_cast<std::int64_t>(order.what), order.system, order.rows, order.columns, order.letters, order.terms};
+  std::int64_t numbers[] = {static_cast<std::int64_t>(order.what),      order.system, order.rows, order.columns, order.letters, order.terms,
+                            std::bit_cast<std::int64_t>(order.residual)};
   MPI_Request sent = MPI_REQUEST_NULL;
-  MPI_Ibcast(numbers, 6, MPI_INT64_T, 0, ranks_, &sent);
+  MPI_Ibcast(numbers, 7, MPI_INT64_T, 0, ranks_, &sent);
   MPI_Wait(&sent, MPI_STATUS_IGNORE);
 }
 
 /// MPI waits by spinning. While rank 0 computes alone, the others leave the cores to it.
 Ranks::Order Ranks::hear() const {
-  std::int64_t numbers[6] = {};
+  std::int64_t numbers[7] = {};
   MPI_Request wanted = MPI_REQUEST_NULL;
-  MPI_Ibcast(numbers, 6, MPI_INT64_T, 0, ranks_, &wanted);
+  MPI_Ibcast(numbers, 7, MPI_INT64_T, 0, ranks_, &wanted);
   using Clock = std::chrono::steady_clock;
   const Clock::time_point start = Clock::now();
   for (int here = 0;;) {
@@ -62,7 +64,7 @@ Ranks::Order Ranks::hear() const {
     if (here != 0) break;
     if (Clock::now() - start > std::chrono::milliseconds(2)) std::this_thread::sleep_for(std::chrono::microseconds(100));
   }
-  return {static_cast<What>(numbers[0]), numbers[1], numbers[2], numbers[3], numbers[4], numbers[5]};
+  return {static_cast<What>(numbers[0]), numbers[1], numbers[2], numbers[3], numbers[4], numbers[5], std::bit_cast<double>(numbers[6])};
 }
 
 void Ranks::serve() {
@@ -104,10 +106,10 @@ void Ranks::serve() {
   }
 }
 
-Ranks::Made Ranks::make(const SymmetricSum& matrix, const Vector& scale, const std::string& options, const Matrix& motions) {
+Ranks::Made Ranks::make(const SymmetricSum& matrix, const Vector& scale, const std::string& options, const RigidMotions& motions) {
   const std::lock_guard lock(one_at_a_time_);
   HalfWay half_way(half_way_);
-  const Order order{What::make, ++made_, matrix.rows(), motions.cols(), std::ssize(options), std::ssize(matrix.there)};
+  const Order order{What::make, ++made_, matrix.rows(), motions.motions.cols(), std::ssize(options), std::ssize(matrix.there)};
   tell(order);
   const Scaled scaled{matrix, scale, motions};
   Made made = make_together(order, &scaled, options);
@@ -119,7 +121,8 @@ Ranks::Made Ranks::make_together(const Order& order, const Scaled* matrix, std::
   Made made{order.system, {}, 0};
   const SolverOptions given(spread_text(order.letters, std::move(options)));
   auto system = std::make_unique<System>(ranks_);
-  made.outcome = system->set(spread_sum(order, matrix), static_cast<PetscInt>(order.rows));
+  const std::vector<int> node = spread_nodes(order, matrix);
+  made.outcome = system->set(spread_sum(order, matrix), static_cast<PetscInt>(order.rows), node);
   if (made.outcome.ok() && order.columns > 0)
     made.outcome = system->set_motions(spread_motions(order, matrix), static_cast<PetscInt>(order.columns));
   if (made.outcome.ok()) made.outcome = system->prepare(given);
@@ -133,7 +136,7 @@ Ranks::Forecast Ranks::foretell(const SymmetricSum& matrix, const Vector& scale,
   HalfWay half_way(half_way_);
   const Order order{What::foretell, 0, matrix.rows(), 0, std::ssize(options), std::ssize(matrix.there)};
   tell(order);
-  const Matrix none;
+  const RigidMotions none;
   const Scaled scaled{matrix, scale, none};
   Forecast forecast = foretell_together(order, &scaled, options);
   half_way.done();
@@ -157,13 +160,13 @@ Ranks::Forecast Ranks::foretell_together(const Order& order, const Scaled* matri
   return forecast;
 }
 
-SystemOutcome Ranks::solve(std::int64_t system, const Matrix& b, Matrix& x) {
+SystemOutcome Ranks::solve(std::int64_t system, const Matrix& b, Matrix& x, double residual) {
   const std::lock_guard lock(one_at_a_time_);
   if (&x != &b) x.resize(b.rows(), b.cols());
   SystemOutcome outcome;
   HalfWay half_way(half_way_);
   for (Index first = 0; first < b.cols() && outcome.ok(); first += most_columns) {
-    const Order order{What::solve, system, b.rows(), std::min<Index>(most_columns, b.cols() - first), 0, 0};
+    const Order order{What::solve, system, b.rows(), std::min<Index>(most_columns, b.cols() - first), 0, 0, residual};
     tell(order);
     outcome = solve_together(order, b.col(first).data(), x.col(first).data());
   }
@@ -183,7 +186,7 @@ SystemOutcome Ranks::solve_together(const Order& order, const double* b, double*
     MPI_Scatterv(b == nullptr ? nullptr : b + order.rows * c, counts.data(), firsts.data(), MPI_DOUBLE,
                  given.data() + static_cast<std::ptrdiff_t>(local) * c, local, MPI_DOUBLE, 0, ranks_);
   System& asked = *systems_.at(order.system);
-  SystemOutcome outcome = asked.solve(given.data(), solved.data(), columns);
+  SystemOutcome outcome = asked.solve(given.data(), solved.data(), columns, order.residual);
   iterations_ += asked.iterations();
   for (PetscInt c = 0; c < columns; ++c)
     MPI_Gatherv(solved.data() + static_cast<std::ptrdiff_t>(local) * c, local, MPI_DOUBLE, x == nullptr ? nullptr : x + order.rows * c,
@@ -235,6 +238,17 @@ SystemOutcome Ranks::flexibility_together(const Order& order, std::vector<int> c
   return {};
 }
 
+/// The node of each of the rank's rows; empty without motions.
+std::vector<int> Ranks::spread_nodes(const Order& order, const Scaled* matrix) const {
+  if (order.columns == 0) return {};
+  const Shares shares(static_cast<PetscInt>(order.rows), count_);
+  std::vector<int> counts, firsts, node(static_cast<std::size_t>(shares.count(rank_)));
+  for (int rank = 0; rank < count_; ++rank) counts.push_back(shares.count(rank)), firsts.push_back(shares.first(rank));
+  MPI_Scatterv(matrix == nullptr ? nullptr : matrix->motions.node.data(), counts.data(), firsts.data(), MPI_INT, node.data(),
+               shares.count(rank_), MPI_INT, 0, ranks_);
+  return node;
+}
+
 /// The rank's rows of the motions of S A S, which are S^-1 times those of A, one column after another.
 std::vector<double> Ranks::spread_motions(const Order& order, const Scaled* matrix) const {
   const Shares shares(static_cast<PetscInt>(order.rows), count_);
@@ -244,7 +258,7 @@ std::vector<double> Ranks::spread_motions(const Order& order, const Scaled* matr
   std::vector<double> rows(static_cast<std::size_t>(local) * static_cast<std::size_t>(order.columns));
   Vector motion;
   for (std::int64_t c = 0; c < order.columns; ++c) {
-    if (matrix != nullptr) motion = matrix->motions.col(c).cwiseQuotient(matrix->scale);
+    if (matrix != nullptr) motion = matrix->motions.motions.col(c).cwiseQuotient(matrix->scale);
     MPI_Scatterv(motion.data(), counts.data(), firsts.data(), MPI_DOUBLE, rows.data() + local * c, local, MPI_DOUBLE, 0, ranks_);
   }
   return rows;

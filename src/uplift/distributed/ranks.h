@@ -8,6 +8,7 @@
 #include <vector>
 
 #include "uplift/distributed/system.h"
+#include "uplift/linear/large.h"
 #include "uplift/math/symmetric_sum.h"
 
 namespace uplift {
@@ -29,8 +30,8 @@ class Ranks {
     double nonzeros = 0;
   };
   /// Shares a symmetric matrix as S A S with the diagonal S, and prepares its solver. Of what stands on rank 0 rows are sent; the terms are
-  /// kept matrices, whose rows the ranks have. `motions`: what deforms A least, columns; may have none.
-  Made make(const SymmetricSum& matrix, const Vector& scale, const std::string& options, const Matrix& motions = {});
+  /// kept matrices, whose rows the ranks have. `motions`: what deforms A least, may have none.
+  Made make(const SymmetricSum& matrix, const Vector& scale, const std::string& options, const RigidMotions& motions = {});
   struct Forecast {
     SystemOutcome outcome;
     SystemCost mine;            // of rank 0
@@ -48,8 +49,8 @@ class Ranks {
   void drop(std::int64_t matrix);
   /// y = sum of factor * A x of kept matrices.
   void multiply(std::span<const DistributedTerm> sum, const Vector& x, Vector& y);
-  /// x = A^-1 b; x has the shape of b.
-  SystemOutcome solve(std::int64_t system, const Matrix& b, Matrix& x);
+  /// x = A^-1 b; x has the shape of b. `residual`: see System::solve.
+  SystemOutcome solve(std::int64_t system, const Matrix& b, Matrix& x, double residual = 0);
   /// The entries of A^-1 between chosen unknowns. Every rank makes its rows of the loads and hands out those of the answers that are
   /// chosen: nothing as long as A is ever on rank 0.
   SystemOutcome flexibility(std::int64_t system, std::int64_t rows, const std::vector<int>& chosen, Matrix& entries);
@@ -75,6 +76,7 @@ class Ranks {
     What what = What::end;
     // system: or a kept matrix; columns: of the loads, the motions or the flexibility; letters: of the options; terms: kept matrices
     std::int64_t system = 0, rows = 0, columns = 0, letters = 0, terms = 0;
+    double residual = 0;
   };
   Ranks();
   void tell(const Order& order);
@@ -82,7 +84,7 @@ class Ranks {
   struct Scaled {
     const SymmetricSum& matrix;
     const Vector& scale;
-    const Matrix& motions;
+    const RigidMotions& motions;
   };
   struct KeptTerm {
     double factor;
@@ -95,6 +97,7 @@ class Ranks {
   SystemOutcome solve_together(const Order& order, const double* b, double* x);
   SystemOutcome flexibility_together(const Order& order, std::vector<int> chosen, Matrix* entries);
   std::string refuse_together(const Order& order, std::string options);
+  std::vector<int> spread_nodes(const Order& order, const Scaled* matrix) const;
   std::vector<double> spread_motions(const Order& order, const Scaled* matrix) const;
   LocalRows spread_sum(const Order& order, const Scaled* matrix) const;
   LocalRows spread_rows(PetscInt rows, const Scaled* matrix) const;

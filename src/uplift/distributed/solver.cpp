@@ -27,10 +27,11 @@ class PetscFactor : public FactorWithReach {
   PetscFactor& operator=(const PetscFactor&) = delete;
 
   /// An iterative method that does not converge leaves no number: the step that asked fails, and the program says why in the end.
-  void solve(const Matrix& b, Matrix& x) const override {
+  void solve(const Matrix& b, Matrix& x) const override { solve_to(b, x, 0); }
+  void solve_to(const Matrix& b, Matrix& x, double residual) const override {
     const Matrix given = scale_.asDiagonal() * b;
     Matrix solved;
-    if (Ranks::all().solve(system_, given, solved).ok())
+    if (Ranks::all().solve(system_, given, solved, residual).ok())
       x = scale_.asDiagonal() * solved;
     else
       x = Matrix::Constant(b.rows(), b.cols(), std::numeric_limits<double>::quiet_NaN());
@@ -114,7 +115,7 @@ class PetscSolver final : public DistributedSolver {
     std::string options, of_statics;  // of PETSc
     double reach = 0;                 // m
   };
-  explicit PetscSolver(Settings settings, Matrix motions = {}) : settings_(std::move(settings)), motions_(std::move(motions)) {}
+  explicit PetscSolver(Settings settings, RigidMotions motions = {}) : settings_(std::move(settings)), motions_(std::move(motions)) {}
   Factorisation factorise(const Sparse& a) const override { return factorise_sum(a); }
   FactorCost predict(const Sparse& a, const std::vector<int>&) const override { return predict_sum(a); }
   SplitFactorisation factorise_split(const Sparse& a, const std::vector<int>& last) const override { return factorise_split_sum(a, last); }
@@ -158,10 +159,10 @@ class PetscSolver final : public DistributedSolver {
   }
 
   /// Multigrid alone makes use of the motions.
-  std::unique_ptr<const LinearSolver> for_statics(const Matrix& motions) const override {
+  std::unique_ptr<const LinearSolver> for_statics(const RigidMotions& motions) const override {
     const std::string& options = settings_.of_statics;
     return std::make_unique<PetscSolver>(Settings{options, options, settings_.reach},
-                                         options.find("gamg") != std::string::npos ? motions : Matrix());
+                                         options.find("gamg") != std::string::npos ? motions : RigidMotions());
   }
   /// None: it would be one more copy of both matrices on rank 0.
   std::shared_ptr<const SymmetricPair> pair(const Sparse&, const Sparse&) const override { return nullptr; }
@@ -169,7 +170,7 @@ class PetscSolver final : public DistributedSolver {
 
  private:
   Settings settings_;
-  Matrix motions_;
+  RigidMotions motions_;
 };
 
 }  // namespace

@@ -64,8 +64,8 @@ SystemOutcome System::agree(PetscErrorCode error, SystemOutcome mine) const {
   return mine;
 }
 
-SystemOutcome System::set(LocalRows local, PetscInt rows) {
-  return agree(assemble(std::move(local), rows), {});
+SystemOutcome System::set(LocalRows local, PetscInt rows, const std::vector<int>& node) {
+  return agree(assemble(std::move(local), rows, node), {});
 }
 
 namespace {
@@ -95,19 +95,28 @@ LocalRows take_others(LocalRows& rows, PetscInt first) {
 
 }  // namespace
 
-PetscErrorCode System::assemble(LocalRows local, PetscInt rows) {
+PetscErrorCode System::assemble(LocalRows local, PetscInt rows, const std::vector<int>& node) {
   PetscFunctionBeginUser;
   rows_ = rows, local_ = static_cast<PetscInt>(local.start.size()) - 1;
+  int in_nodes = node.empty() ? 0 : 1;  // a rank without rows has no node
+  PetscCallMPI(MPI_Allreduce(MPI_IN_PLACE, &in_nodes, 1, MPI_INT, MPI_MAX, ranks_));
+  if (in_nodes != 0) blocks_ = NodeBlocks(ranks_, node);
+  if (blocks_.any()) local = blocks_.fill(std::move(local));
+  const PetscInt stored = blocks_.any() ? blocks_.local() : local_, all = blocks_.any() ? blocks_.all() : rows;
   PetscInt end = 0;
-  PetscCallMPI(MPI_Scan(&local_, &end, 1, MPIU_INT, MPI_SUM, ranks_));
+  PetscCallMPI(MPI_Scan(&stored, &end, 1, MPIU_INT, MPI_SUM, ranks_));
   among_ = std::move(local);
-  beyond_ = take_others(among_, end - local_);
-  PetscCall(MatCreateMPIAIJWithSplitArrays(ranks_, local_, local_, rows, rows, among_.start.data(), among_.column.data(),
-                                           among_.value.data(), beyond_.start.data(), beyond_.column.data(), beyond_.value.data(),
-                                           &matrix_));
+  beyond_ = take_others(among_, end - stored);
+  PetscCall(MatCreateMPIAIJWithSplitArrays(ranks_, stored, stored, all, all, among_.start.data(), among_.column.data(), among_.value.data(),
+                                           beyond_.start.data(), beyond_.column.data(), beyond_.value.data(), &matrix_));
   PetscCall(MatSetOption(matrix_, MAT_SYMMETRIC, PETSC_TRUE));
   PetscCall(MatSetOption(matrix_, MAT_SYMMETRY_ETERNAL, PETSC_TRUE));
-  for (Vec* vector : {&given_, &solved_}) PetscCall(VecCreateMPIWithArray(ranks_, 1, local_, rows, nullptr, vector));
+  if (blocks_.any()) {
+    PetscCall(MatSetBlockSize(matrix_, blocks_.size()));
+    PetscCall(MatCreateVecs(matrix_, &solved_, &given_));
+  } else {
+    for (Vec* vector : {&given_, &solved_}) PetscCall(VecCreateMPIWithArray(ranks_, 1, local_, rows, nullptr, vector));
+  }
   MatInfo info;
   PetscCall(MatGetInfo(matrix_, MAT_GLOBAL_SUM, &info));
   nonzeros_ = info.nz_used;
@@ -127,7 +136,11 @@ PetscErrorCode System::keep_motions(const std::vector<double>& motions, PetscInt
     PetscCall(MatCreateVecs(matrix_, &motion, nullptr));
     double* values = nullptr;
     PetscCall(VecGetArray(motion, &values));
-    std::copy_n(motions.data() + static_cast<std::ptrdiff_t>(c) * local_, local_, values);
+    const double* own = motions.data() + static_cast<std::ptrdiff_t>(c) * local_;
+    if (blocks_.any())
+      blocks_.put(own, values);
+    else
+      std::copy_n(own, local_, values);
     PetscCall(VecRestoreArray(motion, &values));
     PetscReal size = 0, left = 0;
     PetscCall(VecNormalize(motion, &size));
@@ -204,6 +217,7 @@ PetscErrorCode System::analyse(SystemCost& cost) {
 PetscErrorCode System::choose(const SolverOptions& options, SystemOutcome& outcome) {
   PetscFunctionBeginUser;
   constexpr int most_iterations = 20000;
+  PetscReal weak_coupling = 0.04;  // of nodes, beside the geometric mean of both with themselves: left out of the graph of multigrid
   const bool method = options.has("-ksp_type"), conditioner = options.has("-pc_type");
   PetscCall(KSPCreate(ranks_, &solver_));
   PetscCall(KSPSetOperators(solver_, matrix_, matrix_));
@@ -213,7 +227,12 @@ PetscErrorCode System::choose(const SolverOptions& options, SystemOutcome& outco
   PetscCall(KSPSetType(solver_, method || conditioner ? KSPCG : KSPPREONLY));
   PetscCall(PCSetType(pc, method || conditioner ? PCJACOBI : PCCHOLESKY));
   PetscCall(PCFactorSetMatSolverType(pc, MATSOLVERMUMPS));
+  if (blocks_.any()) {
+    PetscCall(PCSetType(pc, PCGAMG));
+    PetscCall(PCGAMGSetThreshold(pc, &weak_coupling, 1));
+  }
   PetscCall(KSPSetFromOptions(solver_));
+  PetscCall(KSPGetTolerances(solver_, &tolerance_, nullptr, nullptr, nullptr));
   PetscBool cholesky = PETSC_FALSE, cg = PETSC_FALSE, alone = PETSC_FALSE;
   PetscCall(PetscObjectTypeCompare(reinterpret_cast<PetscObject>(pc), PCCHOLESKY, &cholesky));
   if (cholesky == PETSC_TRUE && !method) PetscCall(KSPSetType(solver_, KSPPREONLY));
@@ -304,8 +323,9 @@ PetscErrorCode System::try_out(SystemOutcome& outcome) {
   PetscFunctionReturn(0);
 }
 
-SystemOutcome System::solve(const double* b, double* x, PetscInt columns) {
+SystemOutcome System::solve(const double* b, double* x, PetscInt columns, double residual) {
   SystemOutcome outcome;
+  KSPSetTolerances(solver_, std::max(tolerance_, residual), PETSC_DEFAULT, PETSC_DEFAULT, PETSC_DEFAULT);
   const PetscErrorCode error = solve_columns(b, x, columns, outcome);
   return agree(error, std::move(outcome));
 }
@@ -319,14 +339,31 @@ PetscErrorCode System::solve_columns(const double* b, double* x, PetscInt column
     PetscFunctionReturn(0);
   }
   for (PetscInt c = 0; c < columns && outcome.ok(); ++c) {
-    PetscCall(VecPlaceArray(given_, b + c * local_));
-    PetscCall(VecPlaceArray(solved_, x + c * local_));
-    const PetscErrorCode error = KSPSolve(solver_, given_, solved_);
-    PetscCall(VecResetArray(given_));
-    PetscCall(VecResetArray(solved_));
-    PetscCall(error);
+    PetscCall(solve_column(b + static_cast<std::ptrdiff_t>(c) * local_, x + static_cast<std::ptrdiff_t>(c) * local_));
     PetscCall(converged(outcome));
   }
+  PetscFunctionReturn(0);
+}
+
+PetscErrorCode System::solve_column(const double* b, double* x) {
+  PetscFunctionBeginUser;
+  if (blocks_.any()) {
+    double* numbers = nullptr;
+    PetscCall(VecGetArray(given_, &numbers));
+    blocks_.put(b, numbers);
+    PetscCall(VecRestoreArray(given_, &numbers));
+    PetscCall(KSPSolve(solver_, given_, solved_));
+    PetscCall(VecGetArray(solved_, &numbers));
+    blocks_.take(numbers, x);
+    PetscCall(VecRestoreArray(solved_, &numbers));
+    PetscFunctionReturn(0);
+  }
+  PetscCall(VecPlaceArray(given_, b));
+  PetscCall(VecPlaceArray(solved_, x));
+  const PetscErrorCode error = KSPSolve(solver_, given_, solved_);
+  PetscCall(VecResetArray(given_));
+  PetscCall(VecResetArray(solved_));
+  PetscCall(error);
   PetscFunctionReturn(0);
 }
 

@@ -6,6 +6,8 @@
 #include <string>
 #include <vector>
 
+#include "uplift/distributed/node_blocks.h"
+
 namespace uplift {
 
 /// The rows of a symmetric matrix that one rank holds, complete (both triangles).
@@ -64,8 +66,9 @@ class System {
   ~System();
   System(const System&) = delete;
   System& operator=(const System&) = delete;
-  /// The matrix; with a unit diagonal, so that a pivot or a residual has no unit. `rows`: of all ranks. Its numbers are not copied.
-  SystemOutcome set(LocalRows local, PetscInt rows);
+  /// The matrix; with a unit diagonal, so that a pivot or a residual has no unit. `rows`: of all ranks. `node`: of each row of this rank,
+  /// for methods that treat the unknowns of a node together; empty: none does. Its numbers are not copied.
+  SystemOutcome set(LocalRows local, PetscInt rows, const std::vector<int>& node = {});
   /// The motions that deform it least, from which multigrid makes its coarse levels: the rank's rows, one column after another.
   SystemOutcome set_motions(const std::vector<double>& motions, PetscInt columns);
   /// Factorises it, or prepares the iterative method and tries it on one load. A matrix that is not positive definite is refused: by MUMPS
@@ -75,14 +78,15 @@ class System {
   /// not touched as a rule); of an iterative method the rows and some vectors, not what its preconditioner makes of them. Nothing else
   /// follows.
   SystemOutcome foretell(const SolverOptions& options, SystemCost& cost);
-  /// x = A^-1 b: the rank's rows of all columns, one column after another.
-  SystemOutcome solve(const double* b, double* x, PetscInt columns);
+  /// x = A^-1 b: the rank's rows of all columns, one column after another. An iterative method may stop where the residual is the share
+  /// `residual` of the load, and does where its own tolerance is reached.
+  SystemOutcome solve(const double* b, double* x, PetscInt columns, double residual = 0);
   Mat matrix() const { return matrix_; }
   PetscInt iterations() const { return iterations_; }  // of the last solve
   double nonzeros() const { return nonzeros_; }        // of the factor; of the matrix where there is none
 
  private:
-  PetscErrorCode assemble(LocalRows local, PetscInt rows);
+  PetscErrorCode assemble(LocalRows local, PetscInt rows, const std::vector<int>& node);
   PetscErrorCode keep_motions(const std::vector<double>& motions, PetscInt columns);
   PetscErrorCode choose(const SolverOptions& options, SystemOutcome& outcome);
   PetscErrorCode analyse(SystemCost& cost);
@@ -91,6 +95,7 @@ class System {
   PetscErrorCode check_pivots(SystemOutcome& outcome);
   PetscErrorCode try_out(SystemOutcome& outcome);
   PetscErrorCode solve_columns(const double* b, double* x, PetscInt columns, SystemOutcome& outcome);
+  PetscErrorCode solve_column(const double* b, double* x);
   PetscErrorCode solve_block(const double* b, double* x, PetscInt columns);
   PetscErrorCode converged(SystemOutcome& outcome);
   /// The worst of all ranks.
@@ -98,11 +103,13 @@ class System {
 
   MPI_Comm ranks_;
   PetscInt rows_ = 0, local_ = 0, iterations_ = 0;
+  NodeBlocks blocks_;         // of the matrix; local_ and rows_ are without the rows of the identity
   LocalRows among_, beyond_;  // entries between rows of this rank, columns from its first row on; all others. PETSc uses them
   Mat matrix_ = nullptr, factor_ = nullptr;  // factor_: of MUMPS, PETSc's own; null without
   Vec given_ = nullptr, solved_ = nullptr;   // on the caller's numbers
   KSP solver_ = nullptr;
   bool block_ = false;  // several columns at once
+  double tolerance_ = 0;
   double nonzeros_ = 0;
 };
 

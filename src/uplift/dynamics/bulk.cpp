@@ -209,9 +209,9 @@ void BulkFactor::solve(const Vector& b, Vector& x, BulkWork& work) const {
   x = work.solved.col(0);
 }
 
-void BulkFactor::solve(const Matrix& b, Matrix& x, LinearCounts& counts) const {
+void BulkFactor::solve(const Matrix& b, Matrix& x, double residual, LinearCounts& counts) const {
   counts.back_solves += b.cols();
-  factor_->solve(b, x);
+  solve_to(*factor_, b, x, residual);
 }
 
 double BulkFactor::reach() const {

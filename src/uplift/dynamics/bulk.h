@@ -98,8 +98,8 @@ class BulkFactor {
   bool too_large() const { return too_large_; }
   /// x = A^-1 b
   void solve(const Vector& b, Vector& x, BulkWork& work) const;
-  /// The same for many columns; only where the factor has a reach.
-  void solve(const Matrix& b, Matrix& x, LinearCounts& counts) const;
+  /// The same for many columns, where the residual may be a share of the load (FactorWithReach); only where the factor has a reach.
+  void solve(const Matrix& b, Matrix& x, double residual, LinearCounts& counts) const;
   /// Of the factor (FactorWithReach) [m]; 0 where the inverse is kept.
   double reach() const;
   /// How forces on the rows of B spread; through a split factor (of the same B) as its backward half, see split_spread. This factor must

@@ -62,14 +62,14 @@ std::vector<int> colours(const std::vector<Vec3>& centre, double distance) {
   return colour;
 }
 
-/// V A^-1 b, some columns at once so that little is kept.
-Matrix answers(const BulkFactor& factor, const Sparse& b, const Sparse& loads, LinearCounts& counts) {
-  constexpr Index most_numbers = 1 << 22;
+/// V A^-1 b, some columns at once so that little is kept. `residual`: see FactorWithReach.
+Matrix answers(const BulkFactor& factor, const Sparse& b, const Sparse& loads, double residual, LinearCounts& counts) {
+  constexpr Index most_numbers = 1 << 20;
   const Index block = std::clamp<Index>(most_numbers / std::max<Index>(b.rows(), 1), 1, 32);
   Matrix result(loads.cols(), b.cols()), x;
   for (Index first = 0; first < b.cols(); first += block) {
     const Index count = std::min(block, b.cols() - first);
-    factor.solve(Matrix(b.middleCols(first, count)), x, counts);
+    factor.solve(Matrix(b.middleCols(first, count)), x, residual, counts);
     result.middleCols(first, count).noalias() = loads.transpose() * x;
   }
   return result;
@@ -110,6 +110,8 @@ class Compliance {
   }
 
  private:
+  static constexpr double residual_of_entries = 1e-6;  // what is left out beyond the reach is more by far
+
   /// What is kept of G.
   Matrix compliance() {
     const Index count = loads_.columns.cols(), near = std::ssize(loads_.centre);
@@ -118,7 +120,7 @@ class Compliance {
       const Sparse e = unit_columns(b_.cols(), common_);
       Sparse both(b_.cols(), count + e.cols());
       both.leftCols(count) = loads_.columns, both.rightCols(e.cols()) = e;
-      const Matrix x = answers(factor_, e, both, counts_);
+      const Matrix x = answers(factor_, e, both, 0, counts_);
       const Matrix own = x.bottomRows(e.cols());
       through = divided_by_upper(Cholesky(Matrix((own + own.transpose()) / 2)), x.topRows(count));
     }
@@ -129,8 +131,8 @@ class Compliance {
     for (Index j = 0; j < near; ++j) members.emplace_back(static_cast<int>(j), colour[static_cast<std::size_t>(j)], 1.0);
     Sparse of_colour(count, most);
     of_colour.setFromTriplets(members.begin(), members.end());
-    const Matrix answer =
-        answers(factor_, loads_.columns * of_colour, loads_.columns, counts_) - through * (through.transpose() * of_colour);
+    const Matrix answer = answers(factor_, loads_.columns * of_colour, loads_.columns, residual_of_entries, counts_) -
+                          through * (through.transpose() * of_colour);
     for (Index j = 0; j < near; ++j)
       for (Index i = 0; i < near; ++i)
         if (within_reach(i, j))
@@ -163,11 +165,11 @@ void SolvedResponse::forget() {
 }
 
 /// increment -= A^-1 B^T force
-void SolvedResponse::press(const Vector& force, Vector& increment) {
-  load_.noalias() = b_.transpose() * force;
-  moved_.resize(load_.size());
-  factor_.solve(load_, moved_, work_);
-  increment -= moved_;
+void SolvedResponse::press(const Vector& force, double residual, Vector& increment) {
+  work_.given.resize(b_.cols(), 1);
+  work_.given.col(0).noalias() = b_.transpose() * force;
+  factor_.solve(work_.given, work_.solved, residual, *work_.counts);
+  increment -= work_.solved.col(0);
 }
 
 /// Columns of length one: the changes become smaller from try to try.
@@ -201,6 +203,7 @@ Outcome SolvedResponse::solve(const Vector& right, const Vector& opening, const 
   problem.free_opening = opening + b_ * increment;
   problem.free_opening += model.factor * (model.factor.transpose() * force_).eval();
   last_rest_.resize(0);
+  double share = 0;  // of what the last try left over that the next one may leave
   Outcome all;
   for (int k = 0; k < most_tries; ++k) {
     const Outcome one = method.solve(problem, work, solution);
@@ -209,14 +212,16 @@ Outcome SolvedResponse::solve(const Vector& right, const Vector& opening, const 
     if (!all.converged) return all;
     Vector force = solution.force;
     if (model.shift.size() > 0) force -= model.shift.cwiseProduct(solution.opening);
-    press(force - force_, increment);
+    press(force - force_, 1e-2 * share, increment);
     force_ = std::move(force);
     const Vector rest = opening + b_ * increment - solution.opening;
     if (!rest.allFinite()) break;
     const double pressed = largest(problem.free_opening - solution.opening);      // what the forces close
     const double moved = std::min(pressed, largest(solution.opening - opening));  // in this step; small in a light motion
     const double lost = round_off * largest(solution.opening) + of_motion * largest(b_.cwiseAbs() * increment.cwiseAbs());
-    if (largest(rest) <= std::max(tolerance * moved, least * pressed) + lost) return all;
+    const double allowed = std::max(tolerance * moved, least * pressed) + lost;
+    if (largest(rest) <= allowed) return all;
+    share = allowed / largest(rest);
     improve(problem.free_opening, rest);
   }
   forget();

@@ -30,7 +30,7 @@ class SolvedResponse {
 
  private:
   void improve(Vector& free_opening, const Vector& rest);
-  void press(const Vector& force, Vector& increment);
+  void press(const Vector& force, double residual, Vector& increment);
 
   const BulkFactor& factor_;
   const Sparse& b_;
@@ -38,7 +38,7 @@ class SolvedResponse {
   Matrix c_;
   Vector force_;                            // p - D opening of the last solution [N]
   std::vector<Vector> openings_, remains_;  // changes of c and of g - o from one try to the next, the oldest first
-  Vector last_opening_, last_rest_, load_, moved_;
+  Vector last_opening_, last_rest_, load_;
 };
 
 }  // namespace uplift

@@ -10,6 +10,8 @@ namespace uplift {
 class FactorWithReach : public Factor {
  public:
   virtual double reach() const = 0;  // m
+  /// `solve` with a residual that may be that share of the load; not more exactly than `solve`.
+  virtual void solve_to(const Matrix& b, Matrix& x, double residual) const = 0;
 };
 
 /// 0 for a factor without.
@@ -18,12 +20,25 @@ inline double reach_of(const Factor& factor) {
   return with != nullptr ? with->reach() : 0;
 }
 
+/// The motions of a rigid body. They deform nothing, and iterations without mass are slowest to find them.
+struct RigidMotions {
+  Matrix motions;         // unknowns x motions; may have none
+  std::vector<int> node;  // of each unknown
+};
+
+/// As FactorWithReach::solve_to; exactly with a factor without.
+inline void solve_to(const Factor& factor, const Matrix& b, Matrix& x, double residual) {
+  if (const auto* with = dynamic_cast<const FactorWithReach*>(&factor); with != nullptr)
+    with->solve_to(b, x, residual);
+  else
+    factor.solve(b, x);
+}
+
 /// A solver that treats matrices without mass by another method than those of a time step.
 class SolverOfStatics : public LinearSolver {
  public:
-  /// That for the matrices of static stages; null: this one. `motions`: columns, the motions of a rigid body on the unknowns of the matrix.
-  /// They deform nothing, and iterations without mass are slowest to find them.
-  virtual std::unique_ptr<const LinearSolver> for_statics(const Matrix& motions) const = 0;
+  /// That for the matrices of static stages; null: this one.
+  virtual std::unique_ptr<const LinearSolver> for_statics(const RigidMotions& motions) const = 0;
 };
 
 /// A solver of matrices whose rows are distributed over the processes of a job.
@@ -56,7 +71,7 @@ inline FactorCost predict(const LinearSolver& solver, const SymmetricSum& a, con
 }
 
 /// Null: the same solver.
-inline std::unique_ptr<const LinearSolver> solver_for_statics(const LinearSolver& solver, const Matrix& motions) {
+inline std::unique_ptr<const LinearSolver> solver_for_statics(const LinearSolver& solver, const RigidMotions& motions) {
   const auto* other = dynamic_cast<const SolverOfStatics*>(&solver);
   return other != nullptr ? other->for_statics(motions) : nullptr;
 }

@@ -41,6 +41,7 @@ class Lockstep::SeatFactor final : public FactorWithReach {
   SeatFactor(const SeatFactor&) = delete;
   SeatFactor& operator=(const SeatFactor&) = delete;
   void solve(const Matrix& b, Matrix& x) const override { shared_->solve(b, x); }
+  void solve_to(const Matrix& b, Matrix& x, double residual) const override { uplift::solve_to(*shared_, b, x, residual); }
   double nonzeros() const override { return shared_->nonzeros(); }
   Factorisation refactorise(const Sparse& a) const override { return shared_->refactorise(a); }
 
@@ -100,7 +101,7 @@ class Lockstep::SeatSolver final : public SolverOfStatics {
     return {.factor = std::move(mine), .failed_unknown = made.failed_unknown, .why = std::move(made.why), .too_large = made.too_large};
   }
   /// Not shared with other runs.
-  std::unique_ptr<const LinearSolver> for_statics(const Matrix& motions) const override { return solver_for_statics(*own_, motions); }
+  std::unique_ptr<const LinearSolver> for_statics(const RigidMotions& motions) const override { return solver_for_statics(*own_, motions); }
   FactorCost predict(const Sparse& a, const std::vector<int>& last) const override { return own_->predict(a, last); }
   std::shared_ptr<const SymmetricPair> pair(const Sparse& a, const Sparse& b) const override { return all_.pair(a, b); }
   void wait_for_room() const override { all_.wait_for_room(run_); }
