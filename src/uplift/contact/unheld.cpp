@@ -4,7 +4,17 @@
 
 #include <algorithm>
 
+#include "uplift/laws/macro_element.h"
+
 namespace uplift {
+
+namespace {
+
+std::string exhausted_ground(const Block& block) {
+  return fmt::format("the ground under '{}' gives way: its bearing capacity is exhausted", block.name);
+}
+
+}  // namespace
 
 std::string unheld_motion(const InterfaceProblem& problem, const InterfaceSolution& solution, double ratio) {
   const Vector moved = (solution.opening - problem.from).cwiseAbs();
@@ -18,8 +28,14 @@ std::string unheld_motion(const InterfaceProblem& problem, const InterfaceSoluti
     const double larger = std::max(along, apart);
     if (!(larger > most && larger > least)) continue;
     most = larger;
-    text = apart > least ? fmt::format("overturns: nothing holds the structure down on '{}', it turns over or lifts off", block.name)
-                         : fmt::format("slides: nothing holds the structure along '{}'", block.name);
+    const MacroElement* ground = as_macro_element(block.law);
+    const bool pressed = (problem.free_opening - problem.from)[block.first + normal] < 0;
+    if (!(apart > least))
+      text = fmt::format("slides: nothing holds the structure along '{}'", block.name);
+    else if (ground != nullptr && ground->surfaces().has_bearing() && pressed)
+      text = exhausted_ground(block);
+    else
+      text = fmt::format("overturns: nothing holds the structure down on '{}', it turns over or lifts off", block.name);
   }
   return text;
 }
@@ -41,7 +57,7 @@ std::string softening_joint(const InterfaceProblem& problem, const InterfaceSolu
         if (own >= steepest) continue;
         steepest = own;
         text = block.footprint
-                   ? fmt::format("the ground under '{}' gives way: its bearing capacity is exhausted", block.name)
+                   ? exhausted_ground(block)
                    : fmt::format(
                          "the joint '{}' softens at point {}, and no static equilibrium was found near the last one: it may let go at "
                          "once; apply this load in a dynamic stage, or give the joint more fracture energy or no strength",

@@ -203,6 +203,39 @@ TEST(CutCase, WarnsOfAnOutlineInsideCoarseCells) {
   EXPECT_FALSE(said("", 2));
 }
 
+TEST(CutCase, WarnsOfAnOutlineBeyondTheMesh) {
+  const auto said = [](const std::string& outline) {
+    std::string text = column(depth, "{ type = \"springs\", K_n = 1e9, K_t = 1e9 }");
+    text.replace(text.find("upper = "), 0, outline);
+    const Case read = read_on(text, rectangle(uniform_lines(-1, 1, 4), uniform_lines(0, 10, 10)));
+    std::string all;
+    for (const std::string& each : warnings(read, RunSpec{}, build(read, RunSpec{}))) all += each + "\n";
+    return all;
+  };
+  EXPECT_NE(said("x = [-0.5, 4], ").find("goes from -0.5 to 4 m in x, the cells that it cuts from -0.5 to 1 m"), std::string::npos);
+  EXPECT_EQ(said("x = [-0.5, 1], ").find("goes from"), std::string::npos);
+}
+
+// Joints that are much stiffer than their cells: on level planes through rectangles alone the pressures are smooth.
+TEST(CutCase, WarnsOfStiffJointsInCellsCutAtAnAngle) {
+  const auto said = [](const std::string& normal, Cell cell, double y) {
+    std::string text = bar(normal, 2);
+    const std::string place = "2.03, 0.47", stiffness = fmt::format("{}", joint_stiffness);
+    text.replace(text.find(place), place.size(), fmt::format("{}, 0.47", y));
+    for (std::size_t at = text.find(stiffness); at != text.npos; at = text.find(stiffness, at + 1))
+      text.replace(at, stiffness.size(), fmt::format("{}", 1e3 * young));
+    const Case read = read_on(text, rectangle(uniform_lines(0, 4, 9), uniform_lines(0, 1, 3), cell));
+    std::string all;
+    for (const std::string& each : warnings(read, RunSpec{}, build(read, RunSpec{}))) all += each + "\n";
+    return all;
+  };
+  EXPECT_NE(said("[0.9, 0.4]", Cell::quad4, 2.03).find("\"crack\" cuts its cells at an angle"), std::string::npos);
+  EXPECT_NE(said("[0.9, 0.4]", Cell::tri3, 2.03).find("\"crack\" cuts triangles"), std::string::npos);
+  EXPECT_NE(said("[1, 0]", Cell::tri3, 2.03).find("\"crack\" cuts triangles"), std::string::npos);
+  EXPECT_EQ(said("[1, 0]", Cell::quad4, 2.03).find("cuts"), std::string::npos);
+  EXPECT_EQ(said("[1, 0]", Cell::tri3, 16.0 / 9).find("cuts"), std::string::npos);  // along their sides
+}
+
 // ---- a raft on free ground: names of nodes, places, lines of beams ----
 
 const Mesh& ground_of_8_by_4() {

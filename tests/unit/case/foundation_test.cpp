@@ -372,6 +372,24 @@ TEST(Foundation, AStaticStageAfterYieldingKeepsTheState) {
   for (std::size_t i = 11; i < settlement.size(); ++i) EXPECT_NEAR(settlement[i], settlement[10], 1e-9 * std::abs(settlement[10]));
 }
 
+// The dead load of 1.275 MN beside the vertical capacity: a warning within 5 % of it; beyond, a bearing failure and no overturning.
+TEST(Foundation, DeadLoadAndCapacity) {
+  const auto text = [](const char* capacity) {
+    return with_ground(plane_text, replaced(macro, "K_r = 1.8e9", std::string("K_r = 1.8e9, V_s = ") + capacity));
+  };
+  const auto said = [&](const char* capacity) {
+    const Case read = check_case(read_toml_text(text(capacity), "case.toml"), "case.toml");
+    std::string all;
+    for (const std::string& each : warnings(read, RunSpec{}, build(read, RunSpec{}))) all += each + "\n";
+    return all;
+  };
+  EXPECT_EQ(said("1.35e6").find("dead load"), std::string::npos);
+  EXPECT_NE(said("1.33e6").find("hardly any moment or horizontal force is left"), std::string::npos);
+  EXPECT_NE(said("1.2e6").find("there is no equilibrium"), std::string::npos);
+  const RunResult failed = run_text(text("1e6")).result;
+  EXPECT_NE(failed.reason.find("the ground under 'soil' gives way: its bearing capacity is exhausted"), std::string::npos) << failed.reason;
+}
+
 // phi = 0 and cohesion alone under a moment: H = c A (1 - 2 M/(N B)) moves the footing, at a safety of 1.
 TEST(Foundation, SafetyAgainstSlidingIsOneWhereItSlides) {
   std::string text = with_ground(plane_text, replaced(macro, "width = 6", "width = 6\nlength = 5"));

@@ -73,11 +73,14 @@ void warn_foundations(const Case& read, const BuiltCase& built, std::vector<std:
     if (built.model.interfaces.size() != 1) continue;
     const MacroElement* ground = as_macro_element(built.model.interfaces.front().law.get());
     if (ground == nullptr || !ground->surfaces().has_bearing()) continue;
-    const double capacity = ground->surfaces().strength().ultimate;
-    if (built.weight >= capacity)
-      said.push_back(place + fmt::format("the dead load is {}, the capacity of \"{}\" {}: unless other parts bear the rest, there is no "
-                                         "equilibrium",
-                                         format_quantity(built.weight, "N"), foundation.text("name"), format_quantity(capacity, "N")));
+    constexpr double least_reserve = 1.05;
+    const double capacity = ground->surfaces().strength().ultimate, service = ground->surfaces().strength().service;
+    const std::string_view outcome = built.weight >= capacity ? "unless other parts bear the rest, there is no equilibrium"
+                                                              : "hardly any moment or horizontal force is left to it without settlement";
+    if (least_reserve * built.weight >= std::min(capacity, service))
+      said.push_back(place + fmt::format("the dead load is {}, the capacity of \"{}\" {}: {}", format_quantity(built.weight, "N"),
+                                         foundation.text("name"), format_quantity(built.weight >= capacity ? capacity : service, "N"),
+                                         outcome));
   }
 }
 
@@ -114,23 +117,66 @@ double size_of(const Mesh& mesh, CellId cell) {
   return std::pow(signed_size(mesh, cell), 1.0 / mesh.dimension);  // m
 }
 
-/// Where a plane cuts its cells at an angle, tractions of joints much stiffer than the cells vary from point to point (docs/theory).
+/// Whether a plane passes through a cell, not along one of its sides.
+bool is_crossed(const Mesh& mesh, CellId cell, const CutFace& face) {
+  const Vec3 along = face.corners[1] - face.corners[0];
+  const Vec3 normal = mesh.dimension == 2 ? Vec3(-along.y(), along.x(), 0) : cross(along, face.corners[2] - face.corners[0]);
+  const double tolerance = 1e-6 * normal.norm() * size_of(mesh, cell);
+  bool below = false, above = false;
+  for (const int node : mesh.cell(cell)) {
+    const double distance = normal.dot(mesh.nodes[static_cast<std::size_t>(node)] - face.corners[0]);
+    below = below || distance < -tolerance, above = above || distance > tolerance;
+  }
+  return below && above;
+}
+
+/// Where a plane cuts its cells at an angle, or triangles and tetrahedra, tractions of joints much stiffer than the cells vary from point
+/// to point (docs/theory).
 void warn_inclined_cut(const CaseSolids& solids, const std::vector<CutFace>& faces, const Interface& interface,
                        std::vector<std::string>& said) {
   constexpr double most = 100;
   if (interface.law == nullptr) return;
+  const Mesh& mesh = solids.mesh();
   double softest = 0;  // m/Pa: size over Young's modulus
+  std::string_view cut;
   for (const CutFace& face : faces)
-    for (const CellId cell : {face.lower, face.upper})
-      if (!face.level) softest = std::max(softest, size_of(solids.mesh(), cell) / solids.of(cell).section.material.young);
+    for (const CellId cell : {face.lower, face.upper}) {
+      const bool simplex = info(mesh.type(cell)).corners == mesh.dimension + 1;
+      const double softness = size_of(mesh, cell) / solids.of(cell).section.material.young;
+      if (softness <= softest || (simplex ? !is_crossed(mesh, cell, face) : face.level)) continue;
+      softest = softness;
+      cut = !simplex ? "its cells at an angle" : mesh.dimension == 2 ? "triangles" : "tetrahedra";
+    }
   std::array<double, 3> stiffness{};
   interface.law->closed_stiffness(interface.batch.components, stiffness.data());
   const double ratio = stiffness[static_cast<std::size_t>(interface.batch.components) - 1] * softest;
   if (ratio > most)
     said.push_back(
-        fmt::format("\"{}\" cuts its cells at an angle, and its stiffness is {:.3g} times E/h of the softer cells: the pressures of its "
-                    "points vary from one to the next; forces and moments are right; keep K_n below {:g} E/h, or turn the mesh",
-                    interface.name, ratio, most));
+        fmt::format("\"{}\" cuts {}, and its stiffness is {:.3g} times E/h of the softer cells: the pressures of its points vary "
+                    "from one to the next; forces and moments are right; keep K_n below {:g} E/h, or let planes cut "
+                    "{} level",
+                    interface.name, cut, ratio, most, mesh.dimension == 2 ? "quadrilaterals" : "hexahedra"));
+}
+
+/// An outline that goes beyond the cells: only a part of the base is there.
+void warn_outside(const Values& cut, const std::vector<CutFace>& faces, const Interface& interface, std::vector<std::string>& said) {
+  const std::array<std::string, 2> axes{"x", "y"};
+  for (std::size_t axis = 0; axis < axes.size(); ++axis) {
+    if (!cut.has(axes[axis])) continue;
+    const std::vector<double>& limits = cut.numbers(axes[axis]);
+    double low = HUGE_VAL, high = -low;
+    for (const CutFace& face : faces)
+      for (const Vec3& corner : face.corners) {
+        const double x = corner[static_cast<Index>(axis)];
+        low = std::min(low, x), high = std::max(high, x);
+      }
+    const double tolerance = 1e-6 * (limits[1] - limits[0]);
+    if (low > limits[0] + tolerance || high < limits[1] - tolerance)
+      said.push_back(
+          fmt::format("{}:{}: the outline of \"{}\" goes from {:g} to {:g} m in {}, the cells that it cuts from {:g} to {:g} m: "
+                      "the base ends there",
+                      cut.where(axes[axis]).file, cut.where(axes[axis]).line, interface.name, limits[0], limits[1], axes[axis], low, high));
+  }
 }
 
 /// The surface of a cell that lies under the edge of a base and beside it has no kink there: the base rests on its edge and stands open
@@ -174,6 +220,7 @@ void warn_cuts(const Case& read, const BuiltCase& built, std::vector<std::string
       if (interface.name != tables[t].text("name") || read.mesh->cut[t].empty()) continue;
       warn_element_jumps(tables[t].table("cut"), read.mesh->cut[t], interface, said);
       warn_inclined_cut(solids, read.mesh->cut[t], interface, said);
+      warn_outside(tables[t].table("cut"), read.mesh->cut[t], interface, said);
       warn_clipped_cut(solids.mesh(), read.mesh->cut[t], interface, said);
     }
 }
