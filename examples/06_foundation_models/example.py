@@ -18,9 +18,10 @@ if len(sys.argv) > 1:
     from matplotlib import pyplot
 
     figure, axes = pyplot.subplots(figsize=(7, 5))
-    for name in ("springs", "macro", "mesh", "cut", "bonded"):
+    for name in ("springs", "sdm", "macro", "mesh", "cut", "bonded"):
         run = compared[name]
-        axes.plot(1e3 * run["underside.tilt"], run["underside.moment"] / 1e6, linewidth=0.8, label=name)
+        dashes = "--" if name == "sdm" else "-"  # the SDM joint lies on the springs
+        axes.plot(1e3 * run["underside.tilt"], run["underside.moment"] / 1e6, dashes, linewidth=0.8, label=name)
     axes.set(xlabel="tilt [mrad]", ylabel="moment [MN m]")
     axes.legend()
     figure.savefig(sys.argv[1])
