@@ -374,5 +374,55 @@ TEST(CutReference, StiffJointUnderARaftHasNoOscillations) {
   }
 }
 
+// ---- a column that is cut and bonded again ----
+
+TEST(CutReference, BondedColumnHasTheMassOfTheWholeAndItsFrequencies) {
+  // Vertical waves in one-dimensional strain, f_n = (2 n - 1)/(4 L) sqrt(D/rho). What cut cells can do contains what whole cells can, and
+  // is continuous where the joint is bonded: by Rayleigh's principle their frequencies lie between the exact ones and those of whole cells.
+  constexpr double length = 10, width = 2, young = 5e7, poisson = 0.2, density = 2000, stiffness = 1e14;
+  constexpr double constrained = young * (1 - poisson) / ((1 + poisson) * (1 - 2 * poisson));
+  struct Column {
+    double mass;
+    Vector frequencies;
+  };
+  const auto column = [&](const std::string& interface) {
+    const std::string text = "title = \"column\"\n[mesh]\nfile = \"column.msh\"\n" +
+                             solid("volume", young, poisson, density, "incompatible_modes = false\n") +
+                             "[[support]]\ngroup = \"bottom\"\nfixed = [\"ux\", \"uy\"]\n[[support]]\ngroup = \"left\"\nfixed = [\"ux\"]\n"
+                             "[[support]]\ngroup = \"right\"\nfixed = [\"ux\"]\n" +
+                             interface + at_rest_stages;
+    const Case read = read_on(text, rectangle(uniform_lines(-width / 2, width / 2, 1), uniform_lines(0, length, 10)));
+    const BuiltCase built = build(read, RunSpec{});
+    const Model& model = built.model;
+    Matrix k = model.stiffness;
+    for (const Interface& joint : model.interfaces) {
+      const Matrix b = joint.b;
+      for (int row = 0; row < joint.rows(); ++row)
+        k += stiffness * joint.weight[row % joint.batch.points] * b.row(row).transpose() * b.row(row);
+    }
+    const Vector squares = GeneralisedEigen(k, Matrix(model.mass)).eigenvalues();
+    Column made{0, Vector(squares.cwiseSqrt() / (2 * std::numbers::pi))};
+    const Matrix mass = assembled(model, &Local::mass);
+    for (int i = 0; i < static_cast<int>(model.nodes.size()); ++i)
+      for (int j = 0; j < static_cast<int>(model.nodes.size()); ++j) made.mass += mass(model.at(i, uy), model.at(j, uy));
+    return made;
+  };
+  const Column whole = column("");
+  EXPECT_NEAR(whole.mass, density * length * width, 1e-12 * density * length * width);
+  for (const double level : {2.37, 5.63, 9.5, 5 + 1e-5, 5 - 1e-5}) {
+    const Column parted = column(fmt::format(
+        "[[interface]]\nname = \"joint\"\ncut = {{ through = [\"volume\"], level = {0} }}\nlaw = {{ type = \"elastic\", K_n = {1}, "
+        "K_t = {1} }}\n",
+        level, stiffness));
+    EXPECT_NEAR(parted.mass, density * length * width, 1e-12 * density * length * width) << level;
+    for (int n = 0; n < 3; ++n) {
+      const double exact = (2 * n + 1) / (4 * length) * std::sqrt(constrained / density);
+      EXPECT_GT(parted.frequencies[n], (1 - 1e-6) * exact) << level;  // the joint gives way by D/(K L) = 6e-8
+      EXPECT_LT(parted.frequencies[n], (1 + 1e-6) * whole.frequencies[n]) << level;
+      EXPECT_LT(whole.frequencies[n], 1.03 * exact);
+    }
+  }
+}
+
 }  // namespace
 }  // namespace uplift::cut_reference_test
