@@ -343,7 +343,7 @@ TEST(CutReference, SmallPartsChangeNeitherRotationNorCondition) {
   EXPECT_NEAR(limit, 4.05011, 5e-6);
   for (const double part : {1e-4, 1e-5, 1e-6, 1e-7, 2e-8, -1e-5, -1e-6, -1e-7, -2e-8}) {
     const auto [rotation, condition] = found(part);
-    EXPECT_NEAR(rotation, limit, 0.16 * std::abs(part) + 1e-8) << part;  // a lever arm that is longer by the part
+    EXPECT_NEAR(rotation, limit, 0.16 * std::abs(part) + 1e-8) << part;  // 0.15 and 0.14 in that program
     EXPECT_NEAR(condition, 3.6e4, 0.02 * 3.6e4) << part;
   }
 }
