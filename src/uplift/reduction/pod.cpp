@@ -69,6 +69,7 @@ Pod::Added Pod::beside_basis(Matrix& x, double least) const {
 void Pod::add(Matrix x) {
   const Index before = basis_.cols(), columns = x.cols();
   if (x.size() == 0 || x.isZero(0)) return;
+  if (before == 0) basis_.resize(x.rows(), 0);
   Matrix &product = work_->product, &turned = work_->turned;
   product_.times(x, product);
   energy_ += energy_of(x, product);
@@ -98,7 +99,7 @@ void Pod::add(Matrix x) {
 
 Matrix Pod::release() {
   values_.resize(0);
-  return std::exchange(basis_, Matrix(beside_.rows(), 0));
+  return std::exchange(basis_, Matrix());
 }
 
 }  // namespace uplift

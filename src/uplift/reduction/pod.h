@@ -19,7 +19,7 @@ class Pod {
   /// of the largest singular value are dropped. `most`: directions that are kept.
   Pod(const EnergyProduct& product, const Matrix& beside, double least, Index most,
       std::shared_ptr<PodWork> work = std::make_shared<PodWork>())
-      : product_(product), beside_(beside), least_(least), most_(most), work_(std::move(work)), basis_(beside.rows(), 0), values_(0) {}
+      : product_(product), beside_(beside), least_(least), most_(most), work_(std::move(work)) {}
   /// Adds displacements, one a column.
   void add(Matrix displacements);
   const Matrix& basis() const { return basis_; }

@@ -379,7 +379,7 @@ TEST(CutReference, StiffJointUnderARaftHasNoOscillations) {
 TEST(CutReference, BondedColumnHasTheMassOfTheWholeAndItsFrequencies) {
   // Vertical waves in one-dimensional strain, f_n = (2 n - 1)/(4 L) sqrt(D/rho). What cut cells can do contains what whole cells can, and
   // is continuous where the joint is bonded: by Rayleigh's principle their frequencies lie between the exact ones and those of whole cells.
-  constexpr double length = 10, width = 2, young = 5e7, poisson = 0.2, density = 2000, stiffness = 1e14;
+  constexpr double length = 10, width = 2, young = 5e7, poisson = 0.2, density = 2000, stiffness = 1e12;
   constexpr double constrained = young * (1 - poisson) / ((1 + poisson) * (1 - 2 * poisson));
   struct Column {
     double mass;
@@ -417,7 +417,7 @@ TEST(CutReference, BondedColumnHasTheMassOfTheWholeAndItsFrequencies) {
     EXPECT_NEAR(parted.mass, density * length * width, 1e-12 * density * length * width) << level;
     for (int n = 0; n < 3; ++n) {
       const double exact = (2 * n + 1) / (4 * length) * std::sqrt(constrained / density);
-      EXPECT_GT(parted.frequencies[n], (1 - 1e-6) * exact) << level;  // the joint gives way by D/(K L) = 6e-8
+      EXPECT_GT(parted.frequencies[n], (1 - 1e-5) * exact) << level;  // the joint gives way by D/(K L) = 6e-6
       EXPECT_LT(parted.frequencies[n], (1 + 1e-6) * whole.frequencies[n]) << level;
       EXPECT_LT(whole.frequencies[n], 1.03 * exact);
     }
