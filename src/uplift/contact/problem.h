@@ -12,6 +12,7 @@ namespace uplift {
 /// Joint filter of the scheme of filtered energy decay (laws/filter.h), frozen for one step. Without a gain there is none.
 struct JointFilterInput {
   double gain = 0;          // b of the scheme
+  double pole = 0;          // a of the scheme: how the lag goes on; not needed for one step, and not in its file
   Vector coefficient, lag;  // rows: c [Pa/m], d_f [m]
   bool acts() const { return gain > 0; }
 };

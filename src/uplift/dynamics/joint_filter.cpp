@@ -75,6 +75,7 @@ void JointFilter::begin(const State& now, double shrink, JointFilterInput& input
   ready_ = nullptr;
   const FilterMemory& memory = now.filter;
   input.gain = gain_;
+  input.pole = pole_;
   input.coefficient.resize(memory.opening.size());
   input.lag.resize(memory.opening.size());
   for (const Part& part : parts_) {

@@ -65,19 +65,13 @@ void pull_at_end(const FusedEvaluation& evaluation) {
   for (int j = 0; j < R; ++j) evaluation.end_pull[j] = sum(pull[j]);
 }
 
-/// a of the joint filter from its b: one spectral radius at infinite frequency makes both (docs/theory, section 3).
-double pole_of(double gain) {
-  const double loss = std::sqrt(8 * gain / (1 + 2 * gain));  // 1 - radius
-  return (3 * loss - 2) / (2 + loss);
-}
-
-/// What the joint filter's memory pulls, one step later.
+/// What the joint filter's memory pulls, one step later. `pole`: a of the scheme.
 template <int R>
-void advance_lag(FilterSums& sums) {
+void advance_lag(double pole, FilterSums& sums) {
   for (int j = 0; j < R; ++j) {
     double pull = 0;
     for (int i = 0; i < R; ++i) pull += sums.stiffness[j * R + i] * sums.moved[i];
-    sums.lag[j] = sums.pole * sums.lag[j] + (1 - sums.pole) * pull;
+    sums.lag[j] = pole * sums.lag[j] + (1 - pole) * pull;
   }
 }
 
@@ -129,12 +123,10 @@ template <int R, bool filters>
 [[gnu::always_inline]] inline void predict(const InterfaceProblem& problem, bool fused, NewtonWork& work, double* z) {
   const FusedEvaluation& evaluation = work.evaluation;
   if (!fused) pull_at_end<R>(evaluation);
-  if (work.bent || (filters && !fused)) {
+  if (work.bent || (filters && !fused))
     go_on<R, filters>(evaluation, work.filter);
-    work.filter.pole = pole_of(problem.filter.gain);
-  } else if (filters) {
-    advance_lag<R>(work.filter);
-  }
+  else if (filters)
+    advance_lag<R>(problem.filter.pole, work.filter);
   if constexpr (filters)
     for (int j = 0; j < R; ++j) evaluation.end_pull[j] -= work.filter.lag[j];
   guess<R>(evaluation, problem.free_opening_increment.data(), z);

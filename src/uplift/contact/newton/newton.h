@@ -27,9 +27,9 @@ struct NewtonOptions {
 };
 
 /// What the joint filter adds to the first guess of a step from the one before, up to three coordinates: the coefficient c and the lag d_f
-/// (laws/filter.h) summed over the points. While no point changes its branch, c stays and d_f <- a d_f + (1 - a) C moved.
+/// (laws/filter.h) summed over the points. While no point changes its branch, c stays and d_f <- a d_f + (1 - a) C moved
+/// with the pole a of the scheme (docs/theory, section 3).
 struct FilterSums {
-  double pole = 0;           // a
   double lag[3] = {};        // C^T (scale area c d_f) [sqrt(J)]
   double stiffness[9] = {};  // C^T (scale area c) C
   double moved[3] = {};      // coordinates of the opening increment of the last step [sqrt(J)]
