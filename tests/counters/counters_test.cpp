@@ -4,9 +4,12 @@
 #include <atomic>
 #include <cstdlib>
 
+#include "data_support.h"
 #include "property/oracle_models.h"
 #include "ran_support.h"
+#include "text_support.h"
 #include "unit/elements/solid_support.h"
+#include "uplift/base/file.h"
 #include "uplift/dynamics/bulk.h"
 #include "uplift/elements/bulk_laws/drucker_prager.h"
 #include "uplift/elements/solid_nonlinear.h"
@@ -239,62 +242,12 @@ TEST(Counters, SmallBulkNeedsOneFactorisationAndNoBackSolve) {
   }
 }
 
-// The oscillator of the benchmark, bench/cases/footing_sdm.toml, over 4 s.
-constexpr const char* rocking = R"(
-title = "rocking"
-bonded = false
-[nodes]
-top = [0, 5]
-base = [0, 0]
-[[beam]]
-name = "column"
-nodes = ["base", "top"]
-E = 2e10
-I = 0.2
-[[mass]]
-node = "top"
-mass = 24317.0841
-[[rigid]]
-name = "footing"
-node = "base"
-mass = 1e4
-inertia = 7500
-[[support]]
-node = "base"
-fixed = ["ux"]
-[[function]]
-name = "pulse"
-shape = { type = "half_sine", duration = 0.1 }
-[[load]]
-node = "top"
-force = [0, -1e6]
-[[load]]
-node = "top"
-force = [3e5, 0]
-function = "pulse"
-[[interface]]
-name = "soil"
-footing = { body = "base", width = 3, points = 40 }
-[interface.law]
-type = "sdm"
-K_n = 2e8
-F_u = 1e4
-G_f = 10
-F_c = -1e3
-[[stage]]
-type = "static"
-steps = 1
-[[stage]]
-type = "dynamic"
-duration = 4
-step = 1e-3
-)";
-
 // Claim: with the filters of energy decay a step in which no point changes its branch is linear and its first guess exact, so that Newton's
 // method needs no more iterations than with the trapezoidal rule, in a joint that is damaged too.
 TEST(Counters, FilteredStepsNeedNoMoreIterations) {
+  const std::string rocking = read_file(support::source_folder() + "/bench/cases/footing_sdm.toml");
   const RunResult plain = support::run_text(rocking).result,
-                  filtered = support::run_text(std::string(rocking) + "scheme = \"energy_decay\"\n").result;
+                  filtered = support::run_text(support::replaced(rocking, "step = 1e-3", "step = 1e-3\nscheme = \"energy_decay\"")).result;
   ASSERT_EQ(plain.status, RunStatus::completed) << plain.reason;
   ASSERT_EQ(filtered.status, RunStatus::completed) << filtered.reason;
   EXPECT_LE(filtered.counts.iterations, plain.counts.iterations);
