@@ -324,6 +324,10 @@ bool Stepper::try_step(Level& level) {
         const int points = block.batch.points, first = block.first + c * points;
         const double *end = solution.end_traction.data() + first, *force = solution.force.data() + first, *area = block.area.data();
         double *at_end = next_.force.data() + first, *mean = next_.mean_force.data() + first;
+        if (points == 1) {
+          *at_end = *end * *area, *mean = to_mean * *force;
+          continue;
+        }
         for_lanes(points, [=](const auto& at) {
           at.put(at_end, at(end) * at(area));
           at.put(mean, to_mean * at(force));

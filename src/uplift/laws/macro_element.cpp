@@ -74,7 +74,6 @@ class MacroElement::Path {
 
  private:
   bool go(double a, double b, int depth);
-  void go_elastically(const MacroVector& before, const MacroReturned& now);
   void add_average(double a, double b, const MacroVector& before, const MacroMatrix& before_slope, const MacroElastic& at_before,
                    const MacroReturned& now, const MacroMatrix& now_slope, const MacroVector& yielded);
 
@@ -93,10 +92,6 @@ bool MacroElement::Path::go(double a, double b, int depth) {
   if (!now.converged) {
     const double middle = 0.5 * (a + b);
     return depth < most_halvings && go(a, middle, depth + 1) && go(middle, b, depth + 1);
-  }
-  if (a == 0 && b == 1 && !now.yielded && now.at.contact) {
-    go_elastically(before, now);
-    return true;
   }
   const MacroElastic at_before = law_->uplift_.respond(before, false);
   const MacroMatrix one = MacroMatrix::Identity(), before_slope = a * one - plastic_slope_;
@@ -118,22 +113,12 @@ bool MacroElement::Path::go(double a, double b, int depth) {
   return true;
 }
 
-/// The whole step without yielding, in contact at its end: nothing but the potential.
-void MacroElement::Path::go_elastically(const MacroVector& before, const MacroReturned& now) {
-  end = now.at.force;
-  end_slope = now.at.stiffness;
-  if (!average_) return;
-  const MacroUplift::Average average = law_->uplift_.average(before, law_->uplift_.respond(before, false), now.elastic, now.at, false);
-  mean = average.force;
-  mean_slope = average.by_to;
-}
-
 /// Adds the discrete gradient of the increment. Where the average over a long increment would feed energy in (a reversal while N changes
 /// much), it is raised along the increment until nothing is dissipated.
 void MacroElement::Path::add_average(double a, double b, const MacroVector& before, const MacroMatrix& before_slope,
                                      const MacroElastic& at_before, const MacroReturned& now, const MacroMatrix& now_slope,
                                      const MacroVector& yielded) {
-  MacroUplift::Average average = law_->uplift_.average(before, at_before, now.elastic, now.at);
+  MacroAverage<5> average = law_->uplift_.average(before, at_before, now.elastic, now.at);
   MacroMatrix slope = average.by_from * before_slope + average.by_to * now_slope;
   const double share = b - a;
   const double dissipated = average.force.dot(yielded);
@@ -161,11 +146,79 @@ int MacroElement::num_history(int components) const {
   return (components == 6 ? 5 : 3) + num_scalars;
 }
 
+/// The whole step without yielding, in contact at its end: nothing but the potential, in as many variables as the point has. False where it
+/// is not so. R: axes of rocking.
+template <int R>
+bool MacroElement::go_elastically(bool average, const Rows& rows, const double* from, const double* to, const double* old,
+                                  const LawResponse& response) const {
+  constexpr int normal = R, rotation[2] = {R == 1 ? 2 : 4, 3}, components = R == 1 ? 3 : 6;  // rows of the point
+  using Part = Fixed<1 + R, 1>;
+  const auto part = [&](const double* q) {
+    Part e;
+    e[0] = old[rows.at(normal)] - q[rows.at(normal)];
+    for (int i = 0; i < R; ++i) e[1 + i] = q[rows.at(rotation[i])] - old[rows.at(rotation[i])];
+    return e;
+  };
+  const auto shear = [&](const double* q, int i) { return uplift_.stiffness()[macro_h1 + i] * (q[rows.at(i)] - old[rows.at(i)]); };
+  const Part after = part(to);
+  const MacroRocking<R> end = uplift_.rock<R>(after, response.slope != nullptr || response.next != nullptr);
+  if (!end.contact) return false;
+  if (surfaces_.has_bearing() || surfaces_.has_sliding()) {
+    MacroVector force = MacroVector::Zero();
+    force[macro_n] = end.force[0];
+    for (int i = 0; i < R; ++i) force[macro_h1 + i] = shear(to, i), force[macro_m1 + i] = end.force[1 + i];
+    if (!macro_holds(surfaces_, force, old[rows.at(components == 3 ? 3 : 5)])) return false;
+  }
+  const auto put = [&](const Part& force, double before, double behind, double* out) {  // shares of the shear at either end
+    out[rows.at(normal)] = -force[0];
+    for (int i = 0; i < R; ++i) out[rows.at(rotation[i])] = force[1 + i];
+    for (int i = 0; i < R; ++i) out[rows.at(i)] = behind * shear(to, i) + (before > 0 ? before * shear(from, i) : 0);
+  };
+  const auto put_slope = [&](const Fixed<1 + R, 1 + R>& k, double factor, double share, double* out) {
+    for (int r = 0; r < components; ++r)
+      for (int c = 0; c < components; ++c) out[rows.at(r, c)] = 0;
+    out[rows.at(normal, normal)] = factor * k(0, 0);
+    for (int i = 0; i < R; ++i) {
+      out[rows.at(i, i)] = share * uplift_.stiffness()[macro_h1 + i];
+      out[rows.at(normal, rotation[i])] = -factor * k(0, 1 + i);
+      out[rows.at(rotation[i], normal)] = -factor * k(1 + i, 0);
+      for (int j = 0; j < R; ++j) out[rows.at(rotation[i], rotation[j])] = factor * k(1 + i, 1 + j);
+    }
+  };
+  if (average) {
+    const Part before = part(from);
+    const MacroRocking<R> begin = uplift_.rock<R>(before, false);
+    const MacroAverage<1 + R> mean = uplift_.average<R>(before, begin, after, end, false);
+    put(mean.force, begin.contact ? 0.5 : 0, 0.5, response.traction);
+    if (response.slope != nullptr) put_slope(mean.by_to, 1, 0.5, response.slope);
+  } else {
+    put(end.force, 0, 1, response.traction);
+    if (response.slope != nullptr) put_slope(end.stiffness, 1, 1, response.slope);
+  }
+  if (response.end != nullptr) put(end.force, 0, 1, response.end);
+  if (response.next != nullptr) put_slope(end.stiffness, 0.5, 0.5, response.next);
+  if (response.now != nullptr)
+    for (int k = 0; k < rows.count + num_scalars; ++k) response.now[rows.at(k)] = old[rows.at(k)];
+  return true;
+}
+
+void MacroElement::put_torsion(bool average, const Rows& rows, const double* from, const double* to, const LawResponse& response) const {
+  const int last = rows.at(rows.components - 1);
+  response.traction[last] = torsion_ * (average ? 0.5 * (from[last] + to[last]) : to[last]);
+  if (response.slope != nullptr) rows.put_torsion(average ? 0.5 * torsion_ : torsion_, response.slope);
+  if (response.end != nullptr) response.end[last] = torsion_ * to[last];
+  if (response.next != nullptr) rows.put_torsion(0.5 * torsion_, response.next);
+}
+
 void MacroElement::advance(bool average, const Batch& batch, const double* from, const double* to, const double* old,
                            const LawResponse& response) const {
   const int n = batch.points;
   for (int i = 0; i < n; ++i) {
     const Rows rows(n, i, batch.components);
+    if (rows.has_torsion()) put_torsion(average, rows, from, to, response);
+    if (rows.has_torsion() ? go_elastically<2>(average, rows, from, to, old, response)
+                           : go_elastically<1>(average, rows, from, to, old, response))
+      continue;
     double scalars[num_scalars];
     for (int k = 0; k < num_scalars; ++k) scalars[k] = old[(rows.count + k) * n + i];
     // summed up within the step first: thousands of sub-steps would each be rounded to the digits of the whole
@@ -189,12 +242,6 @@ void MacroElement::advance(bool average, const Batch& batch, const double* from,
       rows.put(path.plastic, response.now);
       for (int k = 0; k < num_scalars; ++k) response.now[(rows.count + k) * n + i] = path.memory[k];
     }
-    if (!rows.has_torsion()) continue;
-    const int last = rows.at(batch.components - 1);
-    response.traction[last] = torsion_ * (average ? 0.5 * (from[last] + to[last]) : to[last]);
-    if (response.slope != nullptr) rows.put_torsion(average ? 0.5 * torsion_ : torsion_, response.slope);
-    if (response.end != nullptr) response.end[last] = torsion_ * to[last];
-    if (response.next != nullptr) rows.put_torsion(0.5 * torsion_, response.next);
   }
 }
 
@@ -207,11 +254,16 @@ void MacroElement::mean(const Batch& batch, const double* from, const double* to
   advance(true, batch, from, to, old, response);
 }
 
+/// Forces without stiffness.
+MacroElastic MacroElement::respond_without_yielding(const Rows& rows, const MacroVector& elastic) const {
+  return rows.has_torsion() ? uplift_.respond<2>(elastic, false) : uplift_.respond<1>(elastic, false);
+}
+
 void MacroElement::energy(const Batch& batch, const double* opening, const double* history, double* stored, double* dissipated) const {
   for (int i = 0; i < batch.points; ++i) {
     const Rows rows(batch.points, i, batch.components);
     if (stored != nullptr) {
-      const MacroElastic at = uplift_.respond(rows.get(opening) - rows.get(history), false);
+      const MacroElastic at = respond_without_yielding(rows, rows.get(opening) - rows.get(history));
       const double twist = rows.has_torsion() ? opening[rows.at(batch.components - 1)] : 0;
       stored[i] = at.energy + at.shear_energy + 0.5 * torsion_ * twist * twist;
     }
@@ -230,11 +282,11 @@ FootingContact MacroElement::contact(const Batch& batch, const double* opening, 
   const MacroVector elastic = rows.get(opening) - rows.get(history);
   const MacroElasticity& ground = uplift_.elasticity();
   const double one = ground.length[0] * std::abs(elastic[macro_m1]), two = ground.length[1] * std::abs(elastic[macro_m2]);
-  const double edge = 0.5 * (ground.disc ? std::hypot(one, two) : one + two), toe = elastic[macro_n] + edge;
-  const MacroElastic at = uplift_.respond(elastic, false);
+  const double edge = 0.5 * (ground.disc ? std::sqrt(one * one + two * two) : one + two), toe = elastic[macro_n] + edge;
+  const MacroElastic at = respond_without_yielding(rows, elastic);
   const double open = 1 - at.contact_share;
   // what has lifted off is straight: its slope is the rotation
-  FootingContact made{open, at.contact ? open * std::hypot(one, two) : edge - elastic[macro_n], -toe};
+  FootingContact made{open, at.contact ? open * std::sqrt(one * one + two * two) : edge - elastic[macro_n], -toe};
   if (surfaces_.has_bearing()) {
     made.bearing_capacity = surfaces_.capacity(history[rows.count + memory_settlement]);
     made.bearing_utilisation = std::min(1.0, surfaces_.bearing_utilisation(at.force, made.bearing_capacity));
@@ -246,7 +298,7 @@ FootingContact MacroElement::contact(const Batch& batch, const double* opening, 
 MacroState MacroElement::state(int components, const double* opening, const double* history) const {
   const Rows rows(1, 0, components);
   const MacroVector plastic = rows.get(history);
-  const MacroElastic at = uplift_.respond(rows.get(opening) - plastic, false);
+  const MacroElastic at = respond_without_yielding(rows, rows.get(opening) - plastic);
   const double* scalars = history + rows.count;
   return {.vertical = at.force[macro_n],
           .heave = at.heave,

@@ -52,6 +52,10 @@ class MacroElement final : public InterfaceLaw {
  private:
   struct Rows;
   class Path;
+  template <int R>
+  bool go_elastically(bool average, const Rows&, const double* from, const double* to, const double* old, const LawResponse&) const;
+  MacroElastic respond_without_yielding(const Rows&, const MacroVector& elastic) const;
+  void put_torsion(bool average, const Rows&, const double* from, const double* to, const LawResponse&) const;
   void advance(bool average, const Batch&, const double* from, const double* to, const double* old, const LawResponse&) const;
 
   MacroUplift uplift_;

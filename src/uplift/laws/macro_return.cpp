@@ -12,6 +12,20 @@ namespace {
 constexpr double yield_tolerance = 1e-12;  // of V
 constexpr int size_most = 7;
 
+/// V, or a force where V is infinite [N].
+double scale_of(const MacroSurfaces& surfaces, const MacroVector& force, double settlement) {
+  const double v = surfaces.capacity(settlement);
+  return std::isfinite(v) ? v : std::max(force.head<3>().cwiseAbs().maxCoeff(), 1e-300);
+}
+
+/// `scale`: of the tolerance [N].
+bool within_bearing(const MacroSurfaces& surfaces, const MacroVector& force, double v, double scale, double tolerance) {
+  return !surfaces.has_bearing() || surfaces.bearing_value(force, v) <= tolerance * yield_tolerance * scale;
+}
+bool within_sliding(const MacroSurfaces& surfaces, const MacroVector& force, double scale, double tolerance) {
+  return !surfaces.has_sliding() || surfaces.sliding(force).value <= tolerance * yield_tolerance * scale;
+}
+
 /// The surfaces that are taken to yield.
 enum Active { bearing_only = 1, sliding_only = 2, both = 3 };
 
@@ -23,8 +37,7 @@ class Return {
   Return(const MacroUplift& uplift, const MacroSurfaces& surfaces, const MacroVector& trial, const MacroElastic& at, double settlement,
          bool every_guess)
       : uplift_(uplift), surfaces_(surfaces), trial_(trial), settlement_(settlement), every_guess_(every_guess) {
-    const double v = surfaces.capacity(settlement);
-    scale_ = std::isfinite(v) ? v : std::max(at.force.head<3>().cwiseAbs().maxCoeff(), 1e-300);
+    scale_ = scale_of(surfaces, at.force, settlement);
     const MacroElasticity& e = uplift.elasticity();
     row_scale_ = uplift.stiffness() / scale_;
     row_scale_[macro_m1] /= e.length[0];
@@ -50,10 +63,10 @@ class Return {
   double capacity(const MacroVector& e) const { return surfaces_.capacity(settlement_ + std::abs(plastic_settlement(e))); }
 
   bool within_bearing(const MacroVector& force, double v, double tolerance) const {
-    return !surfaces_.has_bearing() || surfaces_.bearing_value(force, v) <= tolerance * yield_tolerance * scale_;
+    return uplift::within_bearing(surfaces_, force, v, scale_, tolerance);
   }
   bool within_sliding(const MacroVector& force, double tolerance) const {
-    return !surfaces_.has_sliding() || surfaces_.sliding(force).value <= tolerance * yield_tolerance * scale_;
+    return uplift::within_sliding(surfaces_, force, scale_, tolerance);
   }
   bool evaluate(State& state) const;
   bool newton(State& state) const;
@@ -278,6 +291,11 @@ void Return::solve(MacroReturned& out) {
 }
 
 }  // namespace
+
+bool macro_holds(const MacroSurfaces& surfaces, const MacroVector& force, double settlement) {
+  const double scale = scale_of(surfaces, force, settlement);
+  return within_bearing(surfaces, force, surfaces.capacity(settlement), scale, 1) && within_sliding(surfaces, force, scale, 1);
+}
 
 MacroReturned macro_return(const MacroUplift& uplift, const MacroSurfaces& surfaces, const MacroVector& trial, double settlement,
                            bool every_guess) {

@@ -14,6 +14,9 @@ struct MacroReturned {
   MacroVector by_settlement = MacroVector::Zero();  // d e/d p at the beginning
 };
 
+/// Whether a force N > 0 lies within the surfaces, at the accumulated plastic settlement [m].
+bool macro_holds(const MacroSurfaces& surfaces, const MacroVector& force, double settlement);
+
 /// Solves, with the accumulated plastic settlement p [m] at the beginning,
 ///     e + lambda_2 n_2 + lambda_1 n_1 = e_trial,   f_i <= 0,  lambda_i >= 0,  lambda_i f_i = 0,   V = V(p + |e_trial,w - e_w|)
 /// A footing without contact forgets its shear: e_u = 0 then. Not converged: the increment is to be cut.

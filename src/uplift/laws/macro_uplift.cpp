@@ -8,79 +8,93 @@ namespace uplift {
 namespace {
 
 constexpr int most_iterations = 100;
-constexpr double quadratic = 1e-8;  // relative: after a step of Newton's method so small the error is round-off
+// relative: after a step so small the error of an iteration of second or fourth order is round-off
+constexpr double quadratic = 1e-8, quartic = 1e-4;
 
-/// The uplift curve of one axis at x = theta/theta_0 (eq M2).
+/// For x > 1.
+MacroRise rise_to(double x, double gamma) {
+  MacroRise rise;
+  if (gamma == 2) {  // the usual case, without logarithms
+    rise.y = std::sqrt(x);
+    rise.log_like = rise.y - 1;
+  } else if (gamma == 1) {  // strips
+    rise.y = x;
+    rise.log_like = std::log(x);
+  } else if (gamma == 3) {
+    rise.y = std::cbrt(x);
+    rise.log_like = 0.5 * (rise.y * rise.y - 1);
+  } else {
+    const double log_y = std::log(x) / gamma, t = (gamma - 1) * log_y;
+    rise.y = std::exp(log_y);
+    rise.log_like = std::abs(t) < 1e-14 ? log_y : std::expm1(t) / t * log_y;
+  }
+  return rise;
+}
+
+/// The uplift curve of one axis at x (eq M2).
 struct Curve {
-  double y = 1;         // x^(1/gamma), 1 before uplift: contact share 1/y
-  double moment;        // m = M/M_0
-  double compliance;    // g'' = d x/d m
-  double slack;         // 1 - 2 M/(N D), distance from the edge
-  double log_like = 0;  // (y^(gamma - 1) - 1)/(gamma - 1); ln y for gamma = 1
-  double heave;         // -h = m x - 2 g
-  double from_edge;     // h + beta x
+  double moment;             // m = M/M_0
+  double compliance = 1;     // g'' = d x/d m
+  double secant;             // x/g''
+  double slack;              // 1 - 2 M/(N D), distance from the edge
+  double contact_share = 1;  // 1/y
+  double log_like = 0;
+  double heave = 0;  // -h = m x - 2 g
+  double from_edge;  // h + beta x
+
+  Curve(double x, const MacroRise& rise, double beta, double gamma) {
+    if (x <= 1) {
+      moment = secant = x;
+      slack = 1 - x / beta;
+      from_edge = beta * x;
+      return;
+    }
+    contact_share = secant = 1 / rise.y;
+    moment = beta - gamma * contact_share;
+    compliance = x * rise.y;
+    slack = gamma / beta * contact_share;
+    log_like = rise.log_like;
+    const double twice_energy = 1 + 2 * gamma * log_like;
+    heave = moment * x - twice_energy;
+    from_edge = twice_energy + gamma * x * contact_share;
+  }
 };
 
 Curve curve(double x, double beta, double gamma) {
-  Curve c;
-  if (x <= 1) {
-    c.moment = x;
-    c.compliance = 1;
-    c.slack = 1 - x / beta;
-    c.heave = 0;
-    c.from_edge = beta * x;
-    return c;
-  }
-  if (gamma == 2) {  // the usual case, without logarithms
-    c.y = std::sqrt(x);
-    c.log_like = c.y - 1;
-  } else if (gamma == 1) {  // strips
-    c.y = x;
-    c.log_like = std::log(x);
-  } else if (gamma == 3) {
-    c.y = std::cbrt(x);
-    c.log_like = 0.5 * (c.y * c.y - 1);
-  } else {
-    const double log_y = std::log(x) / gamma, t = (gamma - 1) * log_y;
-    c.y = std::exp(log_y);
-    c.log_like = std::abs(t) < 1e-14 ? log_y : std::expm1(t) / t * log_y;
-  }
-  c.moment = beta - gamma / c.y;
-  c.compliance = x * c.y;
-  c.slack = gamma / (beta * c.y);
-  const double twice_energy = 1 + 2 * gamma * c.log_like;
-  c.heave = c.moment * x - twice_energy;
-  c.from_edge = twice_energy + gamma * x / c.y;
-  return c;
+  return {x, x <= 1 ? MacroRise() : rise_to(x, gamma), beta, gamma};
+}
+
+/// Writes the stiffness of (w, theta) into that of all displacements.
+template <int N>
+void spread(const Fixed<N, N>& rocking, MacroMatrix& all) {
+  constexpr int at[] = {macro_n, macro_m1, macro_m2};
+  for (int i = 0; i < N; ++i)
+    for (int k = 0; k < N; ++k) all(at[i], at[k]) = rocking(i, k);
 }
 
 }  // namespace
 
 /// What the rotation about each axis brings; a disc has one axis, that of its rotation.
+template <int R>
 struct MacroUplift::Axes {
-  int count = 2;
-  double rotation[2];    // |theta| [rad]
-  double offset[2];      // x N [N]
-  double factor[2];      // (D/alpha)^2/K_r [m/N]
-  MacroVector along[2];  // direction of the rotation
+  int count = R;
+  double rotation[R];                           // |theta| [rad]
+  double offset[R];                             // x N [N]
+  double sign[R];                               // of the rotation
+  Fixed<R, 1> direction = Fixed<R, 1>::Zero();  // of the rotation of a disc
 
-  Axes(const MacroElasticity& e, const MacroVector& q) {
-    along[0].setZero(), along[1].setZero();
-    if (e.disc) {
+  Axes(const MacroUplift& uplift, const double* theta) {
+    if (R == 2 && uplift.elastic_.disc) {
       count = 1;
-      rotation[0] = std::hypot(q[macro_m1], q[macro_m2]);
-      if (rotation[0] > 0) along[0].tail<2>() = q.tail<2>() / rotation[0];
+      rotation[0] = std::sqrt(theta[0] * theta[0] + theta[R - 1] * theta[R - 1]);
+      if (rotation[0] > 0) direction = Eigen::Map<const Fixed<R, 1>>(theta) / rotation[0];
     } else {
-      for (int i = 0; i < 2; ++i) {
-        rotation[i] = std::abs(q[macro_m1 + i]);
-        along[i][macro_m1 + i] = q[macro_m1 + i] < 0 ? -1 : 1;
+      for (int i = 0; i < R; ++i) {
+        rotation[i] = std::abs(theta[i]);
+        sign[i] = theta[i] < 0 ? -1 : 1;
       }
     }
-    for (int i = 0; i < count; ++i) {
-      const double arm = e.length[i] / e.shape;
-      offset[i] = e.rocking[i] * rotation[i] / arm;
-      factor[i] = arm * arm / e.rocking[i];
-    }
+    for (int i = 0; i < count; ++i) offset[i] = uplift.offset_[i] * rotation[i];
   }
 };
 
@@ -92,130 +106,193 @@ MacroUplift::MacroUplift(const MacroElasticity& elasticity)
   second(elastic_.length), second(elastic_.horizontal), second(elastic_.rocking);
   if (elastic_.disc) elastic_.length[1] = elastic_.length[0], elastic_.rocking[1] = elastic_.rocking[0];
   stiffness_ << elastic_.vertical, elastic_.horizontal[0], elastic_.horizontal[1], elastic_.rocking[0], elastic_.rocking[1];
+  for (int i = 0; i < 2; ++i) {
+    arm_[i] = elastic_.length[i] / elastic_.shape;
+    factor_[i] = arm_[i] * arm_[i] / elastic_.rocking[i];
+    offset_[i] = elastic_.rocking[i] / arm_[i];
+  }
 }
 
-/// z - ln z = s, z >= 1: the vertical force of strips. Newton's method from either side (eq M28).
+/// K_z and K_r.
+template <int R>
+Fixed<1 + R, 1> MacroUplift::closed() const {
+  Fixed<1 + R, 1> out;
+  out[0] = elastic_.vertical;
+  for (int i = 0; i < R; ++i) out[1 + i] = elastic_.rocking[i];
+  return out;
+}
+
+/// z - ln z = s, z >= 1: the vertical force of strips (eq M28). Each iteration of Fritsch, Shafer & Crowley raises the error to its fourth
+/// power.
 double MacroUplift::strip_root(double s) {
   const double sigma = std::max(s - 1, 0.0), t = 0.3361 * std::sqrt(0.5 * sigma);
   double z = 1 + sigma + 2 / 0.3361 * t / (1 + t);  // within 0.6 % of the root: after Barry, Culligan-Hensley & Barry 1995
   for (int iteration = 0; iteration < most_iterations && z > 1; ++iteration) {
-    const double next = z * (sigma + std::log(z)) / (z - 1), moved = std::abs(next - z);
-    z = next;
-    if (moved <= quadratic * (z - 1)) break;
+    const double over = z - 1, lacking = over - sigma - std::log(z), q = 2 * over * (over - 2.0 / 3 * lacking);
+    const double moved = z * lacking / over * (q - lacking) / (q - 2 * lacking);
+    z -= moved;
+    if (std::abs(moved) <= quartic * over) break;
   }
   return z;
 }
 
 /// (M27): P N + Q N^(1/gamma) = T, for strips N (P + Q ln(N_1/N)) = T, over the axes that lift. The second one does where the left side at
 /// its offset exceeds the right side.
-double MacroUplift::lifted_force(double w, const Axes& axes) const {
-  const int first = axes.count == 2 && axes.offset[1] > axes.offset[0] ? 1 : 0;
+template <int R>
+double MacroUplift::lifted_force(double w, const Axes<R>& axes, MacroRise* rises) const {
+  const int first = R == 2 && axes.count == 2 && axes.offset[R - 1] > axes.offset[0] ? 1 : 0;
   const double largest = axes.offset[first];
-  double p = 1 / elastic_.vertical, q = 0, toe = w;
-  for (int k = 0; k < axes.count; ++k) {
-    const int i = k == 0 ? first : 1 - first;
-    const double offset = axes.offset[i], factor = axes.factor[i];
+  double p = 1 / elastic_.vertical, q = 0, toe = w, root[R], behind[R];  // offset^(1/gamma), ln(N_1/N_i)
+  int lifting = 0;
+  const auto axis = [&](int k) { return k == 0 ? first : 1 - first; };
+  for (; lifting < axes.count; ++lifting) {
+    const int i = axis(lifting);
+    const double offset = axes.offset[i], factor = factor_[i];
     if (!(offset > 0)) break;
     if (gamma_ == 1) {
-      const double log = k == 0 ? 0 : std::log(largest / offset);
-      if (k > 0 && (p + q * log) * offset <= toe) break;
-      p += 2 * factor * (1 - log), q += 2 * factor;
+      behind[i] = lifting == 0 ? 0 : std::log(largest / offset);
+      if (lifting > 0 && (p + q * behind[i]) * offset <= toe) break;
+      p += 2 * factor * (1 - behind[i]), q += 2 * factor;
     } else {
-      const double root = gamma_ == 2 ? std::sqrt(offset) : std::cbrt(offset);
-      if (k > 0 && p * offset + q * root <= toe) break;
-      p -= factor * beta_ / (gamma_ - 1), q += factor * gamma_ * beta_ / (gamma_ - 1) * offset / root;
+      root[i] = gamma_ == 2 ? std::sqrt(offset) : std::cbrt(offset);
+      if (lifting > 0 && p * offset + q * root[i] <= toe) break;
+      const double each = factor * beta_ / (gamma_ - 1);
+      p -= each, q += each * gamma_ * (gamma_ == 2 ? root[i] : root[i] * root[i]);
     }
     toe += 0.5 * elastic_.length[i] * axes.rotation[i];
   }
-  if (gamma_ == 1) return toe / (q * strip_root(p / q - std::log(toe / (q * largest))));
+  if (gamma_ == 1) {
+    const double z = strip_root(p / q - std::log(toe / (q * largest))), n = toe / (q * z);
+    for (int k = 0; k < lifting; ++k)
+      rises[axis(k)] = {std::max(1.0, axes.offset[axis(k)] / n), std::max(0.0, z - p / q - behind[axis(k)])};
+    return n;
+  }
   if (gamma_ == 2) {
-    const double root = 2 * toe / (q + std::sqrt(std::max(0.0, q * q + 4 * p * toe)));
-    return root * root;
+    const double of_force = 2 * toe / (q + std::sqrt(std::max(0.0, q * q + 4 * p * toe)));
+    for (int k = 0; k < lifting; ++k) {
+      const double y = std::max(1.0, root[axis(k)] / of_force);
+      rises[axis(k)] = {y, y - 1};
+    }
+    return of_force * of_force;
   }
-  double root = toe / q;  // beyond it for p > 0, before it for p < 0: from there Newton's method keeps its side
+  double of_force = toe / q;  // beyond it for p > 0, before it for p < 0: from there Newton's method keeps its side
   for (int iteration = 0; iteration < most_iterations; ++iteration) {
-    const double square = root * root, next = (2 * p * square * root + toe) / (3 * p * square + q), moved = std::abs(next - root);
-    root = next;
-    if (moved <= quadratic * root) break;
+    const double square = of_force * of_force, next = (2 * p * square * of_force + toe) / (3 * p * square + q);
+    const double moved = std::abs(next - of_force);
+    of_force = next;
+    if (moved <= quadratic * of_force) break;
   }
-  return root * root * root;
+  for (int k = 0; k < lifting; ++k) {
+    const double y = std::max(1.0, root[axis(k)] / of_force);
+    rises[axis(k)] = {y, 0.5 * (y * y - 1)};
+  }
+  return of_force * of_force * of_force;
 }
 
 /// N at the settlement w; zero without contact. Shape numbers without a form of their own: Newton's method on (M26), from a force that is
-/// too small on, or from where the tangent leads to one.
-double MacroUplift::vertical_force(double w, const Axes& axes) const {
+/// too small on, or from where the tangent leads to one. `rises`: of the axes that lift; the others are left.
+template <int R>
+double MacroUplift::vertical_force(double w, const Axes<R>& axes, MacroRise* rises) const {
   double toe = w, largest = 0, sum = 0, all = 0;
   for (int i = 0; i < axes.count; ++i) {
     toe += 0.5 * elastic_.length[i] * axes.rotation[i];
     largest = std::max(largest, axes.offset[i]);
-    sum += axes.factor[i] * axes.offset[i], all += axes.factor[i];
+    sum += factor_[i] * axes.offset[i], all += factor_[i];
   }
   if (w > 0 && largest <= elastic_.vertical * w) return elastic_.vertical * w;
   if (!(toe > 0)) return 0;
-  if (gamma_ == 1 || gamma_ == 2 || gamma_ == 3) return lifted_force(w, axes);
+  if (gamma_ == 1 || gamma_ == 2 || gamma_ == 3) return lifted_force(w, axes, rises);
   double n = std::min(elastic_.vertical * toe, sum / all / std::pow(std::max(1.0, 2 * beta_ * sum / toe), gamma_));
   for (int iteration = 0; iteration < most_iterations; ++iteration) {
     double slope = toe, intercept = 1 / elastic_.vertical;  // of the tangent, the slope with its sign changed
     for (int i = 0; i < axes.count; ++i) {
       const Curve c = curve(axes.offset[i] / n, beta_, gamma_);
-      slope -= axes.factor[i] * beta_ * axes.offset[i] / c.y;
-      intercept += axes.factor[i] * (c.from_edge - beta_ * axes.offset[i] / (n * c.y));
+      slope -= factor_[i] * beta_ * axes.offset[i] * c.contact_share;
+      intercept += factor_[i] * (c.from_edge - beta_ * axes.offset[i] / n * c.contact_share);
     }
     const double next = slope > 0 ? slope / intercept : 0.1 * n, moved = std::abs(next - n);
     n = next;
     if (moved <= quadratic * n) break;
   }
+  for (int i = 0; i < axes.count; ++i)
+    if (axes.offset[i] > n) rises[i] = rise_to(axes.offset[i] / n, gamma_);
   return n;
 }
 
-MacroElastic MacroUplift::respond(const MacroVector& q, bool with_stiffness) const {
-  MacroElastic out;
-  const Axes axes(elastic_, q);
-  const double n = vertical_force(q[macro_n], axes);
-  // at rest without load the stiffness is that of the closed base, so that the first load finds something to stand on
-  const bool at_rest = q.cwiseAbs().maxCoeff() == 0;
+template <int R>
+MacroRocking<R> MacroUplift::rock(const Fixed<1 + R, 1>& q, bool with_stiffness, bool at_rest) const {
+  MacroRocking<R> out;
+  const Axes<R> axes(*this, q.data() + 1);
+  MacroRise rises[R];
+  const double n = vertical_force(q[0], axes, rises);
   if (!(n > 0) && !at_rest) {
     out.contact = false;
     out.contact_share = 0;
     return out;
   }
-  out.force[macro_n] = n;
-  out.force.segment<2>(macro_h1) = stiffness_.segment<2>(macro_h1).cwiseProduct(q.segment<2>(macro_h1));
-  out.stiffness.diagonal() << 0, stiffness_[macro_h1], stiffness_[macro_h2], stiffness_[macro_m1], stiffness_[macro_m2];
-  out.shear_energy = 0.5 * out.force.segment<2>(macro_h1).dot(q.segment<2>(macro_h1));
-
-  double toe = q[macro_n], vertical = 1 / elastic_.vertical;  // dw/dN at fixed rotation
-  MacroVector coupling = MacroVector::Zero();                 // -dw/dtheta at fixed N
-  coupling[macro_n] = 1;
+  const bool disc = R == 2 && elastic_.disc;
+  out.force[0] = n;
+  double toe = q[0], vertical = 1 / elastic_.vertical;  // dw/dN at fixed rotation
+  double coupling[1 + R] = {1};                         // -dw/dtheta at fixed N, after 1
+  Fixed<R, R> at_constant_force = Fixed<R, R>::Zero();  // dM/dtheta at fixed N
   for (int i = 0; i < axes.count; ++i) {
-    if (axes.rotation[i] == 0 && !elastic_.disc) continue;
-    const double x = n > 0 ? axes.offset[i] / n : 0, arm = elastic_.length[i] / elastic_.shape, half = 0.5 * elastic_.length[i];
-    const Curve c = curve(x, beta_, gamma_);
-    const double moment = arm * n * c.moment;
-    out.force += moment * axes.along[i];
-    out.heave += axes.factor[i] * n * c.heave;
-    out.contact_share /= c.y;
+    const double x = n > 0 ? axes.offset[i] / n : 0, half = 0.5 * elastic_.length[i];
+    const Curve c(x, rises[i], beta_, gamma_);
+    const double moment = arm_[i] * n * c.moment, lost = arm_[i] * (c.moment - c.secant), along = elastic_.rocking[i] / c.compliance;
+    out.heave += factor_[i] * n * c.heave;
+    out.contact_share *= c.contact_share;
     toe += half * axes.rotation[i] * (1 - c.slack);
-    if (!with_stiffness) continue;
-    vertical += axes.factor[i] * (gamma_ + 1) * c.log_like;
-    coupling -= arm * (x / c.compliance - c.moment) * axes.along[i];
-    const double along = elastic_.rocking[i] / c.compliance;
-    if (elastic_.disc) {
+    vertical += factor_[i] * (gamma_ + 1) * c.log_like;
+    if (disc) {
       const double across = axes.rotation[i] > 0 ? moment / axes.rotation[i] : elastic_.rocking[i];
-      out.stiffness.diagonal().tail<2>().setConstant(across);
-      out.stiffness += (along - across) * axes.along[i] * axes.along[i].transpose();
+      out.force.template tail<R>() = moment * axes.direction;
+      for (int k = 0; k < R; ++k) coupling[1 + k] = lost * axes.direction[k];
+      at_constant_force = (along - across) * axes.direction * axes.direction.transpose();
+      at_constant_force.diagonal().array() += across;
     } else {
-      out.stiffness(macro_m1 + i, macro_m1 + i) = along;
+      out.force[1 + i] = axes.sign[i] * moment;
+      coupling[1 + i] = axes.sign[i] * lost;
+      at_constant_force(i, i) = along;
     }
   }
-  if (with_stiffness) out.stiffness += coupling * coupling.transpose() / vertical;
+  if (with_stiffness) {
+    const double inverse = 1 / vertical;
+    for (int i = 0; i <= R; ++i)
+      for (int k = 0; k <= R; ++k)
+        out.stiffness(i, k) = coupling[i] * coupling[k] * inverse + (i > 0 && k > 0 ? at_constant_force(i - 1, k - 1) : 0);
+  }
   out.energy = 0.5 * n * toe;  // (N w + M theta)/2, homogeneous of degree two
+  return out;
+}
+
+template <int R>
+MacroElastic MacroUplift::respond(const MacroVector& q, bool with_stiffness) const {
+  MacroElastic out;
+  Fixed<1 + R, 1> part;
+  part[0] = q[macro_n];
+  for (int i = 0; i < R; ++i) part[1 + i] = q[macro_m1 + i];
+  // at rest without load the stiffness is that of the closed base, so that the first load finds something to stand on
+  const MacroRocking<R> rocking = rock<R>(part, with_stiffness, q.cwiseAbs().maxCoeff() == 0);
+  out.contact = rocking.contact;
+  out.contact_share = rocking.contact_share;
+  if (!out.contact) return out;
+  out.force[macro_n] = rocking.force[0];
+  out.heave = rocking.heave;
+  out.energy = rocking.energy;
+  for (int i = 0; i < R; ++i) {
+    out.force[macro_m1 + i] = rocking.force[1 + i];
+    out.force[macro_h1 + i] = stiffness_[macro_h1 + i] * q[macro_h1 + i];
+    out.shear_energy += 0.5 * out.force[macro_h1 + i] * q[macro_h1 + i];
+  }
+  if (!with_stiffness) return out;
+  out.stiffness.diagonal() = stiffness_;
+  spread(rocking.stiffness, out.stiffness);
   return out;
 }
 
 /// Every axis that lifts has 1 - 2 |M|/(N D) = (gamma/beta) (N/offset)^(1/gamma).
 bool MacroUplift::beyond_capacity(const MacroVector& q, double capacity) const {
-  const Axes axes(elastic_, q);
+  const Axes<2> axes(*this, q.data() + macro_m1);
   double power = 0, share = capacity;
   for (int i = 0; i < axes.count; ++i) {
     if (!(axes.offset[i] > 0)) continue;
@@ -229,55 +306,77 @@ bool MacroUplift::beyond_capacity(const MacroVector& q, double capacity) const {
 MacroVector MacroUplift::displacement(const MacroVector& force) const {
   MacroVector q = force.cwiseQuotient(stiffness_);
   const double n = force[macro_n];
-  const Axes axes(elastic_, q);  // of a disc: the direction
+  const Axes<2> axes(*this, q.data() + macro_m1);  // of a disc: the direction
   for (int i = 0; i < axes.count; ++i) {
-    const double arm = elastic_.length[i] / elastic_.shape, m = axes.rotation[i] * elastic_.rocking[i] / (arm * n);
+    const double m = axes.offset[i] / n;
     if (!(m > 1)) continue;
-    const double x = std::pow(gamma_ / (beta_ - m), gamma_);
-    q[macro_n] -= axes.factor[i] * n * curve(x, beta_, gamma_).heave;
-    q += (x / m - 1) * axes.rotation[i] * axes.along[i];
+    const double x = std::pow(gamma_ / (beta_ - m), gamma_), more = (x / m - 1) * axes.rotation[i];
+    q[macro_n] -= factor_[i] * n * curve(x, beta_, gamma_).heave;
+    if (elastic_.disc)
+      q.tail<2>() += more * axes.direction;
+    else
+      q[macro_m1 + i] += axes.sign[i] * more;
   }
   return q;
 }
 
-MacroUplift::Average MacroUplift::average(const MacroVector& from, const MacroElastic& at_from, const MacroVector& to,
-                                          const MacroElastic& at_to, bool with_from) const {
-  const MacroVector middle = 0.5 * (from + to);
-  const MacroElastic half = respond(middle);
-  MacroVector step = to - from, mid_force = half.force;
-  step.segment<2>(macro_h1).setZero();  // the shear is linear while in contact: its average is the plain mean below
-  mid_force.segment<2>(macro_h1).setZero();
-
-  Average out;
-  out.force = mid_force;
-  out.by_to = 0.5 * half.stiffness;
-  out.by_to.middleRows<2>(macro_h1).setZero();
+template <int R>
+MacroAverage<1 + R> MacroUplift::average(const Fixed<1 + R, 1>& from, const MacroRocking<R>& at_from, const Fixed<1 + R, 1>& to,
+                                         const MacroRocking<R>& at_to, bool with_from) const {
+  using Part = Fixed<1 + R, 1>;
+  const Part middle = 0.5 * (from + to), step = to - from, stiffness = closed<R>();
+  const MacroRocking<R> half = rock<R>(middle, true, middle.cwiseAbs().maxCoeff() == 0);
+  MacroAverage<1 + R> out{half.force, {}, 0.5 * half.stiffness};
   if (with_from) out.by_from = out.by_to;
-  const MacroVector scaled = stiffness_.cwiseProduct(step);
-  const double square = step.dot(scaled), work = mid_force.dot(step), lacking = at_to.energy - at_from.energy - work;
+  const Part scaled = stiffness.cwiseProduct(step);
+  const double square = step.dot(scaled), work = half.force.dot(step), lacking = at_to.energy - at_from.energy - work;
   const double round_off =
-      16 * std::numeric_limits<double>::epsilon() * (at_to.energy + at_from.energy + mid_force.cwiseProduct(middle).cwiseAbs().sum());
-  if (std::abs(lacking) > round_off && square > 0) {
-    const double share = lacking / square;
-    const MacroVector bend = out.by_to.transpose() * step, twice = 2 * share * scaled;
-    out.force += share * scaled;
-    // derivatives of the share with respect to either end, and of the increment itself
-    const auto add = [&](const MacroVector& difference, double sign, MacroMatrix& by) {
-      MacroVector by_end = (sign * (difference - twice) - bend) / square;
-      by_end.segment<2>(macro_h1).setZero();
-      by += scaled * by_end.transpose();
-      by(macro_n, macro_n) += sign * share * stiffness_[macro_n];
-      by.diagonal().tail<2>() += sign * share * stiffness_.tail<2>();
-    };
-    add(at_to.force - mid_force, 1, out.by_to);
-    if (with_from) add(at_from.force - mid_force, -1, out.by_from);
-  }
-  for (int i = macro_h1; i <= macro_h2; ++i) {
+      16 * std::numeric_limits<double>::epsilon() * (at_to.energy + at_from.energy + half.force.cwiseProduct(middle).cwiseAbs().sum());
+  if (!(std::abs(lacking) > round_off && square > 0)) return out;
+  const double share = lacking / square;
+  const Part bend = out.by_to.transpose() * step, twice = 2 * share * scaled;
+  out.force += share * scaled;
+  // derivatives of the share with respect to either end, and of the increment itself
+  const auto add = [&](const Part& difference, double sign, Fixed<1 + R, 1 + R>& by) {
+    const Part by_end = (sign * (difference - twice) - bend) / square;
+    by += scaled * by_end.transpose();
+    by.diagonal() += sign * share * stiffness;
+  };
+  add(at_to.force - half.force, 1, out.by_to);
+  if (with_from) add(at_from.force - half.force, -1, out.by_from);
+  return out;
+}
+
+MacroAverage<5> MacroUplift::average(const MacroVector& from, const MacroElastic& at_from, const MacroVector& to,
+                                     const MacroElastic& at_to) const {
+  const auto part = [](const MacroVector& v) { return Fixed<3, 1>(v[macro_n], v[macro_m1], v[macro_m2]); };
+  const auto rocking = [&](const MacroElastic& at) {
+    MacroRocking<2> out;
+    out.force = part(at.force);
+    out.energy = at.energy;
+    return out;
+  };
+  const MacroAverage<3> without_shear = average<2>(part(from), rocking(at_from), part(to), rocking(at_to), true);
+  MacroAverage<5> out{MacroVector::Zero(), MacroMatrix::Zero(), MacroMatrix::Zero()};
+  out.force[macro_n] = without_shear.force[0];
+  out.force.tail<2>() = without_shear.force.tail<2>();
+  spread(without_shear.by_from, out.by_from);
+  spread(without_shear.by_to, out.by_to);
+  for (const int i : {macro_h1, macro_h2}) {  // linear while in contact: the plain mean
     out.force[i] = 0.5 * (at_from.force[i] + at_to.force[i]);
-    if (with_from) out.by_from(i, i) = at_from.contact ? 0.5 * stiffness_[i] : 0;
+    out.by_from(i, i) = at_from.contact ? 0.5 * stiffness_[i] : 0;
     out.by_to(i, i) = at_to.contact ? 0.5 * stiffness_[i] : 0;
   }
   return out;
 }
+
+template MacroElastic MacroUplift::respond<1>(const MacroVector&, bool) const;
+template MacroElastic MacroUplift::respond<2>(const MacroVector&, bool) const;
+template MacroRocking<1> MacroUplift::rock<1>(const Fixed<2, 1>&, bool, bool) const;
+template MacroRocking<2> MacroUplift::rock<2>(const Fixed<3, 1>&, bool, bool) const;
+template MacroAverage<2> MacroUplift::average<1>(const Fixed<2, 1>&, const MacroRocking<1>&, const Fixed<2, 1>&, const MacroRocking<1>&,
+                                                 bool) const;
+template MacroAverage<3> MacroUplift::average<2>(const Fixed<3, 1>&, const MacroRocking<2>&, const Fixed<3, 1>&, const MacroRocking<2>&,
+                                                 bool) const;
 
 }  // namespace uplift

@@ -31,6 +31,31 @@ struct MacroElastic {
   double contact_share = 1;                     // of the base
 };
 
+/// The part of w and the rotations about R axes: (w, theta_1) in the plane, (w, theta_1, theta_2) in space. It does not depend on the
+/// shear.
+template <int R>
+struct MacroRocking {
+  bool contact = true;
+  Fixed<1 + R, 1> force = Fixed<1 + R, 1>::Zero();              // N, M_i
+  Fixed<1 + R, 1 + R> stiffness = Fixed<1 + R, 1 + R>::Zero();  // d force/d displacement
+  double energy = 0;                                            // J
+  double heave = 0;                                             // m
+  double contact_share = 1;                                     // of the base
+};
+
+/// Powers of x = theta/theta_0 of one axis, beyond the beginning of its uplift.
+struct MacroRise {
+  double y = 1;         // x^(1/gamma)
+  double log_like = 0;  // (y^(gamma - 1) - 1)/(gamma - 1); ln y for gamma = 1
+};
+
+/// A path average and its derivatives with respect to both ends.
+template <int N>
+struct MacroAverage {
+  Fixed<N, 1> force;
+  Fixed<N, N> by_from, by_to;
+};
+
 /// The foundation without yielding.
 class MacroUplift {
  public:
@@ -39,31 +64,41 @@ class MacroUplift {
   /// K_z, K_h, K_h, K_r, K_r of the foundation in full contact.
   const MacroVector& stiffness() const { return stiffness_; }
 
-  /// Forces from displacements; without contact there are none. The stiffness is left zero where it is not wanted.
+  /// Forces from displacements; without contact there are none. The stiffness is left zero where it is not wanted. R = 1: there is no
+  /// motion but that in the plane (t1, n).
+  template <int R = 2>
   MacroElastic respond(const MacroVector& displacement, bool with_stiffness = true) const;
   /// Whether a vertical force that vanishes at these rotations exceeds V times the product of 1 - 2 |M_i|/(N D_i): V is `capacity` [N].
   bool beyond_capacity(const MacroVector& displacement, double capacity) const;
   /// Displacements from forces with N > 0 and |M| < N D/2 (the derivative of the complementary energy).
   MacroVector displacement(const MacroVector& force) const;
+  /// Forces of (w, theta) alone. `at_rest`: no load and no displacement, neither u; the footing stands on the ground all the same.
+  template <int R>
+  MacroRocking<R> rock(const Fixed<1 + R, 1>& displacement, bool with_stiffness, bool at_rest = false) const;
   /// The path average of the force between two displacements: discrete gradient (M12), so that average . (to - from) is the change of
-  /// energy, and its derivatives with respect to both ends.
-  struct Average {
-    MacroVector force;
-    MacroMatrix by_from, by_to;
-  };
-  /// `with_from`: else by_from has no meaning. The stiffness of `at_from` and `at_to` is not needed.
-  Average average(const MacroVector& from, const MacroElastic& at_from, const MacroVector& to, const MacroElastic& at_to,
-                  bool with_from = true) const;
+  /// energy. The stiffness of `at_from` and `at_to` is not needed.
+  MacroAverage<5> average(const MacroVector& from, const MacroElastic& at_from, const MacroVector& to, const MacroElastic& at_to) const;
+  /// The same for (w, theta); `with_from`: else by_from has no meaning.
+  template <int R>
+  MacroAverage<1 + R> average(const Fixed<1 + R, 1>& from, const MacroRocking<R>& at_from, const Fixed<1 + R, 1>& to,
+                              const MacroRocking<R>& at_to, bool with_from) const;
 
  private:
+  template <int R>
   struct Axes;
-  double vertical_force(double w, const Axes& axes) const;
-  double lifted_force(double w, const Axes& axes) const;
+  template <int R>
+  double vertical_force(double w, const Axes<R>& axes, MacroRise* rises) const;
+  template <int R>
+  double lifted_force(double w, const Axes<R>& axes, MacroRise* rises) const;
+  template <int R>
+  Fixed<1 + R, 1> closed() const;
   static double strip_root(double s);
 
   MacroElasticity elastic_;
   MacroVector stiffness_;
   double beta_, gamma_;
+  // of each axis: D/alpha [m], (D/alpha)^2/K_r [m/N], and N x for a rotation of one [N]
+  double arm_[2], factor_[2], offset_[2];
 };
 
 }  // namespace uplift

@@ -93,6 +93,8 @@ inline void multiply(const Matrix& a, const double* x, double* y) {
         return multiply_fixed<7>(a.data(), x, y);
       case 8:
         return multiply_fixed<8>(a.data(), x, y);
+      case 12:  // two nodes in space
+        return multiply_fixed<12>(a.data(), x, y);
       default:
         break;
     }
@@ -153,10 +155,38 @@ void add_transposed(std::ptrdiff_t n, std::ptrdiff_t m, const double* a, std::pt
 bool cholesky(std::ptrdiff_t n, double* a);
 /// Solves L L^T x = b in place.
 void cholesky_solve(std::ptrdiff_t n, const double* l, double* b);
+/// Solves A x = b in place by Gauss elimination without exchanges of rows, with everything where the compiler knows it; false, with nothing
+/// changed, where a pivot is less than a tenth of the largest number below it.
+template <int N>
+[[gnu::always_inline]] inline bool gauss_solve_in_order(const double* a, double* b) {
+  double m[N * N], x[N];
+  for (int i = 0; i < N * N; ++i) m[i] = a[i];
+  for (int i = 0; i < N; ++i) x[i] = b[i];
+  for (int j = 0; j < N; ++j) {
+    double below = 0;
+    for (int i = j + 1; i < N; ++i) below = larger(below, std::abs(m[j * N + i]));
+    if (!(std::abs(m[j * N + j]) > 0.1 * below)) return false;
+    const double inverse = m[j * N + j] = 1 / m[j * N + j];
+    for (int i = j + 1; i < N; ++i) {
+      const double factor = m[j * N + i] * inverse;
+      for (int k = j + 1; k < N; ++k) m[k * N + i] -= factor * m[k * N + j];
+      x[i] -= factor * x[j];
+    }
+  }
+  for (int j = N; j-- > 0;) {
+    x[j] *= m[j * N + j];
+    for (int i = 0; i < j; ++i) x[i] -= m[j * N + i] * x[j];
+  }
+  for (int i = 0; i < N; ++i) b[i] = x[i];
+  return true;
+}
+
 /// Solves A x = b in place by Gauss elimination with row pivoting; A is destroyed; false when singular. N > 0: a size that the compiler
 /// knows, so that the loops unroll. The pivots are divided by once, while b may still be under way.
 template <int N>
 bool gauss_solve(std::ptrdiff_t size, double* a, double* b) {
+  if constexpr (N > 0)
+    if (gauss_solve_in_order<N>(a, b)) return true;
   const std::ptrdiff_t n = N > 0 ? N : size;
   for (std::ptrdiff_t j = 0; j < n; ++j) {
     std::ptrdiff_t best = j;

@@ -202,27 +202,25 @@ template <int R>
   add_general(block, slope, g, h);
 }
 
-/// The same for one point, under a whole foundation: products of small matrices.
+/// The same for one point, under a whole foundation: products of small matrices, with the rows of C_block side by side.
 template <int R>
 template <int components>
 void Newton<R>::add_point(const Block& block, const double* slope, double* g, double* h) {
   const double* force = solution_.force.data() + block.first;
+  double row[components][most], pull[components][most];  // of C, of k C
   for (Index j = 0; j < r(); ++j) {
-    const double* right = column(j) + block.first;
-    double pull[components], sum = 0;
-    for (int a = 0; a < components; ++a) {
-      pull[a] = 0;
-      for (int b = 0; b < components; ++b) pull[a] += slope[a * components + b] * right[b];
-      sum += right[a] * force[a];
-    }
-    g[j] += sum;
-    for (Index i = 0; i < r(); ++i) {
-      const double* left = column(i) + block.first;
-      double product = 0;
-      for (int a = 0; a < components; ++a) product += left[a] * pull[a];
-      h[j * r() + i] += product;
-    }
+    const double* from = column(j) + block.first;
+    for (int a = 0; a < components; ++a) row[a][j] = from[a];
   }
+  for (int a = 0; a < components; ++a) {
+    for (Index j = 0; j < r(); ++j) pull[a][j] = slope[a * components] * row[0][j];
+    for (int b = 1; b < components; ++b)
+      for (Index j = 0; j < r(); ++j) pull[a][j] += slope[a * components + b] * row[b][j];
+    for (Index j = 0; j < r(); ++j) g[j] += row[a][j] * force[a];
+  }
+  for (Index j = 0; j < r(); ++j)
+    for (int a = 0; a < components; ++a)
+      for (Index i = 0; i < r(); ++i) h[j * r() + i] += row[a][i] * pull[a][j];
 }
 
 /// The same where the slope couples the components: k C_block column by column, and its products with every column.
