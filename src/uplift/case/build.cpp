@@ -102,8 +102,7 @@ void add_method(const Case& read, const RunSpec& spec, BuiltCase& built) {
   bool cone = false;
   for (const Interface& interface : built.model.interfaces) cone = cone || interface.cone != nullptr;
   for (std::size_t k = 0; k < built.model.interfaces.size(); ++k)
-    if (built.model.interfaces[k].footprint)
-      check_foundation(*built.behaviours[k], cone && !spec.bonded, spec.bonded ? nullptr : method);
+    if (built.model.interfaces[k].footprint) check_foundation(*built.behaviours[k], cone && !spec.bonded, spec.bonded ? nullptr : method);
   if (spec.bonded) method = nullptr;
   if (method && cone && method->type() == "newton")
     fail(*method, "", "a method for cones (penalty, augmented_lagrangian, lagrange), or a traction law", "\"newton\" with a cone");

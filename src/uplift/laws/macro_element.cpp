@@ -115,7 +115,7 @@ class MacroElement::Path {
 
   const MacroElement* law_;
   bool average_;
-  int guesses_from_;  // the return tries every first guess after so many halvings
+  int guesses_from_;                 // the return tries every first guess after so many halvings
   MacroVector from_, step_, start_;  // start_: elastic displacement at the beginning
   MacroMatrix plastic_slope_ = MacroMatrix::Zero();
   MacroVector settlement_slope_ = MacroVector::Zero();

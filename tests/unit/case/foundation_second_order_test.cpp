@@ -28,12 +28,13 @@ std::string mast(const std::string& model, double push, const std::string& stage
   return "title = \"mast\"\nbonded = false\n[nodes]\nbase = [0, 0]\ntop = [0, 6]\n[[rigid]]\nname = \"mast\"\nnode = \"base\"\nslaves = "
          "[\"top\"]\n[[mass]]\nnode = \"top\"\nmass = 1e5\ninertia = 1e5\n[[foundation]]\nname = \"soil\"\nbody = \"base\"\nwidth = 4\n"
          "model = { type = \"" +
-         model + "K_v = 1e10, K_h = 1e12, K_r = 1e8 }\n[gravity]\nacceleration = [0, -9.81]\n" +
+         model + ", K_r = 1e8 }\n[gravity]\nacceleration = [0, -9.81]\n" +
          (push > 0 ? fmt::format("[[load]]\nnode = \"top\"\nforce = [{:.17g}, 0]\n", push) : "") + more + stages +
          "[output]\nframes = 0\nenergies = true\n[[output.history]]\nnode = \"base\"\nquantity = \"rz\"\nname = \"rz\"\n"
          "[[output.history]]\ninterface = \"soil\"\nquantity = \"moment\"\nname = \"moment\"\n";
 }
-const std::string elastic = "elastic\", ", element = "macro_element\", shape_number = 4, ";
+const std::string stiff = "K_v = 1e10, K_h = 1e12", elastic = "elastic\", " + stiff, strip = "macro_element\", shape_number = 4, ",
+                  element = strip + stiff, soft = strip + "K_v = 6e8, K_h = 3e8";
 
 TEST(FoundationSecondOrder, TheLeanIsThatOfTheReducedStiffness) {
   const double push = 5e4, turned = push * height / (rocking - weight * height);
@@ -66,7 +67,8 @@ TEST(FoundationSecondOrder, ItOverturnsUnderAReducedMoment) {
   const double largest = 0.5 * weight * width * (1 - std::sqrt(weight * height / rocking)) / height;
   EXPECT_EQ(support::run_text(mast(element, 0.99 * largest, second_order)).result.status, RunStatus::completed);
   EXPECT_EQ(support::run_text(mast(element, 1.01 * largest, second_order)).result.status, RunStatus::failed);
-  EXPECT_EQ(support::run_text(mast(element, 1.01 * largest, "[[stage]]\ntype = \"static\"\nsteps = 2\n")).result.status, RunStatus::completed);
+  EXPECT_EQ(support::run_text(mast(element, 1.01 * largest, "[[stage]]\ntype = \"static\"\nsteps = 2\n")).result.status,
+            RunStatus::completed);
 }
 
 // Free rocking in full contact: omega^2 = (K_r - W h)/(m h^2 + I), theta = v/(h omega) sin(omega t).
@@ -87,15 +89,15 @@ TEST(FoundationSecondOrder, RocksWithTheReducedStiffness) {
 // With uplift and yielding the ledger of a dynamic stage of second order closes at any step, with both schemes.
 TEST(FoundationSecondOrder, TheLedgerClosesWithUpliftAndYielding) {
   const std::string pushed = "[[initial]]\nnode = \"top\"\nvelocity = [0.9, 0]\n[[initial]]\nnode = \"base\"\nvelocity = [0, 0]\n";
-  for (const std::string& model : {element, element + "V_s = 3e6, "})
+  for (const std::string& model : {soft, soft + ", V_s = 3e6, friction_angle = \"35 deg\""})
     for (const char* scheme : {"average_acceleration", "energy_decay"})
       for (const char* step : {"1e-3", "10e-3"}) {
         const Ran ran = support::run_text(mast(model, 0, second_order + dynamic(step, scheme), pushed));
         SCOPED_TRACE(model + scheme + step);
         ASSERT_EQ(ran.result.status, RunStatus::completed) << ran.result.reason;
-        EXPECT_GT(ran.result.max_uplifted_ratio.value, 0.3);
+        EXPECT_GT(ran.result.max_uplifted_ratio.value, 0.1);
         EXPECT_LT(std::abs(ran.result.final_energy.residual), 1e-10 * ran.result.energy_scale);
-        if (model != element) EXPECT_GT(ran.result.final_energy.interface_dissipated, 0.01 * ran.result.energy_scale);
+        if (model != soft) EXPECT_GT(ran.result.final_energy.interface_dissipated, 0.01 * ran.result.energy_scale);
       }
 }
 

@@ -19,8 +19,9 @@ class Filtered {
   }
 
   const Numbers& mean(const Numbers& to) {
-    footing.law.mean(batch_, footing.opening.data(), to.data(), footing.memory.data(),
-                     {footing.force.data(), footing.slope.data(), footing.now.data(), footing.end.data(), footing.next.data(), plain.data()});
+    footing.law.mean(
+        batch_, footing.opening.data(), to.data(), footing.memory.data(),
+        {footing.force.data(), footing.slope.data(), footing.now.data(), footing.end.data(), footing.next.data(), plain.data()});
     return footing.force;
   }
 
@@ -53,7 +54,6 @@ class Filtered {
 
   bool contact() const { return contact_; }
   double stored() const { return before_; }
-  const Matrix& coefficient() const { return c_; }
   const Vector& lag() const { return lag_; }
 
   Footing footing;
@@ -125,7 +125,8 @@ TEST(MacroElementFilter, OnlyDissipatesOnRandomPaths) {
         work += f.force[r] * (to[r] - f.opening[r]);
         size += std::abs(f.force[r] * (to[r] - f.opening[r]));
       }
-      const double before = f.stored(f.opening, f.memory), after = f.stored(to, f.now), yielded = f.dissipated(f.now) - f.dissipated(f.memory);
+      const double before = f.stored(f.opening, f.memory), after = f.stored(to, f.now),
+                   yielded = f.dissipated(f.now) - f.dissipated(f.memory);
       const bool contact = filtered.contact();
       if (contact) EXPECT_LE(pulling(f.force, p.elasticity), std::max(0.0, pulling(filtered.plain, p.elasticity)) + 1e-3) << k;  // N
       const auto [more, lost] = filtered.accept(to);
@@ -260,7 +261,8 @@ TEST(MacroElementFilter, IsThatOfSpringsWhileNothingLifts) {
       for (std::size_t r = 0; r < n; ++r) {
         const double step = to[r] - at[r];
         expected[r] = k[r] * (0.5 * (at[r] + to[r]) + gain * (step - remembered[r]));
-        EXPECT_NEAR(filtered.footing.force[r], expected[r], 1e-12 * std::abs(expected[r]) + 1e-12 * k[r] * (r <= normal ? 1e-2 : 1e-3)) << r;
+        EXPECT_NEAR(filtered.footing.force[r], expected[r], 1e-12 * std::abs(expected[r]) + 1e-12 * k[r] * (r <= normal ? 1e-2 : 1e-3))
+            << r;
         remembered[r] = pole * remembered[r] + (1 - pole) * step;
       }
       filtered.accept(to);
