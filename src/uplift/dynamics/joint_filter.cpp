@@ -36,7 +36,7 @@ JointFilter::JointFilter(const Model& model, const Behaviours& behaviours, const
   for (const Block& block : blocks_) {
     if (block.batch.rotations > 0) {
       const int n = block.batch.components;
-      footings_.push_back({block.law, block.first, block.first_history, n, Vector::Zero(n), Vector::Zero(n), Matrix::Zero(n, n)});
+      footings_.push_back({block.law, block.first, block.first_history, n, Rows::Zero(n), Rows::Zero(n), Square::Zero(n, n)});
       slopes += block.slopes();
       continue;
     }
@@ -99,20 +99,31 @@ void JointFilter::begin(const State& now, double shrink, JointFilterInput& input
                 [&](const auto& at) { beginning.put(at, at(contact), at(tangent), at(before), shrink * at(filtered), coefficient, lag); });
     }
   }
-  for (Footing& footing : footings_) begin_footing(footing, now, shrink, input);
+  for (Footing& footing : footings_) {
+    look(footing, now);
+    begin_footing(footing, now, shrink, input);
+  }
 }
 
-/// C = b * slope of the law at its elastic openings. What the filter remembers is scaled down where it would store more with the new C.
+/// Elastic openings and C = b * slope of the law there.
+void JointFilter::look(Footing& footing, const State& now) const {
+  footing.law->elastic(footing.components, now.opening.data() + footing.first, now.history.data() + footing.first_history,
+                       footing.elastic.data(), footing.coefficient.data());
+  footing.coefficient *= gain_;
+}
+
+/// After look(): what the filter remembers is scaled down where it would store more with the new C.
 void JointFilter::begin_footing(Footing& footing, const State& now, double shrink, JointFilterInput& input) const {
   const int first = footing.first, n = footing.components;
-  footing.law->elastic(n, now.opening.data() + first, now.history.data() + footing.first_history, footing.elastic.data(),
-                       footing.coefficient.data());
-  footing.coefficient *= gain_;
   footing.lag = shrink * now.filter.opening.segment(first, n);
-  const double stored = now.filter.coefficient[first], wanted = footing.lag.dot(footing.coefficient * footing.lag);
-  if (wanted > stored) footing.lag *= std::sqrt(stored / wanted);
+  Rows pull = footing.coefficient * footing.lag;
+  const double stored = now.filter.coefficient[first], wanted = footing.lag.dot(pull);
+  if (wanted > stored) {
+    const double scale = std::sqrt(stored / wanted);
+    footing.lag *= scale, pull *= scale;
+  }
   input.coefficient.segment(first, n).setConstant(footing.coefficient.isZero(0) ? -1 : 1);
-  input.lag.segment(first, n) = footing.coefficient * footing.lag;
+  input.lag.segment(first, n) = pull;
 }
 
 /// The same as for the rows of other points with the matrix C instead of c and the elastic increment; returns the dissipation less what the
@@ -120,20 +131,18 @@ void JointFilter::begin_footing(Footing& footing, const State& now, double shrin
 double JointFilter::end_footing(Footing& footing, const InterfaceSolution& solution, double to_mean, const State& now, State& next,
                                 JointFilterInput& input) const {
   const int first = footing.first, n = footing.components;
-  const Vector added = to_mean * solution.force.segment(first, n) - solution.plain.segment(first, n);  // N, N m
-  const bool contact = !footing.coefficient.isZero(0);
+  const Footing of_step = footing;
+  look(footing, next);
+  const Rows added = to_mean * solution.force.segment(first, n) - solution.plain.segment(first, n);  // N, N m
   double dissipated = 0, stored = 0;
-  Vector filtered = Vector::Zero(n);
-  if (contact) {
-    Vector elastic(n);
-    Matrix slope(n, n);
-    footing.law->elastic(n, next.opening.data() + first, next.history.data() + footing.first_history, elastic.data(), slope.data());
-    const Vector increment = elastic - footing.elastic, ahead = increment - footing.lag;
-    const double whole = ahead.dot(footing.coefficient * ahead), taken = added.dot(ahead);
+  Rows filtered = Rows::Zero(n);
+  if (input.coefficient[first] > 0) {
+    const Rows increment = footing.elastic - of_step.elastic, ahead = increment - of_step.lag;
+    const double whole = ahead.dot(of_step.coefficient * ahead), taken = added.dot(ahead);
     const double kept = whole > 0 && taken < (1 - 1e-6) * whole ? larger(taken / whole, 0.0) : 1;  // theta
-    filtered = pole_ * footing.lag + (1 - pole_) * increment;
-    stored = kept * filtered.dot(footing.coefficient * filtered);
-    dissipated = kept * (0.5 * (1 + pole_) * whole - 0.5 / (1 - pole_) * footing.lag.dot(footing.coefficient * footing.lag));
+    filtered = pole_ * of_step.lag + (1 - pole_) * increment;
+    stored = kept * filtered.dot(of_step.coefficient * filtered);
+    dissipated = kept * (0.5 * (1 + pole_) * whole - 0.5 / (1 - pole_) * of_step.lag.dot(of_step.coefficient * of_step.lag));
   } else {
     dissipated = added.dot(solution.opening.segment(first, n) - now.opening.segment(first, n));
   }

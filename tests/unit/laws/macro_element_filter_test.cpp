@@ -37,6 +37,7 @@ class Filtered {
       footing.law.elastic(static_cast<int>(n), to.data(), footing.now.data(), elastic.data(), slope.data());
       const Vector step = elastic - elastic_, y = c_ * (step - lag_);
       share = y.squaredNorm() > 0 ? (step - lag_).dot(added) / (step - lag_).dot(y) : 1;
+      clear = y.norm() > 1e-8 * force.norm();
       for (Index r = 0; r < n; ++r) EXPECT_NEAR(added[r], share * y[r], 1e-8 * (std::abs(force[r]) + std::abs(y[r])) + 1e-6) << "one theta";
       remembered = pole * lag_ + (1 - pole) * step;
       lost = share * 0.5 * (1 + pole) * (step - lag_).dot(y);
@@ -58,7 +59,8 @@ class Filtered {
 
   Footing footing;
   Numbers plain;
-  double share = 1;  // theta
+  double share = 1;    // theta
+  bool clear = false;  // theta y is more than the round-off of the forces
 
  private:
   static Vector vector(const Numbers& values) { return Eigen::Map<const Vector>(values.data(), static_cast<Index>(values.size())); }
@@ -135,7 +137,7 @@ TEST(MacroElementFilter, OnlyDissipatesOnRandomPaths) {
       EXPECT_GE(lost, -round_off) << k;
       EXPECT_GE(filtered.stored(), 0) << k;
       EXPECT_NEAR(work, after - before + yielded + more + lost, 100 * round_off) << k << ' ' << i;
-      if (contact) EXPECT_TRUE(filtered.share >= -1e-9 && filtered.share <= 1 + 1e-6) << filtered.share;
+      if (contact && filtered.clear) EXPECT_TRUE(filtered.share >= -1e-6 && filtered.share <= 1 + 1e-6) << filtered.share;
       ++steps, landed += !contact && filtered.contact(), lifted += contact && !filtered.contact();
       shortened += contact && filtered.share < 0.999;
     }
