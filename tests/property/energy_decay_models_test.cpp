@@ -1,5 +1,5 @@
 // The scheme of filtered energy decay in random models: the energy balance closes under prescribed motion, on yielding soil, with Coulomb
-// friction in space and with P-Delta, for joints from k F_ii = 1e-2 to 1e3.
+// friction in space, on whole foundations and with P-Delta, for joints from k F_ii = 1e-2 to 1e3.
 #include <fmt/format.h>
 #include <gtest/gtest.h>
 
@@ -90,11 +90,14 @@ void check_models(const char* title, int count, double limit, const std::functio
     const Ran ran = run_with(drawn, guess * drawn.ratio / run_with(drawn, guess, true).ratio, false);
     const RunResult& result = ran.result;
     EXPECT_NEAR(ran.ratio, drawn.ratio, 1e-3 * drawn.ratio);
-    double residual = 0, least = 0, previous = 0;
+    double residual = 0, least = 0, previous = 0, before = 0;
     for (const double value : column(result, "energy.residual")) residual = std::max(residual, std::abs(value));
     for (const double value : column(result, "energy.algorithmic")) least = std::min(least, value - previous), previous = value;
     EXPECT_LE(residual, limit * result.energy_scale) << to_string(result.status) << ": " << result.reason;
     EXPECT_GE(least, -1e-13 * result.energy_scale) << "the filters only dissipate";
+    least = 0, before = 0;
+    for (const double value : column(result, "energy.interface_dissipated")) least = std::min(least, value - before), before = value;
+    EXPECT_GE(least, -1e-13 * result.energy_scale) << "the joint only dissipates";
     completed += result.status == RunStatus::completed;
     uplifted += result.max_uplifted_ratio.value > 0.1;
     worst = std::max(worst, residual / result.energy_scale);
@@ -111,8 +114,26 @@ void check_models(const char* title, int count, double limit, const std::functio
 
 // ---- a tower on a footing in space ----
 
-/// Three pulses within the first 400 steps.
-Drawn tower_in_space(Draw& draw, bool p_delta, int steps = 400) {
+/// A foundation with the vertical stiffness k [N/m]: uplift alone or yielding and sliding, every plan, surface and flow.
+std::string foundation(Draw& draw, double k, double width, double length, double weight) {
+  const bool disc = draw.chance(0.3);
+  std::string text = fmt::format("[[foundation]]\nname = \"soil\"\nbody = \"base\"\nwidth = {:.6g}\n{}", width,
+                                 disc ? "shape = \"disc\"\n" : fmt::format("length = {:.6g}\n", length));
+  text += fmt::format("model = {{ type = \"macro_element\", shape_number = {}, K_v = {:.6g}, K_h = {:.6g}, K_r = {:.6g}, K_t = {:.6g}",
+                      draw.of({"4", "6", "8", "5.3"}), k, k * draw.uniform(0.3, 1.2), k * width * width / 12 * draw.uniform(0.8, 3),
+                      k * width * width / 8);
+  if (!disc) text += fmt::format(", K_r2 = {:.6g}", k * length * length / 12 * draw.uniform(0.8, 3));
+  if (draw.chance(0.3)) return text + " }\n";
+  text += fmt::format(", V_s = {:.6g}", weight * draw.uniform(2, 6));
+  const char* more = draw.of({"", "", ", surface = \"power_law\", a = 0.5, b = 0.5, c = 0.9, d = 0.9, e = 0.9, f = 0.9",
+                              ", surface = \"en_1998_5\", soil_type = \"cohesive\""});
+  if (*more == 0 && draw.chance(0.3)) more = ", flow = \"associated\"";
+  if (draw.chance(0.7)) text += fmt::format(", friction_angle = {:.3g}", draw.uniform(0.3, 0.7));
+  return text + more + " }\n";
+}
+
+/// Three pulses within the first 400 steps. `joint`: on springs or a softening law, else on a foundation.
+Drawn tower_in_space(Draw& draw, bool p_delta, int steps = 400, bool joint = true) {
   const double height = draw.uniform(5, 20), width = draw.uniform(3, 8), mass = draw.decades(2e4, 1e6), step = draw.decades(5e-4, 5e-3);
   const double frequency = draw.uniform(1, 6), stiffness = std::pow(2 * M_PI * frequency, 2) * mass * std::pow(height, 3) / 3;
   const double pressure = 9.81 * 1.5 * mass / (width * width), pull = draw.uniform(0.4, 1.2) * 9.81 * width / height;
@@ -137,11 +158,16 @@ Drawn tower_in_space(Draw& draw, bool p_delta, int steps = 400) {
                   width * draw.uniform(0.6, 1.4)) +
       fmt::format("points = {}, points_across = 5, azimuth = {:.3g} }}\n", 5 + static_cast<int>(draw.uniform(0, 4)), draw.uniform(0, 1));
   const Draw beginning = draw;
-  const auto whole = [text, interface, beginning, type, pressure](double k) {
+  const auto whole = [=](double k) {
     Draw again = beginning;
+    if (!joint) return text + foundation(again, k, width, 1.2 * width, 9.81 * 1.5 * mass);
     return text + interface + law(again, type, k, pressure);
   };
-  return {whole, fmt::format("{}, step {:.2g} s, rho {:.2g}", type, step, rho), draw.decades(1e-2, 1e3)};
+  return {whole, fmt::format("{}, step {:.2g} s, rho {:.2g}", joint ? type : "foundation", step, rho), draw.decades(1e-2, 1e3)};
+}
+
+TEST(EnergyDecayModels, FoundationsInSpace) {
+  check_models("foundations", 40, 1e-10, [](Draw& draw) { return tower_in_space(draw, draw.chance(0.3), 400, false); });
 }
 
 TEST(EnergyDecayModels, CoulombFrictionInSpace) {

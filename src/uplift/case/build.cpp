@@ -88,14 +88,11 @@ void add_interfaces(const Case& read, const RunSpec& spec, const Model* like, Mo
 }
 
 /// What a foundation cannot stand beside.
-void check_foundation(const Values& model, bool cone, const Values* method, const RunPlan& plan) {
+void check_foundation(const Values& model, bool cone, const Values* method) {
   if (method && method->type() != "newton")
     fail(*method, "", "method = \"newton\" with a foundation: its ground gives way, and methods of constraints have nothing to hold",
          in_quotes(method->type()));
   if (cone) fail(model, "", "traction laws in the interfaces beside a foundation, whose ground gives way", "a constraint in one of them");
-  for (const Stage& stage : plan.stages)
-    if (stage.type == Stage::Type::dynamics && stage.scheme.filtered())
-      fail(model, "", "another scheme than energy_decay with a foundation", "energy_decay");
 }
 
 /// Method and rule; the method must suit the behaviours.
@@ -105,8 +102,7 @@ void add_method(const Case& read, const RunSpec& spec, BuiltCase& built) {
   bool cone = false;
   for (const Interface& interface : built.model.interfaces) cone = cone || interface.cone != nullptr;
   for (std::size_t k = 0; k < built.model.interfaces.size(); ++k)
-    if (built.model.interfaces[k].footprint)
-      check_foundation(*built.behaviours[k], cone && !spec.bonded, spec.bonded ? nullptr : method, built.plan);
+    if (built.model.interfaces[k].footprint) check_foundation(*built.behaviours[k], cone && !spec.bonded, spec.bonded ? nullptr : method);
   if (spec.bonded) method = nullptr;
   if (method && cone && method->type() == "newton")
     fail(*method, "", "a method for cones (penalty, augmented_lagrangian, lagrange), or a traction law", "\"newton\" with a cone");

@@ -13,7 +13,7 @@ namespace uplift {
 struct JointFilterInput {
   double gain = 0;          // b of the scheme
   double pole = 0;          // a of the scheme: how the lag goes on; not needed for one step, and not in its file
-  Vector coefficient, lag;  // rows: c [Pa/m], d_f [m]
+  Vector coefficient, lag;  // rows: c [Pa/m], d_f [m]; of points with rotations as in Batch
   bool acts() const { return gain > 0; }
 };
 

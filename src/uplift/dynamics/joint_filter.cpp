@@ -1,5 +1,6 @@
 #include "uplift/dynamics/joint_filter.h"
 
+#include <cmath>
 #include <type_traits>
 
 #include "uplift/math/lanes.h"
@@ -33,6 +34,12 @@ JointFilter::JointFilter(const Model& model, const Behaviours& behaviours, const
     : blocks_(blocks_of(model, behaviours).blocks), pole_(scheme.pole), gain_(scheme.gain) {
   int slopes = 0;
   for (const Block& block : blocks_) {
+    if (block.batch.rotations > 0) {
+      const int n = block.batch.components;
+      footings_.push_back({block.law, block.first, block.first_history, n, Rows::Zero(n), Rows::Zero(n), Square::Zero(n, n)});
+      slopes += block.slopes();
+      continue;
+    }
     Part part{.first = block.first,
               .first_slope = slopes,
               .points = block.batch.points,
@@ -47,7 +54,7 @@ JointFilter::JointFilter(const Model& model, const Behaviours& behaviours, const
 void JointFilter::look(const State& now, Vector& tangent) const {
   tangent.setZero(now.opening.size());
   for (const Block& block : blocks_) {
-    if (block.law == nullptr) continue;
+    if (block.law == nullptr || block.batch.rotations > 0) continue;
     const int n = block.batch.points, components = block.batch.components;
     Vector traction(block.rows()), end(block.rows()), slope(block.rows() * components), next(block.rows() * components),
         memory(block.law->num_history(components) * n);
@@ -67,6 +74,7 @@ void JointFilter::take_over(const State& now) {
       const Index at = part.first + row;
       storage_ += part.area[row % part.points] * now.filter.coefficient[at] * now.filter.opening[at] * now.filter.opening[at];
     }
+  for (const Footing& footing : footings_) storage_ += now.filter.coefficient[footing.first];
   storage_ *= 0.5 / (1 - pole_);
 }
 
@@ -91,6 +99,58 @@ void JointFilter::begin(const State& now, double shrink, JointFilterInput& input
                 [&](const auto& at) { beginning.put(at, at(contact), at(tangent), at(before), shrink * at(filtered), coefficient, lag); });
     }
   }
+  for (Footing& footing : footings_) {
+    look(footing, now);
+    begin_footing(footing, now, shrink, input);
+  }
+}
+
+/// Elastic openings and C = b * slope of the law there.
+void JointFilter::look(Footing& footing, const State& now) const {
+  footing.law->elastic(footing.components, now.opening.data() + footing.first, now.history.data() + footing.first_history,
+                       footing.elastic.data(), footing.coefficient.data());
+  footing.coefficient *= gain_;
+}
+
+/// After look(): what the filter remembers is scaled down where it would store more with the new C.
+void JointFilter::begin_footing(Footing& footing, const State& now, double shrink, JointFilterInput& input) const {
+  const int first = footing.first, n = footing.components;
+  footing.lag = shrink * now.filter.opening.segment(first, n);
+  Rows pull = footing.coefficient * footing.lag;
+  const double stored = now.filter.coefficient[first], wanted = footing.lag.dot(pull);
+  if (wanted > stored) {
+    const double scale = std::sqrt(stored / wanted);
+    footing.lag *= scale, pull *= scale;
+  }
+  input.coefficient.segment(first, n).setConstant(footing.coefficient.isZero(0) ? -1 : 1);
+  input.lag.segment(first, n) = pull;
+}
+
+/// The same as for the rows of other points with the matrix C instead of c and the elastic increment; returns the dissipation less what the
+/// filter has stored before.
+double JointFilter::end_footing(Footing& footing, const InterfaceSolution& solution, double to_mean, const State& now, State& next,
+                                JointFilterInput& input) const {
+  const int first = footing.first, n = footing.components;
+  const Footing of_step = footing;
+  look(footing, next);
+  const Rows added = to_mean * solution.force.segment(first, n) - solution.plain.segment(first, n);  // N, N m
+  double dissipated = 0, stored = 0;
+  Rows filtered = Rows::Zero(n);
+  if (input.coefficient[first] > 0) {
+    const Rows increment = footing.elastic - of_step.elastic, ahead = increment - of_step.lag;
+    const double whole = ahead.dot(of_step.coefficient * ahead), taken = added.dot(ahead);
+    const double kept = whole > 0 && taken < (1 - 1e-6) * whole ? larger(taken / whole, 0.0) : 1;  // theta
+    filtered = pole_ * of_step.lag + (1 - pole_) * increment;
+    stored = kept * filtered.dot(of_step.coefficient * filtered);
+    dissipated = kept * (0.5 * (1 + pole_) * whole - 0.5 / (1 - pole_) * of_step.lag.dot(of_step.coefficient * of_step.lag));
+  } else {
+    dissipated = added.dot(solution.opening.segment(first, n) - now.opening.segment(first, n));
+  }
+  next.filter.opening.segment(first, n) = filtered;
+  next.filter.coefficient.segment(first, n).setZero();
+  next.filter.coefficient[first] = stored;
+  begin_footing(footing, next, 1, input);
+  return dissipated;
 }
 
 /// With theta c the part of the coefficient that took effect, d_f the lag and d_f,1 the filtered increment after the step: storage
@@ -133,8 +193,13 @@ void JointFilter::end(const InterfaceProblem& problem, const InterfaceSolution& 
     for (int c = 0; c < normal; ++c) end_rows(c, std::false_type());
     end_rows(normal, std::true_type());
   }
-  dissipated_ = sum(dissipated) + storage_;
-  storage_ = store * sum(storage);
+  double lost = sum(dissipated), stored = sum(storage);
+  for (Footing& footing : footings_) {
+    lost += end_footing(footing, solution, to_mean, now, next, input);
+    stored += next.filter.coefficient[footing.first];
+  }
+  dissipated_ = lost + storage_;
+  storage_ = store * stored;
   ready_ = &input;
 }
 

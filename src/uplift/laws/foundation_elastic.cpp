@@ -19,6 +19,7 @@ class ElasticFoundation final : public InterfaceLaw {
     std::array<double, most_components> middle{};
     for (int r = 0; r < batch.components; ++r) middle[static_cast<std::size_t>(r)] = 0.5 * (from[r] + to[r]);
     answer(batch, 0.5, middle.data(), response);
+    if (batch.coefficient != nullptr) filter(batch, from, to, response);
     for (int r = 0; response.end != nullptr && r < batch.components; ++r) response.end[r] = stiffness_[static_cast<std::size_t>(r)] * to[r];
     if (response.next != nullptr) put_slope(batch, 0.5, response.next);
   }
@@ -29,12 +30,25 @@ class ElasticFoundation final : public InterfaceLaw {
     for (int r = 0; r < batch.components; ++r) *stored += 0.5 * stiffness_[static_cast<std::size_t>(r)] * opening[r] * opening[r];
   }
   void closed_stiffness(int components, double* stiffness) const override { std::copy_n(stiffness_.begin(), components, stiffness); }
+  void elastic(int components, const double* opening, const double*, double* elastic, double* slope) const override {
+    std::copy_n(opening, components, elastic);
+    put_slope({.points = 1, .components = components}, 1, slope);
+  }
   LawScales scales() const override { return {.opens = false}; }
 
  private:
   void put_slope(const Batch& batch, double share, double* slope) const {
     std::fill_n(slope, batch.components * batch.components, 0.0);
     for (int r = 0; r < batch.components; ++r) slope[r * batch.components + r] = share * stiffness_[static_cast<std::size_t>(r)];
+  }
+  /// Adds the joint filter, C (increment - d_f) with C = b K.
+  void filter(const Batch& batch, const double* from, const double* to, const LawResponse& response) const {
+    for (int r = 0; r < batch.components; ++r) {
+      const double coefficient = batch.gain * stiffness_[static_cast<std::size_t>(r)];
+      response.plain[r] = response.traction[r];
+      response.traction[r] += coefficient * (to[r] - from[r]) - batch.lag[r];
+      if (response.slope != nullptr) response.slope[r * batch.components + r] += coefficient;
+    }
   }
   void answer(const Batch& batch, double share, const double* at, const LawResponse& response) const {
     for (int r = 0; r < batch.components; ++r) response.traction[r] = stiffness_[static_cast<std::size_t>(r)] * at[r];

@@ -24,6 +24,9 @@ struct Batch {
   const double* coefficient = nullptr;  // c of every row [Pa/m]; negative on a normal row: the point is open at the start of the step
   const double* lag = nullptr;          // d_f of every row [m]
   int rotations = 0;                    // rows behind the normal: in the plane 1 (counter-clockwise), in space 3 (about t1, t2, n)
+  // With rotations the filter has the matrix gain * (slope of `elastic` at the start): `lag` is that times d_f [N, N m], and `coefficient`
+  // is 1 in every row, or -1: without contact at the start.
+  double gain = 0;
   int translations() const { return components - rotations; }
   int normal() const { return (translations() - 1) * points; }  // offset of the normal component
 };
@@ -88,6 +91,10 @@ class InterfaceLaw {
   virtual LawScales scales() const { return {}; }
   /// For `uplift trust`, which computes the case with it; none where no law of the catalog is equivalent.
   virtual std::optional<EquivalentLaw> equivalent() const { return {}; }
+  /// Of a point with rotations, for the joint filter: the openings without what has yielded [m, rad], and the slope of the traction there,
+  /// symmetric and without negative eigenvalues, row by row; all zero: no contact. A law that leaves this out has no joint filter.
+  virtual void elastic(int /*components*/, const double* /*opening*/, const double* /*history*/, double* /*elastic*/,
+                       double* /*slope*/) const {}
   /// Of a point with rotations: what its rows alone do not tell.
   virtual FootingContact contact(const Batch&, const double* /*opening*/, const double* /*history*/) const { return {}; }
 };

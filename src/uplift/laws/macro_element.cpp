@@ -6,6 +6,8 @@
 #include <limits>
 #include <utility>
 
+#include "uplift/laws/macro_filter.h"
+
 namespace uplift {
 namespace {
 
@@ -50,7 +52,37 @@ struct MacroElement::Rows {
     for (int r = 0; r < components; ++r) slope[at(r, components - 1)] = slope[at(components - 1, r)] = 0;
     slope[at(components - 1, components - 1)] = stiffness;
   }
+  void filter_torsion(const MacroFilter& filter, double coefficient, const Batch&, const double* from, const double* to,
+                      const LawResponse&) const;
+  void take_end(const double* from, const double* to, const LawResponse&) const;
 };
+
+/// The joint filter of the torsion, which takes effect as far as that of the other rows.
+void MacroElement::Rows::filter_torsion(const MacroFilter& filter, double coefficient, const Batch& batch, const double* from,
+                                        const double* to, const LawResponse& response) const {
+  if (!has_torsion()) return;
+  const int last = at(components - 1);
+  const double whole = coefficient * (to[last] - from[last]) - batch.lag[last];
+  response.plain[last] = response.traction[last];
+  response.traction[last] += filter.share * whole;
+  if (response.slope == nullptr) return;
+  response.slope[at(components - 1, components - 1)] += filter.share * coefficient;
+  for (int c = 0; c < count; ++c) response.slope[at(components - 1, c)] = whole * sign(c) * filter.share_slope[variable[c]];
+}
+
+/// A footing without contact at the start of the step: the forces at its end, where that dissipates.
+void MacroElement::Rows::take_end(const double* from, const double* to, const LawResponse& response) const {
+  double gained = 0;
+  for (int r = 0; r < components; ++r) {
+    response.plain[at(r)] = response.traction[at(r)];
+    gained += (response.end[at(r)] - response.traction[at(r)]) * (to[at(r)] - from[at(r)]);
+  }
+  if (!(gained >= 0)) return;
+  for (int r = 0; r < components; ++r) response.traction[at(r)] = response.end[at(r)];
+  if (response.slope == nullptr) return;
+  for (int r = 0; r < components; ++r)
+    for (int c = 0; c < components; ++c) response.slope[at(r, c)] = 2 * response.next[at(r, c)];
+}
 
 /// One step of a point, in as many increments as the return needs. Derivatives are those with respect to the end of the path.
 class MacroElement::Path {
@@ -63,10 +95,13 @@ class MacroElement::Path {
         average_(average),
         guesses_from_(guesses_from),
         from_(from),
-        step_(to - from) {}
+        step_(to - from),
+        start_(from - old_plastic) {}
 
   /// False when the return fails.
   bool go() { return go(0, 1, 0); }
+  /// Adds the joint filter to the mean; `pull`: C d_f.
+  MacroFilter filter(double gain, const MacroVector& pull);
 
   MacroVector plastic, mean = MacroVector::Zero(), end = MacroVector::Zero();
   MacroMatrix mean_slope = MacroMatrix::Zero(), end_slope = MacroMatrix::Zero();
@@ -79,8 +114,8 @@ class MacroElement::Path {
 
   const MacroElement* law_;
   bool average_;
-  int guesses_from_;  // the return tries every first guess after so many halvings
-  MacroVector from_, step_;
+  int guesses_from_;                 // the return tries every first guess after so many halvings
+  MacroVector from_, step_, start_;  // start_: elastic displacement at the beginning
   MacroMatrix plastic_slope_ = MacroMatrix::Zero();
   MacroVector settlement_slope_ = MacroVector::Zero();
 };
@@ -137,6 +172,19 @@ void MacroElement::Path::add_average(double a, double b, const MacroVector& befo
   }
   mean += share * average.force;
   mean_slope += share * slope;
+}
+
+MacroFilter MacroElement::Path::filter(double gain, const MacroVector& pull) {
+  const MacroMatrix coefficient = gain * law_->uplift_.respond(start_).stiffness;
+  MacroFilterStep step{.increment = step_, .elastic = from_ + step_ - plastic - start_, .mean = mean, .mean_slope = mean_slope};
+  step.elastic_slope = MacroMatrix::Identity() - plastic_slope_;
+  step.dissipated = memory[memory_dissipated];
+  step.dissipated_slope = mean_slope.transpose() * step_ + mean - step.elastic_slope.transpose() * end;
+  const MacroFilter added = macro_filter(law_->elasticity(), coefficient, pull, step);
+  mean += added.force;
+  mean_slope += added.slope;
+  memory[memory_dissipated] = std::max(0.0, memory[memory_dissipated] + added.dissipated);
+  return added;
 }
 
 MacroElement::MacroElement(const MacroParameters& parameters)
@@ -213,11 +261,12 @@ void MacroElement::put_torsion(bool average, const Rows& rows, const double* fro
 void MacroElement::advance(bool average, const Batch& batch, const double* from, const double* to, const double* old,
                            const LawResponse& response) const {
   const int n = batch.points;
+  const bool filters = average && batch.coefficient != nullptr;
   for (int i = 0; i < n; ++i) {
     const Rows rows(n, i, batch.components);
     if (rows.has_torsion()) put_torsion(average, rows, from, to, response);
-    if (rows.has_torsion() ? go_elastically<2>(average, rows, from, to, old, response)
-                           : go_elastically<1>(average, rows, from, to, old, response))
+    if (!filters && (rows.has_torsion() ? go_elastically<2>(average, rows, from, to, old, response)
+                                        : go_elastically<1>(average, rows, from, to, old, response)))
       continue;
     double scalars[num_scalars];
     for (int k = 0; k < num_scalars; ++k) scalars[k] = old[(rows.count + k) * n + i];
@@ -233,6 +282,9 @@ void MacroElement::advance(bool average, const Batch& batch, const double* from,
       path.mean.setConstant(std::numeric_limits<double>::quiet_NaN());
       path.end = path.mean;
     }
+    if (filters) rows.put(path.mean, response.plain);
+    MacroFilter filter;
+    if (filters && batch.coefficient[i] > 0) filter = path.filter(batch.gain, rows.get(batch.lag));
     path.memory[memory_dissipated] += dissipated_before;
     rows.put(average ? path.mean : path.end, response.traction);
     if (response.slope != nullptr) rows.put(average ? path.mean_slope : path.end_slope, 1, response.slope);
@@ -242,6 +294,11 @@ void MacroElement::advance(bool average, const Batch& batch, const double* from,
       rows.put(path.plastic, response.now);
       for (int k = 0; k < num_scalars; ++k) response.now[(rows.count + k) * n + i] = path.memory[k];
     }
+    if (!filters) continue;
+    if (batch.coefficient[i] > 0)
+      rows.filter_torsion(filter, batch.gain * torsion_, batch, from, to, response);
+    else
+      rows.take_end(from, to, response);
   }
 }
 
@@ -250,7 +307,6 @@ void MacroElement::respond(const Batch& batch, const double* from, const double*
 }
 
 void MacroElement::mean(const Batch& batch, const double* from, const double* to, const double* old, const LawResponse& response) const {
-  assert(batch.coefficient == nullptr);
   advance(true, batch, from, to, old, response);
 }
 
@@ -275,6 +331,17 @@ void MacroElement::closed_stiffness(int components, double* stiffness) const {
   const Rows rows(1, 0, components);
   for (int r = 0; r < rows.count; ++r) stiffness[r] = uplift_.stiffness()[rows.variable[r]];
   if (rows.has_torsion()) stiffness[components - 1] = torsion_;
+}
+
+void MacroElement::elastic(int components, const double* opening, const double* history, double* elastic, double* slope) const {
+  const Rows rows(1, 0, components);
+  const MacroVector at = rows.get(opening) - rows.get(history);
+  const MacroElastic state = uplift_.respond(at);
+  rows.put(at, elastic);
+  rows.put(state.stiffness, 1, slope);
+  if (!rows.has_torsion()) return;
+  elastic[components - 1] = opening[components - 1];
+  rows.put_torsion(state.contact ? torsion_ : 0, slope);
 }
 
 FootingContact MacroElement::contact(const Batch& batch, const double* opening, const double* history) const {

@@ -30,7 +30,7 @@ struct MacroState {
 /// (u_t, u_n, theta); in space, six: (u_t1, u_t2, u_n, theta_1, theta_2, theta_n), theta_1 about t1. Forces [N, N m]; u_n > 0 apart, so
 /// that N = -force_n and w = -u_n. The rocking stiffness and the length of index 0 belong to theta in the plane and to theta_2 in space.
 /// Memory: the plastic part of all openings but theta_n, p, slip, dissipated energy. Where the return fails in spite of sub-steps, the
-/// forces are not finite, so that the step is cut. A joint filter (schemes with energy decay) is not supported.
+/// forces are not finite, so that the step is cut.
 class MacroElement final : public InterfaceLaw {
  public:
   explicit MacroElement(const MacroParameters& parameters);
@@ -41,6 +41,7 @@ class MacroElement final : public InterfaceLaw {
   void mean(const Batch&, const double* from, const double* to, const double* old, const LawResponse&) const override;
   void energy(const Batch&, const double* opening, const double* history, double* stored, double* dissipated) const override;
   void closed_stiffness(int components, double* stiffness) const override;
+  void elastic(int components, const double* opening, const double* history, double* elastic, double* slope) const override;
   /// Gaps at the edges, against the ground that has settled; utilisations at most 1, since the return keeps the forces on the surfaces.
   FootingContact contact(const Batch&, const double* opening, const double* history) const override;
 

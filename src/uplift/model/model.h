@@ -162,7 +162,7 @@ struct FilterMemory {
   double step = 0;                // s that the filtered increments belong to; 0: nothing is remembered
   Vector displacement, velocity;  // filtered increments of the free unknowns
   Vector opening;                 // interface rows: filtered increments [m]
-  Vector coefficient;             // and their coefficients [Pa/m]
+  Vector coefficient;             // and their coefficients c [Pa/m]; of a point with rotations d_f . C d_f [J] in its first row
   Vector tangent;                 // interface rows: slope of the law at the present opening [Pa/m]
 
   void swap(FilterMemory& other) noexcept {

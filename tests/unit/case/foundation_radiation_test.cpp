@@ -138,7 +138,7 @@ double out_of_balance_in_space(const Ran& ran) {
 
 TEST(FoundationRadiation, TheGroundBalancesTheStructureInThePlane) {
   const std::string columns = histories("top", {"abs_ax", "abs_ay", "arz"}) + histories("base", {"abs_ax", "abs_ay", "arz"});
-  for (const char* of_stage : {"", "traction = \"end\"\n"}) {
+  for (const char* of_stage : {"", "traction = \"end\"\n", "scheme = \"energy_decay\"\n"}) {
     SCOPED_TRACE(of_stage);
     const std::string text = Tower{.of_stage = of_stage, .thrown = true}.text() + columns;
     const Ran uplifting = run_text(text), bonded = run_text(text, 1);
@@ -152,7 +152,7 @@ TEST(FoundationRadiation, TheGroundBalancesTheStructureInThePlane) {
 TEST(FoundationRadiation, TheGroundBalancesTheStructureInSpace) {
   const std::string columns = histories("top", {"abs_ax", "abs_ay", "abs_az", "arx", "ary", "arz"}) +
                               histories("base", {"abs_ax", "abs_ay", "abs_az", "arx", "ary", "arz"});
-  for (const char* of_stage : {"", "traction = \"end\"\n"}) {
+  for (const char* of_stage : {"", "traction = \"end\"\n", "scheme = \"energy_decay\"\n"}) {
     SCOPED_TRACE(of_stage);
     const Ran ran = run_text(Tower{.space = true, .of_stage = of_stage, .thrown = true}.text() + columns);
     EXPECT_GT(ran.result.max_uplifted_ratio.value, 0.1);

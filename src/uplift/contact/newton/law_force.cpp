@@ -41,6 +41,7 @@ void law_force(const InterfaceProblem& problem, const Block& block, const double
   if (problem.filter.acts()) {
     batch.coefficient = problem.filter.coefficient.data() + block.first;
     batch.lag = problem.filter.lag.data() + block.first;
+    batch.gain = problem.filter.gain;
   }
   const double *from = problem.from.data() + block.first, *to = opening + block.first;
   const double* old = problem.old.data() + block.first_history;
