@@ -9,13 +9,13 @@ namespace uplift {
 
 /// A step of the macro-element without the filter. Slopes are those with respect to the end of the path.
 struct MacroFilterStep {
-  MacroVector increment;  // of the displacement
-  MacroVector elastic;    // its elastic part, d_e
-  MacroMatrix elastic_slope;
-  MacroVector mean;  // path average of the force
-  MacroMatrix mean_slope;
+  MacroVector increment = MacroVector::Zero();  // of the displacement
+  MacroVector elastic = MacroVector::Zero();    // its elastic part, d_e
+  MacroMatrix elastic_slope = MacroMatrix::Zero();
+  MacroVector mean = MacroVector::Zero();  // path average of the force
+  MacroMatrix mean_slope = MacroMatrix::Zero();
   double dissipated = 0;  // by yielding [J], >= 0
-  MacroVector dissipated_slope;
+  MacroVector dissipated_slope = MacroVector::Zero();
 };
 
 /// What the filter adds to it.
