@@ -195,7 +195,7 @@ MacroFilter MacroElement::Path::filter(double gain, const MacroVector& pull) {
   step.elastic_slope = MacroMatrix::Identity() - plastic_slope_;
   step.dissipated = memory[memory_dissipated];
   step.dissipated_slope = mean_slope.transpose() * step_ + mean - step.elastic_slope.transpose() * end;
-  const MacroFilter added = macro_filter(law_->elasticity(), coefficient, pull, step);
+  MacroFilter added = macro_filter(law_->elasticity(), coefficient, pull, step);
   mean += added.force;
   mean_slope += added.slope;
   memory[memory_dissipated] = std::max(0.0, memory[memory_dissipated] + added.dissipated);
