@@ -176,11 +176,15 @@ void MacroElement::Path::add_average(double a, double b, const MacroVector& befo
 
 MacroFilter MacroElement::Path::filter(double gain, const MacroVector& pull) {
   const MacroMatrix coefficient = gain * law_->uplift_.respond(start_).stiffness;
-  MacroFilterStep step{.increment = step_, .elastic = from_ + step_ - plastic - start_, .mean = mean, .mean_slope = mean_slope};
-  step.elastic_slope = MacroMatrix::Identity() - plastic_slope_;
-  step.dissipated = memory[memory_dissipated];
-  step.dissipated_slope = mean_slope.transpose() * step_ + mean - step.elastic_slope.transpose() * end;
-  const MacroFilter added = macro_filter(law_->elasticity(), coefficient, pull, step);
+  const MacroMatrix elastic_slope = MacroMatrix::Identity() - plastic_slope_;
+  const MacroFilterStep step{.increment = step_,
+                             .elastic = from_ + step_ - plastic - start_,
+                             .elastic_slope = elastic_slope,
+                             .mean = mean,
+                             .mean_slope = mean_slope,
+                             .dissipated = memory[memory_dissipated],
+                             .dissipated_slope = mean_slope.transpose() * step_ + mean - elastic_slope.transpose() * end};
+  MacroFilter added = macro_filter(law_->elasticity(), coefficient, pull, step);
   mean += added.force;
   mean_slope += added.slope;
   memory[memory_dissipated] = std::max(0.0, memory[memory_dissipated] + added.dissipated);

@@ -264,7 +264,8 @@ TEST(FoundationDecay, CondensedStepIsTheMonolithicStep) {
   }
 }
 
-constexpr const char* stiff = "{ type = \"macro_element\", shape_number = 6, K_v = 6e11, K_h = 3e11, K_r = 1.8e12 }";  // a thousand times as stiff
+constexpr const char* stiff =
+    "{ type = \"macro_element\", shape_number = 6, K_v = 6e11, K_h = 3e11, K_r = 1.8e12 }";  // a thousand times as stiff
 
 /// The largest alternation of the vertical force, |N_0 - 2 N_1 + N_2|, behind 60 % of a run.
 double alternation(const std::vector<double>& force) {
