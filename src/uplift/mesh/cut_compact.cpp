@@ -24,13 +24,7 @@ void compact(CutWork& work, std::vector<std::vector<CutFace>>& faces, std::vecto
     std::erase_if(group.cells, [&](CellId id) { return moved(id).index < 0; });
     for (CellId& id : group.cells) id = moved(id);
   }
-  const auto move_keys = [&](auto& map) {
-    std::remove_reference_t<decltype(map)> renumbered;
-    for (auto& [id, value] : map) renumbered.emplace(moved(id), std::move(value));
-    map = std::move(renumbered);
-  };
-  move_keys(mesh.parts);
-  move_keys(work.pieces);
+  mesh.parts.renumber(index);
   for (std::vector<CutFace>& of_plane : faces)
     for (CutFace& face : of_plane) face.lower = moved(face.lower), face.upper = moved(face.upper);
   for (std::vector<FreeFace>& of_plane : free) {

@@ -1,15 +1,14 @@
 #pragma once
-#include <map>
 #include <vector>
 
-#include "uplift/mesh/clip.h"
 #include "uplift/mesh/mesh.h"
 
 // Cells that are filled in part, as they are drawn and as users see them.
 namespace uplift {
 
-/// Gives the parts of a mesh their pieces, with followers at the corners that are no nodes.
-void add_pieces(const std::map<CellId, std::vector<ClippedCell::Piece>>& pieces, Mesh& mesh);
+/// Gives the parts of a mesh the nodes of their pieces, with followers at the corners that are no nodes. `corners`: [m] of the pieces of
+/// each part, in the order of the parts' numbers.
+void add_pieces(std::vector<std::vector<Vec3>> corners, Mesh& mesh);
 
 /// The mesh as it is drawn: parts are replaced by their pieces. Nodes keep their numbers.
 Mesh drawn_mesh(const Mesh& mesh);
