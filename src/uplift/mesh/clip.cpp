@@ -104,7 +104,7 @@ std::optional<Box> box_within(const PlacedCell& cell, std::span<const HalfSpace>
   return box;
 }
 
-ClippedCell filled_box(const PlacedCell& cell, const Box& box) {
+ClippedCell filled_box(const PlacedCell& cell, const Box& box, std::vector<Vec3>& corners) {
   ClippedCell made;
   made.piece = cell.type();
   const int d = info(cell.type()).dimension;
@@ -119,9 +119,7 @@ ClippedCell filled_box(const PlacedCell& cell, const Box& box) {
   made.rule = box_rule(cell.type());
   for (Vec3& point : made.rule.point) point = place(point);
   for (double& weight : made.rule.weight) weight *= share;
-  made.corners.reserve(cell.corners().size());
-  for (const auto& node : cell_nodes(cell.type()))
-    made.corners.push_back(cell_position(cell_shape(cell.type(), place({node[0], node[1], node[2]})), cell.corners()));
+  for (const auto& node : cell_nodes(cell.type())) corners.push_back(cell.place(place({node[0], node[1], node[2]})));
   return made;
 }
 
@@ -209,26 +207,25 @@ std::vector<Simplex> simplices_within(const PlacedCell& cell, std::span<const Ha
   return left;
 }
 
-ClippedCell filled_simplices(const PlacedCell& cell, std::span<const HalfSpace> within, double tolerance) {
+ClippedCell filled_simplices(const PlacedCell& cell, std::span<const HalfSpace> within, double tolerance, std::vector<Vec3>& corners) {
   const std::vector<Simplex> left = simplices_within(cell, within, tolerance);
   const int d = info(cell.type()).dimension;
-  const std::size_t corners = at(d) + 1;
+  const std::size_t count = at(d) + 1;
   const SimplexRule& rule = simplex_rule(cell.type());
   ClippedCell made;
   made.piece = simplex_cell(d);
   made.rule.point.reserve(left.size() * rule.weight.size());
   made.rule.weight.reserve(left.size() * rule.weight.size());
-  made.corners.reserve(left.size() * corners);
   for (const Simplex& simplex : left) {
     const double size = measure(simplex, d);
     for (std::size_t p = 0; p < rule.weight.size(); ++p) {
       Vec3 place = Vec3::Zero();
-      for (std::size_t k = 0; k < corners; ++k) place += rule.share[p][k] * simplex[k];
+      for (std::size_t k = 0; k < count; ++k) place += rule.share[p][k] * simplex[k];
       const Vec3 local = cell.local(place);
       made.rule.point.push_back(local);
       made.rule.weight.push_back(rule.weight[p] * size / cell.measure(local));
     }
-    made.corners.insert(made.corners.end(), simplex.begin(), simplex.begin() + static_cast<std::ptrdiff_t>(corners));
+    corners.insert(corners.end(), simplex.begin(), simplex.begin() + static_cast<std::ptrdiff_t>(count));
   }
   return made;
 }
@@ -245,9 +242,9 @@ PlaneSide side_of_cell(const HalfSpace& space, std::span<const Vec3> corners, do
   return !above ? PlaneSide::inside : below ? PlaneSide::both : PlaneSide::outside;
 }
 
-ClippedCell clip_cell(const PlacedCell& cell, std::span<const HalfSpace> within, double tolerance) {
-  if (const std::optional<Box> box = box_within(cell, within, tolerance)) return filled_box(cell, *box);
-  return filled_simplices(cell, within, tolerance);
+ClippedCell clip_cell(const PlacedCell& cell, std::span<const HalfSpace> within, double tolerance, std::vector<Vec3>& corners) {
+  if (const std::optional<Box> box = box_within(cell, within, tolerance)) return filled_box(cell, *box, corners);
+  return filled_simplices(cell, within, tolerance, corners);
 }
 
 bool is_clipped_away(const PlacedCell& cell, std::span<const HalfSpace> within, double tolerance) {

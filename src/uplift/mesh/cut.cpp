@@ -37,6 +37,7 @@ class OneCut {
 
  private:
   void find_doubles();
+  std::size_t reserve();
   void find_neighbours();
   void refuse_bond(CellId id, bool below) const;
   int sign(int node) const { return filling_.sign(node); }
@@ -91,6 +92,7 @@ void OneCut::find_doubles() {
       if (halves_[k].upper) above_[at(node)] = true;
     }
   const std::size_t count = mesh_.nodes.size();
+  mesh_.nodes.reserve(count + at(static_cast<int>(std::ranges::count(above_, true))));
   for (std::size_t node = 0; node < count; ++node)
     if ((below_[node] || beyond_[node]) && above_[node]) {
       double_[node] = static_cast<int>(mesh_.nodes.size());
@@ -185,11 +187,13 @@ void OneCut::add_own_doubles(const MadeCells& made) {
 }
 
 void OneCut::set_part(CellId id, const PlacedCell& before, std::span<const HalfSpace> within, double tolerance) {
-  ClippedCell clipped = clip_cell(before, within, tolerance);
+  std::vector<Vec3>& corners = work_.pieces.all;
+  const std::size_t first = corners.size();
+  ClippedCell clipped = clip_cell(before, within, tolerance, corners);
   mesh_.parts[id] = {std::move(clipped.rule), clipped.piece, {}};
   const std::size_t number = at(mesh_.parts.number(id));
-  if (work_.corners.size() <= number) work_.corners.resize(number + 1);
-  work_.corners[number] = std::move(clipped.corners);
+  if (work_.pieces.part.size() <= number) work_.pieces.part.resize(number + 1);
+  work_.pieces.part[number] = {first, corners.size() - first};
 }
 
 /// `placed`: the same cell as `before`, null where nothing is cut.
@@ -261,7 +265,7 @@ void OneCut::write_groups() {
       if (made_[i].upper != no_cell && halves_[i].outline == k) group.cells.push_back(made_[i].upper);
   }
   for (auto& [name, group] : mesh_.groups) {
-    std::ranges::sort(group.cells);
+    if (!std::ranges::is_sorted(group.cells)) std::ranges::sort(group.cells);
     group.cells.erase(std::unique(group.cells.begin(), group.cells.end()), group.cells.end());
   }
 }
@@ -296,6 +300,30 @@ void OneCut::add_beside(CellId cell, std::vector<Vec3> corners, const CutOutline
   }
 }
 
+/// Room for what the cut makes of the cells, since it may be more than half of the mesh; returns the number of cells that become two.
+std::size_t OneCut::reserve() {
+  std::size_t parts = 0, corners = 0, faces = 0;
+  std::vector<std::size_t> copies(mesh_.blocks.size(), 0);
+  for (std::size_t k = 0; k < halves_.size(); ++k) {
+    const CellId id = sides_.cells()[k];
+    const std::size_t pieces = (halves_[k].lower && !halves_[k].lower_whole) + (halves_[k].upper && !halves_[k].upper_whole);
+    parts += pieces;
+    corners += pieces * mesh_.cell(id).size();
+    if (!halves_[k].lower || !halves_[k].upper) continue;
+    ++faces, ++copies[at(id.block)];
+  }
+  for (std::size_t b = 0; b < copies.size(); ++b) {
+    CellBlock& block = mesh_.blocks[b];
+    const std::size_t count = at(block.count()) + copies[b];
+    block.nodes.reserve(count * at(info(block.cell).nodes));
+    removed_[b].reserve(count);
+  }
+  mesh_.parts.reserve(parts);
+  work_.pieces.part.reserve(work_.pieces.part.size() + parts);
+  work_.pieces.all.reserve(work_.pieces.all.size() + corners);
+  return faces;
+}
+
 std::vector<CutFace> OneCut::faces() {
   const std::size_t blocks = mesh_.blocks.size();
   std::vector<int> counts;
@@ -320,10 +348,7 @@ std::vector<CutFace> OneCut::faces() {
              of, placed);
   };
   made_.reserve(halves_.size());
-  const auto parts = static_cast<std::size_t>(std::ranges::count_if(halves_, is_cut));
-  mesh_.parts.reserve(2 * parts);
-  work_.corners.reserve(2 * parts);
-  found.reserve(parts);
+  found.reserve(reserve());
   for (int k = 0; k < static_cast<int>(halves_.size()); ++k) {
     const Halves& halves = halves_[at(k)];
     const CellBefore cell = filling_.before(sides_.cells()[at(k)]);
@@ -371,7 +396,7 @@ std::vector<std::vector<CutFace>> cut(Mesh& mesh, const std::vector<CutPlane>& p
   }
   compact(work, faces, beside);
   if (free != nullptr) *free = std::move(beside);
-  add_pieces(std::move(work.corners), work.mesh);
+  add_pieces(work.pieces, work.mesh);
   mesh = std::move(work.mesh);
   return faces;
 }

@@ -5,6 +5,7 @@
 #include <vector>
 
 #include "uplift/mesh/cut.h"
+#include "uplift/mesh/parts.h"
 #include "uplift/mesh/sides.h"
 
 // The first part of a cut (cut.cpp): which parts of each cell a plane leaves filled. It changes nothing.
@@ -14,8 +15,8 @@ namespace uplift {
 struct CutWork {
   Mesh mesh;
   std::vector<std::vector<bool>> removed = {};  // of each cell
-  std::vector<std::vector<Vec3>> corners = {};  // m: of the pieces of each part, in the order of the parts' numbers
-  std::set<CellId> lines = {};                  // beams and points, no faces of cells
+  PieceCorners pieces = {};
+  std::set<CellId> lines = {};  // beams and points, no faces of cells
 };
 
 /// Removes marked cells and nodes that nothing uses.

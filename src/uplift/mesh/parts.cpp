@@ -4,9 +4,7 @@
 #include <array>
 #include <cassert>
 #include <cmath>
-#include <cstdint>
 
-#include "uplift/mesh/cell_shapes.h"
 #include "uplift/mesh/index.h"
 #include "uplift/mesh/placed_cell.h"
 
@@ -14,73 +12,59 @@ namespace uplift {
 namespace {
 
 /// The nodes of the pieces: a node of the cell where one of its shape functions is 1, else a follower. Followers are known by their nodes
-/// and weights; they stand in the order in which they are met.
+/// and weights; they stand in the order in which they are met. They are chained at their lowest node, so neighbours in the mesh are
+/// neighbours in memory.
 class Followers {
  public:
-  explicit Followers(Mesh& mesh) : mesh_(mesh), table_(1024, -1) {}
+  /// `expected`: about as many; more may come.
+  Followers(Mesh& mesh, std::size_t expected) : mesh_(mesh), head_(mesh.nodes.size(), -1) {
+    mesh_.nodes.reserve(mesh_.nodes.size() + expected);
+    mesh_.followers.reserve(expected);
+    known_.reserve(expected);
+  }
 
-  int node_at(std::span<const int> nodes, const CellShape& shape, const Vec3& place) {
+  int node_at(std::span<const int> nodes, const std::array<double, max_corners>& share, const Vec3& place) {
     assert(nodes.size() <= max_corners);
     std::array<Term, max_corners> key;
     std::size_t count = 0;
     for (std::size_t a = 0; a < nodes.size(); ++a) {
-      if (shape.value[a] > 1 - 1e-9) return nodes[a];
-      if (std::abs(shape.value[a]) < 1e-12) continue;
-      const Term term{nodes[a], std::lround(1e9 * shape.value[a])};
+      if (share[a] > 1 - 1e-9) return nodes[a];
+      if (std::abs(share[a]) < 1e-12) continue;
+      const Term term{nodes[a], std::lround(1e9 * share[a])};
       std::size_t k = count++;
       for (; k > 0 && term < key[k - 1]; --k) key[k] = key[k - 1];  // ascending
       key[k] = term;
     }
-    const int found = find(std::span(key).first(count));
-    if (found < static_cast<int>(mesh_.followers.size())) return mesh_.followers[at(found)].node;
+    const std::span<const Term> terms = std::span(key).first(count);
+    int& head = head_[at(terms.front().first)];
+    for (int k = head; k >= 0; k = known_[at(k)].next)
+      if (std::ranges::equal(terms_of(k), terms)) return mesh_.followers[at(k)].node;
+    known_.push_back({head, terms_.size(), count});
+    head = static_cast<int>(known_.size()) - 1;
+    terms_.insert(terms_.end(), terms.begin(), terms.end());
     Follower& follower = mesh_.followers.emplace_back();
     follower.node = static_cast<int>(mesh_.nodes.size());
     follower.of.reserve(count);
     for (std::size_t a = 0; a < nodes.size(); ++a)
-      if (std::abs(shape.value[a]) >= 1e-12) follower.of.emplace_back(nodes[a], shape.value[a]);
+      if (std::abs(share[a]) >= 1e-12) follower.of.emplace_back(nodes[a], share[a]);
     mesh_.nodes.push_back(place);
     return follower.node;
   }
 
  private:
   using Term = std::pair<int, long>;  // a node, 1e9 times its weight
-
-  static std::size_t hash(std::span<const Term> key) {
-    std::uint64_t sum = key.size();
-    for (const auto& [node, weight] : key)
-      for (const std::uint64_t word : {static_cast<std::uint64_t>(node), static_cast<std::uint64_t>(weight)})
-        sum = (sum ^ word) * 0x9E3779B97F4A7C15U, sum ^= sum >> 29U;
-    return sum;
-  }
-  /// The number of a follower; its key is kept when it is a new one.
-  int find(std::span<const Term> key) {
-    if (2 * first_.size() > table_.size()) grow();
-    for (std::size_t slot = hash(key) & (table_.size() - 1);; slot = (slot + 1) & (table_.size() - 1)) {
-      if (table_[slot] < 0) {
-        table_[slot] = static_cast<int>(first_.size() - 1);
-        terms_.insert(terms_.end(), key.begin(), key.end());
-        first_.push_back(terms_.size());
-        return table_[slot];
-      }
-      if (std::ranges::equal(key_of(table_[slot]), key)) return table_[slot];
-    }
-  }
-  void grow() {
-    table_.assign(2 * table_.size(), -1);
-    for (int follower = 0; follower + 1 < static_cast<int>(first_.size()); ++follower) {
-      std::size_t slot = hash(key_of(follower)) & (table_.size() - 1);
-      while (table_[slot] >= 0) slot = (slot + 1) & (table_.size() - 1);
-      table_[slot] = follower;
-    }
-  }
-  std::span<const Term> key_of(int follower) const {
-    return std::span(terms_).subspan(first_[at(follower)], first_[at(follower) + 1] - first_[at(follower)]);
+  struct Known {
+    int next;  // in the chain
+    std::size_t first, count;
+  };
+  std::span<const Term> terms_of(int follower) const {
+    return std::span(terms_).subspan(known_[at(follower)].first, known_[at(follower)].count);
   }
 
   Mesh& mesh_;
-  std::vector<Term> terms_;               // keys of the followers, one after another
-  std::vector<std::size_t> first_ = {0};  // where each begins, and the end of the last one
-  std::vector<int> table_;                // numbers of followers by the hash of their key; -1: free. A power of two, at most half full
+  std::vector<int> head_;     // of each node
+  std::vector<Known> known_;  // followers in their order
+  std::vector<Term> terms_;   // of all of them
 };
 
 /// Whether a simplex of full dimension is numbered the wrong way round.
@@ -91,11 +75,12 @@ bool is_inside_out(int dimension, Cell piece, std::span<const Vec3> x) {
 
 }  // namespace
 
-void add_pieces(std::vector<std::vector<Vec3>> corners, Mesh& mesh) {
-  Followers followers(mesh);
+void add_pieces(const PieceCorners& corners, Mesh& mesh) {
+  const std::vector<CellId> cells = mesh.parts.cells();
+  Followers followers(mesh, cells.size());
   std::vector<std::pair<Vec3, int>> known;  // pieces share their corners
   std::array<Vec3, max_corners> places;
-  for (const CellId id : mesh.parts.cells()) {
+  for (const CellId id : cells) {
     const std::span<const int> nodes = mesh.cell(id);
     for (std::size_t a = 0; a < nodes.size(); ++a) places[a] = mesh.nodes[at(nodes[a])];
     const PlacedCell cell(mesh.type(id), std::span(places).first(nodes.size()));
@@ -104,16 +89,16 @@ void add_pieces(std::vector<std::vector<Vec3>> corners, Mesh& mesh) {
     const auto node_at = [&](const Vec3& place) {
       for (const auto& [there, node] : known)
         if (there[0] == place[0] && there[1] == place[1] && there[2] == place[2]) return node;
-      const int node = followers.node_at(nodes, cell_shape(cell.type(), cell.local(place)), place);
+      const int node = followers.node_at(nodes, cell.shares(cell.local(place)), place);
       return known.emplace_back(place, node).second;
     };
     const int number = mesh.parts.number(id);
     CellPart& part = mesh.parts.numbered(number);
-    const std::vector<Vec3> all = std::move(corners[at(number)]);  // gives its memory to what follows
+    const std::span<const Vec3> all = corners.of(number);
     const auto n = at(info(part.piece).nodes);
     part.nodes.reserve(all.size());
     for (std::size_t first = 0; first < all.size(); first += n) {
-      const std::span<const Vec3> piece = std::span(all).subspan(first, n);
+      const std::span<const Vec3> piece = all.subspan(first, n);
       const bool turned = is_inside_out(mesh.dimension, part.piece, piece);
       for (std::size_t k = 0; k < n; ++k) part.nodes.push_back(node_at(piece[turned && k < 2 ? 1 - k : k]));
     }

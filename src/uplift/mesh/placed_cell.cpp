@@ -38,6 +38,39 @@ std::array<Vec3, 3> tangents(int dimension, const CellShape& shape, std::span<co
   return tangent;
 }
 
+/// A place [m] and the columns dx/dr_k of the Jacobian there.
+struct Mapped {
+  Vec3 place = Vec3::Zero();
+  std::array<Vec3, 3> tangent{Vec3::Zero(), Vec3::Zero(), Vec3::Zero()};
+};
+
+/// Of products of linear functions: in one pass over the corners, since warped cells are mapped at all points of all their parts.
+template <std::size_t Dim>
+Mapped mapped_product(Cell cell, std::span<const Vec3> corners, const Vec3& local) {
+  const std::span<const std::array<double, 3>> nodes = cell_nodes(cell);
+  Mapped here;
+  for (std::size_t a = 0; a < (std::size_t{1} << Dim); ++a) {
+    std::array<double, Dim> factor;
+    double value = 1;
+    for (std::size_t k = 0; k < Dim; ++k) value *= factor[k] = (1 + nodes[a][k] * local[static_cast<Index>(k)]) / 2;
+    here.place += value * corners[a];
+    for (std::size_t k = 0; k < Dim; ++k) {
+      double slope = nodes[a][k] / 2;
+      for (std::size_t m = 0; m < Dim; ++m)
+        if (m != k) slope *= factor[m];
+      here.tangent[k] += slope * corners[a];
+    }
+  }
+  return here;
+}
+
+Mapped mapped(Cell cell, std::span<const Vec3> corners, const Vec3& local) {
+  if (cell == Cell::hex8) return mapped_product<3>(cell, corners, local);
+  if (cell == Cell::quad4) return mapped_product<2>(cell, corners, local);
+  const CellShape shape = cell_shape(cell, local);
+  return {cell_position(shape, corners), tangents(info(cell).dimension, shape, corners)};
+}
+
 /// The Jacobian is the same everywhere; `middle`: in the centre.
 bool has_parallel_sides(Cell cell, std::span<const Vec3> corners, const std::array<Vec3, 3>& middle, double size) {
   if (is_simplex(cell)) return true;
@@ -76,9 +109,9 @@ Vec3 local_coordinates(Cell cell, std::span<const Vec3> corners, const Vec3& pla
   const int dimension = info(cell).dimension;
   Vec3 local = cell_centre(cell);
   for (int iteration = 0; iteration < 30; ++iteration) {
-    const CellShape shape = cell_shape(cell, local);
-    const Vec3 miss = place - cell_position(shape, corners);
-    const std::array<Vec3, 3> dual = dual_tangents(dimension, tangents(dimension, shape, corners));
+    const Mapped here = mapped(cell, corners, local);
+    const Vec3 miss = place - here.place;
+    const std::array<Vec3, 3> dual = dual_tangents(dimension, here.tangent);
     const Vec3 change(dual[0].dot(miss), dual[1].dot(miss), dual[2].dot(miss));
     local += change;
     if (change.norm() < enough) break;
@@ -105,10 +138,33 @@ Vec3 PlacedCell::local(const Vec3& place) const {
   return middle_ + Vec3(dual_[0].dot(from), dual_[1].dot(from), dual_[2].dot(from));
 }
 
+std::array<double, max_corners> PlacedCell::shares(const Vec3& local) const {
+  std::array<double, max_corners> share{};
+  const std::span<const std::array<double, 3>> nodes = cell_nodes(type_);
+  const int dimension = info(type_).dimension;
+  if (count_ == std::size_t{1} << static_cast<unsigned>(dimension)) {  // products of linear functions
+    for (std::size_t a = 0; a < count_; ++a) {
+      share[a] = 1;
+      for (std::size_t k = 0; k < at(dimension); ++k) share[a] *= (1 + nodes[a][k] * local[static_cast<Index>(k)]) / 2;
+    }
+    return share;
+  }
+  const CellShape shape = cell_shape(type_, local);
+  std::copy_n(shape.value.begin(), count_, share.begin());
+  return share;
+}
+
+Vec3 PlacedCell::place(const Vec3& local) const {
+  const std::array<double, max_corners> share = shares(local);
+  Vec3 sum = Vec3::Zero();
+  for (std::size_t a = 0; a < count_; ++a) sum += share[a] * corners_[a];
+  return sum;
+}
+
 double PlacedCell::measure(const Vec3& local) const {
   if (parallel_) return measure_;
   const int dimension = info(type_).dimension;
-  return cell_measure(dimension, tangents(dimension, cell_shape(type_, local), corners()));
+  return cell_measure(dimension, mapped(type_, corners(), local).tangent);
 }
 
 }  // namespace uplift

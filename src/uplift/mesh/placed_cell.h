@@ -29,6 +29,9 @@ class PlacedCell {
   double size() const { return size_; }
   /// Local coordinates of a place: without iterations where the sides are parallel, else by Newton's method.
   Vec3 local(const Vec3& place) const;
+  Vec3 place(const Vec3& local) const;
+  /// Shape functions at local coordinates, without their slopes; 0 beyond the corners.
+  std::array<double, max_corners> shares(const Vec3& local) const;
   /// Length, area or volume of the cell over that of the reference cell.
   double measure(const Vec3& local) const;
 
