@@ -1,7 +1,7 @@
 // What a dynamic step of a cut model costs beside that of an aligned joint: a raft on soil that rocks and lifts, in the plane and in space.
 // The aligned mesh has the same rows of cells, the one with the underside as a line of nodes; so both models have as many unknowns and,
 // with a level cut, as many points. In turns, in one process, least time of every piece of the run between two reports of progress. A step
-// includes records, energies and checks. Usage: bench_cut_step [ROUNDS]
+// includes records, energies and checks. Usage: bench_cut_step [ROUNDS [MODEL]], models from 1 on.
 #include <fmt/format.h>
 
 #include <algorithm>
@@ -38,7 +38,6 @@ struct OnMesh {
 
 OnMesh raft_on_soil(const Raft& raft, bool aligned) {
   const int d = raft.dimension;
-  const double size = 1.0 / raft.cells;
   const int below = static_cast<int>(std::lround(raft.depth * raft.cells)), above = static_cast<int>(std::ceil(raft_height * raft.cells));
   const std::vector<double> across = uniform_lines(-raft.soil / 2, raft.soil / 2, static_cast<int>(std::lround(raft.soil * raft.cells)));
   std::vector<double> up;  // heights; a cut goes through a row
@@ -75,7 +74,7 @@ OnMesh raft_on_soil(const Raft& raft, bool aligned) {
   const double each = raft_force / static_cast<double>(top.size());
   for (const int node : top) {
     loads += fmt::format("[[load]]\nname = \"weight{0}\"\nnode = \"mesh.{0}\"\nforce = [0, {1}{2}]\n", node, d == 2 ? "" : "0, ", -each);
-    loads += fmt::format("[[load]]\nname = \"push{0}\"\nnode = \"mesh.{0}\"\nforce = [{1}, 0{2}]\nfunction = \"push\"\n", node, 0.8 * each,
+    loads += fmt::format("[[load]]\nname = \"push{0}\"\nnode = \"mesh.{0}\"\nforce = [{1}, 0{2}]\nfunction = \"push\"\n", node, 1.4 * each,
                          d == 2 ? "" : ", 0");
   }
   const double half = raft_width / 2;
@@ -156,16 +155,16 @@ void measure(const Raft& raft, int rounds) {
 
 int main(int count, char** words) {
   using uplift::Cell;
-  using uplift::Raft;
   const int rounds = count > 1 ? std::atoi(words[1]) : 5;
+  const std::vector<uplift::Raft> rafts{
+      {.label = "plane, quadrilaterals, level"},
+      {.cells = 16, .label = "plane, quadrilaterals of 1/16 m, level"},
+      {.slope = 0.007, .label = "plane, quadrilaterals, inclined"},
+      {.cell = Cell::tri3, .label = "plane, triangles, level"},
+      {.dimension = 3, .cell = Cell::hex8, .soil = 5, .depth = 2, .cells = 4, .label = "space, hexahedra, level"},
+      {.dimension = 3, .cell = Cell::hex8, .soil = 5, .depth = 2, .cells = 4, .slope = 0.007, .label = "space, hexahedra, inclined"}};
   uplift::prepare_heap();
-  uplift::measure({.label = "plane, quadrilaterals, level"}, rounds);
-  uplift::measure({.cells = 16, .label = "plane, quadrilaterals of 1/16 m, level"}, rounds);
-  uplift::measure({.slope = 0.007, .label = "plane, quadrilaterals, inclined"}, rounds);
-  uplift::measure({.cell = Cell::tri3, .label = "plane, triangles, level"}, rounds);
-  uplift::measure({.dimension = 3, .cell = Cell::hex8, .soil = 5, .depth = 2, .cells = 4, .label = "space, hexahedra, level"}, rounds);
-  uplift::measure(
-      {.dimension = 3, .cell = Cell::hex8, .soil = 5, .depth = 2, .cells = 4, .slope = 0.007, .label = "space, hexahedra, inclined"},
-      rounds);
+  for (std::size_t k = 0; k < rafts.size(); ++k)
+    if (count < 3 || std::atoi(words[2]) == static_cast<int>(k) + 1) uplift::measure(rafts[k], rounds);
   return 0;
 }

@@ -2,7 +2,6 @@
 
 #include <algorithm>
 #include <cassert>
-#include <map>
 #include <optional>
 
 #include "uplift/base/text.h"
@@ -46,6 +45,7 @@ class OneCut {
   int upper_node(int node) const { return keeps(node, true) ? node : double_[at(node)]; }
   MadeCells write_cell(CellId id, const Halves& halves, const CellBefore& before, const PlacedCell* placed);
   void rename(CellId id, bool upper);
+  MadeCells made_small(CellId id) const;
   void add_own_doubles(const MadeCells& made);
   CellId add_copy(CellId id);
   void set_part(CellId id, const PlacedCell& before, std::span<const HalfSpace> within, double tolerance);
@@ -64,10 +64,10 @@ class OneCut {
   const Sides sides_beyond_;           // of those beyond it
   const std::vector<Halves>& halves_;  // of each of sides_.cells(), as made_
   std::vector<MadeCells> made_;
-  std::vector<std::pair<CellId, bool>> neighbours_;  // other cells at doubled nodes, and whether they are of the upper side
-  std::map<CellId, MadeCells> made_small_;           // of lower dimension
-  std::vector<bool> below_, above_;                  // nodes of lower and of upper parts
-  std::vector<bool> beyond_;                         // nodes of cells beyond the extent: the lower side keeps them
+  std::vector<std::pair<CellId, bool>> neighbours_;       // other cells at doubled nodes, and whether they are of the upper side
+  std::vector<std::pair<CellId, MadeCells>> made_small_;  // of lower dimension, ascending
+  std::vector<bool> below_, above_;                       // nodes of lower and of upper parts
+  std::vector<bool> beyond_;                              // nodes of cells beyond the extent: the lower side keeps them
   std::vector<int> double_;
   std::vector<FreeFace> free_;
 };
@@ -232,7 +232,13 @@ void OneCut::write_small(CellId id) {
   const CellBefore before = filling_.before(id);
   if (above && halves.upper) filling_.keep_within(before, halves);
   const std::optional<PlacedCell> placed = placed_if_cut(before, halves);
-  made_small_[id] = write_cell(id, halves, before, placed ? &*placed : nullptr);
+  made_small_.emplace_back(id, write_cell(id, halves, before, placed ? &*placed : nullptr));
+}
+
+/// What was made of a cell of lower dimension; itself when nothing was.
+MadeCells OneCut::made_small(CellId id) const {
+  const auto found = std::ranges::lower_bound(made_small_, id, {}, &std::pair<CellId, MadeCells>::first);
+  return found != made_small_.end() && found->first == id ? found->second : MadeCells{id, no_cell};
 }
 
 /// The parts below the plane stay in the groups of their cell, those above as well, or leave the groups `through` for `upper`.
@@ -242,8 +248,7 @@ void OneCut::write_groups() {
     std::vector<CellId> cells;
     for (const CellId id : group.cells) {
       const int number = filling_.number(id);
-      const auto small = number < 0 ? made_small_.find(id) : made_small_.end();
-      const MadeCells made = number >= 0 ? made_[at(number)] : small != made_small_.end() ? small->second : MadeCells{id, no_cell};
+      const MadeCells made = number >= 0 ? made_[at(number)] : made_small(id);
       if (made.lower != no_cell) cells.push_back(made.lower);
       const bool leaves = may_leave && number >= 0 && !plane_.outlines[at(halves_[at(number)].outline)].upper.empty();
       if (made.upper != no_cell && !leaves) cells.push_back(made.upper);
