@@ -2,9 +2,12 @@
 
 #include <benchmark/benchmark.h>
 
+#include <random>
+
 #include "uplift/mesh/box.h"
 
-// A plane through a million cells: where few of them are cut, as under a raft, and where all are.
+// A plane through a million cells: where few of them are cut, as under a raft, and where all are; and through every one of 10 000 cells
+// that it divides into simplices.
 namespace {
 
 using namespace uplift;
@@ -38,9 +41,40 @@ void space_inclined(benchmark::State& state) {
 void space_every_cell(benchmark::State& state) {
   cut_cells(state, box(lines(1000), lines(1000), lines(1)), {0, 0, 1}, 0.3);
 }
+void plane_every_cell(benchmark::State& state) {
+  cut_cells(state, rectangle(lines(1000000), lines(1)), {0, 1, 0}, 0.3);
+}
+/// Through all rows, from the bottom to the top.
+void plane_rows(benchmark::State& state) {
+  cut_cells(state, rectangle(lines(1000), lines(1000)), {1, 0.3, 0}, 600.3);
+}
+void plane_rows_of_triangles(benchmark::State& state) {
+  cut_cells(state, rectangle(lines(1000), lines(500), Cell::tri3), {1, 0.3, 0}, 600.3);
+}
+void space_tetrahedra(benchmark::State& state) {
+  cut_cells(state, box(lines(55), lines(55), lines(55), Cell::tet4), {0.2, 0.1, 1}, 33.3);
+}
+/// Less cells: the rules of parts in simplices take 10 to 40 kB a cell.
+void space_every_cell_inclined(benchmark::State& state) {
+  cut_cells(state, box(lines(100), lines(100), lines(1)), {0.003, 0.002, 1}, 0.4);
+}
+void space_every_cell_warped(benchmark::State& state) {
+  Mesh mesh = box(lines(100), lines(100), lines(1));
+  std::mt19937 random(3);
+  std::uniform_real_distribution<double> move(-0.1, 0.1);
+  for (Vec3& x : mesh.nodes)
+    for (int k = 0; k < 3; ++k) x[k] += move(random);
+  cut_cells(state, mesh, {0, 0, 1}, 0.4);
+}
 BENCHMARK(plane_level)->Iterations(1)->Unit(benchmark::kSecond);
+BENCHMARK(plane_rows)->Iterations(1)->Unit(benchmark::kSecond);
+BENCHMARK(plane_rows_of_triangles)->Iterations(1)->Unit(benchmark::kSecond);
 BENCHMARK(space_level)->Iterations(1)->Unit(benchmark::kSecond);
 BENCHMARK(space_inclined)->Iterations(1)->Unit(benchmark::kSecond);
+BENCHMARK(space_tetrahedra)->Iterations(1)->Unit(benchmark::kSecond);
+BENCHMARK(plane_every_cell)->Iterations(1)->Unit(benchmark::kSecond);
 BENCHMARK(space_every_cell)->Iterations(1)->Unit(benchmark::kSecond);
+BENCHMARK(space_every_cell_inclined)->Iterations(1)->Unit(benchmark::kSecond);
+BENCHMARK(space_every_cell_warped)->Iterations(1)->Unit(benchmark::kSecond);
 
 }  // namespace

@@ -13,6 +13,8 @@
 #include "uplift/dynamics/bulk.h"
 #include "uplift/elements/bulk_laws/drucker_prager.h"
 #include "uplift/elements/solid_nonlinear.h"
+#include "uplift/mesh/box.h"
+#include "uplift/mesh/cut.h"
 
 // What a run costs in operations that can be counted: factorisations, back-solves, allocations.
 namespace {
@@ -316,6 +318,35 @@ TEST(Counters, OneFactorisationPerStepSize) {
   const RunResult result = whole.run();
   ASSERT_GT(result.counts.retries, 10);
   EXPECT_LE(result.counts.factorisations, 2 + whole.plan.stages.front().halvings + 1);
+}
+
+/// A cut makes of each cell two parts (points, weights and nodes of each), a section (its corners) and the nodes of drawings: nothing else
+/// needs memory of its own, neither the clipping nor the search for nodes and faces that cells share.
+TEST(Counters, AllocationsOfACutCell) {
+  if (!can_count) GTEST_SKIP() << "allocations cannot be counted under the address sanitizer";
+  const auto allocated = [](Cell cell, const Vec3& normal, int cells) {
+    const std::vector<double> across = uniform_lines(0, cells, cells), up = uniform_lines(0, 1, 1);
+    Mesh mesh = info(cell).dimension == 2 ? rectangle(across, up, cell) : box(across, across, up, cell);
+    std::vector<CutPlane> planes{{{"volume"}, {normal, 0.3 * normal[info(cell).dimension - 1]}, {{{}, "above"}}}};
+    const std::vector<Where> where(1);
+    allocations = 0;
+    counting = true;
+    const std::size_t faces = cut(mesh, planes, where).front().size();
+    counting = false;
+    return std::pair<long, long>{allocations, static_cast<long>(faces)};
+  };
+  const auto a_cell = [&](Cell cell, const Vec3& normal, int cells) {
+    const auto [few, of_few] = allocated(cell, normal, cells);
+    const auto [many, of_many] = allocated(cell, normal, 2 * cells);
+    EXPECT_GT(of_many, of_few);
+    return static_cast<double>(many - few) / static_cast<double>(of_many - of_few);
+  };
+  // 3 for each part, 1 for the section, 1 for each place in drawings: in the plane one on either side of each cut edge, in space too, one
+  // edge a cell; growing lists and cells at the boundary, of which there are fewer, add up to one more
+  EXPECT_LE(a_cell(Cell::quad4, Vec3::UnitY(), 400), 2 * 3 + 1 + 2 + 0.2);
+  EXPECT_LE(a_cell(Cell::hex8, Vec3::UnitZ(), 40), 2 * 3 + 1 + 2 + 1);
+  // inclined: each part is clipped in simplices, whose lists are two more, and has places on diagonals too
+  EXPECT_LE(a_cell(Cell::quad4, Vec3(1e-5, 1, 0).normalized(), 400), 2 * (3 + 2) + 1 + 4 + 0.2);
 }
 
 }  // namespace

@@ -4,7 +4,7 @@
 #include <array>
 #include <cassert>
 #include <cmath>
-#include <map>
+#include <cstdint>
 #include <numeric>
 
 #include "uplift/interface/interface.h"
@@ -19,70 +19,107 @@ std::size_t at(int i) {
 
 using Weights = std::vector<std::pair<int, double>>;
 
-/// Nodes of a cell with their shape functions at a place.
-Weights weights_at(const Mesh& mesh, CellId id, const Vec3& place) {
-  std::vector<Vec3> corners;
-  for (const int node : mesh.cell(id)) corners.push_back(mesh.nodes[at(node)]);
-  const CellShape shape = cell_shape(mesh.type(id), local_coordinates(mesh.type(id), corners, place));
-  Weights weights;
-  for (std::size_t a = 0; a < corners.size(); ++a)
-    if (std::abs(shape.value[a]) > 1e-13) weights.emplace_back(mesh.cell(id)[a], shape.value[a]);
+/// Nodes of a cell with shape functions, those that do not vanish, ascending.
+void set_weights(std::span<const int> nodes, const CellShape& shape, Weights& weights) {
+  weights.clear();
+  for (std::size_t a = 0; a < nodes.size(); ++a)
+    if (std::abs(shape.value[a]) > 1e-13) weights.emplace_back(nodes[a], shape.value[a]);
   std::ranges::sort(weights);
-  return weights;
 }
 
 /// Points that faces share are one point with the sum of their areas.
 class Points {
  public:
-  Points(const Mesh& mesh, const Vec3& normal, double gap) : mesh_(mesh), normal_(normal), gap_(gap) {}
-  int add(const CutFace& face, const Vec3& place, double area) {
-    const Weights upper = weights_at(mesh_, face.upper, place), lower = weights_at(mesh_, face.lower, place);
-    std::vector<int> nodes;
-    for (const Weights* side : {&upper, &lower})
-      for (const auto& [node, weight] : *side) nodes.push_back(node);
-    for (const int known : at_nodes_[nodes]) {
-      JointPoint& point = points[at(known)];
-      if (!same(point.upper, upper) || !same(point.lower, lower)) continue;
-      point.area += area;
-      return known;
+  Points(const Mesh& mesh, const Vec3& normal, double gap) : mesh_(mesh), normal_(normal), gap_(gap), table_(1024, -1) {}
+  /// The points that follow lie on this face.
+  void begin(const CutFace& face) {
+    lower_ = mesh_.cell(face.lower), upper_ = mesh_.cell(face.upper);
+    lower_type_ = mesh_.type(face.lower), upper_type_ = mesh_.type(face.upper);
+    lower_places_.clear(), upper_places_.clear();
+    for (const int node : lower_) lower_places_.push_back(mesh_.nodes[at(node)]);
+    for (const int node : upper_) upper_places_.push_back(mesh_.nodes[at(node)]);
+    of_one_cell_ = lower_type_ == upper_type_ && lower_places_ == upper_places_;
+  }
+  int add(const Vec3& place, double area) {
+    const CellShape above = cell_shape(upper_type_, local_coordinates(upper_type_, upper_places_, place));
+    set_weights(upper_, above, at_upper_);
+    if (of_one_cell_)
+      set_weights(lower_, above, at_lower_);
+    else
+      set_weights(lower_, cell_shape(lower_type_, local_coordinates(lower_type_, lower_places_, place)), at_lower_);
+    int& found = slot_of(at_upper_, at_lower_);
+    if (found >= 0) {
+      points[at(found)].area += area;
+      return found;
     }
-    at_nodes_[nodes].push_back(static_cast<int>(points.size()));
+    const int number = found = static_cast<int>(points.size());
     JointPoint& point = points.emplace_back();
     point.position = place;
     point.normal = normal_;
     point.area = area;
     point.gap = gap_;
-    point.upper = upper;
-    point.lower = lower;
-    return static_cast<int>(points.size()) - 1;
+    point.upper = at_upper_;
+    point.lower = at_lower_;
+    if (2 * points.size() > table_.size()) grow();
+    return number;
   }
   std::vector<JointPoint> points;
 
  private:
   static bool same(const Weights& a, const Weights& b) {
-    for (std::size_t i = 0; i < a.size(); ++i)
-      if (std::abs(a[i].second - b[i].second) > 1e-9) return false;
-    return true;
+    const auto near = [](const auto& one, const auto& other) {
+      return one.first == other.first && std::abs(one.second - other.second) <= 1e-9;
+    };
+    return std::ranges::equal(a, b, near);
+  }
+  /// By the nodes alone: weights of one place have round-off.
+  std::size_t first_slot(const Weights& upper, const Weights& lower) const {
+    std::uint64_t sum = upper.size();
+    for (const Weights* side : {&upper, &lower})
+      for (const auto& [node, weight] : *side) sum = (sum ^ static_cast<std::uint64_t>(node)) * 0x9E3779B97F4A7C15U, sum ^= sum >> 29U;
+    return sum & (table_.size() - 1);
+  }
+  /// Where the number of the point with these weights stands, or belongs.
+  int& slot_of(const Weights& upper, const Weights& lower) {
+    std::size_t slot = first_slot(upper, lower);
+    for (; table_[slot] >= 0; slot = (slot + 1) & (table_.size() - 1)) {
+      const JointPoint& known = points[at(table_[slot])];
+      if (same(known.upper, upper) && same(known.lower, lower)) break;
+    }
+    return table_[slot];
+  }
+  void grow() {
+    table_.assign(2 * table_.size(), -1);
+    for (std::size_t i = 0; i < points.size(); ++i) {
+      std::size_t slot = first_slot(points[i].upper, points[i].lower);
+      while (table_[slot] >= 0) slot = (slot + 1) & (table_.size() - 1);
+      table_[slot] = static_cast<int>(i);
+    }
   }
   const Mesh& mesh_;
   Vec3 normal_;
   double gap_;
-  std::map<std::vector<int>, std::vector<int>> at_nodes_;
+  std::vector<int> table_;  // numbers of points by the hash of their nodes; -1: free. A power of two, at most half full
+  std::span<const int> lower_, upper_;
+  Cell lower_type_ = Cell::point, upper_type_ = Cell::point;
+  std::vector<Vec3> lower_places_, upper_places_;  // m
+  bool of_one_cell_ = false;
+  Weights at_upper_, at_lower_;
 };
 
 void add_cut_line(const CutFace& face, double thickness, Points& points) {
   const Vec3 &a = face.corners[0], &b = face.corners[1];
   const double area = thickness * (b - a).norm();
-  points.add(face, a, area / (face.level ? 2 : 6));
-  points.add(face, b, area / (face.level ? 2 : 6));
-  if (!face.level) points.add(face, (a + b) / 2, area * 2 / 3);
+  points.add(a, area / (face.level ? 2 : 6));
+  points.add(b, area / (face.level ? 2 : 6));
+  if (!face.level) points.add((a + b) / 2, area * 2 / 3);
 }
 
 void add_level_quadrilateral(const CutFace& face, Points& points, Facets& facets) {
   const std::vector<Vec3>& x = face.corners;
   const double area = triangle_area(x[0], x[1], x[2]) + triangle_area(x[0], x[2], x[3]);
   std::array<int, 4> p{};
-  for (std::size_t k = 0; k < 4; ++k) p[k] = points.add(face, x[k], area / 4);
+  for (std::size_t k = 0; k < 4; ++k) p[k] = points.add(x[k], area / 4);
   for (const auto& [a, b, c] : {std::array<std::size_t, 3>{0, 1, 2}, {0, 2, 3}, {0, 1, 3}, {1, 2, 3}})  // halved both ways
     facets.pieces.push_back({{p[a], p[b], p[c]}, triangle_area(x[a], x[b], x[c]) / 2});
 }
@@ -94,13 +131,13 @@ void add_triangles(const CutFace& face, Points& points, Facets& facets) {
     const double area = triangle_area(corner[0], corner[1], corner[2]);
     if (area == 0) continue;
     std::array<int, 3> c{}, m{};
-    for (std::size_t i = 0; i < 3; ++i) c[i] = points.add(face, corner[i], area * (face.level ? 1.0 / 3 : 1.0 / 20));
+    for (std::size_t i = 0; i < 3; ++i) c[i] = points.add(corner[i], area * (face.level ? 1.0 / 3 : 1.0 / 20));
     if (face.level) {
       facets.pieces.push_back({{c[0], c[1], c[2]}, area});
       continue;
     }
-    for (std::size_t i = 0; i < 3; ++i) m[i] = points.add(face, (corner[i] + corner[(i + 1) % 3]) / 2, area * 2 / 15);
-    const int middle = points.add(face, (corner[0] + corner[1] + corner[2]) / 3, area * 9 / 20);
+    for (std::size_t i = 0; i < 3; ++i) m[i] = points.add((corner[i] + corner[(i + 1) % 3]) / 2, area * 2 / 15);
+    const int middle = points.add((corner[0] + corner[1] + corner[2]) / 3, area * 9 / 20);
     for (std::size_t i = 0; i < 3; ++i) {
       facets.pieces.push_back({{c[i], m[i], middle}, area / 6});
       facets.pieces.push_back({{m[i], c[(i + 1) % 3], middle}, area / 6});
@@ -115,11 +152,14 @@ std::vector<int> order_of(const std::vector<JointPoint>& points, const Vec3& nor
   const Vec3 t1 = local_axis({dimension}, normal, 0), t2 = dimension == 3 ? local_axis({3}, normal, 1) : Vec3::Zero().eval();
   double size = 0;
   for (const JointPoint& point : points) size = std::max(size, (point.position - points.front().position).norm());
-  const auto row = [&](int i) { return size > 0 ? std::lround(t2.dot(points[at(i)].position) / (1e-9 * size)) : 0; };
-  std::ranges::stable_sort(order, [&](int a, int b) {
-    const long at_a = row(a), at_b = row(b);
-    return std::abs(at_a - at_b) > 1 ? at_a < at_b : t1.dot(points[at(a)].position) < t1.dot(points[at(b)].position);
-  });
+  std::vector<double> along(points.size());  // m
+  std::vector<long> row(points.size());
+  for (std::size_t i = 0; i < points.size(); ++i) {
+    along[i] = t1.dot(points[i].position);
+    row[i] = size > 0 ? std::lround(t2.dot(points[i].position) / (1e-9 * size)) : 0;
+  }
+  std::ranges::stable_sort(
+      order, [&](int a, int b) { return std::abs(row[at(a)] - row[at(b)]) > 1 ? row[at(a)] < row[at(b)] : along[at(a)] < along[at(b)]; });
   return order;
 }
 
@@ -183,6 +223,7 @@ CutJoints cut_joints(const Mesh& mesh, const std::vector<CutFace>& faces, const 
   CutJoints made;
   for (const CutFace& face : faces) {
     made.inclined = made.inclined || !face.level;
+    points.begin(face);
     if (mesh.dimension == 2)
       add_cut_line(face, thickness, points);
     else if (face.level && face.corners.size() == 4 && info(mesh.type(face.upper)).corners > 4)

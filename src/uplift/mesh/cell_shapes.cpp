@@ -41,11 +41,11 @@ struct Factor {
   double value, slope;
 };
 
-Factor linear(double c, double x) {
+inline Factor linear(double c, double x) {
   return {(1 + c * x) / 2, c / 2};
 }
 
-Factor quadratic(double c, double x) {
+inline Factor quadratic(double c, double x) {
   if (c == 0) return {1 - x * x, -2 * x};
   return {x * (x + c) / 2, x + c / 2};
 }
@@ -65,9 +65,11 @@ void set_product(CellShape& shape, int a, const std::array<Factor, 3>& factor) {
   shape.value[n] = value;
 }
 
-template <int Dim>
-void set_tensor(CellShape& shape, std::span<const Local> nodes, const Vec3& x, Factor (*polynomial)(double, double)) {
-  for (int a = 0; a < shape.nodes; ++a) {
+/// The numbers of nodes and directions are known to the compiler: cut cells evaluate these functions most.
+template <int Dim, int Nodes, Factor (*polynomial)(double, double), std::size_t All>
+void set_tensor(CellShape& shape, const std::array<Local, All>& nodes, const Vec3& x) {
+  static_assert(Nodes <= All);
+  for (int a = 0; a < Nodes; ++a) {
     std::array<Factor, 3> factor{};
     for (std::size_t k = 0; k < Dim; ++k) factor[k] = polynomial(nodes[static_cast<std::size_t>(a)][k], x[static_cast<Index>(k)]);
     set_product<Dim>(shape, a, factor);
@@ -175,10 +177,10 @@ CellShape cell_shape(Cell cell, const Vec3& local) {
       shape.value[0] = 1;
       break;
     case Cell::line2:
-      set_tensor<1>(shape, nodes, local, linear);
+      set_tensor<1, 2, linear>(shape, line_nodes, local);
       break;
     case Cell::line3:
-      set_tensor<1>(shape, nodes, local, quadratic);
+      set_tensor<1, 3, quadratic>(shape, line_nodes, local);
       break;
     case Cell::tri3:
       set_simplex<2>(shape, false, local);
@@ -187,13 +189,13 @@ CellShape cell_shape(Cell cell, const Vec3& local) {
       set_simplex<2>(shape, true, local);
       break;
     case Cell::quad4:
-      set_tensor<2>(shape, nodes, local, linear);
+      set_tensor<2, 4, linear>(shape, quad_nodes, local);
       break;
     case Cell::quad8:
       set_serendipity<2>(shape, nodes, local);
       break;
     case Cell::quad9:
-      set_tensor<2>(shape, nodes, local, quadratic);
+      set_tensor<2, 9, quadratic>(shape, quad_nodes, local);
       break;
     case Cell::tet4:
       set_simplex<3>(shape, false, local);
@@ -208,13 +210,13 @@ CellShape cell_shape(Cell cell, const Vec3& local) {
       set_wedge15(shape, local);
       break;
     case Cell::hex8:
-      set_tensor<3>(shape, nodes, local, linear);
+      set_tensor<3, 8, linear>(shape, hex_nodes, local);
       break;
     case Cell::hex20:
       set_serendipity<3>(shape, nodes, local);
       break;
     case Cell::hex27:
-      set_tensor<3>(shape, nodes, local, quadratic);
+      set_tensor<3, 27, quadratic>(shape, hex_nodes, local);
       break;
   }
   return shape;

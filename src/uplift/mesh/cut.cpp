@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cassert>
+#include <optional>
 
 #include "uplift/base/text.h"
 #include "uplift/mesh/cut_filling.h"
@@ -16,6 +17,15 @@ struct MadeCells {
   CellId lower = no_cell, upper = no_cell;
 };
 
+bool is_cut(const Halves& halves) {
+  return (halves.lower && !halves.lower_whole) || (halves.upper && !halves.upper_whole);
+}
+
+std::optional<PlacedCell> placed_if_cut(const CellBefore& cell, const Halves& halves) {
+  if (!is_cut(halves)) return std::nullopt;
+  return PlacedCell(cell.cell, cell.corners());
+}
+
 /// One plane through a mesh: the second part, which makes the doubles and the parts.
 class OneCut {
  public:
@@ -26,20 +36,22 @@ class OneCut {
 
  private:
   void find_doubles();
+  std::size_t reserve();
   void find_neighbours();
   void refuse_bond(CellId id, bool below) const;
   int sign(int node) const { return filling_.sign(node); }
   bool keeps(int node, bool upper) const { return double_[at(node)] < 0 || upper == (sign(node) > 0 && !beyond_[at(node)]); }
   int lower_node(int node) const { return keeps(node, false) ? node : double_[at(node)]; }
   int upper_node(int node) const { return keeps(node, true) ? node : double_[at(node)]; }
-  MadeCells write_cell(CellId id, const Halves& halves);
+  MadeCells write_cell(CellId id, const Halves& halves, const CellBefore& before, const PlacedCell* placed);
   void rename(CellId id, bool upper);
+  MadeCells made_small(CellId id) const;
   void add_own_doubles(const MadeCells& made);
   CellId add_copy(CellId id);
-  void set_part(CellId id, const CellBefore& before, const std::vector<HalfSpace>& within);
+  void set_part(CellId id, const PlacedCell& before, std::span<const HalfSpace> within, double tolerance);
   void write_small(CellId id);
   void write_groups();
-  void add_face(std::vector<CutFace>& faces, CutFace face, const CellBefore& of) const;
+  void add_face(std::vector<CutFace>& faces, CutFace face, const CellBefore& of, const PlacedCell* placed) const;
   void add_beside(CellId cell, std::vector<Vec3> corners, const CutOutline* outline, double tolerance);
 
   CutWork& work_;
@@ -52,10 +64,10 @@ class OneCut {
   const Sides sides_beyond_;           // of those beyond it
   const std::vector<Halves>& halves_;  // of each of sides_.cells(), as made_
   std::vector<MadeCells> made_;
-  std::vector<std::pair<CellId, bool>> neighbours_;  // other cells at doubled nodes, and whether they are of the upper side
-  std::map<CellId, MadeCells> made_small_;           // of lower dimension
-  std::vector<bool> below_, above_;                  // nodes of lower and of upper parts
-  std::vector<bool> beyond_;                         // nodes of cells beyond the extent: the lower side keeps them
+  std::vector<std::pair<CellId, bool>> neighbours_;       // other cells at doubled nodes, and whether they are of the upper side
+  std::vector<std::pair<CellId, MadeCells>> made_small_;  // of lower dimension, ascending
+  std::vector<bool> below_, above_;                       // nodes of lower and of upper parts
+  std::vector<bool> beyond_;                              // nodes of cells beyond the extent: the lower side keeps them
   std::vector<int> double_;
   std::vector<FreeFace> free_;
 };
@@ -80,6 +92,7 @@ void OneCut::find_doubles() {
       if (halves_[k].upper) above_[at(node)] = true;
     }
   const std::size_t count = mesh_.nodes.size();
+  mesh_.nodes.reserve(count + at(static_cast<int>(std::ranges::count(above_, true))));
   for (std::size_t node = 0; node < count; ++node)
     if ((below_[node] || beyond_[node]) && above_[node]) {
       double_[node] = static_cast<int>(mesh_.nodes.size());
@@ -145,8 +158,9 @@ OneCut::OneCut(CutWork& work, const CutPlane& plane, const Where& where)
 CellId OneCut::add_copy(CellId id) {
   CellBlock& block = mesh_.blocks[at(id.block)];
   const CellId copy{id.block, block.count()};
-  const std::vector<int> nodes(block[id.index].begin(), block[id.index].end());
-  block.nodes.insert(block.nodes.end(), nodes.begin(), nodes.end());
+  const std::size_t n = block[id.index].size(), before = block.nodes.size();
+  block.nodes.resize(before + n);
+  std::ranges::copy(block[id.index], block.nodes.begin() + static_cast<std::ptrdiff_t>(before));
   if (!block.file_number.empty()) block.file_number.push_back(block.file_number[at(id.index)]);
   removed_[at(id.block)].push_back(false);
   return copy;
@@ -172,26 +186,28 @@ void OneCut::add_own_doubles(const MadeCells& made) {
   }
 }
 
-void OneCut::set_part(CellId id, const CellBefore& before, const std::vector<HalfSpace>& within) {
-  ClippedCell clipped = clip_cell(before.cell, before.corners, within, before.tolerance);
-  mesh_.parts[id] = {std::move(clipped.rule), {}};
-  work_.pieces[id] = std::move(clipped.pieces);
+void OneCut::set_part(CellId id, const PlacedCell& before, std::span<const HalfSpace> within, double tolerance) {
+  std::vector<Vec3>& corners = work_.pieces.all;
+  const std::size_t first = corners.size();
+  ClippedCell clipped = clip_cell(before, within, tolerance, corners);
+  mesh_.parts[id] = {std::move(clipped.rule), clipped.piece, {}};
+  const std::size_t number = at(mesh_.parts.number(id));
+  if (work_.pieces.part.size() <= number) work_.pieces.part.resize(number + 1);
+  work_.pieces.part[number] = {first, corners.size() - first};
 }
 
-MadeCells OneCut::write_cell(CellId id, const Halves& halves) {
+/// `placed`: the same cell as `before`, null where nothing is cut.
+MadeCells OneCut::write_cell(CellId id, const Halves& halves, const CellBefore& before, const PlacedCell* placed) {
   MadeCells made;
   if (halves.lower) made.lower = id;
   if (halves.upper) made.upper = halves.lower ? add_copy(id) : id;
   if (!halves.lower && !halves.upper) {
     removed_[at(id.block)][at(id.index)] = true;
     mesh_.parts.erase(id);
-    work_.pieces.erase(id);
     return made;
   }
-  const bool cut = (halves.lower && !halves.lower_whole) || (halves.upper && !halves.upper_whole);
-  const CellBefore cell = cut ? filling_.before(id) : CellBefore{};
-  if (halves.lower && !halves.lower_whole) set_part(made.lower, cell, {plane_.below});
-  if (halves.upper && !halves.upper_whole) set_part(made.upper, cell, filling_.above(halves.outline));
+  if (halves.lower && !halves.lower_whole) set_part(made.lower, *placed, {&plane_.below, 1}, before.tolerance);
+  if (halves.upper && !halves.upper_whole) set_part(made.upper, *placed, filling_.above(halves.outline), before.tolerance);
   if (halves.upper) rename(made.upper, true);
   if (halves.lower) rename(made.lower, false);
   return made;
@@ -213,8 +229,16 @@ void OneCut::write_small(CellId id) {
   const Halves &one = halves_[at(side / Sides::stride)], &other = twin < 0 ? one : halves_[at(twin / Sides::stride)];
   const bool lower = one.lower || other.lower, upper = one.upper || other.upper;
   Halves halves{lower && (below || !above), upper && (above || (!below && !lower)), !above, !below};
-  if (above && halves.upper) filling_.keep_within(filling_.before(id), halves);
-  made_small_[id] = write_cell(id, halves);
+  const CellBefore before = filling_.before(id);
+  if (above && halves.upper) filling_.keep_within(before, halves);
+  const std::optional<PlacedCell> placed = placed_if_cut(before, halves);
+  made_small_.emplace_back(id, write_cell(id, halves, before, placed ? &*placed : nullptr));
+}
+
+/// What was made of a cell of lower dimension; itself when nothing was.
+MadeCells OneCut::made_small(CellId id) const {
+  const auto found = std::ranges::lower_bound(made_small_, id, {}, &std::pair<CellId, MadeCells>::first);
+  return found != made_small_.end() && found->first == id ? found->second : MadeCells{id, no_cell};
 }
 
 /// The parts below the plane stay in the groups of their cell, those above as well, or leave the groups `through` for `upper`.
@@ -224,8 +248,7 @@ void OneCut::write_groups() {
     std::vector<CellId> cells;
     for (const CellId id : group.cells) {
       const int number = filling_.number(id);
-      const auto small = number < 0 ? made_small_.find(id) : made_small_.end();
-      const MadeCells made = number >= 0 ? made_[at(number)] : small != made_small_.end() ? small->second : MadeCells{id, no_cell};
+      const MadeCells made = number >= 0 ? made_[at(number)] : made_small(id);
       if (made.lower != no_cell) cells.push_back(made.lower);
       const bool leaves = may_leave && number >= 0 && !plane_.outlines[at(halves_[at(number)].outline)].upper.empty();
       if (made.upper != no_cell && !leaves) cells.push_back(made.upper);
@@ -247,22 +270,25 @@ void OneCut::write_groups() {
       if (made_[i].upper != no_cell && halves_[i].outline == k) group.cells.push_back(made_[i].upper);
   }
   for (auto& [name, group] : mesh_.groups) {
-    std::ranges::sort(group.cells);
+    if (!std::ranges::is_sorted(group.cells)) std::ranges::sort(group.cells);
     group.cells.erase(std::unique(group.cells.begin(), group.cells.end()), group.cells.end());
   }
 }
 
-/// Adds what lies within its outline.
-void OneCut::add_face(std::vector<CutFace>& faces, CutFace face, const CellBefore& of) const {
+/// Adds what lies within its outline. `placed`: the same cell as `of`, null for one of the second degree.
+void OneCut::add_face(std::vector<CutFace>& faces, CutFace face, const CellBefore& of, const PlacedCell* placed) const {
   const std::vector<HalfSpace>& within = plane_.outlines[at(face.outline)].within;
   face.corners = clip_section(std::move(face.corners), within, of.tolerance);
   if (static_cast<int>(face.corners.size()) < mesh_.dimension) return;
   const bool faceted = mesh_.dimension == 3 && info(of.cell).corners > 4;  // a hexahedron or a wedge
-  face.level = is_level(of.cell, of.corners, plane_.below) && (!faceted || face.corners.size() == 4);
+  const auto level = [&](const HalfSpace& space) {
+    return placed != nullptr ? is_level(*placed, space) : is_simplex(info(of.cell).linear);
+  };
+  face.level = level(plane_.below) && (!faceted || face.corners.size() == 4);
   for (const HalfSpace& space : within) {
-    if (side_of_cell(space, of.corners, of.tolerance) != PlaneSide::both) continue;
+    if (side_of_cell(space, of.corners(), of.tolerance) != PlaneSide::both) continue;
     face.clipped = true;
-    face.level = face.level && (!faceted || is_level(of.cell, of.corners, space));
+    face.level = face.level && (!faceted || level(space));
   }
   faces.push_back(std::move(face));
 }
@@ -279,42 +305,78 @@ void OneCut::add_beside(CellId cell, std::vector<Vec3> corners, const CutOutline
   }
 }
 
+/// Room for what the cut makes of the cells, since it may be more than half of the mesh; returns the number of cells that become two.
+std::size_t OneCut::reserve() {
+  std::size_t parts = 0, corners = 0, faces = 0;
+  std::vector<std::size_t> copies(mesh_.blocks.size(), 0);
+  for (std::size_t k = 0; k < halves_.size(); ++k) {
+    const CellId id = sides_.cells()[k];
+    const std::size_t pieces = (halves_[k].lower && !halves_[k].lower_whole) + (halves_[k].upper && !halves_[k].upper_whole);
+    parts += pieces;
+    corners += pieces * mesh_.cell(id).size();
+    if (!halves_[k].lower || !halves_[k].upper) continue;
+    ++faces, ++copies[at(id.block)];
+  }
+  for (std::size_t b = 0; b < copies.size(); ++b) {
+    CellBlock& block = mesh_.blocks[b];
+    const std::size_t count = at(block.count()) + copies[b];
+    block.nodes.reserve(count * at(info(block.cell).nodes));
+    removed_[b].reserve(count);
+  }
+  mesh_.parts.reserve(parts);
+  work_.pieces.part.reserve(work_.pieces.part.size() + parts);
+  work_.pieces.all.reserve(work_.pieces.all.size() + corners);
+  return faces;
+}
+
 std::vector<CutFace> OneCut::faces() {
   const std::size_t blocks = mesh_.blocks.size();
   std::vector<int> counts;
   for (const CellBlock& block : mesh_.blocks) counts.push_back(block.count());
-  std::map<int, CellBefore> cells;
-  for (int k = 0; k < static_cast<int>(halves_.size()); ++k)
-    if (halves_[at(k)].lower && (halves_[at(k)].upper || !halves_[at(k)].lower_whole))
-      cells.emplace(k, filling_.before(sides_.cells()[at(k)]));
   const std::vector<CutFilling::BareFace> bare = filling_.bare_faces();
-  for (const CutFilling::LevelFace& face : filling_.level_faces())
-    cells.emplace(face.upper, filling_.before(sides_.cells()[at(face.upper)]));
+  std::vector<CellBefore> on_level;  // the cells above the faces of filling_.level_faces()
+  for (const CutFilling::LevelFace& face : filling_.level_faces()) on_level.push_back(filling_.before(sides_.cells()[at(face.upper)]));
   for (std::size_t b = 0; b < blocks; ++b) {
     if (info(mesh_.blocks[b].cell).dimension == mesh_.dimension) continue;
     for (int i = 0; i < counts[b]; ++i)
       if (!removed_[b][at(i)]) write_small({static_cast<int>(b), i});
   }
-  for (std::size_t k = 0; k < halves_.size(); ++k) made_.push_back(write_cell(sides_.cells()[k], halves_[k]));
+  std::vector<CutFace> found;
+  const auto add = [&](int lower, int upper, std::vector<Vec3> corners, const CellBefore& of, const PlacedCell* placed) {
+    const CutOutline& outline = plane_.outlines[at(halves_[at(upper)].outline)];
+    if (!outline.within.empty()) add_beside(made_[at(lower)].lower, corners, &outline, of.tolerance);
+    add_face(found,
+             {.lower = made_[at(lower)].lower,
+              .upper = made_[at(upper)].upper,
+              .corners = std::move(corners),
+              .outline = halves_[at(upper)].outline},
+             of, placed);
+  };
+  made_.reserve(halves_.size());
+  found.reserve(reserve());
+  for (int k = 0; k < static_cast<int>(halves_.size()); ++k) {
+    const Halves& halves = halves_[at(k)];
+    const CellBefore cell = filling_.before(sides_.cells()[at(k)]);
+    const std::optional<PlacedCell> placed = placed_if_cut(cell, halves);
+    made_.push_back(write_cell(sides_.cells()[at(k)], halves, cell, placed ? &*placed : nullptr));
+    if (!halves.lower || halves.lower_whole) continue;
+    std::vector<Vec3> corners = section(cell.cell, cell.corners(), plane_.below, cell.tolerance);
+    if (halves.upper)
+      add(k, k, std::move(corners), cell, &*placed);
+    else
+      add_beside(made_[at(k)].lower, std::move(corners), nullptr, cell.tolerance);
+  }
   if (plane_.own_doubles)
     for (const MadeCells& made : made_) add_own_doubles(made);
   for (const auto& [id, upper] : neighbours_) rename(id, upper);
   write_groups();
-  std::vector<CutFace> found;
-  const auto add = [&](int lower, int upper, const std::vector<Vec3>& corners, const CellBefore& of) {
-    const int outline = halves_[at(upper)].outline;
-    add_face(found, {.lower = made_[at(lower)].lower, .upper = made_[at(upper)].upper, .corners = corners, .outline = outline}, of);
-    add_beside(made_[at(lower)].lower, corners, &plane_.outlines[at(outline)], of.tolerance);
-  };
-  for (const auto& [k, cell] : cells) {
-    if (!halves_[at(k)].lower || halves_[at(k)].lower_whole) continue;  // a cell above the plane
-    const std::vector<Vec3> corners = section(cell.cell, cell.corners, plane_.below, cell.tolerance);
-    if (halves_[at(k)].upper)
-      add(k, k, corners, cell);
-    else
-      add_beside(made_[at(k)].lower, corners, nullptr, cell.tolerance);
+  const std::vector<CutFilling::LevelFace>& level = filling_.level_faces();
+  for (std::size_t k = 0; k < level.size(); ++k) {
+    const CellBefore& cell = on_level[k];
+    std::optional<PlacedCell> placed;
+    if (info(cell.cell).nodes == info(cell.cell).corners) placed.emplace(cell.cell, cell.corners());
+    add(level[k].lower, level[k].upper, level[k].corners, cell, placed ? &*placed : nullptr);
   }
-  for (const CutFilling::LevelFace& face : filling_.level_faces()) add(face.lower, face.upper, face.corners, cells.at(face.upper));
   for (const CutFilling::BareFace& face : bare) add_beside(made_[at(face.lower)].lower, face.corners, nullptr, 0);
   if (found.empty()) throw InputError(where_, "", "an interface on the plane", "none: nothing above the plane lies within the outline");
   return found;

@@ -1,4 +1,5 @@
 #include <algorithm>
+#include <numeric>
 
 #include "uplift/mesh/cut_filling.h"
 #include "uplift/mesh/index.h"
@@ -11,6 +12,10 @@ void compact(CutWork& work, std::vector<std::vector<CutFace>>& faces, std::vecto
     CellBlock& block = mesh.blocks[b];
     CellBlock kept{block.cell, {}};
     std::vector<int>& of_block = index.emplace_back(at(block.count()), -1);
+    if (std::ranges::find(work.removed[b], true) == work.removed[b].end()) {
+      std::iota(of_block.begin(), of_block.end(), 0);
+      continue;
+    }
     for (int i = 0; i < block.count(); ++i) {
       if (work.removed[b][at(i)]) continue;
       of_block[at(i)] = kept.count();
@@ -24,13 +29,7 @@ void compact(CutWork& work, std::vector<std::vector<CutFace>>& faces, std::vecto
     std::erase_if(group.cells, [&](CellId id) { return moved(id).index < 0; });
     for (CellId& id : group.cells) id = moved(id);
   }
-  const auto move_keys = [&](auto& map) {
-    std::remove_reference_t<decltype(map)> renumbered;
-    for (auto& [id, value] : map) renumbered.emplace(moved(id), std::move(value));
-    map = std::move(renumbered);
-  };
-  move_keys(mesh.parts);
-  move_keys(work.pieces);
+  mesh.parts.renumber(index);
   for (std::vector<CutFace>& of_plane : faces)
     for (CutFace& face : of_plane) face.lower = moved(face.lower), face.upper = moved(face.upper);
   for (std::vector<FreeFace>& of_plane : free) {
@@ -41,15 +40,16 @@ void compact(CutWork& work, std::vector<std::vector<CutFace>>& faces, std::vecto
   std::vector<int> number(mesh.nodes.size(), -1);
   for (const CellBlock& block : mesh.blocks)
     for (const int node : block.nodes) number[at(node)] = 0;
-  std::vector<Vec3> nodes;
+  std::size_t kept = 0;
   mesh.places.clear();
+  mesh.places.reserve(number.size());
   for (std::size_t node = 0; node < number.size(); ++node)
     if (number[node] == 0) {
-      number[node] = static_cast<int>(nodes.size());
-      nodes.push_back(mesh.nodes[node]);
+      mesh.nodes[kept] = mesh.nodes[node];
       mesh.places.push_back(static_cast<int>(node));
+      number[node] = static_cast<int>(kept++);
     }
-  mesh.nodes = std::move(nodes);
+  mesh.nodes.resize(kept);
   for (CellBlock& block : mesh.blocks)
     for (int& node : block.nodes) node = number[at(node)];
   for (auto& [name, group] : mesh.groups) {

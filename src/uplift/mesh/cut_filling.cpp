@@ -28,11 +28,21 @@ PlaneSide side_of_outline(const CutOutline& outline, std::span<const Vec3> corne
   return found;
 }
 
+std::vector<std::vector<HalfSpace>> limits_above(const CutPlane& plane) {
+  std::vector<std::vector<HalfSpace>> limits;
+  for (const CutOutline& outline : plane.outlines) {
+    limits.push_back({plane.below.other_side()});
+    limits.back().insert(limits.back().end(), outline.within.begin(), outline.within.end());
+  }
+  return limits;
+}
+
 }  // namespace
 
 CutFilling::CutFilling(const CutWork& work, const CutPlane& plane, const Where& where)
-    : work_(work), mesh_(work.mesh), plane_(plane), where_(where), sides_(mesh_, cells_of_groups()) {
+    : work_(work), mesh_(work.mesh), plane_(plane), where_(where), above_(limits_above(plane)), sides_(mesh_, cells_of_groups()) {
   find_signs();
+  halves_.reserve(sides_.cells().size());
   for (const CellId id : sides_.cells()) halves_.push_back(halves_of(id));
   find_level_faces();
   refuse_nothing();
@@ -66,6 +76,7 @@ std::vector<CellId> CutFilling::cells_of_groups() {
 
 /// A cell belongs where its centre is. What is below the plane may reach across the limits: there the ground goes on.
 bool CutFilling::is_in_extent(CellId id) const {
+  if (plane_.extent.empty()) return true;
   std::vector<Vec3> corners;
   Vec3 centre = Vec3::Zero();
   for (const int node : mesh_.cell(id)) corners.push_back(mesh_.nodes[at(node)]), centre += corners.back();
@@ -80,19 +91,12 @@ bool CutFilling::is_in_extent(CellId id) const {
 }
 
 CellBefore CutFilling::before(CellId id) const {
-  CellBefore cell{mesh_.type(id), {}, std::numeric_limits<double>::infinity()};
+  CellBefore cell{mesh_.type(id), std::numeric_limits<double>::infinity()};
   for (const int node : mesh_.cell(id).first(at(info(cell.cell).corners))) {
-    cell.corners.push_back(mesh_.nodes[at(node)]);
+    cell.places[cell.count++] = mesh_.nodes[at(node)];
     cell.tolerance = std::min(cell.tolerance, on_plane * edge_[at(node)]);
   }
   return cell;
-}
-
-std::vector<HalfSpace> CutFilling::above(int outline) const {
-  std::vector<HalfSpace> spaces{plane_.below.other_side()};
-  const std::vector<HalfSpace>& within = plane_.outlines[at(outline)].within;
-  spaces.insert(spaces.end(), within.begin(), within.end());
-  return spaces;
 }
 
 bool CutFilling::is_within(const Vec3& place, double tolerance) const {
@@ -123,8 +127,7 @@ void CutFilling::find_signs() {
 
 /// What an earlier plane has left of a cell lies on one side of this one, and within its outline or outside of it.
 Halves CutFilling::halves_of_part(CellId id) const {
-  std::vector<Vec3> corners;
-  for (const ClippedCell::Piece& piece : work_.pieces.at(id)) corners.insert(corners.end(), piece.corners.begin(), piece.corners.end());
+  const std::span<const Vec3> corners = work_.pieces.of(mesh_.parts.number(id));
   const double tolerance = before(id).tolerance;
   const PlaneSide side = side_of_cell(plane_.below, corners, tolerance);
   Halves halves{side == PlaneSide::inside, false};
@@ -140,31 +143,32 @@ Halves CutFilling::halves_of_part(CellId id) const {
 
 /// The upper part lies within an outline.
 void CutFilling::keep_within(const CellBefore& cell, Halves& halves) const {
-  const bool curved = info(cell.cell).nodes != info(cell.cell).corners;  // is refused
   halves.upper = false;
   for (int k = 0; k < static_cast<int>(plane_.outlines.size()); ++k) {
-    const PlaneSide side = side_of_outline(plane_.outlines[at(k)], cell.corners, cell.tolerance);
+    const PlaneSide side = side_of_outline(plane_.outlines[at(k)], cell.corners(), cell.tolerance);
     if (side == PlaneSide::outside) continue;
     const bool whole = halves.upper_whole && side == PlaneSide::inside;
-    if (!whole && !curved && clip_cell(cell.cell, cell.corners, above(k), cell.tolerance).pieces.empty()) continue;
+    if (!whole && is_empty(cell, above(k))) continue;
     if (halves.upper)
       throw InputError(where_, "", "outlines on one plane that are at least a cell apart",
-                       fmt::format("two of them in the {} at ({:g}, {:g}, {:g})", info(cell.cell).name, cell.corners[0].x(),
-                                   cell.corners[0].y(), cell.corners[0].z()));
+                       fmt::format("two of them in the {} at ({:g}, {:g}, {:g})", info(cell.cell).name, cell.places[0].x(),
+                                   cell.places[0].y(), cell.places[0].z()));
     halves.upper = true, halves.outline = k;
   }
-  if (halves.upper && side_of_outline(plane_.outlines[at(halves.outline)], cell.corners, cell.tolerance) == PlaneSide::both)
+  if (halves.upper && side_of_outline(plane_.outlines[at(halves.outline)], cell.corners(), cell.tolerance) == PlaneSide::both)
     halves.upper_whole = false;
 }
 
-/// A corner so near the plane that the part below has no volume: nothing would hold doubles that belong to it alone.
-bool CutFilling::is_empty_below(const CellBefore& cell) const {
-  constexpr double no_tip = 0.1;                                         // of the shortest edge: a part as deep as this has volume
-  const bool curved = info(cell.cell).nodes != info(cell.cell).corners;  // is refused
+/// Whether the part within has no volume, as that of a corner so near the plane that nothing would hold doubles that belong to it alone.
+/// The first limit is the plane.
+bool CutFilling::is_empty(const CellBefore& cell, std::span<const HalfSpace> within) const {
+  constexpr double no_tip = 0.1;                                       // of the shortest edge: a part as deep as this has volume
+  if (info(cell.cell).nodes != info(cell.cell).corners) return false;  // is refused
   double deepest = 0;
-  for (const Vec3& corner : cell.corners) deepest = std::min(deepest, plane_.below.distance(corner));
-  if (curved || -deepest > no_tip / on_plane * cell.tolerance) return false;
-  return clip_cell(cell.cell, cell.corners, {plane_.below}, cell.tolerance).pieces.empty();
+  for (const Vec3& corner : cell.corners()) deepest = std::min(deepest, within.front().distance(corner));
+  const auto holds_cell = [&](const HalfSpace& space) { return side_of_cell(space, cell.corners(), 0) == PlaneSide::inside; };
+  if (-deepest > no_tip / on_plane * cell.tolerance && std::ranges::all_of(within.subspan(1), holds_cell)) return false;
+  return is_clipped_away({cell.cell, cell.corners()}, within, cell.tolerance);
 }
 
 Halves CutFilling::halves_of(CellId id) const {
@@ -175,7 +179,7 @@ Halves CutFilling::halves_of(CellId id) const {
   Halves halves{below, above, !above, !below};
   if (above) {
     const CellBefore cell = before(id);
-    if (below && is_empty_below(cell)) halves.lower = false, halves.upper_whole = true;
+    if (below && is_empty(cell, {&plane_.below, 1})) halves.lower = false, halves.upper_whole = true;
     keep_within(cell, halves);
   }
   const bool whole = (!below || halves.lower_whole) && (!halves.upper || halves.upper_whole);

@@ -1,9 +1,11 @@
 #pragma once
-#include <map>
+#include <array>
 #include <set>
+#include <span>
 #include <vector>
 
 #include "uplift/mesh/cut.h"
+#include "uplift/mesh/parts.h"
 #include "uplift/mesh/sides.h"
 
 // The first part of a cut (cut.cpp): which parts of each cell a plane leaves filled. It changes nothing.
@@ -12,9 +14,9 @@ namespace uplift {
 /// A mesh between two cuts. Empty cells are only marked: `compact` removes them after the last plane.
 struct CutWork {
   Mesh mesh;
-  std::vector<std::vector<bool>> removed = {};                    // of each cell
-  std::map<CellId, std::vector<ClippedCell::Piece>> pieces = {};  // of the parts
-  std::set<CellId> lines = {};                                    // beams and points, no faces of cells
+  std::vector<std::vector<bool>> removed = {};  // of each cell
+  PieceCorners pieces = {};
+  std::set<CellId> lines = {};  // beams and points, no faces of cells
 };
 
 /// Removes marked cells and nodes that nothing uses.
@@ -30,8 +32,10 @@ struct Halves {
 /// A cell of the mesh as it was before the cut: the numbers of nodes and cells change under way.
 struct CellBefore {
   Cell cell;
-  std::vector<Vec3> corners;
   double tolerance;  // m
+  std::size_t count = 0;
+  std::array<Vec3, max_corners> places = {};
+  std::span<const Vec3> corners() const { return {places.data(), count}; }
 };
 
 class CutFilling {
@@ -69,8 +73,8 @@ class CutFilling {
 
   CellBefore before(CellId id) const;
   /// Limits of what lies above the plane within an outline.
-  std::vector<HalfSpace> above(int outline) const;
-  /// The upper part of a cell lies within an outline.
+  std::span<const HalfSpace> above(int outline) const { return above_[static_cast<std::size_t>(outline)]; }
+  /// Finds the outline that holds the upper part of a cell.
   void keep_within(const CellBefore& cell, Halves& halves) const;
 
  private:
@@ -80,7 +84,7 @@ class CutFilling {
   void find_signs();
   Halves halves_of(CellId id) const;
   Halves halves_of_part(CellId id) const;
-  bool is_empty_below(const CellBefore& cell) const;
+  bool is_empty(const CellBefore& cell, std::span<const HalfSpace> within) const;
   void find_level_faces();
   std::vector<Vec3> corners_on_plane(int cell, int side, std::vector<int>& nodes) const;
   void refuse_nothing() const;
@@ -89,6 +93,7 @@ class CutFilling {
   const Mesh& mesh_;
   const CutPlane& plane_;
   const Where& where_;
+  const std::vector<std::vector<HalfSpace>> above_;  // of each outline
   std::vector<std::vector<int>> number_;
   std::vector<CellId> beyond_;
   Sides sides_;

@@ -190,8 +190,60 @@ int Mesh::number(int node) const {
 }
 
 const CellPart* Mesh::part(CellId id) const {
-  const auto found = parts.find(id);
-  return found == parts.end() ? nullptr : &found->second;
+  return parts.find(id);
+}
+
+const CellPart* CellParts::find(CellId id) const {
+  const int found = number(id);
+  return found < 0 ? nullptr : &parts_[static_cast<std::size_t>(found)];
+}
+
+int CellParts::number(CellId id) const {
+  const auto block = static_cast<std::size_t>(id.block), index = static_cast<std::size_t>(id.index);
+  return block < number_.size() && index < number_[block].size() ? number_[block][index] : -1;
+}
+
+CellPart& CellParts::operator[](CellId id) {
+  const auto block = static_cast<std::size_t>(id.block), index = static_cast<std::size_t>(id.index);
+  if (number_.size() <= block) number_.resize(block + 1);
+  if (number_[block].size() <= index) number_[block].resize(index + 1, -1);
+  int& number = number_[block][index];
+  if (number < 0) {
+    number = static_cast<int>(parts_.size());
+    parts_.emplace_back();
+    ++count_;
+  }
+  return parts_[static_cast<std::size_t>(number)];
+}
+
+std::vector<CellId> CellParts::cells() const {
+  std::vector<CellId> cells;
+  cells.reserve(static_cast<std::size_t>(count_));
+  for (std::size_t b = 0; b < number_.size(); ++b)
+    for (std::size_t i = 0; i < number_[b].size(); ++i)
+      if (number_[b][i] >= 0) cells.push_back({static_cast<int>(b), static_cast<int>(i)});
+  return cells;
+}
+
+void CellParts::erase(CellId id) {
+  const int found = number(id);
+  if (found < 0) return;
+  number_[static_cast<std::size_t>(id.block)][static_cast<std::size_t>(id.index)] = -1;
+  parts_[static_cast<std::size_t>(found)] = {};
+  --count_;
+}
+
+void CellParts::renumber(const std::vector<std::vector<int>>& now) {
+  const std::vector<CellId> before = cells();
+  std::vector<int> numbers;
+  numbers.reserve(before.size());
+  for (const CellId id : before) numbers.push_back(number(id));
+  for (std::vector<int>& of_block : number_) std::fill(of_block.begin(), of_block.end(), -1);
+  for (std::size_t k = 0; k < before.size(); ++k) {
+    const auto block = static_cast<std::size_t>(before[k].block);
+    const auto index = static_cast<std::size_t>(now[block][static_cast<std::size_t>(before[k].index)]);
+    number_[block][index] = numbers[k];  // no cell moves up
+  }
 }
 
 std::vector<int> nodes_of(const Mesh& mesh, const Group& group) {

@@ -39,12 +39,30 @@ struct Group {
 
 /// What a plane leaves of a cell that it cuts (mesh/cut.h): the cell's nodes and shape functions, integrated over one side of the plane.
 struct CellPart {
-  CellRule rule;  // over the part, in the cell's local coordinates; the weights add up to the part's share of the reference cell
-  struct Piece {
-    Cell cell = Cell::point;
-    std::vector<int> nodes = {};  // of the mesh, also followers
-  };
-  std::vector<Piece> pieces;  // the part itself, for drawings
+  CellRule rule;             // over the part, in the cell's local coordinates; the weights add up to the part's share of the reference cell
+  Cell piece = Cell::point;  // the part itself, for drawings: cells of this type
+  std::vector<int> nodes = {};  // of the pieces, piece after piece: nodes of the mesh, also followers
+};
+
+/// The parts of the cells of a mesh. A part has a number, which it keeps while the numbers of cells change.
+class CellParts {
+ public:
+  bool empty() const { return count_ == 0; }
+  const CellPart* find(CellId id) const;  // null: the cell is whole
+  int number(CellId id) const;            // of the cell's part, -1: none
+  CellPart& operator[](CellId id);        // made when it is not there
+  CellPart& numbered(int number) { return parts_[static_cast<std::size_t>(number)]; }
+  std::vector<CellId> cells() const;  // that have parts, ascending
+  void erase(CellId id);
+  /// Room for so many more.
+  void reserve(std::size_t more) { parts_.reserve(parts_.size() + more); }
+  /// After cells have got new numbers: `now` has those of each block, less than 0 for none. Cells with parts must be there.
+  void renumber(const std::vector<std::vector<int>>& now);
+
+ private:
+  std::vector<std::vector<int>> number_;  // of blocks and cells as far as there are parts
+  std::vector<CellPart> parts_;
+  int count_ = 0;
 };
 
 /// A node of drawings alone: it moves as these nodes with these weights.
@@ -59,7 +77,7 @@ struct Mesh {
   std::vector<Vec3> nodes;        // m
   std::vector<CellBlock> blocks;  // at most one per type
   std::map<std::string, Group> groups;
-  std::map<CellId, CellPart> parts = {};  // of cells that are filled in part; all others are whole
+  CellParts parts = {};                   // of cells that are filled in part; all others are whole
   std::vector<Follower> followers = {};   // used by the pieces of parts
   std::vector<std::string> emptied = {};  // groups of which nothing is left, for messages
   std::vector<int> places = {};     // of the first nodes, ascending: where each stood before some were removed; empty: where it stands

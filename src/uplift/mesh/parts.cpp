@@ -1,69 +1,106 @@
 #include "uplift/mesh/parts.h"
 
 #include <algorithm>
+#include <array>
+#include <cassert>
 #include <cmath>
 
-#include "uplift/mesh/cell_shapes.h"
 #include "uplift/mesh/index.h"
+#include "uplift/mesh/placed_cell.h"
 
 namespace uplift {
 namespace {
 
-/// The nodes of the pieces: a node of the cell where one of its shape functions is 1, else a follower.
+/// The nodes of the pieces: a node of the cell where one of its shape functions is 1, else a follower. Followers are known by their nodes
+/// and weights; they stand in the order in which they are met. They are chained at their lowest node, so neighbours in the mesh are
+/// neighbours in memory.
 class Followers {
  public:
-  explicit Followers(Mesh& mesh) : mesh_(mesh) {}
-  int node_at(Cell cell, std::span<const int> nodes, const LocalCoordinates& find_local, const Vec3& place) {
-    const CellShape shape = cell_shape(cell, find_local(place));
-    Follower follower;
-    std::vector<std::pair<int, long>> key;
+  /// `expected`: about as many; more may come.
+  Followers(Mesh& mesh, std::size_t expected) : mesh_(mesh), head_(mesh.nodes.size(), -1) {
+    mesh_.nodes.reserve(mesh_.nodes.size() + expected);
+    mesh_.followers.reserve(expected);
+    known_.reserve(expected);
+  }
+
+  int node_at(std::span<const int> nodes, const std::array<double, max_corners>& share, const Vec3& place) {
+    assert(nodes.size() <= max_corners);
+    std::array<Term, max_corners> key;
+    std::size_t count = 0;
     for (std::size_t a = 0; a < nodes.size(); ++a) {
-      if (shape.value[a] > 1 - 1e-9) return nodes[a];
-      if (std::abs(shape.value[a]) < 1e-12) continue;
-      follower.of.emplace_back(nodes[a], shape.value[a]);
-      key.emplace_back(nodes[a], std::lround(1e9 * shape.value[a]));
+      if (share[a] > 1 - 1e-9) return nodes[a];
+      if (std::abs(share[a]) < 1e-12) continue;
+      const Term term{nodes[a], std::lround(1e9 * share[a])};
+      std::size_t k = count++;
+      for (; k > 0 && term < key[k - 1]; --k) key[k] = key[k - 1];  // ascending
+      key[k] = term;
     }
-    std::ranges::sort(key);
-    const auto [known, is_new] = known_.try_emplace(std::move(key), static_cast<int>(mesh_.nodes.size()));
-    if (is_new) {
-      follower.node = known->second;
-      mesh_.nodes.push_back(place);
-      mesh_.followers.push_back(std::move(follower));
-    }
-    return known->second;
+    const std::span<const Term> terms = std::span(key).first(count);
+    int& head = head_[at(terms.front().first)];
+    for (int k = head; k >= 0; k = known_[at(k)].next)
+      if (std::ranges::equal(terms_of(k), terms)) return mesh_.followers[at(k)].node;
+    known_.push_back({head, terms_.size(), count});
+    head = static_cast<int>(known_.size()) - 1;
+    terms_.insert(terms_.end(), terms.begin(), terms.end());
+    Follower& follower = mesh_.followers.emplace_back();
+    follower.node = static_cast<int>(mesh_.nodes.size());
+    follower.of.reserve(count);
+    for (std::size_t a = 0; a < nodes.size(); ++a)
+      if (std::abs(share[a]) >= 1e-12) follower.of.emplace_back(nodes[a], share[a]);
+    mesh_.nodes.push_back(place);
+    return follower.node;
   }
 
  private:
+  using Term = std::pair<int, long>;  // a node, 1e9 times its weight
+  struct Known {
+    int next;  // in the chain
+    std::size_t first, count;
+  };
+  std::span<const Term> terms_of(int follower) const {
+    return std::span(terms_).subspan(known_[at(follower)].first, known_[at(follower)].count);
+  }
+
   Mesh& mesh_;
-  std::map<std::vector<std::pair<int, long>>, int> known_;
+  std::vector<int> head_;     // of each node
+  std::vector<Known> known_;  // followers in their order
+  std::vector<Term> terms_;   // of all of them
 };
 
 /// Whether a simplex of full dimension is numbered the wrong way round.
-bool is_inside_out(const Mesh& mesh, const ClippedCell::Piece& piece) {
-  const std::vector<Vec3>& x = piece.corners;
-  if (piece.cell == Cell::tri3 && mesh.dimension == 2) return cross(x[1] - x[0], x[2] - x[0]).z() < 0;
-  return piece.cell == Cell::tet4 && (x[3] - x[0]).dot(cross(x[1] - x[0], x[2] - x[0])) < 0;
+bool is_inside_out(int dimension, Cell piece, std::span<const Vec3> x) {
+  if (piece == Cell::tri3 && dimension == 2) return cross(x[1] - x[0], x[2] - x[0]).z() < 0;
+  return piece == Cell::tet4 && (x[3] - x[0]).dot(cross(x[1] - x[0], x[2] - x[0])) < 0;
 }
 
 }  // namespace
 
-void add_pieces(const std::map<CellId, std::vector<ClippedCell::Piece>>& pieces_of, Mesh& mesh) {
-  Followers followers(mesh);
-  for (const auto& [id, pieces] : pieces_of) {
-    const std::vector<int> nodes(mesh.cell(id).begin(), mesh.cell(id).end());
-    std::vector<Vec3> corners;
-    for (const int node : nodes) corners.push_back(mesh.nodes[at(node)]);
-    const LocalCoordinates find_local(mesh.type(id), corners);
-    std::vector<std::pair<Vec3, int>> known;  // pieces share their corners
+void add_pieces(const PieceCorners& corners, Mesh& mesh) {
+  const std::vector<CellId> cells = mesh.parts.cells();
+  Followers followers(mesh, cells.size());
+  std::vector<std::pair<Vec3, int>> known;  // pieces share their corners
+  std::array<Vec3, max_corners> places;
+  for (const CellId id : cells) {
+    const std::span<const int> nodes = mesh.cell(id);
+    for (std::size_t a = 0; a < nodes.size(); ++a) places[a] = mesh.nodes[at(nodes[a])];
+    const PlacedCell cell(mesh.type(id), std::span(places).first(nodes.size()));
+    known.clear();
+    for (std::size_t a = 0; a < nodes.size(); ++a) known.emplace_back(places[a], nodes[a]);
     const auto node_at = [&](const Vec3& place) {
       for (const auto& [there, node] : known)
-        if (there == place) return node;
-      return known.emplace_back(place, followers.node_at(mesh.type(id), nodes, find_local, place)).second;
+        if (there[0] == place[0] && there[1] == place[1] && there[2] == place[2]) return node;
+      const int node = followers.node_at(nodes, cell.shares(cell.local(place)), place);
+      return known.emplace_back(place, node).second;
     };
-    for (ClippedCell::Piece piece : pieces) {
-      if (is_inside_out(mesh, piece)) std::swap(piece.corners[0], piece.corners[1]);
-      CellPart::Piece& made = mesh.parts.at(id).pieces.emplace_back(CellPart::Piece{piece.cell});
-      for (const Vec3& corner : piece.corners) made.nodes.push_back(node_at(corner));
+    const int number = mesh.parts.number(id);
+    CellPart& part = mesh.parts.numbered(number);
+    const std::span<const Vec3> all = corners.of(number);
+    const auto n = at(info(part.piece).nodes);
+    part.nodes.reserve(all.size());
+    for (std::size_t first = 0; first < all.size(); first += n) {
+      const std::span<const Vec3> piece = all.subspan(first, n);
+      const bool turned = is_inside_out(mesh.dimension, part.piece, piece);
+      for (std::size_t k = 0; k < n; ++k) part.nodes.push_back(node_at(piece[turned && k < 2 ? 1 - k : k]));
     }
   }
 }
@@ -75,8 +112,7 @@ std::vector<bool> bare_nodes(const Mesh& mesh) {
       const CellPart* part = mesh.part({b, i});
       for (const int node : mesh.blocks[at(b)][i]) (part ? bare : filled)[at(node)] = true;
       if (part)
-        for (const CellPart::Piece& piece : part->pieces)
-          for (const int node : piece.nodes) filled[at(node)] = true;
+        for (const int node : part->nodes) filled[at(node)] = true;
     }
   for (std::size_t node = 0; node < bare.size(); ++node) bare[node] = bare[node] && !filled[node];
   return bare;
@@ -86,27 +122,34 @@ Mesh drawn_mesh(const Mesh& mesh) {
   Mesh drawn;
   drawn.dimension = mesh.dimension;
   drawn.nodes = mesh.nodes;
-  std::vector<std::vector<std::vector<CellId>>> replaced;
+  struct Drawn {
+    int block, first, count;  // cells of the drawn mesh
+  };
+  std::vector<std::vector<Drawn>> drawn_as;
   for (int b = 0; b < static_cast<int>(mesh.blocks.size()); ++b) {
     const CellBlock& block = mesh.blocks[at(b)];
-    replaced.emplace_back(at(block.count()));
+    std::vector<Drawn>& of_block = drawn_as.emplace_back();
+    of_block.reserve(at(block.count()));
     for (int i = 0; i < block.count(); ++i) {
-      const auto add = [&](Cell cell, std::span<const int> nodes) {
-        CellBlock& into = drawn.block(cell);
-        replaced.back()[at(i)].push_back({drawn.find_block(cell), into.count()});
-        into.nodes.insert(into.nodes.end(), nodes.begin(), nodes.end());
-      };
-      if (const CellPart* part = mesh.part({b, i}))
-        for (const CellPart::Piece& piece : part->pieces) add(piece.cell, piece.nodes);
-      else
-        add(block.cell, block[i]);
+      const CellPart* part = mesh.part({b, i});
+      const std::span<const int> nodes = part ? std::span<const int>(part->nodes) : block[i];
+      if (nodes.empty()) {
+        of_block.push_back({0, 0, 0});
+        continue;
+      }
+      CellBlock& into = drawn.block(part ? part->piece : block.cell);
+      const int first = into.count();
+      into.nodes.insert(into.nodes.end(), nodes.begin(), nodes.end());
+      of_block.push_back({drawn.find_block(into.cell), first, into.count() - first});
     }
   }
   for (const auto& [name, group] : mesh.groups) {
     Group& made = drawn.groups[name];
     made = {group.dimension, {}, group.nodes};
-    for (const CellId id : group.cells)
-      made.cells.insert(made.cells.end(), replaced[at(id.block)][at(id.index)].begin(), replaced[at(id.block)][at(id.index)].end());
+    for (const CellId id : group.cells) {
+      const auto [block, first, count] = drawn_as[at(id.block)][at(id.index)];
+      for (int k = first; k < first + count; ++k) made.cells.push_back({block, k});
+    }
     std::ranges::sort(made.cells);
   }
   return drawn;

@@ -72,7 +72,7 @@ std::vector<SurfaceShare> surface_shares(const CaseSolids& solids, const std::ve
     std::vector<Vec3> corners;
     for (const int node : nodes) corners.push_back(mesh.nodes[static_cast<std::size_t>(node)]);
     const Cell cell = mesh.type(face.cell);
-    const LocalCoordinates local(info(cell).linear, std::span<const Vec3>(corners).first(static_cast<std::size_t>(info(cell).corners)));
+    const PlacedCell placed(info(cell).linear, std::span<const Vec3>(corners).first(static_cast<std::size_t>(info(cell).corners)));
     const double thickness = mesh.dimension == 2 ? solids.of(face.cell).section.thickness : 1;
     const std::size_t first = shares.size();
     for (const int node : nodes) shares.push_back({.node = node});
@@ -86,7 +86,7 @@ std::vector<SurfaceShare> surface_shares(const CaseSolids& solids, const std::ve
         const Vec3 place = cell_position(on_face, positions);
         const double factor = profile != nullptr ? profile->at(place) : 1;
         const double area = thickness * factor * rule.weight[i] * cell_area_vector(on_face, positions, piece).norm();
-        const CellShape shape = cell_shape(cell, local(place));
+        const CellShape shape = cell_shape(cell, placed.local(place));
         for (std::size_t a = 0; a < nodes.size(); ++a) {
           shares[first + a].area += shape.value[a] * area;
           shares[first + a].outward += shape.value[a] * area * face.normal;

@@ -89,7 +89,7 @@ class Partners {
       for (const int node : nodes) sum += mesh.nodes[static_cast<std::size_t>(node)], ++count;
     };
     if (const CellPart* part = mesh.part(id))
-      for (const CellPart::Piece& piece : part->pieces) add(piece.nodes);
+      add(part->nodes);
     else
       add(mesh.cell(id));
     return sum / count;
