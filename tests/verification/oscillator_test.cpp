@@ -308,28 +308,58 @@ TEST(ReferenceOscillator, MacroElement) {
   VERIFY_NEAR("peak of the base moment, sampled at 1 ms", "N m", sampled.moment, 1.368543e6, 0.5);
   VERIFY_NEAR("peak of the uplifted share, sampled at 1 ms", "1", sampled.share, 0.686923, 5e-7);
 
-  const Reference curve = reference("oscillator_A.csv");
-  std::vector<double> steps{2e-4, 1e-4, 5e-5}, far;
+  struct Curves {
+    std::vector<double> x, theta, w;  // every 1 ms
+  };
+  std::vector<double> steps{1e-4, 5e-5, 2.5e-5}, far;
+  std::vector<Curves> all;
+  std::vector<double> same;
+  for (std::size_t i = 0; i < exact.x.size(); i += 10) same.push_back(exact.x[i]);
   for (const double dt : steps) {
     Oscillator oscillator;
     oscillator.macro_element = true, oscillator.step = dt, oscillator.duration = 3;
     oscillator.every = static_cast<int>(std::lround(1e-3 / dt));
     const History run = run_text(oscillator.text());
     ASSERT_EQ(run.status, "completed") << run.reason;
-    std::vector<double> x = run["top.ux"], theta, w;
-    for (const double r : run["base.rz"]) theta.push_back(-r);
-    for (const double u : run["base.uy"]) w.push_back(-u);
-    const Peaks found = peaks_of(x, theta, w, 1, 1e-3);
-    std::printf("dt %g rows %zu  x %.8g at %.4f  theta %.8g M %.9g share %.8f | col M %.9g share %.8f\n", dt, run.rows(), found.top,
-                found.time, found.rotation, found.moment, found.share, run.peak("soil.moment"), run.peak("soil.uplifted_ratio"));
-    std::vector<double> same, given, at_given, th, thg;
-    for (std::size_t i = 0; i < x.size(); ++i) same.push_back(exact.x[10 * i]);
-    for (std::size_t i = 0; i < curve["t"].size(); ++i)
-      given.push_back(curve["x_top"][i]), at_given.push_back(x[4 * i]), thg.push_back(curve["theta"][i]), th.push_back(theta[4 * i]);
-    far.push_back(distance(x, same));
-    std::printf("  rms %.3g, of the table %.3g theta %.3g\n", far.back(), distance(at_given, given), distance(th, thg));
+    all.push_back({run["top.ux"], {}, {}});
+    for (const double turned : run["base.rz"]) all.back().theta.push_back(-turned);
+    for (const double up : run["base.uy"]) all.back().w.push_back(-up);
+    far.push_back(distance(all.back().x, same));
+    const Peaks found = peaks_of(all.back().x, all.back().theta, all.back().w, 1, 1e-3);
+    VERIFY_NEAR("column of the base moment over that of displacement and rotation", "1", run.peak("soil.moment") / found.moment, 1, 2e-4);
+    VERIFY_NEAR("column of the uplifted share", "1", run.peak("soil.uplifted_ratio"), found.share, 1e-9);
   }
-  std::printf("order %g\n", order(steps, far));
+  verified_case.curve("step", steps, far);
+  VERIFY_NEAR("order in the step", "1", order(steps, far), 2, 0.2);
+  // the error of the step, extrapolated from the last two
+  Curves at = all[2];
+  for (std::size_t i = 0; i < at.x.size(); ++i)
+    for (const auto curve : {&Curves::x, &Curves::theta, &Curves::w}) (at.*curve)[i] += ((all[2].*curve)[i] - (all[1].*curve)[i]) / 3;
+  const Peaks found = peaks_of(at.x, at.theta, at.w, 1, 1e-3);
+  VERIFY_NEAR("peak of the top, extrapolated in the step", "m", found.top, 3.587591e-2, 5e-9);
+  VERIFY_NEAR("its time in the run", "s", found.time, 1.453, 1e-9);
+  VERIFY_NEAR("peak of the rotation, extrapolated in the step", "rad", found.rotation, 6.76621e-3, 5e-8);
+  VERIFY_NEAR("peak of the base moment, extrapolated in the step", "N m", found.moment, 1.368543e6, 0.5);
+  VERIFY_NEAR("peak of the uplifted share, extrapolated in the step", "1", found.share, 0.686923, 5e-7);
+  const Reference curve = reference("oscillator_A.csv");
+  double x_off = 0, theta_off = 0, w_off = 0, m_off = 0, n_off = 0, s_off = 0;  // of all six columns
+  for (std::size_t i = 0; i < curve["t"].size(); ++i) {
+    const std::size_t row = 4 * i;
+    const Contact c = contact(at.w[row], at.theta[row]);
+    x_off = std::max(x_off, std::abs(at.x[row] - curve["x_top"][i]) / sampled.top);
+    theta_off = std::max(theta_off, std::abs(at.theta[row] - curve["theta"][i]) / sampled.rotation);
+    w_off = std::max(w_off, std::abs(at.w[row] - curve["w_centre"][i]) / (load / (2 * half * bed)));
+    m_off = std::max(m_off, std::abs(c.moment - curve["M_base"][i]) / sampled.moment);
+    n_off = std::max(n_off, std::abs(c.force - curve["N_base"][i]) / load);
+    s_off = std::max(s_off, std::abs(c.uplifted - curve["uplift_ratio"][i]));
+  }
+  VERIFY_LT("motion of the top beside the table, over its peak", "1", x_off, 2e-6);
+  VERIFY_LT("rotation beside the table, over its peak", "1", theta_off, 2e-5);
+  VERIFY_LT("settlement beside the table, over that at rest", "1", w_off, 1e-5);
+  VERIFY_LT("base moment beside the table, over its peak", "1", m_off, 4e-5);
+  VERIFY_LT("vertical force beside the table, over the load", "1", n_off, 3e-5);
+  VERIFY_LT("uplifted share beside the table", "1", s_off, 2e-5);
+
   Oscillator element;
   element.macro_element = true, element.step = 1e-4;
   const History one = run_text(element.text());
@@ -339,8 +369,10 @@ TEST(ReferenceOscillator, MacroElement) {
     bed_of_points.macro_element = false, bed_of_points.points = points;
     size.push_back(1.0 / (points - 1));
     off.push_back(distance(run_text(bed_of_points.text())["top.ux"], one["top.ux"]));
-    std::printf("points %d: %.4g\n", points, off.back());
   }
+  verified_case.curve("points", size, off);
+  VERIFY_NEAR("order in the points", "1", order(size, off), 2, 0.02);
+  VERIFY_NEAR("rms distance of 401 points from 201, over that of 201 from the element", "1", off[3] / off[2], 0.25, 0.005);
 }
 
 }  // namespace

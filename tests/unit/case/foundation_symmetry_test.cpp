@@ -31,7 +31,7 @@ std::string number(double value) {
   return fmt::format("{:.17g}", value);
 }
 
-std::string structure(const Frame& frame, bool space, const std::string& ground) {
+std::string structure(const Frame& frame, bool space, const std::string& ground, double amplitude = 4.3) {
   const double l = frame.length, f = frame.force, m = frame.mass();
   const auto vector = [&](double along, double across, double up) {
     return space ? fmt::format("[{:.17g}, {:.17g}, {:.17g}]", frame.x(along, across), frame.y(along, across), up)
@@ -48,9 +48,8 @@ std::string structure(const Frame& frame, bool space, const std::string& ground)
                 : fmt::format("inertia = {:.17g}\n", 60e3 * m * l * l);
   text += ground + "[gravity]\nacceleration = " + (space ? "[0, 0, " : "[0, ") + number(-9.81 * l) + "]\n[damping]\nalpha = 0.3\n" +
           "[[function]]\nname = \"pulse\"\nshape = { type = \"half_sine\", duration = 0.4 }\n" +
-          "[[ground_acceleration]]\ndirection = " + vector(0.8, 0.6, 0) +
-          fmt::format("\nfunction = \"pulse\"\namplitude = {:.17g}\n", 4.3 * l) +
-          "[method]\ntype = \"newton\"\ntolerance = 1e-14\n"
+          "[[ground_acceleration]]\ndirection = " + vector(space ? 0.8 : 1, 0.6, 0) +
+          fmt::format("\nfunction = \"pulse\"\namplitude = {:.17g}\n", amplitude * l) +
           "[[stage]]\ntype = \"static\"\n[[stage]]\ntype = \"dynamic\"\nduration = 1.2\nstep = 4e-3\n"
           "[output]\nframes = 0\nautomatic = false\n";
   for (const char* node : {"top", "base"})
@@ -68,8 +67,8 @@ std::string footing(const Frame& frame, const std::string& shape, double width, 
   const auto rocking = [&](double side) { return 6e8 * side * side / 12 * f * l; };
   text += fmt::format(
       "model = {{ type = \"macro_element\", shape_number = 6, K_v = {:.17g}, K_h = {:.17g}, K_r = {:.17g}, V_s = {:.17g}, V_u = {:.17g}, "
-      "w_ref = {:.17g}, friction_angle = 0.35, cohesion = {:.17g}",
-      6e8 * f / l, 3e8 * f / l, rocking(width), 3e6 * f, 5e6 * f, 0.02 * l, 2e3 * f / (l * l));
+      "w_ref = {:.17g}, friction_angle = 0.25, cohesion = {:.17g}",
+      6e8 * f / l, 3e8 * f / l, rocking(width), 5e6 * f, 8e6 * f, 0.02 * l, 2e3 * f / (l * l));
   if (space) text += fmt::format(", K_t = {:.17g}", 1e9 * f * l);
   if (space && shape == "rectangle") text += fmt::format(", K_r2 = {:.17g}", rocking(length));
   return text + more + " }\n";
@@ -154,7 +153,7 @@ TEST(FoundationSymmetry, InSpace) {
     if (shape == "disc") frames.push_back({"turned by 37 degrees, feet", {3.2808, 1, turn}});
     for (const auto& [what, frame] : frames) expect_same(original, ran(frame), frame, true, shape + " " + what);
     const Frame quarter{1, 1, std::numbers::pi / 2};
-    expect_same(original, ran(quarter, true), quarter, true, shape + " turned by 90 degrees");
+    if (shape == "rectangle") expect_same(original, ran(quarter, true), quarter, true, "rectangle turned by 90 degrees");
   }
 }
 
@@ -168,8 +167,8 @@ TEST(FoundationSymmetry, UnitsInTheText) {
                                                                                  {"width = 6\n", "width = \"6000 mm\"\n"},
                                                                                  {"K_v = 600000000", "K_v = \"600 kN/mm\""},
                                                                                  {"K_r = 1800000000", "K_r = \"1800 MN m/rad\""},
-                                                                                 {"V_s = 3000000", "V_s = \"3000 kN\""},
-                                                                                 {"V_u = 5000000", "V_u = \"5 MN\""},
+                                                                                 {"V_s = 5000000", "V_s = \"5000 kN\""},
+                                                                                 {"V_u = 8000000", "V_u = \"8 MN\""},
                                                                                  {"w_ref = 0.02", "w_ref = \"20 mm\""}})
     other = support::replaced(other, si, unit);
   expect_same(support::run_text(text), support::run_text(other), {}, false, "kN, mm, t");
