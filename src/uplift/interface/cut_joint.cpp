@@ -80,11 +80,36 @@ void add_cut_line(const CutFace& face, double thickness, Points& points) {
 
 void add_level_quadrilateral(const CutFace& face, Points& points, Facets& facets) {
   const std::vector<Vec3>& x = face.corners;
-  const double area = triangle_area(x[0], x[1], x[2]) + triangle_area(x[0], x[2], x[3]);
+  // the integral of the bilinear function of each corner: a quarter of a parallelogram
+  std::array<double, 4> share{};
+  for (std::size_t k = 0; k < 4; ++k) {
+    const double part = triangle_area(x[(k + 3) % 4], x[k], x[(k + 1) % 4]) / 18;  // of half the Jacobian of this corner
+    share[k] += 4 * part, share[(k + 1) % 4] += 2 * part, share[(k + 3) % 4] += 2 * part, share[(k + 2) % 4] += part;
+  }
   std::array<int, 4> p{};
-  for (std::size_t k = 0; k < 4; ++k) p[k] = points.add(face, x[k], area / 4);
+  for (std::size_t k = 0; k < 4; ++k) p[k] = points.add(face, x[k], share[k]);
   for (const auto& [a, b, c] : {std::array<std::size_t, 3>{0, 1, 2}, {0, 2, 3}, {0, 1, 3}, {1, 2, 3}})  // halved both ways
     facets.pieces.push_back({{p[a], p[b], p[c]}, triangle_area(x[a], x[b], x[c]) / 2});
+}
+
+/// A face of cells of the second degree, whose functions are quadratic in both directions: Simpson's rule in each.
+void add_quadratic_face(const CutFace& face, Points& points, Facets& facets) {
+  const std::vector<Vec3>& x = face.corners;
+  constexpr std::array<std::array<int, 2>, 8> ring{{{-1, -1}, {0, -1}, {1, -1}, {1, 0}, {1, 1}, {0, 1}, {-1, 1}, {-1, 0}}};
+  const auto add = [&](int r, int s) {
+    const Vec3 along = (1 - s) * (x[1] - x[0]) / 4 + (1 + s) * (x[2] - x[3]) / 4,
+               across = (1 - r) * (x[3] - x[0]) / 4 + (1 + r) * (x[2] - x[1]) / 4;
+    const Vec3 place = ((1 - r) * ((1 - s) * x[0] + (1 + s) * x[3]) + (1 + r) * ((1 - s) * x[1] + (1 + s) * x[2])) / 4;
+    return std::pair{points.add(face, place, (r == 0 ? 4 : 1) * (s == 0 ? 4 : 1) * cross(along, across).norm() / 9), place};
+  };
+  const auto middle = add(0, 0);
+  auto last = add(ring.back()[0], ring.back()[1]);
+  const auto first = last;
+  for (std::size_t k = 0; k < ring.size(); ++k) {
+    const auto next = k + 1 < ring.size() ? add(ring[k][0], ring[k][1]) : first;
+    facets.pieces.push_back({{last.first, next.first, middle.first}, triangle_area(last.second, next.second, middle.second)});
+    last = next;
+  }
 }
 
 void add_triangles(const CutFace& face, Points& points, Facets& facets) {
@@ -187,6 +212,8 @@ CutJoints cut_joints(const Mesh& mesh, const std::vector<CutFace>& faces, const 
       add_cut_line(face, thickness, points);
     else if (face.level && face.corners.size() == 4 && info(mesh.type(face.upper)).corners > 4)
       add_level_quadrilateral(face, points, made.facets);
+    else if (face.corners.size() == 4 && info(mesh.type(face.upper)).linear != mesh.type(face.upper))
+      add_quadratic_face(face, points, made.facets);
     else
       add_triangles(face, points, made.facets);
   }

@@ -39,7 +39,7 @@ class OneCut {
   void set_part(CellId id, const CellBefore& before, const std::vector<HalfSpace>& within);
   void write_small(CellId id);
   void write_groups();
-  void add_face(std::vector<CutFace>& faces, CutFace face, const CellBefore& of) const;
+  void add_face(std::vector<CutFace>& faces, CutFace face, const CellBefore& of, bool whole) const;
   void add_beside(CellId cell, std::vector<Vec3> corners, const CutOutline* outline, double tolerance);
 
   CutWork& work_;
@@ -252,8 +252,8 @@ void OneCut::write_groups() {
   }
 }
 
-/// Adds what lies within its outline.
-void OneCut::add_face(std::vector<CutFace>& faces, CutFace face, const CellBefore& of) const {
+/// Adds what lies within its outline. `whole`: it is a face of two cells.
+void OneCut::add_face(std::vector<CutFace>& faces, CutFace face, const CellBefore& of, bool whole) const {
   const std::vector<HalfSpace>& within = plane_.outlines[at(face.outline)].within;
   face.corners = clip_section(std::move(face.corners), within, of.tolerance);
   if (static_cast<int>(face.corners.size()) < mesh_.dimension) return;
@@ -264,6 +264,8 @@ void OneCut::add_face(std::vector<CutFace>& faces, CutFace face, const CellBefor
     face.clipped = true;
     face.level = face.level && (!faceted || is_level(of.cell, of.corners, space));
   }
+  if (whole && !face.clipped) face.level = true;
+  face.level = face.level && info(of.cell).linear == of.cell;  // corners alone are no rule for cells of the second degree
   faces.push_back(std::move(face));
 }
 
@@ -301,20 +303,20 @@ std::vector<CutFace> OneCut::faces() {
   for (const auto& [id, upper] : neighbours_) rename(id, upper);
   write_groups();
   std::vector<CutFace> found;
-  const auto add = [&](int lower, int upper, const std::vector<Vec3>& corners, const CellBefore& of) {
+  const auto add = [&](int lower, int upper, const std::vector<Vec3>& corners, const CellBefore& of, bool whole) {
     const int outline = halves_[at(upper)].outline;
-    add_face(found, {.lower = made_[at(lower)].lower, .upper = made_[at(upper)].upper, .corners = corners, .outline = outline}, of);
+    add_face(found, {.lower = made_[at(lower)].lower, .upper = made_[at(upper)].upper, .corners = corners, .outline = outline}, of, whole);
     add_beside(made_[at(lower)].lower, corners, &plane_.outlines[at(outline)], of.tolerance);
   };
   for (const auto& [k, cell] : cells) {
     if (!halves_[at(k)].lower || halves_[at(k)].lower_whole) continue;  // a cell above the plane
     const std::vector<Vec3> corners = section(cell.cell, cell.corners, plane_.below, cell.tolerance);
     if (halves_[at(k)].upper)
-      add(k, k, corners, cell);
+      add(k, k, corners, cell, false);
     else
       add_beside(made_[at(k)].lower, corners, nullptr, cell.tolerance);
   }
-  for (const CutFilling::LevelFace& face : filling_.level_faces()) add(face.lower, face.upper, face.corners, cells.at(face.upper));
+  for (const CutFilling::LevelFace& face : filling_.level_faces()) add(face.lower, face.upper, face.corners, cells.at(face.upper), true);
   for (const CutFilling::BareFace& face : bare) add_beside(made_[at(face.lower)].lower, face.corners, nullptr, 0);
   if (found.empty()) throw InputError(where_, "", "an interface on the plane", "none: nothing above the plane lies within the outline");
   return found;
