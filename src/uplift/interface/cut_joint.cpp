@@ -112,11 +112,32 @@ void add_quadratic_face(const CutFace& face, Points& points, Facets& facets) {
   }
 }
 
+/// A face in triangles, whose shares of it add up to 1 everywhere. They depend neither on the corner from which it is listed nor on the
+/// sense: of the diagonals of a square round-off would choose one. Only corners: all fans from a corner in equal parts; else quadrilaterals
+/// are halved both ways, and more corners have a fan from their mean.
+struct PartOfFace {
+  std::array<Vec3, 3> corner;
+  double share;
+};
+std::vector<PartOfFace> triangles_of(const std::vector<Vec3>& x, bool only_corners) {
+  const std::size_t n = x.size();
+  std::vector<PartOfFace> parts;
+  if (n > 4 && !only_corners) {
+    Vec3 mean = Vec3::Zero();
+    for (const Vec3& corner : x) mean += corner / static_cast<double>(n);
+    for (std::size_t k = 0; k < n; ++k) parts.push_back({{x[k], x[(k + 1) % n], mean}, 1});
+    return parts;
+  }
+  const std::size_t fans = n == 3 ? 1 : n == 4 ? 2 : n;
+  for (std::size_t from = 0; from < fans; ++from)
+    for (std::size_t k = 2; k < n; ++k)
+      parts.push_back({{x[from], x[(from + k - 1) % n], x[(from + k) % n]}, 1 / static_cast<double>(fans)});
+  return parts;
+}
+
 void add_triangles(const CutFace& face, Points& points, Facets& facets) {
-  const std::vector<Vec3>& x = face.corners;
-  for (std::size_t k = 2; k < x.size(); ++k) {
-    const std::array<Vec3, 3> corner{x[0], x[k - 1], x[k]};
-    const double area = triangle_area(corner[0], corner[1], corner[2]);
+  for (const auto& [corner, share] : triangles_of(face.corners, face.level)) {
+    const double area = share * triangle_area(corner[0], corner[1], corner[2]);
     if (area == 0) continue;
     std::array<int, 3> c{}, m{};
     for (std::size_t i = 0; i < 3; ++i) c[i] = points.add(face, corner[i], area * (face.level ? 1.0 / 3 : 1.0 / 20));
