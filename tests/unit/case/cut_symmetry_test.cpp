@@ -91,7 +91,9 @@ void expect_same(Cell cell, const RunResult& original, const Frame& frame, const
     off = std::max(off, (frame.length * frame.turned(expected) - motion(other, i)).norm() / frame.length);
     size = std::max(size, expected.norm());
   }
-  EXPECT_LT(off, 1e-9 * size) << info(cell).name << " " << what;
+  // the mass of a cut hexahedron, of degree 6, is integrated with degree 5 on tetrahedra, which are others in the mirror
+  const double round_off = cell == Cell::hex8 && frame.mirrored ? 2e-5 : 1e-9;
+  EXPECT_LT(off, round_off * size) << info(cell).name << " " << what;
   const double depth = plane ? frame.length : 1;  // plane models are 1 thick in any unit
   for (const auto& [column, unit] : std::vector<std::pair<const char*, double>>{{"base.axial", frame.force / depth},
                                                                                 {"base.shear", frame.force / depth},
@@ -103,7 +105,7 @@ void expect_same(Cell cell, const RunResult& original, const Frame& frame, const
       apart = std::max(apart, std::abs(std::abs(one[i]) - std::abs(two[i]) / unit)), most = std::max(most, std::abs(one[i]));
     EXPECT_GT(most, 0.2) << column;
     // the share that is open contains gaps of a fixed number of metres
-    const double tolerance = unit == 1 && frame.length != 1 ? 1e-4 : 1e-9;
+    const double tolerance = unit == 1 && frame.length != 1 ? 1e-4 : round_off;
     EXPECT_LT(apart, tolerance * most) << info(cell).name << " " << what << " " << column;
   }
 }
