@@ -117,18 +117,64 @@ void add_cut_line(const CutFace& face, double thickness, Points& points) {
 
 void add_level_quadrilateral(const CutFace& face, Points& points, Facets& facets) {
   const std::vector<Vec3>& x = face.corners;
-  const double area = triangle_area(x[0], x[1], x[2]) + triangle_area(x[0], x[2], x[3]);
+  // the integral of the bilinear function of each corner: a quarter of a parallelogram
+  std::array<double, 4> share{};
+  for (std::size_t k = 0; k < 4; ++k) {
+    const double part = triangle_area(x[(k + 3) % 4], x[k], x[(k + 1) % 4]) / 18;  // of half the Jacobian of this corner
+    share[k] += 4 * part, share[(k + 1) % 4] += 2 * part, share[(k + 3) % 4] += 2 * part, share[(k + 2) % 4] += part;
+  }
   std::array<int, 4> p{};
-  for (std::size_t k = 0; k < 4; ++k) p[k] = points.add(x[k], area / 4);
+  for (std::size_t k = 0; k < 4; ++k) p[k] = points.add(x[k], share[k]);
   for (const auto& [a, b, c] : {std::array<std::size_t, 3>{0, 1, 2}, {0, 2, 3}, {0, 1, 3}, {1, 2, 3}})  // halved both ways
     facets.pieces.push_back({{p[a], p[b], p[c]}, triangle_area(x[a], x[b], x[c]) / 2});
 }
 
-void add_triangles(const CutFace& face, Points& points, Facets& facets) {
+/// A face of cells of the second degree, whose functions are quadratic in both directions: Simpson's rule in each.
+void add_quadratic_face(const CutFace& face, Points& points, Facets& facets) {
   const std::vector<Vec3>& x = face.corners;
-  for (std::size_t k = 2; k < x.size(); ++k) {
-    const std::array<Vec3, 3> corner{x[0], x[k - 1], x[k]};
-    const double area = triangle_area(corner[0], corner[1], corner[2]);
+  constexpr std::array<std::array<int, 2>, 8> ring{{{-1, -1}, {0, -1}, {1, -1}, {1, 0}, {1, 1}, {0, 1}, {-1, 1}, {-1, 0}}};
+  const auto add = [&](int r, int s) {
+    const Vec3 along = (1 - s) * (x[1] - x[0]) / 4 + (1 + s) * (x[2] - x[3]) / 4,
+               across = (1 - r) * (x[3] - x[0]) / 4 + (1 + r) * (x[2] - x[1]) / 4;
+    const Vec3 place = ((1 - r) * ((1 - s) * x[0] + (1 + s) * x[3]) + (1 + r) * ((1 - s) * x[1] + (1 + s) * x[2])) / 4;
+    return std::pair{points.add(place, (r == 0 ? 4 : 1) * (s == 0 ? 4 : 1) * cross(along, across).norm() / 9), place};
+  };
+  const auto middle = add(0, 0);
+  auto last = add(ring.back()[0], ring.back()[1]);
+  const auto first = last;
+  for (std::size_t k = 0; k < ring.size(); ++k) {
+    const auto next = k + 1 < ring.size() ? add(ring[k][0], ring[k][1]) : first;
+    facets.pieces.push_back({{last.first, next.first, middle.first}, triangle_area(last.second, next.second, middle.second)});
+    last = next;
+  }
+}
+
+/// A face in triangles, whose shares of it add up to 1 everywhere. They depend neither on the corner from which it is listed nor on the
+/// sense: of the diagonals of a square round-off would choose one. Only corners: all fans from a corner in equal parts; else quadrilaterals
+/// are halved both ways, and more corners have a fan from their mean.
+struct PartOfFace {
+  std::array<Vec3, 3> corner;
+  double share;
+};
+std::vector<PartOfFace> triangles_of(const std::vector<Vec3>& x, bool only_corners) {
+  const std::size_t n = x.size();
+  std::vector<PartOfFace> parts;
+  if (n > 4 && !only_corners) {
+    Vec3 mean = Vec3::Zero();
+    for (const Vec3& corner : x) mean += corner / static_cast<double>(n);
+    for (std::size_t k = 0; k < n; ++k) parts.push_back({{x[k], x[(k + 1) % n], mean}, 1});
+    return parts;
+  }
+  const std::size_t fans = n == 3 ? 1 : n == 4 ? 2 : n;
+  for (std::size_t from = 0; from < fans; ++from)
+    for (std::size_t k = 2; k < n; ++k)
+      parts.push_back({{x[from], x[(from + k - 1) % n], x[(from + k) % n]}, 1 / static_cast<double>(fans)});
+  return parts;
+}
+
+void add_triangles(const CutFace& face, Points& points, Facets& facets) {
+  for (const auto& [corner, share] : triangles_of(face.corners, face.level)) {
+    const double area = share * triangle_area(corner[0], corner[1], corner[2]);
     if (area == 0) continue;
     std::array<int, 3> c{}, m{};
     for (std::size_t i = 0; i < 3; ++i) c[i] = points.add(corner[i], area * (face.level ? 1.0 / 3 : 1.0 / 20));
@@ -228,6 +274,8 @@ CutJoints cut_joints(const Mesh& mesh, const std::vector<CutFace>& faces, const 
       add_cut_line(face, thickness, points);
     else if (face.level && face.corners.size() == 4 && info(mesh.type(face.upper)).corners > 4)
       add_level_quadrilateral(face, points, made.facets);
+    else if (face.corners.size() == 4 && info(mesh.type(face.upper)).linear != mesh.type(face.upper))
+      add_quadratic_face(face, points, made.facets);
     else
       add_triangles(face, points, made.facets);
   }

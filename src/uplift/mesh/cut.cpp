@@ -51,7 +51,7 @@ class OneCut {
   void set_part(CellId id, const PlacedCell& before, std::span<const HalfSpace> within, double tolerance);
   void write_small(CellId id);
   void write_groups();
-  void add_face(std::vector<CutFace>& faces, CutFace face, const CellBefore& of, const PlacedCell* placed) const;
+  void add_face(std::vector<CutFace>& faces, CutFace face, const CellBefore& of, const PlacedCell* placed, bool whole) const;
   void add_beside(CellId cell, std::vector<Vec3> corners, const CutOutline* outline, double tolerance);
 
   CutWork& work_;
@@ -275,8 +275,9 @@ void OneCut::write_groups() {
   }
 }
 
-/// Adds what lies within its outline. `placed`: the same cell as `of`, null for one of the second degree.
-void OneCut::add_face(std::vector<CutFace>& faces, CutFace face, const CellBefore& of, const PlacedCell* placed) const {
+/// Adds what lies within its outline. `placed`: the same cell as `of`, null for one of the second degree. `whole`: it is a face of two
+/// cells.
+void OneCut::add_face(std::vector<CutFace>& faces, CutFace face, const CellBefore& of, const PlacedCell* placed, bool whole) const {
   const std::vector<HalfSpace>& within = plane_.outlines[at(face.outline)].within;
   face.corners = clip_section(std::move(face.corners), within, of.tolerance);
   if (static_cast<int>(face.corners.size()) < mesh_.dimension) return;
@@ -290,6 +291,8 @@ void OneCut::add_face(std::vector<CutFace>& faces, CutFace face, const CellBefor
     face.clipped = true;
     face.level = face.level && (!faceted || level(space));
   }
+  if (whole && !face.clipped) face.level = true;
+  face.level = face.level && info(of.cell).linear == of.cell;  // corners alone are no rule for cells of the second degree
   faces.push_back(std::move(face));
 }
 
@@ -342,7 +345,7 @@ std::vector<CutFace> OneCut::faces() {
       if (!removed_[b][at(i)]) write_small({static_cast<int>(b), i});
   }
   std::vector<CutFace> found;
-  const auto add = [&](int lower, int upper, std::vector<Vec3> corners, const CellBefore& of, const PlacedCell* placed) {
+  const auto add = [&](int lower, int upper, std::vector<Vec3> corners, const CellBefore& of, const PlacedCell* placed, bool whole) {
     const CutOutline& outline = plane_.outlines[at(halves_[at(upper)].outline)];
     if (!outline.within.empty()) add_beside(made_[at(lower)].lower, corners, &outline, of.tolerance);
     add_face(found,
@@ -350,7 +353,7 @@ std::vector<CutFace> OneCut::faces() {
               .upper = made_[at(upper)].upper,
               .corners = std::move(corners),
               .outline = halves_[at(upper)].outline},
-             of, placed);
+             of, placed, whole);
   };
   made_.reserve(halves_.size());
   found.reserve(reserve());
@@ -362,7 +365,7 @@ std::vector<CutFace> OneCut::faces() {
     if (!halves.lower || halves.lower_whole) continue;
     std::vector<Vec3> corners = section(cell.cell, cell.corners(), plane_.below, cell.tolerance);
     if (halves.upper)
-      add(k, k, std::move(corners), cell, &*placed);
+      add(k, k, std::move(corners), cell, &*placed, false);
     else
       add_beside(made_[at(k)].lower, std::move(corners), nullptr, cell.tolerance);
   }
@@ -375,7 +378,7 @@ std::vector<CutFace> OneCut::faces() {
     const CellBefore& cell = on_level[k];
     std::optional<PlacedCell> placed;
     if (info(cell.cell).nodes == info(cell.cell).corners) placed.emplace(cell.cell, cell.corners());
-    add(level[k].lower, level[k].upper, level[k].corners, cell, placed ? &*placed : nullptr);
+    add(level[k].lower, level[k].upper, level[k].corners, cell, placed ? &*placed : nullptr, true);
   }
   for (const CutFilling::BareFace& face : bare) add_beside(made_[at(face.lower)].lower, face.corners, nullptr, 0);
   if (found.empty()) throw InputError(where_, "", "an interface on the plane", "none: nothing above the plane lies within the outline");

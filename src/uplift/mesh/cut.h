@@ -32,7 +32,9 @@ struct CutPlane {
 struct CutFace {
   CellId lower, upper;
   std::vector<Vec3> corners;  // m; in the plane two, in space three or more in the order of the outline
-  bool level = false;    // parallel to faces of a cell with parallel sides, as the edges of the outline, or the cell is a triangle or tet
+  // parallel to faces of a cell with parallel sides, as the edges of the outline, or of a triangle or tetrahedron, or a whole face of two
+  // cells; of cells of the first degree
+  bool level = false;
   bool clipped = false;  // the outline ends inside the cell
   int outline = 0;       // of the plane's, in their order
 };

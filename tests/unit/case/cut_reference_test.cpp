@@ -385,13 +385,16 @@ TEST(CutReference, BondedColumnHasTheMassOfTheWholeAndItsFrequencies) {
     double mass;
     Vector frequencies;
   };
-  const auto column = [&](const std::string& interface) {
-    const std::string text = "title = \"column\"\n[mesh]\nfile = \"column.msh\"\n" +
-                             solid("volume", young, poisson, density, "incompatible_modes = false\n") +
-                             "[[support]]\ngroup = \"bottom\"\nfixed = [\"ux\", \"uy\"]\n[[support]]\ngroup = \"left\"\nfixed = [\"ux\"]\n"
-                             "[[support]]\ngroup = \"right\"\nfixed = [\"ux\"]\n" +
-                             interface + at_rest_stages;
-    const Case read = read_on(text, rectangle(uniform_lines(-width / 2, width / 2, 1), uniform_lines(0, length, 10)));
+  const auto column = [&](Cell cell, const std::string& interface) {
+    const bool plane = info(cell).dimension == 2;
+    std::string text = "title = \"column\"\n[mesh]\nfile = \"column.msh\"\n" +
+                       solid("volume", young, poisson, density, "incompatible_modes = false\n") + "[[support]]\ngroup = \"bottom\"\n" +
+                       (plane ? "fixed = [\"ux\", \"uy\"]\n" : "fixed = [\"ux\", \"uy\", \"uz\"]\n");
+    for (const char* side : {"left", "right", "front", "back"})
+      if (const bool along_x = side[0] == 'l' || side[0] == 'r'; along_x || !plane)
+        text += fmt::format("[[support]]\ngroup = \"{}\"\nfixed = [\"{}\"]\n", side, along_x ? "ux" : "uy");
+    const std::vector<double> x = uniform_lines(-width / 2, width / 2, 1), up = uniform_lines(0, length, 10);
+    const Case read = read_on(text + interface + at_rest_stages, plane ? rectangle(x, up, cell) : box(x, uniform_lines(0, 1, 1), up, cell));
     const BuiltCase built = build(read, RunSpec{});
     const Model& model = built.model;
     Matrix k = model.stiffness;
@@ -404,22 +407,27 @@ TEST(CutReference, BondedColumnHasTheMassOfTheWholeAndItsFrequencies) {
     Column made{0, Vector(squares.cwiseSqrt() / (2 * std::numbers::pi))};
     const Matrix mass = assembled(model, &Local::mass);
     for (int i = 0; i < static_cast<int>(model.nodes.size()); ++i)
-      for (int j = 0; j < static_cast<int>(model.nodes.size()); ++j) made.mass += mass(model.at(i, uy), model.at(j, uy));
+      for (int j = 0; j < static_cast<int>(model.nodes.size()); ++j)
+        made.mass += mass(model.at(i, plane ? uy : uz), model.at(j, plane ? uy : uz));
     return made;
   };
-  const Column whole = column("");
-  EXPECT_NEAR(whole.mass, density * length * width, 1e-12 * density * length * width);
-  for (const double level : {2.37, 5.63, 9.5, 5 + 1e-5, 5 - 1e-5}) {
-    const Column parted = column(fmt::format(
-        "[[interface]]\nname = \"joint\"\ncut = {{ through = [\"volume\"], level = {0} }}\nlaw = {{ type = \"elastic\", K_n = {1}, "
-        "K_t = {1} }}\n",
-        level, stiffness));
-    EXPECT_NEAR(parted.mass, density * length * width, 1e-12 * density * length * width) << level;
-    for (int n = 0; n < 3; ++n) {
-      const double exact = (2 * n + 1) / (4 * length) * std::sqrt(constrained / density);
-      EXPECT_GT(parted.frequencies[n], (1 - 1e-5) * exact) << level;  // the joint gives way by D/(K L) = 6e-6
-      EXPECT_LT(parted.frequencies[n], (1 + 1e-6) * whole.frequencies[n]) << level;
-      EXPECT_LT(whole.frequencies[n], 1.03 * exact);
+  for (const Cell cell : {Cell::tri3, Cell::quad4, Cell::tet4, Cell::wedge6, Cell::hex8}) {
+    const Column whole = column(cell, "");
+    EXPECT_NEAR(whole.mass, density * length * width, 1e-12 * density * length * width);
+    for (const double level : {2.37, 5.63, 9.5, 5 + 1e-5, 5 - 1e-5}) {
+      const std::string what = fmt::format("{} at {}", info(cell).name, level);
+      const Column parted = column(
+          cell,
+          fmt::format("[[interface]]\nname = \"joint\"\ncut = {{ through = [\"volume\"], level = {0} }}\nlaw = {{ type = \"elastic\", "
+                      "K_n = {1}, K_t = {1} }}\n",
+                      level, stiffness));
+      EXPECT_NEAR(parted.mass, density * length * width, 1e-12 * density * length * width) << what;
+      for (int n = 0; n < 3; ++n) {
+        const double exact = (2 * n + 1) / (4 * length) * std::sqrt(constrained / density);
+        EXPECT_GT(parted.frequencies[n], (1 - 1e-5) * exact) << what;  // the joint gives way by D/(K L) = 6e-6
+        EXPECT_LT(parted.frequencies[n], (1 + 1e-6) * whole.frequencies[n]) << what;
+        EXPECT_LT(whole.frequencies[n], 1.03 * exact) << what;
+      }
     }
   }
 }

@@ -98,6 +98,33 @@ class Footing {
   }
 };
 
+/// End of a leg of `legs`: rotation, M, settlement, H, u, accumulated settlement, dissipated energy: with the forces at the end of each
+/// step, and with their means over the step.
+struct Leg {
+  double theta, m, w, h, u, accumulated, dissipated, by_means;
+};
+
+/// Legs 0 -> turn -> -turn -> turn at the vertical force n and H = M/arm, `steps` of equal size in each (plane; arm = 0: H = 0).
+inline std::vector<Leg> legs(const MacroParameters& p, double n, int steps, double arm, double turn) {
+  Footing footing(p, 3);
+  footing.go({0, -n / p.elasticity.vertical, 0});
+  std::vector<Leg> out;
+  double by_means = 0;
+  for (const double target : {turn, -turn, turn}) {
+    const double from = footing.opening[2];
+    for (int i = 1; i <= steps; ++i) {
+      Footing before = footing;
+      footing.hold(from + (target - from) * i / steps, n, arm);
+      before.mean(footing.opening);
+      by_means += before.dissipated(before.now) - before.dissipated(before.memory);
+    }
+    const MacroState state = footing.state();
+    out.push_back({footing.opening[2], footing.force[2], -footing.opening[1], footing.force[0], footing.opening[0], state.accumulated,
+                   state.dissipated, by_means});
+  }
+  return out;
+}
+
 /// Random openings about the plastic ones: N from none to above V_s, shear and rotation up to `size` times those of set P1 at uplift.
 class RandomPath {
  public:

@@ -59,20 +59,9 @@ TEST(MacroYield, AssociatedSlidingLiftsTheFooting) {  // SSNL201 d, G101 and G10
 
 constexpr double n_p1 = 20e6, theta0 = 20e6 * 10 / 6 / 5.714285714285714e10;  // N; N D/6/K_r
 
-/// Ends of the legs 0 -> 8 theta_0 -> -8 theta_0 -> 8 theta_0 of set P1 (leg 1 in `steps`, the others in as many).
-struct Leg {
-  double m, w, h, u, dissipated;
-};
-std::vector<Leg> legs(const MacroParameters& p, int steps, double arm, double turn = 8 * theta0) {
-  Footing footing(p, 3);
-  footing.go({0, -n_p1 / p.elasticity.vertical, 0});
-  std::vector<Leg> out;
-  for (const double target : {turn, -turn, turn}) {
-    const double from = footing.opening[2];
-    for (int i = 1; i <= steps; ++i) footing.hold(from + (target - from) * i / steps, n_p1, arm);
-    out.push_back({footing.force[2], -footing.opening[1], footing.force[0], footing.opening[0], footing.state().dissipated});
-  }
-  return out;
+/// Ends of the legs of set P1.
+std::vector<Leg> legs(const MacroParameters& p, int steps, double arm) {
+  return macro_test::legs(p, n_p1, steps, arm, 8 * theta0);
 }
 
 /// Ends of the legs after the explicit integration.
@@ -80,8 +69,8 @@ std::vector<Leg> explicit_legs(const std::string& name) {
   std::vector<Leg> out;
   for (const auto& row : table("macro_cyclic.csv"))
     if (row.at("case") == name && row.at("route") == "explicit")
-      out.push_back({std::stod(row.at("M")), std::stod(row.at("w")), std::stod(row.at("H")), std::stod(row.at("u")),
-                     std::stod(row.at("dissipated"))});
+      out.push_back({std::stod(row.at("theta")), std::stod(row.at("M")), std::stod(row.at("w")), std::stod(row.at("H")),
+                     std::stod(row.at("u")), std::stod(row.at("p")), std::stod(row.at("dissipated")), std::stod(row.at("dissipated"))});
   return out;
 }
 
