@@ -1,14 +1,59 @@
 #include "uplift/dynamics/split_response.h"
 
+#include <algorithm>
+#include <map>
+#include <utility>
+#include <vector>
+
 #include "uplift/math/dense.h"
 
 namespace uplift {
+
+namespace {
+
+/// B_t = W V^T with one column of W for all columns of B_t that are multiples of each other, as those of the two nodes between which an
+/// interface feels the jump alone.
+struct Jumps {
+  Matrix w, v;  // rows x r, touched unknowns x r
+};
+
+Jumps jumps_of(const Matrix& b) {
+  std::map<std::vector<std::pair<Index, double>>, Index> numbers;  // of columns over their first entry
+  std::vector<Index> column, number;                               // of W: one of B_t; of B_t: that of W
+  std::vector<double> factor;
+  for (Index j = 0; j < b.cols(); ++j) {
+    std::vector<std::pair<Index, double>> entries;
+    for (Index i = 0; i < b.rows(); ++i)
+      if (b(i, j) != 0) entries.emplace_back(i, b(i, j));
+    factor.push_back(entries.front().second);
+    for (auto& [row, value] : entries) value /= factor.back();
+    const auto [found, added] = numbers.try_emplace(std::move(entries), static_cast<Index>(column.size()));
+    if (added) column.push_back(j);
+    number.push_back(found->second);
+  }
+  const Index r = static_cast<Index>(column.size());
+  Jumps made{Matrix(b.rows(), r), Matrix::Zero(b.cols(), r)};
+  for (Index k = 0; k < r; ++k)
+    made.w.col(k) = b.col(column[static_cast<std::size_t>(k)]) / factor[static_cast<std::size_t>(column[static_cast<std::size_t>(k)])];
+  for (Index j = 0; j < b.cols(); ++j) made.v(j, number[static_cast<std::size_t>(j)]) = factor[static_cast<std::size_t>(j)];
+  return made;
+}
+
+}  // namespace
 
 SplitResponse::SplitResponse(const BulkFactor& factor, const Sparse& b, LinearCounts& counts) : factor_(factor), counts_(counts) {
   const Index touched = static_cast<Index>(factor.last().size());
   Matrix at_touched(b.rows(), touched);
   for (Index j = 0; j < touched; ++j) at_touched.col(j) = b.col(factor.last()[static_cast<std::size_t>(j)]);
   const Matrix l = factor.split()->last();
+  if (Jumps jumps = jumps_of(at_touched); jumps.w.cols() < std::min(touched, b.rows())) {
+    l.triangularView<lower_triangle>().solveInPlace(jumps.v);
+    const Qr qr(jumps.v);
+    const Matrix upper = qr->matrixQR().topRows(jumps.w.cols()).triangularView<upper_triangle>();
+    q_ = columns_of_q(qr, jumps.w.cols()).transpose();
+    c_.noalias() = jumps.w * upper.transpose();
+    return;
+  }
   c_ = l.triangularView<lower_triangle>().solve(at_touched.transpose()).transpose();  // B_t L_tt^-T
   if (b.rows() >= touched) return;
   const Qr qr(c_.transpose());  // touched x rows

@@ -7,6 +7,7 @@ namespace uplift {
 
 /// What the interfaces feel of a bulk whose touched unknowns t were eliminated last, P A P^T = L L^T. With B_t the columns of B for them:
 ///   B A^-1 B^T = (B_t L_tt^-T) (B_t L_tt^-T)^T,      B_t L_tt^-T = C Q      (LQ factors; C square when there are fewer rows than unknowns)
+/// Where rows are more than jumps, as on a cut through hexahedra, B_t = W V^T with one column for a jump, V^T L_tt^-T = R^T Q, C = W R^T.
 /// The forward half of a back-solve gives y = L^-1 P r, whose tail y_t is all that the interfaces feel of r: opening += C (Q y_t). When the
 /// interface problem is solved, its coordinates go back into the tail, y_t += Q^T z, and the backward half gives the displacement:
 /// a condensed step costs one back-solve and keeps nothing that is larger than the interface.
