@@ -25,17 +25,20 @@ Jumps jumps_of(const Matrix& b) {
     std::vector<std::pair<Index, double>> entries;
     for (Index i = 0; i < b.rows(); ++i)
       if (b(i, j) != 0) entries.emplace_back(i, b(i, j));
-    factor.push_back(entries.front().second);
+    factor.push_back(entries.empty() ? 0 : entries.front().second);  // 0: entries that cancel
+    number.push_back(-1);
+    if (entries.empty()) continue;
     for (auto& [row, value] : entries) value /= factor.back();
     const auto [found, added] = numbers.try_emplace(std::move(entries), static_cast<Index>(column.size()));
     if (added) column.push_back(j);
-    number.push_back(found->second);
+    number.back() = found->second;
   }
   const Index r = static_cast<Index>(column.size());
   Jumps made{Matrix(b.rows(), r), Matrix::Zero(b.cols(), r)};
   for (Index k = 0; k < r; ++k)
     made.w.col(k) = b.col(column[static_cast<std::size_t>(k)]) / factor[static_cast<std::size_t>(column[static_cast<std::size_t>(k)])];
-  for (Index j = 0; j < b.cols(); ++j) made.v(j, number[static_cast<std::size_t>(j)]) = factor[static_cast<std::size_t>(j)];
+  for (Index j = 0; j < b.cols(); ++j)
+    if (const Index k = number[static_cast<std::size_t>(j)]; k >= 0) made.v(j, k) = factor[static_cast<std::size_t>(j)];
   return made;
 }
 
@@ -46,7 +49,7 @@ SplitResponse::SplitResponse(const BulkFactor& factor, const Sparse& b, LinearCo
   Matrix at_touched(b.rows(), touched);
   for (Index j = 0; j < touched; ++j) at_touched.col(j) = b.col(factor.last()[static_cast<std::size_t>(j)]);
   const Matrix l = factor.split()->last();
-  if (Jumps jumps = jumps_of(at_touched); jumps.w.cols() < std::min(touched, b.rows())) {
+  if (Jumps jumps = jumps_of(at_touched); jumps.w.cols() > 0 && jumps.w.cols() < std::min(touched, b.rows())) {
     l.triangularView<lower_triangle>().solveInPlace(jumps.v);
     const Qr qr(jumps.v);
     const Matrix upper = qr->matrixQR().topRows(jumps.w.cols()).triangularView<upper_triangle>();
