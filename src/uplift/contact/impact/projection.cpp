@@ -10,7 +10,8 @@ namespace {
 
 void size_scratch(Index rows, Index r, ImpactScratch& scratch) {
   if (scratch.target.size() == rows && scratch.y.size() == r) return;
-  for (Vector* vector : {&scratch.target, &scratch.limit, &scratch.fixed, &scratch.held, &scratch.rate, &scratch.taken, &scratch.impulse})
+  for (Vector* vector :
+       {&scratch.target, &scratch.limit, &scratch.fixed, &scratch.held, &scratch.rate, &scratch.taken, &scratch.impulse, &scratch.total})
     vector->setZero(rows);
   scratch.y.setZero(r);
   scratch.push.setZero(r);
