@@ -153,7 +153,7 @@ bool MacroElement::Path::go(double a, double b, int depth) {
 void MacroElement::Path::add_average(double a, double b, const MacroVector& before, const MacroMatrix& before_slope,
                                      const MacroElastic& at_before, const MacroReturned& now, const MacroMatrix& now_slope,
                                      const MacroVector& yielded) {
-  MacroAverage<5> average = law_->uplift_.average(before, at_before, now.elastic, now.at);
+  MacroUplift::Average average = law_->uplift_.average(before, at_before, now.elastic, now.at);
   MacroMatrix slope = average.by_from * before_slope + average.by_to * now_slope;
   const double share = b - a;
   const double dissipated = average.force.dot(yielded);
@@ -204,16 +204,15 @@ template <int R>
 bool MacroElement::go_elastically(bool average, const Rows& rows, const double* from, const double* to, const double* old,
                                   const LawResponse& response) const {
   constexpr int normal = R, rotation[2] = {R == 1 ? 2 : 4, 3}, components = R == 1 ? 3 : 6;  // rows of the point
-  using Part = Fixed<1 + R, 1>;
   const auto part = [&](const double* q) {
-    Part e;
+    Vec3 e = Vec3::Zero();
     e[0] = old[rows.at(normal)] - q[rows.at(normal)];
     for (int i = 0; i < R; ++i) e[1 + i] = q[rows.at(rotation[i])] - old[rows.at(rotation[i])];
     return e;
   };
   const auto shear = [&](const double* q, int i) { return uplift_.stiffness()[macro_h1 + i] * (q[rows.at(i)] - old[rows.at(i)]); };
-  const Part after = part(to);
-  const MacroRocking<R> end = uplift_.rock<R>(after, response.slope != nullptr || response.next != nullptr);
+  const Vec3 after = part(to);
+  const MacroRocking end = uplift_.rock<R>(after, response.slope != nullptr || response.next != nullptr);
   if (!end.contact) return false;
   if (surfaces_.has_bearing() || surfaces_.has_sliding()) {
     MacroVector force = MacroVector::Zero();
@@ -221,12 +220,12 @@ bool MacroElement::go_elastically(bool average, const Rows& rows, const double* 
     for (int i = 0; i < R; ++i) force[macro_h1 + i] = shear(to, i), force[macro_m1 + i] = end.force[1 + i];
     if (!macro_holds(surfaces_, force, old[rows.at(components == 3 ? 3 : 5)])) return false;
   }
-  const auto put = [&](const Part& force, double before, double behind, double* out) {  // shares of the shear at either end
+  const auto put = [&](const Vec3& force, double before, double behind, double* out) {  // shares of the shear at either end
     out[rows.at(normal)] = -force[0];
     for (int i = 0; i < R; ++i) out[rows.at(rotation[i])] = force[1 + i];
     for (int i = 0; i < R; ++i) out[rows.at(i)] = behind * shear(to, i) + (before > 0 ? before * shear(from, i) : 0);
   };
-  const auto put_slope = [&](const Fixed<1 + R, 1 + R>& k, double factor, double share, double* out) {
+  const auto put_slope = [&](const Mat3& k, double factor, double share, double* out) {
     for (int r = 0; r < components; ++r)
       for (int c = 0; c < components; ++c) out[rows.at(r, c)] = 0;
     out[rows.at(normal, normal)] = factor * k(0, 0);
@@ -238,9 +237,9 @@ bool MacroElement::go_elastically(bool average, const Rows& rows, const double* 
     }
   };
   if (average) {
-    const Part before = part(from);
-    const MacroRocking<R> begin = uplift_.rock<R>(before, false);
-    const MacroAverage<1 + R> mean = uplift_.average<R>(before, begin, after, end, false);
+    const Vec3 before = part(from);
+    const MacroRocking begin = uplift_.rock<R>(before, false);
+    const MacroUplift::RockingAverage mean = uplift_.average<R>(before, begin, after, end, false);
     put(mean.force, begin.contact ? 0.5 : 0, 0.5, response.traction);
     if (response.slope != nullptr) put_slope(mean.by_to, 1, 0.5, response.slope);
   } else {

@@ -65,38 +65,40 @@ Curve curve(double x, double beta, double gamma) {
 }
 
 /// Writes the stiffness of (w, theta) into that of all displacements.
-template <int N>
-void spread(const Fixed<N, N>& rocking, MacroMatrix& all) {
+void spread(const Mat3& rocking, int rotations, MacroMatrix& all) {
   constexpr int at[] = {macro_n, macro_m1, macro_m2};
-  for (int i = 0; i < N; ++i)
-    for (int k = 0; k < N; ++k) all(at[i], at[k]) = rocking(i, k);
+  for (int i = 0; i <= rotations; ++i)
+    for (int k = 0; k <= rotations; ++k) all(at[i], at[k]) = rocking(i, k);
 }
 
 }  // namespace
 
 /// What the rotation about each axis brings; a disc has one axis, that of its rotation.
-template <int R>
 struct MacroUplift::Axes {
-  int count = R;
-  double rotation[R];                           // |theta| [rad]
-  double offset[R];                             // x N [N]
-  double sign[R];                               // of the rotation
-  Fixed<R, 1> direction = Fixed<R, 1>::Zero();  // of the rotation of a disc
-
-  Axes(const MacroUplift& uplift, const double* theta) {
-    if (R == 2 && uplift.elastic_.disc) {
-      count = 1;
-      rotation[0] = std::sqrt(theta[0] * theta[0] + theta[R - 1] * theta[R - 1]);
-      if (rotation[0] > 0) direction = Eigen::Map<const Fixed<R, 1>>(theta) / rotation[0];
-    } else {
-      for (int i = 0; i < R; ++i) {
-        rotation[i] = std::abs(theta[i]);
-        sign[i] = theta[i] < 0 ? -1 : 1;
-      }
-    }
-    for (int i = 0; i < count; ++i) offset[i] = uplift.offset_[i] * rotation[i];
-  }
+  int count;
+  double rotation[2];            // |theta| [rad]
+  double offset[2];              // x N [N]
+  double sign[2];                // of the rotation
+  double direction[2] = {0, 0};  // of the rotation of a disc
 };
+
+/// `count`: of the rotations theta.
+[[gnu::always_inline]] inline MacroUplift::Axes MacroUplift::axes_of(const double* theta, int count) const {
+  Axes axes;
+  if (count == 2 && elastic_.disc) {
+    axes.count = 1;
+    axes.rotation[0] = std::sqrt(theta[0] * theta[0] + theta[1] * theta[1]);
+    for (int i = 0; i < 2 && axes.rotation[0] > 0; ++i) axes.direction[i] = theta[i] / axes.rotation[0];
+  } else {
+    axes.count = count;
+    for (int i = 0; i < count; ++i) {
+      axes.rotation[i] = std::abs(theta[i]);
+      axes.sign[i] = theta[i] < 0 ? -1 : 1;
+    }
+  }
+  for (int i = 0; i < axes.count; ++i) axes.offset[i] = offset_[i] * axes.rotation[i];
+  return axes;
+}
 
 MacroUplift::MacroUplift(const MacroElasticity& elasticity)
     : elastic_(elasticity), beta_(elasticity.shape / 2), gamma_(elasticity.shape / 2 - 1) {
@@ -111,15 +113,6 @@ MacroUplift::MacroUplift(const MacroElasticity& elasticity)
     factor_[i] = arm_[i] * arm_[i] / elastic_.rocking[i];
     offset_[i] = elastic_.rocking[i] / arm_[i];
   }
-}
-
-/// K_z and K_r.
-template <int R>
-Fixed<1 + R, 1> MacroUplift::closed() const {
-  Fixed<1 + R, 1> out;
-  out[0] = elastic_.vertical;
-  for (int i = 0; i < R; ++i) out[1 + i] = elastic_.rocking[i];
-  return out;
 }
 
 /// z - ln z = s, z >= 1: the vertical force of strips (eq M28). Each iteration of Fritsch, Shafer & Crowley raises the error to its fourth
@@ -138,11 +131,10 @@ double MacroUplift::strip_root(double s) {
 
 /// (M27): P N + Q N^(1/gamma) = T, for strips N (P + Q ln(N_1/N)) = T, over the axes that lift. The second one does where the left side at
 /// its offset exceeds the right side.
-template <int R>
-double MacroUplift::lifted_force(double w, const Axes<R>& axes, MacroRise* rises) const {
-  const int first = R == 2 && axes.count == 2 && axes.offset[R - 1] > axes.offset[0] ? 1 : 0;
+double MacroUplift::lifted_force(double w, const Axes& axes, MacroRise* rises) const {
+  const int first = axes.count == 2 && axes.offset[1] > axes.offset[0] ? 1 : 0;
   const double largest = axes.offset[first];
-  double p = 1 / elastic_.vertical, q = 0, toe = w, root[R], behind[R];  // offset^(1/gamma), ln(N_1/N_i)
+  double p = 1 / elastic_.vertical, q = 0, toe = w, root[2], behind[2];  // offset^(1/gamma), ln(N_1/N_i)
   int lifting = 0;
   const auto axis = [&](int k) { return k == 0 ? first : 1 - first; };
   for (; lifting < axes.count; ++lifting) {
@@ -191,8 +183,7 @@ double MacroUplift::lifted_force(double w, const Axes<R>& axes, MacroRise* rises
 
 /// N at the settlement w; zero without contact. Shape numbers without a form of their own: Newton's method on (M26), from a force that is
 /// too small on, or from where the tangent leads to one. `rises`: of the axes that lift; the others are left.
-template <int R>
-double MacroUplift::vertical_force(double w, const Axes<R>& axes, MacroRise* rises) const {
+double MacroUplift::vertical_force(double w, const Axes& axes, MacroRise* rises) const {
   double toe = w, largest = 0, sum = 0, all = 0;
   for (int i = 0; i < axes.count; ++i) {
     toe += 0.5 * elastic_.length[i] * axes.rotation[i];
@@ -220,9 +211,9 @@ double MacroUplift::vertical_force(double w, const Axes<R>& axes, MacroRise* ris
 }
 
 template <int R>
-MacroRocking<R> MacroUplift::rock(const Fixed<1 + R, 1>& q, bool with_stiffness, bool at_rest) const {
-  MacroRocking<R> out;
-  const Axes<R> axes(*this, q.data() + 1);
+MacroRocking MacroUplift::rock(const Vec3& q, bool with_stiffness, bool at_rest) const {
+  MacroRocking out;
+  const Axes axes = axes_of(q.data() + 1, R);
   MacroRise rises[R];
   const double n = vertical_force(q[0], axes, rises);
   if (!(n > 0) && !at_rest) {
@@ -234,7 +225,7 @@ MacroRocking<R> MacroUplift::rock(const Fixed<1 + R, 1>& q, bool with_stiffness,
   out.force[0] = n;
   double toe = q[0], vertical = 1 / elastic_.vertical;  // dw/dN at fixed rotation
   double coupling[1 + R] = {1};                         // -dw/dtheta at fixed N, after 1
-  Fixed<R, R> at_constant_force = Fixed<R, R>::Zero();  // dM/dtheta at fixed N
+  double at_constant_force[R][R] = {};                  // dM/dtheta at fixed N
   for (int i = 0; i < axes.count; ++i) {
     const double x = n > 0 ? axes.offset[i] / n : 0, half = 0.5 * elastic_.length[i];
     const Curve c(x, rises[i], beta_, gamma_);
@@ -245,21 +236,22 @@ MacroRocking<R> MacroUplift::rock(const Fixed<1 + R, 1>& q, bool with_stiffness,
     vertical += factor_[i] * (gamma_ + 1) * c.log_like;
     if (disc) {
       const double across = axes.rotation[i] > 0 ? moment / axes.rotation[i] : elastic_.rocking[i];
-      out.force.template tail<R>() = moment * axes.direction;
+      for (int k = 0; k < R; ++k) out.force[1 + k] = moment * axes.direction[k];
       for (int k = 0; k < R; ++k) coupling[1 + k] = lost * axes.direction[k];
-      at_constant_force = (along - across) * axes.direction * axes.direction.transpose();
-      at_constant_force.diagonal().array() += across;
+      for (int k = 0; k < R; ++k)
+        for (int l = 0; l < R; ++l)
+          at_constant_force[k][l] = (along - across) * axes.direction[k] * axes.direction[l] + (k == l ? across : 0);
     } else {
       out.force[1 + i] = axes.sign[i] * moment;
       coupling[1 + i] = axes.sign[i] * lost;
-      at_constant_force(i, i) = along;
+      at_constant_force[i][i] = along;
     }
   }
   if (with_stiffness) {
     const double inverse = 1 / vertical;
     for (int i = 0; i <= R; ++i)
       for (int k = 0; k <= R; ++k)
-        out.stiffness(i, k) = coupling[i] * coupling[k] * inverse + (i > 0 && k > 0 ? at_constant_force(i - 1, k - 1) : 0);
+        out.stiffness(i, k) = coupling[i] * coupling[k] * inverse + (i > 0 && k > 0 ? at_constant_force[i - 1][k - 1] : 0);
   }
   out.energy = 0.5 * n * toe;  // (N w + M theta)/2, homogeneous of degree two
   return out;
@@ -268,11 +260,10 @@ MacroRocking<R> MacroUplift::rock(const Fixed<1 + R, 1>& q, bool with_stiffness,
 template <int R>
 MacroElastic MacroUplift::respond(const MacroVector& q, bool with_stiffness) const {
   MacroElastic out;
-  Fixed<1 + R, 1> part;
-  part[0] = q[macro_n];
+  Vec3 part(q[macro_n], 0, 0);
   for (int i = 0; i < R; ++i) part[1 + i] = q[macro_m1 + i];
   // at rest without load the stiffness is that of the closed base, so that the first load finds something to stand on
-  const MacroRocking<R> rocking = rock<R>(part, with_stiffness, q.cwiseAbs().maxCoeff() == 0);
+  const MacroRocking rocking = rock<R>(part, with_stiffness, q.cwiseAbs().maxCoeff() == 0);
   out.contact = rocking.contact;
   out.contact_share = rocking.contact_share;
   if (!out.contact) return out;
@@ -286,13 +277,13 @@ MacroElastic MacroUplift::respond(const MacroVector& q, bool with_stiffness) con
   }
   if (!with_stiffness) return out;
   out.stiffness.diagonal() = stiffness_;
-  spread(rocking.stiffness, out.stiffness);
+  spread(rocking.stiffness, R, out.stiffness);
   return out;
 }
 
 /// Every axis that lifts has 1 - 2 |M|/(N D) = (gamma/beta) (N/offset)^(1/gamma).
 bool MacroUplift::beyond_capacity(const MacroVector& q, double capacity) const {
-  const Axes<2> axes(*this, q.data() + macro_m1);
+  const Axes axes = axes_of(q.data() + macro_m1, 2);
   double power = 0, share = capacity;
   for (int i = 0; i < axes.count; ++i) {
     if (!(axes.offset[i] > 0)) continue;
@@ -306,14 +297,14 @@ bool MacroUplift::beyond_capacity(const MacroVector& q, double capacity) const {
 MacroVector MacroUplift::displacement(const MacroVector& force) const {
   MacroVector q = force.cwiseQuotient(stiffness_);
   const double n = force[macro_n];
-  const Axes<2> axes(*this, q.data() + macro_m1);  // of a disc: the direction
+  const Axes axes = axes_of(q.data() + macro_m1, 2);  // of a disc: the direction
   for (int i = 0; i < axes.count; ++i) {
     const double m = axes.offset[i] / n;
     if (!(m > 1)) continue;
     const double x = std::pow(gamma_ / (beta_ - m), gamma_), more = (x / m - 1) * axes.rotation[i];
     q[macro_n] -= factor_[i] * n * curve(x, beta_, gamma_).heave;
     if (elastic_.disc)
-      q.tail<2>() += more * axes.direction;
+      for (int k = 0; k < 2; ++k) q[macro_m1 + k] += more * axes.direction[k];
     else
       q[macro_m1 + i] += axes.sign[i] * more;
   }
@@ -321,47 +312,59 @@ MacroVector MacroUplift::displacement(const MacroVector& force) const {
 }
 
 template <int R>
-MacroAverage<1 + R> MacroUplift::average(const Fixed<1 + R, 1>& from, const MacroRocking<R>& at_from, const Fixed<1 + R, 1>& to,
-                                         const MacroRocking<R>& at_to, bool with_from) const {
+MacroUplift::RockingAverage MacroUplift::average(const Vec3& from, const MacroRocking& at_from, const Vec3& to, const MacroRocking& at_to,
+                                                 bool with_from) const {
   using Part = Fixed<1 + R, 1>;
-  const Part middle = 0.5 * (from + to), step = to - from, stiffness = closed<R>();
-  const MacroRocking<R> half = rock<R>(middle, true, middle.cwiseAbs().maxCoeff() == 0);
-  MacroAverage<1 + R> out{half.force, {}, 0.5 * half.stiffness};
-  if (with_from) out.by_from = out.by_to;
+  using Slope = Fixed<1 + R, 1 + R>;
+  const Part middle = 0.5 * (from + to).template head<1 + R>(), step = (to - from).template head<1 + R>();
+  Part stiffness;
+  stiffness[0] = elastic_.vertical;
+  for (int i = 0; i < R; ++i) stiffness[1 + i] = elastic_.rocking[i];
+  Vec3 at_middle = Vec3::Zero();
+  at_middle.head<1 + R>() = middle;
+  const MacroRocking half = rock<R>(at_middle, true, middle.cwiseAbs().maxCoeff() == 0);
+  Part force = half.force.head<1 + R>();
+  const Part half_force = force;
+  Slope by_to = 0.5 * half.stiffness.topLeftCorner<1 + R, 1 + R>(), by_from = by_to;
   const Part scaled = stiffness.cwiseProduct(step);
-  const double square = step.dot(scaled), work = half.force.dot(step), lacking = at_to.energy - at_from.energy - work;
+  const double square = step.dot(scaled), work = half_force.dot(step), lacking = at_to.energy - at_from.energy - work;
   const double round_off =
-      16 * std::numeric_limits<double>::epsilon() * (at_to.energy + at_from.energy + half.force.cwiseProduct(middle).cwiseAbs().sum());
-  if (!(std::abs(lacking) > round_off && square > 0)) return out;
-  const double share = lacking / square;
-  const Part bend = out.by_to.transpose() * step, twice = 2 * share * scaled;
-  out.force += share * scaled;
-  // derivatives of the share with respect to either end, and of the increment itself
-  const auto add = [&](const Part& difference, double sign, Fixed<1 + R, 1 + R>& by) {
-    const Part by_end = (sign * (difference - twice) - bend) / square;
-    by += scaled * by_end.transpose();
-    by.diagonal() += sign * share * stiffness;
-  };
-  add(at_to.force - half.force, 1, out.by_to);
-  if (with_from) add(at_from.force - half.force, -1, out.by_from);
+      16 * std::numeric_limits<double>::epsilon() * (at_to.energy + at_from.energy + half_force.cwiseProduct(middle).cwiseAbs().sum());
+  if (std::abs(lacking) > round_off && square > 0) {
+    const double share = lacking / square;
+    const Part bend = by_to.transpose() * step, twice = 2 * share * scaled;
+    force += share * scaled;
+    // derivatives of the share with respect to either end, and of the increment itself
+    const auto add = [&](const MacroRocking& end, double sign, Slope& by) {
+      const Part by_end = (sign * (end.force.head<1 + R>() - half_force - twice) - bend) / square;
+      by += scaled * by_end.transpose();
+      by.diagonal() += sign * share * stiffness;
+    };
+    add(at_to, 1, by_to);
+    if (with_from) add(at_from, -1, by_from);
+  }
+  RockingAverage out;
+  out.force.head<1 + R>() = force;
+  out.by_to.topLeftCorner<1 + R, 1 + R>() = by_to;
+  if (with_from) out.by_from.topLeftCorner<1 + R, 1 + R>() = by_from;
   return out;
 }
 
-MacroAverage<5> MacroUplift::average(const MacroVector& from, const MacroElastic& at_from, const MacroVector& to,
-                                     const MacroElastic& at_to) const {
-  const auto part = [](const MacroVector& v) { return Fixed<3, 1>(v[macro_n], v[macro_m1], v[macro_m2]); };
+MacroUplift::Average MacroUplift::average(const MacroVector& from, const MacroElastic& at_from, const MacroVector& to,
+                                          const MacroElastic& at_to) const {
+  const auto part = [](const MacroVector& v) { return Vec3(v[macro_n], v[macro_m1], v[macro_m2]); };
   const auto rocking = [&](const MacroElastic& at) {
-    MacroRocking<2> out;
+    MacroRocking out;
     out.force = part(at.force);
     out.energy = at.energy;
     return out;
   };
-  const MacroAverage<3> without_shear = average<2>(part(from), rocking(at_from), part(to), rocking(at_to), true);
-  MacroAverage<5> out{MacroVector::Zero(), MacroMatrix::Zero(), MacroMatrix::Zero()};
+  const RockingAverage without_shear = average<2>(part(from), rocking(at_from), part(to), rocking(at_to), true);
+  Average out{MacroVector::Zero(), MacroMatrix::Zero(), MacroMatrix::Zero()};
   out.force[macro_n] = without_shear.force[0];
   out.force.tail<2>() = without_shear.force.tail<2>();
-  spread(without_shear.by_from, out.by_from);
-  spread(without_shear.by_to, out.by_to);
+  spread(without_shear.by_from, 2, out.by_from);
+  spread(without_shear.by_to, 2, out.by_to);
   for (const int i : {macro_h1, macro_h2}) {  // linear while in contact: the plain mean
     out.force[i] = 0.5 * (at_from.force[i] + at_to.force[i]);
     out.by_from(i, i) = at_from.contact ? 0.5 * stiffness_[i] : 0;
@@ -372,11 +375,11 @@ MacroAverage<5> MacroUplift::average(const MacroVector& from, const MacroElastic
 
 template MacroElastic MacroUplift::respond<1>(const MacroVector&, bool) const;
 template MacroElastic MacroUplift::respond<2>(const MacroVector&, bool) const;
-template MacroRocking<1> MacroUplift::rock<1>(const Fixed<2, 1>&, bool, bool) const;
-template MacroRocking<2> MacroUplift::rock<2>(const Fixed<3, 1>&, bool, bool) const;
-template MacroAverage<2> MacroUplift::average<1>(const Fixed<2, 1>&, const MacroRocking<1>&, const Fixed<2, 1>&, const MacroRocking<1>&,
-                                                 bool) const;
-template MacroAverage<3> MacroUplift::average<2>(const Fixed<3, 1>&, const MacroRocking<2>&, const Fixed<3, 1>&, const MacroRocking<2>&,
-                                                 bool) const;
+template MacroRocking MacroUplift::rock<1>(const Vec3&, bool, bool) const;
+template MacroRocking MacroUplift::rock<2>(const Vec3&, bool, bool) const;
+template MacroUplift::RockingAverage MacroUplift::average<1>(const Vec3&, const MacroRocking&, const Vec3&, const MacroRocking&,
+                                                             bool) const;
+template MacroUplift::RockingAverage MacroUplift::average<2>(const Vec3&, const MacroRocking&, const Vec3&, const MacroRocking&,
+                                                             bool) const;
 
 }  // namespace uplift

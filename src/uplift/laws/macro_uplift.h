@@ -31,29 +31,20 @@ struct MacroElastic {
   double contact_share = 1;                     // of the base
 };
 
-/// The part of w and the rotations about R axes: (w, theta_1) in the plane, (w, theta_1, theta_2) in space. It does not depend on the
-/// shear.
-template <int R>
+/// The part of (w, theta_1, theta_2), which does not depend on the shear; in the plane theta_2 has no meaning.
 struct MacroRocking {
   bool contact = true;
-  Fixed<1 + R, 1> force = Fixed<1 + R, 1>::Zero();              // N, M_i
-  Fixed<1 + R, 1 + R> stiffness = Fixed<1 + R, 1 + R>::Zero();  // d force/d displacement
-  double energy = 0;                                            // J
-  double heave = 0;                                             // m
-  double contact_share = 1;                                     // of the base
+  Vec3 force = Vec3::Zero();      // N, M_i
+  Mat3 stiffness = Mat3::Zero();  // d force/d displacement
+  double energy = 0;              // J
+  double heave = 0;               // m
+  double contact_share = 1;       // of the base
 };
 
 /// Powers of x = theta/theta_0 of one axis, beyond the beginning of its uplift.
 struct MacroRise {
   double y = 1;         // x^(1/gamma)
   double log_like = 0;  // (y^(gamma - 1) - 1)/(gamma - 1); ln y for gamma = 1
-};
-
-/// A path average and its derivatives with respect to both ends.
-template <int N>
-struct MacroAverage {
-  Fixed<N, 1> force;
-  Fixed<N, N> by_from, by_to;
 };
 
 /// The foundation without yielding.
@@ -72,26 +63,30 @@ class MacroUplift {
   bool beyond_capacity(const MacroVector& displacement, double capacity) const;
   /// Displacements from forces with N > 0 and |M| < N D/2 (the derivative of the complementary energy).
   MacroVector displacement(const MacroVector& force) const;
-  /// Forces of (w, theta) alone. `at_rest`: no load and no displacement, neither u; the footing stands on the ground all the same.
+  /// Forces of (w, theta) alone, theta about R axes. `at_rest`: no load and no displacement, neither u; the footing stands on the ground
+  /// all the same.
   template <int R>
-  MacroRocking<R> rock(const Fixed<1 + R, 1>& displacement, bool with_stiffness, bool at_rest = false) const;
+  MacroRocking rock(const Vec3& displacement, bool with_stiffness, bool at_rest = false) const;
   /// The path average of the force between two displacements: discrete gradient (M12), so that average . (to - from) is the change of
-  /// energy. The stiffness of `at_from` and `at_to` is not needed.
-  MacroAverage<5> average(const MacroVector& from, const MacroElastic& at_from, const MacroVector& to, const MacroElastic& at_to) const;
+  /// energy, and its derivatives with respect to both ends. The stiffness of `at_from` and `at_to` is not needed.
+  struct Average {
+    MacroVector force;
+    MacroMatrix by_from, by_to;
+  };
+  Average average(const MacroVector& from, const MacroElastic& at_from, const MacroVector& to, const MacroElastic& at_to) const;
   /// The same for (w, theta); `with_from`: else by_from has no meaning.
+  struct RockingAverage {
+    Vec3 force;
+    Mat3 by_from, by_to;
+  };
   template <int R>
-  MacroAverage<1 + R> average(const Fixed<1 + R, 1>& from, const MacroRocking<R>& at_from, const Fixed<1 + R, 1>& to,
-                              const MacroRocking<R>& at_to, bool with_from) const;
+  RockingAverage average(const Vec3& from, const MacroRocking& at_from, const Vec3& to, const MacroRocking& at_to, bool with_from) const;
 
  private:
-  template <int R>
   struct Axes;
-  template <int R>
-  double vertical_force(double w, const Axes<R>& axes, MacroRise* rises) const;
-  template <int R>
-  double lifted_force(double w, const Axes<R>& axes, MacroRise* rises) const;
-  template <int R>
-  Fixed<1 + R, 1> closed() const;
+  Axes axes_of(const double* theta, int count) const;
+  double vertical_force(double w, const Axes& axes, MacroRise* rises) const;
+  double lifted_force(double w, const Axes& axes, MacroRise* rises) const;
   static double strip_root(double s);
 
   MacroElasticity elastic_;
