@@ -17,7 +17,7 @@ namespace {
 using namespace uplift::support;
 
 // Claim: on tensionless springs the rotation of a rigid block that a plane parts from its base converges with order 2 in the cells to that
-// of the Winkler base, 4/(3 - M/M_u)^2 times that at uplift; the open share, which counts points, with order 1.
+// of the Winkler base, 4/(3 - M/M_u)^2 times that at uplift.
 TEST(CutOrders, RockingBlock) {
   VERIFIES({"Cut elements", "Rocking block on tensionless springs: order in the cells", "Closed form of the Winkler base"});
   for (const double ratio : {1.5, 2.0, 2.5}) {
@@ -43,9 +43,7 @@ Tilt raft(int n, double eccentricity, bool aligned) {
   const auto x = uniform_lines(-ground / 2, ground / 2, static_cast<int>(ground) * n);
   std::vector<double> y;
   if (aligned) {
-    y = uniform_lines(0, underside, static_cast<int>(std::lround(underside * n)));
-    const auto above = uniform_lines(underside, top, static_cast<int>(std::lround((top - underside) * n)));
-    y.insert(y.end(), above.begin() + 1, above.end());
+    y = lines_with(underside, top, n);
   } else {
     y = {0};
     for (int row = static_cast<int>(std::ceil(top * n - 1e-9)) - 1; row >= 0; --row) y.push_back(top - row / static_cast<double>(n));

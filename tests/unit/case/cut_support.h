@@ -5,6 +5,7 @@
 #include <cmath>
 #include <span>
 #include <string>
+#include <vector>
 
 #include "uplift/case/case.h"
 #include "uplift/io/text/toml.h"
@@ -49,6 +50,14 @@ step = 1e-3
 
 inline std::string solid(const std::string& group, double young, double poisson, double density, const std::string& extra = {}) {
   return fmt::format("[[solid]]\ngroup = \"{}\"\nE = {}\npoisson = {}\ndensity = {}\n{}", group, young, poisson, density, extra);
+}
+
+/// Lines of cells of about 1/n m from 0 to `top`, one of them at `level` [m].
+inline std::vector<double> lines_with(double level, double top, int n) {
+  std::vector<double> lines = uniform_lines(0, level, static_cast<int>(std::lround(level * n)));
+  const std::vector<double> above = uniform_lines(level, top, static_cast<int>(std::lround((top - level) * n)));
+  lines.insert(lines.end(), above.begin() + 1, above.end());
+  return lines;
 }
 
 /// Rotation of a block on a base of the same material that the plane parts from it, on tensionless springs, over that at the beginning of
