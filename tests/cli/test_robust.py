@@ -13,6 +13,11 @@ LONG = BASE.replace("duration = 0.5", "duration = 20000") + "[output]\nevery = 1
 SPRINGS = '[[variant]]\nname = "{}"\nlaw = {{ type = "springs", K_n = {} }}\n'
 
 
+def some_seconds():
+    """The case of a run that comes to its end after a second or two."""
+    return LONG.replace("20000", "400" if sanitized() else "2000")
+
+
 class RobustTest(CliTest):
     def start(self, *words, **options):
         return subprocess.Popen([program(), *map(str, words)], cwd=self.folder, stdout=subprocess.PIPE, stderr=subprocess.PIPE, text=True, **options)
@@ -46,7 +51,7 @@ class Signals(RobustTest):
         self.assertEqual(self.names(), ["SIGHUP", "SIGQUIT", "SIGTERM", "SIGXFSZ", "case.toml"])
 
     def test_nohup_goes_on(self):
-        self.write(LONG.replace("20000", "2000"))
+        self.write(some_seconds())
         process = self.start("run", "case.toml", "-o", "r", "-q", preexec_fn=lambda: signal.signal(signal.SIGHUP, signal.SIG_IGN))
         while not list(self.folder.glob("r.part-*")):
             time.sleep(0.01)
@@ -97,7 +102,7 @@ class Signals(RobustTest):
         self.assertEqual([run["agreement"]["result"] for run in runs], ["agrees", "-"])
 
     def test_interrupted_trust_says_no_bands(self):
-        self.write(LONG.replace("20000", "2000"))
+        self.write(some_seconds())
         ours, theirs = pty.openpty()  # progress is drawn at once on a terminal
         process = subprocess.Popen([program(), "trust", "case.toml", "-o", "r"], cwd=self.folder, stdout=subprocess.PIPE, stderr=theirs, text=True,
                                    env={**os.environ, "TERM": "xterm"})
