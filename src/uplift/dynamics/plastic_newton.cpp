@@ -91,13 +91,30 @@ bool PlasticNewton::wants_tangent(int since) const {
   return residuals_[count - 1] > std::pow(options_.slow, patience) * residuals_[count - 1 - patience];
 }
 
+void PlasticNewton::forget() {
+  duration_ = 0;
+}
+
+/// What yielding adds to its forces in steps of one length, continued as a parabola; zero where nothing is known.
+Vector PlasticNewton::expected_growth(const Step& step) const {
+  if (duration_ == 0 || step.duration != duration_) return Vector::Zero(step.right.size());
+  return 2 * growth_ - growth_before_;
+}
+
+void PlasticNewton::remember_growth(const Step& step, const PlasticState& now) {
+  growth_before_.swap(growth_);
+  growth_ = now.force - step.old.force;
+  if (duration_ == 0 || step.duration != duration_) growth_before_ = growth_;
+  duration_ = step.duration;
+}
+
 Outcome PlasticNewton::solve(const Step& step, StepSolver& elastic, const Make& make, Vector& increment, PlasticState& now) {
   Outcome outcome;
   last_ = &elastic;
   softening_.resize(0, 0);
   residuals_.clear();
   mixing_->forget();
-  given_ = step.right - step.weight * step.old.force;
+  given_ = step.right - step.weight * (step.old.force + expected_growth(step));
   int since = 0;  // iterations with the present factor
   const bool may_soften = options_.newton != PlasticOptions::Newton::modified;
   for (int iteration = 0; iteration < options_.iterations; ++iteration) {
@@ -120,6 +137,7 @@ Outcome PlasticNewton::solve(const Step& step, StepSolver& elastic, const Make& 
     residuals_.push_back(size > 0 ? rest / size : 0);
     if (!(rest > options_.tolerance * size)) {
       outcome.converged = true;
+      remember_growth(step, now);
       return outcome;
     }
     ++since;

@@ -14,6 +14,7 @@
 // with D = 0 (modified Newton: the elastic factor that is there anyway) or D = w (consistent tangent - elastic stiffness). The change of y
 // from one iteration to the next is the residual of the whole balance. Modified iterations are accelerated by Anderson's mixing (Walker &
 // Ni, SIAM J. Numer. Anal. 49 (2011) 1715-1735).
+// The first iteration of a step in time takes for r its value at the beginning and what the last two steps have added, extrapolated.
 namespace uplift {
 
 struct PlasticOptions {
@@ -44,6 +45,8 @@ class PlasticNewton {
   };
   /// `increment` and `now` receive the end of the step.
   Outcome solve(const Step& step, StepSolver& elastic, const Make& make, Vector& increment, PlasticState& now);
+  /// The next step does not begin with what the last ones would go on to.
+  void forget();
   /// The solver of the last iteration, with the interface problem and its solution.
   StepSolver& last() const { return *last_; }
   /// Residuals of the iterations of the last step, of the size of the forces.
@@ -53,12 +56,16 @@ class PlasticNewton {
   class Mixing;
   bool wants_tangent(int since) const;
   bool soften(const Step& step, const Make& make, const Vector& increment, const PlasticState& now);
+  Vector expected_growth(const Step& step) const;
+  void remember_growth(const Step& step, const PlasticState& now);
 
   const PlasticBulk& bulk_;
   PlasticOptions options_;
   Vector weight_, size_, given_, change_;  // given_: y
   std::unique_ptr<Mixing> mixing_;
   Vector moved_;
+  Vector growth_, growth_before_;  // of the yielding solids' forces in the last two steps [N]
+  double duration_ = 0;            // of those steps; 0: none is known
   Sparse softening_;
   std::unique_ptr<StepSolver> tangent_;
   StepSolver* last_ = nullptr;

@@ -228,7 +228,10 @@ void Stepper::reenter() {
     if (level != nullptr && level->solver != nullptr) level->solver->forget();
   impact_scratch_ = {};
   interface_energy_ = {};
-  if (newton_ != nullptr) plastic_now_ = yielding_.state(now_.bulk_history);
+  if (newton_ != nullptr) {
+    newton_->forget();
+    plastic_now_ = yielding_.state(now_.bulk_history);
+  }
   follow_state();
 }
 

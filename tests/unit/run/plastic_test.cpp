@@ -1,6 +1,7 @@
 // Solids that yield, in whole runs: closed forms of strength, the two outer iterations against each other, the energy ledger, the oracle.
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <cmath>
 #include <numbers>
 
@@ -14,6 +15,7 @@
 #include "uplift/io/fields/run_frames.h"
 #include "uplift/io/text/toml.h"
 #include "uplift/mesh/box.h"
+#include "uplift/run/run_state.h"
 
 namespace uplift::plastic_test {
 using namespace plastic_test;
@@ -208,6 +210,25 @@ TEST(PlasticRun, WithCohesionWithoutEndItIsTheLinearRun) {
     for (std::size_t i = 0; i < x.size(); ++i) ASSERT_NEAR(x[i], y[i], 1e-12 * size) << name << ' ' << i;
   }
   for (const Request& each : b.columns) EXPECT_NE(each.name, "energy.plastic");
+}
+
+TEST(PlasticRun, StepsBeginWithTheYieldingOfThoseBefore) {
+  // A run that drops this guess at every step solves for the same answer, and solves more.
+  const Prepared made = prepared(block_on_soil(soil(0.4, 0.1), springs, shaken(180e3)));
+  const RunResult usual = run(made.built.model, made.built.plan, made.built.behaviours);
+  Keeping keeping;
+  keeping.every = 1;
+  keeping.keep = [](const RunState&) {};
+  const RunResult dropped = run(made.built.model, made.built.plan, made.built.behaviours, {}, {}, &keeping);
+  ASSERT_EQ(usual.status, RunStatus::completed) << usual.reason;
+  ASSERT_EQ(dropped.status, RunStatus::completed) << dropped.reason;
+  EXPECT_LT(static_cast<double>(usual.counts.back_solves), 0.97 * static_cast<double>(dropped.counts.back_solves));
+  for (const char* name : {"top.ux", "energy.plastic"}) {
+    const std::vector<double>&x = column(usual, name), &y = column(dropped, name);
+    ASSERT_EQ(x.size(), y.size());
+    const double size = std::abs(*std::max_element(y.begin(), y.end(), [](double a, double b) { return std::abs(a) < std::abs(b); }));
+    for (std::size_t i = 0; i < x.size(); ++i) ASSERT_NEAR(x[i], y[i], 1e-7 * size) << name << ' ' << i;
+  }
 }
 
 TEST(PlasticRun, CondensedStepIsTheMonolithicOne) {
