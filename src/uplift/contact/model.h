@@ -4,6 +4,7 @@
 #include <string>
 #include <vector>
 
+#include "uplift/contact/jumps.h"
 #include "uplift/interface/interface.h"
 #include "uplift/math/linalg.h"
 
@@ -58,6 +59,7 @@ class ModelVersion {
 struct ContactModel {
   std::vector<Block> blocks;
   Matrix factor;         // C: rows x r [m/sqrt(J)]
+  JumpFactor jumps;      // C = W L, for those who can use it
   Vector shift;          // D: rows [N/m]; in dynamics empty, unless interfaces alone hold a massless unknown
   bool average = false;  // path-averaged traction: p = scale * area * mean(from -> opening)
   InterfaceSolver solver = InterfaceSolver::automatic;

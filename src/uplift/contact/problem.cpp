@@ -11,12 +11,22 @@ double largest(const Vector& v) {
   return v.size() > 0 ? v.cwiseAbs().maxCoeff() : 0;
 }
 
+/// scratch.balance = C^T force
+void pull_of(const ContactModel& model, const Vector& force, ResidualScratch& scratch) {
+  if (!model.jumps.given()) {
+    scratch.balance.noalias() = model.factor.transpose() * force;
+    return;
+  }
+  scratch.balance.setZero(model.factor.cols());
+  model.jumps.gather(force, scratch.jump, scratch.balance);
+}
+
 double balance(const InterfaceProblem& problem, const InterfaceSolution& solution, ResidualScratch& scratch) {
-  scratch.balance.noalias() = problem.model->factor.transpose() * solution.force;
+  pull_of(*problem.model, solution.force, scratch);
   const double size = solution.z.norm() + scratch.balance.norm();
   if (problem.model->shift.size() > 0) {
     scratch.force = solution.force - problem.model->shift.cwiseProduct(solution.opening);
-    scratch.balance.noalias() = problem.model->factor.transpose() * scratch.force;
+    pull_of(*problem.model, scratch.force, scratch);
   }
   scratch.balance += solution.z;
   return scratch.balance.norm() / (size + std::numeric_limits<double>::min());
@@ -91,7 +101,12 @@ double contact_residual(const InterfaceProblem& problem, const InterfaceSolution
   if (!solution.z.allFinite() || !solution.force.allFinite() || !solution.opening.allFinite())
     return std::numeric_limits<double>::infinity();
   // the solution's own opening is not trusted
-  scratch.moved.noalias() = problem.model->factor * solution.z;
+  if (problem.model->jumps.given()) {
+    scratch.moved.setZero(problem.rows());
+    problem.model->jumps.spread(solution.z, scratch.jump, scratch.moved);
+  } else {
+    scratch.moved.noalias() = problem.model->factor * solution.z;
+  }
   scratch.opening = problem.free_opening + scratch.moved;
   const double force = largest(solution.force), moved = largest(scratch.moved);
   const double force_scale = force > 0 ? force : 1;

@@ -42,7 +42,7 @@ enum class Status : signed char { open, stick, slip };
 
 /// Work space of contact_residual.
 struct ResidualScratch {
-  Vector opening, moved, force, balance;
+  Vector opening, moved, force, balance, jump;
   Vector traction, slope, end, next, plain;
   Vector now;
 };

@@ -51,6 +51,7 @@ Condensed::Condensed(const Model& model, const Sparse& b, const Vector& gap, boo
   if (factor_->split() != nullptr) {
     split_ = std::make_unique<SplitResponse>(*factor_, b, counts);
     frame.factor = split_->factor();
+    frame.jumps = split_->jumps();
   } else if (factor_->reach() > 0 && b.rows() > 0) {
     solved_ = std::make_unique<SolvedResponse>(*factor_, model, b, counts);
     frame.factor = solved_->take_factor();

@@ -1,6 +1,7 @@
 #pragma once
 #include <utility>
 
+#include "uplift/contact/jumps.h"
 #include "uplift/dynamics/bulk.h"
 
 namespace uplift {
@@ -16,6 +17,8 @@ class SplitResponse {
   /// `factor` must be split, its last unknowns those that `b` touches. It and the counts must stay alive.
   SplitResponse(const BulkFactor& factor, const Sparse& b, LinearCounts& counts);
   const Matrix& factor() const { return c_; }  // C: rows x r
+  /// W and L of C = W R^T, L = R^T, where rows are more than jumps.
+  const JumpFactor& jumps() const { return jumps_; }
   /// Hands C over, for those who need no forward half.
   Matrix take_factor() { return std::move(c_); }
   /// Forward half for a right-hand side; adds B A^-1 r to `opening`.
@@ -28,8 +31,9 @@ class SplitResponse {
  private:
   const BulkFactor& factor_;
   LinearCounts& counts_;
+  JumpFactor jumps_;
   Matrix c_, q_;  // q_: r x touched unknowns; empty: the identity
-  Vector half_, tail_;
+  Vector half_, tail_, jump_;
 };
 
 /// The spread of interface forces through a split factor, which must stay alive: C is kept, a product with X is the backward half of a

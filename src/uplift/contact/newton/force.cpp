@@ -57,7 +57,12 @@ void size_newton(const InterfaceProblem& problem, NewtonWork& work, InterfaceSol
 void evaluate(const InterfaceProblem& problem, const AugmentedForce& augmented, bool with_slope, NewtonWork& work,
               InterfaceSolution& solution) {
   const ContactModel& model = *problem.model;
-  small::affine(model.factor, problem.free_opening.data(), solution.z.data(), solution.opening.data());
+  if (model.jumps.given()) {
+    solution.opening = problem.free_opening;
+    model.jumps.spread(solution.z, work.jump, solution.opening);
+  } else {
+    small::affine(model.factor, problem.free_opening.data(), solution.z.data(), solution.opening.data());
+  }
   for (std::size_t b = 0; b < model.blocks.size(); ++b) {
     const Block& block = model.blocks[b];
     const int first_slope = work.first_slope[b];

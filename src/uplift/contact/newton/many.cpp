@@ -1,19 +1,21 @@
 #include "uplift/contact/newton/many.h"
 
 #include "uplift/contact/lagrange/lagrange.h"
+#include "uplift/contact/newton/jump_direction.h"
 #include "uplift/contact/point_rows.h"
 #include "uplift/math/dense.h"
 
 // Newton's direction is that to the solution z' of the linearised problem
 //     z' = -C^T (p + (k - D) (opening' - opening) - D opening)        opening' = free opening + C z'
-// which PointRows solves by rows, so that nothing of order r^2 m is formed. Where rows are many more than coordinates, as under a rigid
-// footing, H itself is formed.
+// which PointRows solves by rows, so that nothing of order r^2 m is formed. Where rows are more than the jumps that they feel, a few jumps
+// each, JumpDirection solves in the jumps. Where rows are many more than coordinates, as under a rigid footing, H itself is formed.
 namespace uplift {
 namespace {
 
 class Direction final : public MethodWork {
  public:
   bool solve(const InterfaceProblem& problem, NewtonWork& work, InterfaceSolution& solution) {
+    if (problem.model->jumps.given() && jumps_.solve(problem, work, solution.systems)) return true;
     return (PointRows::suits(*problem.model) && solve_by_rows(problem, work, solution)) || solve_by_hessian(*problem.model, work);
   }
 
@@ -51,6 +53,7 @@ class Direction final : public MethodWork {
   }
 
   PointRows rows_;
+  JumpDirection jumps_;
   Matrix hessian_, weighted_;
   Vector taken_, force_, opening_;
   PartialLu lu_;

@@ -184,7 +184,10 @@ void Newton<R>::form_gradient(bool with_hessian) {
   } else {
     double* g = work_.gradient.data();
     for (Index i = 0; i < r(); ++i) g[i] = z[i];
-    small::add_transposed<R>(rows_, r(), column(0), rows_, solution_.force.data(), g);
+    if (R == 0 && model_.jumps.given())
+      model_.jumps.gather(solution_.force, work_.jump, work_.gradient);
+    else
+      small::add_transposed<R>(rows_, r(), column(0), rows_, solution_.force.data(), g);
   }
   if (model_.shift.size() > 0) take_back_shift(forms);
   size_ = std::sqrt(dot(work_.gradient, work_.gradient));
