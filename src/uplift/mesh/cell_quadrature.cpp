@@ -97,6 +97,14 @@ CellRule tet_rule(int degree) {
     add_tet_orbit(rule, 0.092735250310891226402, 0.073493043116361949544 / 6);
     const double a = 0.045503704125649649492, b = 0.5 - a, weight = 0.042546020777081466438 / 6;
     for (const Vec3& p : {Vec3(a, a, b), Vec3(a, b, a), Vec3(b, a, a), Vec3(b, b, a), Vec3(b, a, b), Vec3(a, b, b)}) add(rule, p, weight);
+  } else if (degree == 6) {
+    add_tet_orbit(rule, 0.21460287125915202929, 0.039922750258167492100 / 6);
+    add_tet_orbit(rule, 0.040673958534611353116, 0.010077211055320642948 / 6);
+    add_tet_orbit(rule, 0.32233789014227551034, 0.055357181543654722095 / 6);
+    const double a = 0.063661001875017525299, b = 0.26967233145831580803, c = 1 - 2 * a - b;
+    for (const auto& [p, q] : {std::array{b, c}, std::array{c, b}})  // the fourth coordinate is a, q or p
+      for (const Vec3& point : {Vec3(p, q, a), Vec3(a, p, q), Vec3(q, a, p), Vec3(a, a, p), Vec3(a, p, a), Vec3(p, a, a)})
+        add(rule, point, 27.0 / 560 / 6);
   } else {
     rule = collapsed(degree, 3);
   }

@@ -16,8 +16,8 @@ struct CellRule {
 
 /// Exact for polynomials of `degree` >= 0: in each direction for lines, quads, hexes and the upright direction of wedges (Gauss-Legendre
 /// products), in total for triangles and tets. Triangles: 1, 3, 6, 7 points for degrees 1, 2, 4, 5 (Strang & Fix; Cowper, IJNME 7 (1973)
-/// 405-408); tets: 1, 4, 14 points for degrees 1, 2, 5 (Walkington, CMU report 00-NA-006 (2000)); above 5 products of Gauss rules on the
-/// collapsed square or cube (Stroud 1971). All points are inside.
+/// 405-408); tets: 1, 4, 14 points for degrees 1, 2, 5 (Walkington, CMU report 00-NA-006 (2000)), 24 for degree 6 (Keast, CMAME 55 (1986)
+/// 339-348); above, in triangles above 5, products of Gauss rules on the collapsed square or cube (Stroud 1971). All points are inside.
 CellRule cell_rule(Cell cell, int degree);
 
 /// Degrees of the rules with which solids integrate their stiffness and their mass (elements/solid.h).

@@ -43,9 +43,11 @@ int degree_in_box(Cell cell) {
   return info(cell).dimension == 1 ? 3 : std::max(solid_degrees(cell)[0], solid_degrees(cell)[1]);
 }
 
-/// In all directions together: N^T N of a quad4, grad N^T grad N of a hex8.
-int degree_in_simplex(Cell cell) {
-  return is_simplex(cell) ? 2 : info(cell).dimension == 1 ? 3 : info(cell).dimension == 2 ? 4 : 5;
+/// In all directions together: N^T N of a quad4, of a wedge6 and, where the sides are parallel, of a hex8.
+int degree_in_simplex(Cell cell, bool parallel) {
+  if (is_simplex(cell)) return 2;
+  if (cell == Cell::hex8) return parallel ? 6 : 5;
+  return info(cell).dimension + 2;
 }
 
 /// The rule of parts that are boxes.
@@ -56,19 +58,22 @@ const CellRule& box_rule(Cell cell) {
   return all[at(info(cell).dimension) - 1];
 }
 
+constexpr std::size_t most_points = 24;  // of a simplex
+
 /// The rule of a simplex: shares of its corners at each point.
 struct SimplexRule {
   std::vector<std::array<double, 4>> share;
   std::vector<double> weight;
 };
-const SimplexRule& simplex_rule(Cell cell) {
+const SimplexRule& simplex_rule(const PlacedCell& cell) {
   static const auto all = [] {
-    std::array<SimplexRule, num_cell_types> rules;
-    for (const CellInfo& type : all_cells()) {
+    std::array<std::array<SimplexRule, 2>, num_cell_types> rules;
+    for (std::size_t k = 0; k < 2 * num_cell_types; ++k) {
+      const CellInfo& type = all_cells()[k / 2];
       if (type.dimension == 0 || type.nodes != type.corners) continue;
       const Cell simplex = simplex_cell(type.dimension);
-      const CellRule rule = cell_rule(simplex, degree_in_simplex(type.cell));
-      SimplexRule& made = rules[static_cast<std::size_t>(type.cell)];
+      const CellRule rule = cell_rule(simplex, degree_in_simplex(type.cell, k % 2 != 0));
+      SimplexRule& made = rules[static_cast<std::size_t>(type.cell)][k % 2];
       made.weight = rule.weight;
       for (const Vec3& point : rule.point) {
         const CellShape shape = cell_shape(simplex, point);
@@ -77,7 +82,7 @@ const SimplexRule& simplex_rule(Cell cell) {
     }
     return rules;
   }();
-  return all[static_cast<std::size_t>(cell)];
+  return all[static_cast<std::size_t>(cell.type())][cell.parallel() ? 1 : 0];
 }
 
 struct Box {
@@ -211,20 +216,23 @@ ClippedCell filled_simplices(const PlacedCell& cell, std::span<const HalfSpace> 
   const std::vector<Simplex> left = simplices_within(cell, within, tolerance);
   const int d = info(cell.type()).dimension;
   const std::size_t count = at(d) + 1;
-  const SimplexRule& rule = simplex_rule(cell.type());
+  const SimplexRule& rule = simplex_rule(cell);
   ClippedCell made;
   made.piece = simplex_cell(d);
   made.rule.point.reserve(left.size() * rule.weight.size());
   made.rule.weight.reserve(left.size() * rule.weight.size());
+  std::array<Vec3, most_points> place, local;
+  std::array<double, most_points> whole;
   for (const Simplex& simplex : left) {
     const double size = measure(simplex, d);
-    for (std::size_t p = 0; p < rule.weight.size(); ++p) {
-      Vec3 place = Vec3::Zero();
-      for (std::size_t k = 0; k < count; ++k) place += rule.share[p][k] * simplex[k];
-      const Vec3 local = cell.local(place);
-      made.rule.point.push_back(local);
-      made.rule.weight.push_back(rule.weight[p] * size / cell.measure(local));
+    const std::size_t points = rule.weight.size();
+    for (std::size_t p = 0; p < points; ++p) {
+      place[p] = rule.share[p][0] * simplex[0];
+      for (std::size_t k = 1; k < count; ++k) place[p] += rule.share[p][k] * simplex[k];
     }
+    cell.find(std::span(place).first(points), local, whole);
+    made.rule.point.insert(made.rule.point.end(), local.begin(), local.begin() + static_cast<std::ptrdiff_t>(points));
+    for (std::size_t p = 0; p < points; ++p) made.rule.weight.push_back(rule.weight[p] * size / whole[p]);
     corners.insert(corners.end(), simplex.begin(), simplex.begin() + static_cast<std::ptrdiff_t>(count));
   }
   return made;

@@ -167,4 +167,87 @@ double PlacedCell::measure(const Vec3& local) const {
   return cell_measure(dimension, mapped(type_, corners(), local).tangent);
 }
 
+void PlacedCell::find(std::span<const Vec3> places, std::span<Vec3> local, std::span<double> measure) const {
+  if (type_ == Cell::hex8 && !parallel_) return find_in_warped(places, local, measure);
+  for (std::size_t i = 0; i < places.size(); ++i) {
+    local[i] = this->local(places[i]);
+    measure[i] = this->measure(local[i]);
+  }
+}
+
+namespace {
+
+constexpr std::size_t at_once = 8;  // places side by side in the registers
+
+/// A trilinear mapping x = c_0 + c_1 r + c_2 s + c_3 t + c_4 r s + c_5 s t + c_6 t r + c_7 r s t, components one after another.
+using Trilinear = std::array<std::array<double, 8>, 3>;
+
+Trilinear trilinear(std::span<const Vec3> corners) {
+  Trilinear made{};
+  const std::span<const std::array<double, 3>> nodes = cell_nodes(Cell::hex8);
+  for (std::size_t a = 0; a < 8; ++a) {
+    const auto& [r, s, t] = nodes[a];
+    const std::array<double, 8> sign{1, r, s, t, r * s, s * t, t * r, r * s * t};
+    for (std::size_t k = 0; k < 3; ++k)
+      for (std::size_t m = 0; m < 8; ++m) made[k][m] += sign[m] * corners[a][static_cast<Index>(k)] / 8;
+  }
+  return made;
+}
+
+/// Places [m] and local coordinates, components one after another, and the volumes over that of the reference cell.
+struct Bundle {
+  std::array<std::array<double, at_once>, 3> place, local{};
+  std::array<double, at_once> measure;
+};
+
+/// One iteration of Newton's method for all places; the square of the largest change.
+double improve(const Trilinear& c, Bundle& bundle) {
+  double largest = 0;
+#pragma omp simd reduction(max : largest)
+  for (std::size_t i = 0; i < at_once; ++i) {
+    const double r = bundle.local[0][i], s = bundle.local[1][i], t = bundle.local[2][i];
+    double miss[3], a[3], b[3], d[3];  // place less that of the local coordinates; tangents
+    for (std::size_t k = 0; k < 3; ++k) {
+      const auto& of = c[k];
+      a[k] = of[1] + of[4] * s + t * (of[6] + of[7] * s);
+      b[k] = of[2] + of[4] * r + t * (of[5] + of[7] * r);
+      d[k] = of[3] + of[5] * s + r * (of[6] + of[7] * s);
+      miss[k] = bundle.place[k][i] - (of[0] + r * a[k] + s * (of[2] + t * of[5]) + t * of[3]);
+    }
+    const double bd[3] = {b[1] * d[2] - b[2] * d[1], b[2] * d[0] - b[0] * d[2], b[0] * d[1] - b[1] * d[0]};
+    const double ma[3] = {miss[1] * a[2] - miss[2] * a[1], miss[2] * a[0] - miss[0] * a[2], miss[0] * a[1] - miss[1] * a[0]};
+    const double volume = a[0] * bd[0] + a[1] * bd[1] + a[2] * bd[2], inverse = 1 / volume;
+    const double dr = inverse * (miss[0] * bd[0] + miss[1] * bd[1] + miss[2] * bd[2]);  // Cramer's rule
+    const double ds = -inverse * (d[0] * ma[0] + d[1] * ma[1] + d[2] * ma[2]);
+    const double dt = inverse * (b[0] * ma[0] + b[1] * ma[1] + b[2] * ma[2]);
+    bundle.local[0][i] = r + dr, bundle.local[1][i] = s + ds, bundle.local[2][i] = t + dt;
+    bundle.measure[i] = std::abs(volume);
+    const double change = dr * dr + ds * ds + dt * dt;
+    largest = change > largest ? change : largest;
+  }
+  return largest;
+}
+
+}  // namespace
+
+/// As local_coordinates, for the whole bundle; the measure is that before the last iteration, which is within round-off.
+void PlacedCell::find_in_warped(std::span<const Vec3> places, std::span<Vec3> local, std::span<double> measure) const {
+  constexpr double enough = 1e-8;  // Newton's method squares it
+  const Trilinear map = trilinear(corners());
+  Bundle bundle;
+  for (std::size_t first = 0; first < places.size(); first += at_once) {
+    const auto at_place = [&](std::size_t i) { return std::min(first + i, places.size() - 1); };
+    for (std::size_t i = 0; i < at_once; ++i)
+      for (std::size_t k = 0; k < 3; ++k) bundle.place[k][i] = places[at_place(i)][static_cast<Index>(k)];
+    bundle.local = {};
+    for (int iteration = 0; iteration < 30; ++iteration)
+      if (improve(map, bundle) < enough * enough) break;
+    improve(map, bundle);
+    for (std::size_t i = 0; i < at_once && first + i < places.size(); ++i) {
+      local[first + i] = Vec3(bundle.local[0][i], bundle.local[1][i], bundle.local[2][i]);
+      measure[first + i] = bundle.measure[i];
+    }
+  }
+}
+
 }  // namespace uplift

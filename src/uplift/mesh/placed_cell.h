@@ -34,8 +34,12 @@ class PlacedCell {
   std::array<double, max_corners> shares(const Vec3& local) const;
   /// Length, area or volume of the cell over that of the reference cell.
   double measure(const Vec3& local) const;
+  /// Local coordinates of many places, and the measures there.
+  void find(std::span<const Vec3> places, std::span<Vec3> local, std::span<double> measure) const;
 
  private:
+  void find_in_warped(std::span<const Vec3> places, std::span<Vec3> local, std::span<double> measure) const;
+
   Cell type_;
   std::size_t count_;
   std::array<Vec3, max_corners> corners_;
