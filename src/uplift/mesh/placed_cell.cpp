@@ -5,6 +5,7 @@
 #include <cmath>
 #include <vector>
 
+#include "uplift/math/lanes.h"
 #include "uplift/mesh/cell_shapes.h"
 #include "uplift/mesh/index.h"
 
@@ -177,75 +178,70 @@ void PlacedCell::find(std::span<const Vec3> places, std::span<Vec3> local, std::
 
 namespace {
 
-constexpr std::size_t at_once = 8;  // places side by side in the registers
+/// Places or directions side by side in the registers.
+struct LaneVec {
+  Lanes x, y, z;
+  [[gnu::always_inline]] friend LaneVec operator+(const LaneVec& a, const LaneVec& b) { return {a.x + b.x, a.y + b.y, a.z + b.z}; }
+  [[gnu::always_inline]] friend LaneVec operator-(const LaneVec& a, const LaneVec& b) { return {a.x - b.x, a.y - b.y, a.z - b.z}; }
+  [[gnu::always_inline]] friend LaneVec operator*(const Lanes& f, const LaneVec& a) { return {f * a.x, f * a.y, f * a.z}; }
+  [[gnu::always_inline]] friend Lanes dot(const LaneVec& a, const LaneVec& b) { return a.x * b.x + a.y * b.y + a.z * b.z; }
+  [[gnu::always_inline]] friend LaneVec cross(const LaneVec& a, const LaneVec& b) {
+    return {a.y * b.z - a.z * b.y, a.z * b.x - a.x * b.z, a.x * b.y - a.y * b.x};
+  }
+};
 
-/// A trilinear mapping x = c_0 + c_1 r + c_2 s + c_3 t + c_4 r s + c_5 s t + c_6 t r + c_7 r s t, components one after another.
-using Trilinear = std::array<std::array<double, 8>, 3>;
+/// A trilinear mapping x = c_0 + c_1 r + c_2 s + c_3 t + c_4 r s + c_5 s t + c_6 t r + c_7 r s t.
+using Trilinear = std::array<LaneVec, 8>;
 
 Trilinear trilinear(std::span<const Vec3> corners) {
   Trilinear made{};
   const std::span<const std::array<double, 3>> nodes = cell_nodes(Cell::hex8);
-  for (std::size_t a = 0; a < 8; ++a) {
-    const auto& [r, s, t] = nodes[a];
-    const std::array<double, 8> sign{1, r, s, t, r * s, s * t, t * r, r * s * t};
-    for (std::size_t k = 0; k < 3; ++k)
-      for (std::size_t m = 0; m < 8; ++m) made[k][m] += sign[m] * corners[a][static_cast<Index>(k)] / 8;
+  for (std::size_t m = 0; m < made.size(); ++m) {
+    Vec3 sum = Vec3::Zero();
+    for (std::size_t a = 0; a < made.size(); ++a) {
+      const auto& [r, s, t] = nodes[a];
+      const std::array<double, 8> sign{1, r, s, t, r * s, s * t, t * r, r * s * t};
+      sum += sign[m] / 8 * corners[a];
+    }
+    made[m] = {sum[0], sum[1], sum[2]};
   }
   return made;
 }
 
-/// Places [m] and local coordinates, components one after another, and the volumes over that of the reference cell.
-struct Bundle {
-  std::array<std::array<double, at_once>, 3> place, local{};
-  std::array<double, at_once> measure;
-};
-
-/// One iteration of Newton's method for all places; the square of the largest change.
-double improve(const Trilinear& c, Bundle& bundle) {
-  double largest = 0;
-#pragma omp simd reduction(max : largest)
-  for (std::size_t i = 0; i < at_once; ++i) {
-    const double r = bundle.local[0][i], s = bundle.local[1][i], t = bundle.local[2][i];
-    double miss[3], a[3], b[3], d[3];  // place less that of the local coordinates; tangents
-    for (std::size_t k = 0; k < 3; ++k) {
-      const auto& of = c[k];
-      a[k] = of[1] + of[4] * s + t * (of[6] + of[7] * s);
-      b[k] = of[2] + of[4] * r + t * (of[5] + of[7] * r);
-      d[k] = of[3] + of[5] * s + r * (of[6] + of[7] * s);
-      miss[k] = bundle.place[k][i] - (of[0] + r * a[k] + s * (of[2] + t * of[5]) + t * of[3]);
-    }
-    const double bd[3] = {b[1] * d[2] - b[2] * d[1], b[2] * d[0] - b[0] * d[2], b[0] * d[1] - b[1] * d[0]};
-    const double ma[3] = {miss[1] * a[2] - miss[2] * a[1], miss[2] * a[0] - miss[0] * a[2], miss[0] * a[1] - miss[1] * a[0]};
-    const double volume = a[0] * bd[0] + a[1] * bd[1] + a[2] * bd[2], inverse = 1 / volume;
-    const double dr = inverse * (miss[0] * bd[0] + miss[1] * bd[1] + miss[2] * bd[2]);  // Cramer's rule
-    const double ds = -inverse * (d[0] * ma[0] + d[1] * ma[1] + d[2] * ma[2]);
-    const double dt = inverse * (b[0] * ma[0] + b[1] * ma[1] + b[2] * ma[2]);
-    bundle.local[0][i] = r + dr, bundle.local[1][i] = s + ds, bundle.local[2][i] = t + dt;
-    bundle.measure[i] = std::abs(volume);
-    const double change = dr * dr + ds * ds + dt * dt;
-    largest = change > largest ? change : largest;
-  }
-  return largest;
+/// One iteration of Newton's method; the squares of the changes, and the volumes over that of the reference cell before it.
+[[gnu::always_inline]] inline Lanes improve(const Trilinear& c, const LaneVec& place, LaneVec& local, Lanes& measure) {
+  const auto [r, s, t] = local;
+  const LaneVec a = c[1] + s * c[4] + t * (c[6] + s * c[7]);  // tangents
+  const LaneVec b = c[2] + r * c[4] + t * (c[5] + r * c[7]);
+  const LaneVec d = c[3] + s * c[5] + r * (c[6] + s * c[7]);
+  const LaneVec miss = place - (c[0] + r * a + s * (c[2] + t * c[5]) + t * c[3]);
+  const LaneVec across = cross(b, d), turned = cross(miss, a);
+  const Lanes volume = dot(a, across), inverse = 1 / volume;
+  const LaneVec change = inverse * LaneVec{dot(miss, across), -dot(d, turned), dot(b, turned)};  // Cramer's rule
+  local = local + change;
+  measure = absolute(volume);
+  return dot(change, change);
 }
 
 }  // namespace
 
-/// As local_coordinates, for the whole bundle; the measure is that before the last iteration, which is within round-off.
+/// As local_coordinates, for as many places at once as a register holds.
 void PlacedCell::find_in_warped(std::span<const Vec3> places, std::span<Vec3> local, std::span<double> measure) const {
   constexpr double enough = 1e-8;  // Newton's method squares it
   const Trilinear map = trilinear(corners());
-  Bundle bundle;
-  for (std::size_t first = 0; first < places.size(); first += at_once) {
-    const auto at_place = [&](std::size_t i) { return std::min(first + i, places.size() - 1); };
-    for (std::size_t i = 0; i < at_once; ++i)
-      for (std::size_t k = 0; k < 3; ++k) bundle.place[k][i] = places[at_place(i)][static_cast<Index>(k)];
-    bundle.local = {};
+  for (std::size_t first = 0; first < places.size(); first += at(lanes)) {
+    const auto component = [&](Index k) {
+      return Lanes([&](auto lane) { return places[std::min(first + lane, places.size() - 1)][k]; });
+    };
+    const LaneVec place{component(0), component(1), component(2)};
+    LaneVec found{0, 0, 0};
+    Lanes size;
     for (int iteration = 0; iteration < 30; ++iteration)
-      if (improve(map, bundle) < enough * enough) break;
-    improve(map, bundle);
-    for (std::size_t i = 0; i < at_once && first + i < places.size(); ++i) {
-      local[first + i] = Vec3(bundle.local[0][i], bundle.local[1][i], bundle.local[2][i]);
-      measure[first + i] = bundle.measure[i];
+      if (largest(improve(map, place, found, size)) < enough * enough) break;
+    improve(map, place, found, size);  // for the measure
+    for (std::size_t i = 0; i < at(lanes) && first + i < places.size(); ++i) {
+      local[first + i] = Vec3(found.x[i], found.y[i], found.z[i]);
+      measure[first + i] = size[i];
     }
   }
 }
