@@ -137,8 +137,8 @@ void add_simplices(const PlacedCell& cell, std::vector<Simplex>& made) {
   }
   const auto add = [&](std::size_t a, std::size_t b, std::size_t c, std::size_t d) { made.push_back({x[a], x[b], x[c], x[d]}); };
   if (cell.type() == Cell::quad4) return add(0, 1, 2, 2), add(0, 2, 3, 3);  // of triangles nobody looks at the fourth corner
-  if (cell.type() == Cell::hex8 && cell.parallel())                         // round the diagonal 0-6
-    return add(0, 1, 2, 6), add(0, 2, 3, 6), add(0, 3, 7, 6), add(0, 7, 4, 6), add(0, 4, 5, 6), add(0, 5, 1, 6);
+  if (cell.type() == Cell::hex8 && cell.parallel())                         // four corners off
+    return add(0, 1, 2, 5), add(0, 2, 3, 7), add(0, 4, 5, 7), add(2, 5, 6, 7), add(0, 2, 5, 7);
   Vec3 centre = Vec3::Zero();
   for (const Vec3& corner : x) centre += corner / static_cast<double>(x.size());
   for (int side = 0; side < static_cast<int>(info(cell.type()).sides.size()); ++side) {

@@ -100,6 +100,39 @@ TEST(Cut, BothSidesFillTheWhole) {
     }
 }
 
+/// Integral of r^i s^j t^k over a group of one cell, in the measure of the reference cell.
+double power(const Mesh& mesh, const std::string& group, const std::array<int, 3>& exponent) {
+  double sum = 0;
+  for (const CellId id : mesh.groups.at(group).cells) {
+    const CellRule& rule = mesh.part(id)->rule;
+    for (std::size_t p = 0; p < rule.point.size(); ++p)
+      sum += rule.weight[p] * std::pow(rule.point[p].x(), exponent[0]) * std::pow(rule.point[p].y(), exponent[1]) *
+             std::pow(rule.point[p].z(), exponent[2]);
+  }
+  return sum;
+}
+
+TEST(Cut, MassOfACutParallelepipedIsExact) {
+  // products of two trilinear shape functions: both sides together are the integrals over the cube [-1, 1]^3
+  std::mt19937 random(11);
+  std::normal_distribution<double> component;
+  for (int repeat = 0; repeat < 30; ++repeat) {
+    Mesh mesh = unit_mesh(Cell::hex8, 1);
+    for (Vec3& x : mesh.nodes) x = Vec3(2 * x[0] + 0.3 * x[1], x[1] + 0.2 * x[2], 0.7 * x[2] - 0.1 * x[0]);
+    Vec3 middle = Vec3::Zero();
+    for (const Vec3& x : mesh.nodes) middle += x / 8;
+    const Vec3 normal = Vec3(component(random), component(random), component(random)).normalized();
+    cut(mesh, {{{"volume"}, {normal, normal.dot(middle) + 0.1 * component(random)}, {{{}, "above"}}}}, {{}});
+    for (const int i : {0, 1, 2})
+      for (const int j : {0, 1, 2})
+        for (const int k : {0, 1, 2}) {
+          const auto along = [](int n) { return n % 2 ? 0.0 : 2.0 / (n + 1); };
+          const std::array<int, 3> exponent{i, j, k};
+          EXPECT_NEAR(power(mesh, "volume", exponent) + power(mesh, "above", exponent), along(i) * along(j) * along(k), 1e-13) << i << j << k;
+        }
+  }
+}
+
 TEST(Cut, BoxOfAnOutlineIsExact) {
   // The unit square or cube, level cut at 0.37, above it x from 0.21 to 0.83 and height 0.4: volumes, centres and areas are those of boxes.
   for (const Cell cell : {Cell::tri3, Cell::quad4, Cell::tet4, Cell::wedge6, Cell::hex8}) {
