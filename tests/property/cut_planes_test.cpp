@@ -74,8 +74,8 @@ TEST(Robust, CutBodiesThatAreBondedMoveAsTheWholeOrThePlaneIsRefused) {
     const std::string held = hold(Vec3::Zero(), flat ? "\"ux\", \"uy\"" : "\"ux\", \"uy\", \"uz\"") +
                              hold(Vec3::UnitY(), flat ? "\"ux\"" : "\"ux\", \"uz\"") + (flat ? "" : hold(Vec3::UnitZ(), "\"ux\""));
     const std::string text =
-        "title = \"body\"\n[mesh]\nfile = \"body.msh\"\n" + solid("volume", young, 0, 2000) + solid("beyond", young, 0, 2000) +
-        held + "[[load]]\ngroup = \"right\"\ntraction = " + vector(Vec3(traction, 0, 0)) +
+        "title = \"body\"\n[mesh]\nfile = \"body.msh\"\n" + solid("volume", young, 0, 2000) + solid("beyond", young, 0, 2000) + held +
+        "[[load]]\ngroup = \"right\"\ntraction = " + vector(Vec3(traction, 0, 0)) +
         "\n[[load]]\ngroup = \"left\"\ntraction = " + vector(Vec3(-traction, 0, 0)) +
         "\n[[interface]]\nname = \"joint\"\ncut = { through = [\"volume\"], upper = \"beyond\", point = " + vector(at.point) +
         ", normal = " + vector(at.normal) + fmt::format(" }}\nlaw = {{ type = \"elastic\", K_n = {0}, K_t = {0} }}\n", stiffness) +
@@ -86,8 +86,8 @@ TEST(Robust, CutBodiesThatAreBondedMoveAsTheWholeOrThePlaneIsRefused) {
     try {
       const RunResult result = run_on(text, mesh);
       const double expected = traction / young;
-      // The joint gives way by E/K. A part of less than 1e-14 of a cell belongs to the other side: 1e-7 of an edge thick, it leaves as much of
-      // the section without springs.
+      // The joint gives way by E/K. A part of less than 1e-14 of a cell belongs to the other side: 1e-7 of an edge thick, it leaves as much
+      // of the section without springs.
       EXPECT_NEAR(history(result, "end").back(), expected, (at.beside > 2e-7 ? 1e-7 : 5e-7) * expected) << what;
       ++cut[static_cast<std::size_t>(kind)];
     } catch (const InputError& error) {

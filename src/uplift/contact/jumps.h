@@ -3,8 +3,8 @@
 
 namespace uplift {
 
-/// C = W L of an interface with more rows than jumps, as on a cut through hexahedra: each row feels the jumps at the nodes of its cell alone,
-/// and the compliance of the jumps is L L^T. Products with C go through both factors.
+/// C = W L of an interface with more rows than jumps, as on a cut through hexahedra: each row feels the jumps at the nodes of its cell
+/// alone, and the compliance of the jumps is L L^T. Products with C go through both factors.
 struct JumpFactor {
   SparseRows rows;  // W: rows x r [1]; empty where C has no such form
   Matrix lower;     // L: r x r, lower triangle [m/sqrt(J)]

@@ -230,9 +230,7 @@ void PlacedCell::find_in_warped(std::span<const Vec3> places, std::span<Vec3> lo
   constexpr double enough = 1e-8;  // Newton's method squares it
   const Trilinear map = trilinear(corners());
   for (std::size_t first = 0; first < places.size(); first += at(lanes)) {
-    const auto component = [&](Index k) {
-      return Lanes([&](auto lane) { return places[std::min(first + lane, places.size() - 1)][k]; });
-    };
+    const auto component = [&](Index k) { return Lanes([&](auto lane) { return places[std::min(first + lane, places.size() - 1)][k]; }); };
     const LaneVec place{component(0), component(1), component(2)};
     LaneVec found{0, 0, 0};
     Lanes size;

@@ -128,7 +128,8 @@ TEST(Cut, MassOfACutParallelepipedIsExact) {
         for (const int k : {0, 1, 2}) {
           const auto along = [](int n) { return n % 2 ? 0.0 : 2.0 / (n + 1); };
           const std::array<int, 3> exponent{i, j, k};
-          EXPECT_NEAR(power(mesh, "volume", exponent) + power(mesh, "above", exponent), along(i) * along(j) * along(k), 1e-13) << i << j << k;
+          EXPECT_NEAR(power(mesh, "volume", exponent) + power(mesh, "above", exponent), along(i) * along(j) * along(k), 1e-13)
+              << i << j << k;
         }
   }
 }

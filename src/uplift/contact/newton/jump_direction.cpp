@@ -6,20 +6,22 @@
 namespace uplift {
 namespace {
 
-constexpr int enough = 24;          // iterations that cost less than a factor
+constexpr int enough = 24;           // iterations that cost less than a factor
 constexpr double round_off = 1e-13;  // residual that counts as none, of the right side
 constexpr double accurate = 1e-8;    // residual after a new factor, which iterations cannot mend
 
 /// W_row . jump
 double felt(const SparseRows& rows, Index row, const Vector& jump) {
   double sum = 0;
-  for (Index e = rows.outerIndexPtr()[row]; e < rows.outerIndexPtr()[row + 1]; ++e) sum += rows.valuePtr()[e] * jump[rows.innerIndexPtr()[e]];
+  for (Index e = rows.outerIndexPtr()[row]; e < rows.outerIndexPtr()[row + 1]; ++e)
+    sum += rows.valuePtr()[e] * jump[rows.innerIndexPtr()[e]];
   return sum;
 }
 
 /// pull += W_row^T force
 void pull_by(const SparseRows& rows, Index row, double force, Vector& pull) {
-  for (Index e = rows.outerIndexPtr()[row]; e < rows.outerIndexPtr()[row + 1]; ++e) pull[rows.innerIndexPtr()[e]] += rows.valuePtr()[e] * force;
+  for (Index e = rows.outerIndexPtr()[row]; e < rows.outerIndexPtr()[row + 1]; ++e)
+    pull[rows.innerIndexPtr()[e]] += rows.valuePtr()[e] * force;
 }
 
 /// matrix += W_left^T slope W_right, of a symmetric sum its lower triangle alone
@@ -51,7 +53,8 @@ void JumpDirection::begin(const ContactModel& model) {
   places_.clear();
   Index slope = 0;
   for (const Block& block : model.blocks) {
-    for (int i = 0; i < block.batch.points; ++i) places_.push_back({block.first + i, block.batch.points, slope + i, block.batch.components});
+    for (int i = 0; i < block.batch.points; ++i)
+      places_.push_back({block.first + i, block.batch.points, slope + i, block.batch.components});
     slope += block.slopes();
   }
 }

@@ -17,7 +17,7 @@ class JumpDirection {
   bool solve(const InterfaceProblem&, NewtonWork&, InterfaceSystems&);
 
  private:
-  struct Place {  // of a point
+  struct Place {                             // of a point
     Index first = 0, stride = 0, slope = 0;  // first row, between rows; first slope, those of (a, c) (a * components + c) * stride on
     int components = 1;
   };

@@ -44,7 +44,7 @@ struct NewtonWork final : MethodWork {
   Vector gradient, direction, origin;
   Vector pull;  // rows: k times one column of C, of one block; in the units of slope times those of the factor
   Matrix hessian;
-  Vector jump;                 // of the jumps, where C = W L
+  Vector jump;           // of the jumps, where C = W L
   Vector end_pull;       // C^T (scale area end_traction) [sqrt(J)], of a fused solution
   FilterSums filter;     // with a joint filter, of a fused solution
   bool follows = false;  // the next step may be guessed from this one: slope, hessian and the solution's end_traction are converged
