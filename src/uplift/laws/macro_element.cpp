@@ -7,6 +7,7 @@
 #include <utility>
 
 #include "uplift/laws/macro_filter.h"
+#include "uplift/laws/macro_rows.h"
 
 namespace uplift {
 namespace {
@@ -14,81 +15,13 @@ namespace {
 constexpr int most_halvings = 12;  // of an increment whose return fails
 constexpr int never = most_halvings + 1;
 
-/// What a point remembers besides the plastic displacements.
-enum { memory_settlement, memory_slip, memory_dissipated, num_scalars };
-
 }  // namespace
-
-/// Where the rows of a point stand among the variables of the macro-element.
-struct MacroElement::Rows {
-  int points, point, components, count;  // count: rows with plastic displacements
-  const int* variable;
-
-  Rows(int all_points, int i, int c) : points(all_points), point(i), components(c) {
-    static constexpr int plane[] = {macro_h1, macro_n, macro_m1};
-    static constexpr int space[] = {macro_h1, macro_h2, macro_n, macro_m2, macro_m1};
-    assert(c == 3 || c == 6);
-    variable = c == 3 ? plane : space;
-    count = c == 3 ? 3 : 5;
-  }
-  bool has_torsion() const { return components == 6; }
-  int at(int row) const { return row * points + point; }
-  int at(int row, int column) const { return (row * components + column) * points + point; }
-  double sign(int row) const { return variable[row] == macro_n ? -1 : 1; }
-
-  MacroVector get(const double* values) const {
-    MacroVector out = MacroVector::Zero();
-    for (int r = 0; r < count; ++r) out[variable[r]] = sign(r) * values[at(r)];
-    return out;
-  }
-  void put(const MacroVector& vector, double* values) const {
-    for (int r = 0; r < count; ++r) values[at(r)] = sign(r) * vector[variable[r]];
-  }
-  void put(const MacroMatrix& matrix, double factor, double* values) const {
-    for (int r = 0; r < count; ++r)
-      for (int c = 0; c < count; ++c) values[at(r, c)] = factor * sign(r) * sign(c) * matrix(variable[r], variable[c]);
-  }
-  void put_torsion(double stiffness, double* slope) const {
-    for (int r = 0; r < components; ++r) slope[at(r, components - 1)] = slope[at(components - 1, r)] = 0;
-    slope[at(components - 1, components - 1)] = stiffness;
-  }
-  void filter_torsion(const MacroFilter& filter, double coefficient, const Batch&, const double* from, const double* to,
-                      const LawResponse&) const;
-  void take_end(const double* from, const double* to, const LawResponse&) const;
-};
-
-/// The joint filter of the torsion, which takes effect as far as that of the other rows.
-void MacroElement::Rows::filter_torsion(const MacroFilter& filter, double coefficient, const Batch& batch, const double* from,
-                                        const double* to, const LawResponse& response) const {
-  if (!has_torsion()) return;
-  const int last = at(components - 1);
-  const double whole = coefficient * (to[last] - from[last]) - batch.lag[last];
-  response.plain[last] = response.traction[last];
-  response.traction[last] += filter.share * whole;
-  if (response.slope == nullptr) return;
-  response.slope[at(components - 1, components - 1)] += filter.share * coefficient;
-  for (int c = 0; c < count; ++c) response.slope[at(components - 1, c)] = whole * sign(c) * filter.share_slope[variable[c]];
-}
-
-/// A footing without contact at the start of the step: the forces at its end, where that dissipates.
-void MacroElement::Rows::take_end(const double* from, const double* to, const LawResponse& response) const {
-  double gained = 0;
-  for (int r = 0; r < components; ++r) {
-    response.plain[at(r)] = response.traction[at(r)];
-    gained += (response.end[at(r)] - response.traction[at(r)]) * (to[at(r)] - from[at(r)]);
-  }
-  if (!(gained >= 0)) return;
-  for (int r = 0; r < components; ++r) response.traction[at(r)] = response.end[at(r)];
-  if (response.slope == nullptr) return;
-  for (int r = 0; r < components; ++r)
-    for (int c = 0; c < components; ++c) response.slope[at(r, c)] = 2 * response.next[at(r, c)];
-}
 
 /// One step of a point, in as many increments as the return needs. Derivatives are those with respect to the end of the path.
 class MacroElement::Path {
  public:
   Path(const MacroElement& law, bool average, const MacroVector& from, const MacroVector& to, const MacroVector& old_plastic,
-       const double (&old)[num_scalars], int guesses_from)
+       const double (&old)[macro_scalars], int guesses_from)
       : plastic(old_plastic),
         memory{old[0], old[1], old[2]},
         law_(&law),
@@ -105,7 +38,7 @@ class MacroElement::Path {
 
   MacroVector plastic, mean = MacroVector::Zero(), end = MacroVector::Zero();
   MacroMatrix mean_slope = MacroMatrix::Zero(), end_slope = MacroMatrix::Zero();
-  double memory[num_scalars];
+  double memory[macro_scalars];
 
  private:
   bool go(double a, double b, int depth);
@@ -123,7 +56,7 @@ class MacroElement::Path {
 /// The part of the path between the shares a and b; halved where the return fails.
 bool MacroElement::Path::go(double a, double b, int depth) {
   const MacroVector before = from_ + a * step_ - plastic, trial = from_ + b * step_ - plastic;
-  const MacroReturned now = macro_return(law_->uplift_, law_->surfaces_, trial, memory[memory_settlement], depth >= guesses_from_);
+  const MacroReturned now = macro_return(law_->uplift_, law_->surfaces_, trial, memory[macro_memory_settlement], depth >= guesses_from_);
   if (!now.converged) {
     const double middle = 0.5 * (a + b);
     return depth < most_halvings && go(a, middle, depth + 1) && go(middle, b, depth + 1);
@@ -135,14 +68,14 @@ bool MacroElement::Path::go(double a, double b, int depth) {
   if (average_)
     add_average(a, b, before, before_slope, at_before, now, now_slope, yielded);
   else
-    memory[memory_dissipated] += now.at.force.dot(yielded) + (now.at.contact ? 0 : at_before.shear_energy);
+    memory[macro_memory_dissipated] += now.at.force.dot(yielded) + (now.at.contact ? 0 : at_before.shear_energy);
 
   plastic += yielded;
   const MacroMatrix yielded_slope = (b * one - now_slope) - plastic_slope_;
   plastic_slope_ += yielded_slope;
-  memory[memory_settlement] += std::abs(yielded[macro_n]);
+  memory[macro_memory_settlement] += std::abs(yielded[macro_n]);
   settlement_slope_ += (yielded[macro_n] < 0 ? -1 : 1) * yielded_slope.row(macro_n).transpose();
-  if (now.at.contact) memory[memory_slip] += std::hypot(yielded[macro_h1], yielded[macro_h2]);
+  if (now.at.contact) memory[macro_memory_slip] += std::hypot(yielded[macro_h1], yielded[macro_h2]);
   end = now.at.force;
   end_slope = now.at.stiffness * now_slope;
   return true;
@@ -168,7 +101,7 @@ void MacroElement::Path::add_average(double a, double b, const MacroVector& befo
     slope += scaled * by_to.transpose();
     slope.diagonal() += raise * share * law_->uplift_.stiffness();
   } else {
-    memory[memory_dissipated] += dissipated;
+    memory[macro_memory_dissipated] += dissipated;
   }
   mean += share * average.force;
   mean_slope += share * slope;
@@ -182,12 +115,12 @@ MacroFilter MacroElement::Path::filter(double gain, const MacroVector& pull) {
                              .elastic_slope = elastic_slope,
                              .mean = mean,
                              .mean_slope = mean_slope,
-                             .dissipated = memory[memory_dissipated],
+                             .dissipated = memory[macro_memory_dissipated],
                              .dissipated_slope = mean_slope.transpose() * step_ + mean - elastic_slope.transpose() * end};
   MacroFilter added = macro_filter(law_->elasticity(), coefficient, pull, step);
   mean += added.force;
   mean_slope += added.slope;
-  memory[memory_dissipated] = std::max(0.0, memory[memory_dissipated] + added.dissipated);
+  memory[macro_memory_dissipated] = std::max(0.0, memory[macro_memory_dissipated] + added.dissipated);
   return added;
 }
 
@@ -195,70 +128,7 @@ MacroElement::MacroElement(const MacroParameters& parameters)
     : uplift_(parameters.elasticity), surfaces_(uplift_.elasticity(), parameters.strength), torsion_(parameters.torsion) {}
 
 int MacroElement::num_history(int components) const {
-  return (components == 6 ? 5 : 3) + num_scalars;
-}
-
-/// The whole step without yielding, in contact at its end: nothing but the potential, in as many variables as the point has. False where it
-/// is not so. R: axes of rocking.
-template <int R>
-bool MacroElement::go_elastically(bool average, const Rows& rows, const double* from, const double* to, const double* old,
-                                  const LawResponse& response) const {
-  constexpr int normal = R, rotation[2] = {R == 1 ? 2 : 4, 3}, components = R == 1 ? 3 : 6;  // rows of the point
-  const auto part = [&](const double* q) {
-    Vec3 e = Vec3::Zero();
-    e[0] = old[rows.at(normal)] - q[rows.at(normal)];
-    for (int i = 0; i < R; ++i) e[1 + i] = q[rows.at(rotation[i])] - old[rows.at(rotation[i])];
-    return e;
-  };
-  const auto shear = [&](const double* q, int i) { return uplift_.stiffness()[macro_h1 + i] * (q[rows.at(i)] - old[rows.at(i)]); };
-  const Vec3 after = part(to);
-  const MacroRocking end = uplift_.rock<R>(after, response.slope != nullptr || response.next != nullptr);
-  if (!end.contact) return false;
-  if (surfaces_.has_bearing() || surfaces_.has_sliding()) {
-    MacroVector force = MacroVector::Zero();
-    force[macro_n] = end.force[0];
-    for (int i = 0; i < R; ++i) force[macro_h1 + i] = shear(to, i), force[macro_m1 + i] = end.force[1 + i];
-    if (!macro_holds(surfaces_, force, old[rows.at(components == 3 ? 3 : 5)])) return false;
-  }
-  const auto put = [&](const Vec3& force, double before, double behind, double* out) {  // shares of the shear at either end
-    out[rows.at(normal)] = -force[0];
-    for (int i = 0; i < R; ++i) out[rows.at(rotation[i])] = force[1 + i];
-    for (int i = 0; i < R; ++i) out[rows.at(i)] = behind * shear(to, i) + (before > 0 ? before * shear(from, i) : 0);
-  };
-  const auto put_slope = [&](const Mat3& k, double factor, double share, double* out) {
-    for (int r = 0; r < components; ++r)
-      for (int c = 0; c < components; ++c) out[rows.at(r, c)] = 0;
-    out[rows.at(normal, normal)] = factor * k(0, 0);
-    for (int i = 0; i < R; ++i) {
-      out[rows.at(i, i)] = share * uplift_.stiffness()[macro_h1 + i];
-      out[rows.at(normal, rotation[i])] = -factor * k(0, 1 + i);
-      out[rows.at(rotation[i], normal)] = -factor * k(1 + i, 0);
-      for (int j = 0; j < R; ++j) out[rows.at(rotation[i], rotation[j])] = factor * k(1 + i, 1 + j);
-    }
-  };
-  if (average) {
-    const Vec3 before = part(from);
-    const MacroRocking begin = uplift_.rock<R>(before, false);
-    const MacroUplift::RockingAverage mean = uplift_.average<R>(before, begin, after, end, false);
-    put(mean.force, begin.contact ? 0.5 : 0, 0.5, response.traction);
-    if (response.slope != nullptr) put_slope(mean.by_to, 1, 0.5, response.slope);
-  } else {
-    put(end.force, 0, 1, response.traction);
-    if (response.slope != nullptr) put_slope(end.stiffness, 1, 1, response.slope);
-  }
-  if (response.end != nullptr) put(end.force, 0, 1, response.end);
-  if (response.next != nullptr) put_slope(end.stiffness, 0.5, 0.5, response.next);
-  if (response.now != nullptr)
-    for (int k = 0; k < rows.count + num_scalars; ++k) response.now[rows.at(k)] = old[rows.at(k)];
-  return true;
-}
-
-void MacroElement::put_torsion(bool average, const Rows& rows, const double* from, const double* to, const LawResponse& response) const {
-  const int last = rows.at(rows.components - 1);
-  response.traction[last] = torsion_ * (average ? 0.5 * (from[last] + to[last]) : to[last]);
-  if (response.slope != nullptr) rows.put_torsion(average ? 0.5 * torsion_ : torsion_, response.slope);
-  if (response.end != nullptr) response.end[last] = torsion_ * to[last];
-  if (response.next != nullptr) rows.put_torsion(0.5 * torsion_, response.next);
+  return (components == 6 ? 5 : 3) + macro_scalars;
 }
 
 void MacroElement::advance(bool average, const Batch& batch, const double* from, const double* to, const double* old,
@@ -268,13 +138,13 @@ void MacroElement::advance(bool average, const Batch& batch, const double* from,
   for (int i = 0; i < n; ++i) {
     const Rows rows(n, i, batch.components);
     if (rows.has_torsion()) put_torsion(average, rows, from, to, response);
-    if (!filters && (rows.has_torsion() ? go_elastically<2>(average, rows, from, to, old, response)
-                                        : go_elastically<1>(average, rows, from, to, old, response)))
+    if (rows.has_torsion() ? go_elastically<2>(average, batch, rows, from, to, old, response)
+                           : go_elastically<1>(average, batch, rows, from, to, old, response))
       continue;
-    double scalars[num_scalars];
-    for (int k = 0; k < num_scalars; ++k) scalars[k] = old[(rows.count + k) * n + i];
+    double scalars[macro_scalars];
+    for (int k = 0; k < macro_scalars; ++k) scalars[k] = old[(rows.count + k) * n + i];
     // summed up within the step first: thousands of sub-steps would each be rounded to the digits of the whole
-    const double dissipated_before = std::exchange(scalars[memory_dissipated], 0);
+    const double dissipated_before = std::exchange(scalars[macro_memory_dissipated], 0);
     const auto start = [&](int guesses_from) {
       return Path(*this, average, rows.get(from), rows.get(to), rows.get(old), scalars, guesses_from);
     };
@@ -288,14 +158,14 @@ void MacroElement::advance(bool average, const Batch& batch, const double* from,
     if (filters) rows.put(path.mean, response.plain);
     MacroFilter filter;
     if (filters && batch.coefficient[i] > 0) filter = path.filter(batch.gain, rows.get(batch.lag));
-    path.memory[memory_dissipated] += dissipated_before;
+    path.memory[macro_memory_dissipated] += dissipated_before;
     rows.put(average ? path.mean : path.end, response.traction);
     if (response.slope != nullptr) rows.put(average ? path.mean_slope : path.end_slope, 1, response.slope);
     if (response.end != nullptr) rows.put(path.end, response.end);
     if (response.next != nullptr) rows.put(path.end_slope, 0.5, response.next);
     if (response.now != nullptr) {
       rows.put(path.plastic, response.now);
-      for (int k = 0; k < num_scalars; ++k) response.now[(rows.count + k) * n + i] = path.memory[k];
+      for (int k = 0; k < macro_scalars; ++k) response.now[(rows.count + k) * n + i] = path.memory[k];
     }
     if (!filters) continue;
     if (batch.coefficient[i] > 0)
@@ -326,7 +196,7 @@ void MacroElement::energy(const Batch& batch, const double* opening, const doubl
       const double twist = rows.has_torsion() ? opening[rows.at(batch.components - 1)] : 0;
       stored[i] = at.energy + at.shear_energy + 0.5 * torsion_ * twist * twist;
     }
-    if (dissipated != nullptr) dissipated[i] = history[(rows.count + memory_dissipated) * batch.points + i];
+    if (dissipated != nullptr) dissipated[i] = history[(rows.count + macro_memory_dissipated) * batch.points + i];
   }
 }
 
@@ -334,17 +204,6 @@ void MacroElement::closed_stiffness(int components, double* stiffness) const {
   const Rows rows(1, 0, components);
   for (int r = 0; r < rows.count; ++r) stiffness[r] = uplift_.stiffness()[rows.variable[r]];
   if (rows.has_torsion()) stiffness[components - 1] = torsion_;
-}
-
-void MacroElement::elastic(int components, const double* opening, const double* history, double* elastic, double* slope) const {
-  const Rows rows(1, 0, components);
-  const MacroVector at = rows.get(opening) - rows.get(history);
-  const MacroElastic state = uplift_.respond(at);
-  rows.put(at, elastic);
-  rows.put(state.stiffness, 1, slope);
-  if (!rows.has_torsion()) return;
-  elastic[components - 1] = opening[components - 1];
-  rows.put_torsion(state.contact ? torsion_ : 0, slope);
 }
 
 FootingContact MacroElement::contact(const Batch& batch, const double* opening, const double* history) const {
@@ -358,7 +217,7 @@ FootingContact MacroElement::contact(const Batch& batch, const double* opening, 
   // what has lifted off is straight: its slope is the rotation
   FootingContact made{open, at.contact ? open * std::sqrt(one * one + two * two) : edge - elastic[macro_n], -toe};
   if (surfaces_.has_bearing()) {
-    made.bearing_capacity = surfaces_.capacity(history[rows.count + memory_settlement]);
+    made.bearing_capacity = surfaces_.capacity(history[rows.count + macro_memory_settlement]);
     made.bearing_utilisation = std::min(1.0, surfaces_.bearing_utilisation(at.force, made.bearing_capacity));
   }
   if (surfaces_.has_sliding()) made.sliding_utilisation = std::min(1.0, surfaces_.sliding_utilisation(at.force));
@@ -373,12 +232,12 @@ MacroState MacroElement::state(int components, const double* opening, const doub
   return {.vertical = at.force[macro_n],
           .heave = at.heave,
           .uplifted_share = 1 - at.contact_share,
-          .bearing = surfaces_.bearing_utilisation(at.force, surfaces_.capacity(scalars[memory_settlement])),
+          .bearing = surfaces_.bearing_utilisation(at.force, surfaces_.capacity(scalars[macro_memory_settlement])),
           .sliding = surfaces_.sliding_utilisation(at.force),
           .settlement = plastic[macro_n],
-          .accumulated = scalars[memory_settlement],
-          .slip = scalars[memory_slip],
-          .dissipated = scalars[memory_dissipated]};
+          .accumulated = scalars[macro_memory_settlement],
+          .slip = scalars[macro_memory_slip],
+          .dissipated = scalars[macro_memory_dissipated]};
 }
 
 }  // namespace uplift

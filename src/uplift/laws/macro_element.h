@@ -54,7 +54,10 @@ class MacroElement final : public InterfaceLaw {
   struct Rows;
   class Path;
   template <int R>
-  bool go_elastically(bool average, const Rows&, const double* from, const double* to, const double* old, const LawResponse&) const;
+  bool go_elastically(bool average, const Batch&, const Rows&, const double* from, const double* to, const double* old,
+                      const LawResponse&) const;
+  template <int R>
+  void put_elastic(const Rows&, const double* opening, const double* history, double* elastic, double* slope) const;
   MacroElastic respond_without_yielding(const Rows&, const MacroVector& elastic) const;
   void put_torsion(bool average, const Rows&, const double* from, const double* to, const LawResponse&) const;
   void advance(bool average, const Batch&, const double* from, const double* to, const double* old, const LawResponse&) const;

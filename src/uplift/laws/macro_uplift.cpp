@@ -1,11 +1,14 @@
 #include "uplift/laws/macro_uplift.h"
 
 #include <algorithm>
+#include <atomic>
 #include <cmath>
 #include <limits>
 
 namespace uplift {
 namespace {
+
+std::atomic<std::uint64_t> versions = 0;  // of foundations
 
 constexpr int most_iterations = 100;
 // relative: after a step so small the error of an iteration of second or fourth order is round-off
@@ -101,7 +104,7 @@ struct MacroUplift::Axes {
 }
 
 MacroUplift::MacroUplift(const MacroElasticity& elasticity)
-    : elastic_(elasticity), beta_(elasticity.shape / 2), gamma_(elasticity.shape / 2 - 1) {
+    : version_(++versions), elastic_(elasticity), beta_(elasticity.shape / 2), gamma_(elasticity.shape / 2 - 1) {
   const auto second = [](double(&value)[2]) {
     if (!(value[1] > 0)) value[1] = value[0];
   };
@@ -263,7 +266,7 @@ MacroElastic MacroUplift::respond(const MacroVector& q, bool with_stiffness) con
   Vec3 part(q[macro_n], 0, 0);
   for (int i = 0; i < R; ++i) part[1 + i] = q[macro_m1 + i];
   // at rest without load the stiffness is that of the closed base, so that the first load finds something to stand on
-  const MacroRocking rocking = rock<R>(part, with_stiffness, q.cwiseAbs().maxCoeff() == 0);
+  const MacroRocking rocking = q.cwiseAbs().maxCoeff() == 0 ? rock<R>(part, with_stiffness, true) : recall<R>(part);
   out.contact = rocking.contact;
   out.contact_share = rocking.contact_share;
   if (!out.contact) return out;

@@ -1,4 +1,6 @@
 #pragma once
+#include <cstdint>
+
 #include "uplift/math/fixed.h"
 
 // Uplift of a shallow foundation as a potential (docs/theory/macro_element.md, eqs M1 to M4): elastic ground, contact that only pushes.
@@ -67,6 +69,10 @@ class MacroUplift {
   /// all the same.
   template <int R>
   MacroRocking rock(const Vec3& displacement, bool with_stiffness, bool at_rest = false) const;
+  /// The same with the stiffness, not at rest; computed once for the displacements that this thread has asked for last, since a step needs
+  /// those of its two ends several times. Valid until the next call but one.
+  template <int R>
+  const MacroRocking& recall(const Vec3& displacement) const;
   /// The path average of the force between two displacements: discrete gradient (M12), so that average . (to - from) is the change of
   /// energy, and its derivatives with respect to both ends. The stiffness of `at_from` and `at_to` is not needed.
   struct Average {
@@ -89,6 +95,7 @@ class MacroUplift {
   double lifted_force(double w, const Axes& axes, MacroRise* rises) const;
   static double strip_root(double s);
 
+  std::uint64_t version_;  // tells foundations apart; copies are the same one
   MacroElasticity elastic_;
   MacroVector stiffness_;
   double beta_, gamma_;
