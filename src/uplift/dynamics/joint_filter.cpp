@@ -1,8 +1,10 @@
 #include "uplift/dynamics/joint_filter.h"
 
+#include <cassert>
 #include <cmath>
 #include <type_traits>
 
+#include "uplift/math/fixed.h"
 #include "uplift/math/lanes.h"
 
 namespace uplift {
@@ -36,7 +38,8 @@ JointFilter::JointFilter(const Model& model, const Behaviours& behaviours, const
   for (const Block& block : blocks_) {
     if (block.batch.rotations > 0) {
       const int n = block.batch.components;
-      footings_.push_back({block.law, block.first, block.first_history, n, Rows::Zero(n), Rows::Zero(n), Square::Zero(n, n)});
+      assert(n == 3 || n == 6);
+      footings_.push_back({.law = block.law, .first = block.first, .first_history = block.first_history, .components = n});
       slopes += block.slopes();
       continue;
     }
@@ -107,49 +110,65 @@ void JointFilter::begin(const State& now, double shrink, JointFilterInput& input
 
 /// Elastic openings and C = b * slope of the law there.
 void JointFilter::look(Footing& footing, const State& now) const {
-  footing.law->elastic(footing.components, now.opening.data() + footing.first, now.history.data() + footing.first_history,
-                       footing.elastic.data(), footing.coefficient.data());
-  footing.coefficient *= gain_;
+  const int n = footing.components;
+  footing.law->elastic(n, now.opening.data() + footing.first, now.history.data() + footing.first_history, footing.elastic,
+                       footing.coefficient);
+  for (int i = 0; i < n * n; ++i) footing.coefficient[i] *= gain_;
 }
 
-/// After look(): what the filter remembers is scaled down where it would store more with the new C.
 void JointFilter::begin_footing(Footing& footing, const State& now, double shrink, JointFilterInput& input) const {
-  const int first = footing.first, n = footing.components;
-  footing.lag = shrink * now.filter.opening.segment(first, n);
-  Rows pull = footing.coefficient * footing.lag;
-  const double stored = now.filter.coefficient[first], wanted = footing.lag.dot(pull);
+  footing.components == 3 ? begin_rows<3>(footing, now, shrink, input) : begin_rows<6>(footing, now, shrink, input);
+}
+
+double JointFilter::end_footing(Footing& footing, const InterfaceSolution& solution, double to_mean, const State& now, State& next,
+                                JointFilterInput& input) const {
+  return footing.components == 3 ? end_rows<3>(footing, solution, to_mean, now, next, input)
+                                 : end_rows<6>(footing, solution, to_mean, now, next, input);
+}
+
+/// After look(): what the filter remembers is scaled down where it would store more with the new C. N: rows of the point.
+template <int N>
+void JointFilter::begin_rows(Footing& footing, const State& now, double shrink, JointFilterInput& input) const {
+  const int first = footing.first;
+  const Eigen::Map<const Fixed<N, N>> coefficient(footing.coefficient);
+  Fixed<N, 1> lag = shrink * now.filter.opening.segment<N>(first), pull = coefficient * lag;
+  const double stored = now.filter.coefficient[first], wanted = lag.dot(pull);
   if (wanted > stored) {
     const double scale = std::sqrt(stored / wanted);
-    footing.lag *= scale, pull *= scale;
+    lag *= scale, pull *= scale;
   }
-  input.coefficient.segment(first, n).setConstant(footing.coefficient.isZero(0) ? -1 : 1);
-  input.lag.segment(first, n) = pull;
+  Eigen::Map<Fixed<N, 1>>(footing.lag) = lag;
+  input.coefficient.segment<N>(first).setConstant(coefficient.diagonal().isZero(0) ? -1 : 1);
+  input.lag.segment<N>(first) = pull;
 }
 
 /// The same as for the rows of other points with the matrix C instead of c and the elastic increment; returns the dissipation less what the
 /// filter has stored before.
-double JointFilter::end_footing(Footing& footing, const InterfaceSolution& solution, double to_mean, const State& now, State& next,
-                                JointFilterInput& input) const {
-  const int first = footing.first, n = footing.components;
-  const Footing of_step = footing;
+template <int N>
+double JointFilter::end_rows(Footing& footing, const InterfaceSolution& solution, double to_mean, const State& now, State& next,
+                             JointFilterInput& input) const {
+  using Rows = Fixed<N, 1>;
+  const int first = footing.first;
+  const Rows before = Eigen::Map<const Rows>(footing.elastic), lag = Eigen::Map<const Rows>(footing.lag);
+  const Fixed<N, N> coefficient = Eigen::Map<const Fixed<N, N>>(footing.coefficient);
   look(footing, next);
-  const Rows added = to_mean * solution.force.segment(first, n) - solution.plain.segment(first, n);  // N, N m
+  const Rows added = to_mean * solution.force.segment<N>(first) - solution.plain.segment<N>(first);  // N, N m
   double dissipated = 0, stored = 0;
-  Rows filtered = Rows::Zero(n);
+  Rows filtered = Rows::Zero();
   if (input.coefficient[first] > 0) {
-    const Rows increment = footing.elastic - of_step.elastic, ahead = increment - of_step.lag;
-    const double whole = ahead.dot(of_step.coefficient * ahead), taken = added.dot(ahead);
+    const Rows increment = Eigen::Map<const Rows>(footing.elastic) - before, ahead = increment - lag;
+    const double whole = ahead.dot(coefficient * ahead), taken = added.dot(ahead);
     const double kept = whole > 0 && taken < (1 - 1e-6) * whole ? larger(taken / whole, 0.0) : 1;  // theta
-    filtered = pole_ * of_step.lag + (1 - pole_) * increment;
-    stored = kept * filtered.dot(of_step.coefficient * filtered);
-    dissipated = kept * (0.5 * (1 + pole_) * whole - 0.5 / (1 - pole_) * of_step.lag.dot(of_step.coefficient * of_step.lag));
+    filtered = pole_ * lag + (1 - pole_) * increment;
+    stored = kept * filtered.dot(coefficient * filtered);
+    dissipated = kept * (0.5 * (1 + pole_) * whole - 0.5 / (1 - pole_) * lag.dot(coefficient * lag));
   } else {
-    dissipated = added.dot(solution.opening.segment(first, n) - now.opening.segment(first, n));
+    dissipated = added.dot(solution.opening.segment<N>(first) - now.opening.segment<N>(first));
   }
-  next.filter.opening.segment(first, n) = filtered;
-  next.filter.coefficient.segment(first, n).setZero();
+  next.filter.opening.segment<N>(first) = filtered;
+  next.filter.coefficient.segment<N>(first).setZero();
   next.filter.coefficient[first] = stored;
-  begin_footing(footing, next, 1, input);
+  begin_rows<N>(footing, next, 1, input);
   return dissipated;
 }
 

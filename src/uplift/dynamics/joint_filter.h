@@ -28,19 +28,21 @@ class JointFilter {
     double stiffness[3] = {};  // of a point without rotations: closed joint [Pa/m]
     Vector area;               // m2
   };
-  using Rows = Eigen::Matrix<double, Eigen::Dynamic, 1, 0, most_components, 1>;
-  using Square = Eigen::Matrix<double, Eigen::Dynamic, Eigen::Dynamic, 0, most_components, most_components>;
   struct Footing {  // a point with rotations, filtered as a whole
     const InterfaceLaw* law = nullptr;
     int first = 0, first_history = 0, components = 0;
     // of the step: elastic openings at its start, d_f [m, rad] and C [N/m, N m/rad]; zero without contact
-    Rows elastic, lag;
-    Square coefficient;
+    double elastic[most_components] = {}, lag[most_components] = {}, coefficient[most_components * most_components] = {};
   };
   void look(Footing& footing, const State& now) const;
   void begin_footing(Footing& footing, const State& now, double shrink, JointFilterInput& input) const;
   double end_footing(Footing& footing, const InterfaceSolution& solution, double to_mean, const State& now, State& next,
                      JointFilterInput& input) const;
+  template <int N>
+  void begin_rows(Footing& footing, const State& now, double shrink, JointFilterInput& input) const;
+  template <int N>
+  double end_rows(Footing& footing, const InterfaceSolution& solution, double to_mean, const State& now, State& next,
+                  JointFilterInput& input) const;
 
   std::vector<Block> blocks_;
   std::vector<Part> parts_;

@@ -46,7 +46,7 @@ class Newton {
   }
 
   void predict();
-  void add_lag(Lanes* total);
+  void add_lag(Lanes* total, double* of_points);
   void go_on();
   void look(bool with_hessian);
   void move(double alpha, bool with_hessian);
@@ -110,16 +110,23 @@ void Newton<R>::predict() {
         for (Index j = 0; j < r(); ++j) total[j] += at(column(j) + block.first + a * n) * force;
       });
   }
-  if (problem_.filter.acts()) add_lag(total);
+  if (problem_.filter.acts()) add_lag(total, of_points);
   for (Index j = 0; j < r(); ++j) work_.gradient[j] = of_points[j] + sum(total[j]);
   direction_of_few(solution_.z.data());
 }
 
 /// What the joint filter's memory pulls at the start of the step, -scale area c d_f.
 template <int R>
-void Newton<R>::add_lag(Lanes* total) {
+void Newton<R>::add_lag(Lanes* total, double* of_points) {
   for (const Block& block : model_.blocks) {
     const double* area = block.area.data();
+    if (block.batch.points == 1) {
+      for (int row = block.first; row < block.first + block.batch.components; ++row) {
+        const double force = model_.scale * area[0] * larger(problem_.filter.coefficient[row], 0.0) * problem_.filter.lag[row];
+        for (Index j = 0; j < r(); ++j) of_points[j] -= column(j)[row] * force;
+      }
+      continue;
+    }
     for (int a = 0; a < block.batch.components; ++a) {
       const int first = block.first + a * block.batch.points;
       const double *coefficient = problem_.filter.coefficient.data() + first, *lag = problem_.filter.lag.data() + first;
