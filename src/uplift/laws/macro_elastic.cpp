@@ -8,9 +8,12 @@
 namespace uplift {
 namespace {
 
-/// How far a force (N, M_1, M_2) is from pulling at an edge, see macro_filter.cpp.
+/// How far a force (N, M_i) is from pulling at an edge, see macro_filter.cpp.
+template <int R>
 double reserve(const MacroElasticity& ground, const Vec3& force) {
-  const double one = 2 * std::abs(force[1]) / ground.length[0], two = 2 * std::abs(force[2]) / ground.length[1];
+  const double one = 2 * std::abs(force[1]) / ground.length[0];
+  if constexpr (R == 1) return force[0] - one;
+  const double two = 2 * std::abs(force[2]) / ground.length[1];
   return force[0] - (ground.disc ? std::sqrt(one * one + two * two) : std::max(one, two));
 }
 
@@ -79,7 +82,8 @@ bool MacroElement::go_elastically(bool average, const Batch& batch, const Rows& 
       pull[0] = -batch.lag[rows.at(normal)];
       for (int i = 0; i < R; ++i) pull[1 + i] = batch.lag[row(i)];
       const Vec3 filtered = mean.force + gain * (begin.stiffness * (after - before)) - pull;
-      if (!(reserve(uplift_.elasticity(), filtered) >= std::min(0.0, reserve(uplift_.elasticity(), mean.force)))) return false;
+      const MacroElasticity& ground = uplift_.elasticity();
+      if (!(reserve<R>(ground, filtered) >= std::min(0.0, reserve<R>(ground, mean.force)))) return false;
       put(mean.force, 0.5, 0.5, response.plain);
       put(filtered, 0.5, 0.5, response.traction);
       for (int i = 0; i < R; ++i) {

@@ -82,8 +82,8 @@ class MacroUplift {
   Average average(const MacroVector& from, const MacroElastic& at_from, const MacroVector& to, const MacroElastic& at_to) const;
   /// The same for (w, theta); `with_from`: else by_from has no meaning.
   struct RockingAverage {
-    Vec3 force;
-    Mat3 by_from, by_to;
+    Vec3 force = Vec3::Zero();
+    Mat3 by_from = Mat3::Zero(), by_to = Mat3::Zero();
   };
   template <int R>
   RockingAverage average(const Vec3& from, const MacroRocking& at_from, const Vec3& to, const MacroRocking& at_to, bool with_from) const;
