@@ -16,6 +16,24 @@ Sparse projected(const Sparse& a, const Matrix& basis) {
   return as_sparse(symmetric_projection(a, basis));
 }
 
+/// The rows T V of some full unknowns, zero for the others: of all of them the matrix is full.
+Sparse shown_rows(const Model& model, const Matrix& basis, const std::vector<int>& shown) {
+  Sparse columns(basis.cols(), model.full_unknowns());
+  columns.reserve(static_cast<Index>(shown.size()) * basis.cols());
+  auto next = shown.begin();
+  for (Index full = 0; full < columns.cols(); ++full) {
+    columns.startVec(full);
+    if (next == shown.end() || *next != full) continue;
+    ++next;
+    Vector row = Vector::Zero(basis.cols());
+    for (Sparse::InnerIterator entry(model.expansion, full); entry; ++entry) row += entry.value() * basis.row(entry.row()).transpose();
+    for (Index k = 0; k < row.size(); ++k)
+      if (row[k] != 0) columns.insertBack(k, full) = row[k];
+  }
+  columns.finalize();
+  return columns;
+}
+
 }  // namespace
 
 Matrix symmetric_projection(const Sparse& a, const Matrix& v) {
@@ -30,10 +48,15 @@ Matrix symmetric_projection(const Sparse& a, const Matrix& v) {
   return 0.5 * (projected + projected.transpose());
 }
 
-void project(Model& model, const Matrix& basis) {
+void project(Model& model, const Matrix& basis, const std::vector<int>* shown) {
   for (Sparse* matrix : {&model.stiffness, &model.mass, &model.damping}) *matrix = projected(*matrix, basis);
-  model.reduction = as_sparse(model.reduction * basis);
-  model.expansion = model.reduction.transpose();
+  if (shown != nullptr) {
+    shown_rows(model, basis, *shown).swap(model.expansion);
+    model.reduction = model.expansion.transpose();
+  } else {
+    model.reduction = as_sparse(model.reduction * basis);
+    model.expansion = model.reduction.transpose();
+  }
   for (Interface& interface : model.interfaces) interface.b = as_sparse(interface.b * basis);
   project_loads(model, basis);
 }

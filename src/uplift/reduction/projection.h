@@ -1,6 +1,7 @@
 #pragma once
 #include <algorithm>
 #include <cmath>
+#include <vector>
 
 #include "uplift/math/symmetric_product.h"
 #include "uplift/model/model.h"
@@ -9,8 +10,9 @@ namespace uplift {
 
 /// Makes a reduced model of a model: its free unknowns q become basis * q (free unknowns x coordinates), and everything that stands on them
 /// is projected symmetrically (Galerkin, docs/theory/reduced_models.md, R2): K, M, C, loads, rows of the interfaces, displacements of the
-/// nodes. Laws, gaps and prescribed motions stay as they are.
-void project(Model& model, const Matrix& basis);
+/// nodes. Laws, gaps and prescribed motions stay as they are. `shown`: the full unknowns whose displacements are wanted, ascending; the
+/// model has none of the others, as if they were held. Null: all.
+void project(Model& model, const Matrix& basis, const std::vector<int>* shown = nullptr);
 
 /// The part of project() that belongs to the loads: matrices, constraints and rows of the interfaces are projected already.
 void project_loads(Model& model, const Matrix& basis);

@@ -4,30 +4,28 @@
 #include <cmath>
 #include <memory>
 #include <numbers>
-#include <random>
 #include <utility>
 
 #include "uplift/dynamics/bulk.h"
 #include "uplift/linear/blas.h"
 #include "uplift/model/mechanism.h"
-#include "uplift/model/wave_functions.h"
 #include "uplift/reduction/linear_march.h"
 #include "uplift/reduction/pod.h"
+#include "uplift/reduction/training_loads.h"
 
 namespace uplift {
 
 namespace {
 
 constexpr Index columns_at_once = 16;
-constexpr Index most_alone = 64;      // more interface rows than this are loaded all together, at random
-constexpr Index random_columns = 32;  // of the marches in which they are
-constexpr Index most_static = 400;    // more interface rows than this have no static answers of their own
-constexpr Index beside = 10;          // coordinates beside the exact ones at least
-constexpr double load_weight = 10;    // of the answers to loads against those of the interface rows
-constexpr double longest = 3;         // s: of a march
-constexpr double decayed = 1e-6;      // share of the largest energy at which a march ends
-constexpr double dropped = 1e-9;      // share of the largest singular value
-constexpr Index most_of_load = 100;   // directions at least that the answer to each of several loads may have
+constexpr Index most_alone = 64;     // more rows than this are loaded all together, at random
+constexpr Index most_static = 400;   // more interface rows than this have no static answers of their own
+constexpr Index beside = 10;         // coordinates beside the exact ones at least
+constexpr double load_weight = 10;   // of the answers to loads against those of the interface rows
+constexpr double longest = 3;        // s: of a march
+constexpr double decayed = 1e-6;     // share of the largest energy at which a march ends
+constexpr double dropped = 1e-9;     // share of the largest singular value
+constexpr Index most_of_load = 100;  // directions at least that the answer to each of several loads may have
 constexpr int steps_of_bell = 8;
 constexpr int snapshot_every = 2, snapshot_of_random_every = 5;  // steps; odd: not always at the same time of the bells
 
@@ -35,110 +33,6 @@ constexpr int snapshot_every = 2, snapshot_of_random_every = 5;  // steps; odd: 
 Index snapshots_at_once(Index unknowns) {
   return std::clamp<Index>(20'000'000 / std::max<Index>(unknowns, 1), 64, 320);
 }
-
-/// One bell of the duration 1/f.
-class Bell final : public TimeFunction {
- public:
-  explicit Bell(double frequency) : w_(2 * std::numbers::pi * frequency) {}
-  double value(double time) const override { return inside(time) ? (1 - std::cos(w_ * time)) / 2 : 0; }
-  double rate(double time) const override { return inside(time) ? w_ * std::sin(w_ * time) / 2 : 0; }
-  double acceleration(double time) const override { return inside(time) ? w_ * w_ * std::cos(w_ * time) / 2 : 0; }
-
- private:
-  bool inside(double time) const { return time >= 0 && w_ * time < 2 * std::numbers::pi; }
-  double w_;
-};
-
-/// A sweep through all frequencies up to f in one second: what the basis was not made of. Derivatives are not needed.
-class Sweep final : public TimeFunction {
- public:
-  explicit Sweep(double frequency) : frequency_(frequency) {}
-  double value(double time) const override {
-    if (time > 1) return 0;
-    return std::sin(std::numbers::pi * time) * std::sin(std::numbers::pi * frequency_ * time * time);
-  }
-  double rate(double) const override { return 0; }
-  double acceleration(double) const override { return 0; }
-
- private:
-  double frequency_;
-};
-
-/// Numbers +1 and -1, always the same ones.
-Matrix signs(Index rows, Index columns) {
-  std::mt19937 random(1);
-  Matrix drawn(rows, columns);
-  for (Index j = 0; j < columns; ++j)
-    for (Index i = 0; i < rows; ++i) drawn(i, j) = (random() & 1U) != 0 ? 1 : -1;
-  return drawn;
-}
-
-/// Random bells on every row, and others in every column: one begins every half a duration with the sign +1 or -1. The answers have on
-/// average the products that those to single bells on every row have, summed over rows and times (R9).
-class RandomBells {
- public:
-  RandomBells(double frequency, const Sparse& rows, double duration)
-      : bell_(frequency),
-        distance_(0.5 / frequency),
-        signs_(signs(rows.rows(), random_columns * (1 + static_cast<Index>(duration / distance_)))) {
-    for (int k = 0; k < rows.cols(); ++k)
-      if (Sparse::InnerIterator(rows, k)) loaded_.push_back(k);
-    on_loaded_ = Matrix::Zero(std::ssize(loaded_), rows.rows());
-    for (Index k = 0; k < on_loaded_.rows(); ++k)
-      for (Sparse::InnerIterator entry(rows, loaded_[static_cast<std::size_t>(k)]); entry; ++entry)
-        on_loaded_(k, entry.row()) = entry.value();
-  }
-  /// Fills the rows of the loaded unknowns; the others are zero from the start of the march.
-  void at(double time, Matrix& load) const {
-    const auto last = static_cast<Index>(std::floor(time / distance_ + 1e-9));
-    Matrix force = Matrix::Zero(on_loaded_.cols(), random_columns);
-    for (Index k = std::max<Index>(0, last - 1); k <= last && (k + 1) * random_columns <= signs_.cols(); ++k)
-      force += bell_.value(time - static_cast<double>(k) * distance_) * signs_.middleCols(k * random_columns, random_columns);
-    const Matrix forces = on_loaded_ * force;
-    for (Index k = 0; k < forces.rows(); ++k) load.row(loaded_[static_cast<std::size_t>(k)]) = forces.row(k);
-  }
-
- private:
-  Bell bell_;
-  double distance_;
-  std::vector<int> loaded_;  // unknowns
-  Matrix on_loaded_;         // loaded unknowns x rows
-  Matrix signs_;
-};
-
-/// The loads of a model that change with time, all of them under the same function. Those of a wave come with what its free field puts on
-/// the sides, as they do in every run: without it the structure would stand in ground that moves otherwise.
-class Loads {
- public:
-  Loads(const Model& model, const std::shared_ptr<const TimeFunction>& function, double step, double duration) : function_(function) {
-    for (const TimeLoad& load : model.time_loads) {
-      if (load.constant || load.shape.isZero(0)) continue;
-      One one{&load.shape, {}};
-      for (const TimeLoadTable& table : model.time_load_tables)
-        if (const auto* wave = dynamic_cast<const WaveFunctions*>(table.functions.get()); wave != nullptr && wave->load() == load.name)
-          one.tables.emplace_back(&table.pattern, wave->under(function, step, duration));
-      loads_.push_back(std::move(one));
-    }
-  }
-  Index count() const { return std::ssize(loads_); }
-  Vector at(Index k, double time) const {
-    const One& one = loads_[static_cast<std::size_t>(k)];
-    Vector force = function_->value(time) * *one.shape, values;
-    for (const auto& [pattern, functions] : one.tables) {
-      functions->values(time, values);
-      force += *pattern * values;
-    }
-    return force;
-  }
-
- private:
-  struct One {
-    const Vector* shape;
-    std::vector<std::pair<const Sparse*, std::shared_ptr<const TimeFunctions>>> tables;
-  };
-  std::shared_ptr<const TimeFunction> function_;
-  std::vector<One> loads_;
-};
 
 class Trainer {
  public:
@@ -151,6 +45,7 @@ class Trainer {
         step_(1 / (steps_of_bell * options.frequency)),
         march_(model.stiffness, model.damping, model.mass, step_, solver),
         b_(stack_interfaces(model)),
+        floors_(floors(model, options)),
         bell_(std::make_shared<const Bell>(options.frequency)),
         loads_(model, bell_, step_, longest),
         rigid_(model.free(), 0),
@@ -165,8 +60,9 @@ class Trainer {
     const Matrix loose = unresisted_motions(model_, std::vector<char>(static_cast<std::size_t>(b_.rows()), 0));
     for (Index k = 0; k < loose.cols(); ++k) append(product_, loose.col(k), 1e-8, rigid_);
     exact_ = with_static_answers();
-    columns_ = b_.rows() <= most_alone ? b_.rows() + loads_.count() : random_columns + loads_.count();
-    answer_rows();
+    columns_ = columns_of(b_) + (options_.loads_floors ? columns_of(floors_) : 0) + loads_.count();
+    answer(b_, 1);
+    if (options_.loads_floors) answer(floors_, load_weight);
     add(
         [&](double time, Matrix& load) {
           load.resize(model_.free(), loads_.count());
@@ -208,20 +104,35 @@ class Trainer {
     return exact;
   }
 
-  /// The answers to one bell on every row; where there are many, to random bells on all of them.
-  void answer_rows() {
-    if (b_.rows() > most_alone) {
-      const RandomBells bells(options_.frequency, b_, longest);
-      add([&](double time, Matrix& load) { bells.at(time, load); },
-          {.columns = random_columns, .weight = std::sqrt(static_cast<double>(b_.rows())), .every = snapshot_of_random_every});
+  static Index columns_of(const Sparse& rows) { return rows.rows() <= most_alone ? rows.rows() : RandomBells::columns; }
+
+  /// The answers to one bell on every row; where there are many, to random bells on all of them. Each row has the energy weight^2.
+  void answer(const Sparse& rows, double weight) {
+    if (rows.rows() > most_alone) {
+      const RandomBells bells(options_.frequency, rows, longest);
+      add([&](double time, Matrix& load) { bells.at(time, load); }, {.columns = RandomBells::columns,
+                                                                     .weight = weight * std::sqrt(static_cast<double>(rows.rows())),
+                                                                     .every = snapshot_of_random_every});
       return;
     }
-    const Matrix rows = b_.transpose();
-    for (Index first = 0; first < rows.cols(); first += columns_at_once) {
-      const Matrix some = rows.middleCols(first, std::min(columns_at_once, rows.cols() - first));
+    const Matrix patterns = rows.transpose();
+    for (Index first = 0; first < patterns.cols(); first += columns_at_once) {
+      const Matrix some = patterns.middleCols(first, std::min(columns_at_once, patterns.cols() - first));
       add([&](double time, Matrix& load) { load = bell_->value(time) * some; },
-          {.columns = some.cols(), .weight = std::sqrt(static_cast<double>(some.cols()))});
+          {.columns = some.cols(), .weight = weight * std::sqrt(static_cast<double>(some.cols()))});
     }
+  }
+
+  /// The displacements of the floors, floors x free unknowns. The reduced structure answers a floor, by reciprocity, as well as it
+  /// represents both the load and the answer to a force at the floor.
+  static Sparse floors(const Model& model, const TrainingOptions& options) {
+    Sparse made(std::ssize(options.floors), model.free());
+    std::vector<Triplet> entries;
+    for (std::size_t k = 0; k < options.floors.size(); ++k)
+      for (Sparse::InnerIterator entry(model.expansion, options.floors[k]); entry; ++entry)
+        entries.emplace_back(static_cast<int>(k), static_cast<int>(entry.row()), entry.value());
+    made.setFromTriplets(entries.begin(), entries.end());
+    return made;
   }
 
   /// Of a march: columns that are marched together, in groups of equal size. The answers of each group get the energy weight^2.
@@ -307,7 +218,7 @@ class Trainer {
   void choose_size(Basis& basis) {
     const Index all = all_.cols(), least = std::min(all, num_exact_ + beside);
     const auto sweep = std::make_shared<const Sweep>(options_.frequency);
-    const Loads loads(model_, sweep, step_, longest);
+    const TrainingLoads loads(model_, sweep, step_, longest);
     const Matrix rows = b_.rows() > 0 ? Matrix(b_.transpose() * signs(b_.rows(), 3)) : Matrix(model_.free(), 0);
     const Index columns = rows.cols() + loads.count();
     std::vector<Matrix> forces;  // at every time, on all vectors of the basis
@@ -317,15 +228,9 @@ class Trainer {
       for (Index k = 0; k < loads.count(); ++k) at.col(rows.cols() + k) = loads.at(k, time);
       forces.push_back(transposed_product(all_, at));
     };
-    Sparse floors(std::ssize(options_.floors), model_.free());
-    std::vector<Triplet> entries;
-    for (std::size_t k = 0; k < options_.floors.size(); ++k)
-      for (Sparse::InnerIterator entry(model_.expansion, options_.floors[k]); entry; ++entry)
-        entries.emplace_back(static_cast<int>(k), static_cast<int>(entry.row()), entry.value());
-    floors.setFromTriplets(entries.begin(), entries.end());
-    const std::vector<Matrix> full = answers(march_, columns, load, b_, floors);
+    const std::vector<Matrix> full = answers(march_, columns, load, b_, floors_);
     const Matrix k = symmetric_projection(model_.stiffness, all_), c = symmetric_projection(model_.damping, all_),
-                 m = symmetric_projection(model_.mass, all_), of_rows = b_ * all_, of_floors = floors * all_;
+                 m = symmetric_projection(model_.mass, all_), of_rows = b_ * all_, of_floors = floors_ * all_;
     const auto error = [&](Index size) {
       const auto block = [&](const Matrix& a) -> Sparse { return Matrix(a.topLeftCorner(size, size)).sparseView(1, 0); };
       const Sparse stiffness = block(k), damping = block(c), mass = block(m);
@@ -380,9 +285,9 @@ class Trainer {
   EnergyProduct product_;
   double step_;
   LinearMarch march_;
-  Sparse b_;
+  Sparse b_, floors_;  // rows of the interfaces, displacements of the floors; x free unknowns
   std::shared_ptr<const TimeFunction> bell_;
-  Loads loads_;
+  TrainingLoads loads_;
   Matrix rigid_, exact_, all_;  // exact: the loose motions first
   std::shared_ptr<PodWork> work_;
   Pod pod_;

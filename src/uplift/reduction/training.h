@@ -15,6 +15,7 @@ struct TrainingOptions {
   double target = 2e-4;                          // of the transfer error, where `size` is 0
   int most = 300;                                // coordinates at most, beside the exact ones
   std::vector<int> floors = {};                  // full unknowns whose velocities the transfer error includes
+  bool loads_floors = false;                     // forces at these are among the loads that the basis is made from
   std::function<bool(double share)> go_on = {};  // told of the share that is done; false ends the training
 };
 

@@ -69,6 +69,21 @@ bool is_same(const ReducedStart& start, const Vector& dead, const RunPlan& plan)
          is_same(start.displacement, plan.initial_displacement);
 }
 
+/// The full unknowns from which a run without pictures makes its results, ascending.
+std::vector<int> unknowns_of_results(const BuiltCase& built) {
+  std::set<int> found;
+  const auto add_node = [&](int node) {
+    for (int k = 0; k < built.model.space.unknowns(); ++k) found.insert(built.model.space.unknowns() * node + k);
+  };
+  for (const Request& request : built.plan.requests) {
+    found.insert(request.unknown);
+    if (request.below >= 0) found.insert(request.below);
+  }
+  for (const FloorRequest& floor : built.plan.floors) add_node(floor.node);
+  for (const std::vector<int>& base : built.plan.bases) std::ranges::for_each(base, add_node);
+  return {found.begin(), found.end()};
+}
+
 /// Translations, in all directions, of the nodes whose accelerations are asked for: a direction in which a load does not move a node, by
 /// symmetry, is compared with the others.
 std::vector<int> floor_unknowns(const BuiltCase& built) {
@@ -199,6 +214,7 @@ std::optional<ReducedModel> reduce_case(const LoadedCase& loaded, const ReduceOp
     refuse(built, where);
     TrainingOptions training{.frequency = options.frequency, .size = options.size, .target = options.target};
     training.floors = floor_unknowns(built);
+    training.loads_floors = !built.plan.floors.empty();
     if (const Watch watch = control.watch ? control.watch("basis") : Watch(); watch)
       training.go_on = [watch](double share) { return watch({.fraction = share}); };
     Basis basis = train(built.model, *built.plan.solver, training);
@@ -274,7 +290,8 @@ std::optional<RunState> begin_reduced(const ReducedModel& reduced, const Where& 
   state.velocity = coordinates(product, basis, state.velocity);
   state.acceleration.setZero(basis.cols());
   if (begin->held.size() > 0) begin->held = (basis.transpose() * begin->held).eval();
-  project(built.model, basis);
+  const std::vector<int> shown = shares && built.plan.frames == 0 ? unknowns_of_results(built) : std::vector<int>();
+  project(built.model, basis, shown.empty() ? nullptr : &shown);
   built.plan.rest.reset();
   if (shares) {
     ReducedStart& made = shared->emplace();
