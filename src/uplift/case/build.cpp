@@ -150,6 +150,7 @@ Model make_model(const Case& read, const RunSpec& spec, const std::vector<double
   add_mesh(read, builder, names);
   names.instead = spec.motion;
   names.motion_factor = spec.motion_factor;
+  names.functions_used = &built.functions;
   names.share = newmark_share(built.plan.stages);
   add_functions(read, names);
   add_structure(root, builder, names, tuned, dynamic != nullptr);

@@ -127,6 +127,14 @@ struct VerdictRequest {
   std::vector<Criterion> criteria;
 };
 
+/// Where a function of time of a run comes from: change_motion().
+struct FunctionUse {
+  std::shared_ptr<const TimeFunction> made;
+  const Values* table = nullptr;   // that names it
+  std::optional<MotionKind> kind;  // the quantity taken of a record, none where no motion can stand
+  std::optional<double> factor;    // that it is multiplied by
+};
+
 /// A case made ready to run.
 struct BuiltCase {
   Model model;
@@ -138,6 +146,7 @@ struct BuiltCase {
   std::vector<MotionUse> motions;                      // records that drive it
   std::vector<std::string> notes;                      // what was chosen automatically (tuned mass, scaled penalty)
   double tuned_mass = 0;                               // kg: of the tuned point mass, 0 without
+  std::vector<FunctionUse> functions;                  // of all that moves or loads the model
   // N: resultant, against the first interface's normal, of the dead loads on everything that is connected to its upper side (the soil
   // too where the surface ends inside it)
   double weight = 0;
@@ -163,6 +172,11 @@ struct BuiltCase {
 
 /// Makes the model and the plan of one run. Throws InputError (dangling or duplicate names, mechanisms, contradictions).
 BuiltCase build(const Case&, const RunSpec&);
+
+/// Puts the motions of another run of the same case, with the same interfaces, into a run that was built: the functions of its loads and
+/// ground accelerations. False, with the run unchanged, where more than these functions would have to follow (incident waves, prescribed
+/// motions, static stages under a record).
+bool change_motion(const Case&, const RunSpec&, BuiltCase&);
 
 /// The solver named by the case.
 std::shared_ptr<const LinearSolver> bulk_solver(const Case&);

@@ -10,6 +10,7 @@
 #include <utility>
 
 #include "uplift/base/file.h"
+#include "uplift/model/model_matrices.h"
 #include "uplift/run/lockstep.h"
 #include "uplift/verdict/numbers.h"
 
@@ -25,6 +26,13 @@ void identify(const Study& study, const RunRequest& request, StudyResult& result
   result.factor = request.factor;
   result.intensity = request.intensity;
   result.attempt = request.attempt;
+}
+
+/// The memory of what ReducedStart has in other coordinates.
+void forget_matrices(Model& model) {
+  ModelMatrices().swap(model);
+  Sparse().swap(model.reduction), Sparse().swap(model.expansion);
+  for (Interface& interface : model.interfaces) Sparse().swap(interface.b);
 }
 
 }  // namespace
@@ -57,9 +65,13 @@ const Case& StudyComputer::case_of(std::size_t sample) {
   return *cases_.front().second;
 }
 
+RunSpec StudyComputer::spec_of(const RunRequest& request, const Case& read) const {
+  return run_of_study(study_.of, read, request.motion, request.factor);
+}
+
 BuiltCase StudyComputer::build_run(const RunRequest& request) {
   const Case& read = case_of(request.sample);
-  BuiltCase built = build(read, run_of_study(study_.of, read, request.motion, request.factor));
+  BuiltCase built = build(read, spec_of(request, read));
   std::erase_if(built.plan.requests, [](const Request& column) { return !numbers_need(column); });  // histories are not kept
   return built;
 }
@@ -104,18 +116,47 @@ RunResult StudyComputer::run_reduced(BuiltCase& built, const Watch& watch, std::
   return run(built.model, built.plan, built.behaviours, watch, {}, &keeping);
 }
 
+/// Stops what takes longer, from now on, than a run may.
+Watch StudyComputer::watch_of_timeout() const {
+  if (!study_.of.plan.timeout) return {};
+  return [start = std::chrono::steady_clock::now(), timeout = *study_.of.plan.timeout](const Progress&) {
+    return std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count() < timeout;
+  };
+}
+
+/// Another run of the sample that ran last with the reduced model, where its motions are all that is new: no whole model is made.
+std::optional<StudyResult> StudyComputer::compute_again(const RunRequest& request) {
+  std::optional<BuiltCase> built = std::exchange(ran_, {});  // kept again by a run that goes through; it names parts of the sample's case
+  if (!built || !start_ || start_sample_ != request.sample) return {};
+  const Case& read = case_of(request.sample);
+  if (!change_motion(read, spec_of(request, read), *built)) return {};
+  try {
+    start_->swap_matrices(built->model);
+    Keeping keeping;
+    keeping.from = &start_->state;
+    StudyResult made = finish(request, *built, run(built->model, built->plan, built->behaviours, watch_of_timeout(), {}, &keeping));
+    start_->swap_matrices(built->model);
+    ran_ = std::move(built);
+    return made;
+  } catch (...) {
+    start_.reset();
+    throw;
+  }
+}
+
 StudyResult StudyComputer::compute(const RunRequest& request, BuiltCase& built) {
-  const auto start = std::chrono::steady_clock::now();
-  const std::optional<double> timeout = study_.of.plan.timeout;
-  Watch watch;
-  if (timeout)
-    watch = [&](const Progress&) { return std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count() < *timeout; };
+  const Watch watch = watch_of_timeout();
   if (!study_.reduced) return finish(request, built, run(built.model, built.plan, built.behaviours, watch));
   // what the runs share is kept again by a run that goes through
   std::optional<ReducedStart> shared = start_sample_ == request.sample ? std::exchange(start_, {}) : std::nullopt;
   const RunResult result = run_reduced(built, watch, shared);
   StudyResult made = finish(request, built, result);
-  if (shared) shared->swap_matrices(built.model);
+  ran_.reset();
+  if (shared) {
+    shared->swap_matrices(built.model);
+    forget_matrices(built.model);
+    ran_ = std::move(built);
+  }
   start_ = std::move(shared), start_sample_ = request.sample;
   return made;
 }
@@ -139,6 +180,7 @@ void StudyComputer::compute_in_lockstep(std::span<const RunRequest> group, Built
 }
 
 StudyResult StudyComputer::compute(const RunRequest& request) {
+  if (std::optional<StudyResult> again = compute_again(request)) return *again;
   BuiltCase built = build_run(request);
   if (!marches_in_lockstep(built)) return compute(request, built);
   StudyResult made;
@@ -158,6 +200,10 @@ void StudyComputer::compute(std::span<const RunRequest> group, const std::functi
       if (!told.contains(request.id)) tell(result_without_run(study_, request, outcome, why));
     };
     try {
+      if (const std::optional<StudyResult> again = compute_again(request)) {
+        tell(*again);
+        continue;
+      }
       BuiltCase built = build_run(request);
       if (marches_in_lockstep(built))
         compute_in_lockstep(group.subspan(static_cast<std::size_t>(&request - group.data())), std::move(built), tell);

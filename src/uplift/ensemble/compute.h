@@ -44,6 +44,9 @@ class StudyComputer {
   bool marches_in_lockstep(const BuiltCase& built) const;
   StudyResult finish(const RunRequest& request, const BuiltCase& built, const RunResult& run) const;
   StudyResult compute(const RunRequest& request, BuiltCase& built);
+  Watch watch_of_timeout() const;
+  RunSpec spec_of(const RunRequest& request, const Case& read) const;
+  std::optional<StudyResult> compute_again(const RunRequest& request);
   RunResult run_reduced(BuiltCase& built, const Watch& watch, std::optional<ReducedStart>& shared) const;
   void compute_in_lockstep(std::span<const RunRequest> group, BuiltCase first, const std::function<void(const StudyResult&)>& done);
   BuiltCase build_run(const RunRequest& request);
@@ -52,6 +55,7 @@ class StudyComputer {
   std::list<std::pair<std::size_t, std::unique_ptr<const Case>>> cases_;  // the last used one first
   std::optional<ReducedStart> start_;                                     // of the last run with a reduced model
   std::size_t start_sample_ = 0;                                          // that it belongs to
+  std::optional<BuiltCase> ran_;                                          // that run, without its matrices
 };
 
 /// The result of a run that gave none.

@@ -40,9 +40,8 @@ Recorder::Recorder(const Model& model, const RunPlan& plan, const State& state, 
   };
   if (std::ranges::any_of(plan.requests, moves_base))
     for (std::size_t k = 0; k < plan.bases.size(); ++k) bases_.emplace_back(model, model.interfaces[k], plan.bases[k]);
-  const SparseRows reduction(model.reduction);
   for (const Request& request : plan.requests) {
-    Source source = source_of(request, reduction);
+    Source source = source_of(request);
     source.request = &request;
     source.to = recent_.data() + most_.size() * apart;
     if (fresh) result_.peaks.push_back({request.name, request.unit, 0, 0});
@@ -53,16 +52,16 @@ Recorder::Recorder(const Model& model, const RunPlan& plan, const State& state, 
   before_ = state.time;
 }
 
-Recorder::Source Recorder::source_of(const Request& request, const SparseRows& reduction) const {
+Recorder::Source Recorder::source_of(const Request& request) const {
   using What = Request::Kind;
   const InterfaceView* view = views_.data() + request.interface;
   const auto entry_of = [&](const Vector State::*vector) {  // of one free unknown, or made from several
     Source source{.vector = vector};
-    for (SparseRows::InnerIterator entry(reduction, request.unknown); entry; ++entry)
-      source.terms.emplace_back(static_cast<int>(entry.col()), entry.value());
+    for (Sparse::InnerIterator entry(model_.expansion, request.unknown); entry; ++entry)
+      source.terms.emplace_back(static_cast<int>(entry.row()), entry.value());
     if (request.below >= 0)
-      for (SparseRows::InnerIterator entry(reduction, request.below); entry; ++entry)
-        source.terms.emplace_back(static_cast<int>(entry.col()), -entry.value());
+      for (Sparse::InnerIterator entry(model_.expansion, request.below); entry; ++entry)
+        source.terms.emplace_back(static_cast<int>(entry.row()), -entry.value());
     for (const PrescribedMotion& motion : model_.motions)
       source.moved = source.moved || motion.shape[request.unknown] != 0 || (request.below >= 0 && motion.shape[request.below] != 0);
     for (auto& [unknown, factor] : source.terms) factor *= request.factor;

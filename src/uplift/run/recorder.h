@@ -51,7 +51,7 @@ class Recorder {
     std::vector<std::pair<int, double>> terms = {};
     bool moved = false;  // a prescribed motion takes part
   };
-  Source source_of(const Request& request, const SparseRows& reduction) const;
+  Source source_of(const Request& request) const;
   double made(const Source& source) const;
   double ground(const Request& request, double time) const;
   Frame frame_of(const State& state) const;

@@ -146,8 +146,7 @@ void add_loads(const Values& root, ModelBuilder& builder, const CaseNames& names
   for (const Values& ground : root.tables("ground_acceleration")) {
     const std::string name = ground.has("name") ? ground.text("name") : "ground acceleration";
     builder.add_ground_acceleration(direction_of_ground(ground, names.space),
-                                    scaled(ground.number("amplitude"), names.function(ground, MotionKind::acceleration)), name,
-                                    ground.where());
+                                    names.function(ground, MotionKind::acceleration, ground.number("amplitude")), name, ground.where());
   }
 }
 

@@ -142,7 +142,15 @@ bool CaseNames::is_record(const Values& table) const {
   return functions_made[static_cast<std::size_t>(functions.find(name, table.where("function"), table.path("function")))] == nullptr;
 }
 
-std::shared_ptr<const TimeFunction> CaseNames::function(const Values& table, std::optional<MotionKind> kind) const {
+std::shared_ptr<const TimeFunction> CaseNames::function(const Values& table, std::optional<MotionKind> kind,
+                                                        std::optional<double> factor) const {
+  std::shared_ptr<const TimeFunction> made = make_function(table, kind);
+  if (factor) made = scaled(*factor, std::move(made));
+  if (functions_used) functions_used->push_back({made, &table, kind, factor});
+  return made;
+}
+
+std::shared_ptr<const TimeFunction> CaseNames::make_function(const Values& table, std::optional<MotionKind> kind) const {
   if (!table.has("function")) return std::make_shared<One>();
   const std::string& name = name_taken(instead, table.text("function"));
   const auto found = static_cast<std::size_t>(functions.find(name, table.where("function"), table.path("function")));

@@ -21,8 +21,9 @@ struct CaseNames {
   std::vector<Place> positions;                                     // of the nodes
   std::vector<std::shared_ptr<const TimeFunction>> functions_made;  // then the records: null
   const std::vector<CaseRecord>* records = nullptr;
-  const Values* instead = nullptr;  // [[compare.motion]] of the run; null: as in the case
-  double motion_factor = 1;         // see RunSpec
+  const Values* instead = nullptr;                     // [[compare.motion]] of the run; null: as in the case
+  double motion_factor = 1;                            // see RunSpec
+  std::vector<FunctionUse>* functions_used = nullptr;  // the functions that are given out; null: they are not wanted
   /// Whether the function of a table is a record, which has a unit.
   bool is_record(const Values& table) const;
   double share = 0;                          // of the displacements of records, see MotionFunction
@@ -41,8 +42,13 @@ struct CaseNames {
   std::vector<int> node_or_group(const Values& table) const;
   /// The mesh that "group" speaks of; InputError without one.
   const CaseSolids& mesh_for(const Values& table) const;
-  /// What drives something; absent: constant 1. `kind`: the quantity taken of a record, none where no motion can stand.
-  std::shared_ptr<const TimeFunction> function(const Values& table, std::optional<MotionKind> kind = {}) const;
+  /// What drives something; absent: constant 1. `kind`: the quantity taken of a record, none where no motion can stand. `factor`: of
+  /// the function.
+  std::shared_ptr<const TimeFunction> function(const Values& table, std::optional<MotionKind> kind = {},
+                                               std::optional<double> factor = {}) const;
+
+ private:
+  std::shared_ptr<const TimeFunction> make_function(const Values& table, std::optional<MotionKind> kind) const;
 };
 
 /// Something about the three axes: `plural` in space, else `single`, which is about z, or with `everywhere` about all axes of space. Zero
