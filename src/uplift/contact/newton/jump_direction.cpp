@@ -6,7 +6,7 @@
 namespace uplift {
 namespace {
 
-constexpr int enough = 24;           // iterations that cost less than a factor
+constexpr int enough = 12;           // iterations that cost less than a factor
 constexpr double round_off = 1e-13;  // residual that counts as none, of the right side
 constexpr double accurate = 1e-8;    // residual after a new factor, which iterations cannot mend
 
