@@ -86,9 +86,9 @@ TEST(Robust, CutBodiesThatAreBondedMoveAsTheWholeOrThePlaneIsRefused) {
     try {
       const RunResult result = run_on(text, mesh);
       const double expected = traction / young;
-      // The joint gives way by E/K. A part of less than 1e-14 of a cell belongs to the other side: 1e-7 of an edge thick, it leaves as much
-      // of the section without springs.
-      EXPECT_NEAR(history(result, "end").back(), expected, (at.beside > 2e-7 ? 1e-7 : 5e-7) * expected) << what;
+      // The joint gives way by E/K, and the round-off of a joint so stiff is up to some 1e-7. A part of less than 1e-14 of a cell belongs
+      // to the other side: 1e-7 of an edge thick, it leaves as much of the section without springs.
+      EXPECT_NEAR(history(result, "end").back(), expected, (at.beside > 2e-7 ? 3e-7 : 5e-7) * expected) << what;
       ++cut[static_cast<std::size_t>(kind)];
     } catch (const InputError& error) {
       EXPECT_NE(std::string(error.what()).find("expected"), std::string::npos) << what << error.what();
