@@ -95,10 +95,9 @@ void PlasticNewton::forget() {
   duration_ = 0;
 }
 
-/// What yielding adds to its forces in steps of one length, continued as a parabola; zero where nothing is known.
-Vector PlasticNewton::expected_growth(const Step& step) const {
-  if (duration_ == 0 || step.duration != duration_) return Vector::Zero(step.right.size());
-  return 2 * growth_ - growth_before_;
+/// What yielding has added to its forces in steps of the same length, continued as a parabola, goes into the first y.
+void PlasticNewton::expect_growth(const Step& step) {
+  if (duration_ > 0 && step.duration == duration_) given_ -= step.weight * (2 * growth_ - growth_before_);
 }
 
 void PlasticNewton::remember_growth(const Step& step, const PlasticState& now) {
@@ -114,7 +113,8 @@ Outcome PlasticNewton::solve(const Step& step, StepSolver& elastic, const Make& 
   softening_.resize(0, 0);
   residuals_.clear();
   mixing_->forget();
-  given_ = step.right - step.weight * (step.old.force + expected_growth(step));
+  given_ = step.right - step.weight * step.old.force;
+  expect_growth(step);
   int since = 0;  // iterations with the present factor
   const bool may_soften = options_.newton != PlasticOptions::Newton::modified;
   for (int iteration = 0; iteration < options_.iterations; ++iteration) {

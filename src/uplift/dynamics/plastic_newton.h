@@ -56,7 +56,7 @@ class PlasticNewton {
   class Mixing;
   bool wants_tangent(int since) const;
   bool soften(const Step& step, const Make& make, const Vector& increment, const PlasticState& now);
-  Vector expected_growth(const Step& step) const;
+  void expect_growth(const Step& step);
   void remember_growth(const Step& step, const PlasticState& now);
 
   const PlasticBulk& bulk_;

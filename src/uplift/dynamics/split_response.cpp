@@ -13,11 +13,11 @@ namespace {
 
 /// B_t = W V^T with one column of W for all columns of B_t that are multiples of each other, as those of the two nodes between which an
 /// interface feels the jump alone.
-struct Parted {
+struct JumpRows {
   Matrix w, v;  // rows x r, touched unknowns x r
 };
 
-Parted parted(const Matrix& b) {
+JumpRows jump_rows(const Matrix& b) {
   std::map<std::vector<std::pair<Index, double>>, Index> numbers;  // of columns over their first entry
   std::vector<Index> column, number;                               // of W: one of B_t; of B_t: that of W
   std::vector<double> factor;
@@ -34,7 +34,7 @@ Parted parted(const Matrix& b) {
     number.back() = found->second;
   }
   const Index r = static_cast<Index>(column.size());
-  Parted made{Matrix(b.rows(), r), Matrix::Zero(b.cols(), r)};
+  JumpRows made{Matrix(b.rows(), r), Matrix::Zero(b.cols(), r)};
   for (Index k = 0; k < r; ++k)
     made.w.col(k) = b.col(column[static_cast<std::size_t>(k)]) / factor[static_cast<std::size_t>(column[static_cast<std::size_t>(k)])];
   for (Index j = 0; j < b.cols(); ++j)
@@ -49,7 +49,7 @@ SplitResponse::SplitResponse(const BulkFactor& factor, const Sparse& b, LinearCo
   Matrix at_touched(b.rows(), touched);
   for (Index j = 0; j < touched; ++j) at_touched.col(j) = b.col(factor.last()[static_cast<std::size_t>(j)]);
   const Matrix l = factor.split()->last();
-  if (Parted jumps = parted(at_touched); jumps.w.cols() > 0 && jumps.w.cols() < std::min(touched, b.rows())) {
+  if (JumpRows jumps = jump_rows(at_touched); jumps.w.cols() > 0 && jumps.w.cols() < std::min(touched, b.rows())) {
     l.triangularView<lower_triangle>().solveInPlace(jumps.v);
     const Qr qr(jumps.v);
     jumps_.lower = Matrix(qr->matrixQR().topRows(jumps.w.cols()).triangularView<upper_triangle>()).transpose();

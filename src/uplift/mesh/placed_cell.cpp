@@ -233,13 +233,13 @@ void PlacedCell::find_in_warped(std::span<const Vec3> places, std::span<Vec3> lo
     const auto component = [&](Index k) { return Lanes([&](auto lane) { return places[std::min(first + lane, places.size() - 1)][k]; }); };
     const LaneVec place{component(0), component(1), component(2)};
     LaneVec found{0, 0, 0};
-    Lanes size;
+    Lanes volume;  // over that of the reference cell
     for (int iteration = 0; iteration < 30; ++iteration)
-      if (largest(improve(map, place, found, size)) < enough * enough) break;
-    improve(map, place, found, size);  // for the measure
+      if (largest(improve(map, place, found, volume)) < enough * enough) break;
+    improve(map, place, found, volume);  // for the volume
     for (std::size_t i = 0; i < at(lanes) && first + i < places.size(); ++i) {
       local[first + i] = Vec3(found.x[i], found.y[i], found.z[i]);
-      measure[first + i] = size[i];
+      measure[first + i] = volume[i];
     }
   }
 }
