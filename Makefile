@@ -1,6 +1,6 @@
 # The two commands of the README, and what developers need. `make help` lists them.
 .DEFAULT_GOAL := help
-.PHONY: help run test mpi test-mpi docs bench build build-tests portable wheel deb web format check-format layers tidy asan clean
+.PHONY: help run test mpi test-mpi docs bench build build-tests wheel deb web format check-format layers tidy asan clean
 
 help:              ## this list
 	@grep -E '^[a-z-]+: .*##|^[a-z-]+:  *##' Makefile | sed -E 's/^([a-z-]+):.*## */  make \1\t/' | expand -t 22
@@ -45,14 +45,14 @@ bench:             ## benchmarks: kernels, steps, whole process; figures and lim
 	build/release/bench/bench_soil_block space
 	bench/whole_process.py build/release/uplift
 
-portable:
-	@scripts/setup.sh packages
+wheel:             ## Python wheel for every x86-64 processor: build/packages/*.whl
+	scripts/setup.sh packages
 	scripts/build_portable.sh build/portable
-
-wheel: portable    ## Python wheel for every x86-64 processor: build/packages/*.whl
 	scripts/make_wheel.py build/portable build/packages
 
-deb: portable      ## Debian packages of the tracked files, checked by lintian: build/packages/*.deb
+deb:               ## Debian packages of the tracked files, checked by lintian: build/packages/*.deb
+	scripts/setup.sh deb
+	scripts/build_portable.sh build/portable mpi
 	scripts/make_deb.sh build/portable build/packages
 
 web:               ## rebuild the report page (developers of the page only)

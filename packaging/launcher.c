@@ -1,6 +1,6 @@
-/* The program `uplift` of a package: it starts the version that was compiled for the processor, which lies in
-   ../libexec/uplift/LEVEL/uplift beside the folder of this file. The levels are those of the x86-64 ABI, as in the folders glibc-hwcaps
-   where the dynamic loader finds libuplift (docs/decisions/0006-binaries-for-every-processor.md). */
+/* A program of a package, `uplift` or `uplift-mpi`: it starts the version that was compiled for the processor, which lies in
+   ../libexec/uplift/LEVEL beside the folder of this file and has its name. The levels are those of the x86-64 ABI, as in the folders
+   glibc-hwcaps where the dynamic loader finds libuplift (docs/decisions/0006-binaries-for-every-processor.md). */
 #include <stdio.h>
 #include <string.h>
 #include <unistd.h>
@@ -15,13 +15,14 @@ static const char* level(void) {
 }
 
 int main(int count, char** words) {
-  char folder[size], program[size + 64];
+  char folder[size], name[size], program[2 * size + 64];
   const ssize_t length = readlink("/proc/self/exe", folder, size - 1);
   (void)count;
   if (length > 0) {
     folder[length] = 0;
+    strcpy(name, strrchr(folder, '/') + 1);
     for (int up = 0; up < 2 && strrchr(folder, '/') != NULL; ++up) *strrchr(folder, '/') = 0;
-    snprintf(program, sizeof program, "%s/libexec/uplift/%s/uplift", folder, level());
+    snprintf(program, sizeof program, "%s/libexec/uplift/%s/%s", folder, level(), name);
     execv(program, words);
     perror(program);
   } else {

@@ -1,5 +1,5 @@
 #!/usr/bin/env bash
-# Installs the Debian packages that are missing and nothing else: no network when all are there. Usage: scripts/setup.sh [run|test|mpi|test-mpi|docs|packages|develop]
+# Installs the Debian packages that are missing and nothing else: no network when all are there. Usage: scripts/setup.sh [run|test|mpi|test-mpi|docs|packages|deb|develop]
 set -euo pipefail
 
 run="g++ cmake ninja-build pkg-config libeigen3-dev libsuitesparse-dev libopenblas-dev libspectra-dev libtomlplusplus-dev
@@ -8,7 +8,8 @@ test="libgtest-dev librapidcheck-dev python3 python3-jsonschema python3-numpy py
   parallel slurmctld slurmd slurm-client munge"
 mpi="libpetsc-real-dev libopenmpi-dev openmpi-bin"
 docs="python3 mkdocs mkdocs-material libjs-katex fonts-katex"
-packages="python3 patchelf dpkg-dev debhelper dh-python help2man lintian"
+packages="python3 patchelf"
+deb="python3 dpkg-dev debhelper dh-python help2man lintian"
 develop="libbenchmark-dev clang-14 libclang-rt-14-dev clang-format-14 clang-tidy-14 ccache nodejs npm chromium ca-certificates"
 
 case "${1:-run}" in
@@ -18,8 +19,9 @@ case "${1:-run}" in
   test-mpi) wanted="$run $mpi libgtest-dev python3 slurmctld slurmd slurm-client munge" ;;
   docs) wanted="$run $docs" ;;
   packages) wanted="$run $packages" ;;
+  deb) wanted="$run $mpi $deb" ;;
   develop) wanted="$run $test $develop" ;;
-  *) echo "setup.sh: expected run, test, mpi, test-mpi, docs, packages or develop, found \"$1\"" >&2; exit 2 ;;
+  *) echo "setup.sh: expected run, test, mpi, test-mpi, docs, packages, deb or develop, found \"$1\"" >&2; exit 2 ;;
 esac
 
 if ! command -v dpkg-query >/dev/null; then

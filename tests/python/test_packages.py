@@ -68,6 +68,12 @@ class Launcher(Folder):
         link.symlink_to(self.portable("portable") / "root" / "usr" / "bin" / "uplift")
         self.assertEqual(output(link, "run", "0").strip(), best_level())
 
+    def test_program_of_its_own_name(self):
+        usr = self.portable("portable") / "root" / "usr"
+        for path in [usr / "bin" / "uplift", *(usr / "libexec").rglob("uplift/*/uplift")]:
+            path.rename(path.with_name("uplift-mpi"))
+        self.assertEqual(output(usr / "bin" / "uplift-mpi", "run", "0").strip(), best_level())
+
     def test_missing_program(self):
         root = self.portable("portable") / "root" / "usr"
         shutil.rmtree(root / "libexec")
