@@ -205,13 +205,13 @@ Chain chain_of(const std::vector<int>& last, const std::vector<int>& ends) {
   return chain;
 }
 
-SplitFactorisation failed(std::string why) {
+SplitFactorisation parts_failed(std::string why) {
   return {.factor = nullptr, .failed_unknown = -1, .why = std::move(why), .too_large = true};
 }
 
 SplitFactorisation CholmodSplit::fill(std::unique_ptr<CholmodSplit> factor, cholmod_sparse& upper, const Sparse& a) {
   cholmod_factorize(&upper, factor->factor_, &factor->settings_->common);
-  if (factor->settings_->common.status < 0) return failed("the sparse factorisation ran out of memory");
+  if (factor->settings_->common.status < 0) return parts_failed("the sparse factorisation ran out of memory");
   if (const int broken = broken_unknown(*factor->factor_, a); broken >= 0)
     return {.factor = nullptr, .failed_unknown = broken, .why = singular_at(broken).why};
   return {.factor = std::move(factor), .failed_unknown = -1, .why = {}};
@@ -222,16 +222,16 @@ SplitFactorisation CholmodSplit::refactorise(const Sparse& a) const {
   Sparse upper = with_chain(a, chain_);
   cholmod_sparse view = sparse_view(upper);
   auto settings = std::make_unique<Common>();
-  if (std::string why = refusal(cost_of(*factor_, settings->common, upper.nonZeros())); !why.empty()) return failed(std::move(why));
+  if (std::string why = refusal(cost_of(*factor_, settings->common, upper.nonZeros())); !why.empty()) return parts_failed(std::move(why));
   cholmod_factor* copy = cholmod_copy_factor(factor_, &settings->common);
-  if (copy == nullptr) return failed("the sparse factorisation ran out of memory");
+  if (copy == nullptr) return parts_failed("the sparse factorisation ran out of memory");
   return fill(std::make_unique<CholmodSplit>(std::move(settings), copy, chosen_, chain_), view, a);
 }
 
 /// The analysis with the chosen unknowns last: the upper triangle, ready to be factorised, and the factor without numbers, null when there
 /// is none.
-struct Analysed {
-  Analysed(const Sparse& a, const std::vector<int>& last) : settings(std::make_unique<Common>()) {
+struct AnalysedParts {
+  AnalysedParts(const Sparse& a, const std::vector<int>& last) : settings(std::make_unique<Common>()) {
     std::vector<char> chosen(static_cast<std::size_t>(a.rows()), 0);
     for (const int unknown : last) chosen[static_cast<std::size_t>(unknown)] = 1;
     std::vector<int> others;
@@ -247,11 +247,11 @@ struct Analysed {
     settings->common.method[0].ordering = CHOLMOD_GIVEN;
     factor = cholmod_analyze_p(&view, order.data(), nullptr, 0, &settings->common);
   }
-  ~Analysed() {
+  ~AnalysedParts() {
     if (settings != nullptr) cholmod_free_factor(&factor, &settings->common);
   }
-  Analysed(const Analysed&) = delete;
-  Analysed& operator=(const Analysed&) = delete;
+  AnalysedParts(const AnalysedParts&) = delete;
+  AnalysedParts& operator=(const AnalysedParts&) = delete;
   FactorCost cost() const {
     if (factor != nullptr) return cost_of(*factor, settings->common, upper.nonZeros());
     FactorCost none;
@@ -270,10 +270,10 @@ struct Analysed {
 }  // namespace
 
 SplitFactorisation cholmod_split(const Sparse& a, const std::vector<int>& last) {
-  Analysed analysed(a, last);
+  AnalysedParts analysed(a, last);
   const FactorCost cost = analysed.cost();
-  if (!cost.why.empty()) return failed(cost.why);
-  if (std::string why = refusal(cost); !why.empty()) return failed(std::move(why));
+  if (!cost.why.empty()) return parts_failed(cost.why);
+  if (std::string why = refusal(cost); !why.empty()) return parts_failed(std::move(why));
   cholmod_factor* raw = std::exchange(analysed.factor, nullptr);
   auto factor =
       std::make_unique<CholmodSplit>(std::move(analysed.settings), raw, static_cast<Index>(last.size()), std::move(analysed.chain));
@@ -285,7 +285,7 @@ SplitFactorisation cholmod_split(const Sparse& a, const std::vector<int>& last) 
 }
 
 FactorCost cholmod_split_cost(const Sparse& a, const std::vector<int>& last) {
-  return Analysed(a, last).cost();
+  return AnalysedParts(a, last).cost();
 }
 
 }  // namespace uplift

@@ -24,9 +24,9 @@ bool are_equal(const Sparse& a, const Sparse& b) {
 }
 
 /// One call of run_in_lockstep.
-class Group {
+class RunsInLockstep {
  public:
-  Group(std::span<const LockstepRun> runs, const LockstepOptions& options)
+  RunsInLockstep(std::span<const LockstepRun> runs, const LockstepOptions& options)
       : runs_(runs), options_(options), together_(runs.size(), options.threads), results_(runs.size()), thrown_(runs.size()) {}
 
   std::vector<RunResult> go() {
@@ -92,7 +92,7 @@ bool share_matrices(Model& model, const Model& with) {
 }
 
 std::vector<RunResult> run_in_lockstep(std::span<const LockstepRun> runs, const LockstepOptions& options) {
-  return Group(runs, options).go();
+  return RunsInLockstep(runs, options).go();
 }
 
 }  // namespace uplift
