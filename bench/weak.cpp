@@ -1,7 +1,8 @@
 // Weak scaling of what a step takes on several ranks: a uniform block of soil of cubes of 1 m (V_s = 300 m/s, 8-node bricks with
 // incompatible modes, held below), of which every rank has as many layers, for steps of 5 ms: the product with K + 4 M / dt2, and its
-// solution by conjugate gradients with Jacobi's preconditioner to 1e-12. Every number of ranks 1, 2, 4, ... up to those of the job is
-// measured by itself. Usage: mpirun -n RANKS bench_weak [unknowns of a rank, default 100000]
+// solution by conjugate gradients with Jacobi's preconditioner to 1e-12; once with the entries of the matrix, once cell by cell with the
+// matrix of one cube. Every number of ranks 1, 2, 4, ... up to those of the job is measured by itself. GB/s: of the entries, 12 bytes each.
+// Usage: mpirun -n RANKS bench_weak [unknowns of a rank, default 100000]
 #include <fmt/format.h>
 #include <sys/resource.h>
 
@@ -92,6 +93,24 @@ LocalRows rows_of(const Block& block, int first, int last, const Matrix& cube) {
   return rows;
 }
 
+/// The cubes that reach these layers, and the scale that makes the diagonal one.
+ScaledCells cells_of(const Block& block, int first, int last, const Matrix& cube) {
+  EqualCells cells{24, {}};
+  for (int z = first - 1; z < std::min(last, block.layers - 1); ++z)
+    for (int y = 0; y < across; ++y)
+      for (int x = 0; x < across; ++x)
+        for (int corner = 0; corner < 8; ++corner) {
+          const int up = z + (corner >> 2), node = up * Block::per_layer + (y + (corner >> 1 & 1)) * Block::wide + x + (corner & 1);
+          for (int d = 0; d < 3; ++d) cells.rows.push_back(up < 0 ? -1 : 3 * node + d);
+        }
+  const int rows = 3 * Block::per_layer;
+  const auto made = std::make_shared<const RankCells>(first * rows, (last - first) * rows, std::vector{std::move(cells)});
+  const Vector diagonal = made->diagonal({cube});
+  ScaledCells scaled{made, {cube}, {}};
+  for (const double entry : diagonal) scaled.scale.push_back(1 / std::sqrt(entry));
+  return scaled;
+}
+
 double now() {
   return std::chrono::duration<double>(std::chrono::steady_clock::now().time_since_epoch()).count();
 }
@@ -123,14 +142,18 @@ double product_seconds(const System& system, MPI_Comm ranks) {
   return times[times.size() / 2];
 }
 
-Figures measure(MPI_Comm ranks, int layers_of_a_rank) {
+Figures measure(MPI_Comm ranks, int layers_of_a_rank, bool by_cells) {
   int rank = 0, count = 1;
   MPI_Comm_rank(ranks, &rank);
   MPI_Comm_size(ranks, &count);
   const Block block{layers_of_a_rank * count};
   const PetscInt unknowns = 3 * block.layers * Block::per_layer;
   System system(ranks);
-  SystemOutcome outcome = system.set(rows_of(block, rank * layers_of_a_rank, (rank + 1) * layers_of_a_rank, cube_matrix()), unknowns);
+  const int first = rank * layers_of_a_rank, last = first + layers_of_a_rank;
+  LocalRows none;
+  none.start.assign(static_cast<std::size_t>(unknowns / count) + 1, 0);
+  SystemOutcome outcome = by_cells ? system.set(std::move(none), unknowns, {}, cells_of(block, first, last, cube_matrix()))
+                                   : system.set(rows_of(block, first, last, cube_matrix()), unknowns);
   if (outcome.ok()) outcome = system.prepare(SolverOptions("-ksp_type cg -pc_type jacobi"));
   Figures figures;
   figures.unknowns = unknowns, figures.entries = system.nonzeros();
@@ -161,23 +184,25 @@ void wait_for_all() {
 
 void print_figures(const Petsc& petsc, int layers) {
   if (petsc.rank() == 0)
-    fmt::print("{:>6} {:>10} {:>12} {:>11} {:>9} {:>11} {:>9} {:>11} {:>12}\n", "ranks", "unknowns", "product ms", "efficiency", "GB/s",
-               "CG s", "CG its", "efficiency", "MB per rank");
-  Figures one;
+    fmt::print("{:>6} {:>8} {:>10} {:>12} {:>11} {:>9} {:>11} {:>9} {:>11} {:>12}\n", "ranks", "by", "unknowns", "product ms", "efficiency",
+               "GB/s", "CG s", "CG its", "efficiency", "MB per rank");
+  Figures one[2];
   for (int count = 1;; count = std::min(2 * count, petsc.ranks())) {
     MPI_Comm some = MPI_COMM_NULL;
     MPI_Comm_split(PETSC_COMM_WORLD, petsc.rank() < count ? 0 : MPI_UNDEFINED, petsc.rank(), &some);
-    if (some != MPI_COMM_NULL) {
-      const Figures it = measure(some, layers);
-      if (count == 1) one = it;
-      const double per_iteration = it.solve / it.iterations, first = one.solve / one.iterations;
+    for (const bool by_cells : {true, false}) {  // the memory is the most so far
+      if (some == MPI_COMM_NULL) continue;
+      const Figures it = measure(some, layers, by_cells);
+      Figures& alone = one[by_cells ? 1 : 0];
+      if (count == 1) alone = it;
+      const double per_iteration = it.solve / it.iterations, first = alone.solve / alone.iterations;
       if (petsc.rank() == 0)
-        fmt::print("{:6} {:10.0f} {:12.3f} {:10.0f}% {:9.1f} {:11.3f} {:9.0f} {:10.0f}% {:12.0f}\n", count, it.unknowns, 1e3 * it.product,
-                   100 * one.product / it.product, 12e-9 * it.entries / it.product, it.solve, it.iterations, 100 * first / per_iteration,
-                   1e-6 * it.memory);
+        fmt::print("{:6} {:>8} {:10.0f} {:12.3f} {:10.0f}% {:9.1f} {:11.3f} {:9.0f} {:10.0f}% {:12.0f}\n", count,
+                   by_cells ? "cells" : "entries", it.unknowns, 1e3 * it.product, 100 * alone.product / it.product,
+                   12e-9 * it.entries / it.product, it.solve, it.iterations, 100 * first / per_iteration, 1e-6 * it.memory);
       std::fflush(stdout);
-      MPI_Comm_free(&some);
     }
+    if (some != MPI_COMM_NULL) MPI_Comm_free(&some);
     wait_for_all();
     if (count == petsc.ranks()) return;
   }

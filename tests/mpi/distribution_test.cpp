@@ -15,6 +15,7 @@ namespace {
 using namespace support;
 
 constexpr const char* petsc = "solver = { type = \"petsc\" }\n";
+constexpr const char* by_cells = "solver = { type = \"petsc\", options = \"-ksp_type cg -pc_type jacobi\" }\n";
 
 /// Rayleigh damping, solids with a damping of their own, an absorbing bottom, sides that are tied to each other, a raft that is rigid, a
 /// mast of beams with a mass and a dashpot, on a footing beside the soil.
@@ -142,8 +143,9 @@ double difference(const Sparse& one, const Sparse& other) {
   return most;
 }
 
+const std::string title = "title = \"rows\"\nbonded = false\n";
+
 void compare(const std::string& text, const Mesh& mesh) {
-  const std::string title = "title = \"rows\"\nbonded = false\n";
   const Case serial_case = read_on(title + text, mesh), petsc_case = read_on(petsc + title + text, mesh);
   const BuiltCase serial = build(serial_case, runs_of_case(serial_case).front());
   {
@@ -201,6 +203,121 @@ TEST(Distribution, RowsOfACutInterfaceInSpace) {
   compare(cut(), box(uniform_lines(-4, 4, 8), uniform_lines(-2, 2, 4), uniform_lines(0, 6, 6)));
 }
 
+/// Two layers, of cells of two sizes and wedges, on a base that is held; a raft and a block on them; sides that roll.
+const std::string layers = R"([mesh.soil_box.soil]
+width = 16
+length = 12
+size = 2
+[[mesh.soil_box.soil.layers]]
+thickness = 2
+size = 1
+[[mesh.soil_box.soil.layers]]
+thickness = 6
+size = 2
+[mesh.soil_box.raft]
+width = 4
+length = 4
+height = 1
+size = 1
+[mesh.soil_box.block]
+width = 4
+length = 4
+height = 4
+size = 2
+[[solid]]
+group = "soil_1"
+shear_wave_speed = 250
+poisson = 0.3
+density = 1900
+[[solid]]
+group = "soil_2"
+shear_wave_speed = 400
+poisson = 0.25
+density = 2000
+mass = "lumped"
+damping_beta = 1e-3
+[[solid]]
+group = "raft"
+E = 3e10
+poisson = 0.2
+density = 2500
+[[solid]]
+group = "block"
+E = 5e9
+poisson = 0.2
+density = 1000
+[[support]]
+group = "soil_bottom"
+fixed = ["ux", "uy", "uz"]
+[[support]]
+group = "soil_left"
+fixed = ["ux"]
+[[interface]]
+name = "underside"
+surface = { group = "interface", lower = ["soil_1"] }
+law = { type = "springs", K_n = 2e10, K_t = 1e10, tangential = "bonded" }
+[damping]
+rayleigh = [{ frequency = 1, ratio = 0.04 }, { frequency = 8, ratio = 0.04 }]
+[[stage]]
+type = "dynamic"
+duration = 0.01
+step = 1e-3
+)";
+
+/// The model of which equal cells have no entries on the ranks, beside the serial one, with vectors of all signs: products, diagonals and
+/// what is solved with them. `share`: at most that part of the entries is left.
+void compare_by_cells(const std::string& text, const Mesh& mesh, double share) {
+  const Case serial_case = read_on(title + text, mesh), petsc_case = read_on(by_cells + title + text, mesh);
+  const BuiltCase serial = build(serial_case, runs_of_case(serial_case).front());
+  BuiltCase spread = build(petsc_case, runs_of_case(petsc_case).front());
+  const Model &one = serial.model, &other = spread.model;
+  const Index n = one.free();
+  ASSERT_EQ(other.free(), n);
+  ASSERT_NE(other.distributed, nullptr);
+  ASSERT_NE(other.distributed->cells, nullptr);
+  struct Of {
+    double k, c, m;
+  };
+  for (const auto& [k, c, m] : {Of{1, 0, 0}, Of{0, 1, 0}, Of{0, 0, 1}, Of{1, 50, 4e6}}) {
+    const Sparse whole = k * one.stiffness + c * one.damping + m * one.mass;
+    const std::vector<DistributedTerm> terms = distributed_terms(other, k, c, m);
+    Vector diagonal = Vector::Zero(n), size(n), x(n), product(n);
+    for (const auto& [factor, matrix] : terms) diagonal += factor * matrix->diagonal();
+    EXPECT_LE((diagonal - whole.diagonal()).cwiseAbs().maxCoeff(), 1e-13 * whole.diagonal().maxCoeff());
+    for (Index i = 0; i < n; ++i) size[i] = 1 / std::sqrt(std::max(diagonal[i], 1e-30));  // no unit is larger than another
+    for (int trial = 1; trial <= 3; ++trial) {
+      for (Index i = 0; i < n; ++i) x[i] = size[i] * std::sin(1.618 * trial * static_cast<double>(i + 1) * static_cast<double>(i + 1));
+      terms.front().matrix->multiply(terms, x, product);
+      EXPECT_LE((product - whole * x).cwiseProduct(size).cwiseAbs().maxCoeff(), 1e-13) << k << " " << c << " " << m;
+    }
+  }
+  const auto entries = [&](const DistributedMatrix& matrix) {
+    return std::accumulate(matrix.entries().begin(), matrix.entries().end(), 0.0);
+  };
+  EXPECT_LE(entries(*other.distributed->stiffness), share * static_cast<double>(one.stiffness.nonZeros()));
+  EXPECT_LE(entries(*other.distributed->mass), share * static_cast<double>(one.mass.nonZeros()));
+  const OwnedSum sum = matrix_sum(other, 1, 50, 4e6);
+  const Sparse whole = one.stiffness + 50 * one.damping + 4e6 * one.mass;
+  const Factorisation made = factorise(*spread.plan.solver, sum);
+  ASSERT_NE(made.factor, nullptr) << made.why;
+  const Vector x = Vector::LinSpaced(n, -1, 2), load = whole * x;
+  Matrix found;
+  made.factor->solve(load, found);
+  EXPECT_LE((found.col(0) - x).norm(), 1e-9 * x.norm());
+}
+
+TEST(Distribution, EqualCellsAsTheirSum) {
+  compare_by_cells(layers, {}, 0.5);
+}
+
+TEST(Distribution, EqualCellsAmongTiesRigidBodiesBeamsAndDashpots) {
+  compare_by_cells(tied, {}, 0.5);
+}
+
+TEST(Distribution, EqualCellsBesideCutOnes) {
+  compare_by_cells(cut(), box(uniform_lines(-4, 4, 8), uniform_lines(-2, 2, 4), uniform_lines(0, 6, 6)), 0.9);
+}
+
 TEST(Distribution, TunedMassIsThatOfTheWholeMatrices) {
   std::string text = "title = \"mast\"\nbonded = false\n" + tied;
   const std::string mass = "mass = 2000\n";
@@ -212,7 +329,6 @@ TEST(Distribution, TunedMassIsThatOfTheWholeMatrices) {
 }
 
 TEST(Distribution, RunIsThatOfTheWholeMatrices) {
-  const std::string title = "title = \"rows\"\nbonded = false\n";
   const Case serial_case = read_on(title + tied, {}), petsc_case = read_on(petsc + title + tied, {});
   BuiltCase serial = build(serial_case, runs_of_case(serial_case).front()), spread = build(petsc_case, runs_of_case(petsc_case).front());
   const RunResult one = run(serial.model, serial.plan, serial.behaviours), other = run(spread.model, spread.plan, spread.behaviours);

@@ -48,23 +48,112 @@ void KeptMatrix::multiply(std::span<const DistributedTerm> sum, const Vector& x,
   Ranks::all().multiply(sum, x, y);
 }
 
-std::shared_ptr<const DistributedMatrix> HomeOnRanks::keep(Vector diagonal, const MakeColumns& make) const {
-  Ranks::Kept kept = Ranks::all().keep(diagonal.size(), make);
+KeptCells::~KeptCells() {
+  Ranks::all().drop(number_);
+}
+
+std::shared_ptr<const DistributedMatrix> HomeOnRanks::keep(Vector diagonal, const MakeColumns& make, const EqualCellPart& part) const {
+  const auto* cells = dynamic_cast<const KeptCells*>(part.cells.get());
+  Ranks::Kept kept = Ranks::all().keep(diagonal.size(), make, {cells != nullptr ? cells->number() : 0, &part.local});
   return std::make_shared<const KeptMatrix>(kept.matrix, std::move(diagonal), std::move(kept.entries));
 }
 
-Ranks::Kept Ranks::keep(std::int64_t rows, const MatrixHome::MakeColumns& make) {
+std::shared_ptr<const DistributedCells> HomeOnRanks::keep_cells(Index rows, const std::vector<EqualCells>& classes) const {
+  if (classes.empty()) return nullptr;
+  Ranks::KeptCells kept = Ranks::all().keep_cells(rows, classes);
+  return std::make_shared<const KeptCells>(kept.cells, std::move(kept.bytes));
+}
+
+Ranks::KeptCells Ranks::keep_cells(std::int64_t rows, const std::vector<EqualCells>& classes) {
   const std::lock_guard lock(one_at_a_time_);
   HalfWay half_way(half_way_);
-  const Order order{What::keep, ++made_, rows, 0, 0, 0};
+  const Order order{What::keep_cells, ++made_, rows, 0, 0, std::ssize(classes)};
   tell(order);
-  Kept kept = keep_together(order, &make);
+  KeptCells kept = keep_cells_together(order, &classes);
   half_way.done();
   return kept;
 }
 
+namespace {
+
+/// Those that reach rows from `first` to below `end`.
+EqualCells cells_at(const EqualCells& all, int first, int end) {
+  EqualCells some{all.unknowns, {}};
+  for (auto cell = all.rows.begin(); cell != all.rows.end(); cell += all.unknowns)
+    if (std::any_of(cell, cell + all.unknowns, [&](int row) { return row >= first && row < end; }))
+      some.rows.insert(some.rows.end(), cell, cell + all.unknowns);
+  some.rows.shrink_to_fit();
+  return some;
+}
+
+}  // namespace
+
+/// `classes`: on rank 0.
+Ranks::KeptCells Ranks::keep_cells_together(const Order& order, const std::vector<EqualCells>* classes) {
+  const Shares shares(static_cast<PetscInt>(order.rows), count_);
+  std::vector<EqualCells> mine(static_cast<std::size_t>(order.terms));
+  for (std::size_t k = 0; k < mine.size(); ++k) {
+    if (classes == nullptr) {
+      std::int64_t sizes[2] = {};
+      receive(sizes, 2, MPI_INT64_T, ranks_);
+      mine[k].unknowns = static_cast<int>(sizes[0]);
+      mine[k].rows.resize(static_cast<std::size_t>(sizes[1]));
+      receive(mine[k].rows.data(), sizes[1], MPI_INT, ranks_);
+      continue;
+    }
+    for (int rank = count_ - 1; rank > 0; --rank) {
+      const EqualCells theirs = cells_at((*classes)[k], shares.first(rank), shares.first(rank + 1));
+      const std::int64_t sizes[2] = {theirs.unknowns, std::ssize(theirs.rows)};
+      send(sizes, 2, MPI_INT64_T, rank, ranks_);
+      send(theirs.rows.data(), sizes[1], MPI_INT, rank, ranks_);
+    }
+    mine[k] = cells_at((*classes)[k], 0, shares.first(1));
+  }
+  auto made = std::make_shared<const RankCells>(shares.first(rank_), shares.count(rank_), std::move(mine));
+  KeptCells kept{order.system, std::vector<double>(static_cast<std::size_t>(count_))};
+  const double bytes = made->bytes();
+  MPI_Gather(&bytes, 1, MPI_DOUBLE, kept.bytes.data(), 1, MPI_DOUBLE, 0, ranks_);
+  cells_[order.system] = std::move(made);
+  return kept;
+}
+
+Ranks::Kept Ranks::keep(std::int64_t rows, const MatrixHome::MakeColumns& make, const PartOfCells& part) {
+  const std::lock_guard lock(one_at_a_time_);
+  HalfWay half_way(half_way_);
+  const Order order{What::keep, ++made_, rows, 0, 0, 0, 0, part.cells};
+  tell(order);
+  Kept kept = keep_together(order, &make, part.local);
+  half_way.done();
+  return kept;
+}
+
+/// `make` and `local`: on rank 0.
+Ranks::Kept Ranks::keep_together(const Order& order, const MatrixHome::MakeColumns* make, const std::vector<Matrix>* local) {
+  KeptRows& mine = kept_[order.system];
+  if (order.cells != 0) {
+    mine.cells = cells_.at(order.cells);
+    mine.local = spread_local(mine.cells->classes(), local);
+  }
+  spread_columns(order, make).swap(mine.columns);
+  Kept kept{order.system, std::vector<double>(static_cast<std::size_t>(count_))};
+  const auto entries = static_cast<double>(mine.columns.nonZeros());
+  MPI_Gather(&entries, 1, MPI_DOUBLE, kept.entries.data(), 1, MPI_DOUBLE, 0, ranks_);
+  return kept;
+}
+
+std::vector<Matrix> Ranks::spread_local(std::size_t classes, const std::vector<Matrix>* local) const {
+  std::vector<Matrix> all = local != nullptr ? *local : std::vector<Matrix>(classes);
+  for (Matrix& one : all) {
+    std::int64_t size = one.rows();
+    MPI_Bcast(&size, 1, MPI_INT64_T, 0, ranks_);
+    one.resize(size, size);
+    MPI_Bcast(one.data(), static_cast<int>(one.size()), MPI_DOUBLE, 0, ranks_);
+  }
+  return all;
+}
+
 /// `make`: on rank 0, whose own rows are made last.
-Ranks::Kept Ranks::keep_together(const Order& order, const MatrixHome::MakeColumns* make) {
+Sparse Ranks::spread_columns(const Order& order, const MatrixHome::MakeColumns* make) const {
   const Shares shares(static_cast<PetscInt>(order.rows), count_);
   Sparse mine(order.rows, shares.count(rank_));
   if (make == nullptr) {
@@ -74,31 +163,28 @@ Ranks::Kept Ranks::keep_together(const Order& order, const MatrixHome::MakeColum
     receive(mine.outerIndexPtr(), mine.cols() + 1, MPI_INT, ranks_);
     receive(mine.innerIndexPtr(), entries, MPI_INT, ranks_);
     receive(mine.valuePtr(), entries, MPI_DOUBLE, ranks_);
-  } else {
-    for (int rank = count_ - 1; rank > 0; --rank) {
-      const Sparse theirs = (*make)(shares.first(rank), shares.count(rank));
-      const std::int64_t entries = theirs.nonZeros();
-      send(&entries, 1, MPI_INT64_T, rank, ranks_);
-      send(theirs.outerIndexPtr(), theirs.cols() + 1, MPI_INT, rank, ranks_);
-      send(theirs.innerIndexPtr(), entries, MPI_INT, rank, ranks_);
-      send(theirs.valuePtr(), entries, MPI_DOUBLE, rank, ranks_);
-    }
-    (*make)(0, shares.count(0)).swap(mine);
-    mine.data().squeeze();
+    return mine;
   }
-  Kept kept{order.system, std::vector<double>(static_cast<std::size_t>(count_))};
-  const auto entries = static_cast<double>(mine.nonZeros());
-  MPI_Gather(&entries, 1, MPI_DOUBLE, kept.entries.data(), 1, MPI_DOUBLE, 0, ranks_);
-  kept_[order.system].swap(mine);
-  return kept;
+  for (int rank = count_ - 1; rank > 0; --rank) {
+    const Sparse theirs = (*make)(shares.first(rank), shares.count(rank));
+    const std::int64_t entries = theirs.nonZeros();
+    send(&entries, 1, MPI_INT64_T, rank, ranks_);
+    send(theirs.outerIndexPtr(), theirs.cols() + 1, MPI_INT, rank, ranks_);
+    send(theirs.innerIndexPtr(), entries, MPI_INT, rank, ranks_);
+    send(theirs.valuePtr(), entries, MPI_DOUBLE, rank, ranks_);
+  }
+  (*make)(0, shares.count(0)).swap(mine);
+  mine.data().squeeze();
+  return mine;
 }
 
-void Ranks::drop(std::int64_t matrix) {
+void Ranks::drop(std::int64_t kept) {
   const std::lock_guard lock(one_at_a_time_);
   Order order;
-  order.what = What::drop, order.system = matrix;
+  order.what = What::drop, order.system = kept;
   tell(order);
-  kept_.erase(matrix);
+  kept_.erase(kept);
+  cells_.erase(kept);
 }
 
 void Ranks::multiply(std::span<const DistributedTerm> sum, const Vector& x, Vector& y) {
@@ -115,7 +201,14 @@ void Ranks::multiply_together(const Order& order, std::span<const DistributedTer
   const std::vector<KeptTerm> terms = spread_terms(order, sum);
   const Vector given = spread_vector(order.rows, x);
   Vector product = Vector::Zero(shares.count(rank_));
-  for (const KeptTerm& term : terms) product += term.factor * (term.columns.transpose() * given);
+  for (const KeptTerm& term : terms) product += term.factor * (term.matrix.columns.transpose() * given);
+  if (const ScaledCells sum_of_cells = cells_of_sum(terms); sum_of_cells.cells != nullptr) {
+    const RankCells& cells = *sum_of_cells.cells;
+    Vector from(static_cast<Index>(cells.places())), to = Vector::Zero(from.size());
+    from << given.segment(cells.first(), cells.own()), given(cells.others()), 0;
+    cells.add_product(sum_of_cells.local, from.data(), to.data());
+    product += to.head(cells.own());
+  }
   std::vector<int> counts, firsts;
   for (int rank = 0; rank < count_; ++rank) counts.push_back(shares.count(rank)), firsts.push_back(shares.first(rank));
   MPI_Gatherv(product.data(), shares.count(rank_), MPI_DOUBLE, y == nullptr ? nullptr : y->data(), counts.data(), firsts.data(), MPI_DOUBLE,
@@ -138,6 +231,24 @@ std::vector<Ranks::KeptTerm> Ranks::spread_terms(const Order& order, std::span<c
   return terms;
 }
 
+/// Of all terms together, which are those of one model; their scale is left to the caller.
+ScaledCells Ranks::cells_of_sum(const std::vector<KeptTerm>& terms) {
+  ScaledCells sum;
+  for (const auto& [factor, matrix] : terms) {
+    if (matrix.cells == nullptr) continue;
+    sum.cells = matrix.cells;
+    sum.local.resize(matrix.local.size());
+    for (std::size_t k = 0; k < matrix.local.size(); ++k) {
+      if (matrix.local[k].size() == 0) continue;
+      if (sum.local[k].size() == 0)
+        sum.local[k] = factor * matrix.local[k];
+      else
+        sum.local[k] += factor * matrix.local[k];
+    }
+  }
+  return sum;
+}
+
 /// `vector`: on rank 0.
 Vector Ranks::spread_vector(std::int64_t size, const Vector* vector) const {
   Vector whole = vector != nullptr ? *vector : Vector(size);
@@ -154,8 +265,9 @@ LocalRows Ranks::rows_of_sum(const std::vector<KeptTerm>& terms, const Vector& s
   const auto each_entry = [&](PetscInt local, const auto& take) {
     row.clear();
     for (const KeptTerm& term : terms) {
-      const int *start = term.columns.outerIndexPtr() + local, *column = term.columns.innerIndexPtr();
-      row.push_back({column + start[0], column + start[1], term.columns.valuePtr() + start[0], term.factor});
+      const Sparse& columns = term.matrix.columns;
+      const int *start = columns.outerIndexPtr() + local, *column = columns.innerIndexPtr();
+      row.push_back({column + start[0], column + start[1], columns.valuePtr() + start[0], term.factor});
     }
     const int *more = also.column.data() + also.start[local], *end = also.column.data() + also.start[local + 1];
     const double* value = also.value.data() + also.start[local];

@@ -27,10 +27,31 @@ class KeptMatrix final : public DistributedMatrix {
   std::vector<double> entries_;
 };
 
+/// Cells whose places the ranks of the job keep.
+class KeptCells final : public DistributedCells {
+ public:
+  KeptCells(std::int64_t number, std::vector<double> bytes) : number_(number), bytes_(std::move(bytes)) {}
+  ~KeptCells() override;
+  KeptCells(const KeptCells&) = delete;
+  KeptCells& operator=(const KeptCells&) = delete;
+  const std::vector<double>& bytes() const override { return bytes_; }
+  std::int64_t number() const { return number_; }
+
+ private:
+  std::int64_t number_;
+  std::vector<double> bytes_;
+};
+
 /// The ranks of the job.
 class HomeOnRanks final : public MatrixHome {
  public:
-  std::shared_ptr<const DistributedMatrix> keep(Vector diagonal, const MakeColumns& make) const override;
+  explicit HomeOnRanks(bool takes_cells) : takes_cells_(takes_cells) {}
+  bool takes_cells() const override { return takes_cells_; }
+  std::shared_ptr<const DistributedCells> keep_cells(Index rows, const std::vector<EqualCells>& classes) const override;
+  std::shared_ptr<const DistributedMatrix> keep(Vector diagonal, const MakeColumns& make, const EqualCellPart& part) const override;
+
+ private:
+  bool takes_cells_;
 };
 
 }  // namespace uplift

@@ -46,17 +46,17 @@ Ranks& Ranks::all() {
 
 void Ranks::tell(const Order& order) {
   std::int64_t numbers[] = {static_cast<std::int64_t>(order.what),      order.system, order.rows, order.columns, order.letters, order.terms,
-                            std::bit_cast<std::int64_t>(order.residual)};
+                            std::bit_cast<std::int64_t>(order.residual),  order.cells};
   MPI_Request sent = MPI_REQUEST_NULL;
-  MPI_Ibcast(numbers, 7, MPI_INT64_T, 0, ranks_, &sent);
+  MPI_Ibcast(numbers, 8, MPI_INT64_T, 0, ranks_, &sent);
   MPI_Wait(&sent, MPI_STATUS_IGNORE);
 }
 
 /// MPI waits by spinning. While rank 0 computes alone, the others leave the cores to it.
 Ranks::Order Ranks::hear() const {
-  std::int64_t numbers[7] = {};
+  std::int64_t numbers[8] = {};
   MPI_Request wanted = MPI_REQUEST_NULL;
-  MPI_Ibcast(numbers, 7, MPI_INT64_T, 0, ranks_, &wanted);
+  MPI_Ibcast(numbers, 8, MPI_INT64_T, 0, ranks_, &wanted);
   using Clock = std::chrono::steady_clock;
   const Clock::time_point start = Clock::now();
   for (int here = 0;;) {
@@ -64,7 +64,8 @@ Ranks::Order Ranks::hear() const {
     if (here != 0) break;
     if (Clock::now() - start > std::chrono::milliseconds(2)) std::this_thread::sleep_for(std::chrono::microseconds(100));
   }
-  return {static_cast<What>(numbers[0]), numbers[1], numbers[2], numbers[3], numbers[4], numbers[5], std::bit_cast<double>(numbers[6])};
+  return {static_cast<What>(numbers[0]), numbers[1], numbers[2], numbers[3], numbers[4], numbers[5], std::bit_cast<double>(numbers[6]),
+          numbers[7]};
 }
 
 void Ranks::serve() {
@@ -87,10 +88,14 @@ void Ranks::serve() {
         refuse_together(order, {});
         break;
       case What::keep:
-        keep_together(order, nullptr);
+        keep_together(order, nullptr, nullptr);
+        break;
+      case What::keep_cells:
+        keep_cells_together(order, nullptr);
         break;
       case What::drop:
         kept_.erase(order.system);
+        cells_.erase(order.system);
         break;
       case What::multiply:
         multiply_together(order, {}, nullptr, nullptr);
@@ -101,6 +106,7 @@ void Ranks::serve() {
       case What::end:
         systems_.clear();
         kept_.clear();
+        cells_.clear();
         return;
     }
   }
@@ -122,7 +128,7 @@ Ranks::Made Ranks::make_together(const Order& order, const Scaled* matrix, std::
   const SolverOptions given(spread_text(order.letters, std::move(options)));
   auto system = std::make_unique<System>(ranks_);
   const std::vector<int> node = spread_nodes(order, matrix);
-  made.outcome = system->set(spread_sum(order, matrix), static_cast<PetscInt>(order.rows), node);
+  made.outcome = set_sum(*system, order, matrix, node);
   if (made.outcome.ok() && order.columns > 0)
     made.outcome = system->set_motions(spread_motions(order, matrix), static_cast<PetscInt>(order.columns));
   if (made.outcome.ok()) made.outcome = system->prepare(given);
@@ -147,13 +153,15 @@ Ranks::Forecast Ranks::foretell_together(const Order& order, const Scaled* matri
   Forecast forecast;
   const SolverOptions given(spread_text(order.letters, std::move(options)));
   System system(ranks_);
-  forecast.outcome = system.set(spread_sum(order, matrix), static_cast<PetscInt>(order.rows));
+  forecast.outcome = set_sum(system, order, matrix, {});
   if (forecast.outcome.ok()) forecast.outcome = system.foretell(given, forecast.mine);
   MPI_Comm machine = MPI_COMM_NULL;
   MPI_Comm_split_type(ranks_, MPI_COMM_TYPE_SHARED, rank_, MPI_INFO_NULL, &machine);
   double elsewhere = rank_ == 0 ? 0 : forecast.mine.bytes;
-  if (rank_ > 0)  // rank 0 has its own ones already
-    for (const auto& [number, columns] : kept_) elsewhere += static_cast<double>(columns.nonZeros()) * (sizeof(double) + sizeof(int));
+  if (rank_ > 0) {  // rank 0 has its own ones already
+    for (const auto& [number, kept] : kept_) elsewhere += static_cast<double>(kept.columns.nonZeros()) * (sizeof(double) + sizeof(int));
+    for (const auto& [number, cells] : cells_) elsewhere += cells->bytes();
+  }
   MPI_Allreduce(&elsewhere, &forecast.most_elsewhere, 1, MPI_DOUBLE, MPI_MAX, ranks_);
   MPI_Allreduce(&elsewhere, &forecast.beside, 1, MPI_DOUBLE, MPI_SUM, machine);
   MPI_Comm_free(&machine);
@@ -356,13 +364,18 @@ LocalRows Ranks::spread_rows(PetscInt rows, const Scaled* matrix) const {
   return rows_of(*matrix, 0, shares.count(0));
 }
 
-/// The rank's rows of a sum, of which `matrix` is on rank 0.
-LocalRows Ranks::spread_sum(const Order& order, const Scaled* matrix) const {
+/// A sum, of which `matrix` is on rank 0: the rank's rows of its entries, and its cells.
+SystemOutcome Ranks::set_sum(System& system, const Order& order, const Scaled* matrix, const std::vector<int>& node) const {
   const auto rows = static_cast<PetscInt>(order.rows);
-  if (order.terms == 0) return spread_rows(rows, matrix);
+  if (order.terms == 0) return system.set(spread_rows(rows, matrix), rows, node);
   const std::vector<KeptTerm> terms = spread_terms(order, matrix != nullptr ? matrix->matrix.there : std::span<const DistributedTerm>());
   const Vector scale = spread_vector(order.rows, matrix != nullptr ? &matrix->scale : nullptr);
-  return rows_of_sum(terms, scale, spread_rows(rows, matrix));
+  ScaledCells cells = cells_of_sum(terms);
+  if (cells.cells != nullptr) {
+    const double* first = scale.data() + cells.cells->first();
+    cells.scale.assign(first, first + cells.cells->own());
+  }
+  return system.set(rows_of_sum(terms, scale, spread_rows(rows, matrix)), rows, node, std::move(cells));
 }
 
 void Ranks::release(std::int64_t system) {

@@ -7,6 +7,7 @@
 #include <string>
 #include <vector>
 
+#include "uplift/distributed/rank_cells.h"
 #include "uplift/distributed/system.h"
 #include "uplift/linear/large.h"
 #include "uplift/math/symmetric_sum.h"
@@ -44,9 +45,20 @@ class Ranks {
     std::int64_t matrix = 0;      // its number
     std::vector<double> entries;  // of each rank
   };
-  /// Every rank keeps its rows of a symmetric matrix; see MatrixHome::keep.
-  Kept keep(std::int64_t rows, const MatrixHome::MakeColumns& make);
-  void drop(std::int64_t matrix);
+  /// Every rank keeps its rows of a symmetric matrix, to which cells that the ranks keep may add; see MatrixHome::keep.
+  struct PartOfCells {
+    std::int64_t cells = 0;  // their number; 0: there are none
+    const std::vector<Matrix>* local = nullptr;
+  };
+  Kept keep(std::int64_t rows, const MatrixHome::MakeColumns& make, const PartOfCells& part);
+  /// Every rank keeps the cells that reach its rows; see MatrixHome::keep_cells.
+  struct KeptCells {
+    std::int64_t cells = 0;     // their number
+    std::vector<double> bytes;  // of each rank
+  };
+  KeptCells keep_cells(std::int64_t rows, const std::vector<EqualCells>& classes);
+  /// A matrix or cells.
+  void drop(std::int64_t kept);
   /// y = sum of factor * A x of kept matrices.
   void multiply(std::span<const DistributedTerm> sum, const Vector& x, Vector& y);
   /// x = A^-1 b; x has the shape of b. `residual`: see System::solve.
@@ -71,12 +83,14 @@ class Ranks {
   void serve();
 
  private:
-  enum class What : std::int64_t { make, foretell, keep, drop, multiply, solve, flexibility, refuse, release, end };
+  enum class What : std::int64_t { make, foretell, keep, keep_cells, drop, multiply, solve, flexibility, refuse, release, end };
   struct Order {
     What what = What::end;
-    // system: or a kept matrix; columns: of the loads, the motions or the flexibility; letters: of the options; terms: kept matrices
+    // system: or a kept matrix, or cells; columns: of the loads, the motions or the flexibility; letters: of the options; terms: kept
+    // matrices, or classes of cells
     std::int64_t system = 0, rows = 0, columns = 0, letters = 0, terms = 0;
     double residual = 0;
+    std::int64_t cells = 0;  // that add to a kept matrix
   };
   Ranks();
   void tell(const Order& order);
@@ -86,23 +100,32 @@ class Ranks {
     const Vector& scale;
     const RigidMotions& motions;
   };
+  struct KeptRows {
+    Sparse columns;                          // rows x local: the rank's rows, as columns
+    std::shared_ptr<const RankCells> cells;  // null: none
+    std::vector<Matrix> local;               // of each class of cells
+  };
   struct KeptTerm {
     double factor;
-    const Sparse& columns;
+    const KeptRows& matrix;
   };
   Made make_together(const Order& order, const Scaled* matrix, std::string options);
   Forecast foretell_together(const Order& order, const Scaled* matrix, std::string options);
-  Kept keep_together(const Order& order, const MatrixHome::MakeColumns* make);
+  Kept keep_together(const Order& order, const MatrixHome::MakeColumns* make, const std::vector<Matrix>* local);
+  Sparse spread_columns(const Order& order, const MatrixHome::MakeColumns* make) const;
+  KeptCells keep_cells_together(const Order& order, const std::vector<EqualCells>* classes);
+  std::vector<Matrix> spread_local(std::size_t classes, const std::vector<Matrix>* local) const;
   void multiply_together(const Order& order, std::span<const DistributedTerm> sum, const Vector* x, Vector* y) const;
   SystemOutcome solve_together(const Order& order, const double* b, double* x);
   SystemOutcome flexibility_together(const Order& order, std::vector<int> chosen, Matrix* entries);
   std::string refuse_together(const Order& order, std::string options);
   std::vector<int> spread_nodes(const Order& order, const Scaled* matrix) const;
   std::vector<double> spread_motions(const Order& order, const Scaled* matrix) const;
-  LocalRows spread_sum(const Order& order, const Scaled* matrix) const;
+  SystemOutcome set_sum(System& system, const Order& order, const Scaled* matrix, const std::vector<int>& node) const;
   LocalRows spread_rows(PetscInt rows, const Scaled* matrix) const;
   std::vector<KeptTerm> spread_terms(const Order& order, std::span<const DistributedTerm> sum) const;
   Vector spread_vector(std::int64_t size, const Vector* vector) const;
+  static ScaledCells cells_of_sum(const std::vector<KeptTerm>& terms);
   LocalRows rows_of_sum(const std::vector<KeptTerm>& terms, const Vector& scale, const LocalRows& also) const;
   static LocalRows rows_of(const Scaled& matrix, Index first, Index count);
   std::string spread_text(std::int64_t letters, std::string text) const;
@@ -114,7 +137,8 @@ class Ranks {
   long iterations_ = 0;
   std::int64_t made_ = 0;
   std::map<std::int64_t, std::unique_ptr<System>> systems_;
-  std::map<std::int64_t, Sparse> kept_;  // rows x local: the rank's rows, as columns
+  std::map<std::int64_t, KeptRows> kept_;
+  std::map<std::int64_t, std::shared_ptr<const RankCells>> cells_;
   std::string failure_;
 };
 

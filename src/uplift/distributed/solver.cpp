@@ -119,7 +119,7 @@ class PetscSolver final : public DistributedSolver {
   Factorisation factorise(const Sparse& a) const override { return factorise_sum(a); }
   FactorCost predict(const Sparse& a, const std::vector<int>&) const override { return predict_sum(a); }
   SplitFactorisation factorise_split(const Sparse& a, const std::vector<int>& last) const override { return factorise_split_sum(a, last); }
-  std::shared_ptr<const MatrixHome> home() const override { return std::make_shared<const HomeOnRanks>(); }
+  std::shared_ptr<const MatrixHome> home() const override { return std::make_shared<const HomeOnRanks>(no_entries(settings_.options) && no_entries(settings_.of_statics)); }
   Factorisation factorise_sum(const SymmetricSum& a) const override {
     Vector scale;
     if (const int loose = find_scale(a, scale); loose >= 0) return singular_at(loose);
@@ -157,6 +157,8 @@ class PetscSolver final : public DistributedSolver {
             .failed_unknown = -1,
             .why = {}};
   }
+
+  static bool no_entries(const std::string& options) { return SolverOptions(options).need_no_entries(); }
 
   /// Multigrid alone makes use of the motions.
   std::unique_ptr<const LinearSolver> for_statics(const RigidMotions& motions) const override {

@@ -7,6 +7,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <initializer_list>
 #include <string_view>
 #include <utility>
 
@@ -30,6 +31,17 @@ bool SolverOptions::has(const char* name) const {
   return found == PETSC_TRUE;
 }
 
+bool SolverOptions::need_no_entries() const {
+  const auto is = [&](const char* name, std::initializer_list<std::string_view> values) {
+    char value[32] = "";
+    PetscBool found = PETSC_FALSE;
+    PetscOptionsGetString(options_, nullptr, name, value, sizeof value, &found);
+    return found == PETSC_FALSE || std::ranges::find(values, value) != values.end();
+  };
+  return (has("-ksp_type") || has("-pc_type")) && is("-ksp_type", {"cg"}) && is("-pc_type", {"jacobi", "none"}) &&
+         is("-pc_jacobi_type", {"diagonal"});
+}
+
 std::vector<std::string> SolverOptions::left() const {
   PetscInt count = 0;
   char **names = nullptr, **values = nullptr;
@@ -42,6 +54,7 @@ std::vector<std::string> SolverOptions::left() const {
 
 System::~System() {
   KSPDestroy(&solver_);
+  cells_.reset();
   VecDestroy(&given_);
   VecDestroy(&solved_);
   MatDestroy(&matrix_);
@@ -64,8 +77,8 @@ SystemOutcome System::agree(PetscErrorCode error, SystemOutcome mine) const {
   return mine;
 }
 
-SystemOutcome System::set(LocalRows local, PetscInt rows, const std::vector<int>& node) {
-  return agree(assemble(std::move(local), rows, node), {});
+SystemOutcome System::set(LocalRows local, PetscInt rows, const std::vector<int>& node, ScaledCells cells) {
+  return agree(assemble(std::move(local), rows, node, std::move(cells)), {});
 }
 
 namespace {
@@ -95,7 +108,7 @@ LocalRows take_others(LocalRows& rows, PetscInt first) {
 
 }  // namespace
 
-PetscErrorCode System::assemble(LocalRows local, PetscInt rows, const std::vector<int>& node) {
+PetscErrorCode System::assemble(LocalRows local, PetscInt rows, const std::vector<int>& node, ScaledCells cells) {
   PetscFunctionBeginUser;
   rows_ = rows, local_ = static_cast<PetscInt>(local.start.size()) - 1;
   int in_nodes = node.empty() ? 0 : 1;  // a rank without rows has no node
@@ -116,6 +129,10 @@ PetscErrorCode System::assemble(LocalRows local, PetscInt rows, const std::vecto
     PetscCall(MatCreateVecs(matrix_, &solved_, &given_));
   } else {
     for (Vec* vector : {&given_, &solved_}) PetscCall(VecCreateMPIWithArray(ranks_, 1, local_, rows, nullptr, vector));
+  }
+  if (cells.cells != nullptr) {
+    cells_ = std::make_unique<CellMatrix>(std::move(cells));
+    PetscCall(cells_->make(matrix_));
   }
   MatInfo info;
   PetscCall(MatGetInfo(matrix_, MAT_GLOBAL_SUM, &info));
@@ -199,6 +216,7 @@ PetscErrorCode System::analyse(SystemCost& cost) {
   MatInfo own;
   PetscCall(MatGetInfo(matrix_, MAT_LOCAL, &own));
   cost.bytes = own.nz_used * (sizeof(PetscScalar) + sizeof(PetscInt)) + vectors * sizeof(PetscScalar) * static_cast<double>(local_);
+  if (cells_ != nullptr) cost.bytes += cells_->bytes();
   if (factor_ == nullptr) PetscFunctionReturn(0);
   cost.bytes += (own.nz_used + local_) / 2 * (sizeof(PetscScalar) + 2 * sizeof(PetscInt));  // what MUMPS is given
   MatFactorInfo info;
@@ -220,7 +238,7 @@ PetscErrorCode System::choose(const SolverOptions& options, SystemOutcome& outco
   PetscReal weak_coupling = 0.04;  // of nodes, beside the geometric mean of both with themselves: left out of the graph of multigrid
   const bool method = options.has("-ksp_type"), conditioner = options.has("-pc_type");
   PetscCall(KSPCreate(ranks_, &solver_));
-  PetscCall(KSPSetOperators(solver_, matrix_, matrix_));
+  PetscCall(KSPSetOperators(solver_, matrix(), matrix()));
   PetscCall(KSPSetTolerances(solver_, 1e-12, PETSC_DEFAULT, PETSC_DEFAULT, most_iterations));
   PC pc = nullptr;
   PetscCall(KSPGetPC(solver_, &pc));
@@ -242,7 +260,7 @@ PetscErrorCode System::choose(const SolverOptions& options, SystemOutcome& outco
   if (cholesky == PETSC_TRUE)
     PetscCall(use_mumps(options));
   else
-    PetscCall(MatSetOption(matrix_, MAT_SPD, PETSC_TRUE));
+    PetscCall(MatSetOption(matrix(), MAT_SPD, PETSC_TRUE));
   block_ = alone == PETSC_TRUE;
   if (factor_ == nullptr && (cholesky == PETSC_TRUE || cg == PETSC_FALSE))
     outcome.why =

@@ -3,9 +3,11 @@
 
 #include <algorithm>
 #include <cstddef>
+#include <memory>
 #include <string>
 #include <vector>
 
+#include "uplift/distributed/cell_matrix.h"
 #include "uplift/distributed/node_blocks.h"
 
 namespace uplift {
@@ -50,6 +52,8 @@ class SolverOptions {
   SolverOptions(const SolverOptions&) = delete;
   SolverOptions& operator=(const SolverOptions&) = delete;
   bool has(const char* name) const;
+  /// Whether the method asks for products with the matrix and its diagonal alone: conjugate gradients with Jacobi's preconditioner or none.
+  bool need_no_entries() const;
   /// Those that nobody has asked for.
   std::vector<std::string> left() const;
   PetscOptions get() const { return options_; }
@@ -68,7 +72,8 @@ class System {
   System& operator=(const System&) = delete;
   /// The matrix; with a unit diagonal, so that a pivot or a residual has no unit. `rows`: of all ranks. `node`: of each row of this rank,
   /// for methods that treat the unknowns of a node together; empty: none does. Its numbers are not copied.
-  SystemOutcome set(LocalRows local, PetscInt rows, const std::vector<int>& node = {});
+  /// `cells`: a part of the matrix that has no entries, for methods that need none (all ranks have it, or none).
+  SystemOutcome set(LocalRows local, PetscInt rows, const std::vector<int>& node = {}, ScaledCells cells = {});
   /// The motions that deform it least, from which multigrid makes its coarse levels: the rank's rows, one column after another.
   SystemOutcome set_motions(const std::vector<double>& motions, PetscInt columns);
   /// Factorises it, or prepares the iterative method and tries it on one load. A matrix that is not positive definite is refused: by MUMPS
@@ -81,12 +86,12 @@ class System {
   /// x = A^-1 b: the rank's rows of all columns, one column after another. An iterative method may stop where the residual is the share
   /// `residual` of the load, and does where its own tolerance is reached.
   SystemOutcome solve(const double* b, double* x, PetscInt columns, double residual = 0);
-  Mat matrix() const { return matrix_; }
+  Mat matrix() const { return cells_ != nullptr ? cells_->get() : matrix_; }
   PetscInt iterations() const { return iterations_; }  // of the last solve
-  double nonzeros() const { return nonzeros_; }        // of the factor; of the matrix where there is none
+  double nonzeros() const { return nonzeros_; }        // of the factor; of the matrix where there is none, without cells
 
  private:
-  PetscErrorCode assemble(LocalRows local, PetscInt rows, const std::vector<int>& node);
+  PetscErrorCode assemble(LocalRows local, PetscInt rows, const std::vector<int>& node, ScaledCells cells);
   PetscErrorCode keep_motions(const std::vector<double>& motions, PetscInt columns);
   PetscErrorCode choose(const SolverOptions& options, SystemOutcome& outcome);
   PetscErrorCode analyse(SystemCost& cost);
@@ -105,7 +110,8 @@ class System {
   PetscInt rows_ = 0, local_ = 0, iterations_ = 0;
   NodeBlocks blocks_;         // of the matrix; local_ and rows_ are without the rows of the identity
   LocalRows among_, beyond_;  // entries between rows of this rank, columns from its first row on; all others. PETSc uses them
-  Mat matrix_ = nullptr, factor_ = nullptr;  // factor_: of MUMPS, PETSc's own; null without
+  Mat matrix_ = nullptr, factor_ = nullptr;  // matrix_: its entries. factor_: of MUMPS, PETSc's own; null without
+  std::unique_ptr<CellMatrix> cells_;        // with the entries; null: they are all
   Vec given_ = nullptr, solved_ = nullptr;   // on the caller's numbers
   KSP solver_ = nullptr;
   bool block_ = false;  // several columns at once

@@ -21,7 +21,8 @@ double distributed_bytes(const Model& model) {
   if (model.distributed == nullptr) return 0;
   for (const auto& matrix : {model.distributed->stiffness, model.distributed->mass, model.distributed->damping})
     if (matrix != nullptr) entries += matrix->entries().front();
-  return 12 * entries;
+  const auto& cells = model.distributed->cells;
+  return 12 * entries + (cells != nullptr ? cells->bytes().front() : 0);
 }
 
 /// C, Q and the last block of a split factor, and what the interface problem makes of C.

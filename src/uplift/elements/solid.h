@@ -54,6 +54,7 @@ class Solid : public Element {
   const SolidSection* continuum() const override { return &section_; }
   Cell cell() const override { return cell_; }
   int dimension() const { return dimension_; }
+  bool is_whole() const { return part_ == nullptr; }  // not filled in part
   double volume() const;  // m3; area times thickness for surface cells
 
   /// Integration points of the stiffness: their number, and where they are [m].

@@ -29,14 +29,37 @@ class DistributedMatrix {
   virtual const std::vector<double>& entries() const = 0;
 };
 
+/// Cells of one class: each of them adds the same small matrix to a sum, at rows of its own.
+struct EqualCells {
+  int unknowns = 0;       // of a cell
+  std::vector<int> rows;  // unknowns of the first cell, of the second one ...; -1: held
+};
+
+/// Classes of cells whose places the processes of a job keep, for any number of matrices, as long as this object lives.
+class DistributedCells {
+ public:
+  virtual ~DistributedCells() = default;
+  /// That each process keeps.
+  virtual const std::vector<double>& bytes() const = 0;
+};
+
+/// What cells add to a matrix.
+struct EqualCellPart {
+  std::shared_ptr<const DistributedCells> cells;  // null: nothing
+  std::vector<Matrix> local;                      // of each class, unknowns x unknowns, symmetric; empty: zero
+};
+
 /// The processes of a job as a place for matrices.
 class MatrixHome {
  public:
   virtual ~MatrixHome() = default;
-  /// The matrix whose columns `make(first, count)` returns, complete and rows x count. It is called once for each process, and what it has
-  /// returned goes there before it is called again. `diagonal`: of the whole matrix.
+  /// Whether a matrix may be kept as the sum of equal cells and a rest.
+  virtual bool takes_cells() const = 0;
+  virtual std::shared_ptr<const DistributedCells> keep_cells(Index rows, const std::vector<EqualCells>& classes) const = 0;
+  /// The matrix whose columns `make(first, count)` returns, complete and rows x count, but for what cells add to it. `make` is called once
+  /// for each process, and what it has returned goes there before it is called again. `diagonal`: of the whole matrix.
   using MakeColumns = std::function<Sparse(Index first, Index count)>;
-  virtual std::shared_ptr<const DistributedMatrix> keep(Vector diagonal, const MakeColumns& make) const = 0;
+  virtual std::shared_ptr<const DistributedMatrix> keep(Vector diagonal, const MakeColumns& make, const EqualCellPart& part) const = 0;
 };
 
 /// A symmetric matrix to be looked at: the upper triangle of what stands here, and terms whose rows are distributed; none as a rule.

@@ -5,6 +5,7 @@
 
 #include "uplift/model/builder.h"
 #include "uplift/model/damping.h"
+#include "uplift/model/equal_cells.h"
 #include "uplift/model/matrix_sum.h"
 
 namespace uplift {
@@ -29,12 +30,30 @@ void ModelBuilder::assemble(Model& model) const {
   add_rayleigh(model, sum(&Local::damping).reduced(model.expansion), model.damping);
 }
 
-/// The columns that one process keeps are made after those of another one: never more of a matrix is here.
+/// The columns that one process keeps are made after those of another one: never more of a matrix is here. Of equal cells there are no
+/// columns, but one matrix for all of them.
 void ModelBuilder::distribute(Model& model) const {
+  EqualElements equal;
+  std::shared_ptr<const DistributedCells> cells;
+  if (home_->takes_cells()) {
+    equal = find_equal_elements(space_, nodes_, elements_, model.expansion);
+    cells = home_->keep_cells(model.free(), equal.cells);
+  }
   const auto keep = [&](Matrix* Local::*wanted) {
-    const ElementSum elements = sum(wanted);
-    const Vector diagonal = elements.diagonal(model.expansion);
-    return home_->keep(diagonal, [&](Index first, Index count) { return elements.columns(model.expansion, diagonal, first, count); });
+    const ElementSum elements(space_, elements_, wanted, equal.among);
+    Vector diagonal = elements.diagonal(model.expansion);
+    EqualCellPart part{cells, {}};
+    Matrix stiffness;
+    for (std::size_t k = 0; k < equal.cells.size(); ++k) {
+      Matrix& local = part.local.emplace_back();
+      ElementSum::form(*elements_[equal.classes[k].front()], wanted, local, stiffness);
+      if (local.isZero(0)) local.resize(0, 0);
+      const std::vector<int>& rows = equal.cells[k].rows;
+      for (std::size_t i = 0; i < rows.size() && local.size() > 0; ++i)
+        if (const auto own = static_cast<Index>(i) % local.rows(); rows[i] >= 0) diagonal[rows[i]] += local(own, own);
+    }
+    return home_->keep(
+        diagonal, [&](Index first, Index count) { return elements.columns(model.expansion, diagonal, first, count); }, part);
   };
   const auto as_sparse = [](const Vector& diagonal) {
     Sparse matrix(diagonal.size(), diagonal.size());
@@ -45,10 +64,11 @@ void ModelBuilder::distribute(Model& model) const {
     return matrix;
   };
   auto made = std::make_shared<DistributedMatrices>();
+  made->cells = cells;
   made->stiffness = keep(&Local::stiffness);
   made->mass = keep(&Local::mass);
   made->damping = keep(&Local::damping);
-  if (std::ranges::all_of(made->damping->entries(), [](double entries) { return entries == 0; })) made->damping.reset();
+  if (made->damping->diagonal().isZero(0)) made->damping.reset();
   as_sparse(made->stiffness->diagonal()).swap(model.stiffness);
   as_sparse(made->mass->diagonal()).swap(model.mass);
   model.damping.resize(model.free(), model.free());

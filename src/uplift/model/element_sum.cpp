@@ -85,20 +85,25 @@ int number_groups(const Matrix& block, std::vector<int>& group) {
 void ElementSum::each_element(const TakeElement& take, const Wanted& is_wanted) const {
   Matrix local, stiffness;
   std::vector<int> unknowns;
-  for (const auto& element : elements_) {
-    const int each = element->unknowns_per_node();
+  for (std::size_t e = 0; e < elements_.size(); ++e) {
+    if (!left_out_.empty() && left_out_[e] != 0) continue;
+    const Element& element = *elements_[e];
     unknowns.clear();
-    for (const int node : element->nodes())
-      for (int i = 0; i < each; ++i) unknowns.push_back(space_.unknowns() * node + i);
+    for (const int node : element.nodes())
+      for (int i = 0; i < element.unknowns_per_node(); ++i) unknowns.push_back(space_.unknowns() * node + i);
     if (is_wanted && !is_wanted(unknowns)) continue;
-    const bool proportional = wanted_ == &Local::damping && element->beta != 0;
-    Local one;
-    one.*wanted_ = &local;
-    if (proportional) one.stiffness = &stiffness;
-    element->form(one);
-    if (proportional) local += element->beta * stiffness;
+    form(element, wanted_, local, stiffness);
     if (!local.isZero(0)) take(unknowns, local);
   }
+}
+
+void ElementSum::form(const Element& element, Matrix* Local::*wanted, Matrix& local, Matrix& stiffness) {
+  const bool proportional = wanted == &Local::damping && element.beta != 0;
+  Local one;
+  one.*wanted = &local;
+  if (proportional) one.stiffness = &stiffness;
+  element.form(one);
+  if (proportional) local += element.beta * stiffness;
 }
 
 void ElementSum::each_group(const Sparse& expansion, Columns columns, const TakeGroup& take) const {

@@ -2,6 +2,7 @@
 #include <functional>
 #include <memory>
 #include <span>
+#include <utility>
 #include <vector>
 
 #include "uplift/elements/element.h"
@@ -13,8 +14,12 @@ namespace uplift {
 class ElementSum {
  public:
   /// `wanted`: which matrix; damping: with what the elements' own factors beta make of their stiffness. The elements must stay alive.
-  ElementSum(Space space, const std::vector<std::unique_ptr<const Element>>& elements, Matrix* Local::*wanted)
-      : space_(space), elements_(elements), wanted_(wanted) {}
+  /// `left_out`: of each element, whether it is no part of the sum; empty: none is.
+  ElementSum(Space space, const std::vector<std::unique_ptr<const Element>>& elements, Matrix* Local::*wanted,
+             std::vector<char> left_out = {})
+      : space_(space), elements_(elements), wanted_(wanted), left_out_(std::move(left_out)) {}
+  /// The matrix of one element; `stiffness` is room.
+  static void form(const Element& element, Matrix* Local::*wanted, Matrix& local, Matrix& stiffness);
   /// A X, full unknowns.
   Matrix times(const Matrix& x) const;
   /// Diagonal of T^T A T with the sizes of all factors: zero where no element reaches, whatever cancels elsewhere. `expansion`: T^T.
@@ -46,6 +51,7 @@ class ElementSum {
   Space space_;
   const std::vector<std::unique_ptr<const Element>>& elements_;
   Matrix* Local::*wanted_;
+  std::vector<char> left_out_;
 };
 
 }  // namespace uplift

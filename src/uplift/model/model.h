@@ -104,6 +104,7 @@ struct Assembly {
 /// The matrices of a model whose rows are distributed. Rayleigh damping is no matrix of its own: C = damping + alpha M + beta K.
 struct DistributedMatrices {
   std::shared_ptr<const DistributedMatrix> stiffness, mass, damping;  // damping: of dashpots and elements' own factors; null without any
+  std::shared_ptr<const DistributedCells> cells;                      // that add to them; null without
 };
 
 /// What is built once, checked once and never changes; shared by every thread.
