@@ -203,7 +203,7 @@ TEST(Distribution, RowsOfACutInterfaceInSpace) {
   compare(cut(), box(uniform_lines(-4, 4, 8), uniform_lines(-2, 2, 4), uniform_lines(0, 6, 6)));
 }
 
-/// Two layers, of cells of two sizes and wedges, on a base that is held; a raft and a block on them; sides that roll.
+/// Two layers, of cells of two sizes, on a base that is held; a raft and a block on them, of too few cells for a class; a side that rolls.
 const std::string layers = R"([mesh.soil_box.soil]
 width = 16
 length = 12
@@ -218,7 +218,7 @@ size = 2
 width = 4
 length = 4
 height = 1
-size = 1
+size = 2
 [mesh.soil_box.block]
 width = 4
 length = 4

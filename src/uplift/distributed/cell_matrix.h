@@ -26,7 +26,9 @@ class CellMatrix {
   PetscErrorCode make(Mat rest);
   Mat get() const { return matrix_; }
   /// Numbers that it keeps on this rank beside those of the rest.
-  double bytes() const { return cells_.cells->bytes() + sizeof(double) * static_cast<double>(cells_.scale.size() + from_.size() + to_.size()); }
+  double bytes() const {
+    return cells_.cells->bytes() + sizeof(double) * static_cast<double>(cells_.scale.size() + from_.size() + to_.size());
+  }
   double operations() const { return cells_.cells->operations(); }
 
  private:

@@ -45,8 +45,9 @@ Ranks& Ranks::all() {
 }
 
 void Ranks::tell(const Order& order) {
-  std::int64_t numbers[] = {static_cast<std::int64_t>(order.what),      order.system, order.rows, order.columns, order.letters, order.terms,
-                            std::bit_cast<std::int64_t>(order.residual),  order.cells};
+  std::int64_t numbers[] = {
+      static_cast<std::int64_t>(order.what),       order.system, order.rows, order.columns, order.letters, order.terms,
+      std::bit_cast<std::int64_t>(order.residual), order.cells};
   MPI_Request sent = MPI_REQUEST_NULL;
   MPI_Ibcast(numbers, 8, MPI_INT64_T, 0, ranks_, &sent);
   MPI_Wait(&sent, MPI_STATUS_IGNORE);
@@ -64,8 +65,8 @@ Ranks::Order Ranks::hear() const {
     if (here != 0) break;
     if (Clock::now() - start > std::chrono::milliseconds(2)) std::this_thread::sleep_for(std::chrono::microseconds(100));
   }
-  return {static_cast<What>(numbers[0]), numbers[1], numbers[2], numbers[3], numbers[4], numbers[5], std::bit_cast<double>(numbers[6]),
-          numbers[7]};
+  return {static_cast<What>(numbers[0]),     numbers[1], numbers[2], numbers[3], numbers[4], numbers[5],
+          std::bit_cast<double>(numbers[6]), numbers[7]};
 }
 
 void Ranks::serve() {

@@ -119,7 +119,9 @@ class PetscSolver final : public DistributedSolver {
   Factorisation factorise(const Sparse& a) const override { return factorise_sum(a); }
   FactorCost predict(const Sparse& a, const std::vector<int>&) const override { return predict_sum(a); }
   SplitFactorisation factorise_split(const Sparse& a, const std::vector<int>& last) const override { return factorise_split_sum(a, last); }
-  std::shared_ptr<const MatrixHome> home() const override { return std::make_shared<const HomeOnRanks>(no_entries(settings_.options) && no_entries(settings_.of_statics)); }
+  std::shared_ptr<const MatrixHome> home() const override {
+    return std::make_shared<const HomeOnRanks>(no_entries(settings_.options) && no_entries(settings_.of_statics));
+  }
   Factorisation factorise_sum(const SymmetricSum& a) const override {
     Vector scale;
     if (const int loose = find_scale(a, scale); loose >= 0) return singular_at(loose);

@@ -55,7 +55,7 @@ class Solid : public Element {
   Cell cell() const override { return cell_; }
   int dimension() const { return dimension_; }
   bool is_whole() const { return part_ == nullptr; }  // not filled in part
-  double volume() const;  // m3; area times thickness for surface cells
+  double volume() const;                              // m3; area times thickness for surface cells
 
   /// Integration points of the stiffness: their number, and where they are [m].
   int num_points() const;
