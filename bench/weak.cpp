@@ -1,8 +1,8 @@
 // Weak scaling of what a step takes on several ranks: a uniform block of soil of cubes of 1 m (V_s = 300 m/s, 8-node bricks with
 // incompatible modes, held below), of which every rank has as many layers, for steps of 5 ms: the product with K + 4 M / dt2, and its
 // solution by conjugate gradients with Jacobi's preconditioner to 1e-12; once with the entries of the matrix, once cell by cell with the
-// matrix of one cube. Every number of ranks 1, 2, 4, ... up to those of the job is measured by itself. GB/s: of the entries, 12 bytes each.
-// Usage: mpirun -n RANKS bench_weak [unknowns of a rank, default 100000]
+// matrix of one cube. Every number of ranks 1, 2, 4, ... up to those of the job is measured by itself. GB/s: of the entries, 12 bytes each;
+// Gflop/s: two for an entry of the matrix or of a cube's. Usage: mpirun -n RANKS bench_weak [unknowns of a rank, default 100000]
 #include <fmt/format.h>
 #include <sys/resource.h>
 
@@ -116,7 +116,7 @@ double now() {
 }
 
 struct Figures {
-  double unknowns = 0, entries = 0, product = 0, solve = 0, iterations = 0, memory = 0;  // s, s, B of the largest rank
+  double unknowns = 0, entries = 0, operations = 0, product = 0, solve = 0, iterations = 0, memory = 0;  // s, s, B of the largest rank
 };
 
 double most_of(double value, MPI_Comm ranks) {
@@ -157,6 +157,7 @@ Figures measure(MPI_Comm ranks, int layers_of_a_rank, bool by_cells) {
   if (outcome.ok()) outcome = system.prepare(SolverOptions("-ksp_type cg -pc_type jacobi"));
   Figures figures;
   figures.unknowns = unknowns, figures.entries = system.nonzeros();
+  figures.operations = 2 * (by_cells ? 24.0 * 24 * across * across * block.layers : figures.entries);
   if (!outcome.ok()) return figures;
   std::vector<double> load(static_cast<std::size_t>(unknowns / count)), solution(load.size());
   for (std::size_t i = 0; i < load.size(); ++i) load[i] = std::sin(1.618 * static_cast<double>(i % 1000) * static_cast<double>(i % 1000));
@@ -184,8 +185,8 @@ void wait_for_all() {
 
 void print_figures(const Petsc& petsc, int layers) {
   if (petsc.rank() == 0)
-    fmt::print("{:>6} {:>8} {:>10} {:>12} {:>11} {:>9} {:>11} {:>9} {:>11} {:>12}\n", "ranks", "by", "unknowns", "product ms", "efficiency",
-               "GB/s", "CG s", "CG its", "efficiency", "MB per rank");
+    fmt::print("{:>6} {:>8} {:>10} {:>12} {:>11} {:>9} {:>11} {:>9} {:>11} {:>9} {:>12}\n", "ranks", "by", "unknowns", "product ms",
+               "efficiency", "GB/s", "CG s", "CG its", "efficiency", "Gflop/s", "MB per rank");
   Figures one[2];
   for (int count = 1;; count = std::min(2 * count, petsc.ranks())) {
     MPI_Comm some = MPI_COMM_NULL;
@@ -197,9 +198,10 @@ void print_figures(const Petsc& petsc, int layers) {
       if (count == 1) alone = it;
       const double per_iteration = it.solve / it.iterations, first = alone.solve / alone.iterations;
       if (petsc.rank() == 0)
-        fmt::print("{:6} {:>8} {:10.0f} {:12.3f} {:10.0f}% {:9.1f} {:11.3f} {:9.0f} {:10.0f}% {:12.0f}\n", count,
+        fmt::print("{:6} {:>8} {:10.0f} {:12.3f} {:10.0f}% {:9.1f} {:11.3f} {:9.0f} {:10.0f}% {:9.1f} {:12.0f}\n", count,
                    by_cells ? "cells" : "entries", it.unknowns, 1e3 * it.product, 100 * alone.product / it.product,
-                   12e-9 * it.entries / it.product, it.solve, it.iterations, 100 * first / per_iteration, 1e-6 * it.memory);
+                   12e-9 * it.entries / it.product, it.solve, it.iterations, 100 * first / per_iteration, 1e-9 * it.operations / it.product,
+                   1e-6 * it.memory);
       std::fflush(stdout);
     }
     if (some != MPI_COMM_NULL) MPI_Comm_free(&some);

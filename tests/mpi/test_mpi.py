@@ -276,11 +276,11 @@ class Solver(MpiTest):
 
     def test_weak_scaling_table(self):
         lines = self.mpi(2, 5000, name="bench_weak").stdout.splitlines()
-        self.assertEqual(len(lines), 3)
-        one, two = ([float(word.rstrip("%")) for word in line.split()] for line in lines[1:])
-        self.assertEqual((one[0], two[0]), (1, 2))
-        self.assertEqual(two[1], 2 * one[1])  # unknowns
+        self.assertEqual([line.split()[:2] for line in lines[1:]], [["1", "cells"], ["1", "entries"], ["2", "cells"], ["2", "entries"]])
+        cells_of_one, one, cells_of_two, two = ([float(word.rstrip("%")) for word in line.split()[2:]] for line in lines[1:])
+        self.assertEqual(two[0], 2 * one[0])  # unknowns
         self.assertLessEqual(abs(two[6] / one[6] - 1), 0.2)  # iterations: the wave crosses a few cubes in a step, not the block
+        self.assertEqual((cells_of_one[6], cells_of_two[6]), (one[6], two[6]))
 
 
 class Queue(MpiTest):
@@ -304,7 +304,7 @@ class Queue(MpiTest):
         self.assertIn("JobState=COMPLETED", slurm.said("scontrol", "show", "job", job), said)
         self.uplift("run", "serial", "-q", "-o", "out/serial")
         self.assert_same(self.summary("out/serial"), self.summary("out/tower"))
-        self.assertEqual([line.split()[0] for line in (self.folder / "table").read_text().splitlines()], ["ranks", "1", "2"])
+        self.assertEqual([line.split()[0] for line in (self.folder / "table").read_text().splitlines()], ["ranks", "1", "1", "2", "2"])
 
 
 class Check(MpiTest):
