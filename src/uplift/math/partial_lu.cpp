@@ -14,12 +14,12 @@ void LuInPlace::size(Index most) {
 bool LuInPlace::factorise(Index n) {
   order_ = n;
   if (n == 0) return true;
-  if (!matrix_.topLeftCorner(n, n).allFinite()) return false;
   int count = 0;
   Eigen::internal::partial_lu_impl<double, Eigen::ColMajor, int>::blocked_lu(n, n, matrix_.data(), matrix_.outerStride(), swaps_.data(),
                                                                              count);
   const auto pivots = matrix_.diagonal().head(n).cwiseAbs();
-  return pivots.minCoeff() > 1e-14 * pivots.maxCoeff();
+  // whatever is not finite in the matrix reaches a pivot
+  return pivots.allFinite() && pivots.minCoeff() > 1e-14 * pivots.maxCoeff();
 }
 
 void LuInPlace::solve(double* x) const {

@@ -63,6 +63,12 @@ void evaluate(const InterfaceProblem& problem, const AugmentedForce& augmented, 
   } else {
     small::affine(model.factor, problem.free_opening.data(), solution.z.data(), solution.opening.data());
   }
+  evaluate_laws(problem, augmented, with_slope, work, solution);
+}
+
+void evaluate_laws(const InterfaceProblem& problem, const AugmentedForce& augmented, bool with_slope, NewtonWork& work,
+                   InterfaceSolution& solution) {
+  const ContactModel& model = *problem.model;
   for (std::size_t b = 0; b < model.blocks.size(); ++b) {
     const Block& block = model.blocks[b];
     const int first_slope = work.first_slope[b];

@@ -8,6 +8,7 @@
 
 #include "uplift/contact/newton/fused.h"
 #include "uplift/contact/newton/many.h"
+#include "uplift/contact/newton/row_newton.h"
 #include "uplift/contact/point_rows.h"
 #include "uplift/math/small.h"
 
@@ -417,6 +418,19 @@ Outcome Newton<R>::solve(int done) {
   return outcome;
 }
 
+/// Many coordinates: by rows first where that suits.
+Outcome solve_many(const InterfaceProblem& problem, const AugmentedForce& augmented, const NewtonOptions& options, NewtonWork& work,
+                   InterfaceSolution& solution) {
+  int spent = 0, done = 0;
+  if (augmented.multiplier == nullptr && RowNewton::suits(*problem.model)) {
+    if (work.rows == nullptr) work.rows = std::make_unique<RowNewton>();
+    if (static_cast<RowNewton&>(*work.rows).solve(problem, options.tolerance, work, solution, spent)) done = spent;
+  }
+  Outcome outcome = Newton<0>(problem, augmented, options, work, solution).solve(done);
+  outcome.iterations += spent - done;
+  return outcome;
+}
+
 /// `done`: iterations that have led to the guess in solution.z.
 Outcome solve_in_general(const InterfaceProblem& problem, const AugmentedForce& augmented, const NewtonOptions& options, int done,
                          NewtonWork& work, InterfaceSolution& solution) {
@@ -430,7 +444,7 @@ Outcome solve_in_general(const InterfaceProblem& problem, const AugmentedForce& 
     case 6:
       return Newton<6>(problem, augmented, options, work, solution).solve(done);
     default:
-      return Newton<0>(problem, augmented, options, work, solution).solve(done);
+      return solve_many(problem, augmented, options, work, solution);
   }
 }
 

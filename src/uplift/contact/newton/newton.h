@@ -50,6 +50,7 @@ struct NewtonWork final : MethodWork {
   bool follows = false;  // the next step may be guessed from this one: slope, hessian and the solution's end_traction are converged
   bool bent = false;     // then: some law bent in this one, so that slope and hessian are not those of the next
   std::unique_ptr<MethodWork> direction_of_many;  // more than twelve coordinates
+  std::unique_ptr<MethodWork> rows;               // newton/row_newton.h, where it suits
 };
 
 /// Iterations after which the search turns from the potential to the residual, and round-off counts as converged.
@@ -66,5 +67,7 @@ void size_newton(const InterfaceProblem&, NewtonWork&, InterfaceSolution&);
 
 /// Forces, and slopes when wanted, at solution.z: fills the results of the path and the slope of the work space, all of the right size.
 void evaluate(const InterfaceProblem&, const AugmentedForce&, bool with_slope, NewtonWork&, InterfaceSolution&);
+/// The same at solution.opening.
+void evaluate_laws(const InterfaceProblem&, const AugmentedForce&, bool with_slope, NewtonWork&, InterfaceSolution&);
 
 }  // namespace uplift

@@ -1,0 +1,231 @@
+#include "uplift/contact/newton/row_newton.h"
+
+#include <algorithm>
+#include <cmath>
+
+#include "uplift/contact/point_rows.h"
+#include "uplift/math/small.h"
+
+namespace uplift {
+namespace {
+
+constexpr int most_iterations = 30, patience = 12;
+constexpr double worth_a_factor = 4;  // iterations of a chord
+constexpr double of_change = 8;       // a chord leaves about so many times the change of the slopes
+constexpr double most_contraction = 0.5;
+
+}  // namespace
+
+bool RowNewton::suits(const ContactModel& model) {
+  if (!PointRows::suits(model) || model.rows() > most_rows || model.solver != InterfaceSolver::automatic) return false;
+  return model.shift.size() == 0 && std::ranges::all_of(model.blocks, [](const Block& block) { return block.law != nullptr; });
+}
+
+void RowNewton::begin(const InterfaceProblem& problem) {
+  problem_ = &problem;
+  const ContactModel& model = *problem.model;
+  if (seen_.is(model)) return;
+  seen_.take(model);
+  const Index rows = model.rows();
+  compliance_.resize(rows, rows);
+  compliance_.noalias() = model.factor * model.factor.transpose();
+  lu_.size(rows);
+  valid_ = slow_ = false;
+  from_.resize(0);
+  for (Vector* v : {&force_, &opening_, &rest_, &moved_, &origin_force_, &origin_opening_, &opening_step_, &force_step_, &part_, &sum_})
+    v->setZero(rows);
+  rows_.clear();
+  places_.clear();
+  Index slope = 0;
+  for (const Block& block : model.blocks) {
+    for (int i = 0; i < block.batch.points; ++i)
+      places_.push_back({block.first + i, block.batch.points, slope + i, block.batch.components});
+    slope += block.slopes();
+  }
+}
+
+/// Largest change of a point's slopes since the factor was made, as part of what its compliance and the slopes leave together.
+double RowNewton::change_of_slopes(const Vector& slopes) const {
+  double worst = 0;
+  for (const Place& at : places_) {
+    double change = 0, size = 0, flexible = 0;
+    for (int k = 0; k < at.components * at.components; ++k) {
+      const double now = slopes[at.slope + k * at.stride], then = slopes_[at.slope + k * at.stride];
+      change = std::max(change, std::abs(now - then));
+      size = std::max(size, std::abs(then));
+    }
+    if (change == 0) continue;
+    for (int c = 0; c < at.components; ++c) flexible = std::max(flexible, compliance_(at.first + c * at.stride, at.first + c * at.stride));
+    worst = std::max(worst, change * flexible / (1 + size * flexible));
+  }
+  return worst;
+}
+
+/// I + F k in the rows that k does not vanish in.
+bool RowNewton::factorise(const Vector& slopes) {
+  slopes_ = slopes;
+  valid_ = false;
+  if (!slopes.allFinite()) return false;
+  const Index all = compliance_.rows();
+  std::vector<const Place*> place(static_cast<std::size_t>(all), nullptr);
+  std::vector<int> component(static_cast<std::size_t>(all), 0);
+  for (const Place& at : places_) {
+    bool any = false;
+    for (int k = 0; k < at.components * at.components; ++k) any = any || slopes[at.slope + k * at.stride] != 0;
+    for (int c = 0; any && c < at.components; ++c) {
+      const std::size_t row = static_cast<std::size_t>(at.first + c * at.stride);
+      place[row] = &at;
+      component[row] = c;
+    }
+  }
+  rows_.clear();
+  for (Index row = 0; row < all; ++row)
+    if (place[static_cast<std::size_t>(row)] != nullptr) rows_.push_back(row);
+  const Index n = static_cast<Index>(rows_.size());
+  double* sum = sum_.data();
+  for (Index j = 0; j < n; ++j) {
+    const Place& at = *place[static_cast<std::size_t>(rows_[static_cast<std::size_t>(j)])];
+    const int c = component[static_cast<std::size_t>(rows_[static_cast<std::size_t>(j)])];
+    sum_.setZero();
+    for (int a = 0; a < at.components; ++a)
+      if (const double k = slopes[at.slope + (a * at.components + c) * at.stride]; k != 0)
+        small::add(all, k, compliance_.col(at.first + a * at.stride).data(), sum);
+    double* column = lu_.column(j);
+    if (n == all)
+      std::copy_n(sum, n, column);
+    else
+      for (Index i = 0; i < n; ++i) column[i] = sum[rows_[static_cast<std::size_t>(i)]];
+    column[j] += 1;
+  }
+  valid_ = lu_.factorise(n);
+  return valid_;
+}
+
+/// Newton's direction in openings and forces, or that of the chord.
+bool RowNewton::direction(const Vector& slopes, InterfaceSystems& counts) {
+  const double contraction = valid_ && !slow_ ? of_change * change_of_slopes(slopes) : 1;
+  const bool keeps = contraction < most_contraction && std::log(std::max(aim_ / size_, 1e-300)) > worth_a_factor * std::log(contraction);
+  ++(keeps ? counts.iterated : counts.factored);
+  if (!keeps && !factorise(slopes)) return false;
+  const Index n = static_cast<Index>(rows_.size());
+  for (Index i = 0; i < n; ++i) part_[i] = -moved_[rows_[static_cast<std::size_t>(i)]];
+  lu_.solve(part_.data());
+  sum_.setZero();
+  for (Index i = 0; i < n; ++i) sum_[rows_[static_cast<std::size_t>(i)]] = part_[i];
+  for (const Place& at : places_) {
+    double step[most_components];
+    for (int c = 0; c < at.components; ++c) step[c] = sum_[at.first + c * at.stride];
+    for (int a = 0; a < at.components; ++a) {
+      double pull = 0;
+      for (int c = 0; c < at.components; ++c) pull += slopes_[at.slope + (a * at.components + c) * at.stride] * step[c];
+      sum_[at.first + a * at.stride] = pull;
+    }
+  }
+  force_step_ = rest_ + sum_;
+  opening_step_.noalias() = compliance_ * force_step_;
+  opening_step_ *= -1;
+  return opening_step_.allFinite();
+}
+
+/// s, F s and |G| where the laws have been evaluated.
+void RowNewton::measure() {
+  moved_.noalias() = compliance_ * rest_;
+  size_ = std::sqrt(std::max(0.0, rest_.dot(moved_)));
+}
+
+/// Goes to origin + alpha step: forces, openings, laws and s.
+void RowNewton::look(double alpha, NewtonWork& work, InterfaceSolution& solution) {
+  force_ = origin_force_ + alpha * force_step_;
+  opening_ = origin_opening_ + alpha * opening_step_;
+  solution.opening = opening_;
+  evaluate_laws(*problem_, {}, true, work, solution);
+  rest_ = solution.force - force_;
+}
+
+/// As in newton.cpp, with G . d = s . dg.
+void RowNewton::search_line(double start_slope, double end_slope, NewtonWork& work, InterfaceSolution& solution) {
+  double low = 0, high = 1, low_slope = start_slope, high_slope = end_slope;
+  for (int trial = 0; trial < 30; ++trial) {
+    double alpha = 0.5 * (low + high);
+    if (high_slope > 0 && low_slope < 0) {  // regula falsi, kept away from the ends
+      const double secant = low - low_slope * (high - low) / (high_slope - low_slope);
+      alpha = std::clamp(secant, low + 0.1 * (high - low), high - 0.1 * (high - low));
+    }
+    look(alpha, work, solution);
+    const double slope = rest_.dot(opening_step_);
+    if (std::abs(slope) <= 0.5 * std::abs(start_slope)) return;
+    (slope < 0 ? low : high) = alpha;
+    (slope < 0 ? low_slope : high_slope) = slope;
+  }
+}
+
+/// Iterations until s is round-off. `linearised`: s belongs to the tangents of the laws at another opening.
+bool RowNewton::arrive(double tolerance, int most, bool linearised, NewtonWork& work, InterfaceSolution& solution, int& iterations) {
+  measure();
+  for (int k = 0; k < most; ++k) {
+    if (!std::isfinite(size_)) return false;
+    const double reference = std::sqrt(std::max(0.0, force_.dot(problem_->free_opening - opening_)));  // |z|
+    if (!(k == 0 && linearised) && size_ <= tolerance * reference) return true;
+    const double before = size_;
+    aim_ = tolerance * reference;
+    if (!direction(work.slope, solution.systems)) return false;
+    ++iterations;
+    const double start_slope = rest_.dot(opening_step_);
+    origin_force_ = force_;
+    origin_opening_ = opening_;
+    look(1, work, solution);
+    if (k > 0 || !linearised) {
+      const double end_slope = rest_.dot(opening_step_);
+      if (k < patience && start_slope < 0 && end_slope > 0.5 * std::abs(start_slope)) search_line(start_slope, end_slope, work, solution);
+    }
+    measure();
+    slow_ = size_ > 0.3 * before;
+    if (size_ <= 1e-10 * reference && slow_) return true;  // round-off
+  }
+  return false;
+}
+
+/// Where the points come to when they move on as in the last step, with the tangents of the laws there.
+void RowNewton::guess(NewtonWork& work, InterfaceSolution& solution) {
+  const InterfaceProblem& problem = *problem_;
+  if (from_.size() > 0 && (end_ - problem.from).cwiseAbs().maxCoeff() <= 1e-8 * (end_ - from_).cwiseAbs().maxCoeff())
+    solution.opening = 2 * problem.from - from_;
+  else
+    solution.opening = problem.free_opening + problem.model->factor * solution.z;
+  opening_ = solution.opening;
+  evaluate_laws(problem, {}, true, work, solution);
+  force_ = solution.force;
+  origin_opening_.noalias() = compliance_ * force_;
+  origin_opening_ = problem.free_opening - origin_opening_;
+  opening_step_ = origin_opening_ - opening_;
+  for (const Place& at : places_)
+    for (int a = 0; a < at.components; ++a) {
+      double pull = 0;
+      for (int c = 0; c < at.components; ++c)
+        pull += work.slope[at.slope + (a * at.components + c) * at.stride] * opening_step_[at.first + c * at.stride];
+      rest_[at.first + a * at.stride] = pull;
+    }
+  opening_ = origin_opening_;
+}
+
+bool RowNewton::leave(bool arrived, InterfaceSolution& solution) {
+  if (arrived) {
+    solution.z.noalias() = -(problem_->model->factor.transpose() * solution.force);
+    from_ = problem_->from;
+    end_ = opening_;
+  } else {
+    solution.z = kept_;
+    from_.resize(0);
+  }
+  return arrived;
+}
+
+bool RowNewton::solve(const InterfaceProblem& problem, double tolerance, NewtonWork& work, InterfaceSolution& solution, int& iterations) {
+  begin(problem);
+  kept_ = solution.z;
+  if (!problem.free_opening.allFinite()) return false;
+  guess(work, solution);
+  return leave(arrive(0.1 * tolerance, most_iterations, true, work, solution, iterations), solution);
+}
+
+}  // namespace uplift

@@ -1,0 +1,59 @@
+#pragma once
+#include <vector>
+
+#include "uplift/contact/newton/newton.h"
+#include "uplift/math/partial_lu.h"
+
+namespace uplift {
+
+/// Newton's method for laws on some hundred independent rows, in the openings g and the forces P of the rows instead of the coordinates z:
+///     g = free opening - F P always,        s = p(g) - P, zero at the solution        F = C C^T
+///     (I + F k) dg = -F s        dP = s + k dg
+/// Openings and forces are changed by one product with F each, the laws give p and k, and s has only entries where a law bends on its way.
+/// G = C^T s of Newton's method in z (newton.h), so that |G|^2 = s . F s, and G . d = s . dg: the line search is the same.
+///
+/// The matrix has the rows of points whose force depends on their opening (the others are open), and its factor is kept, over iterations
+/// and steps, while no slope has left that of the factor by much: the iteration is then that of a chord. It begins where the points come to
+/// when they move on as in the last step. It is no method of its own: where it does not arrive soon, the general method starts anew.
+class RowNewton final : public MethodWork {
+ public:
+  /// Beyond so many rows iterations of Krylov's kind are faster than factors (PointRows).
+  static constexpr Index most_rows = 400;
+  static bool suits(const ContactModel&);
+
+  /// Solves from the guess in solution.z, or from the last step; `iterations` counts. Leaves z, forces and slopes at the solution; false,
+  /// with the guess in its place, where it does not arrive.
+  bool solve(const InterfaceProblem&, double tolerance, NewtonWork&, InterfaceSolution&, int& iterations);
+
+ private:
+  struct Place {                             // of a point
+    Index first = 0, stride = 0, slope = 0;  // first row, between rows; first slope, those of (a, c) (a * components + c) * stride on
+    int components = 1;
+  };
+  void begin(const InterfaceProblem&);
+  void guess(NewtonWork&, InterfaceSolution&);
+  double change_of_slopes(const Vector& slopes) const;
+  bool factorise(const Vector& slopes);
+  bool direction(const Vector& slopes, InterfaceSystems& counts);
+  void look(double alpha, NewtonWork&, InterfaceSolution&);
+  void measure();
+  void search_line(double start_slope, double end_slope, NewtonWork&, InterfaceSolution&);
+  bool arrive(double tolerance, int most, bool linearised, NewtonWork&, InterfaceSolution&, int& iterations);
+  bool leave(bool arrived, InterfaceSolution&);
+
+  const InterfaceProblem* problem_ = nullptr;
+  SeenModel seen_;
+  Matrix compliance_;  // F
+  std::vector<Place> places_;
+  LuInPlace lu_;
+  std::vector<Index> rows_;  // of the factor, ascending
+  Vector slopes_;            // of the factor, as in NewtonWork
+  bool valid_ = false, slow_ = false;
+  Vector force_, opening_, rest_, moved_;          // P, g, s, F s
+  Vector origin_force_, origin_opening_, kept_;    // where a line search begins; the guess
+  Vector opening_step_, force_step_, part_, sum_;  // dg, dP; k dg
+  Vector from_, end_;                              // the last step
+  double aim_ = 0, size_ = 0;                      // |G|
+};
+
+}  // namespace uplift

@@ -1,0 +1,93 @@
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <random>
+
+#include "unit/contact/contact_support.h"
+
+// Laws on independent rows: Newton's method with a kept factor (RowNewton), against a new factor in every iteration of the general method.
+namespace uplift::contact_test::contact_rows_test {
+namespace {
+
+constexpr int points = 30, components = 3, rows = points * components;
+
+struct Law {
+  const char* type;
+  double friction;  // 0: no shear
+};
+
+std::unique_ptr<const InterfaceLaw> law_of(const Law& law, double stiffness) {
+  auto table = std::make_shared<RawTable>();
+  const auto put = [&](const char* key, auto value) { table->entries.emplace_back(key, Raw{value, {}, key}); };
+  put("type", std::string(law.type));
+  put("K_n", stiffness);
+  if (std::string(law.type) == "sdm") put("F_u", 2e-6 * stiffness), put("G_f", 1e-11 * stiffness), put("F_c", -1e-8 * stiffness);
+  if (law.friction > 0) put("tangential", std::string("coulomb")), put("K_t", 0.5 * stiffness), put("friction", law.friction);
+  return make_part(law_catalog(), check_part(Raw{table, {}, "test"}, interface_behaviours()));
+}
+
+/// A regular factor of a compliance that falls with the distance of points [1e-4 m].
+Matrix factor_of(std::mt19937& random) {
+  std::uniform_real_distribution<double> uniform(0, 1);
+  const Matrix mix = Matrix::NullaryExpr(rows, rows, [&] { return 0.1 * (uniform(random) - 0.5); });
+  Matrix compliance = mix * mix.transpose();
+  for (Index a = 0; a < rows; ++a)
+    for (Index b = 0; b < rows; ++b)
+      compliance(a, b) += a / points == b / points ? std::exp(-0.5 * std::abs(static_cast<double>(a % points - b % points))) : 0;
+  return 1e-4 * Matrix(Cholesky(compliance)->matrixL());
+}
+
+}  // namespace
+
+TEST(ContactRows, KeptFactorGivesOpeningsAndForcesOfNewFactors) {
+  double factored = 0, factored_anew = 0;
+  for (const Law& law : {Law{"springs", 0}, Law{"springs", 0.4}, Law{"sdm", 0}, Law{"sdm", 0.6}})
+    for (unsigned seed = 1; seed <= 6; ++seed) {
+      std::mt19937 random(seed);
+      std::uniform_real_distribution<double> uniform(-1, 1);
+      Own anew, kept;
+      const Matrix factor = factor_of(random);
+      for (Own* own : {&anew, &kept}) {
+        own->laws.push_back(law_of(law, std::pow(10.0, 6 + seed % 3)));
+        Block& block = own->add("base", points, components, std::vector<double>(points, 0.5));
+        block.law = own->laws.back().get();
+        own->problem.old.setZero(block.law->num_history(components) * points);
+        own->set(factor, Vector::Zero(rows));
+        own->change().average = seed % 2 == 0;
+        own->change().scale = seed % 2 == 0 ? 2 : 1;
+      }
+      anew.change().solver = InterfaceSolver::direct;
+      const auto newton = method("newton");
+      const auto anew_work = newton->make_work(), kept_work = newton->make_work();
+      InterfaceSolution a, b;
+      long opened = 0;
+      Vector shape = Vector::Zero(rows);
+      const Vector way = Vector::NullaryExpr(rows, [&] { return uniform(random); });
+      for (int step = 0; step < 24; ++step) {
+        // smooth at first, as under an earthquake, then with leaps
+        const Vector leap = Vector::NullaryExpr(rows, [&] { return uniform(random); });
+        shape = step < 16 ? Vector(0.8 * std::sin(0.4 * step) * way) : leap;
+        Vector moved = 0.6 * (factor * shape);
+        moved.tail(points).array() -= 4e-5;
+        anew.problem.free_opening = kept.problem.free_opening = moved;
+        const Outcome first = newton->solve(anew.problem, *anew_work, a), second = newton->solve(kept.problem, *kept_work, b);
+        const std::string what = std::string(law.type) + " seed " + std::to_string(seed) + " step " + std::to_string(step);
+        ASSERT_TRUE(first.converged && second.converged) << what << first.why << second.why;
+        EXPECT_LT((a.opening - b.opening).norm(), 1e-9 * (moved.norm() + a.opening.norm())) << what;
+        EXPECT_LE((a.force - b.force).norm(), 1e-8 * a.force.norm()) << what;
+        EXPECT_LE(contact_residual(kept.problem, b), 1e-9) << what;
+        opened += (b.opening.tail(points).array() > 0).count();
+        anew.problem.from = kept.problem.from = a.opening;
+        anew.problem.old = kept.problem.old = a.now;
+      }
+      EXPECT_LT(b.systems.factored, a.systems.factored) << law.type << law.friction << seed;
+      EXPECT_GT(b.systems.iterated, 0) << "the factor was never kept";
+      factored_anew += static_cast<double>(a.systems.factored);
+      factored += static_cast<double>(b.systems.factored);
+      EXPECT_GT(opened, points) << law.type << seed;
+      EXPECT_LT(opened, 23 * points) << law.type << seed;
+    }
+  EXPECT_LT(factored, 0.75 * factored_anew);
+}
+
+}  // namespace uplift::contact_test::contact_rows_test
