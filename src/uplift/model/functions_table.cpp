@@ -15,8 +15,11 @@ namespace uplift {
 
 namespace {
 
-/// Piecewise linear; the rate is that of the present piece (right-continuous), the acceleration is zero. A time that is outside by no more
-/// than round-off (a sum of many steps) belongs to the first or the last point.
+/// Piecewise linear; the rate is that of the present piece (right-continuous). The acceleration of a straight line is zero and its slope
+/// jumps at the points: every jump is spread over the two pieces beside its point, highest there and zero at the neighbours, so that the
+/// integral over all time is the jump. On equal steps this is the second central difference, straight in between (error of order 2 for a
+/// sampled motion). The first and the last point have none. A time that is outside by no more than round-off (a sum of many steps) belongs
+/// to the first or the last point.
 class Table : public TimeFunction {
  public:
   Table(std::vector<double> times, std::vector<double> values, bool hold)
@@ -29,7 +32,12 @@ class Table : public TimeFunction {
     return values_[i] + slope(i) * (t - times_[i]);
   }
   double rate(double t) const override { return t < times_.front() || t >= times_.back() ? 0 : slope(piece(t)); }
-  double acceleration(double) const override { return 0; }
+  double acceleration(double t) const override {
+    if (t <= times_.front() || t >= times_.back()) return 0;
+    const std::size_t i = piece(t);
+    const double share = (t - times_[i]) / (times_[i + 1] - times_[i]);
+    return (1 - share) * curvature(i) + share * curvature(i + 1);
+  }
 
   std::vector<FunctionJump> jumps() const {
     if (hold_) return {};
@@ -48,6 +56,10 @@ class Table : public TimeFunction {
     return std::min(i, times_.size() - 2);
   }
   double slope(std::size_t i) const { return (values_[i + 1] - values_[i]) / (times_[i + 1] - times_[i]); }
+  /// Jump of the slope at a point over half of the pieces beside it.
+  double curvature(std::size_t i) const {
+    return i == 0 || i + 1 == times_.size() ? 0 : 2 * (slope(i) - slope(i - 1)) / (times_[i + 1] - times_[i - 1]);
+  }
   std::vector<double> times_, values_;
   bool hold_;
 };
@@ -171,7 +183,8 @@ const Entry<TimeFunction>& entry_function_table() {
   static const Entry<TimeFunction> entry{
       {.name = "table",
        .summary = "points given in the case file, straight lines between them",
-       .equations = "f(t) = linear interpolation; as a prescribed motion it has jumps of the velocity at its points",
+       .equations = "f(t) = linear interpolation; as a prescribed motion its velocity jumps at the points, and each jump acts as an "
+                    "acceleration spread over both pieces beside its point",
        .source = "",
        .params = {numbers("times", "s", "times, ascending"), numbers("values", "1", "values at these times"), outside("hold")}},
       make_table};
