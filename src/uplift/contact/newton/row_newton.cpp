@@ -30,16 +30,21 @@ void RowNewton::begin(const InterfaceProblem& problem) {
   compliance_.resize(rows, rows);
   compliance_.noalias() = model.factor * model.factor.transpose();
   lu_.size(rows);
-  valid_ = slow_ = false;
-  from_.resize(0);
-  for (Vector* v : {&force_, &opening_, &rest_, &moved_, &origin_force_, &origin_opening_, &opening_step_, &force_step_, &part_, &sum_})
+  valid_ = slow_ = follows_ = false;
+  for (Vector* v : {&force_, &opening_, &rest_, &moved_, &origin_force_, &origin_opening_, &opening_step_, &force_step_, &part_, &sum_,
+                    &from_, &end_, &kept_})
     v->setZero(rows);
   rows_.clear();
+  rows_.reserve(static_cast<std::size_t>(rows));
+  owner_.assign(static_cast<std::size_t>(rows), 0);
   places_.clear();
   Index slope = 0;
   for (const Block& block : model.blocks) {
     for (int i = 0; i < block.batch.points; ++i)
       places_.push_back({block.first + i, block.batch.points, slope + i, block.batch.components});
+    for (int row = 0; row < block.rows(); ++row)
+      owner_[static_cast<std::size_t>(block.first + row)] =
+          places_.size() - static_cast<std::size_t>(block.batch.points - row % block.batch.points);
     slope += block.slopes();
   }
 }
@@ -67,25 +72,19 @@ bool RowNewton::factorise(const Vector& slopes) {
   valid_ = false;
   if (!slopes.allFinite()) return false;
   const Index all = compliance_.rows();
-  std::vector<const Place*> place(static_cast<std::size_t>(all), nullptr);
-  std::vector<int> component(static_cast<std::size_t>(all), 0);
-  for (const Place& at : places_) {
+  rows_.clear();
+  for (Index row = 0; row < all; ++row) {
+    const Place& at = places_[owner_[static_cast<std::size_t>(row)]];
     bool any = false;
     for (int k = 0; k < at.components * at.components; ++k) any = any || slopes[at.slope + k * at.stride] != 0;
-    for (int c = 0; any && c < at.components; ++c) {
-      const std::size_t row = static_cast<std::size_t>(at.first + c * at.stride);
-      place[row] = &at;
-      component[row] = c;
-    }
+    if (any) rows_.push_back(row);
   }
-  rows_.clear();
-  for (Index row = 0; row < all; ++row)
-    if (place[static_cast<std::size_t>(row)] != nullptr) rows_.push_back(row);
   const Index n = static_cast<Index>(rows_.size());
   double* sum = sum_.data();
   for (Index j = 0; j < n; ++j) {
-    const Place& at = *place[static_cast<std::size_t>(rows_[static_cast<std::size_t>(j)])];
-    const int c = component[static_cast<std::size_t>(rows_[static_cast<std::size_t>(j)])];
+    const Index row = rows_[static_cast<std::size_t>(j)];
+    const Place& at = places_[owner_[static_cast<std::size_t>(row)]];
+    const Index c = (row - at.first) / at.stride;
     sum_.setZero();
     for (int a = 0; a < at.components; ++a)
       if (const double k = slopes[at.slope + (a * at.components + c) * at.stride]; k != 0)
@@ -188,10 +187,12 @@ bool RowNewton::arrive(double tolerance, int most, bool linearised, NewtonWork& 
 /// Where the points come to when they move on as in the last step, with the tangents of the laws there.
 void RowNewton::guess(NewtonWork& work, InterfaceSolution& solution) {
   const InterfaceProblem& problem = *problem_;
-  if (from_.size() > 0 && (end_ - problem.from).cwiseAbs().maxCoeff() <= 1e-8 * (end_ - from_).cwiseAbs().maxCoeff())
+  if (follows_ && (end_ - problem.from).cwiseAbs().maxCoeff() <= 1e-8 * (end_ - from_).cwiseAbs().maxCoeff())
     solution.opening = 2 * problem.from - from_;
-  else
-    solution.opening = problem.free_opening + problem.model->factor * solution.z;
+  else {
+    solution.opening = problem.free_opening;
+    solution.opening.noalias() += problem.model->factor * solution.z;
+  }
   opening_ = solution.opening;
   evaluate_laws(problem, {}, true, work, solution);
   force_ = solution.force;
@@ -209,13 +210,14 @@ void RowNewton::guess(NewtonWork& work, InterfaceSolution& solution) {
 }
 
 bool RowNewton::leave(bool arrived, InterfaceSolution& solution) {
+  follows_ = arrived;
   if (arrived) {
-    solution.z.noalias() = -(problem_->model->factor.transpose() * solution.force);
+    solution.z.noalias() = problem_->model->factor.transpose() * solution.force;
+    solution.z *= -1;
     from_ = problem_->from;
     end_ = opening_;
   } else {
     solution.z = kept_;
-    from_.resize(0);
   }
   return arrived;
 }

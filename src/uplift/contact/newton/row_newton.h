@@ -46,9 +46,10 @@ class RowNewton final : public MethodWork {
   Matrix compliance_;  // F
   std::vector<Place> places_;
   LuInPlace lu_;
-  std::vector<Index> rows_;  // of the factor, ascending
-  Vector slopes_;            // of the factor, as in NewtonWork
-  bool valid_ = false, slow_ = false;
+  std::vector<std::size_t> owner_;  // of a row: its place
+  std::vector<Index> rows_;         // of the factor, ascending
+  Vector slopes_;                   // of the factor, as in NewtonWork
+  bool valid_ = false, slow_ = false, follows_ = false;
   Vector force_, opening_, rest_, moved_;          // P, g, s, F s
   Vector origin_force_, origin_opening_, kept_;    // where a line search begins; the guess
   Vector opening_step_, force_step_, part_, sum_;  // dg, dP; k dg
