@@ -15,7 +15,8 @@ namespace uplift {
 
 namespace {
 
-/// Piecewise linear; the rate is that of the present piece (right-continuous). The acceleration of a straight line is zero and its slope
+/// Piecewise linear; the rate is that of the present piece (right-continuous), at the last
+/// point that of the piece before it. The acceleration of a straight line is zero and its slope
 /// jumps at the points: every jump is spread over the two pieces beside its point, highest there and zero at the neighbours, so that the
 /// integral over all time is the jump. On equal steps this is the second central difference, straight in between (error of order 2 for a
 /// sampled motion). The first and the last point have none. A time that is outside by no more than round-off (a sum of many steps) belongs
@@ -31,7 +32,7 @@ class Table : public TimeFunction {
     const std::size_t i = piece(t);
     return values_[i] + slope(i) * (t - times_[i]);
   }
-  double rate(double t) const override { return t < times_.front() || t >= times_.back() ? 0 : slope(piece(t)); }
+  double rate(double t) const override { return t < times_.front() || t > times_.back() + round_off() ? 0 : slope(piece(t)); }
   double acceleration(double t) const override {
     if (t <= times_.front() || t >= times_.back()) return 0;
     const std::size_t i = piece(t);

@@ -106,7 +106,8 @@ TEST(TimeFunctions, Table) {
   EXPECT_EQ(held->value(2), 2);
   EXPECT_EQ(held->value(3), 0);
   EXPECT_EQ(held->value(7), 0);
-  for (const auto& [t, rate] : {std::pair{-1.0, 0.0}, {0.5, 2.0}, {1.0, -2.0}, {2.0, -2.0}, {4.0, 0.0}}) EXPECT_EQ(held->rate(t), rate);
+  for (const auto& [t, rate] : {std::pair{-1.0, 0.0}, {0.5, 2.0}, {1.0, -2.0}, {2.0, -2.0}, {3.0, -2.0}, {4.0, 0.0}})
+    EXPECT_EQ(held->rate(t), rate);
   // The slope jumps from 2 to -2 at 1: a triangle over both pieces, 3 s long, with the area -4.
   for (const auto& [t, acceleration] : {std::pair{-1.0, 0.0}, {0.0, 0.0}, {0.5, -4.0 / 3}, {1.0, -8.0 / 3}, {2.0, -4.0 / 3}, {3.0, 0.0}})
     EXPECT_NEAR(held->acceleration(t), acceleration, 1e-15);
