@@ -20,6 +20,7 @@ namespace uplift {
 namespace {
 
 constexpr int little_to_foresee = 3000, quick_modes = 30'000;  // unknowns: nothing to foresee below; only the bonded modes beyond
+constexpr int most_to_try = 200'000;  // unknowns of distributed matrices: their static stages and compliance take minutes
 constexpr double trial_seconds = 5;
 
 /// Quality and resolution of the groups that have a material.
@@ -73,10 +74,7 @@ void try_steps(CaseFindings& found, const BuiltCase& built) {
   RunPlan plan = built.plan;
   plan.frames = 0;
   for (Stage& stage : plan.stages)
-    if (stage.type == Stage::Type::dynamics) {
-      found.steps += std::lround(stage.duration / stage.step);
-      stage.duration = std::min(stage.duration, 200 * stage.step);
-    }
+    if (stage.type == Stage::Type::dynamics) stage.duration = std::min(stage.duration, 200 * stage.step);
   const auto start = std::chrono::steady_clock::now();
   const Watch enough = [&](const Progress&) {
     return std::chrono::steady_clock::now() - start < std::chrono::duration<double>(trial_seconds);
@@ -134,12 +132,21 @@ CaseFindings find(const Case& read, const RunSpec& spec, const BuiltCase& built)
     found.fixed = frequencies(fixed_base_modes(built.at_rest(), 3));
     found.base_free = frequencies(base_free_modes(built.at_rest(), 5));
   }
-  if (const Stage* stage = dynamic_stage(built.plan)) found.ratios = stiffness_ratios(built.model, *stage, *built.plan.solver);
+  for (const Stage& stage : built.plan.stages)
+    if (stage.type == Stage::Type::dynamics) found.steps += std::lround(stage.duration / stage.step);
+  const bool tries = built.model.distributed == nullptr || unknowns <= most_to_try;
+  if (const Stage* stage = dynamic_stage(built.plan); stage != nullptr && tries)
+    found.ratios = stiffness_ratios(built.model, *stage, *built.plan.solver);
   if (dynamic_stage(built.plan)) found.bounds = step_bounds(read, built, resolved_frequencies(built.at_rest(), found));
   if (!found.bounds.empty()) found.suggested_step = rounded_down(found.bounds.front().step);
-  try_steps(found, built);
+  if (tries) try_steps(found, built);
   found.warnings = warnings(read, spec, built);
   if (std::string warning = history_warning(read, found.histories); !warning.empty()) found.warnings.push_back(std::move(warning));
+  if (!tries)
+    found.warnings.push_back(
+        fmt::format("the first steps are not tried with more than {} unknowns on several processes: whether static stages "
+                    "converge and what a step costs is not known",
+                    most_to_try));
   return found;
 }
 

@@ -37,7 +37,8 @@ struct CaseFindings {
   double record_bytes = 0;       // floors at every step
 };
 
-/// Examines a case: builds its runs, estimates time, memory and disk, tries the first steps (at most five seconds). Throws InputError.
+/// Examines a case: builds its runs, estimates time, memory and disk, tries the first steps (at most five seconds; not those of a
+/// large model on several processes). Throws InputError.
 struct CheckedCase {
   BuiltCase built;                // of the case's own run
   std::vector<std::string> runs;  // what the commands would compute, a line for each run
