@@ -280,7 +280,8 @@ class Solver(MpiTest):
         cells_of_one, one, cells_of_two, two = ([float(word.rstrip("%")) for word in line.split()[2:]] for line in lines[1:])
         self.assertEqual(two[0], 2 * one[0])  # unknowns
         self.assertLessEqual(abs(two[6] / one[6] - 1), 0.2)  # iterations: the wave crosses a few cubes in a step, not the block
-        self.assertEqual((cells_of_one[6], cells_of_two[6]), (one[6], two[6]))
+        for cells, entries in ((cells_of_one, one), (cells_of_two, two)):  # the same matrix but for round-off
+            self.assertLessEqual(abs(cells[6] - entries[6]), 1)
 
 
 class Queue(MpiTest):
