@@ -233,6 +233,90 @@ quantity = "uy"
         largest = max(map(abs, expected))
         self.assertLess(max(abs(a - b) for a, b in zip(found, expected)), 2e-3 * largest)
 
+    def test_sliding_under_a_pressure_that_oscillates(self):
+        """A block slides while it bounces on its joint without lifting off: against Verlet's method with Coulomb's law at the end of every one of
+        its short steps. The error falls with the step, with energy_decay faster."""
+        mass, gravity, mu, settled, share, speed, drive = 1e5, 9.81, 0.5, 1e-4, 0.7, 0.2, 0.5 * 9.81 + 0.3
+        k_n = mass * gravity / settled
+        k_t, bounce = 0.7 * k_n, share * gravity / sqrt(gravity / settled)
+
+        def distance(step, scheme):
+            self.write(f"""\
+title = "block"
+bonded = false
+[nodes]
+base = [0, 0]
+[[rigid]]
+name = "block"
+node = "base"
+mass = {mass}
+inertia = 1e5
+[[support]]
+node = "base"
+fixed = ["rz"]
+[[interface]]
+name = "underside"
+[interface.footing]
+body = "base"
+width = 4
+points = 5
+rule = "midpoint"
+[interface.law]
+type = "springs"
+K_n = {k_n / 4}
+K_t = {k_t / 4}
+tangential = "coulomb"
+friction = {mu}
+[gravity]
+acceleration = [0, {-gravity}]
+[[initial]]
+node = "base"
+velocity = [{speed}, {bounce}]
+[[function]]
+name = "constant"
+shape = {{ type = "table", times = [0.0, 2.0], values = [1.0, 1.0] }}
+[[ground_acceleration]]
+direction = [1, 0]
+amplitude = {-drive}
+function = "constant"
+[[stage]]
+type = "static"
+[[stage]]
+type = "dynamic"
+duration = 1
+step = {step}
+scheme = "{scheme}"
+[output]
+frames = 0
+[[output.history]]
+name = "u"
+node = "base"
+quantity = "ux"
+""")
+            self.uplift("run", "case.toml", "-o", scheme + str(step))
+            with open(self.folder / (scheme + str(step)) / "histories.csv") as file:
+                rows = list(csv.reader(file))
+            return float(rows[-1][[name.split(" [")[0] for name in rows[0]].index("u")])
+
+        h, x, y, v_x, v_y, slip, shear, pressure = 2e-5, 0.0, -settled, speed, bounce, 0.0, 0.0, mass * gravity
+        for _ in range(round(1 / h)):
+            v_x += h / 2 * (drive - shear / mass)
+            v_y += h / 2 * (pressure / mass - gravity)
+            x, y = x + h * v_x, y + h * v_y
+            pressure = -k_n * y
+            self.assertGreater(pressure, 0)
+            shear = max(-mu * pressure, min(mu * pressure, k_t * (x - slip)))
+            slip = x - shear / k_t
+            v_x += h / 2 * (drive - shear / mass)
+            v_y += h / 2 * (pressure / mass - gravity)
+        plain = [distance(step, "average_acceleration") / x - 1 for step in (1e-3, 5e-4)]
+        filtered = [distance(step, "energy_decay") / x - 1 for step in (1e-3, 5e-4)]
+        self.assertLess(abs(plain[0]), 9e-3)
+        self.assertLess(abs(plain[1]), 0.6 * abs(plain[0]))
+        self.assertLess(abs(2 * plain[1] - plain[0]), 1e-3)
+        self.assertLess(abs(filtered[0]), 2e-3)
+        self.assertLess(abs(filtered[1]), 0.3 * abs(filtered[0]))
+
 
 if __name__ == "__main__":
     main()
