@@ -5,8 +5,10 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <optional>
 
 #include "uplift/math/dense.h"
+#include "uplift/math/line_search.h"
 
 namespace uplift {
 
@@ -117,6 +119,7 @@ Outcome PlasticNewton::solve(const Step& step, StepSolver& elastic, const Make& 
   expect_growth(step);
   int since = 0;  // iterations with the present factor
   const bool may_soften = options_.newton != PlasticOptions::Newton::modified;
+  std::optional<LineSearch> search;
   for (int iteration = 0; iteration < options_.iterations; ++iteration) {
     const Outcome inner = last_->solve(given_, step.start, increment);
     outcome.iterations += inner.iterations;
@@ -128,6 +131,13 @@ Outcome PlasticNewton::solve(const Step& step, StepSolver& elastic, const Make& 
     moved_ = step.start.displacement + increment;
     if (!moved_.allFinite()) break;
     if (const BulkResponse response = bulk_.respond(moved_, {step.old.history, step.at, step.duration}, now, size_); !response.converged) {
+      if (search) {  // a step of half the length
+        searched_.rest *= 0.5 * search->share();
+        searched_.way.resize(0);
+        search.emplace(0.0);
+        given_ = searched_.given + searched_.rest;
+        continue;
+      }
       outcome.why = response.why;
       return outcome;
     }
@@ -140,13 +150,29 @@ Outcome PlasticNewton::solve(const Step& step, StepSolver& elastic, const Make& 
       remember_growth(step, now);
       return outcome;
     }
+    if (search) {
+      if (searched_.way.size() == 0) {
+        searched_.way = increment - searched_.increment;
+        search.emplace(searched_.way.dot(searched_.rest));
+      }
+      if (search->goes_on(searched_.way.dot(change_))) {
+        given_ = searched_.given + search->share() * searched_.rest;
+        continue;
+      }
+    }
     ++since;
-    if (may_soften && wants_tangent(since) && soften(step, make, increment, now)) {
+    if (may_soften && (search || wants_tangent(since)) && soften(step, make, increment, now)) {
       since = 0;
       mixing_->forget();
       given_ = step.right - step.weight * now.force + softening_ * increment;
+      searched_.given = given_ - change_;
+      searched_.rest = change_;
+      searched_.increment = increment;
+      searched_.way.resize(0);
+      search.emplace(0.0);
       continue;
     }
+    search.reset();
     mixing_->mix(weight_, change_, given_);
   }
   outcome.why = fmt::format("yielding solids: no balance in {} iterations, {:.1e} of their forces are left", residuals_.size(),

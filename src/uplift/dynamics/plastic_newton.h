@@ -64,6 +64,9 @@ class PlasticNewton {
   Vector weight_, size_, given_, change_;  // given_: y
   std::unique_ptr<Mixing> mixing_;
   Vector moved_;
+  struct {
+    Vector given, rest, increment, way;  // y, residual and increment where the step of Newton begins, and the whole step
+  } searched_;
   Vector growth_, growth_before_;  // of the yielding solids' forces in the last two steps [N]
   double duration_ = 0;            // of those steps; 0: none is known
   Sparse softening_;

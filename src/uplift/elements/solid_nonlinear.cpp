@@ -4,8 +4,10 @@
 #include <array>
 #include <cassert>
 #include <cmath>
+#include <numeric>
 
 #include "uplift/math/dense.h"
+#include "uplift/math/line_search.h"
 #include "uplift/math/small.h"
 
 namespace uplift {
@@ -17,6 +19,8 @@ constexpr double least_elastic_share = 1e-9;
 
 /// Elements of up to so many points keep the gradients of their shape functions: at most 2.2 kB (hex8).
 constexpr int most_kept_points = 8;
+
+constexpr std::size_t most_amplitudes = 9;
 
 SolidSection with_material(SolidSection section, const ElasticMaterial& material) {
   section.material = material;
@@ -135,7 +139,7 @@ void NonlinearSolid::find_mode_tangent(Scratch& scratch, double elastic_share) c
 
 // No force works on the modes: K_aa a + K_au u - int G^T D e dV = 0 with the inelastic strains e.
 void NonlinearSolid::add_inelastic_amplitudes(std::span<const double> history, const Scratch& scratch, double* amplitudes) const {
-  double force[3 * 3] = {};
+  double force[most_amplitudes] = {};
   for (std::size_t p = 0; p < scratch.gradient.size(); ++p)
     add_force(scratch.gradient[p], dimension(), static_cast<int>(nodes().size()), modes_, law_->elastic() * inelastic_strain(history, p),
               force);
@@ -148,7 +152,9 @@ BulkResponse NonlinearSolid::balance_modes(const Vector& displacement, std::span
   Map amplitudes(now.data() + first_amplitude(), n);
   // round-off of the strain under a large rigid motion: 1e-13 of this is a few last digits of the displacement
   const double noise = 0.01 * law_->material().constrained() * displacement.cwiseAbs().maxCoeff() * node_gradient(scratch.gradient.front());
-  double share = least_elastic_share, floor = least_elastic_share;
+  double share = least_elastic_share;
+  std::array<double, most_amplitudes> from, step;
+  const auto work = [&] { return std::inner_product(step.begin(), step.begin() + n, scratch.mode_force.data(), 0.0); };
   for (int iteration = 0; iteration < 200; ++iteration) {
     double scale = 0;  // N
     for (std::size_t p = 0; p < scratch.gradient.size(); ++p)
@@ -158,16 +164,16 @@ BulkResponse NonlinearSolid::balance_modes(const Vector& displacement, std::span
     if (iteration == 0 && !tangents)
       if (const BulkResponse response = evaluate(displacement, old, now, true, scratch); !response.converged) return response;
     find_mode_tangent(scratch, share);
-    if (!small::gauss_solve<0>(n, scratch.mode_stiffness.data(), scratch.mode_force.data())) break;
-    amplitudes -= scratch.mode_force;
-    if (const BulkResponse response = evaluate(displacement, old, now, true, scratch); !response.converged) return response;
-    if (scratch.mode_force.norm() < rest) {
-      share = std::max(share / 2, floor);
-    } else {
-      if (rest <= 1e-10 * scale) return {};  // round-off
-      share = std::clamp(4 * share, 0.01, 2.0);
-      floor = std::clamp(2 * floor, 1e-3, 0.5);
-    }
+    std::copy_n(scratch.mode_force.data(), n, step.begin());
+    std::copy_n(amplitudes.data(), n, from.begin());
+    if (!small::gauss_solve<0>(n, scratch.mode_stiffness.data(), step.data())) break;
+    LineSearch search(work());
+    do {
+      for (int k = 0; k < n; ++k) amplitudes[k] = from[static_cast<std::size_t>(k)] - search.share() * step[static_cast<std::size_t>(k)];
+      if (const BulkResponse response = evaluate(displacement, old, now, true, scratch); !response.converged) return response;
+    } while (scratch.mode_force.norm() > rest / 2 && search.goes_on(work()));
+    if (scratch.mode_force.norm() >= rest && rest <= 1e-10 * scale) return {};  // round-off
+    share = search.share() < 0.1 ? std::clamp(10 * share, 1e-6, 0.1) : std::max(share / 10, least_elastic_share);
   }
   return {false, "the incompatible modes of a yielding solid element find no balance in 200 iterations"};
 }
@@ -271,7 +277,7 @@ void NonlinearSolid::find_inelastic(std::span<const double> history, Scratch& sc
 
 void NonlinearSolid::find_inelastic_of_response(std::span<const double> history, Scratch& scratch, Inelastic& made) const {
   const int count = static_cast<int>(nodes().size()), d = dimension();
-  double amplitudes[3 * 3] = {};
+  double amplitudes[most_amplitudes] = {};
   if (modes_ > 0) add_inelastic_amplitudes(history, scratch, amplitudes);
   made.force.setZero(unknowns());
   made.energy = 0;
