@@ -80,7 +80,9 @@ BulkResponse PlasticBulk::respond(const Vector& displacement, const Update& step
   return {};
 }
 
-Sparse PlasticBulk::softening(const Vector& displacement, const Update& step, const PlasticState& now) const {
+Sparse PlasticBulk::softening(const Vector& displacement, const Update& step, const PlasticState& now, bool& whole) const {
+  constexpr double round_off = 1e-7;
+  whole = true;
   const Vector full = model_.full(displacement, 0, step.at);
   scratch_.element.duration = step.duration;
   std::vector<Triplet> entries;
@@ -93,6 +95,7 @@ Sparse PlasticBulk::softening(const Vector& displacement, const Update& step, co
     if (one.element->yields(before, history_of(one, now.history)) &&
         one.element->respond(scratch_.displacement, before, unused, scratch_.element, scratch_.force, &tangent).converged) {
       one.element->form({&elastic, nullptr, nullptr});
+      whole = whole && (tangent - tangent.transpose()).norm() <= round_off * elastic.norm();
       tangent = (0.5 * (tangent + tangent.transpose()) - elastic).eval();
     } else {
       tangent.setZero(one.element->unknowns(), one.element->unknowns());  // so that all tangents have their entries in the same places

@@ -34,7 +34,8 @@ class PlasticBulk {
   /// forces [N]: what the balance is judged by.
   BulkResponse respond(const Vector& displacement, const Update& step, PlasticState& now, Vector& size) const;
   /// Symmetric part of the consistent tangent less the elastic stiffness, free x free, of the state that `respond` has just given.
-  Sparse softening(const Vector& displacement, const Update& step, const PlasticState& now) const;
+  /// `whole`: whether this is all of the tangent (associated flow).
+  Sparse softening(const Vector& displacement, const Update& step, const PlasticState& now, bool& whole) const;
 
   /// Of a state: recoverable energy less u.(K u)/2 of the linear bulk [J].
   double energy(const Vector& displacement, MotionInstant at, const PlasticState& state) const;

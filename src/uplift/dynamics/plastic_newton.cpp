@@ -5,10 +5,8 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
-#include <optional>
 
 #include "uplift/math/dense.h"
-#include "uplift/math/line_search.h"
 
 namespace uplift {
 
@@ -69,7 +67,8 @@ PlasticNewton::~PlasticNewton() = default;
 /// Goes over to the tangent of the present state. A tangent that is not positive definite (no associated flow, or no strength left) gets a
 /// share of the elastic stiffness back.
 bool PlasticNewton::soften(const Step& step, const Make& make, const Vector& increment, const PlasticState& now) {
-  const Sparse full = step.weight * bulk_.softening(step.start.displacement + increment, {step.old.history, step.at, step.duration}, now);
+  const Sparse full =
+      step.weight * bulk_.softening(step.start.displacement + increment, {step.old.history, step.at, step.duration}, now, whole_);
   std::string why;
   for (const double share : {1.0, 0.9, 0.5}) {
     const Sparse softening = share * full;
@@ -94,7 +93,7 @@ bool PlasticNewton::wants_tangent(int since) const {
 }
 
 void PlasticNewton::forget() {
-  duration_ = 0;
+  duration_ = flow_share_ = 0;
 }
 
 /// What yielding has added to its forces in steps of the same length, continued as a parabola, goes into the first y.
@@ -109,17 +108,85 @@ void PlasticNewton::remember_growth(const Step& step, const PlasticState& now) {
   duration_ = step.duration;
 }
 
-Outcome PlasticNewton::solve(const Step& step, StepSolver& elastic, const Make& make, Vector& increment, PlasticState& now) {
-  Outcome outcome;
-  last_ = &elastic;
-  softening_.resize(0, 0);
-  residuals_.clear();
+/// Goes over to the tangent of a state, and takes the whole step from there. Fails where no tangent serves.
+bool PlasticNewton::begin_newton(const Step& step, const Make& make, const Vector& increment, const PlasticState& now) {
+  if (!soften(step, make, increment, now)) return false;
   mixing_->forget();
+  given_ = step.right - step.weight * now.force + softening_ * increment;
+  return true;
+}
+
+/// The line search along the step that begin_newton has just given, from the state with that increment and the residual `change_`.
+void PlasticNewton::begin_search(const Vector& increment) {
+  search_ = {given_ - change_, change_, increment, {}, LineSearch(0)};
+}
+
+/// What the state that a share of the step has led to says: true when another share is to be tried.
+bool PlasticNewton::searches_on(const Vector& increment) {
+  Search& s = *search_;
+  if (s.way.size() == 0) {
+    s.way = increment - s.increment;
+    s.line = LineSearch(s.way.dot(s.rest));
+  }
+  if (!s.line.goes_on(s.way.dot(change_))) return false;
+  given_ = s.given + s.line.share() * s.rest;
+  return true;
+}
+
+/// Where a law has no answer: a step of half the length.
+bool PlasticNewton::shorten_search() {
+  if (!search_) return false;
+  search_->rest *= 0.5 * search_->line.share();
+  search_->way.resize(0);
+  search_->line = LineSearch(0);
+  given_ = search_->given + search_->rest;
+  return true;
+}
+
+/// A load step that goes on as the last one, which yielded so much that it took tangents: with the tangent where that leads to.
+bool PlasticNewton::expect_flow(const Step& step, const Make& make, Vector& increment, PlasticState& now) {
+  if (!(step.share > 0) || !(flow_share_ > 0)) return false;
+  increment = step.share / flow_share_ * flow_;
+  moved_ = step.start.displacement + increment;
+  return bulk_.respond(moved_, {step.old.history, step.at, step.duration}, now, size_).converged &&
+         begin_newton(step, make, increment, now);
+}
+
+void PlasticNewton::remember_flow(const Step& step, const Vector& increment) {
+  flow_share_ = softening_.size() > 0 && whole_ ? step.share : 0;
+  if (flow_share_ > 0) flow_ = increment;
+}
+
+Outcome PlasticNewton::solve(const Step& step, StepSolver& elastic, const Make& make, Vector& increment, PlasticState& now) {
+  const auto begin = [&] {
+    last_ = &elastic;
+    softening_.resize(0, 0);
+    residuals_.clear();
+    search_.reset();
+    mixing_->forget();
+  };
+  const bool may_soften = options_.newton != PlasticOptions::Newton::modified;
+  Outcome flowing;
+  begin();
+  if (may_soften && expect_flow(step, make, increment, now)) {
+    flowing = iterate(step, make, increment, now);
+    if (flowing.converged) return flowing;
+  }
+  begin();
   given_ = step.right - step.weight * step.old.force;
   expect_growth(step);
+  Outcome outcome = iterate(step, make, increment, now);
+  outcome.iterations += flowing.iterations;
+  outcome.cycles += flowing.cycles;
+  if (!outcome.converged) forget();
+  return outcome;
+}
+
+Outcome PlasticNewton::iterate(const Step& step, const Make& make, Vector& increment, PlasticState& now) {
+  Outcome outcome;
   int since = 0;  // iterations with the present factor
   const bool may_soften = options_.newton != PlasticOptions::Newton::modified;
-  std::optional<LineSearch> search;
+  bool newton = softening_.size() > 0 && whole_;  // a new tangent after every step
   for (int iteration = 0; iteration < options_.iterations; ++iteration) {
     const Outcome inner = last_->solve(given_, step.start, increment);
     outcome.iterations += inner.iterations;
@@ -131,13 +198,7 @@ Outcome PlasticNewton::solve(const Step& step, StepSolver& elastic, const Make& 
     moved_ = step.start.displacement + increment;
     if (!moved_.allFinite()) break;
     if (const BulkResponse response = bulk_.respond(moved_, {step.old.history, step.at, step.duration}, now, size_); !response.converged) {
-      if (search) {  // a step of half the length
-        searched_.rest *= 0.5 * search->share();
-        searched_.way.resize(0);
-        search.emplace(0.0);
-        given_ = searched_.given + searched_.rest;
-        continue;
-      }
+      if (shorten_search()) continue;
       outcome.why = response.why;
       return outcome;
     }
@@ -148,32 +209,20 @@ Outcome PlasticNewton::solve(const Step& step, StepSolver& elastic, const Make& 
     if (!(rest > options_.tolerance * size)) {
       outcome.converged = true;
       remember_growth(step, now);
+      remember_flow(step, increment);
       return outcome;
     }
-    if (search) {
-      if (searched_.way.size() == 0) {
-        searched_.way = increment - searched_.increment;
-        search.emplace(searched_.way.dot(searched_.rest));
-      }
-      if (search->goes_on(searched_.way.dot(change_))) {
-        given_ = searched_.given + search->share() * searched_.rest;
-        continue;
-      }
-    }
+    if (search_ && searches_on(increment)) continue;
     ++since;
-    if (may_soften && (search || wants_tangent(since)) && soften(step, make, increment, now)) {
+    search_.reset();
+    if (may_soften && (newton || wants_tangent(since)) && begin_newton(step, make, increment, now)) {
       since = 0;
-      mixing_->forget();
-      given_ = step.right - step.weight * now.force + softening_ * increment;
-      searched_.given = given_ - change_;
-      searched_.rest = change_;
-      searched_.increment = increment;
-      searched_.way.resize(0);
-      search.emplace(0.0);
-      continue;
+      newton = whole_;
+      if (newton) begin_search(increment);
+    } else {
+      newton = false;
+      mixing_->mix(weight_, change_, given_);
     }
-    search.reset();
-    mixing_->mix(weight_, change_, given_);
   }
   outcome.why = fmt::format("yielding solids: no balance in {} iterations, {:.1e} of their forces are left", residuals_.size(),
                             residuals_.empty() ? 0 : residuals_.back());

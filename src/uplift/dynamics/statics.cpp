@@ -225,7 +225,9 @@ std::string LoadSteps::solve(double to, int depth) {
       tangent_ = softer;
       return condensed(std::move(softer));
     };
-    step = newton_->solve({right, start, plastic_now_, {state_.time, load_factor(to)}}, *linear_, soften, increment_, plastic_next_);
+    const PlasticNewton::Step whole{
+        .right = right, .start = start, .old = plastic_now_, .at = {state_.time, load_factor(to)}, .share = to - outcome_.reached};
+    step = newton_->solve(whole, *linear_, soften, increment_, plastic_next_);
     last_ = &newton_->last();
     outcome_.newton = newton_->residuals();
   } else {

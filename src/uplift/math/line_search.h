@@ -4,10 +4,10 @@
 
 namespace uplift {
 
-/// How much of a Newton step to take (H. Matthies & G. Strang, Int. J. Numer. Meth. Engng 14, 1979, 1613-1626). Measured by the work that the
-/// unbalanced forces would do on the whole step: where they are the descent of a convex function it never grows along the step. All is taken
-/// unless this work then is below minus half of what it was at the beginning; else a share that leaves at most half of it, found by the
-/// Illinois rule.
+/// How much of a Newton step to take (H. Matthies & G. Strang, Int. J. Numer. Meth. Engng 14, 1979, 1613-1626). Measured by the work that
+/// the unbalanced forces would do on the whole step: where they are the descent of a convex function it never grows along the step. All is
+/// taken unless this work then is below minus half of what it was at the beginning; else a share that leaves at most half of it, found by
+/// the Illinois rule.
 class LineSearch {
  public:
   /// `work`: at the beginning [J]. Where it is not positive, all is taken.

@@ -46,6 +46,28 @@ TEST(DoubtfulInput, TheDirectionOfTheGroundIsNoFactor) {
     EXPECT_EQ(refusal(case_with(shaken(std::string("direction = ") + direction + "\n"))), "accepted") << direction;
 }
 
+/// Without friction the cone through the edges of compression bears 2/sqrt(3) times the cohesion's strength in plane strain.
+TEST(DoubtfulInput, ClayIsFittedInPlaneStrain) {
+  const auto clay = [](const std::string& friction, const std::string& fit) {
+    return "title = \"clay\"\n[mesh.soil_box.soil]\nwidth = 4\nsize = 1\nlayers = [{ thickness = 2, size = 1 "
+           "}]\n[mesh.soil_box.block]\nwidth = "
+           "2\nheight = 1\nsize = 1\n[[solid]]\ngroup = \"soil_1\"\nE = 6e7\npoisson = 0.4\ndensity = 1800\nlaw = { type = "
+           "\"drucker_prager\", "
+           "cohesion = 2e4, friction_angle = " +
+           friction + fit +
+           " }\n[[solid]]\ngroup = \"block\"\nE = 3e10\npoisson = 0.2\ndensity = 2400\n[[support]]\ngroup = \"soil_bottom\"\nfixed = "
+           "[\"ux\", "
+           "\"uy\"]\n[[interface]]\nname = \"base\"\nsurface = { group = \"interface\", lower = [\"soil_1\"] }\nlaw = { type = "
+           "\"springs\", K_n = "
+           "1e9, K_t = 1e9 }\n[gravity]\nacceleration = [0, -9.81]\n[[stage]]\ntype = \"static\"\n";
+  };
+  const std::string word = "plane strain";
+  EXPECT_EQ(warned(clay("0", ""), word), 1);
+  EXPECT_EQ(warned(clay("0", ", fit = \"extension\""), word), 1);
+  EXPECT_EQ(warned(clay("0", ", fit = \"plane_strain\""), word), 0);
+  EXPECT_EQ(warned(clay("0.3", ""), word), 0);
+}
+
 class DoubtfulRecord : public RecordCase {};
 
 /// 9.81 m/s2 as the factor of a record, which is an acceleration, would make it 9.81 times as large.

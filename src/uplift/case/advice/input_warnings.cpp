@@ -28,6 +28,21 @@ void warn_friction(const BuiltCase& built, std::vector<std::string>& said) {
                                  law->number("friction")));
 }
 
+/// A circle around Tresca's hexagon: without friction the compression edges are those of extension, and pure shear bears 2/sqrt(3) c.
+void warn_cone(const Values& root, Space space, std::vector<std::string>& said) {
+  if (space.dimension != 2) return;
+  for (const Values& solid : root.tables("solid")) {
+    const char* key = solid.has("plasticity") ? "plasticity" : "law";
+    if (!solid.has(key)) continue;
+    const Values& law = solid.part(key);
+    if (law.type() != "drucker_prager" || law.number("friction_angle") > 0 || law.text("fit") == "plane_strain") continue;
+    said.push_back(place_of(law, "friction_angle") +
+                   fmt::format("fit = \"{}\" in plane strain: without friction the ground bears 2/sqrt(3) = 1.15 times what its cohesion "
+                               "does; take fit = \"plane_strain\"",
+                               law.text("fit")));
+  }
+}
+
 void warn_gravity(const Values& root, Space space, std::vector<std::string>& said) {
   const Values* gravity = table_if(root, "gravity");
   const double size = gravity != nullptr ? gravity_of(root, space).norm() : 0;
@@ -103,6 +118,7 @@ void warn_jumps(const Case& read, const RunSpec& spec, const BuiltCase& built, s
 
 void warn_input(const Case& read, const RunSpec& spec, const BuiltCase& built, std::vector<std::string>& said) {
   warn_friction(built, said);
+  warn_cone(read.values, built.model.space, said);
   warn_gravity(read.values, built.model.space, said);
   warn_damping(read.values, said);
   warn_size(built, said);
