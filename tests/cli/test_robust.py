@@ -389,5 +389,26 @@ class Places(RobustTest):
         self.refused(text, f"{{file}}:{line_of(text, 'mrad')}: motion[0].amplitude: expected a length [m], found \"2 mrad\" (an angle)")
 
 
+class YieldingSoil(CliTest):
+    """Example 02 on soil that yields under its earthquake: no step is halved."""
+
+    def test_steps_of_an_earthquake(self):
+        example = pathlib.Path(__file__).resolve().parents[2] / "examples" / "02_building_on_soil"
+        for file in example.iterdir():
+            if file.is_file():
+                shutil.copy(file, self.folder)
+        text = (example / "case.toml").read_text()
+        for law in ('friction_angle = "25 deg", dilatancy_angle = "5 deg"', 'friction_angle = 0, fit = "plane_strain"'):  # the latter: a symmetric tangent
+            law = f'law = {{ type = "drucker_prager", cohesion = "20 kPa", {law} }}'
+            changed = text.replace('[[solid]]\ngroup = "soil_1"\n', f'[[solid]]\ngroup = "soil_1"\n{law}\n', 1)
+            self.assertIn(law, changed)
+            self.write("bonded = false\n" + re.sub("^duration = .*$", 'duration = "1.1 s"', changed, flags=re.M))
+            self.uplift("run", "case.toml", "-o", "out", "--no-step-check")
+            run = self.summary("out")["runs"][0]
+            self.assertEqual((run["status"], run["retries"]), ("completed", 0), law)
+            self.assertLess(run["energy_created_share"], 1e-10)
+            shutil.rmtree(self.folder / "out")
+
+
 if __name__ == "__main__":
     main()

@@ -22,6 +22,17 @@ constexpr int most_kept_points = 8;
 
 constexpr std::size_t most_amplitudes = 9;
 
+/// To the round-off of tangents. n x n.
+bool is_symmetric(int n, const double* a) {
+  double size = 0, difference = 0;
+  for (int i = 0; i < n; ++i)
+    for (int j = 0; j < n; ++j) {
+      size = std::max(size, std::abs(a[i + n * j]));
+      difference = std::max(difference, std::abs(a[i + n * j] - a[j + n * i]));
+    }
+  return difference <= 1e-7 * size;
+}
+
 SolidSection with_material(SolidSection section, const ElasticMaterial& material) {
   section.material = material;
   return section;
@@ -152,7 +163,7 @@ BulkResponse NonlinearSolid::balance_modes(const Vector& displacement, std::span
   Map amplitudes(now.data() + first_amplitude(), n);
   // round-off of the strain under a large rigid motion: 1e-13 of this is a few last digits of the displacement
   const double noise = 0.01 * law_->material().constrained() * displacement.cwiseAbs().maxCoeff() * node_gradient(scratch.gradient.front());
-  double share = least_elastic_share;
+  double share = least_elastic_share, floor = least_elastic_share;
   std::array<double, most_amplitudes> from, step;
   const auto work = [&] { return std::inner_product(step.begin(), step.begin() + n, scratch.mode_force.data(), 0.0); };
   for (int iteration = 0; iteration < 200; ++iteration) {
@@ -164,16 +175,25 @@ BulkResponse NonlinearSolid::balance_modes(const Vector& displacement, std::span
     if (iteration == 0 && !tangents)
       if (const BulkResponse response = evaluate(displacement, old, now, true, scratch); !response.converged) return response;
     find_mode_tangent(scratch, share);
+    // a line search wants forces that descend a convex function; else more of the elastic stiffness shortens a step
+    const bool associated = is_symmetric(n, scratch.mode_stiffness.data());
     std::copy_n(scratch.mode_force.data(), n, step.begin());
     std::copy_n(amplitudes.data(), n, from.begin());
     if (!small::gauss_solve<0>(n, scratch.mode_stiffness.data(), step.data())) break;
-    LineSearch search(work());
+    LineSearch search(associated ? work() : 0);
     do {
       for (int k = 0; k < n; ++k) amplitudes[k] = from[static_cast<std::size_t>(k)] - search.share() * step[static_cast<std::size_t>(k)];
       if (const BulkResponse response = evaluate(displacement, old, now, true, scratch); !response.converged) return response;
     } while (scratch.mode_force.norm() > rest / 2 && search.goes_on(work()));
     if (scratch.mode_force.norm() >= rest && rest <= 1e-10 * scale) return {};  // round-off
-    share = search.share() < 0.1 ? std::clamp(10 * share, 1e-6, 0.1) : std::max(share / 10, least_elastic_share);
+    if (associated) {
+      share = search.share() < 0.1 ? std::clamp(10 * share, 1e-6, 0.1) : std::max(share / 10, least_elastic_share);
+    } else if (scratch.mode_force.norm() < rest) {
+      share = std::max(share / 2, floor);
+    } else {
+      share = std::clamp(4 * share, 0.01, 2.0);
+      floor = std::clamp(2 * floor, 1e-3, 0.5);
+    }
   }
   return {false, "the incompatible modes of a yielding solid element find no balance in 200 iterations"};
 }
