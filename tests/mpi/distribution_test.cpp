@@ -17,6 +17,19 @@ using namespace support;
 constexpr const char* petsc = "solver = { type = \"petsc\" }\n";
 constexpr const char* by_cells = "solver = { type = \"petsc\", options = \"-ksp_type cg -pc_type jacobi\" }\n";
 
+/// Materials of a raft and of what stands on it.
+const std::string building = R"([[solid]]
+group = "raft"
+E = 3e10
+poisson = 0.2
+density = 2500
+[[solid]]
+group = "block"
+E = 5e9
+poisson = 0.2
+density = 1000
+)";
+
 /// Rayleigh damping, solids with a damping of their own, an absorbing bottom, sides that are tied to each other, a raft that is rigid, a
 /// mast of beams with a mass and a dashpot, on a footing beside the soil.
 const std::string tied = R"([mesh.soil_box.soil]
@@ -38,17 +51,7 @@ group = "soil_1"
 shear_wave_speed = 250
 poisson = 0.3
 density = 1900
-[[solid]]
-group = "raft"
-E = 3e10
-poisson = 0.2
-density = 2500
-[[solid]]
-group = "block"
-E = 5e9
-poisson = 0.2
-density = 1000
-[[rigid]]
+)" + building + R"([[rigid]]
 name = "plate"
 group = "raft"
 [nodes]
@@ -236,17 +239,7 @@ poisson = 0.25
 density = 2000
 mass = "lumped"
 damping_beta = 1e-3
-[[solid]]
-group = "raft"
-E = 3e10
-poisson = 0.2
-density = 2500
-[[solid]]
-group = "block"
-E = 5e9
-poisson = 0.2
-density = 1000
-[[support]]
+)" + building + R"([[support]]
 group = "soil_bottom"
 fixed = ["ux", "uy", "uz"]
 [[support]]

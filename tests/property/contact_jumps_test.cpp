@@ -3,6 +3,7 @@
 #include <cmath>
 #include <random>
 
+#include "property/contact_laws.h"
 #include "unit/contact/contact_support.h"
 
 // Interfaces whose rows feel the jumps at a few nodes (JumpFactor), against the same interfaces with the filled factor C = W L alone.
@@ -10,21 +11,6 @@ namespace uplift::contact_test::contact_jumps_test {
 namespace {
 
 constexpr int nodes = 16, points = 60;
-
-struct Law {
-  const char* type;
-  double friction;  // 0: no shear
-};
-
-std::unique_ptr<const InterfaceLaw> law_of(const Law& law, double stiffness) {
-  auto table = std::make_shared<RawTable>();
-  const auto put = [&](const char* key, auto value) { table->entries.emplace_back(key, Raw{value, {}, key}); };
-  put("type", std::string(law.type));
-  put("K_n", stiffness);
-  if (std::string(law.type) == "sdm") put("F_u", 2e-6 * stiffness), put("G_f", 1e-11 * stiffness), put("F_c", -1e-8 * stiffness);
-  if (law.friction > 0) put("tangential", std::string("coulomb")), put("K_t", 0.5 * stiffness), put("friction", law.friction);
-  return make_part(law_catalog(), check_part(Raw{table, {}, "test"}, interface_behaviours()));
-}
 
 /// Every point feels the jumps at four nodes, with weights whose sum is one; jumps [1e-4 m] of a compliance that falls with the distance.
 JumpFactor jumps(std::mt19937& random) {

@@ -3,6 +3,7 @@
 #include <cmath>
 #include <random>
 
+#include "property/contact_laws.h"
 #include "unit/contact/contact_support.h"
 
 // Laws on independent rows: Newton's method with a kept factor (RowNewton), against a new factor in every iteration of the general method.
@@ -10,21 +11,6 @@ namespace uplift::contact_test::contact_rows_test {
 namespace {
 
 constexpr int points = 30, components = 3, rows = points * components, smooth = 16;
-
-struct Law {
-  const char* type;
-  double friction;  // 0: no shear
-};
-
-std::unique_ptr<const InterfaceLaw> law_of(const Law& law, double stiffness) {
-  auto table = std::make_shared<RawTable>();
-  const auto put = [&](const char* key, auto value) { table->entries.emplace_back(key, Raw{value, {}, key}); };
-  put("type", std::string(law.type));
-  put("K_n", stiffness);
-  if (std::string(law.type) == "sdm") put("F_u", 2e-6 * stiffness), put("G_f", 1e-11 * stiffness), put("F_c", -1e-8 * stiffness);
-  if (law.friction > 0) put("tangential", std::string("coulomb")), put("K_t", 0.5 * stiffness), put("friction", law.friction);
-  return make_part(law_catalog(), check_part(Raw{table, {}, "test"}, interface_behaviours()));
-}
 
 /// A regular factor of a compliance that falls with the distance of points [1e-4 m].
 Matrix factor_of(std::mt19937& random) {

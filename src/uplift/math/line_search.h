@@ -10,7 +10,7 @@ namespace uplift {
 /// the Illinois rule.
 class LineSearch {
  public:
-  /// `work`: at the beginning [J]. Where it is not positive, all is taken.
+  /// `work`: at the beginning, e.g. [J]. Where it is not positive, all is taken.
   explicit LineSearch(double work) : first_(work), low_work_(work) {}
   /// Of the step, to be tried next or taken.
   double share() const { return share_; }

@@ -4,12 +4,13 @@
 
 #include <algorithm>
 #include <cmath>
-#include <limits>
 
+#include "uplift/contact/newton/balance.h"
 #include "uplift/contact/newton/fused.h"
 #include "uplift/contact/newton/many.h"
 #include "uplift/contact/newton/row_newton.h"
 #include "uplift/contact/point_rows.h"
+#include "uplift/math/line_search.h"
 #include "uplift/math/small.h"
 
 namespace uplift {
@@ -61,8 +62,6 @@ class Newton {
   bool direction_of_few(double* d) const;
   void line_search(double start_slope, double end_slope);
   void shorten(double before);
-  double balance_scale();
-  double round_off() const;
 
   const InterfaceProblem& problem_;
   const ContactModel& model_;
@@ -286,23 +285,12 @@ bool Newton<R>::direction_of_few(double* d) const {
   return true;
 }
 
-/// Follows origin + alpha * direction by bisection on the directional derivative until it has fallen enough; the last point is left
-/// evaluated, with its Hessian.
+/// Follows origin + alpha * direction until the directional derivative has fallen enough; the last point is left evaluated, with its
+/// Hessian.
 template <int R>
 void Newton<R>::line_search(double start_slope, double end_slope) {
-  double low = 0, high = 1, low_slope = start_slope, high_slope = end_slope;
-  for (int trial = 0; trial < 30; ++trial) {
-    double alpha = 0.5 * (low + high);
-    if (high_slope > 0 && low_slope < 0) {  // regula falsi, kept away from the ends
-      const double secant = low - low_slope * (high - low) / (high_slope - low_slope);
-      alpha = std::clamp(secant, low + 0.1 * (high - low), high - 0.1 * (high - low));
-    }
-    move(alpha, false);
-    const double slope = dot(work_.gradient, work_.direction);
-    if (std::abs(slope) <= 0.5 * std::abs(start_slope)) break;
-    (slope < 0 ? low : high) = alpha;
-    (slope < 0 ? low_slope : high_slope) = slope;
-  }
+  LineSearch search(-start_slope);
+  for (double slope = end_slope; search.goes_on(-slope); slope = dot(work_.gradient, work_.direction)) move(search.share(), false);
   form_gradient(true);
 }
 
@@ -316,44 +304,6 @@ void Newton<R>::shorten(double before) {
     move(alpha, true);
     if (size_ <= (1 - 1e-3 * alpha) * before) break;
   }
-}
-
-/// Size of G that round-off in the openings alone makes: stiff joints magnify it.
-template <int R>
-double Newton<R>::round_off() const {
-  double sum = 0;
-  for (Index j = 0; j < r(); ++j) {
-    double component = std::abs(solution_.z[j]);
-    for (std::size_t b = 0; b < model_.blocks.size(); ++b) {
-      const Block& block = model_.blocks[b];
-      const int n = block.batch.points, components = block.batch.components;
-      for (int c = 0; c < components; ++c)
-        for (int i = 0; i < n; ++i) {
-          const Index row = block.first + c * n + i;
-          const double slope = std::abs(slope_of(b)[(c * components + c) * n + i]);
-          const double moved = std::abs(problem_.free_opening[row]) + std::abs(solution_.opening[row] - problem_.free_opening[row]);
-          component += std::abs(column(j)[row]) * (slope * moved + std::abs(solution_.force[row]));
-        }
-    }
-    sum += component * component;
-  }
-  return std::numeric_limits<double>::epsilon() * std::sqrt(sum);
-}
-
-/// What the balance is measured against: the largest of |z| and |C^T p|. In dynamics C^T p = G - z; in statics the closed joint is taken
-/// back in G.
-template <int R>
-double Newton<R>::balance_scale() {
-  const double *z = solution_.z.data(), *g = work_.gradient.data();
-  double scale = 0;
-  if (model_.shift.size() > 0) {
-    work_.direction.setZero();
-    small::add_transposed<R>(rows_, r(), column(0), rows_, solution_.force.data(), work_.direction.data());
-    for (Index i = 0; i < r(); ++i) scale = std::max({scale, std::abs(z[i]), std::abs(work_.direction[i])});
-  } else {
-    for (Index i = 0; i < r(); ++i) scale = std::max({scale, std::abs(z[i]), std::abs(g[i] - z[i])});
-  }
-  return scale;
 }
 
 template <int R>
@@ -371,19 +321,14 @@ Outcome Newton<R>::solve(int done) {
   look(true);
   for (outcome.iterations = done; outcome.iterations < options_.most_iterations; ++outcome.iterations) {
     if (!std::isfinite(size_)) {
-      outcome.why = "the interface forces are not finite";
-      for (const Block& block : model_.blocks)
-        if (block.footprint && !solution_.force.segment(block.first, block.rows()).allFinite())
-          outcome.why = fmt::format(
-              "the ground under \"{}\" has no state for this motion: its bearing capacity is exhausted, or its footing "
-              "lands on an edge",
-              block.name);
+      outcome.why = why_not_finite(problem_, solution_);
       return outcome;
     }
-    const double reference = balance_scale();
+    const double reference = balance_scale(problem_, work_, solution_);
     outcome.residual = size_ / std::max(reference, 1e-300);
     if (size_ <= options_.tolerance * reference || size_ == 0 ||
-        (outcome.iterations >= enough && (!large || outcome.residual <= 1e-9) && size_ <= noise * round_off())) {
+        (outcome.iterations >= enough && (!large || outcome.residual <= 1e-9) &&
+         size_ <= noise * balance_round_off(problem_, work_, solution_))) {
       outcome.converged = true;
       work_.follows = predictable;
       work_.bent = false;
@@ -421,13 +366,9 @@ Outcome Newton<R>::solve(int done) {
 /// Many coordinates: by rows first where that suits.
 Outcome solve_many(const InterfaceProblem& problem, const AugmentedForce& augmented, const NewtonOptions& options, NewtonWork& work,
                    InterfaceSolution& solution) {
-  int spent = 0, done = 0;
-  if (augmented.multiplier == nullptr && RowNewton::suits(*problem.model)) {
-    if (work.rows == nullptr) work.rows = std::make_unique<RowNewton>();
-    if (static_cast<RowNewton&>(*work.rows).solve(problem, options.tolerance, work, solution, spent)) done = spent;
-  }
-  Outcome outcome = Newton<0>(problem, augmented, options, work, solution).solve(done);
-  outcome.iterations += spent - done;
+  const RowNewton::Result by_rows = augmented.multiplier == nullptr ? solve_by_rows(problem, options, work, solution) : RowNewton::Result{};
+  Outcome outcome = Newton<0>(problem, augmented, options, work, solution).solve(by_rows.arrived ? by_rows.iterations : 0);
+  if (!by_rows.arrived) outcome.iterations += by_rows.iterations;
   return outcome;
 }
 

@@ -4,6 +4,7 @@
 #include <cmath>
 
 #include "uplift/contact/point_rows.h"
+#include "uplift/math/line_search.h"
 #include "uplift/math/small.h"
 
 namespace uplift {
@@ -100,6 +101,19 @@ bool RowNewton::factorise(const Vector& slopes) {
   return valid_;
 }
 
+/// k times the changes of the openings; both may be the same vector.
+void RowNewton::slope_product(const Vector& slopes, const Vector& moved, Vector& force) const {
+  for (const Place& at : places_) {
+    double step[most_components];
+    for (int c = 0; c < at.components; ++c) step[c] = moved[at.first + c * at.stride];
+    for (int a = 0; a < at.components; ++a) {
+      double sum = 0;
+      for (int c = 0; c < at.components; ++c) sum += slopes[at.slope + (a * at.components + c) * at.stride] * step[c];
+      force[at.first + a * at.stride] = sum;
+    }
+  }
+}
+
 /// Newton's direction in openings and forces, or that of the chord.
 bool RowNewton::direction(const Vector& slopes, InterfaceSystems& counts) {
   const double contraction = valid_ && !slow_ ? of_change * change_of_slopes(slopes) : 1;
@@ -111,15 +125,7 @@ bool RowNewton::direction(const Vector& slopes, InterfaceSystems& counts) {
   lu_.solve(part_.data());
   sum_.setZero();
   for (Index i = 0; i < n; ++i) sum_[rows_[static_cast<std::size_t>(i)]] = part_[i];
-  for (const Place& at : places_) {
-    double step[most_components];
-    for (int c = 0; c < at.components; ++c) step[c] = sum_[at.first + c * at.stride];
-    for (int a = 0; a < at.components; ++a) {
-      double pull = 0;
-      for (int c = 0; c < at.components; ++c) pull += slopes_[at.slope + (a * at.components + c) * at.stride] * step[c];
-      sum_[at.first + a * at.stride] = pull;
-    }
-  }
+  slope_product(slopes_, sum_, sum_);
   force_step_ = rest_ + sum_;
   opening_step_.noalias() = compliance_ * force_step_;
   opening_step_ *= -1;
@@ -141,42 +147,22 @@ void RowNewton::look(double alpha, NewtonWork& work, InterfaceSolution& solution
   rest_ = solution.force - force_;
 }
 
-/// As in newton.cpp, with G . d = s . dg.
-void RowNewton::search_line(double start_slope, double end_slope, NewtonWork& work, InterfaceSolution& solution) {
-  double low = 0, high = 1, low_slope = start_slope, high_slope = end_slope;
-  for (int trial = 0; trial < 30; ++trial) {
-    double alpha = 0.5 * (low + high);
-    if (high_slope > 0 && low_slope < 0) {  // regula falsi, kept away from the ends
-      const double secant = low - low_slope * (high - low) / (high_slope - low_slope);
-      alpha = std::clamp(secant, low + 0.1 * (high - low), high - 0.1 * (high - low));
-    }
-    look(alpha, work, solution);
-    const double slope = rest_.dot(opening_step_);
-    if (std::abs(slope) <= 0.5 * std::abs(start_slope)) return;
-    (slope < 0 ? low : high) = alpha;
-    (slope < 0 ? low_slope : high_slope) = slope;
-  }
-}
-
-/// Iterations until s is round-off. `linearised`: s belongs to the tangents of the laws at another opening.
-bool RowNewton::arrive(double tolerance, int most, bool linearised, NewtonWork& work, InterfaceSolution& solution, int& iterations) {
+/// Iterations until s is round-off. In the first one s belongs to the tangents of the laws at another opening.
+bool RowNewton::arrive(double tolerance, NewtonWork& work, InterfaceSolution& solution, int& iterations) {
   measure();
-  for (int k = 0; k < most; ++k) {
+  for (int k = 0; k < most_iterations; ++k) {
     if (!std::isfinite(size_)) return false;
     const double reference = std::sqrt(std::max(0.0, force_.dot(problem_->free_opening - opening_)));  // |z|
-    if (!(k == 0 && linearised) && size_ <= tolerance * reference) return true;
+    if (k > 0 && size_ <= tolerance * reference) return true;
     const double before = size_;
     aim_ = tolerance * reference;
     if (!direction(work.slope, solution.systems)) return false;
     ++iterations;
-    const double start_slope = rest_.dot(opening_step_);
+    LineSearch search(k > 0 && k < patience ? -rest_.dot(opening_step_) : 0);  // G . d = s . dg
     origin_force_ = force_;
     origin_opening_ = opening_;
-    look(1, work, solution);
-    if (k > 0 || !linearised) {
-      const double end_slope = rest_.dot(opening_step_);
-      if (k < patience && start_slope < 0 && end_slope > 0.5 * std::abs(start_slope)) search_line(start_slope, end_slope, work, solution);
-    }
+    do look(search.share(), work, solution);
+    while (search.goes_on(-rest_.dot(opening_step_)));
     measure();
     slow_ = size_ > 0.3 * before;
     if (size_ <= 1e-10 * reference && slow_) return true;  // round-off
@@ -199,35 +185,33 @@ void RowNewton::guess(NewtonWork& work, InterfaceSolution& solution) {
   origin_opening_.noalias() = compliance_ * force_;
   origin_opening_ = problem.free_opening - origin_opening_;
   opening_step_ = origin_opening_ - opening_;
-  for (const Place& at : places_)
-    for (int a = 0; a < at.components; ++a) {
-      double pull = 0;
-      for (int c = 0; c < at.components; ++c)
-        pull += work.slope[at.slope + (a * at.components + c) * at.stride] * opening_step_[at.first + c * at.stride];
-      rest_[at.first + a * at.stride] = pull;
-    }
+  slope_product(work.slope, opening_step_, rest_);
   opening_ = origin_opening_;
 }
 
-bool RowNewton::leave(bool arrived, InterfaceSolution& solution) {
-  follows_ = arrived;
-  if (arrived) {
-    solution.z.noalias() = problem_->model->factor.transpose() * solution.force;
+RowNewton::Result RowNewton::solve(const InterfaceProblem& problem, double tolerance, NewtonWork& work, InterfaceSolution& solution) {
+  Result result;
+  begin(problem);
+  kept_ = solution.z;
+  if (!problem.free_opening.allFinite()) return result;
+  guess(work, solution);
+  follows_ = result.arrived = arrive(0.1 * tolerance, work, solution, result.iterations);
+  if (result.arrived) {
+    solution.z.noalias() = problem.model->factor.transpose() * solution.force;
     solution.z *= -1;
-    from_ = problem_->from;
+    from_ = problem.from;
     end_ = opening_;
   } else {
     solution.z = kept_;
   }
-  return arrived;
+  return result;
 }
 
-bool RowNewton::solve(const InterfaceProblem& problem, double tolerance, NewtonWork& work, InterfaceSolution& solution, int& iterations) {
-  begin(problem);
-  kept_ = solution.z;
-  if (!problem.free_opening.allFinite()) return false;
-  guess(work, solution);
-  return leave(arrive(0.1 * tolerance, most_iterations, true, work, solution, iterations), solution);
+RowNewton::Result solve_by_rows(const InterfaceProblem& problem, const NewtonOptions& options, NewtonWork& work,
+                                InterfaceSolution& solution) {
+  if (!RowNewton::suits(*problem.model)) return {};
+  if (work.rows == nullptr) work.rows = std::make_unique<RowNewton>();
+  return static_cast<RowNewton&>(*work.rows).solve(problem, options.tolerance, work, solution);
 }
 
 }  // namespace uplift

@@ -10,7 +10,7 @@ namespace uplift {
 ///     g = free opening - F P always,        s = p(g) - P, zero at the solution        F = C C^T
 ///     (I + F k) dg = -F s        dP = s + k dg
 /// Openings and forces are changed by one product with F each, the laws give p and k, and s has only entries where a law bends on its way.
-/// G = C^T s of Newton's method in z (newton.h), so that |G|^2 = s . F s, and G . d = s . dg: the line search is the same.
+/// G = C^T s of Newton's method in z (newton.h), so that |G|^2 = s . F s, and G . d = s . dg: the line search is by the same slope.
 ///
 /// The matrix has the rows of points whose force depends on their opening (the others are open), and its factor is kept, over iterations
 /// and steps, while no slope has left that of the factor by much: the iteration is then that of a chord. It begins where the points come to
@@ -21,9 +21,13 @@ class RowNewton final : public MethodWork {
   static constexpr Index most_rows = 400;
   static bool suits(const ContactModel&);
 
-  /// Solves from the guess in solution.z, or from the last step; `iterations` counts. Leaves z, forces and slopes at the solution; false,
-  /// with the guess in its place, where it does not arrive.
-  bool solve(const InterfaceProblem&, double tolerance, NewtonWork&, InterfaceSolution&, int& iterations);
+  struct Result {
+    bool arrived = false;
+    int iterations = 0;
+  };
+  /// Solves from the guess in solution.z, or from the last step. Leaves z, forces and slopes at the solution; the guess in its place where
+  /// it does not arrive.
+  Result solve(const InterfaceProblem&, double tolerance, NewtonWork&, InterfaceSolution&);
 
  private:
   struct Place {                             // of a point
@@ -34,12 +38,11 @@ class RowNewton final : public MethodWork {
   void guess(NewtonWork&, InterfaceSolution&);
   double change_of_slopes(const Vector& slopes) const;
   bool factorise(const Vector& slopes);
+  void slope_product(const Vector& slopes, const Vector& moved, Vector& force) const;
   bool direction(const Vector& slopes, InterfaceSystems& counts);
   void look(double alpha, NewtonWork&, InterfaceSolution&);
   void measure();
-  void search_line(double start_slope, double end_slope, NewtonWork&, InterfaceSolution&);
-  bool arrive(double tolerance, int most, bool linearised, NewtonWork&, InterfaceSolution&, int& iterations);
-  bool leave(bool arrived, InterfaceSolution&);
+  bool arrive(double tolerance, NewtonWork&, InterfaceSolution&, int& iterations);
 
   const InterfaceProblem* problem_ = nullptr;
   SeenModel seen_;
@@ -56,5 +59,8 @@ class RowNewton final : public MethodWork {
   Vector from_, end_;                              // the last step
   double aim_ = 0, size_ = 0;                      // |G|
 };
+
+/// By RowNewton where that suits the problem, from the work space of Newton's method.
+RowNewton::Result solve_by_rows(const InterfaceProblem&, const NewtonOptions&, NewtonWork&, InterfaceSolution&);
 
 }  // namespace uplift
