@@ -54,9 +54,12 @@ void plane_rows_of_triangles(benchmark::State& state) {
 void space_tetrahedra(benchmark::State& state) {
   cut_cells(state, box(lines(55), lines(55), lines(55), Cell::tet4), {0.2, 0.1, 1}, 33.3);
 }
+void tetrahedra_every_cell(benchmark::State& state) {
+  cut_cells(state, box(lines(409), lines(409), lines(1), Cell::tet4), {0, 0, 1}, 0.4);
+}
 /// Less cells: the rules of parts in simplices take 10 to 40 kB a cell.
 void space_every_cell_inclined(benchmark::State& state) {
-  cut_cells(state, box(lines(100), lines(100), lines(1)), {0.003, 0.002, 1}, 0.4);
+  cut_cells(state, box(lines(500), lines(500), lines(1)), {0.0006, 0.0004, 1}, 0.65);
 }
 void space_every_cell_warped(benchmark::State& state) {
   Mesh mesh = box(lines(100), lines(100), lines(1));
@@ -74,6 +77,7 @@ BENCHMARK(space_inclined)->Iterations(1)->Unit(benchmark::kSecond);
 BENCHMARK(space_tetrahedra)->Iterations(1)->Unit(benchmark::kSecond);
 BENCHMARK(plane_every_cell)->Iterations(1)->Unit(benchmark::kSecond);
 BENCHMARK(space_every_cell)->Iterations(1)->Unit(benchmark::kSecond);
+BENCHMARK(tetrahedra_every_cell)->Iterations(1)->Unit(benchmark::kSecond);
 BENCHMARK(space_every_cell_inclined)->Iterations(1)->Unit(benchmark::kSecond);
 BENCHMARK(space_every_cell_warped)->Iterations(1)->Unit(benchmark::kSecond);
 

@@ -22,14 +22,16 @@ PlaneSide side_of_cell(const HalfSpace& space, std::span<const Vec3> corners, do
 
 /// The part of a linear cell within half-spaces.
 struct ClippedCell {
-  CellRule rule;             // in local coordinates; weights in the measure of the reference cell
-  Cell piece = Cell::point;  // it is divided into cells of this type
+  Cell piece = Cell::point;   // it is divided into cells of this type
+  CellRule rule;              // of a box, in local coordinates; weights in the measure of the reference cell. Empty: see rule_in_simplices
+  std::vector<Vec3> corners;  // m; of the pieces, piece after piece; none when nothing is left
 };
 /// Where the cell has parallel sides and every plane is parallel to two of them, the part is a box: one piece, and a Gauss rule that is as
-/// good as that of the whole cell. Else it is divided into simplices; their rules are exact for the mass of cells in the plane with
-/// parallel sides and for the stiffness of all cells with parallel sides. Adds the corners [m] of the pieces, piece after piece: none when
-/// nothing is left.
-ClippedCell clip_cell(const PlacedCell& cell, std::span<const HalfSpace> within, double tolerance, std::vector<Vec3>& corners);
+/// good as that of the whole cell. Else it is divided into simplices.
+ClippedCell clip_cell(const PlacedCell& cell, std::span<const HalfSpace> within, double tolerance);
+/// The rule over simplices in a cell, from the corners of one after the other [m]; exact for the mass of cells in the plane with parallel
+/// sides and for the stiffness of all cells with parallel sides.
+CellRule rule_in_simplices(const PlacedCell& cell, std::span<const Vec3> corners);
 /// Whether nothing is left.
 bool is_clipped_away(const PlacedCell& cell, std::span<const HalfSpace> within, double tolerance);
 

@@ -187,13 +187,8 @@ void OneCut::add_own_doubles(const MadeCells& made) {
 }
 
 void OneCut::set_part(CellId id, const PlacedCell& before, std::span<const HalfSpace> within, double tolerance) {
-  std::vector<Vec3>& corners = work_.pieces.all;
-  const std::size_t first = corners.size();
-  ClippedCell clipped = clip_cell(before, within, tolerance, corners);
-  mesh_.parts[id] = {std::move(clipped.rule), clipped.piece, {}};
-  const std::size_t number = at(mesh_.parts.number(id));
-  if (work_.pieces.part.size() <= number) work_.pieces.part.resize(number + 1);
-  work_.pieces.part[number] = {first, corners.size() - first};
+  ClippedCell clipped = clip_cell(before, within, tolerance);
+  mesh_.parts[id] = {clipped.piece, std::move(clipped.rule), std::move(clipped.corners), {}};
 }
 
 /// `placed`: the same cell as `before`, null where nothing is cut.
@@ -310,13 +305,11 @@ void OneCut::add_beside(CellId cell, std::vector<Vec3> corners, const CutOutline
 
 /// Room for what the cut makes of the cells, since it may be more than half of the mesh; returns the number of cells that become two.
 std::size_t OneCut::reserve() {
-  std::size_t parts = 0, corners = 0, faces = 0;
+  std::size_t parts = 0, faces = 0;
   std::vector<std::size_t> copies(mesh_.blocks.size(), 0);
   for (std::size_t k = 0; k < halves_.size(); ++k) {
     const CellId id = sides_.cells()[k];
-    const std::size_t pieces = (halves_[k].lower && !halves_[k].lower_whole) + (halves_[k].upper && !halves_[k].upper_whole);
-    parts += pieces;
-    corners += pieces * mesh_.cell(id).size();
+    parts += static_cast<std::size_t>(halves_[k].lower && !halves_[k].lower_whole) + (halves_[k].upper && !halves_[k].upper_whole);
     if (!halves_[k].lower || !halves_[k].upper) continue;
     ++faces, ++copies[at(id.block)];
   }
@@ -327,8 +320,6 @@ std::size_t OneCut::reserve() {
     removed_[b].reserve(count);
   }
   mesh_.parts.reserve(parts);
-  work_.pieces.part.reserve(work_.pieces.part.size() + parts);
-  work_.pieces.all.reserve(work_.pieces.all.size() + corners);
   return faces;
 }
 
@@ -404,7 +395,7 @@ std::vector<std::vector<CutFace>> cut(Mesh& mesh, const std::vector<CutPlane>& p
   }
   compact(work, faces, beside);
   if (free != nullptr) *free = std::move(beside);
-  add_pieces(work.pieces, work.mesh);
+  add_pieces(work.mesh);
   mesh = std::move(work.mesh);
   return faces;
 }

@@ -127,7 +127,7 @@ void CutFilling::find_signs() {
 
 /// What an earlier plane has left of a cell lies on one side of this one, and within its outline or outside of it.
 Halves CutFilling::halves_of_part(CellId id) const {
-  const std::span<const Vec3> corners = work_.pieces.of(mesh_.parts.number(id));
+  const std::span<const Vec3> corners = mesh_.part(id)->corners;
   const double tolerance = before(id).tolerance;
   const PlaneSide side = side_of_cell(plane_.below, corners, tolerance);
   Halves halves{side == PlaneSide::inside, false};

@@ -15,8 +15,7 @@ namespace uplift {
 struct CutWork {
   Mesh mesh;
   std::vector<std::vector<bool>> removed = {};  // of each cell
-  PieceCorners pieces = {};
-  std::set<CellId> lines = {};  // beams and points, no faces of cells
+  std::set<CellId> lines = {};                  // beams and points, no faces of cells
 };
 
 /// Removes marked cells and nodes that nothing uses.

@@ -39,9 +39,10 @@ struct Group {
 
 /// What a plane leaves of a cell that it cuts (mesh/cut.h): the cell's nodes and shape functions, integrated over one side of the plane.
 struct CellPart {
-  CellRule rule;             // over the part, in the cell's local coordinates; the weights add up to the part's share of the reference cell
-  Cell piece = Cell::point;  // the part itself, for drawings: cells of this type
-  std::vector<int> nodes = {};  // of the pieces, piece after piece: nodes of the mesh, also followers
+  Cell piece = Cell::point;        // it is divided into cells of this type
+  CellRule rule;                   // of a part that is one box; empty: see rule_of_part (mesh/parts.h)
+  std::vector<Vec3> corners = {};  // m; of the pieces, piece after piece
+  std::vector<int> nodes = {};     // of the pieces, for drawings: nodes of the mesh, also followers
 };
 
 /// The parts of the cells of a mesh. A part has a number, which it keeps while the numbers of cells change.
@@ -51,8 +52,7 @@ class CellParts {
   const CellPart* find(CellId id) const;  // null: the cell is whole
   int number(CellId id) const;            // of the cell's part, -1: none
   CellPart& operator[](CellId id);        // made when it is not there
-  CellPart& numbered(int number) { return parts_[static_cast<std::size_t>(number)]; }
-  std::vector<CellId> cells() const;  // that have parts, ascending
+  std::vector<CellId> cells() const;      // that have parts, ascending
   void erase(CellId id);
   /// Room for so many more.
   void reserve(std::size_t more) { parts_.reserve(parts_.size() + more); }

@@ -5,6 +5,7 @@
 #include <cassert>
 #include <cmath>
 
+#include "uplift/mesh/clip.h"
 #include "uplift/mesh/index.h"
 #include "uplift/mesh/placed_cell.h"
 
@@ -75,7 +76,16 @@ bool is_inside_out(int dimension, Cell piece, std::span<const Vec3> x) {
 
 }  // namespace
 
-void add_pieces(const PieceCorners& corners, Mesh& mesh) {
+CellRule rule_of_part(const Mesh& mesh, CellId id) {
+  const CellPart& part = *mesh.part(id);
+  if (!part.rule.weight.empty() || part.corners.empty()) return part.rule;
+  std::array<Vec3, max_corners> places;
+  const std::span<const int> nodes = mesh.cell(id);
+  for (std::size_t a = 0; a < nodes.size(); ++a) places[a] = mesh.nodes[at(nodes[a])];
+  return rule_in_simplices({mesh.type(id), std::span(places).first(nodes.size())}, part.corners);
+}
+
+void add_pieces(Mesh& mesh) {
   const std::vector<CellId> cells = mesh.parts.cells();
   Followers followers(mesh, cells.size());
   std::vector<std::pair<Vec3, int>> known;  // pieces share their corners
@@ -87,14 +97,15 @@ void add_pieces(const PieceCorners& corners, Mesh& mesh) {
     known.clear();
     for (std::size_t a = 0; a < nodes.size(); ++a) known.emplace_back(places[a], nodes[a]);
     const auto node_at = [&](const Vec3& place) {
-      for (const auto& [there, node] : known)
-        if (there[0] == place[0] && there[1] == place[1] && there[2] == place[2]) return node;
+      for (std::size_t k = known.size(); k-- > 0;) {  // the pieces before have most of them
+        const Vec3& there = known[k].first;
+        if (there[0] == place[0] && there[1] == place[1] && there[2] == place[2]) return known[k].second;
+      }
       const int node = followers.node_at(nodes, cell.shares(cell.local(place)), place);
       return known.emplace_back(place, node).second;
     };
-    const int number = mesh.parts.number(id);
-    CellPart& part = mesh.parts.numbered(number);
-    const std::span<const Vec3> all = corners.of(number);
+    CellPart& part = mesh.parts[id];
+    const std::span<const Vec3> all = part.corners;
     const auto n = at(info(part.piece).nodes);
     part.nodes.reserve(all.size());
     for (std::size_t first = 0; first < all.size(); first += n) {

@@ -47,7 +47,7 @@ Content content(const Mesh& mesh, const std::string& group) {
     const Cell cell = mesh.type(id);
     std::vector<Vec3> x;
     for (const int node : mesh.cell(id)) x.push_back(mesh.nodes[static_cast<std::size_t>(node)]);
-    const CellRule rule = mesh.part(id) ? mesh.part(id)->rule : cell_rule(cell, 5);
+    const CellRule rule = mesh.part(id) ? rule_of_part(mesh, id) : cell_rule(cell, 5);
     for (std::size_t p = 0; p < rule.point.size(); ++p) {
       EXPECT_GT(rule.weight[p], 0);
       const CellShape shape = cell_shape(cell, rule.point[p]);
@@ -104,7 +104,7 @@ TEST(Cut, BothSidesFillTheWhole) {
 double power(const Mesh& mesh, const std::string& group, const std::array<int, 3>& exponent) {
   double sum = 0;
   for (const CellId id : mesh.groups.at(group).cells) {
-    const CellRule& rule = mesh.part(id)->rule;
+    const CellRule rule = rule_of_part(mesh, id);
     for (std::size_t p = 0; p < rule.point.size(); ++p)
       sum += rule.weight[p] * std::pow(rule.point[p].x(), exponent[0]) * std::pow(rule.point[p].y(), exponent[1]) *
              std::pow(rule.point[p].z(), exponent[2]);
@@ -305,7 +305,7 @@ TEST(Cut, FacesOfAWallStayWithTheGround) {
   double least = 1, most = 0;
   for (const CellId id : mesh.groups.at("wall").cells) {
     EXPECT_GE(Sides(mesh, mesh.groups.at("volume").cells).find(Cell::line2, mesh.cell(id)), 0);
-    const CellRule rule = mesh.part(id) ? mesh.part(id)->rule : cell_rule(Cell::line2, 5);
+    const CellRule rule = mesh.part(id) ? rule_of_part(mesh, id) : cell_rule(Cell::line2, 5);
     for (const Vec3& point : rule.point) {
       const double y =
           cell_position(cell_shape(Cell::line2, point), std::vector<Vec3>{mesh.nodes[static_cast<std::size_t>(mesh.cell(id)[0])],

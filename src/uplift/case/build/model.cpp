@@ -216,8 +216,9 @@ void add_mesh(const Case& read, ModelBuilder& builder, CaseNames& names) {
     for (const CellId cell : solid.cells) {
       nodes.clear();
       for (const int node : mesh.cell(cell)) nodes.push_back(names.first_of_mesh + node);
-      const CellPart* part = mesh.part(cell);
-      builder.add_element(solid.filling->make({mesh.type(cell), nodes, coordinates, part ? &part->rule : nullptr}), solid.table->where());
+      const bool part = mesh.part(cell) != nullptr;
+      const CellRule rule = part ? rule_of_part(mesh, cell) : CellRule{};
+      builder.add_element(solid.filling->make({mesh.type(cell), nodes, coordinates, part ? &rule : nullptr}), solid.table->where());
     }
 }
 

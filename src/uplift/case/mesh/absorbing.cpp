@@ -1,5 +1,6 @@
 #include "uplift/base/text.h"
 #include "uplift/case/ground/ground.h"
+#include "uplift/mesh/parts.h"
 
 // Absorbing faces of the mesh and the waves that come in through them.
 namespace uplift {
@@ -19,10 +20,11 @@ std::shared_ptr<const TimeFunction> incident_velocity(const Values& incident, co
 
 namespace {
 
-/// Null: the face is whole.
-const CellRule* rule_of_part(const CaseSolids& solids, CellId face) {
-  const CellPart* part = solids.mesh().part(face);
-  return part ? &part->rule : nullptr;
+/// Null: the face is whole. `made` keeps the rule of a part.
+const CellRule* rule_if_part(const CaseSolids& solids, CellId face, CellRule& made) {
+  if (!solids.mesh().part(face)) return nullptr;
+  made = rule_of_part(solids.mesh(), face);
+  return &made;
 }
 
 /// The wave that comes in through the faces of a table: their pattern of forces, times its velocity.
@@ -33,8 +35,9 @@ void add_incident(const Values& faces, const Values& incident, ModelBuilder& bui
   std::vector<std::pair<int, double>> pattern;
   for (const CellId edge : solids.edges(faces, "group")) {
     const std::vector<int> nodes = names.nodes_of_cell(edge);
+    CellRule part;
     const AbsorbingFace face(solids.mesh().type(edge), nodes, names.coordinates,
-                             absorbing_ground(faces, solids.beside(edge)->beside(), names.space), rule_of_part(solids, edge));
+                             absorbing_ground(faces, solids.beside(edge)->beside(), names.space), rule_if_part(solids, edge, part));
     const Vector force = face.incident(motion);
     for (Index i = 0; i < force.size(); ++i)
       if (force[i] != 0)
@@ -51,7 +54,8 @@ void add_faces(const Values& root, ModelBuilder& builder, const CaseNames& names
       const CaseSolids& solids = names.mesh_for(table);
       for (const CellId edge : solids.edges(table, "group")) {
         const std::vector<int> nodes = names.nodes_of_cell(edge);
-        builder.add_element(entry->cover({solids.mesh().type(edge), nodes, names.coordinates, rule_of_part(solids, edge)}, table,
+        CellRule part;
+        builder.add_element(entry->cover({solids.mesh().type(edge), nodes, names.coordinates, rule_if_part(solids, edge, part)}, table,
                                          solids.beside(edge)->beside(), names.space),
                             table.where());
       }

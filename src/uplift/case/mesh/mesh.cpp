@@ -290,12 +290,11 @@ std::vector<std::pair<int, double>> tributary_areas(const CaseSolids& solids, co
 
 CellRule rule_on_face(const Mesh& mesh, CellId face, std::span<const int> nodes, int degree) {
   const Cell cell = mesh.type(face);
-  const CellPart* part = mesh.part(face);
-  if (!part) return cell_rule(cell, degree);
+  if (!mesh.part(face)) return cell_rule(cell, degree);
   std::vector<Vec3> before, now;
   for (const int node : mesh.cell(face)) before.push_back(mesh.nodes[at(node)]);
   for (const int node : nodes) now.push_back(mesh.nodes[at(node)]);
-  CellRule rule = part->rule;
+  CellRule rule = rule_of_part(mesh, face);
   for (Vec3& point : rule.point) point = local_coordinates(cell, now, cell_position(cell_shape(cell, point), before));
   return rule;
 }
