@@ -225,23 +225,38 @@ void adapt_laws(const Case& read, const RunSpec& spec, BuiltCase& built) {
   }
 }
 
-/// Diagonal of the box around places [m].
+/// m: the largest distance from the place that is farthest from the mean; the same when all places are turned.
 double extent(const std::vector<Place>& places) {
-  if (places.empty()) return 0;
-  Vec3 least = places.front(), most = least;
-  for (const Vec3& place : places) least = least.cwiseMin(place), most = most.cwiseMax(place);
-  return (most - least).norm();
+  Vec3 from = Vec3::Zero();
+  for (const Vec3& place : places) from += place / static_cast<double>(places.size());
+  double most = 0;
+  for (int sweep = 0; sweep < 2; ++sweep) {
+    const Vec3* farthest = nullptr;
+    most = 0;
+    for (const Vec3& place : places)
+      if (const double distance = (place - from).norm(); distance > most) most = distance, farthest = &place;
+    if (farthest != nullptr) from = *farthest;
+  }
+  return most;
 }
 
-/// A base of width B that turns by the limit theta opens by B theta at its toe: as far, everywhere, the displacement is no smaller beside
-/// the structure than there.
-double separation_limit(const Values& limits, const Model& model) {
-  if (limits.has("separation")) return limits.number("separation");
+/// m: the largest distance between points of the interfaces; of nodes, where there is one point.
+double base_size(const Model& model) {
   std::vector<Place> points, nodes;
   for (const Interface& interface : model.interfaces) points.insert(points.end(), interface.position.begin(), interface.position.end());
   for (const Node& node : model.nodes) nodes.push_back(node.position);
   const double base = extent(points);
-  return limits.number("rotation") * (base > 0 ? base : extent(nodes));
+  return base > 0 ? base : extent(nodes);
+}
+
+/// A base of width B that turns by the limit theta opens by B theta at its toe: as far, everywhere, the displacement is no smaller beside
+/// the structure than there. No gap is what is 1e-10 of its size, in all units of length alike.
+void set_limits(const Values& limits, const Model& model, RunPlan& plan) {
+  const double size = base_size(model);
+  const auto limit = [&](const char* key, double absent) { return limits.has(key) ? limits.number(key) : absent; };
+  plan.rotation_limit = limits.number("rotation");
+  plan.separation_limit = limit("separation", plan.rotation_limit * size);
+  plan.gap_tolerance = limit("gap_tolerance", size > 0 ? 1e-10 * size : 1e-9);
 }
 
 /// Tells of interfaces that were divided by their normals.
@@ -314,9 +329,7 @@ BuiltCase build(const Case& read, const RunSpec& spec) {
   find_shown(read, names, built);
   plan.created_limit = root.table("energy").number("created_limit");
   plan.stop_at_limit = root.table("energy").flag("stop_at_limit");
-  plan.rotation_limit = root.table("limits").number("rotation");
-  plan.separation_limit = separation_limit(root.table("limits"), built.model);
-  plan.gap_tolerance = root.table("limits").number("gap_tolerance");
+  set_limits(root.table("limits"), built.model, plan);
   for (const InterfaceFacts& facts : built.facts) plan.bases.push_back(facts.upper), plan.facets.push_back(facts.facets);
   for (std::size_t k = 0; k < built.facts.size(); ++k) plan.is_wall.push_back(k >= built.bases());
   note_divided(built);

@@ -196,7 +196,8 @@ class Planner {
     if (!root_.has("method")) edits.push_back({"method", method_.type()});
     edits.push_back({"method.tolerance", tolerance});
     if (has_number(method_, "gap_tolerance")) edits.push_back({"method.gap_tolerance", tighter("gap_tolerance")});
-    edits.push_back({"limits.gap_tolerance", 0.1 * root_.table("limits").number("gap_tolerance")});
+    const Values& limits = root_.table("limits");
+    if (limits.has("gap_tolerance")) edits.push_back({"limits.gap_tolerance", 0.1 * limits.number("gap_tolerance")});
     add("tighter", "tolerance", fmt::format("tolerance {:g}", tolerance), std::move(edits));
   }
 

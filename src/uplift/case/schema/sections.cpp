@@ -101,7 +101,11 @@ const Section& limits_section() {
                     "at the toe of a base of that width when it turns by the limit")
                  .positive()
                  .optional(),
-             number("gap_tolerance", "m", "a gap larger than this counts as uplifted").positive().standard(1e-9)}};
+             number("gap_tolerance", "m",
+                    "a gap larger than this counts as uplifted. Absent: 1e-10 of the largest distance between points of the interfaces (of "
+                    "nodes, where there is one point)")
+                 .positive()
+                 .optional()}};
   return s;
 }
 
