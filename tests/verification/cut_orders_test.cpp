@@ -75,6 +75,32 @@ Tilt raft(int n, double eccentricity, bool aligned) {
   return {(at_rest(result, "left") - at_rest(result, "right")) / width, at_rest(result, "base.uplifted_ratio")};
 }
 
+// Claim: the share of the points that are open is of order 1 in the cells, since a point changes as a whole: it is never off by more than
+// the half of a cell beside which the base opens, and does reach a quarter. The share that results state, of an opening that is linear
+// between the points, is of order 2 as the rotation is. Winkler base: 1 - sqrt(theta_u/theta) = (M/M_u - 1)/2.
+TEST(CutOrders, OpenShareOfARockingBlock) {
+  VERIFIES({"Cut elements", "Rocking block on tensionless springs: open share, order in the cells", "Closed form of the Winkler base"});
+  const std::vector<int> all{12, 24, 48, 96};
+  std::vector<double> size, worst(all.size(), 0.0), counted(all.size(), 0.0);
+  for (const int cells : all) size.push_back(3.0 / cells);
+  for (const double ratio : {1.3, 1.6, 1.9, 2.2, 2.45}) {
+    for (std::size_t i = 0; i < all.size(); ++i) {
+      const BlockAtRest at = block_at_rest(ratio, 0.37, all[i]);
+      const double exact = (ratio - 1) / 2;
+      worst[i] = std::max(worst[i], std::abs(at.open - exact));
+      counted[i] = std::max(counted[i], std::abs(at.open_points - exact));
+    }
+  }
+  verified_case.curve("share of the points", size, counted);
+  verified_case.curve("share with linear openings", size, worst);
+  for (std::size_t i = 0; i < all.size(); ++i) {
+    VERIFY_LT("error of the share of the points over that of a cell", "1", counted[i] * all[i], 0.5 + 0.1) << all[i];
+    VERIFY_GT("error of the share of the points over that of a cell", "1", counted[i] * all[i], 0.25) << all[i];
+  }
+  VERIFY_NEAR("order of the share of the points", "1", order(size, counted), 1, 0.2);
+  VERIFY_NEAR("order of the share with linear openings", "1", order(size, worst), 2, 0.25);
+}
+
 // Claim: a raft on soil whose edge is a singularity of the pressure. Cut and aligned meshes of 1/4, 1/8, 1/16 m converge with order 1 to
 // the same rotation; the open shares of the finest ones agree.
 TEST(CutOrders, RaftOnSoil) {

@@ -60,10 +60,18 @@ inline std::vector<double> lines_with(double level, double top, int n) {
   return lines;
 }
 
-/// Rotation of a block on a base of the same material that the plane parts from it, on tensionless springs, over that at the beginning of
-/// uplift, 2 N/(k W^2), under N and M = ratio N W/6 at the top.
-inline double block_rotation(double ratio, double level, int cells, const std::string& more = {}, double young = 1e15) {
+/// A block on tensionless springs: its rotation over that at the beginning of uplift, 2 N/(k W^2); the share of its base that is open, as
+/// results state it and as the share of the points.
+struct BlockAtRest {
+  double rotation, open, open_points;
+};
+
+/// On a base of the same material that the plane parts from it, under N and M = ratio N W/6 at the top.
+inline BlockAtRest block_at_rest(double ratio, double level, int cells, const std::string& more = {}, double young = 1e15) {
   constexpr double width = 3, force = 1e6, k = 2e8;
+  std::string columns;
+  for (int point = 1; point <= cells + 1; ++point)
+    columns += fmt::format("[[output.history]]\nname = \"point{0}\"\ninterface = \"base\"\npoint = {0}\nquantity = \"opening\"\n", point);
   const std::string text =
       "title = \"block\"\n[mesh]\nfile = \"block.msh\"\n" + solid("volume", young, 0.2, 2000) + solid("block", young, 0.2, 2000) +
       "[[support]]\ngroup = \"bottom\"\nfixed = [\"ux\", \"uy\"]\n" +
@@ -72,9 +80,18 @@ inline double block_rotation(double ratio, double level, int cells, const std::s
           "factors = [{}, {}]\n",
           -force / width, 1 - ratio, 1 + ratio) +
       fmt::format("[[interface]]\nname = \"base\"\ncut = {{ through = [\"volume\"], level = {}, upper = \"block\"{} }}\n", level, more) +
-      fmt::format("law = {{ type = \"springs\", K_n = {}, K_t = {}, tangential = \"bonded\" }}\n", k, k) + at_rest_stages;
+      fmt::format("law = {{ type = \"springs\", K_n = {}, K_t = {}, tangential = \"bonded\" }}\n", k, k) + columns + at_rest_stages;
   const RunResult result = run_on(text, rectangle(uniform_lines(-1.5, 1.5, cells), uniform_lines(0, 1, 4)));
-  return std::abs(at_rest(result, "base.rotation")) / (2 * force / (k * width * width));
+  BlockAtRest found{std::abs(at_rest(result, "base.rotation")) / (2 * force / (k * width * width)), at_rest(result, "base.uplifted_ratio"),
+                    0};
+  for (int point = 0; point <= cells; ++point)
+    if (at_rest(result, fmt::format("point{}", point + 1)) > 0)
+      found.open_points += (point == 0 || point == cells ? 0.5 : 1) / static_cast<double>(cells);
+  return found;
+}
+
+inline double block_rotation(double ratio, double level, int cells, const std::string& more = {}, double young = 1e15) {
+  return block_at_rest(ratio, level, cells, more, young).rotation;
 }
 
 }  // namespace uplift::support

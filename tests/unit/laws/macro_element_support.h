@@ -98,18 +98,25 @@ class Footing {
   }
 };
 
-/// End of a leg of `legs`: rotation, M, settlement, H, u, accumulated settlement, dissipated energy: with the forces at the end of each
+/// A state of `path_of_legs`: rotation, M, settlement, H, u, accumulated settlement, dissipated energy: with the forces at the end of each
 /// step, and with their means over the step.
 struct Leg {
   double theta, m, w, h, u, accumulated, dissipated, by_means;
 };
 
-/// Legs 0 -> turn -> -turn -> turn at the vertical force n and H = M/arm, `steps` of equal size in each (plane; arm = 0: H = 0).
-inline std::vector<Leg> legs(const MacroParameters& p, double n, int steps, double arm, double turn) {
+/// At rest, then at the end of each step of the legs 0 -> turn -> -turn -> turn at the vertical force n and H = M/arm, `steps` of equal
+/// size in each (plane; arm = 0: H = 0).
+inline std::vector<Leg> path_of_legs(const MacroParameters& p, double n, int steps, double arm, double turn) {
   Footing footing(p, 3);
   footing.go({0, -n / p.elasticity.vertical, 0});
   std::vector<Leg> out;
   double by_means = 0;
+  const auto note = [&] {
+    const MacroState state = footing.state();
+    out.push_back({footing.opening[2], footing.force[2], -footing.opening[1], footing.force[0], footing.opening[0], state.accumulated,
+                   state.dissipated, by_means});
+  };
+  note();
   for (const double target : {turn, -turn, turn}) {
     const double from = footing.opening[2];
     for (int i = 1; i <= steps; ++i) {
@@ -117,12 +124,17 @@ inline std::vector<Leg> legs(const MacroParameters& p, double n, int steps, doub
       footing.hold(from + (target - from) * i / steps, n, arm);
       before.mean(footing.opening);
       by_means += before.dissipated(before.now) - before.dissipated(before.memory);
+      note();
     }
-    const MacroState state = footing.state();
-    out.push_back({footing.opening[2], footing.force[2], -footing.opening[1], footing.force[0], footing.opening[0], state.accumulated,
-                   state.dissipated, by_means});
   }
   return out;
+}
+
+/// The ends of the legs.
+inline std::vector<Leg> legs(const MacroParameters& p, double n, int steps, double arm, double turn) {
+  const std::vector<Leg> path = path_of_legs(p, n, steps, arm, turn);
+  const auto count = static_cast<std::size_t>(steps);
+  return {path[count], path[2 * count], path[3 * count]};
 }
 
 /// Random openings about the plastic ones: N from none to above V_s, shear and rotation up to `size` times those of set P1 at uplift.
