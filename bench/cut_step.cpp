@@ -1,13 +1,15 @@
 // What a dynamic step of a cut model costs beside that of an aligned joint: a raft on soil that rocks and lifts, in the plane and in space.
 // The aligned mesh has the same rows of cells, the one with the underside as a line of nodes; so both models have as many unknowns and,
-// with a level cut, as many points. In turns, in one process, least time of every piece of the run between two reports of progress. A step
-// includes records, energies and checks. Usage: bench_cut_step [ROUNDS [MODEL]], models from 1 on.
+// with a level cut, as many points. Beside inclined cuts stands a second aligned joint: about as many points and unknowns, in a mesh with
+// finer cells at the raft and longer ones elsewhere. In turns, in one process, least time of every piece of the run between two reports of
+// progress. A step includes records, energies and checks. Usage: bench_cut_step [ROUNDS [MODEL]], models from 1 on.
 #include <fmt/format.h>
 
 #include <algorithm>
 #include <chrono>
 #include <cmath>
 #include <cstdlib>
+#include <deque>
 #include <numeric>
 #include <string>
 #include <vector>
@@ -27,6 +29,9 @@ struct Raft {
   double soil = 10, depth = 4;  // m: width (in space also length) and depth
   int cells = 8;                // in a metre
   double slope = 0;             // of the cut
+  // > 0: an aligned joint with so many cells across the raft, beside it and in the depth of the soil
+  int fine = 0, beside = 0, deep = 0;
+  bool friction = false;  // Coulomb's, coefficient 0.7; else bonded
   const char* label = "";
 };
 constexpr double raft_width = 2, raft_height = 0.6, raft_force = 2e5;  // m, m, N (in the plane N/m)
@@ -39,10 +44,16 @@ struct OnMesh {
 OnMesh raft_on_soil(const Raft& raft, bool aligned) {
   const int d = raft.dimension;
   const int below = static_cast<int>(std::lround(raft.depth * raft.cells)), above = static_cast<int>(std::ceil(raft_height * raft.cells));
-  const std::vector<double> across = uniform_lines(-raft.soil / 2, raft.soil / 2, static_cast<int>(std::lround(raft.soil * raft.cells)));
+  std::vector<double> across = uniform_lines(-raft.soil / 2, raft.soil / 2, static_cast<int>(std::lround(raft.soil * raft.cells)));
+  if (raft.fine > 0) {
+    across = uniform_lines(-raft.soil / 2, -raft_width / 2, raft.beside);
+    for (const std::vector<double>& next :
+         {uniform_lines(-raft_width / 2, raft_width / 2, raft.fine), uniform_lines(raft_width / 2, raft.soil / 2, raft.beside)})
+      across.insert(across.end(), next.begin() + 1, next.end());
+  }
   std::vector<double> up;  // heights; a cut goes through a row
   if (aligned) {
-    up = uniform_lines(-raft.depth, 0, below);
+    up = uniform_lines(-raft.depth, 0, raft.fine > 0 ? raft.deep : below);
     for (int row = 1; row <= above; ++row) up.push_back(row * raft_height / above);
   } else {
     for (int row = 0; row < below + above; ++row) up.push_back(-raft.depth + row * (raft.depth + raft_height) / (below + above - 1));
@@ -93,7 +104,8 @@ OnMesh raft_on_soil(const Raft& raft, bool aligned) {
               fmt::format("[[support]]\ngroup = \"bottom\"\nfixed = [\"ux\", \"uy\"{}]\n", d == 2 ? "" : ", \"uz\"") +
               "[[function]]\nname = \"push\"\nshape = { type = \"harmonic\", frequency = 3 }\n" + loads +
               "[[interface]]\nname = \"base\"\n" + joint +
-              "law = { type = \"springs\", K_n = 1e9, K_t = 1e9, tangential = \"bonded\" }\n"
+              fmt::format("law = {{ type = \"springs\", K_n = 1e9, K_t = 1e9, tangential = {} }}\n",
+                          raft.friction ? "\"coulomb\", friction = 0.7" : "\"bonded\"") +
               "[damping]\nalpha = 1.0\nbeta = 1e-3\n"
               "[[stage]]\ntype = \"static\"\n[[stage]]\ntype = \"dynamic\"\n" +
               fmt::format("duration = {}\nstep = 2e-3\n", d == 2 ? 1.0 : 0.4);
@@ -134,12 +146,15 @@ Measured prepare(const OnMesh& from) {
 }
 
 void measure(const Raft& raft, int rounds) {
-  Measured aligned = prepare(raft_on_soil(raft, true)), cut = prepare(raft_on_soil(raft, false));
-  for (int round = 0; round < rounds; ++round) {
-    take_turn(aligned);
-    take_turn(cut);
-  }
-  for (const auto& [name, of] : {std::pair<const char*, const Measured&>{"aligned", aligned}, {"cut", cut}}) {
+  Raft plain = raft;
+  plain.fine = 0;
+  std::deque<std::pair<const char*, Measured>> all;
+  all.emplace_back("aligned", prepare(raft_on_soil(plain, true)));
+  all.emplace_back("cut", prepare(raft_on_soil(plain, false)));
+  if (raft.fine > 0) all.emplace_back("aligned, as many points", prepare(raft_on_soil(raft, true)));
+  for (int round = 0; round < rounds; ++round)
+    for (auto& [name, of] : all) take_turn(of);
+  for (const auto& [name, of] : all) {
     const Model& model = of.built.model;
     fmt::print(
         "{}, {}: {} unknowns, {} entries of the stiffness, {} points, {} steps, {:.2f} iterations a step, {:.0f} % lifted, {:.4g} us a "
@@ -147,7 +162,10 @@ void measure(const Raft& raft, int rounds) {
         raft.label, name, model.free(), model.stiffness.nonZeros(), model.interfaces.front().batch.points, of.steps, of.iterations,
         100 * of.lifted, 1e6 * of.seconds_per_step());
   }
-  fmt::print("{}: cut over aligned {:.3f} times\n", raft.label, cut.seconds_per_step() / aligned.seconds_per_step());
+  const double cut = all[1].second.seconds_per_step();
+  fmt::print("{}: cut over aligned {:.3f} times", raft.label, cut / all[0].second.seconds_per_step());
+  if (raft.fine > 0) fmt::print(", with as many points {:.3f} times", cut / all[2].second.seconds_per_step());
+  fmt::print("\n");
 }
 
 }  // namespace
@@ -159,10 +177,30 @@ int main(int count, char** words) {
   const std::vector<uplift::Raft> rafts{
       {.label = "plane, quadrilaterals, level"},
       {.cells = 16, .label = "plane, quadrilaterals of 1/16 m, level"},
-      {.slope = 0.007, .label = "plane, quadrilaterals, inclined"},
+      {.slope = 0.007, .fine = 32, .beside = 25, .deep = 30, .label = "plane, quadrilaterals, inclined"},
       {.cell = Cell::tri3, .label = "plane, triangles, level"},
       {.dimension = 3, .cell = Cell::hex8, .soil = 5, .depth = 2, .cells = 4, .label = "space, hexahedra, level"},
-      {.dimension = 3, .cell = Cell::hex8, .soil = 5, .depth = 2, .cells = 4, .slope = 0.007, .label = "space, hexahedra, inclined"}};
+      {.dimension = 3,
+       .cell = Cell::hex8,
+       .soil = 5,
+       .depth = 2,
+       .cells = 4,
+       .slope = 0.007,
+       .fine = 22,
+       .beside = 1,
+       .deep = 3,
+       .label = "space, hexahedra, inclined"},
+      {.dimension = 3,
+       .cell = Cell::hex8,
+       .soil = 5,
+       .depth = 2,
+       .cells = 4,
+       .slope = 0.007,
+       .fine = 22,
+       .beside = 1,
+       .deep = 3,
+       .friction = true,
+       .label = "space, hexahedra, inclined, friction"}};
   uplift::prepare_heap();
   for (std::size_t k = 0; k < rafts.size(); ++k)
     if (count < 3 || std::atoi(words[2]) == static_cast<int>(k) + 1) uplift::measure(rafts[k], rounds);
