@@ -39,7 +39,8 @@ class ResultTables(TableStore):
             separation: an interface that is open everywhere by more than this beyond its initial gap is separated: the
                 run ends. Absent: rotation times the largest distance between points of the interfaces (of nodes, where
                 there is one point), the gap at the toe of a base of that width when it turns by the limit [m], > 0 m.
-            gap_tolerance: a gap larger than this counts as uplifted [m], > 0 m; default 1e-09.
+            gap_tolerance: a gap larger than this counts as uplifted. Absent: 1e-10 of the largest distance between
+                points of the interfaces (of nodes, where there is one point) [m], > 0 m.
         """
         self._set("limits", {"rotation": rotation, "separation": separation, "gap_tolerance": gap_tolerance})
 
