@@ -24,6 +24,18 @@ class Followers {
     known_.reserve(expected);
   }
 
+  /// Room for what the other cells need, if they need as much as those that are done. Lists that grow would be written several times.
+  void expect(std::size_t done, std::size_t cells) {
+    const double more = 1.05 * static_cast<double>(cells - done) / static_cast<double>(done);
+    const auto make_room = [&](auto& list, std::size_t made) {
+      list.reserve(list.size() + static_cast<std::size_t>(more * static_cast<double>(made)));
+    };
+    make_room(mesh_.nodes, known_.size());
+    make_room(mesh_.followers, known_.size());
+    make_room(known_, known_.size());
+    make_room(terms_, terms_.size());
+  }
+
   int node_at(std::span<const int> nodes, const std::array<double, max_corners>& share, const Vec3& place) {
     assert(nodes.size() <= max_corners);
     std::array<Term, max_corners> key;
@@ -90,7 +102,9 @@ void add_pieces(Mesh& mesh) {
   Followers followers(mesh, cells.size());
   std::vector<std::pair<Vec3, int>> known;  // pieces share their corners
   std::array<Vec3, max_corners> places;
+  std::size_t done = 0;
   for (const CellId id : cells) {
+    if (done++ == cells.size() / 16 && done > 1000) followers.expect(done - 1, cells.size());
     const std::span<const int> nodes = mesh.cell(id);
     for (std::size_t a = 0; a < nodes.size(); ++a) places[a] = mesh.nodes[at(nodes[a])];
     const PlacedCell cell(mesh.type(id), std::span(places).first(nodes.size()));
