@@ -5,6 +5,7 @@
 
 #include "property/contact_laws.h"
 #include "unit/contact/contact_support.h"
+#include "uplift/contact/newton/row_newton.h"
 
 // Laws on independent rows: Newton's method with a kept factor (RowNewton), against a new factor in every iteration of the general method.
 namespace uplift::contact_test::contact_rows_test {
@@ -72,6 +73,46 @@ TEST(ContactRows, KeptFactorGivesOpeningsAndForcesOfNewFactors) {
       EXPECT_LT(opened, 23 * points) << law.type << seed;
     }
   EXPECT_LT(factored, factored_anew);
+}
+
+/// A base that rocks slowly on springs with bonded shear: what changes are the slopes of the normal rows of the points that open or close.
+TEST(ContactRows, FactorsHaveTheRowsThatChangeAlone) {
+  for (const bool average : {false, true}) {
+    std::mt19937 random(average ? 2 : 1);
+    Own anew, kept;
+    const Matrix factor = factor_of(random);
+    for (Own* own : {&anew, &kept}) {
+      own->laws.push_back(law_of({"springs", 0, "bonded"}, 1e7));
+      own->add("base", points, components, std::vector<double>(points, 0.5)).law = own->laws.back().get();
+      own->problem.old.setZero(own->laws.back()->num_history(components) * points);
+      own->set(factor, Vector::Zero(rows));
+      own->change().average = average;
+      own->change().scale = average ? 2 : 1;
+    }
+    anew.change().solver = InterfaceSolver::direct;
+    const auto newton = method("newton");
+    const auto anew_work = newton->make_work(), kept_work = newton->make_work();
+    InterfaceSolution a, b;
+    Index most_open = 0, order = 0;
+    for (int step = 0; step < 160; ++step) {
+      Vector moved = Vector::Zero(rows);  // opening, falling linearly over the points, and shear
+      for (Index i = 0; i < points; ++i) {
+        moved[i] = 1e-5 * std::cos(0.1 * step);
+        moved[2 * points + i] = 1e-5 * (std::sin(0.17 * step) * (static_cast<double>(2 * i) / points - 1) - 0.3);
+      }
+      anew.problem.free_opening = kept.problem.free_opening = moved;
+      ASSERT_TRUE(newton->solve(anew.problem, *anew_work, a).converged && newton->solve(kept.problem, *kept_work, b).converged) << step;
+      EXPECT_LT((a.opening - b.opening).norm(), 1e-9 * (moved.norm() + a.opening.norm())) << step;
+      EXPECT_LE(contact_residual(kept.problem, b), 1e-9) << step;
+      most_open = std::max<Index>(most_open, (b.opening.tail(points).array() > 0).count());
+      if (step >= 80) order = std::max(order, static_cast<const RowNewton&>(*static_cast<const NewtonWork&>(*kept_work).rows).order());
+      anew.problem.from = kept.problem.from = a.opening;
+      anew.problem.old = kept.problem.old = a.now;
+    }
+    EXPECT_GT(most_open, points / 3);
+    EXPECT_GT(order, 0);
+    EXPECT_LE(order, points) << "all rows but those of open points are " << rows - most_open << " at least";
+  }
 }
 
 }  // namespace uplift::contact_test::contact_rows_test

@@ -22,7 +22,6 @@ void Factored<Kind>::solve(const Eigen::Ref<const Matrix>& b, Eigen::Ref<Matrix>
 template class Factored<Eigen::LLT<Matrix>>;
 template class Factored<Eigen::LDLT<Matrix>>;
 template class Factored<Eigen::PartialPivLU<Matrix>>;
-template class Factored<Eigen::FullPivLU<Matrix>>;
 template class Factored<Eigen::HouseholderQR<Matrix>>;
 template class Factored<Eigen::ColPivHouseholderQR<Matrix>>;
 template class Factored<Eigen::CompleteOrthogonalDecomposition<Matrix>>;

@@ -36,7 +36,6 @@ class Factored {
 using Cholesky = Factored<Eigen::LLT<Matrix>>;
 using PivotedLdlt = Factored<Eigen::LDLT<Matrix>>;
 using PartialLu = Factored<Eigen::PartialPivLU<Matrix>>;
-using FullLu = Factored<Eigen::FullPivLU<Matrix>>;
 using Qr = Factored<Eigen::HouseholderQR<Matrix>>;
 using PivotedQr = Factored<Eigen::ColPivHouseholderQR<Matrix>>;
 using CompleteQr = Factored<Eigen::CompleteOrthogonalDecomposition<Matrix>>;

@@ -272,6 +272,7 @@ void Recorder::flush() {
 
 void Recorder::finish() {
   flush();
+  complete_peak();
   if (peak_frame_.displacement.size() == 0) return;
   const auto next = std::ranges::lower_bound(result_.frames, peak_frame_.time, {}, &Frame::time);
   if (next == result_.frames.end() || next->time != peak_frame_.time) result_.frames.insert(next, std::move(peak_frame_));
@@ -279,6 +280,7 @@ void Recorder::finish() {
 
 void Recorder::keep(RunState& run) {
   flush();
+  complete_peak();
   run.recorded_until = before_;
   run.peak_frame = peak_frame_;
   run.peak_uplift = peak_uplift_;
@@ -292,6 +294,7 @@ void Recorder::resume(const RunState& run) {
 
 void Recorder::picture(const State& state) {
   result_.frames.push_back(frame_of(state));
+  result_.frames.back().displacement = displacement_at(state.time, state.load_factor, state.displacement);
 }
 
 void Recorder::note_largest_uplift() {
@@ -301,14 +304,27 @@ void Recorder::note_largest_uplift() {
   if (!(largest > peak_uplift_)) return;
   peak_uplift_ = largest;
   peak_frame_ = frame_of(state_);
+  peak_coordinates_ = state_.displacement;
+  peak_load_factor_ = state_.load_factor;
 }
 
+void Recorder::complete_peak() {
+  if (peak_coordinates_.size() == 0) return;
+  peak_frame_.displacement = displacement_at(peak_frame_.time, peak_load_factor_, peak_coordinates_);
+  peak_coordinates_.resize(0);
+}
+
+/// Of all unknowns.
+Vector Recorder::displacement_at(double time, double load_factor, const Vector& coordinates) const {
+  Vector displacement = model_.reduction * coordinates;
+  for (const PrescribedMotion& motion : model_.motions) displacement += motion.shape * (load_factor * motion.function->value(time));
+  return displacement;
+}
+
+/// Without its displacements.
 Frame Recorder::frame_of(const State& state) const {
   Frame frame;
   frame.time = state.time;
-  frame.displacement = model_.reduction * state.displacement;
-  for (const PrescribedMotion& motion : model_.motions)
-    frame.displacement += motion.shape * (state.load_factor * motion.function->value(state.time));
   int points = 0;
   for (const Interface& interface : model_.interfaces) points += interface.batch.points;
   frame.opening.resize(points);

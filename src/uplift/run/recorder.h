@@ -55,6 +55,8 @@ class Recorder {
   double made(const Source& source) const;
   double ground(const Request& request, double time) const;
   Frame frame_of(const State& state) const;
+  Vector displacement_at(double time, double load_factor, const Vector& coordinates) const;
+  void complete_peak();
   void flush();
 
   const Model& model_;
@@ -78,6 +80,9 @@ class Recorder {
   Vector acceleration_;
   Frame peak_frame_;        // at the largest uplift of this stage, when it is larger than in the frames of the earlier stages
   double peak_uplift_ = 0;  // largest share over all interfaces and steps
+  // Its displacements are made when they are asked for, from the coordinates: of a reduced model they take as long as several steps.
+  Vector peak_coordinates_;  // empty: they are made
+  double peak_load_factor_ = 0;
 };
 
 }  // namespace uplift

@@ -14,6 +14,14 @@ constexpr int most_iterations = 30, patience = 12;
 constexpr double worth_a_factor = 4;  // iterations of a chord
 constexpr double of_change = 8;       // a chord leaves about so many times the change of the slopes
 constexpr double most_contraction = 0.5;
+constexpr double price_of_reference = 10;  // factors of all rows
+constexpr int patience_with_candidate = 20;
+constexpr double same_slope = 1e-10;
+
+double cubed(const std::vector<Index>& rows) {
+  const double n = static_cast<double>(rows.size());
+  return n * n * n;
+}
 
 }  // namespace
 
@@ -31,12 +39,16 @@ void RowNewton::begin(const InterfaceProblem& problem) {
   compliance_.resize(rows, rows);
   compliance_.noalias() = model.factor * model.factor.transpose();
   lu_.size(rows);
-  valid_ = slow_ = follows_ = false;
+  reference_compliance_.resize(rows, rows);
+  valid_ = slow_ = follows_ = has_reference_ = from_reference_ = false;
+  candidate_age_ = 0;
   for (Vector* v : {&force_, &opening_, &rest_, &moved_, &origin_force_, &origin_opening_, &opening_step_, &force_step_, &part_, &sum_,
                     &from_, &end_, &kept_})
     v->setZero(rows);
-  rows_.clear();
-  rows_.reserve(static_cast<std::size_t>(rows));
+  for (std::vector<Index>* each : {&rows_, &other_rows_}) {
+    each->clear();
+    each->reserve(static_cast<std::size_t>(rows));
+  }
   owner_.assign(static_cast<std::size_t>(rows), 0);
   places_.clear();
   Index slope = 0;
@@ -48,6 +60,7 @@ void RowNewton::begin(const InterfaceProblem& problem) {
           places_.size() - static_cast<std::size_t>(block.batch.points - row % block.batch.points);
     slope += block.slopes();
   }
+  for (Vector* v : {&none_, &reference_, &candidate_, &change_}) v->setZero(slope);
 }
 
 /// Largest change of a point's slopes since the factor was made, as part of what its compliance and the slopes leave together.
@@ -67,37 +80,96 @@ double RowNewton::change_of_slopes(const Vector& slopes) const {
   return worst;
 }
 
-/// I + F k in the rows that k does not vanish in.
-bool RowNewton::factorise(const Vector& slopes) {
-  slopes_ = slopes;
-  valid_ = false;
-  if (!slopes.allFinite()) return false;
+/// The rows whose opening has other slopes than in `from`.
+void RowNewton::rows_apart(const Vector& slopes, const Vector& from, std::vector<Index>& rows) const {
+  rows.clear();
   const Index all = compliance_.rows();
-  rows_.clear();
   for (Index row = 0; row < all; ++row) {
     const Place& at = places_[owner_[static_cast<std::size_t>(row)]];
-    bool any = false;
-    for (int k = 0; k < at.components * at.components; ++k) any = any || slopes[at.slope + k * at.stride] != 0;
-    if (any) rows_.push_back(row);
+    const Index c = (row - at.first) / at.stride;
+    bool apart = false;
+    for (int a = 0; a < at.components; ++a) {
+      const Index k = at.slope + (a * at.components + c) * at.stride;
+      apart = apart || std::abs(slopes[k] - from[k]) > same_slope * std::abs(from[k]);
+    }
+    if (apart) rows.push_back(row);
   }
-  const Index n = static_cast<Index>(rows_.size());
+}
+
+/// The columns `rows` of I + F change, without the other rows.
+void RowNewton::fill(const Vector& change, const Matrix& compliance, const std::vector<Index>& rows) {
+  const Index all = compliance.rows(), n = static_cast<Index>(rows.size());
   double* sum = sum_.data();
   for (Index j = 0; j < n; ++j) {
-    const Index row = rows_[static_cast<std::size_t>(j)];
+    const Index row = rows[static_cast<std::size_t>(j)];
     const Place& at = places_[owner_[static_cast<std::size_t>(row)]];
     const Index c = (row - at.first) / at.stride;
     sum_.setZero();
     for (int a = 0; a < at.components; ++a)
-      if (const double k = slopes[at.slope + (a * at.components + c) * at.stride]; k != 0)
-        small::add(all, k, compliance_.col(at.first + a * at.stride).data(), sum);
+      if (const double k = change[at.slope + (a * at.components + c) * at.stride]; k != 0)
+        small::add(all, k, compliance.col(at.first + a * at.stride).data(), sum);
     double* column = lu_.column(j);
-    if (n == all)
-      std::copy_n(sum, n, column);
-    else
-      for (Index i = 0; i < n; ++i) column[i] = sum[rows_[static_cast<std::size_t>(i)]];
+    for (Index i = 0; i < n; ++i) column[i] = sum[rows[static_cast<std::size_t>(i)]];
     column[j] += 1;
   }
-  valid_ = lu_.factorise(n);
+}
+
+/// F0 = (I + F k0)^-1 F of the slopes k0.
+void RowNewton::refer_to(const Vector& slopes) {
+  rows_apart(slopes, none_, rows_);
+  fill(slopes, compliance_, rows_);
+  const Index n = static_cast<Index>(rows_.size());
+  has_reference_ = lu_.factorise(n);
+  if (!has_reference_) return;
+  reference_ = slopes;
+  for (Index j = 0; j < compliance_.cols(); ++j) {  // F0 = F (I - k0 X), (I + F k0) X = F in the rows of k0
+    for (Index i = 0; i < n; ++i) part_[i] = compliance_(rows_[static_cast<std::size_t>(i)], j);
+    lu_.solve(part_.data());
+    sum_.setZero();
+    for (Index i = 0; i < n; ++i) sum_[rows_[static_cast<std::size_t>(i)]] = -part_[i];
+    slope_product(slopes, sum_, sum_);
+    sum_[j] += 1;
+    reference_compliance_.col(j).noalias() = compliance_ * sum_;
+  }
+}
+
+/// Takes the candidate for the reference when it would have spared its price since it is the candidate. `paid`: cube of rows of a factor.
+void RowNewton::look_for_reference(const Vector& slopes, double paid) {
+  if (candidate_age_ > 0) {
+    rows_apart(slopes, candidate_, other_rows_);
+    spared_ += paid - cubed(other_rows_);
+    const double all = static_cast<double>(compliance_.rows());
+    if (spared_ > price_of_reference * all * all * all) {
+      refer_to(candidate_);
+      candidate_age_ = 0;
+    }
+  }
+  if (candidate_age_ == 0 || candidate_age_ > patience_with_candidate) {
+    candidate_ = slopes;
+    spared_ = 0;
+    candidate_age_ = 0;
+  }
+  ++candidate_age_;
+}
+
+/// I + F k in the rows in which k is not that of the reference.
+bool RowNewton::factorise(const Vector& slopes) {
+  valid_ = false;
+  if (!slopes.allFinite()) return false;
+  rows_apart(slopes, none_, rows_);
+  if (has_reference_) rows_apart(slopes, reference_, other_rows_);
+  look_for_reference(slopes, std::min(cubed(rows_), has_reference_ ? cubed(other_rows_) : INFINITY));
+  rows_apart(slopes, none_, rows_);
+  from_reference_ = false;
+  if (has_reference_) {
+    rows_apart(slopes, reference_, other_rows_);
+    from_reference_ = other_rows_.size() < rows_.size();
+    if (from_reference_) rows_.swap(other_rows_);
+  }
+  slopes_ = slopes;
+  change_ = slopes - (from_reference_ ? reference_ : none_);
+  fill(change_, from_reference_ ? reference_compliance_ : compliance_, rows_);
+  valid_ = lu_.factorise(static_cast<Index>(rows_.size()));
   return valid_;
 }
 
@@ -121,12 +193,19 @@ bool RowNewton::direction(const Vector& slopes, InterfaceSystems& counts) {
   ++(keeps ? counts.iterated : counts.factored);
   if (!keeps && !factorise(slopes)) return false;
   const Index n = static_cast<Index>(rows_.size());
-  for (Index i = 0; i < n; ++i) part_[i] = -moved_[rows_[static_cast<std::size_t>(i)]];
+  if (from_reference_) opening_step_.noalias() = reference_compliance_ * rest_;
+  const Vector& moved = from_reference_ ? opening_step_ : moved_;  // F0 s
+  for (Index i = 0; i < n; ++i) part_[i] = -moved[rows_[static_cast<std::size_t>(i)]];
   lu_.solve(part_.data());
   sum_.setZero();
   for (Index i = 0; i < n; ++i) sum_[rows_[static_cast<std::size_t>(i)]] = part_[i];
-  slope_product(slopes_, sum_, sum_);
+  slope_product(change_, sum_, sum_);
   force_step_ = rest_ + sum_;
+  if (from_reference_) {
+    opening_step_.noalias() = -(reference_compliance_ * force_step_);
+    slope_product(reference_, opening_step_, sum_);
+    force_step_ += sum_;
+  }
   opening_step_.noalias() = compliance_ * force_step_;
   opening_step_ *= -1;
   return opening_step_.allFinite();

@@ -12,9 +12,13 @@ namespace uplift {
 /// Openings and forces are changed by one product with F each, the laws give p and k, and s has only entries where a law bends on its way.
 /// G = C^T s of Newton's method in z (newton.h), so that |G|^2 = s . F s, and G . d = s . dg: the line search is by the same slope.
 ///
-/// The matrix has the rows of points whose force depends on their opening (the others are open), and its factor is kept, over iterations
-/// and steps, while no slope has left that of the factor by much: the iteration is then that of a chord. It begins where the points come to
-/// when they move on as in the last step. It is no method of its own: where it does not arrive soon, the general method starts anew.
+/// The matrix has only the rows whose force depends on an opening (the others are open): k = change in few rows. The same holds with other
+/// slopes k0 to change from, those of a reference, and its compliance F0 = (I + F k0)^-1 F,
+///     (I + F0 (k - k0)) dg = -F0 s,
+/// which is the smaller matrix where most points are as they were. A reference is made when the last factors would have been cheaper with
+/// it by as much as it costs. The factor is kept, over iterations and steps, while no slope has left that of the factor by much: the
+/// iteration is then that of a chord. It begins where the points come to when they move on as in the last step. It is no method of its
+/// own: where it does not arrive soon, the general method starts anew.
 class RowNewton final : public MethodWork {
  public:
   /// Beyond so many rows iterations of Krylov's kind are faster than factors (PointRows).
@@ -28,6 +32,8 @@ class RowNewton final : public MethodWork {
   /// Solves from the guess in solution.z, or from the last step. Leaves z, forces and slopes at the solution; the guess in its place where
   /// it does not arrive.
   Result solve(const InterfaceProblem&, double tolerance, NewtonWork&, InterfaceSolution&);
+  /// Order of the matrix that was factorised last.
+  Index order() const { return static_cast<Index>(rows_.size()); }
 
  private:
   struct Place {                             // of a point
@@ -37,6 +43,10 @@ class RowNewton final : public MethodWork {
   void begin(const InterfaceProblem&);
   void guess(NewtonWork&, InterfaceSolution&);
   double change_of_slopes(const Vector& slopes) const;
+  void rows_apart(const Vector& slopes, const Vector& from, std::vector<Index>& rows) const;
+  void fill(const Vector& change, const Matrix& compliance, const std::vector<Index>& rows);
+  void look_for_reference(const Vector& slopes, double paid);
+  void refer_to(const Vector& slopes);
   bool factorise(const Vector& slopes);
   void slope_product(const Vector& slopes, const Vector& moved, Vector& force) const;
   bool direction(const Vector& slopes, InterfaceSystems& counts);
@@ -49,10 +59,15 @@ class RowNewton final : public MethodWork {
   Matrix compliance_;  // F
   std::vector<Place> places_;
   LuInPlace lu_;
-  std::vector<std::size_t> owner_;  // of a row: its place
-  std::vector<Index> rows_;         // of the factor, ascending
-  Vector slopes_;                   // of the factor, as in NewtonWork
+  std::vector<std::size_t> owner_;        // of a row: its place
+  std::vector<Index> rows_, other_rows_;  // of the factor, ascending
+  Vector slopes_, change_;                // of the factor, as in NewtonWork; less those of the reference where it is one of its changes
   bool valid_ = false, slow_ = false, follows_ = false;
+  Matrix reference_compliance_;          // F0
+  Vector none_, reference_, candidate_;  // slopes: 0, k0, those of the next reference
+  bool has_reference_ = false, from_reference_ = false;
+  double spared_ = 0;  // by the candidate, had it been the reference; cubes of rows
+  int candidate_age_ = 0;
   Vector force_, opening_, rest_, moved_;          // P, g, s, F s
   Vector origin_force_, origin_opening_, kept_;    // where a line search begins; the guess
   Vector opening_step_, force_step_, part_, sum_;  // dg, dP; k dg

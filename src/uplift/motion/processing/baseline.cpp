@@ -68,7 +68,7 @@ class Baseline final : public ProcessStep {
         else
           right[k + c] = ends[c];
     }
-    return FullLu(system).solve(right).head(k);
+    return CompleteQr(system).solve(right).head(k);
   }
   const char* constrained() const {
     constexpr const char* words[] = {"", ", so that the velocity ends at zero", ", so that velocity and displacement end at zero"};
