@@ -202,9 +202,9 @@ bool RowNewton::direction(const Vector& slopes, InterfaceSystems& counts) {
   slope_product(change_, sum_, sum_);
   force_step_ = rest_ + sum_;
   if (from_reference_) {
-    opening_step_.noalias() = -(reference_compliance_ * force_step_);
+    opening_step_.noalias() = reference_compliance_ * force_step_;
     slope_product(reference_, opening_step_, sum_);
-    force_step_ += sum_;
+    force_step_ -= sum_;
   }
   opening_step_.noalias() = compliance_ * force_step_;
   opening_step_ *= -1;
