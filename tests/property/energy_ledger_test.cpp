@@ -173,7 +173,7 @@ TEST(EnergyLedger, FreeMotionKeepsItsEnergy) {
   choose(whole, {"newton"}, {"none"});
   whole.plan.initial_velocity = Vector::Zero(whole.model.free());
   for (int i = 0; i < whole.model.free(); ++i)
-    if (whole.model.unknown_names[static_cast<std::size_t>(i)] == "base.uy") whole.plan.initial_velocity[i] = -0.1;
+    if (whole.model.unknown_name(i) == "base.uy") whole.plan.initial_velocity[i] = -0.1;
   whole.plan.stages = {march(1e-3, 1000)};
   const Closing closing = run_ledger(whole);
   EXPECT_EQ(closing.result.status, RunStatus::completed) << closing.result.reason;

@@ -97,7 +97,7 @@ TEST(HandOver, FirstAccelerationFollowsFromTheBalance) {
     time_load.name = "sudden";
     time_load.shape = Vector::Zero(whole.model.free());
     for (int i = 0; i < whole.model.free(); ++i)
-      if (whole.model.unknown_names[static_cast<std::size_t>(i)] == "top.ux") time_load.shape[i] = 5e4;
+      if (whole.model.unknown_name(i) == "top.ux") time_load.shape[i] = 5e4;
     time_load.function = function({"constant"});
     whole.model.time_loads.push_back(std::move(time_load));
     whole.plan.requests = {request(Kind::acceleration, 3, "top"), request(Kind::acceleration, 1, "base")};
@@ -121,7 +121,7 @@ TEST(HandOver, ALoadThatJumpsOntoAClosedContactMovesNothing) {
     time_load.name = "sudden";
     time_load.shape = Vector::Zero(whole.model.free());
     for (int i = 0; i < whole.model.free(); ++i)
-      if (whole.model.unknown_names[static_cast<std::size_t>(i)] == "base.uy") time_load.shape[i] = -1e5;
+      if (whole.model.unknown_name(i) == "base.uy") time_load.shape[i] = -1e5;
     ASSERT_EQ(time_load.shape.sum(), -1e5);
     time_load.function = function({"constant"});
     whole.model.time_loads.push_back(std::move(time_load));

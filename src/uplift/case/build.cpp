@@ -209,10 +209,12 @@ void adapt_laws(const Case& read, const RunSpec& spec, BuiltCase& built) {
         std::fill(stiffness.begin(), stiffness.end(),
                   1e3 * (stage ? 1 / ratios[k].compliance : largest_stiffness(built.model)) / interface.area.mean());
       derived = std::make_unique<const Values>(bonded_behaviour(behaviour, stiffness));
+      built.laws_of_step = built.laws_of_step || !interface.law;
     } else if (&behaviour == spec.law) {
       const std::string& key = spec.stiffness_parameter;
       if (!behaviour.items().contains(key) || !behaviour.has(key))
         fail(behaviour, "", "a law with the parameter \"" + key + "\"", "\"" + behaviour.type() + "\"");
+      built.laws_of_step = true;
       derived = std::make_unique<const Values>(with_number(behaviour, key, behaviour.number(key) * *spec.stiffness_ratio / ratios[k].most));
     } else {
       continue;
@@ -290,6 +292,34 @@ bool BuiltCase::is_strip() const {
          std::ranges::all_of(facts, [](const InterfaceFacts& each) { return each.depth == 1; });
 }
 
+namespace {
+
+void put_name(const RunSpec& spec, RunPlan& plan) {
+  plan.name = spec.name;
+  plan.label = spec.label;
+  plan.group = spec.group;
+}
+
+int frames_of(const Case& read, const RunSpec& spec, const Model& model) {
+  const int wanted = spec.pictures ? read.values.table("output").integer("frames") : 0;
+  return std::min(wanted, std::max(2, most_pictured / std::max(1, model.full_unknowns())));
+}
+
+}  // namespace
+
+bool change_steps(const Case& read, const RunSpec& spec, BuiltCase& built) {
+  if (built.laws_of_step) return false;
+  std::vector<Stage> stages = stages_of(read, spec);
+  stages.swap(built.plan.stages);
+  if (!change_motion(read, spec, built)) {
+    stages.swap(built.plan.stages);
+    return false;
+  }
+  put_name(spec, built.plan);
+  built.plan.frames = frames_of(read, spec, built.model);
+  return true;
+}
+
 BuiltCase build(const Case& read, const RunSpec& spec) {
   const Values& root = read.values;
   BuiltCase built;
@@ -309,9 +339,7 @@ BuiltCase build(const Case& read, const RunSpec& spec) {
   built.motions = motions_used(root, read.records, spec.motion, spec.motion_factor);
 
   RunPlan& plan = built.plan;
-  plan.name = spec.name;
-  plan.label = spec.label;
-  plan.group = spec.group;
+  put_name(spec, plan);
   plan.expected_to_fail = spec.expected_to_fail;
   plan.solver = bulk_solver(read);
   plan.interface_solver = interface_solver(root.text("interface_solver"));
@@ -334,8 +362,7 @@ BuiltCase build(const Case& read, const RunSpec& spec) {
   for (std::size_t k = 0; k < built.facts.size(); ++k) plan.is_wall.push_back(k >= built.bases());
   note_divided(built);
   plan.every = root.table("output").integer("every");
-  plan.frames = spec.pictures ? root.table("output").integer("frames") : 0;
-  plan.frames = std::min(plan.frames, std::max(2, most_pictured / std::max(1, built.model.full_unknowns())));
+  plan.frames = frames_of(read, spec, built.model);
   add_requests(read, names, built);
   if (!spec.stiffness_ratio) add_floors(read, built);
   built.verdict_request = verdict_request(root, built);

@@ -147,6 +147,7 @@ struct BuiltCase {
   std::vector<std::string> notes;                      // what was chosen automatically (tuned mass, scaled penalty)
   double tuned_mass = 0;                               // kg: of the tuned point mass, 0 without
   std::vector<FunctionUse> functions;                  // of all that moves or loads the model
+  bool laws_of_step = false;                           // some behaviour made here depends on the step
   // N: resultant, against the first interface's normal, of the dead loads on everything that is connected to its upper side (the soil
   // too where the surface ends inside it)
   double weight = 0;
@@ -177,6 +178,10 @@ BuiltCase build(const Case&, const RunSpec&);
 /// ground accelerations. False, with the run unchanged, where more than these functions would have to follow (incident waves, prescribed
 /// motions, static stages under a record).
 bool change_motion(const Case&, const RunSpec&, BuiltCase&);
+
+/// Puts the steps, the name and the pictures of another run of the same case into a run that was built. False, with the run unchanged, where
+/// more depends on the step than functions that change_motion() can follow.
+bool change_steps(const Case&, const RunSpec&, BuiltCase&);
 
 /// The solver named by the case.
 std::shared_ptr<const LinearSolver> bulk_solver(const Case&);

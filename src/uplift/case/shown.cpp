@@ -12,7 +12,7 @@ namespace {
 /// A node of the mesh that is shown gets a name that can be remembered, and is still found by its number.
 void rename_shown(int node, const std::string& name, Model& model) {
   Node& shown = model.nodes[static_cast<std::size_t>(node)];
-  if (shown.name.starts_with("mesh.") && model.find_node(name) < 0) shown.alias = std::exchange(shown.name, name);
+  if (shown.name.starts_with("mesh.") && model.find_node(name) < 0) model.second_names.emplace(std::exchange(shown.name, name), node);
 }
 
 /// The highest node, of equally high ones that nearest to a place; `among` leaves nodes out where it is 0, empty: none. `highest`: a node

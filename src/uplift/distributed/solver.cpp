@@ -29,12 +29,12 @@ class PetscFactor : public FactorWithReach {
   /// An iterative method that does not converge leaves no number: the step that asked fails, and the program says why in the end.
   void solve(const Matrix& b, Matrix& x) const override { solve_to(b, x, 0); }
   void solve_to(const Matrix& b, Matrix& x, double residual) const override {
-    const Matrix given = scale_.asDiagonal() * b;
-    Matrix solved;
-    if (Ranks::all().solve(system_, given, solved, residual).ok())
-      x = scale_.asDiagonal() * solved;
+    Matrix loads = scale_.asDiagonal() * b;
+    if (Ranks::all().solve(system_, loads, loads, residual).ok())
+      loads.array().colwise() *= scale_.array();
     else
-      x = Matrix::Constant(b.rows(), b.cols(), std::numeric_limits<double>::quiet_NaN());
+      loads.setConstant(std::numeric_limits<double>::quiet_NaN());
+    x.swap(loads);
   }
   /// (A^-1)_tt of chosen unknowns t.
   SystemOutcome flexibility(const std::vector<int>& chosen, Matrix& entries) const {

@@ -89,11 +89,8 @@ std::string diagonal_range(const Vector& diagonal, const Model& model) {
   Index least = 0, most = 0;
   diagonal.minCoeff(&least);
   diagonal.maxCoeff(&most);
-  const auto name = [&](Index i) {
-    return static_cast<std::size_t>(i) < model.unknown_names.size() ? model.unknown_names[static_cast<std::size_t>(i)]
-                                                                    : fmt::format("{}", i);
-  };
-  return fmt::format("diagonal entries reach from {:.1e} at {} to {:.1e} at {}", diagonal[least], name(least), diagonal[most], name(most));
+  return fmt::format("diagonal entries reach from {:.1e} at {} to {:.1e} at {}", diagonal[least], model.unknown_name(least), diagonal[most],
+                     model.unknown_name(most));
 }
 
 /// Hands the inverse of a small matrix out as a factor, for spread_through.
@@ -185,10 +182,10 @@ void BulkFactor::try_out(const SymmetricSum& matrix, const Model& model, LinearC
 
 /// A mechanism is refused before a run begins. What is left is a structure whose soft motions are lost in the round-off of its stiff parts.
 void BulkFactor::fail(const Model& model, const SymmetricSum& matrix, int unknown, const std::string& why) {
-  const bool named = unknown >= 0 && unknown < static_cast<int>(model.unknown_names.size());
+  const bool named = unknown >= 0 && unknown < static_cast<int>(model.kept.size());
   why_ = why;
   if (!named) return;
-  why_ = fmt::format("the matrix is not positive definite at {}: {}; {}", model.unknown_names[static_cast<std::size_t>(unknown)],
+  why_ = fmt::format("the matrix is not positive definite at {}: {}; {}", model.unknown_name(unknown),
                      diagonal_range(matrix.diagonal(), model), too_much_contrast);
 }
 

@@ -1,5 +1,6 @@
 #include "uplift/elements/solid.h"
 
+#include <algorithm>
 #include <cassert>
 
 #include "uplift/elements/solid_rules.h"
@@ -8,16 +9,34 @@
 
 namespace uplift {
 
-Solid::Solid(Cell cell, std::span<const int> nodes, Coordinates coordinates, SolidSection section, const CellRule* part)
+namespace {
+
+std::unique_ptr<const int[]> copy_of(std::span<const int> nodes) {
+  auto copy = std::make_unique_for_overwrite<int[]>(nodes.size());
+  std::ranges::copy(nodes, copy.get());
+  return copy;
+}
+
+/// Without incompatible modes.
+std::shared_ptr<const SolidSection> compatible(const SolidSection& section) {
+  auto made = std::make_shared<SolidSection>(section);
+  made->incompatible_modes = false;
+  return made;
+}
+
+}  // namespace
+
+Solid::Solid(Cell cell, std::span<const int> nodes, Coordinates coordinates, std::shared_ptr<const SolidSection> section,
+             const CellRule* part)
     : cell_(cell),
       dimension_(info(cell).dimension),
-      nodes_(nodes.begin(), nodes.end()),
+      nodes_(copy_of(nodes)),
       coordinates_(std::move(coordinates)),
-      section_(section),
+      section_(std::move(section)),
       part_(part ? std::make_shared<const CellRule>(*part) : nullptr) {
-  if (part_) section_.incompatible_modes = false;  // their patch test is that of whole cells
-  assert(dimension_ >= 2 && static_cast<int>(nodes_.size()) == info(cell).nodes);
-  assert(section_.thickness > 0);
+  if (part_ && section_->incompatible_modes) section_ = compatible(*section_);  // their patch test is that of whole cells
+  assert(dimension_ >= 2 && static_cast<int>(nodes.size()) == info(cell).nodes);
+  assert(section_->thickness > 0);
 }
 
 void Solid::form(Local local) const {
@@ -36,7 +55,7 @@ std::shared_ptr<const SolidTables> Solid::tables() const {
 }
 
 int Solid::num_modes() const {
-  return section_.incompatible_modes ? num_bubbles(cell_) : 0;
+  return section_->incompatible_modes ? num_bubbles(cell_) : 0;
 }
 
 double Solid::volume() const {
@@ -47,14 +66,14 @@ double Solid::volume() const {
 
 std::vector<Vec3> Solid::point_positions() const {
   std::vector<Vec3> corners, positions;
-  for (const int node : nodes_) corners.push_back((*coordinates_)[static_cast<std::size_t>(node)]);
+  for (const int node : nodes()) corners.push_back((*coordinates_)[static_cast<std::size_t>(node)]);
   for (const Vec3& local : tables()->stiffness.local) positions.push_back(cell_position(cell_shape(cell_, local), corners));
   return positions;
 }
 
 Stress Solid::elastic_stress(const Strain& strain) const {
-  const bool flat = dimension_ == 2 && section_.plane == PlaneState::stress;
-  const double mu = section_.material.shear(), lambda = flat ? section_.material.plane_lame(PlaneState::stress) : section_.material.lame();
+  const bool flat = dimension_ == 2 && section_->plane == PlaneState::stress;
+  const double mu = section_->material.shear(), lambda = flat ? section_->material.plane_lame(PlaneState::stress) : section_->material.lame();
   Stress stress;
   stress.head<3>() = 2 * mu * strain.head<3>();
   stress.head<3>().array() += lambda * strain.head<3>().sum();
@@ -65,7 +84,7 @@ Stress Solid::elastic_stress(const Strain& strain) const {
 
 Vector Solid::mode_amplitudes(const std::vector<PointGradient>& points, const Vector& displacement) const {
   // no force on the modes: K_aa alpha = -K_au u; the right-hand side is the force of the compatible stress
-  const int nodes = static_cast<int>(nodes_.size()), modes = num_modes(), n = dimension_ * modes;
+  const int nodes = static_cast<int>(this->nodes().size()), modes = num_modes(), n = dimension_ * modes;
   Vector force = Vector::Zero(n);
   Matrix stiffness = Matrix::Zero(n, n);
   for (const PointGradient& at : points) {
@@ -84,7 +103,7 @@ Vector Solid::mode_amplitudes(const std::vector<PointGradient>& points, const Ve
 
 std::vector<Stress> Solid::point_stress(const Vector& displacement) const {
   assert(displacement.size() == unknowns());
-  const int nodes = static_cast<int>(nodes_.size()), modes = num_modes();
+  const int nodes = static_cast<int>(this->nodes().size()), modes = num_modes();
   const std::vector<PointGradient> points = gradients();
   const Vector amplitude = modes > 0 ? mode_amplitudes(points, displacement) : Vector();
   std::vector<Stress> stress;
@@ -101,7 +120,7 @@ std::vector<Stress> Solid::point_stress(const Vector& displacement) const {
 std::vector<Stress> Solid::extrapolate(const std::vector<Stress>& at_points) const {
   const std::shared_ptr<const SolidTables> made = tables();
   const Matrix& to_nodes = made->to_nodes;
-  std::vector<Stress> at_nodes(nodes_.size(), Stress::Zero());
+  std::vector<Stress> at_nodes(this->nodes().size(), Stress::Zero());
   for (Index a = 0; a < to_nodes.rows(); ++a)
     for (Index p = 0; p < to_nodes.cols(); ++p)
       at_nodes[static_cast<std::size_t>(a)] += to_nodes(a, p) * at_points[static_cast<std::size_t>(p)];

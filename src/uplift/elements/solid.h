@@ -1,6 +1,7 @@
 #pragma once
 #include <memory>
 #include <span>
+#include <utility>
 #include <vector>
 
 #include "uplift/elements/element.h"
@@ -46,12 +47,15 @@ class Solid : public Element {
   /// `nodes` as many as the cell has, numbered as in VTK, indices into `coordinates`. The Jacobian must be positive at every integration
   /// point (checked by assertion; meshes are checked on reading).
   /// `part`: the cell is filled in part (mesh/cut.h); it has no incompatible modes then, and the stress at its nodes is its mean.
-  Solid(Cell cell, std::span<const int> nodes, Coordinates coordinates, SolidSection section, const CellRule* part = nullptr);
-  std::span<const int> nodes() const override { return nodes_; }
+  Solid(Cell cell, std::span<const int> nodes, Coordinates coordinates, std::shared_ptr<const SolidSection> section,
+        const CellRule* part = nullptr);
+  Solid(Cell cell, std::span<const int> nodes, Coordinates coordinates, const SolidSection& section, const CellRule* part = nullptr)
+      : Solid(cell, nodes, std::move(coordinates), std::make_shared<const SolidSection>(section), part) {}
+  std::span<const int> nodes() const override { return {nodes_.get(), static_cast<std::size_t>(info(cell_).nodes)}; }
   int unknowns_per_node() const override { return dimension_; }
   void form(Local local) const override;
 
-  const SolidSection* continuum() const override { return &section_; }
+  const SolidSection* continuum() const override { return section_.get(); }
   Cell cell() const override { return cell_; }
   int dimension() const { return dimension_; }
   bool is_whole() const { return part_ == nullptr; }  // not filled in part
@@ -90,9 +94,9 @@ class Solid : public Element {
 
   Cell cell_;
   int dimension_;
-  std::vector<int> nodes_;
+  std::unique_ptr<const int[]> nodes_;
   Coordinates coordinates_;
-  SolidSection section_;
+  std::shared_ptr<const SolidSection> section_;  // of all cells of one filling
   std::shared_ptr<const CellRule> part_;  // null: the cell is whole
 };
 

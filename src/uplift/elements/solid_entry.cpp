@@ -40,20 +40,20 @@ std::shared_ptr<const BulkLaw> law_from(const Values& solid, const SolidSection&
 class SolidFilling final : public CellFilling {
  public:
   SolidFilling(const Values& solid, int dimension)
-      : section_(section_from(solid)), law_(law_from(solid, section_, dimension)), beta_(solid.number("damping_beta")) {}
-  const SolidSection& section() const override { return section_; }
+      : section_(std::make_shared<const SolidSection>(section_from(solid))), law_(law_from(solid, *section_, dimension)), beta_(solid.number("damping_beta")) {}
+  const SolidSection& section() const override { return *section_; }
   std::unique_ptr<Element> make(const CellSite& site) const override {
     std::unique_ptr<Element> element;
     if (!law_ || law_->linear())
       element = std::make_unique<Solid>(site.cell, site.nodes, site.coordinates, section_, site.part);
     else
-      element = std::make_unique<NonlinearSolid>(site.cell, site.nodes, site.coordinates, section_, law_, site.part);
+      element = std::make_unique<NonlinearSolid>(site.cell, site.nodes, site.coordinates, *section_, law_, site.part);
     element->beta = beta_;
     return element;
   }
 
  private:
-  SolidSection section_;
+  std::shared_ptr<const SolidSection> section_;
   std::shared_ptr<const BulkLaw> law_;
   double beta_;  // s
 };

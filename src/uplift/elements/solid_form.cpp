@@ -260,23 +260,23 @@ Positions gather(std::span<const int> nodes, const std::vector<Vec3>& coordinate
 
 void Solid::form_stiffness(Matrix& out) const {
   out.resize(unknowns(), unknowns());
-  const Positions at = gather(nodes_, *coordinates_);
+  const Positions at = gather(nodes(), *coordinates_);
   const std::shared_ptr<const SolidTables> made = tables();
-  const double lambda = dimension_ == 2 ? section_.material.plane_lame(section_.plane) : section_.material.lame();
-  const double mu = section_.material.shear(), thickness = dimension_ == 2 ? section_.thickness : 1;
-  with_sizes(cell_, section_.incompatible_modes,
+  const double lambda = dimension_ == 2 ? section_->material.plane_lame(section_->plane) : section_->material.lame();
+  const double mu = section_->material.shear(), thickness = dimension_ == 2 ? section_->thickness : 1;
+  with_sizes(cell_, section_->incompatible_modes,
              [&]<int Dim, int Nodes, int Modes>() { stiffness<Dim, Nodes, Modes>(at, *made, lambda, mu, thickness, out.data()); });
 }
 
 void Solid::form_mass(Matrix& out) const {
   out.setZero(unknowns(), unknowns());
-  if (section_.mass == SolidSection::Mass::none) return;
-  const Positions at = gather(nodes_, *coordinates_);
+  if (section_->mass == SolidSection::Mass::none) return;
+  const Positions at = gather(nodes(), *coordinates_);
   const std::shared_ptr<const SolidTables> made = tables();
   const SolidRule& rule = made->mass;
-  const double thickness = dimension_ == 2 ? section_.thickness : 1;
+  const double thickness = dimension_ == 2 ? section_->thickness : 1;
   const bool linear_cell = info(cell_).nodes == info(cell_).corners;
-  with_sizes(cell_, false, [&]<int Dim, int Nodes, int Modes>() { mass<Dim, Nodes>(at, rule, thickness, section_, linear_cell, out); });
+  with_sizes(cell_, false, [&]<int Dim, int Nodes, int Modes>() { mass<Dim, Nodes>(at, rule, thickness, *section_, linear_cell, out); });
 }
 
 std::vector<PointGradient> Solid::gradients() const {
@@ -286,12 +286,12 @@ std::vector<PointGradient> Solid::gradients() const {
 }
 
 void Solid::find_gradients(std::vector<PointGradient>& all) const {
-  const Positions at = gather(nodes_, *coordinates_);
+  const Positions at = gather(nodes(), *coordinates_);
   const std::shared_ptr<const SolidTables> of_cell = this->tables();
   const SolidTables& tables = *of_cell;
-  const double thickness = dimension_ == 2 ? section_.thickness : 1;
+  const double thickness = dimension_ == 2 ? section_->thickness : 1;
   all.resize(static_cast<std::size_t>(tables.stiffness.points()));
-  with_sizes(cell_, section_.incompatible_modes, [&]<int Dim, int Nodes, int Modes>() {
+  with_sizes(cell_, section_->incompatible_modes, [&]<int Dim, int Nodes, int Modes>() {
     const Centre centre = map_centre<Dim, Nodes, Modes>(at, tables);
     for (std::size_t p = 0; p < all.size(); ++p)
       point_gradient<Dim, Nodes, Modes>(at, tables.stiffness, static_cast<int>(p), centre, thickness, all[p]);

@@ -19,13 +19,20 @@ BulkDamping rayleigh(double frequency_1, double ratio_1, double frequency_2, dou
 int ModelBuilder::add_node(std::string name, Place position, Where where, std::string alias) {
   if (!node_names_.insert(name).second)
     throw InputError(std::move(where), "nodes." + name, "a name that no other node has", fmt::format("\"{}\" twice", name));
-  nodes_.push_back({std::move(name), position, std::move(alias)});
+  if (!alias.empty()) second_names_.emplace(std::move(alias), static_cast<int>(nodes_.size()));
+  nodes_.push_back({std::move(name), position});
   return static_cast<int>(nodes_.size()) - 1;
 }
 
 void ModelBuilder::add_element(std::unique_ptr<const Element> element, Where) {
   for ([[maybe_unused]] const int node : element->nodes()) assert(node >= 0 && node < static_cast<int>(nodes_.size()));
   elements_.push_back(std::move(element));
+}
+
+void ModelBuilder::reserve(std::size_t nodes, std::size_t elements) {
+  nodes_.reserve(nodes_.size() + nodes);
+  node_names_.reserve(node_names_.size() + nodes);
+  elements_.reserve(elements_.size() + elements);
 }
 
 void ModelBuilder::fix(int node, Dof dof, Where where, bool repeats) {

@@ -40,9 +40,11 @@ class ModelBuilder {
  public:
   explicit ModelBuilder(Space space = {}) : space_(space) {}
   Space space() const { return space_; }
-  /// Returns the number of the node; its full unknowns are space().at(number, ...). `alias`: see Node.
+  /// Returns the number of the node; its full unknowns are space().at(number, ...). `alias`: a second name, see Model.
   int add_node(std::string name, Place position, Where where, std::string alias = {});
   void add_element(std::unique_ptr<const Element> element, Where where);
+  /// Room for so many more: lists that grow take up to twice what they need.
+  void reserve(std::size_t nodes, std::size_t elements);
   int num_elements() const { return static_cast<int>(elements_.size()); }
   /// The unknown stays zero. `repeats`: a support that follows from other constraints is left out instead of refused (a plane of symmetry
   /// that holds several nodes of a rigid body).
@@ -135,6 +137,7 @@ class ModelBuilder {
   Space space_;
   std::vector<Node> nodes_;
   std::unordered_set<std::string> node_names_;
+  std::map<std::string, int, std::less<>> second_names_;
   std::vector<std::unique_ptr<const Element>> elements_;
   std::vector<Support> supports_;
   std::vector<Pair> ties_, links_;

@@ -172,7 +172,6 @@ Model ModelBuilder::finish() {
   assemble(model);
   for (std::size_t c = 0; c < columns.size(); ++c) columns[c] = model.kept[columns[c]];
   model.kept = std::move(columns);
-  for (const int unknown : model.kept) model.unknown_names.push_back(name_of(unknown));
   Index first = 0;
   const Sparse b = model.assembly.b * model.reduction;
   const SparseRows b_rows = b;
@@ -187,6 +186,7 @@ Model ModelBuilder::finish() {
   }
   model.grounds = grounds_;
   model.nodes = std::move(nodes_);
+  model.second_names = std::move(second_names_);
   model.elements = std::move(elements_);
   return model;
 }

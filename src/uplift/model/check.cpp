@@ -112,7 +112,7 @@ std::string describe_motion(const Model& model, const Vector& motion) {
   }
   Index most = 0;
   motion.cwiseAbs().maxCoeff(&most);
-  return fmt::format("{} can move, most of all {}", who, model.unknown_names[most]);
+  return fmt::format("{} can move, most of all {}", who, model.unknown_name(most));
 }
 
 namespace {
@@ -165,7 +165,7 @@ void require_mass(const Model& model, const Refused& refused) {
         if (entry.value() != 0 && !(model.mass.coeff(i, i) > 0) && refused(model.interfaces[k], i))
           throw InputError(model.assembly.interface_where[k], "interface." + model.interfaces[k].name,
                            "a mass on everything that the interface touches",
-                           fmt::format("zero mass where mass is needed: {} has none", model.unknown_names[i]));
+                           fmt::format("zero mass where mass is needed: {} has none", model.unknown_name(i)));
   }
 }
 
@@ -193,7 +193,7 @@ void check_masses(const Model& model, const Where& file) {
     const std::vector<int> block = blocks(scaled);
     std::vector<std::string> members;
     for (std::size_t i = 0; i < others.size(); ++i)
-      if (block[i] == block[broken] && members.size() < 6) members.push_back(model.unknown_names[others[i]]);
+      if (block[i] == block[broken] && members.size() < 6) members.push_back(model.unknown_name(others[i]));
     throw InputError(
         place_of(model, file), "mass", "a mass matrix that is regular where it is not zero",
         fmt::format(

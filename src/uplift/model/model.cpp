@@ -1,5 +1,7 @@
 #include "uplift/model/model.h"
 
+#include <fmt/format.h>
+
 #include "uplift/math/small.h"
 
 namespace uplift {
@@ -16,8 +18,18 @@ int Model::rows() const {
 
 int Model::find_node(std::string_view name) const {
   for (std::size_t i = 0; i < nodes.size(); ++i)
-    if (nodes[i].name == name || (!name.empty() && nodes[i].alias == name)) return static_cast<int>(i);
-  return -1;
+    if (nodes[i].name == name) return static_cast<int>(i);
+  const auto second = second_names.find(name);
+  return second != second_names.end() ? second->second : -1;
+}
+
+std::string Model::name_of(int full_unknown) const {
+  const std::string& node = nodes[static_cast<std::size_t>(space.node_of(full_unknown))].name;
+  return fmt::format("{}.{}", node, to_string(space.dof(space.index_of(full_unknown))));
+}
+
+std::string Model::unknown_name(Index free) const {
+  return free < std::ssize(kept) ? name_of(kept[static_cast<std::size_t>(free)]) : fmt::format("{}", free);
 }
 
 double Model::full(int full_unknown, const Vector& q, int derivative, MotionInstant at) const {

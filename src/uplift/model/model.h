@@ -1,4 +1,6 @@
 #pragma once
+#include <functional>
+#include <map>
 #include <memory>
 #include <string>
 #include <string_view>
@@ -14,8 +16,7 @@ namespace uplift {
 
 struct Node {
   std::string name;
-  Place position;          // m
-  std::string alias = {};  // a second name by which it is found; empty: none
+  Place position;  // m
 };
 
 /// A force pattern on the free unknowns times a function of time.
@@ -113,6 +114,7 @@ struct DistributedMatrices {
 struct Model {
   Space space;
   std::vector<Node> nodes;
+  std::map<std::string, int, std::less<>> second_names;  // by which some nodes are found, too
   std::vector<std::unique_ptr<const Element>> elements;
   std::vector<Interface> interfaces;
   std::vector<TimeLoad> time_loads;
@@ -125,8 +127,7 @@ struct Model {
   Sparse stiffness, mass, damping;  // free x free; damping: Rayleigh, dashpots, modal
   // null: the matrices above are whole. Else stiffness and mass above hold their diagonals alone and damping nothing (model/matrix_sum.h)
   std::shared_ptr<const DistributedMatrices> distributed;
-  std::vector<int> kept;                   // full unknown that each free unknown is
-  std::vector<std::string> unknown_names;  // of the free unknowns, "top.ux"
+  std::vector<int> kept;  // full unknown that each free unknown is; empty: a free unknown is no full one (is_reduced)
   Assembly assembly;
 
   int free() const { return static_cast<int>(reduction.cols()); }
@@ -134,6 +135,8 @@ struct Model {
   int at(int node, Dof dof) const { return space.at(node, dof); }  // full unknown
   int rows() const;                                                // interface rows, of all interfaces
   int find_node(std::string_view name) const;                      // -1 when absent
+  std::string name_of(int full_unknown) const;                     // "top.ux"
+  std::string unknown_name(Index free) const;                      // of a free unknown; its number where it is no full one
   /// Full displacement (derivative 0), velocity (1) or acceleration (2) of one full unknown from the free ones.
   double full(int full_unknown, const Vector& q, int derivative, MotionInstant at) const;
   /// All full unknowns at once.

@@ -66,7 +66,6 @@ void project_loads(Model& model, const Matrix& basis) {
   for (TimeLoadTable& table : model.time_load_tables) table.pattern = as_sparse(basis.transpose() * table.pattern);
   model.assembly.modal_damping.resize(0, 0);
   model.kept.clear();
-  model.unknown_names.clear();
 }
 
 void append(const EnergyProduct& product, const Vector& x, double least, Matrix& basis) {

@@ -9,11 +9,22 @@
 
 namespace uplift {
 
+/// The balanced motion is kept on the free unknowns: there are twice as many full ones in a mesh of solids.
 struct EquilibriumCheck::Snapshot {
-  Vector displacement, velocity, acceleration;  // full unknowns
-  Vector free_velocity, joint;
-  Vector unbalanced;  // M a + C v + K u + B^T p - f, full unknowns
-  Vector applied;     // f
+  struct Motion {
+    Vector free;
+    std::vector<double> prescribed;  // of each prescribed motion of the model, for a shape of 1
+    /// Of a full unknown.
+    double at(const Model& model, Index unknown) const {
+      double sum = 0;
+      for (Sparse::InnerIterator entry(model.expansion, unknown); entry; ++entry) sum += entry.value() * free[entry.row()];
+      for (std::size_t k = 0; k < prescribed.size(); ++k) sum += prescribed[k] * model.motions[k].shape[unknown];
+      return sum;
+    }
+  };
+  Motion displacement, velocity, acceleration;
+  Vector joint;
+  Vector unbalanced;  // M a + C v + K u + B^T p - f, full unknowns; before the elements: -f
   Vector yielding;
   Equilibrium::Instant sums;
 };
@@ -45,7 +56,8 @@ std::string Equilibrium::warning() const {
       time, residual);
 }
 
-EquilibriumCheck::EquilibriumCheck(const ForceStage& stage) : stage_(std::make_unique<const ForceStage>(stage)) {
+EquilibriumCheck::EquilibriumCheck(const ForceStage& stage, int most)
+    : stage_(std::make_unique<const ForceStage>(stage)), at_once_(stage.model.full_unknowns() > most) {
   const std::vector<Node>& nodes = stage.model.nodes;
   for (const Node& node : nodes) centre_ += node.position / static_cast<double>(nodes.size());
 }
@@ -58,41 +70,53 @@ void EquilibriumCheck::note(const StepBalance& balance) {
   const Index free = model.free(), rows = model.rows();
   Snapshot at;
   at.sums.time = balance.time();
-  Vector displacement(free), acceleration(free);
-  at.free_velocity.resize(free);
+  for (Snapshot::Motion* motion : {&at.displacement, &at.velocity, &at.acceleration}) motion->free.resize(free);
   for (Index i = 0; i < free; ++i) {
-    displacement[i] = balance.displacement(i);
-    at.free_velocity[i] = balance.velocity(i);
-    acceleration[i] = balance.acceleration(i);
+    at.displacement.free[i] = balance.displacement(i);
+    at.velocity.free[i] = balance.velocity(i);
+    at.acceleration.free[i] = balance.acceleration(i);
   }
   at.joint.resize(rows);
   for (Index i = 0; i < rows; ++i) at.joint[i] = balance.force(i);
-  at.displacement = model.reduction * displacement;
-  at.velocity = model.reduction * at.free_velocity;
-  at.acceleration = model.reduction * acceleration;
   for (const PrescribedMotion& motion : model.motions) {
-    at.displacement += balance.motion(*motion.function, 0) * motion.shape;
-    at.velocity += balance.motion(*motion.function, 1) * motion.shape;
-    at.acceleration += balance.motion(*motion.function, 2) * motion.shape;
+    at.displacement.prescribed.push_back(balance.motion(*motion.function, 0));
+    at.velocity.prescribed.push_back(balance.motion(*motion.function, 1));
+    at.acceleration.prescribed.push_back(balance.motion(*motion.function, 2));
   }
-  at.applied = Vector::Zero(model.full_unknowns());
+  Vector applied = Vector::Zero(model.full_unknowns());
   const double begin = balance.share_of_begin();
   for (std::size_t i = 0; i < model.time_loads.size(); ++i) {
     const TimeLoad& time_load = model.time_loads[i];
     if (i < model.assembly.loads.size() && model.assembly.loads[i].size() > 0)
-      at.applied += (time_load.constant ? balance.load_factor() : balance.value(*time_load.function, static_cast<int>(time_load.order))) *
-                    model.assembly.loads[i];
+      applied += (time_load.constant ? balance.load_factor() : balance.value(*time_load.function, static_cast<int>(time_load.order))) *
+                 model.assembly.loads[i];
   }
   for (std::size_t i = 0; balance.moves() && i < model.time_load_tables.size(); ++i) {
     Vector last, first;
     model.time_load_tables[i].functions->values(balance.after().time, last);
     model.time_load_tables[i].functions->values(balance.before().time, first);
-    at.applied += model.assembly.time_load_tables[i] * Vector((1 - begin) * last + begin * first);
+    applied += model.assembly.time_load_tables[i] * Vector((1 - begin) * last + begin * first);
   }
   if (const PlasticBulk yielding(model); yielding.any())
     at.yielding =
         (1 - begin) * yielding.state(balance.after().bulk_history).full + begin * yielding.state(balance.before().bulk_history).full;
+  at.unbalanced = -applied;
+  if (has_held())
+    for (Index i = 0; i < free; ++i) applied[model.kept[static_cast<std::size_t>(i)]] += (*stage_->held)[i];
+  sum_up(applied, at.sums.applied);
   snapshots_.push_back(std::move(at));
+  if (at_once_) applied.resize(0), balance_snapshots();
+}
+
+bool EquilibriumCheck::has_held() const {
+  return stage_->held != nullptr && stage_->held->size() > 0;
+}
+
+void EquilibriumCheck::sum_up(const Vector& forces, Equilibrium::Sum& sum) const {
+  const Model& model = stage_->model;
+  for (Index i = 0; i < forces.size(); ++i)
+    if (forces[i] != 0)
+      add(forces[i], model.space, model.nodes[static_cast<std::size_t>(model.space.node_of(i))].position - centre_, i, sum);
 }
 
 /// Every element is formed once and answers all instants.
@@ -100,7 +124,6 @@ void EquilibriumCheck::add_elements() {
   const Model& model = stage_->model;
   const Space space = model.space;
   Matrix stiffness, mass, damping;
-  for (Snapshot& at : snapshots_) at.unbalanced = -at.applied;
   for (const auto& element : model.elements) {
     const int each = element->unknowns_per_node();
     const auto nodes = element->nodes();
@@ -110,7 +133,7 @@ void EquilibriumCheck::add_elements() {
     Vector u(stiffness.cols()), v(u), a(u);
     for (Snapshot& at : snapshots_) {
       for (Index i = 0; i < u.size(); ++i)
-        u[i] = at.displacement[unknown(i)], v[i] = at.velocity[unknown(i)], a[i] = at.acceleration[unknown(i)];
+        u[i] = at.displacement.at(model, unknown(i)), v[i] = at.velocity.at(model, unknown(i)), a[i] = at.acceleration.at(model, unknown(i));
       const Vector internal = stiffness * u, damped = damping * v, inertia = mass * a;
       for (Index i = 0; i < u.size(); ++i) {
         const Vec3 arm = model.nodes[static_cast<std::size_t>(nodes[static_cast<std::size_t>(i) / each])].position - centre_;
@@ -125,51 +148,56 @@ void EquilibriumCheck::add_elements() {
 
 void EquilibriumCheck::add_forces(const ForceModel& forces, Snapshot& at) const {
   const Model& model = stage_->model;
-  const auto sum_up = [&](const Vector& values, Equilibrium::Sum& sum) {
-    for (Index i = 0; i < values.size(); ++i)
-      if (values[i] != 0)
-        add(values[i], model.space, model.nodes[static_cast<std::size_t>(model.space.node_of(i))].position - centre_, i, sum);
-  };
   const auto put = [&](const Vector& internal, Equilibrium::Sum& sum) {
     at.unbalanced += internal;
     sum_up(-internal, sum);
   };
-  if (stage_->held != nullptr && stage_->held->size() > 0)
-    for (Index i = 0; i < model.free(); ++i) {
-      at.applied[model.kept[static_cast<std::size_t>(i)]] += (*stage_->held)[i];
-      at.unbalanced[model.kept[static_cast<std::size_t>(i)]] -= (*stage_->held)[i];
-    }
-  sum_up(at.applied, at.sums.applied);
+  if (has_held())
+    for (Index i = 0; i < model.free(); ++i) at.unbalanced[model.kept[static_cast<std::size_t>(i)]] -= (*stage_->held)[i];
   if (model.assembly.b.rows() > 0) put(model.assembly.b.transpose() * at.joint, at.sums.joint);
-  if (stage_->second_order != nullptr) put(stage_->second_order->stiffness * at.displacement, at.sums.second_order);
+  if (stage_->second_order != nullptr) {
+    Vector displacement(model.full_unknowns());
+    for (Index i = 0; i < displacement.size(); ++i) displacement[i] = at.displacement.at(model, i);
+    put(stage_->second_order->stiffness * displacement, at.sums.second_order);
+  }
   if (at.yielding.size() > 0) put(at.yielding, at.sums.internal);
   if (model.assembly.modal_damping.cols() > 0) {
-    const Vector damped = model.assembly.modal_damping * at.free_velocity;
+    const Vector damped = model.assembly.modal_damping * at.velocity.free;
     Vector full = Vector::Zero(model.full_unknowns());
     for (Index i = 0; i < damped.size(); ++i) full[model.kept[static_cast<std::size_t>(i)]] = damped[i];
     put(full, at.sums.damping);
   }
-  const Vector reactions = forces.constraint_forces(at.unbalanced);
+  at.displacement = at.velocity = at.acceleration = {};
+  Vector reactions = forces.constraint_forces(at.unbalanced);
   for (Index i = 0; i < reactions.size(); ++i)
     if (!model.space.is_rotation(model.space.index_of(i)))
       at.sums.largest_reaction = std::max(at.sums.largest_reaction, std::abs(reactions[i]));
   sum_up(reactions, at.sums.reactions);
-  sum_up(reactions - at.unbalanced, at.sums.residual);
+  reactions -= at.unbalanced;
+  sum_up(reactions, at.sums.residual);
 }
 
-void EquilibriumCheck::finish(Equilibrium& equilibrium) {
+/// Turns the snapshots into their sums.
+void EquilibriumCheck::balance_snapshots() {
   // The rows of a rigid body are coupled by its reference node: their forces cost the third power of its size.
   constexpr std::size_t most_tied = 250;
   if (stage_->model.assembly.ties.size() > most_tied) snapshots_.clear();
   if (snapshots_.empty()) return;
   add_elements();
   const ForceModel forces(*stage_);
-  double force = 0, moment = 0;
   for (Snapshot& at : snapshots_) {
     add_forces(forces, at);
-    equilibrium.instants.push_back(at.sums);
+    instants_.push_back(at.sums);
   }
   snapshots_.clear();
+}
+
+void EquilibriumCheck::finish(Equilibrium& equilibrium) {
+  balance_snapshots();
+  if (instants_.empty()) return;
+  equilibrium.instants.insert(equilibrium.instants.end(), instants_.begin(), instants_.end());
+  instants_.clear();
+  double force = 0, moment = 0;
   for (const Equilibrium::Instant& at : equilibrium.instants) {
     force = std::max(force, at.largest_reaction);  // of supports that settle the reactions cancel each other
     for (const Equilibrium::Sum* sum : {&at.inertia, &at.damping, &at.internal, &at.joint, &at.second_order, &at.applied, &at.reactions})

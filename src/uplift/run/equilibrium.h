@@ -32,10 +32,13 @@ struct Equilibrium {
   std::string warning() const;
 };
 
-/// Collects instants during a stage and sums up their forces at its end, element by element: nothing large is made.
+/// Collects instants during a stage and sums up their forces at its end, element by element: nothing large is made. The instants of large
+/// models are summed up at once instead of kept.
 class EquilibriumCheck {
  public:
-  explicit EquilibriumCheck(const ForceStage& stage);
+  static constexpr int most_kept = 100'000;  // beyond, the time of one more pass over the elements is little beside a step
+  /// `most`: full unknowns of a model whose instants are kept.
+  explicit EquilibriumCheck(const ForceStage& stage, int most = most_kept);
   ~EquilibriumCheck();
   void note(const StepBalance& balance);
   /// Adds the instants to those of earlier stages.
@@ -45,10 +48,15 @@ class EquilibriumCheck {
   struct Snapshot;
   void add_elements();
   void add_forces(const ForceModel& forces, Snapshot& at) const;
+  void balance_snapshots();
+  bool has_held() const;
+  void sum_up(const Vector& forces, Equilibrium::Sum& sum) const;
 
   std::unique_ptr<const ForceStage> stage_;
+  const bool at_once_;
   Vec3 centre_ = Vec3::Zero();
   std::vector<Snapshot> snapshots_;
+  std::vector<Equilibrium::Instant> instants_;  // of this stage, summed up
 };
 
 }  // namespace uplift

@@ -27,12 +27,19 @@ struct ForceModel::Normal {
 
 ForceModel::~ForceModel() = default;
 
-ForceModel::ForceModel(const ForceStage& stage) : stage_(stage), elements_of_(stage.model.nodes.size()) {
-  for (std::size_t e = 0; e < stage.model.elements.size(); ++e)
-    for (const int node : stage.model.elements[e]->nodes()) {
-      std::vector<int>& here = elements_of_[static_cast<std::size_t>(node)];
-      if (here.empty() || here.back() != static_cast<int>(e)) here.push_back(static_cast<int>(e));
-    }
+ForceModel::ForceModel(const ForceStage& stage) : stage_(stage) {}
+
+const std::vector<int>& ForceModel::elements_of(int node) const {
+  const Model& model = stage_.model;
+  if (elements_of_.empty()) {
+    elements_of_.resize(model.nodes.size());
+    for (std::size_t e = 0; e < model.elements.size(); ++e)
+      for (const int each : model.elements[e]->nodes()) {
+        std::vector<int>& here = elements_of_[static_cast<std::size_t>(each)];
+        if (here.empty() || here.back() != static_cast<int>(e)) here.push_back(static_cast<int>(e));
+      }
+  }
+  return elements_of_[static_cast<std::size_t>(node)];
 }
 
 void ForceModel::add_section(int element, double xi, const Vector& weights, ForceRow& row) const {
@@ -72,7 +79,7 @@ void ForceModel::add_work(const Weights& motion, ForceRow& row) const {
   const Assembly& assembly = model.assembly;
   std::vector<int> touched;
   for (const auto& [unknown, weight] : motion)
-    for (const int element : elements_of_[static_cast<std::size_t>(model.space.node_of(unknown))]) touched.push_back(element);
+    for (const int element : elements_of(model.space.node_of(unknown))) touched.push_back(element);
   std::ranges::sort(touched);
   touched.erase(std::ranges::unique(touched).begin(), touched.end());
   Matrix stiffness, mass, damping;

@@ -59,8 +59,10 @@ class ForceModel {
   Vector motion_of(const Vector& of_row) const;
   void add_constraint_rows(const Vector& of_row, ForceRow& row) const;
 
+  const std::vector<int>& elements_of(int node) const;
+
   ForceStage stage_;
-  std::vector<std::vector<int>> elements_of_;  // node
+  mutable std::vector<std::vector<int>> elements_of_;  // node; made when it is first asked for
   struct Normal;
   mutable std::unique_ptr<Normal> normal_;  // factor of G G^T
 };

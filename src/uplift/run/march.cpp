@@ -120,7 +120,7 @@ bool Runner::moves_little(const Model& model, const std::vector<int>& rotations)
     if (std::abs(seen_->displacement[unknown]) > plan_.rotation_limit) {
       run_.result.status = RunStatus::overturned;
       run_.result.reason = fmt::format("{} passed {:.3g} rad at {}, the limit of the small-displacement model",
-                                       model.unknown_names[static_cast<std::size_t>(unknown)], plan_.rotation_limit, when());
+                                       model.unknown_name(unknown), plan_.rotation_limit, when());
       return false;
     }
   return (!rotations.empty() || surfaces_turn_little()) &&

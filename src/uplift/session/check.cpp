@@ -85,11 +85,22 @@ void try_steps(CaseFindings& found, const BuiltCase& built) {
   found.systems = trial.counts.systems;
 }
 
+/// Pictures that a run keeps at most: at the beginning, at regular steps and at the largest uplift of each stage.
+double pictures(const RunPlan& plan) {
+  double count = 0;
+  for (const Stage& stage : plan.stages) {
+    if (plan.frames == 0) break;
+    const long steps = stage.type == Stage::Type::dynamics ? std::max(1L, std::lround(stage.duration / stage.step)) : 1;
+    count += 2 + static_cast<double>(steps / std::max(1L, steps / plan.frames));
+  }
+  return count;
+}
+
 /// What the pictures of all runs of `uplift run` take until the report is written.
 double pictures_bytes(const Case& read, const BuiltCase& built) {
   double numbers = built.model.full_unknowns();
   for (const Interface& interface : built.model.interfaces) numbers += 2 * interface.rows();
-  return 8 * numbers * built.plan.frames * static_cast<double>(runs_of_case(read).size());
+  return 8 * numbers * pictures(built.plan) * static_cast<double>(runs_of_case(read).size());
 }
 
 /// `uplift run` keeps the histories of all its runs until they are written; those with twice the step have half of them.

@@ -9,7 +9,8 @@
 namespace uplift {
 namespace {
 
-/// The runs with twice the step: at the same time as the others where they are small, after them where memory counts.
+/// The runs with twice the step: of a small case at the same time as the others, of a large one each behind its run, with the same model
+/// where no more than the steps differ; what is left after all others.
 class CompanionRuns {
  public:
   CompanionRuns(const LoadedCase& loaded, const Control& control) : loaded_(loaded), control_(control) {
@@ -17,9 +18,17 @@ class CompanionRuns {
   }
   /// Begins to compute a case that is small.
   void begin(const BuiltCase& base) {
-    constexpr int small_model = 3000;  // free unknowns
     if (!specs_.empty() && base.model.free() <= small_model && runs_side_by_side(2) == 2)
       at_the_same_time_ = std::async(std::launch::async | std::launch::deferred, [this] { compute(true); });
+  }
+  /// After a run, which stays as it is: its companion, with its model.
+  void follow(const RunSpec& spec, BuiltCase& built) {
+    const std::size_t number = runs_.size();
+    if (at_the_same_time_.valid() || control_.is_stopped() || number >= specs_.size() || built.model.free() <= small_model) return;
+    const RunSpec& own = specs_[number];
+    if (own.bonded != spec.bonded || loaded_.from.reduced != nullptr || !change_steps(loaded_.read, own, built)) return;
+    add(built, own, control_);
+    change_steps(loaded_.read, spec, built);
   }
   /// What the verdict is compared with; null when nothing was computed.
   const Companion* finish() {
@@ -28,7 +37,7 @@ class CompanionRuns {
     else if (!control_.is_stopped())
       compute(false);
     if (runs_.empty()) return nullptr;
-    companion_ = {&built_.front(), &runs_.front(), runs_.size() > 1 ? &runs_[1] : nullptr};
+    companion_ = {of_runs_.front(), step_, &runs_.front(), runs_.size() > 1 ? &runs_[1] : nullptr};
     return &companion_;
   }
 
@@ -36,18 +45,28 @@ class CompanionRuns {
   void compute(bool silent) {
     Control control = control_;
     if (silent) control.watch = {};
-    for (const RunSpec& spec : specs_) {
+    while (runs_.size() < specs_.size()) {
+      const RunSpec& spec = specs_[runs_.size()];
       append_run(loaded_, spec, built_);
-      runs_.push_back(run_built(loaded_, built_.back(), spec.label, control, false, nullptr));
+      add(built_.back(), spec, control);
       free_matrices(built_.back());
     }
   }
+  void add(BuiltCase& built, const RunSpec& spec, const Control& control) {
+    if (runs_.empty()) step_ = longest_step(built.plan);
+    runs_.push_back(run_built(loaded_, built, spec.label, control, false, nullptr));
+    of_runs_.push_back(&built);
+  }
+
+  static constexpr int small_model = 3000;  // free unknowns
 
   const LoadedCase& loaded_;
   const Control& control_;
   std::vector<RunSpec> specs_;
   std::deque<BuiltCase> built_;
-  std::vector<RunResult> runs_;
+  std::deque<RunResult> runs_;
+  std::vector<const BuiltCase*> of_runs_;
+  double step_ = 0;  // s: of the first one
   std::future<void> at_the_same_time_;
   Companion companion_;
 };
@@ -67,6 +86,7 @@ Results run_case(const LoadedCase& loaded, const Control& control) {
     if (first) add_statement(loaded, results.warnings);
     results.runs.push_back(
         run_built(loaded, results.built.back(), spec.label, control, first, &results.field_lists, first ? "histories.csv" : ""));
+    if (results.runs.front().status != RunStatus::failed) companions.follow(spec, results.built.back());
     free_matrices(results.built.back());
   }
   const RunResult& main = results.runs.front();

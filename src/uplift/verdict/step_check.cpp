@@ -15,13 +15,6 @@ constexpr double least_motion = 0.05;                          // of the largest
 constexpr double steps_per_period = 20, least_spectrum = 0.1;  // of floor spectra; least value beside their peak
 constexpr double least_eccentricity = 0.01;                    // of the width
 
-double longest_step(const RunPlan& plan) {
-  double step = 0;
-  for (const Stage& stage : plan.stages)
-    if (stage.type == Stage::Type::dynamics) step = std::max(step, stage.step);
-  return step;
-}
-
 /// What a change of the numbers of one interface, or of the whole run, is measured by.
 struct Scale {
   double motion = 0;       // m: largest of the top and of the gap
@@ -154,6 +147,13 @@ struct StepHistory {
 
 }  // namespace
 
+double longest_step(const RunPlan& plan) {
+  double step = 0;
+  for (const Stage& stage : plan.stages)
+    if (stage.type == Stage::Type::dynamics) step = std::max(step, stage.step);
+  return step;
+}
+
 std::string_view to_string(StepCheck::State state) {
   switch (state) {
     case StepCheck::State::not_made:
@@ -221,7 +221,7 @@ StepCheck check_step(const BuiltCase& built, const RunResult& run, const FloorRu
                      VerdictNumbers& numbers) {
   StepCheck check;
   check.step = longest_step(built.plan);
-  check.coarse_step = longest_step(companion.built->plan);
+  check.coarse_step = companion.step;
   const RunStatus ended = companion.run->status;
   if (ended == RunStatus::interrupted || run.status == RunStatus::interrupted) {
     check.reason = "interrupted";

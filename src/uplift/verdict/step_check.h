@@ -9,9 +9,13 @@ namespace uplift {
 /// The same case with twice the step: what the numbers of the verdict are compared with.
 struct Companion {
   const BuiltCase* built = nullptr;
+  double step = 0;  // s: longest of the dynamic stages
   const RunResult* run = nullptr;
   const RunResult* bonded = nullptr;  // null where the verdict has no bonded reference run
 };
+
+/// Longest step of the dynamic stages [s].
+double longest_step(const RunPlan& plan);
 
 /// By how much the numbers of the verdict still depend on the step. The difference between the run and its companion bounds the error of
 /// the run where the error is proportional to the step or to a power of it.

@@ -1,4 +1,4 @@
-// The motions of another run in a run that was built: the functions of a run that is built anew, or nothing at all.
+// The motions or the steps of another run in a run that was built: those of a run that is built anew, or nothing at all.
 #include <gtest/gtest.h>
 
 #include <string>
@@ -66,6 +66,58 @@ TEST(ChangeMotion, LeavesARunWithPrescribedMotionsAlone) {
   const BuiltCase own = build_run(runs.read, runs.own);
   EXPECT_FALSE(change_motion(runs.read.read, runs.other, built));
   expect_same(built.model, own.model);
+}
+
+/// The case's own run with twice the step.
+RunSpec with_twice_the_step(const RunSpec& own) {
+  RunSpec coarse = own;
+  coarse.name = "coarse", coarse.step_factor = 2, coarse.pictures = false;
+  return coarse;
+}
+
+TEST(ChangeSteps, GivesTheRunThatIsBuiltAnewThereAndBack) {
+  const Runs runs(std::string(ground) + push);
+  const RunSpec coarse = with_twice_the_step(runs.own);
+  BuiltCase built = build_run(runs.read, runs.own);
+  const BuiltCase own = build_run(runs.read, runs.own), anew = build_run(runs.read, coarse);
+  const auto expect_same_run = [](const BuiltCase& one, const BuiltCase& other) {
+    EXPECT_EQ(one.plan.name, other.plan.name);
+    EXPECT_EQ(one.plan.frames, other.plan.frames);
+    expect_same(one.model, other.model);
+    const RunResult first = run(one.model, one.plan, one.behaviours), second = run(other.model, other.plan, other.behaviours);
+    ASSERT_EQ(first.status, RunStatus::completed) << first.reason;
+    EXPECT_EQ(first.counts.steps, second.counts.steps);
+    EXPECT_EQ(first.table, second.table);
+  };
+  ASSERT_TRUE(change_steps(runs.read.read, coarse, built));
+  expect_same_run(built, anew);
+  EXPECT_EQ(dynamic_stage(built.plan)->step, 2 * dynamic_stage(own.plan)->step);
+  ASSERT_TRUE(change_steps(runs.read.read, runs.own, built));
+  expect_same_run(built, own);
+}
+
+TEST(ChangeSteps, LeavesARunWithPrescribedMotionsAlone) {
+  const Runs runs("[[motion]]\nnode = \"n1\"\ndirection = \"ux\"\nfunction = \"shake\"\namplitude = 1e-3\n");
+  BuiltCase built = build_run(runs.read, runs.own);
+  const double step = dynamic_stage(built.plan)->step;
+  EXPECT_FALSE(change_steps(runs.read.read, with_twice_the_step(runs.own), built));
+  EXPECT_EQ(dynamic_stage(built.plan)->step, step);
+  EXPECT_EQ(built.plan.name, runs.own.name);
+}
+
+// Joints that stand for constraints of the bonded run are as stiff as the model is flexible in a step.
+TEST(ChangeSteps, LeavesBondedConstraintsAlone) {
+  std::string text = footing(push);
+  const std::string law = "springs\", K_n = 1e8, K_t = 5e7, tangential = \"coulomb\", friction = 0.6";
+  text.replace(text.find(law), law.size(), "coulomb\", friction = 0.6");
+  const LoadedCase read = load_case_text(text, "case.toml", "test", MeshFiles::in_process);
+  RunSpec own = runs_of_case(read.read).front();
+  own.bonded = true;
+  BuiltCase built = build_run(read, own);
+  EXPECT_FALSE(change_steps(read.read, with_twice_the_step(own), built));
+  own.bonded = false;
+  built = build_run(read, own);
+  EXPECT_TRUE(change_steps(read.read, with_twice_the_step(own), built));
 }
 
 }  // namespace

@@ -200,7 +200,7 @@ void warn_massless(const BuiltCase& built, std::vector<std::string>& said) {
     if (model.mass.coeff(i, i) != 0) continue;
     const bool base = std::ranges::any_of(
         built.facts, [&](const InterfaceFacts& facts) { return std::ranges::find(facts.upper, node) != facts.upper.end(); });
-    if (base && names.size() < 60) names += (names.empty() ? "" : ", ") + model.unknown_names[static_cast<std::size_t>(i)];
+    if (base && names.size() < 60) names += (names.empty() ? "" : ", ") + model.unknown_name(i);
   }
   if (!names.empty())
     said.push_back(fmt::format(

@@ -188,7 +188,14 @@ void add_mesh(const Case& read, ModelBuilder& builder, CaseNames& names) {
   names.solids = std::make_shared<const CaseSolids>(read.values, *read.mesh);
   names.first_of_mesh = names.nodes.size();
   const std::map<int, std::string> named = named_nodes(mesh, names.nodes);
-  auto coordinates = std::make_shared<std::vector<Vec3>>(names.positions.size(), Vec3::Zero());
+  std::size_t cells = 0;
+  for (const CaseSolids::Solid& solid : names.solids->solids()) cells += solid.cells.size();
+  builder.reserve(mesh.nodes.size(), cells);
+  names.nodes.reserve(mesh.nodes.size());
+  names.positions.reserve(names.positions.size() + mesh.nodes.size());
+  auto coordinates = std::make_shared<std::vector<Vec3>>();
+  coordinates->reserve(names.positions.size() + mesh.nodes.size());
+  coordinates->assign(names.positions.size(), Vec3::Zero());
   for (int i = 0; i < static_cast<int>(mesh.nodes.size()); ++i) {
     const std::string number = fmt::format("mesh.{}", mesh.number(i));
     const auto name = named.find(i);

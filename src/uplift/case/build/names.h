@@ -25,6 +25,7 @@ class Names {
   int add(std::string name, const Where& where, const std::string& path);
   /// A second name of something that was added; it must not be there yet.
   void also(const std::string& name, int index);
+  void reserve(std::size_t more) { names_.reserve(names_.size() + more), index_.reserve(index_.size() + more); }
   bool has(const std::string& name) const { return index_.contains(name); }
   /// Index of a name used at this place; InputError with the nearest name when it does not exist.
   int find(const std::string& name, const Where& where, const std::string& path) const;
