@@ -179,8 +179,8 @@ BuiltCase build(const Case&, const RunSpec&);
 /// motions, static stages under a record).
 bool change_motion(const Case&, const RunSpec&, BuiltCase&);
 
-/// Puts the steps, the name and the pictures of another run of the same case into a run that was built. False, with the run unchanged, where
-/// more depends on the step than functions that change_motion() can follow.
+/// Puts the steps, the name and the pictures of another run of the same case into a run that was built. False, with the run unchanged,
+/// where more depends on the step than functions that change_motion() can follow.
 bool change_steps(const Case&, const RunSpec&, BuiltCase&);
 
 /// The solver named by the case.

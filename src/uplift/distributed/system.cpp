@@ -217,6 +217,12 @@ PetscErrorCode System::analyse(SystemCost& cost) {
   PetscCall(MatGetInfo(matrix_, MAT_LOCAL, &own));
   cost.bytes = own.nz_used * (sizeof(PetscScalar) + sizeof(PetscInt)) + vectors * sizeof(PetscScalar) * static_cast<double>(local_);
   if (cells_ != nullptr) cost.bytes += cells_->bytes();
+  PC pc = nullptr;
+  PetscBool multigrid = PETSC_FALSE;
+  PetscCall(KSPGetPC(solver_, &pc));
+  PetscCall(PetscObjectTypeCompare(reinterpret_cast<PetscObject>(pc), PCGAMG, &multigrid));
+  // while its levels are made: prolongations and products of them, measured with smoothed aggregates in blocks of soil in space
+  if (multigrid == PETSC_TRUE) cost.bytes += 3 * own.nz_used * (sizeof(PetscScalar) + sizeof(PetscInt));
   if (factor_ == nullptr) PetscFunctionReturn(0);
   cost.bytes += (own.nz_used + local_) / 2 * (sizeof(PetscScalar) + 2 * sizeof(PetscInt));  // what MUMPS is given
   MatFactorInfo info;

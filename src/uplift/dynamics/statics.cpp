@@ -181,8 +181,8 @@ std::string LoadSteps::imbalance(const Vector& unbalanced, const Vector& moved) 
         "force; {}",
         model_.unknown_name(stiffest), round_off / std::max(size, 1e-300), too_much_contrast);
   if (const double rest = unbalanced.cwiseAbs().maxCoeff(&worst); rest > 1e-6 * size + lost)
-    return fmt::format("the balance of the structure is not met at {}: {:.1e} of the largest force is left",
-                       model_.unknown_name(worst), rest / std::max(size, 1e-300));
+    return fmt::format("the balance of the structure is not met at {}: {:.1e} of the largest force is left", model_.unknown_name(worst),
+                       rest / std::max(size, 1e-300));
   return {};
 }
 

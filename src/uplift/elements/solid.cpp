@@ -73,7 +73,8 @@ std::vector<Vec3> Solid::point_positions() const {
 
 Stress Solid::elastic_stress(const Strain& strain) const {
   const bool flat = dimension_ == 2 && section_->plane == PlaneState::stress;
-  const double mu = section_->material.shear(), lambda = flat ? section_->material.plane_lame(PlaneState::stress) : section_->material.lame();
+  const double mu = section_->material.shear(),
+               lambda = flat ? section_->material.plane_lame(PlaneState::stress) : section_->material.lame();
   Stress stress;
   stress.head<3>() = 2 * mu * strain.head<3>();
   stress.head<3>().array() += lambda * strain.head<3>().sum();

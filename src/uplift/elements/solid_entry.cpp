@@ -40,7 +40,9 @@ std::shared_ptr<const BulkLaw> law_from(const Values& solid, const SolidSection&
 class SolidFilling final : public CellFilling {
  public:
   SolidFilling(const Values& solid, int dimension)
-      : section_(std::make_shared<const SolidSection>(section_from(solid))), law_(law_from(solid, *section_, dimension)), beta_(solid.number("damping_beta")) {}
+      : section_(std::make_shared<const SolidSection>(section_from(solid))),
+        law_(law_from(solid, *section_, dimension)),
+        beta_(solid.number("damping_beta")) {}
   const SolidSection& section() const override { return *section_; }
   std::unique_ptr<Element> make(const CellSite& site) const override {
     std::unique_ptr<Element> element;

@@ -4,6 +4,7 @@
 #include <array>
 #include <cassert>
 #include <cmath>
+#include <numeric>
 
 #include "uplift/mesh/convert.h"
 #include "uplift/mesh/index.h"
@@ -101,6 +102,8 @@ std::vector<int> make_nodes(Mesh& mesh, const Grid& lines, const GridCells& cell
     const auto n = cells.nodes(c);
     for (std::size_t a = 0; a < corners; ++a) number[n[a]] = 0;
   });
+  const auto count = static_cast<std::size_t>(std::ranges::count(number, 0));
+  mesh.nodes.reserve(count + count / 16);  // surfaces that are opened add some
   for (std::size_t g = 0; g < number.size(); ++g) {
     if (number[g] < 0) continue;
     number[g] = static_cast<int>(mesh.nodes.size());
@@ -169,6 +172,10 @@ Mesh grid(const Grid& lines, const PartOf& part_of, const std::vector<std::strin
   const std::span<const Way> ways = plane ? std::span<const Way>(plane_ways) : std::span<const Way>(space_ways);
   std::vector<Group> parts(names.size(), Group{mesh.dimension, {}, {}});
   CellBlock &volumes = mesh.blocks[0], &faces = mesh.blocks[1];
+  std::vector<std::size_t> counts(names.size(), 0);
+  cells.for_each([&](std::array<int, 3>, int part) { ++counts[at(part)]; });
+  for (std::size_t p = 0; p < names.size(); ++p) parts[p].cells.reserve(counts[p]);
+  volumes.nodes.reserve(std::accumulate(counts.begin(), counts.end(), std::size_t{0}) * at(info(type).nodes));
   cells.for_each([&](std::array<int, 3> c, int part) {
     const auto corners = cells.nodes(c);
     parts[at(part)].cells.push_back({0, volumes.count()});

@@ -155,6 +155,7 @@ std::vector<int> ModelBuilder::resisted(const Model& model) const {
 
 Model ModelBuilder::finish() {
   Model model;
+  std::unordered_set<std::string>().swap(node_names_);  // of a large mesh as large as its nodes
   model.space = space_;
   Matrix motion_shapes;
   model.assembly.gravity = gravity_;

@@ -103,7 +103,7 @@ void EquilibriumCheck::note(const StepBalance& balance) {
   at.unbalanced = -applied;
   if (has_held())
     for (Index i = 0; i < free; ++i) applied[model.kept[static_cast<std::size_t>(i)]] += (*stage_->held)[i];
-  sum_up(applied, at.sums.applied);
+  sum_up(applied, 1, at.sums.applied);
   snapshots_.push_back(std::move(at));
   if (at_once_) applied.resize(0), balance_snapshots();
 }
@@ -112,11 +112,11 @@ bool EquilibriumCheck::has_held() const {
   return stage_->held != nullptr && stage_->held->size() > 0;
 }
 
-void EquilibriumCheck::sum_up(const Vector& forces, Equilibrium::Sum& sum) const {
+void EquilibriumCheck::sum_up(const Vector& forces, double sign, Equilibrium::Sum& sum) const {
   const Model& model = stage_->model;
   for (Index i = 0; i < forces.size(); ++i)
     if (forces[i] != 0)
-      add(forces[i], model.space, model.nodes[static_cast<std::size_t>(model.space.node_of(i))].position - centre_, i, sum);
+      add(sign * forces[i], model.space, model.nodes[static_cast<std::size_t>(model.space.node_of(i))].position - centre_, i, sum);
 }
 
 /// Every element is formed once and answers all instants.
@@ -133,7 +133,8 @@ void EquilibriumCheck::add_elements() {
     Vector u(stiffness.cols()), v(u), a(u);
     for (Snapshot& at : snapshots_) {
       for (Index i = 0; i < u.size(); ++i)
-        u[i] = at.displacement.at(model, unknown(i)), v[i] = at.velocity.at(model, unknown(i)), a[i] = at.acceleration.at(model, unknown(i));
+        u[i] = at.displacement.at(model, unknown(i)), v[i] = at.velocity.at(model, unknown(i)),
+        a[i] = at.acceleration.at(model, unknown(i));
       const Vector internal = stiffness * u, damped = damping * v, inertia = mass * a;
       for (Index i = 0; i < u.size(); ++i) {
         const Vec3 arm = model.nodes[static_cast<std::size_t>(nodes[static_cast<std::size_t>(i) / each])].position - centre_;
@@ -144,13 +145,18 @@ void EquilibriumCheck::add_elements() {
       }
     }
   }
+  for (Snapshot& at : snapshots_) {  // what no other force asks for
+    at.acceleration = {};
+    if (stage_->second_order == nullptr) at.displacement = {};
+    if (model.assembly.modal_damping.cols() == 0) at.velocity = {};
+  }
 }
 
 void EquilibriumCheck::add_forces(const ForceModel& forces, Snapshot& at) const {
   const Model& model = stage_->model;
   const auto put = [&](const Vector& internal, Equilibrium::Sum& sum) {
     at.unbalanced += internal;
-    sum_up(-internal, sum);
+    sum_up(internal, -1, sum);
   };
   if (has_held())
     for (Index i = 0; i < model.free(); ++i) at.unbalanced[model.kept[static_cast<std::size_t>(i)]] -= (*stage_->held)[i];
@@ -167,14 +173,13 @@ void EquilibriumCheck::add_forces(const ForceModel& forces, Snapshot& at) const 
     for (Index i = 0; i < damped.size(); ++i) full[model.kept[static_cast<std::size_t>(i)]] = damped[i];
     put(full, at.sums.damping);
   }
-  at.displacement = at.velocity = at.acceleration = {};
   Vector reactions = forces.constraint_forces(at.unbalanced);
   for (Index i = 0; i < reactions.size(); ++i)
     if (!model.space.is_rotation(model.space.index_of(i)))
       at.sums.largest_reaction = std::max(at.sums.largest_reaction, std::abs(reactions[i]));
-  sum_up(reactions, at.sums.reactions);
+  sum_up(reactions, 1, at.sums.reactions);
   reactions -= at.unbalanced;
-  sum_up(reactions, at.sums.residual);
+  sum_up(reactions, 1, at.sums.residual);
 }
 
 /// Turns the snapshots into their sums.

@@ -50,7 +50,7 @@ class EquilibriumCheck {
   void add_forces(const ForceModel& forces, Snapshot& at) const;
   void balance_snapshots();
   bool has_held() const;
-  void sum_up(const Vector& forces, Equilibrium::Sum& sum) const;
+  void sum_up(const Vector& forces, double sign, Equilibrium::Sum& sum) const;
 
   std::unique_ptr<const ForceStage> stage_;
   const bool at_once_;

@@ -119,8 +119,8 @@ bool Runner::moves_little(const Model& model, const std::vector<int>& rotations)
   for (int unknown : rotations)
     if (std::abs(seen_->displacement[unknown]) > plan_.rotation_limit) {
       run_.result.status = RunStatus::overturned;
-      run_.result.reason = fmt::format("{} passed {:.3g} rad at {}, the limit of the small-displacement model",
-                                       model.unknown_name(unknown), plan_.rotation_limit, when());
+      run_.result.reason = fmt::format("{} passed {:.3g} rad at {}, the limit of the small-displacement model", model.unknown_name(unknown),
+                                       plan_.rotation_limit, when());
       return false;
     }
   return (!rotations.empty() || surfaces_turn_little()) &&

@@ -6,6 +6,7 @@
 #include <algorithm>
 #include <cmath>
 #include <numbers>
+#include <set>
 
 #include "text_support.h"
 #include "uplift/elements/solid.h"
@@ -145,6 +146,17 @@ TEST(CaseMesh, NodesThatAreShownAreFoundByTheirNumbersToo) {
     ASSERT_NE(found, again.plan.requests.end());
     EXPECT_EQ(found->unknown, again.model.at(node, uy));
   }
+}
+
+// A large model is made of nodes and solids: what they have in common is there once, and their lists are no longer than they need to be.
+TEST(CaseMesh, SolidsOfOneTableShareWhatTheyAreMadeOf) {
+  const BuiltCase built = build(read_text(column_text(3e7, side_supports), column(Cell::quad8)), RunSpec{});
+  std::set<const SolidSection*> sections;
+  for (const auto& element : built.model.elements)
+    if (element->continuum() != nullptr) sections.insert(element->continuum());
+  EXPECT_EQ(sections.size(), 2U);  // soil and block
+  EXPECT_LE(built.model.nodes.capacity(), built.model.nodes.size() * 17 / 16);
+  EXPECT_LE(built.model.elements.capacity(), built.model.elements.size() * 17 / 16);
 }
 
 /// Sway of the roof of the same block and soil without an interface, under the same traction at its left side, by the elements alone.

@@ -6,11 +6,11 @@
 #include <memory>
 #include <random>
 
+#include "unit/model/model_support.h"
 #include "uplift/elements/solid.h"
 #include "uplift/mesh/box.h"
 #include "uplift/model/builder.h"
 #include "uplift/run/force_rows.h"
-#include "text_support.h"
 
 namespace uplift::equilibrium_test {
 namespace {
@@ -64,7 +64,7 @@ std::vector<State> random_states(const Model& model, int count) {
   return states;
 }
 
-TEST(EquilibriumOfInstants, TheFootBearsTheWeightOfABlockAtRest) {
+TEST(EquilibriumOfInstants, TheLoadOfABlockAtRestIsItsWeight) {
   const Model model = block(false);
   State state;
   state.displacement = state.velocity = state.acceleration = Vector::Zero(model.free());
@@ -85,7 +85,6 @@ TEST(EquilibriumOfInstants, ABodyThatMovesWithItsFootIsNotStrained) {
   ASSERT_EQ(found.instants.size(), 1U);
   const double weight = density * width * width * height * gravity, of_round_off = 1e-9 * 30e6 * width;
   EXPECT_LT(found.instants[0].largest_reaction, weight);
-  EXPECT_NEAR(found.instants[0].reactions.force.z(), weight, of_round_off);
   EXPECT_NEAR(found.instants[0].reactions.force.x(), 0, of_round_off);
 }
 

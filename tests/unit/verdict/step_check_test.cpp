@@ -230,13 +230,14 @@ TEST(StepCheck, ACompanionThatEndsDifferentlyShowsThatTheStepDecides) {
   RunResult run, coarse;
   coarse.status = RunStatus::overturned;
   VerdictNumbers numbers = numbers_with({number("max_moment", 1e6)});
-  const StepCheck check = check_step(built, run, nullptr, {&coarse_built, &coarse}, numbers);
+  const StepCheck check = check_step(built, run, nullptr, {&coarse_built, longest_step(coarse_built.plan), &coarse}, numbers);
   EXPECT_EQ(check.state, StepCheck::State::not_converged);
   EXPECT_EQ(check.sentence(),
             "Not converged: with twice the step the run ends early (overturned) (2.00 ms instead of 1.00 ms). The changes beside the "
             "numbers are no bounds of their errors.");
   coarse.status = RunStatus::interrupted;
-  EXPECT_EQ(check_step(built, run, nullptr, {&coarse_built, &coarse}, numbers).state, StepCheck::State::not_made);
+  EXPECT_EQ(check_step(built, run, nullptr, {&coarse_built, longest_step(coarse_built.plan), &coarse}, numbers).state,
+            StepCheck::State::not_made);
 }
 
 TEST(Wording, RoundsDownToOneTwoOrFive) {

@@ -190,9 +190,10 @@ void add_mesh(const Case& read, ModelBuilder& builder, CaseNames& names) {
   const std::map<int, std::string> named = named_nodes(mesh, names.nodes);
   std::size_t cells = 0;
   for (const CaseSolids::Solid& solid : names.solids->solids()) cells += solid.cells.size();
-  builder.reserve(mesh.nodes.size(), cells);
-  names.nodes.reserve(mesh.nodes.size());
-  names.positions.reserve(names.positions.size() + mesh.nodes.size());
+  const auto with_few_more = [](std::size_t count) { return count + count / 16; };  // beams, dashpots of faces
+  builder.reserve(with_few_more(mesh.nodes.size()), with_few_more(cells));
+  names.nodes.reserve(with_few_more(mesh.nodes.size()));
+  names.positions.reserve(names.positions.size() + with_few_more(mesh.nodes.size()));
   auto coordinates = std::make_shared<std::vector<Vec3>>();
   coordinates->reserve(names.positions.size() + mesh.nodes.size());
   coordinates->assign(names.positions.size(), Vec3::Zero());
