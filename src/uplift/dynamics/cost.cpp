@@ -1,6 +1,7 @@
 #include "uplift/dynamics/cost.h"
 
 #include <algorithm>
+#include <cmath>
 
 #include "uplift/dynamics/bulk.h"
 #include "uplift/linear/large.h"
@@ -29,6 +30,12 @@ double distributed_bytes(const Model& model) {
 double interface_blocks(double rows, double touched) {
   const double r = std::min(rows, touched), turned = rows < touched ? r * touched : 0;
   return 8 * (rows * r + turned + touched * touched + 3 * r * r);
+}
+
+/// Of the loads of the flexibility with reach: some at once (solved_response.cpp), their answers, and both scaled.
+double loads_at_once(double unknowns, double touched) {
+  constexpr double numbers = 1 << 20, most = 32;
+  return 4 * 8 * unknowns * std::min(touched, std::clamp(std::floor(numbers / std::max(unknowns, 1.0)), 1.0, most));
 }
 
 }  // namespace
@@ -68,6 +75,7 @@ BulkCost predict_bulk(const Model& model, const LinearSolver& solver, const Bulk
   // a factor of M that is kept is made after that of the first step size, one for the acceleration of the beginning alone before it
   more = std::max(more, (use.keeps_mass ? cost.step.bytes : 0) + cost.mass.bytes + cost.mass.working_bytes);
   more = std::max(more, statics.bytes + statics.working_bytes + blocks);
+  if (solver.distributed()) more = std::max(more, cost.step.bytes + loads_at_once(n, static_cast<double>(cost.touched)) + 6 * 8 * n);
   more += cost.record_bytes = use.record_bytes;
   give_back_free_memory();
   cost.bytes = std::max(cost.matrix_bytes, resident_memory()) + more;
