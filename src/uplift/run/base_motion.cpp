@@ -22,8 +22,9 @@ std::array<Weights, 3> weights_of_body(const Model& model, int node, const Place
   return weights;
 }
 
-/// Plane u_up = c + tilt . shape that fits the nodes best; shape is x in the plane, (y, -x) in space. No tilt where they do not span it.
-std::array<Weights, 3> weights_of_nodes(const Model& model, const std::vector<int>& nodes) {
+/// Plane u_up = c + tilt . shape that fits the nodes best, and its settlement at the point `reference`, which does not depend on how close
+/// the nodes stand here and there; shape is x in the plane, (y, -x) in space. No tilt where they do not span it.
+std::array<Weights, 3> weights_of_nodes(const Model& model, const std::vector<int>& nodes, const Place& reference) {
   const Space space = model.space;
   const auto count = static_cast<Index>(nodes.size()), tilts = static_cast<Index>(space.dimension - 1);
   Matrix shape(count, tilts);
@@ -34,7 +35,8 @@ std::array<Weights, 3> weights_of_nodes(const Model& model, const std::vector<in
     else
       shape.row(i) << x.y(), -x.x();
   }
-  shape.rowwise() -= shape.colwise().mean().eval();
+  const Vector mean = shape.colwise().mean().transpose();
+  shape.rowwise() -= mean.transpose();
   const Matrix inertia = shape.transpose() * shape;
   Matrix inverse = Matrix::Zero(tilts, tilts);
   const double size = inertia.trace();
@@ -42,10 +44,16 @@ std::array<Weights, 3> weights_of_nodes(const Model& model, const std::vector<in
   const double det = tilts == 2 ? inertia(0, 0) * inertia(1, 1) - inertia(0, 1) * inertia(1, 0) : 0;
   if (det > 1e-12 * size * size) inverse << inertia(1, 1) / det, -inertia(0, 1) / det, -inertia(1, 0) / det, inertia(0, 0) / det;
   const Matrix slope = shape * inverse;
+  Vector away(tilts);
+  if (tilts == 1)
+    away << reference.x();
+  else
+    away << reference.y(), -reference.x();
+  away -= mean;
   std::array<Weights, 3> weights;
   for (Index i = 0; i < count; ++i) {
     const int unknown = model.at(nodes[static_cast<std::size_t>(i)], space.dof(space.up()));
-    weights[0][unknown] = -1.0 / static_cast<double>(count);
+    weights[0][unknown] = -1.0 / static_cast<double>(count) - slope.row(i).dot(away);
     for (Index k = 0; k < tilts; ++k) weights[static_cast<std::size_t>(k) + 1][unknown] = slope(i, k);
   }
   return weights;
@@ -56,7 +64,7 @@ std::array<Weights, 3> weights_of_nodes(const Model& model, const std::vector<in
 BaseMotion::BaseMotion(const Model& model, const Interface& interface, const std::vector<int>& nodes) {
   if (nodes.empty()) return;
   const std::array<Weights, 3> weights =
-      nodes.size() == 1 ? weights_of_body(model, nodes.front(), interface.reference) : weights_of_nodes(model, nodes);
+      nodes.size() == 1 ? weights_of_body(model, nodes.front(), interface.reference) : weights_of_nodes(model, nodes, interface.reference);
   for (std::size_t k = 0; k < 3; ++k) {
     Weights free;
     for (const auto& [unknown, weight] : weights[k])

@@ -9,8 +9,7 @@
 namespace uplift {
 
 /// How a base moves as a whole: settlement and tilt of the plane that fits the vertical motion of its nodes best, as sums over the
-/// unknowns. A single node with rotations is a rigid body: its rotation, and the settlement of the point of the interface to which moments
-/// refer.
+/// unknowns. The settlement is that of the point of the interface to which moments refer. A single node with rotations is a rigid body.
 class BaseMotion {
  public:
   /// Nothing moves when there are no nodes.

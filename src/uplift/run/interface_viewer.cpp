@@ -52,6 +52,36 @@ bool flat(const Interface& interface) {
   return std::ranges::all_of(interface.normal, [&](const Vec3& n) { return (n - interface.normal.front()).norm() < 1e-9; });
 }
 
+/// Whether values at the points are those of a plane. `weight`: the slope weights of the interface.
+bool of_a_plane(const Interface& interface, const std::array<Vector, 2>& weight, const Vector& values) {
+  const Vec3& normal = interface.normal.front();
+  Vector left = values;
+  for (int k = 0; k < interface.space.dimension - 1; ++k) {
+    const double slope = weight[static_cast<std::size_t>(k)].dot(values);
+    const Vec3 axis = interface.space.dimension == 2 ? Vec3(Vec3::UnitZ()) : local_axis(interface.space, normal, k);
+    for (int i = 0; i < interface.batch.points; ++i)
+      left[i] -= slope * cross(axis, interface.position[static_cast<std::size_t>(i)] - interface.reference).dot(normal);
+  }
+  left.array() -= left.mean();
+  return left.cwiseAbs().maxCoeff() <= 1e-9 * values.cwiseAbs().maxCoeff();
+}
+
+/// Whether the openings of an interface are those of a plane however the model moves: a rigid body on ground that is fixed, or rigid too.
+/// An arbitrary motion shows it. `row`: the first one of the normal openings among the rows of all interfaces.
+bool opens_as_a_plane(const Model& model, const Interface& interface, const std::array<Vector, 2>& weight, int row) {
+  const int points = interface.batch.points, first = (interface.batch.translations() - 1) * points;
+  if (points < 2 || interface.gap.size() < interface.rows() || interface.b.rows() < interface.rows() || !flat(interface)) return false;
+  Vector opening = Vector::Zero(points);
+  for (Index column = 0; column < interface.b.outerSize(); ++column)
+    for (Sparse::InnerIterator entry(interface.b, column); entry; ++entry)
+      if (const Index i = entry.row() - first; i >= 0 && i < points)
+        opening[i] += entry.value() * std::sin(1 + static_cast<double>(entry.col()));
+  return of_a_plane(interface, weight, opening) && of_a_plane(interface, weight, interface.gap.segment(first, points)) &&
+         std::ranges::all_of(model.motions, [&](const PrescribedMotion& motion) {
+           return motion.opening.size() == 0 || of_a_plane(interface, weight, motion.opening.segment(row, points));
+         });
+}
+
 }  // namespace
 
 GapRule gap_rule(const Interface& interface) {
@@ -95,6 +125,8 @@ InterfaceViewer::InterfaceViewer(const Model& model, double gap_tolerance, const
       layout.share = PositiveShare(*facets[k]);
       layout.corners = facets[k]->corners;
       layout.at_edge = facets[k]->at_edge;
+      layout.plane = layout.rule.opens && layout.rule.softness == 0 && std::isfinite(layout.stiffness) &&
+                     opens_as_a_plane(model, interface, layout.slope_weight, first + (layout.translations - 1) * layout.points);
       value_.setZero(std::max(value_.size(), layout.share.room()));
     }
     layouts_.push_back(std::move(layout));
@@ -166,6 +198,26 @@ double InterfaceViewer::edge_opening(const Layout& layout, const double* gap) co
     if (open) most = larger(most, opening);
   }
   return most;
+}
+
+/// Gap and open share of a plane, which has no bend, and may have left the ground between the last points and the edge only.
+void InterfaceViewer::look_at_plane(const Layout& layout, const double* gap, InterfaceView& view) {
+  double most = view.max_opening, least = view.least_opening;
+  for (const Facets::Corner& corner : layout.corners) {
+    double opening = 0;
+    for (const auto& [point, weight] : corner) opening += weight * gap[point];
+    most = larger(most, opening);
+    least = smaller(least, opening);
+  }
+  if (!(most > tolerance_)) return;
+  view.max_opening = most;
+  if (layout.share.empty() || least > tolerance_) return;
+  if (layout.share.points_alone()) {
+    view.open_area = layout.share.above(tolerance_, gap);
+    return;
+  }
+  for_lanes(layout.points, [&, value = value_.data(), tolerance = tolerance_](const auto& at) { at.put(value, at(gap) - tolerance); });
+  view.open_area = layout.share.positive(value_.data());
 }
 
 /// One point with rotations: its law knows how much of the footing is open. A pressure is not among its forces.
@@ -243,11 +295,14 @@ void InterfaceViewer::look(const State& state, std::vector<InterfaceView>& views
     view.least_opening = smallest(least);
     view.max_pressure = largest(pressure);
     const auto in_parts = [&](double share) { return !layout.share.empty() && share > 0 && share < whole; };
-    if (in_parts(view.open_area)) view.open_area = open_share(layout, gap, p, view);
+    if (layout.plane)
+      look_at_plane(layout, gap, view);
+    else if (in_parts(view.open_area))
+      view.open_area = open_share(layout, gap, p, view);
     if (layout.bonded && in_parts(view.tension_area)) view.tension_area = tension_share(layout, p);
     if (!layout.corners.empty()) {
       if (layout.at_edge) view.max_pressure = std::max(view.max_pressure, edge_pressure(layout, p));
-      if (view.max_opening > tolerance) view.max_opening = std::max(view.max_opening, edge_opening(layout, gap));
+      if (!layout.plane && view.max_opening > tolerance) view.max_opening = std::max(view.max_opening, edge_opening(layout, gap));
     }
     view.rotation = {sum(slopes), 0};
     if (layout.slope_weight[1].size() > 0) view.rotation[1] = small::dot(n, layout.slope_weight[1].data(), stretch);

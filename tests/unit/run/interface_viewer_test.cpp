@@ -1,6 +1,7 @@
 // What is looked up at an interface beyond its points: the largest gap at the edge of a rigid base that has turned, for every rule.
 #include "uplift/run/interface_viewer.h"
 
+#include <fmt/format.h>
 #include <gtest/gtest.h>
 
 #include <cmath>
@@ -8,6 +9,7 @@
 
 #include "unit/mesh/split_support.h"
 #include "unit/verdict/verdict_support.h"
+#include "uplift/verdict/verdict.h"
 
 namespace uplift::interface_viewer_test {
 namespace {
@@ -120,6 +122,89 @@ TEST(InterfaceViewer, GapAtTheHeelInTheVerdict) {
     ASSERT_EQ(result.status, RunStatus::completed) << result.reason;
     EXPECT_NEAR(result.max_opening.value, width * theta, 1e-12) << rule;
   }
+}
+
+// A rigid raft of 6 x 4 m of which a corner alone is open: the plane uz - ry x + rx y passes zero 0.4 and 0.27 m from the corner, which
+// is a triangle of the underside. No midpoint lies in it, one node does.
+TEST(InterfaceViewer, OpenCornerOfARigidRaft) {
+  const double slope_x = 1e-3, slope_y = 1.5e-3, gap = 0.4e-3, down = 3 * slope_x + 2 * slope_y - gap;  // at the corner (3, 2)
+  const double counted = gap - 1e-9, share = (counted / slope_x) * (counted / slope_y) / 2 / 24;        // gaps count from 1e-9 m on
+  for (const char* rule : {"nodal", "midpoint", "gauss"})
+    for (const bool turned : {false, true}) {  // the length along x, too
+      const BuiltCase built = support::built_of(
+          "title = \"corner\"\n[nodes]\nbase = [0, 0, 0]\n[[rigid]]\nname = \"raft\"\nnode = \"base\"\nmass = 1e4\ninertia = 7500\n"
+          "[[support]]\nnode = \"base\"\nfixed = [\"ux\", \"uy\", \"rz\"]\n[[interface]]\nname = \"soil\"\n"
+          "footing = { body = \"base\", points = 12, points_across = 13, rule = \"" +
+          std::string(rule) + (turned ? "\", width = 4, length = 6, azimuth = \"90 deg\"" : "\", width = 6, length = 4") +
+          " }\nlaw = { type = \"springs\", K_n = 2e8, tangential = \"none\" }\n" +
+          fmt::format("[[motion]]\nnode = \"base\"\ndirection = \"uz\"\namplitude = {}\n", -down) +
+          fmt::format("[[motion]]\nnode = \"base\"\ndirection = \"rx\"\namplitude = {}\n", slope_y) +
+          fmt::format("[[motion]]\nnode = \"base\"\ndirection = \"ry\"\namplitude = {}\n[[stage]]\ntype = \"static\"\n", -slope_x));
+      const RunResult result = support::run_of(built);
+      ASSERT_EQ(result.status, RunStatus::completed) << result.reason;
+      EXPECT_NEAR(result.max_opening.value, gap, 1e-12) << rule;
+      EXPECT_NEAR(result.max_uplifted_ratio.value, share, 1e-9) << rule;
+    }
+}
+
+// The edge of a strip that its loads lift off beyond the last midpoint. All points are closed, so that the settlement is W/(k B) and the
+// rotation M/(k I) with I = (B^3/12)(1 - 1/n^2) of n midpoints. An uneven gap of the ground beneath is no plane: nothing is known between
+// points.
+TEST(InterfaceViewer, OpenEdgeBeyondTheMidpoints) {
+  const double width = 4, stiffness = 5e7, weight = 8e5, n = 5;
+  const double rotation = weight / (stiffness * width) / (width / 2 - 0.2);  // zero is 0.2 m from the edge, 0.4 m from it is the last point
+  const double moment = rotation * stiffness * width * width * width / 12 * (1 - 1 / (n * n));
+  for (const bool uneven : {false, true}) {
+    const BuiltCase built = support::built_of(
+        "title = \"edge\"\n[nodes]\nbase = [0, 0]\n[[rigid]]\nname = \"strip\"\nnode = \"base\"\n[[support]]\nnode = \"base\"\nfixed = "
+        "[\"ux\"]\n[[interface]]\nname = \"soil\"\nfooting = { body = \"base\", width = 4, points = 5, rule = \"midpoint\" }\n" +
+        std::string(uneven ? "gap_profile = { along = \"x\", positions = [-1, 0, 1], gaps = [0, 1e-9, 0] }\n" : "") +
+        "law = { type = \"springs\", K_n = 5e7, tangential = \"none\" }\n" +
+        fmt::format("[[load]]\nnode = \"base\"\nforce = [0, {}]\nmoment = {}\n[[stage]]\ntype = \"static\"\n", -weight, moment));
+    const RunResult result = support::run_of(built);
+    ASSERT_EQ(result.status, RunStatus::completed) << result.reason;
+    EXPECT_NEAR(result.max_opening.value, uneven ? 0 : 0.2 * rotation, 1e-9 * rotation);
+    EXPECT_NEAR(result.max_uplifted_ratio.value, uneven ? 0 : 0.2 / width, 1e-6);
+  }
+}
+
+// What a base settles by does not depend on where its nodes stand close together: a strip from 0 to 4 m that turns about 1 m.
+TEST(InterfaceViewer, SettlementInTheMiddleOfUnevenNodes) {
+  const BuiltCase built = support::built_of(R"(title = "uneven"
+[nodes]
+body = [1, 1]
+a = [0, 0]
+b = [3, 0]
+c = [3.5, 0]
+d = [4, 0]
+[[rigid]]
+name = "strip"
+node = "body"
+slaves = ["a", "b", "c", "d"]
+mass = 1e4
+inertia = 1e4
+[[support]]
+node = "body"
+fixed = ["ux"]
+[[interface]]
+name = "soil"
+line = { upper = ["a", "b", "c", "d"], nodes_per_element = 2 }
+law = { type = "springs", K_n = 5e7, tangential = "none" }
+[[motion]]
+node = "body"
+direction = "uy"
+amplitude = -5e-3
+[[motion]]
+node = "body"
+direction = "rz"
+amplitude = 1e-3
+[[stage]]
+type = "static"
+)");
+  const RunResult result = support::run_of(built);
+  ASSERT_EQ(result.status, RunStatus::completed) << result.reason;
+  const Verdict verdict = judge(built, result, nullptr);
+  EXPECT_NEAR(find_number(verdict.numbers.interfaces.at(0).numbers, "residual_settlement")->value, 5e-3 - 1e-3, 1e-12);  // of x = 2 m
 }
 
 }  // namespace
