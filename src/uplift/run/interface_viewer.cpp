@@ -125,8 +125,12 @@ InterfaceViewer::InterfaceViewer(const Model& model, double gap_tolerance, const
       layout.share = PositiveShare(*facets[k]);
       layout.corners = facets[k]->corners;
       layout.at_edge = facets[k]->at_edge;
-      layout.plane = layout.rule.opens && layout.rule.softness == 0 && std::isfinite(layout.stiffness) &&
-                     opens_as_a_plane(model, interface, layout.slope_weight, first + (layout.translations - 1) * layout.points);
+      const int row = first + (layout.translations - 1) * layout.points;
+      const bool bare = layout.rule.opens && layout.rule.softness == 0 && std::isfinite(layout.stiffness);  // it gives, and never pulls
+      if ((bare || layout.bonded) && opens_as_a_plane(model, interface, layout.slope_weight, row)) {
+        layout.plane = bare;
+        layout.plane_tractions = layout.bonded && interface.weight.size() == interface.area.size() && interface.weight == interface.area;
+      }
       value_.setZero(std::max(value_.size(), layout.share.room()));
     }
     layouts_.push_back(std::move(layout));
@@ -183,6 +187,15 @@ double InterfaceViewer::edge_pressure(const Layout& layout, const double* force)
     if (contact) most = larger(most, -traction);
   }
   return most;
+}
+
+/// Whether a plane of tractions pulls at an edge that no point reaches.
+bool InterfaceViewer::pulls_at_edge(const Layout& layout, const double* force) {
+  return std::ranges::any_of(layout.corners, [&](const Facets::Corner& corner) {
+    double traction = 0;
+    for (const auto& [point, weight] : corner) traction += weight * force[point] * layout.inverse_area[point];
+    return traction > 0;
+  });
 }
 
 /// The largest opening at corners that no point reaches: linear from the points next to them, where these are open.
@@ -299,7 +312,8 @@ void InterfaceViewer::look(const State& state, std::vector<InterfaceView>& views
       look_at_plane(layout, gap, view);
     else if (in_parts(view.open_area))
       view.open_area = open_share(layout, gap, p, view);
-    if (layout.bonded && in_parts(view.tension_area)) view.tension_area = tension_share(layout, p);
+    if (layout.bonded && (in_parts(view.tension_area) || (layout.plane_tractions && view.tension_area == 0 && pulls_at_edge(layout, p))))
+      view.tension_area = tension_share(layout, p);
     if (!layout.corners.empty()) {
       if (layout.at_edge) view.max_pressure = std::max(view.max_pressure, edge_pressure(layout, p));
       if (!layout.plane && view.max_opening > tolerance) view.max_opening = std::max(view.max_opening, edge_opening(layout, gap));

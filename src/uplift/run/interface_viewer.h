@@ -49,6 +49,7 @@ class InterfaceViewer {
     std::vector<Facets::Corner> corners;    // of the surface that are no points: openings are extrapolated to them
     bool at_edge = false;                   // pressures too
     bool plane = false;                     // openings are those of a plane, closed ones too: they are extrapolated wherever they are
+    bool plane_tractions = false;           // of a bonded joint: so are its tractions
     const InterfaceLaw* footing = nullptr;  // the law of a point with rotations, which stands for a whole footing; else null
     Batch batch;
     int first_history = 0;
@@ -60,6 +61,7 @@ class InterfaceViewer {
   double open_share(const Layout& layout, const double* gap, const double* force, const InterfaceView& view);
   double tension_share(const Layout& layout, const double* force);
   static double edge_pressure(const Layout& layout, const double* force);
+  static bool pulls_at_edge(const Layout& layout, const double* force);
   double edge_opening(const Layout& layout, const double* gap) const;
   void look_at_plane(const Layout& layout, const double* gap, InterfaceView& view);
   const double* gaps(const Layout& layout, const State& state);

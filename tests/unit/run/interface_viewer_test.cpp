@@ -168,6 +168,21 @@ TEST(InterfaceViewer, OpenEdgeBeyondTheMidpoints) {
   }
 }
 
+// A bonded strip under the same loads pulls there.
+TEST(InterfaceViewer, TensionBeyondTheMidpoints) {
+  const double width = 4, stiffness = 5e7, weight = 8e5, n = 5, rotation = weight / (stiffness * width) / (width / 2 - 0.2);
+  const double moment = rotation * stiffness * width * width * width / 12 * (1 - 1 / (n * n));
+  const BuiltCase built = support::built_of(
+      "title = \"edge\"\n[nodes]\nbase = [0, 0]\n[[rigid]]\nname = \"strip\"\nnode = \"base\"\n[[support]]\nnode = \"base\"\nfixed = "
+      "[\"ux\"]\n[[interface]]\nname = \"soil\"\nfooting = { body = \"base\", width = 4, points = 5, rule = \"midpoint\" }\n"
+      "law = { type = \"elastic\", K_n = 5e7, tangential = \"none\" }\n" +
+      fmt::format("[[load]]\nnode = \"base\"\nforce = [0, {}]\nmoment = {}\n[[stage]]\ntype = \"static\"\n", -weight, moment));
+  const RunResult result = support::run_of(built);
+  ASSERT_EQ(result.status, RunStatus::completed) << result.reason;
+  const VerdictNumbers numbers = numbers_of(built, result, &result);
+  EXPECT_NEAR(find_number(numbers.interfaces.at(0).numbers, "linear_tension_ratio")->value, 0.2 / width, 1e-9);
+}
+
 // What a base settles by does not depend on where its nodes stand close together: a strip from 0 to 4 m that turns about 1 m.
 TEST(InterfaceViewer, SettlementInTheMiddleOfUnevenNodes) {
   const BuiltCase built = support::built_of(R"(title = "uneven"
