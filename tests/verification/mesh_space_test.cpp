@@ -51,6 +51,7 @@ struct Block {
     std::string out =
         "title = \"block\"\n[mesh]\nfile = \"block.msh\"\n[[solid]]\ngroup = \"soil_1\"\nE = 200e6\npoisson = 0.3\ndensity = "
         "2000\ndamping_beta = 1e-3\n[[solid]]\ngroup = \"block\"\nE = 20e9\npoisson = 0.2\ndensity = 2500\ndamping_beta = 1e-4\n";
+    out += "[limits]\ngap_tolerance = 1e-9\n";  // by itself it is one of the size of the interface, to which a slice adds its thickness
     out += hold("soil_bottom", d == 2 ? "\"ux\", \"uy\"" : "\"ux\", \"uy\", \"uz\"");
     if (slice) out += hold("soil_1", "\"uy\"") + hold("block", "\"uy\"");
     for (const char* side : {"soil_left", "soil_right", "soil_front", "soil_back"})

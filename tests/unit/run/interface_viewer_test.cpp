@@ -132,7 +132,8 @@ TEST(InterfaceViewer, OpenCornerOfARigidRaft) {
   for (const char* rule : {"nodal", "midpoint", "gauss"})
     for (const bool turned : {false, true}) {  // the length along x, too
       const BuiltCase built = support::built_of(
-          "title = \"corner\"\n[nodes]\nbase = [0, 0, 0]\n[[rigid]]\nname = \"raft\"\nnode = \"base\"\nmass = 1e4\ninertia = 7500\n"
+          "title = \"corner\"\n[limits]\ngap_tolerance = 1e-9\n[nodes]\nbase = [0, 0, 0]\n[[rigid]]\nname = \"raft\"\nnode = "
+          "\"base\"\nmass = 1e4\ninertia = 7500\n"
           "[[support]]\nnode = \"base\"\nfixed = [\"ux\", \"uy\", \"rz\"]\n[[interface]]\nname = \"soil\"\n"
           "footing = { body = \"base\", points = 12, points_across = 13, rule = \"" +
           std::string(rule) + (turned ? "\", width = 4, length = 6, azimuth = \"90 deg\"" : "\", width = 6, length = 4") +
