@@ -14,8 +14,22 @@
 
 namespace uplift {
 
-BulkMatrix::BulkMatrix(const Sparse& matrix, bool dense) : zero_(matrix.nonZeros() == 0), sparse_(dense ? nullptr : &matrix) {
-  if (dense) full_ = Matrix(matrix);
+namespace {
+
+/// Of a model reduced to its modes; among few unknowns a full product is as fast.
+bool is_diagonal(const Sparse& matrix) {
+  if (matrix.rows() <= small_bulk || matrix.nonZeros() > matrix.rows()) return false;
+  for (Index column = 0; column < matrix.outerSize(); ++column)
+    for (Sparse::InnerIterator entry(matrix, column); entry; ++entry)
+      if (entry.row() != entry.col()) return false;
+  return true;
+}
+
+}  // namespace
+
+BulkMatrix::BulkMatrix(const Sparse& matrix, bool dense)
+    : zero_(matrix.nonZeros() == 0), sparse_(dense && !is_diagonal(matrix) ? nullptr : &matrix) {
+  if (sparse_ == nullptr) full_ = Matrix(matrix);
 }
 
 BulkMatrix::BulkMatrix(std::vector<DistributedTerm> terms, const Sparse* here)
@@ -139,6 +153,7 @@ void BulkFactor::factorise(const SymmetricSum& matrix, const Sparse* b, const Li
   if (small_) {
     factor_->solve(Matrix::Identity(matrix.rows(), matrix.rows()), inverse_);
     inverse_ = (0.5 * (inverse_ + inverse_.transpose())).eval();
+    if (matrix.there.empty() && is_diagonal(matrix.here)) inverse_diagonal_ = inverse_.diagonal();
   }
 }
 
@@ -190,6 +205,10 @@ void BulkFactor::fail(const Model& model, const SymmetricSum& matrix, int unknow
 }
 
 void BulkFactor::solve(const Vector& b, Vector& x, BulkWork& work) const {
+  if (inverse_diagonal_.size() > 0) {
+    x = inverse_diagonal_.cwiseProduct(b);
+    return;
+  }
   if (small_) {
     small::multiply(inverse_, b.data(), x.data());
     return;

@@ -23,8 +23,8 @@ struct LinearCounts {
 /// Below this number of free unknowns matrices are dense and the inverse is kept: a step then needs no back-solve at all.
 inline constexpr int small_bulk = 48;
 
-/// A symmetric matrix of the bulk: a dense copy when it is small, else a view; or the sum of distributed terms, and of a part that stands
-/// here.
+/// A symmetric matrix of the bulk: a dense copy when it is small and not a diagonal, else a view; or the sum of distributed terms, and of a
+/// part that stands here.
 class BulkMatrix {
  public:
   BulkMatrix(const Sparse& matrix, bool dense);
@@ -120,6 +120,7 @@ class BulkFactor {
   bool small_ = false, too_large_ = false;
   std::string why_;
   Matrix inverse_;
+  Vector inverse_diagonal_;  // where the inverse is a diagonal; else empty
   std::unique_ptr<const Factor> factor_;
   std::unique_ptr<const SplitFactor> split_;
   std::vector<int> last_;

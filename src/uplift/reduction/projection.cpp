@@ -1,6 +1,7 @@
 #include "uplift/reduction/projection.h"
 
 #include "uplift/linear/blas.h"
+#include "uplift/math/dense.h"
 
 namespace uplift {
 
@@ -34,6 +35,36 @@ Sparse shown_rows(const Model& model, const Matrix& basis, const std::vector<int
   return columns;
 }
 
+Sparse diagonal(const Vector& values) {
+  Sparse matrix(values.size(), values.size());
+  matrix.reserve(Vector::Ones(values.size()).cast<int>());
+  for (Index i = 0; i < values.size(); ++i) matrix.insert(i, i) = values[i];
+  return matrix;
+}
+
+/// Without entries beside the diagonal, where these are round-off.
+Sparse without_round_off(const Sparse& matrix) {
+  const Vector values = matrix.diagonal();
+  const double least = 1e-12 * values.cwiseAbs().maxCoeff();
+  for (Index column = 0; column < matrix.outerSize(); ++column)
+    for (Sparse::InnerIterator entry(matrix, column); entry; ++entry)
+      if (entry.row() != entry.col() && std::abs(entry.value()) > least) return matrix;
+  return diagonal(values);
+}
+
+/// All but the matrices.
+void project_all_else(Model& model, const Matrix& basis, const std::vector<int>* shown) {
+  if (shown != nullptr) {
+    shown_rows(model, basis, *shown).swap(model.expansion);
+    model.reduction = model.expansion.transpose();
+  } else {
+    model.reduction = as_sparse(model.reduction * basis);
+    model.expansion = model.reduction.transpose();
+  }
+  for (Interface& interface : model.interfaces) interface.b = as_sparse(interface.b * basis);
+  project_loads(model, basis);
+}
+
 }  // namespace
 
 Matrix symmetric_projection(const Sparse& a, const Matrix& v) {
@@ -50,15 +81,21 @@ Matrix symmetric_projection(const Sparse& a, const Matrix& v) {
 
 void project(Model& model, const Matrix& basis, const std::vector<int>* shown) {
   for (Sparse* matrix : {&model.stiffness, &model.mass, &model.damping}) *matrix = projected(*matrix, basis);
-  if (shown != nullptr) {
-    shown_rows(model, basis, *shown).swap(model.expansion);
-    model.reduction = model.expansion.transpose();
-  } else {
-    model.reduction = as_sparse(model.reduction * basis);
-    model.expansion = model.reduction.transpose();
-  }
-  for (Interface& interface : model.interfaces) interface.b = as_sparse(interface.b * basis);
-  project_loads(model, basis);
+  project_all_else(model, basis, shown);
+}
+
+void project_on_modes(Model& model, double w, Matrix& basis, const std::vector<int>* shown) {
+  const Matrix stiffness = symmetric_projection(model.stiffness, basis), mass = symmetric_projection(model.mass, basis);
+  const GeneralisedEigen modes(mass, stiffness + (w * w) * mass);  // M x = m (K + w^2 M) x
+  const Vector& m = modes.eigenvalues();
+  if (!(m.minCoeff() > 1e-13 * m.maxCoeff())) return project(model, basis, shown);
+  Matrix turned = Matrix::Zero(basis.rows(), basis.cols());
+  add_product(1, basis, modes.eigenvectors(), turned);
+  basis.swap(turned);
+  model.stiffness = diagonal(modes.eigenvectors().cwiseProduct(stiffness * modes.eigenvectors()).colwise().sum());
+  model.mass = diagonal(m);
+  model.damping = without_round_off(projected(model.damping, basis));
+  project_all_else(model, basis, shown);
 }
 
 void project_loads(Model& model, const Matrix& basis) {

@@ -14,6 +14,11 @@ namespace uplift {
 /// model has none of the others, as if they were held. Null: all.
 void project(Model& model, const Matrix& basis, const std::vector<int>* shown = nullptr);
 
+/// The same with the modes of the reduced model as coordinates: turns the basis so that K and M become diagonal, and C with Rayleigh
+/// damping alone, and projects. A step then multiplies with vectors instead of full matrices. `w` [rad/s]: a frequency that makes K + w^2 M
+/// positive definite. A mass that is singular in the basis leaves the basis as it is, and full matrices.
+void project_on_modes(Model& model, double w, Matrix& basis, const std::vector<int>* shown = nullptr);
+
 /// The part of project() that belongs to the loads: matrices, constraints and rows of the interfaces are projected already.
 void project_loads(Model& model, const Matrix& basis);
 

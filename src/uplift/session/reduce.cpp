@@ -286,12 +286,12 @@ std::optional<RunState> begin_reduced(const ReducedModel& reduced, const Where& 
   constexpr double least = 1e-11;  // share of the state that is left out
   State& state = begin->state;
   for (const Vector* part : {&state.displacement, &state.velocity}) append(product, *part, least, basis);
+  const std::vector<int> shown = shares && built.plan.frames == 0 ? unknowns_of_results(built) : std::vector<int>();
+  project_on_modes(built.model, reduced.energy_frequency, basis, shown.empty() ? nullptr : &shown);
   state.displacement = coordinates(product, basis, state.displacement);
   state.velocity = coordinates(product, basis, state.velocity);
   state.acceleration.setZero(basis.cols());
   if (begin->held.size() > 0) begin->held = (basis.transpose() * begin->held).eval();
-  const std::vector<int> shown = shares && built.plan.frames == 0 ? unknowns_of_results(built) : std::vector<int>();
-  project(built.model, basis, shown.empty() ? nullptr : &shown);
   built.plan.rest.reset();
   if (shares) {
     ReducedStart& made = shared->emplace();

@@ -1,6 +1,9 @@
 // Bases, and structures in the coordinates of a basis.
+#include "uplift/reduction/projection.h"
+
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <cmath>
 #include <random>
 
@@ -146,4 +149,40 @@ TEST(LinearMarch, SwingsWithTheFrequencyOfTheTrapezoidalRule) {
 }
 
 }  // namespace
+// The modes of a reduced model are its natural modes: the same frequencies, in the same space of displacements. Rayleigh damping is
+// diagonal in them, a dashpot is not.
+TEST(ProjectOnModes, GivesTheFrequenciesOfTheReducedModelAndKeepsItsSpace) {
+  const Index n = 40, k = 9;
+  const double w = 3;
+  for (const bool dashpot : {false, true}) {
+    Model plain, turned;
+    const Matrix spread = random_matrix(n, n, 5);
+    for (Model* model : {&plain, &turned}) {
+      model->stiffness = Sparse(Matrix(spread * spread.transpose()).sparseView());
+      model->mass = diagonal(random_matrix(n, 1, 6).cwiseAbs().array() + 0.1);
+      model->damping = 0.03 * model->stiffness + 0.2 * model->mass;
+      if (dashpot) model->damping.coeffRef(7, 7) += 5;
+      model->reduction = model->expansion = diagonal(Vector::Ones(n));
+    }
+    const Sparse damping = plain.damping;
+    const EnergyProduct product(plain.stiffness, plain.mass, w);
+    Matrix basis = random_matrix(n, k, 7);
+    ASSERT_EQ(orthonormalise(product, Matrix(n, 0), 1e-10, basis), k);
+    const Matrix before = basis;
+    project(plain, before);
+    project_on_modes(turned, w, basis);
+    EXPECT_EQ(turned.stiffness.nonZeros(), k);
+    EXPECT_EQ(turned.mass.nonZeros(), k);
+    EXPECT_EQ(turned.damping.nonZeros(), dashpot ? k * k : k);
+    const Vector squared = GeneralisedEigen(Matrix(plain.stiffness), Matrix(plain.mass)).eigenvalues();
+    Vector own = turned.stiffness.diagonal().cwiseQuotient(turned.mass.diagonal());
+    std::ranges::sort(own);
+    EXPECT_LT((own - squared).cwiseQuotient(squared).cwiseAbs().maxCoeff(), 1e-11);
+    EXPECT_LT((basis - before * (before.transpose() * product.times(basis))).norm(), 1e-12 * basis.norm());
+    const Matrix exact = basis.transpose() * Matrix(damping) * basis;
+    EXPECT_LT((Matrix(turned.damping) - exact).norm(), 1e-12 * exact.norm());
+    EXPECT_LT((Matrix(turned.reduction) - basis).norm(), 1e-15 * basis.norm());
+  }
+}
+
 }  // namespace uplift::projection_test
