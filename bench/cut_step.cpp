@@ -174,33 +174,27 @@ void measure(const Raft& raft, int rounds) {
 int main(int count, char** words) {
   using uplift::Cell;
   const int rounds = count > 1 ? std::atoi(words[1]) : 5;
+  const uplift::Raft inclined{.dimension = 3,
+                              .cell = Cell::hex8,
+                              .soil = 5,
+                              .depth = 2,
+                              .cells = 4,
+                              .slope = 0.007,
+                              .fine = 22,
+                              .beside = 1,
+                              .deep = 3,
+                              .label = "space, hexahedra, inclined"};
+  uplift::Raft with_friction = inclined;
+  with_friction.friction = true;
+  with_friction.label = "space, hexahedra, inclined, friction";
   const std::vector<uplift::Raft> rafts{
       {.label = "plane, quadrilaterals, level"},
       {.cells = 16, .label = "plane, quadrilaterals of 1/16 m, level"},
       {.slope = 0.007, .fine = 32, .beside = 25, .deep = 30, .label = "plane, quadrilaterals, inclined"},
       {.cell = Cell::tri3, .label = "plane, triangles, level"},
       {.dimension = 3, .cell = Cell::hex8, .soil = 5, .depth = 2, .cells = 4, .label = "space, hexahedra, level"},
-      {.dimension = 3,
-       .cell = Cell::hex8,
-       .soil = 5,
-       .depth = 2,
-       .cells = 4,
-       .slope = 0.007,
-       .fine = 22,
-       .beside = 1,
-       .deep = 3,
-       .label = "space, hexahedra, inclined"},
-      {.dimension = 3,
-       .cell = Cell::hex8,
-       .soil = 5,
-       .depth = 2,
-       .cells = 4,
-       .slope = 0.007,
-       .fine = 22,
-       .beside = 1,
-       .deep = 3,
-       .friction = true,
-       .label = "space, hexahedra, inclined, friction"}};
+      inclined,
+      with_friction};
   uplift::prepare_heap();
   for (std::size_t k = 0; k < rafts.size(); ++k)
     if (count < 3 || std::atoi(words[2]) == static_cast<int>(k) + 1) uplift::measure(rafts[k], rounds);

@@ -50,8 +50,7 @@ std::string missed_peaks(const RunResult& run, const VerdictNumbers& numbers) {
   if (!(missed > tolerated)) return "";
   return fmt::format(
       "the recorded rows miss up to {} of the peaks of single motions, which lie between them: the drifts of the verdict and, in space, "
-      "the "
-      "motion of the top are made of rows and may be too small by more than that; take a smaller `every` in [output]",
+      "the motion of the top are made of rows and may be too small by more than that; take a smaller `every` in [output]",
       percent(missed));
 }
 

@@ -148,40 +148,42 @@ TEST(InterfaceViewer, OpenCornerOfARigidRaft) {
     }
 }
 
-// The edge of a strip that its loads lift off beyond the last midpoint. All points are closed, so that the settlement is W/(k B) and the
-// rotation M/(k I) with I = (B^3/12)(1 - 1/n^2) of n midpoints. An uneven gap of the ground beneath is no plane: nothing is known between
-// points.
-TEST(InterfaceViewer, OpenEdgeBeyondTheMidpoints) {
-  const double width = 4, stiffness = 5e7, weight = 8e5, n = 5;
-  const double rotation = weight / (stiffness * width) / (width / 2 - 0.2);  // zero is 0.2 m from the edge, 0.4 m from it is the last point
-  const double moment = rotation * stiffness * width * width * width / 12 * (1 - 1 / (n * n));
-  for (const bool uneven : {false, true}) {
-    const BuiltCase built = support::built_of(
+/// A strip of 4 m on five midpoints, k = 5e7 Pa/m, under a weight of 0.8 MN and a moment. All points are closed, so that the settlement is
+/// W/(k B) and the rotation M/(k I) with I = (B^3/12)(1 - 1/n^2) of n midpoints: zero is 0.2 m from the edge, the last point 0.4 m.
+struct StripOnMidpoints {
+  static constexpr double width = 4, stiffness = 5e7, weight = 8e5, points = 5, open = 0.2;
+  static constexpr double rotation = weight / (stiffness * width) / (width / 2 - open);
+  static BuiltCase built(const std::string& law, const std::string& gaps = "") {
+    const double moment = rotation * stiffness * width * width * width / 12 * (1 - 1 / (points * points));
+    return support::built_of(
         "title = \"edge\"\n[nodes]\nbase = [0, 0]\n[[rigid]]\nname = \"strip\"\nnode = \"base\"\n[[support]]\nnode = \"base\"\nfixed = "
         "[\"ux\"]\n[[interface]]\nname = \"soil\"\nfooting = { body = \"base\", width = 4, points = 5, rule = \"midpoint\" }\n" +
-        std::string(uneven ? "gap_profile = { along = \"x\", positions = [-1, 0, 1], gaps = [0, 1e-9, 0] }\n" : "") +
-        "law = { type = \"springs\", K_n = 5e7, tangential = \"none\" }\n" +
+        gaps + "law = { type = \"" + law + "\", K_n = 5e7, tangential = \"none\" }\n" +
         fmt::format("[[load]]\nnode = \"base\"\nforce = [0, {}]\nmoment = {}\n[[stage]]\ntype = \"static\"\n", -weight, moment));
-    const RunResult result = support::run_of(built);
+  }
+};
+
+// The edge of a strip that its loads lift off beyond the last midpoint. An uneven gap of the ground beneath is no plane: nothing is known
+// between points.
+TEST(InterfaceViewer, OpenEdgeBeyondTheMidpoints) {
+  using Strip = StripOnMidpoints;
+  for (const bool uneven : {false, true}) {
+    const RunResult result = support::run_of(
+        Strip::built("springs", uneven ? "gap_profile = { along = \"x\", positions = [-1, 0, 1], gaps = [0, 1e-9, 0] }\n" : ""));
     ASSERT_EQ(result.status, RunStatus::completed) << result.reason;
-    EXPECT_NEAR(result.max_opening.value, uneven ? 0 : 0.2 * rotation, 1e-9 * rotation);
-    EXPECT_NEAR(result.max_uplifted_ratio.value, uneven ? 0 : 0.2 / width, 1e-6);
+    EXPECT_NEAR(result.max_opening.value, uneven ? 0 : Strip::open * Strip::rotation, 1e-9 * Strip::rotation);
+    EXPECT_NEAR(result.max_uplifted_ratio.value, uneven ? 0 : Strip::open / Strip::width, 1e-6);
   }
 }
 
 // A bonded strip under the same loads pulls there.
 TEST(InterfaceViewer, TensionBeyondTheMidpoints) {
-  const double width = 4, stiffness = 5e7, weight = 8e5, n = 5, rotation = weight / (stiffness * width) / (width / 2 - 0.2);
-  const double moment = rotation * stiffness * width * width * width / 12 * (1 - 1 / (n * n));
-  const BuiltCase built = support::built_of(
-      "title = \"edge\"\n[nodes]\nbase = [0, 0]\n[[rigid]]\nname = \"strip\"\nnode = \"base\"\n[[support]]\nnode = \"base\"\nfixed = "
-      "[\"ux\"]\n[[interface]]\nname = \"soil\"\nfooting = { body = \"base\", width = 4, points = 5, rule = \"midpoint\" }\n"
-      "law = { type = \"elastic\", K_n = 5e7, tangential = \"none\" }\n" +
-      fmt::format("[[load]]\nnode = \"base\"\nforce = [0, {}]\nmoment = {}\n[[stage]]\ntype = \"static\"\n", -weight, moment));
+  const BuiltCase built = StripOnMidpoints::built("elastic");
   const RunResult result = support::run_of(built);
   ASSERT_EQ(result.status, RunStatus::completed) << result.reason;
   const VerdictNumbers numbers = numbers_of(built, result, &result);
-  EXPECT_NEAR(find_number(numbers.interfaces.at(0).numbers, "linear_tension_ratio")->value, 0.2 / width, 1e-9);
+  EXPECT_NEAR(find_number(numbers.interfaces.at(0).numbers, "linear_tension_ratio")->value,
+              StripOnMidpoints::open / StripOnMidpoints::width, 1e-9);
 }
 
 // What a base settles by does not depend on where its nodes stand close together: a strip from 0 to 4 m that turns about 1 m.

@@ -14,9 +14,9 @@ constexpr int most_iterations = 30, patience = 12;
 constexpr double worth_a_factor = 4;  // iterations of a chord
 constexpr double of_change = 8;       // a chord leaves about so many times the change of the slopes
 constexpr double most_contraction = 0.5;
-constexpr double price_of_reference = 10;  // factors of all rows
-constexpr int patience_with_candidate = 20;
-constexpr double same_slope = 1e-10;
+constexpr double price_of_reference = 10;    // factors of all rows
+constexpr int patience_with_candidate = 20;  // factors
+constexpr double same_slope = 1e-10;         // of a slope: a smaller difference is round-off
 
 double cubed(const std::vector<Index>& rows) {
   const double n = static_cast<double>(rows.size());
@@ -133,39 +133,42 @@ void RowNewton::refer_to(const Vector& slopes) {
   }
 }
 
-/// Takes the candidate for the reference when it would have spared its price since it is the candidate. `paid`: cube of rows of a factor.
-void RowNewton::look_for_reference(const Vector& slopes, double paid) {
+/// Takes the candidate for the reference, and says so, when it would have spared its price since it is the candidate. `paid`: cube of the
+/// rows of a factor without it.
+bool RowNewton::look_for_reference(const Vector& slopes, double paid) {
+  bool made = false;
   if (candidate_age_ > 0) {
     rows_apart(slopes, candidate_, other_rows_);
     spared_ += paid - cubed(other_rows_);
     const double all = static_cast<double>(compliance_.rows());
-    if (spared_ > price_of_reference * all * all * all) {
-      refer_to(candidate_);
-      candidate_age_ = 0;
-    }
+    made = spared_ > price_of_reference * all * all * all;
+    if (made) refer_to(candidate_);
   }
-  if (candidate_age_ == 0 || candidate_age_ > patience_with_candidate) {
+  if (made || candidate_age_ == 0 || candidate_age_ > patience_with_candidate) {
     candidate_ = slopes;
     spared_ = 0;
     candidate_age_ = 0;
   }
   ++candidate_age_;
+  return made;
 }
 
-/// I + F k in the rows in which k is not that of the reference.
+/// The rows of a factor: those whose slopes are not 0, or not those of the reference where these are fewer.
+void RowNewton::choose_rows(const Vector& slopes) {
+  rows_apart(slopes, none_, rows_);
+  from_reference_ = false;
+  if (!has_reference_) return;
+  rows_apart(slopes, reference_, other_rows_);
+  from_reference_ = other_rows_.size() < rows_.size();
+  if (from_reference_) rows_.swap(other_rows_);
+}
+
+/// I + F k in the rows that k needs, or I + F0 (k - k0).
 bool RowNewton::factorise(const Vector& slopes) {
   valid_ = false;
   if (!slopes.allFinite()) return false;
-  rows_apart(slopes, none_, rows_);
-  if (has_reference_) rows_apart(slopes, reference_, other_rows_);
-  look_for_reference(slopes, std::min(cubed(rows_), has_reference_ ? cubed(other_rows_) : INFINITY));
-  rows_apart(slopes, none_, rows_);
-  from_reference_ = false;
-  if (has_reference_) {
-    rows_apart(slopes, reference_, other_rows_);
-    from_reference_ = other_rows_.size() < rows_.size();
-    if (from_reference_) rows_.swap(other_rows_);
-  }
+  choose_rows(slopes);
+  if (look_for_reference(slopes, cubed(rows_))) choose_rows(slopes);
   slopes_ = slopes;
   change_ = slopes - (from_reference_ ? reference_ : none_);
   fill(change_, from_reference_ ? reference_compliance_ : compliance_, rows_);

@@ -45,8 +45,9 @@ class RowNewton final : public MethodWork {
   double change_of_slopes(const Vector& slopes) const;
   void rows_apart(const Vector& slopes, const Vector& from, std::vector<Index>& rows) const;
   void fill(const Vector& change, const Matrix& compliance, const std::vector<Index>& rows);
-  void look_for_reference(const Vector& slopes, double paid);
+  bool look_for_reference(const Vector& slopes, double paid);
   void refer_to(const Vector& slopes);
+  void choose_rows(const Vector& slopes);
   bool factorise(const Vector& slopes);
   void slope_product(const Vector& slopes, const Vector& moved, Vector& force) const;
   bool direction(const Vector& slopes, InterfaceSystems& counts);
